@@ -1,0 +1,91 @@
+#include "cases/scene.h"
+
+#include <cmath>
+#include <filesystem>
+
+#include "cases/scene_parts.h"
+
+namespace flexmorph::cases {
+namespace {
+
+Output read_output(const io::Table& root) {
+  Output output;
+  output.motion_every = 0.01;
+  if (!root.has("output")) return output;
+  constexpr int kMost = 1'000'000'000;
+  const io::Table t = root.table("output");
+  output.directory = t.string("directory", "a folder", "");
+  output.design_every = t.integer("design_every", "a number of iterations", 0, kMost, 1);
+  output.motion_every = t.number("motion_every", io::not_negative("a time", "s"), 0.01);
+  output.sharp_every = t.integer("sharp_every", "a number of iterations", 0, kMost, 25);
+  output.vtk = t.boolean("vtk", true);
+  output.plots = t.boolean("plots", true);
+  return output;
+}
+
+Expectation read_expectation(const io::Table& t) {
+  Expectation expected;
+  const auto bound = [&](const char* key) -> std::optional<double> {
+    if (!t.has(key)) return {};
+    return t.number(key, io::any_number("a bound"));
+  };
+  expected.at_least = bound("at_least");
+  expected.at_most = bound("at_most");
+  if (t.has("value")) {
+    expected.value = t.number("value", io::any_number("an expected value"));
+    if (t.has("relative") == t.has("absolute"))
+      t.fail("a value comes with one tolerance, `relative` or `absolute`");
+    expected.tolerance = t.has("relative") ? t.number("relative", io::not_negative("a tolerance")) *
+                                                 std::abs(*expected.value)
+                                           : t.number("absolute", io::not_negative("a tolerance"));
+  }
+  if (!expected.value && !expected.at_least && !expected.at_most)
+    t.fail("an expectation has a `value` with a tolerance, `at_least` or `at_most`");
+  return expected;
+}
+
+}  // namespace
+
+TdfSettings BodyDesign::stage(size_t index) const {
+  TdfSettings settings = tdf;
+  settings.band =
+      tdf.kind == TdfSettings::Kind::paper ? band.at(index) : band.at(index) * grid.dx();
+  return settings;
+}
+
+int Esl::count(double end) const { return static_cast<int>(std::floor(end / every + 1e-6)); }
+
+bool Expectation::holds(double found) const {
+  // Written so that NaN holds nowhere.
+  return std::isfinite(found) && (!value || std::abs(found - *value) <= tolerance) &&
+         (!at_least || found >= *at_least) && (!at_most || found <= *at_most);
+}
+
+const Body& Scene::body(const std::string& body_name) const {
+  for (const Body& each : bodies)
+    if (each.name == body_name) return each;
+  throw Error::input("there is no body '" + body_name + "' in this scene");
+}
+
+bool is_whole(double ratio) {
+  return std::abs(ratio - std::round(ratio)) <= 1e-6 * std::max(1.0, std::abs(ratio));
+}
+
+Scene read_scene(const io::CaseFile& file, const Vocabulary& words) {
+  const io::Table root = file.root();
+  Scene scene;
+  scene.name = std::filesystem::path(file.path()).stem().string();
+  scene.title = root.string("title", "a title", scene.name);
+  read_motion(root, words, scene);
+  read_designs(root, words, scene);
+  scene.output = read_output(root);
+  if (root.has("expect")) {
+    const io::Table expect = root.table("expect");
+    for (const std::string& key : expect.keys())
+      scene.expect[key] = read_expectation(expect.table(key));
+  }
+  file.finish();
+  return scene;
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,173 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/component.h"
+#include "geometry/grid.h"
+#include "geometry/tdf.h"
+#include "io/case_file.h"
+#include "optim/mmc/responses.h"
+#include "optim/optimizer.h"
+
+/// What a case file says, as plain data. Nobody else reads the case file; what a case does not
+/// list is absent here too (empty lists, empty optionals), not zero.
+namespace flexmorph::cases {
+
+/// How a driven scene starts (design.md section 4).
+enum class Start {
+  prestretched,  ///< velocity of the rigid, extending body, in equilibrium in the turning frame
+  rigid,         ///< the same velocity, unstrained: sets off axial ringing
+  hub_at_rest    ///< smooth spin-up of the hub from rest
+};
+
+struct TimeSpan {
+  double end = 1;        ///< [s], from 0
+  double step = 1e-3;    ///< [s]
+  double rho_inf = 0.8;  ///< spectral radius of generalized-alpha at infinite frequency, 0..1
+  Start start = Start::prestretched;
+  double spin_up = 0;  ///< duration of the spin-up [s], 0 unless `hub_at_rest`
+};
+
+/// A driven hub: turns about its position at a constant rate.
+struct Hub {
+  std::string name;
+  Vec2 position{0, 0};          ///< [m]
+  double angle = 0;             ///< at the start [rad]
+  double angular_velocity = 0;  ///< [rad/s]
+};
+
+/// Material that leaves the hub, and when node lines come and go (design.md section 5).
+struct Flow {
+  double speed = 0;       ///< rate at which material leaves the hub [m/s]; negative: enters it
+  double max_length = 0;  ///< a longer boundary element is split in the middle [m]
+  double min_length = 0;  ///< a shorter one is merged with its neighbour [m]
+};
+
+/// A plate. Material coordinates: X from the root to the free end, Y across, -width/2..width/2.
+struct Body {
+  std::string name;
+  std::string element;                ///< row of the table of elements
+  std::string shape;                  ///< shape set: "h16", "h12"
+  std::string space;                  ///< "plane": positions have two components
+  std::vector<std::string> terms;     ///< rows of the table of terms
+  double length = 0;                  ///< at the start [m]
+  double width = 0, thickness = 0;    ///< [m]
+  double density = 0;                 ///< [kg/m^3]
+  double youngs_modulus = 0;          ///< [Pa]
+  double poisson_ratio = 0;           ///< [-]
+  std::array<int, 2> elements{1, 1};  ///< along the length at the start, across the width
+  std::optional<Flow> flow;           ///< absent: no material flows
+
+  double length_at(double time) const { return flow ? length + flow->speed * time : length; }
+  double longest(double end) const { return std::max(length, length_at(end)); }
+};
+
+struct Joint {
+  std::string type;            ///< row of the table of joints: "weld"
+  std::string body, edge;      ///< edge "root"
+  std::string to;              ///< a hub
+  bool direction_only = true;  ///< weld "direction": free stretch at the root; false: "full"
+};
+
+struct PointMass {
+  std::string body;
+  std::string at;   ///< "free_end": the middle of that edge
+  double mass = 0;  ///< [kg]
+};
+
+/// When the motion is turned into equivalent static loads, and what kind (design.md section 8).
+struct Esl {
+  double every = 0;  ///< a load at every multiple of it up to the end [s]
+  mmc::ComplianceSettings settings;
+
+  int count(double end) const;  ///< number of loads up to `end`
+};
+
+/// The design of one body, on its design domain: the body at its longest.
+struct BodyDesign {
+  std::string body;
+  Grid grid;                            ///< X from the root (0) to the free end, Y across [m]
+  std::array<int, 2> components{1, 1};  ///< boxes of the initial layout, two components in each
+  double max_volume = 0.5;              ///< fraction of the domain, solid regions included
+  double min_thickness = 0;             ///< c_min: smallest half-thickness of a component [m]
+  double half_length = 0;               ///< of the initial components [m]
+  double half_thickness = 0;            ///< of the initial components [m]
+  /// Half-widths of the Heaviside band, coarse to fine [cells]; of tdf = "paper" [-].
+  std::vector<double> band;
+  TdfSettings tdf;                ///< in metres, with the band of the last, finest stage
+  double stiffness_void = 1e-4;   ///< stiffness factor of the void in dynamics [-]
+  double mass_void = 1e-3;        ///< mass factor of the void in dynamics [-]
+  std::vector<Box> solid, empty;  ///< a cell belongs to a region that holds its centre [m]
+
+  /// Settings of one stage of the continuation.
+  TdfSettings stage(size_t index) const;
+};
+
+struct Cycle {
+  int max_cycles = 1;
+  double tolerance = 0.01;  ///< stop when the objective changes by less between cycles [-]
+};
+
+/// One more dynamic run of the final design on a finer mesh; the limits of flowing elements
+/// shrink with the elements.
+struct Verify {
+  std::array<int, 2> mesh{1, 1};  ///< elements along the length at the start, across the width
+  double step = 0;                ///< [s]
+};
+
+struct Output {
+  std::string directory;    ///< empty: chosen by the command line
+  int design_every = 1;     ///< design iterations between VTK files, 0: none
+  double motion_every = 0;  ///< time between VTK files of the motion [s], 0: none
+  int sharp_every = 25;     ///< iterations between sharp evaluations, 0: the final design only
+  bool vtk = true, plots = true;
+};
+
+/// A number the run must reproduce: value with a tolerance, or bounds.
+struct Expectation {
+  std::optional<double> value, at_least, at_most;
+  double tolerance = 0;  ///< absolute, around `value`
+
+  bool holds(double found) const;
+};
+
+struct Scene {
+  std::string name;  ///< of the case file, without folder and ending
+  std::string title;
+  TimeSpan time;
+  std::optional<Vec2> gravity;  ///< [m/s^2]
+  std::vector<Hub> hubs;
+  std::vector<Body> bodies;
+  std::vector<Joint> joints;
+  std::vector<PointMass> point_masses;
+  std::optional<Esl> esl;           ///< always there when `designs` is not empty
+  std::vector<BodyDesign> designs;  ///< one per designed body
+  optim::Settings optimizer;
+  Cycle cycle;
+  std::optional<Verify> verify;
+  Output output;
+  std::map<std::string, Expectation> expect;  ///< by name of the result
+
+  const Body& body(const std::string& name) const;  ///< name resolves: checked when read
+};
+
+/// The rows of the tables a scene may name.
+struct Vocabulary {
+  std::vector<std::string> elements{"ancf_plate", "ale_ancf_plate"};
+  std::vector<std::string> shapes{"h16", "h12"};
+  std::vector<std::string> terms{"inertia", "membrane"};
+  std::vector<std::string> joints{"weld"};
+  std::vector<std::string> optimizers{"mma", "nlopt_mma", "ipopt"};
+};
+
+/// Reads and checks a case: types, ranges, names, and what must fit together. Keys nobody knows
+/// are errors.
+/// @throws Error (input) located in the file, see io::Table.
+Scene read_scene(const io::CaseFile& file, const Vocabulary& words = {});
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,267 @@
+#include <cmath>
+
+#include "cases/scene_parts.h"
+#include "io/files.h"
+
+namespace flexmorph::cases {
+namespace {
+
+using io::any_number;
+using io::between;
+using io::not_negative;
+using io::positive;
+using io::Table;
+using io::to_text;
+
+constexpr double kMostCells = 4e6;
+constexpr int kMostBoxes = 100'000;  // of the initial layout, in each direction
+constexpr int kMostLoads = 10'000;
+
+/// (lower, upper], the usual range of a fraction.
+io::Quantity fraction(std::string noun, double upper = 1) {
+  io::Quantity q = between(std::move(noun), "", 0, upper);
+  q.lower_open = true;
+  return q;
+}
+
+Grid read_grid(const Table& t, const Body& body, double end) {
+  const double cell = t.number("cell", positive("the size of a cell", "m"));
+  const double length = body.longest(end);
+  Grid grid{.x0 = 0, .y0 = -0.5 * body.width, .width = length, .height = body.width};
+  const double nx = length / cell, ny = body.width / cell;
+  if (nx * ny > kMostCells) {
+    const double smallest = 1.005 * std::sqrt(length * body.width / kMostCells);
+    t.fail("cell", to_text(nx * ny, 3) + " cells; at most " + to_text(kMostCells, 3) +
+                       ", so a cell of at least " + to_text(smallest, 3) + " [m]");
+  }
+  if (!is_whole(nx) || !is_whole(ny) || nx < 0.5 || ny < 0.5)
+    t.fail("cell", "a cell divides the longest length " + to_text(length) + " and the width " +
+                       to_text(body.width) + " of '" + body.name + "' [m]");
+  if (body.flow && !is_whole(body.flow->speed * end / cell))
+    t.fail("cell", "a cell divides the " + to_text(std::abs(body.flow->speed) * end) +
+                       " m by which '" + body.name + "' grows, so that its root is a mesh line");
+  grid.nx = static_cast<int>(std::lround(nx));
+  grid.ny = static_cast<int>(std::lround(ny));
+  return grid;
+}
+
+bool holds(const Box& box, const Vec2& p) {
+  return p.x() >= box.lower.x() && p.x() <= box.upper.x() && p.y() >= box.lower.y() &&
+         p.y() <= box.upper.y();
+}
+
+int cells_in(const Grid& grid, const std::vector<Box>& boxes) {
+  int count = 0;
+  for (int i = 0; i < grid.nx; ++i)
+    for (int j = 0; j < grid.ny; ++j)
+      count += std::any_of(boxes.begin(), boxes.end(),
+                           [&](const Box& box) { return holds(box, grid.cell_center(i, j)); });
+  return count;
+}
+
+/// One [[design.solid]] or [[design.void]]: a box, or a strip along an end.
+Box read_region(const Table& t, const Grid& grid) {
+  if (t.has("box") == t.has("strip")) t.fail("a region has either a `box` or a `strip`");
+  const double left = grid.x0, right = grid.x0 + grid.width;
+  const double bottom = grid.y0, top = grid.y0 + grid.height;
+  if (t.has("strip")) {
+    const bool at_end = t.choice<bool>("strip", "a strip lies along an end: it",
+                                       {{"free_end", true}, {"root", false}});
+    const double wide = grid.dx() * t.integer("cells", "the width of a strip", 1, grid.nx, 2);
+    return at_end ? Box{{right - wide, bottom}, {right, top}}
+                  : Box{{left, bottom}, {left + wide, top}};
+  }
+  if (t.has("cells")) t.fail("cells", "only a strip is as wide as a number of cells");
+  const std::vector<double> b = t.numbers("box", any_number("x0, y0, x1, y1 of a box", "m"), 4);
+  const Box box{{b[0], b[1]}, {b[2], b[3]}};
+  if (b[0] >= b[2] || b[1] >= b[3])
+    t.fail("box", "x0 < x1 and y0 < y1, in the order x0, y0, x1, y1 [m]");
+  if (cells_in(grid, {box}) == 0)
+    t.fail("box", "a box holds the centre of a cell; the domain is [" + to_text(left) + ", " +
+                      to_text(right) + "] x [" + to_text(bottom) + ", " + to_text(top) + "] [m]");
+  return box;
+}
+
+bool overlap(const Box& a, const Box& b, double margin) {
+  return (a.upper.array() > b.lower.array() + margin).all() &&
+         (b.upper.array() > a.lower.array() + margin).all();
+}
+
+void read_regions(const Table& t, const Body& body, const Scene& scene, BodyDesign& design) {
+  const Grid& grid = design.grid;
+  const double small = 1e-6 * grid.dx();
+  for (const Table& region : t.tables("solid")) design.solid.push_back(read_region(region, grid));
+  for (const Table& region : t.tables("void")) {
+    design.empty.push_back(read_region(region, grid));
+    for (const Box& solid : design.solid)
+      if (overlap(solid, design.empty.back(), small))
+        region.fail("a region cannot be solid and void at once");
+  }
+  const double filled = cells_in(grid, design.solid) / double(grid.n_cells());
+  if (filled >= design.max_volume)
+    t.fail("max_volume", "the solid regions alone fill " + to_text(filled, 3) + " of the domain");
+
+  // Without material under it the mass would end up in the void (design.md section 8).
+  const Vec2 end(grid.x0 + grid.width, grid.y0 + 0.5 * grid.height);
+  const auto carries = [&](const Box& box) {
+    return holds(box, end - Vec2(2 * grid.dx() - small, grid.dy() - small)) &&
+           holds(box, end - Vec2(small, -grid.dy() + small));
+  };
+  for (const PointMass& mass : scene.point_masses)
+    if (mass.body == body.name && std::none_of(design.solid.begin(), design.solid.end(), carries))
+      t.fail("the point mass at the free end of '" + body.name +
+             "' needs solid material: [[design.solid]] with strip = \"free_end\", cells = 2");
+}
+
+void read_components(const Table& t, const Body& body, BodyDesign& design) {
+  const double cell = design.grid.dx();
+  const std::vector<int> boxes =
+      t.integers("components", "a number of boxes of two components", 1, kMostBoxes, 2);
+  design.components = {boxes[0], boxes[1]};
+  if (1.0 * boxes[0] * boxes[1] > kMostBoxes)
+    t.fail("components", "at most " + to_text(kMostBoxes) + " boxes");
+  io::Quantity half_width = between("a half-thickness", "m", 0, 0.5 * body.width);
+  half_width.lower_open = true;
+  half_width.noun = "a smallest half-thickness fits into the width: it";
+  design.min_thickness = t.number("min_thickness", half_width, std::min(cell, 0.5 * body.width));
+
+  const double wide = design.grid.width / boxes[0], high = design.grid.height / boxes[1];
+  const double diagonal = std::hypot(wide, high);
+  design.half_length = t.number("half_length", positive("a half-length", "m"), 0.5 * diagonal);
+  // Two bars along the diagonals fill about the allowed volume.
+  const double filling = 0.25 * design.max_volume * wide * high / diagonal;
+  half_width.lower = design.min_thickness;
+  half_width.lower_open = false;
+  half_width.noun = "a half-thickness";
+  design.half_thickness =
+      t.number("half_thickness", half_width, std::max(design.min_thickness, filling));
+}
+
+void read_tdf(const Table& t, BodyDesign& design) {
+  const double cell = design.grid.dx();
+  using Kind = TdfSettings::Kind;
+  design.tdf.kind = t.choice<Kind>(
+      "tdf", "a TDF", {{"distance", Kind::distance}, {"paper", Kind::paper}}, Kind::distance);
+  const bool paper = design.tdf.kind == Kind::paper;
+  design.band = t.numbers("band", positive("half the width of the band", paper ? "" : "cells"), 0,
+                          std::vector<double>{1.5});
+  for (size_t i = 1; i < design.band.size(); ++i)
+    if (design.band[i] >= design.band[i - 1]) t.fail("band", "bands go from coarse to fine");
+  design.tdf.sharpness = t.number("sharpness", positive("a sharpness", "1/cell"), 3.75) / cell;
+  io::Quantity small = fraction("the Heaviside function of the void", 0.5);
+  design.tdf.alpha = t.number("alpha", small, 1e-3);
+  design.tdf.min_half_thickness = design.min_thickness;
+  design.tdf = design.stage(design.band.size() - 1);
+  design.stiffness_void = t.number("stiffness_void", fraction("a stiffness factor"), 1e-4);
+  design.mass_void = t.number("mass_void", fraction("a mass factor"), 1e-3);
+}
+
+BodyDesign read_design(const Table& t, const Scene& scene) {
+  BodyDesign design;
+  design.body = t.choice("body", "a body", names_of(scene.bodies));
+  for (const BodyDesign& other : scene.designs)
+    if (other.body == design.body) t.fail("body", "this body has a [[design]] already");
+  const Body& body = scene.body(design.body);
+  const bool welded = std::any_of(scene.joints.begin(), scene.joints.end(), [&](const Joint& j) {
+    return j.body == body.name && j.edge == "root";
+  });
+  if (!welded) t.fail("body", "a designed body is welded to a hub at its root: see [[joint]]");
+  if (std::find(body.terms.begin(), body.terms.end(), "membrane") == body.terms.end())
+    t.fail("body", "a designed body has the term \"membrane\"");
+
+  design.grid = read_grid(t, body, scene.time.end);
+  design.max_volume = t.number("max_volume", fraction("a volume fraction"));
+  read_components(t, body, design);
+  read_tdf(t, design);
+  read_regions(t, body, scene, design);
+  return design;
+}
+
+Esl read_esl(const Table& t, const Scene& scene) {
+  Esl esl;
+  const double end = scene.time.end;
+  esl.every = t.number("every", positive("the time between loads", "s"));
+  if (esl.every > end * (1 + 1e-9)) t.fail("every", "the first load is no later than time.end [s]");
+  if (end / esl.every > kMostLoads + 0.5)
+    t.fail("every", "at most " + to_text(kMostLoads) + " loads");
+  using mmc::LoadDefinition;
+  using mmc::Support;
+  mmc::ComplianceSettings& s = esl.settings;
+  s.loads = t.choice<LoadDefinition>("definition", "a definition of the loads",
+                                     {{"inertia", LoadDefinition::inertia},
+                                      {"frozen", LoadDefinition::frozen},
+                                      {"stiffness", LoadDefinition::stiffness}},
+                                     LoadDefinition::inertia);
+  s.support = t.choice<Support>(
+      "support", "a support",
+      {{"moving_root", Support::moving_root}, {"far_end", Support::far_end}}, Support::moving_root);
+  if (s.loads == LoadDefinition::inertia && s.support == Support::far_end)
+    t.fail("support",
+           "\"inertia\" loads need \"moving_root\": at the far end the reactions of the root would "
+           "have to follow the design");
+  s.compress = t.boolean("compress", true);
+
+  for (const BodyDesign& design : scene.designs) {
+    const Body& body = scene.body(design.body);
+    if (!body.flow || body.flow->speed == 0) continue;
+    const double cells = std::abs(body.flow->speed) * esl.every / design.grid.dx();
+    if (!is_whole(cells) || cells < 0.5)
+      t.fail("every", "the root of '" + body.name + "' moves by " + to_text(cells, 4) +
+                          " cells between loads; a whole number is needed, so a multiple of " +
+                          to_text(design.grid.dx() / std::abs(body.flow->speed), 6) + " [s]");
+  }
+  return esl;
+}
+
+optim::Settings read_optimizer(const Table& t, const Vocabulary& words) {
+  optim::Settings s;
+  s.name = t.choice("name", "an optimizer", words.optimizers, s.name);
+  s.max_iterations = t.integer("max_iterations", "a number of iterations", 1, 1'000'000, 300);
+  s.move_limit = t.number("move_limit", fraction("a move limit"), s.move_limit);
+  s.kkt_tolerance = t.number("kkt_tolerance", not_negative("a tolerance"), s.kkt_tolerance);
+  s.feasibility = t.number("feasibility", positive("a tolerance"), s.feasibility);
+  s.change_tolerance =
+      t.number("change_tolerance", not_negative("a tolerance"), s.change_tolerance);
+  if (t.has("options")) {
+    const Table options = t.table("options");
+    for (const std::string& key : options.keys())
+      s.options[key] = options.number(key, any_number("an option"));
+  }
+  return s;
+}
+
+Verify read_verify(const Table& t, const Scene& scene) {
+  Verify verify;
+  const std::vector<int> mesh = t.integers("mesh", "a number of elements", 1, 10'000, 2);
+  verify.mesh = {mesh[0], mesh[1]};
+  for (const BodyDesign& design : scene.designs) {
+    const Body& body = scene.body(design.body);
+    if (mesh[0] < body.elements[0] || mesh[1] < body.elements[1])
+      t.fail("mesh", "a finer mesh than the elements of '" + body.name + "'");
+  }
+  verify.step = t.number("step", positive("a time step", "s"), scene.time.step);
+  if (verify.step > scene.time.end) t.fail("step", "a time step is no longer than time.end [s]");
+  return verify;
+}
+
+}  // namespace
+
+void read_designs(const Table& root, const Vocabulary& words, Scene& scene) {
+  for (const Table& t : root.tables("design")) scene.designs.push_back(read_design(t, scene));
+  if (scene.designs.empty()) {
+    for (const char* key : {"optimizer", "cycle", "verify"})
+      if (root.has(key)) root.table(key).fail("without a [[design]] this does nothing");
+    if (root.has("esl")) scene.esl = read_esl(root.table("esl"), scene);
+    return;
+  }
+  scene.esl = read_esl(root.table("esl"), scene);
+  if (root.has("optimizer")) scene.optimizer = read_optimizer(root.table("optimizer"), words);
+  if (root.has("cycle")) {
+    const Table t = root.table("cycle");
+    scene.cycle.max_cycles = t.integer("max_cycles", "a number of cycles", 1, 1000, 1);
+    scene.cycle.tolerance = t.number("tolerance", not_negative("a tolerance"), 0.01);
+  }
+  if (root.has("verify")) scene.verify = read_verify(root.table("verify"), scene);
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "fem/line_grid.h"
+#include "fem/model.h"
+
+namespace flexmorph::fem {
+
+/// A plate that leaves a hub: the frame its root is welded to, and when its mesh changes.
+struct Growth {
+  std::string body;
+  FrameDrive hub;
+  double max_length = 0.1;   ///< a longer boundary element is split in its middle [m]
+  double min_length = 0.03;  ///< a shorter one is merged with its neighbour [m]
+};
+
+/// The material lines of a body. @throws Error (input) when the body has other elements.
+const LineGrid& grid_of(const Body& body);
+
+/// Values of the body's unknowns as a matrix (n_vectors x dim).
+using VectorRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+VectorRows rows_of(const Body& body, const VectorXd& all);
+
+/// Position, material velocity and material acceleration of one material point.
+struct PointMotion {
+  Vec2 position, velocity, acceleration;
+};
+PointMotion point_motion(const Body& body, const State& x, const Vec2& material);
+
+enum class MeshChange { insertion, removal };
+
+/// When the boundary element next leaves [min_length, max_length] in (t, end], and how; t = infinity
+/// when it does not. A removal needs a merged element below 0.9 max_length (else the pair would
+/// chatter: design.md section 5).
+struct NextChange {
+  double t;
+  MeshChange change;
+};
+NextChange next_change(const Body& body, const Growth& growth, double t, double end, double step);
+
+/// Changes the mesh at x.t and carries the state over.
+///
+/// Insertion: new nodes take position, slopes, and material velocity with its derivatives from the
+/// field at the fixed material point; accelerations likewise (N q̈ + 2 Ṅ q̇ + N̈ q). With h16 the
+/// field of position and velocity does not change at all. Removal keeps the values of the
+/// remaining nodes (a loss, of the size of the interpolation error). Multipliers keep their values.
+///
+/// Source: P Fig. 3, 4; design.md section 5.
+void change_mesh(Model& model, Body& body, MeshChange change, State& x);
+
+}  // namespace flexmorph::fem

@@ -1,0 +1,164 @@
+#include "fem/dynamics/motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flexmorph::fem {
+
+Vec2 momentum(const Model& model, const State& x) {
+  Vec2 out = Vec2::Zero();
+  ShapeTable t;
+  for (const Body& body : model.bodies()) {
+    const VectorRows q = rows_of(body, x.q), v = rows_of(body, x.v);
+    for (int e = 0; e < body.element->n_elements(); ++e) {
+      body.element->tabulate(e, 3, Tabulate::position_rates, body.factors, FactorKind::mass, t);
+      const auto vectors = body.element->vectors(e);
+      for (size_t k = 0; k < vectors.size(); ++k) {
+        const double area_density = body.section.density * body.section.thickness;
+        const auto column = static_cast<Eigen::Index>(k);
+        out += area_density * t.N.col(column).dot(t.weight) * v.row(vectors[k]).head<2>().transpose();
+        if (t.N_t.size() > 0)
+          out += area_density * t.N_t.col(column).dot(t.weight) *
+                 q.row(vectors[k]).head<2>().transpose();
+      }
+    }
+  }
+  return out;
+}
+
+namespace {
+
+/// The run of one motion: what integrate() carries along.
+class Run {
+ public:
+  Run(Model& model, std::span<const Growth> growths, const MotionSettings& settings,
+      const MotionObserver& observe)
+      : model_(model),
+        growths_(growths),
+        settings_(settings),
+        observe_(observe),
+        alpha_(model, settings.alpha) {}
+
+  MotionResult go() {
+    std::vector<double> stops = settings_.stops;
+    stops.push_back(settings_.end);
+    std::sort(stops.begin(), stops.end());
+    x_ = start_state(model_, growths_, 0, settings_.start);
+    alpha_.project_velocity(x_);
+    alpha_.make_consistent(x_);
+    const Energies e = model_.energies(x_);
+    powers_ = measure();
+    balance_.begin(0, e, powers_);
+    see(e, false);
+    const double tiny = kTiny * settings_.step;
+    for (const double stop : stops) {
+      if (stop <= x_.t + tiny || stop > settings_.end + tiny) continue;
+      while (x_.t < stop - tiny) to_next_event(std::min(stop, settings_.end));
+    }
+    result_.final = x_;
+    result_.counts = alpha_.counts();
+    result_.energy_defect = balance_.relative();
+    return std::move(result_);
+  }
+
+ private:
+  Powers measure() const {
+    return settings_.balance ? powers(model_, growths_, x_, settings_.gravity) : Powers{};
+  }
+
+  void see(const Energies& e, bool stop) {
+    observe_({model_, x_, e, powers_, balance_.work(), balance_.defect(), stop});
+  }
+
+  /// To the stop, or to the first change of a mesh before it.
+  void to_next_event(double stop) {
+    NextChange next{stop, MeshChange::insertion};
+    const Growth* changing = nullptr;
+    for (const Growth& g : growths_) {
+      const NextChange n = next_change(model_.body(g.body), g, x_.t, stop, settings_.step);
+      if (n.t < next.t || (n.t == next.t && !changing)) {
+        next = n;
+        changing = &g;
+      }
+    }
+    // A change this near to a stop is meant to fall on it; a step this short would be noise.
+    if (std::abs(next.t - stop) < kTiny * settings_.step) next.t = stop;
+    steps_to(next.t, next.t == stop);
+    const bool at_end = next.t >= settings_.end - kTiny * settings_.step;
+    if (changing && !at_end) execute(*changing, next.change);
+  }
+
+  /// Equal steps, none longer than the settings' step.
+  void steps_to(double end, bool stop) {
+    const double begin = x_.t;
+    const int n =
+        std::max(1, static_cast<int>(std::ceil((end - begin) / settings_.step - 1e-6)));
+    for (int k = 1; k <= n; ++k) {
+      const double t = k == n ? end : begin + (end - begin) * k / n;
+      alpha_.advance(x_, t, [&](const State& x) {
+        const Energies e = model_.energies(x);
+        powers_ = measure();
+        balance_.add(x.t, e, powers_);
+        drift();
+        const bool at_stop = stop && x.t >= end;
+        if (at_stop)
+          result_.smallest_area_ratio =
+              std::min(result_.smallest_area_ratio, model_.smallest_area_ratio(x));
+        see(e, at_stop);
+      });
+    }
+  }
+
+  void drift() {
+    Constraints c;
+    model_.constraints(x_, c);
+    if (c.value.size() == 0) return;
+    result_.constraint_drift =
+        std::max(result_.constraint_drift, c.value.lpNorm<Eigen::Infinity>());
+    VectorXd rate = c.rate;
+    for (const auto& entry : c.jacobian) rate[entry.row()] += entry.value() * x_.v[entry.col()];
+    result_.velocity_drift = std::max(result_.velocity_drift, rate.lpNorm<Eigen::Infinity>());
+  }
+
+  void execute(const Growth& growth, MeshChange change) {
+    Body* body = nullptr;
+    for (Body& b : model_.bodies())
+      if (b.name == growth.body) body = &b;
+    MeshEvent event;
+    event.time = x_.t;
+    event.body = growth.body;
+    event.change = change;
+    const Vec2 tip(grid_of(*body).line_m(grid_of(*body).n_m()).value, 0);
+    event.before = model_.energies(x_);
+    event.momentum_before = momentum(model_, x_);
+    const Vec2 tip_before = point_motion(*body, x_, tip).position;
+    change_mesh(model_, *body, change, x_);
+    event.after = model_.energies(x_);
+    event.momentum_after = momentum(model_, x_);
+    event.tip_jump = (point_motion(*body, x_, tip).position - tip_before).norm();
+    result_.events.push_back(event);
+    alpha_.project_velocity(x_);
+    balance_.restart(x_.t, measure());
+  }
+
+  static constexpr double kTiny = 1e-6;  // of a step
+
+  Model& model_;
+  std::span<const Growth> growths_;
+  const MotionSettings& settings_;
+  const MotionObserver& observe_;
+  GeneralizedAlpha alpha_;
+  State x_;
+  Powers powers_;
+  EnergyBalance balance_;
+  MotionResult result_;
+};
+
+}  // namespace
+
+MotionResult integrate(Model& model, std::span<const Growth> growths,
+                       const MotionSettings& settings, const MotionObserver& observe) {
+  return Run(model, growths, settings, observe).go();
+}
+
+}  // namespace flexmorph::fem

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "fem/dynamics/balance.h"
+#include "fem/dynamics/generalized_alpha.h"
+#include "fem/dynamics/start.h"
+
+namespace flexmorph::fem {
+
+struct MotionSettings {
+  double end = 1, step = 1e-3;   ///< [s]
+  Start start = Start::prestretched;
+  AlphaSettings alpha;
+  VectorXd gravity;              ///< (dim) or empty
+  std::vector<double> stops;     ///< times a step must land on (loads, output), any order
+  bool balance = true;           ///< keep the energy balance (costs a few percent)
+};
+
+/// A change of the mesh, and what it did to the state.
+struct MeshEvent {
+  double time = 0;
+  std::string body;
+  MeshChange change = MeshChange::insertion;
+  Energies before, after;
+  Vec2 momentum_before{0, 0}, momentum_after{0, 0};
+  double tip_jump = 0;  ///< of the free end's mid-point [m]
+};
+
+/// What an observer of a motion sees at every accepted step (and at the start).
+struct MotionStep {
+  const Model& model;
+  const State& x;
+  Energies energies;
+  Powers powers;           ///< zero when no balance is kept
+  double work = 0;         ///< of all powers since the start [J]
+  double defect = 0;       ///< energy - energy at the start - work [J]
+  bool stop = false;       ///< is x.t one of the settings' stops (or the end)?
+};
+using MotionObserver = std::function<void(const MotionStep&)>;
+
+struct MotionResult {
+  State final;
+  StepCounts counts;
+  std::vector<MeshEvent> events;
+  double energy_defect = 0;        ///< largest relative defect of the balance
+  double constraint_drift = 0;     ///< largest |Φ| met [m]
+  double velocity_drift = 0;       ///< largest |Φ_q q̇ + Φ_t| met [m/s]
+  double smallest_area_ratio = 1;  ///< |r_m × r_n|, at the stops
+};
+
+/// Advances a model from t = 0 to the end: steps land on stops and on changes of the mesh; a
+/// change that falls on the end itself is not executed.
+///
+/// @throws Error (numerical); the observer has seen every step before it.
+MotionResult integrate(Model& model, std::span<const Growth> growths, const MotionSettings& settings,
+                       const MotionObserver& observe);
+
+/// Linear momentum of all bodies with inertia [kg m/s].
+Vec2 momentum(const Model& model, const State& x);
+
+}  // namespace flexmorph::fem

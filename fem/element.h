@@ -1,0 +1,96 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fem/shape.h"
+#include "geometry/grid.h"
+
+namespace flexmorph::fem {
+
+inline constexpr int kMaxShapes = 16;  ///< shape functions of one element
+inline constexpr int kMaxDim = 3;
+
+/// Values of the unknowns of one element: one row per shape function, one column per direction.
+using LocalRows =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMaxShapes, kMaxDim>;
+
+/// Stiffness and mass factors of the design, cell by cell over material coordinates; an element is
+/// cut by its cells and integrated exactly. Empty vectors: uniform full material.
+struct Factors {
+  Grid grid;
+  VectorXd stiffness, mass;  ///< (n_cells), or empty
+
+  bool uniform() const { return stiffness.size() == 0; }
+};
+
+/// Shape functions at quadrature points, a row per point and a column per function. Filled as far
+/// as asked for: N always, the others on demand (their size is zero otherwise).
+struct ShapeTable {
+  VectorXd weight;              ///< reference area of the point times the factor [m^2]
+  std::vector<Vec2> material;   ///< material coordinates (m, n) [m]
+  MatrixXd N;                   ///< r = Qᵀ N
+  MatrixXd N_t, N_tt;           ///< ∂N/∂t, ∂²N/∂t² at fixed material point: zero unless lines move
+  MatrixXd N_m, N_n;            ///< derivatives by the material coordinates
+  MatrixXd N_mt, N_nt;          ///< their rates at fixed material point
+};
+enum class Tabulate { position, position_rates, gradient, gradient_rates };
+
+/// Which factor multiplies the quadrature weight.
+enum class FactorKind { none, stiffness, mass };
+
+/// The vector unknowns of one node (-1: the element has none of that kind).
+struct NodeVectors {
+  int r = -1, r_m = -1, r_n = -1, r_mn = -1;
+  Vec2 material{0, 0};
+};
+
+/// The seam of kinematics: the elements of one body, r = Qᵀ N(X, t).
+///
+/// An element knows its shape functions, their derivatives by the material coordinates and their
+/// rates when material flows through the mesh; it knows no physics. Unknowns come as vectors of
+/// dim() entries; vector unknown k of the body has the entries dim() k + c of its q.
+class Element {
+ public:
+  virtual ~Element() = default;
+
+  virtual int dim() const = 0;
+  virtual int n_shapes() const = 0;    ///< shape functions of one element, <= kMaxShapes
+  virtual int n_elements() const = 0;
+  virtual int n_vectors() const = 0;   ///< vector unknowns of the body
+
+  /// Numbers of the vector unknowns of element e, in the order of its shape functions.
+  virtual std::span<const int> vectors(int e) const = 0;
+
+  /// A length that makes vector unknown k a displacement when multiplied: 1 for positions, the
+  /// element size for slopes, its square for mixed derivatives [m^order].
+  virtual double scale(int k) const = 0;
+
+  /// Is vector unknown k a position (and not a derivative of it)?
+  virtual bool is_position(int k) const = 0;
+
+  /// Values of the undeformed body at rest in its own frame, all unknowns (n_vectors x dim).
+  virtual MatrixXd reference() const = 0;
+
+  /// Nodes of a named edge ("root", "free_end"), in the order of the coordinate along it.
+  /// @throws Error (input) naming the known edges.
+  virtual std::vector<NodeVectors> edge(const std::string& name) const = 0;
+
+  /// Puts the material lines where they are at time t.
+  virtual void move_to(double t) = 0;
+  /// Does the shape of element e change in time?
+  virtual bool moving(int e) const = 0;
+
+  /// Points for integrands of the given degree per direction in element e, exact for a factor that
+  /// is constant in every design cell.
+  virtual void tabulate(int e, int degree, Tabulate what, const Factors& factors, FactorKind kind,
+                        ShapeTable& out) const = 0;
+
+  /// Shape functions at one material point (weight 1), and the element it lies in.
+  /// @throws Error (input) when the point is outside the body.
+  virtual int locate(const Vec2& material, Tabulate what, ShapeTable& out) const = 0;
+};
+
+}  // namespace flexmorph::fem

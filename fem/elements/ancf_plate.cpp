@@ -1,0 +1,284 @@
+#include "fem/elements/ancf_plate.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flexmorph::fem {
+namespace {
+
+using Row4 = Eigen::RowVector4d;
+
+Row4 powers(double s) { return {1, s, s * s, s * s * s}; }
+
+/// Values of a Hermite interval at one point: a row of four functions per derivative.
+struct At {
+  Row4 f, d;              // value, derivative by X
+  Row4 f_t, f_tt, d_t;    // rates at fixed material point
+};
+
+At at_point(const Hermite& h, double s, bool rates) {
+  const Row4 p = powers(s);
+  At out;
+  out.f = p * h.value.transpose();
+  out.d = p * derivative(h.value).transpose() / h.length;
+  if (rates) {
+    out.f_t = p * h.rate.transpose();
+    out.f_tt = p * h.acceleration.transpose();
+    out.d_t = p * derivative(h.rate).transpose() / h.length;
+  } else {
+    out.f_t.setZero();
+    out.f_tt.setZero();
+    out.d_t.setZero();
+  }
+  return out;
+}
+
+Motion motion_of(const MaterialLine& line, double t) {
+  return line.drive ? line.drive(t) : Motion{line.value, 0, 0};
+}
+
+/// Parts of [start, start + length] cut by the cells of one grid direction, as local intervals.
+struct Part {
+  int cell;
+  double lower, upper;  // in [0, 1]
+};
+
+std::vector<Part> parts(double start, double length, double grid_start, double cell, int n_cells) {
+  const auto index = [&](double x) {
+    return std::clamp(static_cast<int>(std::floor((x - grid_start) / cell)), 0, n_cells - 1);
+  };
+  // A thousandth of a billionth of a cell: cut lines that coincide up to round-off are one line.
+  const double tiny = 1e-12 * cell;
+  std::vector<Part> out;
+  for (int c = index(start + tiny); c <= index(start + length - tiny); ++c) {
+    const double lower = c == 0 ? start : std::max(start, grid_start + c * cell);
+    const double upper = c == n_cells - 1 ? start + length
+                                          : std::min(start + length, grid_start + (c + 1) * cell);
+    if (upper > lower) out.push_back({c, (lower - start) / length, (upper - start) / length});
+  }
+  out.front().lower = 0;
+  out.back().upper = 1;
+  return out;
+}
+
+}  // namespace
+
+AncfPlate::AncfPlate(int dim, ShapeSet shapes, std::vector<MaterialLine> m,
+                     std::vector<MaterialLine> n, double t)
+    : dim_(dim),
+      per_node_(shapes == ShapeSet::h16 ? 4 : 3),
+      shapes_(shapes),
+      m_(std::move(m)),
+      n_(std::move(n)) {
+  if (m_.size() < 2 || n_.size() < 2) throw Error::input("ancf_plate: at least one element each way");
+  for (int i = 0; i < n_m(); ++i)
+    for (int j = 0; j < n_n(); ++j)
+      for (const int corner : {node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)})
+        for (int k = 0; k < per_node_; ++k) vectors_.push_back(per_node_ * corner + k);
+  move_to(t);
+}
+
+void AncfPlate::move_to(double t) {
+  t_ = t;
+  const auto place = [t](const std::vector<MaterialLine>& lines, std::vector<Motion>& at,
+                         std::vector<Hermite>& hermite) {
+    at.clear();
+    hermite.clear();
+    for (const MaterialLine& line : lines) at.push_back(motion_of(line, t));
+    for (size_t i = 0; i + 1 < at.size(); ++i) {
+      if (!(at[i + 1].value > at[i].value))
+        throw Error::numerical("ancf_plate: material lines " + std::to_string(i) + " and " +
+                               std::to_string(i + 1) + " cross at t = " + std::to_string(t));
+      hermite.emplace_back(at[i], at[i + 1]);
+    }
+  };
+  place(m_, at_m_, hermite_m_);
+  place(n_, at_n_, hermite_n_);
+}
+
+std::span<const int> AncfPlate::vectors(int e) const {
+  return {vectors_.data() + static_cast<size_t>(e) * static_cast<size_t>(n_shapes()),
+          static_cast<size_t>(n_shapes())};
+}
+
+double AncfPlate::scale(int k) const {
+  const int i = k / per_node_ / (n_n() + 1), j = k / per_node_ % (n_n() + 1), kind = k % per_node_;
+  const auto reach = [](const std::vector<Hermite>& h, int at) {
+    return h[static_cast<size_t>(std::min<int>(at, static_cast<int>(h.size()) - 1))].length;
+  };
+  return (kind == 1 || kind == 3 ? reach(hermite_m_, i) : 1.0) *
+         (kind == 2 || kind == 3 ? reach(hermite_n_, j) : 1.0);
+}
+
+MatrixXd AncfPlate::reference() const {
+  MatrixXd q = MatrixXd::Zero(n_vectors(), dim_);
+  for (int i = 0; i <= n_m(); ++i)
+    for (int j = 0; j <= n_n(); ++j) {
+      const int first = per_node_ * node(i, j);
+      q(first, 0) = line_m(i).value;
+      q(first, 1) = line_n(j).value;
+      q(first + 1, 0) = 1;
+      q(first + 2, 1) = 1;
+    }
+  return q;
+}
+
+std::vector<NodeVectors> AncfPlate::edge(const std::string& name) const {
+  int i = 0;
+  if (name == "free_end")
+    i = n_m();
+  else if (name != "root")
+    throw Error::input("edge '" + name + "': a plate has the edges 'root' and 'free_end'");
+  std::vector<NodeVectors> out;
+  for (int j = 0; j <= n_n(); ++j) {
+    const int first = per_node_ * node(i, j);
+    out.push_back({first, first + 1, first + 2, shapes_ == ShapeSet::h16 ? first + 3 : -1,
+                   Vec2(line_m(i).value, line_n(j).value)});
+  }
+  return out;
+}
+
+bool AncfPlate::moving(int e) const {
+  const auto driven = [](const std::vector<MaterialLine>& lines, int i) {
+    return lines[static_cast<size_t>(i)].drive || lines[static_cast<size_t>(i + 1)].drive;
+  };
+  return driven(m_, e / n_n()) || driven(n_, e % n_n());
+}
+
+void AncfPlate::fill(int e, std::span<const double> s, std::span<const double> u, Tabulate what,
+                     ShapeTable& out) const {
+  const Hermite& hm = hermite_m_[static_cast<size_t>(e / n_n())];
+  const Hermite& hn = hermite_n_[static_cast<size_t>(e % n_n())];
+  const bool rates = (what == Tabulate::position_rates || what == Tabulate::gradient_rates) &&
+                     moving(e);
+  const bool gradient = what == Tabulate::gradient || what == Tabulate::gradient_rates;
+  const auto n_points = static_cast<Eigen::Index>(s.size() * u.size());
+  const auto size = [&](MatrixXd& x, bool wanted) {
+    if (wanted)
+      x.resize(n_points, n_shapes());
+    else
+      x.resize(0, 0);
+  };
+  out.weight.resize(n_points);
+  out.material.resize(static_cast<size_t>(n_points));
+  size(out.N, true);
+  size(out.N_t, rates);
+  size(out.N_tt, rates);
+  size(out.N_m, gradient);
+  size(out.N_n, gradient);
+  size(out.N_mt, gradient && rates);
+  size(out.N_nt, gradient && rates);
+
+  Eigen::Index p = 0;
+  for (const double si : s) {
+    const At m = at_point(hm, si, rates);
+    for (const double uj : u) {
+      const At n = at_point(hn, uj, rates);
+      out.material[static_cast<size_t>(p)] = {hm.start + si * hm.length, hn.start + uj * hn.length};
+      int column = 0;
+      // Corners as in vectors_: (0,0), (1,0), (1,1), (0,1).
+      for (const auto& [a, b] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}})
+        for (int k = 0; k < per_node_; ++k, ++column) {
+          const int i = 2 * a + (k == 1 || k == 3), j = 2 * b + (k >= 2);
+          out.N(p, column) = m.f[i] * n.f[j];
+          if (rates) {
+            out.N_t(p, column) = m.f_t[i] * n.f[j] + m.f[i] * n.f_t[j];
+            out.N_tt(p, column) =
+                m.f_tt[i] * n.f[j] + 2 * m.f_t[i] * n.f_t[j] + m.f[i] * n.f_tt[j];
+          }
+          if (gradient) {
+            out.N_m(p, column) = m.d[i] * n.f[j];
+            out.N_n(p, column) = m.f[i] * n.d[j];
+          }
+          if (gradient && rates) {
+            out.N_mt(p, column) = m.d_t[i] * n.f[j] + m.d[i] * n.f_t[j];
+            out.N_nt(p, column) = m.f_t[i] * n.d[j] + m.f[i] * n.d_t[j];
+          }
+        }
+      ++p;
+    }
+  }
+}
+
+void AncfPlate::tabulate(int e, int degree, Tabulate what, const Factors& factors, FactorKind kind,
+                         ShapeTable& out) const {
+  const bool weighted = kind != FactorKind::none && !factors.uniform();
+  const int n = weighted ? degree + 1 : degree / 2 + 1;
+  const GaussRule& rule = gauss(n);
+  fill(e, rule.points, rule.points, what, out);
+
+  const Hermite& hm = hermite_m_[static_cast<size_t>(e / n_n())];
+  const Hermite& hn = hermite_n_[static_cast<size_t>(e % n_n())];
+  const double area = hm.length * hn.length;
+  if (!weighted) {
+    for (int g = 0; g < n; ++g)
+      for (int h = 0; h < n; ++h)
+        out.weight[g * n + h] =
+            area * rule.weights[static_cast<size_t>(g)] * rule.weights[static_cast<size_t>(h)];
+    return;
+  }
+  // Interpolatory weights: exact for every polynomial of the degree against the stepwise factor.
+  const Grid& grid = factors.grid;
+  const VectorXd& field = kind == FactorKind::stiffness ? factors.stiffness : factors.mass;
+  const std::vector<Part> pm = parts(hm.start, hm.length, grid.x0, grid.dx(), grid.nx);
+  const std::vector<Part> pn = parts(hn.start, hn.length, grid.y0, grid.dy(), grid.ny);
+  MatrixXd along(pm.size(), n), across(pn.size(), n), cells(pm.size(), pn.size());
+  for (size_t i = 0; i < pm.size(); ++i) {
+    along.row(static_cast<Eigen::Index>(i)) = lagrange_integrals(n, pm[i].lower, pm[i].upper);
+    for (size_t j = 0; j < pn.size(); ++j)
+      cells(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+          field[grid.cell(pm[i].cell, pn[j].cell)];
+  }
+  for (size_t j = 0; j < pn.size(); ++j)
+    across.row(static_cast<Eigen::Index>(j)) = lagrange_integrals(n, pn[j].lower, pn[j].upper);
+  const MatrixXd weights = area * along.transpose() * cells * across;
+  for (int g = 0; g < n; ++g)
+    for (int h = 0; h < n; ++h) out.weight[g * n + h] = weights(g, h);
+}
+
+void AncfPlate::at(int e, double s, double u, Tabulate what, ShapeTable& out) const {
+  fill(e, {&s, 1}, {&u, 1}, what, out);
+  out.weight[0] = 1;
+}
+
+int AncfPlate::locate(const Vec2& material, Tabulate what, ShapeTable& out) const {
+  const auto interval = [](const std::vector<Motion>& lines, double x) {
+    int i = 0;
+    while (i + 2 < static_cast<int>(lines.size()) && x > lines[static_cast<size_t>(i + 1)].value)
+      ++i;
+    return i;
+  };
+  const auto local = [](const Hermite& h, double x) {
+    const double s = (x - h.start) / h.length;
+    if (s < -1e-9 || s > 1 + 1e-9)
+      throw Error::input("material point " + std::to_string(x) + " m lies outside the plate");
+    return std::clamp(s, 0.0, 1.0);
+  };
+  const int i = interval(at_m_, material.x()), j = interval(at_n_, material.y());
+  at(element(i, j), local(hermite_m_[static_cast<size_t>(i)], material.x()),
+     local(hermite_n_[static_cast<size_t>(j)], material.y()), what, out);
+  return element(i, j);
+}
+
+std::unique_ptr<LineGrid> AncfPlate::copy() const { return std::make_unique<AncfPlate>(*this); }
+
+std::unique_ptr<LineGrid> AncfPlate::with_line(int i, double value) const {
+  std::vector<MaterialLine> m = m_;
+  m.insert(m.begin() + i + 1, MaterialLine{value, {}});
+  return std::make_unique<AncfPlate>(dim_, shapes_, std::move(m), n_, t_);
+}
+
+std::unique_ptr<LineGrid> AncfPlate::without_line(int i) const {
+  std::vector<MaterialLine> m = m_;
+  m.erase(m.begin() + i);
+  return std::make_unique<AncfPlate>(dim_, shapes_, std::move(m), n_, t_);
+}
+
+std::unique_ptr<LineGrid> AncfPlate::frozen() const {
+  std::vector<MaterialLine> m, n;
+  for (const Motion& line : at_m_) m.push_back({line.value, {}});
+  for (const Motion& line : at_n_) n.push_back({line.value, {}});
+  return std::make_unique<AncfPlate>(dim_, shapes_, std::move(m), std::move(n), t_);
+}
+
+}  // namespace flexmorph::fem

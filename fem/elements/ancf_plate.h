@@ -1,0 +1,64 @@
+#pragma once
+
+#include "fem/line_grid.h"
+
+namespace flexmorph::fem {
+
+/// Rectangular thin ANCF plate elements on a tensor grid of material lines, P 2.1.
+///
+///   r(X, t) = Σ_k N_k(ξ, η) q_k,   node unknowns r, r_m, r_n and, for h16, r_mn
+///
+/// h16 = all 16 products of cubic Hermite functions (Bogner-Fox-Schmit); h12 = P (3), without the
+/// mixed derivative. With driven lines (ALE-ANCF) material flows through the mesh and the shape
+/// functions get rates; without them nothing of that is computed.
+///
+/// Source: P (1)-(5); Hyldahl et al. 2013; h16: design.md section 2.
+class AncfPlate final : public LineGrid {
+ public:
+  enum class ShapeSet { h12, h16 };
+
+  /// The plate at time t.
+  /// @throws Error unless there are two lines each way, increasing at that time.
+  AncfPlate(int dim, ShapeSet shapes, std::vector<MaterialLine> m, std::vector<MaterialLine> n,
+            double t = 0);
+
+  int dim() const override { return dim_; }
+  int n_shapes() const override { return 4 * per_node_; }
+  int n_elements() const override { return n_m() * n_n(); }
+  int n_vectors() const override { return per_node_ * n_nodes(); }
+  std::span<const int> vectors(int e) const override;
+  double scale(int k) const override;
+  bool is_position(int k) const override { return k % per_node_ == 0; }
+  MatrixXd reference() const override;
+  std::vector<NodeVectors> edge(const std::string& name) const override;
+  void move_to(double t) override;
+  bool moving(int e) const override;
+  void tabulate(int e, int degree, Tabulate what, const Factors& factors, FactorKind kind,
+                ShapeTable& out) const override;
+  int locate(const Vec2& material, Tabulate what, ShapeTable& out) const override;
+
+  int per_node() const override { return per_node_; }
+  const std::vector<MaterialLine>& lines_m() const override { return m_; }
+  const Motion& line_m(int i) const override { return at_m_[static_cast<size_t>(i)]; }
+  const Motion& line_n(int j) const override { return at_n_[static_cast<size_t>(j)]; }
+  int n_n() const override { return static_cast<int>(n_.size()) - 1; }
+  void at(int e, double s, double u, Tabulate what, ShapeTable& out) const override;
+  std::unique_ptr<LineGrid> copy() const override;
+  std::unique_ptr<LineGrid> with_line(int i, double value) const override;
+  std::unique_ptr<LineGrid> without_line(int i) const override;
+  std::unique_ptr<LineGrid> frozen() const override;
+
+ private:
+  void fill(int e, std::span<const double> s, std::span<const double> u, Tabulate what,
+            ShapeTable& out) const;
+
+  int dim_, per_node_;
+  ShapeSet shapes_;
+  std::vector<MaterialLine> m_, n_;
+  double t_ = 0;
+  std::vector<Motion> at_m_, at_n_;
+  std::vector<Hermite> hermite_m_, hermite_n_;
+  std::vector<int> vectors_;  // n_shapes numbers per element
+};
+
+}  // namespace flexmorph::fem

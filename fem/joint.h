@@ -1,0 +1,77 @@
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fem/element.h"
+
+namespace flexmorph::fem {
+
+/// Motion of a planar frame: origin [m] and angle [rad] with their rates.
+struct FrameMotion {
+  Vec2 origin{0, 0}, origin_rate{0, 0}, origin_acceleration{0, 0};
+  double angle = 0, angle_rate = 0, angle_acceleration = 0;
+};
+using FrameDrive = std::function<FrameMotion(double t)>;
+
+/// Rows of one joint at one state.
+struct ConstraintRows {
+  VectorXd value;         ///< Φ(q, t)
+  VectorXd rate;          ///< ∂Φ/∂t
+  VectorXd acceleration;  ///< right side of Φ_q q̈ = ..., = -(Φ_q q̇)_q q̇ - 2 Φ_qt q̇ - Φ_tt
+  std::vector<Eigen::Triplet<double>> jacobian;  ///< Φ_q: row of the joint, unknown of the model
+};
+
+/// What a joint sees of a body.
+struct BodyView {
+  const std::string* name;
+  const Element* element;
+  int first_dof;  ///< number of the body's first unknown in the model
+};
+
+/// The seam of constraints Φ(q, t) = 0.
+class Joint {
+ public:
+  virtual ~Joint() = default;
+  virtual std::string name() const = 0;
+  virtual int size() const = 0;  ///< rows
+
+  /// Looks up the unknowns it acts on, by the names of bodies and edges; called again after every
+  /// change of a mesh. @throws Error (input) for a body that does not exist.
+  virtual void bind(std::span<const BodyView> bodies) = 0;
+
+  /// Fills rows; the places in the jacobian are the same at every call between two bind().
+  virtual void evaluate(double t, const VectorXd& q, const VectorXd& v,
+                        ConstraintRows& rows) const = 0;
+};
+
+/// The body of that name. @throws Error (input) naming joint and body.
+const BodyView& find_body(std::span<const BodyView> bodies, const std::string& joint,
+                          const std::string& body);
+
+/// How the root edge sits in its hub (design.md section 6).
+enum class WeldMode {
+  edge,       ///< the edge is straight and across the hub's axis; r_m is free: the material that
+              ///< leaves the hub may stretch and shear, as at a clamped edge of the continuum
+  direction,  ///< r_m stays parallel to the axis: no shear at the root (first order in mesh size)
+  full        ///< r_m is the unit axis: no root strain at all
+};
+
+/// Plate edge welded to a driven frame: for every node, with the axes e₁(t), e₂(t) of the frame,
+///
+///   r = origin + y e₂,   r_n = e₂                                           (edge)
+///   and r_m · e₂ = 0, r_mn · e₂ = 0                                         (direction)
+///   or r_m = e₁, r_mn = 0                                                   (full)
+///
+/// y is the node's coordinate across. With material flow these rows hold on the moving line, so
+/// the rates are total ones along the line: exactly those of the nodal unknowns.
+std::unique_ptr<Joint> make_weld(std::string name, std::string body, std::string edge, FrameDrive frame,
+                                 WeldMode mode);
+
+/// A material point's position held at a place of the world frame (pin), or driven along a path.
+std::unique_ptr<Joint> make_pin(std::string name, std::string body, const Vec2& material, FrameDrive point);
+
+}  // namespace flexmorph::fem

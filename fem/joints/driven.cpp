@@ -1,0 +1,148 @@
+#include <cmath>
+
+#include "fem/joint.h"
+
+namespace flexmorph::fem {
+namespace {
+
+class Weld final : public Joint {
+ public:
+  Weld(std::string name, std::string body, std::string edge, FrameDrive frame, WeldMode mode)
+      : name_(std::move(name)), body_(std::move(body)), edge_(std::move(edge)), frame_(std::move(frame)), mode_(mode) {}
+
+  std::string name() const override { return name_; }
+  int size() const override { return static_cast<int>(fixed_.size() + along_.size()); }
+
+  void bind(std::span<const BodyView> bodies) override {
+    const auto& [body, element_at, first_dof] = find_body(bodies, name_, body_);
+    const Element& element = *element_at;
+    if (element.dim() != 2) throw Error::input("joint '" + name_ + "': a weld of a planar plate");
+    fixed_.clear();
+    along_.clear();
+    const auto dof = [first = first_dof](int vector) { return first + 2 * vector; };
+    for (const NodeVectors& node : element.edge(edge_)) {
+      const double y = node.material.y();
+      for (int c = 0; c < 2; ++c) {
+        fixed_.push_back({dof(node.r) + c, c, 1, {0, y}});
+        fixed_.push_back({dof(node.r_n) + c, c, 0, {0, 1}});
+      }
+      for (const int vector : {node.r_m, node.r_mn}) {
+        if (vector < 0 || mode_ == WeldMode::edge) continue;
+        if (mode_ == WeldMode::direction)
+          along_.push_back(dof(vector));
+        else
+          for (int c = 0; c < 2; ++c)
+            fixed_.push_back({dof(vector) + c, c, 0, {vector == node.r_m ? 1.0 : 0.0, 0}});
+      }
+    }
+  }
+
+  void evaluate(double t, const VectorXd& q, const VectorXd& v,
+                ConstraintRows& rows) const override {
+    const FrameMotion f = frame_(t);
+    Eigen::Matrix2d turn;  // columns e₁, e₂
+    turn << std::cos(f.angle), -std::sin(f.angle), std::sin(f.angle), std::cos(f.angle);
+    Eigen::Matrix2d quarter;
+    quarter << 0, -1, 1, 0;
+    const Eigen::Matrix2d turn_t = f.angle_rate * quarter * turn;
+    const Eigen::Matrix2d turn_tt =
+        f.angle_acceleration * quarter * turn - f.angle_rate * f.angle_rate * turn;
+
+    rows.value.resize(size());
+    rows.rate.resize(size());
+    rows.acceleration.resize(size());
+    rows.jacobian.clear();
+    int i = 0;
+    for (const Fixed& x : fixed_) {
+      rows.value[i] = q[x.dof] - x.moves * f.origin[x.direction] - turn.row(x.direction).dot(x.local);
+      rows.rate[i] = -x.moves * f.origin_rate[x.direction] - turn_t.row(x.direction).dot(x.local);
+      rows.acceleration[i] =
+          x.moves * f.origin_acceleration[x.direction] + turn_tt.row(x.direction).dot(x.local);
+      rows.jacobian.emplace_back(i, x.dof, 1.0);
+      ++i;
+    }
+    for (const int dof : along_) {
+      const auto x = q.segment<2>(dof), x_t = v.segment<2>(dof);
+      rows.value[i] = turn.col(1).dot(x);
+      rows.rate[i] = turn_t.col(1).dot(x);
+      rows.acceleration[i] = -turn_tt.col(1).dot(x) - 2 * turn_t.col(1).dot(x_t);
+      for (int c = 0; c < 2; ++c) rows.jacobian.emplace_back(i, dof + c, turn(c, 1));
+      ++i;
+    }
+  }
+
+ private:
+  struct Fixed {  // one entry equals one coordinate of a vector given in the frame
+    int dof, direction;
+    double moves;  // 1: the vector starts at the frame's origin
+    Vec2 local;
+  };
+  std::string name_, body_, edge_;
+  FrameDrive frame_;
+  WeldMode mode_;
+  std::vector<Fixed> fixed_;
+  std::vector<int> along_;  // first unknown of vectors that keep to e₁
+};
+
+class Pin final : public Joint {
+ public:
+  Pin(std::string name, std::string body, const Vec2& material, FrameDrive point)
+      : name_(std::move(name)), body_(std::move(body)), material_(material), point_(std::move(point)) {}
+
+  std::string name() const override { return name_; }
+  int size() const override { return 2; }
+
+  void bind(std::span<const BodyView> bodies) override {
+    const auto& [body, element_at, first_dof] = find_body(bodies, name_, body_);
+    const Element& element = *element_at;
+    ShapeTable table;
+    const int e = element.locate(material_, Tabulate::position, table);
+    if (element.moving(e))
+      throw Error::input("joint '" + name_ + "': a pin in an element whose material lines move");
+    const auto vectors = element.vectors(e);
+    terms_.clear();
+    for (int k = 0; k < element.n_shapes(); ++k)
+      terms_.emplace_back(first_dof + element.dim() * vectors[static_cast<size_t>(k)],
+                          table.N(0, k));
+  }
+
+  void evaluate(double t, const VectorXd& q, const VectorXd&, ConstraintRows& rows) const override {
+    const FrameMotion f = point_(t);
+    rows.value = -f.origin;
+    rows.rate = -f.origin_rate;
+    rows.acceleration = f.origin_acceleration;
+    rows.jacobian.clear();
+    for (const auto& [dof, weight] : terms_)
+      for (int c = 0; c < 2; ++c) {
+        rows.value[c] += weight * q[dof + c];
+        rows.jacobian.emplace_back(c, dof + c, weight);
+      }
+  }
+
+ private:
+  std::string name_, body_;
+  Vec2 material_;
+  FrameDrive point_;
+  std::vector<std::pair<int, double>> terms_;
+};
+
+}  // namespace
+
+const BodyView& find_body(std::span<const BodyView> bodies, const std::string& joint,
+                          const std::string& body) {
+  for (const BodyView& b : bodies)
+    if (*b.name == body) return b;
+  throw Error::input("joint '" + joint + "': there is no body '" + body + "'");
+}
+
+std::unique_ptr<Joint> make_weld(std::string name, std::string body, std::string edge,
+                                 FrameDrive frame, WeldMode mode) {
+  return std::make_unique<Weld>(std::move(name), std::move(body), std::move(edge), std::move(frame), mode);
+}
+
+std::unique_ptr<Joint> make_pin(std::string name, std::string body, const Vec2& material,
+                                FrameDrive point) {
+  return std::make_unique<Pin>(std::move(name), std::move(body), material, std::move(point));
+}
+
+}  // namespace flexmorph::fem

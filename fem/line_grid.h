@@ -1,0 +1,44 @@
+#pragma once
+
+#include <functional>
+
+#include "fem/element.h"
+
+namespace flexmorph::fem {
+
+/// A line of the tensor grid in material coordinates: fixed, or prescribed in time.
+struct MaterialLine {
+  double value = 0;                     ///< [m]; ignored when driven
+  std::function<Motion(double)> drive;  ///< empty: fixed
+};
+
+/// Elements on a tensor grid of material lines m_i(t) x n_j(t): what growing and shrinking bodies
+/// need to know of their mesh. The first m-line is the "root" edge, the last the "free_end".
+///
+/// Nodes are numbered column by column from the root, n fastest; the vector unknowns of a node are
+/// value, derivative by m, by n and, when per_node() is 4, the mixed one.
+class LineGrid : public Element {
+ public:
+  virtual int per_node() const = 0;
+  virtual const std::vector<MaterialLine>& lines_m() const = 0;
+  virtual const Motion& line_m(int i) const = 0;  ///< at the time of the last move_to()
+  virtual const Motion& line_n(int j) const = 0;
+  virtual int n_n() const = 0;                    ///< elements along n
+
+  int n_m() const { return static_cast<int>(lines_m().size()) - 1; }
+  int n_nodes() const { return (n_m() + 1) * (n_n() + 1); }
+  int node(int i, int j) const { return i * (n_n() + 1) + j; }
+  int element(int i, int j) const { return i * n_n() + j; }
+
+  /// Shape functions of element e at local coordinates s, u in [0, 1] (one point, weight 1).
+  virtual void at(int e, double s, double u, Tabulate what, ShapeTable& out) const = 0;
+
+  /// Copies of this mesh at its time: as it is, with an m-line inserted behind line i, without
+  /// line i, with all lines fixed where they are.
+  virtual std::unique_ptr<LineGrid> copy() const = 0;
+  virtual std::unique_ptr<LineGrid> with_line(int i, double value) const = 0;
+  virtual std::unique_ptr<LineGrid> without_line(int i) const = 0;
+  virtual std::unique_ptr<LineGrid> frozen() const = 0;
+};
+
+}  // namespace flexmorph::fem

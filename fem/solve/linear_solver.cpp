@@ -1,0 +1,70 @@
+#include "fem/solve/linear_solver.h"
+
+#include <umfpack.h>
+
+#include <string>
+
+namespace flexmorph::fem {
+
+struct UnsymmetricSolver::Impl {
+  void* symbolic = nullptr;
+  void* numeric = nullptr;
+  double control[UMFPACK_CONTROL];
+
+  Impl() {
+    umfpack_di_defaults(control);
+    control[UMFPACK_IRSTEP] = 1;
+  }
+  ~Impl() {
+    release_numeric();
+    if (symbolic) umfpack_di_free_symbolic(&symbolic);
+  }
+  void release_numeric() {
+    if (numeric) umfpack_di_free_numeric(&numeric);
+  }
+};
+
+UnsymmetricSolver::UnsymmetricSolver() : impl_(std::make_unique<Impl>()) {}
+UnsymmetricSolver::~UnsymmetricSolver() = default;
+UnsymmetricSolver::UnsymmetricSolver(UnsymmetricSolver&&) noexcept = default;
+UnsymmetricSolver& UnsymmetricSolver::operator=(UnsymmetricSolver&&) noexcept = default;
+
+namespace {
+
+void check(int status, const char* what) {
+  if (status == UMFPACK_OK) return;
+  if (status == UMFPACK_WARNING_singular_matrix)
+    throw Error::numerical(std::string("linear solver: the matrix is singular (") + what +
+                           "): are all bodies held, and no constraint twice?");
+  throw Error::numerical(std::string("linear solver: UMFPACK failed in ") + what + ", status " +
+                         std::to_string(status));
+}
+
+}  // namespace
+
+void UnsymmetricSolver::analyze(const SparseMatrix& a) {
+  impl_->release_numeric();
+  if (impl_->symbolic) umfpack_di_free_symbolic(&impl_->symbolic);
+  check(umfpack_di_symbolic(static_cast<int>(a.rows()), static_cast<int>(a.cols()),
+                            a.outerIndexPtr(), a.innerIndexPtr(), a.valuePtr(), &impl_->symbolic,
+                            impl_->control, nullptr),
+        "analysis");
+}
+
+void UnsymmetricSolver::factorize(const SparseMatrix& a) {
+  if (!Eigen::Map<const VectorXd>(a.valuePtr(), a.nonZeros()).allFinite())
+    throw Error::numerical("linear solver: the matrix holds numbers that are not finite");
+  impl_->release_numeric();
+  check(umfpack_di_numeric(a.outerIndexPtr(), a.innerIndexPtr(), a.valuePtr(), impl_->symbolic,
+                           &impl_->numeric, impl_->control, nullptr),
+        "factorization");
+}
+
+void UnsymmetricSolver::solve(const SparseMatrix& a, const VectorXd& b, VectorXd& x) const {
+  x.resize(b.size());
+  check(umfpack_di_solve(UMFPACK_A, a.outerIndexPtr(), a.innerIndexPtr(), a.valuePtr(), x.data(),
+                         b.data(), impl_->numeric, impl_->control, nullptr),
+        "solution");
+}
+
+}  // namespace flexmorph::fem

@@ -1,0 +1,299 @@
+#include "fem/solve/static_solver.h"
+
+#include <cblas.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include "fem/solve/supernodal_factor.h"
+
+namespace flexmorph::fem {
+
+namespace {
+
+/// The loads that move cells of column i: a range that holds all with root_columns[l] <= i.
+std::pair<Eigen::Index, Eigen::Index> moving_loads(std::span<const int> root_columns, int i,
+                                                   Eigen::Index n_loads) {
+  if (root_columns.empty()) return {0, n_loads};
+  const auto moves = [i](int root) { return root <= i; };
+  const auto first = std::find_if(root_columns.begin(), root_columns.end(), moves);
+  const auto last = std::find_if(root_columns.rbegin(), root_columns.rend(), moves).base();
+  if (first >= last) return {0, 0};
+  return {first - root_columns.begin(), last - first};
+}
+
+}  // namespace
+
+struct StaticSolver::Impl {
+  Grid grid;
+  int first_root = 0;
+  Eigen::Matrix<double, 8, 8> cell_stiffness;
+  PlaneSection section;
+  std::unique_ptr<SupernodalFactor> factor;
+  std::vector<int> scatter;  // by cell and pair of unknowns (36): entry of the pattern, -1: held
+  VectorXd stiffness;        // factors of the last factorize()
+
+  // Work space.
+  mutable std::vector<int> active, order, all_active;
+  mutable MatrixXd sorted_mix;
+  mutable VectorXd moved, energy_of_load, held;
+
+  int block_size() const { return 2 * (grid.ny + 1); }
+  int n_unknowns() const { return block_size() * (grid.nx - first_root); }
+  int row(int i, int j) const {
+    return i <= first_root ? -1 : 2 * ((grid.nx - i) * (grid.ny + 1) + j);
+  }
+
+  std::array<int, 8> rows_of_cell(int i, int j) const {
+    std::array<int, 8> rows{};
+    for (std::size_t a = 0; a < 4; ++a) {
+      const int r = row(i + kCornerI[a], j + kCornerJ[a]);
+      rows[2 * a] = r;
+      rows[2 * a + 1] = r < 0 ? -1 : r + 1;
+    }
+    return rows;
+  }
+
+  void build_pattern();
+  void check_roots(std::span<const int> root_columns, Eigen::Index n_loads) const;
+  bool arrange(std::span<const int> root_columns) const;
+  void to_order(MatrixXd& x) const;
+  void from_order(MatrixXd& x) const;
+};
+
+void StaticSolver::Impl::build_pattern() {
+  std::vector<int> starts = {0}, rows;
+  rows.reserve(static_cast<std::size_t>(n_unknowns()) * 10);
+  // Below the diagonal: the rest of the node and of its column, and the next column towards the
+  // root, as far as they share a cell with the node.
+  for (int i = grid.nx; i > first_root; --i) {
+    for (int j = 0; j <= grid.ny; ++j) {
+      for (int c = 0; c < 2; ++c) {
+        for (int r = row(i, j) + c; r <= row(i, std::min(j + 1, grid.ny)) + 1; ++r) {
+          rows.push_back(r);
+        }
+        if (i - 1 > first_root) {
+          const int end = row(i - 1, std::min(j + 1, grid.ny)) + 1;
+          for (int r = row(i - 1, std::max(j - 1, 0)); r <= end; ++r) rows.push_back(r);
+        }
+        starts.push_back(static_cast<int>(rows.size()));
+      }
+    }
+  }
+  const auto entry = [&](int r, int c) {
+    const auto begin = rows.begin() + starts[static_cast<std::size_t>(c)];
+    const auto end = rows.begin() + starts[static_cast<std::size_t>(c) + 1];
+    return static_cast<int>(std::lower_bound(begin, end, r) - rows.begin());
+  };
+  scatter.reserve(static_cast<std::size_t>(grid.nx - first_root) * grid.ny * 36);
+  for (int i = first_root; i < grid.nx; ++i) {
+    for (int j = 0; j < grid.ny; ++j) {
+      const auto cell = rows_of_cell(i, j);
+      for (std::size_t a = 0; a < 8; ++a) {
+        for (std::size_t b = 0; b <= a; ++b) {
+          const int r = std::max(cell[a], cell[b]), c = std::min(cell[a], cell[b]);
+          scatter.push_back(c < 0 ? -1 : entry(r, c));
+        }
+      }
+    }
+  }
+  factor = std::make_unique<SupernodalFactor>(std::move(starts), std::move(rows));
+}
+
+void StaticSolver::Impl::check_roots(std::span<const int> root_columns,
+                                     Eigen::Index n_loads) const {
+  if (static_cast<Eigen::Index>(root_columns.size()) != n_loads) {
+    throw Error::input("static solver: " + std::to_string(n_loads) + " loads, but " +
+                       std::to_string(root_columns.size()) + " root columns");
+  }
+  for (int c : root_columns) {
+    if (c < first_root || c > grid.nx) {
+      throw Error::input("static solver: root column " + std::to_string(c) + " is not between " +
+                         std::to_string(first_root) + " and " + std::to_string(grid.nx));
+    }
+  }
+}
+
+/// Sets `active` (unknowns in front of each load's clamp), sorted when the loads are not.
+/// @returns whether `order` (sorted load -> load) must be applied.
+bool StaticSolver::Impl::arrange(std::span<const int> root_columns) const {
+  order.resize(root_columns.size());
+  std::iota(order.begin(), order.end(), 0);
+  const bool sorted = std::is_sorted(root_columns.begin(), root_columns.end()) ||
+                      std::is_sorted(root_columns.rbegin(), root_columns.rend());
+  if (!sorted) {
+    std::sort(order.begin(), order.end(), [&](int a, int b) {
+      const int ca = root_columns[static_cast<std::size_t>(a)];
+      const int cb = root_columns[static_cast<std::size_t>(b)];
+      return ca != cb ? ca < cb : a < b;
+    });
+  }
+  active.resize(root_columns.size());
+  std::transform(order.begin(), order.end(), active.begin(), [&](int l) {
+    return block_size() * (grid.nx - root_columns[static_cast<std::size_t>(l)]);
+  });
+  return !sorted;
+}
+
+void StaticSolver::Impl::to_order(MatrixXd& x) const {
+  const auto index = Eigen::Map<const Eigen::VectorXi>(order.data(), x.rows());
+  moved.resize(x.rows());
+  for (Eigen::Index k = 0; k < x.cols(); ++k) {
+    moved = x.col(k);
+    for (Eigen::Index l = 0; l < x.rows(); ++l) x(l, k) = moved(index(l));
+  }
+}
+
+void StaticSolver::Impl::from_order(MatrixXd& x) const {
+  const auto index = Eigen::Map<const Eigen::VectorXi>(order.data(), x.rows());
+  moved.resize(x.rows());
+  for (Eigen::Index k = 0; k < x.cols(); ++k) {
+    moved = x.col(k);
+    for (Eigen::Index l = 0; l < x.rows(); ++l) x(index(l), k) = moved(l);
+  }
+}
+
+StaticSolver::StaticSolver(const Grid& grid, const PlaneSection& section, int first_root)
+    : impl_(std::make_unique<Impl>()) {
+  if (first_root < 0 || first_root >= grid.nx) {
+    throw Error::input("static solver: root column " + std::to_string(first_root) +
+                       " leaves nothing of " + std::to_string(grid.nx) + " columns of cells");
+  }
+  impl_->grid = grid;
+  impl_->first_root = first_root;
+  impl_->cell_stiffness = q4_stiffness(section, grid.dx(), grid.dy());
+  impl_->section = section;
+  impl_->build_pattern();
+}
+
+StaticSolver::~StaticSolver() = default;
+StaticSolver::StaticSolver(StaticSolver&&) noexcept = default;
+
+const Grid& StaticSolver::grid() const { return impl_->grid; }
+int StaticSolver::n_unknowns() const { return impl_->n_unknowns(); }
+int StaticSolver::row(int i, int j) const { return impl_->row(i, j); }
+
+void StaticSolver::factorize(const VectorXd& stiffness_factor) {
+  Impl& m = *impl_;
+  if (stiffness_factor.size() != m.grid.n_cells() || !stiffness_factor.allFinite()) {
+    throw Error::numerical("static solver: the stiffness factors of " +
+                           std::to_string(m.grid.n_cells()) + " cells are not all finite numbers");
+  }
+  m.stiffness = stiffness_factor;
+  const std::span<double> values = m.factor->values();
+  std::fill(values.begin(), values.end(), 0.0);
+  const int* entry = m.scatter.data();
+  for (int cell = m.grid.cell(m.first_root, 0); cell < m.grid.n_cells(); ++cell) {
+    const double factor = stiffness_factor(cell);
+    for (int a = 0; a < 8; ++a) {
+      for (int b = 0; b <= a; ++b, ++entry) {
+        if (*entry >= 0)
+          values[static_cast<std::size_t>(*entry)] += factor * m.cell_stiffness(a, b);
+      }
+    }
+  }
+  const int column = m.factor->factorize();
+  if (column < 0) return;
+  const int node = column / 2, i = m.grid.nx - node / (m.grid.ny + 1);
+  throw Error::numerical("static solver: the stiffness is not positive definite at unknown " +
+                         std::to_string(column) + " (" + (column % 2 == 0 ? "x" : "y") +
+                         " of node column " + std::to_string(i) + ", row " +
+                         std::to_string(node % (m.grid.ny + 1)) +
+                         "): stiffness factors must be positive, and no part may float");
+}
+
+void StaticSolver::solve(MatrixXd& loads, std::span<const int> root_columns) const {
+  const Impl& m = *impl_;
+  m.check_roots(root_columns, loads.rows());
+  const bool reorder = m.arrange(root_columns);
+  if (reorder) m.to_order(loads);
+  m.factor->forward(loads, m.active);
+  m.factor->backward(loads, m.active);
+  if (reorder) m.from_order(loads);
+}
+
+void StaticSolver::solve_mixed(const MatrixXd& mix, MatrixXd& basis,
+                               std::span<const int> root_columns, MatrixXd& displacements) const {
+  const Impl& m = *impl_;
+  m.check_roots(root_columns, mix.rows());
+  const bool reorder = m.arrange(root_columns);
+  displacements.resize(mix.rows(), m.n_unknowns());
+  if (mix.rows() == 0) return;
+  const int r = static_cast<int>(mix.cols()), ld = static_cast<int>(mix.rows());
+  m.all_active.assign(static_cast<std::size_t>(r),
+                      *std::max_element(m.active.begin(), m.active.end()));
+  m.factor->forward(basis, m.all_active);
+  const MatrixXd* weights = &mix;
+  if (reorder) {
+    m.sorted_mix = mix;
+    m.to_order(m.sorted_mix);
+    weights = &m.sorted_mix;
+  }
+  m.factor->backward(displacements, m.active, [&](int first, int last, int load, int count) {
+    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, count, last - first, r, 1,
+                weights->data() + load, ld, basis.data() + static_cast<std::ptrdiff_t>(first) * r,
+                r, 0, &displacements(load, first), ld);
+  });
+  if (reorder) m.from_order(displacements);
+}
+
+void StaticSolver::forward(MatrixXd& loads) const {
+  const Impl& m = *impl_;
+  m.all_active.assign(static_cast<std::size_t>(loads.rows()), m.n_unknowns());
+  m.factor->forward(loads, m.all_active);
+}
+
+void StaticSolver::cell_energies(const MatrixXd& displacements, const VectorXd& weights,
+                                 VectorXd& energies, std::span<const int> root_columns) const {
+  const Impl& m = *impl_;
+  const Grid& g = m.grid;
+  const Q4Energy energy(m.section, g.dx(), g.dy());
+  const Eigen::Index ld = displacements.rows();
+  energies.setZero(g.n_cells());
+  m.held.setZero(ld);
+  m.energy_of_load.resize(ld);
+
+  for (int i = m.first_root; i < g.nx; ++i) {
+    const auto [begin, n] = moving_loads(root_columns, i, ld);
+    if (n == 0) continue;
+    const auto value = [&](int column, int j, int k) {
+      const int row = m.row(column, j);
+      return row < 0 ? m.held.data() : displacements.data() + (row + k) * ld + begin;
+    };
+    for (int j = 0; j < g.ny; ++j) {
+      Q4Energy::Corners x;
+      for (std::size_t a = 0; a < 4; ++a) {
+        x.u[a] = value(i + kCornerI[a], j + kCornerJ[a], 0);
+        x.v[a] = value(i + kCornerI[a], j + kCornerJ[a], 1);
+      }
+      energy.weighted(x, weights.data() + begin, n, m.energy_of_load.data());
+      energies(g.cell(i, j)) = m.energy_of_load.head(n).sum();
+    }
+  }
+}
+
+void StaticSolver::apply(const MatrixXd& displacements, MatrixXd& forces) const {
+  const Impl& m = *impl_;
+  if (m.stiffness.size() == 0) throw Error::numerical("static solver: factorize() comes first");
+  forces.setZero(displacements.rows(), m.n_unknowns());
+  for (int i = m.first_root; i < m.grid.nx; ++i) {
+    for (int j = 0; j < m.grid.ny; ++j) {
+      const auto rows = m.rows_of_cell(i, j);
+      const double factor = m.stiffness(m.grid.cell(i, j));
+      for (std::size_t a = 0; a < 8; ++a) {
+        if (rows[a] < 0) continue;
+        for (std::size_t b = 0; b < 8; ++b) {
+          if (rows[b] < 0) continue;
+          const double k = factor * m.cell_stiffness(static_cast<int>(a), static_cast<int>(b));
+          forces.col(rows[a]) += k * displacements.col(rows[b]);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace flexmorph::fem

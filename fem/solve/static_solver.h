@@ -1,0 +1,70 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "fem/section.h"
+#include "fem/solve/q4_cell.h"
+#include "geometry/grid.h"
+
+namespace flexmorph::fem {
+
+/// Linear static analysis of a plate on a regular grid, clamped along a column of nodes that may
+/// be another one for every load.
+///
+/// Unknowns are numbered column by column from the free end (largest i) to the root, so that the
+/// Cholesky factor of the plate clamped at any column is a leading block of one factor: one
+/// factorization serves all root columns (design.md section 8). CHOLMOD, natural order, analysed
+/// once; many right-hand sides are solved at once, unknown by unknown next to each other.
+///
+/// Loads may come in any order; when their root columns are monotone (times in order), no rows
+/// are moved. Work space belongs to the object: one thread at a time.
+class StaticSolver {
+ public:
+  /// Everything behind column `first_root` of nodes to the free end is unknown (column first_root
+  /// itself is held); root columns of the loads are in [first_root, nx].
+  /// @throws Error (input) when first_root is not in [0, nx).
+  StaticSolver(const Grid& grid, const PlaneSection& section, int first_root = 0);
+  ~StaticSolver();
+  StaticSolver(StaticSolver&&) noexcept;
+
+  const Grid& grid() const;
+  int n_unknowns() const;  ///< 2 (ny + 1) (nx - first_root)
+
+  /// Row of a node's x-displacement among the unknowns (y: + 1), or -1 when the node is held.
+  int row(int i, int j) const;
+
+  /// K(stiffness factors (n_cells)), factored. Cells behind column first_root are not read.
+  /// @throws Error (numerical) when K is not positive definite or a factor is not finite.
+  void factorize(const VectorXd& stiffness_factor);
+
+  /// Solves in place. `loads` is (n_loads x n_unknowns): column = unknown, so that the values of
+  /// all loads at one unknown lie next to each other. Load l is clamped at root_columns[l]; its
+  /// entries on and behind the clamp are ignored and come back 0.
+  void solve(MatrixXd& loads, std::span<const int> root_columns) const;
+
+  /// The same when loads = mix * basis (mix (n_loads x r), basis (r x n_unknowns)) up to entries
+  /// behind each load's clamp: r forward substitutions instead of n_loads. `basis` comes back as
+  /// L⁻¹ basis.
+  void solve_mixed(const MatrixXd& mix, MatrixXd& basis, std::span<const int> root_columns,
+                   MatrixXd& displacements) const;
+
+  /// L⁻¹ loads, in place, of the plate clamped at column first_root: |L⁻¹ F|² = F . K⁻¹ F.
+  void forward(MatrixXd& loads) const;
+
+  /// u . K_cell u of full material for every cell, summed over loads with weights (n_cells).
+  /// @param root_columns  when given, displacements are known to be zero on and behind them, and
+  ///        these entries are not read.
+  void cell_energies(const MatrixXd& displacements, const VectorXd& weights, VectorXd& energies,
+                     std::span<const int> root_columns = {}) const;
+
+  /// K u with the factors of the last factorize() (n_loads x n_unknowns).
+  void apply(const MatrixXd& displacements, MatrixXd& forces) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace flexmorph::fem

@@ -1,0 +1,20 @@
+#include <map>
+
+#include "fem/term.h"
+
+namespace flexmorph::fem {
+
+std::unique_ptr<Term> make_term(const std::string& name, const PlaneSection& section) {
+  using Maker = std::unique_ptr<Term> (*)(const PlaneSection&);
+  static const std::map<std::string, Maker> kTerms = {{"inertia", make_inertia},
+                                                      {"membrane", make_membrane}};
+  const auto row = kTerms.find(name);
+  if (row == kTerms.end()) {
+    std::string known;
+    for (const auto& [term, maker] : kTerms) known += (known.empty() ? "" : ", ") + term;
+    throw Error::input("term '" + name + "' is unknown; a plate in the plane has: " + known);
+  }
+  return row->second(section);
+}
+
+}  // namespace flexmorph::fem

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "geometry/component.h"
+#include "geometry/grid.h"
+
+namespace flexmorph {
+
+class ComponentFrame;
+
+/// How components become a topology description function on the nodes of a grid.
+struct TdfSettings {
+  enum class Kind {
+    distance,  ///< φ = (1 - s) g(x), s = ((x/L)^p + (y/g)^p)^(1/p); smooth maximum (default)
+    paper      ///< φ = χ = 1 - (x/L)^p - (y/g)^p of P (24), plain maximum
+  };
+  Kind kind = Kind::distance;
+  double band = 0.00375;    ///< ε of the Heaviside: half-width of the band [m] ([-] for paper)
+  double sharpness = 1500;  ///< Kreisselmeier-Steinhauser sharpness λ [1/m]
+  double alpha = 1e-3;      ///< value of the Heaviside in the void
+  double min_half_thickness = 1e-4;  ///< lower bound of every profile [m]
+};
+
+/// H_ε(φ) and dH/dφ, design.md section 7: 1 above ε, α below -ε, cubic between.
+///
+///   H = 3 (1 - α)/4 (φ/ε - φ³/(3 ε³)) + (1 + α)/2,   |φ| < ε
+struct Heaviside {
+  double value, slope;
+};
+Heaviside heaviside(double phi, double band, double alpha);
+
+/// TDF of one component at one point, with its derivatives by the seven parameters.
+///
+/// φ is smooth except at the component's center, where s has the kink of a distance (the
+/// derivatives are the mean of both sides there), and on the lines x = ±L, where a profile with
+/// g' ≠ 0 at its end is cut off (the derivatives are those of the outer side there).
+double component_tdf(const Component& c, const TdfSettings& s, double X, double Y,
+                     double* d_parameters /* 7, or nullptr */);
+
+/// TDF of a union of components on the nodes of a grid, its Heaviside, and the chain rule back
+/// to the parameters. Only nodes within a component's reach (φ_i > φ_cut) are visited. One object
+/// serves one thread at a time: pull_back() uses buffers of its own.
+///
+/// distance: smooth maximum of Kreisselmeier and Steinhauser over the components that reach a
+/// node, continuous where one comes into reach,
+///
+///   φ = 1/λ log Σ_i (exp(λ φ_i) - exp(λ φ_cut)),   φ >= φ_cut,   φ_cut = -ε - 10/λ
+///
+/// paper: φ = max φ_i, φ_cut = -ε - 1; the derivative is that of the first highest component.
+/// Nodes no component reaches have φ = φ_cut and H = α.
+class UnionTdf {
+ public:
+  /// @throws Error(input) when a setting is out of its range.
+  UnionTdf(const Grid& grid, TdfSettings settings);
+
+  const TdfSettings& settings() const { return settings_; }
+  /// New settings for the next evaluate(), which must come before the next pull_back().
+  /// @throws Error(input) as the constructor.
+  void set_settings(const TdfSettings& s);
+
+  /// Fills phi() and density(); no allocation after the first calls of similar size.
+  /// @throws Error(numerical) when a parameter is not finite or a length not positive.
+  void evaluate(std::span<const Component> components);
+
+  const VectorXd& phi() const { return phi_; }    ///< (n_nodes) [m], at least φ_cut
+  const VectorXd& density() const { return h_; }  ///< H (n_nodes), α..1
+
+  /// df/dH (n_nodes) -> df/dparameters (7 N), at the components of the last evaluate().
+  /// @throws Error(numerical) when the result is not finite.
+  void pull_back(const VectorXd& df_dh, VectorXd& df_dp) const;
+
+ private:
+  struct Run {  // neighbouring nodes of one grid column within the reach of one component
+    int column, row, count;
+  };
+  struct Scratch {  // local coordinates and seeds of one component's nodes
+    std::vector<double> x, y, seed;
+    void make_room(std::size_t n);
+  };
+  void find_reach(std::span<const Component> components);
+  void add_runs(const ComponentFrame& frame);
+  void join_smoothly();
+  void join_by_maximum();
+  void fill_density();
+  int add_seeds(const ComponentFrame& frame, const Run& run, const double* visit,
+                const VectorXd& df_dh, int count) const;
+
+  Grid grid_;
+  TdfSettings settings_;
+  bool evaluated_ = false;
+  double cut_ = 0;
+  std::vector<Component> components_;
+  std::vector<Run> runs_;          // component by component
+  std::vector<std::size_t> ends_;  // where the runs of each component end
+  std::vector<double> visits_;     // run by run: φ_i, then the weight dφ/dφ_i times sum_
+  mutable Scratch scratch_;
+  VectorXd phi_, h_, highest_, at_cut_, sum_, chain_;  // chain_: dH/dφ / sum_
+};
+
+}  // namespace flexmorph

@@ -1,0 +1,251 @@
+#include "io/case_document.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <sstream>
+
+#include "geometry/base.h"
+#include "io/case_parser.h"
+
+namespace flexmorph::io {
+namespace {
+
+constexpr const char* kOption = "--set ";
+
+/// Edits (insertion, deletion, exchange, swap of neighbours) that turn a into b.
+size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::vector<size_t>> d(a.size() + 1, std::vector<size_t>(b.size() + 1));
+  for (size_t i = 0; i <= a.size(); ++i) {
+    for (size_t j = 0; j <= b.size(); ++j) {
+      if (i == 0 || j == 0) {
+        d[i][j] = i + j;
+        continue;
+      }
+      const size_t exchange = d[i - 1][j - 1] + (a[i - 1] != b[j - 1]);
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, exchange});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+    }
+  }
+  return d[a.size()][b.size()];
+}
+
+std::vector<std::string> split_key(const std::string& key, const std::string& option) {
+  std::vector<std::string> parts;
+  std::istringstream in(key);
+  for (std::string part; std::getline(in, part, '.');) parts.push_back(part);
+  if (parts.empty() || key.back() == '.' || !std::all_of(parts.begin(), parts.end(), is_bare_key))
+    throw Error::input(option + ": KEY is a dotted path such as body.thickness");
+  return parts;
+}
+
+std::string trimmed(const std::string& s) {
+  const size_t first = s.find_first_not_of(" \t"), last = s.find_last_not_of(" \t");
+  return first == std::string::npos ? "" : s.substr(first, last - first + 1);
+}
+
+/// The entry of a list that KEY means; steps over its label when there is one.
+CaseNode& entry_of(CaseNode& list, const std::string& so_far, const std::vector<std::string>& keys,
+                   size_t& next, const std::string& option) {
+  std::string known;
+  for (size_t i = 0; i < list.entries.size(); ++i) {
+    const std::string label = entry_label(list, i);
+    if (next + 1 < keys.size() && (keys[next] == label || keys[next] == std::to_string(i))) {
+      ++next;
+      return list.entries[i].second;
+    }
+    known += (i ? ", " : "") + label;
+  }
+  if (list.entries.size() == 1) return list.entries[0].second;
+  throw Error::input(option + ": " + so_far + " has " + std::to_string(list.entries.size()) +
+                     " entries; write " + so_far + ".ENTRY.KEY with one of " + known);
+}
+
+void collect_unknown(const CaseNode& node, const std::string& path,
+                     std::vector<std::pair<unsigned, std::string>>& messages) {
+  if (node.kind == CaseNode::Kind::list) {
+    for (size_t i = 0; i < node.entries.size(); ++i)
+      collect_unknown(node.entries[i].second, entry_path(node, i, path), messages);
+    return;
+  }
+  if (node.kind != CaseNode::Kind::table || !node.visited) return;
+  const std::vector<std::string> known(node.asked.begin(), node.asked.end());
+  for (const auto& [key, child] : node.entries) {
+    const std::string full = path.empty() ? key : path + "." + key;
+    if (node.asked.contains(key)) {
+      collect_unknown(child, full, messages);
+      continue;
+    }
+    const std::string close = nearest(key, known);
+    std::string message = located(child, full) + ": unknown key";
+    if (!close.empty()) {
+      message += ", did you mean '" + close + "'?";
+    } else {
+      message += "; known here:";
+      for (const std::string& each : known) message += " " + each;
+    }
+    messages.emplace_back(child.line, message);
+  }
+}
+
+std::string written_key(const std::string& key) { return is_bare_key(key) ? key : in_quotes(key); }
+
+/// A value in one line.
+std::string written(const CaseNode& node) {
+  if (node.kind != CaseNode::Kind::table && node.kind != CaseNode::Kind::list) return node.shown;
+  const bool is_table = node.kind == CaseNode::Kind::table;
+  std::string text = is_table ? "{ " : "[";
+  for (size_t i = 0; i < node.entries.size(); ++i) {
+    const auto& [key, child] = node.entries[i];
+    text += (i ? ", " : "") + (is_table ? written_key(key) + " = " : "") + written(child);
+  }
+  return text + (is_table ? " }" : "]");
+}
+
+bool is_list_of_tables(const CaseNode& node) {
+  return node.kind == CaseNode::Kind::list && !node.entries.empty() &&
+         std::all_of(node.entries.begin(), node.entries.end(), [](const auto& entry) {
+           return entry.second.kind == CaseNode::Kind::table && !entry.second.is_inline;
+         });
+}
+
+/// A table: its values first, then the tables in it.
+void write_table(const CaseNode& table, const std::string& path, std::string& out) {
+  const auto is_section = [](const CaseNode& node) {
+    return is_list_of_tables(node) || (node.kind == CaseNode::Kind::table && !node.is_inline);
+  };
+  for (const auto& [key, child] : table.entries)
+    if (!is_section(child)) out += written_key(key) + " = " + written(child) + "\n";
+  for (const auto& [key, child] : table.entries) {
+    if (!is_section(child)) continue;
+    const std::string full = (path.empty() ? "" : path + ".") + written_key(key);
+    if (child.kind == CaseNode::Kind::table) {
+      out += "\n[" + full + "]\n";
+      write_table(child, full, out);
+      continue;
+    }
+    for (const auto& [none, entry] : child.entries) {
+      out += "\n[[" + full + "]]\n";
+      write_table(entry, full, out);
+    }
+  }
+}
+
+}  // namespace
+
+const CaseNode* CaseNode::find(const std::string& key) const {
+  for (const auto& [name, node] : entries)
+    if (name == key) return &node;
+  return nullptr;
+}
+
+CaseNode* CaseNode::find(const std::string& key) {
+  return const_cast<CaseNode*>(std::as_const(*this).find(key));
+}
+
+bool is_bare_key(const std::string& word) {
+  return !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
+    return (c < 128 && std::isalnum(c)) || c == '_' || c == '-';
+  });
+}
+
+std::string entry_label(const CaseNode& list, size_t index) {
+  const auto label = [&](size_t i) -> std::string {
+    for (const char* key : {"name", "body"}) {
+      const CaseNode* node = list.entries[i].second.find(key);
+      if (node && node->kind == CaseNode::Kind::text) return node->text;
+    }
+    return "";
+  };
+  const std::string own = label(index);
+  bool usable = is_bare_key(own);
+  for (size_t i = 0; i < list.entries.size(); ++i)
+    usable = usable && (i == index || label(i) != own);
+  return usable ? own : std::to_string(index);
+}
+
+std::string entry_path(const CaseNode& list, size_t index, const std::string& list_path) {
+  return list.entries.size() == 1 ? list_path : list_path + "." + entry_label(list, index);
+}
+
+std::string nearest(const std::string& word, std::span<const std::string> known) {
+  std::string best;
+  size_t best_distance = std::max<size_t>(1, word.size() / 3) + 1;
+  for (const std::string& candidate : known) {
+    const size_t distance = edit_distance(word, candidate);
+    if (distance < best_distance && distance < candidate.size()) {
+      best = candidate;
+      best_distance = distance;
+    }
+  }
+  return best;
+}
+
+std::string located(const CaseNode& node, const std::string& key_path) {
+  constexpr size_t kLongest = 60;
+  if (node.is_option) return node.place;  // it says key and value already
+  if (node.kind == CaseNode::Kind::table) return node.place + ": [" + key_path + "]";
+  if (is_list_of_tables(node)) return node.place + ": [[" + key_path + "]]";
+  const bool fits = node.shown.size() <= kLongest;
+  return node.place + ": " + key_path + " = " +
+         (fits ? node.shown : node.shown.substr(0, kLongest - 3) + "...");
+}
+
+CaseDocument::CaseDocument(const std::string& file)
+    : path(file), text(read_text(file)), root(parse_case(text, file)) {}
+
+void CaseDocument::apply(const std::string& change) {
+  const std::string option = kOption + change;
+  const size_t equals = change.find('=');
+  if (equals == std::string::npos || change.find_first_of("\r\n") != std::string::npos)
+    throw Error::input(option + ": an override is written KEY=VALUE");
+  const std::vector<std::string> keys = split_key(trimmed(change.substr(0, equals)), option);
+  CaseNode value = parse_option(trimmed(change.substr(equals + 1)), option);
+
+  CaseNode* here = &root;
+  std::string so_far;
+  for (size_t next = 0; next + 1 < keys.size();) {
+    const std::string& key = keys[next++];
+    so_far += (so_far.empty() ? "" : ".") + key;
+    CaseNode* node = here->find(key);
+    if (!node) {
+      CaseNode table;
+      table.place = option;
+      table.shown = "{...}";
+      node = &here->entries.emplace_back(key, std::move(table)).second;
+    }
+    if (is_list_of_tables(*node)) node = &entry_of(*node, so_far, keys, next, option);
+    if (node->kind != CaseNode::Kind::table)
+      throw Error::input(option + ": " + so_far + " has no keys of its own");
+    here = node;
+  }
+  if (CaseNode* old = here->find(keys.back())) {
+    *old = std::move(value);
+  } else {
+    here->entries.emplace_back(keys.back(), std::move(value));
+  }
+  changes.push_back(change);
+}
+
+void CaseDocument::refuse_unknown_keys() const {
+  std::vector<std::pair<unsigned, std::string>> messages;
+  collect_unknown(root, "", messages);
+  if (messages.empty()) return;
+  std::stable_sort(messages.begin(), messages.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::string all;
+  for (const auto& [line, message] : messages) all += (all.empty() ? "" : "\n") + message;
+  throw Error::input(all);
+}
+
+std::string CaseDocument::effective_text() const {
+  if (changes.empty()) return text;
+  std::string out = "# " + std::filesystem::path(path).filename().string() + ", changed by";
+  for (const std::string& change : changes) out += "\n#   " + (kOption + change);
+  out += "\n\n";
+  write_table(root, "", out);
+  return out;
+}
+
+}  // namespace flexmorph::io

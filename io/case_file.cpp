@@ -1,0 +1,273 @@
+#include "io/case_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "io/case_document.h"
+#include "io/files.h"
+
+namespace flexmorph::io {
+
+bool Quantity::holds(double value) const {
+  return std::isfinite(value) && (lower_open ? value > lower : value >= lower) &&
+         (upper_open ? value < upper : value <= upper);
+}
+
+std::string Quantity::allowed() const {
+  const bool has_lower = std::isfinite(lower), has_upper = std::isfinite(upper);
+  std::string text = noun;
+  if (has_lower && has_upper) {
+    text += " lies between " + to_text(lower) + " and " + to_text(upper);
+    if (lower_open || upper_open) {
+      text += std::string(" (") + (lower_open ? to_text(lower) : "") +
+              (lower_open && upper_open ? " and " : "") + (upper_open ? to_text(upper) : "") +
+              " excluded)";
+    }
+  } else if (has_lower && lower == 0) {
+    text += lower_open ? " is positive" : " is not negative";
+  } else if (has_lower) {
+    text += (lower_open ? " is above " : " is at least ") + to_text(lower);
+  } else if (has_upper) {
+    text += (upper_open ? " is below " : " is at most ") + to_text(upper);
+  } else {
+    text += " is a finite number";
+  }
+  return unit.empty() ? text : text + " [" + unit + "]";
+}
+
+Quantity any_number(std::string noun, std::string unit) {
+  return {.noun = std::move(noun), .unit = std::move(unit)};
+}
+
+Quantity positive(std::string noun, std::string unit) {
+  return {.noun = std::move(noun), .unit = std::move(unit), .lower = 0, .lower_open = true};
+}
+
+Quantity not_negative(std::string noun, std::string unit) {
+  return {.noun = std::move(noun), .unit = std::move(unit), .lower = 0};
+}
+
+Quantity between(std::string noun, std::string unit, double lower, double upper) {
+  return {.noun = std::move(noun), .unit = std::move(unit), .lower = lower, .upper = upper};
+}
+
+/// Where a Table stands: shared by its copies, keeps the document alive.
+struct Table::Place {
+  std::shared_ptr<CaseDocument> document;
+  const CaseNode* table;
+  std::string path;
+
+  std::string full(const std::string& key) const { return path.empty() ? key : path + "." + key; }
+
+  /// The node of a key, or nullptr; the key is known from now on.
+  const CaseNode* find(const std::string& key) const {
+    table->visited = true;
+    table->asked.insert(key);
+    return table->find(key);
+  }
+
+  /// @throws Error (input): a missing key, or the misspelt one that was probably meant.
+  [[noreturn]] void fail_missing(const std::string& key, const std::string& allowed) const {
+    std::vector<std::string> unasked;
+    for (const auto& [name, node] : table->entries)
+      if (!table->asked.contains(name)) unasked.push_back(name);
+    const std::string misspelt = nearest(key, unasked);
+    if (!misspelt.empty())
+      throw Error::input(located(*table->find(misspelt), full(misspelt)) +
+                         ": unknown key, did you mean '" + key + "'?");
+    throw Error::input(table->place + ": " + full(key) + " is missing: " + allowed);
+  }
+
+  [[noreturn]] void fail(const std::string& key, const std::string& allowed) const {
+    const CaseNode* node = find(key);
+    if (!node) fail_missing(key, allowed);
+    throw Error::input(located(*node, full(key)) + ": " + allowed);
+  }
+
+  /// All entries of a list, each through `read`, which returns nothing for a wrong one.
+  template <class T, class Read>
+  std::vector<T> list(const std::string& key, const std::string& allowed, int count,
+                      const std::optional<std::vector<T>>& fallback, Read read) const {
+    const std::string each =
+        (count ? "a list of " + std::to_string(count) + ": " : "a list: ") + allowed;
+    const CaseNode* node = find(key);
+    if (!node && fallback) return *fallback;
+    if (!node) fail_missing(key, each);
+    const size_t size = node->entries.size();
+    if (node->kind != CaseNode::Kind::list || size == 0 || (count && size != size_t(count)))
+      fail(key, each);
+    std::vector<T> values;
+    for (const auto& [none, entry] : node->entries) {
+      const std::optional<T> value = read(entry);
+      if (!value) fail(key, each);
+      values.push_back(*value);
+    }
+    return values;
+  }
+};
+
+namespace {
+
+using Kind = CaseNode::Kind;
+
+std::optional<double> read_number(const CaseNode& node, const Quantity& quantity) {
+  if (node.kind != Kind::number && node.kind != Kind::integer) return {};
+  return quantity.holds(node.number) ? std::optional(node.number) : std::nullopt;
+}
+
+std::optional<int> read_integer(const CaseNode& node, int lower, int upper) {
+  if (node.kind != Kind::integer || node.integer < lower || node.integer > upper) return {};
+  return static_cast<int>(node.integer);
+}
+
+std::string whole_number(const std::string& noun, int lower, int upper) {
+  const std::string start = noun + " is a whole number ";
+  if (upper == std::numeric_limits<int>::max()) return start + "of at least " + to_text(lower);
+  return start + "between " + to_text(lower) + " and " + to_text(upper);
+}
+
+std::string one_of(const std::string& noun, std::span<const std::string> allowed) {
+  if (allowed.empty()) return noun + ": this case has none";
+  std::string text = noun + (allowed.size() == 1 ? " is " : " is one of ");
+  for (size_t i = 0; i < allowed.size(); ++i) text += (i ? ", '" : "'") + allowed[i] + "'";
+  return text;
+}
+
+}  // namespace
+
+const std::string& Table::path() const { return place_->path; }
+
+bool Table::has(const std::string& key) const { return place_->find(key) != nullptr; }
+
+std::vector<std::string> Table::keys() const {
+  std::vector<std::string> all;
+  for (const auto& [key, node] : place_->table->entries) all.push_back(key);
+  return all;
+}
+
+double Table::number(const std::string& key, const Quantity& quantity,
+                     std::optional<double> fallback) const {
+  const CaseNode* node = place_->find(key);
+  if (!node && fallback) return *fallback;
+  const std::optional<double> value = node ? read_number(*node, quantity) : std::nullopt;
+  if (!value && node && node->kind == Kind::text)
+    fail(key, quantity.allowed() + "; a number stands without quotes");
+  if (!value) fail(key, quantity.allowed());
+  return *value;
+}
+
+int Table::integer(const std::string& key, const std::string& noun, int lower, int upper,
+                   std::optional<int> fallback) const {
+  const CaseNode* node = place_->find(key);
+  if (!node && fallback) return *fallback;
+  const std::optional<int> value = node ? read_integer(*node, lower, upper) : std::nullopt;
+  if (!value) fail(key, whole_number(noun, lower, upper));
+  return *value;
+}
+
+bool Table::boolean(const std::string& key, std::optional<bool> fallback) const {
+  const CaseNode* node = place_->find(key);
+  if (!node && fallback) return *fallback;
+  if (!node || node->kind != Kind::boolean) fail(key, "true or false");
+  return node->integer != 0;
+}
+
+std::string Table::string(const std::string& key, const std::string& noun,
+                          std::optional<std::string> fallback) const {
+  const CaseNode* node = place_->find(key);
+  if (!node && fallback) return *fallback;
+  if (!node || node->kind != Kind::text) fail(key, noun + " is a text in quotes");
+  return node->text;
+}
+
+std::string Table::choice(const std::string& key, const std::string& noun,
+                          std::span<const std::string> allowed,
+                          std::optional<std::string> fallback) const {
+  const CaseNode* node = place_->find(key);
+  if (!node && fallback) return *fallback;
+  const std::string text = one_of(noun, allowed);
+  if (!node || node->kind != Kind::text) fail(key, text);
+  const std::string value = node->text;
+  for (const std::string& name : allowed)
+    if (value == name) return value;
+  const std::string close = nearest(value, allowed);
+  fail(key, close.empty() ? text : text + ", did you mean '" + close + "'?");
+}
+
+std::vector<double> Table::numbers(const std::string& key, const Quantity& each, int count,
+                                   std::optional<std::vector<double>> fallback) const {
+  return place_->list<double>(key, each.allowed(), count, fallback,
+                              [&](const CaseNode& node) { return read_number(node, each); });
+}
+
+std::vector<int> Table::integers(const std::string& key, const std::string& noun, int lower,
+                                 int upper, int count,
+                                 std::optional<std::vector<int>> fallback) const {
+  return place_->list<int>(key, whole_number(noun, lower, upper), count, fallback,
+                           [&](const CaseNode& node) { return read_integer(node, lower, upper); });
+}
+
+std::vector<std::string> Table::choices(const std::string& key, const std::string& noun,
+                                        std::span<const std::string> allowed) const {
+  std::set<std::string> seen;
+  return place_->list<std::string>(
+      key, one_of(noun, allowed) + ", none twice", 0, {},
+      [&](const CaseNode& node) -> std::optional<std::string> {
+        const bool known = node.kind == Kind::text &&
+                           std::find(allowed.begin(), allowed.end(), node.text) != allowed.end();
+        return known && seen.insert(node.text).second ? std::optional(node.text) : std::nullopt;
+      });
+}
+
+Table Table::table(const std::string& key) const {
+  const CaseNode* node = place_->find(key);
+  const std::string full = place_->full(key);
+  if (!node || node->kind != Kind::table) fail(key, "[" + full + "] is a table");
+  node->visited = true;
+  return Table(std::make_shared<Place>(Place{place_->document, node, full}));
+}
+
+std::vector<Table> Table::tables(const std::string& key) const {
+  const CaseNode* node = place_->find(key);
+  std::vector<Table> entries;
+  if (!node) return entries;
+  const std::string full = place_->full(key);
+  const std::string allowed = "a list of tables, each under its own [[" + full + "]]";
+  if (node->kind != Kind::list) fail(key, allowed);
+  for (size_t i = 0; i < node->entries.size(); ++i) {
+    const CaseNode* entry = &node->entries[i].second;
+    if (entry->kind != Kind::table) fail(key, allowed);
+    entry->visited = true;
+    const std::string path = entry_path(*node, i, full);
+    entries.push_back(Table(std::make_shared<Place>(Place{place_->document, entry, path})));
+  }
+  return entries;
+}
+
+void Table::fail(const std::string& key, const std::string& allowed) const {
+  place_->fail(key, allowed);
+}
+
+void Table::fail(const std::string& allowed) const {
+  const std::string path = place_->path.empty() ? "" : place_->path + ": ";
+  throw Error::input(place_->table->place + ": " + path + allowed);
+}
+
+CaseFile::CaseFile(const std::string& path, std::span<const std::string> overrides) {
+  auto document = std::make_shared<CaseDocument>(path);
+  for (const std::string& change : overrides) document->apply(change);
+  const CaseNode* root = &document->root;
+  root->visited = true;
+  root_ = std::make_shared<Table::Place>(Table::Place{std::move(document), root, ""});
+}
+
+const std::string& CaseFile::path() const { return root_->document->path; }
+
+Table CaseFile::root() const { return Table(root_); }
+
+void CaseFile::finish() const { root_->document->refuse_unknown_keys(); }
+
+std::string CaseFile::text() const { return root_->document->effective_text(); }
+
+}  // namespace flexmorph::io

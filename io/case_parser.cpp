@@ -1,0 +1,179 @@
+#include "io/case_parser.h"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <tuple>
+
+#include "geometry/base.h"
+#include "io/files.h"
+
+namespace flexmorph::io {
+namespace {
+
+/// The source behind a tree: its lines, and what it is called in messages.
+struct Source {
+  std::vector<std::string> lines;
+  std::string name;
+  bool is_option;
+
+  std::string place(const toml::source_region& region) const {
+    if (is_option || !region.begin) return name;
+    return name + ":" + std::to_string(region.begin.line);
+  }
+
+  /// The words of a value as they stand in the source; empty when they fill several lines.
+  std::string written(const toml::source_region& region) const {
+    if (!region.begin || region.begin.line != region.end.line || region.begin.line > lines.size())
+      return "";
+    const std::string& line = lines[region.begin.line - 1];
+    // Columns count characters, not bytes: only plain text can be cut by them.
+    const bool plain = std::all_of(line.begin(), line.end(),
+                                   [](char c) { return static_cast<unsigned char>(c) < 128; });
+    if (!plain || region.end.column <= region.begin.column) return "";
+    std::string value =
+        line.substr(region.begin.column - 1, region.end.column - region.begin.column);
+    value.erase(value.find_last_not_of(" \t\r") + 1);
+    return value;
+  }
+};
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines(1);
+  for (const char c : text) {
+    if (c == '\n') {
+      lines.emplace_back();
+    } else {
+      lines.back() += c;
+    }
+  }
+  return lines;
+}
+
+CaseNode convert(const toml::node& node, const Source& source);
+
+void convert_entries(const toml::table& table, const Source& source, CaseNode& result) {
+  std::vector<std::tuple<toml::source_position, std::string, const toml::node*>> ordered;
+  for (const auto& [key, child] : table)
+    ordered.emplace_back(child.source().begin, std::string(key.str()), &child);
+  std::stable_sort(ordered.begin(), ordered.end(),
+                   [](const auto& a, const auto& b) { return std::get<0>(a) < std::get<0>(b); });
+  for (const auto& [position, key, child] : ordered)
+    result.entries.emplace_back(key, convert(*child, source));
+}
+
+/// Value and default spelling of anything but a table.
+void convert_value(const toml::node& node, const Source& source, CaseNode& result) {
+  using Kind = CaseNode::Kind;
+  if (const toml::array* list = node.as_array()) {
+    result.kind = Kind::list;
+    result.shown = "[";
+    for (const toml::node& child : *list) {
+      result.entries.emplace_back("", convert(child, source));
+      result.shown += (result.shown.size() > 1 ? ", " : "") + result.entries.back().second.shown;
+    }
+    result.shown += "]";
+  } else if (const auto* text = node.as_string()) {
+    result.kind = Kind::text;
+    result.text = text->get();
+    result.shown = in_quotes(result.text);
+  } else if (const auto* whole = node.as_integer()) {
+    result.kind = Kind::integer;
+    result.integer = whole->get();
+    result.number = static_cast<double>(whole->get());
+    result.shown = std::to_string(whole->get());
+  } else if (const auto* number = node.as_floating_point()) {
+    result.kind = Kind::number;
+    result.number = number->get();
+    result.shown = to_text(result.number);
+  } else if (const auto* boolean = node.as_boolean()) {
+    result.kind = Kind::boolean;
+    result.integer = boolean->get();
+    result.shown = boolean->get() ? "true" : "false";
+  } else {
+    result.kind = Kind::other;  // dates and times, which no key takes
+    result.shown = "a date or time";
+  }
+}
+
+CaseNode convert(const toml::node& node, const Source& source) {
+  CaseNode result;
+  result.place = source.place(node.source());
+  result.line = node.source().begin.line;
+  if (const toml::table* table = node.as_table()) {
+    result.is_inline = table->is_inline();
+    result.shown = "{...}";
+    convert_entries(*table, source, result);
+    return result;
+  }
+  convert_value(node, source, result);
+  const std::string written = source.written(node.source());
+  if (!written.empty()) result.shown = written;
+  return result;
+}
+
+}  // namespace
+
+std::string read_text(const std::string& path) {
+  std::error_code code;
+  const auto status = std::filesystem::status(path, code);
+  if (!std::filesystem::exists(status)) throw Error::input(path + ": no such file");
+  if (std::filesystem::is_directory(status))
+    throw Error::input(path + ": a directory; a case is one TOML file");
+  std::ifstream in(path, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (!in.is_open() || in.bad()) throw Error::input(path + ": cannot be read");
+  return text;
+}
+
+CaseNode parse_case(const std::string& text, const std::string& file) {
+  try {
+    const toml::table root = toml::parse(text, file);
+    CaseNode node = convert(root, {lines_of(text), file, false});
+    node.place = file;
+    return node;
+  } catch (const toml::parse_error& e) {
+    throw Error::input(file + ":" + std::to_string(e.source().begin.line) +
+                       ": not TOML: " + std::string(e.description()));
+  }
+}
+
+CaseNode parse_option(const std::string& value, const std::string& option) {
+  // The name of a choice may stand without quotes, which shells take away.
+  const bool word = is_bare_key(value) && std::isalpha(static_cast<unsigned char>(value[0])) &&
+                    value != "true" && value != "false" && value != "inf" && value != "nan";
+  const std::string text = "value = " + (word ? in_quotes(value) : value);
+  try {
+    const toml::table root = toml::parse(text, option);
+    if (root.size() != 1) throw Error::input(option + ": one value at a time");
+    CaseNode node = convert(*root.get("value"), {{text}, option, true});
+    node.is_option = true;
+    return node;
+  } catch (const toml::parse_error& e) {
+    throw Error::input(option + ": VALUE is not TOML: " + std::string(e.description()));
+  }
+}
+
+std::string in_quotes(const std::string& text) {
+  constexpr const char* kHex = "0123456789ABCDEF";
+  std::string result = "\"";
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      result += std::string("\\") + c;
+    } else if (c == '\n') {
+      result += "\\n";
+    } else if (code < 32 || code == 127) {
+      result += std::string("\\u00") + kHex[code / 16] + kHex[code % 16];
+    } else {
+      result += c;
+    }
+  }
+  return result + "\"";
+}
+
+}  // namespace flexmorph::io

@@ -1,0 +1,63 @@
+#include "io/files.h"
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+#include "geometry/base.h"
+
+namespace flexmorph::io {
+namespace {
+
+[[noreturn]] void fail(const std::string& path, const std::string& reason) {
+  throw Error::input(path + ": cannot be written: " + reason);
+}
+
+std::string reason_of(int code) { return std::generic_category().message(code); }
+
+}  // namespace
+
+void write_file(const std::string& path, std::string_view contents) {
+  const std::filesystem::path target(path);
+  std::error_code code;
+  if (target.has_parent_path()) std::filesystem::create_directories(target.parent_path(), code);
+  if (code) fail(path, code.message());
+
+  const std::string temporary = path + ".tmp";
+  std::FILE* file = std::fopen(temporary.c_str(), "wb");
+  if (!file) fail(path, reason_of(errno));
+  const bool written = std::fwrite(contents.data(), 1, contents.size(), file) == contents.size();
+  const int write_error = errno;
+  const bool closed = std::fclose(file) == 0;  // the last block may fail here (a full disk)
+  if (!written || !closed) {
+    const std::string reason = reason_of(written ? errno : write_error);
+    std::remove(temporary.c_str());
+    fail(path, reason);
+  }
+  std::filesystem::rename(temporary, target, code);
+  if (code) {
+    std::remove(temporary.c_str());
+    fail(path, code.message());
+  }
+}
+
+std::string to_text(double value) {
+  std::array<char, 32> buffer;
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  return {buffer.data(), end.ptr};
+}
+
+std::string to_text(long long value) { return std::to_string(value); }
+
+std::string to_text(double value, int digits) {
+  std::array<char, 64> buffer;
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                 std::chars_format::general, digits);
+  return {buffer.data(), end.ptr};
+}
+
+}  // namespace flexmorph::io

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace flexmorph::io {
+
+/// Writes a whole file under a temporary name and renames it, so that a reader sees either the old
+/// or the new contents. Directories on the way are made.
+/// @throws Error (input) naming the file and the reason.
+void write_file(const std::string& path, std::string_view contents);
+
+/// Shortest decimal text that reads back to the same number, whatever the locale ("0.1", "1e-05",
+/// "nan", "inf").
+std::string to_text(double value);
+std::string to_text(long long value);
+inline std::string to_text(int value) { return to_text(static_cast<long long>(value)); }
+
+/// `digits` significant digits, for people ("0.0312", "1.2e-05").
+std::string to_text(double value, int digits);
+
+}  // namespace flexmorph::io

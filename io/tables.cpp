@@ -1,0 +1,174 @@
+#include "io/tables.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <filesystem>
+#include <system_error>
+
+#include "geometry/base.h"
+
+namespace flexmorph::io {
+namespace {
+
+std::string json_string(const std::string& text) {
+  constexpr const char* kHex = "0123456789abcdef";
+  std::string out = "\"";
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      out += std::string("\\") + c;
+    } else if (c == '\n') {
+      out += "\\n";
+    } else if (code < 32) {
+      out += std::string("\\u00") + kHex[code / 16] + kHex[code % 16];
+    } else {
+      out += c;
+    }
+  }
+  return out + "\"";
+}
+
+std::string html_table(const std::vector<std::vector<std::string>>& rows) {
+  std::string out = "<table>\n";
+  for (size_t i = 0; i < rows.size(); ++i) {
+    const std::string tag = i == 0 ? "th" : "td";
+    out += "<tr>";
+    for (const std::string& cell : rows[i])
+      out += "<" + tag + ">" + xml_escaped(cell) + "</" + tag + ">";
+    out += "</tr>\n";
+  }
+  return out + "</table>\n";
+}
+
+}  // namespace
+
+Cell::Cell(std::string text) : text_(std::move(text)) {
+  if (text_.find_first_of(",\"\r\n") == std::string::npos) return;
+  std::string quoted = "\"";
+  for (const char c : text_) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  text_ = quoted + "\"";
+}
+
+CsvWriter::CsvWriter(std::string path, std::span<const std::string> columns)
+    : path_(std::move(path)), n_columns_(columns.size()) {
+  const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
+  std::error_code code;
+  if (!folder.empty()) std::filesystem::create_directories(folder, code);
+  file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
+  if (file_ < 0)
+    throw Error::input(path_ + ": cannot be written: " + std::generic_category().message(errno));
+  row(std::vector<Cell>(columns.begin(), columns.end()));
+}
+
+CsvWriter::~CsvWriter() {
+  if (file_ >= 0) ::close(file_);
+}
+
+CsvWriter::CsvWriter(CsvWriter&& other) noexcept
+    : path_(std::move(other.path_)),
+      n_columns_(other.n_columns_),
+      file_(std::exchange(other.file_, -1)) {}
+
+void CsvWriter::row(std::span<const Cell> cells) {
+  if (cells.size() != n_columns_)
+    throw Error::numerical(path_ + ": a row of " + std::to_string(cells.size()) +
+                           " entries under " + std::to_string(n_columns_) + " columns");
+  std::string line;
+  for (size_t i = 0; i < cells.size(); ++i) line += (i ? "," : "") + cells[i].text();
+  write(line + "\n");
+}
+
+void CsvWriter::write(const std::string& line) {
+  for (size_t done = 0; done < line.size();) {
+    const ssize_t n = ::write(file_, line.data() + done, line.size() - done);
+    if (n < 0 && errno != EINTR)
+      throw Error::input(path_ + ": cannot be written: " + std::generic_category().message(errno));
+    if (n > 0) done += static_cast<size_t>(n);
+  }
+}
+
+Json::Json(double value) : text_(std::isfinite(value) ? to_text(value) : "null") {}
+
+Json::Json(const std::string& text) : text_(json_string(text)) {}
+
+Json& Json::set(const std::string& key, Json value) {
+  for (auto& [name, old] : entries_) {
+    if (name != key) continue;
+    old = std::move(value);
+    return *this;
+  }
+  entries_.emplace_back(key, std::move(value));
+  return *this;
+}
+
+Json& Json::push(Json value) {
+  entries_.emplace_back("", std::move(value));
+  return *this;
+}
+
+void Json::write(std::string& out, int depth) const {
+  if (kind_ == Kind::scalar) {
+    out += text_;
+    return;
+  }
+  const bool is_object = kind_ == Kind::object;
+  out += is_object ? "{" : "[";
+  for (size_t i = 0; i < entries_.size(); ++i) {
+    out += (i ? ",\n" : "\n") + std::string(2 * (depth + 1), ' ');
+    if (is_object) out += json_string(entries_[i].first) + ": ";
+    entries_[i].second.write(out, depth + 1);
+  }
+  if (!entries_.empty()) out += "\n" + std::string(2 * depth, ' ');
+  out += is_object ? "}" : "]";
+}
+
+std::string Json::text() const {
+  std::string out;
+  write(out, 0);
+  return out + "\n";
+}
+
+std::string report_html(const std::string& title, std::span<const ReportSection> sections) {
+  std::string out =
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>" +
+      xml_escaped(title) +
+      "</title>\n<style>\n"
+      "body { font: 15px/1.5 sans-serif; color: #222; max-width: 60em; margin: 2em auto; "
+      "padding: 0 1em; }\n"
+      "h1 { font-size: 1.5em; } h2 { font-size: 1.15em; margin-top: 2em; }\n"
+      "table { border-collapse: collapse; } th, td { padding: .2em .9em .2em 0; text-align: left; "
+      "border-bottom: 1px solid #ddd; font-variant-numeric: tabular-nums; }\n"
+      "svg { max-width: 100%; height: auto; display: block; margin: 1em 0; }\n"
+      "</style>\n</head>\n<body>\n<h1>" +
+      xml_escaped(title) + "</h1>\n";
+  for (const ReportSection& section : sections) {
+    if (!section.heading.empty()) out += "<h2>" + xml_escaped(section.heading) + "</h2>\n";
+    if (!section.words.empty()) out += "<p>" + xml_escaped(section.words) + "</p>\n";
+    if (!section.rows.empty()) out += html_table(section.rows);
+    for (const std::string& picture : section.pictures) out += picture.substr(picture.find("<svg"));
+  }
+  return out + "</body>\n</html>\n";
+}
+
+std::string xml_escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&') {
+      out += "&amp;";
+    } else if (c == '<') {
+      out += "&lt;";
+    } else if (c == '>') {
+      out += "&gt;";
+    } else if (c == '"') {
+      out += "&quot;";
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+}  // namespace flexmorph::io

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <initializer_list>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/files.h"
+
+namespace flexmorph::io {
+
+/// One entry of a table: a number, a text, or nothing.
+class Cell {
+ public:
+  Cell() = default;  ///< empty
+  Cell(double value) : text_(to_text(value)) {}
+  Cell(int value) : text_(to_text(value)) {}
+  Cell(bool value) : text_(value ? "1" : "0") {}
+  Cell(std::string text);  ///< in quotes when it holds a comma, a quote or a line end
+  Cell(const char* text) : Cell(std::string(text)) {}
+
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+/// A table of comma-separated values that can be read while it grows: a row appears as a whole.
+/// Numbers are written in full precision, whatever the locale.
+class CsvWriter {
+ public:
+  /// Begins a new file with its header.
+  /// @throws Error (input) when it cannot be written; row() likewise.
+  CsvWriter(std::string path, std::span<const std::string> columns);
+  ~CsvWriter();
+  CsvWriter(CsvWriter&& other) noexcept;
+  CsvWriter& operator=(CsvWriter&& other) = delete;
+
+  /// @throws Error (numerical) when the row has another length than the header.
+  void row(std::span<const Cell> cells);
+  void row(std::initializer_list<Cell> cells) { row(std::span(cells.begin(), cells.size())); }
+
+ private:
+  void write(const std::string& line);
+  std::string path_;
+  size_t n_columns_;
+  int file_ = -1;
+};
+
+/// A JSON value. Objects keep the order of their keys; NaN and infinity become null.
+class Json {
+ public:
+  Json() : text_("null") {}
+  Json(double value);
+  Json(int value) : text_(to_text(value)) {}
+  Json(long long value) : text_(to_text(value)) {}
+  Json(bool value) : text_(value ? "true" : "false") {}
+  Json(const std::string& text);
+  Json(const char* text) : Json(std::string(text)) {}
+  static Json object() { return Json(Kind::object); }
+  static Json array() { return Json(Kind::array); }
+
+  /// Sets a key of an object (in place if it is there already).
+  Json& set(const std::string& key, Json value);
+  /// Appends to an array.
+  Json& push(Json value);
+
+  /// Indented text, with a line end.
+  std::string text() const;
+
+ private:
+  enum class Kind { scalar, object, array };
+  explicit Json(Kind kind) : kind_(kind) {}
+  void write(std::string& out, int depth) const;
+
+  Kind kind_ = Kind::scalar;
+  std::string text_;
+  std::vector<std::pair<std::string, Json>> entries_;
+};
+
+/// One part of a report: a heading, words, a table, pictures; whatever is empty is left out.
+struct ReportSection {
+  std::string heading = {}, words = {};
+  std::vector<std::vector<std::string>> rows = {};  ///< the first one is the header
+  std::vector<std::string> pictures = {};           ///< SVG, see plots.h
+};
+
+/// A page that needs no other file (.html).
+std::string report_html(const std::string& title, std::span<const ReportSection> sections);
+
+/// Text for XML and HTML, in contents and attributes.
+std::string xml_escaped(const std::string& text);
+
+}  // namespace flexmorph::io

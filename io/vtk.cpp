@@ -1,0 +1,218 @@
+#include "io/vtk.h"
+
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkFloatArray.h>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPNGWriter.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLImageDataWriter.h>
+#include <vtkXMLPolyDataWriter.h>
+#include <vtkXMLUnstructuredGridWriter.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/files.h"
+#include "io/tables.h"
+
+namespace flexmorph::io {
+namespace {
+
+/// Adds fields to point or cell data; place(k) is where VTK wants value k of the field.
+template <class Place>
+void add_fields(vtkFieldData* data, std::span<const Field> fields, int n, const std::string& path,
+                Place place) {
+  for (const Field& field : fields) {
+    const int c = field.components;
+    if (c < 1 || field.values.size() != static_cast<size_t>(n) * c)
+      throw Error::numerical(path + ": field '" + field.name + "' has " +
+                             std::to_string(field.values.size()) + " values, wanted " +
+                             std::to_string(n) + " times " + std::to_string(c));
+    vtkNew<vtkFloatArray> array;
+    array->SetName(field.name.c_str());
+    array->SetNumberOfComponents(c == 2 ? 3 : c);
+    array->SetNumberOfTuples(n);
+    for (int k = 0; k < n; ++k) {
+      if (c == 2) array->SetComponent(place(k), 2, 0);
+      for (int i = 0; i < c; ++i) {
+        const double value = field.values[static_cast<size_t>(k) * c + i];
+        if (!std::isfinite(value))
+          throw Error::numerical(path + ": field '" + field.name + "' is not finite at entry " +
+                                 std::to_string(k));
+        array->SetComponent(place(k), i, value);
+      }
+    }
+    data->AddArray(array);
+  }
+}
+
+int same_place(int k) { return k; }
+
+/// The writer writes into memory, so that all files appear in the same way.
+template <class Writer, class Data>
+void write_xml(const std::string& path, Data* data) {
+  vtkNew<Writer> writer;
+  writer->SetInputData(data);
+  // Base64: Debian's ParaView 5.11 cannot read raw appended data.
+  writer->SetDataModeToBinary();
+  writer->SetHeaderTypeToUInt32();
+  writer->SetCompressorTypeToZLib();
+  writer->SetCompressionLevel(1);
+  writer->WriteToOutputStringOn();
+  if (writer->Write() != 1) throw Error::numerical(path + ": VTK could not encode the data");
+  write_file(path, writer->GetOutputString());
+}
+
+vtkNew<vtkPoints> float_points(int n) {
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToFloat();
+  points->SetNumberOfPoints(n);
+  return points;
+}
+
+/// Dark blue, teal, green, yellow: rising lightness, readable without colour.
+std::array<double, 3> map_color(double x) {
+  constexpr std::array<std::array<double, 3>, 5> kStops = {
+      {{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}}};
+  const double at = x * (kStops.size() - 1);
+  const size_t i = std::min(static_cast<size_t>(at), kStops.size() - 2);
+  std::array<double, 3> color{};
+  for (size_t k = 0; k < 3; ++k)
+    color[k] = kStops[i][k] + (at - static_cast<double>(i)) * (kStops[i + 1][k] - kStops[i][k]);
+  return color;
+}
+
+}  // namespace
+
+void write_image_data(const std::string& path, const Grid& grid, std::span<const Field> cell_fields,
+                      std::span<const Field> point_fields) {
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(grid.nx + 1, grid.ny + 1, 1);
+  image->SetOrigin(grid.x0, grid.y0, 0);
+  // The third spacing is that of nothing; ParaView wants it positive.
+  image->SetSpacing(grid.dx(), grid.dy(), std::min(grid.dx(), grid.dy()));
+  // VTK counts x fastest, the grid y fastest.
+  add_fields(image->GetCellData(), cell_fields, grid.n_cells(), path,
+             [&](int k) { return (k % grid.ny) * grid.nx + k / grid.ny; });
+  add_fields(image->GetPointData(), point_fields, grid.n_nodes(), path,
+             [&](int k) { return (k % (grid.ny + 1)) * (grid.nx + 1) + k / (grid.ny + 1); });
+  write_xml<vtkXMLImageDataWriter>(path, image.Get());
+}
+
+void write_quad_mesh(const std::string& path, const QuadMesh& mesh,
+                     std::span<const Field> cell_fields, std::span<const Field> point_fields) {
+  const int n = static_cast<int>(mesh.points.size()) / mesh.dimension;
+  const auto points = float_points(n);
+  for (int k = 0; k < n; ++k) {
+    const double* p = &mesh.points[static_cast<size_t>(k) * mesh.dimension];
+    points->SetPoint(k, p[0], p[1], mesh.dimension == 3 ? p[2] : 0);
+  }
+  vtkNew<vtkCellArray> cells;
+  cells->Use32BitStorage();
+  for (const std::array<int, 4>& quad : mesh.quads) {
+    const std::array<vtkIdType, 4> corners{quad[0], quad[1], quad[2], quad[3]};
+    cells->InsertNextCell(4, corners.data());
+  }
+  vtkNew<vtkUnstructuredGrid> grid;
+  grid->SetPoints(points);
+  grid->SetCells(VTK_QUAD, cells);
+  add_fields(grid->GetCellData(), cell_fields, static_cast<int>(mesh.quads.size()), path,
+             same_place);
+  add_fields(grid->GetPointData(), point_fields, n, path, same_place);
+  write_xml<vtkXMLUnstructuredGridWriter>(path, grid.Get());
+}
+
+void write_outlines(const std::string& path, std::span<const std::vector<Vec2>> outlines,
+                    std::span<const Field> cell_fields) {
+  size_t n = 0;
+  for (const std::vector<Vec2>& outline : outlines) n += outline.size();
+  const auto points = float_points(static_cast<int>(n));
+  vtkNew<vtkCellArray> lines;
+  lines->Use32BitStorage();
+  vtkIdType next = 0;
+  for (const std::vector<Vec2>& outline : outlines) {
+    const vtkIdType first = next;
+    lines->InsertNextCell(static_cast<int>(outline.size()) + 1);
+    for (const Vec2& p : outline) {
+      points->SetPoint(next, p.x(), p.y(), 0);
+      lines->InsertCellPoint(next++);
+    }
+    lines->InsertCellPoint(first);
+  }
+  vtkNew<vtkPolyData> poly;
+  poly->SetPoints(points);
+  poly->SetLines(lines);
+  add_fields(poly->GetCellData(), cell_fields, static_cast<int>(outlines.size()), path, same_place);
+  write_xml<vtkXMLPolyDataWriter>(path, poly.Get());
+}
+
+void write_components(const std::string& path, std::span<const Component> components,
+                      double min_half_thickness, int segments) {
+  constexpr std::array<const char*, Component::kParameters + 1> kNames = {
+      "component", "X0", "Y0", "half_length", "angle", "c1", "c2", "c3"};
+  std::vector<std::vector<Vec2>> outlines;
+  std::array<std::vector<double>, kNames.size()> values;
+  for (const Component& component : components) {
+    outlines.push_back(outline(component, min_half_thickness, segments));
+    values[0].push_back(static_cast<double>(outlines.size()) - 1);
+    const auto parameters = component.parameters();
+    for (size_t i = 0; i < parameters.size(); ++i) values[i + 1].push_back(parameters[i]);
+  }
+  std::vector<Field> fields;
+  for (size_t i = 0; i < kNames.size(); ++i) fields.push_back({kNames[i], values[i], 1});
+  write_outlines(path, outlines, fields);
+}
+
+void Series::add(double time, const std::string& file, int part) {
+  frames_.push_back("    <DataSet timestep=\"" + to_text(time) + "\" part=\"" + to_text(part) +
+                    "\" file=\"" + xml_escaped(file) + "\"/>\n");
+  std::string text =
+      "<?xml version=\"1.0\"?>\n"
+      "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
+      "  <Collection>\n";
+  for (const std::string& frame : frames_) text += frame;
+  write_file(path_, text + "  </Collection>\n</VTKFile>\n");
+}
+
+void write_png(const std::string& path, const Grid& grid, std::span<const double> cell_values,
+               const Picture& picture) {
+  if (cell_values.size() != static_cast<size_t>(grid.n_cells()))
+    throw Error::numerical(path + ": " + std::to_string(cell_values.size()) + " values for " +
+                           std::to_string(grid.n_cells()) + " cells");
+  const int n = picture.pixels_per_cell;
+  const bool grey = picture.colors == Picture::Colors::grey;
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(grid.nx * n, grid.ny * n, 1);
+  image->AllocateScalars(VTK_UNSIGNED_CHAR, grey ? 1 : 3);
+  auto* pixel = static_cast<unsigned char*>(image->GetScalarPointer());
+  for (int y = 0; y < grid.ny * n; ++y) {  // VTK's first row is the lowest
+    for (int x = 0; x < grid.nx * n; ++x) {
+      const double value = cell_values[grid.cell(x / n, y / n)];
+      if (!std::isfinite(value)) throw Error::numerical(path + ": a value is not finite");
+      const double share =
+          std::clamp((value - picture.lower) / (picture.upper - picture.lower), 0.0, 1.0);
+      if (grey) {
+        *pixel++ = static_cast<unsigned char>(std::lround(255 * (1 - share)));
+      } else {
+        for (const double c : map_color(share))
+          *pixel++ = static_cast<unsigned char>(std::lround(c));
+      }
+    }
+  }
+  vtkNew<vtkPNGWriter> writer;
+  writer->SetInputData(image);
+  writer->WriteToMemoryOn();
+  writer->Write();
+  vtkUnsignedCharArray* bytes = writer->GetResult();
+  if (!bytes) throw Error::numerical(path + ": VTK could not encode the picture");
+  write_file(path, {reinterpret_cast<const char*>(bytes->GetPointer(0)),
+                    static_cast<size_t>(bytes->GetNumberOfValues())});
+}
+
+}  // namespace flexmorph::io

@@ -1,0 +1,296 @@
+#include <IpIpoptApplication.hpp>
+#include <IpIpoptCalculatedQuantities.hpp>
+#include <IpIpoptData.hpp>
+#include <IpOrigIpoptNLP.hpp>
+#include <IpTNLP.hpp>
+#include <IpTNLPAdapter.hpp>
+#include <algorithm>
+#include <deque>
+
+#include "optim/kkt.h"
+#include "optim/makers.h"
+#include "optim/moving_box.h"
+#include "optim/search.h"
+
+/// Ipopt: interior point method with a filter line search and limited-memory BFGS.
+///
+/// Options:
+///   mu_init     first barrier parameter
+///   bound_push  how far the start is moved inside its bounds
+///   history     vectors of the limited-memory Hessian
+///   box         half width of a moving box, absolute in x; 0 (default): none
+///   restart     iterations inside one box
+///
+/// The barrier parameter falls monotonically: the adaptive rule and SR1 ended infeasible on the
+/// published short beam. Two solves in two threads of one process crash in Ipopt 3.11.
+///
+/// Source: Wächter & Biegler (2006), Math. Program. 106, 25-57; Ipopt 3.11.9.
+namespace flexmorph::optim {
+namespace {
+
+using Ipopt::Index;
+using Ipopt::Number;
+
+constexpr double kInfinity = 2e19;  // what Ipopt takes for infinite
+constexpr size_t kRemembered = 8;   // evaluations: the current iterate is among the last few
+constexpr int kEvaluationsPerIteration = 2;
+constexpr int kMostRefusals = 20;  // in a row: a step halved so often goes nowhere
+
+/// Leaves Ipopt in the midst of an evaluation once the search has stopped.
+struct Halt {};
+
+struct Constants {
+  double mu_init, bound_push, box;
+  int history, restart;
+};
+
+/// The problem as Ipopt wants to see it, inside one box.
+class Adapter final : public Ipopt::TNLP {
+ public:
+  Adapter(Search& search, const Point& start, const VectorXd& lower, const VectorXd& upper,
+          int most_evaluations)
+      : search_(search),
+        start_(start.x),
+        lower_(lower),
+        upper_(upper),
+        most_evaluations_(most_evaluations) {
+    remembered_.push_back(start);
+  }
+
+  bool get_nlp_info(Index& n, Index& m, Index& nnz_jac_g, Index& nnz_h_lag,
+                    IndexStyleEnum& index_style) override {
+    n = search_.n();
+    m = search_.m();
+    nnz_jac_g = n * m;
+    nnz_h_lag = 0;
+    index_style = C_STYLE;
+    return true;
+  }
+
+  bool get_bounds_info(Index n, Number* x_l, Number* x_u, Index m, Number* g_l,
+                       Number* g_u) override {
+    std::copy_n(lower_.data(), n, x_l);
+    std::copy_n(upper_.data(), n, x_u);
+    std::fill_n(g_l, m, -kInfinity);
+    std::fill_n(g_u, m, 0.0);
+    return true;
+  }
+
+  bool get_starting_point(Index n, bool, Number* x, bool init_z, Number*, Number*, Index,
+                          bool init_lambda, Number*) override {
+    std::copy_n(start_.data(), n, x);
+    return !init_z && !init_lambda;
+  }
+
+  bool eval_f(Index n, const Number* x, bool, Number& value) override {
+    const Point* point = look_at(n, x);
+    if (point != nullptr) value = point->response.f;
+    return point != nullptr;
+  }
+
+  bool eval_grad_f(Index n, const Number* x, bool, Number* gradient) override {
+    const Point* point = look_at(n, x);
+    if (point != nullptr) Eigen::Map<VectorXd>(gradient, n) = point->response.df;
+    return point != nullptr;
+  }
+
+  bool eval_g(Index n, const Number* x, bool, Index m, Number* g) override {
+    const Point* point = look_at(n, x);
+    if (point != nullptr) Eigen::Map<VectorXd>(g, m) = point->response.g;
+    return point != nullptr;
+  }
+
+  bool eval_jac_g(Index n, const Number* x, bool, Index m, Index, Index* row, Index* column,
+                  Number* values) override {
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    if (values == nullptr) {
+      for (Index i = 0; i < m * n; ++i) {
+        row[i] = i / n;
+        column[i] = i % n;
+      }
+      return true;
+    }
+    const Point* point = look_at(n, x);
+    if (point != nullptr) Eigen::Map<RowMajor>(values, m, n) = point->response.dg;
+    return point != nullptr;
+  }
+
+  bool intermediate_callback(Ipopt::AlgorithmMode mode, Index iteration, Number, Number, Number,
+                             Number, Number, Number, Number, Number, Index,
+                             const Ipopt::IpoptData* data,
+                             Ipopt::IpoptCalculatedQuantities* quantities) override;
+
+  void finalize_solution(Ipopt::SolverReturn, Index, const Number*, const Number*, const Number*,
+                         Index, const Number*, const Number*, Number, const Ipopt::IpoptData*,
+                         Ipopt::IpoptCalculatedQuantities*) override {}
+
+ private:
+  const Point* look_at(Index n, const Number* x);
+
+  Search& search_;
+  VectorXd start_, lower_, upper_;
+  int most_evaluations_;
+  std::deque<Point> remembered_;  // newest first
+  VectorXd refused_;              // the last design that was: asked for again by eval_g
+};
+
+/// The design at x, evaluated unless remembered; null when it was refused.
+const Point* Adapter::look_at(Index n, const Number* x) {
+  const Eigen::Map<const VectorXd> at(x, n);
+  for (const Point& point : remembered_) {
+    if (point.x == at) return &point;
+  }
+  if (refused_.size() == n && refused_ == at) return nullptr;
+  if (search_.evaluations() >= most_evaluations_) {
+    search_.stop(Stop::iteration_limit,
+                 "limit of " + std::to_string(most_evaluations_) + " evaluations reached");
+  }
+  if (search_.stopped()) throw Halt{};
+  Point trial{at, {}};
+  if (search_.evaluate(trial.x, trial.response) != Trial::taken) {
+    refused_ = trial.x;
+    if (search_.refused_in_a_row() >= kMostRefusals) {
+      search_.stop(Stop::stalled, std::to_string(kMostRefusals) +
+                                      " steps in a row were refused, the last one because " +
+                                      search_.refusal());
+      throw Halt{};
+    }
+    return nullptr;
+  }
+  remembered_.push_front(std::move(trial));
+  if (remembered_.size() > kRemembered) remembered_.pop_back();
+  return &remembered_.front();
+}
+
+bool Adapter::intermediate_callback(Ipopt::AlgorithmMode mode, Index iteration, Number, Number,
+                                    Number, Number, Number, Number, Number, Number, Index,
+                                    const Ipopt::IpoptData* data,
+                                    Ipopt::IpoptCalculatedQuantities* quantities) {
+  if (mode != Ipopt::RegularMode || data == nullptr || quantities == nullptr) {
+    return !search_.stopped();  // the restoration phase has variables of its own
+  }
+  // The first iterate of a later box is the best design, which has its row.
+  if (iteration == 0 && search_.rows() > 0) return true;
+  auto* nlp = dynamic_cast<Ipopt::OrigIpoptNLP*>(Ipopt::GetRawPtr(quantities->GetIpoptNLP()));
+  auto* adapter =
+      nlp == nullptr ? nullptr : dynamic_cast<Ipopt::TNLPAdapter*>(Ipopt::GetRawPtr(nlp->nlp()));
+  if (adapter == nullptr) throw Error::numerical("ipopt: the current design cannot be read");
+  VectorXd x(search_.n());
+  adapter->ResortX(*data->curr()->x(), x.data());
+  const Point* point = look_at(search_.n(), x.data());
+  return point == nullptr || search_.row(search_.rows() + 1, *point);
+}
+
+std::string name_of(Ipopt::ApplicationReturnStatus status) {
+  switch (status) {
+    case Ipopt::Solve_Succeeded:
+    case Ipopt::Solved_To_Acceptable_Level:
+      return "Ipopt met its own tolerance";
+    case Ipopt::Infeasible_Problem_Detected:
+      return "Ipopt found no feasible design near the last one";
+    case Ipopt::Search_Direction_Becomes_Too_Small:
+      return "Ipopt's steps became too small";
+    case Ipopt::Maximum_Iterations_Exceeded:
+      return "Ipopt used its iterations";
+    case Ipopt::Restoration_Failed:
+      return "Ipopt's line search and its restoration failed";
+    case Ipopt::Invalid_Number_Detected:
+      return "Ipopt could not step back from designs that cannot be evaluated";
+    default:
+      return "Ipopt ended with status " + std::to_string(status);
+  }
+}
+
+class IpoptOptimizer final : public Optimizer {
+ public:
+  IpoptOptimizer(const Settings& settings, const Constants& constants)
+      : settings_(settings), c_(constants) {}
+
+  Result minimize(Problem& problem, const Observer& observe) override {
+    Search search(problem, settings_, observe);
+    search.start();
+    search_in_boxes(search, c_.box,
+                    [&](const Point& start, const VectorXd& lower, const VectorXd& upper) {
+                      return run(search, start, lower, upper);
+                    });
+    return search.result();
+  }
+
+ private:
+  std::string run(Search& search, const Point& start, const VectorXd& lower,
+                  const VectorXd& upper) const;
+  void set(Ipopt::OptionsList& options) const;
+
+  Settings settings_;
+  Constants c_;
+};
+
+void IpoptOptimizer::set(Ipopt::OptionsList& options) const {
+  const auto check = [](bool accepted, const std::string& name) {
+    if (!accepted) throw Error::numerical("ipopt: option " + name + " is not accepted");
+  };
+  const auto text = [&](const char* name, const char* value) {
+    check(options.SetStringValue(name, value), name);
+  };
+  const auto number = [&](const char* name, double value) {
+    check(options.SetNumericValue(name, value), name);
+  };
+  const auto count = [&](const char* name, int value) {
+    check(options.SetIntegerValue(name, value), name);
+  };
+  text("sb", "yes");
+  count("print_level", 0);
+  text("linear_solver", "mumps");
+  text("hessian_approximation", "limited-memory");
+  count("limited_memory_max_history", c_.history);
+  text("mu_strategy", "monotone");
+  number("mu_init", c_.mu_init);
+  number("bound_push", c_.bound_push);
+  number("bound_frac", std::min(0.5, c_.bound_push));
+  number("slack_bound_push", c_.bound_push);
+  number("slack_bound_frac", std::min(0.5, c_.bound_push));
+  number("bound_relax_factor", 0);  // designs outside their bounds may not exist
+  // Ours comes first. A multiplier below our tolerance may belong to a bound that is not active
+  // for us: its product with the distance must fall below both.
+  number("tol", std::max(1e-12, kActiveTolerance * settings_.kkt_tolerance));
+  count("acceptable_iter", 0);
+  count("max_iter", c_.box > 0 ? c_.restart : settings_.max_iterations);
+}
+
+std::string IpoptOptimizer::run(Search& search, const Point& start, const VectorXd& lower,
+                                const VectorXd& upper) const {
+  const Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(false);
+  application->RethrowNonIpoptException(true);
+  set(*application->Options());
+  if (application->Initialize("") != Ipopt::Solve_Succeeded) {  // "": no ipopt.opt is read
+    throw Error::numerical("ipopt: it could not be initialized");
+  }
+  const Ipopt::SmartPtr<Ipopt::TNLP> adapter =
+      new Adapter(search, start, lower, upper,
+                  kEvaluationsPerIteration * std::max(2, settings_.max_iterations));
+  try {
+    std::string why = name_of(application->OptimizeTNLP(adapter));
+    if (!search.refusal().empty()) why += "; last refused design: " + search.refusal();
+    return why;
+  } catch (const Halt&) {
+    return "the search stopped";
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<Optimizer> make_ipopt(const Settings& settings) {
+  const Options o = with_defaults(
+      settings,
+      {{"mu_init", 1e-3}, {"bound_push", 1e-3}, {"history", 6}, {"box", 0}, {"restart", 15}});
+  check_option(settings, "mu_init", o.at("mu_init"), 1e-12, 1e6);
+  check_option(settings, "bound_push", o.at("bound_push"), 1e-12, 1e6);
+  check_option(settings, "history", o.at("history"), 1, 1000);
+  check_option(settings, "box", o.at("box"), 0, 1e9);
+  check_option(settings, "restart", o.at("restart"), 2, 1e6);
+  return std::make_unique<IpoptOptimizer>(
+      settings, Constants{o.at("mu_init"), o.at("bound_push"), o.at("box"),
+                          static_cast<int>(o.at("history")), static_cast<int>(o.at("restart"))});
+}
+
+}  // namespace flexmorph::optim

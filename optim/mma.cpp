@@ -1,0 +1,206 @@
+#include <algorithm>
+#include <string>
+
+#include "optim/makers.h"
+#include "optim/mma_subproblem.h"
+#include "optim/restoration.h"
+#include "optim/search.h"
+
+/// The method of moving asymptotes in its classic form.
+///
+/// Options, with the defaults that worked on the published short beam:
+///   asyinit, asyincr, asydecr  first distance of the asymptotes, its factors per iteration
+///   asymin, asymax             range of that distance
+///   albefa                     part of the way to an asymptote that stays forbidden
+///   raa0                       convexity given to every variable; with 1e-5 (Svanberg's) large
+///                              subproblems with many near-zero gradients stay unsolved
+///   c                          price of violating a constraint, against f * fscale
+///   fscale, gscale             factors of f and g
+///
+/// Svanberg measures move limit, asymptotes and raa0 in parts of upper - lower. Here they are
+/// absolute in x: a position may range over the whole domain, many units, but a step must stay
+/// about a cell, whatever the size of the domain.
+namespace flexmorph::optim {
+namespace {
+
+const Options kDefaults = {{"asyinit", 0.1}, {"asyincr", 1.05}, {"asydecr", 0.65}, {"asymin", 0.01},
+                           {"asymax", 10},   {"albefa", 0.1},   {"raa0", 0.01},    {"c", 1000},
+                           {"fscale", 10},   {"gscale", 1}};
+constexpr int kMostRefusals = 10;  // in a row
+constexpr double kStepBack = 0.5;  // of the trust, after a refused trial
+constexpr double kStepForward =
+    1.5;  // of the trust, after a taken one: twice makes up for once back
+constexpr double kLeastTrust = 1e-4;
+constexpr int kRestorations = 3;  // last iterations that, if infeasible, only restore g <= 0
+
+struct Constants {
+  double asyinit, asyincr, asydecr, asymin, asymax, albefa, raa0, c, fscale, gscale;
+};
+
+/// Distances of the asymptotes from x, and the move limit of the moment. Both shrink by one
+/// factor, the trust, when a trial is refused, and regain it over the next iterations.
+class Asymptotes {
+ public:
+  Asymptotes(const Constants& constants, double move_limit, const VectorXd& x)
+      : c_(constants), move_limit_(move_limit), x_(x) {
+    distance_ = VectorXd::Constant(x.size(), std::clamp(c_.asyinit, c_.asymin, c_.asymax));
+  }
+
+  /// Narrower where a variable turned round, wider where it went on.
+  void advance(const VectorXd& x) {
+    const VectorXd change = x - x_;
+    for (Eigen::Index j = 0; last_change_.size() > 0 && j < x.size(); ++j) {
+      const double turn = change[j] * last_change_[j];
+      const double factor = turn < 0 ? c_.asydecr : turn > 0 ? c_.asyincr : 1;
+      distance_[j] = std::clamp(factor * distance_[j], c_.asymin, c_.asymax);
+    }
+    last_change_ = change;
+    x_ = x;
+    trust_ = std::min(1.0, kStepForward * trust_);
+  }
+
+  void step_back() { trust_ = std::max(kLeastTrust, kStepBack * trust_); }
+
+  VectorXd distance() const { return trust_ * distance_; }  ///< x - L = U - x (n)
+  double move() const { return trust_ * move_limit_; }
+
+ private:
+  const Constants& c_;
+  double move_limit_, trust_ = 1;
+  VectorXd x_, last_change_, distance_;
+};
+
+/// p (U - x)^-1 + q (x - L)^-1 with the given slope at x, and slightly more convex than needed.
+template <typename Slope, typename Out>
+void approximate(const Slope& slope, double scale, double raa0, const VectorXd& distance, Out&& p,
+                 Out&& q) {
+  const Eigen::ArrayXd up = scale * slope.array().max(0);
+  const Eigen::ArrayXd down = scale * (-slope.array()).max(0);
+  p = (distance.array().square() * (1.001 * up + 0.001 * down + raa0)).matrix();
+  q = (distance.array().square() * (0.001 * up + 1.001 * down + raa0)).matrix();
+}
+
+class Mma final : public Optimizer {
+ public:
+  Mma(const Settings& settings, const Constants& constants) : settings_(settings), c_(constants) {}
+
+  Result minimize(Problem& problem, const Observer& observe) override;
+
+ private:
+  void build(const Point& at, const Search& search, const Asymptotes& asymptotes);
+  VectorXd propose(const Point& at, const Search& search, const Asymptotes& asymptotes,
+                   MmaSolver& solver);
+  bool advance(Point& at, Search& search, Asymptotes& asymptotes, MmaSolver& solver);
+
+  Settings settings_;
+  Constants c_;
+  MmaSubproblem sub_;
+  int subproblems_ = 0, unsolved_ = 0;
+  double worst_kkt_ = 0;
+};
+
+void Mma::build(const Point& at, const Search& search, const Asymptotes& asymptotes) {
+  const Response& r = at.response;
+  const int m = search.m();
+  const VectorXd distance = asymptotes.distance();
+  const VectorXd reach = ((1 - c_.albefa) * distance).cwiseMin(asymptotes.move());
+  sub_.low = at.x - distance;
+  sub_.upp = at.x + distance;
+  sub_.alpha = search.lower().cwiseMax(at.x - reach);
+  sub_.beta = search.upper().cwiseMin(at.x + reach);
+  approximate(r.df, c_.fscale, c_.raa0, distance, sub_.p0, sub_.q0);
+  sub_.P.resize(at.x.size(), m);
+  sub_.Q.resize(at.x.size(), m);
+  for (int i = 0; i < m; ++i) {
+    approximate(r.dg.row(i).transpose(), c_.gscale, c_.raa0, distance, sub_.P.col(i),
+                sub_.Q.col(i));
+  }
+  for (Eigen::Index j = 0; j < at.x.size(); ++j) {
+    if (sub_.beta[j] > sub_.alpha[j]) continue;
+    // A variable without room takes part without influence: its barrier keeps it where it is.
+    sub_.alpha[j] = at.x[j] - 0.5 * distance[j];
+    sub_.beta[j] = at.x[j] + 0.5 * distance[j];
+    sub_.p0[j] = sub_.q0[j] = 0;
+    sub_.P.row(j).setZero();
+    sub_.Q.row(j).setZero();
+  }
+  sub_.b = (sub_.P + sub_.Q).transpose() * distance.cwiseInverse() - c_.gscale * r.g;
+  sub_.a = VectorXd::Zero(m);
+  sub_.c = VectorXd::Constant(m, c_.c);
+  sub_.d = VectorXd::Ones(m);
+}
+
+VectorXd Mma::propose(const Point& at, const Search& search, const Asymptotes& asymptotes,
+                      MmaSolver& solver) {
+  const bool last_ones = search.rows() + kRestorations >= settings_.max_iterations;
+  if (last_ones && search.rows() > kRestorations && !search.feasible(at.response)) {
+    return restored(at, search.lower(), search.upper(), asymptotes.move());
+  }
+  build(at, search, asymptotes);
+  const MmaSolution& solution = solver.solve(sub_);
+  ++subproblems_;
+  if (!solution.solved) ++unsolved_;
+  worst_kkt_ = std::max(worst_kkt_, solution.kkt);
+  return solution.x.cwiseMax(search.lower()).cwiseMin(search.upper());
+}
+
+/// To the next iterate; false (and the search stopped) when every trial was refused.
+bool Mma::advance(Point& at, Search& search, Asymptotes& asymptotes, MmaSolver& solver) {
+  Point trial;
+  for (int refusals = 0; refusals < kMostRefusals; ++refusals) {
+    trial.x = propose(at, search, asymptotes, solver);
+    if (search.evaluate(trial.x, trial.response) == Trial::taken) {
+      std::swap(at, trial);
+      asymptotes.advance(at.x);
+      return true;
+    }
+    asymptotes.step_back();
+  }
+  search.stop(Stop::stalled, std::to_string(kMostRefusals) +
+                                 " steps in a row were refused, the last one because " +
+                                 search.refusal());
+  return false;
+}
+
+Result Mma::minimize(Problem& problem, const Observer& observe) {
+  subproblems_ = unsolved_ = 0;
+  worst_kkt_ = 0;
+  Search search(problem, settings_, observe);
+  Point at = search.start();
+  Asymptotes asymptotes(c_, settings_.move_limit, at.x);
+  MmaSolver solver(search.n(), search.m());
+  for (int iteration = 1; search.row(iteration, at); ++iteration) {
+    if (!advance(at, search, asymptotes, solver)) break;
+  }
+  Result result = search.result();
+  if (unsolved_ > 0) {
+    result.message += "; " + std::to_string(unsolved_) + " of " + std::to_string(subproblems_) +
+                      " subproblems stayed unsolved (largest KKT residual " +
+                      scientific(worst_kkt_) + ")";
+  }
+  return result;
+}
+
+}  // namespace
+
+std::unique_ptr<Optimizer> make_mma(const Settings& settings) {
+  const Options o = with_defaults(settings, kDefaults);
+  const auto get = [&](const char* name, double low, double high) {
+    check_option(settings, name, o.at(name), low, high);
+    return o.at(name);
+  };
+  Constants c{};
+  c.asyinit = get("asyinit", 1e-6, 1e6);
+  c.asyincr = get("asyincr", 1, 10);
+  c.asydecr = get("asydecr", 0.01, 1);
+  c.asymin = get("asymin", 1e-9, 1e6);
+  c.asymax = get("asymax", c.asymin, 1e9);
+  c.albefa = get("albefa", 1e-3, 0.9);
+  c.raa0 = get("raa0", 1e-12, 1e3);
+  c.c = get("c", 1e-3, 1e12);
+  c.fscale = get("fscale", 1e-9, 1e9);
+  c.gscale = get("gscale", 1e-9, 1e9);
+  return std::make_unique<Mma>(settings, c);
+}
+
+}  // namespace flexmorph::optim

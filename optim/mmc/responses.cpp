@@ -1,0 +1,316 @@
+#include "optim/mmc/responses.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <ctime>
+#include <span>
+#include <utility>
+
+#include "optim/mmc/static_loads.h"
+
+namespace flexmorph::mmc {
+
+namespace {
+
+double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+void refuse(const std::string& what) { throw Error::input("equivalent static loads: " + what); }
+
+void check_set(const fem::EslSet& set, const Grid& g, bool needs_deformation, int number) {
+  const std::string where = "load " + std::to_string(number) + ": ";
+  if (set.root_column < 0 || set.root_column >= g.nx) {
+    refuse(where + "root column " + std::to_string(set.root_column) + " is not in [0, " +
+           std::to_string(g.nx) + ")");
+  }
+  if (!std::isfinite(set.weight) || set.weight < 0) refuse(where + "a weight is at least 0");
+  const VectorXd& field = needs_deformation ? set.deformation : set.acceleration;
+  if (field.size() != 2 * g.n_nodes() || !field.allFinite()) {
+    refuse(where + (needs_deformation ? "the deformation" : "the acceleration") +
+           " is not a finite vector for each of " + std::to_string(g.n_nodes()) + " nodes");
+  }
+  for (const fem::NodalForce& f : set.forces) {
+    if (f.node < 0 || f.node >= g.n_nodes() || !f.force.allFinite()) {
+      refuse(where + "a force at node " + std::to_string(f.node) + " is not finite or has no node");
+    }
+  }
+}
+
+void check(const fem::EslSets& loads, const ComplianceSettings& settings,
+           const VectorXd& stiffness0, const VectorXd& mass0) {
+  if (loads.sets.empty()) refuse("there are none");
+  if (settings.loads == LoadDefinition::inertia && settings.support == Support::far_end) {
+    refuse(
+        "'inertia' with support 'far_end': loads that follow the design need a reaction on the "
+        "root line that follows it too, which is what support 'moving_root' is; use that, or "
+        "'frozen' or 'stiffness' loads");
+  }
+  double sum = 0;
+  for (std::size_t l = 0; l < loads.sets.size(); ++l) {
+    check_set(loads.sets[l], loads.grid, settings.loads == LoadDefinition::stiffness,
+              static_cast<int>(l));
+    sum += loads.sets[l].weight;
+  }
+  if (!(sum > 0)) refuse("all weights are 0");
+  if (!(settings.compression_tolerance >= 0)) refuse("the compression tolerance is at least 0");
+  if (settings.loads == LoadDefinition::inertia) return;
+  for (const VectorXd* factor : {&stiffness0, &mass0}) {
+    if (factor->size() != loads.grid.n_cells() || !factor->allFinite()) {
+      refuse("the design the motion was computed with has no finite factors for " +
+             std::to_string(loads.grid.n_cells()) + " cells");
+    }
+  }
+}
+
+std::vector<int> root_columns_of(const fem::EslSets& loads) {
+  std::vector<int> columns(loads.sets.size());
+  std::transform(loads.sets.begin(), loads.sets.end(), columns.begin(),
+                 [](const fem::EslSet& s) { return s.root_column; });
+  return columns;
+}
+
+int first_root(const fem::EslSets& loads, Support support) {
+  if (support == Support::far_end) return 0;
+  const std::vector<int> columns = root_columns_of(loads);
+  return *std::min_element(columns.begin(), columns.end());
+}
+
+}  // namespace
+
+/// How the loads go through the solver.
+///
+///   each    every load by itself
+///   shared  one support: f depends on Σ w F Fᵀ only, r singular vectors replace the loads
+///   mixed   moving root: r forward substitutions, displacements of every load
+enum class Path { each, shared, mixed };
+
+struct Compliance::Impl {
+  fem::StaticSolver solver;
+  InertiaOperator inertia;
+  Path path = Path::each;
+  StaticLoads loads;        // all of them
+  StaticLoads basis;        // what path shared or mixed solves instead
+  MatrixXd mix;             // (n x r): loads = mix * basis (path mixed)
+  MatrixXd weighted_mix;    // (r x n): mixᵀ diag(w)
+  VectorXd weights;         // (n)
+  VectorXd solved_weights;  // of the right-hand sides whose displacements are kept
+  std::vector<int> root_columns, solved_columns;
+  VectorXd factored;       // stiffness factors the solver holds
+  MatrixXd F, work, U, Z;  // reused by every evaluation
+  VectorXd energies, products;
+  Seconds seconds;
+
+  Impl(const fem::EslSets& sets, const fem::PlaneSection& section, int root)
+      : solver(sets.grid, section, root), inertia(solver, section) {}
+
+  const StaticLoads& solved() const { return path == Path::each ? loads : basis; }
+
+  void factorize(const VectorXd& stiffness) {
+    if (factored.size() == stiffness.size() && factored == stiffness) return;
+    factored.resize(0);
+    solver.factorize(stiffness);
+    factored = stiffness;
+  }
+  void fixed_loads(const fem::EslSets& sets, const ComplianceSettings& settings,
+                   const VectorXd& stiffness0, const VectorXd& mass0);
+  void keep_outside(MatrixXd& field, std::span<const int> columns, bool keep_root_line) const;
+  void compress(double tolerance);
+  void solve_all();
+  void solve_single(int load, const VectorXd& mass, MatrixXd& u);
+};
+
+/// Zeroes what lies inside the hub of each load, and on the root line unless it is kept.
+void Compliance::Impl::keep_outside(MatrixXd& field, std::span<const int> columns,
+                                    bool keep_root_line) const {
+  const Grid& g = solver.grid();
+  for (Eigen::Index l = 0; l < field.rows(); ++l) {
+    const int last = columns[static_cast<std::size_t>(l)] - (keep_root_line ? 1 : 0);
+    for (int i = last; i >= 0 && solver.row(i, 0) >= 0; --i) {
+      field.block(l, solver.row(i, 0), 1, 2 * (g.ny + 1)).setZero();
+    }
+  }
+}
+
+/// The loads of definitions `frozen` and `stiffness`. With the far end held, the nodal forces on
+/// the root line belong to them: they are what holds the plate there in the motion.
+void Compliance::Impl::fixed_loads(const fem::EslSets& sets, const ComplianceSettings& settings,
+                                   const VectorXd& stiffness0, const VectorXd& mass0) {
+  const Grid& g = sets.grid;
+  const std::vector<int> roots = root_columns_of(sets);
+  const bool far_end = settings.support == Support::far_end;
+  const auto n = static_cast<Eigen::Index>(sets.sets.size());
+  MatrixXd u(n, solver.n_unknowns()), forces;
+  if (settings.loads == LoadDefinition::frozen) {
+    inertia.forces(inertia_loads(sets, solver), mass0, u);
+    if (!far_end) {  // what lies inside the hub stays: the solver ignores it, and it keeps the rank
+      loads.fixed = std::move(u);
+      return;
+    }
+    factorize(stiffness0);
+    solver.solve(u, roots);
+  } else {
+    factorize(stiffness0);
+    for (Eigen::Index l = 0; l < n; ++l) {
+      for (int i = g.nx; i >= 0 && solver.row(i, 0) >= 0; --i) {
+        u.block(l, solver.row(i, 0), 1, 2 * (g.ny + 1)) =
+            sets.sets[static_cast<std::size_t>(l)]
+                .deformation.segment(2 * g.node(i, 0), 2 * (g.ny + 1))
+                .transpose();
+      }
+    }
+    keep_outside(u, roots, false);
+  }
+  solver.apply(u, forces);
+  keep_outside(forces, roots, far_end);
+  loads.fixed = std::move(forces);
+}
+
+/// Chooses the combinations by the energies of the uniform full plate, whatever the design: a
+/// mode that costs nothing there costs nothing in a part of it.
+///
+/// With one support the left-out energy is the error of f and of its gradient, because the
+/// combinations are orthogonal in energy. With a moving root the parts cut off destroy that
+/// orthogonality and the error is of first order in the left-out state: the square root of the
+/// energy must stay below the tolerance.
+void Compliance::Impl::compress(double tolerance) {
+  const bool one_support = std::all_of(root_columns.begin(), root_columns.end(),
+                                       [this](int c) { return c == root_columns.front(); });
+  const auto n = loads.size();
+  const VectorXd full = VectorXd::Ones(solver.grid().n_cells());
+  const VectorXd root_weights = weights.cwiseSqrt();
+  factorize(full);
+  inertia.forces(loads, full, work);
+  work = root_weights.asDiagonal() * work;
+  solver.forward(work);
+  const MatrixXd U_r = leading_combinations(work, one_support ? tolerance : tolerance * tolerance);
+  const Eigen::Index r = U_r.cols();
+  // Mixing back costs n r per unknown (and as much for the derivative), a substitution n or r
+  // times the bandwidth.
+  const Eigen::Index bandwidth = 2 * (solver.grid().ny + 2);
+  const bool pays = one_support ? r < n : r * bandwidth + 2 * r * n < n * bandwidth;
+  if (!pays) return;
+  path = one_support ? Path::shared : Path::mixed;
+  basis = combine(U_r.transpose() * root_weights.asDiagonal(), loads);
+  if (one_support) {
+    solved_weights = VectorXd::Ones(r);
+    solved_columns.assign(static_cast<std::size_t>(r), root_columns.front());
+    return;
+  }
+  mix = U_r;
+  for (Eigen::Index l = 0; l < n; ++l) {
+    mix.row(l) *= weights(l) > 0 ? 1 / root_weights(l) : 0.0;
+  }
+  weighted_mix = mix.transpose() * weights.asDiagonal();
+}
+
+/// F of the right-hand sides -> U, and Z with Σ w F . u = Σ F . Z.
+void Compliance::Impl::solve_all() {
+  if (path == Path::mixed) {
+    work = F;
+    solver.solve_mixed(mix, work, solved_columns, U);
+    Z.noalias() = weighted_mix * U;
+    return;
+  }
+  U = F;
+  solver.solve(U, solved_columns);
+  if (path == Path::each) {
+    Z.noalias() = solved_weights.asDiagonal() * U;
+  } else {
+    Z = U;
+  }
+}
+
+Compliance::Compliance(const fem::EslSets& loads, const fem::PlaneSection& section,
+                       const ComplianceSettings& settings, const VectorXd& stiffness0,
+                       const VectorXd& mass0) {
+  check(loads, settings, stiffness0, mass0);
+  impl_ = std::make_unique<Impl>(loads, section, first_root(loads, settings.support));
+  Impl& m = *impl_;
+  m.root_columns = root_columns_of(loads);
+  if (settings.support == Support::far_end) {
+    std::fill(m.root_columns.begin(), m.root_columns.end(), 0);
+  }
+  m.weights.resize(static_cast<Eigen::Index>(loads.sets.size()));
+  for (Eigen::Index l = 0; l < m.weights.size(); ++l) {
+    m.weights(l) = loads.sets[static_cast<std::size_t>(l)].weight;
+  }
+  m.solved_weights = m.weights;
+  m.solved_columns = m.root_columns;
+  if (settings.loads == LoadDefinition::inertia) {
+    m.loads = inertia_loads(loads, m.solver);
+  } else {
+    m.fixed_loads(loads, settings, stiffness0, mass0);
+  }
+  if (settings.compress) m.compress(settings.compression_tolerance);
+}
+
+Compliance::~Compliance() = default;
+
+void Compliance::evaluate(const VectorXd& stiffness, const VectorXd& mass, Value& value) {
+  Impl& m = *impl_;
+  assert(mass.size() == m.solver.grid().n_cells());
+  const double start = cpu_seconds();
+  m.factorize(stiffness);
+  const double factored = cpu_seconds();
+  m.inertia.forces(m.solved(), mass, m.F);
+  m.solve_all();
+  const double solved = cpu_seconds();
+
+  m.solver.cell_energies(m.U, m.solved_weights, m.energies, m.solved_columns);
+  // 2 F . u - u . K u: equal to F . u at the solution, but round-off in u enters squared.
+  value.f = 2 * m.F.cwiseProduct(m.Z).sum() - stiffness.dot(m.energies);
+  value.d_stiffness = -m.energies;
+  if (m.loads.follows_design()) {
+    m.inertia.products(m.Z, m.solved().acceleration, m.products);
+    value.d_mass = -2 * m.products;
+  } else {
+    value.d_mass.setZero(m.solver.grid().n_cells());
+  }
+  if (!std::isfinite(value.f) || !value.d_stiffness.allFinite() || !value.d_mass.allFinite()) {
+    throw Error::numerical("compliance: the objective or its derivative is not finite");
+  }
+  m.seconds = {factored - start, solved - factored, cpu_seconds() - solved};
+}
+
+VectorXd Compliance::individual(const VectorXd& stiffness, const VectorXd& mass) {
+  Impl& m = *impl_;
+  m.factorize(stiffness);
+  m.inertia.forces(m.loads, mass, m.work);
+  MatrixXd u = m.work;
+  m.solver.solve(u, m.root_columns);
+  return m.work.cwiseProduct(u).rowwise().sum();
+}
+
+void Compliance::Impl::solve_single(int load, const VectorXd& mass, MatrixXd& u) {
+  MatrixXd selection = MatrixXd::Zero(1, loads.size());
+  selection(0, load) = 1;
+  inertia.forces(combine(selection, loads), mass, u);
+  solver.solve(u, std::span<const int>(&root_columns[static_cast<std::size_t>(load)], 1));
+}
+
+VectorXd Compliance::displacement(const VectorXd& stiffness, const VectorXd& mass, int load) {
+  Impl& m = *impl_;
+  if (load < 0 || load >= n_loads()) {
+    throw Error::input("compliance: load " + std::to_string(load) + " is not one of " +
+                       std::to_string(n_loads()));
+  }
+  m.factorize(stiffness);
+  MatrixXd u;
+  m.solve_single(load, mass, u);
+  const Grid& g = m.solver.grid();
+  VectorXd at_nodes = VectorXd::Zero(2 * g.n_nodes());
+  for (int i = g.nx; i >= 0 && m.solver.row(i, 0) >= 0; --i) {
+    at_nodes.segment(2 * g.node(i, 0), 2 * (g.ny + 1)) =
+        u.block(0, m.solver.row(i, 0), 1, 2 * (g.ny + 1)).transpose();
+  }
+  return at_nodes;
+}
+
+int Compliance::n_loads() const { return static_cast<int>(impl_->weights.size()); }
+
+int Compliance::n_right_hand_sides() const { return static_cast<int>(impl_->solved().size()); }
+
+Compliance::Seconds Compliance::seconds() const { return impl_->seconds; }
+
+}  // namespace flexmorph::mmc

@@ -1,0 +1,198 @@
+#include <nlopt.h>
+
+#include <cmath>
+#include <exception>
+#include <memory>
+
+#include "optim/makers.h"
+#include "optim/moving_box.h"
+#include "optim/search.h"
+
+/// NLopt's `mma` and `ccsaq` (conservative convex separable approximations).
+///
+/// Options:
+///   box      half width of the moving box, absolute in x (default: move_limit); 0: no box
+///   restart  evaluations inside one box
+///   scale    factor of f and g: NLopt 2.7.1 offers no other say in its first curvature; 30 and 100
+///            got further in 150 evaluations than 10 on a cantilevered strip of 96 components
+///
+/// What the library does not do by itself: an exception or a NaN of the objective ends in a
+/// message-less failure or a NaN result, so the callbacks keep exceptions and end the run; f and
+/// g are asked for one after the other at the same x, so the last response is kept; it reports
+/// neither iterations nor a KKT residual, so rows are evaluations and the stop is the search's.
+///
+/// Source: Svanberg (2002), SIAM J. Optim. 12, 555-573 (the algorithm); NLopt 2.7.1.
+namespace flexmorph::optim {
+namespace {
+
+std::string name_of(nlopt_result result) {
+  switch (result) {
+    case NLOPT_FTOL_REACHED:
+    case NLOPT_XTOL_REACHED:
+      return "NLopt could not improve within its smallest steps";
+    case NLOPT_MAXEVAL_REACHED:
+      return "NLopt used its evaluations";
+    case NLOPT_ROUNDOFF_LIMITED:
+      return "NLopt was limited by round-off";
+    case NLOPT_SUCCESS:
+      return "NLopt ended by itself";
+    case NLOPT_FORCED_STOP:
+      return "NLopt was stopped";
+    default:
+      return "NLopt failed with code " + std::to_string(result);
+  }
+}
+
+constexpr double kWall = 1e6;      // f of a refused design, in units of 1 + |f|
+constexpr int kMostRefusals = 10;  // in a row: each one divides NLopt's step by ten or so
+
+/// One run of NLopt. Its addresses go through C, so it stays where it is.
+class Run {
+ public:
+  Run(Search& search, const Settings& settings, const Point& start, double scale)
+      : search_(search), settings_(settings), start_(start), last_(start), scale_(scale) {}
+  Run(const Run&) = delete;
+
+  std::string go(nlopt_algorithm algorithm, const VectorXd& lower, const VectorXd& upper,
+                 int evaluations);
+
+ private:
+  void look_at(const Eigen::Map<const VectorXd>& x);
+  template <typename Use>
+  void guarded(unsigned n, const double* x, const Use& use);
+  static double objective(unsigned n, const double* x, double* gradient, void* self);
+  static void constraints(unsigned m, double* g, unsigned n, const double* x, double* gradient,
+                          void* self);
+
+  Search& search_;
+  const Settings& settings_;
+  const Point& start_;
+  Point last_;  // what NLopt is told about the last x it asked for
+  double scale_;
+  nlopt_opt opt_ = nullptr;
+  std::exception_ptr exception_;
+};
+
+/// The response at x into last_. A refused design looks like a wall: no better in its constraints
+/// and far higher than the start, so NLopt makes its approximations steeper and its step shorter.
+void Run::look_at(const Eigen::Map<const VectorXd>& x) {
+  if (exception_ || search_.stopped() || x == last_.x) return;
+  last_.x = x;
+  if (search_.evaluate(last_.x, last_.response) == Trial::taken) {
+    search_.row(search_.evaluations(), last_);
+    return;
+  }
+  last_.response = start_.response;
+  last_.response.f += kWall * (1 + std::abs(last_.response.f));
+  if (search_.refused_in_a_row() >= kMostRefusals) nlopt_force_stop(opt_);
+  if (search_.evaluations() >= settings_.max_iterations) {
+    search_.stop(Stop::iteration_limit,
+                 "limit of " + std::to_string(settings_.max_iterations) +
+                     " evaluations reached; the last design was refused: " + search_.refusal());
+  }
+}
+
+/// Calls use(response at x). Exceptions must not pass through C: they wait for the end of the run.
+template <typename Use>
+void Run::guarded(unsigned n, const double* x, const Use& use) {
+  try {
+    look_at({x, n});
+  } catch (...) {
+    exception_ = std::current_exception();
+    last_.response = start_.response;
+  }
+  use(last_.response);
+  if (exception_ || search_.stopped()) nlopt_force_stop(opt_);
+}
+
+double Run::objective(unsigned n, const double* x, double* gradient, void* self) {
+  Run& run = *static_cast<Run*>(self);
+  double f = 0;
+  run.guarded(n, x, [&](const Response& r) {
+    f = run.scale_ * r.f;
+    if (gradient != nullptr) Eigen::Map<VectorXd>(gradient, n) = run.scale_ * r.df;
+  });
+  return f;
+}
+
+void Run::constraints(unsigned m, double* g, unsigned n, const double* x, double* gradient,
+                      void* self) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  Run& run = *static_cast<Run*>(self);
+  run.guarded(n, x, [&](const Response& r) {
+    Eigen::Map<VectorXd>(g, m) = run.scale_ * r.g;
+    if (gradient != nullptr) Eigen::Map<RowMajor>(gradient, m, n) = run.scale_ * r.dg;
+  });
+}
+
+std::string Run::go(nlopt_algorithm algorithm, const VectorXd& lower, const VectorXd& upper,
+                    int evaluations) {
+  const std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> opt(
+      nlopt_create(algorithm, static_cast<unsigned>(search_.n())), nlopt_destroy);
+  opt_ = opt.get();
+  if (!opt) throw Error::numerical("nlopt: the optimizer could not be made");
+  const auto check = [](nlopt_result result) {
+    if (result < 0) throw Error::numerical("nlopt: " + name_of(result) + " while it was set up");
+  };
+  check(nlopt_set_min_objective(opt_, &Run::objective, this));
+  check(nlopt_set_lower_bounds(opt_, lower.data()));
+  check(nlopt_set_upper_bounds(opt_, upper.data()));
+  if (search_.m() > 0) {
+    // No tolerance (nullptr): at a design that is feasible only within one, its approximations of
+    // g <= 0 have no lower f to offer, and it stalls.
+    check(nlopt_add_inequality_mconstraint(opt_, static_cast<unsigned>(search_.m()),
+                                           &Run::constraints, this, nullptr));
+  }
+  check(nlopt_set_maxeval(opt_, evaluations + 1));  // the first one is at the known start
+  check(nlopt_set_xtol_rel(opt_, 1e-12));
+  VectorXd x = last_.x;
+  double value = 0;
+  const nlopt_result result = nlopt_optimize(opt_, x.data(), &value);
+  if (exception_) std::rethrow_exception(exception_);
+  const bool refused = result == NLOPT_FORCED_STOP && search_.refused_in_a_row() > 0;
+  return refused ? "the last designs were refused: " + search_.refusal() : name_of(result);
+}
+
+class Nlopt final : public Optimizer {
+ public:
+  Nlopt(const Settings& settings, double box, int restart, double scale)
+      : settings_(settings),
+        box_(box),
+        restart_(restart),
+        scale_(scale),
+        algorithm_(settings.name == "nlopt_ccsaq" ? NLOPT_LD_CCSAQ : NLOPT_LD_MMA) {}
+
+  Result minimize(Problem& problem, const Observer& observe) override {
+    Search search(problem, settings_, observe);
+    if (search.row(1, search.start())) {
+      const int evaluations = box_ == 0 ? settings_.max_iterations : restart_;
+      search_in_boxes(search, box_,
+                      [&](const Point& start, const VectorXd& lower, const VectorXd& upper) {
+                        Run run(search, settings_, start, scale_);
+                        return run.go(algorithm_, lower, upper, evaluations);
+                      });
+    }
+    return search.result();
+  }
+
+ private:
+  Settings settings_;
+  double box_;
+  int restart_;
+  double scale_;
+  nlopt_algorithm algorithm_;
+};
+
+}  // namespace
+
+std::unique_ptr<Optimizer> make_nlopt(const Settings& settings) {
+  const Options o =
+      with_defaults(settings, {{"box", settings.move_limit}, {"restart", 8}, {"scale", 30}});
+  check_option(settings, "box", o.at("box"), 0, 1e9);
+  check_option(settings, "restart", o.at("restart"), 2, 1e6);
+  check_option(settings, "scale", o.at("scale"), 1e-9, 1e9);
+  return std::make_unique<Nlopt>(settings, o.at("box"), static_cast<int>(o.at("restart")),
+                                 o.at("scale"));
+}
+
+}  // namespace flexmorph::optim

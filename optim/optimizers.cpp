@@ -1,0 +1,100 @@
+#include <cmath>
+#include <functional>
+#include <sstream>
+
+#include "optim/makers.h"
+
+namespace flexmorph::optim {
+namespace {
+
+using Maker = std::function<std::unique_ptr<Optimizer>(const Settings&)>;
+
+const std::map<std::string, Maker>& table() {
+  static const std::map<std::string, Maker> makers = {{"mma", make_mma},
+                                                      {"nlopt_mma", make_nlopt},
+                                                      {"nlopt_ccsaq", make_nlopt},
+                                                      {"ipopt", make_ipopt}};
+  return makers;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+std::string number(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+void check_setting(bool holds, const std::string& what) {
+  if (!holds) throw Error::input("optimizer: " + what);
+}
+
+}  // namespace
+
+std::string to_string(Stop stop) {
+  switch (stop) {
+    case Stop::converged:
+      return "converged";
+    case Stop::iteration_limit:
+      return "iteration limit";
+    case Stop::observer:
+      return "observer";
+    case Stop::stalled:
+      return "stalled";
+    case Stop::failed:
+      return "failed";
+  }
+  return "unknown";
+}
+
+std::vector<std::string> optimizer_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, maker] : table()) names.push_back(name);
+  return names;
+}
+
+std::unique_ptr<Optimizer> make_optimizer(const Settings& settings) {
+  const auto row = table().find(settings.name);
+  if (row == table().end()) {
+    throw Error::input("optimizer '" + settings.name +
+                       "' is not known; there are: " + joined(optimizer_names()));
+  }
+  check_setting(settings.max_iterations >= 1, "max_iterations is at least 1");
+  check_setting(settings.kkt_tolerance >= 0, "kkt_tolerance is not negative");
+  check_setting(settings.feasibility > 0, "feasibility is positive");
+  check_setting(settings.change_tolerance >= 0, "change_tolerance is not negative");
+  check_setting(settings.move_limit > 0 && std::isfinite(settings.move_limit),
+                "move_limit is positive");
+  return row->second(settings);
+}
+
+Options with_defaults(const Settings& settings, const Options& defaults) {
+  Options options = defaults;
+  for (const auto& [name, value] : settings.options) {
+    const auto known = options.find(name);
+    if (known == options.end()) {
+      std::vector<std::string> names;
+      for (const auto& [allowed, unused] : defaults) names.push_back(allowed);
+      throw Error::input("optimizer '" + settings.name + "': option '" + name +
+                         "' is not known; there are: " + joined(names));
+    }
+    if (!std::isfinite(value)) {
+      throw Error::input("optimizer '" + settings.name + "': option '" + name + "' is not finite");
+    }
+    known->second = value;
+  }
+  return options;
+}
+
+void check_option(const Settings& settings, const std::string& option, double value, double low,
+                  double high) {
+  if (value >= low && value <= high) return;
+  throw Error::input("optimizer '" + settings.name + "': option '" + option + "' = " +
+                     number(value) + ": it lies between " + number(low) + " and " + number(high));
+}
+
+}  // namespace flexmorph::optim

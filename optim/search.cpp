@@ -1,0 +1,209 @@
+#include "optim/search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+
+#include "optim/kkt.h"
+
+namespace flexmorph::optim {
+namespace {
+
+constexpr int kRestingRows = 3;
+
+double cpu_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+bool finite(const Response& r) {
+  return std::isfinite(r.f) && r.df.allFinite() && r.g.allFinite() && r.dg.allFinite();
+}
+
+std::string what_is_not_finite(const Response& r) {
+  if (!std::isfinite(r.f)) return "the objective is not finite";
+  if (!r.df.allFinite()) return "the gradient of the objective is not finite";
+  if (!r.g.allFinite()) return "a constraint is not finite";
+  return "the gradient of a constraint is not finite";
+}
+
+}  // namespace
+
+double violation(const Response& response) {
+  return response.g.size() == 0 ? 0 : std::max(0.0, response.g.maxCoeff());
+}
+
+std::string scientific(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1e", value);
+  return text;
+}
+
+Search::Search(Problem& problem, const Settings& settings, const Observer& observe)
+    : problem_(problem),
+      settings_(settings),
+      observe_(observe),
+      m_(problem.n_constraints()),
+      lower_(problem.lower()),
+      upper_(problem.upper()) {
+  const int n = problem.n_variables();
+  if (n <= 0) throw Error::input("optimizer: the problem has no variables");
+  if (lower_.size() != n || upper_.size() != n) {
+    throw Error::input("optimizer: bounds need one entry for each of the " + std::to_string(n) +
+                       " variables");
+  }
+  for (int j = 0; j < n; ++j) {
+    if (!std::isfinite(lower_[j]) || !std::isfinite(upper_[j]) || lower_[j] > upper_[j]) {
+      throw Error::input("optimizer: bounds of variable " + std::to_string(j) + " are " +
+                         std::to_string(lower_[j]) + " and " + std::to_string(upper_[j]) +
+                         "; they are finite and do not cross");
+    }
+  }
+  mark_ = cpu_seconds();
+}
+
+Point Search::start() {
+  Point point{problem_.start(), {}};
+  if (point.x.size() != n()) throw Error::input("optimizer: the start has the wrong length");
+  for (int j = 0; j < n(); ++j) {
+    if (!(point.x[j] >= lower_[j] && point.x[j] <= upper_[j])) {
+      throw Error::input("optimizer: variable " + std::to_string(j) + " starts at " +
+                         std::to_string(point.x[j]) + ", outside its bounds " +
+                         std::to_string(lower_[j]) + " to " + std::to_string(upper_[j]));
+    }
+  }
+  if (evaluate(point.x, point.response) == Trial::failed) {
+    throw Error::numerical("optimizer: the start cannot be evaluated: " + refusal_);
+  }
+  return point;
+}
+
+Trial Search::evaluate(const VectorXd& x, Response& out) {
+  const double begin = cpu_seconds();
+  ++evaluations_;
+  last_x_ = x;
+  Trial trial = Trial::taken;
+  bool acceptable = false;
+  try {
+    out = problem_.evaluate(x);
+    check(out);
+    if (!finite(out)) {
+      trial = Trial::failed;
+      refusal_ = what_is_not_finite(out);
+    } else {
+      acceptable = problem_.acceptable(x);
+    }
+  } catch (const Error& error) {
+    if (error.kind() != Error::Kind::numerical) throw;
+    trial = Trial::failed;
+    refusal_ = error.what();
+  }
+  if (trial == Trial::taken && !acceptable && best_.acceptable) {
+    trial = Trial::unacceptable;
+    refusal_ = "the design is not acceptable to the problem";
+  }
+  if (trial == Trial::taken && better(out, acceptable)) {
+    best_ = {{x, out}, acceptable};
+    best_is_new_ = true;
+  }
+  refused_in_a_row_ = trial == Trial::taken ? 0 : refused_in_a_row_ + 1;
+  inside_problem_ += cpu_seconds() - begin;
+  return trial;
+}
+
+void Search::check(const Response& r) const {
+  if (r.df.size() != n() || r.g.size() != m_ || r.dg.rows() != m_ ||
+      (m_ > 0 && r.dg.cols() != n())) {
+    throw Error::input("optimizer: the response is not of " + std::to_string(n()) +
+                       " variables and " + std::to_string(m_) + " constraints");
+  }
+}
+
+bool Search::feasible(const Response& response) const {
+  return violation(response) <= settings_.feasibility;
+}
+
+bool Search::better(const Response& r, bool acceptable) const {
+  if (best_.point.x.size() == 0) return true;
+  if (acceptable != best_.acceptable) return acceptable;
+  const Response& b = best_.point.response;
+  if (feasible(r) != feasible(b)) return feasible(r);
+  return feasible(r) ? r.f < b.f : violation(r) < violation(b);
+}
+
+bool Search::row(int iteration, const Point& point) {
+  rows_ = iteration;
+  const KktPoint kkt = kkt_point(point.response, point.x, lower_, upper_, kActiveTolerance);
+  Iterate it;
+  it.iteration = iteration;
+  it.evaluations = evaluations_;
+  it.x = &point.x;
+  it.response = &point.response;
+  it.kkt = kkt.residual;
+  it.violation = violation(point.response);
+  it.change = previous_row_.size() == 0 ? 0 : (point.x - previous_row_).lpNorm<Eigen::Infinity>();
+  it.improved = best_is_new_ && feasible(point.response) && point.x == best_.point.x;
+  if (it.improved) best_is_new_ = false;
+  const double now = cpu_seconds();
+  it.seconds = std::max(0.0, now - mark_ - inside_problem_);
+  const bool go_on = !observe_ || observe_(it);
+  mark_ = cpu_seconds();
+  inside_problem_ = 0;
+
+  const bool first = previous_row_.size() == 0;
+  previous_row_ = point.x;
+  if (!go_on) {
+    stop(Stop::observer, "stopped by the observer");
+  } else if (it.kkt <= settings_.kkt_tolerance && it.violation <= settings_.feasibility) {
+    stop(Stop::converged, "KKT residual " + scientific(it.kkt) + " and violation " +
+                              scientific(it.violation) + " are below their tolerances");
+    // An earlier design may be lower only by what the tolerances give away.
+    const double slack =
+        settings_.kkt_tolerance + settings_.feasibility * (1 + 2 * kkt.lambda.sum());
+    if (point.response.f <= best_.point.response.f + slack) best_.point = point;
+  } else if (!first && rests(it.change, it.kkt, it.violation)) {
+    stop(Stop::converged, "three iterations in a row changed no variable by " +
+                              scientific(settings_.change_tolerance) + "; KKT residual " +
+                              scientific(it.kkt));
+  } else if (iteration >= settings_.max_iterations) {
+    stop(Stop::iteration_limit, "limit of " + std::to_string(settings_.max_iterations) +
+                                    " iterations reached; KKT residual " + scientific(it.kkt));
+  }
+  return !stopped_;
+}
+
+bool Search::rests(double change, double, double violation) {
+  const bool resting = change < settings_.change_tolerance && violation <= settings_.feasibility;
+  resting_ = resting ? resting_ + 1 : 0;
+  return resting_ >= kRestingRows;
+}
+
+void Search::stop(Stop stop, const std::string& message) {
+  if (stopped_) return;  // the first reason is the one
+  stopped_ = true;
+  stop_ = stop;
+  message_ = message;
+}
+
+Result Search::result() {
+  if (last_x_ != best_.point.x) {
+    const Point kept = best_.point;
+    Response again;
+    // A problem that fails now did not fail then: what it said then stays.
+    if (evaluate(kept.x, again) == Trial::taken) best_.point = {kept.x, again};
+  }
+  Result result;
+  result.x = best_.point.x;
+  result.response = best_.point.response;
+  result.kkt = kkt_point(result.response, result.x, lower_, upper_, kActiveTolerance).residual;
+  result.violation = violation(result.response);
+  result.iterations = rows_;
+  result.evaluations = evaluations_;
+  result.stop = stop_;
+  result.message = message_;
+  return result;
+}
+
+}  // namespace flexmorph::optim

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <string>
+
+#include "optim/optimizer.h"
+
+namespace flexmorph::optim {
+
+/// A design and what the problem says about it.
+struct Point {
+  VectorXd x;
+  Response response;
+};
+
+/// What became of a trial design: `unacceptable` and `failed` ones must not become iterates.
+enum class Trial { taken, unacceptable, failed };
+
+double violation(const Response& response);  ///< max(0, largest g)
+std::string scientific(double value);        ///< for messages: 1.2e-05
+
+/// What all optimizers share: guarded and counted evaluations, the best design met, the rows of
+/// the history, and the reasons to stop.
+///
+/// Designs are ordered: acceptable ones first, then feasible ones (violation <= feasibility) by
+/// their objective, then the others by their violation. Once an acceptable design was met,
+/// unacceptable ones are refused; before that (the start itself has come apart) they pass.
+class Search {
+ public:
+  /// @throws Error (input) for no variables, bounds that cross or are not finite, a start
+  ///         outside of them.
+  Search(Problem& problem, const Settings& settings, const Observer& observe);
+
+  int n() const { return static_cast<int>(lower_.size()); }
+  int m() const { return m_; }
+  const VectorXd& lower() const { return lower_; }
+  const VectorXd& upper() const { return upper_; }
+
+  /// The start, evaluated.
+  /// @throws Error (numerical) when that fails or is not finite.
+  Point start();
+
+  /// One evaluation of the problem. Anything but a numerical Error passes through.
+  /// @param out  valid when `taken`
+  Trial evaluate(const VectorXd& x, Response& out);
+  int evaluations() const { return evaluations_; }
+  int refused_in_a_row() const { return refused_in_a_row_; }
+  const std::string& refusal() const { return refusal_; }  ///< why a trial was not taken, last
+
+  /// Shows an iterate to the observer and asks whether to go on: false when it satisfies the
+  /// KKT conditions, rests, is the last one allowed, or the observer says so.
+  /// @param iteration  from 1
+  bool row(int iteration, const Point& point);
+  int rows() const { return rows_; }
+
+  void stop(Stop stop, const std::string& message);
+  bool stopped() const { return stopped_; }
+
+  const Point& best() const { return best_.point; }
+  bool feasible(const Response& response) const;
+
+  /// The best design; the problem's last evaluation is there, too.
+  Result result();
+
+ private:
+  struct Ranked {
+    Point point;
+    bool acceptable = false;
+  };
+  bool better(const Response& response, bool acceptable) const;
+  void check(const Response& response) const;
+  bool rests(double change, double kkt, double violation);
+
+  Problem& problem_;
+  const Settings& settings_;
+  const Observer& observe_;
+  int m_ = 0;
+  VectorXd lower_, upper_;
+
+  Ranked best_;
+  bool best_is_new_ = false;
+  VectorXd last_x_, previous_row_;
+  int evaluations_ = 0, rows_ = 0, resting_ = 0, refused_in_a_row_ = 0;
+  double mark_ = 0, inside_problem_ = 0;  // CPU seconds
+  std::string refusal_;
+
+  bool stopped_ = false;
+  Stop stop_ = Stop::failed;
+  std::string message_;
+};
+
+}  // namespace flexmorph::optim

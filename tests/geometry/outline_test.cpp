@@ -1,0 +1,110 @@
+// Polygons: the union is exact, holes and pieces are counted, the domain clips.
+
+#include "geometry/outline.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/geometry/random_components.h"
+
+namespace flexmorph {
+namespace {
+
+using Polygons = std::vector<std::vector<Vec2>>;
+
+std::vector<Vec2> rectangle(double x0, double y0, double x1, double y1) {
+  return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
+}
+
+const Box kLarge{{-100, -100}, {100, 100}};
+
+TEST(Unite, CrossingRectanglesOverlapOnce) {
+  const Polygons cross = {rectangle(-3, -1, 3, 1), rectangle(-1, -3, 1, 3)};
+  const auto united = unite(cross, kLarge);
+  ASSERT_EQ(united.size(), 1u);
+  EXPECT_EQ(united[0].outer.size(), 12u);
+  EXPECT_TRUE(united[0].holes.empty());
+  EXPECT_EQ(area(united), 12 + 12 - 4);  // whole numbers: exact
+}
+
+TEST(Unite, TurnedRectangleOverlapsAsComputedByHand) {
+  // A square of side 2 and the same turned by 45 degrees share a regular octagon of inradius 1:
+  // area 8 (√2 - 1).
+  std::vector<Vec2> turned;
+  const double r = std::numbers::sqrt2;
+  for (int k = 0; k < 4; ++k) {
+    turned.emplace_back(r * std::cos(k * std::numbers::pi / 2),
+                        r * std::sin(k * std::numbers::pi / 2));
+  }
+  const Polygons both = {rectangle(-1, -1, 1, 1), turned};
+  EXPECT_NEAR(area(unite(both, kLarge)), 8 - 8 * (std::numbers::sqrt2 - 1), 1e-14);
+}
+
+TEST(Unite, FrameHasAHole) {
+  const Polygons frame = {rectangle(0, 0, 4, 1), rectangle(0, 3, 4, 4), rectangle(0, 0, 1, 4),
+                          rectangle(3, 0, 4, 4)};
+  const auto united = unite(frame, kLarge);
+  ASSERT_EQ(united.size(), 1u);
+  ASSERT_EQ(united[0].holes.size(), 1u);
+  EXPECT_EQ(area(united[0]), 16 - 4);
+  EXPECT_TRUE(contains(united[0], {0.5, 2}));
+  EXPECT_FALSE(contains(united[0], {2, 2}));    // in the hole
+  EXPECT_TRUE(contains(united[0], {1, 2}));     // on the hole's edge
+  EXPECT_TRUE(contains(united[0], {4, 4}));     // on a corner
+  EXPECT_FALSE(contains(united[0], {4.1, 2}));  // outside
+}
+
+TEST(Unite, ClipsToTheBoxAndKeepsPiecesApart) {
+  const Polygons bars = {rectangle(-5, 0, 5, 1), rectangle(-5, 2, 5, 3), rectangle(20, 20, 21, 21)};
+  const auto united = unite(bars, {{0, 0.5}, {3, 2.5}});
+  ASSERT_EQ(united.size(), 2u);
+  EXPECT_EQ(area(united), 3 * 0.5 + 3 * 0.5);
+  EXPECT_TRUE(unite(bars, {{6, 6}, {7, 7}}).empty());
+  EXPECT_TRUE(unite(Polygons{}, kLarge).empty());
+}
+
+TEST(Unite, CoincidentAndTouchingPolygonsAreNoTrouble) {
+  const Polygons same = {rectangle(0, 0, 1, 1), rectangle(0, 0, 1, 1), rectangle(1, 0, 2, 1)};
+  const auto united = unite(same, kLarge);
+  ASSERT_EQ(united.size(), 1u);
+  EXPECT_EQ(area(united), 2);
+}
+
+TEST(Unite, SenseOfRotationDoesNotMatter) {
+  std::vector<Vec2> clockwise = rectangle(0, 0, 2, 1);
+  std::reverse(clockwise.begin(), clockwise.end());
+  EXPECT_EQ(area(unite(Polygons{clockwise}, kLarge)), 2);
+}
+
+TEST(Unite, RefusesWhatIsNoPolygon) {
+  const double nan = std::nan("");
+  EXPECT_THROW(unite(Polygons{{{0, 0}, {1, 1}, {1, 0}, {0, 1}}}, kLarge), Error);  // bow tie
+  EXPECT_THROW(unite(Polygons{{{0, 0}, {1, 1}}}, kLarge), Error);
+  EXPECT_THROW(unite(Polygons{{{0, 0}, {1, nan}, {1, 0}}}, kLarge), Error);
+  EXPECT_THROW(unite(Polygons{rectangle(0, 0, 1, 1)}, {{1, 1}, {1, 2}}), Error);
+}
+
+// Inclusion and exclusion, polygons against polygons: A + B = union + intersection, where the
+// intersection of two components is what is left of A when the window is B's box.
+TEST(Unite, OutlinesOfComponentsObeyInclusionAndExclusion) {
+  test::RandomComponents random(4);
+  for (int k = 0; k < 5; ++k) {
+    Polygons outlines;
+    double sum = 0;
+    for (const Component& c : random.several(6, 1, 1)) {
+      outlines.push_back(outline(c, 0.01, 48));
+      sum += area(unite(Polygons{outlines.back()}, kLarge));
+    }
+    const auto all = unite(outlines, kLarge);
+    EXPECT_LE(area(all), sum * (1 + 1e-12));
+    // Two halves of the plane add up to the whole: clipping neither loses nor doubles anything.
+    const double left = area(unite(outlines, {{-100, -100}, {0.5, 100}}));
+    const double right = area(unite(outlines, {{0.5, -100}, {100, 100}}));
+    EXPECT_NEAR(left + right, area(all), 1e-13);
+  }
+}
+
+}  // namespace
+}  // namespace flexmorph

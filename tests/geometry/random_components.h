@@ -1,0 +1,42 @@
+#pragma once
+
+#include <random>
+#include <vector>
+
+#include "geometry/component.h"
+
+/// Random components for the tests of this folder.
+namespace flexmorph::test {
+
+class RandomComponents {
+ public:
+  explicit RandomComponents(unsigned seed) : engine_(seed) {}
+
+  double uniform(double lower, double upper) {
+    return std::uniform_real_distribution<double>(lower, upper)(engine_);
+  }
+
+  /// Center inside width x height; half-thicknesses independent of each other, so that profiles
+  /// bulge, undercut and taper; sizes for a domain of order 1.
+  Component next(double width = 1, double height = 1) {
+    Component c;
+    c.center = {uniform(0, width), uniform(0, height)};
+    c.half_length = uniform(0.1, 0.4);
+    c.angle = uniform(-4, 4);
+    c.c1 = uniform(0.02, 0.12);
+    c.c2 = uniform(0.02, 0.12);
+    c.c3 = uniform(0.02, 0.12);
+    return c;
+  }
+
+  std::vector<Component> several(int count, double width, double height) {
+    std::vector<Component> all;
+    for (int k = 0; k < count; ++k) all.push_back(next(width, height));
+    return all;
+  }
+
+ private:
+  std::mt19937 engine_;
+};
+
+}  // namespace flexmorph::test

@@ -1,0 +1,117 @@
+// The sharp picture of a design: area fractions against exact polygons, passive boxes, and what
+// hangs together.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "geometry/outline.h"
+#include "tests/geometry/random_components.h"
+
+namespace flexmorph {
+namespace {
+
+double sharp_area(const Grid& grid, const VectorXd& fractions) {
+  return fractions.sum() * grid.dx() * grid.dy();
+}
+
+// Each of the 8 x 8 samples of a cell is right or wrong as a whole, errors along an edge alternate:
+// on 60 x 30 cells the sum is within 1e-3 of the domain with room.
+TEST(AreaFractions, AgreeWithTheExactUnion) {
+  const Grid grid{.x0 = 0.1, .y0 = -0.2, .width = 2, .height = 1, .nx = 60, .ny = 30};
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    test::RandomComponents random(seed);
+    std::vector<Component> design = random.several(12, 2.2, 1.2);
+    std::vector<std::vector<Vec2>> outlines;
+    for (Component& c : design) {
+      c.center += Vec2(0, -0.3);
+      outlines.push_back(outline(c, 0.03, 128));
+    }
+    const double exact = area(unite(outlines, {{0.1, -0.2}, {2.1, 0.8}}));
+    const VectorXd fractions = area_fractions(grid, design, 0.03, {}, {});
+    EXPECT_NEAR(sharp_area(grid, fractions), exact, 1e-3 * grid.width * grid.height) << seed;
+    EXPECT_GE(fractions.minCoeff(), 0);
+    EXPECT_LE(fractions.maxCoeff(), 1);
+  }
+}
+
+TEST(AreaFractions, LieWhereTheMaterialIs) {
+  const Grid grid{.width = 10, .height = 4, .nx = 10, .ny = 4};
+  const Component bar{.center = {5, 1.25}, .half_length = 50, .c1 = 0.75, .c2 = 0.75, .c3 = 0.75};
+  const VectorXd fractions = area_fractions(grid, {&bar, 1}, 0.01, {}, {});
+  for (int i = 0; i < 10; ++i) {  // material from y = 0.5 to 2, edges between samples
+    EXPECT_EQ(fractions[grid.cell(i, 0)], 0.5);
+    EXPECT_EQ(fractions[grid.cell(i, 1)], 1);
+    EXPECT_EQ(fractions[grid.cell(i, 2)], 0);
+  }
+}
+
+TEST(AreaFractions, SolidWinsOverEmptyAndEmptyOverComponents) {
+  const Grid grid{.width = 10, .height = 4, .nx = 10, .ny = 4};
+  const Component all{.center = {5, 2}, .half_length = 50, .c1 = 40, .c2 = 40, .c3 = 40};
+  const std::vector<Box> solid = {{{8, 0}, {10, 4}}}, empty = {{{4, 0}, {9, 2.5}}};
+  const VectorXd fractions = area_fractions(grid, {&all, 1}, 0.01, solid, empty);
+  EXPECT_EQ(fractions[grid.cell(3, 0)], 1);    // the component
+  EXPECT_EQ(fractions[grid.cell(4, 0)], 0);    // empty
+  EXPECT_EQ(fractions[grid.cell(4, 2)], 0.5);  // half empty
+  EXPECT_EQ(fractions[grid.cell(8, 0)], 1);    // solid and empty
+  const VectorXd without = area_fractions(grid, {}, 0.01, solid, {});
+  EXPECT_EQ(without.sum(), 8);
+  EXPECT_THROW(area_fractions(grid, {}, 0.01, {}, {}, 0), Error);
+}
+
+/// Pictures drawn as text, top row first, '#' is material.
+Connectivity connectivity_of(const std::vector<std::string>& rows) {
+  const Grid grid{.nx = static_cast<int>(rows[0].size()), .ny = static_cast<int>(rows.size())};
+  VectorXd fractions(grid.n_cells());
+  for (int i = 0; i < grid.nx; ++i) {
+    for (int j = 0; j < grid.ny; ++j) {
+      fractions[grid.cell(i, j)] = rows[grid.ny - 1 - j][i] == '#' ? 0.5 : 0.49;
+    }
+  }
+  return connectivity(grid, fractions);
+}
+
+void expect(const Connectivity& found, bool connected, int islands) {
+  EXPECT_EQ(found.connected, connected);
+  EXPECT_EQ(found.islands, islands);
+}
+
+TEST(Connectivity, OneBar) { expect(connectivity_of({"......", "######", "......"}), true, 0); }
+
+TEST(Connectivity, TwoBarsWithAGap) { expect(connectivity_of({"###.##", "###.##"}), false, 1); }
+
+TEST(Connectivity, CornersDoNotJoin) { expect(connectivity_of({"###...", "...###"}), false, 1); }
+
+TEST(Connectivity, EdgesJoin) { expect(connectivity_of({"####..", "...###"}), true, 0); }
+
+TEST(Connectivity, IslandsAreCountedBesideTheMainPiece) {
+  expect(connectivity_of({"#.#..#", "......", "######", "......", ".##..."}), true, 4);
+}
+
+TEST(Connectivity, SecondBarIsAnIsland) {
+  expect(connectivity_of({"######", "......", "######"}), true, 1);
+}
+
+TEST(Connectivity, DetoursConnect) {
+  expect(connectivity_of({"#.###.#", "#.#.#.#", "###.###"}), true, 0);
+}
+
+TEST(Connectivity, NothingIsNotConnected) { expect(connectivity_of({"....", "...."}), false, 0); }
+
+TEST(Connectivity, SeesTheGapBetweenTwoComponents) {
+  const Grid grid{.width = 10, .height = 2, .nx = 100, .ny = 20};
+  std::vector<Component> bars(
+      2, {.center = {2.5, 1}, .half_length = 2.6, .c1 = 0.4, .c2 = 0.4, .c3 = 0.4});
+  bars[1].center = {7.5, 1};
+  expect(connectivity(grid, area_fractions(grid, bars, 0.01, {}, {})), true, 0);
+  for (Component& c : bars)
+    c.half_length = 2.4;  // a gap of two cells; ends one cell from the sides
+  bars[0].center = {2.3, 1};
+  bars[1].center = {7.7, 1};
+  expect(connectivity(grid, area_fractions(grid, bars, 0.01, {}, {})), false, 1);
+}
+
+}  // namespace
+}  // namespace flexmorph

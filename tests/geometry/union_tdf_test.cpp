@@ -1,0 +1,249 @@
+// The union of components on a grid: culling loses nothing, the smooth maximum keeps its bounds,
+// and the chain rule passes the Taylor test.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "geometry/tdf.h"
+#include "tests/geometry/random_components.h"
+
+namespace flexmorph {
+namespace {
+
+using test::RandomComponents;
+using Kind = TdfSettings::Kind;
+
+const Grid kGrid{.x0 = -0.1, .y0 = 0.2, .width = 2, .height = 1, .nx = 60, .ny = 30};
+
+TdfSettings settings(Kind kind) {
+  TdfSettings s;
+  s.kind = kind;
+  s.band = kind == Kind::paper ? 0.4 : 1.5 * kGrid.dx();
+  s.sharpness = 2 / kGrid.dx();
+  s.min_half_thickness = 0.03;
+  return s;
+}
+
+/// Components in and around the domain of kGrid.
+std::vector<Component> random_design(unsigned seed, int count = 20) {
+  RandomComponents random(seed);
+  std::vector<Component> all = random.several(count, 2.2, 1.2);
+  for (Component& c : all) c.center += Vec2(-0.2, 0.1);
+  return all;
+}
+
+/// Every component at every node, straight from the definition.
+VectorXd brute_force(const std::vector<Component>& components, const TdfSettings& s) {
+  const double cut = -s.band - (s.kind == Kind::paper ? 1 : 10 / s.sharpness);
+  VectorXd phi(kGrid.n_nodes());
+  for (int i = 0; i <= kGrid.nx; ++i) {
+    for (int j = 0; j <= kGrid.ny; ++j) {
+      const Vec2 at = kGrid.node_position(i, j);
+      double sum = 0, highest = cut;
+      for (const Component& c : components) {
+        const double each = component_tdf(c, s, at.x(), at.y(), nullptr);
+        highest = std::max(highest, each);
+        if (each > cut) sum += std::exp(s.sharpness * each) - std::exp(s.sharpness * cut);
+      }
+      const double smooth = std::max(cut, std::log(sum) / s.sharpness);
+      phi[kGrid.node(i, j)] = s.kind == Kind::paper ? highest : smooth;
+    }
+  }
+  return phi;
+}
+
+class EveryUnion : public ::testing::TestWithParam<Kind> {};
+INSTANTIATE_TEST_SUITE_P(Tdf, EveryUnion, ::testing::Values(Kind::distance, Kind::paper));
+
+TEST_P(EveryUnion, CullingLosesNothing) {
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    std::vector<Component> design = random_design(seed);
+    design[0].c1 = 1e-6;  // a needle: its end value is the minimum, its reach is the longest
+    design[1].angle = 0;  // lines x = constant and y = constant of the frame meet the grid's
+    design[2].angle = std::acos(0.0);
+    const TdfSettings s = settings(GetParam());
+    UnionTdf tdf(kGrid, s);
+    tdf.evaluate(design);
+    const VectorXd expected = brute_force(design, s);
+    EXPECT_LT((tdf.phi() - expected).cwiseAbs().maxCoeff(), 1e-13) << seed;
+    for (int n = 0; n < kGrid.n_nodes(); ++n) {
+      ASSERT_NEAR(tdf.density()[n], heaviside(expected[n], s.band, s.alpha).value, 1e-12);
+    }
+  }
+}
+
+TEST_P(EveryUnion, NodesNoComponentReachesAreVoid) {
+  const TdfSettings s = settings(GetParam());
+  UnionTdf tdf(kGrid, s);
+  VectorXd gradient;
+  tdf.evaluate({});
+  EXPECT_EQ(tdf.density().maxCoeff(), s.alpha);
+  EXPECT_LT(tdf.phi().maxCoeff(), -s.band);
+  tdf.pull_back(VectorXd::Ones(kGrid.n_nodes()), gradient);
+  EXPECT_EQ(gradient.size(), 0);
+
+  const Component far{.center = {50, 50}};
+  tdf.evaluate({&far, 1});
+  EXPECT_EQ(tdf.density().maxCoeff(), s.alpha);
+  tdf.pull_back(VectorXd::Ones(kGrid.n_nodes()), gradient);
+  EXPECT_EQ(gradient.norm(), 0);
+}
+
+// max <= KS <= max + log(n)/λ; the lower bound loses what the continuity at the cut takes away,
+// at most n exp(λ (cut - max)) / λ, which is n exp(-10) / λ at the edge of the band.
+TEST(SmoothMaximum, StaysBetweenItsBounds) {
+  const TdfSettings s = settings(Kind::distance);
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const std::vector<Component> design = random_design(seed);
+    UnionTdf tdf(kGrid, s);
+    tdf.evaluate(design);
+    const double n = static_cast<double>(design.size());
+    for (int i = 0; i <= kGrid.nx; ++i) {
+      for (int j = 0; j <= kGrid.ny; ++j) {
+        const Vec2 at = kGrid.node_position(i, j);
+        double highest = -1e300;
+        for (const Component& c : design) {
+          highest = std::max(highest, component_tdf(c, s, at.x(), at.y(), nullptr));
+        }
+        if (highest < -s.band) continue;
+        const double phi = tdf.phi()[kGrid.node(i, j)];
+        EXPECT_GE(phi, highest - 1.01 * n * std::exp(-10) / s.sharpness);
+        EXPECT_LE(phi, highest + std::log(n) / s.sharpness + 1e-15);
+      }
+    }
+  }
+}
+
+TEST(SmoothMaximum, OfCoincidentComponentsIsLogTwoHigher) {
+  const TdfSettings s = settings(Kind::distance);
+  const Component c{.center = {0.9, 0.7}, .half_length = 0.4, .angle = 0.3};
+  const std::vector<Component> two = {c, c};
+  UnionTdf one_tdf(kGrid, s), two_tdf(kGrid, s);
+  one_tdf.evaluate({&c, 1});
+  two_tdf.evaluate(two);
+  int inside = 0;
+  for (int n = 0; n < kGrid.n_nodes(); ++n) {
+    if (one_tdf.phi()[n] < 0) continue;
+    EXPECT_NEAR(two_tdf.phi()[n] - one_tdf.phi()[n], std::log(2.0) / s.sharpness, 1e-14);
+    ++inside;
+  }
+  EXPECT_GT(inside, 50);
+}
+
+// φ has no step where a component comes into reach of a node: moved by 1e-9, φ moves by as little.
+// The largest |dφ/dx| is 1 (the slope of a flank) over the whole reach but just above the cut,
+// where the logarithm is steep: only nodes the Heaviside can see are compared.
+TEST(SmoothMaximum, IsContinuousWhereComponentsComeIntoReach) {
+  const TdfSettings s = settings(Kind::distance);
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    std::vector<Component> design = random_design(seed);
+    UnionTdf before(kGrid, s), after(kGrid, s);
+    before.evaluate(design);
+    for (Component& c : design) c.center += Vec2(0.7e-9, 0.7e-9);
+    after.evaluate(design);
+    for (int n = 0; n < kGrid.n_nodes(); ++n) {
+      if (before.phi()[n] < -s.band) continue;
+      EXPECT_NEAR(before.phi()[n], after.phi()[n], 2e-9);
+    }
+  }
+}
+
+std::vector<Component> moved(const std::vector<Component>& design, const VectorXd& direction,
+                             double h) {
+  std::vector<Component> result;
+  for (std::size_t c = 0; c < design.size(); ++c) {
+    auto p = design[c].parameters();
+    for (int q = 0; q < 7; ++q) p[q] += h * direction[7 * static_cast<Eigen::Index>(c) + q];
+    result.push_back(Component::from_parameters(p.data()));
+  }
+  return result;
+}
+
+/// Slope of log |f(p + h d) - f(p) - h df·d| over log h, h = h0 ... h0/1000 in 13 steps, where d
+/// moves components by up to one cell per unit of h.
+///
+/// f = Σ w_k H_k is of order 100. With random signs of w_k the curvatures of the nodes nearly
+/// cancel; w_k with the sign of H_k'' along d adds them up: the remainder is about 70 h², which at
+/// h = 1e-6 is 1000 times round-off. At h0 = 1e-3 few nodes cross a line where H is only C1.
+double taylor_order(Kind kind, unsigned seed, double h0) {
+  const std::vector<Component> design = random_design(seed);
+  RandomComponents random(seed + 100);
+  VectorXd direction(7 * static_cast<Eigen::Index>(design.size()));
+  for (double& d : direction) d = random.uniform(-1, 1) * kGrid.dx();
+  UnionTdf tdf(kGrid, settings(kind));
+  tdf.evaluate(moved(design, direction, 1e-3));
+  VectorXd bend = tdf.density();
+  tdf.evaluate(moved(design, direction, -1e-3));
+  bend += tdf.density();
+  tdf.evaluate(design);
+  const VectorXd start = tdf.density();
+  bend -= 2 * start;
+  VectorXd weight(kGrid.n_nodes()), gradient;
+  for (int n = 0; n < kGrid.n_nodes(); ++n) {
+    weight[n] = std::copysign(random.uniform(0.5, 1), bend[n]);
+  }
+  tdf.pull_back(weight, gradient);
+  const double slope = gradient.dot(direction);
+
+  double sx = 0, sy = 0, sxx = 0, sxy = 0;
+  constexpr int kSteps = 13;
+  for (int step = 0; step < kSteps; ++step) {
+    const double h = h0 * std::pow(10.0, -3.0 * step / (kSteps - 1));
+    tdf.evaluate(moved(design, direction, h));
+    const double change = weight.dot(tdf.density() - start);
+    const double x = std::log(h), y = std::log(std::abs(change - h * slope));
+    sx += x, sy += y, sxx += x * x, sxy += x * y;
+  }
+  return (kSteps * sxy - sx * sy) / (kSteps * sxx - sx * sx);
+}
+
+TEST(UnionTdf, PullBackPassesTheTaylorTest) {
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    EXPECT_NEAR(taylor_order(Kind::distance, seed, 1e-3), 2, 0.05) << seed;
+  }
+}
+
+TEST(UnionTdf, PullBackOfThePaperPassesTheTaylorTest) {
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    EXPECT_NEAR(taylor_order(Kind::paper, seed, 1e-3), 2, 0.05) << seed;
+  }
+}
+
+TEST(UnionTdf, RepeatsItselfBitForBit) {
+  const std::vector<Component> design = random_design(1), other = random_design(2, 33);
+  const VectorXd seed = VectorXd::LinSpaced(kGrid.n_nodes(), -1, 1);
+  UnionTdf fresh(kGrid, settings(Kind::distance)), used(kGrid, settings(Kind::distance));
+  VectorXd from_fresh, from_used;
+  used.evaluate(other);
+  used.pull_back(seed, from_used);
+  used.evaluate(design);
+  used.pull_back(seed, from_used);
+  fresh.evaluate(design);
+  fresh.pull_back(seed, from_fresh);
+  EXPECT_EQ((used.phi() - fresh.phi()).norm(), 0);
+  EXPECT_EQ((from_used - from_fresh).norm(), 0);
+}
+
+TEST(UnionTdf, RefusesWhatIsNotANumber) {
+  UnionTdf tdf(kGrid, settings(Kind::distance));
+  std::vector<Component> design = random_design(1);
+  design[3].c2 = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(tdf.evaluate(design), Error);
+  design[3].c2 = 0.1;
+  design[4].half_length = 0;
+  EXPECT_THROW(tdf.evaluate(design), Error);
+  design[4].half_length = 0.1;
+  tdf.evaluate(design);
+  VectorXd gradient;
+  const VectorXd bad = VectorXd::Constant(kGrid.n_nodes(), std::numeric_limits<double>::infinity());
+  EXPECT_THROW(tdf.pull_back(bad, gradient), Error);
+  TdfSettings s = settings(Kind::distance);
+  s.band = 0;
+  EXPECT_THROW(tdf.set_settings(s), Error);
+  EXPECT_THROW(UnionTdf(kGrid, s), Error);
+}
+
+}  // namespace
+}  // namespace flexmorph

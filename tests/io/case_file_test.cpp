@@ -1,0 +1,247 @@
+// Case files: values arrive as written, and every error names file, line, key, value and what is
+// allowed, or the option of the command line that brought it.
+#include "io/case_file.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "tests/io/scratch.h"
+
+namespace flexmorph::io {
+namespace {
+
+constexpr const char* kText = R"(title = "a plate"   # line 1
+
+[time]
+end = 1
+step = 1e-3
+
+[[body]]
+name = "plate"
+thickness = -0.002
+elements = [10, 2]
+terms = ["inertia", "inertia"]
+flow = { speed = 0.1 }
+
+[[body]]
+name = "arm"
+thickness = "thin"
+flag = 1
+when = 2020-01-01
+)";
+
+using Overrides = std::vector<std::string>;
+
+class CaseFiles : public ::testing::Test {
+ protected:
+  /// Message of the error that `read` meets, with the folder of the test removed.
+  std::string error(const std::function<void(const Table&)>& read, const Overrides& changes = {},
+                    const std::string& text = kText) {
+    try {
+      const CaseFile file(scratch_.write("plate.toml", text), changes);
+      read(file.root());
+      file.finish();
+    } catch (const Error& e) {
+      EXPECT_EQ(e.kind(), Error::Kind::input);
+      std::string message = e.what();
+      for (size_t at; (at = message.find(scratch_ / "")) != std::string::npos;)
+        message.erase(at, (scratch_ / "").size());
+      return message;
+    }
+    return "";
+  }
+  Scratch scratch_;
+};
+
+Table plate(const Table& root) { return root.tables("body").at(0); }
+Table arm(const Table& root) { return root.tables("body").at(1); }
+void touch_all(const Table& table) {
+  for (const std::string& key : table.keys()) table.has(key);
+}
+
+TEST_F(CaseFiles, ValuesArriveAsWritten) {
+  const CaseFile file(scratch_.write("plate.toml", kText));
+  const Table time = file.root().table("time");
+  EXPECT_EQ(time.number("end", positive("an end", "s")), 1.0);  // a whole number is a number
+  EXPECT_EQ(time.number("step", positive("a step", "s")), 1e-3);
+  EXPECT_EQ(time.number("rho_inf", any_number("it"), 0.8), 0.8);
+  EXPECT_EQ(file.root().string("title", "a title"), "a plate");
+  EXPECT_EQ(plate(file.root()).integers("elements", "a count", 1, 100, 2),
+            (std::vector<int>{10, 2}));
+  EXPECT_EQ(plate(file.root()).numbers("elements", positive("a count")),
+            (std::vector<double>{10, 2}));
+  EXPECT_EQ(plate(file.root()).table("flow").path(), "body.plate.flow");
+  EXPECT_TRUE(file.root().tables("joint").empty());
+  EXPECT_EQ(file.text(), kText);
+}
+
+TEST_F(CaseFiles, RangeIsSaidWithUnit) {
+  const auto thickness = [](const Quantity& q) {
+    return [q](const Table& root) { plate(root).number("thickness", q); };
+  };
+  const std::string start = "plate.toml:9: body.plate.thickness = -0.002: ";
+  EXPECT_EQ(error(thickness(positive("a thickness", "m"))), start + "a thickness is positive [m]");
+  EXPECT_EQ(error(thickness(between("a share", "", 0, 1))), start + "a share lies between 0 and 1");
+  EXPECT_EQ(error(thickness({.noun = "it", .lower = 2, .lower_open = true})),
+            start + "it is above 2");
+  EXPECT_EQ(error(thickness({.noun = "it", .upper = -1})), start + "it is at most -1");
+}
+
+TEST_F(CaseFiles, WrongTypesAreSaid) {
+  EXPECT_EQ(
+      error([](const Table& root) { arm(root).number("thickness", positive("a size", "m")); }),
+      "plate.toml:16: body.arm.thickness = \"thin\": a size is positive [m]; a number stands "
+      "without quotes");
+  EXPECT_EQ(error([](const Table& root) { arm(root).boolean("flag"); }),
+            "plate.toml:17: body.arm.flag = 1: true or false");
+  EXPECT_EQ(error([](const Table& root) { root.table("time").integer("step", "a count", 1, 9); }),
+            "plate.toml:5: time.step = 1e-3: a count is a whole number between 1 and 9");
+  EXPECT_EQ(error([](const Table& root) { root.table("title"); }),
+            "plate.toml:1: title = \"a plate\": [title] is a table");
+  EXPECT_EQ(error([](const Table& root) { root.tables("time"); }),
+            "plate.toml:3: [time]: a list of tables, each under its own [[time]]");
+  EXPECT_EQ(
+      error([](const Table& root) { plate(root).numbers("elements", positive("a count"), 3); }),
+      "plate.toml:10: body.plate.elements = [10, 2]: a list of 3: a count is positive");
+  EXPECT_TRUE(starts(error([](const Table& root) { arm(root).string("when", "a date"); }),
+                     "plate.toml:18: body.arm.when = 2020-01-01: "));
+}
+
+TEST_F(CaseFiles, NotANumberAndInfinityAreRefused) {
+  for (const char* value : {"nan", "inf", "-inf", "+inf"}) {
+    const std::string option = std::string("time.end=") + value;
+    EXPECT_EQ(error([](const Table& root) { root.table("time").number("end", any_number("it")); },
+                    {option}),
+              "--set " + option + ": it is a finite number");
+  }
+}
+
+TEST_F(CaseFiles, ChoicesListWhatIsAllowed) {
+  const std::vector<std::string> terms = {"inertia", "membrane"};
+  EXPECT_EQ(error([&](const Table& root) { root.choice("title", "a title", terms); }),
+            "plate.toml:1: title = \"a plate\": a title is one of 'inertia', 'membrane'");
+  EXPECT_EQ(
+      error([&](const Table& root) { root.choice("title", "a term", terms); }, {"title=inertai"}),
+      "--set title=inertai: a term is one of 'inertia', 'membrane', did you mean 'inertia'?");
+  EXPECT_EQ(
+      error([&](const Table& root) { plate(root).choices("terms", "a term", terms); }),
+      "plate.toml:11: body.plate.terms = [\"inertia\", \"inertia\"]: a list: a term is one of "
+      "'inertia', 'membrane', none twice");
+}
+
+TEST_F(CaseFiles, MissingKeysAreNamed) {
+  EXPECT_EQ(error([](const Table& root) { plate(root).number("width", positive("a width", "m")); }),
+            "plate.toml:7: body.plate.width is missing: a width is positive [m]");
+  EXPECT_EQ(error([](const Table& root) { root.table("esl"); }),
+            "plate.toml: esl is missing: [esl] is a table");
+  // A misspelt key is the better explanation.
+  EXPECT_EQ(error([](const Table& root) { root.table("time").number("steps", positive("it")); }),
+            "plate.toml:5: time.step = 1e-3: unknown key, did you mean 'steps'?");
+}
+
+TEST_F(CaseFiles, UnknownKeysAreErrors) {
+  EXPECT_EQ(error([](const Table& root) {
+              touch_all(root);
+              root.table("time").number("end", positive("it"));
+              root.table("time").has("stepp");
+            }),
+            "plate.toml:5: time.step = 1e-3: unknown key, did you mean 'stepp'?");
+  EXPECT_EQ(error([](const Table& root) {
+              root.has("title");
+              root.has("body");
+            }),
+            "plate.toml:3: [time]: unknown key; known here: body title");
+  EXPECT_EQ(error(touch_all), "");
+  EXPECT_EQ(error(touch_all, {"foo=1"}), "");
+  EXPECT_EQ(error(
+                [](const Table& root) {
+                  for (auto k : {"title", "time", "body"}) root.has(k);
+                },
+                {"bdoy.x=1"}),
+            "--set bdoy.x=1: [bdoy]: unknown key, did you mean 'body'?");
+}
+
+TEST_F(CaseFiles, FilesThatAreNone) {
+  EXPECT_THROW(CaseFile(scratch_ / "absent.toml"), Error);
+  try {
+    CaseFile file(scratch_ / "absent.toml");
+  } catch (const Error& e) {
+    EXPECT_TRUE(ends(e.what(), "absent.toml: no such file"));
+  }
+  try {
+    CaseFile file(scratch_ / "");
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_TRUE(contains(e.what(), "a directory"));
+  }
+  EXPECT_TRUE(starts(error(touch_all, {}, "a = 1\nb = = 2\n"), "plate.toml:2: not TOML: "));
+  EXPECT_TRUE(starts(error(touch_all, {}, "a = 1\na = 2\n"), "plate.toml:2: not TOML: "));
+  EXPECT_TRUE(starts(error(touch_all, {}, "a = \"\xff\"\n"), "plate.toml:1: not TOML: "));
+  EXPECT_EQ(error(touch_all, {}, ""), "");
+}
+
+TEST_F(CaseFiles, OverridesReachEveryPlace) {
+  const auto number = [&](const Overrides& changes, auto find) {
+    const CaseFile file(scratch_.write("plate.toml", kText), changes);
+    return find(file.root()).number("thickness", positive("a thickness", "m"));
+  };
+  EXPECT_EQ(number({"body.plate.thickness=7e-4"}, plate), 7e-4);
+  EXPECT_EQ(number({"body.1.thickness=2"}, arm), 2);
+  EXPECT_EQ(number({"body.arm.thickness = 2", "body.1.thickness=3"}, arm), 3);
+
+  const CaseFile file(
+      scratch_.write("one.toml", "[[body]]\nname = 'plate'\n"),
+      Overrides{"body.flow.speed=0.5", "esl.definition=frozen", "gravity=[0, -9.81]"});
+  EXPECT_EQ(plate(file.root()).table("flow").number("speed", any_number("a speed")), 0.5);
+  EXPECT_EQ(file.root().table("esl").string("definition", "it"), "frozen");
+  EXPECT_EQ(file.root().numbers("gravity", any_number("it"), 2), (std::vector<double>{0, -9.81}));
+}
+
+TEST_F(CaseFiles, OverridesAreLocatedByTheirOption) {
+  EXPECT_EQ(error([](const Table& root) { plate(root).number("thickness", positive("it", "m")); },
+                  {"body.plate.thickness=-1"}),
+            "--set body.plate.thickness=-1: it is positive [m]");
+  EXPECT_EQ(error(touch_all, {"body.thickness=1"}),
+            "--set body.thickness=1: body has 2 entries; write body.ENTRY.KEY with one of plate, "
+            "arm");
+  EXPECT_EQ(error(touch_all, {"time.end"}), "--set time.end: an override is written KEY=VALUE");
+  EXPECT_EQ(error(touch_all, {"time.end.x=1"}),
+            "--set time.end.x=1: time.end has no keys of its own");
+  EXPECT_TRUE(contains(error(touch_all, {"a..b=1"}), "KEY is a dotted path"));
+  EXPECT_TRUE(starts(error(touch_all, {"a=1 2"}), "--set a=1 2: VALUE is not TOML"));
+  EXPECT_TRUE(starts(error(touch_all, {"a="}), "--set a=: VALUE is not TOML"));
+  EXPECT_EQ(error([](const Table& root) { root.table("verify").integer("mesh", "it", 1, 2); },
+                  {"verify.step=1"}),
+            "--set verify.step=1: verify.mesh is missing: it is a whole number between 1 and 2");
+}
+
+// The effective case is a case again, with the changes in it and every other value unchanged.
+TEST_F(CaseFiles, EffectiveTextReadsBack) {
+  const CaseFile changed(
+      scratch_.write("plate.toml", kText),
+      Overrides{"body.arm.thickness=0.1", "verify.step=1e-4", "title=\"a \\\"new\\\" one\""});
+  const CaseFile again(scratch_.write("again.toml", changed.text()));
+  const Table root = again.root();
+  EXPECT_EQ(root.string("title", "it"), "a \"new\" one");
+  EXPECT_EQ(arm(root).number("thickness", any_number("it")), 0.1);
+  EXPECT_EQ(plate(root).number("thickness", any_number("it")), -0.002);
+  EXPECT_EQ(plate(root).table("flow").number("speed", any_number("it")), 0.1);
+  EXPECT_EQ(root.table("verify").number("step", any_number("it")), 1e-4);
+  EXPECT_EQ(again.text(), changed.text());
+  EXPECT_EQ(root.keys(), (std::vector<std::string>{"title", "time", "body", "verify"}));
+}
+
+TEST_F(CaseFiles, NumbersDoNotDependOnTheLocale) {
+  const CommaLocale comma;
+  const CaseFile file(scratch_.write("plate.toml", "a = 1234.5\nb = 10000\n"), Overrides{"c=0.25"});
+  EXPECT_EQ(file.root().number("a", any_number("it")), 1234.5);
+  EXPECT_EQ(file.root().number("c", any_number("it")), 0.25);
+  EXPECT_TRUE(contains(file.text(), "a = 1234.5\nb = 10000\nc = 0.25\n"));
+  EXPECT_TRUE(ends(
+      error([](const Table& root) { root.integer("a", "it", 1, 20000); }, {}, "\n\na = 1234.5\n"),
+      "whole number between 1 and 20000"));
+}
+
+}  // namespace
+}  // namespace flexmorph::io

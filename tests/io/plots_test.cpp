@@ -1,0 +1,124 @@
+// Plots and drawings: well-formed XML, points where the data are, gaps where there are none.
+#include "io/plots.h"
+
+#include <gtest/gtest.h>
+#include <vtkSmartPointer.h>
+#include <vtkXMLDataElement.h>
+#include <vtkXMLUtilities.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "tests/io/scratch.h"
+
+namespace flexmorph::io {
+namespace {
+
+/// Root of the parsed text, or null where it is not well formed.
+vtkSmartPointer<vtkXMLDataElement> parse(const std::string& text) {
+  return vtkSmartPointer<vtkXMLDataElement>::Take(
+      vtkXMLUtilities::ReadElementFromString(text.c_str()));
+}
+
+/// All `d` of paths, in the order of the file.
+std::vector<std::string> paths(const std::string& svg) {
+  std::vector<std::string> found;
+  for (size_t at = 0; (at = svg.find(" d=\"", at)) != std::string::npos;) {
+    at += 4;
+    found.push_back(svg.substr(at, svg.find('"', at) - at));
+  }
+  return found;
+}
+
+Figure figure_of(Panel panel) { return {.title = "a < b & c", .panels = {std::move(panel)}}; }
+
+TEST(Plot, IsWellFormedAndComplete) {
+  Panel panel{.title = "\"Tip\"", .x = {"time [s]"}, .y = {"deflection [m]"}};
+  panel.curves = {
+      {.name = "one", .x = {0, 1}, .y = {0, 1}},
+      {.name = "two & more", .x = {0, 1}, .y = {1, 0}, .markers = true, .dashed = true}};
+  Figure figure = figure_of(panel);
+  figure.panels.push_back(panel);
+  const CommaLocale comma;
+  const std::string svg = plot_svg(figure);
+  const auto root = parse(svg);
+  ASSERT_NE(root, nullptr);
+  EXPECT_STREQ(root->GetName(), "svg");
+  for (const char* word : {"a &lt; b &amp; c", "time [s]", "deflection [m]", "two &amp; more"})
+    EXPECT_TRUE(contains(svg, word));
+  EXPECT_FALSE(contains(svg, "id="));  // several figures share a page
+}
+
+TEST(Plot, NonFinitePointsLeaveGaps) {
+  Panel panel;
+  panel.curves = {{.x = {0, 1, 2, 3, 4, 5},
+                   .y = {1, 2, std::nan(""), 3, std::numeric_limits<double>::infinity(), 2}}};
+  const auto drawn = paths(plot_svg(figure_of(panel)));
+  ASSERT_EQ(drawn.size(), 1u);
+  EXPECT_EQ(std::count(drawn[0].begin(), drawn[0].end(), 'M'), 3);
+  EXPECT_EQ(std::count(drawn[0].begin(), drawn[0].end(), 'L'), 1);
+  EXPECT_FALSE(contains(plot_svg(figure_of(panel)), "nan"));
+}
+
+// A power law is a straight line on logarithmic axes; values that have no logarithm are gaps.
+TEST(Plot, LogarithmicAxes) {
+  Panel panel{.x = {"h", true}, .y = {"error", true}};
+  panel.curves = {{.x = {1e-3, 1e-2, 1e-1, 1, 10}, .y = {1e-6, 1e-4, 1e-2, 0, -1}}};
+  const auto drawn = paths(plot_svg(figure_of(panel)));
+  ASSERT_EQ(drawn.size(), 1u);
+  std::string points = drawn[0];
+  std::replace_if(
+      points.begin(), points.end(), [](char c) { return c == 'M' || c == 'L'; }, ' ');
+  std::istringstream in(points);
+  std::vector<double> p;
+  for (double value; in >> value;) p.push_back(value);
+  ASSERT_EQ(p.size(), 6u);
+  // Pixels are written to 0.01.
+  EXPECT_NEAR(p[2] - p[0], p[4] - p[2], 0.03);
+  EXPECT_NEAR(p[3] - p[1], p[5] - p[3], 0.03);
+  EXPECT_GT(p[2], p[0]);
+  EXPECT_LT(p[3], p[1]);  // y up
+}
+
+TEST(Plot, EmptyAndConstantDataStillMakeAPicture) {
+  Panel constant;
+  constant.curves = {{.x = {1}, .y = {3e7}}, {.x = {1, 2}, .y = {3e7, 3e7}}};
+  for (const Panel& panel : {Panel{}, constant, Panel{.x = {"x", true}, .y = {"y", true}}}) {
+    const std::string svg = plot_svg(figure_of(panel));
+    EXPECT_NE(parse(svg), nullptr);
+    EXPECT_FALSE(contains(svg, "nan"));
+    EXPECT_FALSE(contains(svg, "inf"));
+  }
+}
+
+TEST(Ticks, AreRoundInsideAndEven) {
+  for (const auto& [lower, upper] :
+       {std::pair{0.0, 1.0}, {-3.7e-4, 5.2e-4}, {1e7, 3.1e7}, {299.0, 301.0}, {-1e-12, 1e-12}}) {
+    const std::vector<double> ticks = nice_ticks(lower, upper, 6);
+    ASSERT_GE(ticks.size(), 3u);
+    EXPECT_LE(ticks.size(), 11u);
+    const double step = ticks[1] - ticks[0],
+                 digit = step / std::pow(10, std::floor(std::log10(step)));
+    const double nearest = std::round(digit * 10) / 10;
+    EXPECT_NEAR(digit, nearest, 1e-6);
+    EXPECT_TRUE(nearest == 1 || nearest == 2 || nearest == 5 || nearest == 10) << nearest;
+    EXPECT_GE(ticks.front(), lower - 1e-9 * step);
+    EXPECT_LE(ticks.back(), upper + 1e-9 * step);
+  }
+  EXPECT_EQ(nice_ticks(0, 1, 5), (std::vector<double>{0, 0.2, 0.4, 3 * 0.2, 0.8, 1}));
+}
+
+TEST(Drawing, IsInMetresAndYUp) {
+  const Region region{{{0, -0.05}, {0.6, -0.05}, {0.6, 0.05}}, {{{0.4, 0}, {0.4, 0.01}, {0.5, 0}}}};
+  const std::string svg = outline_svg(std::vector<Region>{region}, {{0, -0.05}, {0.6, 0.05}});
+  ASSERT_NE(parse(svg), nullptr);
+  EXPECT_TRUE(contains(svg, "width=\"600mm\" height=\"100mm\""));
+  EXPECT_TRUE(contains(svg, "viewBox=\"0 -0.05 0.6 0.1\""));
+  EXPECT_TRUE(contains(svg, "matrix(1 0 0 -1 0 0)"));  // the middle stays where it is
+  EXPECT_TRUE(contains(svg, "fill-rule=\"evenodd\""));
+  EXPECT_EQ(paths(svg).at(0), "M0 -0.05L0.6 -0.05L0.6 0.05ZM0.4 0L0.4 0.01L0.5 0Z");
+}
+
+}  // namespace
+}  // namespace flexmorph::io

@@ -1,0 +1,133 @@
+// Tables and reports: numbers survive the way through text bit for bit in any locale, rows can be
+// read while the table grows, JSON is what a JSON parser reads, files appear whole.
+#include "io/tables.h"
+
+#include <gtest/gtest.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <sstream>
+
+#include "geometry/base.h"
+#include "tests/io/scratch.h"
+
+namespace flexmorph::io {
+namespace {
+
+std::vector<std::string> split(const std::string& line, char separator) {
+  std::vector<std::string> parts;
+  std::istringstream in(line);
+  for (std::string part; std::getline(in, part, separator);) parts.push_back(part);
+  return parts;
+}
+
+std::vector<double> awkward_numbers() {
+  std::vector<double> numbers = {0.1, 1.0 / 3, -0.0, 1e-300, 5e-324, 1.7976931348623157e308, 1e22};
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> mantissa(-1, 1);
+  for (int i = 0; i < 1000; ++i)
+    numbers.push_back(std::ldexp(mantissa(random), static_cast<int>(random() % 600) - 300));
+  return numbers;
+}
+
+TEST(Csv, NumbersReadBackExactlyInAnyLocale) {
+  const Scratch scratch;
+  const CommaLocale comma;
+  const std::vector<double> numbers = awkward_numbers();
+  {
+    CsvWriter table(scratch / "deep/history.csv", std::vector<std::string>{"i", "value"});
+    for (size_t i = 0; i < numbers.size(); ++i) table.row({static_cast<int>(i), numbers[i]});
+  }
+  const auto lines = split(contents_of(scratch / "deep/history.csv"), '\n');
+  ASSERT_EQ(lines.size(), numbers.size() + 1);
+  EXPECT_EQ(lines[0], "i,value");
+  for (size_t i = 0; i < numbers.size(); ++i) {
+    const std::string text = split(lines[i + 1], ',').at(1);
+    double back = 0;
+    std::from_chars(text.data(), text.data() + text.size(), back);
+    EXPECT_EQ(std::signbit(back), std::signbit(numbers[i]));
+    EXPECT_EQ(back, numbers[i]);
+  }
+}
+
+TEST(Csv, EmptyCellsQuotesAndNonFiniteNumbers) {
+  const Scratch scratch;
+  CsvWriter table(scratch / "t.csv", std::vector<std::string>{"a", "b", "c", "d"});
+  table.row({Cell(), "plate", "says \"no, never\"", true});
+  table.row({std::nan(""), -std::numeric_limits<double>::infinity(), Cell(), Cell()});
+  // Readable at once, while the table is still open.
+  EXPECT_EQ(contents_of(scratch / "t.csv"),
+            "a,b,c,d\n,plate,\"says \"\"no, never\"\"\",1\nnan,-inf,,\n");
+  EXPECT_THROW(table.row({1, 2}), Error);
+}
+
+TEST(Csv, UnwritablePlaceIsAnInputError) {
+  const Scratch scratch;
+  scratch.write("file", "");
+  const std::vector<std::string> header = {"a"};
+  try {
+    CsvWriter table(scratch / "file/t.csv", header);
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.kind(), Error::Kind::input);
+    EXPECT_TRUE(contains(e.what(), "t.csv: cannot be written: "));
+  }
+}
+
+TEST(JsonText, IsWhatAParserReads) {
+  const CommaLocale comma;
+  Json run = Json::object();
+  run.set("status", "done").set("seconds", 12345.678).set("threads", 4).set("failed", false);
+  run.set("words", "a \"b\" \\ \n \x01 \xC3\xA9").set("kkt", std::nan("")).set("none", Json());
+  Json list = Json::array();
+  list.push(1).push("two").push(Json::array()).push(Json::object());
+  run.set("list", list).set("status", "stopped");
+
+  const auto parsed = nlohmann::ordered_json::parse(run.text());
+  EXPECT_EQ(parsed["status"], "stopped");
+  EXPECT_EQ(parsed["seconds"].get<double>(), 12345.678);
+  EXPECT_EQ(parsed["threads"], 4);
+  EXPECT_EQ(parsed["failed"], false);
+  EXPECT_EQ(parsed["words"], "a \"b\" \\ \n \x01 \xC3\xA9");
+  EXPECT_TRUE(parsed["kkt"].is_null());
+  EXPECT_EQ(parsed["list"].size(), 4u);
+  EXPECT_EQ(parsed.begin().key(), "status");  // the order of the first set()
+  EXPECT_EQ(std::prev(parsed.end()).key(), "list");
+}
+
+TEST(Files, AppearWholeAndReplaceOldOnes) {
+  const Scratch scratch;
+  const std::string path = scratch / "a/b/run.json";
+  write_file(path, "old");
+  write_file(path, std::string("new\0bytes", 9));
+  EXPECT_EQ(contents_of(path), std::string("new\0bytes", 9));
+  EXPECT_FALSE(std::filesystem::exists(path + ".tmp"));
+  EXPECT_THROW(write_file(path + "/below_a_file", ""), Error);
+}
+
+TEST(Text, OfNumbers) {
+  const CommaLocale comma;
+  EXPECT_EQ(to_text(0.1), "0.1");
+  EXPECT_EQ(to_text(1234567), "1234567");
+  EXPECT_EQ(to_text(0.031234567, 3), "0.0312");
+  EXPECT_EQ(to_text(1.25e-5, 3), "1.25e-05");
+}
+
+TEST(Report, StandsAlone) {
+  const ReportSection numbers{.heading = "Results & more",
+                              .rows = {{"name", "value"}, {"compliance", "<1>"}}};
+  const ReportSection plots{.words = "Histories",
+                            .pictures = {"<?xml version=\"1.0\"?>\n<svg id=\"p\"></svg>\n"}};
+  const std::string page = report_html("A \"plate\"", std::vector<ReportSection>{numbers, plots});
+  EXPECT_TRUE(contains(page, "<h2>Results &amp; more</h2>"));
+  EXPECT_TRUE(contains(page, "<td>compliance</td><td>&lt;1&gt;</td>"));
+  EXPECT_TRUE(contains(page, "<svg id=\"p\"></svg>"));
+  EXPECT_FALSE(contains(page, "<?xml"));
+  EXPECT_FALSE(contains(page, "http"));  // asks for nothing outside
+}
+
+}  // namespace
+}  // namespace flexmorph::io

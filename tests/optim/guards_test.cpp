@@ -1,0 +1,289 @@
+// What happens when something goes wrong: problems that fail, come apart or throw, observers that
+// stop, names and options that do not exist. The best design is kept, and the message says why.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "optim/optimizer.h"
+#include "tests/optim/problems.h"
+
+namespace flexmorph::optim::test {
+namespace {
+
+Settings defaults(const std::string& name) {
+  Settings settings;
+  settings.name = name;
+  settings.max_iterations = 60;
+  return settings;
+}
+
+/// The cantilever, that does something else from some evaluation on, or where `bad` says so.
+class Troubled : public Problem {
+ public:
+  int n_variables() const override { return sound_.n_variables(); }
+  int n_constraints() const override { return 1; }
+  VectorXd lower() const override { return sound_.lower(); }
+  VectorXd upper() const override { return sound_.upper(); }
+  VectorXd start() const override { return sound_.start(); }
+  Response evaluate(const VectorXd& x) override {
+    Response r = sound_.evaluate(x);
+    if (trouble) trouble(sound_.evaluations, x, r);
+    return r;
+  }
+  bool acceptable(const VectorXd& x) override { return !refuses || !refuses(x); }
+
+  std::function<void(int, const VectorXd&, Response&)> trouble;
+  std::function<bool(const VectorXd&)> refuses;
+
+ private:
+  Analytic sound_ = cantilever();
+};
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+class EveryGuard : public ::testing::TestWithParam<std::string> {};
+
+void expect_best_kept(const Result& result, const std::vector<double>& feasible_f) {
+  ASSERT_FALSE(feasible_f.empty());
+  EXPECT_TRUE(std::isfinite(result.response.f));
+  EXPECT_LE(result.response.f, *std::min_element(feasible_f.begin(), feasible_f.end()) + 1e-12);
+  EXPECT_LE(result.violation, 1e-5);
+}
+
+TEST_P(EveryGuard, NanObjectiveKeepsTheBestDesign) {
+  Troubled problem;
+  problem.trouble = [](int evaluation, const VectorXd&, Response& r) {
+    if (evaluation > 6) r.f = std::numeric_limits<double>::quiet_NaN();
+  };
+  std::vector<double> feasible;
+  const Result result =
+      make_optimizer(defaults(GetParam()))->minimize(problem, [&](const Iterate& it) {
+        EXPECT_TRUE(std::isfinite(it.response->f));
+        if (it.violation <= 1e-5) feasible.push_back(it.response->f);
+        return true;
+      });
+  expect_best_kept(result, feasible);
+  EXPECT_EQ(result.stop, Stop::stalled);
+  EXPECT_TRUE(contains(result.message, "the objective is not finite")) << result.message;
+}
+
+TEST_P(EveryGuard, NumericalErrorsKeepTheBestDesign) {
+  Troubled problem;
+  problem.trouble = [](int evaluation, const VectorXd&, Response&) {
+    if (evaluation > 6) throw Error::numerical("static solve: K is not positive definite");
+  };
+  std::vector<double> feasible;
+  const Result result =
+      make_optimizer(defaults(GetParam()))->minimize(problem, [&](const Iterate& it) {
+        if (it.violation <= 1e-5) feasible.push_back(it.response->f);
+        return true;
+      });
+  expect_best_kept(result, feasible);
+  EXPECT_EQ(result.stop, Stop::stalled);
+  EXPECT_TRUE(contains(result.message, "K is not positive definite")) << result.message;
+}
+
+// Anything but a numerical Error is not ours to swallow: it arrives as it was thrown, through
+// NLopt's C and through Ipopt.
+TEST_P(EveryGuard, OtherExceptionsPassThrough) {
+  Troubled problem;
+  problem.trouble = [](int evaluation, const VectorXd&, Response&) {
+    if (evaluation > 3) throw std::logic_error("someone's mistake");
+  };
+  try {
+    make_optimizer(defaults(GetParam()))->minimize(problem, {});
+    FAIL() << "nothing was thrown";
+  } catch (const std::logic_error& error) {
+    EXPECT_STREQ(error.what(), "someone's mistake");
+  }
+}
+
+TEST_P(EveryGuard, ExceptionsOfTheObserverPassThrough) {
+  Analytic problem = cantilever();
+  const auto throws = [](const Iterate& it) -> bool {
+    if (it.iteration > 2) throw std::runtime_error("disk full");
+    return true;
+  };
+  EXPECT_THROW(make_optimizer(defaults(GetParam()))->minimize(problem, throws), std::runtime_error);
+}
+
+// An occasional failure (here: a third of the designs) is stepped back from.
+TEST_P(EveryGuard, StepsBackFromFailures) {
+  Troubled problem;
+  problem.trouble = [](int evaluation, const VectorXd&, Response&) {
+    if (evaluation % 3 == 2) throw Error::numerical("no luck");
+  };
+  Settings settings = defaults(GetParam());
+  settings.max_iterations = 400;
+  const Result result = make_optimizer(settings)->minimize(problem, {});
+  EXPECT_LT(result.response.f, 1.40) << result.message;  // from 1.56 most of the way to 1.340
+  EXPECT_LE(result.violation, 1e-5);
+}
+
+// Designs with x₁ > 5.4 have come apart; the optimum beyond (6.02) must not be entered. Nobody can
+// slide along a wall that has no gradient: something better than the start is all that is asked.
+TEST_P(EveryGuard, UnacceptableDesignsAreNotEntered) {
+  Troubled problem;
+  problem.refuses = [](const VectorXd& x) { return x[0] > 5.4; };
+  Settings settings = defaults(GetParam());
+  settings.max_iterations = 300;
+  const Result result = make_optimizer(settings)->minimize(problem, [&](const Iterate& it) {
+    // NLopt's rows are evaluations; refused ones are not rows either.
+    EXPECT_LE((*it.x)[0], 5.4);
+    return true;
+  });
+  EXPECT_LE(result.x[0], 5.4);
+  EXPECT_LE(result.violation, 1e-5);
+  EXPECT_LT(result.response.f, 1.56 - 4e-3);
+}
+
+// A start that is not acceptable itself does not stop the search; the first one that is, is kept.
+TEST_P(EveryGuard, LeavesAnUnacceptableStart) {
+  Troubled problem;
+  problem.refuses = [](const VectorXd& x) { return x[4] > 4.9; };  // the start has 5
+  const Result result = make_optimizer(defaults(GetParam()))->minimize(problem, {});
+  EXPECT_LE(result.x[4], 4.9);
+  EXPECT_LT(result.response.f, 1.56);
+}
+
+TEST_P(EveryGuard, StartThatFailsIsAnError) {
+  for (const bool throws : {false, true}) {
+    Troubled problem;
+    problem.trouble = [throws](int, const VectorXd&, Response& r) {
+      if (throws) throw Error::numerical("singular");
+      r.df[2] = std::numeric_limits<double>::infinity();
+    };
+    try {
+      make_optimizer(defaults(GetParam()))->minimize(problem, {});
+      FAIL();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), Error::Kind::numerical);
+      EXPECT_TRUE(contains(error.what(), throws ? "singular" : "gradient")) << error.what();
+    }
+  }
+}
+
+TEST_P(EveryGuard, BadStartsAndEmptyProblemsAreInputErrors) {
+  const auto nothing = [](const VectorXd&, Response&) {};
+  Analytic empty("", VectorXd(), VectorXd(), VectorXd(), 0, nothing, 0);
+  Analytic outside("", VectorXd::Zero(2), VectorXd::Ones(2), VectorXd::Constant(2, 1.5), 0, nothing,
+                   0);
+  Analytic crossed("", VectorXd::Ones(2), VectorXd::Zero(2), VectorXd::Ones(2), 0, nothing, 0);
+  for (Analytic* problem : {&empty, &outside, &crossed}) {
+    try {
+      make_optimizer(defaults(GetParam()))->minimize(*problem, {});
+      FAIL();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), Error::Kind::input);
+    }
+    EXPECT_EQ(problem->evaluations, 0);
+  }
+}
+
+TEST_P(EveryGuard, ObserverStops) {
+  Analytic problem = cantilever();
+  const Result result =
+      make_optimizer(defaults(GetParam()))->minimize(problem, [](const Iterate& it) {
+        return it.iteration < 5;
+      });
+  EXPECT_EQ(result.stop, Stop::observer);
+  EXPECT_EQ(result.iterations, 5);
+  EXPECT_FALSE(result.message.empty());
+}
+
+TEST_P(EveryGuard, KeepsToItsIterations) {
+  Analytic problem = cantilever();
+  Settings settings = defaults(GetParam());
+  settings.max_iterations = 9;
+  settings.kkt_tolerance = 0;
+  const Result result = make_optimizer(settings)->minimize(problem, {});
+  EXPECT_EQ(result.stop, Stop::iteration_limit) << result.message;
+  EXPECT_EQ(result.iterations, 9);
+  // One more evaluation may put the problem back to the result; Ipopt's line search has as many
+  // again, and its start is moved off the bounds.
+  EXPECT_LE(result.evaluations, GetParam() == "ipopt" ? 19 : 10);
+}
+
+TEST_P(EveryGuard, UnknownOptionsAreNamed) {
+  Settings settings = defaults(GetParam());
+  settings.options = {{"rho_init", 3}};
+  try {
+    make_optimizer(settings);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), Error::Kind::input);
+    EXPECT_TRUE(contains(error.what(), GetParam())) << error.what();
+    EXPECT_TRUE(contains(error.what(), "'rho_init' is not known")) << error.what();
+    const char* known = GetParam() == "mma" ? "asyinit" : "box";
+    EXPECT_TRUE(contains(error.what(), known)) << error.what();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Table, EveryGuard, ::testing::ValuesIn(optimizer_names()),
+                         [](const auto& info) { return info.param; });
+
+TEST(Table, UnknownOptimizersAreNamed) {
+  try {
+    make_optimizer(defaults("simplex"));
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), Error::Kind::input);
+    EXPECT_TRUE(contains(error.what(), "'simplex' is not known")) << error.what();
+    for (const std::string& name : optimizer_names()) {
+      EXPECT_TRUE(contains(error.what(), name)) << error.what();
+    }
+  }
+}
+
+TEST(Table, SettingsOutOfRangeAreErrors) {
+  Settings settings = defaults("mma");
+  settings.move_limit = 0;
+  EXPECT_THROW(make_optimizer(settings), Error);
+  settings = defaults("mma");
+  settings.max_iterations = 0;
+  EXPECT_THROW(make_optimizer(settings), Error);
+  settings = defaults("mma");
+  settings.options = {{"asydecr", 1.5}};  // asymptotes would never close in
+  EXPECT_THROW(make_optimizer(settings), Error);
+  settings.options = {{"raa0", std::numeric_limits<double>::quiet_NaN()}};
+  EXPECT_THROW(make_optimizer(settings), Error);
+}
+
+// mma without time to converge: its iterates hover about the constraint, the result does not.
+TEST(Mma, ResultIsFeasibleWhenIteratesHover) {
+  Settings settings = defaults("mma");
+  settings.feasibility = 1e-9;
+  settings.kkt_tolerance = 0;
+  for (int limit = 15; limit < 40; ++limit) {
+    Analytic problem = cantilever();
+    settings.max_iterations = limit;
+    double best_f = 1e9;
+    const Result result = make_optimizer(settings)->minimize(problem, [&](const Iterate& it) {
+      if (it.violation <= settings.feasibility) best_f = std::min(best_f, it.response->f);
+      return true;
+    });
+    EXPECT_LE(result.violation, settings.feasibility) << limit;
+    EXPECT_DOUBLE_EQ(result.response.f, best_f) << limit;
+  }
+}
+
+// Change-based stop: off by default, and only at feasible designs.
+TEST(Mma, StopsWhenNothingChanges) {
+  Analytic problem = cantilever();
+  Settings settings = defaults("mma");
+  settings.max_iterations = 500;
+  settings.kkt_tolerance = 0;
+  settings.change_tolerance = 1e-3;
+  const Result result = make_optimizer(settings)->minimize(problem, {});
+  EXPECT_EQ(result.stop, Stop::converged);
+  EXPECT_TRUE(contains(result.message, "three iterations")) << result.message;
+}
+
+}  // namespace
+}  // namespace flexmorph::optim::test

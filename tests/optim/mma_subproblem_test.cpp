@@ -1,0 +1,151 @@
+// Solutions of the MMA subproblem satisfy its KKT conditions, computed here from its statement,
+// and agree with brute force; many constraints, none, and constraints that cannot be met work.
+
+#include "optim/mma_subproblem.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace flexmorph::optim::test {
+namespace {
+
+/// Random slopes about x = 0, asymptotes 0.1 away, bounds 0.05 away.
+MmaSubproblem random_subproblem(int n, int m, unsigned seed) {
+  std::mt19937 generator(seed);
+  std::normal_distribution<double> normal;
+  MmaSubproblem p;
+  p.low = VectorXd::Constant(n, -0.1);
+  p.upp = VectorXd::Constant(n, 0.1);
+  p.alpha = VectorXd::Constant(n, -0.05);
+  p.beta = VectorXd::Constant(n, 0.05);
+  const auto fill = [&](auto&& a, auto&& b) {
+    for (int j = 0; j < n; ++j) {
+      const double slope = normal(generator);
+      a[j] = 0.01 * (std::max(slope, 0.0) + 0.01);
+      b[j] = 0.01 * (std::max(-slope, 0.0) + 0.01);
+    }
+  };
+  p.p0.resize(n);
+  p.q0.resize(n);
+  fill(p.p0, p.q0);
+  p.P.resize(n, m);
+  p.Q.resize(n, m);
+  for (int i = 0; i < m; ++i) fill(p.P.col(i), p.Q.col(i));
+  p.b = 10 * (p.P + p.Q).colwise().sum().transpose();  // g = 0 at x = 0
+  for (int i = 0; i < m; ++i) p.b[i] -= 0.01 * normal(generator);
+  p.a = VectorXd::Zero(m);
+  p.c = VectorXd::Constant(m, 1000);
+  p.d = VectorXd::Ones(m);
+  return p;
+}
+
+VectorXd constraint_values(const MmaSubproblem& p, const VectorXd& x) {
+  return p.P.transpose() * (p.upp - x).cwiseInverse() +
+         p.Q.transpose() * (x - p.low).cwiseInverse() - p.b;
+}
+
+double objective(const MmaSubproblem& p, const VectorXd& x) {
+  return p.p0.dot((p.upp - x).cwiseInverse()) + p.q0.dot((x - p.low).cwiseInverse());
+}
+
+/// Largest violation of the conditions of the subproblem as it is stated, ξ and η eliminated:
+/// the slope in x may point outwards at a bound only.
+double kkt_from_statement(const MmaSubproblem& p, const MmaSolution& s) {
+  const VectorXd u = (p.upp - s.x).cwiseInverse().array().square();
+  const VectorXd l = (s.x - p.low).cwiseInverse().array().square();
+  const VectorXd slope =
+      (p.p0 + p.P * s.lambda).cwiseProduct(u) - (p.q0 + p.Q * s.lambda).cwiseProduct(l);
+  double worst = 0;
+  for (Eigen::Index j = 0; j < s.x.size(); ++j) {
+    const double room = slope[j] > 0 ? s.x[j] - p.alpha[j] : p.beta[j] - s.x[j];
+    EXPECT_GE(room, 0);
+    worst = std::max(worst, std::min(std::abs(slope[j]), std::abs(slope[j]) * room / 1e-3));
+  }
+  const VectorXd g = constraint_values(p, s.x) - p.a * s.z - s.y;
+  for (Eigen::Index i = 0; i < g.size(); ++i) {
+    EXPECT_GE(s.lambda[i], 0);
+    EXPECT_GE(s.y[i], 0);
+    worst = std::max({worst, g[i], std::abs(s.lambda[i] * g[i])});
+    const double in_y = p.c[i] + p.d[i] * s.y[i] - s.lambda[i];  // >= 0, and 0 where y > 0
+    worst = std::max({worst, -in_y, std::abs(in_y * s.y[i])});
+  }
+  const double in_z = p.a0 - p.a.dot(s.lambda);
+  return std::max({worst, -in_z, std::abs(in_z * s.z)});
+}
+
+TEST(MmaSubproblem, SolutionSatisfiesItsConditions) {
+  for (const auto& [n, m] : {std::pair{2, 1}, {5, 3}, {672, 1}, {1120, 1}, {100, 20}, {10, 30}}) {
+    MmaSolver solver(n, m);
+    for (unsigned seed = 1; seed <= 5; ++seed) {
+      MmaSubproblem p = random_subproblem(n, m, seed);
+      if (seed == 5) p.a.setOnes();  // z takes part: a min-max problem
+      const MmaSolution& s = solver.solve(p);
+      EXPECT_TRUE(s.solved) << n << " " << m << " " << seed;
+      EXPECT_LE(s.kkt, 2e-9);  // the last barrier parameter is 1e-9, residuals below 0.9 of it
+      // Products of complementary variables are at most that; rooms are divided by 1e-3 above.
+      EXPECT_LE(kkt_from_statement(p, s), 5e-6) << n << " " << m << " " << seed;
+    }
+  }
+}
+
+// Two variables, one constraint: the best of a grid, refined about its best point.
+TEST(MmaSubproblem, AgreesWithBruteForce) {
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    const MmaSubproblem p = random_subproblem(2, 1, seed);
+    double best = 1e300;
+    VectorXd best_x = VectorXd::Zero(2);
+    const auto sweep = [&](double half) {
+      const VectorXd centre = best_x;
+      for (int i = -200; i <= 200; ++i) {
+        for (int j = -200; j <= 200; ++j) {
+          VectorXd x = centre + half / 200 * Eigen::Vector2d(i, j);
+          x = x.cwiseMax(p.alpha).cwiseMin(p.beta);
+          const double y = std::max(0.0, constraint_values(p, x)[0]);
+          const double f = objective(p, x) + p.c[0] * y + 0.5 * p.d[0] * y * y;
+          if (f < best) {
+            best = f;
+            best_x = x;
+          }
+        }
+      }
+    };
+    for (const double half : {0.05, 2e-3, 1e-4, 1e-5, 1e-6}) sweep(half);
+    MmaSolver solver(2, 1);
+    const MmaSolution& s = solver.solve(p);
+    const double f = objective(p, s.x) + p.c[0] * s.y[0] + 0.5 * p.d[0] * s.y[0] * s.y[0];
+    // The grid ends at 5e-9 and pays c = 1000 for what it oversteps; slopes are about 1.
+    EXPECT_NEAR(f, best, 1e-6) << seed;
+    EXPECT_LE(f, best + 1e-7) << seed;
+  }
+}
+
+// A constraint beyond reach: y takes what is missing at the price λ = c + d y, x goes as far as
+// it can.
+TEST(MmaSubproblem, UnreachableConstraintsAreBought) {
+  MmaSubproblem p = random_subproblem(20, 1, 3);
+  p.b[0] -= 10;
+  MmaSolver solver(20, 1);
+  const MmaSolution& s = solver.solve(p);
+  EXPECT_TRUE(s.solved);
+  EXPECT_GT(s.y[0], 1);
+  EXPECT_NEAR(s.lambda[0], p.c[0] + p.d[0] * s.y[0], 1e-6);
+  EXPECT_NEAR(constraint_values(p, s.x)[0], s.y[0], 1e-8);
+}
+
+TEST(MmaSubproblem, WorksWithoutConstraints) {
+  const MmaSubproblem p = random_subproblem(30, 0, 2);
+  MmaSolver solver(30, 0);
+  const MmaSolution& s = solver.solve(p);
+  EXPECT_TRUE(s.solved);
+  for (int j = 0; j < 30; ++j) {  // each variable alone: √p0 (x - L) = √q0 (U - x)
+    const double a = std::sqrt(p.p0[j]), b = std::sqrt(p.q0[j]);
+    const double x = (a * p.low[j] + b * p.upp[j]) / (a + b);
+    // Distance kept from a bound by the barrier: 1e-9 over the slope there, which is 1e-4 or more.
+    EXPECT_NEAR(s.x[j], std::clamp(x, p.alpha[j], p.beta[j]), 1e-5) << j;
+  }
+}
+
+}  // namespace
+}  // namespace flexmorph::optim::test
