@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "fem/joint.h"
 #include "geometry/component.h"
 #include "geometry/grid.h"
 #include "geometry/tdf.h"
@@ -68,10 +69,10 @@ struct Body {
 };
 
 struct Joint {
-  std::string type;            ///< row of the table of joints: "weld"
-  std::string body, edge;      ///< edge "root"
-  std::string to;              ///< a hub
-  bool direction_only = true;  ///< weld "direction": free stretch at the root; false: "full"
+  std::string type;        ///< row of the table of joints: "weld"
+  std::string body, edge;  ///< edge "root"
+  std::string to;          ///< a hub
+  fem::WeldMode mode = fem::WeldMode::edge;
 };
 
 struct PointMass {

@@ -73,7 +73,7 @@ Box read_region(const Table& t, const Grid& grid) {
   }
   if (t.has("cells")) t.fail("cells", "only a strip is as wide as a number of cells");
   const std::vector<double> b = t.numbers("box", any_number("x0, y0, x1, y1 of a box", "m"), 4);
-  const Box box{{b[0], b[1]}, {b[2], b[3]}};
+  Box box{{b[0], b[1]}, {b[2], b[3]}};
   if (b[0] >= b[2] || b[1] >= b[3])
     t.fail("box", "x0 < x1 and y0 < y1, in the order x0, y0, x1, y1 [m]");
   if (cells_in(grid, {box}) == 0)

@@ -17,7 +17,7 @@ constexpr int kMostElements = 100'000;
 
 /// Part of column names and file names, so: a letter, then letters, digits, underscores.
 std::string read_name(const Table& t, const std::string& noun, const Scene& scene) {
-  const std::string name = t.string("name", noun);
+  std::string name = t.string("name", noun);
   const auto is_word_letter = [](char c) { return std::isalnum(c) || c == '_'; };
   if (name.empty() || static_cast<unsigned char>(name[0]) > 127 || !std::isalpha(name[0]) ||
       !std::all_of(name.begin(), name.end(), is_word_letter))
@@ -126,8 +126,11 @@ Joint read_joint(const Table& t, const Vocabulary& words, const Scene& scene) {
   joint.body = t.choice("body", "a body", names_of(scene.bodies));
   joint.edge = t.choice("edge", "an edge", std::vector<std::string>{"root"});
   joint.to = t.choice("to", "a hub", names_of(scene.hubs));
-  joint.direction_only =
-      t.choice<bool>("mode", "a weld", {{"direction", true}, {"full", false}}, true);
+  joint.mode = t.choice<fem::WeldMode>("mode", "a weld",
+                                       {{"edge", fem::WeldMode::edge},
+                                        {"direction", fem::WeldMode::direction},
+                                        {"full", fem::WeldMode::full}},
+                                       fem::WeldMode::edge);
   for (const Joint& other : scene.joints)
     if (other.body == joint.body && other.edge == joint.edge)
       t.fail("edge", "this edge of '" + joint.body + "' is welded already");

@@ -20,6 +20,7 @@ bool is_whole(double ratio);
 template <class T>
 std::vector<std::string> names_of(const std::vector<T>& list) {
   std::vector<std::string> names;
+  names.reserve(list.size());
   for (const T& each : list) names.push_back(each.name);
   return names;
 }

@@ -46,6 +46,12 @@ class Joint {
   /// Fills rows; the places in the jacobian are the same at every call between two bind().
   virtual void evaluate(double t, const VectorXd& q, const VectorXd& v,
                         ConstraintRows& rows) const = 0;
+
+  /// Appends (Φ_qᵀ λ)_q, the part of the tangent that a Φ_q depending on q contributes: places are
+  /// unknowns of the model, the same at every call between two bind(). None where Φ is linear in q.
+  /// @param lambda  multipliers of this joint's rows (size())
+  virtual void add_stiffness(double /*t*/, const VectorXd& /*q*/, const VectorXd& /*lambda*/,
+                             std::vector<Eigen::Triplet<double>>& /*out*/) const {}
 };
 
 /// The body of that name. @throws Error (input) naming joint and body.

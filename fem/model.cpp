@@ -140,6 +140,15 @@ void Model::add_constraint_force(const Constraints& c, const VectorXd& lambda,
   for (const auto& entry : c.jacobian) out[entry.col()] += entry.value() * lambda[entry.row()];
 }
 
+void Model::joint_stiffness(const State& x, std::vector<Eigen::Triplet<double>>& out) const {
+  out.clear();
+  int first = 0;
+  for (const auto& joint : joints_) {
+    joint->add_stiffness(x.t, x.q, x.lambda.segment(first, joint->size()), out);
+    first += joint->size();
+  }
+}
+
 void Model::build_pattern() const {
   const int n = n_dofs_ + n_constraints_;
   std::vector<Eigen::Triplet<double>> entries;
@@ -154,7 +163,11 @@ void Model::build_pattern() const {
         for (const int column : list) entries.emplace_back(row, column, 1.0);
     }
   Constraints c;
-  constraints(reference(), c);
+  const State at = reference();
+  constraints(at, c);
+  std::vector<Eigen::Triplet<double>> stiffness;
+  joint_stiffness(at, stiffness);
+  entries.insert(entries.end(), stiffness.begin(), stiffness.end());
   for (const auto& entry : c.jacobian) {
     entries.emplace_back(n_dofs_ + entry.row(), entry.col(), 1.0);
     entries.emplace_back(entry.col(), n_dofs_ + entry.row(), 1.0);
@@ -180,6 +193,8 @@ void Model::build_pattern() const {
     joint_places_.push_back(place(n_dofs_ + entry.row(), entry.col()));
     joint_places_.push_back(place(entry.col(), n_dofs_ + entry.row()));
   }
+  stiffness_places_.clear();
+  for (const auto& entry : stiffness) stiffness_places_.push_back(place(entry.row(), entry.col()));
   built_version_ = pattern_version_;
 }
 
@@ -201,6 +216,12 @@ void Model::kkt(const State& x, const Constraints& c, const Weights& w, double s
       const double* entry = tangent.data();
       for (const int place : at) values[place] += scale * *entry++;
     }
+  if (w.q != 0 && !stiffness_places_.empty()) {
+    std::vector<Eigen::Triplet<double>> stiffness;
+    joint_stiffness(x, stiffness);
+    for (size_t k = 0; k < stiffness.size(); ++k)
+      values[stiffness_places_[k]] += scale * w.q * stiffness[k].value();
+  }
   for (size_t k = 0; k < c.jacobian.size(); ++k) {
     values[joint_places_[2 * k]] += c.jacobian[k].value();
     values[joint_places_[2 * k + 1]] += c.jacobian[k].value();

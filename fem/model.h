@@ -73,8 +73,9 @@ class Model {
   /// out += Φ_qᵀ λ.
   void add_constraint_force(const Constraints& c, const VectorXd& lambda, VectorXd& out) const;
 
-  /// [ scale · (w.q F_q + w.v F_v + w.a M)   Φ_qᵀ ]
-  /// [ Φ_q                                   0    ]   in a fixed pattern (see kkt_pattern()).
+  /// [ scale · (w.q (F + Φ_qᵀ λ)_q + w.v F_v + w.a M)   Φ_qᵀ ]
+  /// [ Φ_q                                              0    ]   in a fixed pattern, which changes
+  /// with pattern_version() only.
   void kkt(const State& x, const Constraints& c, const Weights& w, double scale,
            SparseMatrix& out) const;
   /// Counts changes of the pattern: a solver that saw another number must analyse again.
@@ -90,6 +91,7 @@ class Model {
  private:
   void number_dofs();
   void build_pattern() const;
+  void joint_stiffness(const State& x, std::vector<Eigen::Triplet<double>>& out) const;
   void gather(const Body& body, int e, const State& x, Local& local) const;
 
   std::vector<Body> bodies_;
@@ -101,6 +103,7 @@ class Model {
   mutable SparseMatrix pattern_;
   mutable std::vector<std::vector<int>> places_;  // per element of all bodies: n_local² positions
   mutable std::vector<int> joint_places_;         // two per jacobian entry: (row, dof), (dof, row)
+  mutable std::vector<int> stiffness_places_;     // of the joints' (Φ_qᵀ λ)_q
 };
 
 }  // namespace flexmorph::fem

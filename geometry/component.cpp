@@ -6,6 +6,8 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
 
 #include "geometry/component_frame.h"
 

@@ -12,6 +12,8 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <string>
+#include <utility>
 
 #include "geometry/component_frame.h"
 

@@ -53,11 +53,11 @@ CaseNode& entry_of(CaseNode& list, const std::string& so_far, const std::vector<
     const std::string label = entry_label(list, i);
     if (next + 1 < keys.size() && (keys[next] == label || keys[next] == std::to_string(i))) {
       ++next;
-      return list.entries[i].second;
+      return list.entries[i];
     }
     known += (i ? ", " : "") + label;
   }
-  if (list.entries.size() == 1) return list.entries[0].second;
+  if (list.entries.size() == 1) return list.entries[0];
   throw Error::input(option + ": " + so_far + " has " + std::to_string(list.entries.size()) +
                      " entries; write " + so_far + ".ENTRY.KEY with one of " + known);
 }
@@ -66,12 +66,13 @@ void collect_unknown(const CaseNode& node, const std::string& path,
                      std::vector<std::pair<unsigned, std::string>>& messages) {
   if (node.kind == CaseNode::Kind::list) {
     for (size_t i = 0; i < node.entries.size(); ++i)
-      collect_unknown(node.entries[i].second, entry_path(node, i, path), messages);
+      collect_unknown(node.entries[i], entry_path(node, i, path), messages);
     return;
   }
   if (node.kind != CaseNode::Kind::table || !node.visited) return;
   const std::vector<std::string> known(node.asked.begin(), node.asked.end());
-  for (const auto& [key, child] : node.entries) {
+  for (const CaseNode& child : node.entries) {
+    const std::string& key = child.key;
     const std::string full = path.empty() ? key : path + "." + key;
     if (node.asked.contains(key)) {
       collect_unknown(child, full, messages);
@@ -97,16 +98,16 @@ std::string written(const CaseNode& node) {
   const bool is_table = node.kind == CaseNode::Kind::table;
   std::string text = is_table ? "{ " : "[";
   for (size_t i = 0; i < node.entries.size(); ++i) {
-    const auto& [key, child] = node.entries[i];
-    text += (i ? ", " : "") + (is_table ? written_key(key) + " = " : "") + written(child);
+    const CaseNode& child = node.entries[i];
+    text += (i ? ", " : "") + (is_table ? written_key(child.key) + " = " : "") + written(child);
   }
   return text + (is_table ? " }" : "]");
 }
 
 bool is_list_of_tables(const CaseNode& node) {
   return node.kind == CaseNode::Kind::list && !node.entries.empty() &&
-         std::all_of(node.entries.begin(), node.entries.end(), [](const auto& entry) {
-           return entry.second.kind == CaseNode::Kind::table && !entry.second.is_inline;
+         std::all_of(node.entries.begin(), node.entries.end(), [](const CaseNode& entry) {
+           return entry.kind == CaseNode::Kind::table && !entry.is_inline;
          });
 }
 
@@ -115,17 +116,17 @@ void write_table(const CaseNode& table, const std::string& path, std::string& ou
   const auto is_section = [](const CaseNode& node) {
     return is_list_of_tables(node) || (node.kind == CaseNode::Kind::table && !node.is_inline);
   };
-  for (const auto& [key, child] : table.entries)
-    if (!is_section(child)) out += written_key(key) + " = " + written(child) + "\n";
-  for (const auto& [key, child] : table.entries) {
+  for (const CaseNode& child : table.entries)
+    if (!is_section(child)) out += written_key(child.key) + " = " + written(child) + "\n";
+  for (const CaseNode& child : table.entries) {
     if (!is_section(child)) continue;
-    const std::string full = (path.empty() ? "" : path + ".") + written_key(key);
+    const std::string full = (path.empty() ? "" : path + ".") + written_key(child.key);
     if (child.kind == CaseNode::Kind::table) {
       out += "\n[" + full + "]\n";
       write_table(child, full, out);
       continue;
     }
-    for (const auto& [none, entry] : child.entries) {
+    for (const CaseNode& entry : child.entries) {
       out += "\n[[" + full + "]]\n";
       write_table(entry, full, out);
     }
@@ -134,14 +135,14 @@ void write_table(const CaseNode& table, const std::string& path, std::string& ou
 
 }  // namespace
 
-const CaseNode* CaseNode::find(const std::string& key) const {
-  for (const auto& [name, node] : entries)
-    if (name == key) return &node;
+const CaseNode* CaseNode::find(const std::string& wanted) const {
+  for (const CaseNode& node : entries)
+    if (node.key == wanted) return &node;
   return nullptr;
 }
 
-CaseNode* CaseNode::find(const std::string& key) {
-  return const_cast<CaseNode*>(std::as_const(*this).find(key));
+CaseNode* CaseNode::find(const std::string& wanted) {
+  return const_cast<CaseNode*>(std::as_const(*this).find(wanted));
 }
 
 bool is_bare_key(const std::string& word) {
@@ -153,7 +154,7 @@ bool is_bare_key(const std::string& word) {
 std::string entry_label(const CaseNode& list, size_t index) {
   const auto label = [&](size_t i) -> std::string {
     for (const char* key : {"name", "body"}) {
-      const CaseNode* node = list.entries[i].second.find(key);
+      const CaseNode* node = list.entries[i].find(key);
       if (node && node->kind == CaseNode::Kind::text) return node->text;
     }
     return "";
@@ -211,19 +212,21 @@ void CaseDocument::apply(const std::string& change) {
     CaseNode* node = here->find(key);
     if (!node) {
       CaseNode table;
+      table.key = key;
       table.place = option;
       table.shown = "{...}";
-      node = &here->entries.emplace_back(key, std::move(table)).second;
+      node = &here->entries.emplace_back(std::move(table));
     }
     if (is_list_of_tables(*node)) node = &entry_of(*node, so_far, keys, next, option);
     if (node->kind != CaseNode::Kind::table)
       throw Error::input(option + ": " + so_far + " has no keys of its own");
     here = node;
   }
-  if (CaseNode* old = here->find(keys.back())) {
+  value.key = keys.back();
+  if (CaseNode* old = here->find(value.key)) {
     *old = std::move(value);
   } else {
-    here->entries.emplace_back(keys.back(), std::move(value));
+    here->entries.push_back(std::move(value));
   }
   changes.push_back(change);
 }

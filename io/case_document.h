@@ -13,12 +13,13 @@ namespace flexmorph::io {
 struct CaseNode {
   enum class Kind { table, list, text, integer, number, boolean, other };
 
+  std::string key;  ///< in its table; empty in lists
   Kind kind = Kind::table;
-  std::string text;                                       ///< kind text: its contents
-  double number = 0;                                      ///< kinds integer and number
-  int64_t integer = 0;                                    ///< kinds integer and boolean (0, 1)
-  bool is_inline = false;                                 ///< a table in braces
-  std::vector<std::pair<std::string, CaseNode>> entries;  ///< of tables; of lists without keys
+  std::string text;               ///< kind text: its contents
+  double number = 0;              ///< kinds integer and number
+  int64_t integer = 0;            ///< kinds integer and boolean (0, 1)
+  bool is_inline = false;         ///< a table in braces
+  std::vector<CaseNode> entries;  ///< of tables and lists
 
   std::string place;                    ///< "cases/plate.toml:14", or "--set KEY=VALUE"
   std::string shown;                    ///< as it was written: "-0.002", "[10, 2]"
@@ -27,8 +28,8 @@ struct CaseNode {
   mutable std::set<std::string> asked;  ///< keys of a table that somebody asked for
   mutable bool visited = false;         ///< did anybody look into this table?
 
-  const CaseNode* find(const std::string& key) const;
-  CaseNode* find(const std::string& key);
+  const CaseNode* find(const std::string& wanted) const;
+  CaseNode* find(const std::string& wanted);
 };
 
 /// A case file as a tree.

@@ -70,8 +70,8 @@ struct Table::Place {
   /// @throws Error (input): a missing key, or the misspelt one that was probably meant.
   [[noreturn]] void fail_missing(const std::string& key, const std::string& allowed) const {
     std::vector<std::string> unasked;
-    for (const auto& [name, node] : table->entries)
-      if (!table->asked.contains(name)) unasked.push_back(name);
+    for (const CaseNode& node : table->entries)
+      if (!table->asked.contains(node.key)) unasked.push_back(node.key);
     const std::string misspelt = nearest(key, unasked);
     if (!misspelt.empty())
       throw Error::input(located(*table->find(misspelt), full(misspelt)) +
@@ -98,7 +98,7 @@ struct Table::Place {
     if (node->kind != CaseNode::Kind::list || size == 0 || (count && size != size_t(count)))
       fail(key, each);
     std::vector<T> values;
-    for (const auto& [none, entry] : node->entries) {
+    for (const CaseNode& entry : node->entries) {
       const std::optional<T> value = read(entry);
       if (!value) fail(key, each);
       values.push_back(*value);
@@ -142,7 +142,7 @@ bool Table::has(const std::string& key) const { return place_->find(key) != null
 
 std::vector<std::string> Table::keys() const {
   std::vector<std::string> all;
-  for (const auto& [key, node] : place_->table->entries) all.push_back(key);
+  for (const CaseNode& node : place_->table->entries) all.push_back(node.key);
   return all;
 }
 
@@ -188,7 +188,7 @@ std::string Table::choice(const std::string& key, const std::string& noun,
   if (!node && fallback) return *fallback;
   const std::string text = one_of(noun, allowed);
   if (!node || node->kind != Kind::text) fail(key, text);
-  const std::string value = node->text;
+  std::string value = node->text;
   for (const std::string& name : allowed)
     if (value == name) return value;
   const std::string close = nearest(value, allowed);
@@ -196,14 +196,14 @@ std::string Table::choice(const std::string& key, const std::string& noun,
 }
 
 std::vector<double> Table::numbers(const std::string& key, const Quantity& each, int count,
-                                   std::optional<std::vector<double>> fallback) const {
+                                   const std::optional<std::vector<double>>& fallback) const {
   return place_->list<double>(key, each.allowed(), count, fallback,
                               [&](const CaseNode& node) { return read_number(node, each); });
 }
 
 std::vector<int> Table::integers(const std::string& key, const std::string& noun, int lower,
                                  int upper, int count,
-                                 std::optional<std::vector<int>> fallback) const {
+                                 const std::optional<std::vector<int>>& fallback) const {
   return place_->list<int>(key, whole_number(noun, lower, upper), count, fallback,
                            [&](const CaseNode& node) { return read_integer(node, lower, upper); });
 }
@@ -236,7 +236,7 @@ std::vector<Table> Table::tables(const std::string& key) const {
   const std::string allowed = "a list of tables, each under its own [[" + full + "]]";
   if (node->kind != Kind::list) fail(key, allowed);
   for (size_t i = 0; i < node->entries.size(); ++i) {
-    const CaseNode* entry = &node->entries[i].second;
+    const CaseNode* entry = &node->entries[i];
     if (entry->kind != Kind::table) fail(key, allowed);
     entry->visited = true;
     const std::string path = entry_path(*node, i, full);

@@ -71,9 +71,10 @@ class Table {
 
   /// A list; `count` entries, or one or more if it is 0.
   std::vector<double> numbers(const std::string& key, const Quantity& each, int count = 0,
-                              std::optional<std::vector<double>> fallback = {}) const;
+                              const std::optional<std::vector<double>>& fallback = {}) const;
   std::vector<int> integers(const std::string& key, const std::string& noun, int lower, int upper,
-                            int count = 0, std::optional<std::vector<int>> fallback = {}) const;
+                            int count = 0,
+                            const std::optional<std::vector<int>>& fallback = {}) const;
   /// A list of one or more of the strings in `allowed`, none twice.
   std::vector<std::string> choices(const std::string& key, const std::string& noun,
                                    std::span<const std::string> allowed) const;

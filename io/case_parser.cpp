@@ -63,7 +63,7 @@ void convert_entries(const toml::table& table, const Source& source, CaseNode& r
   std::stable_sort(ordered.begin(), ordered.end(),
                    [](const auto& a, const auto& b) { return std::get<0>(a) < std::get<0>(b); });
   for (const auto& [position, key, child] : ordered)
-    result.entries.emplace_back(key, convert(*child, source));
+    result.entries.emplace_back(convert(*child, source)).key = key;
 }
 
 /// Value and default spelling of anything but a table.
@@ -71,12 +71,12 @@ void convert_value(const toml::node& node, const Source& source, CaseNode& resul
   using Kind = CaseNode::Kind;
   if (const toml::array* list = node.as_array()) {
     result.kind = Kind::list;
-    result.shown = "[";
+    std::string inside;
     for (const toml::node& child : *list) {
-      result.entries.emplace_back("", convert(child, source));
-      result.shown += (result.shown.size() > 1 ? ", " : "") + result.entries.back().second.shown;
+      result.entries.push_back(convert(child, source));
+      inside += (inside.empty() ? "" : ", ") + result.entries.back().shown;
     }
-    result.shown += "]";
+    result.shown = "[" + inside + "]";
   } else if (const auto* text = node.as_string()) {
     result.kind = Kind::text;
     result.text = text->get();
@@ -146,7 +146,8 @@ CaseNode parse_option(const std::string& value, const std::string& option) {
   // The name of a choice may stand without quotes, which shells take away.
   const bool word = is_bare_key(value) && std::isalpha(static_cast<unsigned char>(value[0])) &&
                     value != "true" && value != "false" && value != "inf" && value != "nan";
-  const std::string text = "value = " + (word ? in_quotes(value) : value);
+  std::string text = "value = ";
+  text += word ? in_quotes(value) : value;
   try {
     const toml::table root = toml::parse(text, option);
     if (root.size() != 1) throw Error::input(option + ": one value at a time");

@@ -262,7 +262,8 @@ std::vector<double> nice_ticks(double lower, double upper, int wanted) {
   std::vector<double> ticks;
   // Counted in steps, so that the ticks carry no summed rounding.
   const double first = std::ceil(lower / step - 1e-9), last = std::floor(upper / step + 1e-9);
-  for (double k = first; k <= last; ++k) ticks.push_back(k == 0 ? 0 : k * step);
+  for (int i = 0; i <= static_cast<int>(last - first); ++i)
+    ticks.push_back((first + i) * step + 0.0);  // + 0.0: no "-0"
   return ticks;
 }
 
@@ -287,8 +288,10 @@ std::string outline_svg(std::span<const Region> regions, const Box& frame) {
   const Vec2 size = frame.upper - frame.lower;
   const auto ring = [](const std::vector<Vec2>& points) {
     std::string path;
-    for (size_t i = 0; i < points.size(); ++i)
-      path += (i ? "L" : "M") + to_text(points[i].x()) + " " + to_text(points[i].y());
+    for (size_t i = 0; i < points.size(); ++i) {
+      path += i ? "L" : "M";
+      path += to_text(points[i].x()) + " " + to_text(points[i].y());
+    }
     return path + "Z";
   };
   std::string path;

@@ -109,7 +109,7 @@ Json& Json::push(Json value) {
   return *this;
 }
 
-void Json::write(std::string& out, int depth) const {
+void Json::write(std::string& out, size_t depth) const {
   if (kind_ == Kind::scalar) {
     out += text_;
     return;
@@ -117,11 +117,12 @@ void Json::write(std::string& out, int depth) const {
   const bool is_object = kind_ == Kind::object;
   out += is_object ? "{" : "[";
   for (size_t i = 0; i < entries_.size(); ++i) {
-    out += (i ? ",\n" : "\n") + std::string(2 * (depth + 1), ' ');
+    out += i ? ",\n" : "\n";
+    out.append(2 * (depth + 1), ' ');
     if (is_object) out += json_string(entries_[i].first) + ": ";
     entries_[i].second.write(out, depth + 1);
   }
-  if (!entries_.empty()) out += "\n" + std::string(2 * depth, ' ');
+  if (!entries_.empty()) out.append("\n").append(2 * depth, ' ');
   out += is_object ? "}" : "]";
 }
 

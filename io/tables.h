@@ -72,7 +72,7 @@ class Json {
  private:
   enum class Kind { scalar, object, array };
   explicit Json(Kind kind) : kind_(kind) {}
-  void write(std::string& out, int depth) const;
+  void write(std::string& out, size_t depth) const;
 
   Kind kind_ = Kind::scalar;
   std::string text_;

@@ -10,7 +10,8 @@
 ///
 /// Options, with the defaults that worked on the published short beam:
 ///   asyinit, asyincr, asydecr  first distance of the asymptotes, its factors per iteration
-///   asymin, asymax             range of that distance
+///   asymin, asymax             range of that distance; f * fscale may curve by 8 raa0 / asymin
+///                              before x starts to swing about a minimum inside its bounds
 ///   albefa                     part of the way to an asymptote that stays forbidden
 ///   raa0                       convexity given to every variable; with 1e-5 (Svanberg's) large
 ///                              subproblems with many near-zero gradients stay unsolved
@@ -26,10 +27,9 @@ namespace {
 const Options kDefaults = {{"asyinit", 0.1}, {"asyincr", 1.05}, {"asydecr", 0.65}, {"asymin", 0.01},
                            {"asymax", 10},   {"albefa", 0.1},   {"raa0", 0.01},    {"c", 1000},
                            {"fscale", 10},   {"gscale", 1}};
-constexpr int kMostRefusals = 10;  // in a row
-constexpr double kStepBack = 0.5;  // of the trust, after a refused trial
-constexpr double kStepForward =
-    1.5;  // of the trust, after a taken one: twice makes up for once back
+constexpr int kMostRefusals = 10;     // in a row
+constexpr double kStepBack = 0.5;     // of the trust, after a refused trial
+constexpr double kStepForward = 1.5;  // after a taken one: two of them make up for one back
 constexpr double kLeastTrust = 1e-4;
 constexpr int kRestorations = 3;  // last iterations that, if infeasible, only restore g <= 0
 

@@ -163,7 +163,7 @@ bool Search::row(int iteration, const Point& point) {
     const double slack =
         settings_.kkt_tolerance + settings_.feasibility * (1 + 2 * kkt.lambda.sum());
     if (point.response.f <= best_.point.response.f + slack) best_.point = point;
-  } else if (!first && rests(it.change, it.kkt, it.violation)) {
+  } else if (!first && rests(it.change, it.violation)) {
     stop(Stop::converged, "three iterations in a row changed no variable by " +
                               scientific(settings_.change_tolerance) + "; KKT residual " +
                               scientific(it.kkt));
@@ -174,7 +174,7 @@ bool Search::row(int iteration, const Point& point) {
   return !stopped_;
 }
 
-bool Search::rests(double change, double, double violation) {
+bool Search::rests(double change, double violation) {
   const bool resting = change < settings_.change_tolerance && violation <= settings_.feasibility;
   resting_ = resting ? resting_ + 1 : 0;
   return resting_ >= kRestingRows;

@@ -68,7 +68,7 @@ class Search {
   };
   bool better(const Response& response, bool acceptable) const;
   void check(const Response& response) const;
-  bool rests(double change, double kkt, double violation);
+  bool rests(double change, double violation);
 
   Problem& problem_;
   const Settings& settings_;

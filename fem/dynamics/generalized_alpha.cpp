@@ -99,8 +99,8 @@ bool GeneralizedAlpha::newton(State& x, double h) {
   const double gamma_prime = gamma_ / (h * beta_);
   const double scale = beta_ * h * h;
   // A kept tangent that contracts less, or takes longer, is replaced.
-  constexpr double kContraction = 0.1;
-  constexpr int kPatience = 4;
+  constexpr double kContraction = 0.2;
+  constexpr int kPatience = 6;
   double last = 0;
   bool fresh = false;
   history_.clear();
@@ -130,7 +130,6 @@ bool GeneralizedAlpha::newton(State& x, double h) {
     std::snprintf(text, sizeof text, "%d: |r| %.1e, |dq| %.1e; ", iteration, r, correction);
     history_ += text;
     if (!std::isfinite(correction)) return false;
-    if (getenv("DBG2")&&iteration==1) { int k; solution_.head(model_.n_dofs()).cwiseAbs().maxCoeff(&k); fprintf(stderr,"t %g dof %d of %d corr %.2e r %.2e\n",x.t,k,model_.n_dofs(),correction,r);}
 
     const double contraction = iteration > 1 ? correction / last : 1;
     const double error = contraction < 1 ? correction * contraction / (1 - contraction) : correction;
@@ -159,7 +158,7 @@ void GeneralizedAlpha::advance(State& x, double t_end,
       }
       continue;
     }
-    ++counts_.rejected; if (getenv("DBG")) fprintf(stderr, "REJ t=%g h=%g %s\n", x.t, h, history_.c_str());
+    ++counts_.rejected;
     if (++halvings > settings_.max_halvings) {
       char text[160];
       std::snprintf(text, sizeof text,

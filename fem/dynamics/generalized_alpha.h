@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "fem/model.h"
+#include "fem/solve/linear_solver.h"
 
 namespace flexmorph::fem {
 

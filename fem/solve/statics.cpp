@@ -1,5 +1,7 @@
 #include "fem/solve/statics.h"
 
+#include "fem/solve/linear_solver.h"
+
 namespace flexmorph::fem {
 
 void solve_rotating_equilibrium(Model& model, const VectorXd& spin, const VectorXd& center,

@@ -12,14 +12,14 @@ namespace flexmorph::fem {
 
 namespace {
 
-// Largest relaxed supernodes: measured on plates of 40 and 80 cells height, wide enough for the
+// Largest relaxed supernodes: measured on a plate of 400 x 40 cells, wide enough for the
 // block products, narrow enough that the zeros they store cost less than they bring.
 constexpr std::size_t kNarrow = 8, kMiddle = 16, kWide = 32;
 constexpr double kZerosMiddle = 0.3, kZerosWide = 0.12, kZerosAny = 0.02;
 
 // Part of its diagonal entry that a pivot keeps at least: less is cancellation of all digits, as of
 // a plate that is cut off from its root and floats. (A plate that hangs on a void of factor 1e-9
-// keeps 1e-9.)
+// keeps about 1e-9.)
 constexpr double kSmallestPivot = 1e-12;
 
 /// Loads [first, first + count) whose active block reaches beyond `column`.

@@ -61,7 +61,7 @@ TEST_P(ShippedCase, HasTheDataOfThePaper) {
   EXPECT_DOUBLE_EQ(plate.flow->min_length, 0.03);
   EXPECT_DOUBLE_EQ(plate.longest(s.time.end), slow ? 0.6 : 1.0);
   EXPECT_EQ(s.point_masses.at(0).mass, 0.5);
-  EXPECT_TRUE(s.joints.at(0).direction_only);
+  EXPECT_EQ(s.joints.at(0).mode, fem::WeldMode::edge);
 
   ASSERT_TRUE(s.esl);
   EXPECT_EQ(s.esl->count(s.time.end), slow ? 20 : 100);

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "cases/scene.h"
+#include "fem/dynamics/esl.h"
+#include "fem/dynamics/motion.h"
+#include "optim/mmc/esl_loop.h"
+
+namespace flexmorph::cases {
+
+/// A scene ready to be moved: what it lists is in here, nothing else.
+struct Mechanism {
+  fem::Model model;
+  std::vector<fem::Growth> growths;  ///< one per body
+  fem::MotionSettings motion;
+};
+
+/// Mesh of a run other than the scene's own (see Verify); limits of boundary elements scale along.
+struct MeshChoice {
+  std::optional<std::array<int, 2>> elements;
+  std::optional<double> step;
+};
+
+/// Scene -> model, joints and integrator settings. Stops for loads and output are left empty.
+/// @throws Error (input) for combinations the tables of elements, terms and joints do not have.
+Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh = {});
+
+/// Point masses of one body, for its loads.
+std::vector<fem::AttachedMass> attached_masses(const Scene& scene, const std::string& body);
+
+/// Scene -> design problems, with the initial layout.
+std::vector<mmc::BodyProblem> build_problems(const Scene& scene);
+
+/// Load times: multiples of esl.every up to the end [s].
+std::vector<double> load_times(const Scene& scene);
+
+}  // namespace flexmorph::cases

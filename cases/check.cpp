@@ -1,0 +1,102 @@
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "cases/build.h"
+#include "cases/run.h"
+#include "io/files.h"
+
+namespace flexmorph::cases {
+namespace {
+
+std::string row(const std::string& what, const std::string& words) {
+  return "  " + what + std::string(what.size() < 22 ? 22 - what.size() : 1, ' ') + words + "\n";
+}
+
+/// Floating-point operations of one force and tangent of a plate element, from the Gram form: n_p
+/// pairs, force n_p², tangent 2 n_k d (n_k n_p + n_k² d).
+double element_operations(int n_shapes, int dim) {
+  const double n_pairs = 0.5 * n_shapes * (n_shapes + 1);
+  return 2 * n_pairs * n_pairs +
+         2.0 * n_shapes * dim * (n_shapes * n_pairs + n_shapes * n_shapes * dim);
+}
+
+void describe_body(const Body& body, const Mechanism& mechanism, std::ostringstream& out) {
+  const fem::Body& built = mechanism.model.body(body.name);
+  const int n = built.n_dofs(), per_element = built.element->n_shapes();
+  out << row("body " + body.name,
+             body.element + " " + body.shape + ", " + std::to_string(body.elements[0]) + " x " +
+                 std::to_string(body.elements[1]) + " elements, " + std::to_string(n) +
+                 " unknowns, about " +
+                 io::to_text(1e-6 * built.element->n_elements() *
+                                 element_operations(per_element, built.element->dim()),
+                             2) +
+                 " Mflop for a force and tangent");
+  std::string terms;
+  for (const std::string& t : body.terms) terms += (terms.empty() ? "" : ", ") + t;
+  out << row("", "terms: " + terms);
+  if (body.flow)
+    out << row("", "material leaves the hub at " + io::to_text(body.flow->speed) +
+                       " m/s: one prescribed material line, " + std::to_string(body.elements[1]) +
+                       " elements refreshed per step");
+}
+
+void describe_design(const Scene& scene, const BodyDesign& d, std::ostringstream& out) {
+  const Grid& g = d.grid;
+  const int components = 2 * d.components[0] * d.components[1];
+  const int n = 2 * g.nx * (g.ny + 1), loads = scene.esl->count(scene.time.end);
+  // Natural order from the free end: a band of ny + 2 nodes.
+  const double factor = static_cast<double>(n) * (2 * g.ny + 5);
+  out << row("design of " + d.body,
+             std::to_string(components) + " components, " +
+                 std::to_string(components * Component::kParameters) + " variables, " +
+                 std::to_string(g.nx) + " x " + std::to_string(g.ny) + " cells, " +
+                 std::to_string(n) + " static unknowns");
+  out << row("", std::to_string(loads) + " loads, volume at most " + io::to_text(d.max_volume) +
+                     ", half-thickness at least " + io::to_text(d.min_thickness) + " m");
+  out << row("", "factor about " + io::to_text(8e-6 * factor, 3) + " MB, loads and displacements " +
+                     io::to_text(8e-6 * 3.0 * n * loads, 3) + " MB; an iteration about " +
+                     io::to_text(1e-9 * factor * (2 * g.ny + 5 + 3.0 * loads), 2) + " Gflop");
+}
+
+}  // namespace
+
+std::string check_case(const RunOptions& options) {
+  const io::CaseFile file(find_case(options.case_name), options.overrides);
+  const Scene scene = read_scene(file);
+  Mechanism mechanism = build_mechanism(scene);
+  std::ostringstream out;
+  out << scene.name << ": " << scene.title << "\n\nactive\n";
+  out << row("time", "0 to " + io::to_text(scene.time.end) + " s, step " +
+                         io::to_text(scene.time.step) + " s, rho_inf " +
+                         io::to_text(scene.time.rho_inf) + ", " +
+                         std::to_string(static_cast<int>(
+                             std::ceil(scene.time.end / scene.time.step - 1e-9))) +
+                         " steps");
+  for (const Body& body : scene.bodies) describe_body(body, mechanism, out);
+  out << row("joints", std::to_string(scene.joints.size()) + ", " +
+                           std::to_string(mechanism.model.n_constraints()) + " constraint rows");
+  if (!scene.point_masses.empty())
+    out << row("point masses", std::to_string(scene.point_masses.size()));
+  if (scene.gravity) out << row("gravity", "on");
+  for (const BodyDesign& d : scene.designs) describe_design(scene, d, out);
+  if (!scene.designs.empty())
+    out << row("optimizer", scene.optimizer.name + ", at most " +
+                                std::to_string(scene.optimizer.max_iterations) + " iterations, " +
+                                std::to_string(scene.cycle.max_cycles) + " cycle(s)");
+  out << "\nabsent: not built, costs nothing\n";
+  out << row("out-of-plane", "positions have two components; no bending term");
+  out << row("heat", "no thermal term");
+  out << row("free material lines", "no material coordinate is an unknown");
+  if (std::none_of(scene.bodies.begin(), scene.bodies.end(),
+                   [](const Body& b) { return b.flow.has_value(); }))
+    out << row("material flow", "no shape function has rates");
+  out << row("rigid bodies", "none");
+  if (!scene.gravity) out << row("gravity", "none");
+  if (scene.designs.empty()) out << row("design", "full material; no loads, no optimizer");
+  if (!scene.verify) out << row("verification", "no run on a finer mesh");
+  if (!scene.output.vtk) out << row("VTK files", "none");
+  return out.str();
+}
+
+}  // namespace flexmorph::cases

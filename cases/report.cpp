@@ -1,0 +1,225 @@
+#include "cases/report.h"
+
+#include <cmath>
+
+#include "cases/version.h"
+#include "io/files.h"
+#include "io/plots.h"
+
+namespace flexmorph::cases {
+namespace {
+
+/// Thinnest half-thickness of any component anywhere along its axis [m].
+double thinnest(const mmc::BodyProblem& problem) {
+  double out = problem.grid.width;
+  for (const Component& c : problem.design.components())
+    for (int k = 0; k <= 200; ++k)
+      out = std::min(out, profile(c, c.half_length * (k / 100.0 - 1),
+                                  problem.stages.back().min_half_thickness)
+                              .g);
+  return out;
+}
+
+io::Json body_results(const RunReport& report, size_t i) {
+  const mmc::BodyOutcome& o = report.outcomes[i];
+  io::Json out = io::Json::object();
+  out.set("body", o.body);
+  out.set("compliance", o.compliance).set("volume", o.volume);
+  out.set("sharp_compliance", o.sharp.compliance).set("sharp_volume", o.sharp.volume);
+  out.set("uniform_compliance", o.uniform_compliance);
+  out.set("connected", o.sharp.connectivity.connected).set("islands", o.sharp.connectivity.islands);
+  out.set("min_feature", io::Json());
+  out.set("thinnest_component", thinnest(report.problems[i]));
+  const auto amplitude = [&](const std::optional<MotionRecord>& motion) {
+    return motion ? io::Json(motion->amplitude.at(i)) : io::Json();
+  };
+  const bool finer = report.verified.has_value();
+  out.set("dynamic_amplitude", amplitude(finer ? report.verified : report.motion));
+  out.set("uniform_dynamic_amplitude",
+          amplitude(finer ? report.verified_uniform : report.uniform_motion));
+  out.set("scene_mesh_amplitude", amplitude(report.motion));
+  out.set("scene_mesh_uniform_amplitude", amplitude(report.uniform_motion));
+  out.set("cycles", report.cycles).set("iterations", o.iterations);
+  out.set("state_solves", o.evaluations).set("kkt", o.kkt);
+  out.set("loads", o.n_loads).set("right_hand_sides", o.n_right_hand_sides);
+  out.set("stop", o.stop);
+  return out;
+}
+
+io::Json motion_results(const MotionRecord& motion) {
+  const fem::MotionResult& r = motion.result;
+  io::Json out = io::Json::object();
+  out.set("steps", r.counts.steps).set("newton_iterations", r.counts.newton);
+  out.set("factorizations", r.counts.factorizations).set("rejected_steps", r.counts.rejected);
+  out.set("energy_defect", r.energy_defect).set("constraint_drift", r.constraint_drift);
+  out.set("velocity_drift", r.velocity_drift).set("smallest_area_ratio", r.smallest_area_ratio);
+  io::Json events = io::Json::array();
+  for (const fem::MeshEvent& e : r.events) {
+    io::Json event = io::Json::object();
+    event.set("time", e.time).set("body", e.body);
+    event.set("change", e.change == fem::MeshChange::insertion ? "insertion" : "removal");
+    event.set("kinetic_jump", e.after.kinetic - e.before.kinetic);
+    event.set("strain_jump", e.after.strain - e.before.strain);
+    event.set("momentum_jump", (e.momentum_after - e.momentum_before).norm());
+    event.set("tip_jump", e.tip_jump);
+    events.push(std::move(event));
+  }
+  out.set("events", std::move(events));
+  return out;
+}
+
+io::Json expectations(const Scene& scene, const RunReport& report) {
+  io::Json out = io::Json::object();
+  for (const auto& [name, wanted] : scene.expect) {
+    std::optional<double> found;
+    if (!report.outcomes.empty()) {
+      const mmc::BodyOutcome& o = report.outcomes.front();
+      if (name == "compliance") found = o.compliance;
+      if (name == "volume") found = o.volume;
+      if (name == "sharp_compliance") found = o.sharp.compliance;
+      if (name == "sharp_volume") found = o.sharp.volume;
+      if (name == "compliance_ratio") found = o.sharp.compliance / o.uniform_compliance;
+      if (name == "sharp_ratio") found = o.sharp.compliance / o.compliance;
+    }
+    if (name == "amplitude" && report.motion) found = report.motion->amplitude.at(0);
+    io::Json entry = io::Json::object();
+    entry.set("found", found ? io::Json(*found) : io::Json());
+    entry.set("holds", found && wanted.holds(*found));
+    out.set(name, std::move(entry));
+  }
+  return out;
+}
+
+std::string run_json(const Scene& scene, const RunReport& report) {
+  io::Json out = io::Json::object();
+  out.set("case", scene.name).set("title", scene.title).set("version", kVersion);
+  io::Json libraries = io::Json::object();
+  for (const auto& [name, version] : library_versions()) libraries.set(name, version);
+  out.set("libraries", std::move(libraries)).set("blas_kernel", blas_kernel());
+  out.set("threads", report.threads).set("status", report.status);
+  if (!report.message.empty()) out.set("message", report.message);
+  out.set("seconds_wall", report.seconds_wall).set("seconds_cpu", report.seconds_cpu);
+  out.set("peak_memory_bytes", report.peak_memory_bytes);
+  io::Json warnings = io::Json::array();
+  for (const mmc::BodyOutcome& o : report.outcomes) {
+    if (!o.sharp.connectivity.connected)
+      warnings.push("body '" + o.body + "': no piece of material reaches from root to free end");
+    if (o.sharp.compliance > 1.15 * o.compliance)
+      warnings.push("body '" + o.body +
+                    "': the sharp compliance is far above the blurred one: gaps are bridged");
+  }
+  out.set("warnings", std::move(warnings));
+  io::Json results = io::Json::array();
+  for (size_t i = 0; i < report.outcomes.size(); ++i) results.push(body_results(report, i));
+  out.set("results", std::move(results));
+  if (report.motion) out.set("motion", motion_results(*report.motion));
+  if (!scene.expect.empty()) out.set("expect", expectations(scene, report));
+  return out.text();
+}
+
+std::string convergence_plot(const RunFolder::History& h) {
+  io::Figure figure;
+  figure.title = "Design of " + h.body;
+  io::Panel compliance;
+  compliance.x.label = "iteration";
+  compliance.y = {"compliance [J]", true, {}, {}};
+  compliance.curves.push_back({"blurred", h.row, h.compliance, true, false, false});
+  if (!h.sharp_row.empty())
+    compliance.curves.push_back({"sharp", h.sharp_row, h.sharp_compliance, false, true, false});
+  io::Panel volume;
+  volume.x.label = "iteration";
+  volume.y.label = "volume fraction";
+  volume.curves.push_back({"", h.row, h.volume, true, false, false});
+  io::Panel kkt;
+  kkt.x.label = "iteration";
+  kkt.y = {"KKT residual", true, {}, {}};
+  kkt.curves.push_back({"", h.row, h.kkt, true, false, false});
+  figure.panels = {compliance, volume, kkt};
+  return io::plot_svg(figure);
+}
+
+/// Deflection of the tip of every body against time: P Fig. 23.
+std::string deflection_plot(const Scene& scene, const MotionRecord& design,
+                            const std::optional<MotionRecord>& uniform) {
+  io::Figure figure;
+  figure.title = "Tip deflection";
+  for (size_t i = 0; i < design.deflection.size(); ++i) {
+    io::Panel panel;
+    panel.title = scene.bodies.size() > 1 ? scene.bodies[i].name : "";
+    panel.x.label = "time [s]";
+    panel.y.label = "deflection [m]";
+    const bool designed = uniform.has_value();
+    panel.curves.push_back(
+        {designed ? "optimized" : "", design.time, design.deflection[i], true, false, false});
+    if (designed)
+      panel.curves.push_back({"uniform, same volume", uniform->time, uniform->deflection[i], true,
+                              false, true});
+    figure.panels.push_back(panel);
+  }
+  return io::plot_svg(figure);
+}
+
+std::string energy_plot(const MotionRecord& motion) {
+  io::Figure figure;
+  figure.title = "Energies";
+  const auto panel = [&](const char* label, const std::vector<double>& y) {
+    io::Panel out;
+    out.x.label = "time [s]";
+    out.y.label = label;
+    out.curves.push_back({"", motion.time, y, true, false, false});
+    figure.panels.push_back(out);
+  };
+  panel("kinetic [J]", motion.kinetic);
+  panel("strain [J]", motion.strain);
+  panel("defect of the balance [J]", motion.defect);
+  return io::plot_svg(figure);
+}
+
+io::ReportSection results_section(const RunReport& report) {
+  io::ReportSection out;
+  out.heading = "Results";
+  out.rows.push_back({"body", "compliance [J]", "volume", "sharp compliance [J]", "sharp volume",
+                      "uniform compliance [J]", "sharp / uniform", "connected", "iterations",
+                      "state solves", "stopped"});
+  for (const mmc::BodyOutcome& o : report.outcomes)
+    out.rows.push_back({o.body, io::to_text(o.compliance, 6), io::to_text(o.volume, 5),
+                        io::to_text(o.sharp.compliance, 6), io::to_text(o.sharp.volume, 5),
+                        io::to_text(o.uniform_compliance, 6),
+                        io::to_text(o.sharp.compliance / o.uniform_compliance, 4),
+                        o.sharp.connectivity.connected ? "yes" : "no",
+                        io::to_text(o.iterations), io::to_text(o.evaluations), o.stop});
+  return out;
+}
+
+}  // namespace
+
+void write_report(const Scene& scene, const RunReport& report, RunFolder& folder) {
+  folder.write_text("run.json", run_json(scene, report));
+  if (report.status == "running") return;
+  std::vector<io::ReportSection> sections;
+  io::ReportSection head;
+  head.heading = "Run";
+  head.words = "Status: " + report.status + (report.message.empty() ? "" : " - " + report.message);
+  sections.push_back(head);
+  if (!report.outcomes.empty()) sections.push_back(results_section(report));
+  const auto add = [&](const std::string& name, const std::string& heading, std::string svg) {
+    if (!scene.output.plots) return;
+    folder.write_text("plots/" + name + ".svg", svg);
+    io::ReportSection section;
+    section.heading = heading;
+    section.pictures.push_back(std::move(svg));
+    sections.push_back(std::move(section));
+  };
+  for (const RunFolder::History& h : folder.histories())
+    add("convergence_" + h.body, "Convergence of " + h.body, convergence_plot(h));
+  if (report.motion) {
+    add("deflection", "Tip deflection", deflection_plot(scene, *report.motion, report.uniform_motion));
+    add("energies", "Energies of the motion", energy_plot(*report.motion));
+  }
+  if (report.verified)
+    add("deflection_verified", "Tip deflection on the finer mesh",
+        deflection_plot(scene, *report.verified, report.verified_uniform));
+  folder.write_text("report.html", io::report_html(scene.title, sections));
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,203 @@
+#include "cases/run.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+
+#include "cases/motion_run.h"
+#include "cases/report.h"
+#include "cases/version.h"
+#include "io/files.h"
+
+namespace flexmorph::cases {
+namespace {
+
+volatile std::sig_atomic_t interrupted = 0;
+
+/// A line that rewrites itself on a terminal, plain lines now and then elsewhere.
+class Progress {
+ public:
+  explicit Progress(bool quiet) : quiet_(quiet), terminal_(isatty(STDOUT_FILENO) != 0) {}
+  ~Progress() { end_line(); }
+
+  void say(const std::string& text) {
+    end_line();
+    if (!quiet_) std::printf("%s\n", text.c_str());
+    std::fflush(stdout);
+  }
+  void iteration(const mmc::IterationReport& r) {
+    if (quiet_) return;
+    char text[160];
+    std::snprintf(text, sizeof text, "%s cycle %d iteration %d: compliance %.5g, volume %.4f, kkt %.1e",
+                  r.problem.body.c_str(), r.cycle, r.iteration, r.state.compliance(),
+                  r.state.volume(), r.iterate.kkt);
+    if (terminal_) {
+      std::printf("\r%-100s", text);
+      open_ = true;
+    } else if (r.iteration == 1 || r.iteration % 25 == 0) {
+      std::printf("%s\n", text);
+    }
+    std::fflush(stdout);
+  }
+
+ private:
+  void end_line() {
+    if (open_) std::printf("\n");
+    open_ = false;
+  }
+  bool quiet_, terminal_, open_ = false;
+};
+
+std::vector<fem::Factors> uniform_factors(const std::vector<mmc::BodyProblem>& problems) {
+  std::vector<fem::Factors> out;
+  for (const mmc::BodyProblem& p : problems) {
+    const VectorXd even = VectorXd::Constant(p.grid.n_cells(), p.max_volume);
+    out.push_back({p.grid, even, even});
+  }
+  return out;
+}
+
+std::vector<fem::Factors> final_factors(const std::vector<mmc::BodyProblem>& problems) {
+  std::vector<fem::Factors> out;
+  for (const mmc::BodyProblem& p : problems)
+    out.push_back(mmc::dynamic_factors(p, p.design.components()));
+  return out;
+}
+
+/// The story of a run with designs; fills the report as far as it gets.
+void run_designs(const Scene& scene, RunFolder& folder, Progress& progress, RunReport& report) {
+  report.problems = build_problems(scene);
+  const auto simulate = [&](std::span<const fem::Factors> factors) {
+    MotionWishes wishes;
+    wishes.factors.assign(factors.begin(), factors.end());
+    wishes.loads = true;
+    MotionOutcome motion = run_motion(scene, wishes, folder);
+    progress.say("motion: " + std::to_string(motion.record.result.counts.steps) + " steps, " +
+                 std::to_string(motion.record.result.events.size()) + " changes of the mesh, " +
+                 "largest tip deflection " + io::to_text(motion.record.amplitude.at(0), 4) + " m");
+    return std::move(motion.loads);
+  };
+  std::vector<fem::EslSets> loads;
+  mmc::LoopObserver observer;
+  observer.loads = [&](int, std::span<const fem::EslSets> sets) {
+    loads.assign(sets.begin(), sets.end());
+    for (size_t i = 0; i < sets.size(); ++i)
+      folder.write_loads(scene.designs[i].body, sets[i], nullptr);
+  };
+  observer.iteration = [&](const mmc::IterationReport& r) {
+    folder.add_iteration(r);
+    progress.iteration(r);
+    return interrupted == 0;
+  };
+  observer.cycle = [&](int cycle, std::span<const mmc::BodyOutcome> outcomes) {
+    report.cycles = cycle;
+    report.outcomes.assign(outcomes.begin(), outcomes.end());
+    for (size_t i = 0; i < outcomes.size(); ++i) {
+      folder.write_loads(outcomes[i].body, loads[i], &outcomes[i]);
+      folder.write_design(report.problems[i], outcomes[i]);
+      progress.say(outcomes[i].body + ": compliance " + io::to_text(outcomes[i].compliance, 5) +
+                   ", sharp " + io::to_text(outcomes[i].sharp.compliance, 5) + " at volume " +
+                   io::to_text(outcomes[i].sharp.volume, 4) + ", uniform material " +
+                   io::to_text(outcomes[i].uniform_compliance, 5));
+    }
+  };
+  mmc::LoopSettings settings{scene.cycle.max_cycles, scene.cycle.tolerance,
+                             scene.output.sharp_every, scene.optimizer};
+  mmc::esl_loop(report.problems, simulate, settings, observer);
+  if (interrupted) return;
+
+  // The judge of a design is the motion with it, beside the same volume spread evenly.
+  MotionWishes wishes;
+  wishes.factors = final_factors(report.problems);
+  wishes.frames_every = scene.output.vtk ? scene.output.motion_every : 0;
+  report.motion = run_motion(scene, wishes, folder).record;
+  folder.write_motion("motion.csv", scene, *report.motion);
+  wishes.frames_every = 0;
+  wishes.factors = uniform_factors(report.problems);
+  report.uniform_motion = run_motion(scene, wishes, folder).record;
+  folder.write_motion("motion_uniform.csv", scene, *report.uniform_motion);
+  if (!scene.verify) return;
+  progress.say("verification on " + std::to_string(scene.verify->mesh[0]) + " x " +
+               std::to_string(scene.verify->mesh[1]) + " elements");
+  wishes.mesh = {scene.verify->mesh, scene.verify->step};
+  wishes.balance = false;
+  report.verified_uniform = run_motion(scene, wishes, folder).record;
+  folder.write_motion("motion_verified_uniform.csv", scene, *report.verified_uniform);
+  wishes.factors = final_factors(report.problems);
+  report.verified = run_motion(scene, wishes, folder).record;
+  folder.write_motion("motion_verified.csv", scene, *report.verified);
+}
+
+void run_scene(const Scene& scene, RunFolder& folder, Progress& progress, RunReport& report) {
+  if (!scene.designs.empty()) return run_designs(scene, folder, progress, report);
+  MotionWishes wishes;
+  report.motion = run_motion(scene, wishes, folder).record;
+  folder.write_motion("motion.csv", scene, *report.motion);
+}
+
+}  // namespace
+
+std::vector<std::string> shipped_cases() {
+  std::vector<std::string> out;
+  for (const auto& entry : std::filesystem::directory_iterator(kCasesFolder))
+    if (entry.path().extension() == ".toml") out.push_back(entry.path().stem().string());
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::string find_case(const std::string& name) {
+  if (std::filesystem::is_regular_file(name)) return name;
+  std::string known;
+  for (const std::string& shipped : shipped_cases()) {
+    if (shipped == name) return std::string(kCasesFolder) + "/" + name + ".toml";
+    known += (known.empty() ? "" : ", ") + shipped;
+  }
+  throw Error::input("case '" + name + "': no such file, and not a shipped case (" + known + ")");
+}
+
+int run_case(const RunOptions& options) {
+  const auto wall = std::chrono::steady_clock::now();
+  const io::CaseFile file(find_case(options.case_name), options.overrides);
+  const Scene scene = read_scene(file);
+  build_mechanism(scene);  // what the tables refuse, they refuse before a folder exists
+  std::string directory = options.directory;
+  if (directory.empty()) directory = scene.output.directory;
+  if (directory.empty()) directory = "runs/" + scene.name;
+  RunFolder folder(directory, scene, file.text());
+
+  std::signal(SIGINT, [](int) { interrupted = 1; });
+  std::signal(SIGTERM, [](int) { interrupted = 1; });
+  Progress progress(options.quiet);
+  progress.say(scene.title + " -> " + directory);
+  RunReport report;
+  report.threads = options.threads;
+  const auto close = [&](const std::string& status, const std::string& message) {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    report.status = status;
+    report.message = message;
+    report.seconds_cpu = mmc::cpu_seconds();
+    report.seconds_wall =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
+    report.peak_memory_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
+    write_report(scene, report, folder);
+  };
+  close("running", "");
+  try {
+    run_scene(scene, folder, progress, report);
+  } catch (const Error& error) {
+    close("failed", error.what());
+    throw;
+  }
+  close(interrupted ? "interrupted" : "done", "");
+  progress.say((interrupted ? "interrupted: what was computed is in " : "done: ") + directory +
+               "/report.html");
+  return interrupted ? 4 : 0;
+}
+
+}  // namespace flexmorph::cases

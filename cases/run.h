@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cases/scene.h"
+
+namespace flexmorph::cases {
+
+struct RunOptions {
+  std::string case_name;               ///< path, or name of a shipped case
+  std::string directory;               ///< of the run folder; empty: runs/<name>
+  std::vector<std::string> overrides;  ///< KEY=VALUE
+  int threads = 1;
+  bool quiet = false;
+};
+
+/// Path of a case file: the path itself, or that of a shipped case of this name.
+/// @throws Error (input) naming the shipped cases.
+std::string find_case(const std::string& name);
+/// Names of the shipped cases.
+std::vector<std::string> shipped_cases();
+
+/// Runs a case from file to folder. @return exit code: 0 done, 4 interrupted (what was computed is
+/// kept). @throws Error; a numerical one after the folder says what failed.
+int run_case(const RunOptions& options);
+
+/// Says what a case contains, what it leaves out, and what each part costs.
+/// @throws Error (input) when the case cannot be used.
+std::string check_case(const RunOptions& options);
+
+}  // namespace flexmorph::cases

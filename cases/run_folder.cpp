@@ -1,0 +1,218 @@
+#include "cases/run_folder.h"
+
+#include <cmath>
+#include <filesystem>
+
+#include "io/files.h"
+#include "io/plots.h"
+
+namespace flexmorph::cases {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> kHistoryColumns = {
+    "body",           "cycle",         "iteration",           "evaluations",       "objective",
+    "compliance",     "volume",        "violation",           "kkt",               "change",
+    "band",           "sharp_compliance", "sharp_volume",     "connected",         "min_feature",
+    "seconds_tdf",    "seconds_factor", "seconds_solve",      "seconds_sensitivity",
+    "seconds_optimizer", "seconds_output"};
+
+std::string numbered(const std::string& stem, int number, const std::string& ending) {
+  std::string digits = io::to_text(number);
+  return stem + std::string(digits.size() < 5 ? 5 - digits.size() : 0, '0') + digits + ending;
+}
+
+/// The parts of a folder that a run writes: these, and only these, are removed before a new one.
+const std::vector<std::string> kOurs = {"case.toml",   "run.json",       "history.csv", "motion.csv",
+                                        "motion_uniform.csv", "motion_verified.csv",
+                                        "motion_verified_uniform.csv", "report.html",
+                                        "components.csv", "design.svg", "design", "motion",
+                                        "loads",       "plots"};
+
+void empty_folder(const std::string& path) {
+  for (const auto& entry : fs::directory_iterator(path)) {
+    const std::string name = entry.path().filename().string();
+    if (std::find(kOurs.begin(), kOurs.end(), name) == kOurs.end())
+      throw Error::input("output folder '" + path + "' holds '" + name +
+                         "', which no run has written; choose another with -o");
+  }
+  for (const std::string& name : kOurs) fs::remove_all(fs::path(path) / name);
+}
+
+}  // namespace
+
+double tip_deflection(const fem::Model& model, const fem::Growth& growth, const fem::State& x) {
+  const fem::Body& body = model.body(growth.body);
+  const fem::LineGrid& mesh = fem::grid_of(body);
+  const fem::FrameMotion hub = growth.hub(x.t);
+  const Vec2 tip = fem::point_motion(body, x, {mesh.line_m(mesh.n_m()).value, 0}).position;
+  return Vec2(-std::sin(hub.angle), std::cos(hub.angle)).dot(tip - hub.origin);
+}
+
+RunFolder::RunFolder(std::string path, const Scene& scene, const std::string& case_text)
+    : path_(std::move(path)),
+      scene_(scene),
+      iterations_(path_ + "/design/iterations.pvd"),
+      components_(path_ + "/design/components.pvd"),
+      motion_(path_ + "/motion/motion.pvd") {
+  try {
+    fs::create_directories(path_);
+    empty_folder(path_);
+  } catch (const fs::filesystem_error& error) {
+    throw Error::input("output folder '" + path_ + "': " + error.code().message());
+  }
+  io::write_file(path_ + "/case.toml", case_text);
+  if (!scene.designs.empty())
+    history_ = std::make_unique<io::CsvWriter>(path_ + "/history.csv", kHistoryColumns);
+}
+
+double RunFolder::take_output_seconds() { return std::exchange(output_seconds_, 0); }
+
+void RunFolder::add_iteration(const mmc::IterationReport& r) {
+  const double clock = mmc::cpu_seconds();
+  ++rows_;
+  const Output& wish = scene_.output;
+  if (wish.vtk && wish.design_every > 0 &&
+      (r.iteration == 1 || r.iteration % wish.design_every == 0)) {
+    const std::string stem = scene_.designs.size() > 1 ? r.problem.body + "_" : "";
+    const mmc::CellFactors& factors = r.state.factors();
+    // Σ w ½ uᵀ K_cell u: the derivative by the stiffness factor holds it.
+    const VectorXd energy = -0.5 * r.value.d_stiffness.cwiseProduct(factors.stiffness);
+    const VectorXd displacement =
+        r.compliance.displacement(factors.stiffness, factors.mass, r.compliance.n_loads() - 1);
+    const auto view = [](const VectorXd& v) {
+      return std::span<const double>(v.data(), static_cast<size_t>(v.size()));
+    };
+    const io::Field cells[] = {{"density", view(factors.mass)},
+                               {"stiffness_factor", view(factors.stiffness)},
+                               {"strain_energy", view(energy)}};
+    const io::Field points[] = {{"tdf", view(r.state.phi())},
+                                {"displacement", view(displacement), 2}};
+    const std::string image = numbered("iteration_" + stem, rows_, ".vti");
+    io::write_image_data(path_ + "/design/" + image, r.problem.grid, cells, points);
+    iterations_.add(rows_, image);
+    const std::string lines = numbered("components_" + stem, rows_, ".vtp");
+    io::write_components(path_ + "/design/" + lines, r.state.components(),
+                         r.problem.stages.back().min_half_thickness);
+    components_.add(rows_, lines);
+  }
+  if (histories_.empty() || histories_.back().body != r.problem.body) histories_.push_back({});
+  History& h = histories_.back();
+  h.body = r.problem.body;
+  h.row.push_back(static_cast<double>(h.row.size() + 1));
+  h.compliance.push_back(r.state.compliance());
+  h.volume.push_back(r.state.volume());
+  h.kkt.push_back(r.iterate.kkt);
+  io::Cell sharp_c, sharp_v, connected;
+  if (r.sharp) {
+    h.sharp_row.push_back(h.row.back());
+    h.sharp_compliance.push_back(r.sharp->compliance);
+    sharp_c = r.sharp->compliance;
+    sharp_v = r.sharp->volume;
+    connected = r.sharp->connectivity.connected;
+  }
+  output_seconds_ += mmc::cpu_seconds() - clock;
+  const mmc::Compliance::Seconds s = r.state.seconds();
+  history_->row({r.problem.body, r.cycle, r.iteration, r.evaluations, r.iterate.response->f,
+                 r.state.compliance(), r.state.volume(), r.iterate.violation, r.iterate.kkt,
+                 r.iterate.change, r.state.band() / r.problem.grid.dx(), sharp_c, sharp_v,
+                 connected, io::Cell(), r.state.seconds_tdf(), s.factor, s.solve, s.sensitivity,
+                 r.iterate.seconds, take_output_seconds()});
+}
+
+void RunFolder::write_loads(const std::string& body, const fem::EslSets& loads,
+                            const mmc::BodyOutcome* outcome) {
+  const std::vector<std::string> columns = {"time", "root_column", "weight", "strain_energy",
+                                            "energy_ratio", "compliance", "force_x", "force_y"};
+  io::CsvWriter csv(path_ + "/loads/" + body + ".csv", columns);
+  for (size_t i = 0; i < loads.sets.size(); ++i) {
+    const fem::EslSet& s = loads.sets[i];
+    Vec2 force(0, 0);
+    for (const fem::NodalForce& f : s.forces) force += f.force;
+    io::Cell ratio, compliance;
+    if (outcome) {
+      ratio = outcome->energy_ratios[i];
+      compliance = outcome->load_compliances[i];
+    }
+    csv.row({s.time, s.root_column, s.weight, s.strain_energy, ratio, compliance, force.x(),
+             force.y()});
+  }
+}
+
+void RunFolder::write_motion(const std::string& name, const Scene& scene,
+                             const MotionRecord& motion) {
+  std::vector<std::string> columns = {"time"};
+  for (const Body& b : scene.bodies) columns.push_back(b.name + ".tip_deflection");
+  for (const Body& b : scene.bodies) columns.push_back(b.name + ".length");
+  for (const char* quantity : {"energy.kinetic", "energy.strain", "energy.defect"})
+    columns.emplace_back(quantity);
+  io::CsvWriter csv(path_ + "/" + name, columns);
+  for (size_t i = 0; i < motion.time.size(); ++i) {
+    std::vector<io::Cell> row = {motion.time[i]};
+    for (const auto& deflection : motion.deflection) row.emplace_back(deflection[i]);
+    for (const Body& b : scene.bodies) row.emplace_back(b.length_at(motion.time[i]));
+    row.emplace_back(motion.kinetic[i]);
+    row.emplace_back(motion.strain[i]);
+    row.emplace_back(motion.defect[i]);
+    csv.row(row);
+  }
+}
+
+void RunFolder::add_motion_frame(const fem::Model& model, const fem::Growth& growth,
+                                 const fem::State& x, const Grid& grid, const VectorXd& density,
+                                 int part) {
+  const fem::Body& body = model.body(growth.body);
+  const double root = fem::grid_of(body).line_m(0).value;
+  const int first = std::max(0, static_cast<int>(std::ceil((root - grid.x0) / grid.dx() - 1e-6)));
+  io::QuadMesh mesh;
+  std::vector<double> values;
+  const int ny = grid.ny;
+  for (int i = first; i <= grid.nx; ++i)
+    for (int j = 0; j <= ny; ++j) {
+      const Vec2 p = fem::point_motion(body, x, grid.node_position(i, j)).position;
+      mesh.points.push_back(p.x());
+      mesh.points.push_back(p.y());
+      if (i == grid.nx || j == ny) continue;
+      const int a = (i - first) * (ny + 1) + j;
+      mesh.quads.push_back({a, a + ny + 1, a + ny + 2, a + 1});
+      values.push_back(density[grid.cell(i, j)]);
+    }
+  const io::Field cells[] = {{"density", values}};
+  const std::string file =
+      numbered("motion_" + body.name + "_", ++motion_frames_, ".vtu");
+  io::write_quad_mesh(path_ + "/motion/" + file, mesh, cells, {});
+  motion_.add(x.t, file, part);
+}
+
+void RunFolder::write_design(const mmc::BodyProblem& problem, const mmc::BodyOutcome& outcome) {
+  const std::string stem = scene_.designs.size() > 1 ? "_" + problem.body : "";
+  const std::vector<Component> components = problem.design.components();
+  const double bound = problem.stages.back().min_half_thickness;
+  {
+    const std::vector<std::string> columns = {"X0", "Y0", "half_length", "angle", "c1", "c2", "c3"};
+    io::CsvWriter csv(path_ + "/components" + stem + ".csv", columns);
+    for (const Component& c : components) {
+      std::vector<io::Cell> row;
+      for (const double p : c.parameters()) row.emplace_back(p);
+      csv.row(row);
+    }
+  }
+  std::vector<std::vector<Vec2>> outlines;
+  for (const Component& c : components) outlines.push_back(outline(c, bound, 64));
+  for (const Box& b : problem.solid)
+    outlines.push_back({b.lower, {b.upper.x(), b.lower.y()}, b.upper, {b.lower.x(), b.upper.y()}});
+  const Grid& g = problem.grid;
+  const Box domain{{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}};
+  const std::vector<Region> regions = unite(outlines, domain);
+  io::write_file(path_ + "/design" + stem + ".svg", io::outline_svg(regions, domain));
+  const auto& sharp = outcome.sharp.fractions;
+  io::write_png(path_ + "/plots/design" + stem + ".png", g,
+                {sharp.data(), static_cast<size_t>(sharp.size())});
+}
+
+void RunFolder::write_text(const std::string& name, const std::string& text) {
+  io::write_file(path_ + "/" + name, text);
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cases/scene.h"
+#include "fem/dynamics/motion.h"
+#include "io/tables.h"
+#include "io/vtk.h"
+#include "optim/mmc/esl_loop.h"
+
+namespace flexmorph::cases {
+
+/// What a motion did: its table, and the numbers a report quotes.
+struct MotionRecord {
+  std::vector<double> time, kinetic, strain, defect;
+  std::vector<std::vector<double>> deflection;  ///< per body [m]
+  std::vector<double> amplitude;                ///< largest |tip deflection| per body [m]
+  std::vector<double> strain_integral;          ///< ∫ U dt of the whole model [J s], one entry
+  fem::MotionResult result;
+};
+
+/// Tip deflection: coordinate across the hub's axis of the middle of the free end [m].
+double tip_deflection(const fem::Model& model, const fem::Growth& growth, const fem::State& x);
+
+/// The folder of one run (design.md section 12): every file is written here and nowhere else.
+class RunFolder {
+ public:
+  /// Makes the folder and writes case.toml. A folder that holds another run is emptied of its
+  /// files first.
+  /// @throws Error (input) when it cannot be made, or holds files that no run has written.
+  RunFolder(std::string path, const Scene& scene, const std::string& case_text);
+
+  const std::string& path() const { return path_; }
+
+  /// One design iteration: a row of history.csv, and the VTK files the scene asks for.
+  void add_iteration(const mmc::IterationReport& report);
+  /// CPU seconds spent on files since the last call.
+  double take_output_seconds();
+
+  /// loads/<body>.csv: one row per load set.
+  void write_loads(const std::string& body, const fem::EslSets& loads,
+                   const mmc::BodyOutcome* outcome);
+  /// motion.csv (or another name): one row per time step.
+  void write_motion(const std::string& name, const Scene& scene, const MotionRecord& motion);
+  /// One frame of motion/motion.pvd: the deformed body with its density.
+  void add_motion_frame(const fem::Model& model, const fem::Growth& growth, const fem::State& x,
+                        const Grid& grid, const VectorXd& density, int part);
+  /// Outlines, pictures and tables of a final design.
+  void write_design(const mmc::BodyProblem& problem, const mmc::BodyOutcome& outcome);
+  void write_text(const std::string& name, const std::string& text);
+
+  /// Rows of the history per body, for plots.
+  struct History {
+    std::string body;
+    std::vector<double> row, compliance, volume, kkt, sharp_row, sharp_compliance;
+  };
+  const std::vector<History>& histories() const { return histories_; }
+
+ private:
+  std::string path_;
+  const Scene& scene_;
+  std::unique_ptr<io::CsvWriter> history_;
+  io::Series iterations_, components_, motion_;
+  std::vector<History> histories_;
+  int rows_ = 0, motion_frames_ = 0;
+  double output_seconds_ = 0;
+};
+
+}  // namespace flexmorph::cases

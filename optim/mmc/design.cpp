@@ -1,0 +1,70 @@
+#include "optim/mmc/design.h"
+
+#include <algorithm>
+#include <numbers>
+
+namespace flexmorph::mmc {
+
+namespace {
+constexpr int kN = Component::kParameters;
+}
+
+Design::Design(const Grid& domain, std::vector<Component> start, const DesignScale& scale)
+    : scale_(scale) {
+  const auto n = static_cast<Eigen::Index>(start.size()) * kN;
+  for (VectorXd* v : {&x_, &lower_, &upper_, &unit_}) v->resize(n);
+  const double size = 2 * scale.half_length, pi = std::numbers::pi;
+  for (size_t c = 0; c < start.size(); ++c) {
+    const auto p = start[c].parameters();
+    const double lower[kN] = {domain.x0,
+                              domain.y0,
+                              0.1 * scale.half_length,
+                              p[3] - 2 * pi,
+                              scale.min_thickness,
+                              scale.min_thickness,
+                              scale.min_thickness};
+    const double upper[kN] = {domain.x0 + domain.width,
+                              domain.y0 + domain.height,
+                              8 * scale.half_length,
+                              p[3] + 2 * pi,
+                              scale.max_thickness,
+                              scale.max_thickness,
+                              scale.max_thickness};
+    const double unit[kN] = {size, size, size, pi, 0.5 * size, 0.5 * size, 0.5 * size};
+    for (int k = 0; k < kN; ++k) {
+      const auto i = static_cast<Eigen::Index>(c) * kN + k;
+      unit_[i] = unit[k];
+      lower_[i] = lower[k] / unit[k];
+      upper_[i] = upper[k] / unit[k];
+      x_[i] = std::clamp(p[static_cast<size_t>(k)] / unit[k], lower_[i], upper_[i]);
+    }
+  }
+}
+
+void Design::components(const VectorXd& x, std::vector<Component>& out) const {
+  out.resize(static_cast<size_t>(x.size() / kN));
+  double p[kN];
+  for (size_t c = 0; c < out.size(); ++c) {
+    for (int k = 0; k < kN; ++k) {
+      const auto i = static_cast<Eigen::Index>(c) * kN + k;
+      p[k] = x[i] * unit_[i];
+    }
+    out[c] = Component::from_parameters(p);
+  }
+}
+
+std::vector<Component> Design::components() const {
+  std::vector<Component> out;
+  components(x_, out);
+  return out;
+}
+
+void Design::scale_gradient(VectorXd& g) const { g = g.cwiseProduct(unit_); }
+
+double Design::move_to(const VectorXd& x) {
+  const double change = (x - x_).lpNorm<Eigen::Infinity>();
+  x_ = x;
+  return change;
+}
+
+}  // namespace flexmorph::mmc

@@ -1,0 +1,73 @@
+#include "optim/mmc/ersatz.h"
+
+#include <array>
+
+namespace flexmorph::mmc {
+namespace {
+
+bool inside(const Box& box, const Vec2& p) {
+  return (p.array() >= box.lower.array()).all() && (p.array() <= box.upper.array()).all();
+}
+
+std::array<int, 4> corners(const Grid& g, int i, int j) {
+  return {g.node(i, j), g.node(i + 1, j), g.node(i + 1, j + 1), g.node(i, j + 1)};
+}
+
+}  // namespace
+
+Ersatz::Ersatz(const Grid& grid, double alpha, std::span<const Box> solid,
+               std::span<const Box> empty)
+    : grid_(grid), alpha_(alpha), fixed_(static_cast<size_t>(grid.n_cells()), 0) {
+  for (int i = 0; i < grid.nx; ++i)
+    for (int j = 0; j < grid.ny; ++j) {
+      signed char& fixed = fixed_[static_cast<size_t>(grid.cell(i, j))];
+      const Vec2 center = grid.cell_center(i, j);
+      for (const Box& box : empty)
+        if (inside(box, center)) fixed = -1;
+      for (const Box& box : solid)
+        if (inside(box, center)) fixed = 1;
+    }
+}
+
+void Ersatz::factors(const VectorXd& h, CellFactors& out) const {
+  out.stiffness.resize(grid_.n_cells());
+  out.mass.resize(grid_.n_cells());
+  for (int i = 0; i < grid_.nx; ++i)
+    for (int j = 0; j < grid_.ny; ++j) {
+      const int cell = grid_.cell(i, j);
+      const signed char fixed = fixed_[static_cast<size_t>(cell)];
+      double sum = 0, squares = 0;
+      for (const int node : corners(grid_, i, j)) {
+        sum += h[node];
+        squares += h[node] * h[node];
+      }
+      out.stiffness[cell] = fixed > 0 ? 1 : fixed < 0 ? alpha_ * alpha_ : 0.25 * squares;
+      out.mass[cell] = fixed > 0 ? 1 : fixed < 0 ? 0 : (0.25 * sum - alpha_) / (1 - alpha_);
+    }
+}
+
+void Ersatz::pull_back(const VectorXd& h, const VectorXd& d_stiffness, const VectorXd& d_mass,
+                       VectorXd& d_h) const {
+  d_h.setZero(grid_.n_nodes());
+  for (int i = 0; i < grid_.nx; ++i)
+    for (int j = 0; j < grid_.ny; ++j) {
+      const int cell = grid_.cell(i, j);
+      if (fixed_[static_cast<size_t>(cell)] != 0) continue;
+      const double mass = 0.25 * d_mass[cell] / (1 - alpha_);
+      for (const int node : corners(grid_, i, j))
+        d_h[node] += 0.5 * d_stiffness[cell] * h[node] + mass;
+    }
+}
+
+CellFactors Ersatz::sharp(const VectorXd& fractions) const {
+  return dynamic(fractions, alpha_ * alpha_, 0);
+}
+
+CellFactors Ersatz::dynamic(const VectorXd& fractions, double stiffness_void, double mass_void) {
+  const auto blend = [&](double at_void) {
+    return VectorXd(at_void + (1 - at_void) * fractions.array());
+  };
+  return {blend(stiffness_void), blend(mass_void)};
+}
+
+}  // namespace flexmorph::mmc

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <span>
+
+#include "geometry/component.h"
+#include "geometry/grid.h"
+
+namespace flexmorph::mmc {
+
+/// What a design makes of every cell: factors on stiffness and mass of full material (n_cells).
+struct CellFactors {
+  VectorXd stiffness, mass;
+};
+
+/// Nodal Heaviside values H of the TDF -> factors of the design cells, and back.
+///
+///   stiffness = mean of H^q over the corners, q = 2      mass = mean of (H - α)/(1 - α)
+///
+/// The void keeps α^q of its stiffness and no mass (design.md sections 7 and 8). Cells whose
+/// centre lies in a `solid` box are full material, those in an `empty` box void, whatever the
+/// components do; solid wins.
+class Ersatz {
+ public:
+  Ersatz(const Grid& grid, double alpha, std::span<const Box> solid, std::span<const Box> empty);
+
+  void factors(const VectorXd& h, CellFactors& out) const;
+
+  /// Chain rule: df/dstiffness and df/dmass (n_cells) -> df/dH (n_nodes).
+  void pull_back(const VectorXd& h, const VectorXd& d_stiffness, const VectorXd& d_mass,
+                 VectorXd& d_h) const;
+
+  /// Factors of a sharp picture (area fractions of the true union, n_cells): material where it is,
+  /// the void stiffness of factors() elsewhere.
+  CellFactors sharp(const VectorXd& fractions) const;
+  /// The same for dynamics with its own void factors.
+  static CellFactors dynamic(const VectorXd& fractions, double stiffness_void, double mass_void);
+
+ private:
+  Grid grid_;
+  double alpha_;
+  std::vector<signed char> fixed_;  // 1: solid, -1: empty, 0: from the components
+};
+
+}  // namespace flexmorph::mmc

@@ -1,0 +1,61 @@
+#include "optim/mmc/mmc_problem.h"
+
+#include <cmath>
+#include <ctime>
+
+#include "geometry/outline.h"
+
+namespace flexmorph::mmc {
+
+double cpu_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+MmcProblem::MmcProblem(const Grid& grid, const Design& design, const Ersatz& ersatz,
+                       Compliance& compliance, const TdfSettings& tdf, double max_volume)
+    : grid_(grid),
+      design_(design),
+      ersatz_(ersatz),
+      compliance_(compliance),
+      tdf_(grid, tdf),
+      max_volume_(max_volume),
+      zero_(VectorXd::Zero(grid.n_cells())),
+      ones_(VectorXd::Constant(grid.n_cells(), 1.0 / grid.n_cells())) {}
+
+optim::Response MmcProblem::evaluate(const VectorXd& x) {
+  double clock = cpu_seconds();
+  x_ = x;
+  design_.components(x, components_);
+  tdf_.evaluate(components_);
+  ersatz_.factors(tdf_.density(), factors_);
+  volume_ = factors_.mass.mean();
+  seconds_tdf_ = cpu_seconds() - clock;
+
+  compliance_.evaluate(factors_.stiffness, factors_.mass, value_);
+  if (!(value_.f > 0) || !std::isfinite(value_.f))
+    throw Error::numerical("design problem: the compliance is " + std::to_string(value_.f));
+
+  clock = cpu_seconds();
+  optim::Response out;
+  out.f = std::log(value_.f);
+  ersatz_.pull_back(tdf_.density(), value_.d_stiffness, value_.d_mass, d_h_);
+  tdf_.pull_back(d_h_, d_x_);
+  out.df = d_x_ / value_.f;
+  design_.scale_gradient(out.df);
+  out.g.setConstant(1, volume_ / max_volume_ - 1);
+  ersatz_.pull_back(tdf_.density(), zero_, ones_, d_h_);
+  tdf_.pull_back(d_h_, d_x_);
+  d_x_ /= max_volume_;
+  design_.scale_gradient(d_x_);
+  out.dg = d_x_.transpose();
+  seconds_tdf_ += cpu_seconds() - clock;
+  return out;
+}
+
+bool MmcProblem::acceptable(const VectorXd&) {
+  return connectivity(grid_, factors_.mass).connected;
+}
+
+}  // namespace flexmorph::mmc
