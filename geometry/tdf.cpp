@@ -37,9 +37,33 @@ inline double sixth_power(double t) {
   return t3 * t3;
 }
 
+/// P = (1 - s)/|∇s| of a superellipse of constant g, from u = x/L, v = y/g, and what its
+/// derivatives need:   ∇s = (A/L, B/g),   A = (u/s)⁵,  B = (v/s)⁵.
+struct Sampson {
+  double s, a, b, A, B, slope2, P;
+
+  Sampson(double u, double v, double per_L, double per_g) : s(superellipse_radius(u, v)) {
+    const double per_s = 1 / s;
+    a = u * per_s;
+    b = v * per_s;
+    A = fifth_power(a);
+    B = fifth_power(b);
+    const double along = A * per_L, across = B * per_g;
+    // The floor acts at the very center only, where a = b = 0.
+    slope2 = std::max(along * along + across * across, 1e-6 * per_L * per_L);
+    P = (1 - s) / std::sqrt(slope2);
+  }
+};
+
+/// Inside, P/(1 + (P/g)⁴)^(1/4): no point is further from the outline than the half-thickness.
+inline double capped(double P, double g) {
+  const double r = std::max(P, 0.0) / g, r2 = r * r;
+  return P / std::sqrt(std::sqrt(1 + r2 * r2));
+}
+
 inline double distance_tdf(const ComponentFrame& frame, double x, double y) {
-  const double g = frame.half_thickness(x);
-  return (1 - superellipse_radius(x * frame.per_length(), y / g)) * g;
+  const double g = frame.half_thickness(x), per_g = 1 / g;
+  return capped(Sampson(x * frame.per_length(), y * per_g, frame.per_length(), per_g).P, g);
 }
 
 inline double paper_tdf(const ComponentFrame& frame, double x, double y) {
@@ -53,36 +77,52 @@ struct Partials {
   double L, c1, c2, c3;  // at fixed local coordinates
 };
 
-/// φ(u, v, g) with u = x/L, v = y/g(x):  dφ = φ_u du + φ_v dv + φ_g dg,
+/// φ(u, v, g, L) with u = x/L, v = y/g(x):  dφ = φ_u du + φ_v dv + φ_g dg + φ_L dL,
 /// du = dx/L - u dL/L,  dv = (dy - v dg)/g.
+struct ByShape {
+  double u, v, g, L;
+};
 inline Partials chain(const ComponentFrame& frame, const Profile& profile, double u, double v,
-                      double phi, double phi_u, double phi_v, double phi_g) {
-  const double by_g = phi_g - phi_v * v / profile.g;
+                      double phi, const ByShape& d) {
+  const double by_g = d.g - d.v * v / profile.g;
   const double per_L = frame.per_length();
   return {phi,
-          phi_u * per_L + by_g * profile.dg_dx,
-          phi_v / profile.g,
-          -phi_u * u * per_L + by_g * profile.dg_dp[0],
+          d.u * per_L + by_g * profile.dg_dx,
+          d.v / profile.g,
+          d.L - d.u * u * per_L + by_g * profile.dg_dp[0],
           by_g * profile.dg_dp[1],
           by_g * profile.dg_dp[2],
           by_g * profile.dg_dp[3]};
 }
 
-/// φ = (1 - s) g: φ_u = -g (u/s)⁵, φ_v = -g (v/s)⁵, φ_g = 1 - s.
+/// φ = P q^(-1/4), q = 1 + (P/g)⁴ inside and 1 outside:  φ_P = q^(-5/4),  φ_g = (P/g)⁵ φ_P.
+/// With D = |∇s|:  P_u = -(A + P D_u)/D and so on, from
+/// A_u = 5 a⁴ b⁶/s,  B_v = 5 b⁴ a⁶/s,  A_v = B_u = -5 a⁵ b⁵/s.
 inline Partials distance_partials(const ComponentFrame& frame, double x, double y) {
   const Profile profile = frame.profile(x);
-  const double u = x * frame.per_length(), v = y / profile.g;
-  const double s = superellipse_radius(u, v), per_s = 1 / s, g = profile.g;
-  return chain(frame, profile, u, v, (1 - s) * g, -g * fifth_power(u * per_s),
-               -g * fifth_power(v * per_s), 1 - s);
+  const double per_L = frame.per_length(), per_g = 1 / profile.g;
+  const double u = x * per_L, v = y * per_g;
+  const Sampson f(u, v, per_L, per_g);
+  const double a2 = f.a * f.a, b2 = f.b * f.b, a4 = a2 * a2, b4 = b2 * b2, five = 5 / f.s;
+  const double A_u = five * a4 * b4 * b2, B_v = five * b4 * a4 * a2, cross = -five * f.A * f.B;
+  const double wA = f.A * per_L * per_L, wB = f.B * per_g * per_g;
+  const double per_D = 1 / std::sqrt(f.slope2), P_per_D2 = f.P * per_D * per_D;
+  const double P_u = -f.A * per_D - P_per_D2 * (wA * A_u + wB * cross);
+  const double P_v = -f.B * per_D - P_per_D2 * (wA * cross + wB * B_v);
+  const double P_L = P_per_D2 * wA * f.A * per_L, P_g = P_per_D2 * wB * f.B * per_g;
+
+  const double r = std::max(f.P, 0.0) * per_g, r2 = r * r, r4 = r2 * r2, q = 1 + r4;
+  const double root = 1 / std::sqrt(std::sqrt(q)), by_P = root / q;
+  return chain(frame, profile, u, v, f.P * root,
+               {P_u * by_P, P_v * by_P, P_g * by_P + r4 * r * by_P, P_L * by_P});
 }
 
 /// φ = 1 - u⁶ - v⁶.
 inline Partials paper_partials(const ComponentFrame& frame, double x, double y) {
   const Profile profile = frame.profile(x);
   const double u = x * frame.per_length(), v = y / profile.g;
-  return chain(frame, profile, u, v, 1 - sixth_power(u) - sixth_power(v), -6 * fifth_power(u),
-               -6 * fifth_power(v), 0.0);
+  return chain(frame, profile, u, v, 1 - sixth_power(u) - sixth_power(v),
+               {-6 * fifth_power(u), -6 * fifth_power(v), 0.0, 0.0});
 }
 
 template <TdfSettings::Kind kind>
@@ -130,8 +170,11 @@ void sum_chain(const ComponentFrame& frame, int count, const double* px, const d
 
 /// Rectangle of the component's frame that holds every point with φ > cut (cut < 0).
 ///
-/// distance: s < 1 + |cut|/g there, so |y| < g + |cut|, and beyond the tips, where g is the end
-/// value, |x| < L (1 + |cut|/g). paper: (x/L)⁶ and (y/g)⁶ are below 1 + |cut|.
+/// distance: s < 1 + |cut| |∇s| there. In the direction with u/s = a, v/s = b the point is at
+/// x = a s L, y = b s g, so that |x| < a L + |cut| a √(A² + (B L/g)²) and
+/// |y| < b g + |cut| b √((A g/L)² + B²): largest over all directions, x with the thinner tip's g
+/// (beyond a tip g is the end value), y with the largest g.
+/// paper: (x/L)⁶ and (y/g)⁶ are below 1 + |cut|.
 Box reach(const ComponentFrame& frame, TdfSettings::Kind kind, double cut) {
   const double L = frame.half_length(), top = frame.largest_half_thickness();
   constexpr double kRoundOff = 1 + 1e-9;
@@ -139,10 +182,18 @@ Box reach(const ComponentFrame& frame, TdfSettings::Kind kind, double cut) {
     const double grown = std::sqrt(std::cbrt(1 - cut)) * kRoundOff;
     return {{-L * grown, -top * grown}, {L * grown, top * grown}};
   }
-  const double left = L * (1 - cut / frame.half_thickness(-L)) * kRoundOff;
-  const double right = L * (1 - cut / frame.half_thickness(L)) * kRoundOff;
-  const double side = (top - cut) * kRoundOff;
-  return {{-left, -side}, {right, side}};
+  const double thin = std::min(frame.half_thickness(-L), frame.half_thickness(L));
+  double along = 0, across = 0;
+  constexpr int kDirections = 64;
+  for (int k = 0; k <= kDirections; ++k) {
+    const double a6 = static_cast<double>(k) / kDirections;
+    const double a = std::sqrt(std::cbrt(a6)), b = std::sqrt(std::cbrt(1 - a6));
+    const double A = fifth_power(a), B = fifth_power(b);
+    along = std::max(along, a * (L - cut * std::hypot(A, B * L / thin)));
+    across = std::max(across, b * (top - cut * std::hypot(A * top / L, B)));
+  }
+  constexpr double kBetween = 1.01;  // between two sampled directions
+  return {{-along * kBetween, -across * kBetween}, {along * kBetween, across * kBetween}};
 }
 
 void check(const TdfSettings& s) {

@@ -13,7 +13,11 @@ class ComponentFrame;
 /// How components become a topology description function on the nodes of a grid.
 struct TdfSettings {
   enum class Kind {
-    distance,  ///< φ = (1 - s) g(x), s = ((x/L)^p + (y/g)^p)^(1/p); smooth maximum (default)
+    /// φ = (1 - s)/|∇s|, s = ((x/L)^p + (y/g)^p)^(1/p), inside not above g(x): a distance to first
+    /// order all around the outline, tips included; smooth maximum (default). With (1 - s) g, a
+    /// distance across the flanks only, the band reaches ε L/g beyond a tip, and rows of
+    /// components bridge gaps through it.
+    distance,
     paper      ///< φ = χ = 1 - (x/L)^p - (y/g)^p of P (24), plain maximum
   };
   Kind kind = Kind::distance;

@@ -18,7 +18,7 @@ Design::Design(const Grid& domain, std::vector<Component> start, const DesignSca
     const auto p = start[c].parameters();
     const double lower[kN] = {domain.x0,
                               domain.y0,
-                              0.1 * scale.half_length,
+                              std::max(0.2 * scale.half_length, scale.min_thickness),
                               p[3] - 2 * pi,
                               scale.min_thickness,
                               scale.min_thickness,

@@ -20,8 +20,8 @@ struct DesignScale {
 ///
 /// so that a step of 0.05 is a cell or so in place and a twentieth of a component in shape:
 /// scaled by the domain instead, one step would move a component by many cells (design.md
-/// section 9). Bounds: centres inside the domain, L between a tenth and eight times its start,
-/// θ within a turn of its start.
+/// section 9). Bounds: centres inside the domain, L up to eight times its start and never below c_min (a
+/// component shorter than thick is a thin one the other way round), θ within a turn of its start.
 class Design {
  public:
   Design(const Grid& domain, std::vector<Component> start, const DesignScale& scale);

@@ -25,7 +25,7 @@ class MmcProblem final : public optim::Problem {
   VectorXd upper() const override { return design_.upper(); }
   VectorXd start() const override { return design_.x(); }
   optim::Response evaluate(const VectorXd& x) override;
-  /// Does one piece of material (cells of half density or more) reach from root to free end?
+  /// Does one piece of material, blurred links included, reach from root to free end?
   bool acceptable(const VectorXd& x) override;
 
   // What the last evaluate() saw.

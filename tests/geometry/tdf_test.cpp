@@ -54,9 +54,18 @@ TEST(ComponentTdf, TakesThePrintedValues) {
     const double sum = std::pow(x / c.half_length, 6) + std::pow(y / g, 6);
     EXPECT_NEAR(component_tdf(c, settings(Kind::paper), at.x(), at.y(), nullptr), 1 - sum,
                 1e-12 * (1 + sum));
-    const double s = std::pow(sum, 1.0 / 6);
-    EXPECT_NEAR(component_tdf(c, settings(Kind::distance), at.x(), at.y(), nullptr), (1 - s) * g,
-                1e-13);
+    // (1 - s)/|∇s| at this g, the slope by differences; inside capped at g by a fourth-power mean.
+    const auto s = [&](double X, double Y) {
+      return std::pow(std::pow(X / c.half_length, 6) + std::pow(Y / g, 6), 1.0 / 6);
+    };
+    const double h = 1e-6;
+    const double slope = std::hypot((s(x + h, y) - s(x - h, y)) / (2 * h),
+                                    (s(x, y + h) - s(x, y - h)) / (2 * h));
+    const double P = (1 - s(x, y)) / slope;
+    const double phi = P > 0 ? P * std::pow(1 + std::pow(P / g, 4), -0.25) : P;
+    // The difference quotient of the slope errs by h² s‴/6, with s‴ up to 1/g³ off the center.
+    if (s(x, y) > 0.1)
+      EXPECT_NEAR(component_tdf(c, settings(Kind::distance), at.x(), at.y(), nullptr), phi, 1e-6);
   }
 }
 
@@ -106,7 +115,13 @@ TEST_P(EveryKind, CenterIsFiniteAndFlat) {
   for (const double off : {0.0, 1e-200, 1e-60, 1e-30}) {
     double d[7];
     const double phi = component_tdf(c, settings(GetParam()), 0.3, 0.2 + off, d);
-    EXPECT_NEAR(phi, GetParam() == Kind::paper ? 1 : 0.15, 1e-15);
+    if (GetParam() == Kind::paper) {
+      EXPECT_NEAR(phi, 1, 1e-15);
+    } else {
+      // The cap holds φ below g; along the diagonal, where 1/|∇s| is least, 0.99 of it is left.
+      EXPECT_LE(phi, 0.15);
+      EXPECT_GT(phi, 0.95 * 0.15);
+    }
     for (const double each : d) EXPECT_TRUE(std::isfinite(each));
   }
   double d[7];
@@ -132,6 +147,19 @@ TEST(ComponentTdf, HasUnitSlopeAcrossTheFlank) {
     const Vec2 gradient((phi(at.x() + h, at.y()) - phi(at.x() - h, at.y())) / (2 * h),
                         (phi(at.x(), at.y() + h) - phi(at.x(), at.y() - h)) / (2 * h));
     EXPECT_NEAR(gradient.norm(), 1, 0.03);
+  }
+}
+
+// The same at a tip, where 1 - s alone falls by 1/L and (1 - s) g by g/L only: this is what keeps
+// the band from bridging gaps between the ends of components.
+TEST(ComponentTdf, HasUnitSlopeAtTheTip) {
+  const Component c{
+      .center = {0.3, 0.2}, .half_length = 0.5, .angle = 0.3, .c1 = 0.1, .c2 = 0.1, .c3 = 0.1};
+  const TdfSettings s = settings(Kind::distance);
+  for (const double beyond : {-0.04, -0.01, 0.01, 0.04, 0.08}) {
+    const Vec2 at = point_of(c, c.half_length + beyond, 0.02);
+    // The cap bends the inside: at 0.4 g below the outline by (0.4)⁵/4 g.
+    EXPECT_NEAR(component_tdf(c, s, at.x(), at.y(), nullptr), -beyond, 0.0015) << beyond;
   }
 }
 

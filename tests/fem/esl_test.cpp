@@ -1,0 +1,162 @@
+// Shows that equivalent static loads carry what they say: deformation and acceleration in the axes
+// of the hub against differences in time of material points' positions while the hub accelerates
+// and the material flows; the rigid continuation inside the hub; the forces of point masses.
+#include "fem/dynamics/esl.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/differences.h"
+#include "tests/support/models.h"
+
+namespace flexmorph::fem {
+namespace {
+
+using testing::first_difference;
+using testing::second_difference;
+
+constexpr double kTime = 0.4, kRoot = 0.05, kEnd = 0.3;
+
+/// On a column of the grid at kTime, with speed and acceleration.
+Motion root_line(double t) {
+  const double s = t - kTime;
+  return {kRoot - 0.2 * s - 0.3 * s * s, -0.2 - 0.6 * s, -0.6};
+}
+
+FrameMotion hub(double t) {
+  FrameMotion f;
+  f.origin = {0.2 * std::sin(t), 0.1 * t * t};
+  f.origin_rate = {0.2 * std::cos(t), 0.2 * t};
+  f.origin_acceleration = {-0.2 * std::sin(t), 0.2};
+  f.angle = 0.3 + 4 * t + t * t;
+  f.angle_rate = 4 + 2 * t;
+  f.angle_acceleration = 2;
+  return f;
+}
+
+Eigen::Matrix2d turn(double t) {
+  const double angle = hub(t).angle;
+  Eigen::Matrix2d r;
+  r << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
+  return r;
+}
+
+class Esl : public ::testing::Test {
+ protected:
+  Esl() {
+    std::vector<MaterialLine> m = testing::even_lines(kRoot, kEnd, 3);
+    m[0].drive = root_line;
+    const PlaneSection section;
+    std::vector<std::unique_ptr<Term>> terms;
+    terms.push_back(make_inertia(section));
+    terms.push_back(make_membrane(section));
+    model.add_body("plate",
+                   std::make_unique<AncfPlate>(2, AncfPlate::ShapeSet::h16, m,
+                                               testing::even_lines(-0.05, 0.05, 2)),
+                   section, std::move(terms));
+  }
+  /// State whose rates belong to nodal values given as a function of time.
+  template <class Values>
+  State state(const Values& q) {
+    State x;
+    x.t = kTime;
+    x.q = q(kTime);
+    x.v = first_difference([&](double dt) { return VectorXd(q(kTime + dt)); }, 1e-3);
+    x.a = x.alpha = second_difference([&](double dt) { return VectorXd(q(kTime + dt)); }, 1e-3);
+    model.prepare(kTime);
+    return x;
+  }
+  EslSet load(const State& x, std::span<const AttachedMass> masses = {},
+              const VectorXd& gravity = {}) {
+    model.prepare(x.t);
+    return equivalent_static_load(model, x, {"plate", hub, 1, 0.01}, grid, masses, gravity);
+  }
+
+  Model model;
+  Grid grid{0, -0.05, kEnd, 0.1, 30, 10};
+};
+
+TEST_F(Esl, FieldsAreThoseOfMaterialPointsInTheHubsAxes) {
+  model.prepare(kTime);
+  const testing::SmoothMotion motion(model.reference().q, 0.1 * model.scales().cwiseInverse(), 3);
+  const State x = motion.state(kTime);
+  const Vec2 g(0.5, -9.81);
+  const EslSet set = load(x, {}, g);
+  EXPECT_EQ(set.root_column, 5);
+  EXPECT_NEAR(set.strain_energy, model.energies(x).strain, 0);
+  const auto position = [&](double t, const Vec2& material) {
+    model.prepare(t);
+    return point_motion(model.body("plate"), motion.state(t), material).position;
+  };
+  for (int i = set.root_column + 1; i <= grid.nx; i += 4)
+    for (int j = 0; j <= grid.ny; j += 5) {
+      const Vec2 at = grid.node_position(i, j);
+      const int entry = 2 * grid.node(i, j);
+      const Vec2 u = turn(kTime).transpose() * (position(kTime, at) - hub(kTime).origin) -
+                     (at - Vec2(kRoot, 0));
+      EXPECT_LT((set.deformation.segment<2>(entry) - u).norm(), 1e-14);
+      const Vec2 r_tt =
+          second_difference([&](double dt) { return position(kTime + dt, at); }, 1e-3);
+      const Vec2 a = turn(kTime).transpose() * (r_tt - g);
+      EXPECT_LT((set.acceleration.segment<2>(entry) - a).norm(), 1e-8 * (1 + a.norm())) << i;
+    }
+  for (int i = 0; i <= set.root_column; ++i)
+    EXPECT_EQ(set.deformation.segment(2 * grid.node(i, 0), 2 * (grid.ny + 1)).norm(), 0);
+}
+
+// The rigid, extending body: inside the hub by the formula, outside by the shape functions, both
+// against the twice-differenced motion R(t) (X - m₀(t)) + o(t).
+TEST_F(Esl, RigidBodyContinuesIntoTheHub) {
+  const auto rigid = [&](double t) {
+    VectorXd q(model.n_dofs());
+    model.prepare(t);
+    const auto& element = *model.bodies()[0].element;
+    const MatrixXd reference = element.reference();
+    for (int k = 0; k < element.n_vectors(); ++k) {
+      Vec2 local = reference.row(k).transpose();
+      if (element.is_position(k)) local.x() -= root_line(t).value;
+      q.segment<2>(2 * k) =
+          turn(t) * local + (element.is_position(k) ? hub(t).origin : Vec2::Zero());
+    }
+    return q;
+  };
+  const State x = state(rigid);
+  const EslSet set = load(x);
+  for (int i = 0; i <= grid.nx; ++i)
+    for (int j = 0; j <= grid.ny; j += 5) {
+      const Vec2 at = grid.node_position(i, j);
+      const auto position = [&](double dt) {
+        const double t = kTime + dt;
+        return Vec2(turn(t) * (at - Vec2(root_line(t).value, 0)) + hub(t).origin);
+      };
+      const Vec2 a = turn(kTime).transpose() * second_difference(position, 1e-3);
+      EXPECT_LT((set.acceleration.segment<2>(2 * grid.node(i, j)) - a).norm(), 1e-7) << i;
+    }
+  EXPECT_LT(set.deformation.norm(), 1e-13);
+}
+
+TEST_F(Esl, PointMassPushesWithItsInertia) {
+  model.prepare(kTime);
+  const State x = testing::SmoothMotion(model.reference().q, 0.1 * model.scales().cwiseInverse(), 3)
+                      .state(kTime);
+  const AttachedMass mass{0.5, {kEnd, 0.02}};
+  const EslSet set = load(x, {&mass, 1});
+  ASSERT_EQ(set.forces.size(), 1u);
+  EXPECT_EQ(set.forces[0].node, grid.node(30, 7));
+  const Vec2 a =
+      turn(kTime).transpose() * point_motion(model.body("plate"), x, mass.material).acceleration;
+  EXPECT_LT((set.forces[0].force + 0.5 * a).norm(), 1e-12 * a.norm());
+  const AttachedMass between{0.5, {kEnd, 0.0213}};
+  EXPECT_THROW(load(x, {&between, 1}), Error);
+}
+
+TEST_F(Esl, RefusesARootBetweenTwoColumns) {
+  model.prepare(kTime + 0.01);
+  const State x = testing::SmoothMotion(model.reference().q, 0.1 * model.scales().cwiseInverse(), 3)
+                      .state(kTime + 0.01);
+  EXPECT_THROW(load(x), Error);
+}
+
+}  // namespace
+}  // namespace flexmorph::fem

@@ -1,0 +1,175 @@
+// Shows when meshes change and what that does to a state: limits are met at the exact time, an
+// inserted line of h16 nodes changes neither position, velocity nor acceleration of any material
+// point, h12 and removal change them by the interpolation error only, and pairs do not chatter.
+#include "fem/dynamics/growth.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/support/models.h"
+
+namespace flexmorph::fem {
+namespace {
+
+using testing::RotatingPlate;
+using testing::ShapeSet;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// A smooth motion of the growing plate at time t, and the mesh there.
+State some_state(testing::Scene& scene, double t, double size = 0.05) {
+  Model& model = scene.model;
+  model.prepare(t);
+  const State reference = model.reference();
+  State x = testing::SmoothMotion(reference.q, size * model.scales().cwiseInverse(), 5).state(t);
+  // Nodes on the moving root go along with it and not with the material; anything smooth will do.
+  x.alpha = x.a + 0.1 * x.v;
+  x.lambda = reference.lambda;
+  return x;
+}
+
+std::vector<Vec2> points_outside(const RotatingPlate& p, double root) {
+  std::vector<Vec2> out;
+  for (int i = 0; i <= 40; ++i)
+    for (int j = 0; j <= 6; ++j)
+      out.push_back({root + (p.whole() - root) * i / 40, -0.05 + 0.1 * j / 6});
+  return out;
+}
+
+struct Jump {
+  double position = 0, velocity = 0, acceleration = 0;
+};
+
+/// Largest jumps of the fields when the mesh changes, relative to the largest values.
+Jump jump_of(const RotatingPlate& p, testing::Scene& scene, State& x, MeshChange change) {
+  Body& body = scene.model.bodies()[0];
+  std::vector<PointMotion> before;
+  const std::vector<Vec2> points = points_outside(p, grid_of(body).line_m(0).value);
+  PointMotion largest{Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
+  for (const Vec2& at : points) {
+    before.push_back(point_motion(body, x, at));
+    largest.position = largest.position.cwiseMax(before.back().position.cwiseAbs());
+    largest.velocity = largest.velocity.cwiseMax(before.back().velocity.cwiseAbs());
+    largest.acceleration = largest.acceleration.cwiseMax(before.back().acceleration.cwiseAbs());
+  }
+  change_mesh(scene.model, body, change, x);
+  Jump jump;
+  for (size_t i = 0; i < points.size(); ++i) {
+    const PointMotion after = point_motion(body, x, points[i]);
+    jump.position = std::max(jump.position, (after.position - before[i].position).norm());
+    jump.velocity = std::max(jump.velocity, (after.velocity - before[i].velocity).norm());
+    jump.acceleration =
+        std::max(jump.acceleration, (after.acceleration - before[i].acceleration).norm());
+  }
+  return {jump.position / largest.position.norm(), jump.velocity / largest.velocity.norm(),
+          jump.acceleration / largest.acceleration.norm()};
+}
+
+// Line 12: the two halves of a bicubic are bicubic.
+TEST(Insertion, LeavesTheFieldsOfCompleteShapesUnchanged) {
+  RotatingPlate p;
+  p.speed = 0.5;
+  p.factors = testing::chequered(p);
+  testing::Scene scene = testing::make_scene(p);
+  State x = some_state(scene, 0.1);
+  const Energies before = scene.model.energies(x);
+  const Jump jump = jump_of(p, scene, x, MeshChange::insertion);
+  EXPECT_LT(jump.position, 1e-13);
+  EXPECT_LT(jump.velocity, 1e-12);
+  EXPECT_LT(jump.acceleration, 1e-11);
+  const Energies after = scene.model.energies(x);
+  EXPECT_NEAR(after.kinetic, before.kinetic, 1e-12 * before.kinetic);
+  EXPECT_NEAR(after.strain, before.strain, 1e-10 * before.strain);
+  EXPECT_EQ(x.q.size(), scene.model.n_dofs());
+  EXPECT_EQ(x.alpha.size(), scene.model.n_dofs());
+  EXPECT_EQ(grid_of(scene.model.bodies()[0]).n_m(), p.nx + 1);
+}
+
+// The incomplete set has no r_mn: the jump is that part of the field, small where it is smooth.
+TEST(Insertion, OfIncompleteShapesJumpsByTheMixedDerivative) {
+  RotatingPlate p;
+  p.speed = 0.5;
+  p.shapes = ShapeSet::h12;
+  testing::Scene scene = testing::make_scene(p);
+  State x = some_state(scene, 0.1);
+  const Jump jump = jump_of(p, scene, x, MeshChange::insertion);
+  EXPECT_GT(jump.position, 1e-6);
+  EXPECT_LT(jump.position, 1e-2);
+  EXPECT_LT(jump.velocity, 5e-2);
+}
+
+// What was put in can be taken out: fields come back exactly.
+TEST(Removal, UndoesAnInsertion) {
+  RotatingPlate p;
+  p.speed = 0.5;
+  for (const ShapeSet shapes : {ShapeSet::h12, ShapeSet::h16}) {
+    p.shapes = shapes;
+    testing::Scene scene = testing::make_scene(p);
+    State x = some_state(scene, 0.1);
+    const State before = x;
+    change_mesh(scene.model, scene.model.bodies()[0], MeshChange::insertion, x);
+    change_mesh(scene.model, scene.model.bodies()[0], MeshChange::removal, x);
+    EXPECT_EQ((x.q - before.q).norm() + (x.v - before.v).norm() + (x.a - before.a).norm() +
+                  (x.alpha - before.alpha).norm(),
+              0);
+  }
+}
+
+// Other bodies of the model keep their numbers' values.
+TEST(Insertion, DoesNotTouchOtherBodies) {
+  RotatingPlate p;
+  testing::Scene scene = testing::make_scene(p), other = testing::make_scene(p);
+  for (const char* name : {"before", "after"}) {
+    std::vector<std::unique_ptr<Term>> terms;
+    terms.push_back(make_inertia(p.section));
+    scene.model.add_body(name, grid_of(other.model.bodies()[0]).copy(), p.section,
+                         std::move(terms));
+  }
+  Body& middle = scene.model.bodies()[1];
+  scene.model.prepare(0.2);
+  State x = scene.model.reference();
+  x.q = x.v = x.a = x.alpha = VectorXd::Random(scene.model.n_dofs());
+  const State old = x;
+  const int first = middle.first_dof, size = middle.n_dofs();
+  change_mesh(scene.model, middle, MeshChange::insertion, x);
+  EXPECT_EQ((x.q.head(first) - old.q.head(first)).norm(), 0);
+  const auto rest = old.q.size() - first - size;
+  EXPECT_EQ((x.q.tail(rest) - old.q.tail(rest)).norm(), 0);
+  EXPECT_EQ(x.q.size() - old.q.size(), size / (p.nx + 1));
+}
+
+TEST(NextChange, MeetsTheLimitAtItsTime) {
+  RotatingPlate p;
+  p.speed = 0.5;
+  testing::Scene scene = testing::make_scene(p);
+  const Body& body = scene.model.bodies()[0];
+  const NextChange change = next_change(body, scene.growths[0], 0, 1, 1e-3);
+  EXPECT_NEAR(change.t, 0.1, 1e-12);
+  EXPECT_EQ(change.change, MeshChange::insertion);
+  EXPECT_EQ(next_change(body, scene.growths[0], 0, 0.0999, 1e-3).t, kInfinity);
+}
+
+TEST(NextChange, MergesShrinkingPlatesOnlyWhereTheyDoNotChatter) {
+  RotatingPlate p;
+  p.speed = -0.1;
+  testing::Scene scene = testing::make_scene(p);
+  Body& body = scene.model.bodies()[0];
+  Growth growth = scene.growths[0];  // limits 0.1 and 0.03, elements of 0.05
+  const NextChange change = next_change(body, growth, 0, 1, 1e-3);
+  EXPECT_NEAR(change.t, 0.2, 1e-12);
+  EXPECT_EQ(change.change, MeshChange::removal);
+  // Afterwards the merged element (0.08) is split or merged by neither limit at once.
+  scene.model.prepare(change.t);
+  State x = some_state(scene, change.t);
+  change_mesh(scene.model, body, change.change, x);
+  EXPECT_NEAR(next_change(body, growth, change.t, 2, 1e-3).t, 0.7, 1e-12);
+  // P's 0.1 and 0.05 would merge to 0.1, which is split again: refused.
+  testing::Scene again = testing::make_scene(p);
+  growth.min_length = 0.0499;
+  EXPECT_EQ(next_change(again.model.bodies()[0], growth, 0, 0.4, 1e-3).t, kInfinity);
+}
+
+}  // namespace
+}  // namespace flexmorph::fem

@@ -1,0 +1,185 @@
+// Shows that the matrix of a Newton step is the derivative of the whole residual, by unknowns and
+// multipliers, with flow, with nonlinear joints, and not symmetric when material flows; that bodies
+// add up; and that what does not exist is named.
+#include "fem/model.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/differences.h"
+#include "tests/support/models.h"
+
+namespace flexmorph::fem {
+namespace {
+
+using testing::first_difference;
+using testing::ShapeSet;
+
+/// |r|² = L² of the first two unknowns of a body: a constraint with curvature.
+class Distance final : public Joint {
+ public:
+  std::string name() const override { return "distance"; }
+  int size() const override { return 1; }
+  void bind(std::span<const BodyView> bodies) override {
+    first_ = find_body(bodies, "distance", "plate").first_dof;
+  }
+  void evaluate(double, const VectorXd& q, const VectorXd& v, ConstraintRows& rows) const override {
+    const auto r = q.segment<2>(first_), r_t = v.segment<2>(first_);
+    rows.value = VectorXd::Constant(1, r.squaredNorm() - 1);
+    rows.rate = VectorXd::Zero(1);
+    rows.acceleration = VectorXd::Constant(1, -2 * r_t.squaredNorm());
+    rows.jacobian.clear();
+    for (int c = 0; c < 2; ++c) rows.jacobian.emplace_back(0, first_ + c, 2 * r[c]);
+  }
+  void add_stiffness(double, const VectorXd&, const VectorXd& lambda,
+                     std::vector<Eigen::Triplet<double>>& out) const override {
+    for (int c = 0; c < 2; ++c) out.emplace_back(first_ + c, first_ + c, 2 * lambda[0]);
+  }
+
+ private:
+  int first_ = 0;
+};
+
+FrameMotion hub(double t) {
+  FrameMotion f;
+  f.angle = 1.3 * t * t;
+  f.angle_rate = 2.6 * t;
+  f.angle_acceleration = 2.6;
+  return f;
+}
+
+std::vector<std::unique_ptr<Term>> all_terms(const PlaneSection& s) {
+  std::vector<std::unique_ptr<Term>> out;
+  out.push_back(make_inertia(s));
+  out.push_back(make_membrane(s));
+  out.push_back(make_gravity(s, Vec2(0, -9.81)));
+  out.push_back(make_point_mass(0.5, {0.17, 0.02}, Vec2(0, -9.81)));
+  return out;
+}
+
+class ModelTangent : public ::testing::TestWithParam<ShapeSet> {
+ protected:
+  ModelTangent() {
+    // Soft, so that inertia and membrane weigh alike in the matrix.
+    const PlaneSection section{0.01, 1e3, 0.3, 2700};
+    model.add_body("plate", std::make_unique<AncfPlate>(testing::swinging_plate(GetParam())),
+                   section, all_terms(section));
+    model.add_joint(make_weld("root", "plate", "root", hub, WeldMode::direction));
+    model.add_joint(std::make_unique<Distance>());
+    const State reference = model.reference();
+    x = testing::SmoothMotion(reference.q, 0.05 * model.scales().cwiseInverse(), 2).state(0.37);
+    x.lambda = VectorXd::Random(model.n_constraints());
+    model.prepare(x.t);
+  }
+  /// F + Φ_qᵀ λ and Φ.
+  VectorXd residual(const State& y) const {
+    VectorXd out(model.n_dofs() + model.n_constraints()), force;
+    Constraints c;
+    model.constraints(y, c);
+    model.force(y, force);
+    model.add_constraint_force(c, y.lambda, force);
+    out << force, c.value;
+    return out;
+  }
+
+  Model model;
+  State x;
+};
+INSTANTIATE_TEST_SUITE_P(Shapes, ModelTangent, ::testing::Values(ShapeSet::h12, ShapeSet::h16),
+                         [](const auto& s) { return s.param == ShapeSet::h12 ? "h12" : "h16"; });
+
+TEST_P(ModelTangent, IsTheDerivativeOfTheResidual) {
+  const Weights w{1, 37, 1500};
+  Constraints c;
+  model.constraints(x, c);
+  SparseMatrix kkt;
+  model.kkt(x, c, w, 1, kkt);
+  const int n = model.n_dofs();
+  const VectorXd scales = model.scales();
+  // Cubic in q, linear in the rest: differences of order 4 are exact but for round-off.
+  for (int column = 0; column < n + model.n_constraints(); ++column) {
+    const double step = column < n ? 1e-3 / scales[column] : 1;
+    const VectorXd exact = kkt.col(column);
+    VectorXd difference = first_difference(
+        [&](double by) {
+          State y = x;
+          if (column < n) {
+            y.q[column] += w.q * by;
+            y.v[column] += w.v * by;
+            y.a[column] += w.a * by;
+          } else {
+            y.lambda[column - n] += by;
+          }
+          return residual(y);
+        },
+        step);
+    EXPECT_LT((exact - difference).cwiseAbs().maxCoeff(), 1e-8 * (1 + exact.cwiseAbs().maxCoeff()))
+        << column;
+  }
+  // The scale multiplies the equations of motion, not the constraints: times λ scaled in turn.
+  SparseMatrix scaled;
+  model.kkt(x, c, w, 0.25, scaled);
+  const MatrixXd a = MatrixXd(kkt), b = MatrixXd(scaled);
+  EXPECT_LT((0.25 * a.topLeftCorner(n, n) - b.topLeftCorner(n, n)).norm(), 1e-14 * a.norm());
+  EXPECT_EQ((a.bottomRows(model.n_constraints()) - b.bottomRows(model.n_constraints())).norm(), 0);
+}
+
+// 2 ∫ N Ṅᵀ is not symmetric: a solver that assumed symmetry would be wrong.
+TEST_P(ModelTangent, IsNotSymmetricWithMaterialFlow) {
+  Constraints c;
+  model.constraints(x, c);
+  SparseMatrix kkt;
+  const auto asymmetry = [&](const Weights& w) {
+    model.kkt(x, c, w, 1, kkt);
+    const MatrixXd k = MatrixXd(kkt).topLeftCorner(model.n_dofs(), model.n_dofs());
+    return (k - k.transpose()).norm() / k.norm();
+  };
+  EXPECT_GT(asymmetry({0, 1, 0}), 0.1);
+  EXPECT_LT(asymmetry({0, 0, 1}), 1e-14);
+}
+
+// A second body changes nothing for the first one.
+TEST(Model, BodiesAddUp) {
+  const PlaneSection section;
+  Model one, two;
+  for (Model* model : {&one, &two})
+    model->add_body("plate", std::make_unique<AncfPlate>(testing::swinging_plate(ShapeSet::h16)),
+                    section, all_terms(section));
+  two.add_body("arm", std::make_unique<AncfPlate>(testing::swinging_plate(ShapeSet::h12)), section,
+               all_terms(section));
+  State x =
+      testing::SmoothMotion(one.reference().q, 0.05 * one.scales().cwiseInverse(), 2).state(0.37);
+  State y =
+      testing::SmoothMotion(two.reference().q, 0.05 * two.scales().cwiseInverse(), 3).state(0.37);
+  y.q.head(one.n_dofs()) = x.q;
+  y.v.head(one.n_dofs()) = x.v;
+  y.a.head(one.n_dofs()) = x.a;
+  one.prepare(x.t);
+  two.prepare(y.t);
+  VectorXd f, g;
+  one.force(x, f);
+  two.force(y, g);
+  EXPECT_EQ((g.head(one.n_dofs()) - f).norm(), 0);
+  EXPECT_EQ(two.bodies()[1].first_dof, one.n_dofs());
+  EXPECT_GT(two.energies(y).strain, one.energies(x).strain);
+  EXPECT_THROW(one.body("arm"), Error);
+}
+
+// |r_m x r_n| of a plate stretched by (1.2, 0.5) everywhere.
+TEST(Model, SmallestAreaRatioIsThatOfTheMaterial) {
+  const PlaneSection section;
+  Model model;
+  model.add_body("plate", std::make_unique<AncfPlate>(testing::swinging_plate(ShapeSet::h16)),
+                 section, all_terms(section));
+  State x = model.reference();
+  for (Eigen::Index k = 0; k < x.q.size(); k += 2) {
+    x.q[k] *= 1.2;
+    x.q[k + 1] *= 0.5;
+  }
+  model.prepare(0);
+  EXPECT_NEAR(model.smallest_area_ratio(x), 0.6, 1e-13);
+}
+
+}  // namespace
+}  // namespace flexmorph::fem
