@@ -108,7 +108,7 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
     mmc::DesignScale scale;
     scale.half_length = d.half_length;
     scale.min_thickness = d.min_thickness;
-    scale.max_thickness = std::max(0.3 * g.height, 1.5 * d.min_thickness);
+    scale.max_thickness = std::max({0.3 * g.height, 1.5 * d.min_thickness, d.half_thickness});
     const auto layout = crossing_layout(g.x0, g.y0, g.width, g.height, d.components[0],
                                         d.components[1], d.half_thickness, d.half_length);
     std::vector<TdfSettings> stages;

@@ -65,6 +65,7 @@ std::string check_case(const RunOptions& options) {
   const io::CaseFile file(find_case(options.case_name), options.overrides);
   const Scene scene = read_scene(file);
   Mechanism mechanism = build_mechanism(scene);
+  build_problems(scene);
   std::ostringstream out;
   out << scene.name << ": " << scene.title << "\n\nactive\n";
   out << row("time", "0 to " + io::to_text(scene.time.end) + " s, step " +

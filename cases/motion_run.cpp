@@ -21,6 +21,7 @@ class Recorder {
   Recorder(const Scene& scene, const MotionWishes& wishes, const Mechanism& mechanism,
            RunFolder& folder, MotionOutcome& out)
       : scene_(scene), wishes_(wishes), mechanism_(mechanism), folder_(folder), out_(out) {
+    for (const fem::Growth& growth : mechanism.growths) out.record.bodies.push_back(growth.body);
     out.record.deflection.resize(mechanism.growths.size());
     out.record.amplitude.assign(mechanism.growths.size(), 0);
     out.record.strain_integral.assign(1, 0);
@@ -43,6 +44,7 @@ class Recorder {
       r.amplitude[i] = std::max(r.amplitude[i], std::abs(d));
     }
     if (step.stop || step.x.t == 0) at_stop(step);
+    if (wishes_.go_on && !wishes_.go_on()) throw Interrupted();
   }
 
  private:
@@ -91,10 +93,11 @@ MotionOutcome run_motion(const Scene& scene, const MotionWishes& wishes, RunFold
   try {
     out.record.result = fem::integrate(mechanism.model, mechanism.growths, mechanism.motion,
                                        [&](const fem::MotionStep& step) { record(step); });
-  } catch (const Error&) {
-    folder.write_motion("motion.csv", scene, out.record);
+  } catch (...) {
+    folder.write_motion(wishes.table, scene, out.record);
     throw;
   }
+  folder.write_motion(wishes.table, scene, out.record);
   return out;
 }
 

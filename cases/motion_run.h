@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "cases/build.h"
 #include "cases/run_folder.h"
 
@@ -12,7 +14,12 @@ struct MotionWishes {
   bool loads = false;                  ///< collect equivalent static loads
   double frames_every = 0;             ///< VTK frames [s]; 0: none
   bool balance = true;                 ///< keep the energy balance
+  std::string table = "motion.csv";    ///< file of the folder: the steps, up to a failure too
+  std::function<bool()> go_on;         ///< asked at every step; false ends it with Interrupted
 };
+
+/// The user wants no more. What was computed is in the folder.
+struct Interrupted {};
 
 struct MotionOutcome {
   MotionRecord record;
@@ -20,7 +27,8 @@ struct MotionOutcome {
 };
 
 /// Builds the mechanism of a scene and moves it through its time.
-/// @param folder  receives VTK frames and, when the motion fails, motion.csv up to the failure
+/// @param folder  receives the table of steps and VTK frames
+/// @throws Error (numerical) or Interrupted, with the steps before it in the table
 MotionOutcome run_motion(const Scene& scene, const MotionWishes& wishes, RunFolder& folder);
 
 }  // namespace flexmorph::cases

@@ -31,7 +31,9 @@ io::Json body_results(const RunReport& report, size_t i) {
   out.set("min_feature", io::Json());
   out.set("thinnest_component", thinnest(report.problems[i]));
   const auto amplitude = [&](const std::optional<MotionRecord>& motion) {
-    return motion ? io::Json(motion->amplitude.at(i)) : io::Json();
+    if (!motion) return io::Json();
+    const auto found = std::find(motion->bodies.begin(), motion->bodies.end(), o.body);
+    return io::Json(motion->amplitude.at(static_cast<size_t>(found - motion->bodies.begin())));
   };
   const bool finer = report.verified.has_value();
   out.set("dynamic_amplitude", amplitude(finer ? report.verified : report.motion));
@@ -139,13 +141,13 @@ std::string convergence_plot(const RunFolder::History& h) {
 }
 
 /// Deflection of the tip of every body against time: P Fig. 23.
-std::string deflection_plot(const Scene& scene, const MotionRecord& design,
+std::string deflection_plot(const MotionRecord& design,
                             const std::optional<MotionRecord>& uniform) {
   io::Figure figure;
   figure.title = "Tip deflection";
   for (size_t i = 0; i < design.deflection.size(); ++i) {
     io::Panel panel;
-    panel.title = scene.bodies.size() > 1 ? scene.bodies[i].name : "";
+    panel.title = design.bodies.size() > 1 ? design.bodies[i] : "";
     panel.x.label = "time [s]";
     panel.y.label = "deflection [m]";
     const bool designed = uniform.has_value();
@@ -213,12 +215,12 @@ void write_report(const Scene& scene, const RunReport& report, RunFolder& folder
   for (const RunFolder::History& h : folder.histories())
     add("convergence_" + h.body, "Convergence of " + h.body, convergence_plot(h));
   if (report.motion) {
-    add("deflection", "Tip deflection", deflection_plot(scene, *report.motion, report.uniform_motion));
+    add("deflection", "Tip deflection", deflection_plot(*report.motion, report.uniform_motion));
     add("energies", "Energies of the motion", energy_plot(*report.motion));
   }
   if (report.verified)
     add("deflection_verified", "Tip deflection on the finer mesh",
-        deflection_plot(scene, *report.verified, report.verified_uniform));
+        deflection_plot(*report.verified, report.verified_uniform));
   folder.write_text("report.html", io::report_html(scene.title, sections));
 }
 

@@ -19,6 +19,8 @@ namespace {
 
 volatile std::sig_atomic_t interrupted = 0;
 
+bool go_on() { return interrupted == 0; }
+
 /// A line that rewrites itself on a terminal, plain lines now and then elsewhere.
 class Progress {
  public:
@@ -76,6 +78,7 @@ void run_designs(const Scene& scene, RunFolder& folder, Progress& progress, RunR
     MotionWishes wishes;
     wishes.factors.assign(factors.begin(), factors.end());
     wishes.loads = true;
+    wishes.go_on = go_on;
     MotionOutcome motion = run_motion(scene, wishes, folder);
     progress.say("motion: " + std::to_string(motion.record.result.counts.steps) + " steps, " +
                  std::to_string(motion.record.result.events.size()) + " changes of the mesh, " +
@@ -92,7 +95,7 @@ void run_designs(const Scene& scene, RunFolder& folder, Progress& progress, RunR
   observer.iteration = [&](const mmc::IterationReport& r) {
     folder.add_iteration(r);
     progress.iteration(r);
-    return interrupted == 0;
+    return go_on();
   };
   observer.cycle = [&](int cycle, std::span<const mmc::BodyOutcome> outcomes) {
     report.cycles = cycle;
@@ -109,35 +112,35 @@ void run_designs(const Scene& scene, RunFolder& folder, Progress& progress, RunR
   mmc::LoopSettings settings{scene.cycle.max_cycles, scene.cycle.tolerance,
                              scene.output.sharp_every, scene.optimizer};
   mmc::esl_loop(report.problems, simulate, settings, observer);
-  if (interrupted) return;
+  if (interrupted) throw Interrupted();
 
   // The judge of a design is the motion with it, beside the same volume spread evenly.
   MotionWishes wishes;
   wishes.factors = final_factors(report.problems);
   wishes.frames_every = scene.output.vtk ? scene.output.motion_every : 0;
+  wishes.go_on = go_on;
   report.motion = run_motion(scene, wishes, folder).record;
-  folder.write_motion("motion.csv", scene, *report.motion);
   wishes.frames_every = 0;
   wishes.factors = uniform_factors(report.problems);
+  wishes.table = "motion_uniform.csv";
   report.uniform_motion = run_motion(scene, wishes, folder).record;
-  folder.write_motion("motion_uniform.csv", scene, *report.uniform_motion);
   if (!scene.verify) return;
   progress.say("verification on " + std::to_string(scene.verify->mesh[0]) + " x " +
                std::to_string(scene.verify->mesh[1]) + " elements");
   wishes.mesh = {scene.verify->mesh, scene.verify->step};
   wishes.balance = false;
+  wishes.table = "motion_verified_uniform.csv";
   report.verified_uniform = run_motion(scene, wishes, folder).record;
-  folder.write_motion("motion_verified_uniform.csv", scene, *report.verified_uniform);
   wishes.factors = final_factors(report.problems);
+  wishes.table = "motion_verified.csv";
   report.verified = run_motion(scene, wishes, folder).record;
-  folder.write_motion("motion_verified.csv", scene, *report.verified);
 }
 
 void run_scene(const Scene& scene, RunFolder& folder, Progress& progress, RunReport& report) {
   if (!scene.designs.empty()) return run_designs(scene, folder, progress, report);
   MotionWishes wishes;
+  wishes.go_on = go_on;
   report.motion = run_motion(scene, wishes, folder).record;
-  folder.write_motion("motion.csv", scene, *report.motion);
 }
 
 }  // namespace
@@ -164,7 +167,9 @@ int run_case(const RunOptions& options) {
   const auto wall = std::chrono::steady_clock::now();
   const io::CaseFile file(find_case(options.case_name), options.overrides);
   const Scene scene = read_scene(file);
-  build_mechanism(scene);  // what the tables refuse, they refuse before a folder exists
+  // What cannot be built is refused before a folder exists.
+  build_mechanism(scene);
+  build_problems(scene);
   std::string directory = options.directory;
   if (directory.empty()) directory = scene.output.directory;
   if (directory.empty()) directory = "runs/" + scene.name;
@@ -190,14 +195,17 @@ int run_case(const RunOptions& options) {
   close("running", "");
   try {
     run_scene(scene, folder, progress, report);
-  } catch (const Error& error) {
+  } catch (const Interrupted&) {
+    close("interrupted", "");
+    progress.say("interrupted: what was computed is in " + directory);
+    return 4;
+  } catch (const std::exception& error) {
     close("failed", error.what());
     throw;
   }
-  close(interrupted ? "interrupted" : "done", "");
-  progress.say((interrupted ? "interrupted: what was computed is in " : "done: ") + directory +
-               "/report.html");
-  return interrupted ? 4 : 0;
+  close("done", "");
+  progress.say("done: " + directory + "/report.html");
+  return 0;
 }
 
 }  // namespace flexmorph::cases

@@ -29,15 +29,24 @@ const std::vector<std::string> kOurs = {"case.toml",   "run.json",       "histor
                                         "motion_verified_uniform.csv", "report.html",
                                         "components.csv", "design.svg", "design", "motion",
                                         "loads",       "plots"};
+/// With several designs their files carry the bodies' names.
+bool is_ours(const std::string& name) {
+  return std::find(kOurs.begin(), kOurs.end(), name) != kOurs.end() ||
+         name.starts_with("components_") || name.starts_with("design_");
+}
 
 void empty_folder(const std::string& path) {
+  if (fs::is_empty(path)) return;
+  if (!fs::exists(fs::path(path) / "run.json"))
+    throw Error::input("output folder '" + path +
+                       "' is not empty and holds no run; choose another with -o");
   for (const auto& entry : fs::directory_iterator(path)) {
     const std::string name = entry.path().filename().string();
-    if (std::find(kOurs.begin(), kOurs.end(), name) == kOurs.end())
+    if (!is_ours(name))
       throw Error::input("output folder '" + path + "' holds '" + name +
                          "', which no run has written; choose another with -o");
   }
-  for (const std::string& name : kOurs) fs::remove_all(fs::path(path) / name);
+  for (const auto& entry : fs::directory_iterator(path)) fs::remove_all(entry.path());
 }
 
 }  // namespace
@@ -97,9 +106,7 @@ void RunFolder::add_iteration(const mmc::IterationReport& r) {
                          r.problem.stages.back().min_half_thickness);
     components_.add(rows_, lines);
   }
-  if (histories_.empty() || histories_.back().body != r.problem.body) histories_.push_back({});
-  History& h = histories_.back();
-  h.body = r.problem.body;
+  History& h = history_of(r.problem.body);
   h.row.push_back(static_cast<double>(h.row.size() + 1));
   h.compliance.push_back(r.state.compliance());
   h.volume.push_back(r.state.volume());
@@ -119,6 +126,13 @@ void RunFolder::add_iteration(const mmc::IterationReport& r) {
                  r.iterate.change, r.state.band() / r.problem.grid.dx(), sharp_c, sharp_v,
                  connected, io::Cell(), r.state.seconds_tdf(), s.factor, s.solve, s.sensitivity,
                  r.iterate.seconds, take_output_seconds()});
+}
+
+RunFolder::History& RunFolder::history_of(const std::string& body) {
+  for (History& h : histories_)
+    if (h.body == body) return h;
+  histories_.emplace_back().body = body;
+  return histories_.back();
 }
 
 void RunFolder::write_loads(const std::string& body, const fem::EslSets& loads,
@@ -143,15 +157,16 @@ void RunFolder::write_loads(const std::string& body, const fem::EslSets& loads,
 void RunFolder::write_motion(const std::string& name, const Scene& scene,
                              const MotionRecord& motion) {
   std::vector<std::string> columns = {"time"};
-  for (const Body& b : scene.bodies) columns.push_back(b.name + ".tip_deflection");
-  for (const Body& b : scene.bodies) columns.push_back(b.name + ".length");
+  for (const std::string& body : motion.bodies) columns.push_back(body + ".tip_deflection");
+  for (const std::string& body : motion.bodies) columns.push_back(body + ".length");
   for (const char* quantity : {"energy.kinetic", "energy.strain", "energy.defect"})
     columns.emplace_back(quantity);
   io::CsvWriter csv(path_ + "/" + name, columns);
   for (size_t i = 0; i < motion.time.size(); ++i) {
     std::vector<io::Cell> row = {motion.time[i]};
     for (const auto& deflection : motion.deflection) row.emplace_back(deflection[i]);
-    for (const Body& b : scene.bodies) row.emplace_back(b.length_at(motion.time[i]));
+    for (const std::string& body : motion.bodies)
+      row.emplace_back(scene.body(body).length_at(motion.time[i]));
     row.emplace_back(motion.kinetic[i]);
     row.emplace_back(motion.strain[i]);
     row.emplace_back(motion.defect[i]);
@@ -206,6 +221,7 @@ void RunFolder::write_design(const mmc::BodyProblem& problem, const mmc::BodyOut
   const Box domain{{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}};
   const std::vector<Region> regions = unite(outlines, domain);
   io::write_file(path_ + "/design" + stem + ".svg", io::outline_svg(regions, domain));
+  if (!scene_.output.plots) return;
   const auto& sharp = outcome.sharp.fractions;
   io::write_png(path_ + "/plots/design" + stem + ".png", g,
                 {sharp.data(), static_cast<size_t>(sharp.size())});

@@ -14,6 +14,7 @@ namespace flexmorph::cases {
 
 /// What a motion did: its table, and the numbers a report quotes.
 struct MotionRecord {
+  std::vector<std::string> bodies;  ///< whose deflections these are: the welded ones
   std::vector<double> time, kinetic, strain, defect;
   std::vector<std::vector<double>> deflection;  ///< per body [m]
   std::vector<double> amplitude;                ///< largest |tip deflection| per body [m]
@@ -27,8 +28,8 @@ double tip_deflection(const fem::Model& model, const fem::Growth& growth, const 
 /// The folder of one run (design.md section 12): every file is written here and nowhere else.
 class RunFolder {
  public:
-  /// Makes the folder and writes case.toml. A folder that holds another run is emptied of its
-  /// files first.
+  /// Makes the folder and writes case.toml. A folder that holds another run (its run.json is there)
+  /// is emptied of its files first.
   /// @throws Error (input) when it cannot be made, or holds files that no run has written.
   RunFolder(std::string path, const Scene& scene, const std::string& case_text);
 
@@ -59,6 +60,8 @@ class RunFolder {
   const std::vector<History>& histories() const { return histories_; }
 
  private:
+  History& history_of(const std::string& body);
+
   std::string path_;
   const Scene& scene_;
   std::unique_ptr<io::CsvWriter> history_;

@@ -163,7 +163,7 @@ struct Vocabulary {
   std::vector<std::string> shapes{"h16", "h12"};
   std::vector<std::string> terms{"inertia", "membrane"};
   std::vector<std::string> joints{"weld"};
-  std::vector<std::string> optimizers{"mma", "nlopt_mma", "ipopt"};
+  std::vector<std::string> optimizers = optim::optimizer_names();
 };
 
 /// Reads and checks a case: types, ranges, names, and what must fit together. Keys nobody knows

@@ -148,6 +148,9 @@ void read_tdf(const Table& t, BodyDesign& design) {
   for (size_t i = 1; i < design.band.size(); ++i)
     if (design.band[i] >= design.band[i - 1]) t.fail("band", "bands go from coarse to fine");
   design.tdf.sharpness = t.number("sharpness", positive("a sharpness", "1/cell"), 3.75) / cell;
+  design.tdf.erosion = t.number("erosion", not_negative("an erosion", paper ? "" : "cells"),
+                                paper ? 0.0 : 0.5) *
+                       (paper ? 1 : cell);
   io::Quantity small = fraction("the Heaviside function of the void", 0.5);
   design.tdf.alpha = t.number("alpha", small, 1e-3);
   design.tdf.min_half_thickness = design.min_thickness;
@@ -226,6 +229,17 @@ optim::Settings read_optimizer(const Table& t, const Vocabulary& words) {
     const Table options = t.table("options");
     for (const std::string& key : options.keys())
       s.options[key] = options.number(key, any_number("an option"));
+  }
+  // Ipopt's first steps are far longer than a component; in a moving box they are not.
+  if (s.name == "ipopt") s.options.try_emplace("box", 0.1);
+  try {
+    optim::make_optimizer(s);  // only it knows its options and their ranges
+  } catch (const Error& error) {
+    const std::string what = error.what();
+    for (const auto& [key, value] : s.options)
+      if (what.find("option '" + key + "'") != std::string::npos)
+        t.table("options").fail(key, what);
+    t.fail(what);
   }
   return s;
 }

@@ -29,13 +29,22 @@ struct Factors {
 /// Shape functions at quadrature points, a row per point and a column per function. Filled as far
 /// as asked for: N always, the others on demand (their size is zero otherwise).
 struct ShapeTable {
-  VectorXd weight;              ///< reference area of the point times the factor [m^2]
-  std::vector<Vec2> material;   ///< material coordinates (m, n) [m]
-  MatrixXd N;                   ///< r = Qᵀ N
-  MatrixXd N_t, N_tt;           ///< ∂N/∂t, ∂²N/∂t² at fixed material point: zero unless lines move
-  MatrixXd N_m, N_n;            ///< derivatives by the material coordinates
-  MatrixXd N_mt, N_nt;          ///< their rates at fixed material point
+  VectorXd weight;             ///< reference area of the point times the factor [m^2]
+  std::vector<Vec2> material;  ///< material coordinates (m, n) [m]
+  MatrixXd N;                  ///< r = Qᵀ N
+  MatrixXd N_t, N_tt;  ///< ∂N/∂t, ∂²N/∂t² at fixed material point: zero unless lines move
+  MatrixXd N_m, N_n;   ///< derivatives by the material coordinates
+  MatrixXd N_mt, N_nt;  ///< their rates at fixed material point
 };
+
+/// Shape functions that are products of functions of one coordinate each, at a tensor grid of
+/// points (g, h): N_k = f_m(g, function_m[k]) f_n(h, function_n[k]).
+struct ProductTable {
+  MatrixXd weight;              ///< reference area of the point times the factor [m^2]
+  MatrixXd f_m, d_m, f_n, d_n;  ///< functions and their material derivatives (points x functions)
+  std::vector<int> function_m, function_n;  ///< (n_shapes)
+};
+
 enum class Tabulate { position, position_rates, gradient, gradient_rates };
 
 /// Which factor multiplies the quadrature weight.
@@ -57,9 +66,9 @@ class Element {
   virtual ~Element() = default;
 
   virtual int dim() const = 0;
-  virtual int n_shapes() const = 0;    ///< shape functions of one element, <= kMaxShapes
+  virtual int n_shapes() const = 0;  ///< shape functions of one element, <= kMaxShapes
   virtual int n_elements() const = 0;
-  virtual int n_vectors() const = 0;   ///< vector unknowns of the body
+  virtual int n_vectors() const = 0;  ///< vector unknowns of the body
 
   /// Numbers of the vector unknowns of element e, in the order of its shape functions.
   virtual std::span<const int> vectors(int e) const = 0;
@@ -87,6 +96,14 @@ class Element {
   /// is constant in every design cell.
   virtual void tabulate(int e, int degree, Tabulate what, const Factors& factors, FactorKind kind,
                         ShapeTable& out) const = 0;
+
+  /// The points of tabulate() for an element whose shape functions are products of functions of one
+  /// coordinate: integrals of their products are then sums over one direction after the other.
+  /// False, and nothing done, where they are not.
+  virtual bool tabulate_products(int /*e*/, int /*degree*/, const Factors&, FactorKind,
+                                 ProductTable& /*out*/) const {
+    return false;
+  }
 
   /// Shape functions at one material point (weight 1), and the element it lies in.
   /// @throws Error (input) when the point is outside the body.

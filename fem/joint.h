@@ -74,10 +74,11 @@ enum class WeldMode {
 ///
 /// y is the node's coordinate across. With material flow these rows hold on the moving line, so
 /// the rates are total ones along the line: exactly those of the nodal unknowns.
-std::unique_ptr<Joint> make_weld(std::string name, std::string body, std::string edge, FrameDrive frame,
-                                 WeldMode mode);
+std::unique_ptr<Joint> make_weld(std::string name, std::string body, std::string edge,
+                                 FrameDrive frame, WeldMode mode);
 
 /// A material point's position held at a place of the world frame (pin), or driven along a path.
-std::unique_ptr<Joint> make_pin(std::string name, std::string body, const Vec2& material, FrameDrive point);
+std::unique_ptr<Joint> make_pin(std::string name, std::string body, const Vec2& material,
+                                FrameDrive point);
 
 }  // namespace flexmorph::fem

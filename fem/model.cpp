@@ -264,9 +264,10 @@ double Model::smallest_area_ratio(const State& x) const {
     for (int e = 0; e < b.element->n_elements(); ++e) {
       gather(b, e, x, local);
       b.element->tabulate(e, 4, Tabulate::gradient, {}, FactorKind::none, table);
+      if (table.N_m.size() == 0) continue;  // a rigid body has no gradients
       const MatrixXd r_m = table.N_m * local.q, r_n = table.N_n * local.q;
-      const auto area = r_m.col(0).array() * r_n.col(1).array() -
-                        r_m.col(1).array() * r_n.col(0).array();
+      const auto area =
+          r_m.col(0).array() * r_n.col(1).array() - r_m.col(1).array() * r_n.col(0).array();
       smallest = std::min(smallest, area.minCoeff());
     }
   }

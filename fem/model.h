@@ -31,8 +31,8 @@ struct Energies {
 
 /// All constraint rows of a model at one state.
 struct Constraints {
-  VectorXd value, rate, acceleration;               ///< (m); see ConstraintRows
-  std::vector<Eigen::Triplet<double>> jacobian;     ///< Φ_q
+  VectorXd value, rate, acceleration;            ///< (m); see ConstraintRows
+  std::vector<Eigen::Triplet<double>> jacobian;  ///< Φ_q
 };
 
 /// Bodies and joints: the equations of motion

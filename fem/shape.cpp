@@ -85,6 +85,12 @@ GaussRule make_gauss(int n) {
     rule.points.push_back(0.5 * (1 - x));
     rule.weights.push_back(1 / ((1 - x * x) * slope * slope));
   }
+  for (const double x : rule.points) {
+    double product = 1;
+    for (const double other : rule.points)
+      if (other != x) product *= x - other;
+    rule.barycentric.push_back(1 / product);
+  }
   return rule;
 }
 
@@ -106,13 +112,17 @@ VectorXd lagrange_integrals(int n, double lower, double upper) {
   VectorXd out = VectorXd::Zero(n);
   for (size_t k = 0; k < inner.points.size(); ++k) {
     const double s = lower + (upper - lower) * inner.points[k];
-    for (int g = 0; g < n; ++g) {
-      double l = 1;
-      for (int i = 0; i < n; ++i)
-        if (i != g)
-          l *= (s - nodes.points[static_cast<size_t>(i)]) /
-               (nodes.points[static_cast<size_t>(g)] - nodes.points[static_cast<size_t>(i)]);
-      out[g] += (upper - lower) * inner.weights[k] * l;
+    // Π_{i<g} (s - x_i) times Π_{i>g} (s - x_i), without dividing by s - x_g.
+    std::array<double, kMaxGauss> below;
+    double product = (upper - lower) * inner.weights[k];
+    for (size_t g = 0; g < nodes.points.size(); ++g) {
+      below[g] = product;
+      product *= s - nodes.points[g];
+    }
+    product = 1;
+    for (size_t g = nodes.points.size(); g-- > 0;) {
+      out[static_cast<Eigen::Index>(g)] += below[g] * product * nodes.barycentric[g];
+      product *= s - nodes.points[g];
     }
   }
   return out;

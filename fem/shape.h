@@ -33,6 +33,7 @@ Eigen::Matrix4d derivative(const Eigen::Matrix4d& polynomials);
 /// Gauss-Legendre rule on [0, 1]: exact to degree 2 n - 1.
 struct GaussRule {
   std::vector<double> points, weights;
+  std::vector<double> barycentric;  ///< 1 / Π_{i≠g} (x_g - x_i), scales of the Lagrange polynomials
 };
 const GaussRule& gauss(int n);  ///< 1 <= n <= 16
 

@@ -37,12 +37,15 @@ inline double sixth_power(double t) {
   return t3 * t3;
 }
 
-/// P = (1 - s)/|∇s| of a superellipse of constant g, from u = x/L, v = y/g, and what its
-/// derivatives need:   ∇s = (A/L, B/g),   A = (u/s)⁵,  B = (v/s)⁵.
-struct Sampson {
-  double s, a, b, A, B, slope2, P;
+/// P = (1 - s) R of a superellipse of constant g, from u = x/L, v = y/g, and what its derivatives
+/// need:   R = w/|∇s| + (1 - w) g,   ∇s = (A/L, B/g),   A = (u/s)⁵,   B = (v/s)⁵,
+/// w = min(s, 1)². On the outline and outside this is the first-order distance; |∇s| depends on
+/// the direction from the center only, so that w keeps the slope bounded there.
+struct FirstOrderDistance {
+  double s, a, b, A, B, per_slope, w, R, P;
 
-  Sampson(double u, double v, double per_L, double per_g) : s(superellipse_radius(u, v)) {
+  FirstOrderDistance(double u, double v, double per_L, double per_g, double g)
+      : s(superellipse_radius(u, v)) {
     const double per_s = 1 / s;
     a = u * per_s;
     b = v * per_s;
@@ -50,20 +53,24 @@ struct Sampson {
     B = fifth_power(b);
     const double along = A * per_L, across = B * per_g;
     // The floor acts at the very center only, where a = b = 0.
-    slope2 = std::max(along * along + across * across, 1e-6 * per_L * per_L);
-    P = (1 - s) / std::sqrt(slope2);
+    per_slope = 1 / std::sqrt(std::max(along * along + across * across, 1e-6 * per_L * per_L));
+    const double inside = std::min(s, 1.0);
+    w = inside * inside;
+    R = w * per_slope + (1 - w) * g;
+    P = (1 - s) * R;
   }
 };
 
-/// Inside, P/(1 + (P/g)⁴)^(1/4): no point is further from the outline than the half-thickness.
+/// Inside, P/(1 + (P/g)⁸)^(1/8): no point is further from the outline than the half-thickness.
 inline double capped(double P, double g) {
-  const double r = std::max(P, 0.0) / g, r2 = r * r;
-  return P / std::sqrt(std::sqrt(1 + r2 * r2));
+  const double r = std::max(P, 0.0) / g, r2 = r * r, r4 = r2 * r2;
+  return P / std::sqrt(std::sqrt(std::sqrt(1 + r4 * r4)));
 }
 
 inline double distance_tdf(const ComponentFrame& frame, double x, double y) {
   const double g = frame.half_thickness(x), per_g = 1 / g;
-  return capped(Sampson(x * frame.per_length(), y * per_g, frame.per_length(), per_g).P, g);
+  const FirstOrderDistance f(x * frame.per_length(), y * per_g, frame.per_length(), per_g, g);
+  return capped(f.P, g);
 }
 
 inline double paper_tdf(const ComponentFrame& frame, double x, double y) {
@@ -95,26 +102,29 @@ inline Partials chain(const ComponentFrame& frame, const Profile& profile, doubl
           by_g * profile.dg_dp[3]};
 }
 
-/// φ = P q^(-1/4), q = 1 + (P/g)⁴ inside and 1 outside:  φ_P = q^(-5/4),  φ_g = (P/g)⁵ φ_P.
-/// With D = |∇s|:  P_u = -(A + P D_u)/D and so on, from
-/// A_u = 5 a⁴ b⁶/s,  B_v = 5 b⁴ a⁶/s,  A_v = B_u = -5 a⁵ b⁵/s.
+/// φ = P q^(-1/8), q = 1 + (P/g)⁸ inside and 1 outside:  φ_P = q^(-9/8),  φ_g = (P/g)⁹ φ_P.
+/// With D = |∇s|, s_u = A, s_v = B and
+/// A_u = 5 a⁴ b⁶/s,  B_v = 5 b⁴ a⁶/s,  A_v = B_u = -5 a⁵ b⁵/s:
+/// P_u = -A R + (1 - s) (w_u (1/D - g) - w D_u/D²),  P_v likewise.
 inline Partials distance_partials(const ComponentFrame& frame, double x, double y) {
   const Profile profile = frame.profile(x);
-  const double per_L = frame.per_length(), per_g = 1 / profile.g;
+  const double g = profile.g, per_L = frame.per_length(), per_g = 1 / g;
   const double u = x * per_L, v = y * per_g;
-  const Sampson f(u, v, per_L, per_g);
+  const FirstOrderDistance f(u, v, per_L, per_g, g);
   const double a2 = f.a * f.a, b2 = f.b * f.b, a4 = a2 * a2, b4 = b2 * b2, five = 5 / f.s;
   const double A_u = five * a4 * b4 * b2, B_v = five * b4 * a4 * a2, cross = -five * f.A * f.B;
-  const double wA = f.A * per_L * per_L, wB = f.B * per_g * per_g;
-  const double per_D = 1 / std::sqrt(f.slope2), P_per_D2 = f.P * per_D * per_D;
-  const double P_u = -f.A * per_D - P_per_D2 * (wA * A_u + wB * cross);
-  const double P_v = -f.B * per_D - P_per_D2 * (wA * cross + wB * B_v);
-  const double P_L = P_per_D2 * wA * f.A * per_L, P_g = P_per_D2 * wB * f.B * per_g;
+  const double wA = f.A * per_L * per_L, wB = f.B * per_g * per_g, depth = 1 - f.s;
+  const double cube = f.w * f.per_slope * f.per_slope * f.per_slope;
+  const double by_w = depth * (f.s < 1 ? 2 * f.s : 0.0) * (f.per_slope - g);
+  const double P_u = f.A * (by_w - f.R) - depth * cube * (wA * A_u + wB * cross);
+  const double P_v = f.B * (by_w - f.R) - depth * cube * (wA * cross + wB * B_v);
+  const double P_L = depth * cube * wA * f.A * per_L;
+  const double P_g = depth * (cube * wB * f.B * per_g + 1 - f.w);
 
-  const double r = std::max(f.P, 0.0) * per_g, r2 = r * r, r4 = r2 * r2, q = 1 + r4;
-  const double root = 1 / std::sqrt(std::sqrt(q)), by_P = root / q;
+  const double r = std::max(f.P, 0.0) * per_g, r2 = r * r, r4 = r2 * r2, q = 1 + r4 * r4;
+  const double root = 1 / std::sqrt(std::sqrt(std::sqrt(q))), by_P = root / q;
   return chain(frame, profile, u, v, f.P * root,
-               {P_u * by_P, P_v * by_P, P_g * by_P + r4 * r * by_P, P_L * by_P});
+               {P_u * by_P, P_v * by_P, P_g * by_P + r4 * r4 * r * by_P, P_L * by_P});
 }
 
 /// φ = 1 - u⁶ - v⁶.
@@ -204,6 +214,8 @@ void check(const TdfSettings& s) {
   require(s.band > 0 && std::isfinite(s.band), "band", s.band, "a band is positive");
   require(s.sharpness > 0 && std::isfinite(s.sharpness), "sharpness", s.sharpness,
           "a sharpness is positive [1/m]");
+  require(s.erosion >= 0 && std::isfinite(s.erosion), "erosion", s.erosion,
+          "an erosion is not negative");
   require(s.alpha >= 0 && s.alpha < 1, "alpha", s.alpha, "0 <= alpha < 1");
   require(s.min_half_thickness > 0 && std::isfinite(s.min_half_thickness), "min_half_thickness",
           s.min_half_thickness, "a thickness is positive [m]");
@@ -252,7 +264,8 @@ double component_tdf(const Component& c, const TdfSettings& s, double X, double 
 
 UnionTdf::UnionTdf(const Grid& grid, TdfSettings settings) : grid_(grid) {
   set_settings(settings);
-  for (VectorXd* v : {&phi_, &h_, &highest_, &at_cut_, &sum_, &chain_}) {
+  for (VectorXd* v : {&phi_, &h_, &eroded_, &highest_, &at_cut_, &sum_, &chain_, &chain_eroded_,
+                      &zero_}) {
     v->setZero(grid.n_nodes());
   }
 }
@@ -371,11 +384,15 @@ void UnionTdf::fill_density() {
     const Heaviside h = heaviside(phi_[n], settings_.band, settings_.alpha);
     h_[n] = h.value;
     chain_[n] = h.slope == 0 ? 0.0 : h.slope / sum_[n];
+    const Heaviside e = heaviside(phi_[n] - settings_.erosion, settings_.band, settings_.alpha);
+    eroded_[n] = e.value;
+    chain_eroded_[n] = e.slope == 0 ? 0.0 : e.slope / sum_[n];
   }
 }
 
-void UnionTdf::pull_back(const VectorXd& df_dh, VectorXd& df_dp) const {
-  assert(evaluated_ && df_dh.size() == grid_.n_nodes());
+void UnionTdf::pull_back(const VectorXd& df_dh, const VectorXd& df_deroded,
+                         VectorXd& df_dp) const {
+  assert(evaluated_ && df_dh.size() == grid_.n_nodes() && df_deroded.size() == grid_.n_nodes());
   constexpr int kParameters = Component::kParameters;
   df_dp.resize(kParameters * static_cast<Eigen::Index>(components_.size()));
   using Kind = TdfSettings::Kind;
@@ -387,7 +404,7 @@ void UnionTdf::pull_back(const VectorXd& df_dh, VectorXd& df_dp) const {
     const ComponentFrame frame(components_[c], settings_.min_half_thickness);
     int count = 0;  // nodes of this component with H' != 0
     for (; r < ends_[c]; visit += runs_[r].count, ++r) {
-      count = add_seeds(frame, runs_[r], visit, df_dh, count);
+      count = add_seeds(frame, runs_[r], visit, df_dh, df_deroded, count);
     }
     sum(frame, count, scratch_.x.data(), scratch_.y.data(), scratch_.seed.data(),
         df_dp.data() + kParameters * static_cast<Eigen::Index>(c));
@@ -397,18 +414,20 @@ void UnionTdf::pull_back(const VectorXd& df_dh, VectorXd& df_dp) const {
 
 /// Appends local coordinates and df/dφ_i of those nodes of a run that need the chain rule.
 int UnionTdf::add_seeds(const ComponentFrame& frame, const Run& run, const double* visit,
-                        const VectorXd& df_dh, int count) const {
+                        const VectorXd& df_dh, const VectorXd& df_deroded,
+                        int count) const {
   scratch_.make_room(static_cast<std::size_t>(count + run.count));
   const double X = grid_.x0 + run.column * grid_.dx();
   const int first = grid_.node(run.column, run.row);
   for (int k = 0; k < run.count; ++k) {
-    const double weight = chain_[first + k] * visit[k];
+    const int n = first + k;
     const double Y = grid_.y0 + (run.row + k) * grid_.dy();
     const auto at = static_cast<std::size_t>(count);
     scratch_.x[at] = frame.x(X, Y);
     scratch_.y[at] = frame.y(X, Y);
-    scratch_.seed[at] = df_dh[first + k] * weight;
-    count += weight != 0 ? 1 : 0;
+    scratch_.seed[at] =
+        (df_dh[n] * chain_[n] + df_deroded[n] * chain_eroded_[n]) * visit[k];
+    count += (chain_[n] != 0 || chain_eroded_[n] != 0) && visit[k] != 0 ? 1 : 0;
   }
   return count;
 }

@@ -13,7 +13,7 @@ class ComponentFrame;
 /// How components become a topology description function on the nodes of a grid.
 struct TdfSettings {
   enum class Kind {
-    /// φ = (1 - s)/|∇s|, s = ((x/L)^p + (y/g)^p)^(1/p), inside not above g(x): a distance to first
+    /// φ = (1 - s)/|∇s|, s = ((x/L)^p + (y/g)^p)^(1/p), inside bounded by g(x): a distance to first
     /// order all around the outline, tips included; smooth maximum (default). With (1 - s) g, a
     /// distance across the flanks only, the band reaches ε L/g beyond a tip, and rows of
     /// components bridge gaps through it.
@@ -23,6 +23,8 @@ struct TdfSettings {
   Kind kind = Kind::distance;
   double band = 0.00375;    ///< ε of the Heaviside: half-width of the band [m] ([-] for paper)
   double sharpness = 1500;  ///< Kreisselmeier-Steinhauser sharpness λ [1/m]
+  /// Depth δ of the erosion behind UnionTdf::eroded() [m] ([-] for paper).
+  double erosion = 0;
   double alpha = 1e-3;      ///< value of the Heaviside in the void
   double min_half_thickness = 1e-4;  ///< lower bound of every profile [m]
 };
@@ -69,11 +71,15 @@ class UnionTdf {
   void evaluate(std::span<const Component> components);
 
   const VectorXd& phi() const { return phi_; }    ///< (n_nodes) [m], at least φ_cut
-  const VectorXd& density() const { return h_; }  ///< H (n_nodes), α..1
+  const VectorXd& density() const { return h_; }  ///< H(φ) (n_nodes), α..1
+  /// H(φ - δ) (n_nodes): the design with δ taken off all around.
+  const VectorXd& eroded() const { return eroded_; }
 
-  /// df/dH (n_nodes) -> df/dparameters (7 N), at the components of the last evaluate().
-  /// @throws Error(numerical) when the result is not finite.
-  void pull_back(const VectorXd& df_dh, VectorXd& df_dp) const;
+  /// df/d(density), df/d(eroded) (n_nodes) -> df/dparameters (7 N), at the components of the last
+  /// evaluate(). @throws Error(numerical) when the result is not finite.
+  void pull_back(const VectorXd& df_dh, const VectorXd& df_deroded, VectorXd& df_dp) const;
+  /// The same for a function of density() only.
+  void pull_back(const VectorXd& df_dh, VectorXd& df_dp) const { pull_back(df_dh, zero_, df_dp); }
 
  private:
   struct Run {  // neighbouring nodes of one grid column within the reach of one component
@@ -89,7 +95,7 @@ class UnionTdf {
   void join_by_maximum();
   void fill_density();
   int add_seeds(const ComponentFrame& frame, const Run& run, const double* visit,
-                const VectorXd& df_dh, int count) const;
+                const VectorXd& df_dh, const VectorXd& df_deroded, int count) const;
 
   Grid grid_;
   TdfSettings settings_;
@@ -100,7 +106,8 @@ class UnionTdf {
   std::vector<std::size_t> ends_;  // where the runs of each component end
   std::vector<double> visits_;     // run by run: φ_i, then the weight dφ/dφ_i times sum_
   mutable Scratch scratch_;
-  VectorXd phi_, h_, highest_, at_cut_, sum_, chain_;  // chain_: dH/dφ / sum_
+  VectorXd phi_, h_, eroded_, highest_, at_cut_, sum_, zero_;
+  VectorXd chain_, chain_eroded_;  // dH/dφ / sum_
 };
 
 }  // namespace flexmorph

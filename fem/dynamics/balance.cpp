@@ -34,8 +34,7 @@ double energy_density(const Body& body, const State& x, int e, double u, const V
   const PlaneSection& s = body.section;
   double out = 0.5 * stiffness * s.thickness * strain.dot(s.elasticity() * strain) +
                0.5 * mass * s.thickness * s.density * velocity.squaredNorm();
-  if (gravity.size() > 0)
-    out -= mass * s.thickness * s.density * (t.N * q * gravity)(0);
+  if (gravity.size() > 0) out -= mass * s.thickness * s.density * (t.N * q * gravity)(0);
   return out;
 }
 

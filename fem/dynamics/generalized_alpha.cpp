@@ -23,6 +23,7 @@ void GeneralizedAlpha::factorize(const State& x, const Constraints& c, const Wei
     size_ = 0;
     for (Eigen::Index i = 0; i < reference.q.size(); ++i)
       if (scales_[i] == 1) size_ = std::max(size_, std::abs(reference.q[i]));
+    if (size_ == 0) size_ = 1;
     scaled_version_ = model_.pattern_version();
   }
   model_.kkt(x, c, w, scale, kkt_);
@@ -118,7 +119,7 @@ bool GeneralizedAlpha::newton(State& x, double h) {
     right_.tail(model_.n_constraints()) = -constraints_.value;
     const double r = right_.lpNorm<Eigen::Infinity>();
     if (!std::isfinite(r)) return false;
-    solver_.solve(kkt_, right_, solution_);
+    solver_.solve(kkt_, right_, solution_, false);
     const VectorXd dq = solution_.head(model_.n_dofs()).cwiseQuotient(scales_);
     const double correction = solution_.head(model_.n_dofs()).lpNorm<Eigen::Infinity>() / size_;
     x.q += dq;
@@ -132,7 +133,8 @@ bool GeneralizedAlpha::newton(State& x, double h) {
     if (!std::isfinite(correction)) return false;
 
     const double contraction = iteration > 1 ? correction / last : 1;
-    const double error = contraction < 1 ? correction * contraction / (1 - contraction) : correction;
+    const double error =
+        contraction < 1 ? correction * contraction / (1 - contraction) : correction;
     if (correction <= settings_.tolerance || error <= 0.01 * settings_.tolerance) return true;
     if (fresh && iteration > 3 && contraction > 2) return false;  // diverges with its own tangent
     if (iteration > 1 && (contraction > kContraction || iteration >= kPatience)) factored_h_ = 0;

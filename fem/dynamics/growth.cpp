@@ -1,7 +1,6 @@
 #include "fem/dynamics/growth.h"
 
 #include <Eigen/LU>
-
 #include <cmath>
 #include <limits>
 
@@ -71,9 +70,9 @@ NextChange next_change(const Body& body, const Growth& growth, double t, double 
     const double high = std::min(end, low + step);
     if (passed(high) >= -tiny) {
       double a = low, b = high;
-      for (int k = 0; k < 200 && b - a > 1e-15 * std::max(1.0, b); ++k) {
+      for (int k = 0; k < 200 && b - a > 1e-15 * std::max(1.0, b) && passed(b) > 0; ++k) {
         const double mid = 0.5 * (a + b);
-        (passed(mid) >= -tiny ? b : a) = mid;
+        (passed(mid) >= 0 ? b : a) = mid;
       }
       return {b, length(b) > 0.5 * growth.max_length ? MeshChange::insertion : MeshChange::removal};
     }
@@ -160,8 +159,8 @@ void change_mesh(Model& model, Body& body, MeshChange change, State& x) {
   std::unique_ptr<LineGrid> next;
   if (change == MeshChange::insertion) {
     for (int j = 0; j <= old.n_n(); ++j)
-      fresh.push_back(sample_node(body, old, x, old.element(0, std::max(0, j - 1)), 0.5,
-                                  j == 0 ? 0.0 : 1.0));
+      fresh.push_back(
+          sample_node(body, old, x, old.element(0, std::max(0, j - 1)), 0.5, j == 0 ? 0.0 : 1.0));
     next = old.with_line(0, 0.5 * (old.line_m(0).value + old.line_m(1).value));
   } else {
     next = old.without_line(1);

@@ -16,7 +16,8 @@ Vec2 momentum(const Model& model, const State& x) {
       for (size_t k = 0; k < vectors.size(); ++k) {
         const double area_density = body.section.density * body.section.thickness;
         const auto column = static_cast<Eigen::Index>(k);
-        out += area_density * t.N.col(column).dot(t.weight) * v.row(vectors[k]).head<2>().transpose();
+        out +=
+            area_density * t.N.col(column).dot(t.weight) * v.row(vectors[k]).head<2>().transpose();
         if (t.N_t.size() > 0)
           out += area_density * t.N_t.col(column).dot(t.weight) *
                  q.row(vectors[k]).head<2>().transpose();
@@ -83,7 +84,8 @@ class Run {
     }
     // A change this near to a stop is meant to fall on it; a step this short would be noise.
     if (std::abs(next.t - stop) < kTiny * settings_.step) next.t = stop;
-    steps_to(next.t, next.t == stop);
+    // A limit that is passed already (a boundary element too long from the start) takes no step.
+    if (next.t - x_.t > kTiny * settings_.step) steps_to(next.t, next.t == stop);
     const bool at_end = next.t >= settings_.end - kTiny * settings_.step;
     if (changing && !at_end) execute(*changing, next.change);
   }
@@ -91,8 +93,7 @@ class Run {
   /// Equal steps, none longer than the settings' step.
   void steps_to(double end, bool stop) {
     const double begin = x_.t;
-    const int n =
-        std::max(1, static_cast<int>(std::ceil((end - begin) / settings_.step - 1e-6)));
+    const int n = std::max(1, static_cast<int>(std::ceil((end - begin) / settings_.step - 1e-6)));
     for (int k = 1; k <= n; ++k) {
       const double t = k == n ? end : begin + (end - begin) * k / n;
       alpha_.advance(x_, t, [&](const State& x) {

@@ -93,7 +93,8 @@ State start_state(Model& model, std::span<const Growth> growths, double t, Start
     return s.q;
   };
   const double delta = 1e-4;
-  const VectorXd q = equilibrium(t), later = equilibrium(t + delta), earlier = equilibrium(t - delta);
+  const VectorXd q = equilibrium(t), later = equilibrium(t + delta),
+                 earlier = equilibrium(t - delta);
   restore();
   for (Body& b : model.bodies()) b.element->move_to(t);
   x.q = q;
@@ -104,8 +105,8 @@ State start_state(Model& model, std::span<const Growth> growths, double t, Start
       const int at = body.first_dof + 2 * k;
       const bool position = body.element->is_position(k);
       const Vec2 r = q.segment<2>(at) - (position ? hub.origin : Vec2::Zero());
-      x.v.segment<2>(at) = hub.angle_rate * kQuarter * r +
-                           (later - earlier).segment<2>(at) / (2 * delta);
+      x.v.segment<2>(at) =
+          hub.angle_rate * kQuarter * r + (later - earlier).segment<2>(at) / (2 * delta);
       if (position) x.v.segment<2>(at) += hub.origin_rate;
     }
   }

@@ -1,6 +1,7 @@
 #include "fem/elements/ancf_plate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace flexmorph::fem {
@@ -12,8 +13,8 @@ Row4 powers(double s) { return {1, s, s * s, s * s * s}; }
 
 /// Values of a Hermite interval at one point: a row of four functions per derivative.
 struct At {
-  Row4 f, d;              // value, derivative by X
-  Row4 f_t, f_tt, d_t;    // rates at fixed material point
+  Row4 f, d;            // value, derivative by X
+  Row4 f_t, f_tt, d_t;  // rates at fixed material point
 };
 
 At at_point(const Hermite& h, double s, bool rates) {
@@ -32,6 +33,14 @@ At at_point(const Hermite& h, double s, bool rates) {
   }
   return out;
 }
+
+/// Corners of an element in the order of its shape functions, as in vectors_.
+constexpr std::array<std::pair<int, int>, 4> kCorners = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+
+/// Which of the four Hermite functions along m (n) belongs to unknown k (r, r_m, r_n, r_mn) of a
+/// corner at end a (b).
+constexpr int function_m(int a, int k) { return 2 * a + (k == 1 || k == 3); }
+constexpr int function_n(int b, int k) { return 2 * b + (k >= 2); }
 
 Motion motion_of(const MaterialLine& line, double t) {
   return line.drive ? line.drive(t) : Motion{line.value, 0, 0};
@@ -52,8 +61,8 @@ std::vector<Part> parts(double start, double length, double grid_start, double c
   std::vector<Part> out;
   for (int c = index(start + tiny); c <= index(start + length - tiny); ++c) {
     const double lower = c == 0 ? start : std::max(start, grid_start + c * cell);
-    const double upper = c == n_cells - 1 ? start + length
-                                          : std::min(start + length, grid_start + (c + 1) * cell);
+    const double upper =
+        c == n_cells - 1 ? start + length : std::min(start + length, grid_start + (c + 1) * cell);
     if (upper > lower) out.push_back({c, (lower - start) / length, (upper - start) / length});
   }
   out.front().lower = 0;
@@ -70,7 +79,8 @@ AncfPlate::AncfPlate(int dim, ShapeSet shapes, std::vector<MaterialLine> m,
       shapes_(shapes),
       m_(std::move(m)),
       n_(std::move(n)) {
-  if (m_.size() < 2 || n_.size() < 2) throw Error::input("ancf_plate: at least one element each way");
+  if (m_.size() < 2 || n_.size() < 2)
+    throw Error::input("ancf_plate: at least one element each way");
   for (int i = 0; i < n_m(); ++i)
     for (int j = 0; j < n_n(); ++j)
       for (const int corner : {node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)})
@@ -149,8 +159,8 @@ void AncfPlate::fill(int e, std::span<const double> s, std::span<const double> u
                      ShapeTable& out) const {
   const Hermite& hm = hermite_m_[static_cast<size_t>(e / n_n())];
   const Hermite& hn = hermite_n_[static_cast<size_t>(e % n_n())];
-  const bool rates = (what == Tabulate::position_rates || what == Tabulate::gradient_rates) &&
-                     moving(e);
+  const bool rates =
+      (what == Tabulate::position_rates || what == Tabulate::gradient_rates) && moving(e);
   const bool gradient = what == Tabulate::gradient || what == Tabulate::gradient_rates;
   const auto n_points = static_cast<Eigen::Index>(s.size() * u.size());
   const auto size = [&](MatrixXd& x, bool wanted) {
@@ -176,15 +186,13 @@ void AncfPlate::fill(int e, std::span<const double> s, std::span<const double> u
       const At n = at_point(hn, uj, rates);
       out.material[static_cast<size_t>(p)] = {hm.start + si * hm.length, hn.start + uj * hn.length};
       int column = 0;
-      // Corners as in vectors_: (0,0), (1,0), (1,1), (0,1).
-      for (const auto& [a, b] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}})
+      for (const auto& [a, b] : kCorners)
         for (int k = 0; k < per_node_; ++k, ++column) {
-          const int i = 2 * a + (k == 1 || k == 3), j = 2 * b + (k >= 2);
+          const int i = function_m(a, k), j = function_n(b, k);
           out.N(p, column) = m.f[i] * n.f[j];
           if (rates) {
             out.N_t(p, column) = m.f_t[i] * n.f[j] + m.f[i] * n.f_t[j];
-            out.N_tt(p, column) =
-                m.f_tt[i] * n.f[j] + 2 * m.f_t[i] * n.f_t[j] + m.f[i] * n.f_tt[j];
+            out.N_tt(p, column) = m.f_tt[i] * n.f[j] + 2 * m.f_t[i] * n.f_t[j] + m.f[i] * n.f_tt[j];
           }
           if (gradient) {
             out.N_m(p, column) = m.d[i] * n.f[j];
@@ -200,24 +208,28 @@ void AncfPlate::fill(int e, std::span<const double> s, std::span<const double> u
   }
 }
 
-void AncfPlate::tabulate(int e, int degree, Tabulate what, const Factors& factors, FactorKind kind,
-                         ShapeTable& out) const {
-  const bool weighted = kind != FactorKind::none && !factors.uniform();
-  const int n = weighted ? degree + 1 : degree / 2 + 1;
-  const GaussRule& rule = gauss(n);
-  fill(e, rule.points, rule.points, what, out);
+namespace {
 
+/// Is there a factor to weight points with?
+bool weighted(const Factors& factors, FactorKind kind) {
+  return kind != FactorKind::none && !factors.uniform();
+}
+
+/// Points per direction for integrands of a degree: with a stepwise factor the weights are
+/// interpolatory, exact up to degree n - 1 only.
+int n_points(int degree, bool weighted) { return weighted ? degree + 1 : degree / 2 + 1; }
+
+}  // namespace
+
+/// Weights of n x n Gauss points, times the factor.
+MatrixXd AncfPlate::weights(int e, int n, const Factors& factors, FactorKind kind) const {
   const Hermite& hm = hermite_m_[static_cast<size_t>(e / n_n())];
   const Hermite& hn = hermite_n_[static_cast<size_t>(e % n_n())];
   const double area = hm.length * hn.length;
-  if (!weighted) {
-    for (int g = 0; g < n; ++g)
-      for (int h = 0; h < n; ++h)
-        out.weight[g * n + h] =
-            area * rule.weights[static_cast<size_t>(g)] * rule.weights[static_cast<size_t>(h)];
-    return;
+  if (!weighted(factors, kind)) {
+    const Eigen::Map<const VectorXd> line(gauss(n).weights.data(), n);
+    return area * line * line.transpose();
   }
-  // Interpolatory weights: exact for every polynomial of the degree against the stepwise factor.
   const Grid& grid = factors.grid;
   const VectorXd& field = kind == FactorKind::stiffness ? factors.stiffness : factors.mass;
   const std::vector<Part> pm = parts(hm.start, hm.length, grid.x0, grid.dx(), grid.nx);
@@ -231,9 +243,42 @@ void AncfPlate::tabulate(int e, int degree, Tabulate what, const Factors& factor
   }
   for (size_t j = 0; j < pn.size(); ++j)
     across.row(static_cast<Eigen::Index>(j)) = lagrange_integrals(n, pn[j].lower, pn[j].upper);
-  const MatrixXd weights = area * along.transpose() * cells * across;
+  return area * along.transpose() * cells * across;
+}
+
+void AncfPlate::tabulate(int e, int degree, Tabulate what, const Factors& factors, FactorKind kind,
+                         ShapeTable& out) const {
+  const int n = n_points(degree, weighted(factors, kind));
+  const GaussRule& rule = gauss(n);
+  fill(e, rule.points, rule.points, what, out);
+  const Eigen::MatrixXd w = weights(e, n, factors, kind);
   for (int g = 0; g < n; ++g)
-    for (int h = 0; h < n; ++h) out.weight[g * n + h] = weights(g, h);
+    for (int h = 0; h < n; ++h) out.weight[g * n + h] = w(g, h);
+}
+
+bool AncfPlate::tabulate_products(int e, int degree, const Factors& factors, FactorKind kind,
+                                  ProductTable& out) const {
+  const int n = n_points(degree, weighted(factors, kind));
+  out.weight = weights(e, n, factors, kind);
+  const auto line = [n](const Hermite& h, MatrixXd& f, MatrixXd& d) {
+    f.resize(n, 4);
+    d.resize(n, 4);
+    for (int g = 0; g < n; ++g) {
+      const At point = at_point(h, gauss(n).points[static_cast<size_t>(g)], false);
+      f.row(g) = point.f;
+      d.row(g) = point.d;
+    }
+  };
+  line(hermite_m_[static_cast<size_t>(e / n_n())], out.f_m, out.d_m);
+  line(hermite_n_[static_cast<size_t>(e % n_n())], out.f_n, out.d_n);
+  out.function_m.clear();
+  out.function_n.clear();
+  for (const auto& [a, b] : kCorners)
+    for (int k = 0; k < per_node_; ++k) {
+      out.function_m.push_back(function_m(a, k));
+      out.function_n.push_back(function_n(b, k));
+    }
+  return true;
 }
 
 void AncfPlate::at(int e, double s, double u, Tabulate what, ShapeTable& out) const {

@@ -35,6 +35,8 @@ class AncfPlate final : public LineGrid {
   bool moving(int e) const override;
   void tabulate(int e, int degree, Tabulate what, const Factors& factors, FactorKind kind,
                 ShapeTable& out) const override;
+  bool tabulate_products(int e, int degree, const Factors& factors, FactorKind kind,
+                         ProductTable& out) const override;
   int locate(const Vec2& material, Tabulate what, ShapeTable& out) const override;
 
   int per_node() const override { return per_node_; }
@@ -51,6 +53,7 @@ class AncfPlate final : public LineGrid {
  private:
   void fill(int e, std::span<const double> s, std::span<const double> u, Tabulate what,
             ShapeTable& out) const;
+  MatrixXd weights(int e, int n, const Factors& factors, FactorKind kind) const;
 
   int dim_, per_node_;
   ShapeSet shapes_;

@@ -11,10 +11,7 @@ struct UnsymmetricSolver::Impl {
   void* numeric = nullptr;
   double control[UMFPACK_CONTROL];
 
-  Impl() {
-    umfpack_di_defaults(control);
-    control[UMFPACK_IRSTEP] = 1;
-  }
+  Impl() { umfpack_di_defaults(control); }
   ~Impl() {
     release_numeric();
     if (symbolic) umfpack_di_free_symbolic(&symbolic);
@@ -60,8 +57,10 @@ void UnsymmetricSolver::factorize(const SparseMatrix& a) {
         "factorization");
 }
 
-void UnsymmetricSolver::solve(const SparseMatrix& a, const VectorXd& b, VectorXd& x) const {
+void UnsymmetricSolver::solve(const SparseMatrix& a, const VectorXd& b, VectorXd& x,
+                              bool refine) const {
   x.resize(b.size());
+  impl_->control[UMFPACK_IRSTEP] = refine ? 1 : 0;
   check(umfpack_di_solve(UMFPACK_A, a.outerIndexPtr(), a.innerIndexPtr(), a.valuePtr(), x.data(),
                          b.data(), impl_->numeric, impl_->control, nullptr),
         "solution");

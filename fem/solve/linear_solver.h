@@ -20,7 +20,8 @@ class UnsymmetricSolver {
   /// @throws Error (numerical) when the matrix is singular or not finite.
   void factorize(const SparseMatrix& a);
   /// x = A⁻¹ b with the matrix of the last factorize(), which must still exist.
-  void solve(const SparseMatrix& a, const VectorXd& b, VectorXd& x) const;
+  /// @param refine  one step of iterative refinement; an outer iteration does not need it.
+  void solve(const SparseMatrix& a, const VectorXd& b, VectorXd& x, bool refine = true) const;
 
  private:
   struct Impl;

@@ -58,19 +58,24 @@ class Membrane final : public Term {
     // T = W D, a column for unknown (l, c): ∂g_{li}/∂q_lc = (1 + δ_li) q_ic.
     Eigen::Matrix<double, kMaxPairs, 1, 0, kMaxPairs, 1> column(kMaxPairs);
     const auto n_pairs = invariant.rows();
+    Square spread(n_shapes_, n_shapes_);
+    LocalRows block(n_shapes_, d);
     for (int l = 0; l < n_shapes_; ++l)
       for (Eigen::Index c = 0; c < d; ++c) {
         auto t = column.head(n_pairs);
         t.setZero();
         for (int i = 0; i < n_shapes_; ++i)
           t += (i == l ? 2 : 1) * q(i, c) * invariant.col(pair_(l, i));
-        for (int k = 0; k < n_shapes_; ++k)
-          for (Eigen::Index b = 0; b < d; ++b) {
-            double sum = 0;
-            for (int i = 0; i < n_shapes_; ++i)
-              sum += (i == k ? 2 : 1) * q(i, b) * t[pair_(k, i)];
-            tangent(d * k + b, d * l + c) += w.q * (sum + (b == c ? s(k, l) : 0.0));
-          }
+        // Dᵀ T: the column as a symmetric matrix (diagonal twice) times q.
+        for (int k = 0, p = 0; k < n_shapes_; ++k) {
+          spread(k, k) = 2 * t[p++];
+          for (int i = k + 1; i < n_shapes_; ++i, ++p) spread(k, i) = spread(i, k) = t[p];
+        }
+        block.noalias() = spread * q;
+        for (int k = 0; k < n_shapes_; ++k) {
+          block(k, c) += s(k, l);
+          for (Eigen::Index b = 0; b < d; ++b) tangent(d * k + b, d * l + c) += w.q * block(k, b);
+        }
       }
   }
 
@@ -135,11 +140,13 @@ class Membrane final : public Term {
   void integrate(const Element& element, int e, const Factors& factors, const MatrixXd& reference) {
     Invariant& out = invariants_[static_cast<size_t>(e)];
     std::swap(previous_, table_);
-    element.tabulate(e, 12, Tabulate::gradient, factors, FactorKind::stiffness, table_);
-    const bool same = e > 0 && tabulated_ == e - 1 && previous_.weight.size() == table_.weight.size() &&
-                      previous_.weight.isApprox(table_.weight, 1e-13) &&
-                      previous_.N_m.isApprox(table_.N_m, 1e-13) &&
-                      previous_.N_n.isApprox(table_.N_n, 1e-13);
+    if (!element.tabulate_products(e, 12, factors, FactorKind::stiffness, table_))
+      throw Error::input("term 'membrane' needs shape functions that are products along m and n");
+    const auto equal = [](const MatrixXd& x, const MatrixXd& y) {
+      return x.rows() == y.rows() && x.cols() == y.cols() && x.isApprox(y, 1e-13);
+    };
+    const bool same = e > 0 && tabulated_ == e - 1 && equal(previous_.weight, table_.weight) &&
+                      equal(previous_.f_m, table_.f_m) && equal(previous_.f_n, table_.f_n);
     tabulated_ = e;
     out.w = same ? invariants_[static_cast<size_t>(e - 1)].w : invariant();
 
@@ -148,7 +155,8 @@ class Membrane final : public Term {
     out.is_position.assign(static_cast<size_t>(n_shapes_), 0);
     for (int k = 0; k < n_shapes_; ++k) {
       q.row(k) = reference.row(vectors[static_cast<size_t>(k)]).head<2>();
-      out.is_position[static_cast<size_t>(k)] = element.is_position(vectors[static_cast<size_t>(k)]);
+      out.is_position[static_cast<size_t>(k)] =
+          element.is_position(vectors[static_cast<size_t>(k)]);
     }
     const LocalRows origin = q.row(0);
     for (int k = 0; k < n_shapes_; ++k)
@@ -157,43 +165,87 @@ class Membrane final : public Term {
     out.reference = gram_difference(e, q);
   }
 
-  /// W = Σ_points Λᵀ C Λ, the weights in the points.
+  /// W = Σ_points Λᵀ C Λ. With N_k = f_i(m) g_a(n) every entry of Λᵀ C Λ is a sum of products of
+  /// four functions of m and four of n, so all of W is made of three matrices, each summed over m
+  /// first and over n then,
+  ///
+  ///   X (p q, r s) = Σ_gh w_gh (x_p y_q)(m_g) (y_r x_s)(n_h)     p, q, r, s: pairs of functions
+  ///
+  /// with f' f' f' f' (11), f f f f (22) or f' f' f f (all others) along m.
   std::shared_ptr<const MatrixXd> invariant() {
-    const auto n_points = table_.weight.size();
-    const int n_pairs = n_shapes_ * (n_shapes_ + 1) / 2;
-    lambda_.resize(3 * n_points, n_pairs);
-    for (int k = 0, p = 0; k < n_shapes_; ++k)
-      for (int l = k; l < n_shapes_; ++l, ++p) {
-        const double twice = k == l ? 1 : 2;
-        const auto mk = table_.N_m.col(k).array(), ml = table_.N_m.col(l).array();
-        const auto nk = table_.N_n.col(k).array(), nl = table_.N_n.col(l).array();
-        lambda_.col(p).head(n_points) = 0.5 * twice * mk * ml;
-        lambda_.col(p).segment(n_points, n_points) = 0.5 * twice * nk * nl;
-        lambda_.col(p).tail(n_points) = 0.5 * twice * (mk * nl + ml * nk);
+    const MatrixXd dd_m = pairs(table_.d_m), ff_m = pairs(table_.f_m), dd_n = pairs(table_.d_n),
+                   ff_n = pairs(table_.f_n);
+    const MatrixXd& w = table_.weight;
+    const MatrixXd x11 = products(dd_m, dd_m) * w * products(ff_n, ff_n).transpose();
+    const MatrixXd x22 = products(ff_m, ff_m) * w * products(dd_n, dd_n).transpose();
+    const MatrixXd x12 = products(dd_m, ff_m) * w * products(ff_n, dd_n).transpose();
+
+    const auto n = static_cast<int>(table_.f_m.cols()), n_pairs_1d = n * (n + 1) / 2;
+    const auto pair = [n](int i, int j) {  // number of {i, j} among the pairs
+      if (i > j) std::swap(i, j);
+      return i * (2 * n - i + 1) / 2 + j - i;
+    };
+    Eigen::MatrixXi m_pair(n_shapes_, n_shapes_), n_pair(n_shapes_, n_shapes_);
+    for (int k = 0; k < n_shapes_; ++k)
+      for (int l = 0; l < n_shapes_; ++l) {
+        const auto at = [](const std::vector<int>& x, int i) { return x[static_cast<size_t>(i)]; };
+        m_pair(k, l) = pair(at(table_.function_m, k), at(table_.function_m, l));
+        n_pair(k, l) = pair(at(table_.function_n, k), at(table_.function_n, l));
       }
-    stress_.resize(3 * n_points, n_pairs);
-    const auto block = [&](MatrixXd& x, int i) { return x.middleRows(i * n_points, n_points); };
-    for (int i = 0; i < 3; ++i) {
-      auto to = block(stress_, i);
-      to.setZero();
-      for (int j = 0; j < 3; ++j)
-        if (elasticity_(i, j) != 0)
-          to += (elasticity_(i, j) * table_.weight).asDiagonal() * block(lambda_, j);
-    }
-    auto w = std::make_shared<MatrixXd>(n_pairs, n_pairs);
-    w->noalias() = lambda_.transpose() * stress_;
-    return w;
+    // Entry of one of the three: pairs (p, q) along m and the same unknowns (r, s) along n.
+    const auto entry = [&](const MatrixXd& x, int p_m, int q_m, int p_n, int q_n) {
+      return x(p_m * n_pairs_1d + q_m, p_n * n_pairs_1d + q_n);
+    };
+    const double c11 = elasticity_(0, 0), c22 = elasticity_(1, 1), c12 = elasticity_(0, 1),
+                 c33 = elasticity_(2, 2);
+    const int n_pairs = n_shapes_ * (n_shapes_ + 1) / 2;
+    auto out = std::make_shared<MatrixXd>(n_pairs, n_pairs);
+    for (int k = 0, p = 0; k < n_shapes_; ++k)
+      for (int l = k; l < n_shapes_; ++l, ++p)
+        for (int r = 0, q = 0; q <= p; ++r)
+          for (int s = r; s < n_shapes_ && q <= p; ++s, ++q) {
+            const int kl_m = m_pair(k, l), kl_n = n_pair(k, l), rs_m = m_pair(r, s),
+                      rs_n = n_pair(r, s), kr_m = m_pair(k, r), kr_n = n_pair(k, r),
+                      ls_m = m_pair(l, s), ls_n = n_pair(l, s), ks_m = m_pair(k, s),
+                      ks_n = n_pair(k, s), lr_m = m_pair(l, r), lr_n = n_pair(l, r);
+            // ε₁₁ and ε₂₂ have N_k,m N_l,m and N_k,n N_l,n; 2ε₁₂ the symmetric N_k,m N_l,n.
+            const double normal =
+                c11 * entry(x11, kl_m, rs_m, kl_n, rs_n) +
+                c22 * entry(x22, kl_m, rs_m, kl_n, rs_n) +
+                c12 * (entry(x12, kl_m, rs_m, kl_n, rs_n) + entry(x12, rs_m, kl_m, rs_n, kl_n));
+            const double shear =
+                entry(x12, kr_m, ls_m, kr_n, ls_n) + entry(x12, ks_m, lr_m, ks_n, lr_n) +
+                entry(x12, lr_m, ks_m, lr_n, ks_n) + entry(x12, ls_m, kr_m, ls_n, kr_n);
+            const double twice = (k == l ? 0.5 : 1) * (r == s ? 0.5 : 1);
+            (*out)(p, q) = (*out)(q, p) = twice * (normal + c33 * shear);
+          }
+    return out;
   }
 
-  Eigen::Matrix3d elasticity_;          // h C [N/m]
-  const Element* element_ = nullptr;    // of the last prepare()
+  /// Products of two functions at all points: a row per pair i <= j.
+  static MatrixXd pairs(const MatrixXd& f) {
+    MatrixXd out(f.cols() * (f.cols() + 1) / 2, f.rows());
+    for (Eigen::Index i = 0, p = 0; i < f.cols(); ++i)
+      for (Eigen::Index j = i; j < f.cols(); ++j, ++p)
+        out.row(p) = f.col(i).cwiseProduct(f.col(j)).transpose();
+    return out;
+  }
+  /// Products of rows of x and rows of y at all points: row p y.rows() + q.
+  static MatrixXd products(const MatrixXd& x, const MatrixXd& y) {
+    MatrixXd out(x.rows() * y.rows(), x.cols());
+    for (Eigen::Index p = 0; p < x.rows(); ++p)
+      out.middleRows(p * y.rows(), y.rows()) = y * x.row(p).asDiagonal();
+    return out;
+  }
+
+  Eigen::Matrix3d elasticity_;        // h C [N/m]
+  const Element* element_ = nullptr;  // of the last prepare()
   const Factors* factors_ = nullptr;
   int n_shapes_ = 0;
   Eigen::MatrixXi pair_;
   std::vector<Invariant> invariants_;
-  ShapeTable table_, previous_;
+  ProductTable table_, previous_;
   int tabulated_ = -1;  // element of table_
-  MatrixXd lambda_, stress_;
 };
 
 }  // namespace

@@ -18,14 +18,14 @@ Design::Design(const Grid& domain, std::vector<Component> start, const DesignSca
     const auto p = start[c].parameters();
     const double lower[kN] = {domain.x0,
                               domain.y0,
-                              std::max(0.2 * scale.half_length, scale.min_thickness),
+                              std::max(0.6 * scale.half_length, scale.min_thickness),
                               p[3] - 2 * pi,
                               scale.min_thickness,
                               scale.min_thickness,
                               scale.min_thickness};
     const double upper[kN] = {domain.x0 + domain.width,
                               domain.y0 + domain.height,
-                              8 * scale.half_length,
+                              std::max(8 * scale.half_length, 2 * scale.min_thickness),
                               p[3] + 2 * pi,
                               scale.max_thickness,
                               scale.max_thickness,

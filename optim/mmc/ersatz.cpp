@@ -29,7 +29,7 @@ Ersatz::Ersatz(const Grid& grid, double alpha, std::span<const Box> solid,
     }
 }
 
-void Ersatz::factors(const VectorXd& h, CellFactors& out) const {
+void Ersatz::factors(const VectorXd& h, const VectorXd& eroded, CellFactors& out) const {
   out.stiffness.resize(grid_.n_cells());
   out.mass.resize(grid_.n_cells());
   for (int i = 0; i < grid_.nx; ++i)
@@ -39,23 +39,25 @@ void Ersatz::factors(const VectorXd& h, CellFactors& out) const {
       double sum = 0, squares = 0;
       for (const int node : corners(grid_, i, j)) {
         sum += h[node];
-        squares += h[node] * h[node];
+        squares += eroded[node] * eroded[node];
       }
       out.stiffness[cell] = fixed > 0 ? 1 : fixed < 0 ? alpha_ * alpha_ : 0.25 * squares;
       out.mass[cell] = fixed > 0 ? 1 : fixed < 0 ? 0 : (0.25 * sum - alpha_) / (1 - alpha_);
     }
 }
 
-void Ersatz::pull_back(const VectorXd& h, const VectorXd& d_stiffness, const VectorXd& d_mass,
-                       VectorXd& d_h) const {
+void Ersatz::pull_back(const VectorXd& eroded, const VectorXd& d_stiffness, const VectorXd& d_mass,
+                       VectorXd& d_h, VectorXd& d_eroded) const {
   d_h.setZero(grid_.n_nodes());
+  d_eroded.setZero(grid_.n_nodes());
   for (int i = 0; i < grid_.nx; ++i)
     for (int j = 0; j < grid_.ny; ++j) {
       const int cell = grid_.cell(i, j);
       if (fixed_[static_cast<size_t>(cell)] != 0) continue;
-      const double mass = 0.25 * d_mass[cell] / (1 - alpha_);
-      for (const int node : corners(grid_, i, j))
-        d_h[node] += 0.5 * d_stiffness[cell] * h[node] + mass;
+      for (const int node : corners(grid_, i, j)) {
+        d_h[node] += 0.25 * d_mass[cell] / (1 - alpha_);
+        d_eroded[node] += 0.5 * d_stiffness[cell] * eroded[node];
+      }
     }
 }
 

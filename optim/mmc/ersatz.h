@@ -12,10 +12,12 @@ struct CellFactors {
   VectorXd stiffness, mass;
 };
 
-/// Nodal Heaviside values H of the TDF -> factors of the design cells, and back.
+/// Nodal Heaviside values of the TDF -> factors of the design cells, and back.
 ///
-///   stiffness = mean of H^q over the corners, q = 2      mass = mean of (H - α)/(1 - α)
+///   stiffness = mean of E^q over the corners, q = 2      mass = mean of (H - α)/(1 - α)
 ///
+/// H = density, E = eroded of UnionTdf. Stiffness comes from the eroded design, because corners
+/// see no gap narrower than a cell: without it optimizers leave slits there, which weigh nothing.
 /// The void keeps α^q of its stiffness and no mass (design.md sections 7 and 8). Cells whose
 /// centre lies in a `solid` box are full material, those in an `empty` box void, whatever the
 /// components do; solid wins.
@@ -23,11 +25,12 @@ class Ersatz {
  public:
   Ersatz(const Grid& grid, double alpha, std::span<const Box> solid, std::span<const Box> empty);
 
-  void factors(const VectorXd& h, CellFactors& out) const;
+  /// @param h, eroded  density() and eroded() of the TDF (n_nodes)
+  void factors(const VectorXd& h, const VectorXd& eroded, CellFactors& out) const;
 
-  /// Chain rule: df/dstiffness and df/dmass (n_cells) -> df/dH (n_nodes).
-  void pull_back(const VectorXd& h, const VectorXd& d_stiffness, const VectorXd& d_mass,
-                 VectorXd& d_h) const;
+  /// Chain rule: df/dstiffness and df/dmass (n_cells) -> df/dH and df/dE (n_nodes).
+  void pull_back(const VectorXd& eroded, const VectorXd& d_stiffness, const VectorXd& d_mass,
+                 VectorXd& d_h, VectorXd& d_eroded) const;
 
   /// Factors of a sharp picture (area fractions of the true union, n_cells): material where it is,
   /// the void stiffness of factors() elsewhere.

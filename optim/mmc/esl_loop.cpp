@@ -42,6 +42,7 @@ class BodyCycle {
     finish();
     return std::move(outcome_);
   }
+  bool stopped() const { return !going_; }  ///< by the observer
 
  private:
   void run_stage(int stage, int n_stages) {
@@ -144,10 +145,14 @@ std::vector<BodyOutcome> esl_loop(std::vector<BodyProblem>& problems, const Simu
 
     std::vector<BodyOutcome> before = std::move(outcome);
     outcome.clear();
-    for (size_t i = 0; i < problems.size(); ++i)
-      outcome.push_back(BodyCycle(problems[i], loads[i], cycle, settings, observer).go());
+    bool stopped = false;
+    for (size_t i = 0; i < problems.size() && !stopped; ++i) {
+      BodyCycle body(problems[i], loads[i], cycle, settings, observer);
+      outcome.push_back(body.go());
+      stopped = body.stopped();
+    }
     if (observer.cycle) observer.cycle(cycle, outcome);
-    if (rests(outcome, before, settings.tolerance)) break;
+    if (stopped || rests(outcome, before, settings.tolerance)) break;
   }
   return outcome;
 }

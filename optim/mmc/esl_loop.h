@@ -76,7 +76,8 @@ struct LoopSettings {
   optim::Settings optimizer;
 };
 
-/// Looks on; false stops the run after the current iteration.
+/// Looks on; false stops the run after the current iteration: the outcomes of that cycle are then
+/// those of the bodies up to the one that was stopped.
 struct LoopObserver {
   std::function<bool(const IterationReport&)> iteration;
   /// After the motion of a cycle: its loads, one entry per problem.

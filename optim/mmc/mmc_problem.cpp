@@ -1,5 +1,7 @@
 #include "optim/mmc/mmc_problem.h"
 
+#include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <ctime>
 
@@ -11,6 +13,9 @@ namespace {
 /// Mass factor of the weakest cell that still counts as a link between two parts. Half density
 /// would be a wall: early designs hang together by less and still carry their loads.
 constexpr double kWeakestLink = 0.1;
+/// A design without such links that is still less compliant than this many times the best one
+/// carries its loads all the same: refusing it would leave the optimizer at a wall.
+constexpr double kLargestJump = 3;
 }  // namespace
 
 double cpu_seconds() {
@@ -35,24 +40,25 @@ optim::Response MmcProblem::evaluate(const VectorXd& x) {
   x_ = x;
   design_.components(x, components_);
   tdf_.evaluate(components_);
-  ersatz_.factors(tdf_.density(), factors_);
+  ersatz_.factors(tdf_.density(), tdf_.eroded(), factors_);
   volume_ = factors_.mass.mean();
   seconds_tdf_ = cpu_seconds() - clock;
 
   compliance_.evaluate(factors_.stiffness, factors_.mass, value_);
+  seconds_ = compliance_.seconds();
   if (!(value_.f > 0) || !std::isfinite(value_.f))
     throw Error::numerical("design problem: the compliance is " + std::to_string(value_.f));
 
   clock = cpu_seconds();
   optim::Response out;
   out.f = std::log(value_.f);
-  ersatz_.pull_back(tdf_.density(), value_.d_stiffness, value_.d_mass, d_h_);
-  tdf_.pull_back(d_h_, d_x_);
+  ersatz_.pull_back(tdf_.eroded(), value_.d_stiffness, value_.d_mass, d_h_, d_eroded_);
+  tdf_.pull_back(d_h_, d_eroded_, d_x_);
   out.df = d_x_ / value_.f;
   design_.scale_gradient(out.df);
   out.g.setConstant(1, volume_ / max_volume_ - 1);
-  ersatz_.pull_back(tdf_.density(), zero_, ones_, d_h_);
-  tdf_.pull_back(d_h_, d_x_);
+  ersatz_.pull_back(tdf_.eroded(), zero_, ones_, d_h_, d_eroded_);
+  tdf_.pull_back(d_h_, d_eroded_, d_x_);
   d_x_ /= max_volume_;
   design_.scale_gradient(d_x_);
   out.dg = d_x_.transpose();
@@ -60,9 +66,13 @@ optim::Response MmcProblem::evaluate(const VectorXd& x) {
   return out;
 }
 
-bool MmcProblem::acceptable(const VectorXd&) {
+bool MmcProblem::acceptable([[maybe_unused]] const VectorXd& x) {
+  assert(x == x_);
   // connectivity() joins cells of half density or more; a link may be weaker on the way.
-  return connectivity(grid_, 0.5 / kWeakestLink * factors_.mass).connected;
+  const bool holds = connectivity(grid_, 0.5 / kWeakestLink * factors_.mass).connected ||
+                     value_.f < kLargestJump * lowest_;
+  if (holds) lowest_ = std::min(lowest_, value_.f);
+  return holds;
 }
 
 }  // namespace flexmorph::mmc

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "geometry/tdf.h"
 #include "optim/mmc/design.h"
 #include "optim/mmc/ersatz.h"
@@ -25,7 +27,8 @@ class MmcProblem final : public optim::Problem {
   VectorXd upper() const override { return design_.upper(); }
   VectorXd start() const override { return design_.x(); }
   optim::Response evaluate(const VectorXd& x) override;
-  /// Does one piece of material, blurred links included, reach from root to free end?
+  /// Does one piece of material, blurred links included, reach from root to free end, or does the
+  /// design carry its loads about as well as the best one all the same?
   bool acceptable(const VectorXd& x) override;
 
   // What the last evaluate() saw.
@@ -38,7 +41,7 @@ class MmcProblem final : public optim::Problem {
   const VectorXd& phi() const { return tdf_.phi(); }
   double band() const { return tdf_.settings().band; }
   double seconds_tdf() const { return seconds_tdf_; }  ///< CPU, TDF and chain rule
-  Compliance::Seconds seconds() const { return compliance_.seconds(); }
+  Compliance::Seconds seconds() const { return seconds_; }
 
  private:
   Grid grid_;
@@ -50,8 +53,10 @@ class MmcProblem final : public optim::Problem {
   std::vector<Component> components_;
   CellFactors factors_;
   Compliance::Value value_;
-  VectorXd x_, d_h_, d_x_, zero_, ones_;
+  Compliance::Seconds seconds_;
+  VectorXd x_, d_h_, d_eroded_, d_x_, zero_, ones_;
   double volume_ = 0, seconds_tdf_ = 0;
+  double lowest_ = std::numeric_limits<double>::infinity();  // compliance of acceptable designs
 };
 
 /// CPU seconds of this process.

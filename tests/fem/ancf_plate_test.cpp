@@ -157,6 +157,30 @@ TEST_P(EveryShapeSet, FactorsAreIntegratedCellByCell) {
   }
 }
 
+// The product form holds the same numbers as the plain table.
+TEST_P(EveryShapeSet, ProductsAreThePlainTable) {
+  const Factors factors = testing::random_factors(7);
+  const AncfPlate plate = swinging_plate(GetParam(), 0.37);
+  ShapeTable t;
+  ProductTable products;
+  for (const FactorKind kind : {FactorKind::none, FactorKind::stiffness}) {
+    plate.tabulate(1, 12, Tabulate::gradient, factors, kind, t);
+    ASSERT_TRUE(plate.tabulate_products(1, 12, factors, kind, products));
+    ASSERT_EQ(products.weight.size(), t.weight.size());
+    for (Eigen::Index g = 0, p = 0; g < products.f_m.rows(); ++g)
+      for (Eigen::Index h = 0; h < products.f_n.rows(); ++h, ++p) {
+        EXPECT_EQ(products.weight(g, h), t.weight[p]);
+        for (int k = 0; k < plate.n_shapes(); ++k) {
+          const int i = products.function_m[static_cast<size_t>(k)];
+          const int j = products.function_n[static_cast<size_t>(k)];
+          EXPECT_NEAR(products.f_m(g, i) * products.f_n(h, j), t.N(p, k), 1e-15);
+          EXPECT_NEAR(products.d_m(g, i) * products.f_n(h, j), t.N_m(p, k), 1e-13);
+          EXPECT_NEAR(products.f_m(g, i) * products.d_n(h, j), t.N_n(p, k), 1e-13);
+        }
+      }
+  }
+}
+
 TEST_P(EveryShapeSet, WholeMassIsTheSumOfTheCellsOutside) {
   const Factors factors = testing::random_factors(3);
   const double time = 0.62;

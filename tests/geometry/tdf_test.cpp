@@ -54,17 +54,19 @@ TEST(ComponentTdf, TakesThePrintedValues) {
     const double sum = std::pow(x / c.half_length, 6) + std::pow(y / g, 6);
     EXPECT_NEAR(component_tdf(c, settings(Kind::paper), at.x(), at.y(), nullptr), 1 - sum,
                 1e-12 * (1 + sum));
-    // (1 - s)/|∇s| at this g, the slope by differences; inside capped at g by a fourth-power mean.
+    // (1 - s)/|∇s| at this g outside, blended with (1 - s) g towards the center and capped at g by
+    // an eighth-power mean; the slope of s by differences.
     const auto s = [&](double X, double Y) {
       return std::pow(std::pow(X / c.half_length, 6) + std::pow(Y / g, 6), 1.0 / 6);
     };
-    const double h = 1e-6;
+    const double h = 1e-6, here = s(x, y);
     const double slope = std::hypot((s(x + h, y) - s(x - h, y)) / (2 * h),
                                     (s(x, y + h) - s(x, y - h)) / (2 * h));
-    const double P = (1 - s(x, y)) / slope;
-    const double phi = P > 0 ? P * std::pow(1 + std::pow(P / g, 4), -0.25) : P;
+    const double w = std::min(1.0, here * here);
+    const double P = (1 - here) * (w / slope + (1 - w) * g);
+    const double phi = P > 0 ? P * std::pow(1 + std::pow(P / g, 8), -0.125) : P;
     // The difference quotient of the slope errs by h² s‴/6, with s‴ up to 1/g³ off the center.
-    if (s(x, y) > 0.1)
+    if (here > 0.1)
       EXPECT_NEAR(component_tdf(c, settings(Kind::distance), at.x(), at.y(), nullptr), phi, 1e-6);
   }
 }
@@ -118,9 +120,7 @@ TEST_P(EveryKind, CenterIsFiniteAndFlat) {
     if (GetParam() == Kind::paper) {
       EXPECT_NEAR(phi, 1, 1e-15);
     } else {
-      // The cap holds φ below g; along the diagonal, where 1/|∇s| is least, 0.99 of it is left.
-      EXPECT_LE(phi, 0.15);
-      EXPECT_GT(phi, 0.95 * 0.15);
+      EXPECT_NEAR(phi, 0.15 * std::pow(2, -0.125), 1e-15);  // P = g under the cap
     }
     for (const double each : d) EXPECT_TRUE(std::isfinite(each));
   }
@@ -158,8 +158,8 @@ TEST(ComponentTdf, HasUnitSlopeAtTheTip) {
   const TdfSettings s = settings(Kind::distance);
   for (const double beyond : {-0.04, -0.01, 0.01, 0.04, 0.08}) {
     const Vec2 at = point_of(c, c.half_length + beyond, 0.02);
-    // The cap bends the inside: at 0.4 g below the outline by (0.4)⁵/4 g.
-    EXPECT_NEAR(component_tdf(c, s, at.x(), at.y(), nullptr), -beyond, 0.0015) << beyond;
+    // Inside, w and the cap bend it: at 0.4 g by 2 (0.08) (1 - g/L) of it.
+    EXPECT_NEAR(component_tdf(c, s, at.x(), at.y(), nullptr), -beyond, 0.006) << beyond;
   }
 }
 

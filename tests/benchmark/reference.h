@@ -1,0 +1,51 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "fem/solve/static_solver.h"
+#include "geometry/grid.h"
+
+/// What benchmarks of a design iteration measure against, and with.
+namespace flexmorph::benchmark {
+
+/// The design mesh of rotating_plate_v05.
+inline const Grid kGrid{0, -0.05, 1.0, 0.1, 400, 40};
+inline const fem::PlaneSection kSection{0.01, 1e8, 0.3, 2700};
+inline constexpr int kLoads = 100;
+
+/// One thread for OpenBLAS, whatever the environment says.
+void use_one_thread();
+
+/// Process CPU milliseconds of a call: median.
+double milliseconds(const std::function<void()>& call, int repeats = 9);
+
+enum class Ordering { natural, amd };
+
+/// CHOLMOD used as its manual says, on the plate clamped at one column of nodes.
+class Reference {
+ public:
+  /// @param factor  stiffness factors (n_cells)
+  Reference(const VectorXd& factor, int root, Ordering ordering);
+  ~Reference();
+
+  void factorize();
+  void set_loads(int n_loads);
+  void solve();
+  /// Energies of all cells, load by load, with the 8 x 8 product.
+  void energies(VectorXd& out) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// CPU of one factorization, one block solve of kLoads right-hand sides and one pass for the
+/// energies of all cells and loads   [ms]
+struct ReferenceTimes {
+  double factor = 0, solve = 0, energies = 0;
+  double total() const { return factor + solve + energies; }
+};
+ReferenceTimes reference_times(const VectorXd& factor, Ordering ordering);
+
+}  // namespace flexmorph::benchmark

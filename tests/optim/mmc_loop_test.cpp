@@ -1,0 +1,250 @@
+// The cycle dynamics -> loads -> design on a small plate whose "dynamics" is a formula: designs
+// become feasible and stiffer, cycles end when the design rests, an observer can stop them, and
+// the rows of the history describe the iterate they are shown with.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/optim/mmc_small.h"
+
+namespace flexmorph::mmc::test {
+namespace {
+
+/// Ten cells across are too few to take half a cell off all around.
+TdfSettings whole(double band) {
+  TdfSettings settings = tdf_settings(band);
+  settings.erosion = 0;
+  return settings;
+}
+
+std::vector<BodyProblem> one_body(std::vector<double> bands = {2, 1}) {
+  std::vector<TdfSettings> stages;
+  for (const double band : bands) stages.push_back(whole(band));
+  return {{"plate",
+           kGrid,
+           kSection,
+           Design(kGrid, layout(), kScale),
+           strip(),
+           {},
+           stages,
+           0.5,
+           1e-4,
+           1e-3,
+           {}}};
+}
+
+LoopSettings quick(int iterations) {
+  LoopSettings settings;
+  settings.sharp_every = 7;
+  settings.optimizer.max_iterations = iterations;
+  return settings;
+}
+
+TEST(EslLoop, MakesAFeasibleStifferDesign) {
+  std::vector<BodyProblem> problems = one_body();
+  const VectorXd start = problems[0].design.x();
+  int calls = 0;
+  const auto simulate = [&](std::span<const fem::Factors> factors) {
+    ++calls;
+    EXPECT_EQ(factors.size(), 1u);
+    EXPECT_EQ(factors[0].stiffness.size(), kGrid.n_cells());
+    // The void factors of dynamics, not those of statics.
+    EXPECT_NEAR(factors[0].stiffness.minCoeff(), 1e-4, 1e-15);
+    EXPECT_NEAR(factors[0].mass.minCoeff(), 1e-3, 1e-15);
+    return std::vector<fem::EslSets>{turning_plate(3)};
+  };
+  double first = 0, last = 0;
+  LoopObserver observer;
+  observer.iteration = [&](const IterationReport& r) {
+    if (r.iteration == 1) first = r.state.compliance();
+    last = r.state.compliance();
+    return true;
+  };
+  const auto outcome = esl_loop(problems, simulate, quick(60), observer);
+  ASSERT_EQ(outcome.size(), 1u);
+  const BodyOutcome& o = outcome[0];
+  EXPECT_EQ(calls, 1);
+  EXPECT_EQ(o.body, "plate");
+  EXPECT_LE(o.volume, 0.5 * (1 + 1e-4));
+  EXPECT_LT(o.compliance, 0.9 * first);
+  EXPECT_LT(last, first);
+  // Bars beat the same volume spread evenly. (Of blurred ones only: half-thicknesses of 0.6 cells
+  // are nothing a sharp picture on this mesh could show.)
+  EXPECT_LT(o.compliance, 0.95 * o.uniform_compliance);
+  EXPECT_GT((problems[0].design.x() - start).norm(), 0);
+  EXPECT_EQ(o.iterations, 60);
+  EXPECT_GE(o.evaluations, o.iterations);
+  EXPECT_EQ(o.n_loads, 3);
+  EXPECT_EQ(o.load_compliances.size(), 3u);
+  EXPECT_EQ(o.energy_ratios.size(), 3u);
+
+  // The sharp compliance is that of the loads together.
+  double sum = 0;
+  const fem::EslSets loads = turning_plate(3);
+  for (size_t l = 0; l < 3; ++l) sum += loads.sets[l].weight * o.load_compliances[l];
+  EXPECT_NEAR(sum, o.sharp.compliance, 1e-8 * sum);
+
+  // And the outcome is that of the design left behind, computed afresh.
+  const Ersatz ersatz(kGrid, 1e-3, problems[0].solid, {});
+  Compliance compliance(loads, kSection, {}, {}, {});
+  MmcProblem again(kGrid, problems[0].design, ersatz, compliance, whole(1), 0.5);
+  again.evaluate(problems[0].design.x());
+  EXPECT_NEAR(again.compliance(), o.compliance, 1e-12 * o.compliance);
+  EXPECT_NEAR(again.volume(), o.volume, 1e-14);
+}
+
+TEST(EslLoop, ComparesWithTheSameVolumeSpreadEvenly) {
+  std::vector<BodyProblem> problems = one_body();
+  const auto simulate = [](std::span<const fem::Factors>) {
+    return std::vector<fem::EslSets>{turning_plate(2)};
+  };
+  const auto outcome = esl_loop(problems, simulate, quick(2), {});
+  Compliance compliance(turning_plate(2), kSection, {}, {}, {});
+  Compliance::Value value;
+  const VectorXd half = VectorXd::Constant(kGrid.n_cells(), 0.5);
+  compliance.evaluate(half, half, value);
+  EXPECT_NEAR(outcome[0].uniform_compliance, value.f, 1e-12 * value.f);
+}
+
+// Every row is about the iterate it comes with: state, compliance and sharp picture belong to x.
+TEST(EslLoop, RowsDescribeTheirIterates) {
+  for (const char* name : {"mma", "nlopt_mma", "ipopt"}) {
+    std::vector<BodyProblem> problems = one_body();
+    const fem::EslSets loads = turning_plate(3);
+    const auto simulate = [&](std::span<const fem::Factors>) {
+      return std::vector<fem::EslSets>{loads};
+    };
+    const Ersatz ersatz(kGrid, 1e-3, problems[0].solid, {});
+    Compliance compliance(loads, kSection, {}, {}, {});
+    int rows = 0, evaluations = 0, sharp = 0;
+    LoopObserver observer;
+    observer.iteration = [&](const IterationReport& r) {
+      EXPECT_EQ(r.iteration, ++rows);
+      EXPECT_GE(r.evaluations, evaluations);
+      evaluations = r.evaluations;
+      EXPECT_EQ(r.state.x(), *r.iterate.x);
+      EXPECT_NEAR(std::log(r.state.compliance()), r.iterate.response->f, 1e-12);
+      EXPECT_EQ(&r.value, &r.state.value());
+      EXPECT_NEAR(r.iterate.violation, std::max(0.0, r.state.volume() / 0.5 - 1), 1e-12);
+      const Design design(kGrid, r.state.components(), kScale);
+      MmcProblem again(kGrid, design, ersatz, compliance, whole(r.state.band() / kGrid.dx()), 0.5);
+      again.evaluate(design.x());
+      EXPECT_NEAR(again.compliance(), r.state.compliance(), 1e-9 * again.compliance()) << name;
+      EXPECT_EQ(r.sharp != nullptr, rows % 7 == 0);
+      if (r.sharp) {
+        ++sharp;
+        EXPECT_NEAR(
+            r.sharp->volume,
+            area_fractions(kGrid, r.state.components(), kScale.min_thickness, problems[0].solid, {})
+                .mean(),
+            1e-14);
+        EXPECT_GT(r.sharp->compliance, 0);
+      }
+      return true;
+    };
+    LoopSettings settings = quick(16);
+    settings.optimizer.name = name;
+    const auto outcome = esl_loop(problems, simulate, settings, observer);
+    EXPECT_EQ(outcome[0].iterations, rows) << name;
+    EXPECT_EQ(sharp, rows / 7) << name;
+    EXPECT_GE(outcome[0].evaluations, evaluations) << name;
+  }
+}
+
+TEST(EslLoop, EveryStageHasItsBandAndItsShare) {
+  std::vector<BodyProblem> problems = one_body({3, 2, 1});
+  const auto simulate = [](std::span<const fem::Factors>) {
+    return std::vector<fem::EslSets>{turning_plate(2)};
+  };
+  std::vector<int> per_band(4, 0);
+  LoopObserver observer;
+  observer.iteration = [&](const IterationReport& r) {
+    ++per_band[static_cast<size_t>(std::lround(r.state.band() / kGrid.dx()))];
+    return true;
+  };
+  esl_loop(problems, simulate, quick(10), observer);
+  EXPECT_EQ(per_band, (std::vector<int>{0, 4, 3, 3}));
+}
+
+// The loads answer to the design: after the first cycle they no longer change, so the third one
+// finds little to do and the loop ends long before its limit.
+TEST(EslLoop, EndsWhenTheDesignRests) {
+  std::vector<BodyProblem> problems = one_body({1.5});
+  LoopSettings settings = quick(60);
+  settings.max_cycles = 12;
+  settings.tolerance = 0.02;
+  std::vector<double> sharp;
+  int loads_seen = 0;
+  LoopObserver observer;
+  observer.loads = [&](int cycle, std::span<const fem::EslSets> sets) {
+    EXPECT_EQ(cycle, ++loads_seen);
+    EXPECT_EQ(sets.size(), 1u);
+  };
+  observer.cycle = [&](int cycle, std::span<const BodyOutcome> outcomes) {
+    EXPECT_EQ(cycle, loads_seen);
+    sharp.push_back(outcomes[0].sharp.compliance);
+  };
+  int calls = 0;
+  const auto simulate = [&](std::span<const fem::Factors>) {
+    return std::vector<fem::EslSets>{turning_plate(2, ++calls == 1 ? 1 : 1.2)};
+  };
+  const auto outcome = esl_loop(problems, simulate, settings, observer);
+  ASSERT_GE(sharp.size(), 3u);
+  ASSERT_LT(sharp.size(), 12u);
+  const size_t n = sharp.size();
+  for (size_t k = 1; k < n; ++k) {
+    const double change = std::abs(sharp[k] / sharp[k - 1] - 1);
+    EXPECT_EQ(change <= settings.tolerance, k == n - 1) << "cycle " << k + 1 << ": " << change;
+  }
+  EXPECT_EQ(outcome[0].sharp.compliance, sharp.back());
+}
+
+TEST(EslLoop, StopsWhenTheObserverSaysSo) {
+  std::vector<BodyProblem> problems = one_body();
+  problems.push_back(problems[0]);
+  problems[1].body = "other";
+  LoopSettings settings = quick(20);
+  settings.max_cycles = 5;
+  int rows = 0, cycles = 0, calls = 0;
+  const auto simulate = [&](std::span<const fem::Factors> factors) {
+    ++calls;
+    EXPECT_EQ(factors.size(), 2u);
+    return std::vector<fem::EslSets>{turning_plate(2), turning_plate(2)};
+  };
+  LoopObserver observer;
+  observer.iteration = [&](const IterationReport&) { return ++rows < 5; };
+  observer.cycle = [&](int, std::span<const BodyOutcome> outcomes) {
+    ++cycles;
+    EXPECT_EQ(outcomes.size(), 1u);
+  };
+  const auto outcome = esl_loop(problems, simulate, settings, observer);
+  EXPECT_EQ(rows, 5);
+  EXPECT_EQ(calls, 1);
+  EXPECT_EQ(cycles, 1);
+  ASSERT_EQ(outcome.size(), 1u);
+  EXPECT_EQ(outcome[0].iterations, 5);
+  EXPECT_TRUE(outcome[0].stop.starts_with("observer")) << outcome[0].stop;
+  EXPECT_GT(outcome[0].sharp.compliance, 0);
+}
+
+TEST(EslLoop, DynamicsThatFailEndIt) {
+  std::vector<BodyProblem> problems = one_body();
+  const VectorXd start = problems[0].design.x();
+  LoopSettings settings = quick(3);
+  settings.max_cycles = 3;
+  settings.tolerance = 0;
+  int rows = 0, calls = 0;
+  const auto simulate = [&](std::span<const fem::Factors>) -> std::vector<fem::EslSets> {
+    if (++calls == 2) throw Error::numerical("no convergence");
+    return {turning_plate(2)};
+  };
+  LoopObserver observer;
+  observer.iteration = [&](const IterationReport&) { return ++rows > 0; };
+  EXPECT_THROW(esl_loop(problems, simulate, settings, observer), Error);
+  EXPECT_EQ(rows, 3);
+  EXPECT_GT((problems[0].design.x() - start).norm(), 0);  // what the first cycle found stands
+}
+
+}  // namespace
+}  // namespace flexmorph::mmc::test

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "optim/mmc/esl_loop.h"
+
+/// A plate small enough for tests: 60 x 10 cells, 24 components, a few loads.
+namespace flexmorph::mmc::test {
+
+inline const Grid kGrid{.x0 = 0, .y0 = -0.05, .width = 0.6, .height = 0.1, .nx = 60, .ny = 10};
+inline const fem::PlaneSection kSection{0.01, 1e8, 0.3, 2700};
+inline const DesignScale kScale{.half_length = 0.05, .min_thickness = 0.006, .max_thickness = 0.03};
+
+inline TdfSettings tdf_settings(double band_in_cells = 1.5) {
+  TdfSettings s;
+  s.band = band_in_cells * kGrid.dx();
+  s.sharpness = 3.75 / kGrid.dx();
+  s.erosion = 0.5 * kGrid.dx();
+  s.min_half_thickness = kScale.min_thickness;
+  return s;
+}
+
+/// Two columns of cells under the mass at the free end.
+inline std::vector<Box> strip() { return {{{0.58, -0.05}, {0.6, 0.05}}}; }
+
+/// 12 x 1 boxes of two crossing components.
+inline std::vector<Component> layout(double half_thickness = 0.008) {
+  return crossing_layout(kGrid.x0, kGrid.y0, kGrid.width, kGrid.height, 12, 1, half_thickness,
+                         kScale.half_length);
+}
+
+/// The layout with every parameter moved at random by up to `amount` of its unit: positions and
+/// lengths 10 mm, angles 0.3 rad, half-thicknesses 3 mm.
+inline std::vector<Component> random_layout(unsigned seed, double amount = 1) {
+  std::mt19937 engine(seed);
+  std::uniform_real_distribution<double> uniform(-amount, amount);
+  std::vector<Component> all = layout(0.01);
+  for (Component& c : all) {
+    c.center += 0.01 * Vec2(uniform(engine), uniform(engine));
+    c.half_length += 0.01 * uniform(engine);
+    c.angle += 0.3 * uniform(engine);
+    for (double* thickness : {&c.c1, &c.c2, &c.c3}) *thickness += 0.003 * uniform(engine);
+  }
+  return all;
+}
+
+/// Loads of a plate that turns, grows out of its hub by n - 1 cells and swings: accelerations of
+/// the turning frame and of bending, a mass of 0.5 kg at the tip. The deformation (which
+/// `stiffness` loads are made of) is smooth and zero at the root, and no answer to these
+/// accelerations.
+inline fem::EslSets turning_plate(int n, double swing = 1) {
+  const double omega = 2 * std::numbers::pi, speed = 0.5;
+  fem::EslSets loads{kGrid, {}};
+  for (int k = 0; k < n; ++k) {
+    fem::EslSet set;
+    set.time = 0.1 * (k + 1);
+    set.weight = (1 + 0.5 * k) / n;
+    set.root_column = n - 1 - k;
+    set.strain_energy = 1;
+    set.deformation.setZero(2 * kGrid.n_nodes());
+    set.acceleration.resize(2 * kGrid.n_nodes());
+    for (int i = 0; i <= kGrid.nx; ++i) {
+      for (int j = 0; j <= kGrid.ny; ++j) {
+        const Eigen::Index entry = 2 * kGrid.node(i, j);
+        const Vec2 X = kGrid.node_position(i, j);
+        const double x = X.x() - kGrid.dx() * set.root_column, s = x / kGrid.width;
+        const double bend = swing * 60 * std::cos(25 * set.time) * s * s;
+        set.acceleration.segment<2>(entry) =
+            Vec2(-omega * omega * x, 2 * omega * speed - omega * omega * X.y() + bend);
+        if (i > set.root_column) {
+          set.deformation.segment<2>(entry) =
+              1e-3 * Vec2(s * (1 + std::sin(3 * k + 9 * s)) - 20 * s * X.y(),
+                          s * s * (2 + std::cos(4 * k + 7 * s)));
+        }
+      }
+    }
+    const int tip = kGrid.node(kGrid.nx, kGrid.ny / 2);
+    set.forces.push_back({tip, -0.5 * set.acceleration.segment<2>(2 * tip)});
+    loads.sets.push_back(std::move(set));
+  }
+  return loads;
+}
+
+}  // namespace flexmorph::mmc::test
