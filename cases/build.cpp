@@ -38,7 +38,8 @@ std::unique_ptr<fem::Element> elements_of(const Body& body, double end,
     m[0].drive = [longest, length = body.length, speed = body.flow->speed](double t) {
       return fem::Motion{longest - length - speed * t, -speed, 0};
     };
-  for (int j = 0; j <= count[1]; ++j) n.push_back({-0.5 * body.width + body.width * j / count[1], {}});
+  for (int j = 0; j <= count[1]; ++j)
+    n.push_back({-0.5 * body.width + body.width * j / count[1], {}});
   const auto shapes =
       body.shape == "h12" ? fem::AncfPlate::ShapeSet::h12 : fem::AncfPlate::ShapeSet::h16;
   return std::make_unique<fem::AncfPlate>(2, shapes, std::move(m), std::move(n));
@@ -96,8 +97,7 @@ Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh) {
 std::vector<fem::AttachedMass> attached_masses(const Scene& scene, const std::string& body) {
   std::vector<fem::AttachedMass> out;
   for (const PointMass& m : scene.point_masses)
-    if (m.body == body)
-      out.push_back({m.mass, Vec2(scene.body(body).longest(scene.time.end), 0)});
+    if (m.body == body) out.push_back({m.mass, Vec2(scene.body(body).longest(scene.time.end), 0)});
   return out;
 }
 

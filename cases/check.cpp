@@ -47,11 +47,11 @@ void describe_design(const Scene& scene, const BodyDesign& d, std::ostringstream
   const int n = 2 * g.nx * (g.ny + 1), loads = scene.esl->count(scene.time.end);
   // Natural order from the free end: a band of ny + 2 nodes.
   const double factor = static_cast<double>(n) * (2 * g.ny + 5);
-  out << row("design of " + d.body,
-             std::to_string(components) + " components, " +
-                 std::to_string(components * Component::kParameters) + " variables, " +
-                 std::to_string(g.nx) + " x " + std::to_string(g.ny) + " cells, " +
-                 std::to_string(n) + " static unknowns");
+  out << row("design of " + d.body, std::to_string(components) + " components, " +
+                                        std::to_string(components * Component::kParameters) +
+                                        " variables, " + std::to_string(g.nx) + " x " +
+                                        std::to_string(g.ny) + " cells, " + std::to_string(n) +
+                                        " static unknowns");
   out << row("", std::to_string(loads) + " loads, volume at most " + io::to_text(d.max_volume) +
                      ", half-thickness at least " + io::to_text(d.min_thickness) + " m");
   out << row("", "factor about " + io::to_text(8e-6 * factor, 3) + " MB, loads and displacements " +
@@ -68,12 +68,12 @@ std::string check_case(const RunOptions& options) {
   build_problems(scene);
   std::ostringstream out;
   out << scene.name << ": " << scene.title << "\n\nactive\n";
-  out << row("time", "0 to " + io::to_text(scene.time.end) + " s, step " +
-                         io::to_text(scene.time.step) + " s, rho_inf " +
-                         io::to_text(scene.time.rho_inf) + ", " +
-                         std::to_string(static_cast<int>(
-                             std::ceil(scene.time.end / scene.time.step - 1e-9))) +
-                         " steps");
+  out << row(
+      "time",
+      "0 to " + io::to_text(scene.time.end) + " s, step " + io::to_text(scene.time.step) +
+          " s, rho_inf " + io::to_text(scene.time.rho_inf) + ", " +
+          std::to_string(static_cast<int>(std::ceil(scene.time.end / scene.time.step - 1e-9))) +
+          " steps");
   for (const Body& body : scene.bodies) describe_body(body, mechanism, out);
   out << row("joints", std::to_string(scene.joints.size()) + ", " +
                            std::to_string(mechanism.model.n_constraints()) + " constraint rows");
@@ -85,6 +85,11 @@ std::string check_case(const RunOptions& options) {
     out << row("optimizer", scene.optimizer.name + ", at most " +
                                 std::to_string(scene.optimizer.max_iterations) + " iterations, " +
                                 std::to_string(scene.cycle.max_cycles) + " cycle(s)");
+  if (scene.verify)
+    out << row("verification", "designed and uniform plate once more, " +
+                                   std::to_string(scene.verify->mesh[0]) + " x " +
+                                   std::to_string(scene.verify->mesh[1]) + " elements, step " +
+                                   io::to_text(scene.verify->step) + " s");
   out << "\nabsent: not built, costs nothing\n";
   out << row("out-of-plane", "positions have two components; no bending term");
   out << row("heat", "no thermal term");

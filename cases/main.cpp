@@ -48,7 +48,8 @@ int parse_and_run(int argc, char** argv) {
   run->add_option("--threads", options.threads, "threads of the linear algebra")
       ->check(CLI::Range(1, 256));
   run->add_flag("--quiet", options.quiet, "no progress");
-  CLI::App* check = app.add_subcommand("check", "validates a case; says what it contains and costs");
+  CLI::App* check =
+      app.add_subcommand("check", "validates a case; says what it contains and costs");
   common(check);
   CLI::App* cases = app.add_subcommand("cases", "lists the shipped cases");
   try {

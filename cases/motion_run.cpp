@@ -80,8 +80,7 @@ MotionOutcome run_motion(const Scene& scene, const MotionWishes& wishes, RunFold
   Mechanism mechanism = build_mechanism(scene, wishes.mesh);
   for (size_t i = 0; i < wishes.factors.size(); ++i)
     for (fem::Body& body : mechanism.model.bodies())
-      if (body.name == scene.designs[i].body)
-        mechanism.model.set_factors(body, wishes.factors[i]);
+      if (body.name == scene.designs[i].body) mechanism.model.set_factors(body, wishes.factors[i]);
   mechanism.motion.balance = wishes.balance;
   if (wishes.loads) mechanism.motion.stops = load_times(scene);
   if (wishes.frames_every > 0)

@@ -9,13 +9,13 @@ namespace flexmorph::cases {
 
 /// What a motion is asked to leave behind.
 struct MotionWishes {
-  std::vector<fem::Factors> factors;   ///< one per design; empty: full material
+  std::vector<fem::Factors> factors;  ///< one per design; empty: full material
   MeshChoice mesh;
-  bool loads = false;                  ///< collect equivalent static loads
-  double frames_every = 0;             ///< VTK frames [s]; 0: none
-  bool balance = true;                 ///< keep the energy balance
-  std::string table = "motion.csv";    ///< file of the folder: the steps, up to a failure too
-  std::function<bool()> go_on;         ///< asked at every step; false ends it with Interrupted
+  bool loads = false;                ///< collect equivalent static loads
+  double frames_every = 0;           ///< VTK frames [s]; 0: none
+  bool balance = true;               ///< keep the energy balance
+  std::string table = "motion.csv";  ///< file of the folder: the steps, up to a failure too
+  std::function<bool()> go_on;       ///< asked at every step; false ends it with Interrupted
 };
 
 /// The user wants no more. What was computed is in the folder.
@@ -23,7 +23,7 @@ struct Interrupted {};
 
 struct MotionOutcome {
   MotionRecord record;
-  std::vector<fem::EslSets> loads;     ///< one per design
+  std::vector<fem::EslSets> loads;  ///< one per design
 };
 
 /// Builds the mechanism of a scene and moves it through its time.

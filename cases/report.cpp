@@ -14,9 +14,9 @@ double thinnest(const mmc::BodyProblem& problem) {
   double out = problem.grid.width;
   for (const Component& c : problem.design.components())
     for (int k = 0; k <= 200; ++k)
-      out = std::min(out, profile(c, c.half_length * (k / 100.0 - 1),
-                                  problem.stages.back().min_half_thickness)
-                              .g);
+      out = std::min(
+          out,
+          profile(c, c.half_length * (k / 100.0 - 1), problem.stages.back().min_half_thickness).g);
   return out;
 }
 
@@ -154,8 +154,8 @@ std::string deflection_plot(const MotionRecord& design,
     panel.curves.push_back(
         {designed ? "optimized" : "", design.time, design.deflection[i], true, false, false});
     if (designed)
-      panel.curves.push_back({"uniform, same volume", uniform->time, uniform->deflection[i], true,
-                              false, true});
+      panel.curves.push_back(
+          {"uniform, same volume", uniform->time, uniform->deflection[i], true, false, true});
     figure.panels.push_back(panel);
   }
   return io::plot_svg(figure);
@@ -188,8 +188,8 @@ io::ReportSection results_section(const RunReport& report) {
                         io::to_text(o.sharp.compliance, 6), io::to_text(o.sharp.volume, 5),
                         io::to_text(o.uniform_compliance, 6),
                         io::to_text(o.sharp.compliance / o.uniform_compliance, 4),
-                        o.sharp.connectivity.connected ? "yes" : "no",
-                        io::to_text(o.iterations), io::to_text(o.evaluations), o.stop});
+                        o.sharp.connectivity.connected ? "yes" : "no", io::to_text(o.iterations),
+                        io::to_text(o.evaluations), o.stop});
   return out;
 }
 

@@ -35,7 +35,8 @@ class Progress {
   void iteration(const mmc::IterationReport& r) {
     if (quiet_) return;
     char text[160];
-    std::snprintf(text, sizeof text, "%s cycle %d iteration %d: compliance %.5g, volume %.4f, kkt %.1e",
+    std::snprintf(text, sizeof text,
+                  "%s cycle %d iteration %d: compliance %.5g, volume %.4f, kkt %.1e",
                   r.problem.body.c_str(), r.cycle, r.iteration, r.state.compliance(),
                   r.state.volume(), r.iterate.kkt);
     if (terminal_) {

@@ -11,12 +11,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> kHistoryColumns = {
-    "body",           "cycle",         "iteration",           "evaluations",       "objective",
-    "compliance",     "volume",        "violation",           "kkt",               "change",
-    "band",           "sharp_compliance", "sharp_volume",     "connected",         "min_feature",
-    "seconds_tdf",    "seconds_factor", "seconds_solve",      "seconds_sensitivity",
-    "seconds_optimizer", "seconds_output"};
+const std::vector<std::string> kHistoryColumns = {"body",
+                                                  "cycle",
+                                                  "iteration",
+                                                  "evaluations",
+                                                  "objective",
+                                                  "compliance",
+                                                  "volume",
+                                                  "violation",
+                                                  "kkt",
+                                                  "change",
+                                                  "band",
+                                                  "sharp_compliance",
+                                                  "sharp_volume",
+                                                  "connected",
+                                                  "min_feature",
+                                                  "seconds_tdf",
+                                                  "seconds_factor",
+                                                  "seconds_solve",
+                                                  "seconds_sensitivity",
+                                                  "seconds_optimizer",
+                                                  "seconds_output"};
 
 std::string numbered(const std::string& stem, int number, const std::string& ending) {
   std::string digits = io::to_text(number);
@@ -24,11 +39,20 @@ std::string numbered(const std::string& stem, int number, const std::string& end
 }
 
 /// The parts of a folder that a run writes: these, and only these, are removed before a new one.
-const std::vector<std::string> kOurs = {"case.toml",   "run.json",       "history.csv", "motion.csv",
-                                        "motion_uniform.csv", "motion_verified.csv",
-                                        "motion_verified_uniform.csv", "report.html",
-                                        "components.csv", "design.svg", "design", "motion",
-                                        "loads",       "plots"};
+const std::vector<std::string> kOurs = {"case.toml",
+                                        "run.json",
+                                        "history.csv",
+                                        "motion.csv",
+                                        "motion_uniform.csv",
+                                        "motion_verified.csv",
+                                        "motion_verified_uniform.csv",
+                                        "report.html",
+                                        "components.csv",
+                                        "design.svg",
+                                        "design",
+                                        "motion",
+                                        "loads",
+                                        "plots"};
 /// With several designs their files carry the bodies' names.
 bool is_ours(const std::string& name) {
   return std::find(kOurs.begin(), kOurs.end(), name) != kOurs.end() ||
@@ -121,11 +145,27 @@ void RunFolder::add_iteration(const mmc::IterationReport& r) {
   }
   output_seconds_ += mmc::cpu_seconds() - clock;
   const mmc::Compliance::Seconds s = r.state.seconds();
-  history_->row({r.problem.body, r.cycle, r.iteration, r.evaluations, r.iterate.response->f,
-                 r.state.compliance(), r.state.volume(), r.iterate.violation, r.iterate.kkt,
-                 r.iterate.change, r.state.band() / r.problem.grid.dx(), sharp_c, sharp_v,
-                 connected, io::Cell(), r.state.seconds_tdf(), s.factor, s.solve, s.sensitivity,
-                 r.iterate.seconds, take_output_seconds()});
+  history_->row({r.problem.body,
+                 r.cycle,
+                 r.iteration,
+                 r.evaluations,
+                 r.iterate.response->f,
+                 r.state.compliance(),
+                 r.state.volume(),
+                 r.iterate.violation,
+                 r.iterate.kkt,
+                 r.iterate.change,
+                 r.state.band() / r.problem.grid.dx(),
+                 sharp_c,
+                 sharp_v,
+                 connected,
+                 io::Cell(),
+                 r.state.seconds_tdf(),
+                 s.factor,
+                 s.solve,
+                 s.sensitivity,
+                 r.iterate.seconds,
+                 take_output_seconds()});
 }
 
 RunFolder::History& RunFolder::history_of(const std::string& body) {
@@ -137,8 +177,9 @@ RunFolder::History& RunFolder::history_of(const std::string& body) {
 
 void RunFolder::write_loads(const std::string& body, const fem::EslSets& loads,
                             const mmc::BodyOutcome* outcome) {
-  const std::vector<std::string> columns = {"time", "root_column", "weight", "strain_energy",
-                                            "energy_ratio", "compliance", "force_x", "force_y"};
+  const std::vector<std::string> columns = {"time",          "root_column",  "weight",
+                                            "strain_energy", "energy_ratio", "compliance",
+                                            "force_x",       "force_y"};
   io::CsvWriter csv(path_ + "/loads/" + body + ".csv", columns);
   for (size_t i = 0; i < loads.sets.size(); ++i) {
     const fem::EslSet& s = loads.sets[i];
@@ -194,8 +235,7 @@ void RunFolder::add_motion_frame(const fem::Model& model, const fem::Growth& gro
       values.push_back(density[grid.cell(i, j)]);
     }
   const io::Field cells[] = {{"density", values}};
-  const std::string file =
-      numbered("motion_" + body.name + "_", ++motion_frames_, ".vtu");
+  const std::string file = numbered("motion_" + body.name + "_", ++motion_frames_, ".vtu");
   io::write_quad_mesh(path_ + "/motion/" + file, mesh, cells, {});
   motion_.add(x.t, file, part);
 }

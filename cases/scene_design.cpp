@@ -148,9 +148,9 @@ void read_tdf(const Table& t, BodyDesign& design) {
   for (size_t i = 1; i < design.band.size(); ++i)
     if (design.band[i] >= design.band[i - 1]) t.fail("band", "bands go from coarse to fine");
   design.tdf.sharpness = t.number("sharpness", positive("a sharpness", "1/cell"), 3.75) / cell;
-  design.tdf.erosion = t.number("erosion", not_negative("an erosion", paper ? "" : "cells"),
-                                paper ? 0.0 : 0.5) *
-                       (paper ? 1 : cell);
+  design.tdf.erosion =
+      t.number("erosion", not_negative("an erosion", paper ? "" : "cells"), paper ? 0.0 : 0.5) *
+      (paper ? 1 : cell);
   io::Quantity small = fraction("the Heaviside function of the void", 0.5);
   design.tdf.alpha = t.number("alpha", small, 1e-3);
   design.tdf.min_half_thickness = design.min_thickness;

@@ -10,12 +10,9 @@ std::vector<std::pair<std::string, std::string>> library_versions() {
   const std::string eigen = std::to_string(EIGEN_WORLD_VERSION) + "." +
                             std::to_string(EIGEN_MAJOR_VERSION) + "." +
                             std::to_string(EIGEN_MINOR_VERSION);
-  return {{"Eigen", eigen},
-          {"SuiteSparse", FLEXMORPH_SUITESPARSE},
-          {"CGAL", FLEXMORPH_CGAL},
-          {"VTK", FLEXMORPH_VTK},
-          {"NLopt", FLEXMORPH_NLOPT},
-          {"Ipopt", FLEXMORPH_IPOPT}};
+  return {{"Eigen", eigen},           {"SuiteSparse", FLEXMORPH_SUITESPARSE},
+          {"CGAL", FLEXMORPH_CGAL},   {"VTK", FLEXMORPH_VTK},
+          {"NLopt", FLEXMORPH_NLOPT}, {"Ipopt", FLEXMORPH_IPOPT}};
 }
 
 std::string blas_kernel() { return openblas_get_corename(); }

@@ -19,21 +19,21 @@ struct NodalForce {
 ///
 /// Source: design.md section 8; the idea P (31), (32).
 struct EslSet {
-  double time = 0;               ///< [s]
-  double weight = 1;             ///< w_i of P (35)
-  int root_column = 0;           ///< column i of nodes on the root line; columns < i are inside
-  VectorXd deformation;          ///< u_i (2 n_nodes) [m], zero on and inside the root line
+  double time = 0;       ///< [s]
+  double weight = 1;     ///< w_i of P (35)
+  int root_column = 0;   ///< column i of nodes on the root line; columns < i are inside
+  VectorXd deformation;  ///< u_i (2 n_nodes) [m], zero on and inside the root line
   /// Material acceleration minus gravity (2 n_nodes) [m/s^2]. Inside the hub it is continued
   /// smoothly (the acceleration of the rigid, extending body), which costs nothing, because rows
   /// outside never see it, and keeps the rank of all loads together small.
   VectorXd acceleration;
   std::vector<NodalForce> forces;  ///< concentrated forces: -m a of point masses, applied loads
-  double strain_energy = 0;      ///< of the dynamic run at that time [J], to compare 1/2 u.F with
+  double strain_energy = 0;        ///< of the dynamic run at that time [J], to compare 1/2 u.F with
 };
 
 /// The loads of one body: what dynamics hands to the design problem.
 struct EslSets {
-  Grid grid;                     ///< design mesh over the longest extent, root side at x0
+  Grid grid;  ///< design mesh over the longest extent, root side at x0
   std::vector<EslSet> sets;
 };
 

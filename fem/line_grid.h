@@ -23,7 +23,7 @@ class LineGrid : public Element {
   virtual const std::vector<MaterialLine>& lines_m() const = 0;
   virtual const Motion& line_m(int i) const = 0;  ///< at the time of the last move_to()
   virtual const Motion& line_n(int j) const = 0;
-  virtual int n_n() const = 0;                    ///< elements along n
+  virtual int n_n() const = 0;  ///< elements along n
 
   int n_m() const { return static_cast<int>(lines_m().size()) - 1; }
   int n_nodes() const { return (n_m() + 1) * (n_n() + 1); }

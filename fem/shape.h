@@ -21,7 +21,7 @@ struct Motion {
 /// matrix holds the coefficients of function i (s⁰, s¹, s², s³). Functions 0 and 2 interpolate the
 /// value at the ends, 1 and 3 the derivative by X (P (3) in one direction).
 struct Hermite {
-  double start = 0, length = 1;     ///< x1 and a [m]
+  double start = 0, length = 1;  ///< x1 and a [m]
   Eigen::Matrix4d value, rate, acceleration;
 
   Hermite(const Motion& x1, const Motion& x2);

@@ -37,7 +37,8 @@ class Term {
   virtual void add_force(int e, const Local& x, LocalRows& force) const = 0;
 
   /// Adds w.q ∂f/∂q + w.v ∂f/∂v + w.a ∂f/∂a.
-  virtual void add_tangent(int e, const Local& x, const Weights& w, LocalTangent& tangent) const = 0;
+  virtual void add_tangent(int e, const Local& x, const Weights& w,
+                           LocalTangent& tangent) const = 0;
 
   /// Energies of one element [J]; zero where a term has none.
   virtual double kinetic_energy(int, const Local&) const { return 0; }

@@ -18,14 +18,14 @@ struct TdfSettings {
     /// distance across the flanks only, the band reaches ε L/g beyond a tip, and rows of
     /// components bridge gaps through it.
     distance,
-    paper      ///< φ = χ = 1 - (x/L)^p - (y/g)^p of P (24), plain maximum
+    paper  ///< φ = χ = 1 - (x/L)^p - (y/g)^p of P (24), plain maximum
   };
   Kind kind = Kind::distance;
   double band = 0.00375;    ///< ε of the Heaviside: half-width of the band [m] ([-] for paper)
   double sharpness = 1500;  ///< Kreisselmeier-Steinhauser sharpness λ [1/m]
   /// Depth δ of the erosion behind UnionTdf::eroded() [m] ([-] for paper).
   double erosion = 0;
-  double alpha = 1e-3;      ///< value of the Heaviside in the void
+  double alpha = 1e-3;               ///< value of the Heaviside in the void
   double min_half_thickness = 1e-4;  ///< lower bound of every profile [m]
 };
 

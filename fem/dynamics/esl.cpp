@@ -5,12 +5,6 @@
 namespace flexmorph::fem {
 namespace {
 
-Eigen::Matrix2d rotation(double angle) {
-  Eigen::Matrix2d r;
-  r << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
-  return r;
-}
-
 /// Acceleration, in the hub's axes, of the rigid body that moves out of it along x.
 Vec2 rigid_acceleration(const FrameMotion& hub, const Eigen::Matrix2d& to_hub, const Vec2& at,
                         const Motion& root) {

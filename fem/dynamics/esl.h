@@ -7,8 +7,8 @@ namespace flexmorph::fem {
 
 /// Point mass on a body, for its d'Alembert force in the loads.
 struct AttachedMass {
-  double mass = 0;             ///< [kg]
-  Vec2 material{0, 0};         ///< material coordinates (m, n) [m]
+  double mass = 0;      ///< [kg]
+  Vec2 material{0, 0};  ///< material coordinates (m, n) [m]
 };
 
 /// Equivalent static load of one body at one time.

@@ -17,6 +17,9 @@ struct Growth {
   double min_length = 0.03;  ///< a shorter one is merged with its neighbour [m]
 };
 
+/// Columns are the axes of a frame turned by an angle [rad].
+Eigen::Matrix2d rotation(double angle);
+
 /// The material lines of a body. @throws Error (input) when the body has other elements.
 const LineGrid& grid_of(const Body& body);
 
@@ -32,9 +35,9 @@ PointMotion point_motion(const Body& body, const State& x, const Vec2& material)
 
 enum class MeshChange { insertion, removal };
 
-/// When the boundary element next leaves [min_length, max_length] in (t, end], and how; t = infinity
-/// when it does not. A removal needs a merged element below 0.9 max_length (else the pair would
-/// chatter: design.md section 5).
+/// When the boundary element next leaves [min_length, max_length] in (t, end], and how; t =
+/// infinity when it does not. A removal needs a merged element below 0.9 max_length (else the pair
+/// would chatter: design.md section 5).
 struct NextChange {
   double t;
   MeshChange change;

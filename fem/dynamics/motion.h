@@ -11,12 +11,12 @@
 namespace flexmorph::fem {
 
 struct MotionSettings {
-  double end = 1, step = 1e-3;   ///< [s]
+  double end = 1, step = 1e-3;  ///< [s]
   Start start = Start::prestretched;
   AlphaSettings alpha;
-  VectorXd gravity;              ///< (dim) or empty
-  std::vector<double> stops;     ///< times a step must land on (loads, output), any order
-  bool balance = true;           ///< keep the energy balance (costs a few percent)
+  VectorXd gravity;           ///< (dim) or empty
+  std::vector<double> stops;  ///< times a step must land on (loads, output), any order
+  bool balance = true;        ///< keep the energy balance (costs a few percent)
 };
 
 /// A change of the mesh, and what it did to the state.
@@ -34,10 +34,10 @@ struct MotionStep {
   const Model& model;
   const State& x;
   Energies energies;
-  Powers powers;           ///< zero when no balance is kept
-  double work = 0;         ///< of all powers since the start [J]
-  double defect = 0;       ///< energy - energy at the start - work [J]
-  bool stop = false;       ///< is x.t one of the settings' stops (or the end)?
+  Powers powers;      ///< zero when no balance is kept
+  double work = 0;    ///< of all powers since the start [J]
+  double defect = 0;  ///< energy - energy at the start - work [J]
+  bool stop = false;  ///< is x.t one of the settings' stops (or the end)?
 };
 using MotionObserver = std::function<void(const MotionStep&)>;
 
@@ -55,8 +55,8 @@ struct MotionResult {
 /// change that falls on the end itself is not executed.
 ///
 /// @throws Error (numerical); the observer has seen every step before it.
-MotionResult integrate(Model& model, std::span<const Growth> growths, const MotionSettings& settings,
-                       const MotionObserver& observe);
+MotionResult integrate(Model& model, std::span<const Growth> growths,
+                       const MotionSettings& settings, const MotionObserver& observe);
 
 /// Linear momentum of all bodies with inertia [kg m/s].
 Vec2 momentum(const Model& model, const State& x);

@@ -7,12 +7,6 @@
 namespace flexmorph::fem {
 namespace {
 
-Eigen::Matrix2d rotation(double angle) {
-  Eigen::Matrix2d r;
-  r << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
-  return r;
-}
-
 const Eigen::Matrix2d kQuarter = (Eigen::Matrix2d() << 0, -1, 1, 0).finished();
 
 Body& body_named(Model& model, const std::string& name) {

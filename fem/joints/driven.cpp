@@ -8,7 +8,11 @@ namespace {
 class Weld final : public Joint {
  public:
   Weld(std::string name, std::string body, std::string edge, FrameDrive frame, WeldMode mode)
-      : name_(std::move(name)), body_(std::move(body)), edge_(std::move(edge)), frame_(std::move(frame)), mode_(mode) {}
+      : name_(std::move(name)),
+        body_(std::move(body)),
+        edge_(std::move(edge)),
+        frame_(std::move(frame)),
+        mode_(mode) {}
 
   std::string name() const override { return name_; }
   int size() const override { return static_cast<int>(fixed_.size() + along_.size()); }
@@ -54,7 +58,8 @@ class Weld final : public Joint {
     rows.jacobian.clear();
     int i = 0;
     for (const Fixed& x : fixed_) {
-      rows.value[i] = q[x.dof] - x.moves * f.origin[x.direction] - turn.row(x.direction).dot(x.local);
+      rows.value[i] =
+          q[x.dof] - x.moves * f.origin[x.direction] - turn.row(x.direction).dot(x.local);
       rows.rate[i] = -x.moves * f.origin_rate[x.direction] - turn_t.row(x.direction).dot(x.local);
       rows.acceleration[i] =
           x.moves * f.origin_acceleration[x.direction] + turn_tt.row(x.direction).dot(x.local);
@@ -87,7 +92,10 @@ class Weld final : public Joint {
 class Pin final : public Joint {
  public:
   Pin(std::string name, std::string body, const Vec2& material, FrameDrive point)
-      : name_(std::move(name)), body_(std::move(body)), material_(material), point_(std::move(point)) {}
+      : name_(std::move(name)),
+        body_(std::move(body)),
+        material_(material),
+        point_(std::move(point)) {}
 
   std::string name() const override { return name_; }
   int size() const override { return 2; }
@@ -137,7 +145,8 @@ const BodyView& find_body(std::span<const BodyView> bodies, const std::string& j
 
 std::unique_ptr<Joint> make_weld(std::string name, std::string body, std::string edge,
                                  FrameDrive frame, WeldMode mode) {
-  return std::make_unique<Weld>(std::move(name), std::move(body), std::move(edge), std::move(frame), mode);
+  return std::make_unique<Weld>(std::move(name), std::move(body), std::move(edge), std::move(frame),
+                                mode);
 }
 
 std::unique_ptr<Joint> make_pin(std::string name, std::string body, const Vec2& material,

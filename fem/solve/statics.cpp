@@ -24,8 +24,7 @@ void solve_rotating_equilibrium(Model& model, const VectorXd& spin, const Vector
     model.kkt(x, c, {0, 0, 1}, 1, mass);
     for (int column = 0; column < n; ++column)
       for (int p = kkt.outerIndexPtr()[column]; p < kkt.outerIndexPtr()[column + 1]; ++p)
-        if (kkt.innerIndexPtr()[p] < n)
-          kkt.valuePtr()[p] -= spin[column] * mass.valuePtr()[p];
+        if (kkt.innerIndexPtr()[p] < n) kkt.valuePtr()[p] -= spin[column] * mass.valuePtr()[p];
     if (iteration == 0) solver.analyze(kkt);
     solver.factorize(kkt);
     right << -residual, -c.value;

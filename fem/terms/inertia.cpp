@@ -46,8 +46,8 @@ class Inertia final : public Term {
     const Matrices& m = matrices_[static_cast<size_t>(e)];
     double twice = x.v.cwiseProduct(m.mass * x.v).sum();
     if (m.flows)
-      twice += x.v.cwiseProduct(m.convection * x.q).sum() +
-               x.q.cwiseProduct(m.rate_product * x.q).sum();
+      twice +=
+          x.v.cwiseProduct(m.convection * x.q).sum() + x.q.cwiseProduct(m.rate_product * x.q).sum();
     return 0.5 * twice;
   }
 

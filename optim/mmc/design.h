@@ -9,9 +9,9 @@ namespace flexmorph::mmc {
 
 /// Sizes that scale the parameters of components and bound them.
 struct DesignScale {
-  double half_length = 0.025;     ///< of the initial components [m]
-  double min_thickness = 0.005;   ///< c_min, lower bound of c1, c2, c3 [m]
-  double max_thickness = 0.03;    ///< upper bound of c1, c2, c3 [m]
+  double half_length = 0.025;    ///< of the initial components [m]
+  double min_thickness = 0.005;  ///< c_min, lower bound of c1, c2, c3 [m]
+  double max_thickness = 0.03;   ///< upper bound of c1, c2, c3 [m]
 };
 
 /// Components <-> scaled design vector (7 per component, order of P (27)).
@@ -20,8 +20,9 @@ struct DesignScale {
 ///
 /// so that a step of 0.05 is a cell or so in place and a twentieth of a component in shape:
 /// scaled by the domain instead, one step would move a component by many cells (design.md
-/// section 9). Bounds: centres inside the domain, L up to eight times its start and never below c_min (a
-/// component shorter than thick is a thin one the other way round), θ within a turn of its start.
+/// section 9). Bounds: centres inside the domain, L up to eight times its start and never below
+/// c_min (a component shorter than thick is a thin one the other way round), θ within a turn of its
+/// start.
 class Design {
  public:
   Design(const Grid& domain, std::vector<Component> start, const DesignScale& scale);

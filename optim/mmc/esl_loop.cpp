@@ -5,9 +5,7 @@
 namespace flexmorph::mmc {
 namespace {
 
-Ersatz ersatz_of(const BodyProblem& p) {
-  return {p.grid, p.stages.back().alpha, p.solid, p.empty};
-}
+Ersatz ersatz_of(const BodyProblem& p) { return {p.grid, p.stages.back().alpha, p.solid, p.empty}; }
 
 VectorXd fractions_of(const BodyProblem& p, std::span<const Component> components) {
   return area_fractions(p.grid, components, p.stages.back().min_half_thickness, p.solid, p.empty);
@@ -128,8 +126,8 @@ SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> 
 }
 
 fem::Factors dynamic_factors(const BodyProblem& problem, std::span<const Component> components) {
-  CellFactors f = Ersatz::dynamic(fractions_of(problem, components), problem.stiffness_void,
-                                  problem.mass_void);
+  CellFactors f =
+      Ersatz::dynamic(fractions_of(problem, components), problem.stiffness_void, problem.mass_void);
   return {problem.grid, std::move(f.stiffness), std::move(f.mass)};
 }
 

@@ -17,7 +17,7 @@ namespace flexmorph::mmc {
 /// The design problem of one body, over all cycles.
 struct BodyProblem {
   std::string body;
-  Grid grid;                        ///< design mesh over the body at its longest
+  Grid grid;  ///< design mesh over the body at its longest
   fem::PlaneSection section;
   Design design;
   std::vector<Box> solid, empty;    ///< passive regions
@@ -29,8 +29,8 @@ struct BodyProblem {
 
 /// A design without blur: what its outlines enclose.
 struct SharpDesign {
-  VectorXd fractions;      ///< of true material per cell (n_cells)
-  double compliance = 0;   ///< of the same loads
+  VectorXd fractions;     ///< of true material per cell (n_cells)
+  double compliance = 0;  ///< of the same loads
   double volume = 0;
   Connectivity connectivity;
 };
@@ -47,32 +47,32 @@ using Simulate = std::function<std::vector<fem::EslSets>(std::span<const fem::Fa
 struct IterationReport {
   const BodyProblem& problem;
   int cycle = 1;
-  int iteration = 0;                    ///< over all stages of the cycle, from 1
+  int iteration = 0;  ///< over all stages of the cycle, from 1
   int evaluations = 0;
   const optim::Iterate& iterate;
-  const MmcProblem& state;              ///< values at the iterate's x
-  const Compliance::Value& value;       ///< compliance and its derivatives there
+  const MmcProblem& state;         ///< values at the iterate's x
+  const Compliance::Value& value;  ///< compliance and its derivatives there
   Compliance& compliance;
-  const SharpDesign* sharp = nullptr;   ///< when evaluated
+  const SharpDesign* sharp = nullptr;  ///< when evaluated
 };
 
 /// What a body's design came to in one cycle.
 struct BodyOutcome {
   std::string body;
-  double compliance = 0, volume = 0;    ///< blurred, at the last stage's band
+  double compliance = 0, volume = 0;  ///< blurred, at the last stage's band
   SharpDesign sharp;
-  double uniform_compliance = 0;        ///< same loads, uniform material of the same volume
+  double uniform_compliance = 0;  ///< same loads, uniform material of the same volume
   double kkt = 0, change = 0;
   int iterations = 0, evaluations = 0, n_loads = 0, n_right_hand_sides = 0;
-  std::string stop;                     ///< why the optimizer stopped
-  std::vector<double> load_compliances; ///< F_i . u_i of the sharp design
-  std::vector<double> energy_ratios;    ///< ½ F_i . u_i of the starting design / strain energy
+  std::string stop;                      ///< why the optimizer stopped
+  std::vector<double> load_compliances;  ///< F_i . u_i of the sharp design
+  std::vector<double> energy_ratios;     ///< ½ F_i . u_i of the starting design / strain energy
 };
 
 struct LoopSettings {
   int max_cycles = 1;
-  double tolerance = 0.01;   ///< stop when every compliance changes by less between cycles
-  int sharp_every = 25;      ///< iterations between sharp evaluations; 0: only at the end
+  double tolerance = 0.01;  ///< stop when every compliance changes by less between cycles
+  int sharp_every = 25;     ///< iterations between sharp evaluations; 0: only at the end
   optim::Settings optimizer;
 };
 
@@ -85,8 +85,8 @@ struct LoopObserver {
   std::function<void(int cycle, std::span<const BodyOutcome>)> cycle;
 };
 
-/// dynamics -> ESL -> design problem -> dynamics ..., until the designs rest (design.md section 10).
-/// The designs of `problems` are left at the result; the outcome is that of the last cycle.
+/// dynamics -> ESL -> design problem -> dynamics ..., until the designs rest (design.md section
+/// 10). The designs of `problems` are left at the result; the outcome is that of the last cycle.
 /// @throws Error (numerical) from dynamics or statics; rows reported before it stand.
 std::vector<BodyOutcome> esl_loop(std::vector<BodyProblem>& problems, const Simulate& simulate,
                                   const LoopSettings& settings, const LoopObserver& observer);

@@ -75,7 +75,7 @@ TEST_P(ShippedCase, HasTheDataOfThePaper) {
   EXPECT_EQ(2 * d.components[0] * d.components[1], slow ? 96 : 160);
   EXPECT_EQ(d.max_volume, 0.5);
   EXPECT_EQ(d.min_thickness, 0.005);
-  EXPECT_DOUBLE_EQ(d.tdf.band, 1.5 * 0.0025);
+  EXPECT_DOUBLE_EQ(d.tdf.band, d.band.back() * 0.0025);
   EXPECT_DOUBLE_EQ(d.tdf.sharpness, 1500);
   EXPECT_EQ(d.tdf.min_half_thickness, 0.005);
   // Two columns of cells under the tip mass.
@@ -89,7 +89,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, ShippedCase,
                          ::testing::Values("rotating_plate_v01", "rotating_plate_v05"));
 
 TEST(SceneReader, OptionalPartsAreAbsentUntilListed) {
-  const Scene s = read("rotating_plate_v01");
+  const Scene s = read_scene(io::CaseFile(FLEXMORPH_SHORT_CASE));
   EXPECT_FALSE(s.verify);
   EXPECT_TRUE(s.expect.empty());
   EXPECT_TRUE(s.designs[0].empty.empty());
@@ -200,7 +200,7 @@ const Bad kBadInputs[] = {
      "a list: a term is one of 'inertia', 'membrane', none twice"},
     {"unknown_optimizer",
      {"optimizer.name=sqp"},
-     "an optimizer is one of 'mma', 'nlopt_mma', 'ipopt'"},
+     "an optimizer is one of 'ipopt', 'mma', 'nlopt_ccsaq', 'nlopt_mma'"},
     {"unknown_start",
      {"time.start=rigit"},
      "a start is one of 'prestretched', 'rigid', 'hub_at_rest', did you mean 'rigid'?"},
@@ -256,6 +256,14 @@ const Bad kBadInputs[] = {
     {"two_tolerances",
      {"expect.c={value=1, relative=1, absolute=1}"},
      "expect.c: a value comes with one tolerance, `relative` or `absolute`"},
+    {"option_nobody_knows",
+     {"optimizer.options.boxes=0.1", "optimizer.name=ipopt"},
+     "optimizer 'ipopt': option 'boxes' is not known; there are: bound_push, box, history, "
+     "mu_init, "
+     "restart"},
+    {"option_out_of_its_range",
+     {"optimizer.options.asydecr=1.5"},
+     "optimizer 'mma': option 'asydecr' = 1.5: it lies between 0.01 and 1"},
     {"option_of_an_optimizer",
      {"optimizer.options.asyinit=fast"},
      "an option is a finite number; a number stands without quotes"},
