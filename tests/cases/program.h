@@ -1,0 +1,69 @@
+#pragma once
+
+#include <sys/types.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/io/scratch.h"
+
+/// The program as tests start it. FLEXMORPH_PROGRAM is its path, FLEXMORPH_SHORT_CASE a case of
+/// about a second.
+namespace flexmorph::test {
+
+using Words = std::vector<std::string>;
+
+inline Words lines_of(const std::string& text) {
+  Words out;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) out.push_back(line);
+  return out;
+}
+
+/// Starts the program with these arguments, its output in files of the scratch folder.
+inline pid_t start(const Scratch& scratch, const Words& arguments) {
+  const std::string out = scratch / "stdout", err = scratch / "stderr";
+  std::vector<char*> argv = {const_cast<char*>(FLEXMORPH_PROGRAM)};
+  for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
+  argv.push_back(nullptr);
+  const pid_t child = fork();
+  if (child == 0) {
+    if (!std::freopen(out.c_str(), "w", stdout) || !std::freopen(err.c_str(), "w", stderr))
+      _exit(126);
+    execv(argv[0], argv.data());
+    _exit(127);
+  }
+  return child;
+}
+
+struct Ended {
+  int code = -1;  ///< exit code, -1 when a signal ended it
+  std::string out, err;
+};
+
+inline Ended end_of(const Scratch& scratch, pid_t child) {
+  int status = 0;
+  waitpid(child, &status, 0);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents_of(scratch / "stdout"),
+          contents_of(scratch / "stderr")};
+}
+
+inline Ended flexmorph(const Scratch& scratch, const Words& arguments) {
+  return end_of(scratch, start(scratch, arguments));
+}
+
+/// Runs short_plate.toml with changes.
+inline Words short_run(const std::string& folder, const Words& changes = {}) {
+  Words words = {"run", FLEXMORPH_SHORT_CASE, "-o", folder};
+  for (const std::string& change : changes) {
+    words.emplace_back("--set");
+    words.push_back(change);
+  }
+  return words;
+}
+
+}  // namespace flexmorph::test
