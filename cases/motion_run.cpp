@@ -24,19 +24,19 @@ class Recorder {
     for (const fem::Growth& growth : mechanism.growths) out.record.bodies.push_back(growth.body);
     out.record.deflection.resize(mechanism.growths.size());
     out.record.amplitude.assign(mechanism.growths.size(), 0);
-    out.record.strain_integral.assign(1, 0);
     if (wishes.loads)
-      for (const BodyDesign& d : scene.designs) out.loads.push_back({d.grid, {}});
+      for (const BodyDesign& d : scene.designs) out.loads.push_back({d.grid, {}, 0});
   }
 
   void operator()(const fem::MotionStep& step) {
     MotionRecord& r = out_.record;
     if (!r.time.empty())
-      r.strain_integral[0] +=
+      r.strain_integral +=
           0.5 * (step.x.t - r.time.back()) * (r.strain.back() + step.energies.strain);
     r.time.push_back(step.x.t);
     r.kinetic.push_back(step.energies.kinetic);
     r.strain.push_back(step.energies.strain);
+    r.potential.push_back(step.energies.potential);
     r.defect.push_back(step.defect);
     for (size_t i = 0; i < mechanism_.growths.size(); ++i) {
       const double d = tip_deflection(step.model, mechanism_.growths[i], step.x);
@@ -97,6 +97,7 @@ MotionOutcome run_motion(const Scene& scene, const MotionWishes& wishes, RunFold
     throw;
   }
   folder.write_motion(wishes.table, scene, out.record);
+  for (fem::EslSets& sets : out.loads) sets.strain_energy_integral = out.record.strain_integral;
   return out;
 }
 

@@ -114,6 +114,16 @@ std::string run_json(const Scene& scene, const RunReport& report) {
   io::Json results = io::Json::array();
   for (size_t i = 0; i < report.outcomes.size(); ++i) results.push(body_results(report, i));
   out.set("results", std::move(results));
+  if (!report.verdicts.empty()) {
+    io::Json cycles = io::Json::array();
+    for (const mmc::CycleVerdict& v : report.verdicts) {
+      io::Json cycle = io::Json::object();
+      cycle.set("cycle", v.cycle).set("strain_energy_integral", v.strain_energy_integral);
+      cycle.set("best", v.best);
+      cycles.push(std::move(cycle));
+    }
+    out.set("cycles", std::move(cycles));
+  }
   if (report.motion) out.set("motion", motion_results(*report.motion));
   if (!scene.expect.empty()) out.set("expect", expectations(scene, report));
   return out.text();

@@ -13,6 +13,7 @@ struct RunReport {
   double seconds_wall = 0, seconds_cpu = 0, peak_memory_bytes = 0;
   std::vector<mmc::BodyProblem> problems;
   std::vector<mmc::BodyOutcome> outcomes;
+  std::vector<mmc::CycleVerdict> verdicts;                 ///< of a run of several cycles
   std::optional<MotionRecord> motion, uniform_motion;      ///< of the design; of uniform material
   std::optional<MotionRecord> verified, verified_uniform;  ///< the same on the finer mesh
 };

@@ -112,8 +112,19 @@ void run_designs(const Scene& scene, RunFolder& folder, Progress& progress, RunR
   };
   mmc::LoopSettings settings{scene.cycle.max_cycles, scene.cycle.tolerance,
                              scene.output.sharp_every, scene.optimizer};
-  mmc::esl_loop(report.problems, simulate, settings, observer);
+  observer.verdict = [&](std::span<const mmc::CycleVerdict> verdicts) {
+    report.verdicts.assign(verdicts.begin(), verdicts.end());
+    for (const mmc::CycleVerdict& v : verdicts)
+      progress.say("cycle " + std::to_string(v.cycle) + ": strain energy over time " +
+                   io::to_text(v.strain_energy_integral, 5) + " J s" + (v.best ? ", best" : ""));
+  };
+  const std::vector<mmc::BodyOutcome> best =
+      mmc::esl_loop(report.problems, simulate, settings, observer);
   if (interrupted) throw Interrupted();
+  if (!report.verdicts.empty()) {
+    report.outcomes = best;
+    for (size_t i = 0; i < best.size(); ++i) folder.write_design(report.problems[i], best[i]);
+  }
 
   // The judge of a design is the motion with it, beside the same volume spread evenly.
   MotionWishes wishes;

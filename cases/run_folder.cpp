@@ -200,7 +200,8 @@ void RunFolder::write_motion(const std::string& name, const Scene& scene,
   std::vector<std::string> columns = {"time"};
   for (const std::string& body : motion.bodies) columns.push_back(body + ".tip_deflection");
   for (const std::string& body : motion.bodies) columns.push_back(body + ".length");
-  for (const char* quantity : {"energy.kinetic", "energy.strain", "energy.defect"})
+  for (const char* quantity :
+       {"energy.kinetic", "energy.strain", "energy.potential", "energy.defect"})
     columns.emplace_back(quantity);
   io::CsvWriter csv(path_ + "/" + name, columns);
   for (size_t i = 0; i < motion.time.size(); ++i) {
@@ -210,6 +211,7 @@ void RunFolder::write_motion(const std::string& name, const Scene& scene,
       row.emplace_back(scene.body(body).length_at(motion.time[i]));
     row.emplace_back(motion.kinetic[i]);
     row.emplace_back(motion.strain[i]);
+    row.emplace_back(motion.potential[i]);
     row.emplace_back(motion.defect[i]);
     csv.row(row);
   }

@@ -15,10 +15,10 @@ namespace flexmorph::cases {
 /// What a motion did: its table, and the numbers a report quotes.
 struct MotionRecord {
   std::vector<std::string> bodies;  ///< whose deflections these are: the welded ones
-  std::vector<double> time, kinetic, strain, defect;
+  std::vector<double> time, kinetic, strain, potential, defect;
   std::vector<std::vector<double>> deflection;  ///< per body [m]
   std::vector<double> amplitude;                ///< largest |tip deflection| per body [m]
-  std::vector<double> strain_integral;          ///< ∫ U dt of the whole model [J s], one entry
+  double strain_integral = 0;                   ///< ∫ U dt of the whole model [J s]
   fem::MotionResult result;
 };
 

@@ -35,6 +35,8 @@ struct EslSet {
 struct EslSets {
   Grid grid;  ///< design mesh over the longest extent, root side at x0
   std::vector<EslSet> sets;
+  /// ∫ U dt of the motion the loads come from, all bodies [J s]: what a cycle is judged by.
+  double strain_energy_integral = 0;
 };
 
 }  // namespace flexmorph::fem

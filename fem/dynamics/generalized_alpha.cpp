@@ -162,11 +162,11 @@ void GeneralizedAlpha::advance(State& x, double t_end,
     }
     ++counts_.rejected;
     if (++halvings > settings_.max_halvings) {
-      char text[160];
+      char text[200];
       std::snprintf(text, sizeof text,
-                    "generalized_alpha: no convergence at t = %.6g s, step size %.2e s after %d "
-                    "halvings, smallest area ratio %.2e (",
-                    x.t, h, settings_.max_halvings, model_.smallest_area_ratio(x));
+                    "generalized_alpha: no convergence at t = %.6g s, step %d, step size %.2e s after "
+                    "%d halvings, smallest area ratio %.2e (",
+                    x.t, counts_.steps + 1, h, settings_.max_halvings, model_.smallest_area_ratio(x));
       throw Error::numerical(text + history_ +
                              "). A smaller time.step or a smaller rho_inf often helps; an area "
                              "ratio near zero means that the material has collapsed.");

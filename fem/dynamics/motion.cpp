@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace flexmorph::fem {
 
@@ -102,12 +103,25 @@ class Run {
         balance_.add(x.t, e, powers_);
         drift();
         const bool at_stop = stop && x.t >= end;
-        if (at_stop)
-          result_.smallest_area_ratio =
-              std::min(result_.smallest_area_ratio, model_.smallest_area_ratio(x));
         see(e, at_stop);
+        if (at_stop || ++since_watched_ == kWatchEvery) watch(x);
       });
     }
+  }
+
+  /// A St. Venant-Kirchhoff material that has collapsed or turned inside out has equilibria, but
+  /// no meaning: better stop than go on with them.
+  void watch(const State& x) {
+    since_watched_ = 0;
+    const double ratio = model_.smallest_area_ratio(x);
+    result_.smallest_area_ratio = std::min(result_.smallest_area_ratio, ratio);
+    if (ratio > 0) return;
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "motion: the material has collapsed at t = %.6g s, step %d: smallest area ratio "
+                  "|r_m x r_n| = %.2e. It is too soft for its loads.",
+                  x.t, alpha_.counts().steps, ratio);
+    throw Error::numerical(text);
   }
 
   void drift() {
@@ -142,7 +156,9 @@ class Run {
     balance_.restart(x_.t, measure());
   }
 
-  static constexpr double kTiny = 1e-6;  // of a step
+  static constexpr double kTiny = 1e-6;   // of a step
+  static constexpr int kWatchEvery = 10;  // steps between looks at the area ratio
+  int since_watched_ = 0;
 
   Model& model_;
   std::span<const Growth> growths_;

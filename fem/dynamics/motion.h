@@ -48,13 +48,14 @@ struct MotionResult {
   double energy_defect = 0;        ///< largest relative defect of the balance
   double constraint_drift = 0;     ///< largest |Φ| met [m]
   double velocity_drift = 0;       ///< largest |Φ_q q̇ + Φ_t| met [m/s]
-  double smallest_area_ratio = 1;  ///< |r_m × r_n|, at the stops
+  double smallest_area_ratio = 1;  ///< |r_m × r_n|, every tenth step and at the stops
 };
 
 /// Advances a model from t = 0 to the end: steps land on stops and on changes of the mesh; a
 /// change that falls on the end itself is not executed.
 ///
-/// @throws Error (numerical); the observer has seen every step before it.
+/// @throws Error (numerical) when a step fails or the material collapses; the observer has seen
+///         every step before it.
 MotionResult integrate(Model& model, std::span<const Growth> growths,
                        const MotionSettings& settings, const MotionObserver& observe);
 

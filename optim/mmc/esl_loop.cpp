@@ -1,5 +1,6 @@
 #include "optim/mmc/esl_loop.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace flexmorph::mmc {
@@ -131,27 +132,75 @@ fem::Factors dynamic_factors(const BodyProblem& problem, std::span<const Compone
   return {problem.grid, std::move(f.stiffness), std::move(f.mass)};
 }
 
+namespace {
+
+std::vector<fem::EslSets> move(const std::vector<BodyProblem>& problems, const Simulate& simulate) {
+  std::vector<fem::Factors> factors;
+  for (const BodyProblem& p : problems)
+    factors.push_back(dynamic_factors(p, p.design.components()));
+  return simulate(factors);
+}
+
+/// Designs and outcomes of the cycles so far, and which one is best.
+class Verdicts {
+ public:
+  void add(int cycle, const std::vector<BodyProblem>& problems,
+           const std::vector<BodyOutcome>& outcome) {
+    verdicts_.push_back({cycle, 0, false});
+    outcomes_.push_back(outcome);
+    auto& x = designs_.emplace_back();
+    for (const BodyProblem& p : problems) x.push_back(p.design.x());
+  }
+  /// The motion with the designs of the last cycle added.
+  void judge(const std::vector<fem::EslSets>& motion) {
+    if (!verdicts_.empty())
+      verdicts_.back().strain_energy_integral = motion.front().strain_energy_integral;
+  }
+  std::vector<BodyOutcome> take_best(std::vector<BodyProblem>& problems) {
+    const auto best = std::min_element(verdicts_.begin(), verdicts_.end(),
+                                       [](const CycleVerdict& a, const CycleVerdict& b) {
+                                         return a.strain_energy_integral < b.strain_energy_integral;
+                                       });
+    best->best = true;
+    const auto i = static_cast<size_t>(best - verdicts_.begin());
+    for (size_t k = 0; k < problems.size(); ++k) problems[k].design.move_to(designs_[i][k]);
+    return outcomes_[i];
+  }
+  const std::vector<CycleVerdict>& all() const { return verdicts_; }
+
+ private:
+  std::vector<CycleVerdict> verdicts_;
+  std::vector<std::vector<BodyOutcome>> outcomes_;
+  std::vector<std::vector<VectorXd>> designs_;
+};
+
+}  // namespace
+
 std::vector<BodyOutcome> esl_loop(std::vector<BodyProblem>& problems, const Simulate& simulate,
                                   const LoopSettings& settings, const LoopObserver& observer) {
+  Verdicts verdicts;
   std::vector<BodyOutcome> outcome;
-  for (int cycle = 1; cycle <= settings.max_cycles; ++cycle) {
-    std::vector<fem::Factors> factors;
-    for (const BodyProblem& p : problems)
-      factors.push_back(dynamic_factors(p, p.design.components()));
-    const std::vector<fem::EslSets> loads = simulate(factors);
+  bool stopped = false;
+  for (int cycle = 1; cycle <= settings.max_cycles && !stopped; ++cycle) {
+    const std::vector<fem::EslSets> loads = move(problems, simulate);
+    verdicts.judge(loads);
     if (observer.loads) observer.loads(cycle, loads);
 
     std::vector<BodyOutcome> before = std::move(outcome);
     outcome.clear();
-    bool stopped = false;
     for (size_t i = 0; i < problems.size() && !stopped; ++i) {
       BodyCycle body(problems[i], loads[i], cycle, settings, observer);
       outcome.push_back(body.go());
       stopped = body.stopped();
     }
     if (observer.cycle) observer.cycle(cycle, outcome);
-    if (stopped || rests(outcome, before, settings.tolerance)) break;
+    verdicts.add(cycle, problems, outcome);
+    if (rests(outcome, before, settings.tolerance)) break;
   }
+  if (stopped || verdicts.all().size() < 2) return outcome;
+  verdicts.judge(move(problems, simulate));
+  outcome = verdicts.take_best(problems);
+  if (observer.verdict) observer.verdict(verdicts.all());
   return outcome;
 }
 

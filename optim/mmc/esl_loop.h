@@ -69,6 +69,13 @@ struct BodyOutcome {
   std::vector<double> energy_ratios;     ///< ½ F_i . u_i of the starting design / strain energy
 };
 
+/// A cycle as a whole, judged by the motion with its designs.
+struct CycleVerdict {
+  int cycle = 1;
+  double strain_energy_integral = 0;  ///< ∫ U dt of that motion [J s]; smaller is better
+  bool best = false;                  ///< of all cycles: its designs are the result
+};
+
 struct LoopSettings {
   int max_cycles = 1;
   double tolerance = 0.01;  ///< stop when every compliance changes by less between cycles
@@ -83,6 +90,8 @@ struct LoopObserver {
   /// After the motion of a cycle: its loads, one entry per problem.
   std::function<void(int cycle, std::span<const fem::EslSets>)> loads;
   std::function<void(int cycle, std::span<const BodyOutcome>)> cycle;
+  /// At the end of a run of several cycles.
+  std::function<void(std::span<const CycleVerdict>)> verdict;
 };
 
 /// dynamics -> ESL -> design problem -> dynamics ..., until the designs rest (design.md section

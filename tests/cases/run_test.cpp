@@ -68,7 +68,7 @@ void expect_history(const Table& history) {
 
 void expect_motion(const Table& motion) {
   EXPECT_EQ(motion[0], (Words{"time", "plate.tip_deflection", "plate.length", "energy.kinetic",
-                              "energy.strain", "energy.defect"}));
+                              "energy.strain", "energy.potential", "energy.defect"}));
   ASSERT_GE(motion.size(), 122u);  // 120 steps, the start and the header
   EXPECT_EQ(motion[1][0], "0");
   EXPECT_NEAR(std::stod(motion.back()[0]), 0.12, 1e-12);

@@ -185,9 +185,16 @@ TEST(EslLoop, EndsWhenTheDesignRests) {
     EXPECT_EQ(cycle, loads_seen);
     sharp.push_back(outcomes[0].sharp.compliance);
   };
+  // The motion before cycle 3 is the one with the designs of cycle 2: let it be the best.
   int calls = 0;
   const auto simulate = [&](std::span<const fem::Factors>) {
-    return std::vector<fem::EslSets>{turning_plate(2, ++calls == 1 ? 1 : 1.2)};
+    std::vector<fem::EslSets> out{turning_plate(2, ++calls == 1 ? 1 : 1.2)};
+    out[0].strain_energy_integral = calls == 3 ? 0.5 : 1.0;
+    return out;
+  };
+  std::vector<CycleVerdict> verdicts;
+  observer.verdict = [&](std::span<const CycleVerdict> all) {
+    verdicts.assign(all.begin(), all.end());
   };
   const auto outcome = esl_loop(problems, simulate, settings, observer);
   ASSERT_GE(sharp.size(), 3u);
@@ -197,7 +204,13 @@ TEST(EslLoop, EndsWhenTheDesignRests) {
     const double change = std::abs(sharp[k] / sharp[k - 1] - 1);
     EXPECT_EQ(change <= settings.tolerance, k == n - 1) << "cycle " << k + 1 << ": " << change;
   }
-  EXPECT_EQ(outcome[0].sharp.compliance, sharp.back());
+  ASSERT_EQ(verdicts.size(), n);
+  EXPECT_EQ(calls, static_cast<int>(n) + 1);  // the last designs are judged too
+  for (const CycleVerdict& v : verdicts) {
+    EXPECT_EQ(v.best, v.cycle == 2);
+    EXPECT_EQ(v.strain_energy_integral, v.cycle == 2 ? 0.5 : 1.0);
+  }
+  EXPECT_EQ(outcome[0].sharp.compliance, sharp[1]);
 }
 
 TEST(EslLoop, StopsWhenTheObserverSaysSo) {
