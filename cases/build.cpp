@@ -1,6 +1,7 @@
 #include "cases/build.h"
 
 #include <cmath>
+#include <random>
 
 #include "fem/elements/ancf_plate.h"
 
@@ -101,6 +102,32 @@ std::vector<fem::AttachedMass> attached_masses(const Scene& scene, const std::st
   return out;
 }
 
+namespace {
+
+/// Moves every component at random: places and lengths by up to `jitter` of the half-length, angles
+/// of a radian, half-thicknesses of themselves. The same seed gives the same start.
+void shake(std::vector<Component>& components, double jitter, int seed) {
+  if (jitter == 0) return;
+  std::mt19937 engine(static_cast<unsigned>(seed));
+  // Not std::uniform_real_distribution, which differs between standard libraries.
+  const auto draw = [&] { return jitter * (2 * (static_cast<double>(engine()) / 4294967295.0) - 1); };
+  for (Component& c : components) {
+    const double size = c.half_length;
+    c.center += size * Vec2(draw(), draw());
+    c.half_length += size * draw();
+    c.angle += draw();
+    for (double* thickness : {&c.c1, &c.c2, &c.c3}) *thickness *= 1 + draw();
+  }
+}
+
+fem::PlaneSection section_of_design(const Scene& scene, const BodyDesign& d) {
+  if (!scene.domain) return section_of(scene.body(d.body));
+  const Domain& domain = *scene.domain;
+  return {domain.thickness, domain.youngs_modulus, domain.poisson_ratio, 0};
+}
+
+}  // namespace
+
 std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
   std::vector<mmc::BodyProblem> out;
   for (const BodyDesign& d : scene.designs) {
@@ -109,13 +136,30 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
     scale.half_length = d.half_length;
     scale.min_thickness = d.min_thickness;
     scale.max_thickness = std::max({0.3 * g.height, 1.5 * d.min_thickness, d.half_thickness});
-    const auto layout = crossing_layout(g.x0, g.y0, g.width, g.height, d.components[0],
-                                        d.components[1], d.half_thickness, d.half_length);
+    auto layout = crossing_layout(g.x0, g.y0, g.width, g.height, d.components[0], d.components[1],
+                                  d.half_thickness, d.half_length);
+    shake(layout, d.jitter, d.seed);
     std::vector<TdfSettings> stages;
     for (size_t i = 0; i < d.band.size(); ++i) stages.push_back(d.stage(i));
-    out.push_back({d.body, g, section_of(scene.body(d.body)), mmc::Design(g, layout, scale),
-                   d.solid, d.empty, stages, d.max_volume, d.stiffness_void, d.mass_void,
-                   scene.esl->settings});
+    out.push_back({d.body,
+                   g,
+                   section_of_design(scene, d),
+                   mmc::Design(g, layout, scale),
+                   d.solid,
+                   d.empty,
+                   stages,
+                   d.goal,
+                   d.stiffness_void,
+                   d.mass_void,
+                   scene.esl ? scene.esl->settings : mmc::ComplianceSettings{},
+                   {},
+                   {},
+                   {}});
+    if (!scene.domain) continue;
+    out.back().domain = scene.domain->polygon;
+    if (!scene.domain->polygon.empty())
+      out.back().outside = cells_outside(g, scene.domain->polygon);
+    out.back().places = static_places(scene, g, out.back().outside);
   }
   return out;
 }

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <memory>
+#include <span>
+
 #include "cases/scene.h"
 #include "fem/dynamics/esl.h"
 #include "fem/dynamics/motion.h"
@@ -29,6 +32,15 @@ std::vector<fem::AttachedMass> attached_masses(const Scene& scene, const std::st
 
 /// Scene -> design problems, with the initial layout.
 std::vector<mmc::BodyProblem> build_problems(const Scene& scene);
+
+/// Cells of every held and every loaded place of a static scene.
+/// @throws Error (input) for a place without a node of the domain.
+std::vector<std::vector<int>> static_places(const Scene& scene, const Grid& grid,
+                                            std::span<const signed char> outside);
+/// Supports and loads of a static scene on its design mesh.
+/// @throws Error (input) likewise.
+std::unique_ptr<mmc::LoadResponse> build_static_loads(const Scene& scene,
+                                                      const mmc::BodyProblem& problem);
 
 /// Load times: multiples of esl.every up to the end [s].
 std::vector<double> load_times(const Scene& scene);

@@ -52,11 +52,41 @@ void describe_design(const Scene& scene, const BodyDesign& d, std::ostringstream
                                         " variables, " + std::to_string(g.nx) + " x " +
                                         std::to_string(g.ny) + " cells, " + std::to_string(n) +
                                         " static unknowns");
-  out << row("", std::to_string(loads) + " loads, volume at most " + io::to_text(d.max_volume) +
-                     ", half-thickness at least " + io::to_text(d.min_thickness) + " m");
+  out << row("", std::to_string(loads) + " loads, volume at most " +
+                     io::to_text(d.goal.max_volume) + ", half-thickness at least " +
+                     io::to_text(d.min_thickness) + " m");
   out << row("", "factor about " + io::to_text(8e-6 * factor, 3) + " MB, loads and displacements " +
                      io::to_text(8e-6 * 3.0 * n * loads, 3) + " MB; an iteration about " +
                      io::to_text(1e-9 * factor * (2 * g.ny + 5 + 3.0 * loads), 2) + " Gflop");
+}
+
+void describe_static(const Scene& scene, std::ostringstream& out) {
+  const Domain& domain = *scene.domain;
+  const mmc::BodyProblem problem = build_problems(scene).front();
+  const std::unique_ptr<mmc::LoadResponse> loads = build_static_loads(scene, problem);
+  const BodyDesign& d = scene.designs.front();
+  const Grid& g = d.grid;
+  const int components = 2 * d.components[0] * d.components[1];
+  out << row("plate " + domain.name, "at rest, " + std::to_string(g.nx) + " x " +
+                                         std::to_string(g.ny) + " cells" +
+                                         (domain.polygon.empty() ? "" : ", domain a polygon"));
+  out << row("supports", std::to_string(domain.supports.size()));
+  out << row("loads", std::to_string(loads->n_loads()) + ", solved as " +
+                          std::to_string(loads->n_right_hand_sides()));
+  const bool volume = d.goal.minimize == mmc::Goal::Minimize::volume;
+  const std::string over = d.goal.over == mmc::Goal::Over::worst ? "largest" : "summed";
+  out << row("design", std::to_string(components) + " components, " +
+                           std::to_string(components * Component::kParameters) + " variables; " +
+                           (volume ? "volume under a " + over + " compliance of " +
+                                         io::to_text(d.goal.max_compliance) + " J"
+                                   : over + " compliance under a volume of " +
+                                         io::to_text(d.goal.max_volume)));
+  out << row("optimizer", scene.optimizer.name + ", at most " +
+                              std::to_string(scene.optimizer.max_iterations) + " iterations");
+  out << "\nabsent: not built, costs nothing\n";
+  out << row("motion", "no bodies, no joints, no time, no equivalent static loads");
+  if (loads->n_loads() == 1) out << row("load compression", "one load");
+  if (!scene.output.vtk) out << row("VTK files", "none");
 }
 
 }  // namespace
@@ -64,10 +94,14 @@ void describe_design(const Scene& scene, const BodyDesign& d, std::ostringstream
 std::string check_case(const RunOptions& options) {
   const io::CaseFile file(find_case(options.case_name), options.overrides);
   const Scene scene = read_scene(file);
-  Mechanism mechanism = build_mechanism(scene);
-  build_problems(scene);
+  build_scene(scene);
   std::ostringstream out;
   out << scene.name << ": " << scene.title << "\n\nactive\n";
+  if (scene.domain) {
+    describe_static(scene, out);
+    return out.str();
+  }
+  Mechanism mechanism = build_mechanism(scene);
   out << row(
       "time",
       "0 to " + io::to_text(scene.time.end) + " s, step " + io::to_text(scene.time.step) +

@@ -43,6 +43,11 @@ io::Json body_results(const RunReport& report, size_t i) {
   out.set("scene_mesh_uniform_amplitude", amplitude(report.uniform_motion));
   out.set("cycles", report.cycles).set("iterations", o.iterations);
   out.set("state_solves", o.evaluations).set("kkt", o.kkt);
+  out.set("factorizations", o.factorizations).set("worst_compliance", o.worst_compliance);
+  io::Json active = io::Json::array();  // loads within 1 % of the worst, from 1
+  for (size_t l = 0; l < o.load_compliances.size(); ++l)
+    if (o.load_compliances[l] >= 0.99 * o.worst_compliance) active.push(static_cast<int>(l + 1));
+  out.set("active_loads", std::move(active));
   out.set("loads", o.n_loads).set("right_hand_sides", o.n_right_hand_sides);
   out.set("stop", o.stop);
   return out;
@@ -105,7 +110,8 @@ std::string run_json(const Scene& scene, const RunReport& report) {
   io::Json warnings = io::Json::array();
   for (const mmc::BodyOutcome& o : report.outcomes) {
     if (!o.sharp.connectivity.connected)
-      warnings.push("body '" + o.body + "': no piece of material reaches from root to free end");
+      warnings.push("body '" + o.body +
+                    "': no piece of material joins what is held and what is loaded");
     if (o.sharp.compliance > 1.15 * o.compliance)
       warnings.push("body '" + o.body +
                     "': the sharp compliance is far above the blurred one: gaps are bridged");

@@ -56,10 +56,16 @@ class Progress {
   bool quiet_, terminal_, open_ = false;
 };
 
+std::string summary(const mmc::BodyOutcome& o) {
+  return o.body + ": compliance " + io::to_text(o.compliance, 5) + ", sharp " +
+         io::to_text(o.sharp.compliance, 5) + " at volume " + io::to_text(o.sharp.volume, 4) +
+         ", uniform material " + io::to_text(o.uniform_compliance, 5);
+}
+
 std::vector<fem::Factors> uniform_factors(const std::vector<mmc::BodyProblem>& problems) {
   std::vector<fem::Factors> out;
   for (const mmc::BodyProblem& p : problems) {
-    const VectorXd even = VectorXd::Constant(p.grid.n_cells(), p.max_volume);
+    const VectorXd even = VectorXd::Constant(p.grid.n_cells(), p.goal.max_volume);
     out.push_back({p.grid, even, even});
   }
   return out;
@@ -70,6 +76,29 @@ std::vector<fem::Factors> final_factors(const std::vector<mmc::BodyProblem>& pro
   for (const mmc::BodyProblem& p : problems)
     out.push_back(mmc::dynamic_factors(p, p.design.components()));
   return out;
+}
+
+/// The judge of a design is the motion with it; beside it the same volume spread evenly.
+void judge_by_motion(const Scene& scene, RunFolder& folder, Progress& progress, RunReport& report) {
+  MotionWishes wishes;
+  wishes.factors = final_factors(report.problems);
+  wishes.frames_every = scene.output.vtk ? scene.output.motion_every : 0;
+  wishes.go_on = go_on;
+  report.motion = run_motion(scene, wishes, folder).record;
+  wishes.frames_every = 0;
+  wishes.factors = uniform_factors(report.problems);
+  wishes.table = "motion_uniform.csv";
+  report.uniform_motion = run_motion(scene, wishes, folder).record;
+  if (!scene.verify) return;
+  progress.say("verification on " + std::to_string(scene.verify->mesh[0]) + " x " +
+               std::to_string(scene.verify->mesh[1]) + " elements");
+  wishes.mesh = {scene.verify->mesh, scene.verify->step};
+  wishes.balance = false;
+  wishes.table = "motion_verified_uniform.csv";
+  report.verified_uniform = run_motion(scene, wishes, folder).record;
+  wishes.factors = final_factors(report.problems);
+  wishes.table = "motion_verified.csv";
+  report.verified = run_motion(scene, wishes, folder).record;
 }
 
 /// The story of a run with designs; fills the report as far as it gets.
@@ -104,14 +133,11 @@ void run_designs(const Scene& scene, RunFolder& folder, Progress& progress, RunR
     for (size_t i = 0; i < outcomes.size(); ++i) {
       folder.write_loads(outcomes[i].body, loads[i], &outcomes[i]);
       folder.write_design(report.problems[i], outcomes[i]);
-      progress.say(outcomes[i].body + ": compliance " + io::to_text(outcomes[i].compliance, 5) +
-                   ", sharp " + io::to_text(outcomes[i].sharp.compliance, 5) + " at volume " +
-                   io::to_text(outcomes[i].sharp.volume, 4) + ", uniform material " +
-                   io::to_text(outcomes[i].uniform_compliance, 5));
+      progress.say(summary(outcomes[i]));
     }
   };
-  mmc::LoopSettings settings{scene.cycle.max_cycles, scene.cycle.tolerance,
-                             scene.output.sharp_every, scene.optimizer};
+  mmc::LoopSettings settings{
+      scene.cycle.max_cycles, scene.cycle.tolerance, {scene.output.sharp_every, scene.optimizer}};
   observer.verdict = [&](std::span<const mmc::CycleVerdict> verdicts) {
     report.verdicts.assign(verdicts.begin(), verdicts.end());
     for (const mmc::CycleVerdict& v : verdicts)
@@ -126,29 +152,32 @@ void run_designs(const Scene& scene, RunFolder& folder, Progress& progress, RunR
     for (size_t i = 0; i < best.size(); ++i) folder.write_design(report.problems[i], best[i]);
   }
 
-  // The judge of a design is the motion with it, beside the same volume spread evenly.
-  MotionWishes wishes;
-  wishes.factors = final_factors(report.problems);
-  wishes.frames_every = scene.output.vtk ? scene.output.motion_every : 0;
-  wishes.go_on = go_on;
-  report.motion = run_motion(scene, wishes, folder).record;
-  wishes.frames_every = 0;
-  wishes.factors = uniform_factors(report.problems);
-  wishes.table = "motion_uniform.csv";
-  report.uniform_motion = run_motion(scene, wishes, folder).record;
-  if (!scene.verify) return;
-  progress.say("verification on " + std::to_string(scene.verify->mesh[0]) + " x " +
-               std::to_string(scene.verify->mesh[1]) + " elements");
-  wishes.mesh = {scene.verify->mesh, scene.verify->step};
-  wishes.balance = false;
-  wishes.table = "motion_verified_uniform.csv";
-  report.verified_uniform = run_motion(scene, wishes, folder).record;
-  wishes.factors = final_factors(report.problems);
-  wishes.table = "motion_verified.csv";
-  report.verified = run_motion(scene, wishes, folder).record;
+  judge_by_motion(scene, folder, progress, report);
+}
+
+/// The story of a plate at rest.
+void run_static(const Scene& scene, RunFolder& folder, Progress& progress, RunReport& report) {
+  report.problems = build_problems(scene);
+  mmc::BodyProblem& problem = report.problems.front();
+  const std::unique_ptr<mmc::LoadResponse> loads = build_static_loads(scene, problem);
+  bool going = true;
+  const mmc::IterationObserver observe = [&](const mmc::IterationReport& r) {
+    folder.add_iteration(r);
+    progress.iteration(r);
+    return go_on();
+  };
+  const mmc::BodyOutcome outcome = mmc::design_body(
+      problem, *loads, 1, {scene.output.sharp_every, scene.optimizer}, observe, going);
+  report.cycles = 1;
+  report.outcomes = {outcome};
+  folder.write_static_loads(*scene.domain, outcome);
+  folder.write_design(problem, outcome);
+  progress.say(summary(outcome));
+  if (interrupted) throw Interrupted();
 }
 
 void run_scene(const Scene& scene, RunFolder& folder, Progress& progress, RunReport& report) {
+  if (scene.domain) return run_static(scene, folder, progress, report);
   if (!scene.designs.empty()) return run_designs(scene, folder, progress, report);
   MotionWishes wishes;
   wishes.go_on = go_on;
@@ -156,6 +185,12 @@ void run_scene(const Scene& scene, RunFolder& folder, Progress& progress, RunRep
 }
 
 }  // namespace
+
+void build_scene(const Scene& scene) {
+  if (!scene.domain) build_mechanism(scene);
+  const std::vector<mmc::BodyProblem> problems = build_problems(scene);
+  if (scene.domain) build_static_loads(scene, problems.front());
+}
 
 std::vector<std::string> shipped_cases() {
   std::vector<std::string> out;
@@ -180,8 +215,7 @@ int run_case(const RunOptions& options) {
   const io::CaseFile file(find_case(options.case_name), options.overrides);
   const Scene scene = read_scene(file);
   // What cannot be built is refused before a folder exists.
-  build_mechanism(scene);
-  build_problems(scene);
+  build_scene(scene);
   std::string directory = options.directory;
   if (directory.empty()) directory = scene.output.directory;
   if (directory.empty()) directory = "runs/" + scene.name;

@@ -18,6 +18,9 @@ struct RunOptions {
 /// Path of a case file: the path itself, or that of a shipped case of this name.
 /// @throws Error (input) naming the shipped cases.
 std::string find_case(const std::string& name);
+/// Builds everything a run of the scene would build: what cannot be built is refused here.
+/// @throws Error (input).
+void build_scene(const Scene& scene);
 /// Names of the shipped cases.
 std::vector<std::string> shipped_cases();
 

@@ -113,7 +113,7 @@ void RunFolder::add_iteration(const mmc::IterationReport& r) {
     // Σ w ½ uᵀ K_cell u: the derivative by the stiffness factor holds it.
     const VectorXd energy = -0.5 * r.value.d_stiffness.cwiseProduct(factors.stiffness);
     const VectorXd displacement =
-        r.compliance.displacement(factors.stiffness, factors.mass, r.compliance.n_loads() - 1);
+        r.loads.displacement(factors.stiffness, factors.mass, r.loads.n_loads() - 1);
     const auto view = [](const VectorXd& v) {
       return std::span<const double>(v.data(), static_cast<size_t>(v.size()));
     };
@@ -144,7 +144,7 @@ void RunFolder::add_iteration(const mmc::IterationReport& r) {
     connected = r.sharp->connectivity.connected;
   }
   output_seconds_ += mmc::cpu_seconds() - clock;
-  const mmc::Compliance::Seconds s = r.state.seconds();
+  const mmc::LoadResponse::Seconds s = r.state.seconds();
   history_->row({r.problem.body,
                  r.cycle,
                  r.iteration,
@@ -193,6 +193,14 @@ void RunFolder::write_loads(const std::string& body, const fem::EslSets& loads,
     csv.row({s.time, s.root_column, s.weight, s.strain_energy, ratio, compliance, force.x(),
              force.y()});
   }
+}
+
+void RunFolder::write_static_loads(const Domain& domain, const mmc::BodyOutcome& outcome) {
+  const std::vector<std::string> columns = {"load", "weight", "compliance", "active"};
+  io::CsvWriter csv(path_ + "/loads/" + domain.name + ".csv", columns);
+  for (size_t l = 0; l < domain.loads.size(); ++l)
+    csv.row({domain.loads[l].name, domain.loads[l].weight, outcome.load_compliances[l],
+             outcome.load_compliances[l] >= 0.99 * outcome.worst_compliance});
 }
 
 void RunFolder::write_motion(const std::string& name, const Scene& scene,
@@ -261,7 +269,8 @@ void RunFolder::write_design(const mmc::BodyProblem& problem, const mmc::BodyOut
     outlines.push_back({b.lower, {b.upper.x(), b.lower.y()}, b.upper, {b.lower.x(), b.upper.y()}});
   const Grid& g = problem.grid;
   const Box domain{{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}};
-  const std::vector<Region> regions = unite(outlines, domain);
+  const std::vector<Region> regions =
+      problem.domain.empty() ? unite(outlines, domain) : unite(outlines, problem.domain, {});
   io::write_file(path_ + "/design" + stem + ".svg", io::outline_svg(regions, domain));
   if (!scene_.output.plots) return;
   const auto& sharp = outcome.sharp.fractions;

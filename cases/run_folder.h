@@ -43,6 +43,9 @@ class RunFolder {
   /// loads/<body>.csv: one row per load set.
   void write_loads(const std::string& body, const fem::EslSets& loads,
                    const mmc::BodyOutcome* outcome);
+  /// The same for a plate at rest: one row per load, with its compliance; `active` loads are
+  /// within 1 % of the largest.
+  void write_static_loads(const Domain& domain, const mmc::BodyOutcome& outcome);
   /// motion.csv (or another name): one row per time step.
   void write_motion(const std::string& name, const Scene& scene, const MotionRecord& motion);
   /// One frame of motion/motion.pvd: the deformed body with its density.

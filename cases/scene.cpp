@@ -78,7 +78,10 @@ Scene read_scene(const io::CaseFile& file, const Vocabulary& words) {
   Scene scene;
   scene.name = std::filesystem::path(file.path()).stem().string();
   scene.title = root.string("title", "a title", scene.name);
-  read_motion(root, words, scene);
+  if (root.has("domain"))
+    read_static(root, scene);
+  else
+    read_motion(root, words, scene);
   read_designs(root, words, scene);
   scene.output = read_output(root);
   if (root.has("expect")) {

@@ -12,6 +12,7 @@
 #include "geometry/grid.h"
 #include "geometry/tdf.h"
 #include "io/case_file.h"
+#include "optim/mmc/mmc_problem.h"
 #include "optim/mmc/responses.h"
 #include "optim/optimizer.h"
 
@@ -81,6 +82,42 @@ struct PointMass {
   double mass = 0;  ///< [kg]
 };
 
+/// Where a plate at rest is held or pulled.
+struct Place {
+  enum class Kind { edge, point, box };
+  Kind kind = Kind::point;
+  Box box;  ///< an edge is a box without width [m]
+};
+
+struct PlaneSupport {
+  Place place;
+  bool x = false, y = false;  ///< held directions
+};
+
+struct PlaneForce {
+  Place place;
+  Vec2 force{0, 0};  ///< in all, spread evenly over the place [N]
+};
+
+/// Forces that act at the same time.
+struct LoadCase {
+  std::string name;
+  double weight = 1;
+  std::vector<PlaneForce> forces;
+};
+
+/// A plate at rest: what a static scene has instead of bodies that move.
+struct Domain {
+  std::string name;
+  Box bounds;                 ///< of the design mesh [m]
+  std::vector<Vec2> polygon;  ///< the domain within; empty: all of it
+  double thickness = 1;       ///< [m]
+  double youngs_modulus = 1;  ///< [Pa]
+  double poisson_ratio = 0.3;
+  std::vector<PlaneSupport> supports;
+  std::vector<LoadCase> loads;
+};
+
 /// When the motion is turned into equivalent static loads, and what kind (design.md section 8).
 struct Esl {
   double every = 0;  ///< a load at every multiple of it up to the end [s]
@@ -94,7 +131,7 @@ struct BodyDesign {
   std::string body;
   Grid grid;                            ///< X from the root (0) to the free end, Y across [m]
   std::array<int, 2> components{1, 1};  ///< boxes of the initial layout, two components in each
-  double max_volume = 0.5;              ///< fraction of the domain, solid regions included
+  mmc::Goal goal;                       ///< volumes are fractions, solid regions included
   double min_thickness = 0;             ///< c_min: smallest half-thickness of a component [m]
   double half_length = 0;               ///< of the initial components [m]
   double half_thickness = 0;            ///< of the initial components [m]
@@ -103,6 +140,8 @@ struct BodyDesign {
   TdfSettings tdf;                ///< in metres, with the band of the last, finest stage
   double stiffness_void = 1e-4;   ///< stiffness factor of the void in dynamics [-]
   double mass_void = 1e-3;        ///< mass factor of the void in dynamics [-]
+  double jitter = 0;              ///< of the initial components, in parts of their sizes [-]
+  int seed = 1;                   ///< of the jitter
   std::vector<Box> solid, empty;  ///< a cell belongs to a region that holds its centre [m]
 
   /// Settings of one stage of the continuation.
@@ -140,13 +179,14 @@ struct Expectation {
 struct Scene {
   std::string name;  ///< of the case file, without folder and ending
   std::string title;
+  std::optional<Domain> domain;  ///< a static scene: nothing moves, all that follows is absent
   TimeSpan time;
   std::optional<Vec2> gravity;  ///< [m/s^2]
   std::vector<Hub> hubs;
   std::vector<Body> bodies;
   std::vector<Joint> joints;
   std::vector<PointMass> point_masses;
-  std::optional<Esl> esl;           ///< always there when `designs` is not empty
+  std::optional<Esl> esl;           ///< always there when bodies that move are designed
   std::vector<BodyDesign> designs;  ///< one per designed body
   optim::Settings optimizer;
   Cycle cycle;

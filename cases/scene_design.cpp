@@ -24,6 +24,15 @@ io::Quantity fraction(std::string noun, double upper = 1) {
   return q;
 }
 
+/// The plate of a static scene as a body that does not move.
+Body plate_of(const Domain& domain) {
+  Body body;
+  body.name = domain.name;
+  body.length = domain.bounds.upper.x() - domain.bounds.lower.x();
+  body.width = domain.bounds.upper.y() - domain.bounds.lower.y();
+  return body;
+}
+
 Grid read_grid(const Table& t, const Body& body, double end) {
   const double cell = t.number("cell", positive("the size of a cell", "m"));
   const double length = body.longest(end);
@@ -98,7 +107,7 @@ void read_regions(const Table& t, const Body& body, const Scene& scene, BodyDesi
         region.fail("a region cannot be solid and void at once");
   }
   const double filled = cells_in(grid, design.solid) / double(grid.n_cells());
-  if (filled >= design.max_volume)
+  if (design.goal.minimize == mmc::Goal::Minimize::compliance && filled >= design.goal.max_volume)
     t.fail("max_volume", "the solid regions alone fill " + to_text(filled, 3) + " of the domain");
 
   // Without material under it the mass would end up in the void (design.md section 8).
@@ -129,12 +138,14 @@ void read_components(const Table& t, const Body& body, BodyDesign& design) {
   const double diagonal = std::hypot(wide, high);
   design.half_length = t.number("half_length", positive("a half-length", "m"), 0.5 * diagonal);
   // Two bars along the diagonals fill about the allowed volume.
-  const double filling = 0.25 * design.max_volume * wide * high / diagonal;
+  const double filling = 0.25 * design.goal.max_volume * wide * high / diagonal;
   half_width.lower = design.min_thickness;
   half_width.lower_open = false;
   half_width.noun = "a half-thickness";
   design.half_thickness =
       t.number("half_thickness", half_width, std::max(design.min_thickness, filling));
+  design.jitter = t.number("jitter", between("a jitter", "", 0, 1), 0.0);
+  design.seed = t.integer("seed", "a seed", 0, 1'000'000'000, 1);
 }
 
 void read_tdf(const Table& t, BodyDesign& design) {
@@ -159,7 +170,48 @@ void read_tdf(const Table& t, BodyDesign& design) {
   design.mass_void = t.number("mass_void", fraction("a mass factor"), 1e-3);
 }
 
+/// What is minimized, and under what.
+mmc::Goal read_goal(const Table& t) {
+  using mmc::Goal;
+  Goal goal;
+  goal.minimize = t.choice<Goal::Minimize>(
+      "minimize", "an objective",
+      {{"compliance", Goal::Minimize::compliance}, {"volume", Goal::Minimize::volume}},
+      Goal::Minimize::compliance);
+  goal.over = t.choice<Goal::Over>("loads", "a way to put loads together",
+                                   {{"sum", Goal::Over::sum}, {"worst", Goal::Over::worst}},
+                                   Goal::Over::sum);
+  if (goal.minimize == Goal::Minimize::compliance) {
+    goal.max_volume = t.number("max_volume", fraction("a volume fraction"));
+    if (t.has("max_compliance"))
+      t.fail("max_compliance", "only minimize = \"volume\" has a largest compliance");
+  } else {
+    goal.max_compliance = t.number("max_compliance", positive("a compliance", "J"));
+    if (t.has("max_volume"))
+      t.fail("max_volume", "only minimize = \"compliance\" has a largest volume");
+  }
+  return goal;
+}
+
+/// The design of a plate at rest: its grid lies where the domain does.
+BodyDesign read_static_design(const Table& t, const Scene& scene) {
+  BodyDesign design;
+  const Domain& domain = *scene.domain;
+  if (!scene.designs.empty()) t.fail("a static scene has one [[design]]");
+  design.body = t.choice("body", "a body", std::vector<std::string>{domain.name}, domain.name);
+  const Body body = plate_of(domain);
+  design.grid = read_grid(t, body, 0);
+  design.grid.x0 = domain.bounds.lower.x();
+  design.grid.y0 = domain.bounds.lower.y();
+  design.goal = read_goal(t);
+  read_components(t, body, design);
+  read_tdf(t, design);
+  read_regions(t, body, scene, design);
+  return design;
+}
+
 BodyDesign read_design(const Table& t, const Scene& scene) {
+  if (scene.domain) return read_static_design(t, scene);
   BodyDesign design;
   design.body = t.choice("body", "a body", names_of(scene.bodies));
   for (const BodyDesign& other : scene.designs)
@@ -173,7 +225,7 @@ BodyDesign read_design(const Table& t, const Scene& scene) {
     t.fail("body", "a designed body has the term \"membrane\"");
 
   design.grid = read_grid(t, body, scene.time.end);
-  design.max_volume = t.number("max_volume", fraction("a volume fraction"));
+  design.goal = read_goal(t);
   read_components(t, body, design);
   read_tdf(t, design);
   read_regions(t, body, scene, design);
@@ -262,6 +314,11 @@ Verify read_verify(const Table& t, const Scene& scene) {
 
 void read_designs(const Table& root, const Vocabulary& words, Scene& scene) {
   for (const Table& t : root.tables("design")) scene.designs.push_back(read_design(t, scene));
+  if (scene.domain) {
+    if (scene.designs.empty()) root.fail("design", "a static scene has a [[design]]");
+    if (root.has("optimizer")) scene.optimizer = read_optimizer(root.table("optimizer"), words);
+    return;
+  }
   if (scene.designs.empty()) {
     for (const char* key : {"optimizer", "cycle", "verify"})
       if (root.has(key)) root.table(key).fail("without a [[design]] this does nothing");

@@ -11,6 +11,9 @@ namespace flexmorph::cases {
 /// [time], gravity, [[hub]], [[body]], [[joint]], [[point_mass]].
 void read_motion(const io::Table& root, const Vocabulary& words, Scene& scene);
 
+/// [domain], [[support]], [[load]]: a plate at rest.
+void read_static(const io::Table& root, Scene& scene);
+
 /// [[design]], [esl], [optimizer], [cycle], [verify]; needs what read_motion() read.
 void read_designs(const io::Table& root, const Vocabulary& words, Scene& scene);
 

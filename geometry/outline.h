@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "geometry/component.h"
-#include "geometry/grid.h"
 
 namespace flexmorph {
 
@@ -22,31 +21,15 @@ struct Region {
 /// @throws Error(numerical) when a polygon is not simple, has no area or is not finite;
 ///         Error(input) when the box is empty.
 std::vector<Region> unite(std::span<const std::vector<Vec2>> polygons, const Box& clip);
+/// The same, clipped to a simple polygon, with voids taken out.
+std::vector<Region> unite(std::span<const std::vector<Vec2>> polygons,
+                          const std::vector<Vec2>& domain,
+                          std::span<const std::vector<Vec2>> voids);
 
 double area(const Region& r);  ///< [m^2]
 double area(std::span<const Region> r);
 
 /// Is the point inside or on the boundary of the region?
 bool contains(const Region& r, const Vec2& point);
-
-/// Sharp picture of a design: area fraction of the true union in every cell.
-///
-/// Each cell is sampled at `samples` x `samples` midpoints. A sample in a `solid` box is material
-/// whatever else is there; otherwise one in an `empty` box is void whatever the components do.
-/// @throws Error(input) when samples < 1.
-VectorXd area_fractions(const Grid& grid, std::span<const Component> components,
-                        double min_half_thickness, std::span<const Box> solid,
-                        std::span<const Box> empty, int samples = 8);
-
-/// What hangs together in a sharp picture.
-///
-/// Cells with fraction >= 0.5 are material; those that share an edge (not only a corner) belong
-/// to one piece. The main piece is the largest, by cells, of those that reach from the first to
-/// the last column of cells, or the largest of all when none does.
-struct Connectivity {
-  bool connected = false;  ///< one piece reaches from the first to the last column of cells
-  int islands = 0;         ///< pieces other than the main piece
-};
-Connectivity connectivity(const Grid& grid, const VectorXd& fractions);
 
 }  // namespace flexmorph

@@ -1,5 +1,6 @@
 #include "optim/mmc/ersatz.h"
 
+#include <algorithm>
 #include <array>
 
 namespace flexmorph::mmc {
@@ -16,8 +17,9 @@ std::array<int, 4> corners(const Grid& g, int i, int j) {
 }  // namespace
 
 Ersatz::Ersatz(const Grid& grid, double alpha, std::span<const Box> solid,
-               std::span<const Box> empty)
+               std::span<const Box> empty, std::span<const signed char> outside)
     : grid_(grid), alpha_(alpha), fixed_(static_cast<size_t>(grid.n_cells()), 0) {
+  n_domain_ = grid.n_cells() - static_cast<int>(std::count(outside.begin(), outside.end(), 1));
   for (int i = 0; i < grid.nx; ++i)
     for (int j = 0; j < grid.ny; ++j) {
       signed char& fixed = fixed_[static_cast<size_t>(grid.cell(i, j))];
@@ -26,6 +28,7 @@ Ersatz::Ersatz(const Grid& grid, double alpha, std::span<const Box> solid,
         if (inside(box, center)) fixed = -1;
       for (const Box& box : solid)
         if (inside(box, center)) fixed = 1;
+      if (!outside.empty() && outside[static_cast<size_t>(grid.cell(i, j))]) fixed = -1;
     }
 }
 

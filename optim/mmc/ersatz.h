@@ -20,10 +20,14 @@ struct CellFactors {
 /// see no gap narrower than a cell: without it optimizers leave slits there, which weigh nothing.
 /// The void keeps α^q of its stiffness and no mass (design.md sections 7 and 8). Cells whose
 /// centre lies in a `solid` box are full material, those in an `empty` box void, whatever the
-/// components do; solid wins.
+/// components do; solid wins. Cells outside of the domain are void.
 class Ersatz {
  public:
-  Ersatz(const Grid& grid, double alpha, std::span<const Box> solid, std::span<const Box> empty);
+  /// @param outside  cells that do not belong to the domain: 1 (n_cells); empty: all belong to it
+  Ersatz(const Grid& grid, double alpha, std::span<const Box> solid, std::span<const Box> empty,
+         std::span<const signed char> outside = {});
+
+  int n_domain_cells() const { return n_domain_; }
 
   /// @param h, eroded  density() and eroded() of the TDF (n_nodes)
   void factors(const VectorXd& h, const VectorXd& eroded, CellFactors& out) const;
@@ -41,6 +45,7 @@ class Ersatz {
  private:
   Grid grid_;
   double alpha_;
+  int n_domain_ = 0;
   std::vector<signed char> fixed_;  // 1: solid, -1: empty, 0: from the components
 };
 

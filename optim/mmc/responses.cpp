@@ -100,6 +100,7 @@ struct Compliance::Impl {
   MatrixXd F, work, U, Z;  // reused by every evaluation
   VectorXd energies, products;
   Seconds seconds;
+  int factorizations = 0;
 
   Impl(const fem::EslSets& sets, const fem::PlaneSection& section, int root)
       : solver(sets.grid, section, root), inertia(solver, section) {}
@@ -109,6 +110,7 @@ struct Compliance::Impl {
   void factorize(const VectorXd& stiffness) {
     if (factored.size() == stiffness.size() && factored == stiffness) return;
     factored.resize(0);
+    ++factorizations;
     solver.factorize(stiffness);
     factored = stiffness;
   }
@@ -273,6 +275,38 @@ void Compliance::evaluate(const VectorXd& stiffness, const VectorXd& mass, Value
   m.seconds = {factored - start, solved - factored, cpu_seconds() - solved};
 }
 
+void Compliance::evaluate_each(const VectorXd& stiffness, const VectorXd& mass, Each& each) {
+  Impl& m = *impl_;
+  const double start = cpu_seconds();
+  m.factorize(stiffness);
+  const double factored = cpu_seconds();
+  m.inertia.forces(m.loads, mass, m.work);
+  MatrixXd u = m.work;
+  m.solver.solve(u, m.root_columns);
+  const double solved = cpu_seconds();
+
+  each.d_stiffness.resize(u.rows(), stiffness.size());
+  each.d_mass.resize(m.loads.follows_design() ? u.rows() : 0, stiffness.size());
+  each.f.resize(u.rows());
+  const VectorXd one = VectorXd::Ones(1);
+  for (Eigen::Index l = 0; l < u.rows(); ++l) {
+    m.U = u.row(l);
+    m.solver.cell_energies(m.U, one, m.energies,
+                           std::span<const int>(&m.root_columns[static_cast<std::size_t>(l)], 1));
+    each.f(l) = 2 * m.work.row(l).dot(u.row(l)) - stiffness.dot(m.energies);
+    each.d_stiffness.row(l) = -m.energies;
+    if (!m.loads.follows_design()) continue;
+    m.inertia.products(m.U, m.loads.acceleration.row(l), m.products);
+    each.d_mass.row(l) = -2 * m.products;
+  }
+  if (!each.f.allFinite() || !each.d_stiffness.allFinite() || !each.d_mass.allFinite()) {
+    throw Error::numerical("compliance: a load's objective or its derivative is not finite");
+  }
+  m.seconds = {factored - start, solved - factored, cpu_seconds() - solved};
+}
+
+int Compliance::factorizations() const { return impl_->factorizations; }
+
 VectorXd Compliance::individual(const VectorXd& stiffness, const VectorXd& mass) {
   Impl& m = *impl_;
   m.factorize(stiffness);
@@ -311,6 +345,6 @@ int Compliance::n_loads() const { return static_cast<int>(impl_->weights.size())
 
 int Compliance::n_right_hand_sides() const { return static_cast<int>(impl_->solved().size()); }
 
-Compliance::Seconds Compliance::seconds() const { return impl_->seconds; }
+LoadResponse::Seconds Compliance::seconds() const { return impl_->seconds; }
 
 }  // namespace flexmorph::mmc

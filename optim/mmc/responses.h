@@ -6,6 +6,7 @@
 
 #include "fem/esl_set.h"
 #include "fem/solve/static_solver.h"
+#include "optim/mmc/load_response.h"
 
 namespace flexmorph::mmc {
 
@@ -33,7 +34,7 @@ struct ComplianceSettings {
 /// Factors are per cell: stiffness (n_cells, 0..1), mass (n_cells, 0..1, 0 in the void).
 ///
 /// Source: P (33)-(35), design.md sections 8 and 9.
-class Compliance {
+class Compliance final : public LoadResponse {
  public:
   /// @param stiffness0, mass0  factors of the design the motion was computed with; not read by
   ///        `inertia`.
@@ -41,30 +42,19 @@ class Compliance {
   ///         grid.
   Compliance(const fem::EslSets& loads, const fem::PlaneSection& section,
              const ComplianceSettings& settings, const VectorXd& stiffness0, const VectorXd& mass0);
-  ~Compliance();
+  ~Compliance() override;
 
-  struct Value {
-    double f = 0;
-    VectorXd d_stiffness, d_mass;  ///< (n_cells)
-  };
-  /// One factorization, one block solve, one energy pass. Cells inside the hub of every load get
-  /// derivative 0.
-  /// @throws Error (numerical) when K cannot be factored or f is not finite.
-  void evaluate(const VectorXd& stiffness, const VectorXd& mass, Value& value);
+  /// Cells inside the hub of every load get derivative 0.
+  void evaluate(const VectorXd& stiffness, const VectorXd& mass, Value& value) override;
+  /// Never compressed.
+  void evaluate_each(const VectorXd& stiffness, const VectorXd& mass, Each& each) override;
+  VectorXd individual(const VectorXd& stiffness, const VectorXd& mass) override;
+  VectorXd displacement(const VectorXd& stiffness, const VectorXd& mass, int load) override;
 
-  /// Compliances F_i . u_i, without weights and uncompressed, of every load at the given factors
-  /// (n_loads).
-  VectorXd individual(const VectorXd& stiffness, const VectorXd& mass);
-
-  /// Displacements of one load, node by node (2 n_nodes), at the given factors.
-  VectorXd displacement(const VectorXd& stiffness, const VectorXd& mass, int load);
-
-  int n_loads() const;
-  int n_right_hand_sides() const;  ///< after compression
-  struct Seconds {                 ///< CPU seconds of the last evaluate()
-    double factor = 0, solve = 0, sensitivity = 0;
-  };
-  Seconds seconds() const;
+  int n_loads() const override;
+  int n_right_hand_sides() const override;
+  int factorizations() const override;
+  Seconds seconds() const override;
 
  private:
   struct Impl;

@@ -54,7 +54,7 @@ Iteration measure(const cases::Scene& scene, const mmc::BodyProblem& problem,
       problem.grid, start, problem.stages.back().min_half_thickness, problem.solid, problem.empty));
   mmc::Compliance compliance(loads, problem.section, settings, first.stiffness, first.mass);
   mmc::MmcProblem state(problem.grid, problem.design, ersatz, compliance, problem.stages.front(),
-                        problem.max_volume);
+                        problem.goal);
   optim::Settings optimizer = scene.optimizer;
   optimizer.max_iterations = kIterations;
   std::vector<double> tdf, factor, solve, sensitivity, mma, total;

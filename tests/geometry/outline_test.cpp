@@ -57,6 +57,18 @@ TEST(Unite, FrameHasAHole) {
   EXPECT_FALSE(contains(united[0], {4.1, 2}));  // outside
 }
 
+TEST(Unite, ClipsToAPolygonAndTakesVoidsOut) {
+  const std::vector<Vec2> L = {{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}};
+  const std::vector<std::vector<Vec2>> all = {{{-5, -5}, {5, -5}, {5, 5}, {-5, 5}}};
+  EXPECT_NEAR(area(unite(all, L, {})), 5, 1e-15);
+  const std::vector<std::vector<Vec2>> voids = {
+      {{0.25, 0.25}, {0.75, 0.25}, {0.75, 0.75}, {0.25, 0.75}}};
+  const std::vector<Region> with_hole = unite(all, L, voids);
+  ASSERT_EQ(with_hole.size(), 1u);
+  EXPECT_EQ(with_hole[0].holes.size(), 1u);
+  EXPECT_NEAR(area(with_hole), 4.75, 1e-15);
+}
+
 TEST(Unite, ClipsToTheBoxAndKeepsPiecesApart) {
   const Polygons bars = {rectangle(-5, 0, 5, 1), rectangle(-5, 2, 5, 3), rectangle(20, 20, 21, 21)};
   const auto united = unite(bars, {{0, 0.5}, {3, 2.5}});

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "geometry/outline.h"
+#include "geometry/picture.h"
 #include "tests/geometry/random_components.h"
 
 namespace flexmorph {
@@ -99,6 +101,28 @@ TEST(Connectivity, DetoursConnect) {
 }
 
 TEST(Connectivity, NothingIsNotConnected) { expect(connectivity_of({"....", "...."}), false, 0); }
+
+TEST(Connectivity, NamedPlacesMustBeJoined) {
+  const Grid grid{.nx = 4, .ny = 3};
+  VectorXd fractions = VectorXd::Zero(grid.n_cells());
+  for (int i = 0; i < 4; ++i) fractions[grid.cell(i, 0)] = 1;
+  const std::vector<std::vector<int>> low = {{grid.cell(0, 0), grid.cell(0, 1)}, {grid.cell(2, 0)}};
+  const std::vector<std::vector<int>> high = {{grid.cell(0, 0)},
+                                              {grid.cell(3, 2), grid.cell(2, 2)}};
+  EXPECT_TRUE(connectivity(grid, fractions, low).connected);
+  EXPECT_FALSE(connectivity(grid, fractions, high).connected);
+  for (int j = 0; j < 3; ++j) fractions[grid.cell(2, j)] = 1;
+  EXPECT_TRUE(connectivity(grid, fractions, high).connected);
+}
+
+TEST(CellsOutside, OfAnL) {
+  const Grid grid{.width = 10, .height = 10, .nx = 10, .ny = 10};
+  const std::vector<Vec2> polygon = {{0, 0}, {10, 0}, {10, 4}, {4, 4}, {4, 10}, {0, 10}};
+  const std::vector<signed char> outside = cells_outside(grid, polygon);
+  EXPECT_EQ(std::count(outside.begin(), outside.end(), 1), 36);
+  EXPECT_EQ(outside[static_cast<size_t>(grid.cell(3, 9))], 0);
+  EXPECT_EQ(outside[static_cast<size_t>(grid.cell(4, 4))], 1);
+}
 
 TEST(Connectivity, SeesTheGapBetweenTwoComponents) {
   const Grid grid{.width = 10, .height = 2, .nx = 100, .ny = 20};

@@ -28,16 +28,19 @@ std::vector<BodyProblem> one_body(std::vector<double> bands = {2, 1}) {
            strip(),
            {},
            stages,
-           0.5,
+           {},
            1e-4,
            1e-3,
+           {},
+           {},
+           {},
            {}}};
 }
 
 LoopSettings quick(int iterations) {
   LoopSettings settings;
-  settings.sharp_every = 7;
-  settings.optimizer.max_iterations = iterations;
+  settings.design.sharp_every = 7;
+  settings.design.optimizer.max_iterations = iterations;
   return settings;
 }
 
@@ -88,7 +91,7 @@ TEST(EslLoop, MakesAFeasibleStifferDesign) {
   // And the outcome is that of the design left behind, computed afresh.
   const Ersatz ersatz(kGrid, 1e-3, problems[0].solid, {});
   Compliance compliance(loads, kSection, {}, {}, {});
-  MmcProblem again(kGrid, problems[0].design, ersatz, compliance, whole(1), 0.5);
+  MmcProblem again(kGrid, problems[0].design, ersatz, compliance, whole(1), Goal{});
   again.evaluate(problems[0].design.x());
   EXPECT_NEAR(again.compliance(), o.compliance, 1e-12 * o.compliance);
   EXPECT_NEAR(again.volume(), o.volume, 1e-14);
@@ -128,7 +131,7 @@ TEST(EslLoop, RowsDescribeTheirIterates) {
       EXPECT_EQ(&r.value, &r.state.value());
       EXPECT_NEAR(r.iterate.violation, std::max(0.0, r.state.volume() / 0.5 - 1), 1e-12);
       const Design design(kGrid, r.state.components(), kScale);
-      MmcProblem again(kGrid, design, ersatz, compliance, whole(r.state.band() / kGrid.dx()), 0.5);
+      MmcProblem again(kGrid, design, ersatz, compliance, whole(r.state.band() / kGrid.dx()), Goal{});
       again.evaluate(design.x());
       EXPECT_NEAR(again.compliance(), r.state.compliance(), 1e-9 * again.compliance()) << name;
       EXPECT_EQ(r.sharp != nullptr, rows % 7 == 0);
@@ -144,7 +147,7 @@ TEST(EslLoop, RowsDescribeTheirIterates) {
       return true;
     };
     LoopSettings settings = quick(16);
-    settings.optimizer.name = name;
+    settings.design.optimizer.name = name;
     const auto outcome = esl_loop(problems, simulate, settings, observer);
     EXPECT_EQ(outcome[0].iterations, rows) << name;
     EXPECT_EQ(sharp, rows / 7) << name;

@@ -1,0 +1,257 @@
+#include "fem/solve/plate_solver.h"
+
+#include <amd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string>
+#include <utility>
+
+#include "fem/solve/q4_cell.h"
+#include "fem/solve/supernodal_factor.h"
+
+namespace flexmorph::fem {
+
+namespace {
+
+std::array<int, 4> corners_of(const Grid& g, int i, int j) {
+  std::array<int, 4> nodes{};
+  for (std::size_t a = 0; a < 4; ++a) nodes[a] = g.node(i + kCornerI[a], j + kCornerJ[a]);
+  return nodes;
+}
+
+/// Nodes of the grid that share a cell of the domain: compressed columns, without the node itself.
+struct NodeGraph {
+  std::vector<int> starts = {0}, neighbours;
+};
+
+}  // namespace
+
+struct PlateSolver::Impl {
+  Grid grid;
+  PlaneSection section;
+  Eigen::Matrix<double, 8, 8> cell_stiffness;
+  std::vector<char> inside;  // by cell
+  std::vector<int> rows;     // 2 node + component -> unknown, -1: none
+  int n = 0;
+  std::unique_ptr<SupernodalFactor> factor;
+  std::vector<int> scatter;  // by cell of the domain and pair of unknowns (36), -1: held
+  std::vector<int> unknown_of_column;
+  mutable std::vector<int> active;
+  mutable VectorXd held_values, energy_of_load;
+
+  NodeGraph graph() const;
+  std::vector<int> node_order() const;
+  void number(std::span<const HeldUnknown> held);
+  void build_pattern();
+  std::array<int, 8> rows_of_cell(int i, int j) const {
+    std::array<int, 8> out{};
+    const auto corners = corners_of(grid, i, j);
+    for (std::size_t a = 0; a < 4; ++a)
+      for (std::size_t c = 0; c < 2; ++c)
+        out[2 * a + c] = rows[2 * static_cast<std::size_t>(corners[a]) + c];
+    return out;
+  }
+  template <class Use>
+  void each_cell(Use use) const {
+    for (int i = 0; i < grid.nx; ++i)
+      for (int j = 0; j < grid.ny; ++j)
+        if (inside[static_cast<std::size_t>(grid.cell(i, j))]) use(i, j);
+  }
+  Q4Energy::Corners corner_values(const MatrixXd& u, int i, int j) const;
+};
+
+NodeGraph PlateSolver::Impl::graph() const {
+  NodeGraph out;
+  for (int i = 0; i <= grid.nx; ++i) {
+    for (int j = 0; j <= grid.ny; ++j) {
+      const auto begin = static_cast<std::ptrdiff_t>(out.neighbours.size());
+      for (int ci = std::max(0, i - 1); ci <= std::min(grid.nx - 1, i); ++ci)
+        for (int cj = std::max(0, j - 1); cj <= std::min(grid.ny - 1, j); ++cj) {
+          if (!inside[static_cast<std::size_t>(grid.cell(ci, cj))]) continue;
+          for (const int node : corners_of(grid, ci, cj))
+            if (node != grid.node(i, j)) out.neighbours.push_back(node);
+        }
+      std::sort(out.neighbours.begin() + begin, out.neighbours.end());
+      out.neighbours.erase(std::unique(out.neighbours.begin() + begin, out.neighbours.end()),
+                           out.neighbours.end());
+      out.starts.push_back(static_cast<int>(out.neighbours.size()));
+    }
+  }
+  return out;
+}
+
+/// Both displacements of a node stay together: a graph of nodes is a quarter of that of unknowns.
+std::vector<int> PlateSolver::Impl::node_order() const {
+  const NodeGraph g = graph();
+  std::vector<int> order(static_cast<std::size_t>(grid.n_nodes()));
+  const int status = amd_order(grid.n_nodes(), g.starts.data(), g.neighbours.data(), order.data(),
+                               nullptr, nullptr);
+  if (status != AMD_OK && status != AMD_OK_BUT_JUMBLED)
+    throw Error::numerical("plate solver: AMD failed with status " + std::to_string(status));
+  return order;
+}
+
+void PlateSolver::Impl::number(std::span<const HeldUnknown> held) {
+  const std::size_t n_nodes = static_cast<std::size_t>(grid.n_nodes());
+  std::vector<char> exists(2 * n_nodes, 0);
+  each_cell([&](int i, int j) {
+    for (const int node : corners_of(grid, i, j))
+      exists[2 * static_cast<std::size_t>(node)] = exists[2 * static_cast<std::size_t>(node) + 1] =
+          1;
+  });
+  for (const HeldUnknown& h : held) {
+    if (h.node < 0 || h.node >= grid.n_nodes() || h.component < 0 || h.component > 1)
+      throw Error::input("plate solver: node " + std::to_string(h.node) + ", component " +
+                         std::to_string(h.component) + " is not of this grid");
+    exists[2 * static_cast<std::size_t>(h.node) + static_cast<std::size_t>(h.component)] = 0;
+  }
+  rows.assign(2 * n_nodes, -1);
+  for (const int node : node_order())
+    for (std::size_t c = 0; c < 2; ++c) {
+      const std::size_t k = 2 * static_cast<std::size_t>(node) + c;
+      if (exists[k] == 0) continue;
+      rows[k] = n++;
+      unknown_of_column.push_back(static_cast<int>(k));
+    }
+  if (n == 0) throw Error::input("plate solver: every displacement is held");
+}
+
+void PlateSolver::Impl::build_pattern() {
+  std::vector<std::pair<int, int>> entries;  // (column, row), row >= column
+  entries.reserve(static_cast<std::size_t>(grid.n_cells()) * 36);
+  each_cell([&](int i, int j) {
+    const auto cell = rows_of_cell(i, j);
+    for (std::size_t a = 0; a < 8; ++a)
+      for (std::size_t b = 0; b <= a; ++b) {
+        const int c = std::min(cell[a], cell[b]), r = std::max(cell[a], cell[b]);
+        if (c >= 0) entries.emplace_back(c, r);
+      }
+  });
+  std::sort(entries.begin(), entries.end());
+  entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
+  std::vector<int> starts(static_cast<std::size_t>(n) + 1, 0), pattern;
+  pattern.reserve(entries.size());
+  for (const auto& [c, r] : entries) {
+    ++starts[static_cast<std::size_t>(c) + 1];
+    pattern.push_back(r);
+  }
+  for (std::size_t c = 0; c < static_cast<std::size_t>(n); ++c) starts[c + 1] += starts[c];
+  std::vector<std::pair<int, int>>().swap(entries);
+  const auto entry = [&](int r, int c) {
+    const auto begin = pattern.begin() + starts[static_cast<std::size_t>(c)];
+    const auto end = pattern.begin() + starts[static_cast<std::size_t>(c) + 1];
+    return static_cast<int>(std::lower_bound(begin, end, r) - pattern.begin());
+  };
+  each_cell([&](int i, int j) {
+    const auto cell = rows_of_cell(i, j);
+    for (std::size_t a = 0; a < 8; ++a)
+      for (std::size_t b = 0; b <= a; ++b) {
+        const int c = std::min(cell[a], cell[b]), r = std::max(cell[a], cell[b]);
+        scatter.push_back(c < 0 ? -1 : entry(r, c));
+      }
+  });
+  factor = std::make_unique<SupernodalFactor>(std::move(starts), std::move(pattern));
+}
+
+PlateSolver::PlateSolver(const Grid& grid, const PlaneSection& section,
+                         std::span<const HeldUnknown> held, std::span<const signed char> outside)
+    : impl_(std::make_unique<Impl>()) {
+  Impl& m = *impl_;
+  m.grid = grid;
+  m.section = section;
+  m.cell_stiffness = q4_stiffness(section, grid.dx(), grid.dy());
+  m.inside.assign(static_cast<std::size_t>(grid.n_cells()), 1);
+  for (std::size_t c = 0; c < outside.size(); ++c) m.inside[c] = outside[c] == 0 ? 1 : 0;
+  m.number(held);
+  m.build_pattern();
+}
+
+PlateSolver::~PlateSolver() = default;
+PlateSolver::PlateSolver(PlateSolver&&) noexcept = default;
+
+const Grid& PlateSolver::grid() const { return impl_->grid; }
+int PlateSolver::n_unknowns() const { return impl_->n; }
+int PlateSolver::row(int node, int component) const {
+  return impl_->rows[2 * static_cast<std::size_t>(node) + static_cast<std::size_t>(component)];
+}
+
+void PlateSolver::factorize(const VectorXd& stiffness_factor) {
+  Impl& m = *impl_;
+  if (stiffness_factor.size() != m.grid.n_cells() || !stiffness_factor.allFinite())
+    throw Error::numerical("plate solver: the stiffness factors of " +
+                           std::to_string(m.grid.n_cells()) + " cells are not all finite numbers");
+  const std::span<double> values = m.factor->values();
+  std::fill(values.begin(), values.end(), 0.0);
+  const int* entry = m.scatter.data();
+  m.each_cell([&](int i, int j) {
+    const double factor = stiffness_factor(m.grid.cell(i, j));
+    for (int a = 0; a < 8; ++a)
+      for (int b = 0; b <= a; ++b, ++entry)
+        if (*entry >= 0)
+          values[static_cast<std::size_t>(*entry)] += factor * m.cell_stiffness(a, b);
+  });
+  const int column = m.factor->factorize();
+  if (column < 0) return;
+  const int unknown = m.unknown_of_column[static_cast<std::size_t>(column)], node = unknown / 2;
+  throw Error::numerical(
+      "plate solver: the stiffness is not positive definite at the " +
+      std::string(unknown % 2 == 0 ? "x" : "y") + "-displacement of node column " +
+      std::to_string(node / (m.grid.ny + 1)) + ", row " + std::to_string(node % (m.grid.ny + 1)) +
+      ": the supports must hold the plate against shifts and turning, and no part may float");
+}
+
+void PlateSolver::solve(MatrixXd& loads) const {
+  forward(loads);
+  impl_->factor->backward(loads, impl_->active);
+}
+
+void PlateSolver::forward(MatrixXd& loads) const {
+  const Impl& m = *impl_;
+  m.active.assign(static_cast<std::size_t>(loads.rows()), m.n);
+  m.factor->forward(loads, m.active);
+}
+
+Q4Energy::Corners PlateSolver::Impl::corner_values(const MatrixXd& u, int i, int j) const {
+  const auto cell = rows_of_cell(i, j);
+  const auto value = [&](int row) {
+    return row < 0 ? held_values.data() : u.data() + static_cast<std::ptrdiff_t>(row) * u.rows();
+  };
+  Q4Energy::Corners x;
+  for (std::size_t a = 0; a < 4; ++a) {
+    x.u[a] = value(cell[2 * a]);
+    x.v[a] = value(cell[2 * a + 1]);
+  }
+  return x;
+}
+
+void PlateSolver::cell_energies(const MatrixXd& displacements, const VectorXd& weights,
+                                VectorXd& energies) const {
+  const Impl& m = *impl_;
+  const Q4Energy energy(m.section, m.grid.dx(), m.grid.dy());
+  const Eigen::Index n_loads = displacements.rows();
+  energies.setZero(m.grid.n_cells());
+  m.held_values.setZero(n_loads);
+  m.energy_of_load.resize(n_loads);
+  m.each_cell([&](int i, int j) {
+    energy.weighted(m.corner_values(displacements, i, j), weights.data(), n_loads,
+                    m.energy_of_load.data());
+    energies(m.grid.cell(i, j)) = m.energy_of_load.sum();
+  });
+}
+
+void PlateSolver::cell_energies(const MatrixXd& displacements, MatrixXd& energies) const {
+  const Impl& m = *impl_;
+  const Q4Energy energy(m.section, m.grid.dx(), m.grid.dy());
+  const Eigen::Index n_loads = displacements.rows();
+  energies.setZero(n_loads, m.grid.n_cells());
+  m.held_values.setZero(n_loads);
+  m.energy_of_load.setOnes(n_loads);  // the weights
+  m.each_cell([&](int i, int j) {
+    energy.weighted(m.corner_values(displacements, i, j), m.energy_of_load.data(), n_loads,
+                    energies.col(m.grid.cell(i, j)).data());
+  });
+}
+
+}  // namespace flexmorph::fem

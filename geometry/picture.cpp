@@ -1,0 +1,194 @@
+#include "geometry/picture.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstdint>
+#include <string>
+
+#include "geometry/component_frame.h"
+#include "geometry/outline.h"
+
+namespace flexmorph {
+
+namespace {
+
+/// One component as the sampling sees it.
+struct Stencil {
+  ComponentFrame frame;
+  Box local;           ///< rectangle of the component's frame around the outline
+  double left, right;  ///< its extent along X
+};
+
+std::vector<Stencil> stencils(std::span<const Component> components, double min_half_thickness) {
+  std::vector<Stencil> all;
+  all.reserve(components.size());
+  for (const Component& c : components) {
+    const ComponentFrame frame(c, min_half_thickness);
+    const Vec2 half(c.half_length, frame.largest_half_thickness());
+    const Box local{-half, half}, box = frame.enclosing(local);
+    all.push_back({frame, local, box.lower.x(), box.upper.x()});
+  }
+  return all;
+}
+
+/// The samples of one column, from below: 1 where there is material.
+class SampleColumn {
+ public:
+  SampleColumn(double y0, double step, int count)
+      : y0_(y0), step_(step), count_(count), covered_(static_cast<std::size_t>(count)) {}
+
+  void clear() { std::fill(covered_.begin(), covered_.end(), std::uint8_t{0}); }
+
+  void cover(const Stencil& stencil, double X) {
+    const IndexRange rows = indices_in(stencil.frame.column(X, stencil.local), y0_, step_, count_);
+    const ComponentFrame frame = stencil.frame;  // a copy: bytes written may alias anything else
+    const double y0 = y0_, step = step_;
+    std::uint8_t* covered = covered_.data();
+    for (int k = rows.first; k < rows.end; ++k) {
+      const double Y = y0 + k * step;
+      const double x = frame.x(X, Y), u = x * frame.per_length();
+      const double v = frame.y(X, Y) / frame.half_thickness(x);
+      const double u2 = u * u, v2 = v * v;
+      covered[k] |= u2 * u2 * u2 + v2 * v2 * v2 <= 1 ? 1 : 0;
+    }
+  }
+
+  void fill(std::span<const Box> boxes, double X, std::uint8_t value) {
+    for (const Box& box : boxes) {
+      if (X < box.lower.x() || X > box.upper.x()) continue;
+      const IndexRange rows = indices_in({box.lower.y(), box.upper.y()}, y0_, step_, count_);
+      std::fill(covered_.begin() + rows.first, covered_.begin() + rows.end, value);
+    }
+  }
+
+  /// Adds the samples of every cell to counts; `samples` of them to a cell.
+  void add_to(double* counts, int samples) const {
+    const std::uint8_t* covered = covered_.data();
+    for (int k = 0; k < count_; k += samples, ++counts) {
+      int sum = 0;
+      for (int l = 0; l < samples; ++l) sum += covered[k + l];
+      *counts += sum;
+    }
+  }
+
+ private:
+  double y0_, step_;
+  int count_;
+  std::vector<std::uint8_t> covered_;
+};
+
+/// Pieces of material joined over edges, found one by one.
+class Pieces {
+ public:
+  Pieces(const Grid& grid, const VectorXd& fractions, std::span<const std::vector<int>> places)
+      : grid_(grid),
+        open_(static_cast<std::size_t>(grid.n_cells())),
+        places_of_cell_(static_cast<std::size_t>(grid.n_cells())),
+        touched_(places.size()) {
+    for (int c = 0; c < grid.n_cells(); ++c) open_[c] = fractions[c] >= 0.5;
+    for (std::size_t p = 0; p < places.size(); ++p) {
+      for (const int cell : places[p]) places_of_cell_[cell].push_back(static_cast<int>(p));
+    }
+  }
+
+  bool is_open(int i, int j) const { return open_[grid_.cell(i, j)]; }
+
+  /// Removes the piece that holds a cell.
+  /// @returns whether it touches every place.
+  bool take(int i, int j) {
+    std::fill(touched_.begin(), touched_.end(), false);
+    enter(i, j);
+    while (!front_.empty()) {
+      const int cell = front_.back();
+      front_.pop_back();
+      const int column = cell / grid_.ny, row = cell % grid_.ny;
+      for (const int p : places_of_cell_[cell]) touched_[p] = true;
+      if (column > 0) enter(column - 1, row);
+      if (column < grid_.nx - 1) enter(column + 1, row);
+      if (row > 0) enter(column, row - 1);
+      if (row < grid_.ny - 1) enter(column, row + 1);
+    }
+    return std::all_of(touched_.begin(), touched_.end(), [](bool touched) { return touched; });
+  }
+
+ private:
+  void enter(int i, int j) {
+    const int cell = grid_.cell(i, j);
+    if (!open_[cell]) return;
+    open_[cell] = false;
+    front_.push_back(cell);
+  }
+
+  const Grid& grid_;
+  std::vector<bool> open_;
+  std::vector<std::vector<int>> places_of_cell_;
+  std::vector<bool> touched_;
+  std::vector<int> front_;
+};
+
+/// The first and the last column of cells.
+std::vector<std::vector<int>> ends(const Grid& grid) {
+  std::vector<std::vector<int>> both(2);
+  for (int j = 0; j < grid.ny; ++j) {
+    both[0].push_back(grid.cell(0, j));
+    both[1].push_back(grid.cell(grid.nx - 1, j));
+  }
+  return both;
+}
+
+}  // namespace
+
+std::vector<signed char> cells_outside(const Grid& grid, std::span<const Vec2> polygon) {
+  const Region region{{polygon.begin(), polygon.end()}, {}};
+  std::vector<signed char> outside(static_cast<std::size_t>(grid.n_cells()));
+  for (int i = 0; i < grid.nx; ++i) {
+    for (int j = 0; j < grid.ny; ++j) {
+      outside[grid.cell(i, j)] = contains(region, grid.cell_center(i, j)) ? 0 : 1;
+    }
+  }
+  return outside;
+}
+
+VectorXd area_fractions(const Grid& grid, std::span<const Component> components,
+                        double min_half_thickness, std::span<const Box> solid,
+                        std::span<const Box> empty, int samples) {
+  if (samples < 1) {
+    throw Error::input("area_fractions: samples = " + std::to_string(samples) +
+                       ": at least one to a cell is needed");
+  }
+  const std::vector<Stencil> all = stencils(components, min_half_thickness);
+  const double dx = grid.dx() / samples, dy = grid.dy() / samples;
+  SampleColumn column(grid.y0 + 0.5 * dy, dy, grid.ny * samples);
+  VectorXd fractions = VectorXd::Zero(grid.n_cells());
+  for (int i = 0; i < grid.nx * samples; ++i) {
+    const double X = grid.x0 + (i + 0.5) * dx;
+    column.clear();
+    for (const Stencil& s : all) {
+      if (s.left <= X && X <= s.right) column.cover(s, X);
+    }
+    column.fill(empty, X, 0);
+    column.fill(solid, X, 1);
+    column.add_to(fractions.data() + grid.cell(i / samples, 0), samples);
+  }
+  return fractions / (samples * samples);
+}
+
+Connectivity connectivity(const Grid& grid, const VectorXd& fractions,
+                          std::span<const std::vector<int>> places) {
+  assert(fractions.size() == grid.n_cells());
+  const std::vector<std::vector<int>> both_ends = ends(grid);
+  Pieces pieces(grid, fractions, places.empty() ? both_ends : places);
+  Connectivity result;
+  int count = 0;
+  for (int i = 0; i < grid.nx; ++i) {
+    for (int j = 0; j < grid.ny; ++j) {
+      if (!pieces.is_open(i, j)) continue;
+      ++count;
+      result.connected = pieces.take(i, j) || result.connected;
+    }
+  }
+  result.islands = std::max(0, count - 1);
+  return result;
+}
+
+}  // namespace flexmorph

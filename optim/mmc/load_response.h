@@ -1,0 +1,48 @@
+#pragma once
+
+#include "geometry/base.h"
+
+namespace flexmorph::mmc {
+
+/// What a design problem asks of the statics of one plate under many loads: compliances
+/// C_l = F_l . u_l with K(b) u_l = F_l, and their derivatives by the factors of every design cell.
+///
+/// Factors are per cell: stiffness (n_cells, 0..1), mass (n_cells, 0..1, 0 in the void).
+class LoadResponse {
+ public:
+  virtual ~LoadResponse() = default;
+
+  /// The weighted sum f = Σ w_l C_l.
+  struct Value {
+    double f = 0;
+    VectorXd d_stiffness, d_mass;  ///< (n_cells)
+  };
+  /// One factorization, one block solve, one energy pass.
+  /// @throws Error (numerical) when K cannot be factored or f is not finite.
+  virtual void evaluate(const VectorXd& stiffness, const VectorXd& mass, Value& value) = 0;
+
+  /// Every load by itself, without weights: what a worst case needs.
+  struct Each {
+    VectorXd f;                    ///< C_l (n_loads)
+    MatrixXd d_stiffness, d_mass;  ///< (n_loads x n_cells); d_mass is empty for fixed loads
+  };
+  /// The same solves as evaluate(), uncompressed, with one row of energies per load.
+  /// @throws Error (numerical) as evaluate().
+  virtual void evaluate_each(const VectorXd& stiffness, const VectorXd& mass, Each& each) = 0;
+
+  /// C_l of every load at the given factors (n_loads).
+  virtual VectorXd individual(const VectorXd& stiffness, const VectorXd& mass) = 0;
+
+  /// Displacements of one load, node by node (2 n_nodes), at the given factors.
+  virtual VectorXd displacement(const VectorXd& stiffness, const VectorXd& mass, int load) = 0;
+
+  virtual int n_loads() const = 0;
+  virtual int n_right_hand_sides() const = 0;  ///< after compression
+  virtual int factorizations() const = 0;      ///< since construction
+  struct Seconds {                             ///< CPU seconds of the last evaluation
+    double factor = 0, solve = 0, sensitivity = 0;
+  };
+  virtual Seconds seconds() const = 0;
+};
+
+}  // namespace flexmorph::mmc

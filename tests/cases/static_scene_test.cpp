@@ -1,0 +1,110 @@
+// Plates at rest: the shipped cases load and build with the data of the literature; forces spread
+// over a place add up to what the case says; every bad input is refused with one message that says
+// where and why.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "cases/build.h"
+
+namespace flexmorph::cases {
+namespace {
+
+using Changes = std::vector<std::string>;
+
+Scene read(const std::string& name, const Changes& changes = {}) {
+  return read_scene(io::CaseFile(std::string(FLEXMORPH_CASES) + "/" + name + ".toml", changes));
+}
+
+std::string complaint(const std::string& name, const Changes& changes) {
+  try {
+    const Scene scene = read(name, changes);
+    build_static_loads(scene, build_problems(scene).front());
+  } catch (const Error& e) {
+    EXPECT_EQ(e.kind(), Error::Kind::input);
+    return e.what();
+  }
+  return "";
+}
+
+TEST(StaticScene, ShortBeamIsThatOfTheLiterature) {
+  const Scene s = read("short_beam");
+  ASSERT_TRUE(s.domain.has_value());
+  EXPECT_TRUE(s.bodies.empty());
+  EXPECT_FALSE(s.esl.has_value());
+  ASSERT_EQ(s.designs.size(), 1u);
+  const BodyDesign& d = s.designs[0];
+  EXPECT_EQ(d.grid.nx, 80);
+  EXPECT_EQ(d.grid.ny, 40);
+  EXPECT_EQ(d.grid.y0, 0);
+  EXPECT_EQ(d.goal.max_volume, 0.4);
+  const mmc::BodyProblem problem = build_problems(s).front();
+  EXPECT_EQ(problem.design.n_variables(), 112);
+  EXPECT_EQ(problem.places.size(), 2u);
+  // The full plate under its load: 80 x 40 bilinear cells; beam theory with shear, up to the
+  // clamped end of a beam twice as long as high.
+  const auto loads = build_static_loads(s, problem);
+  const VectorXd full = VectorXd::Ones(d.grid.n_cells());
+  const double beam = 8 / (3 * (1. / 12)) + 2 / (5. / 6 / 2.6);
+  EXPECT_NEAR(loads->individual(full, full)[0], beam, 0.1 * beam);
+}
+
+TEST(StaticScene, BridgeHasThreeLoadsOfWhichTheWorstCounts) {
+  const Scene s = read("bridge");
+  const mmc::BodyProblem problem = build_problems(s).front();
+  EXPECT_EQ(problem.goal.over, mmc::Goal::Over::worst);
+  EXPECT_EQ(problem.places.size(), 5u);
+  const auto loads = build_static_loads(s, problem);
+  ASSERT_EQ(loads->n_loads(), 3);
+  const VectorXd full = VectorXd::Ones(problem.grid.n_cells());
+  const VectorXd C = loads->individual(full, full);
+  EXPECT_NEAR(C[0], C[2], 1e-9 * C[0]);  // symmetry
+  EXPECT_GT(C[1], C[0]);
+}
+
+TEST(StaticScene, LBracketKeepsOutOfWhatIsNotThere) {
+  const Scene s = read("l_bracket");
+  const mmc::BodyProblem problem = build_problems(s).front();
+  ASSERT_EQ(problem.outside.size(), 6400u);
+  EXPECT_EQ(mmc::ersatz_of(problem).n_domain_cells(), 4096);  // 64 % of 80 x 80
+  const VectorXd material = mmc::fractions_of(problem, problem.design.components());
+  EXPECT_EQ(material[problem.grid.cell(60, 60)], 0);
+}
+
+TEST(StaticScene, JitterIsRepeatableAndSmall) {
+  const auto start = [](const Changes& changes) {
+    return build_problems(read("short_beam", changes)).front().design.x();
+  };
+  const VectorXd straight = start({}), one = start({"design.jitter=0.1"});
+  EXPECT_EQ(one, start({"design.jitter=0.1"}));
+  EXPECT_NE(one, start({"design.jitter=0.1", "design.seed=2"}));
+  EXPECT_GT((one - straight).lpNorm<Eigen::Infinity>(), 0.01);
+  EXPECT_LE((one - straight).lpNorm<Eigen::Infinity>(), 0.1);
+}
+
+struct Bad {
+  const char* name;
+  Changes changes;
+  const char* said;
+};
+class StaticSceneRefuses : public ::testing::TestWithParam<Bad> {};
+TEST_P(StaticSceneRefuses, AndSaysWhy) {
+  const std::string said = complaint("short_beam", GetParam().changes);
+  EXPECT_NE(said.find(GetParam().said), std::string::npos) << "said: " << said;
+}
+INSTANTIATE_TEST_SUITE_P(
+    Table, StaticSceneRefuses,
+    ::testing::Values(
+        Bad{"motion", {"time.end=1"}, "rests"},
+        Bad{"size", {"domain.size=[2.0, -1.0]"}, "a length, a height"},
+        Bad{"both", {"domain.polygon=[0.0, 0.0, 1.0, 0.0, 1.0, 1.0]"}, "either a `size`"},
+        Bad{"edge", {"support.edge=\"rear\""}, "an edge"},
+        Bad{"axis", {"support.fix=[\"z\"]"}, "a direction"},
+        Bad{"goal", {"design.minimize=\"mass\""}, "an objective"},
+        Bad{"limit", {"design.max_compliance=10.0"}, "only minimize = \"volume\""},
+        Bad{"no_limit", {"design.minimize=\"volume\""}, "max_compliance"},
+        Bad{"unknown", {"domain.depth=1.0"}, "depth"}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+}  // namespace
+}  // namespace flexmorph::cases
