@@ -16,7 +16,7 @@ using Options = std::map<std::string, double>;
 Options with_defaults(const Settings& settings, const Options& defaults);
 
 /// One maker per file; optimizers.cpp holds the table. They check their own options.
-std::unique_ptr<Optimizer> make_mma(const Settings& settings);    // mma.cpp
+std::unique_ptr<Optimizer> make_mma(const Settings& settings);    // mma.cpp: mma, gcmma
 std::unique_ptr<Optimizer> make_nlopt(const Settings& settings);  // nlopt.cpp
 std::unique_ptr<Optimizer> make_ipopt(const Settings& settings);  // ipopt.cpp
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "optim/makers.h"
@@ -6,7 +7,12 @@
 #include "optim/restoration.h"
 #include "optim/search.h"
 
-/// The method of moving asymptotes in its classic form.
+/// The method of moving asymptotes in its classic form (`mma`) and the globally convergent one
+/// (`gcmma`): its inner iterations make the approximation of every function more convex until it
+/// lies above the function at the trial, so that iterates from a feasible one stay feasible and the
+/// objective falls. It pays with evaluations.
+///
+/// Source: Svanberg (1987), IJNME 24; (2002), SIAM J. Optim. 12, 555-573.
 ///
 /// Options, with the defaults that worked on the published short beam:
 ///   asyinit, asyincr, asydecr  first distance of the asymptotes, its factors per iteration
@@ -14,7 +20,8 @@
 ///                              before x starts to swing about a minimum inside its bounds
 ///   albefa                     part of the way to an asymptote that stays forbidden
 ///   raa0                       convexity given to every variable; with 1e-5 (Svanberg's) large
-///                              subproblems with many near-zero gradients stay unsolved
+///                              subproblems with many near-zero gradients stay unsolved; gcmma
+///                              starts an iteration with it or a tenth of what the last one needed
 ///   c                          price of violating a constraint, against f * fscale
 ///   fscale, gscale             factors of f and g
 ///
@@ -31,7 +38,11 @@ constexpr int kMostRefusals = 10;     // in a row
 constexpr double kStepBack = 0.5;     // of the trust, after a refused trial
 constexpr double kStepForward = 1.5;  // after a taken one: two of them make up for one back
 constexpr double kLeastTrust = 1e-4;
-constexpr int kRestorations = 3;  // last iterations that, if infeasible, only restore g <= 0
+constexpr double kConservative = 1e-10;          // relative: round-off in the values
+constexpr int kMostInner = 15;                   // inner iterations of gcmma
+constexpr double kSafety = 1.1, kSteepest = 10;  // Svanberg (2002), (4.5): growth of the convexity
+constexpr double kForgotten = 0.1;  // part of the last convexity that an iteration starts with
+constexpr int kRestorations = 3;    // last iterations that, if infeasible, only restore g <= 0
 
 struct Constants {
   double asyinit, asyincr, asydecr, asymin, asymax, albefa, raa0, c, fscale, gscale;
@@ -82,7 +93,8 @@ void approximate(const Slope& slope, double scale, double raa0, const VectorXd& 
 
 class Mma final : public Optimizer {
  public:
-  Mma(const Settings& settings, const Constants& constants) : settings_(settings), c_(constants) {}
+  Mma(const Settings& settings, const Constants& constants, bool conservative)
+      : settings_(settings), c_(constants), conservative_(conservative) {}
 
   Result minimize(Problem& problem, const Observer& observe) override;
 
@@ -90,11 +102,15 @@ class Mma final : public Optimizer {
   void build(const Point& at, const Search& search, const Asymptotes& asymptotes);
   VectorXd propose(const Point& at, const Search& search, const Asymptotes& asymptotes,
                    MmaSolver& solver);
+  bool raise_convexity(const Point& at, const Point& trial);
   bool advance(Point& at, Search& search, Asymptotes& asymptotes, MmaSolver& solver);
 
   Settings settings_;
   Constants c_;
+  bool conservative_;      // gcmma
+  bool restored_ = false;  // the last proposal came from no subproblem
   MmaSubproblem sub_;
+  VectorXd convexity_;  // of f * fscale and every g * gscale (1 + m)
   int subproblems_ = 0, unsolved_ = 0;
   double worst_kkt_ = 0;
 };
@@ -108,11 +124,11 @@ void Mma::build(const Point& at, const Search& search, const Asymptotes& asympto
   sub_.upp = at.x + distance;
   sub_.alpha = search.lower().cwiseMax(at.x - reach);
   sub_.beta = search.upper().cwiseMin(at.x + reach);
-  approximate(r.df, c_.fscale, c_.raa0, distance, sub_.p0, sub_.q0);
+  approximate(r.df, c_.fscale, convexity_[0], distance, sub_.p0, sub_.q0);
   sub_.P.resize(at.x.size(), m);
   sub_.Q.resize(at.x.size(), m);
   for (int i = 0; i < m; ++i) {
-    approximate(r.dg.row(i).transpose(), c_.gscale, c_.raa0, distance, sub_.P.col(i),
+    approximate(r.dg.row(i).transpose(), c_.gscale, convexity_[1 + i], distance, sub_.P.col(i),
                 sub_.Q.col(i));
   }
   for (Eigen::Index j = 0; j < at.x.size(); ++j) {
@@ -134,8 +150,10 @@ VectorXd Mma::propose(const Point& at, const Search& search, const Asymptotes& a
                       MmaSolver& solver) {
   const bool last_ones = search.rows() + kRestorations >= settings_.max_iterations;
   if (last_ones && search.rows() > kRestorations && !search.feasible(at.response)) {
+    restored_ = true;
     return restored(at, search.lower(), search.upper(), asymptotes.move());
   }
+  restored_ = false;
   build(at, search, asymptotes);
   const MmaSolution& solution = solver.solve(sub_);
   ++subproblems_;
@@ -144,17 +162,47 @@ VectorXd Mma::propose(const Point& at, const Search& search, const Asymptotes& a
   return solution.x.cwiseMax(search.lower()).cwiseMin(search.upper());
 }
 
+/// Where the approximation of a function lies below it at the trial, makes it as convex as it takes
+/// to lie above. @return whether one did
+bool Mma::raise_convexity(const Point& at, const Point& trial) {
+  const Eigen::ArrayXd to_upp = (sub_.upp - trial.x).array().inverse();
+  const Eigen::ArrayXd to_low = (trial.x - sub_.low).array().inverse();
+  const Eigen::ArrayXd distance = at.x - sub_.low;
+  // What one unit of convexity adds at the trial.
+  const double unit = (distance.square() * (to_upp + to_low - 2 / distance)).sum();
+  bool raised = false;
+  const auto check = [&](Eigen::Index k, double approximation, double value) {
+    const double missing = value - approximation;
+    if (missing <= kConservative * (1 + std::abs(value)) || unit <= 0) return;
+    convexity_[k] = std::min(kSteepest * convexity_[k], kSafety * (convexity_[k] + missing / unit));
+    raised = true;
+  };
+  const auto change = [&](const auto& p, const auto& q) {
+    return (p.array() * (to_upp - 1 / distance) + q.array() * (to_low - 1 / distance)).sum();
+  };
+  check(0, c_.fscale * at.response.f + change(sub_.p0, sub_.q0), c_.fscale * trial.response.f);
+  for (Eigen::Index i = 0; i < at.response.g.size(); ++i)
+    check(1 + i, c_.gscale * at.response.g[i] + change(sub_.P.col(i), sub_.Q.col(i)),
+          c_.gscale * trial.response.g[i]);
+  return raised;
+}
+
 /// To the next iterate; false (and the search stopped) when every trial was refused.
 bool Mma::advance(Point& at, Search& search, Asymptotes& asymptotes, MmaSolver& solver) {
   Point trial;
-  for (int refusals = 0; refusals < kMostRefusals; ++refusals) {
+  convexity_ = (kForgotten * convexity_).cwiseMax(c_.raa0);
+  int inner = 0;
+  for (int refusals = 0; refusals < kMostRefusals;) {
     trial.x = propose(at, search, asymptotes, solver);
     if (search.evaluate(trial.x, trial.response) == Trial::taken) {
+      if (conservative_ && !restored_ && inner++ < kMostInner && raise_convexity(at, trial))
+        continue;
       std::swap(at, trial);
       asymptotes.advance(at.x);
       return true;
     }
     asymptotes.step_back();
+    ++refusals;
   }
   search.stop(Stop::stalled, std::to_string(kMostRefusals) +
                                  " steps in a row were refused, the last one because " +
@@ -169,6 +217,7 @@ Result Mma::minimize(Problem& problem, const Observer& observe) {
   Point at = search.start();
   Asymptotes asymptotes(c_, settings_.move_limit, at.x);
   MmaSolver solver(search.n(), search.m());
+  convexity_ = VectorXd::Constant(1 + search.m(), c_.raa0);
   for (int iteration = 1; search.row(iteration, at); ++iteration) {
     if (!advance(at, search, asymptotes, solver)) break;
   }
@@ -200,7 +249,7 @@ std::unique_ptr<Optimizer> make_mma(const Settings& settings) {
   c.c = get("c", 1e-3, 1e12);
   c.fscale = get("fscale", 1e-9, 1e9);
   c.gscale = get("gscale", 1e-9, 1e9);
-  return std::make_unique<Mma>(settings, c);
+  return std::make_unique<Mma>(settings, c, settings.name == "gcmma");
 }
 
 }  // namespace flexmorph::optim

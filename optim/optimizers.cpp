@@ -11,6 +11,7 @@ using Maker = std::function<std::unique_ptr<Optimizer>(const Settings&)>;
 
 const std::map<std::string, Maker>& table() {
   static const std::map<std::string, Maker> makers = {{"mma", make_mma},
+                                                      {"gcmma", make_mma},
                                                       {"nlopt_mma", make_nlopt},
                                                       {"nlopt_ccsaq", make_nlopt},
                                                       {"ipopt", make_ipopt}};

@@ -131,7 +131,8 @@ TEST(EslLoop, RowsDescribeTheirIterates) {
       EXPECT_EQ(&r.value, &r.state.value());
       EXPECT_NEAR(r.iterate.violation, std::max(0.0, r.state.volume() / 0.5 - 1), 1e-12);
       const Design design(kGrid, r.state.components(), kScale);
-      MmcProblem again(kGrid, design, ersatz, compliance, whole(r.state.band() / kGrid.dx()), Goal{});
+      MmcProblem again(kGrid, design, ersatz, compliance, whole(r.state.band() / kGrid.dx()),
+                       Goal{});
       again.evaluate(design.x());
       EXPECT_NEAR(again.compliance(), r.state.compliance(), 1e-9 * again.compliance()) << name;
       EXPECT_EQ(r.sharp != nullptr, rows % 7 == 0);

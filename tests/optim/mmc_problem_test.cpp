@@ -41,7 +41,8 @@ struct Whole {
         ersatz(kGrid, tdf_settings().alpha, strip(), {}),
         compliance(turning_plate(4), kSection, settings, VectorXd::Constant(kGrid.n_cells(), 0.5),
                    VectorXd::Constant(kGrid.n_cells(), 0.5)),
-        problem(kGrid, design, ersatz, compliance, tdf_settings(), Goal{.max_volume = max_volume}) {}
+        problem(kGrid, design, ersatz, compliance, tdf_settings(), Goal{.max_volume = max_volume}) {
+  }
 
   /// x by which a vector of one cell (positions, lengths, thicknesses; angles turn an end of a
   /// component by one cell) changes the variables.

@@ -24,7 +24,7 @@ Settings for_small_problems(const std::string& name) {
   s.move_limit = 1;  // the problems are smooth: nothing comes apart by a step of one unit
   // Asymptotes half a unit away reach optima several units away soon; those that may come as near
   // as 1e-4 do not swing about a minimum of large curvature (4 raa0 / asymin is larger).
-  if (name == "mma") {
+  if (name == "mma" || name == "gcmma") {
     s.options = {{"asyinit", 0.5}, {"asyincr", 1.2}, {"asydecr", 0.7}, {"asymin", 1e-4}};
   }
   // No structure, no box; f and g are of the order of 1 already.
@@ -179,6 +179,26 @@ TEST(Problems, GradientsAreRight) {
     for (int i = 0; i < problem.n_constraints(); ++i) {
       EXPECT_GT(order([i](const Response& at) { return 1 + at.g[i]; }, r.dg.row(i)), 1.95) << i;
     }
+  }
+}
+
+// Iterates of gcmma from a feasible start stay feasible and never get worse: every approximation
+// lies above its function at the accepted point. (To the round-off of the subproblem.)
+TEST(Gcmma, StaysFeasibleAndFalls) {
+  for (Analytic& problem : all_problems()) {
+    SCOPED_TRACE(problem.name);
+    Settings settings = for_small_problems("gcmma");
+    bool feasible = false;
+    double last = 0;
+    make_optimizer(settings)->minimize(problem, [&](const Iterate& it) {
+      if (feasible) {
+        EXPECT_LE(it.violation, 1e-5);
+        EXPECT_LE(it.response->f, last + 1e-6 * (1 + std::abs(last)));
+      }
+      feasible = it.violation <= 0;
+      last = it.response->f;
+      return it.iteration < 100;
+    });
   }
 }
 
