@@ -110,7 +110,9 @@ void shake(std::vector<Component>& components, double jitter, int seed) {
   if (jitter == 0) return;
   std::mt19937 engine(static_cast<unsigned>(seed));
   // Not std::uniform_real_distribution, which differs between standard libraries.
-  const auto draw = [&] { return jitter * (2 * (static_cast<double>(engine()) / 4294967295.0) - 1); };
+  const auto draw = [&] {
+    return jitter * (2 * (static_cast<double>(engine()) / 4294967295.0) - 1);
+  };
   for (Component& c : components) {
     const double size = c.half_length;
     c.center += size * Vec2(draw(), draw());
@@ -136,8 +138,10 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
     scale.half_length = d.half_length;
     scale.min_thickness = d.min_thickness;
     scale.max_thickness = std::max({0.3 * g.height, 1.5 * d.min_thickness, d.half_thickness});
-    auto layout = crossing_layout(g.x0, g.y0, g.width, g.height, d.components[0], d.components[1],
-                                  d.half_thickness, d.half_length);
+    auto layout = d.start.empty()
+                      ? crossing_layout(g.x0, g.y0, g.width, g.height, d.components[0],
+                                        d.components[1], d.half_thickness, d.half_length)
+                      : d.start;
     shake(layout, d.jitter, d.seed);
     std::vector<TdfSettings> stages;
     for (size_t i = 0; i < d.band.size(); ++i) stages.push_back(d.stage(i));

@@ -43,7 +43,7 @@ void describe_body(const Body& body, const Mechanism& mechanism, std::ostringstr
 
 void describe_design(const Scene& scene, const BodyDesign& d, std::ostringstream& out) {
   const Grid& g = d.grid;
-  const int components = 2 * d.components[0] * d.components[1];
+  const int components = d.n_components();
   const int n = 2 * g.nx * (g.ny + 1), loads = scene.esl->count(scene.time.end);
   // Natural order from the free end: a band of ny + 2 nodes.
   const double factor = static_cast<double>(n) * (2 * g.ny + 5);
@@ -66,7 +66,7 @@ void describe_static(const Scene& scene, std::ostringstream& out) {
   const std::unique_ptr<mmc::LoadResponse> loads = build_static_loads(scene, problem);
   const BodyDesign& d = scene.designs.front();
   const Grid& g = d.grid;
-  const int components = 2 * d.components[0] * d.components[1];
+  const int components = d.n_components();
   out << row("plate " + domain.name, "at rest, " + std::to_string(g.nx) + " x " +
                                          std::to_string(g.ny) + " cells" +
                                          (domain.polygon.empty() ? "" : ", domain a polygon"));

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "io/exports.h"
 #include "io/files.h"
 #include "io/plots.h"
 
@@ -10,6 +11,9 @@ namespace flexmorph::cases {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// How far sides of written outlines may be off the true ones   [cells].
+constexpr double kOutline = 0.01;
 
 const std::vector<std::string> kHistoryColumns = {"body",
                                                   "cycle",
@@ -49,10 +53,16 @@ const std::vector<std::string> kOurs = {"case.toml",
                                         "report.html",
                                         "components.csv",
                                         "design.svg",
+                                        "design.dxf",
+                                        "design.stl",
                                         "design",
                                         "motion",
                                         "loads",
                                         "plots"};
+std::vector<Vec2> corners_of(const Box& b) {
+  return {b.lower, {b.upper.x(), b.lower.y()}, b.upper, {b.lower.x(), b.upper.y()}};
+}
+
 /// With several designs their files carry the bodies' names.
 bool is_ours(const std::string& name) {
   return std::find(kOurs.begin(), kOurs.end(), name) != kOurs.end() ||
@@ -254,24 +264,20 @@ void RunFolder::write_design(const mmc::BodyProblem& problem, const mmc::BodyOut
   const std::string stem = scene_.designs.size() > 1 ? "_" + problem.body : "";
   const std::vector<Component> components = problem.design.components();
   const double bound = problem.stages.back().min_half_thickness;
-  {
-    const std::vector<std::string> columns = {"X0", "Y0", "half_length", "angle", "c1", "c2", "c3"};
-    io::CsvWriter csv(path_ + "/components" + stem + ".csv", columns);
-    for (const Component& c : components) {
-      std::vector<io::Cell> row;
-      for (const double p : c.parameters()) row.emplace_back(p);
-      csv.row(row);
-    }
-  }
+  io::write_components_csv(path_ + "/components" + stem + ".csv", components);
   std::vector<std::vector<Vec2>> outlines;
-  for (const Component& c : components) outlines.push_back(outline(c, bound, 64));
-  for (const Box& b : problem.solid)
-    outlines.push_back({b.lower, {b.upper.x(), b.lower.y()}, b.upper, {b.lower.x(), b.upper.y()}});
+  for (const Component& c : components)
+    outlines.push_back(outline_within(c, bound, kOutline * problem.grid.dx()));
+  for (const Box& b : problem.solid) outlines.push_back(corners_of(b));
+  std::vector<std::vector<Vec2>> voids;
+  for (const Box& b : problem.empty) voids.push_back(corners_of(b));
   const Grid& g = problem.grid;
   const Box domain{{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}};
   const std::vector<Region> regions =
-      problem.domain.empty() ? unite(outlines, domain) : unite(outlines, problem.domain, {});
+      unite(outlines, problem.domain.empty() ? corners_of(domain) : problem.domain, voids);
   io::write_file(path_ + "/design" + stem + ".svg", io::outline_svg(regions, domain));
+  io::write_dxf(path_ + "/design" + stem + ".dxf", regions);
+  io::write_stl(path_ + "/design" + stem + ".stl", regions, problem.section.thickness);
   if (!scene_.output.plots) return;
   const auto& sharp = outcome.sharp.fractions;
   io::write_png(path_ + "/plots/design" + stem + ".png", g,

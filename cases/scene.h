@@ -140,10 +140,14 @@ struct BodyDesign {
   TdfSettings tdf;                ///< in metres, with the band of the last, finest stage
   double stiffness_void = 1e-4;   ///< stiffness factor of the void in dynamics [-]
   double mass_void = 1e-3;        ///< mass factor of the void in dynamics [-]
+  std::vector<Component> start;   ///< empty: boxes of two crossing components
   double jitter = 0;              ///< of the initial components, in parts of their sizes [-]
   int seed = 1;                   ///< of the jitter
   std::vector<Box> solid, empty;  ///< a cell belongs to a region that holds its centre [m]
 
+  int n_components() const {
+    return start.empty() ? 2 * components[0] * components[1] : static_cast<int>(start.size());
+  }
   /// Settings of one stage of the continuation.
   TdfSettings stage(size_t index) const;
 };

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "cases/scene_parts.h"
+#include "io/exports.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
@@ -144,6 +145,14 @@ void read_components(const Table& t, const Body& body, BodyDesign& design) {
   half_width.noun = "a half-thickness";
   design.half_thickness =
       t.number("half_thickness", half_width, std::max(design.min_thickness, filling));
+  if (t.has("start")) {
+    const std::string path = t.string("start", "a file of components");
+    try {
+      design.start = io::read_components_csv(path);
+    } catch (const Error& error) {
+      t.fail("start", error.what());
+    }
+  }
   design.jitter = t.number("jitter", between("a jitter", "", 0, 1), 0.0);
   design.seed = t.integer("seed", "a seed", 0, 1'000'000'000, 1);
 }

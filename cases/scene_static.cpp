@@ -81,7 +81,8 @@ PlaneSupport read_support(const Table& t, const Domain& domain) {
 
 LoadCase read_load(const Table& t, const Domain& domain) {
   LoadCase load;
-  load.name = t.string("name", "the name of a load", "load_" + std::to_string(domain.loads.size() + 1));
+  load.name =
+      t.string("name", "the name of a load", "load_" + std::to_string(domain.loads.size() + 1));
   load.weight = t.number("weight", positive("a weight"), 1.0);
   for (const Table& f : t.tables("force")) {
     const std::vector<double> force = f.numbers("force", any_number("a force", "N"), 2);

@@ -105,6 +105,25 @@ std::vector<Region> unite(std::span<const std::vector<Vec2>> polygons,
   return regions;
 }
 
+std::vector<Vec2> outline_within(const Component& c, double min_half_thickness, double tolerance) {
+  if (!(tolerance > 0)) throw Error::input("outline: a tolerance is positive");
+  constexpr int kFewest = 32, kMost = 1 << 16;
+  std::vector<Vec2> coarse = outline(c, min_half_thickness, kFewest);
+  for (int n = kFewest; n < kMost; n *= 2) {
+    std::vector<Vec2> fine = outline(c, min_half_thickness, 2 * n);
+    // The vertices in between tell how far the sides are off: a little more than the fine ones.
+    double off = 0;
+    for (std::size_t k = 0; k < coarse.size(); ++k) {
+      const Vec2 a = coarse[k], side = coarse[(k + 1) % coarse.size()] - a;
+      const Vec2 to = fine[2 * k + 1] - a;
+      off = std::max(off, std::abs(side.x() * to.y() - side.y() * to.x()) / side.norm());
+    }
+    if (off <= tolerance) return coarse;
+    coarse = std::move(fine);
+  }
+  return coarse;
+}
+
 double area(const Region& r) {
   double sum = signed_area(r.outer);
   for (const auto& hole : r.holes) sum += signed_area(hole);

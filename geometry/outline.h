@@ -26,6 +26,11 @@ std::vector<Region> unite(std::span<const std::vector<Vec2>> polygons,
                           const std::vector<Vec2>& domain,
                           std::span<const std::vector<Vec2>> voids);
 
+/// Outline of a component as a polygon whose vertices lie on it and whose sides stay within
+/// `tolerance` of it [m], counterclockwise.
+/// @throws Error(input) when the tolerance is not positive.
+std::vector<Vec2> outline_within(const Component& c, double min_half_thickness, double tolerance);
+
 double area(const Region& r);  ///< [m^2]
 double area(std::span<const Region> r);
 

@@ -200,7 +200,7 @@ const Bad kBadInputs[] = {
      "a list: a term is one of 'inertia', 'membrane', none twice"},
     {"unknown_optimizer",
      {"optimizer.name=sqp"},
-     "an optimizer is one of 'ipopt', 'mma', 'nlopt_ccsaq', 'nlopt_mma'"},
+     "an optimizer is one of 'gcmma', 'ipopt', 'mma', 'nlopt_ccsaq', 'nlopt_mma'"},
     {"unknown_start",
      {"time.start=rigit"},
      "a start is one of 'prestretched', 'rigid', 'hub_at_rest', did you mean 'rigid'?"},

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "cases/build.h"
+#include "io/exports.h"
+#include "tests/io/scratch.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -82,6 +84,18 @@ TEST(StaticScene, JitterIsRepeatableAndSmall) {
   EXPECT_LE((one - straight).lpNorm<Eigen::Infinity>(), 0.1);
 }
 
+TEST(StaticScene, StartsFromAFileOfComponents) {
+  const Scratch scratch;
+  const std::vector<Component> two = crossing_layout(0, 0, 2, 1, 1, 1, 0.1, 0.6);
+  io::write_components_csv(scratch / "two.csv", two);
+  const Scene s = read("short_beam", {"design.start=\"" + (scratch / "two.csv") + "\""});
+  const std::vector<Component> back = build_problems(s).front().design.components();
+  ASSERT_EQ(back.size(), 2u);
+  for (size_t k = 0; k < 2; ++k)
+    for (size_t p = 0; p < 7; ++p)
+      EXPECT_NEAR(back[k].parameters()[p], two[k].parameters()[p], 1e-14);
+}
+
 struct Bad {
   const char* name;
   Changes changes;
@@ -103,6 +117,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"goal", {"design.minimize=\"mass\""}, "an objective"},
         Bad{"limit", {"design.max_compliance=10.0"}, "only minimize = \"volume\""},
         Bad{"no_limit", {"design.minimize=\"volume\""}, "max_compliance"},
+        Bad{"start", {"design.start=\"nowhere.csv\""}, "nowhere.csv: cannot be read"},
         Bad{"unknown", {"domain.depth=1.0"}, "depth"}),
     [](const auto& test) { return std::string(test.param.name); });
 

@@ -57,6 +57,20 @@ TEST(Unite, FrameHasAHole) {
   EXPECT_FALSE(contains(united[0], {4.1, 2}));  // outside
 }
 
+// One superellipse |x/L|^6 + |y/g|^6 <= 1: area 4 L g Γ(7/6)²/Γ(4/3). A polygon within 1e-7 of a
+// curve of length 5 is off by less than 5e-7.
+TEST(OutlineWithin, HasTheAreaOfItsSuperellipse) {
+  const Component c{
+      .center = {0.3, -0.2}, .half_length = 1, .angle = 0.4, .c1 = 0.25, .c2 = 0.25, .c3 = 0.25};
+  const double exact = 4 * 0.25 * std::pow(std::tgamma(7.0 / 6), 2) / std::tgamma(4.0 / 3);
+  const std::vector<std::vector<Vec2>> fine = {outline_within(c, 0.01, 1e-7)};
+  EXPECT_NEAR(area(unite(fine, kLarge)), exact, 1e-6 * exact);
+  const std::vector<Vec2> coarse = outline_within(c, 0.01, 1e-3);
+  EXPECT_LT(coarse.size(), fine[0].size());
+  EXPECT_NEAR(area(Region{coarse, {}}), exact, 5e-3);
+  EXPECT_THROW(outline_within(c, 0.01, 0), Error);
+}
+
 TEST(Unite, ClipsToAPolygonAndTakesVoidsOut) {
   const std::vector<Vec2> L = {{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}};
   const std::vector<std::vector<Vec2>> all = {{{-5, -5}, {5, -5}, {5, 5}, {-5, 5}}};

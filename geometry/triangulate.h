@@ -1,0 +1,19 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "geometry/outline.h"
+
+namespace flexmorph {
+
+struct Triangulation {
+  std::vector<Vec2> points;                   ///< vertices of the region, outer ring first [m]
+  std::vector<std::array<int, 3>> triangles;  ///< counterclockwise
+};
+
+/// Constrained Delaunay triangulation (CGAL) of a polygon with holes, without new points.
+/// @throws Error (numerical) when rings cross or leave no triangle.
+Triangulation triangulate(const Region& region);
+
+}  // namespace flexmorph

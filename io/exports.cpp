@@ -1,0 +1,137 @@
+#include "io/exports.h"
+
+#include <Eigen/Geometry>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "geometry/triangulate.h"
+#include "io/files.h"
+#include "io/tables.h"
+
+namespace flexmorph::io {
+namespace {
+
+const std::vector<std::string> kColumns = {"X0", "Y0", "half_length", "angle", "c1", "c2", "c3"};
+
+void add_polyline(std::string& out, const std::vector<Vec2>& ring, const char* layer) {
+  const std::string on_layer = std::string("8\n") + layer + "\n";
+  out += "0\nPOLYLINE\n" + on_layer + "66\n1\n10\n0\n20\n0\n30\n0\n70\n1\n";
+  for (const Vec2& p : ring)
+    out += "0\nVERTEX\n" + on_layer + "10\n" + to_text(p.x()) + "\n20\n" + to_text(p.y()) +
+           "\n30\n0\n";
+  out += "0\nSEQEND\n" + on_layer;
+}
+
+class StlText {
+ public:
+  void facet(const Vec3& a, const Vec3& b, const Vec3& c) {
+    const Vec3 normal = (b - a).cross(c - a).normalized();
+    text_ += "facet normal" + point(normal) + "\nouter loop\n";
+    for (const Vec3* p : {&a, &b, &c}) text_ += "vertex" + point(*p) + "\n";
+    text_ += "endloop\nendfacet\n";
+  }
+  std::string take() { return "solid design\n" + text_ + "endsolid design\n"; }
+
+ private:
+  static std::string point(const Vec3& p) {
+    std::string out;
+    for (const double each : {p.x(), p.y(), p.z()}) out.append(" ").append(to_text(each));
+    return out;
+  }
+  std::string text_;
+};
+
+/// Side walls above a ring; material lies to its left.
+void add_walls(StlText& stl, const std::vector<Vec2>& ring, double height) {
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    const Vec2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
+    const Vec3 a0(a.x(), a.y(), 0), b0(b.x(), b.y(), 0);
+    const Vec3 a1(a.x(), a.y(), height), b1(b.x(), b.y(), height);
+    stl.facet(a0, b0, b1);
+    stl.facet(a0, b1, a1);
+  }
+}
+
+}  // namespace
+
+void write_dxf(const std::string& path, std::span<const Region> regions) {
+  std::string out =
+      "0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n0\nENDSEC\n0\nSECTION\n2\nTABLES\n0\nTABLE\n"
+      "2\nLAYER\n70\n2\n";
+  for (const char* layer : {"OUTLINE", "HOLES"})
+    out += std::string("0\nLAYER\n2\n") + layer + "\n70\n0\n62\n7\n6\nCONTINUOUS\n";
+  out += "0\nENDTAB\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n";
+  for (const Region& r : regions) {
+    add_polyline(out, r.outer, "OUTLINE");
+    for (const auto& hole : r.holes) add_polyline(out, hole, "HOLES");
+  }
+  write_file(path, out + "0\nENDSEC\n0\nEOF\n");
+}
+
+void write_stl(const std::string& path, std::span<const Region> regions, double thickness) {
+  StlText stl;
+  for (const Region& r : regions) {
+    const Triangulation t = triangulate(r);
+    const auto at = [&](int k, double z) {
+      const Vec2& p = t.points[static_cast<std::size_t>(k)];
+      return Vec3(p.x(), p.y(), z);
+    };
+    for (const auto& [a, b, c] : t.triangles) {
+      stl.facet(at(a, thickness), at(b, thickness), at(c, thickness));
+      stl.facet(at(a, 0), at(c, 0), at(b, 0));
+    }
+    add_walls(stl, r.outer, thickness);
+    for (const auto& hole : r.holes) add_walls(stl, hole, thickness);
+  }
+  write_file(path, stl.take());
+}
+
+void write_components_csv(const std::string& path, std::span<const Component> components) {
+  CsvWriter csv(path, kColumns);
+  for (const Component& c : components) {
+    std::vector<Cell> row;
+    for (const double p : c.parameters()) row.emplace_back(p);
+    csv.row(row);
+  }
+}
+
+std::vector<Component> read_components_csv(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw Error::input(path + ": cannot be read");
+  std::string line, header;
+  for (const std::string& name : kColumns) header += (header.empty() ? "" : ",") + name;
+  const auto fail = [&](int number, const std::string& what) {
+    throw Error::input(path + ":" + std::to_string(number) + ": " + what);
+  };
+  const auto strip = [](std::string& text) {
+    if (!text.empty() && text.back() == '\r') text.pop_back();
+  };
+  std::getline(file, line);
+  strip(line);
+  if (line != header) fail(1, "the header of components is " + header);
+  std::vector<Component> out;
+  for (int number = 2; std::getline(file, line); ++number) {
+    strip(line);
+    if (line.empty()) continue;
+    std::array<double, Component::kParameters> values{};
+    std::istringstream cells(line);
+    std::string cell;
+    std::size_t n = 0;
+    for (; std::getline(cells, cell, ','); ++n) {
+      if (n == values.size()) fail(number, "more than " + std::to_string(n) + " values");
+      const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), values[n]);
+      if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(values[n]))
+        fail(number, kColumns[n] + " = '" + cell + "' is not a number");
+      if (n != 0 && n != 1 && n != 3 && !(values[n] > 0))
+        fail(number, kColumns[n] + " = " + cell + ": lengths and thicknesses are positive [m]");
+    }
+    if (n < values.size()) fail(number, std::to_string(n) + " values; a component has " + header);
+    out.push_back(Component::from_parameters(values.data()));
+  }
+  if (out.empty()) fail(2, "one component or more");
+  return out;
+}
+
+}  // namespace flexmorph::io

@@ -1,0 +1,133 @@
+// Designs for other programs, read back by readers written here: polylines enclose the area of the
+// regions, the extruded surface is closed and encloses area times thickness; components survive the
+// way through their file bit for bit, and bad files are refused with their place.
+#include "io/exports.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "tests/io/scratch.h"
+
+namespace flexmorph::io {
+namespace {
+
+/// Crossing bars in a frame, clipped: several holes, curved sides.
+std::vector<Region> design() {
+  std::vector<std::vector<Vec2>> outlines;
+  for (const Component& c : crossing_layout(0, 0, 0.6, 0.1, 6, 1, 0.008, 0.07))
+    outlines.push_back(outline_within(c, 0.004, 1e-5));
+  outlines.push_back({{0, 0}, {0.6, 0}, {0.6, 0.01}, {0, 0.01}});
+  return unite(outlines, {{0, 0}, {0.6, 0.1}});
+}
+
+double ring_area(const std::vector<Vec2>& ring) {
+  double twice = 0;
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    const Vec2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
+    twice += a.x() * b.y() - b.x() * a.y();
+  }
+  return 0.5 * std::abs(twice);
+}
+
+TEST(Dxf, ClosedPolylinesEncloseTheArea) {
+  const Scratch scratch;
+  const std::vector<Region> regions = design();
+  write_dxf(scratch / "design.dxf", regions);
+  std::istringstream in(contents_of(scratch / "design.dxf"));
+  // Pairs of lines: group code, value.
+  std::map<std::string, double> area_of_layer;
+  std::vector<Vec2> ring;
+  std::string code, value, entity, layer;
+  int closed = 0, polylines = 0;
+  while (std::getline(in, code) && std::getline(in, value)) {
+    const int group = std::stoi(code);
+    if (group == 0) {
+      if (value == "SEQEND") area_of_layer[layer] += ring_area(ring);
+      if (value == "POLYLINE") ++polylines, ring.clear();
+      if (value == "VERTEX") ring.emplace_back(0, 0);
+      entity = value;
+    } else if (group == 8) {
+      layer = value;
+    } else if (group == 70 && entity == "POLYLINE") {
+      closed += std::stoi(value) & 1;
+    } else if (entity == "VERTEX" && group == 10) {
+      ring.back().x() = std::stod(value);
+    } else if (entity == "VERTEX" && group == 20) {
+      ring.back().y() = std::stod(value);
+    }
+  }
+  EXPECT_EQ(value, "EOF");
+  EXPECT_EQ(closed, polylines);
+  EXPECT_GT(area_of_layer["HOLES"], 0);
+  EXPECT_NEAR(area_of_layer["OUTLINE"] - area_of_layer["HOLES"], area(regions), 1e-14);
+}
+
+TEST(Stl, IsWatertightAndHasTheVolume) {
+  const Scratch scratch;
+  const std::vector<Region> regions = design();
+  const double thickness = 0.013;
+  write_stl(scratch / "design.stl", regions, thickness);
+  std::istringstream in(contents_of(scratch / "design.stl"));
+  using Key = std::array<double, 3>;
+  std::map<std::pair<Key, Key>, int> edges;
+  std::vector<Key> loop;
+  double volume = 0;
+  for (std::string word; in >> word;) {
+    if (word != "vertex") continue;
+    Key p{};
+    in >> p[0] >> p[1] >> p[2];
+    loop.push_back(p);
+    if (loop.size() < 3) continue;
+    const auto vec = [](const Key& k) { return Vec3(k[0], k[1], k[2]); };
+    volume += vec(loop[0]).dot(vec(loop[1]).cross(vec(loop[2]))) / 6;
+    for (std::size_t k = 0; k < 3; ++k) ++edges[{loop[k], loop[(k + 1) % 3]}];
+    loop.clear();
+  }
+  ASSERT_GT(edges.size(), 100u);
+  for (const auto& [edge, count] : edges) {
+    EXPECT_EQ(count, 1);  // once in each direction: twice in all, and facets turn the same way
+    EXPECT_EQ(edges.count({edge.second, edge.first}), 1u);
+  }
+  EXPECT_NEAR(volume, area(regions) * thickness, 1e-9 * volume);
+}
+
+TEST(ComponentsCsv, ReadsBackBitForBit) {
+  const Scratch scratch;
+  std::vector<Component> all = crossing_layout(0, -0.05, 0.6, 0.1, 3, 2, 0.1 / 3, 1.0 / 7);
+  all[1].c2 = 1e-300;
+  write_components_csv(scratch / "components.csv", all);
+  const std::vector<Component> back = read_components_csv(scratch / "components.csv");
+  ASSERT_EQ(back.size(), all.size());
+  for (std::size_t k = 0; k < all.size(); ++k) EXPECT_EQ(back[k].parameters(), all[k].parameters());
+}
+
+TEST(ComponentsCsv, RefusesBadFilesWithTheirPlace) {
+  const Scratch scratch;
+  const std::string header = "X0,Y0,half_length,angle,c1,c2,c3\n";
+  const auto complaint = [&](const std::string& text) -> std::string {
+    std::ofstream(scratch / "bad.csv") << text;
+    try {
+      read_components_csv(scratch / "bad.csv");
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_NE(complaint("x,y\n").find("bad.csv:1: the header"), std::string::npos);
+  EXPECT_NE(complaint(header + "0,0,1,0,1,1,1\n0,0,1,0,1,x,1\n").find("bad.csv:3: c2 = 'x'"),
+            std::string::npos);
+  EXPECT_NE(complaint(header + "0,0,-1,0,1,1,1\n").find("half_length = -1"), std::string::npos);
+  EXPECT_NE(complaint(header + "0,0,1,0,1,1\n").find("6 values"), std::string::npos);
+  EXPECT_NE(complaint(header + "0,0,1,0,1,1,nan\n").find("c3 = 'nan'"), std::string::npos);
+  EXPECT_NE(complaint(header), "");
+  EXPECT_THROW(read_components_csv(scratch / "none.csv"), Error);
+}
+
+}  // namespace
+}  // namespace flexmorph::io
