@@ -158,7 +158,9 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
                    scene.esl ? scene.esl->settings : mmc::ComplianceSettings{},
                    {},
                    {},
-                   {}});
+                   {},
+                   d.drop_every,
+                   d.refill});
     if (!scene.domain) continue;
     out.back().domain = scene.domain->polygon;
     if (!scene.domain->polygon.empty())

@@ -49,7 +49,8 @@ io::Json body_results(const RunReport& report, size_t i) {
     if (o.load_compliances[l] >= 0.99 * o.worst_compliance) active.push(static_cast<int>(l + 1));
   out.set("active_loads", std::move(active));
   out.set("loads", o.n_loads).set("right_hand_sides", o.n_right_hand_sides);
-  out.set("stop", o.stop);
+  out.set("components", report.problems[i].design.n_components());
+  out.set("component_changes", static_cast<int>(o.events.size())).set("stop", o.stop);
   return out;
 }
 

@@ -34,6 +34,10 @@ class Progress {
   }
   void iteration(const mmc::IterationReport& r) {
     if (quiet_) return;
+    for (const mmc::ComponentEvent& e : r.events)
+      say(r.problem.body + " iteration " + std::to_string(r.iteration) + ": component " +
+          std::to_string(e.component + 1) + " " + to_string(e.kind) + ", " +
+          std::to_string(e.n_components) + " components");
     char text[160];
     std::snprintf(text, sizeof text,
                   "%s cycle %d iteration %d: compliance %.5g, volume %.4f, kkt %.1e",

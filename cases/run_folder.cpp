@@ -12,9 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How far sides of written outlines may be off the true ones   [cells].
-constexpr double kOutline = 0.01;
-
 const std::vector<std::string> kHistoryColumns = {"body",
                                                   "cycle",
                                                   "iteration",
@@ -46,6 +43,7 @@ std::string numbered(const std::string& stem, int number, const std::string& end
 const std::vector<std::string> kOurs = {"case.toml",
                                         "run.json",
                                         "history.csv",
+                                        "events.csv",
                                         "motion.csv",
                                         "motion_uniform.csv",
                                         "motion_verified.csv",
@@ -59,10 +57,6 @@ const std::vector<std::string> kOurs = {"case.toml",
                                         "motion",
                                         "loads",
                                         "plots"};
-std::vector<Vec2> corners_of(const Box& b) {
-  return {b.lower, {b.upper.x(), b.lower.y()}, b.upper, {b.lower.x(), b.upper.y()}};
-}
-
 /// With several designs their files carry the bodies' names.
 bool is_ours(const std::string& name) {
   return std::find(kOurs.begin(), kOurs.end(), name) != kOurs.end() ||
@@ -153,6 +147,7 @@ void RunFolder::add_iteration(const mmc::IterationReport& r) {
     sharp_v = r.sharp->volume;
     connected = r.sharp->connectivity.connected;
   }
+  add_events(r);
   output_seconds_ += mmc::cpu_seconds() - clock;
   const mmc::LoadResponse::Seconds s = r.state.seconds();
   history_->row({r.problem.body,
@@ -183,6 +178,18 @@ RunFolder::History& RunFolder::history_of(const std::string& body) {
     if (h.body == body) return h;
   histories_.emplace_back().body = body;
   return histories_.back();
+}
+
+void RunFolder::add_events(const mmc::IterationReport& r) {
+  if (r.events.empty()) return;
+  if (!events_) {
+    const std::vector<std::string> columns = {"body",  "cycle",     "iteration",
+                                              "event", "component", "components"};
+    events_ = std::make_unique<io::CsvWriter>(path_ + "/events.csv", columns);
+  }
+  for (const mmc::ComponentEvent& e : r.events)
+    events_->row(
+        {r.problem.body, r.cycle, r.iteration, to_string(e.kind), e.component + 1, e.n_components});
 }
 
 void RunFolder::write_loads(const std::string& body, const fem::EslSets& loads,
@@ -263,18 +270,11 @@ void RunFolder::add_motion_frame(const fem::Model& model, const fem::Growth& gro
 void RunFolder::write_design(const mmc::BodyProblem& problem, const mmc::BodyOutcome& outcome) {
   const std::string stem = scene_.designs.size() > 1 ? "_" + problem.body : "";
   const std::vector<Component> components = problem.design.components();
-  const double bound = problem.stages.back().min_half_thickness;
   io::write_components_csv(path_ + "/components" + stem + ".csv", components);
-  std::vector<std::vector<Vec2>> outlines;
-  for (const Component& c : components)
-    outlines.push_back(outline_within(c, bound, kOutline * problem.grid.dx()));
-  for (const Box& b : problem.solid) outlines.push_back(corners_of(b));
-  std::vector<std::vector<Vec2>> voids;
-  for (const Box& b : problem.empty) voids.push_back(corners_of(b));
   const Grid& g = problem.grid;
   const Box domain{{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}};
   const std::vector<Region> regions =
-      unite(outlines, problem.domain.empty() ? corners_of(domain) : problem.domain, voids);
+      mmc::regions_of(problem, components, mmc::kOutlineTolerance * g.dx());
   io::write_file(path_ + "/design" + stem + ".svg", io::outline_svg(regions, domain));
   io::write_dxf(path_ + "/design" + stem + ".dxf", regions);
   io::write_stl(path_ + "/design" + stem + ".stl", regions, problem.section.thickness);

@@ -64,10 +64,11 @@ class RunFolder {
 
  private:
   History& history_of(const std::string& body);
+  void add_events(const mmc::IterationReport& report);
 
   std::string path_;
   const Scene& scene_;
-  std::unique_ptr<io::CsvWriter> history_;
+  std::unique_ptr<io::CsvWriter> history_, events_;  // events.csv: from the first one on
   io::Series iterations_, components_, motion_;
   std::vector<History> histories_;
   int rows_ = 0, motion_frames_ = 0;

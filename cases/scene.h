@@ -143,6 +143,8 @@ struct BodyDesign {
   std::vector<Component> start;   ///< empty: boxes of two crossing components
   double jitter = 0;              ///< of the initial components, in parts of their sizes [-]
   int seed = 1;                   ///< of the jitter
+  int drop_every = 25;            ///< iterations between looks for dead components, 0: none
+  bool refill = false;            ///< long components are split in place of dropped ones
   std::vector<Box> solid, empty;  ///< a cell belongs to a region that holds its centre [m]
 
   int n_components() const {

@@ -155,6 +155,8 @@ void read_components(const Table& t, const Body& body, BodyDesign& design) {
   }
   design.jitter = t.number("jitter", between("a jitter", "", 0, 1), 0.0);
   design.seed = t.integer("seed", "a seed", 0, 1'000'000'000, 1);
+  design.drop_every = t.integer("drop_every", "a number of iterations", 0, 1'000'000, 25);
+  design.refill = t.boolean("refill", false);
 }
 
 void read_tdf(const Table& t, BodyDesign& design) {
@@ -281,6 +283,7 @@ optim::Settings read_optimizer(const Table& t, const Vocabulary& words) {
   optim::Settings s;
   s.name = t.choice("name", "an optimizer", words.optimizers, s.name);
   s.max_iterations = t.integer("max_iterations", "a number of iterations", 1, 1'000'000, 300);
+  s.max_evaluations = t.integer("max_solves", "a number of state solves", 0, 100'000'000, 0);
   s.move_limit = t.number("move_limit", fraction("a move limit"), s.move_limit);
   s.kkt_tolerance = t.number("kkt_tolerance", not_negative("a tolerance"), s.kkt_tolerance);
   s.feasibility = t.number("feasibility", positive("a tolerance"), s.feasibility);

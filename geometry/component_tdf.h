@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "geometry/component_frame.h"
 #include "geometry/tdf.h"
@@ -176,6 +177,26 @@ void sum_chain(const ComponentFrame& frame, int count, const double* px, const d
   out[4] = by_c1;
   out[5] = by_c2;
   out[6] = by_c3;
+}
+
+/// weight_k dφ(x_k, y_k)/dp for the seven parameters p, one column of `out` each (count x 7).
+template <TdfSettings::Kind kind>
+void fill_chain(const ComponentFrame& frame, int count, const double* px, const double* py,
+                const double* weight, double* out) {
+  const double sine = frame.sine(), cosine = frame.cosine();
+  const std::ptrdiff_t n = count;
+#pragma omp simd
+  for (std::ptrdiff_t k = 0; k < n; ++k) {
+    const double x = px[k], y = py[k], f = weight[k];
+    const Partials d = partials<kind>(frame, x, y);
+    out[k] = f * (sine * d.y - cosine * d.x);
+    out[n + k] = f * (-sine * d.x - cosine * d.y);
+    out[2 * n + k] = f * d.L;
+    out[3 * n + k] = f * (d.x * y - d.y * x);
+    out[4 * n + k] = f * d.c1;
+    out[5 * n + k] = f * d.c2;
+    out[6 * n + k] = f * d.c3;
+  }
 }
 
 /// Rectangle of the component's frame that holds every point with φ > cut (cut < 0).

@@ -100,6 +100,7 @@ void UnionTdf::evaluate(std::span<const Component> components) {
 void UnionTdf::Scratch::make_room(std::size_t n) {
   if (x.size() >= n) return;
   for (std::vector<double>* v : {&x, &y, &seed}) v->resize(2 * n);
+  node.resize(2 * n);
 }
 
 /// φ_i of every component at the nodes it may reach, and the highest of each node.
@@ -215,6 +216,90 @@ void UnionTdf::pull_back(const VectorXd& df_dh, const VectorXd& df_deroded, Vect
         df_dp.data() + kParameters * static_cast<Eigen::Index>(c));
   }
   if (!df_dp.allFinite()) throw Error::numerical("tdf: the derivative of f by H is not finite");
+}
+
+void UnionTdf::pull_back(const MatrixXd& df_dh, const MatrixXd& df_deroded, MatrixXd& df_dp) const {
+  assert(evaluated_ && df_deroded.cols() == grid_.n_nodes());
+  constexpr int kParameters = Component::kParameters;
+  const Eigen::Index n_functions = df_deroded.rows();
+  df_dp.resize(n_functions, kParameters * static_cast<Eigen::Index>(components_.size()));
+  using Kind = TdfSettings::Kind;
+  const auto fill =
+      settings_.kind == Kind::paper ? fill_chain<Kind::paper> : fill_chain<Kind::distance>;
+  Scratch& s = scratch_;
+  s.node_seeds = df_deroded * chain_eroded_.asDiagonal();
+  if (df_dh.size() > 0) s.node_seeds += df_dh * chain_.asDiagonal();
+  const double* visit = visits_.data();
+  std::size_t r = 0;
+  for (std::size_t c = 0; c < components_.size(); ++c) {
+    const ComponentFrame frame(components_[c], settings_.min_half_thickness);
+    int count = 0;
+    for (; r < ends_[c]; visit += runs_[r].count, ++r) {
+      count = add_points(frame, runs_[r], visit, count);
+    }
+    if (s.seeds.cols() < count || s.seeds.rows() != n_functions)
+      s.seeds.resize(n_functions, 2 * count);
+    if (s.chain.size() < kParameters * count) s.chain.resize(kParameters, 2 * count);
+    for (int k = 0; k < count; ++k)
+      s.seeds.col(k) = s.node_seeds.col(s.node[static_cast<std::size_t>(k)]);
+    fill(frame, count, s.x.data(), s.y.data(), s.seed.data(), s.chain.data());
+    df_dp.middleCols(kParameters * static_cast<Eigen::Index>(c), kParameters).noalias() =
+        s.seeds.leftCols(count) * Eigen::Map<const MatrixXd>(s.chain.data(), count, kParameters);
+  }
+  if (!df_dp.allFinite()) throw Error::numerical("tdf: a derivative by H is not finite");
+}
+
+/// Appends local coordinates, weight dφ/dφ_i and number of those nodes of a run that need the chain
+/// rule.
+int UnionTdf::add_points(const ComponentFrame& frame, const Run& run, const double* visit,
+                         int count) const {
+  scratch_.make_room(static_cast<std::size_t>(count + run.count));
+  const double X = grid_.x0 + run.column * grid_.dx();
+  const int first = grid_.node(run.column, run.row);
+  for (int k = 0; k < run.count; ++k) {
+    const int n = first + k;
+    if (visit[k] == 0 || (chain_[n] == 0 && chain_eroded_[n] == 0)) continue;
+    const double Y = grid_.y0 + (run.row + k) * grid_.dy();
+    const auto at = static_cast<std::size_t>(count++);
+    scratch_.x[at] = frame.x(X, Y);
+    scratch_.y[at] = frame.y(X, Y);
+    scratch_.seed[at] = visit[k];
+    scratch_.node[at] = n;
+  }
+  return count;
+}
+
+/// φ of the union at a node of a run without the component the run belongs to.
+double UnionTdf::taken_out(const Run& run, int k, double visit) const {
+  const int n = grid_.node(run.column, run.row) + k;
+  if (visit == 0) return phi_[n];
+  if (settings_.kind == TdfSettings::Kind::paper) return cut_;  // the next one below is unknown
+  const double rest = sum_[n] - (visit - at_cut_[n]);
+  // What is left of a sum after its largest term went is round-off below this.
+  if (!(rest > 1e-12 * sum_[n])) return cut_;
+  return std::max(cut_, highest_[n] + std::log(rest) / settings_.sharpness);
+}
+
+std::vector<double> UnionTdf::influence(std::span<const signed char> counts) const {
+  assert(evaluated_ && counts.size() == static_cast<std::size_t>(grid_.n_nodes()));
+  std::vector<double> out(components_.size(), 0.0);
+  const double* visit = visits_.data();
+  std::size_t r = 0;
+  for (std::size_t c = 0; c < components_.size(); ++c) {
+    for (; r < ends_[c]; visit += runs_[r].count, ++r) {
+      const int first = grid_.node(runs_[r].column, runs_[r].row);
+      for (int k = 0; k < runs_[r].count; ++k) {
+        if (counts[static_cast<std::size_t>(first + k)] == 0) continue;
+        const double phi = taken_out(runs_[r], k, visit[k]);
+        const auto change = [&](double depth, double now) {
+          return now - heaviside(phi - depth, settings_.band, settings_.alpha).value;
+        };
+        out[c] = std::max(
+            {out[c], change(0, h_[first + k]), change(settings_.erosion, eroded_[first + k])});
+      }
+    }
+  }
+  return out;
 }
 
 /// Appends local coordinates and df/dφ_i of those nodes of a run that need the chain rule.

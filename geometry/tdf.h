@@ -70,6 +70,11 @@ class UnionTdf {
   /// @throws Error(numerical) when a parameter is not finite or a length not positive.
   void evaluate(std::span<const Component> components);
 
+  /// Largest change of density() and eroded() at any node that counts, were a component taken out
+  /// of the union (N): 0 for one outside of the grid or deep under others.
+  /// @param counts  nodes that matter: not 0 (n_nodes)
+  std::vector<double> influence(std::span<const signed char> counts) const;
+
   const VectorXd& phi() const { return phi_; }    ///< (n_nodes) [m], at least φ_cut
   const VectorXd& density() const { return h_; }  ///< H(φ) (n_nodes), α..1
   /// H(φ - δ) (n_nodes): the design with δ taken off all around.
@@ -78,6 +83,9 @@ class UnionTdf {
   /// df/d(density), df/d(eroded) (n_nodes) -> df/dparameters (7 N), at the components of the last
   /// evaluate(). @throws Error(numerical) when the result is not finite.
   void pull_back(const VectorXd& df_dh, const VectorXd& df_deroded, VectorXd& df_dp) const;
+  /// The same for many functions at once: (n_functions x n_nodes) each -> (n_functions x 7 N).
+  /// An empty df_dh stands for zeros.
+  void pull_back(const MatrixXd& df_dh, const MatrixXd& df_deroded, MatrixXd& df_dp) const;
   /// The same for a function of density() only.
   void pull_back(const VectorXd& df_dh, VectorXd& df_dp) const { pull_back(df_dh, zero_, df_dp); }
 
@@ -87,6 +95,8 @@ class UnionTdf {
   };
   struct Scratch {  // local coordinates and seeds of one component's nodes
     std::vector<double> x, y, seed;
+    std::vector<int> node;
+    MatrixXd node_seeds, seeds, chain;  // of many functions
     void make_room(std::size_t n);
   };
   void find_reach(std::span<const Component> components);
@@ -94,6 +104,8 @@ class UnionTdf {
   void join_smoothly();
   void join_by_maximum();
   void fill_density();
+  int add_points(const ComponentFrame& frame, const Run& run, const double* visit, int count) const;
+  double taken_out(const Run& run, int k, double visit) const;
   int add_seeds(const ComponentFrame& frame, const Run& run, const double* visit,
                 const VectorXd& df_dh, const VectorXd& df_deroded, int count) const;
 

@@ -27,12 +27,15 @@ struct Iterate {
 /// Looks on; returns false to stop the run.
 using Observer = std::function<bool(const Iterate&)>;
 
-enum class Stop { converged, iteration_limit, observer, stalled, failed };
+enum class Stop { converged, iteration_limit, evaluation_limit, observer, stalled, failed };
 std::string to_string(Stop stop);
 
 struct Settings {
   std::string name = "mma";
   int max_iterations = 300;     ///< iterations, or evaluations for NLopt
+  /// State solves allowed, 0: no limit. The iteration under way is finished, and the best design is
+  /// evaluated once more when it was not the last.
+  int max_evaluations = 0;
   double kkt_tolerance = 1e-4;  ///< stop when the KKT residual and ...
   double feasibility = 1e-5;    ///< ... the violation are below these
   double change_tolerance = 0;  ///< stop after 3 iterations with less change (0: off)

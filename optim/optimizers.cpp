@@ -42,6 +42,8 @@ std::string to_string(Stop stop) {
       return "converged";
     case Stop::iteration_limit:
       return "iteration limit";
+    case Stop::evaluation_limit:
+      return "limit of state solves";
     case Stop::observer:
       return "observer";
     case Stop::stalled:

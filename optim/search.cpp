@@ -170,6 +170,9 @@ bool Search::row(int iteration, const Point& point) {
   } else if (iteration >= settings_.max_iterations) {
     stop(Stop::iteration_limit, "limit of " + std::to_string(settings_.max_iterations) +
                                     " iterations reached; KKT residual " + scientific(it.kkt));
+  } else if (settings_.max_evaluations > 0 && evaluations_ >= settings_.max_evaluations) {
+    stop(Stop::evaluation_limit, "limit of " + std::to_string(settings_.max_evaluations) +
+                                     " state solves reached; KKT residual " + scientific(it.kkt));
   }
   return !stopped_;
 }

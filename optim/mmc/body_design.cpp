@@ -2,20 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace flexmorph::mmc {
 namespace {
-
-/// The compliance a goal speaks of: the weighted sum, or the largest.
-double judged_compliance(const BodyProblem& problem, LoadResponse& loads,
-                         const CellFactors& factors) {
-  if (problem.goal.over == Goal::Over::worst)
-    return loads.individual(factors.stiffness, factors.mass).maxCoeff();
-  LoadResponse::Value value;
-  loads.evaluate(factors.stiffness, factors.mass, value);
-  return value.f;
-}
 
 /// One cycle's design problem of one body.
 class BodyDesigner {
@@ -42,22 +33,78 @@ class BodyDesigner {
   bool stopped() const { return !going_; }  ///< by the observer
 
  private:
+  /// A stage of the band: runs of the optimizer, a new one whenever the list of components changed.
   void run_stage(int stage, int n_stages) {
+    const int total = settings_.optimizer.max_iterations;
+    int left = total * (stage + 1) / n_stages - total * stage / n_stages;
+    const TdfSettings& tdf = problem_.stages[static_cast<size_t>(stage)];
+    const double shortest = problem_.refill ? problem_.design.shortest() : 0;
+    Turnover turnover(problem_.grid, tdf, ersatz_, shortest);
+    turnover_ = &turnover;
+    std::optional<Candidate> best;
+    while (left > 0 && going_ && !spent()) {
+      MmcProblem state(problem_.grid, problem_.design, ersatz_, loads_, tdf, problem_.goal,
+                       problem_.places);
+      Candidate found = run(state, left);
+      left -= found.result.iterations;
+      if (!best || better(found.result, best->result)) {
+        best = std::move(found);
+        best->newest = true;
+      } else {
+        best->newest = false;
+      }
+      if (!changed_) break;
+      changed_ = false;
+      problem_.design = problem_.design.with(turnover.next());
+    }
+    if (best) settle(*best, tdf);
+  }
+
+  /// The best design of one run of the optimizer.
+  struct Candidate {
+    Design design;
+    optim::Result result;
+    double change = 0;
+    bool newest = true;  ///< does it belong to the last run?
+  };
+
+  Candidate run(MmcProblem& state, int iterations) {
     optim::Settings settings = settings_.optimizer;
-    const int total = settings.max_iterations;
-    settings.max_iterations = total * (stage + 1) / n_stages - total * stage / n_stages;
-    if (settings.max_iterations < 1) return;
-    MmcProblem state(problem_.grid, problem_.design, ersatz_, loads_,
-                     problem_.stages[static_cast<size_t>(stage)], problem_.goal, problem_.places);
+    settings.max_iterations = iterations;
+    if (settings.max_evaluations > 0) settings.max_evaluations -= outcome_.evaluations;
     const auto watch = [&](const optim::Iterate& iterate) { return see(state, iterate); };
-    const optim::Result best = optim::make_optimizer(settings)->minimize(state, watch);
-    outcome_.change = problem_.design.move_to(state.design_part(best.x));
-    outcome_.kkt = best.kkt;
-    outcome_.evaluations += best.evaluations;
-    outcome_.stop = optim::to_string(best.stop) + (best.message.empty() ? "" : ": " + best.message);
-    state.evaluate(best.x);
+    Candidate out{problem_.design, optim::make_optimizer(settings)->minimize(state, watch)};
+    out.change = out.design.move_to(state.design_part(out.result.x));
+    outcome_.evaluations += out.result.evaluations;
+    return out;
+  }
+
+  bool better(const optim::Result& a, const optim::Result& b) const {
+    const double tolerance = settings_.optimizer.feasibility;
+    const bool feasible_a = a.violation <= tolerance, feasible_b = b.violation <= tolerance;
+    if (feasible_a != feasible_b) return feasible_a;
+    return feasible_a ? a.response.f <= b.response.f : a.violation <= b.violation;
+  }
+
+  /// Takes the best design of a stage.
+  void settle(const Candidate& best, const TdfSettings& tdf) {
+    problem_.design = best.design;
+    if (!best.newest)
+      outcome_.events.push_back({ComponentEvent::Kind::restored, 0, best.design.n_components()});
+    outcome_.change = best.change;
+    outcome_.kkt = best.result.kkt;
+    outcome_.stop = optim::to_string(best.result.stop) +
+                    (best.result.message.empty() ? "" : ": " + best.result.message);
+    MmcProblem state(problem_.grid, problem_.design, ersatz_, loads_, tdf, problem_.goal,
+                     problem_.places);
+    state.evaluate(best.result.x);
     outcome_.compliance = state.compliance();
     outcome_.volume = state.volume();
+  }
+
+  bool spent() const {
+    const int budget = settings_.optimizer.max_evaluations;
+    return budget > 0 && outcome_.evaluations >= budget;
   }
 
   bool see(MmcProblem& state, const optim::Iterate& iterate) {
@@ -67,11 +114,16 @@ class BodyDesigner {
     const bool wanted =
         settings_.sharp_every > 0 && outcome_.iterations % settings_.sharp_every == 0;
     if (wanted) sharp = sharp_design(problem_, state.components(), loads_);
+    const bool look = problem_.drop_every > 0 && outcome_.iterations % problem_.drop_every == 0;
+    changed_ = look && turnover_->look(state.components());
+    std::span<const ComponentEvent> events;
+    if (changed_) events = turnover_->events();
+    outcome_.events.insert(outcome_.events.end(), events.begin(), events.end());
     if (observe_)
       going_ = observe_({problem_, cycle_, outcome_.iterations,
                          outcome_.evaluations + iterate.evaluations, iterate, state, state.value(),
-                         loads_, wanted ? &sharp : nullptr});
-    return going_;
+                         loads_, wanted ? &sharp : nullptr, events});
+    return going_ && !changed_;
   }
 
   void finish() {
@@ -93,40 +145,12 @@ class BodyDesigner {
   const DesignSettings& settings_;
   const IterationObserver& observe_;
   Ersatz ersatz_;
+  Turnover* turnover_ = nullptr;  // of the stage
   BodyOutcome outcome_;
-  bool going_ = true;
+  bool going_ = true, changed_ = false;
 };
 
 }  // namespace
-
-Ersatz ersatz_of(const BodyProblem& p) {
-  return {p.grid, p.stages.back().alpha, p.solid, p.empty, p.outside};
-}
-
-VectorXd fractions_of(const BodyProblem& p, std::span<const Component> components) {
-  VectorXd out =
-      area_fractions(p.grid, components, p.stages.back().min_half_thickness, p.solid, p.empty);
-  for (size_t c = 0; c < p.outside.size(); ++c)
-    if (p.outside[c]) out[static_cast<Eigen::Index>(c)] = 0;
-  return out;
-}
-
-SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> components,
-                         LoadResponse& loads) {
-  SharpDesign out;
-  out.fractions = fractions_of(problem, components);
-  const Ersatz ersatz = ersatz_of(problem);
-  out.volume = out.fractions.sum() / ersatz.n_domain_cells();
-  out.connectivity = connectivity(problem.grid, out.fractions, problem.places);
-  out.compliance = judged_compliance(problem, loads, ersatz.sharp(out.fractions));
-  return out;
-}
-
-fem::Factors dynamic_factors(const BodyProblem& problem, std::span<const Component> components) {
-  CellFactors f =
-      Ersatz::dynamic(fractions_of(problem, components), problem.stiffness_void, problem.mass_void);
-  return {problem.grid, std::move(f.stiffness), std::move(f.mass)};
-}
 
 BodyOutcome design_body(BodyProblem& problem, LoadResponse& loads, int cycle,
                         const DesignSettings& settings, const IterationObserver& observe,

@@ -10,18 +10,14 @@ constexpr int kN = Component::kParameters;
 }
 
 Design::Design(const Grid& domain, std::vector<Component> start, const DesignScale& scale)
-    : scale_(scale) {
+    : domain_(domain), scale_(scale) {
   const auto n = static_cast<Eigen::Index>(start.size()) * kN;
   for (VectorXd* v : {&x_, &lower_, &upper_, &unit_}) v->resize(n);
   const double size = 2 * scale.half_length, pi = std::numbers::pi;
   for (size_t c = 0; c < start.size(); ++c) {
     const auto p = start[c].parameters();
-    const double lower[kN] = {domain.x0,
-                              domain.y0,
-                              std::max(0.6 * scale.half_length, scale.min_thickness),
-                              p[3] - 2 * pi,
-                              scale.min_thickness,
-                              scale.min_thickness,
+    const double lower[kN] = {domain.x0,          domain.y0,           shortest(),
+                              p[3] - 2 * pi,      scale.min_thickness, scale.min_thickness,
                               scale.min_thickness};
     const double upper[kN] = {domain.x0 + domain.width,
                               domain.y0 + domain.height,
@@ -40,6 +36,12 @@ Design::Design(const Grid& domain, std::vector<Component> start, const DesignSca
     }
   }
 }
+
+Design Design::with(std::vector<Component> components) const {
+  return {domain_, std::move(components), scale_};
+}
+
+double Design::shortest() const { return std::max(0.6 * scale_.half_length, scale_.min_thickness); }
 
 void Design::components(const VectorXd& x, std::vector<Component>& out) const {
   out.resize(static_cast<size_t>(x.size() / kN));
@@ -60,6 +62,8 @@ std::vector<Component> Design::components() const {
 }
 
 void Design::scale_gradient(VectorXd& g) const { g = g.cwiseProduct(unit_); }
+
+void Design::scale_gradients(MatrixXd& rows) const { rows = rows * unit_.asDiagonal(); }
 
 double Design::move_to(const VectorXd& x) {
   const double change = (x - x_).lpNorm<Eigen::Infinity>();

@@ -27,6 +27,11 @@ class Design {
  public:
   Design(const Grid& domain, std::vector<Component> start, const DesignScale& scale);
 
+  /// The same domain and sizes with other components.
+  Design with(std::vector<Component> components) const;
+
+  double shortest() const;  ///< lower bound of a half-length [m]
+  int n_components() const { return n_variables() / Component::kParameters; }
   int n_variables() const { return static_cast<int>(x_.size()); }
   const VectorXd& x() const { return x_; }
   const VectorXd& lower() const { return lower_; }
@@ -39,11 +44,13 @@ class Design {
 
   /// Gradient by parameters (7 N) -> gradient by x, in place.
   void scale_gradient(VectorXd& g) const;
+  void scale_gradients(MatrixXd& rows) const;  ///< the same for rows of gradients (n x 7 N)
 
   /// Takes x as the design. @return largest |change| of a variable.
   double move_to(const VectorXd& x);
 
  private:
+  Grid domain_;
   DesignScale scale_;
   VectorXd x_, lower_, upper_, unit_;  // unit: parameter per unit of x
 };

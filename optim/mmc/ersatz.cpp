@@ -64,6 +64,32 @@ void Ersatz::pull_back(const VectorXd& eroded, const VectorXd& d_stiffness, cons
     }
 }
 
+void Ersatz::pull_back(const VectorXd& eroded, const MatrixXd& d_stiffness, const MatrixXd& d_mass,
+                       MatrixXd& d_h, MatrixXd& d_eroded) const {
+  const Eigen::Index n_functions = d_stiffness.rows();
+  const bool masses = d_mass.size() > 0;
+  d_h.setZero(masses ? n_functions : 0, masses ? grid_.n_nodes() : 0);
+  d_eroded.setZero(n_functions, grid_.n_nodes());
+  for (int i = 0; i < grid_.nx; ++i)
+    for (int j = 0; j < grid_.ny; ++j) {
+      const int cell = grid_.cell(i, j);
+      if (fixed_[static_cast<size_t>(cell)] != 0) continue;
+      for (const int node : corners(grid_, i, j)) {
+        d_eroded.col(node) += (0.5 * eroded[node]) * d_stiffness.col(cell);
+        if (masses) d_h.col(node) += (0.25 / (1 - alpha_)) * d_mass.col(cell);
+      }
+    }
+}
+
+std::vector<signed char> Ersatz::shaped_nodes() const {
+  std::vector<signed char> out(static_cast<size_t>(grid_.n_nodes()), 0);
+  for (int i = 0; i < grid_.nx; ++i)
+    for (int j = 0; j < grid_.ny; ++j)
+      if (fixed_[static_cast<size_t>(grid_.cell(i, j))] == 0)
+        for (const int node : corners(grid_, i, j)) out[static_cast<size_t>(node)] = 1;
+  return out;
+}
+
 CellFactors Ersatz::sharp(const VectorXd& fractions) const {
   return dynamic(fractions, alpha_ * alpha_, 0);
 }

@@ -36,6 +36,14 @@ class Ersatz {
   void pull_back(const VectorXd& eroded, const VectorXd& d_stiffness, const VectorXd& d_mass,
                  VectorXd& d_h, VectorXd& d_eroded) const;
 
+  /// The same for many functions at once: (n_functions x n_cells) -> (n_functions x n_nodes).
+  /// An empty d_mass stands for zeros and leaves d_h empty.
+  void pull_back(const VectorXd& eroded, const MatrixXd& d_stiffness, const MatrixXd& d_mass,
+                 MatrixXd& d_h, MatrixXd& d_eroded) const;
+
+  /// Nodes the components may shape: those of a cell that is not fixed (1 or 0, n_nodes).
+  std::vector<signed char> shaped_nodes() const;
+
   /// Factors of a sharp picture (area fractions of the true union, n_cells): material where it is,
   /// the void stiffness of factors() elsewhere.
   CellFactors sharp(const VectorXd& fractions) const;

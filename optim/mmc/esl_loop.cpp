@@ -45,8 +45,8 @@ class Verdicts {
            const std::vector<BodyOutcome>& outcome) {
     verdicts_.push_back({cycle, 0, false});
     outcomes_.push_back(outcome);
-    auto& x = designs_.emplace_back();
-    for (const BodyProblem& p : problems) x.push_back(p.design.x());
+    auto& designs = designs_.emplace_back();
+    for (const BodyProblem& p : problems) designs.push_back(p.design);
   }
   /// The motion with the designs of the last cycle added.
   void judge(const std::vector<fem::EslSets>& motion) {
@@ -60,7 +60,7 @@ class Verdicts {
                                        });
     best->best = true;
     const auto i = static_cast<size_t>(best - verdicts_.begin());
-    for (size_t k = 0; k < problems.size(); ++k) problems[k].design.move_to(designs_[i][k]);
+    for (size_t k = 0; k < problems.size(); ++k) problems[k].design = designs_[i][k];
     return outcomes_[i];
   }
   const std::vector<CycleVerdict>& all() const { return verdicts_; }
@@ -68,7 +68,7 @@ class Verdicts {
  private:
   std::vector<CycleVerdict> verdicts_;
   std::vector<std::vector<BodyOutcome>> outcomes_;
-  std::vector<std::vector<VectorXd>> designs_;
+  std::vector<std::vector<Design>> designs_;
 };
 
 }  // namespace

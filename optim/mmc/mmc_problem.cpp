@@ -116,10 +116,12 @@ void MmcProblem::fill_compliance_rows(optim::Response& out, int first_row, doubl
       throw Error::numerical("design problem: the compliance of load " + std::to_string(l + 1) +
                              " is " + std::to_string(each_.f[l]));
     out.g[first_row + l] = std::log(each_.f[l]) - bound;
-    const VectorXd d_stiffness = each_.d_stiffness.row(l);
-    const VectorXd d_mass = each_.d_mass.size() > 0 ? VectorXd(each_.d_mass.row(l)) : zero_;
-    out.dg.row(first_row + l).head(n) = gradient(d_stiffness, d_mass, each_.f[l]);
   }
+  ersatz_.pull_back(tdf_.eroded(), each_.d_stiffness, each_.d_mass, each_by_h_, each_by_eroded_);
+  tdf_.pull_back(each_by_h_, each_by_eroded_, each_by_parameters_);
+  design_.scale_gradients(each_by_parameters_);
+  out.dg.block(first_row, 0, each_.f.size(), n) =
+      each_.f.cwiseInverse().asDiagonal() * each_by_parameters_;
 }
 
 optim::Response MmcProblem::evaluate(const VectorXd& x) {

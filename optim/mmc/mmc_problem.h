@@ -88,6 +88,7 @@ class MmcProblem final : public optim::Problem {
   LoadResponse::Each each_;
   LoadResponse::Seconds seconds_;
   VectorXd x_, d_h_, d_eroded_, zero_, share_;
+  MatrixXd each_by_h_, each_by_eroded_, each_by_parameters_;
   double volume_ = 0, seconds_tdf_ = 0;
   double lowest_ = std::numeric_limits<double>::infinity();  // compliance of acceptable designs
 };

@@ -213,6 +213,55 @@ TEST(UnionTdf, PullBackOfThePaperPassesTheTaylorTest) {
   }
 }
 
+TEST_P(EveryUnion, ManyFunctionsAtOnceAreThoseOneByOne) {
+  TdfSettings s = settings(GetParam());
+  s.erosion = 0.3 * s.band;
+  UnionTdf tdf(kGrid, s);
+  tdf.evaluate(random_design(3));
+  std::srand(7);
+  const MatrixXd by_h = MatrixXd::Random(5, kGrid.n_nodes());
+  const MatrixXd by_eroded = MatrixXd::Random(5, kGrid.n_nodes());
+  MatrixXd all, without_h;
+  tdf.pull_back(by_h, by_eroded, all);
+  tdf.pull_back(MatrixXd(), by_eroded, without_h);
+  for (int f = 0; f < 5; ++f) {
+    VectorXd one;
+    tdf.pull_back(VectorXd(by_h.row(f)), VectorXd(by_eroded.row(f)), one);
+    EXPECT_LT((all.row(f).transpose() - one).norm(), 1e-12 * one.norm());
+    tdf.pull_back(VectorXd::Zero(kGrid.n_nodes()), VectorXd(by_eroded.row(f)), one);
+    EXPECT_LT((without_h.row(f).transpose() - one).norm(), 1e-12 * one.norm());
+  }
+}
+
+TEST(UnionTdf, InfluenceIsWhatTakingAComponentOutChanges) {
+  TdfSettings s = settings(Kind::distance);
+  s.erosion = 0.3 * s.band;
+  std::vector<Component> design = random_design(4);
+  design.push_back({.center = {50, 50}});  // far outside
+  design.push_back({.center = {0.9, 0.7}, .half_length = 0.6, .c1 = 0.3, .c2 = 0.3, .c3 = 0.3});
+  design.push_back({.center = {0.9, 0.7}, .half_length = 0.2, .c1 = 0.1, .c2 = 0.1, .c3 = 0.1});
+  UnionTdf tdf(kGrid, s), less(kGrid, s);
+  tdf.evaluate(design);
+  std::vector<signed char> counts(static_cast<std::size_t>(kGrid.n_nodes()), 1);
+  for (std::size_t n = 0; n < 200; ++n) counts[n] = 0;
+  const std::vector<double> influence = tdf.influence(counts);
+  ASSERT_EQ(influence.size(), design.size());
+  for (std::size_t c = 0; c < design.size(); ++c) {
+    std::vector<Component> rest = design;
+    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(c));
+    less.evaluate(rest);
+    const Eigen::Index kept = kGrid.n_nodes() - 200;
+    const double expected =
+        std::max((tdf.density() - less.density()).tail(kept).cwiseAbs().maxCoeff(),
+                 (tdf.eroded() - less.eroded()).tail(kept).cwiseAbs().maxCoeff());
+    // Where the largest term of a sum leaves, what remains carries its round-off.
+    EXPECT_NEAR(influence[c], expected, 1e-6) << c;
+  }
+  EXPECT_EQ(influence[design.size() - 3], 0);
+  EXPECT_LT(influence.back(), 1e-5);  // inside a larger one, as deep as the sharpness can tell
+  EXPECT_GT(influence[design.size() - 2], 0.5);
+}
+
 TEST(UnionTdf, RepeatsItselfBitForBit) {
   const std::vector<Component> design = random_design(1), other = random_design(2, 33);
   const VectorXd seed = VectorXd::LinSpaced(kGrid.n_nodes(), -1, 1);

@@ -210,6 +210,19 @@ TEST_P(EveryGuard, KeepsToItsIterations) {
   EXPECT_LE(result.evaluations, GetParam() == "ipopt" ? 19 : 10);
 }
 
+TEST_P(EveryGuard, KeepsToItsStateSolves) {
+  Analytic problem = cantilever();
+  Settings settings = defaults(GetParam());
+  settings.max_evaluations = 9;
+  settings.kkt_tolerance = 0;
+  const Result result = make_optimizer(settings)->minimize(problem, {});
+  EXPECT_EQ(result.stop, Stop::evaluation_limit) << result.message;
+  // The iteration under way is finished (a line search, or the inner iterations of gcmma), and the
+  // problem may be put back to the result.
+  EXPECT_GE(result.evaluations, 9);
+  EXPECT_LE(result.evaluations, GetParam().starts_with("nlopt") || GetParam() == "mma" ? 10 : 20);
+}
+
 TEST_P(EveryGuard, UnknownOptionsAreNamed) {
   Settings settings = defaults(GetParam());
   settings.options = {{"rho_init", 3}};

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fem/element.h"
+#include "geometry/outline.h"
+#include "geometry/picture.h"
+#include "optim/mmc/mmc_problem.h"
+#include "optim/mmc/responses.h"
+
+namespace flexmorph::mmc {
+
+/// The design problem of one body, over all cycles.
+struct BodyProblem {
+  std::string body;
+  Grid grid;  ///< design mesh over the body at its longest
+  fem::PlaneSection section;
+  Design design;
+  std::vector<Box> solid, empty;    ///< passive regions
+  std::vector<TdfSettings> stages;  ///< continuation of the band, coarse to fine
+  Goal goal;
+  double stiffness_void = 1e-4, mass_void = 1e-3;  ///< in dynamics
+  ComplianceSettings compliance;
+  std::vector<Vec2> domain;              ///< polygon; empty: the whole grid
+  std::vector<signed char> outside;      ///< cells_outside() of it; empty: none
+  std::vector<std::vector<int>> places;  ///< cells of loaded and held places; empty: both ends
+  int drop_every = 25;                   ///< iterations between looks for dead components; 0: none
+  bool refill = false;                   ///< long components are split in place of dropped ones
+};
+
+/// Chain of factors of the problem's cells.
+Ersatz ersatz_of(const BodyProblem& problem);
+/// Area fractions of true material (n_cells), 0 outside of the domain.
+VectorXd fractions_of(const BodyProblem& problem, std::span<const Component> components);
+
+/// How far the sides of measured and written outlines may be off the true ones [cells].
+constexpr double kOutlineTolerance = 0.01;
+
+/// The domain as a polygon, counterclockwise [m].
+std::vector<Vec2> domain_of(const BodyProblem& problem);
+/// Exact union of the components and the solid regions, less the voids, clipped to the domain.
+/// @param tolerance  how far sides may be off the true outlines [m]
+/// @throws Error (numerical) from unite().
+std::vector<Region> regions_of(const BodyProblem& problem, std::span<const Component> components,
+                               double tolerance);
+
+/// The compliance a goal speaks of: the weighted sum, or the largest.
+double judged_compliance(const BodyProblem& problem, LoadResponse& loads,
+                         const CellFactors& factors);
+
+/// A design without blur: what its outlines enclose.
+struct SharpDesign {
+  VectorXd fractions;     ///< of true material per cell (n_cells)
+  double compliance = 0;  ///< of the same loads: weighted sum, or the largest
+  double volume = 0;
+  Connectivity connectivity;
+};
+SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> components,
+                         LoadResponse& loads);
+
+/// Factors of the body for dynamics: the sharp picture with the void factors of dynamics.
+fem::Factors dynamic_factors(const BodyProblem& problem, std::span<const Component> components);
+
+}  // namespace flexmorph::mmc
