@@ -28,7 +28,11 @@ io::Json body_results(const RunReport& report, size_t i) {
   out.set("sharp_compliance", o.sharp.compliance).set("sharp_volume", o.sharp.volume);
   out.set("uniform_compliance", o.uniform_compliance);
   out.set("connected", o.sharp.connectivity.connected).set("islands", o.sharp.connectivity.islands);
-  out.set("min_feature", io::Json());
+  const auto width = [&](double Features::*which) {
+    const bool there = o.sharp.features && std::isfinite((*o.sharp.features).*which);
+    return there ? io::Json((*o.sharp.features).*which) : io::Json();
+  };
+  out.set("min_feature", width(&Features::solid)).set("min_gap", width(&Features::gap));
   out.set("thinnest_component", thinnest(report.problems[i]));
   const auto amplitude = [&](const std::optional<MotionRecord>& motion) {
     if (!motion) return io::Json();

@@ -139,13 +139,15 @@ void RunFolder::add_iteration(const mmc::IterationReport& r) {
   h.compliance.push_back(r.state.compliance());
   h.volume.push_back(r.state.volume());
   h.kkt.push_back(r.iterate.kkt);
-  io::Cell sharp_c, sharp_v, connected;
+  io::Cell sharp_c, sharp_v, connected, min_feature;
   if (r.sharp) {
     h.sharp_row.push_back(h.row.back());
     h.sharp_compliance.push_back(r.sharp->compliance);
     sharp_c = r.sharp->compliance;
     sharp_v = r.sharp->volume;
     connected = r.sharp->connectivity.connected;
+    if (r.sharp->features && std::isfinite(r.sharp->features->solid))
+      min_feature = r.sharp->features->solid;
   }
   add_events(r);
   output_seconds_ += mmc::cpu_seconds() - clock;
@@ -164,7 +166,7 @@ void RunFolder::add_iteration(const mmc::IterationReport& r) {
                  sharp_c,
                  sharp_v,
                  connected,
-                 io::Cell(),
+                 min_feature,
                  r.state.seconds_tdf(),
                  s.factor,
                  s.solve,

@@ -48,6 +48,21 @@ std::vector<Region> regions_of(const BodyProblem& p, std::span<const Component> 
   return unite(outlines, domain_of(p), voids);
 }
 
+namespace {
+
+std::optional<Features> features_of(const BodyProblem& problem,
+                                    std::span<const Component> components) {
+  try {
+    return smallest_features(regions_of(problem, components, kOutlineTolerance * problem.grid.dx()),
+                             domain_of(problem));
+  } catch (const Error& error) {
+    if (error.kind() == Error::Kind::input) throw;
+    return {};
+  }
+}
+
+}  // namespace
+
 SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> components,
                          LoadResponse& loads) {
   SharpDesign out;
@@ -56,6 +71,7 @@ SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> 
   out.volume = out.fractions.sum() / ersatz.n_domain_cells();
   out.connectivity = connectivity(problem.grid, out.fractions, problem.places);
   out.compliance = judged_compliance(problem, loads, ersatz.sharp(out.fractions));
+  out.features = features_of(problem, components);
   return out;
 }
 

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "fem/element.h"
+#include "geometry/feature.h"
 #include "geometry/outline.h"
 #include "geometry/picture.h"
 #include "optim/mmc/mmc_problem.h"
@@ -56,6 +58,7 @@ struct SharpDesign {
   double compliance = 0;  ///< of the same loads: weighted sum, or the largest
   double volume = 0;
   Connectivity connectivity;
+  std::optional<Features> features;  ///< absent when the outlines cannot be united
 };
 SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> components,
                          LoadResponse& loads);

@@ -38,6 +38,21 @@ TEST(AreaFractions, AgreeWithTheExactUnion) {
   }
 }
 
+// With 64 x 64 samples per cell of 40 x 20, random samples along a boundary of length P would leave
+// sqrt(P h) h of area, h the distance of samples: about 1e-6 of the domain.
+TEST(AreaFractions, OfFineSamplesAgreeWithTheExactUnion) {
+  const Grid grid{.x0 = 0, .y0 = 0, .width = 2, .height = 1, .nx = 40, .ny = 20};
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    test::RandomComponents random(seed);
+    const std::vector<Component> design = random.several(20, 2, 1);
+    std::vector<std::vector<Vec2>> outlines;
+    for (const Component& c : design) outlines.push_back(outline_within(c, 0.03, 1e-5));
+    const double exact = area(unite(outlines, {{0, 0}, {2, 1}}));
+    const VectorXd fractions = area_fractions(grid, design, 0.03, {}, {}, 64);
+    EXPECT_NEAR(sharp_area(grid, fractions), exact, 1e-4 * exact) << seed;
+  }
+}
+
 TEST(AreaFractions, LieWhereTheMaterialIs) {
   const Grid grid{.width = 10, .height = 4, .nx = 10, .ny = 4};
   const Component bar{.center = {5, 1.25}, .half_length = 50, .c1 = 0.75, .c2 = 0.75, .c3 = 0.75};

@@ -60,8 +60,8 @@ TEST(ComponentTdf, TakesThePrintedValues) {
       return std::pow(std::pow(X / c.half_length, 6) + std::pow(Y / g, 6), 1.0 / 6);
     };
     const double h = 1e-6, here = s(x, y);
-    const double slope = std::hypot((s(x + h, y) - s(x - h, y)) / (2 * h),
-                                    (s(x, y + h) - s(x, y - h)) / (2 * h));
+    const double slope =
+        std::hypot((s(x + h, y) - s(x - h, y)) / (2 * h), (s(x, y + h) - s(x, y - h)) / (2 * h));
     const double w = std::min(1.0, here * here);
     const double P = (1 - here) * (w / slope + (1 - w) * g);
     const double phi = P > 0 ? P * std::pow(1 + std::pow(P / g, 8), -0.125) : P;

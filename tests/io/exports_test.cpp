@@ -12,6 +12,7 @@
 #include <map>
 #include <sstream>
 
+#include "io/plots.h"
 #include "tests/io/scratch.h"
 
 namespace flexmorph::io {
@@ -66,6 +67,38 @@ TEST(Dxf, ClosedPolylinesEncloseTheArea) {
   EXPECT_EQ(closed, polylines);
   EXPECT_GT(area_of_layer["HOLES"], 0);
   EXPECT_NEAR(area_of_layer["OUTLINE"] - area_of_layer["HOLES"], area(regions), 1e-14);
+}
+
+// Rings of the path by the even-odd rule: outer ones run against holes, so that signed areas add
+// up.
+TEST(Svg, PathEnclosesTheArea) {
+  const std::vector<Region> regions = design();
+  const std::string svg = outline_svg(regions, {{0, 0}, {0.6, 0.1}});
+  const std::size_t begin = svg.find(" d=\"") + 4;
+  std::istringstream path(svg.substr(begin, svg.find('"', begin) - begin));
+  double area_of_path = 0;
+  std::vector<Vec2> ring;
+  int rings = 0;
+  for (char command = 0; path >> command;) {
+    if (command == 'Z') {
+      double twice = 0;
+      for (std::size_t k = 0; k < ring.size(); ++k) {
+        const Vec2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
+        twice += a.x() * b.y() - b.x() * a.y();
+      }
+      area_of_path += 0.5 * twice;
+      ring.clear();
+      ++rings;
+      continue;
+    }
+    ASSERT_TRUE(command == 'M' || command == 'L') << command;
+    Vec2 p;
+    ASSERT_TRUE(path >> p.x() >> p.y());
+    ring.push_back(p);
+  }
+  EXPECT_GT(rings, 2);
+  EXPECT_NE(svg.find("fill-rule=\"evenodd\""), std::string::npos);
+  EXPECT_NEAR(area_of_path, area(regions), 1e-14);
 }
 
 TEST(Stl, IsWatertightAndHasTheVolume) {

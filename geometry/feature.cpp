@@ -1,0 +1,318 @@
+#include "geometry/feature.h"
+
+#include <CGAL/Segment_Delaunay_graph_2.h>
+#include <CGAL/Segment_Delaunay_graph_filtered_traits_2.h>
+#include <CGAL/Simple_cartesian.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+namespace flexmorph {
+namespace {
+
+using Kernel = CGAL::Simple_cartesian<double>;
+using Graph =
+    CGAL::Segment_Delaunay_graph_2<CGAL::Segment_Delaunay_graph_filtered_traits_2<Kernel>>;
+using Site = Graph::Site_2;
+
+/// Flanks within this of opposite make a bar   [rad].
+constexpr double kNearlyOpposite = std::numbers::pi / 6;
+/// Sides within this are parallel   [rad].
+constexpr double kParallel = 1e-6;
+/// Relative round-off of distances between contacts.
+constexpr double kRoundOff = 1e-9;
+
+double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+Vec2 nearest_on(const Vec2& a, const Vec2& b, const Vec2& p) {
+  const Vec2 along = b - a;
+  const double length2 = along.squaredNorm();
+  const double t = length2 > 0 ? std::clamp((p - a).dot(along) / length2, 0.0, 1.0) : 0.0;
+  return a + t * along;
+}
+
+/// What the outlines say about one of their vertices.
+struct Corner {
+  Vec2 before{0, 0}, after{0, 0};  // directions of the sides that end and begin here
+  int visits = 0;
+  bool border_before = false, border_after = false;
+};
+
+/// The outlines, and their sides by their ends.
+class Outlines {
+ public:
+  Outlines(std::span<const Region> regions, std::span<const Vec2> domain) : domain_(domain) {
+    for (const Vec2& p : domain) size_ = std::max(size_, p.cwiseAbs().maxCoeff());
+    for (const Region& r : regions) {
+      add(r.outer);
+      for (const auto& hole : r.holes) add(hole);
+    }
+  }
+
+  const std::vector<Vec2>& points() const { return points_; }
+  const std::vector<std::pair<size_t, size_t>>& sides() const { return sides_; }
+
+  const Corner* corner(const Vec2& p) const {
+    const auto found = corners_.find({p.x(), p.y()});
+    return found == corners_.end() ? nullptr : &found->second;
+  }
+  const std::map<std::pair<double, double>, Corner>& corners() const { return corners_; }
+
+  bool on_border(const Vec2& a, const Vec2& b) const {
+    for (size_t i = 0; i < domain_.size(); ++i) {
+      const Vec2 &c = domain_[i], &d = domain_[(i + 1) % domain_.size()];
+      if (near_line(a, c, d) && near_line(b, c, d)) return true;
+    }
+    return false;
+  }
+  bool on_border(const Vec2& p) const { return on_border(p, p); }
+
+  /// Is the point in the domain (counted by crossings)?
+  bool within(const Vec2& p) const {
+    bool inside = false;
+    for (size_t i = 0; i < domain_.size(); ++i) {
+      const Vec2 &a = domain_[i], &b = domain_[(i + 1) % domain_.size()];
+      if ((a.y() > p.y()) != (b.y() > p.y()) &&
+          p.x() < a.x() + (p.y() - a.y()) * (b.x() - a.x()) / (b.y() - a.y()))
+        inside = !inside;
+    }
+    return inside;
+  }
+
+ private:
+  void add(const std::vector<Vec2>& ring) {
+    const size_t first = points_.size(), n = ring.size();
+    for (size_t k = 0; k < n; ++k) {
+      const Vec2 &p = ring[k], &q = ring[(k + 1) % n];
+      points_.push_back(p);
+      if (p == q) continue;
+      sides_.emplace_back(first + k, first + (k + 1) % n);
+      const bool border = on_border(p, q);
+      Corner &at_p = corners_[{p.x(), p.y()}], &at_q = corners_[{q.x(), q.y()}];
+      at_p.after = (q - p).normalized();
+      at_p.border_after = border;
+      at_q.before = at_p.after;
+      at_q.border_before = border;
+      ++at_p.visits;
+    }
+  }
+  bool near_line(const Vec2& p, const Vec2& a, const Vec2& b) const {
+    return (p - nearest_on(a, b, p)).norm() <= 1e-12 * size_;
+  }
+
+  std::span<const Vec2> domain_;
+  double size_ = 0;
+  std::vector<Vec2> points_;
+  std::vector<std::pair<size_t, size_t>> sides_;
+  std::map<std::pair<double, double>, Corner> corners_;
+};
+
+Vec2 vec(const Graph::Point_2& p) { return {p.x(), p.y()}; }
+
+/// A vertex or a side of the outlines, as a disc may touch it.
+struct Contact {
+  bool is_side = false;
+  Vec2 a{0, 0}, b{0, 0};  // a side keeps the material on its left
+  bool border = false;
+  bool known = true;  // false: made by CGAL where rounded sides cross
+
+  Vec2 nearest(const Vec2& p) const { return is_side ? nearest_on(a, b, p) : a; }
+};
+
+class MedialAxis {
+ public:
+  MedialAxis(const Outlines& outlines, double limit) : outlines_(outlines), limit_(limit) {
+    std::vector<Graph::Point_2> points;
+    for (const Vec2& p : outlines.points()) points.emplace_back(p.x(), p.y());
+    graph_.insert_segments(points.begin(), points.end(), outlines.sides().begin(),
+                           outlines.sides().end());
+    for (const auto& [p, q] : outlines.sides()) {
+      const Vec2 &a = outlines.points()[p], &b = outlines.points()[q];
+      sides_[key(a, b)] = {a, b};
+    }
+  }
+
+  std::vector<NarrowPlace> places() {
+    corners();
+    for (auto e = graph_.finite_edges_begin(); e != graph_.finite_edges_end(); ++e) {
+      const Contact p = contact(e->first->vertex(Graph::cw(e->second))->site());
+      const Contact q = contact(e->first->vertex(Graph::ccw(e->second))->site());
+      if (p.known && q.known) neck(p, q, *e);
+    }
+    for (auto f = graph_.finite_faces_begin(); f != graph_.finite_faces_end(); ++f) vertex(f);
+    std::sort(found_.begin(), found_.end(),
+              [](const NarrowPlace& x, const NarrowPlace& y) { return x.width < y.width; });
+    return std::move(found_);
+  }
+
+ private:
+  using Key = std::array<double, 4>;
+  static Key key(const Vec2& a, const Vec2& b) {
+    const bool ordered = std::pair(a.x(), a.y()) < std::pair(b.x(), b.y());
+    const Vec2 &p = ordered ? a : b, &q = ordered ? b : a;
+    return {p.x(), p.y(), q.x(), q.y()};
+  }
+
+  Contact contact(const Site& site) const {
+    Contact c;
+    if (site.is_point()) {
+      c.a = c.b = vec(site.point());
+      c.border = outlines_.on_border(c.a);
+      c.known = outlines_.corner(c.a) != nullptr;
+      return c;
+    }
+    c.is_side = true;
+    c.a = vec(site.segment().source());
+    c.b = vec(site.segment().target());
+    const auto side = sides_.find(key(c.a, c.b));
+    c.known = side != sides_.end();
+    if (c.known) {
+      c.a = side->second.first;
+      c.b = side->second.second;
+      c.border = outlines_.on_border(c.a, c.b);
+    }
+    return c;
+  }
+
+  /// Does a disc around `center` that touches here lie in the material?
+  bool in_material(const Contact& c, const Vec2& center) const {
+    if (c.is_side) return cross(c.b - c.a, center - c.a) > 0;
+    const Corner& corner = *outlines_.corner(c.a);
+    return cross(corner.before, corner.after) < 0;  // only reflex vertices touch from within
+  }
+
+  /// Vertices that are narrow by themselves: pinches, and corners as sharp as a blade.
+  void corners() {
+    for (const auto& [at, corner] : outlines_.corners()) {
+      const Vec2 p(at.first, at.second);
+      const double turn =
+          std::atan2(cross(corner.before, corner.after), corner.before.dot(corner.after));
+      const bool sharp = corner.visits == 1 && std::numbers::pi - turn < kNearlyOpposite &&
+                         turn > 0 && !corner.border_before && !corner.border_after;
+      if (corner.visits > 1 || sharp) add({NarrowPlace::Kind::neck, true, 0, p, p, p});
+    }
+  }
+
+  /// Opposite contacts of an edge of the medial axis: the disc between them, when it is empty.
+  void neck(const Contact& p, const Contact& q, const Graph::Edge& edge) {
+    Vec2 a = p.a, b = q.a;
+    if (p.is_side && q.is_side) {
+      const std::optional<std::pair<Vec2, Vec2>> between = parallel_contacts(p, q, edge);
+      if (!between) return;
+      std::tie(a, b) = *between;
+    } else if (p.is_side || q.is_side) {
+      const Contact &side = p.is_side ? p : q, &point = p.is_side ? q : p;
+      const Vec2 along = (side.b - side.a);
+      const double t = (point.a - side.a).dot(along) / along.squaredNorm();
+      if (!(t > 0 && t < 1)) return;
+      a = point.a;
+      b = side.a + t * along;
+    }
+    const double width = (a - b).norm();
+    if (!(width < limit_) || width == 0) return;
+    const Vec2 center = 0.5 * (a + b);
+    if (!empty(center, 0.5 * width)) return;
+    report(NarrowPlace::Kind::neck, p, {NarrowPlace::Kind::neck, true, width, center, a, b});
+  }
+
+  /// Two parallel sides: the contacts in the middle of their edge of the medial axis.
+  std::optional<std::pair<Vec2, Vec2>> parallel_contacts(const Contact& p, const Contact& q,
+                                                         const Graph::Edge& edge) const {
+    const Vec2 d = (p.b - p.a).normalized(), e = (q.b - q.a).normalized();
+    if (std::abs(cross(d, e)) > kParallel || d.dot(e) > 0) return {};
+    const auto other = edge.first->neighbor(edge.second);
+    if (graph_.is_infinite(edge.first) || graph_.is_infinite(other)) return {};
+    const Vec2 middle = 0.5 * (vec(graph_.primal(edge.first)) + vec(graph_.primal(other)));
+    return std::pair(p.nearest(middle), q.nearest(middle));
+  }
+
+  bool empty(const Vec2& center, double radius) {
+    const auto nearest = graph_.nearest_neighbor({center.x(), center.y()}, hint_);
+    if (nearest == Graph::Vertex_handle()) return false;
+    hint_ = nearest;
+    const Site& site = nearest->site();
+    const Vec2 at = site.is_point() ? vec(site.point())
+                                    : nearest_on(vec(site.segment().source()),
+                                                 vec(site.segment().target()), center);
+    return (center - at).norm() >= radius * (1 - kRoundOff);
+  }
+
+  /// A vertex of the medial axis: a disc with three contacts.
+  void vertex(const Graph::Finite_faces_iterator& face) {
+    const Vec2 center = vec(graph_.primal(face));
+    std::array<Contact, 3> contacts;
+    std::array<Vec2, 3> at;
+    double low = std::numeric_limits<double>::infinity(), high = 0;
+    for (int k = 0; k < 3; ++k) {
+      const auto i = static_cast<size_t>(k);
+      contacts[i] = contact(face->vertex(k)->site());
+      if (!contacts[i].known) return;
+      at[i] = contacts[i].nearest(center);
+      const double radius = (center - at[i]).norm();
+      low = std::min(low, radius);
+      high = std::max(high, radius);
+    }
+    if (!(2 * low < limit_) || low == 0 || high - low > 1e-6 * high) return;
+    const double angle[3] = {opening(center, at[1], at[2]), opening(center, at[2], at[0]),
+                             opening(center, at[0], at[1])};
+    const auto widest = static_cast<size_t>(std::max_element(angle, angle + 3) - angle);
+    const size_t i = (widest + 1) % 3, j = (widest + 2) % 3;
+    NarrowPlace place{NarrowPlace::Kind::blob, true, 2 * low, center, at[i], at[j]};
+    // Contacts all around: the angles between them fill the circle.
+    if (angle[0] + angle[1] + angle[2] > 2 * std::numbers::pi - kParallel &&
+        angle[widest] < std::numbers::pi - kParallel)
+      report(place.kind, contacts[i], place);
+    const bool border = contacts[i].border || contacts[j].border;
+    if (angle[widest] < std::numbers::pi - kNearlyOpposite || border) return;
+    place.kind = NarrowPlace::Kind::bar;
+    report(place.kind, contacts[i], place);
+  }
+
+  static double opening(const Vec2& center, const Vec2& a, const Vec2& b) {
+    const Vec2 u = a - center, v = b - center;
+    return std::atan2(std::abs(cross(u, v)), u.dot(v));
+  }
+
+  void report(NarrowPlace::Kind kind, const Contact& c, NarrowPlace place) {
+    place.solid = in_material(c, place.center);
+    if (!place.solid && (kind == NarrowPlace::Kind::bar || !outlines_.within(place.center))) return;
+    add(place);
+  }
+  void add(const NarrowPlace& place) {
+    if (place.width < limit_) found_.push_back(place);
+  }
+
+  const Outlines& outlines_;
+  double limit_;
+  Graph graph_;
+  Graph::Vertex_handle hint_;
+  std::map<Key, std::pair<Vec2, Vec2>> sides_;
+  std::vector<NarrowPlace> found_;
+};
+
+}  // namespace
+
+std::vector<NarrowPlace> narrow_places(std::span<const Region> regions,
+                                       std::span<const Vec2> domain, double limit) {
+  const Outlines outlines(regions, domain);
+  if (outlines.sides().empty()) return {};
+  return MedialAxis(outlines, limit).places();
+}
+
+Features smallest_features(std::span<const Region> regions, std::span<const Vec2> domain) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Features out{kInfinity, kInfinity};
+  for (const NarrowPlace& p : narrow_places(regions, domain, kInfinity)) {
+    double& smallest = p.solid ? out.solid : out.gap;
+    smallest = std::min(smallest, p.width);
+  }
+  return out;
+}
+
+}  // namespace flexmorph

@@ -1,0 +1,253 @@
+// Narrow places of constructed shapes whose widths are known; every reported disc is inscribed; no
+// opposite pair of sampled points is closer than what was found.
+
+#include "geometry/feature.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "tests/geometry/random_components.h"
+
+namespace flexmorph {
+namespace {
+
+using Polygon = std::vector<Vec2>;
+constexpr double kPi = std::numbers::pi;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Polygon box(double x0, double y0, double x1, double y1) {
+  return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
+}
+const Polygon kDomain = box(-5, -5, 5, 5);
+
+Polygon circle(const Vec2& center, double radius, int n, double from = 0, double to = 2 * kPi) {
+  Polygon out;
+  const bool closed = to - from > 2 * kPi - 1e-9;
+  for (int k = 0; k < n; ++k) {
+    const double a = from + (to - from) * k / (closed ? n : n - 1);
+    out.push_back(center + radius * Vec2(std::cos(a), std::sin(a)));
+  }
+  return out;
+}
+
+Polygon turned(Polygon p, double angle, double scale = 1, const Vec2& shift = {0, 0}) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  for (Vec2& v : p) v = scale * Vec2(c * v.x() - s * v.y(), s * v.x() + c * v.y()) + shift;
+  return p;
+}
+
+Features features(const std::vector<Polygon>& material, const Polygon& domain = kDomain,
+                  const std::vector<Polygon>& voids = {}) {
+  return smallest_features(unite(material, domain, voids), domain);
+}
+
+/// A bar of the given half-length and half-thickness with square ends, around a point.
+Polygon bar(const Vec2& center, double length, double thickness, double angle) {
+  return turned(box(-length, -thickness, length, thickness), angle, 1, center);
+}
+
+// Straight outlines: exact to round-off (1e-12 of sizes of 1, and 1e-9 for emptiness).
+constexpr double kExact = 1e-11;
+
+TEST(SmallestFeature, OfARectangleIsItsShorterSide) {
+  const Features f = features({box(0, 0, 2, 0.3)});
+  EXPECT_NEAR(f.solid, 0.3, kExact);
+  EXPECT_EQ(f.gap, kInfinity);
+  EXPECT_NEAR(features({box(0, 0, 1, 1)}).solid, 1, kExact);
+}
+
+TEST(SmallestFeature, OfTwoBarsIsTheThinnerOneAndTheGapBetween) {
+  const Features f = features({box(0, 0, 1, 0.1), box(0, 0.13, 1, 0.33)});
+  EXPECT_NEAR(f.solid, 0.1, kExact);
+  EXPECT_NEAR(f.gap, 0.03, kExact);
+  // A corner over a flank, off by its distance from the line.
+  const double angle = 0.7, lift = 0.02;
+  const Polygon upper = bar({0, 0}, 0.5, 0.1, angle);
+  double lowest = kInfinity;
+  for (const Vec2& v : upper) lowest = std::min(lowest, v.y());
+  Polygon lower = box(-2, lowest - lift - 0.4, 2, lowest - lift);
+  EXPECT_NEAR(features({upper, lower}).gap, lift, kExact);
+}
+
+TEST(SmallestFeature, OfAVerySmallGapBetweenBars) {
+  EXPECT_NEAR(features({box(0, 0, 1, 0.1), box(0, 0.1 + 1e-6, 1, 0.2)}).gap, 1e-6, kExact);
+}
+
+TEST(SmallestFeature, OfANeckIsItsWidth) {
+  EXPECT_NEAR(features({box(0, 0, 1, 1), box(0.9, 0.4, 2.1, 0.6), box(2, 0, 3, 1)}).solid, 0.2,
+              kExact);
+  // Bars that meet by their corners: the two vertices where their outlines cross.
+  EXPECT_NEAR(features({box(0, 0, 1, 0.2), box(0.95, 0.15, 2, 0.35)}).solid, std::hypot(0.05, 0.05),
+              kExact);
+}
+
+TEST(SmallestFeature, OfAnHourglassIsTheDistanceOfItsArcs) {
+  // A block with two round voids at its sides, 0.3 apart: outlines within the sagitta of the arcs.
+  const int n = 160;
+  const double sagitta = 1 - std::cos(kPi / n);
+  const Features f =
+      features({box(-2, -1, 2, 1)}, kDomain, {circle({0, 1.15}, 1, n), circle({0, -1.15}, 1, n)});
+  EXPECT_NEAR(f.solid, 0.3, 4 * sagitta);
+}
+
+TEST(SmallestFeature, OfATaperedBarIsItsThinEnd) {
+  // Between two blocks: the reflex corners at the thin end.
+  const Polygon taper = {{0, -0.05}, {2, -0.15}, {2, 0.15}, {0, 0.05}};
+  EXPECT_NEAR(features({taper, box(-1, -0.5, 0.0, 0.5), box(2, -0.5, 3, 0.5)}).solid, 0.1, kExact);
+  // Free, with a round tip: hull of two discs.
+  const double R = 0.2, r = 0.05, distance = 2;
+  const double lean = std::asin((R - r) / distance);
+  Polygon hull = circle({0, 0}, R, 60, kPi / 2 - lean, 1.5 * kPi + lean);
+  const Polygon tip = circle({distance, 0}, r, 40, 1.5 * kPi + lean, 2.5 * kPi - lean);
+  hull.insert(hull.end(), tip.begin(), tip.end());
+  EXPECT_NEAR(features({hull}).solid, 2 * r, 2 * r * (1 - std::cos(kPi / 78)));
+  // Free, cut square at w = 0.1: the disc that touches the end and both flanks, whose slope is b:
+  // r = w/2 cos b / (1 - sin b).
+  const double slope = std::atan(0.05);
+  EXPECT_NEAR(features({taper}).solid, 0.1 * std::cos(slope) / (1 - std::sin(slope)), kExact);
+}
+
+TEST(SmallestFeature, OfARingIsItsWallAndItsHole) {
+  const int n = 120;
+  const std::vector<Region> ring = unite(std::vector<Polygon>{circle({0, 0}, 1, n)}, kDomain,
+                                         std::vector<Polygon>{circle({0, 0}, 0.7, n)});
+  const Features f = smallest_features(ring, kDomain);
+  const double sagitta = 1 - std::cos(kPi / n);
+  EXPECT_NEAR(f.solid, 0.3, 2 * sagitta);
+  EXPECT_NEAR(f.gap, 1.4, 2 * sagitta);
+  // A hole near an edge.
+  EXPECT_NEAR(features({box(0, 0, 2, 1)}, kDomain, {circle({1, 0.3}, 0.25, n)}).solid, 0.05,
+              2 * sagitta);
+}
+
+TEST(SmallestFeature, OfAnAngleIsItsThinnerArm) {
+  EXPECT_NEAR(features({box(0, 0, 1, 0.2), box(0, 0, 0.3, 1)}).solid, 0.2, kExact);
+}
+
+/// The largest disc that touches the tip of a superellipse of constant half-thickness g from
+/// within: the end of its medial axis.
+double end_disc(double L, double g) {
+  double low = 0, high = g;
+  for (int step = 0; step < 60; ++step) {
+    const double r = 0.5 * (low + high);
+    bool fits = true;
+    for (int k = 0; k <= 20000 && fits; ++k) {
+      const double x = L - 2 * r * k / 20000.0, u = x / L;
+      const double y = g * std::pow(1 - u * u * u * u * u * u, 1.0 / 6);
+      fits = std::hypot(x - (L - r), y) >= r * (1 - 1e-9);
+    }
+    (fits ? low : high) = r;
+  }
+  return 2 * low;
+}
+
+// The tips of a slender superellipse close over a good part of its length: a free end is thinner
+// than the middle.
+TEST(SmallestFeature, OfCrossingComponentsIsTheThinnerOne) {
+  const Component thin{{0, 0}, 1, 0.6, 0.1, 0.1, 0.1}, thick{{0.1, 0}, 1, -0.9, 0.15, 0.15, 0.15};
+  const Features f =
+      features({outline_within(thin, 1e-3, 1e-5), outline_within(thick, 1e-3, 1e-5)});
+  EXPECT_NEAR(f.solid, end_disc(1, 0.1), 1e-4);
+  EXPECT_EQ(f.gap, kInfinity);  // wedges between bars are no gaps
+}
+
+TEST(SmallestFeature, CutsByTheBorderAreNoFeatures) {
+  const Polygon domain = box(0, 0, 2, 1);
+  // Oblique bars that end in the border, and one half outside of it: a strip of 0.07.
+  EXPECT_NEAR(features({bar({1, 0.5}, 3, 0.1, 0.5)}, domain).solid, 0.2, kExact);
+  EXPECT_NEAR(features({bar({1, 0.5}, 3, 0.1, 1.3)}, domain).solid, 0.2, kExact);
+  EXPECT_NEAR(features({box(-1, -0.2, 3, 0.07)}, domain).solid, 0.07, kExact);
+  // Void between a bar and the border is no gap.
+  EXPECT_EQ(features({box(0, 0.01, 2, 0.5)}, domain).gap, kInfinity);
+}
+
+TEST(SmallestFeature, OfPiecesThatShareAVertexIsZero) {
+  EXPECT_EQ(features({box(0, 0, 1, 1), box(1, 1, 2, 2)}).solid, 0);
+}
+
+TEST(SmallestFeature, TurnsAndScales) {
+  const std::vector<Polygon> shape = {box(0, 0, 1, 0.2), box(0.95, 0.15, 2, 0.35),
+                                      box(0, 0.28, 0.9, 0.5)};
+  const Features plain = features(shape);
+  EXPECT_NEAR(plain.solid, std::hypot(0.05, 0.05), kExact);
+  EXPECT_NEAR(plain.gap, 0.05, kExact);
+  for (const double scale : {1e-3, 1.0, 1e3})
+    for (const double angle : {0.1, 0.7853981633974483, 1.2345}) {
+      std::vector<Polygon> moved;
+      for (const Polygon& p : shape) moved.push_back(turned(p, angle, scale));
+      const Features f = features(moved, turned(kDomain, angle, scale));
+      EXPECT_NEAR(f.solid, scale * plain.solid, 1e-8 * scale) << scale << " " << angle;
+      EXPECT_NEAR(f.gap, scale * plain.gap, 1e-8 * scale) << scale << " " << angle;
+    }
+}
+
+/// Points of the outlines, about `step` apart.
+Polygon samples(const std::vector<Region>& regions, double step) {
+  Polygon out;
+  const auto walk = [&](const Polygon& ring) {
+    for (size_t k = 0; k < ring.size(); ++k) {
+      const Vec2 &p = ring[k], along = ring[(k + 1) % ring.size()] - p;
+      const int n = static_cast<int>(std::ceil(along.norm() / step));
+      for (int i = 0; i < n; ++i) out.push_back(p + along * i / n);
+    }
+  };
+  for (const Region& r : regions) {
+    walk(r.outer);
+    for (const Polygon& hole : r.holes) walk(hole);
+  }
+  return out;
+}
+
+double distance_to(const Polygon& points, const Vec2& p) {
+  double out = kInfinity;
+  for (const Vec2& q : points) out = std::min(out, (p - q).norm());
+  return out;
+}
+
+// Independent of the graph: sampled outlines. Every reported disc is inscribed and touches; and two
+// samples whose disc is empty and lies in the material are a neck (or a bar) of about their
+// distance, so that nothing much thinner may have been missed.
+TEST(NarrowPlaces, OfRandomDesignsAgreeWithSampledOutlines) {
+  const Polygon domain = box(0, 0, 2, 1);
+  const double step = 0.01;
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    test::RandomComponents random(seed);
+    std::vector<Polygon> outlines;
+    for (const Component& c : random.several(12, 2, 1))
+      outlines.push_back(outline_within(c, 0.02, 1e-4));
+    const std::vector<Region> regions = unite(outlines, domain, {});
+    const Polygon points = samples(regions, step);
+    const std::vector<NarrowPlace> places = narrow_places(regions, domain, 0.2);
+    for (const NarrowPlace& p : places) {
+      if (p.width == 0) continue;
+      EXPECT_NEAR(distance_to(points, p.center), 0.5 * p.width,
+                  step * step / (4 * p.width) + 1e-9 + step * (p.width < step));
+      EXPECT_NEAR((p.a - p.center).norm(), 0.5 * p.width, 1e-6 * p.width);
+      EXPECT_NEAR((p.b - p.center).norm(), 0.5 * p.width, 1e-6 * p.width);
+      bool inside = false;
+      for (const Region& r : regions) inside = inside || contains(r, p.center);
+      EXPECT_EQ(inside, p.solid) << seed;
+    }
+    double sampled = 0.2;
+    for (size_t i = 0; i < points.size(); ++i)
+      for (size_t j = i + 1; j < points.size(); ++j) {
+        const Vec2 center = 0.5 * (points[i] + points[j]);
+        const double width = (points[i] - points[j]).norm();
+        if (width >= sampled || width < 5 * step) continue;
+        if (distance_to(points, center) < 0.5 * width * (1 - 1e-6)) continue;
+        bool inside = false;
+        for (const Region& r : regions) inside = inside || contains(r, center);
+        if (inside) sampled = width;
+      }
+    double found = 0.2;
+    for (const NarrowPlace& p : places)
+      if (p.solid) found = std::min(found, p.width);
+    EXPECT_LE(found, sampled + 1e-9) << seed;
+  }
+}
+
+}  // namespace
+}  // namespace flexmorph
