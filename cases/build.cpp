@@ -136,8 +136,8 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
     const Grid& g = d.grid;
     mmc::DesignScale scale;
     scale.half_length = d.half_length;
-    scale.min_thickness = d.min_thickness;
-    scale.max_thickness = std::max({0.3 * g.height, 1.5 * d.min_thickness, d.half_thickness});
+    scale.min_thickness = std::max(d.min_thickness, mmc::half_thickness_for(d.min_feature));
+    scale.max_thickness = std::max({0.3 * g.height, 1.5 * scale.min_thickness, d.half_thickness});
     auto layout = d.start.empty()
                       ? crossing_layout(g.x0, g.y0, g.width, g.height, d.components[0],
                                         d.components[1], d.half_thickness, d.half_length)
@@ -160,7 +160,8 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
                    {},
                    {},
                    d.drop_every,
-                   d.refill});
+                   d.refill,
+                   d.min_feature});
     if (!scene.domain) continue;
     out.back().domain = scene.domain->polygon;
     if (!scene.domain->polygon.empty())

@@ -4,7 +4,9 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "cases/compare.h"
 #include "cases/run.h"
+#include "cases/sweep.h"
 #include "cases/version.h"
 
 namespace {
@@ -30,27 +32,67 @@ void restart_with_threads(int threads, char** argv) {
   execv("/proc/self/exe", argv);  // returns only on failure: then the library defaults stand
 }
 
+void add_case(CLI::App& command, std::string& name, std::vector<std::string>& overrides) {
+  command.add_option("case", name, "case file, or name of a shipped case")->required();
+  command.add_option("--set", overrides, "KEY=VALUE, changes the case")
+      ->take_all()
+      ->allow_extra_args(false);
+}
+
+void add_study(CLI::App& command, StudyOptions& study) {
+  add_case(command, study.case_name, study.overrides);
+  command.add_option("-o,--output", study.directory, "folder of the study");
+  command.add_option("--jobs", study.jobs, "processes at a time")->check(CLI::Range(1, 1024));
+  command.add_option("--threads", study.threads, "threads of each")->check(CLI::Range(1, 256));
+  command.add_flag("--quiet", study.quiet, "no progress");
+}
+
+CLI::App* add_compare(CLI::App& app, CompareOptions& options) {
+  CLI::App* command = app.add_subcommand(
+      "compare", "runs a case with several optimizers from the same starts and compares them");
+  add_study(*command, options.study);
+  command->add_option("--optimizers", options.optimizers, "names, with commas (default: all)")
+      ->delimiter(',');
+  command->add_option("--starts", options.starts, "the case's own start and jittered ones")
+      ->check(CLI::Range(1, 10000));
+  command->add_option("--jitter", options.jitter, "of the starts, in parts of components' sizes")
+      ->check(CLI::Range(0.0, 1.0));
+  command->add_option("--budget", options.budget, "state solves of each run")
+      ->check(CLI::Range(1, 100'000'000));
+  return command;
+}
+
+CLI::App* add_sweep(CLI::App& app, SweepOptions& options) {
+  CLI::App* command =
+      app.add_subcommand("sweep", "runs a case with every combination of values and collects");
+  add_study(*command, options.study);
+  command->add_option("--vary", options.vary, "KEY=V1,V2,...; several make combinations")
+      ->take_all()
+      ->allow_extra_args(false);
+  command->add_option("--index", options.index, "only this variant, from 1 (job arrays)")
+      ->check(CLI::Range(1, 1'000'000));
+  command->add_flag("--list", options.list, "prints the variants");
+  return command;
+}
+
 int parse_and_run(int argc, char** argv) {
   CLI::App app("Topology optimization of flexible mechanisms", "flexmorph");
   app.set_version_flag("--version", std::string("flexmorph ") + kVersion);
   app.require_subcommand(1);
   RunOptions options;
-  const auto common = [&](CLI::App* command) {
-    command->add_option("case", options.case_name, "case file, or name of a shipped case")
-        ->required();
-    command->add_option("--set", options.overrides, "KEY=VALUE, changes the case")
-        ->take_all()
-        ->allow_extra_args(false);
-  };
   CLI::App* run = app.add_subcommand("run", "runs a case and writes its run folder");
-  common(run);
+  add_case(*run, options.case_name, options.overrides);
   run->add_option("-o,--output", options.directory, "run folder (default runs/<name>)");
   run->add_option("--threads", options.threads, "threads of the linear algebra")
       ->check(CLI::Range(1, 256));
   run->add_flag("--quiet", options.quiet, "no progress");
   CLI::App* check =
       app.add_subcommand("check", "validates a case; says what it contains and costs");
-  common(check);
+  add_case(*check, options.case_name, options.overrides);
+  CompareOptions compare_options;
+  CLI::App* compare = add_compare(app, compare_options);
+  SweepOptions sweep_options;
+  CLI::App* sweep = add_sweep(app, sweep_options);
   CLI::App* cases = app.add_subcommand("cases", "lists the shipped cases");
   try {
     app.parse(argc, argv);
@@ -61,6 +103,8 @@ int parse_and_run(int argc, char** argv) {
     restart_with_threads(options.threads, argv);
     return run_case(options);
   }
+  if (*compare) return compare_case(compare_options);
+  if (*sweep) return sweep_case(sweep_options);
   if (*check) std::fputs(check_case(options).c_str(), stdout);
   if (*cases)
     for (const std::string& name : shipped_cases()) std::printf("%s\n", name.c_str());

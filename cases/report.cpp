@@ -33,6 +33,16 @@ io::Json body_results(const RunReport& report, size_t i) {
     return there ? io::Json((*o.sharp.features).*which) : io::Json();
   };
   out.set("min_feature", width(&Features::solid)).set("min_gap", width(&Features::gap));
+  if (o.clean_up) {
+    const mmc::CleanUp& c = *o.clean_up;
+    io::Json clean = io::Json::object();
+    clean.set("min_feature_wanted", c.wanted).set("min_feature_before", c.before);
+    clean.set("compliance_before", c.compliance_before);
+    clean.set("compliance_cost", c.compliance_after / c.compliance_before - 1);
+    clean.set("patches", c.patches).set("dropped", c.dropped).set("rounds", c.rounds);
+    clean.set("reached", c.reached());
+    out.set("clean_up", std::move(clean));
+  }
   out.set("thinnest_component", thinnest(report.problems[i]));
   const auto amplitude = [&](const std::optional<MotionRecord>& motion) {
     if (!motion) return io::Json();
@@ -117,6 +127,10 @@ std::string run_json(const Scene& scene, const RunReport& report) {
     if (!o.sharp.connectivity.connected)
       warnings.push("body '" + o.body +
                     "': no piece of material joins what is held and what is loaded");
+    if (o.clean_up && !o.clean_up->reached())
+      warnings.push("body '" + o.body + "': the smallest feature is " +
+                    io::to_text(o.clean_up->after, 4) + " m where " +
+                    io::to_text(o.clean_up->wanted, 4) + " m was wanted");
     if (o.sharp.compliance > 1.15 * o.compliance)
       warnings.push("body '" + o.body +
                     "': the sharp compliance is far above the blurred one: gaps are bridged");

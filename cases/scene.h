@@ -133,6 +133,7 @@ struct BodyDesign {
   std::array<int, 2> components{1, 1};  ///< boxes of the initial layout, two components in each
   mmc::Goal goal;                       ///< volumes are fractions, solid regions included
   double min_thickness = 0;             ///< c_min: smallest half-thickness of a component [m]
+  double min_feature = 0;               ///< smallest solid feature of the union [m], 0: as it comes
   double half_length = 0;               ///< of the initial components [m]
   double half_thickness = 0;            ///< of the initial components [m]
   /// Half-widths of the Heaviside band, coarse to fine [cells]; of tdf = "paper" [-].

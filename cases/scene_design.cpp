@@ -3,6 +3,7 @@
 #include "cases/scene_parts.h"
 #include "io/exports.h"
 #include "io/files.h"
+#include "optim/mmc/clean_up.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -123,6 +124,15 @@ void read_regions(const Table& t, const Body& body, const Scene& scene, BodyDesi
              "' needs solid material: [[design.solid]] with strip = \"free_end\", cells = 2");
 }
 
+/// A width, or the word for that of the thinnest component.
+double read_min_feature(const Table& t, const Body& body, double min_thickness) {
+  if (t.has("min_feature") && t.is_string("min_feature"))
+    return t.choice<double>("min_feature", "a smallest feature in words",
+                            {{"twice_min_thickness", 2 * min_thickness}});
+  io::Quantity width = between("a smallest feature", "m", 0, 0.5 * body.width);
+  return t.number("min_feature", width, 0.0);
+}
+
 void read_components(const Table& t, const Body& body, BodyDesign& design) {
   const double cell = design.grid.dx();
   const std::vector<int> boxes =
@@ -134,6 +144,8 @@ void read_components(const Table& t, const Body& body, BodyDesign& design) {
   half_width.lower_open = true;
   half_width.noun = "a smallest half-thickness fits into the width: it";
   design.min_thickness = t.number("min_thickness", half_width, std::min(cell, 0.5 * body.width));
+
+  design.min_feature = read_min_feature(t, body, design.min_thickness);
 
   const double wide = design.grid.width / boxes[0], high = design.grid.height / boxes[1];
   const double diagonal = std::hypot(wide, high);
@@ -175,7 +187,8 @@ void read_tdf(const Table& t, BodyDesign& design) {
       (paper ? 1 : cell);
   io::Quantity small = fraction("the Heaviside function of the void", 0.5);
   design.tdf.alpha = t.number("alpha", small, 1e-3);
-  design.tdf.min_half_thickness = design.min_thickness;
+  design.tdf.min_half_thickness =
+      std::max(design.min_thickness, mmc::half_thickness_for(design.min_feature));
   design.tdf = design.stage(design.band.size() - 1);
   design.stiffness_void = t.number("stiffness_void", fraction("a stiffness factor"), 1e-4);
   design.mass_void = t.number("mass_void", fraction("a mass factor"), 1e-3);

@@ -140,6 +140,11 @@ const std::string& Table::path() const { return place_->path; }
 
 bool Table::has(const std::string& key) const { return place_->find(key) != nullptr; }
 
+bool Table::is_string(const std::string& key) const {
+  const CaseNode* node = place_->find(key);
+  return node != nullptr && node->kind == CaseNode::Kind::text;
+}
+
 std::vector<std::string> Table::keys() const {
   std::vector<std::string> all;
   for (const CaseNode& node : place_->table->entries) all.push_back(node.key);

@@ -39,9 +39,10 @@ Quantity between(std::string noun, std::string unit, double lower, double upper)
 /// it known: CaseFile::finish() refuses all others. Copies are cheap and keep the file alive.
 class Table {
  public:
-  const std::string& path() const;         ///< "body.flow"; empty for the file itself
-  bool has(const std::string& key) const;  ///< does the key exist? (makes it known)
-  std::vector<std::string> keys() const;   ///< in the order of the file (makes none known)
+  const std::string& path() const;               ///< "body.flow"; empty for the file itself
+  bool has(const std::string& key) const;        ///< does the key exist? (makes it known)
+  bool is_string(const std::string& key) const;  ///< is its value a string?
+  std::vector<std::string> keys() const;         ///< in the order of the file (makes none known)
 
   /// Whole numbers are numbers; inf and nan are refused.
   double number(const std::string& key, const Quantity& quantity,

@@ -98,36 +98,25 @@ void write_components_csv(const std::string& path, std::span<const Component> co
 }
 
 std::vector<Component> read_components_csv(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw Error::input(path + ": cannot be read");
-  std::string line, header;
+  const CsvTable table = read_csv(path);
+  std::string header;
   for (const std::string& name : kColumns) header += (header.empty() ? "" : ",") + name;
-  const auto fail = [&](int number, const std::string& what) {
-    throw Error::input(path + ":" + std::to_string(number) + ": " + what);
+  const auto fail = [&](size_t line, const std::string& what) {
+    throw Error::input(path + ":" + std::to_string(line) + ": " + what);
   };
-  const auto strip = [](std::string& text) {
-    if (!text.empty() && text.back() == '\r') text.pop_back();
-  };
-  std::getline(file, line);
-  strip(line);
-  if (line != header) fail(1, "the header of components is " + header);
+  if (!std::equal(table.columns.begin(), table.columns.end(), kColumns.begin(), kColumns.end()))
+    fail(1, "the header of components is " + header);
   std::vector<Component> out;
-  for (int number = 2; std::getline(file, line); ++number) {
-    strip(line);
-    if (line.empty()) continue;
+  for (size_t r = 0; r < table.rows.size(); ++r) {
     std::array<double, Component::kParameters> values{};
-    std::istringstream cells(line);
-    std::string cell;
-    std::size_t n = 0;
-    for (; std::getline(cells, cell, ','); ++n) {
-      if (n == values.size()) fail(number, "more than " + std::to_string(n) + " values");
+    for (size_t n = 0; n < values.size(); ++n) {
+      const std::string& cell = table.rows[r][n];
       const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), values[n]);
       if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(values[n]))
-        fail(number, kColumns[n] + " = '" + cell + "' is not a number");
+        fail(r + 2, kColumns[n] + " = '" + cell + "' is not a number");
       if (n != 0 && n != 1 && n != 3 && !(values[n] > 0))
-        fail(number, kColumns[n] + " = " + cell + ": lengths and thicknesses are positive [m]");
+        fail(r + 2, kColumns[n] + " = " + cell + ": lengths and thicknesses are positive [m]");
     }
-    if (n < values.size()) fail(number, std::to_string(n) + " values; a component has " + header);
     out.push_back(Component::from_parameters(values.data()));
   }
   if (out.empty()) fail(2, "one component or more");

@@ -145,14 +145,15 @@ std::string grid_lines(const Scale& x, const Scale& y) {
 }
 
 std::string style_of(const Curve& curve, size_t index) {
-  return std::string(" stroke=\"") + kColors[index % kColors.size()] +
-         "\" stroke-width=\"1.7\" fill=\"none\" stroke-linejoin=\"round\"" +
+  return std::string(" stroke=\"") + kColors[curve.color.value_or(index) % kColors.size()] +
+         "\" stroke-width=\"" + (curve.thin ? "0.6" : "1.7") +
+         "\" fill=\"none\" stroke-linejoin=\"round\"" +
          (curve.dashed ? " stroke-dasharray=\"6 4\"" : "");
 }
 
-std::string marker(double x, double y, size_t index) {
-  return "<circle" + at("cx", x, "cy", y) + " r=\"3\" fill=\"" + kColors[index % kColors.size()] +
-         "\"/>\n";
+std::string marker(double x, double y, const Curve& curve, size_t index) {
+  return "<circle" + at("cx", x, "cy", y) + " r=\"3\" fill=\"" +
+         kColors[curve.color.value_or(index) % kColors.size()] + "\"/>\n";
 }
 
 std::string line_svg(const Curve& curve, size_t index, const Scale& x, const Scale& y) {
@@ -176,7 +177,7 @@ std::string markers_svg(const Curve& curve, size_t index, const Scale& x, const 
   std::string out;
   for (size_t i = 0; curve.markers && i < std::min(curve.x.size(), curve.y.size()); ++i)
     if (x.holds(curve.x[i]) && y.holds(curve.y[i]))
-      out += marker(x.pixel(curve.x[i]), y.pixel(curve.y[i]), index);
+      out += marker(x.pixel(curve.x[i]), y.pixel(curve.y[i]), curve, index);
   return out;
 }
 
@@ -215,7 +216,7 @@ std::string legend_svg(const Panel& panel, const Legend& legend, double left, do
     const double x = left + entry.x, y = top + kLegendRow * (entry.row + 0.5);
     if (curve.line)
       out += "<path d=\"M" + px(x) + " " + px(y) + "h26\"" + style_of(curve, entry.curve) + "/>\n";
-    if (curve.markers) out += marker(x + 13, y, entry.curve);
+    if (curve.markers) out += marker(x + 13, y, curve, entry.curve);
     out += text(x + 33, y + 4, xml_escaped(curve.name), "");
   }
   return out;

@@ -16,6 +16,8 @@ struct Curve {
   std::string name = {};  ///< in the legend; empty: not there
   std::vector<double> x = {}, y = {};
   bool line = true, markers = false, dashed = false;
+  std::optional<size_t> color = {};  ///< place in the list of colours; absent: that of the curve
+  bool thin = false;
 };
 
 struct Axis {

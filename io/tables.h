@@ -48,6 +48,25 @@ class CsvWriter {
   int file_ = -1;
 };
 
+/// A table of comma-separated values as read from a file.
+struct CsvTable {
+  std::vector<std::string> columns;
+  std::vector<std::vector<std::string>> rows;  ///< as long as the header each
+
+  /// @throws Error (input) for a column that is not there.
+  std::vector<std::string> texts(const std::string& column) const;
+  /// Numbers of a column; NaN where a cell is empty or no number.
+  std::vector<double> numbers(const std::string& column) const;
+};
+/// @throws Error (input) when the file cannot be read; file and line where a row has another length
+///         than the header.
+CsvTable read_csv(const std::string& path);
+
+/// Rows of texts for a terminal: columns padded, the first row is the header.
+std::string aligned_table(std::span<const std::vector<std::string>> rows);
+/// The same as Markdown.
+std::string markdown_table(std::span<const std::vector<std::string>> rows);
+
 /// A JSON value. Objects keep the order of their keys; NaN and infinity become null.
 class Json {
  public:

@@ -26,6 +26,7 @@ class BodyDesigner {
     outcome_.n_right_hand_sides = loads_.n_right_hand_sides();
     const auto n_stages = static_cast<int>(problem_.stages.size());
     for (int stage = 0; stage < n_stages && going_; ++stage) run_stage(stage, n_stages);
+    if (problem_.min_feature > 0 && going_) thicken();
     finish();
     outcome_.factorizations = loads_.factorizations();
     return std::move(outcome_);
@@ -95,11 +96,21 @@ class BodyDesigner {
     outcome_.kkt = best.result.kkt;
     outcome_.stop = optim::to_string(best.result.stop) +
                     (best.result.message.empty() ? "" : ": " + best.result.message);
+    measure(tdf);
+  }
+
+  /// Blurred figures of the design.
+  void measure(const TdfSettings& tdf) {
     MmcProblem state(problem_.grid, problem_.design, ersatz_, loads_, tdf, problem_.goal,
                      problem_.places);
-    state.evaluate(best.result.x);
+    state.evaluate(state.start());
     outcome_.compliance = state.compliance();
     outcome_.volume = state.volume();
+  }
+
+  void thicken() {
+    outcome_.clean_up = clean_up(problem_, loads_, problem_.min_feature);
+    measure(problem_.stages.back());
   }
 
   bool spent() const {
@@ -123,6 +134,7 @@ class BodyDesigner {
       going_ = observe_({problem_, cycle_, outcome_.iterations,
                          outcome_.evaluations + iterate.evaluations, iterate, state, state.value(),
                          loads_, wanted ? &sharp : nullptr, events});
+    state.clear_seconds();
     return going_ && !changed_;
   }
 

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "optim/mmc/body_problem.h"
+#include "optim/mmc/clean_up.h"
 #include "optim/mmc/turnover.h"
 #include "optim/optimizer.h"
 
@@ -38,6 +40,7 @@ struct BodyOutcome {
   int factorizations = 0;
   std::string stop;  ///< why the optimizer stopped
   std::vector<ComponentEvent> events;
+  std::optional<CleanUp> clean_up;       ///< when a smallest feature was wanted
   std::vector<double> load_compliances;  ///< F_i . u_i of the sharp design
   std::vector<double> energy_ratios;     ///< ½ F_i . u_i of the starting design / strain energy
 };

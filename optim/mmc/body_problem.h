@@ -30,6 +30,7 @@ struct BodyProblem {
   std::vector<std::vector<int>> places;  ///< cells of loaded and held places; empty: both ends
   int drop_every = 25;                   ///< iterations between looks for dead components; 0: none
   bool refill = false;                   ///< long components are split in place of dropped ones
+  double min_feature = 0;                ///< smallest solid feature of the result [m]; 0: any
 };
 
 /// Chain of factors of the problem's cells.

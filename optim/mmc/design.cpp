@@ -38,7 +38,17 @@ Design::Design(const Grid& domain, std::vector<Component> start, const DesignSca
 }
 
 Design Design::with(std::vector<Component> components) const {
-  return {domain_, std::move(components), scale_};
+  Design out(domain_, components, scale_);
+  for (size_t c = 0; c < components.size(); ++c) {
+    const auto p = components[c].parameters();
+    for (int k = 0; k < kN; ++k) {
+      const auto i = static_cast<Eigen::Index>(c) * kN + k;
+      out.x_[i] = p[static_cast<size_t>(k)] / out.unit_[i];
+      out.lower_[i] = std::min(out.lower_[i], out.x_[i]);
+      out.upper_[i] = std::max(out.upper_[i], out.x_[i]);
+    }
+  }
+  return out;
 }
 
 double Design::shortest() const { return std::max(0.6 * scale_.half_length, scale_.min_thickness); }

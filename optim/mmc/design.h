@@ -27,7 +27,7 @@ class Design {
  public:
   Design(const Grid& domain, std::vector<Component> start, const DesignScale& scale);
 
-  /// The same domain and sizes with other components.
+  /// The same domain and sizes with other components; bounds widen where they lie outside of them.
   Design with(std::vector<Component> components) const;
 
   double shortest() const;  ///< lower bound of a half-length [m]

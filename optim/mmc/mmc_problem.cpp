@@ -74,7 +74,7 @@ void MmcProblem::solve(const VectorXd& x) {
   tdf_.evaluate(components_);
   ersatz_.factors(tdf_.density(), tdf_.eroded(), factors_);
   volume_ = factors_.mass.sum() / ersatz_.n_domain_cells();
-  seconds_tdf_ = cpu_seconds() - clock;
+  seconds_tdf_ += cpu_seconds() - clock;
 
   if (goal_.over == Goal::Over::sum) {
     loads_.evaluate(factors_.stiffness, factors_.mass, value_);
@@ -88,7 +88,10 @@ void MmcProblem::solve(const VectorXd& x) {
     else
       value_.d_mass = zero_;
   }
-  seconds_ = loads_.seconds();
+  const LoadResponse::Seconds last = loads_.seconds();
+  seconds_.factor += last.factor;
+  seconds_.solve += last.solve;
+  seconds_.sensitivity += last.sensitivity;
   if (!(value_.f > 0) || !std::isfinite(value_.f))
     throw Error::numerical("design problem: the compliance is " + std::to_string(value_.f));
 }
@@ -151,6 +154,11 @@ optim::Response MmcProblem::evaluate(const VectorXd& x) {
   }
   seconds_tdf_ += cpu_seconds() - clock;
   return out;
+}
+
+void MmcProblem::clear_seconds() {
+  seconds_tdf_ = 0;
+  seconds_ = {};
 }
 
 bool MmcProblem::acceptable([[maybe_unused]] const VectorXd& x) {

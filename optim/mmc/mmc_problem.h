@@ -63,8 +63,10 @@ class MmcProblem final : public optim::Problem {
   const CellFactors& factors() const { return factors_; }
   const VectorXd& phi() const { return tdf_.phi(); }
   double band() const { return tdf_.settings().band; }
-  double seconds_tdf() const { return seconds_tdf_; }  ///< CPU, TDF and chain rule
+  // CPU seconds of all evaluations since clear_seconds().
+  double seconds_tdf() const { return seconds_tdf_; }  ///< TDF and chain rule
   LoadResponse::Seconds seconds() const { return seconds_; }
+  void clear_seconds();
 
  private:
   bool bounded() const {

@@ -71,6 +71,7 @@ Iteration measure(const cases::Scene& scene, const mmc::BodyProblem& problem,
       mma.push_back(iterate.seconds);
       total.push_back(now - mark);
     }
+    state.clear_seconds();
     evaluations = iterate.evaluations;
     mark = mmc::cpu_seconds();
     return true;

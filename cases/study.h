@@ -1,0 +1,68 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+/// Many runs of one case with changes: each a process of its own with a run folder of its own.
+namespace flexmorph::cases {
+
+struct StudyOptions {
+  std::string case_name;
+  std::string directory;               ///< holds the run folders; empty: chosen by the study
+  std::vector<std::string> overrides;  ///< KEY=VALUE of all variants
+  int jobs = 1;                        ///< processes at a time
+  int threads = 1;                     ///< of each
+  bool quiet = false;
+};
+
+struct Variant {
+  std::string name;                    ///< of its folder
+  std::vector<std::string> overrides;  ///< of its own, after those of the study
+};
+
+/// One designed body of a run: results of run.json and columns of history.csv.
+struct BodyResult {
+  std::string body, stop;
+  double compliance = 0, volume = 0, sharp_compliance = 0, sharp_volume = 0, uniform_compliance = 0;
+  double kkt = 0, violation = 0;  ///< violation: of the last row
+  bool connected = false;
+  std::optional<double> min_feature;
+  int iterations = 0, solves = 0, factorizations = 0, components = 0;
+  int peaks = 0;         ///< of the history, see peaks()
+  int disconnected = 0;  ///< sharp pictures of the history that had come apart
+  std::vector<double> history_solves, history_compliance, history_violation, history_seconds,
+      history_band;
+  std::vector<double> sharp_iteration, sharp_history;  ///< where evaluated
+};
+
+/// What a run folder says.
+struct VariantResult {
+  std::string name, directory;
+  std::string status = "missing";  ///< "done", "failed", "interrupted", "missing"
+  std::string message;             ///< why it failed
+  double seconds_cpu = 0, seconds_wall = 0;
+  std::vector<BodyResult> bodies;
+
+  bool done() const { return status == "done"; }
+};
+
+/// Reads every variant's case and builds what it would build.
+/// @throws Error (input) as a run would; nothing has been written then.
+void check_variants(const StudyOptions& options, std::span<const Variant> variants);
+
+/// Runs the variants that are not finished yet (status done with the very same case).
+/// @param changed  called after each that ended, with the results so far
+/// @return exit code: 0, 3 when one failed, 4 when interrupted (runs under way keep what they have)
+int run_variants(const StudyOptions& options, std::span<const Variant> variants,
+                 const std::function<void(std::span<const VariantResult>)>& changed);
+
+/// Runs one variant in its folder. @return its exit code.
+int run_variant(const StudyOptions& options, const Variant& variant);
+
+std::vector<VariantResult> read_results(const StudyOptions& options,
+                                        std::span<const Variant> variants);
+
+}  // namespace flexmorph::cases
