@@ -41,6 +41,13 @@ void describe_body(const Body& body, const Mechanism& mechanism, std::ostringstr
                        " elements refreshed per step");
 }
 
+std::string thickness_words(const BodyDesign& d) {
+  std::string out = "half-thickness of components at least " + io::to_text(d.min_thickness) + " m";
+  if (d.min_feature > 0)
+    out += ", smallest feature of their union at least " + io::to_text(d.min_feature) + " m";
+  return out;
+}
+
 void describe_design(const Scene& scene, const BodyDesign& d, std::ostringstream& out) {
   const Grid& g = d.grid;
   const int components = d.n_components();
@@ -53,8 +60,7 @@ void describe_design(const Scene& scene, const BodyDesign& d, std::ostringstream
                                         std::to_string(g.ny) + " cells, " + std::to_string(n) +
                                         " static unknowns");
   out << row("", std::to_string(loads) + " loads, volume at most " +
-                     io::to_text(d.goal.max_volume) + ", half-thickness at least " +
-                     io::to_text(d.min_thickness) + " m");
+                     io::to_text(d.goal.max_volume) + ", " + thickness_words(d));
   out << row("", "factor about " + io::to_text(8e-6 * factor, 3) + " MB, loads and displacements " +
                      io::to_text(8e-6 * 3.0 * n * loads, 3) + " MB; an iteration about " +
                      io::to_text(1e-9 * factor * (2 * g.ny + 5 + 3.0 * loads), 2) + " Gflop");
@@ -81,6 +87,7 @@ void describe_static(const Scene& scene, std::ostringstream& out) {
                                          io::to_text(d.goal.max_compliance) + " J"
                                    : over + " compliance under a volume of " +
                                          io::to_text(d.goal.max_volume)));
+  out << row("", thickness_words(d));
   out << row("optimizer", scene.optimizer.name + ", at most " +
                               std::to_string(scene.optimizer.max_iterations) + " iterations");
   out << "\nabsent: not built, costs nothing\n";

@@ -8,6 +8,9 @@
 namespace flexmorph::mmc {
 namespace {
 
+/// With a smallest feature, so many times a part of the iterations follows a clean-up.
+constexpr int kPolishes = 2, kPolishShare = 6;
+
 /// One cycle's design problem of one body.
 class BodyDesigner {
  public:
@@ -24,9 +27,13 @@ class BodyDesigner {
     outcome_.body = problem_.body;
     outcome_.n_loads = loads_.n_loads();
     outcome_.n_right_hand_sides = loads_.n_right_hand_sides();
+    const int total = settings_.optimizer.max_iterations;
+    const int polish = problem_.min_feature > 0 ? total / kPolishShare : 0;
     const auto n_stages = static_cast<int>(problem_.stages.size());
-    for (int stage = 0; stage < n_stages && going_; ++stage) run_stage(stage, n_stages);
-    if (problem_.min_feature > 0 && going_) thicken();
+    const int shaping = total - kPolishes * polish;
+    for (int stage = 0; stage < n_stages && going_; ++stage)
+      run_stage(stage, shaping * (stage + 1) / n_stages - shaping * stage / n_stages);
+    if (problem_.min_feature > 0 && going_) thicken(polish);
     finish();
     outcome_.factorizations = loads_.factorizations();
     return std::move(outcome_);
@@ -35,9 +42,7 @@ class BodyDesigner {
 
  private:
   /// A stage of the band: runs of the optimizer, a new one whenever the list of components changed.
-  void run_stage(int stage, int n_stages) {
-    const int total = settings_.optimizer.max_iterations;
-    int left = total * (stage + 1) / n_stages - total * stage / n_stages;
+  void run_stage(int stage, int left) {
     const TdfSettings& tdf = problem_.stages[static_cast<size_t>(stage)];
     const double shortest = problem_.refill ? problem_.design.shortest() : 0;
     Turnover turnover(problem_.grid, tdf, ersatz_, shortest);
@@ -108,8 +113,31 @@ class BodyDesigner {
     outcome_.volume = state.volume();
   }
 
-  void thicken() {
-    outcome_.clean_up = clean_up(problem_, loads_, problem_.min_feature);
+  /// Makes the design as thick as wanted; then optimizes from there, and does it again: what was
+  /// put over narrow places is shaped as well. The least compliant of the thick ones is kept.
+  void thicken(int polish) {
+    CleanUp best = clean_up(problem_, loads_, problem_.min_feature);
+    CleanUp sum = best;
+    Design kept = problem_.design;
+    const auto last = static_cast<int>(problem_.stages.size()) - 1;
+    for (int round = 0; round < kPolishes && polish > 0 && going_; ++round) {
+      run_stage(last, polish);
+      const CleanUp next = clean_up(problem_, loads_, problem_.min_feature);
+      sum.rounds += next.rounds;
+      sum.patches += next.patches;
+      sum.dropped += next.dropped;
+      const bool better = next.reached() == best.reached()
+                              ? (best.reached() ? next.compliance_after < best.compliance_after
+                                                : next.after > best.after)
+                              : next.reached();
+      if (!better) continue;
+      best = next;
+      kept = problem_.design;
+    }
+    problem_.design = kept;
+    sum.after = best.after;
+    sum.compliance_after = best.compliance_after;
+    outcome_.clean_up = sum;
     measure(problem_.stages.back());
   }
 

@@ -29,7 +29,7 @@ class Cleaner {
   CleanUp go() {
     CleanUp out;
     out.wanted = wanted_;
-    out.before = smallest(places());
+    out.before = features().solid;
     out.compliance_before = compliance(parts_);
     const std::vector<Component> start = parts_;
     double thickest = out.before;

@@ -1,0 +1,132 @@
+// Designs with thin places on purpose: after the clean-up the union, measured anew, is as thick as
+// wanted, holds together and weighs no more than allowed.
+
+#include "optim/mmc/clean_up.h"
+
+#include <gtest/gtest.h>
+
+#include "optim/mmc/body_design.h"
+#include "optim/mmc/fixed_loads.h"
+#include "tests/optim/mmc_small.h"
+
+namespace flexmorph::mmc::test {
+namespace {
+
+constexpr double kWanted = 0.018;  // thinner than the strip of two cells
+
+Component bar(const Vec2& from, const Vec2& to, double half_thickness) {
+  const Vec2 along = to - from;
+  return {0.5 * (from + to), 0.5 * along.norm(), std::atan2(along.y(), along.x()),
+          half_thickness,    half_thickness,     half_thickness};
+}
+
+FixedLoads tip_load() {
+  std::vector<fem::HeldUnknown> held;
+  for (int j = 0; j <= kGrid.ny; ++j)
+    for (int c = 0; c < 2; ++c) held.push_back({kGrid.node(0, j), c});
+  const std::vector<LoadCase> loads = {{"tip", 1, {{kGrid.node(60, 5), Vec2(0, 1)}}}};
+  return {kGrid, kSection, {}, held, loads, false};
+}
+
+BodyProblem problem_of(const std::vector<Component>& components, double max_volume) {
+  DesignScale scale = kScale;
+  scale.half_length = 0.02;  // the shortest is 12 mm
+  TdfSettings tdf = tdf_settings();
+  tdf.erosion = 0;
+  Goal goal;
+  goal.max_volume = max_volume;
+  return {"plate", kGrid, kSection, Design(kGrid, {}, scale).with(components),
+          strip(), {},    {tdf},    goal,
+          1e-4,    1e-3,  {},       {},
+          {},      {}};
+}
+
+Features measured(const BodyProblem& p) {
+  // Finer outlines than those the clean-up works with.
+  return smallest_features(regions_of(p, p.design.components(), 5e-3 * kGrid.dx()), domain_of(p));
+}
+
+void expect_thick(BodyProblem& problem, double cost_at_most) {
+  FixedLoads loads = tip_load();
+  const double before = measured(problem).solid;
+  ASSERT_LT(before, kWanted);
+  const CleanUp done = clean_up(problem, loads, kWanted);
+  EXPECT_TRUE(done.reached());
+  EXPECT_GE(measured(problem).solid, kWanted);
+  EXPECT_NEAR(done.before, before, 0.02 * kGrid.dx() + 1e-9);
+  const SharpDesign sharp = sharp_design(problem, problem.design.components(), loads);
+  EXPECT_TRUE(sharp.connectivity.connected);
+  EXPECT_LE(sharp.volume, problem.goal.max_volume + 0.01);  // the blurred volume is what counts
+  EXPECT_NEAR(sharp.compliance, done.compliance_after, 1e-9 * sharp.compliance);
+  EXPECT_LE(done.compliance_after, (1 + cost_at_most) * done.compliance_before);
+}
+
+TEST(CleanUp, FillsTheNeckOfTwoBarsThatMeetByTheirTips) {
+  BodyProblem problem =
+      problem_of({bar({-0.02, 0}, {0.3003, 0}, 0.016), bar({0.2997, 0}, {0.6, 0}, 0.016)}, 0.9);
+  expect_thick(problem, 0);  // there is volume to spare, and the neck was weak
+}
+
+TEST(CleanUp, ThickensAThinBarAndTakesTheVolumeElsewhere) {
+  const std::vector<Component> start = {bar({-0.02, 0.02}, {0.62, 0.02}, 0.02),
+                                        bar({-0.02, -0.035}, {0.6, 0.005}, 0.007)};
+  BodyProblem problem = problem_of(start, 0.56);
+  expect_thick(problem, 0.2);
+  EXPECT_LT(problem.design.components()[0].c1, 0.02);
+}
+
+TEST(CleanUp, WidensAStripAlongTheBorder) {
+  BodyProblem problem = problem_of(
+      {bar({-0.02, 0.02}, {0.62, 0.0}, 0.02), bar({-0.1, -0.052}, {0.7, -0.052}, 0.012)}, 0.9);
+  expect_thick(problem, 0.01);
+}
+
+TEST(CleanUp, LeavesAThickDesignAlone) {
+  const std::vector<Component> start = {bar({-0.1, 0}, {0.7, 0}, 0.02)};
+  BodyProblem problem = problem_of(start, 0.9);
+  FixedLoads loads = tip_load();
+  const CleanUp done = clean_up(problem, loads, kWanted);
+  EXPECT_EQ(done.rounds, 0);
+  EXPECT_TRUE(done.reached());
+  EXPECT_EQ(done.compliance_after, done.compliance_before);
+  const auto now = problem.design.components()[0].parameters(), then = start[0].parameters();
+  for (size_t k = 0; k < now.size(); ++k) EXPECT_NEAR(now[k], then[k], 1e-15);
+}
+
+TEST(BodyDesign, OfAWantedFeatureIsThatThick) {
+  BodyProblem problem{"plate",
+                      kGrid,
+                      kSection,
+                      Design(kGrid, layout(half_thickness_for(kWanted)),
+                             {.half_length = 0.05,
+                              .min_thickness = half_thickness_for(kWanted),
+                              .max_thickness = 0.03}),
+                      strip(),
+                      {},
+                      {tdf_settings()},
+                      {},
+                      1e-4,
+                      1e-3,
+                      {},
+                      {},
+                      {},
+                      {},
+                      25,
+                      false,
+                      kWanted};
+  problem.goal.max_volume = 0.6;
+  problem.stages[0].min_half_thickness = half_thickness_for(kWanted);
+  FixedLoads loads = tip_load();
+  DesignSettings settings;
+  settings.optimizer.max_iterations = 60;
+  bool going = true;
+  const BodyOutcome outcome = design_body(problem, loads, 1, settings, {}, going);
+  ASSERT_TRUE(outcome.clean_up);
+  EXPECT_TRUE(outcome.clean_up->reached());
+  EXPECT_GE(measured(problem).solid, kWanted);
+  EXPECT_LE(outcome.volume, 0.6 * (1 + 1e-4));
+  EXPECT_LE(outcome.iterations, 60);
+}
+
+}  // namespace
+}  // namespace flexmorph::mmc::test
