@@ -1,6 +1,7 @@
 #include "cases/statistics.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "geometry/base.h"
@@ -14,30 +15,54 @@ double median(std::vector<double> values) {
   return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
 }
 
-int peaks(std::span<const double> values, std::span<const double> band, double share) {
+bool told_apart(const std::vector<double>& a, const std::vector<double>& b) {
+  const auto within = [](double value, const std::vector<double>& range) {
+    const auto [least, most] = std::minmax_element(range.begin(), range.end());
+    return value >= *least && value <= *most;
+  };
+  return !within(median(a), b) && !within(median(b), a);
+}
+
+int peaks(std::span<const double> values, std::span<const int> stage, double share) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
   int count = 0;
   bool rising = false;
-  double low = std::numeric_limits<double>::infinity(), top = 0;
+  double best = kNone, low = kNone, top = 0;  // since the stage began, the last peak, the last rise
   for (size_t i = 0; i < values.size(); ++i) {
-    if (i > 0 && band[i] != band[i - 1]) {
+    if (i > 0 && stage[i] != stage[i - 1]) {
       rising = false;
-      low = std::numeric_limits<double>::infinity();
+      best = low = kNone;
     }
     const double value = values[i];
+    if (!std::isfinite(value)) continue;
+    best = std::min(best, value);
     if (!rising) {
       low = std::min(low, value);
-      rising = value > low * (1 + share);
+      rising = value - low > share * best;
       top = value;
       continue;
     }
     top = std::max(top, value);
-    if (value * (1 + share) < top) {
+    if (top - value > share * best) {
       ++count;
       rising = false;
       low = value;
     }
   }
   return count;
+}
+
+std::vector<double> best_so_far(std::span<const double> values, std::span<const double> violation,
+                                std::span<const int> stage, double feasibility) {
+  std::vector<double> out;
+  double best = std::numeric_limits<double>::quiet_NaN();
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (i > 0 && stage[i] != stage[i - 1]) best = std::numeric_limits<double>::quiet_NaN();
+    const bool usable = violation[i] <= feasibility && std::isfinite(values[i]);
+    if (usable && !(best <= values[i])) best = values[i];
+    out.push_back(best);
+  }
+  return out;
 }
 
 std::vector<std::vector<double>> data_profile(std::span<const std::vector<Progress>> runs,

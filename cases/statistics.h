@@ -10,11 +10,22 @@ namespace flexmorph::cases {
 /// @throws Error (input) for none.
 double median(std::vector<double> values);
 
-/// How often a history rises by more than `share` above what it had reached and falls again by as
-/// much. Where the band of the design changes the count begins anew: a jump there is no peak.
-/// @param values  positive, one per iteration
-/// @param band    of the same iterations
-int peaks(std::span<const double> values, std::span<const double> band, double share = 0.02);
+/// Are two sets of results told apart by their spread? They are when the median of neither lies
+/// within the range of the other.
+/// @throws Error (input) for an empty one.
+bool told_apart(const std::vector<double>& a, const std::vector<double>& b);
+
+/// Peaks of a history: local maxima that stand out, on both sides, by more than `share` of the best
+/// (smallest) value reached so far. A new stage has another problem: there the count begins anew,
+/// and neither the jump between stages nor the ends of a stage are peaks.
+/// @param values  one per iteration; those that are not finite are passed over
+/// @param stage   of the same iterations
+int peaks(std::span<const double> values, std::span<const int> stage, double share = 0.02);
+
+/// Smallest value of the feasible rows so far, anew in every stage; NaN before the first one.
+/// @param violation  of the same rows; feasible up to `feasibility`
+std::vector<double> best_so_far(std::span<const double> values, std::span<const double> violation,
+                                std::span<const int> stage, double feasibility);
 
 /// What one solver made of one problem, for a data profile.
 struct Progress {

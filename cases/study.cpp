@@ -5,20 +5,16 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cmath>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <sstream>
+#include <thread>
 
 #include "cases/run.h"
-#include "cases/statistics.h"
 #include "io/files.h"
-#include "io/tables.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -27,30 +23,15 @@ namespace fs = std::filesystem;
 
 volatile std::sig_atomic_t interrupted = 0;
 
-std::string contents_of(const std::string& path) {
-  std::ifstream file(path);
-  std::ostringstream out;
-  out << file.rdbuf();
-  return out.str();
-}
-
-std::string folder_of(const StudyOptions& options, const Variant& variant) {
-  return options.directory + "/" + variant.name;
-}
-
 std::vector<std::string> overrides_of(const StudyOptions& options, const Variant& variant) {
   std::vector<std::string> all = options.overrides;
   all.insert(all.end(), variant.overrides.begin(), variant.overrides.end());
   return all;
 }
 
-io::CaseFile case_of(const StudyOptions& options, const Variant& variant) {
-  return io::CaseFile(find_case(options.case_name), overrides_of(options, variant));
-}
-
 bool finished(const StudyOptions& options, const Variant& variant, const VariantResult& result) {
-  return result.done() && contents_of(folder_of(options, variant) + "/case.toml") ==
-                              case_of(options, variant).text();
+  return result.done() &&
+         text_of(folder_of(options, variant) + "/case.toml") == case_of(options, variant).text();
 }
 
 /// Starts this very program with a run of the variant; its words go to a log beside its folder.
@@ -80,81 +61,15 @@ pid_t start(const StudyOptions& options, const Variant& variant) {
   return child;
 }
 
-int exit_code(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 3; }
+/// How a process ended: its exit code, or the signal that ended it.
+struct Ended {
+  int code = 3, signal = 0;
 
-double number(const nlohmann::json& object, const char* key) {
-  return object.contains(key) && object[key].is_number() ? object[key].get<double>() : std::nan("");
-}
-
-BodyResult read_body(const nlohmann::json& r) {
-  BodyResult out;
-  out.body = r.value("body", "");
-  out.stop = r.value("stop", "");
-  out.compliance = number(r, "compliance");
-  out.volume = number(r, "volume");
-  out.sharp_compliance = number(r, "sharp_compliance");
-  out.sharp_volume = number(r, "sharp_volume");
-  out.uniform_compliance = number(r, "uniform_compliance");
-  out.kkt = number(r, "kkt");
-  out.connected = r.value("connected", false);
-  if (r.contains("min_feature") && r["min_feature"].is_number())
-    out.min_feature = r["min_feature"].get<double>();
-  out.iterations = r.value("iterations", 0);
-  out.solves = r.value("state_solves", 0);
-  out.factorizations = r.value("factorizations", 0);
-  out.components = r.value("components", 0);
-  return out;
-}
-
-void read_history(const std::string& path, std::vector<BodyResult>& bodies) {
-  const io::CsvTable table = io::read_csv(path);
-  const std::vector<std::string> body = table.texts("body");
-  const auto column = [&](const char* name) { return table.numbers(name); };
-  const std::vector<double> solves = column("evaluations"), compliance = column("compliance"),
-                            violation = column("violation"), band = column("band"),
-                            sharp = column("sharp_compliance"), connected = column("connected");
-  std::vector<double> seconds(body.size(), 0);
-  for (const std::string& name : table.columns) {
-    if (!name.starts_with("seconds_") || name == "seconds_output") continue;
-    const std::vector<double> part = column(name.c_str());
-    for (size_t i = 0; i < part.size(); ++i) seconds[i] += part[i];
+  explicit Ended(int status) {
+    if (WIFEXITED(status)) code = WEXITSTATUS(status);
+    if (WIFSIGNALED(status)) signal = WTERMSIG(status);
   }
-  for (BodyResult& b : bodies) {
-    for (size_t i = 0; i < body.size(); ++i) {
-      if (body[i] != b.body) continue;
-      b.history_solves.push_back(solves[i]);
-      b.history_compliance.push_back(compliance[i]);
-      b.history_violation.push_back(violation[i]);
-      b.history_band.push_back(band[i]);
-      const double before = b.history_seconds.empty() ? 0 : b.history_seconds.back();
-      b.history_seconds.push_back(before + seconds[i]);
-      if (connected[i] == 0) ++b.disconnected;
-      if (!std::isfinite(sharp[i])) continue;
-      b.sharp_iteration.push_back(static_cast<double>(b.history_solves.size()));
-      b.sharp_history.push_back(sharp[i]);
-    }
-    b.peaks = peaks(b.history_compliance, b.history_band);
-    if (!b.history_violation.empty()) b.violation = b.history_violation.back();
-  }
-}
-
-VariantResult read_result(const StudyOptions& options, const Variant& variant) {
-  VariantResult out;
-  out.name = variant.name;
-  out.directory = folder_of(options, variant);
-  const std::string text = contents_of(out.directory + "/run.json");
-  if (text.empty()) return out;
-  const nlohmann::json run = nlohmann::json::parse(text, nullptr, false);
-  if (run.is_discarded()) return out;
-  out.status = run.value("status", "missing");
-  out.message = run.value("message", "");
-  out.seconds_cpu = number(run, "seconds_cpu");
-  out.seconds_wall = number(run, "seconds_wall");
-  for (const nlohmann::json& r : run.value("results", nlohmann::json::array()))
-    out.bodies.push_back(read_body(r));
-  if (!out.bodies.empty()) read_history(out.directory + "/history.csv", out.bodies);
-  return out;
-}
+};
 
 /// Keeps `jobs` processes busy; the first signal goes on to all of them.
 class Jobs {
@@ -168,20 +83,24 @@ class Jobs {
   }
   size_t n_running() const { return running_.size(); }
 
-  /// Waits for one. @return variant and exit code.
-  std::pair<size_t, int> wait_for_one() {
+  /// Waits for one of them.
+  std::pair<size_t, Ended> wait_for_one() {
     while (true) {
-      int status = 0;
-      const pid_t child = waitpid(-1, &status, 0);
-      if (child < 0 && errno == EINTR) {
+      // Asked again and again: a signal that came just before a call that waits would be missed.
+      if (interrupted && !told_) {
         for (const auto& [pid, variant] : running_) kill(pid, SIGINT);
+        told_ = true;
+      }
+      int status = 0;
+      const pid_t child = waitpid(-1, &status, WNOHANG);
+      const auto found = running_.find(child);
+      if (found == running_.end()) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
         continue;
       }
-      const auto found = running_.find(child);
-      if (found == running_.end()) continue;
       const size_t variant = found->second;
       running_.erase(found);
-      return {variant, exit_code(status)};
+      return {variant, Ended(status)};
     }
   }
   void say(const std::string& line) const {
@@ -194,9 +113,11 @@ class Jobs {
   const StudyOptions& options_;
   std::span<const Variant> variants_;
   std::map<pid_t, size_t> running_;
+  bool told_ = false;  // did the runs hear of the interruption?
 };
 
 void watch_signals() {
+  interrupted = 0;
   struct sigaction action {};
   action.sa_handler = [](int) { interrupted = 1; };  // no SA_RESTART: waiting ends
   sigaction(SIGINT, &action, nullptr);
@@ -205,70 +126,104 @@ void watch_signals() {
 
 /// The last line a run wrote: what it died of.
 std::string last_words(const std::string& log) {
-  std::istringstream in(contents_of(log));
+  std::istringstream in(text_of(log));
   std::string last;
   for (std::string line; std::getline(in, line);)
     if (!line.empty()) last = line;
   return last;
 }
 
+/// The result of a run that has just ended. A run that could not say so itself has failed.
+VariantResult result_of(const StudyOptions& options, const Variant& variant, const Ended& ended) {
+  VariantResult out = read_result(options, variant);
+  const bool stopped = ended.code == 4 || (interrupted && ended.signal != 0);
+  if (stopped) {
+    out.status = "interrupted";
+  } else if (ended.signal != 0) {
+    out.status = "failed";
+    out.message = "ended by signal " + std::to_string(ended.signal);
+  } else if (ended.code != 0) {
+    out.status = "failed";
+    if (out.message.empty()) out.message = last_words(out.directory + ".log");
+  } else if (!out.done()) {
+    out.status = "failed";
+    if (out.message.empty()) out.message = "there is no run.json of a finished run";
+  }
+  return out;
+}
+
+void make_folder(const std::string& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error) throw Error::input("folder '" + path + "': " + error.message());
+}
+
 }  // namespace
+
+io::CaseFile case_of(const StudyOptions& options, const Variant& variant) {
+  return io::CaseFile(find_case(options.case_name), overrides_of(options, variant));
+}
 
 void check_variants(const StudyOptions& options, std::span<const Variant> variants) {
   for (const Variant& v : variants) build_scene(read_scene(case_of(options, v)));
 }
 
-std::vector<VariantResult> read_results(const StudyOptions& options,
-                                        std::span<const Variant> variants) {
-  std::vector<VariantResult> out;
-  for (const Variant& v : variants) out.push_back(read_result(options, v));
-  return out;
-}
-
 int run_variant(const StudyOptions& options, const Variant& variant) {
-  if (finished(options, variant, read_result(options, variant))) return 0;
-  fs::create_directories(options.directory);
+  make_folder(options.directory);
   watch_signals();
   Jobs jobs(options, {&variant, 1});
+  if (finished(options, variant, read_result(options, variant))) {
+    jobs.say(variant.name + ": finished before");
+    return 0;
+  }
   jobs.add(0);
-  const int code = jobs.wait_for_one().second;
-  if (code != 0 && code != 4)
-    std::fprintf(stderr, "%s\n", last_words(folder_of(options, variant) + ".log").c_str());
-  return code;
+  const Ended ended = jobs.wait_for_one().second;
+  const VariantResult result = result_of(options, variant, ended);
+  jobs.say(variant.name + ": " + result.status);
+  if (!result.message.empty())
+    std::fprintf(stderr, "flexmorph: %s: %s\n", variant.name.c_str(), result.message.c_str());
+  return result.status == "interrupted" ? 4 : ended.code;
 }
 
-int run_variants(const StudyOptions& options, std::span<const Variant> variants,
-                 const std::function<void(std::span<const VariantResult>)>& changed) {
-  fs::create_directories(options.directory);
+StudyOutcome run_variants(const StudyOptions& options, std::span<const Variant> variants,
+                          const std::function<void(std::span<const VariantResult>)>& changed) {
+  make_folder(options.directory);
   watch_signals();
-  std::vector<VariantResult> results = read_results(options, variants);
+  StudyOutcome out;
+  std::vector<size_t> wanted;
   Jobs jobs(options, variants);
-  bool failed = false;
-  const auto collect = [&] {
-    const auto [i, code] = jobs.wait_for_one();
-    results[i] = read_result(options, variants[i]);
-    if (code != 0 && results[i].done()) results[i].status = "failed";
-    if (code != 0 && code != 4) {
-      failed = true;
-      if (results[i].message.empty())
-        results[i].message = last_words(folder_of(options, variants[i]) + ".log");
-    }
-    jobs.say(variants[i].name + ": " + results[i].status +
-             (results[i].message.empty() ? "" : ", " + results[i].message));
-    changed(results);
-  };
-  for (size_t i = 0; i < variants.size() && !interrupted; ++i) {
-    if (finished(options, variants[i], results[i])) {
+  for (size_t i = 0; i < variants.size(); ++i) {
+    out.results.push_back(read_result(options, variants[i]));
+    if (finished(options, variants[i], out.results[i])) {
       jobs.say(variants[i].name + ": finished before");
       continue;
     }
-    results[i].status = "missing";
+    // What an earlier run with another case has left is no result of this study.
+    VariantResult& result = out.results[i] = VariantResult();
+    result.name = variants[i].name;
+    result.directory = folder_of(options, variants[i]);
+    wanted.push_back(i);
+  }
+  const auto collect = [&] {
+    const auto [i, ended] = jobs.wait_for_one();
+    VariantResult& result = out.results[i];
+    result = result_of(options, variants[i], ended);
+    jobs.say(result.name + ": " + result.status);
+    if (result.status == "failed") {
+      out.exit_code = 3;
+      std::fprintf(stderr, "flexmorph: %s: %s\n", result.name.c_str(), result.message.c_str());
+    }
+    changed(out.results);
+  };
+  for (const size_t i : wanted) {
     while (jobs.n_running() >= static_cast<size_t>(options.jobs)) collect();
-    if (!interrupted) jobs.add(i);
+    if (interrupted) break;
+    jobs.add(i);
   }
   while (jobs.n_running() > 0) collect();
-  changed(results);
-  return interrupted ? 4 : failed ? 3 : 0;
+  changed(out.results);
+  if (interrupted) out.exit_code = 4;
+  return out;
 }
 
 }  // namespace flexmorph::cases

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "io/case_file.h"
+
 /// Many runs of one case with changes: each a process of its own with a run folder of its own.
 namespace flexmorph::cases {
 
@@ -27,21 +29,24 @@ struct Variant {
 struct BodyResult {
   std::string body, stop;
   double compliance = 0, volume = 0, sharp_compliance = 0, sharp_volume = 0, uniform_compliance = 0;
-  double kkt = 0, violation = 0;  ///< violation: of the last row
+  double kkt = 0;
   bool connected = false;
   std::optional<double> min_feature;
   int iterations = 0, solves = 0, factorizations = 0, components = 0;
-  int peaks = 0;         ///< of the history, see peaks()
-  int disconnected = 0;  ///< sharp pictures of the history that had come apart
-  std::vector<double> history_solves, history_compliance, history_violation, history_seconds,
-      history_band;
+  int peaks = 0;                 ///< of the history, see peaks()
+  int disconnected = 0;          ///< sharp pictures of the history that had come apart
+  double seconds_optimizer = 0;  ///< CPU seconds of the optimizer itself
+  /// Rows of the history. Solves count on over cycles; seconds are cumulative CPU seconds of the
+  /// design iterations; rows of one stage share cycle and band, only they compare.
+  std::vector<double> history_solves, history_compliance, history_violation, history_seconds;
+  std::vector<int> history_stage;
   std::vector<double> sharp_iteration, sharp_history;  ///< where evaluated
 };
 
 /// What a run folder says.
 struct VariantResult {
   std::string name, directory;
-  std::string status = "missing";  ///< "done", "failed", "interrupted", "missing"
+  std::string status = "missing";  ///< "done", "failed", "interrupted", "running", "missing"
   std::string message;             ///< why it failed
   double seconds_cpu = 0, seconds_wall = 0;
   std::vector<BodyResult> bodies;
@@ -53,16 +58,31 @@ struct VariantResult {
 /// @throws Error (input) as a run would; nothing has been written then.
 void check_variants(const StudyOptions& options, std::span<const Variant> variants);
 
-/// Runs the variants that are not finished yet (status done with the very same case).
-/// @param changed  called after each that ended, with the results so far
-/// @return exit code: 0, 3 when one failed, 4 when interrupted (runs under way keep what they have)
-int run_variants(const StudyOptions& options, std::span<const Variant> variants,
-                 const std::function<void(std::span<const VariantResult>)>& changed);
+struct StudyOutcome {
+  int exit_code = 0;  ///< 0, 3 when a run failed, 4 when interrupted
+  std::vector<VariantResult> results;
+};
 
-/// Runs one variant in its folder. @return its exit code.
+/// Runs the variants that are not finished yet (status done with the very same case). When the
+/// study is interrupted, so are the runs under way: they keep what they have.
+/// @param changed  called after each that ended and at the end, with the results so far
+/// @throws Error (input) when the folder cannot be written.
+StudyOutcome run_variants(const StudyOptions& options, std::span<const Variant> variants,
+                          const std::function<void(std::span<const VariantResult>)>& changed);
+
+/// Runs one variant in its folder, unless it is finished. @return its exit code.
 int run_variant(const StudyOptions& options, const Variant& variant);
 
-std::vector<VariantResult> read_results(const StudyOptions& options,
-                                        std::span<const Variant> variants);
+/// Run folder of a variant.
+std::string folder_of(const StudyOptions& options, const Variant& variant);
+
+/// The case of a variant. @throws Error (input) as a run would.
+io::CaseFile case_of(const StudyOptions& options, const Variant& variant);
+
+/// What the folder of a variant says.
+VariantResult read_result(const StudyOptions& options, const Variant& variant);
+
+/// A whole file; empty when it cannot be read.
+std::string text_of(const std::string& path);
 
 }  // namespace flexmorph::cases

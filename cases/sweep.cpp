@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
-#include <sstream>
+#include <filesystem>
 
+#include "cases/compare_report.h"
 #include "cases/run.h"
 #include "cases/scene.h"
 #include "io/plots.h"
@@ -19,10 +19,17 @@ constexpr size_t kMostVariants = 10'000;
 
 std::string last_part(const std::string& key) { return key.substr(key.rfind('.') + 1); }
 
-/// A value as part of a folder's name.
+std::string trimmed(const std::string& text) {
+  const size_t first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
+  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+}
+
+/// A value as part of a folder's name: of lists and strings what is in them.
 std::string plain(const std::string& value) {
+  const size_t first = value.find_first_not_of("[\"' "), last = value.find_last_not_of("]\"' ");
   std::string out;
-  for (const char c : value) {
+  for (size_t i = first; i != std::string::npos && i <= last; ++i) {
+    const char c = value[i];
     const bool kept = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '-' ||
                       c == '+' || c == '_';
     out += kept ? c : '_';
@@ -30,69 +37,87 @@ std::string plain(const std::string& value) {
   return out;
 }
 
-std::vector<std::string> texts(const VariantResult& run) {
-  std::vector<std::string> row = {run.name, run.status};
-  if (run.bodies.empty()) {
-    row.push_back(run.message);
-    return row;
-  }
-  const BodyResult& b = run.bodies.front();
-  row.insert(
-      row.end(),
-      {io::to_text(b.compliance, 5), io::to_text(b.volume, 5), io::to_text(b.sharp_compliance, 5),
-       io::to_text(b.sharp_volume, 5), io::to_text(b.sharp_compliance / b.uniform_compliance, 4),
-       b.connected ? "yes" : "no", b.min_feature ? io::to_text(*b.min_feature, 4) : "-",
-       io::to_text(b.components), io::to_text(b.peaks), io::to_text(b.iterations),
-       io::to_text(b.solves), io::to_text(run.seconds_cpu, 3)});
-  return row;
-}
+/// A sweep as it was planned.
+struct Sweep {
+  std::string case_name;
+  std::vector<Varied> varied;
+  std::vector<Variant> variants;
+  std::vector<mmc::Goal> goals;  // of every designed body of every variant: they may be varied
 
-std::vector<std::vector<std::string>> table_of(std::span<const VariantResult> runs) {
-  std::vector<std::vector<std::string>> rows = {
-      {"variant", "status", "compliance", "volume", "sharp compliance", "sharp volume",
-       "sharp/uniform", "connected", "smallest feature", "components", "peaks", "iterations",
-       "solves", "CPU s"}};
-  for (const VariantResult& run : runs) rows.push_back(texts(run));
-  for (auto& row : rows) row.resize(rows.front().size());
+  size_t n_bodies() const { return goals.size() / variants.size(); }
+  std::string value(size_t variant, size_t key) const {
+    return variants[variant].overrides[key].substr(varied[key].key.size() + 1);
+  }
+  double figure(size_t variant, const BodyResult& result, size_t body) const {
+    return figure_of(result, goals.at(variant * n_bodies() + body));
+  }
+};
+
+/// A row per variant and designed body.
+std::vector<std::vector<std::string>> table_of(const Sweep& sweep,
+                                               std::span<const VariantResult> runs) {
+  std::vector<std::vector<std::string>> rows(1);
+  for (const Varied& v : sweep.varied) rows[0].push_back(v.key);
+  const bool several = sweep.n_bodies() > 1;
+  if (several) rows[0].emplace_back("body");
+  for (const char* name : {"status", "compliance", "volume", "sharp compliance", "sharp volume",
+                           "figure", "sharp/uniform", "connected", "smallest feature", "components",
+                           "peaks", "iterations", "solves", "CPU s"})
+    rows[0].emplace_back(name);
+  for (size_t k = 0; k < runs.size(); ++k) {
+    std::vector<std::string> head;
+    for (size_t v = 0; v < sweep.varied.size(); ++v) head.push_back(sweep.value(k, v));
+    for (size_t i = 0; i < runs[k].bodies.size(); ++i) {
+      const BodyResult& b = runs[k].bodies[i];
+      std::vector<std::string>& row = rows.emplace_back(head);
+      if (several) row.push_back(b.body);
+      row.insert(row.end(),
+                 {runs[k].status, io::to_text(b.compliance, 5), io::to_text(b.volume, 5),
+                  io::to_text(b.sharp_compliance, 5), io::to_text(b.sharp_volume, 5),
+                  io::to_text(sweep.figure(k, b, i), 5),
+                  io::to_text(b.sharp_compliance / b.uniform_compliance, 4),
+                  b.connected ? "yes" : "no", b.min_feature ? io::to_text(*b.min_feature, 4) : "-",
+                  io::to_text(b.components), io::to_text(b.peaks), io::to_text(b.iterations),
+                  io::to_text(b.solves), io::to_text(runs[k].seconds_cpu, 3)});
+    }
+    if (!runs[k].bodies.empty()) continue;
+    std::vector<std::string>& row = rows.emplace_back(head);
+    if (several) row.emplace_back("");
+    row.push_back(runs[k].status + (runs[k].message.empty() ? "" : ": " + runs[k].message));
+    row.resize(rows[0].size());
+  }
   return rows;
 }
 
-void write_csv(std::span<const VariantResult> runs, std::span<const Variant> variants,
-               const std::vector<Varied>& varied, const std::string& path) {
+void write_csv(const Sweep& sweep, std::span<const VariantResult> runs, const std::string& path) {
   std::vector<std::string> columns = {"variant"};
-  for (const Varied& v : varied) columns.push_back(v.key);
-  for (const char* name : {"status", "body", "compliance", "volume", "sharp_compliance",
-                           "sharp_volume", "uniform_compliance", "kkt", "connected", "min_feature",
-                           "components", "peaks", "iterations", "state_solves", "seconds_cpu"})
+  for (const Varied& v : sweep.varied) columns.push_back(v.key);
+  for (const char* name :
+       {"status", "body", "compliance", "volume", "sharp_compliance", "sharp_volume", "figure",
+        "uniform_compliance", "kkt", "connected", "min_feature", "components", "peaks",
+        "disconnected", "iterations", "state_solves", "seconds_cpu", "message"})
     columns.emplace_back(name);
   io::CsvWriter csv(path, columns);
   for (size_t k = 0; k < runs.size(); ++k) {
     std::vector<io::Cell> head = {runs[k].name};
-    for (size_t v = 0; v < varied.size(); ++v)
-      head.emplace_back(variants[k].overrides[v].substr(varied[v].key.size() + 1));
+    for (size_t v = 0; v < sweep.varied.size(); ++v) head.emplace_back(sweep.value(k, v));
     head.emplace_back(runs[k].status);
-    for (const BodyResult& b : runs[k].bodies) {
+    for (size_t i = 0; i < runs[k].bodies.size(); ++i) {
+      const BodyResult& b = runs[k].bodies[i];
       std::vector<io::Cell> row = head;
-      io::Cell feature;
-      if (b.min_feature) feature = *b.min_feature;
       for (const io::Cell& cell : std::initializer_list<io::Cell>{
                b.body, b.compliance, b.volume, b.sharp_compliance, b.sharp_volume,
-               b.uniform_compliance, b.kkt, b.connected, feature, b.components, b.peaks,
-               b.iterations, b.solves, runs[k].seconds_cpu})
+               sweep.figure(k, b, i), b.uniform_compliance, b.kkt, b.connected,
+               b.min_feature ? io::Cell(*b.min_feature) : io::Cell(), b.components, b.peaks,
+               b.disconnected, b.iterations, b.solves, runs[k].seconds_cpu, runs[k].message})
         row.push_back(cell);
       csv.row(row);
     }
     if (!runs[k].bodies.empty()) continue;
     head.resize(columns.size());
+    head.back() = runs[k].message;
     csv.row(head);
   }
-}
-
-std::string contents_of(const std::string& path) {
-  std::ifstream file(path);
-  std::ostringstream out;
-  out << file.rdbuf();
-  return out.str();
 }
 
 std::string history_picture(const BodyResult& b, double lowest, double highest) {
@@ -105,42 +130,78 @@ std::string history_picture(const BodyResult& b, double lowest, double highest) 
   std::vector<double> iteration(b.history_compliance.size());
   for (size_t i = 0; i < iteration.size(); ++i) iteration[i] = static_cast<double>(i + 1);
   panel.curves.push_back({"blurred", iteration, b.history_compliance});
-  panel.curves.push_back({"sharp", b.sharp_iteration, b.sharp_history, false, true});
+  // A design that came apart is far above the frame: the legend says so.
+  const auto above = std::count_if(b.sharp_history.begin(), b.sharp_history.end(),
+                                   [&](double c) { return c > highest; });
+  const std::string name = above > 0 ? "sharp (" + std::to_string(above) + " above)" : "sharp";
+  panel.curves.push_back({name, b.sharp_iteration, b.sharp_history, false, true});
   figure.panels = {panel};
   return io::plot_svg(figure);
 }
 
-/// Designs above their histories, all histories on the same axis: P Figs. 15-22 on one page.
-std::string sheet_of(const std::string& title, std::span<const VariantResult> runs) {
+/// Smallest and largest compliance, blurred or sharp, of the histories of one body.
+std::pair<double, double> range_of(std::span<const VariantResult> runs, size_t body) {
   double lowest = INFINITY, highest = 0;
-  for (const VariantResult& run : runs)
-    for (const BodyResult& b : run.bodies)
-      for (const double c : b.history_compliance) {
+  for (const VariantResult& run : runs) {
+    if (body >= run.bodies.size()) continue;
+    const BodyResult& b = run.bodies[body];
+    for (const std::vector<double>* history : {&b.history_compliance, &b.sharp_history})
+      for (const double c : *history) {
+        if (!(c > 0)) continue;
         lowest = std::min(lowest, c);
         highest = std::max(highest, c);
       }
+  }
+  return {lowest, highest};
+}
+
+/// Designs above their histories, those of a body on the same axis: P Figs. 15-22 on one page.
+std::string sheet_of(const Sweep& sweep, std::span<const VariantResult> runs) {
   std::vector<io::SheetEntry> entries;
-  for (const VariantResult& run : runs) {
-    io::SheetEntry entry{run.name, {}};
+  for (size_t k = 0; k < runs.size(); ++k) {
+    const VariantResult& run = runs[k];
+    io::SheetEntry entry;
+    for (size_t v = 0; v < sweep.varied.size(); ++v)
+      entry.title +=
+          (v > 0 ? ", " : "") + last_part(sweep.varied[v].key) + " = " + sweep.value(k, v);
     if (!run.done()) entry.title += " (" + run.status + ")";
-    for (const BodyResult& b : run.bodies) {
-      const std::string stem = run.bodies.size() > 1 ? "/design_" + b.body : "/design";
-      const std::string design = contents_of(run.directory + stem + ".svg");
+    for (size_t i = 0; i < run.bodies.size(); ++i) {
+      const std::string stem = run.bodies.size() > 1 ? "/design_" + run.bodies[i].body : "/design";
+      const std::string design = text_of(run.directory + stem + ".svg");
       if (!design.empty()) entry.pictures.push_back(design);
-      entry.pictures.push_back(history_picture(b, 0.9 * lowest, std::min(highest, 30 * lowest)));
+      const auto [lowest, highest] = range_of(runs, i);
+      entry.pictures.push_back(
+          history_picture(run.bodies[i], 0.9 * lowest, std::min(highest, 30 * lowest)));
     }
     entries.push_back(std::move(entry));
   }
-  return io::contact_sheet(title, entries, runs.size() > 4 && runs.size() % 3 == 0 ? 3 : 4);
+  const size_t last = sweep.varied.back().values.size();
+  // Variants that differ in the last key stand side by side, where they fit on a page.
+  return io::contact_sheet(sweep.case_name, entries,
+                           sweep.varied.size() > 1 && last <= 6 ? static_cast<int>(last) : 4);
 }
 
-void write_all(const StudyOptions& study, const std::vector<Varied>& varied,
-               std::span<const Variant> variants, std::span<const VariantResult> runs) {
-  const std::string stem = study.directory + "/sweep";
-  write_csv(runs, variants, varied, stem + ".csv");
+void write_all(const Sweep& sweep, std::span<const VariantResult> runs,
+               const std::string& directory) {
+  const std::string stem = directory + "/sweep";
+  write_csv(sweep, runs, stem + ".csv");
   io::write_file(stem + ".md",
-                 "# " + study.case_name + "\n\n" + io::markdown_table(table_of(runs)));
-  io::write_file(stem + ".svg", sheet_of(study.case_name, runs));
+                 "# " + sweep.case_name + "\n\n" + io::markdown_table(table_of(sweep, runs)) +
+                     "\nFigure: sharp compliance x sharp volume / volume allowed (the sharp volume "
+                     "where that is minimized).\n");
+  io::write_file(stem + ".svg", sheet_of(sweep, runs));
+}
+
+/// Scenes of all variants. @throws Error (input) when one has no design.
+std::vector<mmc::Goal> goals_of(const StudyOptions& study, std::span<const Variant> variants) {
+  std::vector<mmc::Goal> out;
+  for (const Variant& v : variants) {
+    const Scene scene = read_scene(case_of(study, v));
+    if (scene.designs.empty())
+      throw Error::input("case '" + scene.name + "' has no [[design]]: there is nothing to sweep");
+    for (const BodyDesign& d : scene.designs) out.push_back(d.goal);
+  }
+  return out;
 }
 
 }  // namespace
@@ -151,7 +212,7 @@ Varied read_varied(const std::string& text) {
     throw Error::input("--vary " + text + ": " + what + "; KEY=V1,V2,... is wanted");
   };
   if (equal == std::string::npos || equal == 0) fail("there is no key");
-  Varied out{text.substr(0, equal), {""}};
+  Varied out{trimmed(text.substr(0, equal)), {""}};
   int depth = 0;
   char quote = 0;
   for (const char c : text.substr(equal + 1)) {
@@ -170,8 +231,10 @@ Varied read_varied(const std::string& text) {
       out.values.back() += c;
   }
   if (depth != 0 || quote != 0) fail("a bracket or a quote is open");
-  for (const std::string& value : out.values)
+  for (std::string& value : out.values) {
+    value = trimmed(value);
     if (value.empty()) fail("a value is empty");
+  }
   return out;
 }
 
@@ -209,34 +272,40 @@ std::vector<Variant> combinations(const std::vector<Varied>& varied) {
 }
 
 int sweep_case(const SweepOptions& options) {
-  std::vector<Varied> varied;
-  for (const std::string& text : options.vary) varied.push_back(read_varied(text));
-  const std::vector<Variant> variants = combinations(varied);
+  Sweep sweep;
+  for (const std::string& text : options.vary) sweep.varied.push_back(read_varied(text));
+  sweep.variants = combinations(sweep.varied);
   StudyOptions study = options.study;
-  const int count = static_cast<int>(variants.size());
+  sweep.case_name = study.case_name;
+  const int count = static_cast<int>(sweep.variants.size());
   if (options.index < 0 || options.index > count)
     throw Error::input("sweep: --index " + std::to_string(options.index) + ": 1 to " +
                        std::to_string(count));
   if (options.list) {
-    for (int k = 0; k < count; ++k)
-      std::printf("%d %s\n", k + 1, variants[static_cast<size_t>(k)].name.c_str());
+    for (int k = 0; k < count; ++k) {
+      std::printf("%d", k + 1);
+      for (const std::string& each : sweep.variants[static_cast<size_t>(k)].overrides)
+        std::printf(" %s", each.c_str());
+      std::printf("\n");
+    }
     return 0;
   }
   if (study.directory.empty())
     study.directory =
-        "runs/sweep_" + read_scene(io::CaseFile(find_case(study.case_name), study.overrides)).name;
+        "runs/sweep_" + std::filesystem::path(find_case(study.case_name)).stem().string();
   if (options.index > 0) {
-    const Variant& one = variants[static_cast<size_t>(options.index - 1)];
+    const Variant& one = sweep.variants[static_cast<size_t>(options.index - 1)];
     check_variants(study, {&one, 1});
     return run_variant(study, one);
   }
-  check_variants(study, variants);
-  const int code = run_variants(study, variants, [&](std::span<const VariantResult> runs) {
-    write_all(study, varied, variants, runs);
-  });
-  std::fputs(io::aligned_table(table_of(read_results(study, variants))).c_str(), stdout);
+  check_variants(study, sweep.variants);
+  sweep.goals = goals_of(study, sweep.variants);
+  const StudyOutcome outcome = run_variants(
+      study, sweep.variants,
+      [&](std::span<const VariantResult> runs) { write_all(sweep, runs, study.directory); });
+  std::fputs(io::aligned_table(table_of(sweep, outcome.results)).c_str(), stdout);
   std::printf("%s/sweep.md, .csv, .svg\n", study.directory.c_str());
-  return code;
+  return outcome.exit_code;
 }
 
 }  // namespace flexmorph::cases

@@ -23,6 +23,8 @@ using Site = Graph::Site_2;
 
 /// Flanks within this of opposite make a bar   [rad].
 constexpr double kNearlyOpposite = std::numbers::pi / 6;
+/// The same for a flank and the border: a bar that the border cuts at a larger angle is no wedge.
+constexpr double kWedge = std::numbers::pi / 12;
 /// Sides within this are parallel   [rad].
 constexpr double kParallel = 1e-6;
 /// Relative round-off of distances between contacts.
@@ -47,7 +49,8 @@ struct Corner {
 /// The outlines, and their sides by their ends.
 class Outlines {
  public:
-  Outlines(std::span<const Region> regions, std::span<const Vec2> domain) : domain_(domain) {
+  Outlines(std::span<const Region> regions, std::span<const Vec2> domain)
+      : regions_(regions), domain_(domain) {
     for (const Vec2& p : domain) size_ = std::max(size_, p.cwiseAbs().maxCoeff());
     for (const Region& r : regions) {
       add(r.outer);
@@ -63,6 +66,11 @@ class Outlines {
     return found == corners_.end() ? nullptr : &found->second;
   }
   const std::map<std::pair<double, double>, Corner>& corners() const { return corners_; }
+
+  bool in_material(const Vec2& p) const {
+    return std::any_of(regions_.begin(), regions_.end(),
+                       [&](const Region& r) { return contains(r, p); });
+  }
 
   bool on_border(const Vec2& a, const Vec2& b) const {
     for (size_t i = 0; i < domain_.size(); ++i) {
@@ -106,6 +114,7 @@ class Outlines {
     return (p - nearest_on(a, b, p)).norm() <= 1e-12 * size_;
   }
 
+  std::span<const Region> regions_;
   std::span<const Vec2> domain_;
   double size_ = 0;
   std::vector<Vec2> points_;
@@ -184,6 +193,7 @@ class MedialAxis {
   bool in_material(const Contact& c, const Vec2& center) const {
     if (c.is_side) return cross(c.b - c.a, center - c.a) > 0;
     const Corner& corner = *outlines_.corner(c.a);
+    if (corner.visits > 1) return outlines_.in_material(center);
     return cross(corner.before, corner.after) < 0;  // only reflex vertices touch from within
   }
 
@@ -269,7 +279,7 @@ class MedialAxis {
         angle[widest] < std::numbers::pi - kParallel)
       report(place.kind, contacts[i], place);
     const bool border = contacts[i].border || contacts[j].border;
-    if (angle[widest] < std::numbers::pi - kNearlyOpposite || border) return;
+    if (angle[widest] < std::numbers::pi - (border ? kWedge : kNearlyOpposite)) return;
     place.kind = NarrowPlace::Kind::bar;
     report(place.kind, contacts[i], place);
   }

@@ -29,8 +29,9 @@ struct NarrowPlace {
 /// two contacts of a disc lie within 30 degrees of opposite, so that bars measure what they are
 /// where they taper, and free ends by the last disc between their flanks; ordinary corners and
 /// bumps are no features. A corner of less than 30 degrees, and pieces that share one vertex only,
-/// have width 0. Contacts on the domain's border count for critical points only: a bar that the
-/// border cuts is no thinner for it. Void counts between material within the domain.
+/// have width 0. Against the domain's border 15 degrees count instead of 30: a bar that the border
+/// cuts is no thinner for it, a wedge along the border is. Void counts between material within the
+/// domain.
 ///
 /// Exact for the polygons it is given; outlines within t of curved ones give widths within 2 t.
 ///

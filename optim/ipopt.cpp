@@ -145,6 +145,7 @@ const Point* Adapter::look_at(Index n, const Number* x) {
     search_.stop(Stop::iteration_limit,
                  "limit of " + std::to_string(most_evaluations_) + " evaluations reached");
   }
+  search_.stop_when_spent();
   if (search_.stopped()) throw Halt{};
   Point trial{at, {}};
   if (search_.evaluate(trial.x, trial.response) != Trial::taken) {

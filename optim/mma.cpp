@@ -195,12 +195,14 @@ bool Mma::advance(Point& at, Search& search, Asymptotes& asymptotes, MmaSolver& 
   for (int refusals = 0; refusals < kMostRefusals;) {
     trial.x = propose(at, search, asymptotes, solver);
     if (search.evaluate(trial.x, trial.response) == Trial::taken) {
-      if (conservative_ && !restored_ && inner++ < kMostInner && raise_convexity(at, trial))
-        continue;
+      const bool goes_on = conservative_ && !restored_ && !search.spent() && inner++ < kMostInner;
+      if (goes_on && raise_convexity(at, trial)) continue;
       std::swap(at, trial);
       asymptotes.advance(at.x);
       return true;
     }
+    search.stop_when_spent();
+    if (search.stopped()) return false;
     asymptotes.step_back();
     ++refusals;
   }

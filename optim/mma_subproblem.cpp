@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "optim/predictor_corrector.h"
+
 namespace flexmorph::optim {
 namespace {
 
@@ -11,6 +13,7 @@ constexpr double kLastEpsilon = 1e-9;
 constexpr double kSolved = 1e-6;  // largest KKT residual of a solved subproblem
 constexpr int kNewtonSteps = 60;  // per barrier stage; about 5 are usual
 constexpr int kHalvings = 50;
+constexpr int kManyConstraints = 8;         // from here on the barrier's steps take milliseconds
 constexpr double kTowardsBound = 1 / 1.01;  // part of the way to the nearest bound a step may go
 
 /// Largest -Δ/v over positive variables v.
@@ -20,11 +23,25 @@ double fastest_decrease(const VectorXd& step, const VectorXd& v) {
 
 }  // namespace
 
+void MmaVariables::resize(int n, int m) {
+  for (VectorXd* v : {&x, &xi, &eta}) *v = VectorXd::Zero(n);
+  for (VectorXd* v : {&y, &mu, &lambda, &s}) *v = VectorXd::Zero(m);
+}
+
+void MmaVariables::set(const MmaVariables& from, double t, const MmaVariables& step) {
+  x = from.x + t * step.x;
+  xi = from.xi + t * step.xi;
+  eta = from.eta + t * step.eta;
+  y = from.y + t * step.y;
+  mu = from.mu + t * step.mu;
+  lambda = from.lambda + t * step.lambda;
+  s = from.s + t * step.s;
+  z = from.z + t * step.z;
+  zeta = from.zeta + t * step.zeta;
+}
+
 MmaSolver::MmaSolver(int n, int m) : n_(n), m_(m), factor_(m) {
-  for (Variables* v : {&at_, &from_, &step_}) {
-    for (VectorXd* w : {&v->x, &v->xi, &v->eta}) *w = VectorXd::Zero(n);
-    for (VectorXd* w : {&v->y, &v->mu, &v->lambda, &v->s}) *w = VectorXd::Zero(m);
-  }
+  for (MmaVariables* v : {&at_, &from_, &step_}) v->resize(n, m);
   for (Eigen::ArrayXd* w : {&to_upp_, &to_low_, &to_beta_, &to_alpha_, &plam_, &qlam_, &slope_,
                             &dx_, &diagonal_, &work_}) {
     *w = Eigen::ArrayXd::Zero(n);
@@ -32,7 +49,10 @@ MmaSolver::MmaSolver(int n, int m) : n_(n), m_(m), factor_(m) {
   values_ = r_m_ = inverse_y_ = VectorXd::Zero(m);
   G_ = weighted_ = MatrixXd::Zero(n, m);
   normal_ = MatrixXd::Zero(m, m);
+  if (m >= kManyConstraints) predictor_corrector_ = std::make_unique<PredictorCorrector>(n, m);
 }
+
+MmaSolver::~MmaSolver() = default;
 
 void MmaSolver::begin(const MmaSubproblem& p) {
   at_.x = 0.5 * (p.alpha + p.beta);
@@ -159,19 +179,6 @@ double MmaSolver::longest_step() const {
   return kTowardsBound / fastest;
 }
 
-/// at_ = from_ + t step_.
-void MmaSolver::move(double t) {
-  at_.x = from_.x + t * step_.x;
-  at_.xi = from_.xi + t * step_.xi;
-  at_.eta = from_.eta + t * step_.eta;
-  at_.y = from_.y + t * step_.y;
-  at_.mu = from_.mu + t * step_.mu;
-  at_.lambda = from_.lambda + t * step_.lambda;
-  at_.s = from_.s + t * step_.s;
-  at_.z = from_.z + t * step_.z;
-  at_.zeta = from_.zeta + t * step_.zeta;
-}
-
 /// Newton's method at one ε, until the largest residual falls below 0.9 ε.
 void MmaSolver::stage(const MmaSubproblem& p, double epsilon) {
   Residual r = residual(p, epsilon);
@@ -184,7 +191,7 @@ void MmaSolver::stage(const MmaSubproblem& p, double epsilon) {
     if (!std::isfinite(t)) return;
     Residual next;
     for (int halving = 0; halving < kHalvings; ++halving, t *= 0.5) {
-      move(t);
+      at_.set(from_, t, step_);
       refresh(p);
       next = residual(p, epsilon);
       if (next.norm <= r.norm) break;
@@ -198,18 +205,32 @@ void MmaSolver::stage(const MmaSubproblem& p, double epsilon) {
   }
 }
 
-const MmaSolution& MmaSolver::solve(const MmaSubproblem& p) {
-  assert(p.p0.size() == n_ && p.P.rows() == n_ && p.P.cols() == m_ && p.b.size() == m_);
-  assert(((p.alpha - p.low).array() > 0).all() && ((p.upp - p.beta).array() > 0).all());
-  assert(((p.beta - p.alpha).array() > 0).all());
-  solution_.newton_steps = 0;
+void MmaSolver::follow_barrier(const MmaSubproblem& p) {
   begin(p);
   refresh(p);
   for (double epsilon = 1; epsilon > 0.5 * kLastEpsilon; epsilon *= 0.1) {
     stage(p, epsilon);  // one that fails leaves a start for the next
   }
+  judge(p);
+}
+
+void MmaSolver::judge(const MmaSubproblem& p) {
   solution_.kkt = residual(p, 0).largest;
   solution_.solved = solution_.kkt <= kSolved;
+}
+
+const MmaSolution& MmaSolver::solve(const MmaSubproblem& p) {
+  assert(p.p0.size() == n_ && p.P.rows() == n_ && p.P.cols() == m_ && p.b.size() == m_);
+  assert(((p.alpha - p.low).array() > 0).all() && ((p.upp - p.beta).array() > 0).all());
+  assert(((p.beta - p.alpha).array() > 0).all());
+  solution_.newton_steps = 0;
+  solution_.solved = false;
+  if (predictor_corrector_) {
+    solution_.newton_steps = predictor_corrector_->solve(p, at_);
+    refresh(p);
+    judge(p);
+  }
+  if (!solution_.solved) follow_barrier(p);
   solution_.x = at_.x;
   solution_.y = at_.y;
   solution_.z = at_.z;

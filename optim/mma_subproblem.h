@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Cholesky>
+#include <memory>
 
 #include "geometry/base.h"
 
@@ -33,45 +34,55 @@ struct MmaSolution {
   bool solved = false;  ///< the residual is below 1e-6
 };
 
-/// Primal-dual interior point method. Holds all work arrays: one solver serves all iterations.
+/// Primal and dual variables; ξ, η, μ, ζ belong to alpha, beta, y >= 0, z >= 0, s is the slack.
+struct MmaVariables {
+  VectorXd x, xi, eta;        // (n)
+  VectorXd y, mu, lambda, s;  // (m)
+  double z = 1, zeta = 1;
+
+  void resize(int n, int m);
+  void set(const MmaVariables& from, double t, const MmaVariables& step);  ///< from + t step
+};
+
+class PredictorCorrector;
+
+/// Primal-dual interior point methods. Holds all work arrays: one solver serves all iterations.
 ///
-/// Newton's method on the KKT conditions with complementarity products relaxed to ε, for
+/// Many constraints: Mehrotra's predictor-corrector method. Few of them, or when that one comes to
+/// a halt: Newton's method on the KKT conditions with complementarity products relaxed to ε, for
 /// ε = 1, 0.1, ... 1e-9; x, the bound multipliers, y and z are eliminated, which leaves one
 /// symmetric positive definite system of m equations per step.
 class MmaSolver {
  public:
   MmaSolver(int n, int m);
+  ~MmaSolver();
 
   /// A subproblem that stays unsolved still returns its last point, strictly within its bounds.
   const MmaSolution& solve(const MmaSubproblem& subproblem);
 
  private:
-  /// Primal and dual variables; ξ, η, μ, ζ belong to alpha, beta, y >= 0, z >= 0, s is the slack.
-  struct Variables {
-    VectorXd x, xi, eta;        // (n)
-    VectorXd y, mu, lambda, s;  // (m)
-    double z = 1, zeta = 1;
-  };
   struct Residual {
     double norm = 0, largest = 0;
   };
 
   void begin(const MmaSubproblem& p);
+  void follow_barrier(const MmaSubproblem& p);
+  void judge(const MmaSubproblem& p);
   void refresh(const MmaSubproblem& p);
   Residual residual(const MmaSubproblem& p, double epsilon);
   void newton_direction(const MmaSubproblem& p, double epsilon);
   double longest_step() const;
-  void move(double t);
   void stage(const MmaSubproblem& p, double epsilon);
 
   int n_, m_;
-  Variables at_, from_, step_;
+  MmaVariables at_, from_, step_;
   Eigen::ArrayXd to_upp_, to_low_, to_beta_, to_alpha_;  // 1/(U-x), 1/(x-L), 1/(β-x), 1/(x-α)
   Eigen::ArrayXd plam_, qlam_, slope_;                   // p0 + P λ, q0 + Q λ, dψ/dx
   Eigen::ArrayXd dx_, diagonal_, work_;
   VectorXd values_, r_m_, inverse_y_;  // constraint values; (m) work
   MatrixXd G_, weighted_, normal_;     // dg/dx (n x m), D^-1 G, the system of Newton's method
   Eigen::LLT<MatrixXd> factor_;
+  std::unique_ptr<PredictorCorrector> predictor_corrector_;  // of many constraints
   MmaSolution solution_;
 };
 

@@ -32,9 +32,9 @@ std::string to_string(Stop stop);
 
 struct Settings {
   std::string name = "mma";
-  int max_iterations = 300;     ///< iterations, or evaluations for NLopt
-  /// State solves allowed, 0: no limit. The iteration under way is finished, and the best design is
-  /// evaluated once more when it was not the last.
+  int max_iterations = 300;  ///< iterations, or evaluations for NLopt
+  /// State solves allowed, 0: no limit. The best design is evaluated once more when it was not the
+  /// last.
   int max_evaluations = 0;
   double kkt_tolerance = 1e-4;  ///< stop when the KKT residual and ...
   double feasibility = 1e-5;    ///< ... the violation are below these

@@ -170,11 +170,19 @@ bool Search::row(int iteration, const Point& point) {
   } else if (iteration >= settings_.max_iterations) {
     stop(Stop::iteration_limit, "limit of " + std::to_string(settings_.max_iterations) +
                                     " iterations reached; KKT residual " + scientific(it.kkt));
-  } else if (settings_.max_evaluations > 0 && evaluations_ >= settings_.max_evaluations) {
-    stop(Stop::evaluation_limit, "limit of " + std::to_string(settings_.max_evaluations) +
-                                     " state solves reached; KKT residual " + scientific(it.kkt));
   }
+  stop_when_spent();
   return !stopped_;
+}
+
+bool Search::spent() const {
+  return settings_.max_evaluations > 0 && evaluations_ >= settings_.max_evaluations;
+}
+
+void Search::stop_when_spent() {
+  if (!spent()) return;
+  stop(Stop::evaluation_limit,
+       "limit of " + std::to_string(settings_.max_evaluations) + " state solves reached");
 }
 
 bool Search::rests(double change, double violation) {

@@ -43,6 +43,7 @@ class Search {
   /// @param out  valid when `taken`
   Trial evaluate(const VectorXd& x, Response& out);
   int evaluations() const { return evaluations_; }
+  bool spent() const;  ///< all state solves that are allowed are used
   int refused_in_a_row() const { return refused_in_a_row_; }
   const std::string& refusal() const { return refusal_; }  ///< why a trial was not taken, last
 
@@ -50,6 +51,7 @@ class Search {
   /// KKT conditions, rests, is the last one allowed, or the observer says so.
   /// @param iteration  from 1
   bool row(int iteration, const Point& point);
+  void stop_when_spent();  ///< for those that are between two rows
   int rows() const { return rows_; }
 
   void stop(Stop stop, const std::string& message);

@@ -1,13 +1,12 @@
 #include "fem/solve/plate_solver.h"
 
-#include <amd.h>
-
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <string>
 #include <utility>
 
+#include "fem/solve/grid_order.h"
 #include "fem/solve/q4_cell.h"
 #include "fem/solve/supernodal_factor.h"
 
@@ -20,11 +19,6 @@ std::array<int, 4> corners_of(const Grid& g, int i, int j) {
   for (std::size_t a = 0; a < 4; ++a) nodes[a] = g.node(i + kCornerI[a], j + kCornerJ[a]);
   return nodes;
 }
-
-/// Nodes of the grid that share a cell of the domain: compressed columns, without the node itself.
-struct NodeGraph {
-  std::vector<int> starts = {0}, neighbours;
-};
 
 }  // namespace
 
@@ -41,9 +35,8 @@ struct PlateSolver::Impl {
   mutable std::vector<int> active;
   mutable VectorXd held_values, energy_of_load;
 
-  NodeGraph graph() const;
-  std::vector<int> node_order() const;
   void number(std::span<const HeldUnknown> held);
+  void unknowns_around(int node, int first, std::vector<int>& out) const;
   void build_pattern();
   std::array<int, 8> rows_of_cell(int i, int j) const {
     std::array<int, 8> out{};
@@ -62,37 +55,6 @@ struct PlateSolver::Impl {
   Q4Energy::Corners corner_values(const MatrixXd& u, int i, int j) const;
 };
 
-NodeGraph PlateSolver::Impl::graph() const {
-  NodeGraph out;
-  for (int i = 0; i <= grid.nx; ++i) {
-    for (int j = 0; j <= grid.ny; ++j) {
-      const auto begin = static_cast<std::ptrdiff_t>(out.neighbours.size());
-      for (int ci = std::max(0, i - 1); ci <= std::min(grid.nx - 1, i); ++ci)
-        for (int cj = std::max(0, j - 1); cj <= std::min(grid.ny - 1, j); ++cj) {
-          if (!inside[static_cast<std::size_t>(grid.cell(ci, cj))]) continue;
-          for (const int node : corners_of(grid, ci, cj))
-            if (node != grid.node(i, j)) out.neighbours.push_back(node);
-        }
-      std::sort(out.neighbours.begin() + begin, out.neighbours.end());
-      out.neighbours.erase(std::unique(out.neighbours.begin() + begin, out.neighbours.end()),
-                           out.neighbours.end());
-      out.starts.push_back(static_cast<int>(out.neighbours.size()));
-    }
-  }
-  return out;
-}
-
-/// Both displacements of a node stay together: a graph of nodes is a quarter of that of unknowns.
-std::vector<int> PlateSolver::Impl::node_order() const {
-  const NodeGraph g = graph();
-  std::vector<int> order(static_cast<std::size_t>(grid.n_nodes()));
-  const int status = amd_order(grid.n_nodes(), g.starts.data(), g.neighbours.data(), order.data(),
-                               nullptr, nullptr);
-  if (status != AMD_OK && status != AMD_OK_BUT_JUMBLED)
-    throw Error::numerical("plate solver: AMD failed with status " + std::to_string(status));
-  return order;
-}
-
 void PlateSolver::Impl::number(std::span<const HeldUnknown> held) {
   const std::size_t n_nodes = static_cast<std::size_t>(grid.n_nodes());
   std::vector<char> exists(2 * n_nodes, 0);
@@ -108,7 +70,7 @@ void PlateSolver::Impl::number(std::span<const HeldUnknown> held) {
     exists[2 * static_cast<std::size_t>(h.node) + static_cast<std::size_t>(h.component)] = 0;
   }
   rows.assign(2 * n_nodes, -1);
-  for (const int node : node_order())
+  for (const int node : dissection_order(grid))  // both displacements of a node stay together
     for (std::size_t c = 0; c < 2; ++c) {
       const std::size_t k = 2 * static_cast<std::size_t>(node) + c;
       if (exists[k] == 0) continue;
@@ -118,32 +80,34 @@ void PlateSolver::Impl::number(std::span<const HeldUnknown> held) {
   if (n == 0) throw Error::input("plate solver: every displacement is held");
 }
 
+/// Unknowns of the cells of the domain around a node, from `first` on, ascending.
+void PlateSolver::Impl::unknowns_around(int node, int first, std::vector<int>& out) const {
+  const int i = node / (grid.ny + 1), j = node % (grid.ny + 1);
+  out.clear();
+  for (int ci = std::max(0, i - 1); ci <= std::min(grid.nx - 1, i); ++ci)
+    for (int cj = std::max(0, j - 1); cj <= std::min(grid.ny - 1, j); ++cj)
+      if (inside[static_cast<std::size_t>(grid.cell(ci, cj))])
+        for (const int row : rows_of_cell(ci, cj))
+          if (row >= first) out.push_back(row);
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+}
+
 void PlateSolver::Impl::build_pattern() {
-  std::vector<std::pair<int, int>> entries;  // (column, row), row >= column
-  entries.reserve(static_cast<std::size_t>(grid.n_cells()) * 36);
-  each_cell([&](int i, int j) {
-    const auto cell = rows_of_cell(i, j);
-    for (std::size_t a = 0; a < 8; ++a)
-      for (std::size_t b = 0; b <= a; ++b) {
-        const int c = std::min(cell[a], cell[b]), r = std::max(cell[a], cell[b]);
-        if (c >= 0) entries.emplace_back(c, r);
-      }
-  });
-  std::sort(entries.begin(), entries.end());
-  entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
-  std::vector<int> starts(static_cast<std::size_t>(n) + 1, 0), pattern;
-  pattern.reserve(entries.size());
-  for (const auto& [c, r] : entries) {
-    ++starts[static_cast<std::size_t>(c) + 1];
-    pattern.push_back(r);
+  std::vector<int> starts = {0}, pattern, column;
+  starts.reserve(static_cast<std::size_t>(n) + 1);
+  pattern.reserve(static_cast<std::size_t>(n) * 10);  // 9 nodes, half of them behind
+  for (int c = 0; c < n; ++c) {
+    unknowns_around(unknown_of_column[static_cast<std::size_t>(c)] / 2, c, column);
+    pattern.insert(pattern.end(), column.begin(), column.end());
+    starts.push_back(static_cast<int>(pattern.size()));
   }
-  for (std::size_t c = 0; c < static_cast<std::size_t>(n); ++c) starts[c + 1] += starts[c];
-  std::vector<std::pair<int, int>>().swap(entries);
   const auto entry = [&](int r, int c) {
     const auto begin = pattern.begin() + starts[static_cast<std::size_t>(c)];
     const auto end = pattern.begin() + starts[static_cast<std::size_t>(c) + 1];
     return static_cast<int>(std::lower_bound(begin, end, r) - pattern.begin());
   };
+  scatter.reserve(36 * static_cast<std::size_t>(grid.n_cells()));
   each_cell([&](int i, int j) {
     const auto cell = rows_of_cell(i, j);
     for (std::size_t a = 0; a < 8; ++a)

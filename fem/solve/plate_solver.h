@@ -18,9 +18,9 @@ struct HeldUnknown {
 /// be held, any cells may lie outside of the domain (they do not exist; a node that touches no
 /// cell of the domain has no unknowns).
 ///
-/// Nodes are numbered by approximate minimum degree (Amestoy, Davis, Duff 1996) once; Cholesky
-/// factor by CHOLMOD, analysed once; many right-hand sides are solved at once, the values of all
-/// loads at one unknown next to each other.
+/// Nodes are numbered by nested dissection of the grid, the Cholesky factor is analysed once, see
+/// SupernodalFactor; many right-hand sides are solved at once, the values of all loads at one
+/// unknown next to each other.
 ///
 /// For a plate whose clamp moves along the grid see StaticSolver: one factor serves all clamps
 /// there, at the price of a band as wide as the plate.

@@ -1,21 +1,17 @@
 #include "fem/solve/supernodal_factor.h"
 
 #include <cblas.h>
-#include <cholmod.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
 
+#include "fem/solve/supernodes.h"
+
 namespace flexmorph::fem {
 
 namespace {
-
-// Largest relaxed supernodes: measured on a plate of 400 x 40 cells, wide enough for the
-// block products, narrow enough that the zeros they store cost less than they bring.
-constexpr std::size_t kNarrow = 8, kMiddle = 16, kWide = 32;
-constexpr double kZerosMiddle = 0.3, kZerosWide = 0.12, kZerosAny = 0.02;
 
 // Part of its diagonal entry that a pivot keeps at least: less is cancellation of all digits, as of
 // a plate that is cut off from its root and floats. (A plate that hangs on a void of factor 1e-9
@@ -41,25 +37,84 @@ LoadRange reaching(std::span<const int> active, int column) {
   return {first, n - first};
 }
 
+using Dense = Eigen::Map<MatrixXd, 0, Eigen::OuterStride<>>;
+constexpr Eigen::Index kUndivided = 16;  // larger triangles are factored in halves
+
+/// Dense Cholesky factor of the lower triangle, in place. LAPACK's is slower on the many small
+/// ones.
+/// @return the first column whose pivot is not positive, or -1.
+Eigen::Index cholesky(Dense a) {
+  const Eigen::Index n = a.rows();
+  if (n > kUndivided) {
+    const Eigen::Index half = n / 2, rest = n - half;
+    const Eigen::OuterStride<> stride(a.outerStride());
+    Dense upper(a.data(), half, half, stride), below(&a(half, 0), rest, half, stride),
+        lower(&a(half, half), rest, rest, stride);
+    if (const Eigen::Index failed = cholesky(upper); failed >= 0) return failed;
+    upper.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(below);
+    lower.selfadjointView<Eigen::Lower>().rankUpdate(below, -1);
+    const Eigen::Index failed = cholesky(lower);
+    return failed < 0 ? -1 : half + failed;
+  }
+  for (Eigen::Index c = 0; c < n; ++c) {
+    if (!(a(c, c) > 0)) return c;
+    a.col(c).tail(n - c) /= std::sqrt(a(c, c));
+    for (Eigen::Index k = c + 1; k < n; ++k) a.col(k).tail(n - k) -= a(k, c) * a.col(c).tail(n - k);
+  }
+  return -1;
+}
+
+// Products with one block for `count` loads at y, `ld` apart from unknown to unknown. A single load
+// has vector products of its own: it streams L through the processor, nothing else.
+
+/// y <- y L⁻ᵀ of the triangle (forward), or y L⁻¹.
+void solve_triangle(const double* block, int width, int height, bool forward, double* y, int ld,
+                    int count) {
+  if (count == 1) {
+    cblas_dtrsv(CblasColMajor, CblasLower, forward ? CblasNoTrans : CblasTrans, CblasNonUnit, width,
+                block, height, y, ld);
+  } else {
+    cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, forward ? CblasTrans : CblasNoTrans,
+                CblasNonUnit, count, width, 1, block, height, y, ld);
+  }
+}
+
+/// below <- factor * below - y L_belowᵀ
+void push_below(const double* rectangle, int n_below, int width, int height, const double* y,
+                int ld, int count, double factor, double* below, int below_ld) {
+  if (count == 1) {
+    cblas_dgemv(CblasColMajor, CblasNoTrans, n_below, width, -1, rectangle, height, y, ld, factor,
+                below, below_ld);
+  } else {
+    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, count, n_below, width, -1, y, ld,
+                rectangle, height, factor, below, below_ld);
+  }
+}
+
+/// y <- y - below L_below
+void pull_below(const double* rectangle, int n_below, int width, int height, const double* below,
+                int below_ld, int count, double* y, int ld) {
+  if (count == 1) {
+    cblas_dgemv(CblasColMajor, CblasTrans, n_below, width, -1, rectangle, height, below, below_ld,
+                1, y, ld);
+  } else {
+    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, count, width, n_below, -1, below,
+                below_ld, rectangle, height, 1, y, ld);
+  }
+}
+
 }  // namespace
 
 struct SupernodalFactor::Impl {
-  std::vector<int> starts, rows;
-  std::vector<double> values;
+  std::vector<int> starts;
+  std::vector<double> values;  // of K
+  Supernodes blocks;
+  std::vector<double> factor;    // of L, block by block
+  std::vector<double> stack;     // updates that wait for their parent
+  std::vector<int> waiting;      // blocks whose updates are on the stack
   std::vector<char> contiguous;  // by supernode: its rows below the diagonal block are a range
   mutable MatrixXd gathered;     // (n_loads x rows below), for supernodes that are not
   int most_below = 0;
-  cholmod_common common;
-  cholmod_sparse matrix{};
-  cholmod_factor* factor = nullptr;
-
-  Impl() { cholmod_start(&common); }
-  ~Impl() {
-    cholmod_free_factor(&factor, &common);
-    cholmod_finish(&common);
-  }
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
 
   struct Supernode {
     int first, last;      // columns
@@ -72,24 +127,24 @@ struct SupernodalFactor::Impl {
     const double* rectangle() const { return block + width(); }
   };
 
-  int n_supernodes() const { return static_cast<int>(factor->nsuper); }
+  int n_supernodes() const { return blocks.n_blocks(); }
 
   Supernode supernode(int s) const {
-    const int* super = static_cast<const int*>(factor->super);
-    const int* pi = static_cast<const int*>(factor->pi);
-    const int* px = static_cast<const int*>(factor->px);
-    const int width = super[s + 1] - super[s];
-    const int height = pi[s + 1] - pi[s];
-    return {super[s],
-            super[s + 1],
-            height,
-            height - width,
-            static_cast<const double*>(factor->x) + px[s],
-            static_cast<const int*>(factor->s) + pi[s] + width,
-            contiguous[static_cast<std::size_t>(s)] != 0};
+    const auto at = static_cast<std::size_t>(s);
+    return {blocks.first[at],
+            blocks.first[at + 1],
+            blocks.height(s),
+            blocks.n_below(s),
+            factor.data() + blocks.offset[at],
+            blocks.below(s),
+            contiguous[at] != 0};
   }
 
-  void analyse();
+  void find_ranges();
+  void fill_block(int s, double* block);
+  void add_update(int child, const double* update, int parent, double* block, double* own) const;
+  int factorize_block(int s, double* block, double keep, double* own) const;
+  int smallest_pivot(int s) const;
   double* gather_buffer(Eigen::Index n_loads) const {
     if (gathered.rows() < n_loads || gathered.cols() < most_below) {
       gathered.resize(n_loads, most_below);
@@ -98,81 +153,122 @@ struct SupernodalFactor::Impl {
   }
 };
 
-void SupernodalFactor::Impl::analyse() {
-  const std::size_t n = starts.size() - 1;
-  matrix.nrow = matrix.ncol = n;
-  matrix.nzmax = rows.size();
-  matrix.p = starts.data();
-  matrix.i = rows.data();
-  matrix.x = values.data();
-  matrix.stype = -1;
-  matrix.itype = CHOLMOD_INT;
-  matrix.xtype = CHOLMOD_REAL;
-  matrix.dtype = CHOLMOD_DOUBLE;
-  matrix.sorted = matrix.packed = 1;
-
-  common.supernodal = CHOLMOD_SUPERNODAL;
-  common.nmethods = 1;
-  common.method[0].ordering = CHOLMOD_NATURAL;
-  common.postorder = 0;
-  common.print = 0;
-  common.quick_return_if_not_posdef = 1;
-  common.nrelax[0] = kNarrow;
-  common.nrelax[1] = kMiddle;
-  common.nrelax[2] = kWide;
-  common.zrelax[0] = kZerosMiddle;
-  common.zrelax[1] = kZerosWide;
-  common.zrelax[2] = kZerosAny;
-  factor = cholmod_analyze(&matrix, &common);
-  if (factor == nullptr || factor->is_super == 0) {
-    throw Error::numerical("static solver: CHOLMOD could not analyse a matrix of " +
-                           std::to_string(n) + " unknowns (status " +
-                           std::to_string(common.status) + "; -2 is out of memory)");
-  }
-  const int* pi = static_cast<const int*>(factor->pi);
-  const int* super = static_cast<const int*>(factor->super);
-  const int* s_rows = static_cast<const int*>(factor->s);
-  contiguous.resize(factor->nsuper);
+void SupernodalFactor::Impl::find_ranges() {
+  contiguous.resize(static_cast<std::size_t>(n_supernodes()));
   for (int s = 0; s < n_supernodes(); ++s) {
-    const int begin = pi[s] + super[s + 1] - super[s], end = pi[s + 1];
-    const bool range = begin == end || s_rows[end - 1] - s_rows[begin] == end - 1 - begin;
+    const int n = blocks.n_below(s);
+    const int* below = blocks.below(s);
+    const bool range = n == 0 || below[n - 1] - below[0] == n - 1;
     contiguous[static_cast<std::size_t>(s)] = range;
-    if (!range) most_below = std::max(most_below, end - begin);
+    if (!range) most_below = std::max(most_below, n);
   }
 }
 
 SupernodalFactor::SupernodalFactor(std::vector<int> starts, std::vector<int> rows)
     : impl_(std::make_unique<Impl>()) {
-  impl_->starts = std::move(starts);
-  impl_->rows = std::move(rows);
-  impl_->values.assign(impl_->rows.size(), 0.0);
-  impl_->analyse();
+  Impl& m = *impl_;
+  m.blocks = find_supernodes(starts, rows);
+  m.starts = std::move(starts);
+  m.values.assign(rows.size(), 0.0);
+  m.factor.assign(m.blocks.offset.back(), 0.0);
+  m.stack.assign(m.blocks.deepest_stack, 0.0);
+  m.find_ranges();
 }
 
 SupernodalFactor::~SupernodalFactor() = default;
 SupernodalFactor::SupernodalFactor(SupernodalFactor&&) noexcept = default;
 
-int SupernodalFactor::size() const { return static_cast<int>(impl_->matrix.nrow); }
+int SupernodalFactor::size() const { return static_cast<int>(impl_->starts.size()) - 1; }
 std::span<double> SupernodalFactor::values() { return impl_->values; }
+
+/// Entries of K in the columns of a block.
+void SupernodalFactor::Impl::fill_block(int s, double* block) {
+  const auto at = static_cast<std::size_t>(s);
+  std::fill(block, factor.data() + blocks.offset[at + 1], 0.0);
+  const auto begin = static_cast<std::size_t>(starts[static_cast<std::size_t>(blocks.first[at])]);
+  const auto end = static_cast<std::size_t>(starts[static_cast<std::size_t>(blocks.first[at + 1])]);
+  for (std::size_t k = begin; k < end; ++k) factor[blocks.place[k]] = values[k];
+}
+
+/// Adds the update of a child to its parent: to the block and to the parent's own update.
+void SupernodalFactor::Impl::add_update(int child, const double* update, int parent, double* block,
+                                        double* own) const {
+  const int n = blocks.n_below(child), width = blocks.width(parent), height = blocks.height(parent);
+  const std::ptrdiff_t own_ld = height - width;
+  const auto begin =
+      static_cast<std::ptrdiff_t>(blocks.row_starts[static_cast<std::size_t>(child)]);
+  const int* to = blocks.in_parent.data() + begin;
+  const int* run_end = blocks.run_end.data() + begin;
+  for (int c = 0; c < n; ++c, update += n) {
+    double* column = to[c] < width ? block + static_cast<std::ptrdiff_t>(to[c]) * height
+                                   : own + (to[c] - width) * own_ld - width;
+    for (int r = c; r < n; r = run_end[r]) {
+      double* __restrict y = column + to[r] - r;
+      const double* __restrict x = update;
+      for (int k = r; k < run_end[r]; ++k) y[k] += x[k];
+    }
+  }
+}
+
+/// L of a block whose updates are all in, and what it takes from the rows below:
+/// own <- keep * own - L_below L_belowᵀ (lower triangle).
+/// @return the column of the block that fails, or -1.
+int SupernodalFactor::Impl::factorize_block(int s, double* block, double keep, double* own) const {
+  const int width = blocks.width(s), height = blocks.height(s), n_below = height - width;
+  const Eigen::Index failed = cholesky(Dense(block, width, width, Eigen::OuterStride<>(height)));
+  if (failed >= 0) return static_cast<int>(failed);
+  if (n_below == 0) return -1;
+  cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, n_below, width, 1,
+              block, height, block + width, height);
+  cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, n_below, width, -1, block + width, height,
+              keep, own, n_below);
+  return -1;
+}
+
+/// The column of a factored block whose pivot is too small or not finite, or -1.
+int SupernodalFactor::Impl::smallest_pivot(int s) const {
+  const Supernode node = supernode(s);
+  for (int k = 0; k < node.width(); ++k) {
+    const double pivot = node.block[static_cast<std::ptrdiff_t>(k) * (node.height + 1)];
+    const double diagonal = values[static_cast<std::size_t>(
+        starts[static_cast<std::size_t>(node.first) + static_cast<std::size_t>(k)])];
+    if (!(pivot * pivot > kSmallestPivot * diagonal) || !std::isfinite(pivot)) return k;
+  }
+  return -1;
+}
 
 int SupernodalFactor::factorize() {
   Impl& m = *impl_;
-  cholmod_factorize(&m.matrix, m.factor, &m.common);
-  if (m.common.status < 0) {
-    throw Error::numerical("static solver: CHOLMOD failed with status " +
-                           std::to_string(m.common.status) + " (-2 is out of memory)");
-  }
-  if (m.factor->minor < m.factor->n) return static_cast<int>(m.factor->minor);
-  for (int s = 0; s < m.n_supernodes(); ++s) {
-    const Impl::Supernode node = m.supernode(s);
-    for (int k = 0; k < node.width(); ++k) {
-      const double pivot = node.block[static_cast<std::ptrdiff_t>(k) * (node.height + 1)];
-      const double diagonal = m.values[static_cast<std::size_t>(
-          m.starts[static_cast<std::size_t>(node.first) + static_cast<std::size_t>(k)])];
-      if (!(pivot * pivot > kSmallestPivot * diagonal) || !std::isfinite(pivot)) {
-        return node.first + k;
-      }
+  const Supernodes& b = m.blocks;
+  m.waiting.clear();
+  std::size_t top = 0;  // of the stack
+  for (const int s : b.order) {
+    double* block = m.factor.data() + b.offset[static_cast<std::size_t>(s)];
+    const auto n_below = static_cast<std::size_t>(b.n_below(s)), size = n_below * n_below;
+    double* own = m.stack.data() + top;
+    m.fill_block(s, block);
+    const auto has_child = [&] {
+      return !m.waiting.empty() && b.parent[static_cast<std::size_t>(m.waiting.back())] == s;
+    };
+    const double keep = has_child() ? 1 : 0;
+    for (std::size_t c = 0; keep != 0 && c < n_below; ++c)
+      std::fill(own + c * n_below + c, own + (c + 1) * n_below, 0.0);
+    std::size_t bottom = top;
+    while (has_child()) {
+      const int child = m.waiting.back();
+      const auto n = static_cast<std::size_t>(b.n_below(child));
+      bottom -= n * n;
+      m.add_update(child, m.stack.data() + bottom, s, block, own);
+      m.waiting.pop_back();
     }
+    int failed = m.factorize_block(s, block, keep, own);
+    if (failed < 0) failed = m.smallest_pivot(s);
+    if (failed >= 0) return b.first[static_cast<std::size_t>(s)] + failed;
+    double* home = m.stack.data() + bottom;
+    for (std::size_t c = 0; bottom != top && c < n_below; ++c)  // the lower triangle
+      std::copy(own + c * n_below + c, own + (c + 1) * n_below, home + c * n_below + c);
+    top = bottom + size;
+    if (size > 0) m.waiting.push_back(s);
   }
   return -1;
 }
@@ -185,20 +281,20 @@ void SupernodalFactor::forward(MatrixXd& x, std::span<const int> active) const {
     const auto [load, count] = reaching(active, node.first);
     if (count == 0) break;  // the blocks of later supernodes reach even fewer loads
     double* y = &x(load, node.first);
-    cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, count,
-                node.width(), 1, node.block, node.height, y, ld);
+    solve_triangle(node.block, node.width(), node.height, true, y, ld, count);
     if (node.n_below == 0) continue;
     if (node.contiguous) {
-      cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, count, node.n_below, node.width(), -1, y,
-                  ld, node.rectangle(), node.height, 1, &x(load, node.below[0]), ld);
+      push_below(node.rectangle(), node.n_below, node.width(), node.height, y, ld, count, 1,
+                 &x(load, node.below[0]), ld);
       continue;
     }
     double* g = m.gather_buffer(x.rows());
-    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, count, node.n_below, node.width(), 1, y,
-                ld, node.rectangle(), node.height, 0, g, count);
+    push_below(node.rectangle(), node.n_below, node.width(), node.height, y, ld, count, 0, g,
+               count);
     for (int k = 0; k < node.n_below; ++k) {
-      x.col(node.below[k]).segment(load, count) -=
-          Eigen::Map<const VectorXd>(g + static_cast<std::ptrdiff_t>(k) * count, count);
+      double* __restrict to = &x(load, node.below[k]);
+      const double* __restrict from = g + static_cast<std::ptrdiff_t>(k) * count;
+      for (int l = 0; l < count; ++l) to[l] += from[l];
     }
   }
 }
@@ -225,17 +321,16 @@ void SupernodalFactor::backward(MatrixXd& x, std::span<const int> active, const 
       if (!node.contiguous) {
         double* g = m.gather_buffer(x.rows());
         for (int k = 0; k < node.n_below; ++k) {
-          Eigen::Map<VectorXd>(g + static_cast<std::ptrdiff_t>(k) * count, count) =
-              x.col(node.below[k]).segment(load, count);
+          const double* from = &x(load, node.below[k]);
+          std::copy(from, from + count, g + static_cast<std::ptrdiff_t>(k) * count);
         }
         below = g;
         below_ld = count;
       }
-      cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, count, node.width(), node.n_below, -1,
-                  below, below_ld, node.rectangle(), node.height, 1, y, ld);
+      pull_below(node.rectangle(), node.n_below, node.width(), node.height, below, below_ld, count,
+                 y, ld);
     }
-    cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasNoTrans, CblasNonUnit, count,
-                node.width(), 1, node.block, node.height, y, ld);
+    solve_triangle(node.block, node.width(), node.height, false, y, ld, count);
   }
 }
 

@@ -13,8 +13,10 @@ namespace flexmorph::fem {
 ///
 /// No reordering: the leading block of L is the factor of the leading block of K, so that one
 /// factor serves every system that keeps the first `active` unknowns and holds the others.
-/// CHOLMOD analyses the pattern once and factors; the substitutions run over its supernodes with
-/// right-hand sides stored (n_loads x n), the values of all loads at one unknown next to each
+/// CHOLMOD analyses the pattern once. The factor is multifrontal (Duff and Reid 1983): every block
+/// of columns hands one dense update to its parent in the tree of eliminations, three products of
+/// dense matrices per block however many blocks follow. The substitutions run over the same blocks,
+/// with right-hand sides stored (n_loads x n), the values of all loads at one unknown next to each
 /// other.
 class SupernodalFactor {
  public:

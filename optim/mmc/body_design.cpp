@@ -27,13 +27,16 @@ class BodyDesigner {
     outcome_.body = problem_.body;
     outcome_.n_loads = loads_.n_loads();
     outcome_.n_right_hand_sides = loads_.n_right_hand_sides();
-    const int total = settings_.optimizer.max_iterations;
-    const int polish = problem_.min_feature > 0 ? total / kPolishShare : 0;
+    // Stages share iterations and state solves evenly; polishes after a clean-up have their part.
+    const int polishes = problem_.min_feature > 0 ? kPolishes : 0;
+    const auto share = [&](int total) { return total - polishes * (total / kPolishShare); };
+    const int iterations = share(settings_.optimizer.max_iterations);
+    const int solves = share(settings_.optimizer.max_evaluations);
     const auto n_stages = static_cast<int>(problem_.stages.size());
-    const int shaping = total - kPolishes * polish;
     for (int stage = 0; stage < n_stages && going_; ++stage)
-      run_stage(stage, shaping * (stage + 1) / n_stages - shaping * stage / n_stages);
-    if (problem_.min_feature > 0 && going_) thicken(polish);
+      run_stage(stage, iterations * (stage + 1) / n_stages - iterations * stage / n_stages,
+                solves * (stage + 1) / n_stages);
+    if (problem_.min_feature > 0 && going_) thicken();
     finish();
     outcome_.factorizations = loads_.factorizations();
     return std::move(outcome_);
@@ -42,16 +45,17 @@ class BodyDesigner {
 
  private:
   /// A stage of the band: runs of the optimizer, a new one whenever the list of components changed.
-  void run_stage(int stage, int left) {
+  /// @param solves  state solves of the cycle after which it ends; 0: no limit
+  void run_stage(int stage, int left, int solves) {
     const TdfSettings& tdf = problem_.stages[static_cast<size_t>(stage)];
     const double shortest = problem_.refill ? problem_.design.shortest() : 0;
     Turnover turnover(problem_.grid, tdf, ersatz_, shortest);
     turnover_ = &turnover;
     std::optional<Candidate> best;
-    while (left > 0 && going_ && !spent()) {
+    while (left > 0 && going_ && (solves == 0 || outcome_.evaluations < solves)) {
       MmcProblem state(problem_.grid, problem_.design, ersatz_, loads_, tdf, problem_.goal,
                        problem_.places);
-      Candidate found = run(state, left);
+      Candidate found = run(state, left, solves);
       left -= found.result.iterations;
       if (!best || better(found.result, best->result)) {
         best = std::move(found);
@@ -74,10 +78,10 @@ class BodyDesigner {
     bool newest = true;  ///< does it belong to the last run?
   };
 
-  Candidate run(MmcProblem& state, int iterations) {
+  Candidate run(MmcProblem& state, int iterations, int solves) {
     optim::Settings settings = settings_.optimizer;
     settings.max_iterations = iterations;
-    if (settings.max_evaluations > 0) settings.max_evaluations -= outcome_.evaluations;
+    settings.max_evaluations = solves > 0 ? solves - outcome_.evaluations : 0;
     const auto watch = [&](const optim::Iterate& iterate) { return see(state, iterate); };
     Candidate out{problem_.design, optim::make_optimizer(settings)->minimize(state, watch)};
     out.change = out.design.move_to(state.design_part(out.result.x));
@@ -115,13 +119,15 @@ class BodyDesigner {
 
   /// Makes the design as thick as wanted; then optimizes from there, and does it again: what was
   /// put over narrow places is shaped as well. The least compliant of the thick ones is kept.
-  void thicken(int polish) {
+  void thicken() {
     CleanUp best = clean_up(problem_, loads_, problem_.min_feature);
     CleanUp sum = best;
     Design kept = problem_.design;
     const auto last = static_cast<int>(problem_.stages.size()) - 1;
-    for (int round = 0; round < kPolishes && polish > 0 && going_; ++round) {
-      run_stage(last, polish);
+    const int budget = settings_.optimizer.max_evaluations;
+    for (int round = 1; round <= kPolishes && going_; ++round) {
+      run_stage(last, settings_.optimizer.max_iterations / kPolishShare,
+                budget - (kPolishes - round) * (budget / kPolishShare));
       const CleanUp next = clean_up(problem_, loads_, problem_.min_feature);
       sum.rounds += next.rounds;
       sum.patches += next.patches;
@@ -139,11 +145,6 @@ class BodyDesigner {
     sum.compliance_after = best.compliance_after;
     outcome_.clean_up = sum;
     measure(problem_.stages.back());
-  }
-
-  bool spent() const {
-    const int budget = settings_.optimizer.max_evaluations;
-    return budget > 0 && outcome_.evaluations >= budget;
   }
 
   bool see(MmcProblem& state, const optim::Iterate& iterate) {

@@ -1,5 +1,7 @@
 #include "optim/mmc/body_problem.h"
 
+#include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace flexmorph::mmc {
@@ -50,11 +52,20 @@ std::vector<Region> regions_of(const BodyProblem& p, std::span<const Component> 
 
 namespace {
 
-std::optional<Features> features_of(const BodyProblem& problem,
-                                    std::span<const Component> components) {
+/// Is the point on the boundary of the box?
+bool bounds(const Box& box, const Vec2& p, double small) {
+  const auto within = [&](double margin) {
+    return (p.array() > box.lower.array() - margin).all() &&
+           (p.array() < box.upper.array() + margin).all();
+  };
+  return within(small) && !within(-small);
+}
+
+std::optional<Features> measured(const BodyProblem& problem,
+                                 std::span<const Component> components) {
   try {
-    return smallest_features(regions_of(problem, components, kOutlineTolerance * problem.grid.dx()),
-                             domain_of(problem));
+    return features_of(problem,
+                       regions_of(problem, components, kOutlineTolerance * problem.grid.dx()));
   } catch (const Error& error) {
     if (error.kind() == Error::Kind::input) throw;
     return {};
@@ -62,6 +73,29 @@ std::optional<Features> features_of(const BodyProblem& problem,
 }
 
 }  // namespace
+
+std::vector<NarrowPlace> narrow_places_of(const BodyProblem& problem,
+                                          std::span<const Region> regions, double limit) {
+  std::vector<NarrowPlace> out = narrow_places(regions, domain_of(problem), limit);
+  const double small = 1e-6 * problem.grid.dx();
+  std::erase_if(out, [&](const NarrowPlace& place) {
+    return place.solid &&
+           std::any_of(problem.solid.begin(), problem.solid.end(), [&](const Box& box) {
+             return bounds(box, place.a, small) && bounds(box, place.b, small);
+           });
+  });
+  return out;
+}
+
+Features features_of(const BodyProblem& problem, std::span<const Region> regions) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Features out{kInfinity, kInfinity};
+  for (const NarrowPlace& p : narrow_places_of(problem, regions, kInfinity)) {
+    double& smallest = p.solid ? out.solid : out.gap;
+    smallest = std::min(smallest, p.width);
+  }
+  return out;
+}
 
 SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> components,
                          LoadResponse& loads) {
@@ -71,7 +105,7 @@ SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> 
   out.volume = out.fractions.sum() / ersatz.n_domain_cells();
   out.connectivity = connectivity(problem.grid, out.fractions, problem.places);
   out.compliance = judged_compliance(problem, loads, ersatz.sharp(out.fractions));
-  out.features = features_of(problem, components);
+  out.features = measured(problem, components);
   return out;
 }
 

@@ -49,6 +49,12 @@ std::vector<Vec2> domain_of(const BodyProblem& problem);
 std::vector<Region> regions_of(const BodyProblem& problem, std::span<const Component> components,
                                double tolerance);
 
+/// Narrow places of such a union, less those that passive solid regions make by themselves: no
+/// design can change them.
+std::vector<NarrowPlace> narrow_places_of(const BodyProblem& problem,
+                                          std::span<const Region> regions, double limit);
+Features features_of(const BodyProblem& problem, std::span<const Region> regions);
+
 /// The compliance a goal speaks of: the weighted sum, or the largest.
 double judged_compliance(const BodyProblem& problem, LoadResponse& loads,
                          const CellFactors& factors);
@@ -59,7 +65,8 @@ struct SharpDesign {
   double compliance = 0;  ///< of the same loads: weighted sum, or the largest
   double volume = 0;
   Connectivity connectivity;
-  std::optional<Features> features;  ///< absent when the outlines cannot be united
+  std::optional<Features>
+      features;  ///< see features_of(); absent when the outlines cannot be united
 };
 SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> components,
                          LoadResponse& loads);

@@ -63,11 +63,11 @@ class Cleaner {
   std::vector<Region> regions() const {
     return regions_of(problem_, parts_, kOutlineTolerance * problem_.grid.dx());
   }
-  Features features() const { return smallest_features(regions(), domain_of(problem_)); }
+  Features features() const { return features_of(problem_, regions()); }
   std::vector<NarrowPlace> places() const {
     // The tolerance of outlines counts twice.
     const double limit = wanted_ + 2 * kOutlineTolerance * problem_.grid.dx();
-    std::vector<NarrowPlace> out = narrow_places(regions(), domain_of(problem_), limit);
+    std::vector<NarrowPlace> out = narrow_places_of(problem_, regions(), limit);
     std::erase_if(out, [](const NarrowPlace& p) { return !p.solid; });
     return out;
   }

@@ -36,6 +36,8 @@ double milliseconds(const std::function<void()>& call, int repeats) {
 }
 
 struct Reference::Impl {
+  Grid grid;
+  fem::PlaneSection section;
   int root = 0, n = 0;
   cholmod_common common;
   cholmod_sparse* K = nullptr;
@@ -53,7 +55,7 @@ struct Reference::Impl {
     std::array<int, 8> d{};
     for (std::size_t a = 0; a < 4; ++a) {
       const int ni = i + fem::kCornerI[a], nj = j + fem::kCornerJ[a];
-      const int row = ni <= root ? -1 : 2 * ((kGrid.nx - ni) * (kGrid.ny + 1) + nj);
+      const int row = ni <= root ? -1 : 2 * ((grid.nx - ni) * (grid.ny + 1) + nj);
       d[2 * a] = row;
       d[2 * a + 1] = row < 0 ? -1 : row + 1;
     }
@@ -61,11 +63,11 @@ struct Reference::Impl {
   }
 
   void assemble(const VectorXd& factor) {
-    const auto K_cell = fem::q4_stiffness(kSection, kGrid.dx(), kGrid.dy());
+    const auto K_cell = fem::q4_stiffness(section, grid.dx(), grid.dy());
     const auto size = static_cast<std::size_t>(n);
     cholmod_triplet* t = cholmod_allocate_triplet(size, size, 20 * size, -1, CHOLMOD_REAL, &common);
-    for (int i = root; i < kGrid.nx; ++i) {
-      for (int j = 0; j < kGrid.ny; ++j) {
+    for (int i = root; i < grid.nx; ++i) {
+      for (int j = 0; j < grid.ny; ++j) {
         const std::array<int, 8> d = dofs(i, j);
         for (std::size_t a = 0; a < 8; ++a) {
           for (std::size_t b = 0; b <= a; ++b) {
@@ -73,7 +75,7 @@ struct Reference::Impl {
             static_cast<int*>(t->i)[t->nnz] = std::max(d[a], d[b]);
             static_cast<int*>(t->j)[t->nnz] = std::min(d[a], d[b]);
             static_cast<double*>(t->x)[t->nnz++] =
-                factor(kGrid.cell(i, j)) * K_cell(static_cast<int>(a), static_cast<int>(b));
+                factor(grid.cell(i, j)) * K_cell(static_cast<int>(a), static_cast<int>(b));
           }
         }
       }
@@ -83,16 +85,23 @@ struct Reference::Impl {
   }
 };
 
-Reference::Reference(const VectorXd& factor, int root, Ordering ordering)
+Reference::Reference(const VectorXd& factor, int root, Ordering ordering, const Grid& grid,
+                     const fem::PlaneSection& section)
     : impl_(std::make_unique<Impl>()) {
   Impl& m = *impl_;
+  m.grid = grid;
+  m.section = section;
   cholmod_start(&m.common);
   m.common.supernodal = CHOLMOD_SUPERNODAL;
-  m.common.nmethods = 1;
-  m.common.method[0].ordering = ordering == Ordering::natural ? CHOLMOD_NATURAL : CHOLMOD_AMD;
-  m.common.postorder = ordering != Ordering::natural;
+  if (ordering != Ordering::best) {
+    m.common.nmethods = 1;
+    m.common.method[0].ordering = ordering == Ordering::natural ? CHOLMOD_NATURAL
+                                  : ordering == Ordering::amd   ? CHOLMOD_AMD
+                                                                : CHOLMOD_METIS;
+    m.common.postorder = ordering != Ordering::natural;
+  }
   m.root = root;
-  m.n = 2 * (kGrid.nx - root) * (kGrid.ny + 1);
+  m.n = 2 * (grid.nx - root) * (grid.ny + 1);
   m.assemble(factor);
   m.L = cholmod_analyze(m.K, &m.common);
 }
@@ -115,24 +124,26 @@ void Reference::solve() {
 
 void Reference::energies(VectorXd& out) const {
   const Impl& m = *impl_;
-  const auto K_cell = fem::q4_stiffness(kSection, kGrid.dx(), kGrid.dy());
-  out.setZero(kGrid.n_cells());
+  const Grid& grid = m.grid;
+  const auto K_cell = fem::q4_stiffness(m.section, grid.dx(), grid.dy());
+  out.setZero(grid.n_cells());
   for (std::size_t l = 0; l < m.X->ncol; ++l) {
     const double* x = static_cast<const double*>(m.X->x) + l * static_cast<std::size_t>(m.n);
-    for (int i = m.root; i < kGrid.nx; ++i) {
-      for (int j = 0; j < kGrid.ny; ++j) {
+    for (int i = m.root; i < grid.nx; ++i) {
+      for (int j = 0; j < grid.ny; ++j) {
         Eigen::Matrix<double, 8, 1> u;
         const std::array<int, 8> d = m.dofs(i, j);
         for (std::size_t a = 0; a < 8; ++a) u(static_cast<int>(a)) = d[a] < 0 ? 0 : x[d[a]];
-        out(kGrid.cell(i, j)) += u.dot(K_cell * u) / static_cast<double>(m.X->ncol);
+        out(grid.cell(i, j)) += u.dot(K_cell * u) / static_cast<double>(m.X->ncol);
       }
     }
   }
 }
 
-ReferenceTimes reference_times(const VectorXd& factor, Ordering ordering) {
-  Reference reference(factor, 0, ordering);
-  reference.set_loads(kLoads);
+ReferenceTimes reference_times(const VectorXd& factor, Ordering ordering, int n_loads,
+                               const Grid& grid, const fem::PlaneSection& section) {
+  Reference reference(factor, 0, ordering, grid, section);
+  reference.set_loads(n_loads);
   VectorXd energies;
   ReferenceTimes t;
   t.factor = milliseconds([&] { reference.factorize(); });

@@ -21,13 +21,15 @@ void use_one_thread();
 /// Process CPU milliseconds of a call: median.
 double milliseconds(const std::function<void()>& call, int repeats = 9);
 
-enum class Ordering { natural, amd };
+/// How CHOLMOD orders: one method, or the best of those it tries by default (AMD and METIS).
+enum class Ordering { natural, amd, metis, best };
 
-/// CHOLMOD used as its manual says, on the plate clamped at one column of nodes.
+/// CHOLMOD used as its manual says, on a plate clamped at one column of nodes.
 class Reference {
  public:
   /// @param factor  stiffness factors (n_cells)
-  Reference(const VectorXd& factor, int root, Ordering ordering);
+  Reference(const VectorXd& factor, int root, Ordering ordering, const Grid& grid = kGrid,
+            const fem::PlaneSection& section = kSection);
   ~Reference();
 
   void factorize();
@@ -41,12 +43,14 @@ class Reference {
   std::unique_ptr<Impl> impl_;
 };
 
-/// CPU of one factorization, one block solve of kLoads right-hand sides and one pass for the
-/// energies of all cells and loads   [ms]
+/// CPU of one factorization, one block solve of all right-hand sides and one pass for the energies
+/// of all cells and loads   [ms]
 struct ReferenceTimes {
   double factor = 0, solve = 0, energies = 0;
   double total() const { return factor + solve + energies; }
 };
-ReferenceTimes reference_times(const VectorXd& factor, Ordering ordering);
+ReferenceTimes reference_times(const VectorXd& factor, Ordering ordering, int n_loads = kLoads,
+                               const Grid& grid = kGrid,
+                               const fem::PlaneSection& section = kSection);
 
 }  // namespace flexmorph::benchmark

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <csignal>
 #include <filesystem>
 
 #include "cases/statistics.h"
@@ -24,19 +26,48 @@ TEST(Median, IsTheMiddle) {
   EXPECT_THROW(median({}), Error);
 }
 
-TEST(Peaks, AreRisesThatFallAgain) {
+TEST(ToldApart, NeedsBothMediansOutside) {
+  EXPECT_TRUE(told_apart({1, 2, 3}, {4, 5, 6}));
+  EXPECT_TRUE(told_apart({1, 2, 4.5}, {4, 5, 6}));   // ranges that overlap are no reason yet
+  EXPECT_FALSE(told_apart({1, 2, 3}, {1.5, 5, 6}));  // the median 2 lies within the other range
+  EXPECT_FALSE(told_apart({1.5, 5, 6}, {1, 2, 3}));
+  EXPECT_FALSE(told_apart({2}, {2}));
+  EXPECT_THROW(told_apart({}, {1}), Error);
+}
+
+TEST(Peaks, StandOutOnBothSidesByAShareOfTheBest) {
   const std::vector<double> values = {10, 8, 6, 9, 6.5, 6, 6.05, 6, 7, 7.5, 7.4, 5, 5.5};
-  const std::vector<double> band(values.size(), 1.5);
-  EXPECT_EQ(peaks(values, band, 0.02), 2);  // 9 and 7.5; 6.05 is too low, 5.5 has not fallen
-  EXPECT_EQ(peaks(values, band, 0.3), 1);   // 9: 7.5 rises from 6 by a quarter
-  EXPECT_EQ(peaks(values, band, 0.6), 0);
-  std::vector<double> stages = band;
-  for (size_t i = 8; i < stages.size(); ++i) stages[i] = 1;
-  EXPECT_EQ(peaks(values, stages, 0.02), 2);
-  stages[9] = 0.5;
-  for (size_t i = 9; i < stages.size(); ++i) stages[i] = 0.5;
-  EXPECT_EQ(peaks(values, stages, 0.02), 1);  // the rise to 7.5 goes with a new band
+  const std::vector<int> one(values.size(), 0);
+  EXPECT_EQ(peaks(values, one, 0.02), 2);  // 9 and 7.5; 6.05 is too low, 5.5 has not fallen
+  EXPECT_EQ(peaks(values, one, 0.3), 1);   // 9 stands out by 3, 7.5 by 1.5 of the best 6
+  EXPECT_EQ(peaks(values, one, 0.6), 0);
   EXPECT_EQ(peaks({}, {}), 0);
+  // A history that falls all the way has none, neither at its begin nor at its end.
+  EXPECT_EQ(peaks(std::vector<double>{9, 5, 3, 2}, std::vector<int>(4, 0)), 0);
+  // The share counts from the best so far, not from the valley before: 2.4 above 2.3 is 10 % of 1.
+  const std::vector<double> late = {1, 3, 2.3, 2.4, 2.3, 1};
+  EXPECT_EQ(peaks(late, std::vector<int>(6, 0), 0.09), 2);
+  EXPECT_EQ(peaks(late, std::vector<int>(6, 0), 0.11), 1);
+  // What is not finite is passed over.
+  const std::vector<double> gaps = {2, std::nan(""), 3, INFINITY, 2};
+  EXPECT_EQ(peaks(gaps, std::vector<int>(5, 0)), 1);
+}
+
+TEST(Peaks, DoNotReachOverStages) {
+  const std::vector<double> values = {6, 7, 7.5, 5, 6};
+  EXPECT_EQ(peaks(values, std::vector<int>{0, 0, 0, 0, 0}), 1);
+  EXPECT_EQ(peaks(values, std::vector<int>{0, 0, 1, 1, 1}), 0);  // the fall is a new stage's start
+  EXPECT_EQ(peaks(values, std::vector<int>{0, 0, 0, 1, 1}), 0);  // the fall comes with a stage
+}
+
+TEST(BestSoFar, CountsFeasibleRowsOfTheStage) {
+  const std::vector<double> values = {5, 4, 3, 3.5, 8, 7, 9}, beyond = {0, 0, 1, 0, 0, 2e-4, 1e-4};
+  const auto best = best_so_far(values, beyond, std::vector<int>{0, 0, 0, 0, 1, 1, 1}, 1e-4);
+  EXPECT_EQ(best, (std::vector<double>{5, 4, 4, 3.5, 8, 8, 8}));
+  const auto late = best_so_far(std::vector<double>{5, 4}, std::vector<double>{1, 0},
+                                std::vector<int>{0, 0}, 1e-4);
+  EXPECT_TRUE(std::isnan(late[0]));
+  EXPECT_EQ(late[1], 4);
 }
 
 TEST(DataProfile, CountsProblemsSolvedToATolerance) {
@@ -58,6 +89,7 @@ TEST(Varied, SplitsAtCommasOutsideOfBracketsAndQuotes) {
   EXPECT_EQ(v.values, (Words{"[2.0,1.5]", "[1.5]"}));
   EXPECT_EQ(read_varied("a=\"x,y\",z").values, (Words{"\"x,y\"", "z"}));
   EXPECT_EQ(read_varied("a=1").values, (Words{"1"}));
+  EXPECT_EQ(read_varied("a= 1, 2 ").values, (Words{"1", "2"}));
   for (const char* bad : {"a", "=1", "a=", "a=1,,2", "a=[1,2"}) {
     EXPECT_THROW(read_varied(bad), Error) << bad;
   }
@@ -70,6 +102,7 @@ TEST(Combinations, TheLastKeyRunsFastest) {
   EXPECT_EQ(all[1].name, "a=1,b=y");
   EXPECT_EQ(all[5].name, "a=2,b=z");
   EXPECT_EQ(all[5].overrides, (Words{"design.a=2", "b=z"}));
+  EXPECT_EQ(combinations({{"design.band", {"[2.0,1.5]", "[1.5]"}}})[0].name, "band=2.0_1.5");
   EXPECT_THROW(combinations({}), Error);
   EXPECT_THROW(combinations({{"a", {"1"}}, {"a", {"2"}}}), Error);
   EXPECT_THROW(combinations({{"a", {"1", "1"}}}), Error);
@@ -103,7 +136,7 @@ TEST(Sweep, RunsCollectsAndSkips) {
   EXPECT_EQ(table.texts("design.min_thickness"), (Words{"0.02", "0.02", "0.03", "0.03"}));
   EXPECT_EQ(table.numbers("iterations"), (std::vector<double>{3, 5, 3, 5}));
   const std::string sheet = contents_of(folder + "/sweep.svg");
-  EXPECT_EQ(lines_with(sheet, "max_iterations=3</text>"), 2U);
+  EXPECT_EQ(lines_with(sheet, "max_iterations = 3</text>"), 2U);
 
   const Ended second = test::flexmorph(scratch, small("sweep", folder, vary));
   EXPECT_EQ(second.code, 0);
@@ -122,7 +155,7 @@ TEST(Sweep, RunsOneByItsIndexAndListsThem) {
   Words words = vary;
   words.push_back("--list");
   EXPECT_EQ(test::flexmorph(scratch, small("sweep", folder, words)).out,
-            "1 max_iterations=3\n2 max_iterations=5\n");
+            "1 optimizer.max_iterations=3\n2 optimizer.max_iterations=5\n");
   EXPECT_FALSE(std::filesystem::exists(folder));
   words = vary;
   words.insert(words.end(), {"--index", "2"});
@@ -153,7 +186,9 @@ TEST(Sweep, KeepsTheOthersWhenOneFails) {
   const Ended ended =
       test::flexmorph(scratch, small("sweep", folder, {"--vary", "optimizer.max_iterations=3,5"}));
   EXPECT_EQ(ended.code, 3);
-  EXPECT_EQ(io::read_csv(folder + "/sweep.csv").texts("status"), (Words{"missing", "done"}));
+  EXPECT_EQ(io::read_csv(folder + "/sweep.csv").texts("status"), (Words{"failed", "done"}));
+  EXPECT_NE(ended.err.find("max_iterations=3"), std::string::npos) << ended.err;
+  EXPECT_TRUE(std::filesystem::exists(folder + "/max_iterations=5/design.svg"));
 }
 
 TEST(Compare, MakesATableOfOptimizersFromTheSameStarts) {
@@ -168,20 +203,54 @@ TEST(Compare, MakesATableOfOptimizersFromTheSameStarts) {
     EXPECT_GE(solves, 8);
     EXPECT_LE(solves, 20);  // a line search is finished
   }
-  // The same first start: the first rows of both histories agree.
-  const auto first_row = [&](const std::string& run) {
-    return io::read_csv(folder + "/" + run + "/history.csv").numbers("compliance").front();
+  // The first start is that of the case, the second one the same for both optimizers.
+  const auto lines_of_start = [&](const std::string& run) {
+    Words out;
+    for (const std::string& line : test::lines_of(contents_of(folder + "/" + run + "/case.toml")))
+      if (line.starts_with("jitter") || line.starts_with("seed")) out.push_back(line);
+    return out;
   };
-  EXPECT_GT(first_row("mma_1"), 0);
-  EXPECT_NE(first_row("mma_1"), first_row("mma_2"));
+  EXPECT_EQ(lines_of_start("mma_1"), Words{});
+  EXPECT_EQ(lines_of_start("mma_2"), (Words{"jitter = 0.1", "seed = 1"}));
+  EXPECT_EQ(lines_of_start("mma_2"), lines_of_start("ipopt_2"));
   EXPECT_NE(contents_of(folder + "/compare.svg").find("Data profile"), std::string::npos);
   EXPECT_NE(contents_of(folder + "/compare.md").find("| mma | 2/2 |"), std::string::npos);
   EXPECT_EQ(test::lines_of(ended.out).size(), 4U) << ended.out;
 
-  EXPECT_EQ(
-      test::flexmorph(scratch, small("compare", scratch / "none", {"--optimizers", "nobody"})).code,
-      2);
-  EXPECT_FALSE(std::filesystem::exists(scratch / "none"));
+  // Figures are what the columns say.
+  const auto figure = table.numbers("figure"), sharp = table.numbers("sharp_compliance"),
+             volume = table.numbers("sharp_volume");
+  for (size_t i = 0; i < figure.size(); ++i)
+    EXPECT_NEAR(figure[i], sharp[i] * volume[i] / 0.4, 1e-12 * figure[i]);  // two roundings
+}
+
+TEST(Compare, RefusesNamesThatAreUnknownOrTwice) {
+  const Scratch scratch;
+  const std::string folder = scratch / "none";
+  for (const char* names : {"nobody", "mma,mma", "mma,nobody"}) {
+    const Ended ended = test::flexmorph(scratch, small("compare", folder, {"--optimizers", names}));
+    EXPECT_EQ(ended.code, 2) << names;
+    EXPECT_EQ(test::lines_of(ended.err).size(), 1U) << ended.err;
+    EXPECT_FALSE(std::filesystem::exists(folder));
+  }
+}
+
+// The study passes an interruption on; the run under way keeps what it has, the next never starts.
+TEST(Compare, StopsWhenInterruptedAndGoesOnLater) {
+  const Scratch scratch;
+  const std::string folder = scratch / "compare";
+  const Words words = small("compare", folder,
+                            {"--optimizers", "mma", "--starts", "2", "--budget", "1000000", "--set",
+                             "optimizer.kkt_tolerance=0"});
+  const pid_t study = test::start(scratch, words);
+  // No assertion on time: the history of the first run appears sooner or later.
+  while (test::lines_of(contents_of(folder + "/mma_1/history.csv")).size() < 3) usleep(10'000);
+  kill(study, SIGTERM);
+  const Ended ended = test::end_of(scratch, study);
+  EXPECT_EQ(ended.code, 4) << ended.err;
+  const io::CsvTable table = io::read_csv(folder + "/compare.csv");
+  EXPECT_EQ(table.texts("status"), (Words{"interrupted", "missing"}));
+  EXPECT_FALSE(std::filesystem::exists(folder + "/mma_2"));
 }
 
 }  // namespace

@@ -1,17 +1,21 @@
 // Static analysis of a plate at rest with any supports and any domain: against Eigen's
-// factorization of a matrix assembled here, a patch state, beam theory and symmetry.
+// factorization of a matrix assembled here, a patch state, beam theory and symmetry. The factor and
+// the order of the nodes behind it: against dense algebra, for patterns of any kind.
 
 #include "fem/solve/plate_solver.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/SparseCholesky>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
 #include <vector>
 
+#include "fem/solve/grid_order.h"
 #include "fem/solve/q4_cell.h"
+#include "fem/solve/supernodal_factor.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -180,6 +184,120 @@ TEST(PlateSolver, RefusesPlatesThatFloat) {
   wrong[3] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(held.factorize(wrong), Error);
   EXPECT_THROW(PlateSolver(g, kSection, std::vector<HeldUnknown>{{1000, 0}}), Error);
+}
+
+// Every node once, and the first cut, the column of nodes in the middle, behind both halves.
+TEST(DissectionOrder, IsAPermutationThatEndsWithTheFirstCut) {
+  for (const Grid& g : {Grid{.nx = 13, .ny = 5}, Grid{.nx = 1, .ny = 1}, Grid{.nx = 7, .ny = 2}}) {
+    const std::vector<int> order = dissection_order(g);
+    std::vector<int> times(static_cast<std::size_t>(g.n_nodes()), 0);
+    for (const int node : order) ++times[static_cast<std::size_t>(node)];
+    EXPECT_EQ(times, std::vector<int>(times.size(), 1));
+    if (g.nx < 2) continue;
+    for (int j = 0; j <= g.ny; ++j)
+      EXPECT_EQ(order[order.size() - 1 - static_cast<std::size_t>(j)],
+                g.node((g.nx + 1) / 2, g.ny - j));
+  }
+}
+
+/// Lower triangle of a symmetric matrix by compressed columns.
+struct Lower {
+  std::vector<int> starts = {0}, rows;
+  std::vector<double> values;
+  explicit Lower(const MatrixXd& K) {
+    for (int c = 0; c < K.cols(); ++c) {
+      for (int r = c; r < K.rows(); ++r)
+        if (K(r, c) != 0) {
+          rows.push_back(r);
+          values.push_back(K(r, c));
+        }
+      starts.push_back(static_cast<int>(rows.size()));
+    }
+  }
+};
+
+SupernodalFactor factor_of(const Lower& K) {
+  SupernodalFactor out(K.starts, K.rows);
+  std::copy(K.values.begin(), K.values.end(), out.values().begin());
+  return out;
+}
+
+/// A random pattern of n unknowns in three parts that do not touch; strong diagonal.
+MatrixXd scattered(int n, unsigned seed, double filling) {
+  std::mt19937 engine(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  MatrixXd K = MatrixXd::Zero(n, n);
+  for (int c = 0; c < n; ++c)
+    for (int r = c + 1; r < n; ++r)
+      if (r % 3 == c % 3 && std::abs(uniform(engine)) < filling)
+        K(r, c) = K(c, r) = uniform(engine);
+  for (int c = 0; c < n; ++c) K(c, c) = 1 + K.col(c).cwiseAbs().sum();
+  return K;
+}
+
+// Trees of eliminations of every shape: several roots, leaves, long chains, wide blocks (the dense
+// factor divides those above 16 columns). One load goes other ways than several.
+TEST(SupernodalFactor, AgreesWithADenseFactorizationForAnyPattern) {
+  std::srand(11);
+  for (unsigned seed = 1; seed <= 30; ++seed) {
+    const int n = 150;
+    const MatrixXd K = scattered(n, seed, 0.002 * std::pow(1.2, seed));
+    SupernodalFactor factor = factor_of(Lower(K));
+    ASSERT_EQ(factor.factorize(), -1);
+    for (const int n_loads : {1, 5}) {
+      const MatrixXd loads = MatrixXd::Random(n_loads, n);
+      const std::vector<int> active(static_cast<std::size_t>(n_loads), n);
+      MatrixXd x = loads;
+      factor.forward(x, active);
+      factor.backward(x, active);
+      // Diagonally dominant: the condition is small, so that only round-off of n terms is left.
+      EXPECT_LT((x * K - loads).norm(), 1e-13 * K.norm() * x.norm()) << seed;
+    }
+  }
+}
+
+TEST(SupernodalFactor, NamesTheColumnWithoutAPositivePivotAndRecovers) {
+  const MatrixXd K = scattered(60, 3, 0.05);
+  const Lower sound(K);
+  SupernodalFactor factor = factor_of(sound);
+  for (const int column : {0, 17, 59}) {
+    factor.values()[static_cast<std::size_t>(sound.starts[static_cast<std::size_t>(column)])] = -1;
+    EXPECT_EQ(factor.factorize(), column);
+    std::copy(sound.values.begin(), sound.values.end(), factor.values().begin());
+    EXPECT_EQ(factor.factorize(), -1);
+  }
+}
+
+// The same matrix leads to the same bits, whatever was factored before.
+TEST(PlateSolver, RepeatsItselfBitForBit) {
+  const Grid g{.width = 3, .height = 1, .nx = 30, .ny = 10};
+  PlateSolver solver(g, kSection, clamp_left(g));
+  std::srand(3);
+  const MatrixXd loads = MatrixXd::Random(4, solver.n_unknowns());
+  MatrixXd first = loads, again = loads;
+  solver.factorize(random_factors(g, 1));
+  solver.solve(first);
+  solver.factorize(random_factors(g, 2));
+  solver.factorize(random_factors(g, 1));
+  solver.solve(again);
+  EXPECT_TRUE((first.array() == again.array()).all());
+}
+
+// On a mesh that is large enough for wide blocks, one load and several: K u = F with K by cells.
+TEST(PlateSolver, SolvesWhatWasAskedOnALargerMesh) {
+  const Grid g{.width = 2, .height = 1, .nx = 60, .ny = 31};
+  PlateSolver solver(g, kSection, clamp_left(g));
+  const VectorXd factor = random_factors(g, 4);
+  solver.factorize(factor);
+  const Eigen::SparseMatrix<double> K = assembled(solver, factor, {});
+  std::srand(4);
+  for (const int n_loads : {1, 7}) {
+    const MatrixXd loads = MatrixXd::Random(n_loads, solver.n_unknowns());
+    MatrixXd u = loads;
+    solver.solve(u);
+    // Backward stable: the residual is round-off of K u, whatever the condition of K.
+    EXPECT_LT((u * K - loads).norm(), 1e-14 * K.norm() * u.norm());
+  }
 }
 
 }  // namespace

@@ -168,6 +168,22 @@ TEST(SmallestFeature, OfPiecesThatShareAVertexIsZero) {
   EXPECT_EQ(features({box(0, 0, 1, 1), box(1, 1, 2, 2)}).solid, 0);
 }
 
+TEST(SmallestFeature, OfPiecesThatHardlyTouchIsWhatTheyShare) {
+  const double overlap = 1e-9;
+  const Features f = features({box(0, 0, 1, 1), box(1 - overlap, 1 - overlap, 2, 2)});
+  EXPECT_NEAR(f.solid, std::sqrt(2) * overlap, 1e-12);
+}
+
+TEST(SmallestFeature, OfABladeIsZeroAndOfACornerIsNot) {
+  const auto wedge = [](double angle) {
+    return Polygon{{0, 0}, {1, -std::tan(angle / 2)}, {1, std::tan(angle / 2)}};
+  };
+  EXPECT_EQ(features({wedge(0.3)}).solid, 0);
+  // The incircle of a triangle: twice its area over half its perimeter is the diameter.
+  const double tall = 2 * std::tan(0.35), slant = std::hypot(1, tall / 2);
+  EXPECT_NEAR(features({wedge(0.7)}).solid, 2 * tall / (2 * slant + tall), kExact);
+}
+
 TEST(SmallestFeature, TurnsAndScales) {
   const std::vector<Polygon> shape = {box(0, 0, 1, 0.2), box(0.95, 0.15, 2, 0.35),
                                       box(0, 0.28, 0.9, 0.5)};
@@ -231,21 +247,29 @@ TEST(NarrowPlaces, OfRandomDesignsAgreeWithSampledOutlines) {
       for (const Region& r : regions) inside = inside || contains(r, p.center);
       EXPECT_EQ(inside, p.solid) << seed;
     }
-    double sampled = 0.2;
+    double sampled = 0.2, sampled_gap = 0.2;
+    const auto on_border = [&](const Vec2& p) {
+      return p.x() < 1e-9 || p.x() > 2 - 1e-9 || p.y() < 1e-9 || p.y() > 1 - 1e-9;
+    };
     for (size_t i = 0; i < points.size(); ++i)
       for (size_t j = i + 1; j < points.size(); ++j) {
         const Vec2 center = 0.5 * (points[i] + points[j]);
         const double width = (points[i] - points[j]).norm();
-        if (width >= sampled || width < 5 * step) continue;
+        if (width >= std::max(sampled, sampled_gap) || width < 5 * step) continue;
         if (distance_to(points, center) < 0.5 * width * (1 - 1e-6)) continue;
         bool inside = false;
         for (const Region& r : regions) inside = inside || contains(r, center);
-        if (inside) sampled = width;
+        const bool border = on_border(points[i]) || on_border(points[j]);
+        if (inside) sampled = std::min(sampled, width);
+        if (!inside && !border) sampled_gap = std::min(sampled_gap, width);
       }
-    double found = 0.2;
-    for (const NarrowPlace& p : places)
-      if (p.solid) found = std::min(found, p.width);
+    double found = 0.2, found_gap = 0.2;
+    for (const NarrowPlace& p : places) {
+      double& smallest = p.solid ? found : found_gap;
+      smallest = std::min(smallest, p.width);
+    }
     EXPECT_LE(found, sampled + 1e-9) << seed;
+    EXPECT_LE(found_gap, sampled_gap + 1e-9) << seed;
   }
 }
 

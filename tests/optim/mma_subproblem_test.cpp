@@ -90,6 +90,102 @@ TEST(MmaSubproblem, SolutionSatisfiesItsConditions) {
   }
 }
 
+/// A worst case over m - 1 loads: bound - one variable - below m - 1 smoothly changing constraints,
+/// and a volume. Functions are zero or below at x = 0.
+MmaSubproblem worst_case(int n, int m, unsigned seed) {
+  std::mt19937 generator(seed);
+  std::normal_distribution<double> normal;
+  MatrixXd shapes(n, 6);
+  for (double& s : shapes.reshaped()) s = normal(generator) / 6;
+  VectorXd df = VectorXd::Zero(n), slope(n);
+  df[n - 1] = 100;
+  MmaSubproblem p = random_subproblem(n, m, seed);
+  const auto fill = [&](const VectorXd& slopes, auto&& a, auto&& b) {
+    a = 0.01 * (1.001 * slopes.cwiseMax(0) + 0.001 * (-slopes).cwiseMax(0)).array() + 1e-4;
+    b = 0.01 * (0.001 * slopes.cwiseMax(0) + 1.001 * (-slopes).cwiseMax(0)).array() + 1e-4;
+  };
+  fill(df, p.p0, p.q0);
+  for (int i = 0; i < m; ++i) {
+    const double t = i / (m - 1.0);
+    const bool volume = i == m - 1;
+    for (int j = 0; j < n; ++j) {
+      slope[j] = volume ? 0.01 + 0.02 * std::abs(shapes(j, 0)) : -0.01 * std::abs(shapes(j, 1));
+      for (int k = 0; k < 6 && !volume; ++k) slope[j] += 0.02 * shapes(j, k) * std::cos(3 * k * t);
+    }
+    slope[n - 1] = volume ? 0 : -10;
+    fill(slope, p.P.col(i), p.Q.col(i));
+    p.b[i] = 10 * (p.P.col(i) + p.Q.col(i)).sum() + (volume ? 0 : 0.3 * (1 + std::cos(9 * t)));
+  }
+  return p;
+}
+
+TEST(MmaSubproblem, ManyConstraintsSatisfyTheirConditionsInFewSteps) {
+  for (const auto& [n, m] : {std::pair{672, 101}, {1120, 101}, {112, 101}, {60, 11}, {20, 101}}) {
+    MmaSolver solver(n, m);
+    for (unsigned seed = 1; seed <= 4; ++seed) {
+      SCOPED_TRACE(std::to_string(n) + " " + std::to_string(m) + " " + std::to_string(seed));
+      for (const MmaSubproblem& p : {worst_case(n, m, seed), random_subproblem(n, m, seed)}) {
+        const MmaSolution& s = solver.solve(p);
+        EXPECT_TRUE(s.solved);
+        EXPECT_LE(s.kkt, 2e-9);
+        EXPECT_LE(kkt_from_statement(p, s), 5e-6);
+        EXPECT_LE(s.newton_steps, 40);  // more: the predictor-corrector came to a halt
+      }
+    }
+  }
+}
+
+// Min-max over 40 functions (a = 1): z is the largest of them and the multipliers share a0 = 1.
+TEST(MmaSubproblem, MinMaxOfManyFunctions) {
+  MmaSubproblem p = random_subproblem(30, 40, 6);
+  p.p0.setConstant(1e-6);
+  p.q0.setConstant(1e-6);
+  p.a.setOnes();
+  p.b.array() -= 1;  // so that z > 0
+  MmaSolver solver(30, 40);
+  const MmaSolution& s = solver.solve(p);
+  EXPECT_TRUE(s.solved);
+  EXPECT_NEAR(s.lambda.sum(), 1, 1e-8);
+  EXPECT_NEAR(constraint_values(p, s.x).maxCoeff(), s.z, 1e-7);
+  EXPECT_LE(kkt_from_statement(p, s), 5e-6);
+}
+
+// Three constraints are solved along the barrier. The same ones, each of them several times and
+// among others that are far away, by the predictor-corrector: same x, multipliers shared.
+TEST(MmaSubproblem, ManyConstraintsAgreeWithTheFewThatMatter) {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    const MmaSubproblem few = random_subproblem(50, 3, seed);
+    const int m = 60;
+    MmaSubproblem many = random_subproblem(50, m, seed + 100);
+    many.p0 = few.p0;
+    many.q0 = few.q0;
+    many.b.array() += 100;
+    for (int i = 0; i < 12; ++i) {
+      many.P.col(5 * i) = few.P.col(i % 3);
+      many.Q.col(5 * i) = few.Q.col(i % 3);
+      many.b[5 * i] = few.b[i % 3];
+    }
+    MmaSolver solver_few(50, 3), solver_many(50, m);
+    const MmaSolution& a = solver_few.solve(few);
+    const MmaSolution& b = solver_many.solve(many);
+    EXPECT_TRUE(a.solved && b.solved);
+    // Both keep a distance of 1e-9 over the slope from bounds; the flattest slopes are 1e-4.
+    EXPECT_NEAR(objective(few, a.x), objective(few, b.x), 1e-7);
+    EXPECT_LE((a.x - b.x).lpNorm<Eigen::Infinity>(), 2e-5) << seed;
+    VectorXd shared = VectorXd::Zero(3);
+    for (int i = 0; i < 12; ++i) shared[i % 3] += b.lambda[5 * i];
+    EXPECT_LE((shared - a.lambda).lpNorm<Eigen::Infinity>(), 1e-5) << seed;
+  }
+}
+
+TEST(MmaSubproblem, RepeatsBitForBit) {
+  const MmaSubproblem p = worst_case(112, 101, 3), other = random_subproblem(112, 101, 4);
+  MmaSolver first(112, 101), second(112, 101);
+  second.solve(other);  // nothing is left of what a solver did before
+  const VectorXd x = first.solve(p).x;
+  EXPECT_EQ(x, second.solve(p).x);
+}
+
 // Two variables, one constraint: the best of a grid, refined about its best point.
 TEST(MmaSubproblem, AgreesWithBruteForce) {
   for (unsigned seed = 1; seed <= 8; ++seed) {
@@ -132,6 +228,18 @@ TEST(MmaSubproblem, UnreachableConstraintsAreBought) {
   EXPECT_GT(s.y[0], 1);
   EXPECT_NEAR(s.lambda[0], p.c[0] + p.d[0] * s.y[0], 1e-6);
   EXPECT_NEAR(constraint_values(p, s.x)[0], s.y[0], 1e-8);
+}
+
+// A hundred of them, by the predictor-corrector: all ask for more than there is.
+TEST(MmaSubproblem, ManyUnreachableConstraintsAreBought) {
+  MmaSubproblem p = random_subproblem(20, 100, 3);
+  p.b.array() -= 10;
+  MmaSolver solver(20, 100);
+  const MmaSolution& s = solver.solve(p);
+  EXPECT_TRUE(s.solved);
+  EXPECT_GT(s.y.minCoeff(), 1);
+  EXPECT_LE((s.lambda - p.c - p.d.cwiseProduct(s.y)).lpNorm<Eigen::Infinity>(), 1e-6);
+  EXPECT_LE((constraint_values(p, s.x) - s.y).lpNorm<Eigen::Infinity>(), 1e-8);
 }
 
 TEST(MmaSubproblem, WorksWithoutConstraints) {

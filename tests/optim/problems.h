@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "optim/optimizer.h"
 #include "optim/problem.h"
 
 namespace flexmorph::optim::test {
@@ -56,14 +57,22 @@ class Analytic : public Problem {
 };
 
 Analytic cantilever();     ///< Svanberg (1987), example 1: five boxes
-Analytic two_bar_truss();  ///< Svanberg (1987), example 2
+Analytic two_bar_truss();  ///< Svanberg (1987), the example of size and shape
+/// Svanberg (1987), the pyramid of eight bars; x in cm², f in kg.
+Analytic eight_bar_truss();
 Analytic hock_schittkowski_35();
 Analytic hock_schittkowski_43();
 Analytic hock_schittkowski_76();
 Analytic hock_schittkowski_100();
+std::vector<Analytic> hock_schittkowski_problems();  ///< these four and 18 others
 /// min Σ c_j / x_j, Σ a_j x_j <= half of Σ a_j: sizes of a thousand bars.
 Analytic many_bars(int n);
 
-std::vector<Analytic> all_problems();
+std::vector<Analytic> published_problems();  ///< Svanberg's and Hock & Schittkowski's
+std::vector<Analytic> all_problems();        ///< seven of all kinds, for tests of anything else
+
+/// What an optimizer needs on problems of a few variables whose optima lie several units from the
+/// start. The defaults are for structures, where a step must stay small.
+Settings for_small_problems(const std::string& optimizer);
 
 }  // namespace flexmorph::optim::test
