@@ -61,15 +61,28 @@ bool bounds(const Box& box, const Vec2& p, double small) {
   return within(small) && !within(-small);
 }
 
-std::optional<Features> measured(const BodyProblem& problem,
-                                 std::span<const Component> components) {
-  try {
-    return features_of(problem,
-                       regions_of(problem, components, kOutlineTolerance * problem.grid.dx()));
-  } catch (const Error& error) {
-    if (error.kind() == Error::Kind::input) throw;
-    return {};
+/// Cells of the places that must hang together.
+std::vector<std::vector<int>> places_of(const BodyProblem& problem) {
+  if (!problem.places.empty()) return problem.places;
+  const Grid& g = problem.grid;
+  std::vector<std::vector<int>> ends(2);
+  for (int j = 0; j < g.ny; ++j) {
+    ends[0].push_back(g.cell(0, j));
+    ends[1].push_back(g.cell(g.nx - 1, j));
   }
+  return ends;
+}
+
+/// Has the cell material of the region? Looked at in 4 x 4 points, its border included.
+bool touches(const Grid& grid, const Region& region, int cell) {
+  constexpr int kPoints = 4;
+  const Vec2 size(grid.dx(), grid.dy());
+  const Vec2 corner = grid.cell_center(cell / grid.ny, cell % grid.ny) - 0.5 * size;
+  for (int k = 0; k < kPoints * kPoints; ++k) {
+    const Vec2 share(k % kPoints / (kPoints - 1.0), k / kPoints / (kPoints - 1.0));
+    if (contains(region, corner + share.cwiseProduct(size))) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -97,15 +110,35 @@ Features features_of(const BodyProblem& problem, std::span<const Region> regions
   return out;
 }
 
+Connectivity connectivity_of(const BodyProblem& problem, std::span<const Region> regions) {
+  const std::vector<std::vector<int>> places = places_of(problem);
+  Connectivity out;
+  out.islands = std::max(0, static_cast<int>(regions.size()) - 1);
+  out.connected = std::any_of(regions.begin(), regions.end(), [&](const Region& r) {
+    return std::all_of(places.begin(), places.end(), [&](const std::vector<int>& place) {
+      return std::any_of(place.begin(), place.end(),
+                         [&](int cell) { return touches(problem.grid, r, cell); });
+    });
+  });
+  return out;
+}
+
 SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> components,
                          LoadResponse& loads) {
   SharpDesign out;
   out.fractions = fractions_of(problem, components);
   const Ersatz ersatz = ersatz_of(problem);
   out.volume = out.fractions.sum() / ersatz.n_domain_cells();
-  out.connectivity = connectivity(problem.grid, out.fractions, problem.places);
   out.compliance = judged_compliance(problem, loads, ersatz.sharp(out.fractions));
-  out.features = measured(problem, components);
+  try {
+    const std::vector<Region> regions =
+        regions_of(problem, components, kOutlineTolerance * problem.grid.dx());
+    out.connectivity = connectivity_of(problem, regions);
+    out.features = features_of(problem, regions);
+  } catch (const Error& error) {
+    if (error.kind() == Error::Kind::input) throw;
+    out.connectivity = connectivity(problem.grid, out.fractions, problem.places);
+  }
   return out;
 }
 

@@ -55,6 +55,10 @@ std::vector<NarrowPlace> narrow_places_of(const BodyProblem& problem,
                                           std::span<const Region> regions, double limit);
 Features features_of(const BodyProblem& problem, std::span<const Region> regions);
 
+/// What hangs together in such a union, exactly: a slit far below a cell is a slit. Pieces that
+/// share a vertex only stay apart.
+Connectivity connectivity_of(const BodyProblem& problem, std::span<const Region> regions);
+
 /// The compliance a goal speaks of: the weighted sum, or the largest.
 double judged_compliance(const BodyProblem& problem, LoadResponse& loads,
                          const CellFactors& factors);

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <set>
+#include <utility>
 
 namespace flexmorph::mmc {
 namespace {
@@ -54,21 +57,37 @@ class Cleaner {
     problem_.design = problem_.design.with(best);
     parts_ = best;
     // Without narrow places the smallest feature is what it is.
+    out.dropped = dropped_;
     out.after = features().solid;
     out.compliance_after = compliance(parts_);
     return out;
   }
 
  private:
-  std::vector<Region> regions() const {
-    return regions_of(problem_, parts_, kOutlineTolerance * problem_.grid.dx());
+  std::vector<Region> regions(const std::vector<Component>& parts) const {
+    return regions_of(problem_, parts, kOutlineTolerance * problem_.grid.dx());
   }
-  Features features() const { return features_of(problem_, regions()); }
+  Features features() const { return features_of(problem_, regions(parts_)); }
+
+  /// Narrow material, and narrow slits between pieces that should be one.
   std::vector<NarrowPlace> places() const {
+    const std::vector<Region> pieces = regions(parts_);
     // The tolerance of outlines counts twice.
     const double limit = wanted_ + 2 * kOutlineTolerance * problem_.grid.dx();
-    std::vector<NarrowPlace> out = narrow_places_of(problem_, regions(), limit);
-    std::erase_if(out, [](const NarrowPlace& p) { return !p.solid; });
+    std::vector<NarrowPlace> out = narrow_places_of(problem_, pieces, limit);
+    std::set<std::pair<size_t, size_t>> parted;  // a bridge is enough for two pieces
+    std::erase_if(out, [&](const NarrowPlace& p) {
+      if (p.solid) return false;
+      // A contact is on an outline, up to rounding: a little further on is material.
+      const auto piece_at = [&](const Vec2& contact) {
+        const Vec2 inside = contact + 1e-6 * (contact - p.center);
+        size_t k = 0;
+        while (k < pieces.size() && !contains(pieces[k], inside)) ++k;
+        return k;
+      };
+      const auto [one, other] = std::minmax(piece_at(p.a), piece_at(p.b));
+      return one == other || !parted.insert({one, other}).second;
+    });
     return out;
   }
   static double smallest(const std::vector<NarrowPlace>& narrow) {
@@ -86,10 +105,12 @@ class Cleaner {
   double compliance(const std::vector<Component>& parts) {
     return judged_compliance(problem_, loads_, ersatz_.sharp(fractions_of(problem_, parts)));
   }
-  /// Compliance times volume of the sharp design; infinite when it has come apart.
+  /// Compliance times volume of the sharp design; infinite when it has come apart. (Cells do not
+  /// see slits; what a piece carries through one counts for nothing.)
   double merit(const std::vector<Component>& parts) {
+    const Connectivity whole = connectivity_of(problem_, regions(parts));
+    if (!whole.connected || whole.islands > islands_) return kInfinity;
     const VectorXd fractions = fractions_of(problem_, parts);
-    if (!connectivity(problem_.grid, fractions, problem_.places).connected) return kInfinity;
     return judged_compliance(problem_, loads_, ersatz_.sharp(fractions)) * fractions.sum();
   }
 
@@ -101,10 +122,10 @@ class Cleaner {
     const auto thinned = [&](double share) {
       for (size_t k = 0; k < full.size(); ++k) {
         if (patch_[k]) continue;
-        const auto less = [&](double c) { return std::min(c, thin + share * (c - thin)); };
-        parts_[k].c1 = less(full[k].c1);
-        parts_[k].c2 = less(full[k].c2);
-        parts_[k].c3 = less(full[k].c3);
+        const auto thinner = [&](double c) { return std::min(c, thin + share * (c - thin)); };
+        parts_[k].c1 = thinner(full[k].c1);
+        parts_[k].c2 = thinner(full[k].c2);
+        parts_[k].c3 = thinner(full[k].c3);
       }
     };
     double low = 0, high = 1;
@@ -114,9 +135,37 @@ class Cleaner {
       (fits() ? low : high) = middle;
     }
     thinned(low);
+    while (low == 0 && !fits() && drop_least()) continue;
+  }
+
+  /// Takes out the component whose loss costs least. @return was there one?
+  bool drop_least() {
+    double lowest = kInfinity;
+    size_t least = 0;
+    for (size_t k = 0; k < parts_.size(); ++k) {
+      const double without = merit(less(k));
+      if (!(without < lowest)) continue;
+      lowest = without;
+      least = k;
+    }
+    if (lowest == kInfinity) return false;
+    drop(least);
+    return true;
+  }
+
+  std::vector<Component> less(size_t k) const {
+    std::vector<Component> out = parts_;
+    out.erase(out.begin() + static_cast<std::ptrdiff_t>(k));
+    return out;
+  }
+  void drop(size_t k) {
+    parts_.erase(parts_.begin() + static_cast<std::ptrdiff_t>(k));
+    patch_.erase(patch_.begin() + static_cast<std::ptrdiff_t>(k));
+    ++dropped_;
   }
 
   void repair(const std::vector<NarrowPlace>& narrow, CleanUp& out) {
+    islands_ = connectivity_of(problem_, regions(parts_)).islands;
     std::vector<Vec2> done;
     for (const NarrowPlace& place : narrow) {
       const auto near = [&](const Vec2& p) { return (p - place.center).norm() < wanted_; };
@@ -130,23 +179,16 @@ class Cleaner {
   void repair(const NarrowPlace& place, int tries, CleanUp& out) {
     std::vector<Component> patched = parts_;
     patched.push_back(patch(place, std::pow(kPatchGrowth, tries)));
-    double lowest = merit(patched);
-    int drop = -1;
+    double lowest = merit(patched);  // infinite while other slits are open: then nothing is dropped
+    std::optional<size_t> out_of_the_way;
     for (size_t k = 0; k < parts_.size(); ++k) {
       if (patch_[k] || !meets(parts_[k], place) || parts_.size() == 1) continue;
-      std::vector<Component> without = parts_;
-      without.erase(without.begin() + static_cast<std::ptrdiff_t>(k));
-      const double merit_without = merit(without);
-      if (merit_without > lowest) continue;
-      lowest = merit_without;
-      drop = static_cast<int>(k);
+      const double without = merit(less(k));
+      if (!(without < lowest)) continue;
+      lowest = without;
+      out_of_the_way = k;
     }
-    if (drop >= 0) {
-      parts_.erase(parts_.begin() + drop);
-      patch_.erase(patch_.begin() + drop);
-      ++out.dropped;
-      return;
-    }
+    if (out_of_the_way) return drop(*out_of_the_way);
     parts_ = std::move(patched);
     patch_.push_back(true);
     patched_.push_back(place.center);
@@ -164,8 +206,14 @@ class Cleaner {
     const Vec2 across = place.b - place.a;
     Component c;
     c.center = place.center;
-    c.angle = across.norm() > 0 ? std::atan2(across.x(), -across.y()) : 0;
     double half = 0.5 * kRoom * growth * wanted_;
+    if (!place.solid) {  // over the slit, from piece to piece
+      c.angle = std::atan2(across.y(), across.x());
+      c.c1 = c.c2 = c.c3 = half;
+      c.half_length = 0.5 * place.width + kPatchLength * half;
+      return c;
+    }
+    c.angle = across.norm() > 0 ? std::atan2(across.x(), -across.y()) : 0;
     for (const Vec2& contact : {place.a, place.b})
       if (on_border(contact)) {
         c.center = contact;
@@ -196,6 +244,8 @@ class Cleaner {
   std::vector<Component> parts_;
   std::vector<bool> patch_;
   std::vector<Vec2> patched_;
+  int islands_ = 0;  // before the repairs of a round
+  int dropped_ = 0;
 };
 
 }  // namespace

@@ -18,9 +18,10 @@ struct CleanUp {
 /// Bounds on thicknesses do not do that: where components touch by their tips, overlap a little or
 /// are cut by the border, the union is thinner than each of them. Narrow places of the union (see
 /// narrow_places()) are repaired one by one, by whichever costs less in compliance times volume: a
-/// short component over the place, or none of one of those that meet there. Volume beyond what is
-/// allowed is then taken from what is thicker than needed, in equal parts; and so on, until no
-/// place is left.
+/// short component over the place, or none of one of those that meet there. Slits that part pieces
+/// of the design, which its cells do not see, are bridged likewise. Volume beyond what is allowed
+/// is then taken from what is thicker than needed, in equal parts; and so on, until no place is
+/// left.
 ///
 /// The design of `problem` is left at the result, or where it was when that is thicker.
 /// @param wanted  smallest solid feature [m]
