@@ -14,8 +14,9 @@ namespace {
 using flexmorph::Error;
 using namespace flexmorph::cases;
 
-/// OpenMP and OpenBLAS read their number of threads when they are loaded, and CHOLMOD ignores any
-/// later wish: the process starts itself once more with the wish in its environment.
+/// OpenMP and OpenBLAS read their number of threads when they are loaded: the process starts itself
+/// once more with the wish in its environment. The threads are ours, for loads and cells; those of
+/// OpenBLAS only slow down the small blocks of a factor.
 void restart_with_threads(int threads, char** argv) {
   const char* mark = "FLEXMORPH_THREADS";
   const std::string n = std::to_string(threads);
@@ -24,7 +25,8 @@ void restart_with_threads(int threads, char** argv) {
   setenv(mark, n.c_str(), 1);
   setenv("OMP_THREAD_LIMIT", n.c_str(), 1);
   setenv("OMP_NUM_THREADS", n.c_str(), 1);
-  setenv("OPENBLAS_NUM_THREADS", n.c_str(), 1);
+  setenv("OMP_WAIT_POLICY", "passive", 0);  // motions have nothing for a second thread
+  setenv("OPENBLAS_NUM_THREADS", "1", 1);
   // OpenBLAS 0.3.21 does not know newer processors and falls back to kernels for older ones.
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
       __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw"))
@@ -83,7 +85,7 @@ int parse_and_run(int argc, char** argv) {
   CLI::App* run = app.add_subcommand("run", "runs a case and writes its run folder");
   add_case(*run, options.case_name, options.overrides);
   run->add_option("-o,--output", options.directory, "run folder (default runs/<name>)");
-  run->add_option("--threads", options.threads, "threads of the linear algebra")
+  run->add_option("--threads", options.threads, "threads for loads and cells")
       ->check(CLI::Range(1, 256));
   run->add_flag("--quiet", options.quiet, "no progress");
   CLI::App* check =

@@ -85,6 +85,10 @@ else()
   list(APPEND flexmorph_missing OpenBLAS)
 endif()
 
+# Part of the compiler.
+find_package(OpenMP 4.5 QUIET COMPONENTS CXX)
+flexmorph_library(OpenMP 4.5 OpenMP_CXX_FOUND)
+
 if(flexmorph_missing)
   list(JOIN flexmorph_missing "\n  " missing)
   file(STRINGS "${CMAKE_CURRENT_LIST_DIR}/packages.txt" packages REGEX "^[^#]")

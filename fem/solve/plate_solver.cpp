@@ -1,5 +1,7 @@
 #include "fem/solve/plate_solver.h"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -33,7 +35,8 @@ struct PlateSolver::Impl {
   std::vector<int> scatter;  // by cell of the domain and pair of unknowns (36), -1: held
   std::vector<int> unknown_of_column;
   mutable std::vector<int> active;
-  mutable VectorXd held_values, energy_of_load;
+  mutable VectorXd held_values;
+  mutable MatrixXd energy_of_load;  // a column per thread, or the weights of all
 
   void number(std::span<const HeldUnknown> held);
   void unknowns_around(int node, int first, std::vector<int>& out) const;
@@ -51,6 +54,14 @@ struct PlateSolver::Impl {
     for (int i = 0; i < grid.nx; ++i)
       for (int j = 0; j < grid.ny; ++j)
         if (inside[static_cast<std::size_t>(grid.cell(i, j))]) use(i, j);
+  }
+  /// The same by all threads, use(i, j, thread): a cell must not need another.
+  template <class Use>
+  void each_cell_at_once(Use use) const {
+#pragma omp parallel for schedule(static)
+    for (int i = 0; i < grid.nx; ++i)
+      for (int j = 0; j < grid.ny; ++j)
+        if (inside[static_cast<std::size_t>(grid.cell(i, j))]) use(i, j, omp_get_thread_num());
   }
   Q4Energy::Corners corner_values(const MatrixXd& u, int i, int j) const;
 };
@@ -197,11 +208,11 @@ void PlateSolver::cell_energies(const MatrixXd& displacements, const VectorXd& w
   const Eigen::Index n_loads = displacements.rows();
   energies.setZero(m.grid.n_cells());
   m.held_values.setZero(n_loads);
-  m.energy_of_load.resize(n_loads);
-  m.each_cell([&](int i, int j) {
-    energy.weighted(m.corner_values(displacements, i, j), weights.data(), n_loads,
-                    m.energy_of_load.data());
-    energies(m.grid.cell(i, j)) = m.energy_of_load.sum();
+  m.energy_of_load.resize(n_loads, omp_get_max_threads());
+  m.each_cell_at_once([&](int i, int j, int thread) {
+    auto each = m.energy_of_load.col(thread);
+    energy.weighted(m.corner_values(displacements, i, j), weights.data(), n_loads, each.data());
+    energies(m.grid.cell(i, j)) = each.sum();
   });
 }
 
@@ -211,8 +222,8 @@ void PlateSolver::cell_energies(const MatrixXd& displacements, MatrixXd& energie
   const Eigen::Index n_loads = displacements.rows();
   energies.setZero(n_loads, m.grid.n_cells());
   m.held_values.setZero(n_loads);
-  m.energy_of_load.setOnes(n_loads);  // the weights
-  m.each_cell([&](int i, int j) {
+  m.energy_of_load.setOnes(n_loads, 1);  // the weights
+  m.each_cell_at_once([&](int i, int j, int) {
     energy.weighted(m.corner_values(displacements, i, j), m.energy_of_load.data(), n_loads,
                     energies.col(m.grid.cell(i, j)).data());
   });

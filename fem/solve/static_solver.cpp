@@ -1,6 +1,7 @@
 #include "fem/solve/static_solver.h"
 
 #include <cblas.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <array>
@@ -40,7 +41,8 @@ struct StaticSolver::Impl {
   // Work space.
   mutable std::vector<int> active, order, all_active;
   mutable MatrixXd sorted_mix;
-  mutable VectorXd moved, energy_of_load, held;
+  mutable VectorXd moved, held;
+  mutable MatrixXd energy_of_load;  // a column per thread
 
   int block_size() const { return 2 * (grid.ny + 1); }
   int n_unknowns() const { return block_size() * (grid.nx - first_root); }
@@ -255,11 +257,14 @@ void StaticSolver::cell_energies(const MatrixXd& displacements, const VectorXd& 
   const Eigen::Index ld = displacements.rows();
   energies.setZero(g.n_cells());
   m.held.setZero(ld);
-  m.energy_of_load.resize(ld);
+  m.energy_of_load.resize(ld, omp_get_max_threads());
 
+#pragma omp parallel for schedule(static)
   for (int i = m.first_root; i < g.nx; ++i) {
-    const auto [begin, n] = moving_loads(root_columns, i, ld);
+    const auto range = moving_loads(root_columns, i, ld);
+    const auto begin = range.first, n = range.second;
     if (n == 0) continue;
+    auto each = m.energy_of_load.col(omp_get_thread_num());
     const auto value = [&](int column, int j, int k) {
       const int row = m.row(column, j);
       return row < 0 ? m.held.data() : displacements.data() + (row + k) * ld + begin;
@@ -270,8 +275,8 @@ void StaticSolver::cell_energies(const MatrixXd& displacements, const VectorXd& 
         x.u[a] = value(i + kCornerI[a], j + kCornerJ[a], 0);
         x.v[a] = value(i + kCornerI[a], j + kCornerJ[a], 1);
       }
-      energy.weighted(x, weights.data() + begin, n, m.energy_of_load.data());
-      energies(g.cell(i, j)) = m.energy_of_load.head(n).sum();
+      energy.weighted(x, weights.data() + begin, n, each.data());
+      energies(g.cell(i, j)) = each.head(n).sum();
     }
   }
 }

@@ -1,6 +1,7 @@
 #include "fem/solve/supernodal_factor.h"
 
 #include <cblas.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,6 +24,16 @@ struct LoadRange {
   int first, count;
 };
 
+LoadRange reaching(std::span<const int> active, int column);
+
+/// The same among the loads of one thread.
+LoadRange reaching(std::span<const int> active, int column, const LoadRange& mine) {
+  const LoadRange all = reaching(active, column);
+  const int first = std::max(all.first, mine.first);
+  const int end = std::min(all.first + all.count, mine.first + mine.count);
+  return {std::min(first, mine.first + mine.count), std::max(0, end - first)};
+}
+
 LoadRange reaching(std::span<const int> active, int column) {
   const int n = static_cast<int>(active.size());
   if (n == 0) return {0, 0};
@@ -35,6 +46,22 @@ LoadRange reaching(std::span<const int> active, int column) {
       std::partition_point(active.begin(), active.end(), [column](int a) { return a <= column; });
   const int first = static_cast<int>(begin - active.begin());
   return {first, n - first};
+}
+
+/// Fewer loads are not worth a thread: products with a few columns stream L for little work.
+constexpr int kLoadsPerThread = 8;
+
+/// Calls use(loads) for the share of every thread, at the same time. A share is the same loads for
+/// a given number of threads: results repeat bit for bit.
+template <class Use>
+void each_share(Eigen::Index n_loads, const Use& use) {
+  const int n = static_cast<int>(n_loads);
+  const int parts = std::clamp(n / kLoadsPerThread, 1, omp_get_max_threads());
+#pragma omp parallel for schedule(static, 1) num_threads(parts) if (parts > 1)
+  for (int k = 0; k < parts; ++k) {
+    const int first = n * k / parts, end = n * (k + 1) / parts;
+    use(LoadRange{first, end - first});
+  }
 }
 
 using Dense = Eigen::Map<MatrixXd, 0, Eigen::OuterStride<>>;
@@ -113,7 +140,7 @@ struct SupernodalFactor::Impl {
   std::vector<double> stack;     // updates that wait for their parent
   std::vector<int> waiting;      // blocks whose updates are on the stack
   std::vector<char> contiguous;  // by supernode: its rows below the diagonal block are a range
-  mutable MatrixXd gathered;     // (n_loads x rows below), for supernodes that are not
+  mutable MatrixXd gathered;     // (rows below x n_loads), room for supernodes that are not
   int most_below = 0;
 
   struct Supernode {
@@ -145,12 +172,15 @@ struct SupernodalFactor::Impl {
   void add_update(int child, const double* update, int parent, double* block, double* own) const;
   int factorize_block(int s, double* block, double keep, double* own) const;
   int smallest_pivot(int s) const;
-  double* gather_buffer(Eigen::Index n_loads) const {
-    if (gathered.rows() < n_loads || gathered.cols() < most_below) {
-      gathered.resize(n_loads, most_below);
-    }
-    return gathered.data();
+  void forward(MatrixXd& x, std::span<const int> active, const LoadRange& mine) const;
+  void backward(MatrixXd& x, std::span<const int> active, const Fill& fill,
+                const LoadRange& mine) const;
+  void make_room(Eigen::Index n_loads) const {
+    if (gathered.cols() < n_loads || gathered.rows() < most_below)
+      gathered.resize(most_below, n_loads);
   }
+  /// Room for the rows below a block of these loads, and nobody else's.
+  double* gather_buffer(const LoadRange& mine) const { return gathered.col(mine.first).data(); }
 };
 
 void SupernodalFactor::Impl::find_ranges() {
@@ -275,10 +305,22 @@ int SupernodalFactor::factorize() {
 
 void SupernodalFactor::forward(MatrixXd& x, std::span<const int> active) const {
   const Impl& m = *impl_;
+  m.make_room(x.rows());
+  each_share(x.rows(), [&](const LoadRange& mine) { m.forward(x, active, mine); });
+}
+
+void SupernodalFactor::backward(MatrixXd& x, std::span<const int> active, const Fill& fill) const {
+  const Impl& m = *impl_;
+  m.make_room(x.rows());
+  each_share(x.rows(), [&](const LoadRange& mine) { m.backward(x, active, fill, mine); });
+}
+
+void SupernodalFactor::Impl::forward(MatrixXd& x, std::span<const int> active,
+                                     const LoadRange& mine) const {
   const int ld = static_cast<int>(x.rows());
-  for (int s = 0; s < m.n_supernodes(); ++s) {
-    const Impl::Supernode node = m.supernode(s);
-    const auto [load, count] = reaching(active, node.first);
+  for (int s = 0; s < n_supernodes(); ++s) {
+    const Supernode node = supernode(s);
+    const auto [load, count] = reaching(active, node.first, mine);
     if (count == 0) break;  // the blocks of later supernodes reach even fewer loads
     double* y = &x(load, node.first);
     solve_triangle(node.block, node.width(), node.height, true, y, ld, count);
@@ -288,7 +330,7 @@ void SupernodalFactor::forward(MatrixXd& x, std::span<const int> active) const {
                  &x(load, node.below[0]), ld);
       continue;
     }
-    double* g = m.gather_buffer(x.rows());
+    double* g = gather_buffer(mine);
     push_below(node.rectangle(), node.n_below, node.width(), node.height, y, ld, count, 0, g,
                count);
     for (int k = 0; k < node.n_below; ++k) {
@@ -299,14 +341,15 @@ void SupernodalFactor::forward(MatrixXd& x, std::span<const int> active) const {
   }
 }
 
-void SupernodalFactor::backward(MatrixXd& x, std::span<const int> active, const Fill& fill) const {
-  const Impl& m = *impl_;
+void SupernodalFactor::Impl::backward(MatrixXd& x, std::span<const int> active, const Fill& fill,
+                                      const LoadRange& mine) const {
   const int ld = static_cast<int>(x.rows());
-  for (int s = m.n_supernodes() - 1; s >= 0; --s) {
-    const Impl::Supernode node = m.supernode(s);
-    const auto [load, count] = reaching(active, node.first);
-    x.block(0, node.first, load, node.width()).setZero();
-    x.block(load + count, node.first, ld - load - count, node.width()).setZero();
+  for (int s = n_supernodes() - 1; s >= 0; --s) {
+    const Supernode node = supernode(s);
+    const auto [load, count] = reaching(active, node.first, mine);
+    const int end = mine.first + mine.count;
+    x.block(mine.first, node.first, load - mine.first, node.width()).setZero();
+    x.block(load + count, node.first, end - load - count, node.width()).setZero();
     if (count == 0) continue;
     if (fill) fill(node.first, node.last, load, count);
     // Lᵀ is upper triangular: held entries that start as zero stay zero, and so does the cut.
@@ -319,7 +362,7 @@ void SupernodalFactor::backward(MatrixXd& x, std::span<const int> active, const 
       const double* below = &x(load, node.below[0]);
       int below_ld = ld;
       if (!node.contiguous) {
-        double* g = m.gather_buffer(x.rows());
+        double* g = gather_buffer(mine);
         for (int k = 0; k < node.n_below; ++k) {
           const double* from = &x(load, node.below[k]);
           std::copy(from, from + count, g + static_cast<std::ptrdiff_t>(k) * count);
