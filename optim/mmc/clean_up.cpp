@@ -138,11 +138,13 @@ class Cleaner {
     while (low == 0 && !fits() && drop_least()) continue;
   }
 
-  /// Takes out the component whose loss costs least. @return was there one?
+  /// Takes out the component whose loss costs least; patches stay, or they would come back.
+  /// @return was there one?
   bool drop_least() {
     double lowest = kInfinity;
     size_t least = 0;
     for (size_t k = 0; k < parts_.size(); ++k) {
+      if (patch_[k]) continue;
       const double without = merit(less(k));
       if (!(without < lowest)) continue;
       lowest = without;
