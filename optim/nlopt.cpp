@@ -14,13 +14,13 @@
 ///   box      half width of the moving box, absolute in x (default: move_limit for ccsaq, 1.5 times
 ///            as much for mma); 0: no box
 ///   restart  evaluations inside one box
-///   scale    factor of f and g: NLopt 2.7.1 offers no other say in its first curvature; 30 and 100
-///            got further in 150 evaluations than 10 on a cantilevered strip of 96 components
+///   scale    factor of f and g (default: 30 for mma, 10 for ccsaq): NLopt 2.7.1 offers no other say
+///            in its first curvature
 ///
 /// The box of mma is a compromise: with move_limit it ended 6 % above our mma on the plate growing
 /// at 0.5 m/s (1.5 times as much: 4.5 %), with twice as much 1.4 % higher on the short beam (median
-/// of five starts; 1.5 times: 0.5 %). Single designs scatter by a few per cent. ccsaq stays within
-/// 4 % with move_limit. Runs of 15 evaluations instead of 8 (scale 100) ended 11 % above.
+/// of five starts; 1.5 times: 0.5 %). Single designs scatter by a few per cent. ccsaq with move_limit
+/// and 10 stays within 1 % on both plates and 3 % on the short beam (with 30: 4 %).
 ///
 /// What the library does not do by itself: an exception or a NaN of the objective ends in a
 /// message-less failure or a NaN result, so the callbacks keep exceptions and end the run; f and
@@ -51,6 +51,7 @@ std::string name_of(nlopt_result result) {
 
 constexpr double kWall = 1e6;      // f of a refused design, in units of 1 + |f|
 constexpr double kBoxOfMma = 1.5;  // default, in move limits
+constexpr double kScaleOfMma = 30, kScaleOfCcsaq = 10;
 constexpr int kMostRefusals = 10;  // in a row: each one divides NLopt's step by ten or so
 
 /// One run of NLopt. Its addresses go through C, so it stays where it is.
@@ -194,8 +195,10 @@ class Nlopt final : public Optimizer {
 }  // namespace
 
 std::unique_ptr<Optimizer> make_nlopt(const Settings& settings) {
-  const double box = (settings.name == "nlopt_mma" ? kBoxOfMma : 1) * settings.move_limit;
-  const Options o = with_defaults(settings, {{"box", box}, {"restart", 8}, {"scale", 30}});
+  const bool mma = settings.name == "nlopt_mma";
+  const double box = (mma ? kBoxOfMma : 1) * settings.move_limit;
+  const double scale = mma ? kScaleOfMma : kScaleOfCcsaq;
+  const Options o = with_defaults(settings, {{"box", box}, {"restart", 8}, {"scale", scale}});
   check_option(settings, "box", o.at("box"), 0, 1e9);
   check_option(settings, "restart", o.at("restart"), 2, 1e6);
   check_option(settings, "scale", o.at("scale"), 1e-9, 1e9);
