@@ -10,6 +10,8 @@
 
 namespace flexmorph::fem {
 
+struct FreeTable;  // fem/free_lines.h
+
 inline constexpr int kMaxShapes = 16;  ///< shape functions of one element
 inline constexpr int kMaxDim = 3;
 
@@ -34,7 +36,8 @@ struct ShapeTable {
   MatrixXd N;                  ///< r = Qᵀ N
   MatrixXd N_t, N_tt;  ///< ∂N/∂t, ∂²N/∂t² at fixed material point: zero unless lines move
   MatrixXd N_m, N_n;   ///< derivatives by the material coordinates
-  MatrixXd N_mt, N_nt;  ///< their rates at fixed material point
+  MatrixXd N_mt, N_nt;        ///< their rates at fixed material point
+  MatrixXd N_mm, N_nn, N_mn;  ///< second derivatives by the material coordinates
 };
 
 /// Shape functions that are products of functions of one coordinate each, at a tensor grid of
@@ -45,7 +48,8 @@ struct ProductTable {
   std::vector<int> function_m, function_n;  ///< (n_shapes)
 };
 
-enum class Tabulate { position, position_rates, gradient, gradient_rates };
+/// What to fill besides N; `curvature` is the first and second derivatives without rates.
+enum class Tabulate { position, position_rates, gradient, gradient_rates, curvature };
 
 /// Which factor multiplies the quadrature weight.
 enum class FactorKind { none, stiffness, mass };
@@ -54,6 +58,7 @@ enum class FactorKind { none, stiffness, mass };
 struct NodeVectors {
   int r = -1, r_m = -1, r_n = -1, r_mn = -1;
   Vec2 material{0, 0};
+  bool moving = false;  ///< lies on a material line that is driven
 };
 
 /// The seam of kinematics: the elements of one body, r = Qᵀ N(X, t).
@@ -83,14 +88,31 @@ class Element {
   /// Values of the undeformed body at rest in its own frame, all unknowns (n_vectors x dim).
   virtual MatrixXd reference() const = 0;
 
-  /// Nodes of a named edge ("root", "free_end"), in the order of the coordinate along it.
+  /// Nodes of a named edge ("root", "free_end": first and last m-line; "side_low", "side_high":
+  /// first and last n-line; "line 3": an m-line by its number), in the order of the coordinate
+  /// along it.
   /// @throws Error (input) naming the known edges.
   virtual std::vector<NodeVectors> edge(const std::string& name) const = 0;
+  /// All nodes; none where an element has no nodes in material coordinates.
+  virtual std::vector<NodeVectors> nodes() const { return {}; }
 
   /// Puts the material lines where they are at time t.
   virtual void move_to(double t) = 0;
   /// Does the shape of element e change in time?
   virtual bool moving(int e) const = 0;
+
+  /// Scalar unknowns of the body, which follow its vector unknowns: coordinates of free material
+  /// lines [m].
+  virtual int n_scalars() const { return 0; }
+  virtual VectorXd scalars() const { return {}; }  ///< where they are
+  /// Puts free material lines there (n_scalars), with their rates and accelerations.
+  virtual void move_lines(const VectorXd& /*p*/, const VectorXd& /*rate*/,
+                          const VectorXd& /*acceleration*/) {}
+  /// Scalar unknowns of the lines around element e (see Side), -1 for those that are none; empty
+  /// when no line is free.
+  virtual std::span<const int> free_sides(int /*e*/) const { return {}; }
+  /// tabulate() for an element with free lines, of uniform material.
+  virtual void tabulate_free(int /*e*/, int /*degree*/, Tabulate, FreeTable& /*out*/) const {}
 
   /// Points for integrands of the given degree per direction in element e, exact for a factor that
   /// is constant in every design cell.

@@ -72,13 +72,67 @@ enum class WeldMode {
 ///   and r_m · e₂ = 0, r_mn · e₂ = 0                                         (direction)
 ///   or r_m = e₁, r_mn = 0                                                   (full)
 ///
-/// y is the node's coordinate across. With material flow these rows hold on the moving line, so
-/// the rates are total ones along the line: exactly those of the nodal unknowns.
+/// y is the node's coordinate across. In space the frame turns about z, and the z entries of all
+/// these vectors are zero too: the edge is clamped against bending. With the edge "line 3" and a
+/// free line the weld is a sleeve: material slides through it. With material flow these rows hold
+/// on the moving line, so the rates are total ones along the line: exactly those of the nodal
+/// unknowns.
 std::unique_ptr<Joint> make_weld(std::string name, std::string body, std::string edge,
                                  FrameDrive frame, WeldMode mode);
+
+/// A free material line of a body (by the number of its scalar unknown) held where the motion says
+/// [m]: Φ = p - p(t). Its multiplier is minus the force that the line feels.
+std::unique_ptr<Joint> make_line_drive(std::string name, std::string body, int scalar,
+                                       std::function<Motion(double)> motion);
 
 /// A material point's position held at a place of the world frame (pin), or driven along a path.
 std::unique_ptr<Joint> make_pin(std::string name, std::string body, const Vec2& material,
                                 FrameDrive point);
+
+/// Motion of a point, each entry with its rates [m].
+using PointDrive = std::function<std::vector<Motion>(double t)>;
+
+/// The same in the plane or in space: those components of the position (all when empty) follow the
+/// drive, which returns one Motion per component in their order.
+/// @throws Error (input) at bind() for components the body does not have.
+std::unique_ptr<Joint> make_pin(std::string name, std::string body, const Vec2& material,
+                                PointDrive point, std::vector<int> components);
+
+enum class NodeVector { r, r_m, r_n, r_mn };
+
+/// Nodes of a named edge or, when it has no name, all nodes within a box of material coordinates
+/// (low = high: one node, which must be there).
+struct HoldPlace {
+  std::string edge{};
+  Vec2 low{0, 0}, high{0, 0};
+
+  static HoldPlace at(const Vec2& material) { return {{}, material, material}; }
+};
+
+/// Components of one kind of vector unknown, held where they are in the undeformed body or at given
+/// values.
+struct Held {
+  HoldPlace at;
+  NodeVector vector = NodeVector::r;
+  std::vector<int> components{};  ///< 0, 1, 2
+  VectorXd value{};               ///< (dim), or empty: reference values
+};
+
+/// Holds entries of vector unknowns in the world frame, in the plane and in space: one linear row
+/// q_i = value each. An entry that is listed twice (corners of two edges) gets one row.
+/// @throws Error (input) at bind() where there is no node, a component is out of range, an entry is
+/// held at two values or its material line moves.
+std::unique_ptr<Joint> make_hold(std::string name, std::string body, std::vector<Held> held);
+
+/// What a hold takes at an edge of a plate in space that lies in the plane z = 0; lists of several
+/// edges are joined for one make_hold().
+///
+/// clamped    r and the slope along the edge; of the slope across: its z (edge), all but its length
+///            (direction), everything (full), see WeldMode
+/// supported  z of r and of the slope along the edge: free to turn and to slide in the plane
+/// symmetry   the plane through the edge across the plate is a plane of symmetry
+std::vector<Held> clamped_edge(const std::string& edge, WeldMode mode = WeldMode::edge);
+std::vector<Held> supported_edge(const std::string& edge);
+std::vector<Held> symmetry_edge(const std::string& edge);
 
 }  // namespace flexmorph::fem

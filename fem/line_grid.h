@@ -6,10 +6,11 @@
 
 namespace flexmorph::fem {
 
-/// A line of the tensor grid in material coordinates: fixed, or prescribed in time.
+/// A line of the tensor grid in material coordinates: fixed, prescribed in time, or an unknown.
 struct MaterialLine {
-  double value = 0;                     ///< [m]; ignored when driven
-  std::function<Motion(double)> drive;  ///< empty: fixed
+  double value = 0;                     ///< [m]; ignored when driven; where a free line starts
+  std::function<Motion(double)> drive;  ///< empty: fixed or free
+  bool free = false;
 };
 
 /// Elements on a tensor grid of material lines m_i(t) x n_j(t): what growing and shrinking bodies

@@ -20,7 +20,9 @@ struct Body {
   Factors factors;
   int first_dof = 0;
 
-  int n_dofs() const { return element->dim() * element->n_vectors(); }
+  /// Vector unknowns, entry by entry, then scalar ones.
+  int n_dofs() const { return element->dim() * element->n_vectors() + element->n_scalars(); }
+  int first_scalar() const { return first_dof + element->dim() * element->n_vectors(); }
 };
 
 /// Energies of a state [J].
@@ -41,6 +43,10 @@ struct Constraints {
 ///
 /// A model holds what was added to it and nothing else. Its matrices keep their sparsity pattern
 /// until a mesh changes.
+///
+/// Elements are evaluated eight at a time. Batches of one colour share no unknown, so that threads
+/// (OpenMP's) can take them in any order: sums are made colour by colour, and every result is the
+/// same bit for bit with any number of threads.
 class Model {
  public:
   /// Adds a body; its terms are prepared by the next prepare().
@@ -58,6 +64,13 @@ class Model {
 
   /// Puts material lines where they are at time t and refreshes what depends on them.
   void prepare(double t);
+  /// The same with free material lines where x has them: needed before every evaluation at other
+  /// unknowns where has_free_lines().
+  void prepare(const State& x);
+  bool has_free_lines() const { return !singles_.empty(); }
+
+  /// Multiplies all loads (Term::scale_load) by a factor; 1 until the first call.
+  void scale_loads(double factor);
 
   int n_dofs() const { return n_dofs_; }
   int n_constraints() const { return n_constraints_; }
@@ -81,6 +94,17 @@ class Model {
   /// Counts changes of the pattern: a solver that saw another number must analyse again.
   int pattern_version() const { return pattern_version_; }
 
+  /// Mean force of a step from q₀ to q₁ that keeps the energy, see Term::add_mean_force(); mean:
+  /// the mean state, of which prepare(mean.t) was done.
+  /// @throws Error (input) when a term has none.
+  void mean_force(const State& mean, const VectorXd& q0, const VectorXd& q1, VectorXd& out) const;
+
+  /// [ scale · (F̄ + Φ̄_qᵀ λ)_x   Φ̄_qᵀ ]   the same for the mean force: w are the derivatives of the
+  /// [ Φ_q                      0    ]   mean state by x, Φ̄_q is taken there and Φ_q at the end.
+  void mean_kkt(const State& mean, const VectorXd& q0, const VectorXd& q1,
+                const Constraints& at_mean, const Constraints& at_end, const Weights& w,
+                double scale, SparseMatrix& out) const;
+
   Energies energies(const State& x) const;
   /// Power of all terms at fixed unknowns, see Term::flow_power() [W].
   double flow_power(const State& x) const;
@@ -89,21 +113,56 @@ class Model {
   double smallest_area_ratio(const State& x) const;
 
  private:
+  /// Where eight consecutive elements of a body stand in the vectors and the matrix.
+  struct BatchPlaces {
+    size_t body = 0;
+    int first = 0, count = 0;
+    std::vector<int> dofs;     // (n_local, kLanes)
+    std::vector<int> entries;  // of the matrix, the first of dim rows: (n_local, n_shapes, kLanes)
+  };
+
+  /// An element that is evaluated alone: of a body with free lines.
+  struct Single {
+    size_t body = 0;
+    int e = 0;
+    bool free = false;         // are lines around this one free?
+    std::vector<int> dofs;     // of the shape unknowns, then of its lines (-1: no unknown)
+    std::vector<int> entries;  // of the matrix, by rows (-1: none)
+  };
+
   void number_dofs();
+  void number_batches();
+  void number_singles(size_t body);
+  void add_single_force(const Single& single, const State& x, VectorXd& out) const;
+  void add_single_tangent(const Single& single, const State& x, const Weights& w, double scale,
+                          double* values) const;
   void build_pattern() const;
   void joint_stiffness(const State& x, std::vector<Eigen::Triplet<double>>& out) const;
   void gather(const Body& body, int e, const State& x, Local& local) const;
+  /// Calls f(batch, its places) for all batches, one colour after the other, by one thread for
+  /// every `per_thread` batches.
+  template <class F>
+  void for_batches(const State& x, int per_thread, const F& f) const;
+  void gather(const Body& body, int e, const State& mean, const VectorXd& q0, const VectorXd& q1,
+              LocalStep& step) const;
+  void clear(SparseMatrix& out) const;
+  void fill_joints(const State& x, double stiffness_scale, const Constraints& rows,
+                   const Constraints& columns, SparseMatrix& out) const;
 
   std::vector<Body> bodies_;
   std::vector<std::unique_ptr<Joint>> joints_;
   int n_dofs_ = 0, n_constraints_ = 0, pattern_version_ = 0;
-  bool fresh_ = false;  // terms are prepared for this mesh and these factors
+  bool fresh_ = false;        // terms are prepared for this mesh and these factors
+  std::vector<int> colours_;  // first batch of every colour, and their number
   // Pattern of the KKT matrix and where element entries go; rebuilt after a change of the mesh.
   mutable int built_version_ = -1;
   mutable SparseMatrix pattern_;
-  mutable std::vector<std::vector<int>> places_;  // per element of all bodies: n_local² positions
-  mutable std::vector<int> joint_places_;         // two per jacobian entry: (row, dof), (dof, row)
-  mutable std::vector<int> stiffness_places_;     // of the joints' (Φ_qᵀ λ)_q
+  mutable std::vector<BatchPlaces> batches_;  // by colours; entries as of the pattern
+  mutable std::vector<Single> singles_;
+  mutable std::vector<int> joint_places_;      // two per jacobian entry: (row, dof), (dof, row)
+  mutable std::vector<int> stiffness_places_;  // of the joints' (Φ_qᵀ λ)_q
+  mutable std::vector<Eigen::Triplet<double>> stiffness_;
+  mutable ConstraintRows rows_;
 };
 
 }  // namespace flexmorph::fem

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fem/batch.h"
 #include "fem/element.h"
 #include "fem/section.h"
 
@@ -16,15 +17,31 @@ struct Local {
   LocalRows q, v, a;
 };
 
+/// Unknowns of one element over a step of a mid-point scheme.
+struct LocalStep {
+  LocalRows start, end;  ///< q at both ends
+  Local mean;            ///< ½ (start + end), the mean rate and the mean acceleration
+};
+
 /// Tangent of one element; row and column dim k + c belong to shape function k, direction c.
 using LocalTangent = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor,
                                    kMaxShapes * kMaxDim, kMaxShapes * kMaxDim>;
+
+/// Generalized forces of an element with free lines: row dim k + c of shape function k, direction
+/// c, then one row per line around it (see Side); and their tangent.
+inline constexpr int kMaxFree = kMaxShapes * kMaxDim + 4;
+using FreeForce = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxFree, 1>;
+using FreeTangent =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMaxFree, kMaxFree>;
 
 /// The seam of virtual work: one physical effect of one body.
 ///
 /// A term keeps what it needs per element (invariants, mass matrices), refreshed by prepare() for
 /// the elements that changed, so that evaluating costs the same for uniform and for designed
 /// material.
+///
+/// Const functions are called for different elements by several threads at once: work space is on
+/// the stack or per thread.
 class Term {
  public:
   virtual ~Term() = default;
@@ -40,6 +57,40 @@ class Term {
   virtual void add_tangent(int e, const Local& x, const Weights& w,
                            LocalTangent& tangent) const = 0;
 
+  /// The same for eight elements side by side; by the functions above, element by element, unless
+  /// a term knows better.
+  /// @param force    (n_shapes dim), entries dim k + c
+  virtual void add_forces(const Batch& x, Lanes* force) const;
+  /// @param tangent  (n_shapes dim)², by columns
+  virtual void add_tangents(const Batch& x, const Weights& w, Lanes* tangent) const;
+
+  /// Adds the mean force of a step that keeps the energy (a discrete gradient): F̄ · (end - start)
+  /// is the difference of the term's energy over the step, translations and rotations do no work on
+  /// F̄, and F̄ is the force at the mean state but for terms of second order in the step. A term that
+  /// is linear in (q, v, a) gives its force at the mean state; GramGradient serves a term whose
+  /// energy is not quadratic.
+  /// @throws Error (input) when the term has none.
+  virtual void add_mean_force(int e, const LocalStep& x, LocalRows& force) const;
+
+  /// Adds the derivative of the mean force by an unknown that moves the mean state by w (so the end
+  /// by 2 w.q, while the start stands).
+  virtual void add_mean_tangent(int e, const LocalStep& x, const Weights& w,
+                                LocalTangent& tangent) const;
+
+  /// Said by messages.
+  virtual std::string name() const { return "without a name"; }
+
+  /// Multiplies the load of a term that is one (1 until the first call): its force is proportional
+  /// to the factor. Nothing in terms that are no loads.
+  virtual void scale_load(double /*factor*/) {}
+
+  /// The same where lines around the element are unknowns, see Element::free_sides(): forces on
+  /// them too. Lines are where the last prepare() found them.
+  /// @throws Error (input) when the term does not know free lines.
+  virtual void add_free_force(int e, const Local& x, FreeForce& force) const;
+  virtual void add_free_tangent(int e, const Local& x, const Weights& w,
+                                FreeTangent& tangent) const;
+
   /// Energies of one element [J]; zero where a term has none.
   virtual double kinetic_energy(int, const Local&) const { return 0; }
   virtual double strain_energy(int, const Local&) const { return 0; }
@@ -54,12 +105,31 @@ class Term {
 /// What a body is made of.
 std::unique_ptr<Term> make_inertia(const PlaneSection& section);
 std::unique_ptr<Term> make_membrane(const PlaneSection& section);
+/// The membrane with assumed strains: does not lock in thin bending (terms/assumed_strain.h).
+std::unique_ptr<Term> make_assumed_membrane(const PlaneSection& section);
+/// Bending of a thin plate in space, n x n Gauss points per element (5: force to 5e-4 at strong
+/// deformation; 7: 4e-7). @throws Error (input) at prepare() for a body in the plane.
+std::unique_ptr<Term> make_bending(const PlaneSection& section, int n_points = 5);
 /// Weight of the body's own mass; gravity (dim) [m/s^2].
 std::unique_ptr<Term> make_gravity(const PlaneSection& section, const VectorXd& gravity);
 /// A mass [kg] at a material point, with its weight when gravity is not empty.
 std::unique_ptr<Term> make_point_mass(double mass, const Vec2& material, const VectorXd& gravity);
 
-/// Builds a term of the table by name ("inertia", "membrane").
+/// Loads that keep their size and direction, per reference length and area; components as the body
+/// has dimensions. All loads are scaled by Model::scale_loads().
+/// @throws Error (input) at prepare() for other components, a point outside the body, an unknown
+/// edge; point and edge loads also in elements whose lines move.
+std::unique_ptr<Term> make_point_force(const Vec2& material, const VectorXd& force);  // [N]
+std::unique_ptr<Term> make_edge_load(const std::string& edge, const VectorXd& load);  // [N/m]
+std::unique_ptr<Term> make_surface_load(const VectorXd& load);                        // [N/m²]
+/// Loads that follow the surface of a plate in space: a pressure [N/m²] along r_m × r_n, and a
+/// moment per length [N] of an edge about the edge, positive where it bends with κ > 0.
+/// @throws Error (input) at prepare() for a body in the plane or with material lines that move.
+std::unique_ptr<Term> make_pressure(double pressure);
+std::unique_ptr<Term> make_edge_moment(const std::string& edge, double moment);
+
+/// Builds a term of the table by name ("inertia", "membrane", "membrane_assumed",
+/// "bending").
 /// @throws Error (input) naming the known terms.
 std::unique_ptr<Term> make_term(const std::string& name, const PlaneSection& section);
 

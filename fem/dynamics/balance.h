@@ -45,6 +45,11 @@ class EnergyBalance {
     largest_ = std::max({largest_, std::abs(e.total()), e.kinetic, e.strain});
     worst_ = std::max(worst_, std::abs(defect_));
   }
+  /// After a step whose powers are those of its middle: mid-point rule.
+  void add_mean(double t, const Energies& e, const Powers& p) {
+    power_ = p.total();
+    add(t, e, p);
+  }
   double work() const { return work_; }      ///< [J]
   double defect() const { return defect_; }  ///< energy - start - work [J]
   double relative() const { return worst_ / std::max(largest_, 1e-300); }  ///< largest so far

@@ -192,7 +192,7 @@ void change_mesh(Model& model, Body& body, MeshChange change, State& x) {
   carry(x.a, &NodeState::a);
   carry(x.alpha, &NodeState::alpha);
   model.set_element(body, std::move(next));
-  model.prepare(x.t);
+  model.prepare(x);
 }
 
 }  // namespace flexmorph::fem

@@ -39,17 +39,18 @@ class Run {
         growths_(growths),
         settings_(settings),
         observe_(observe),
-        alpha_(model, settings.alpha) {}
+        integrator_(make_integrator(
+            model, {settings.integrator, settings.alpha, settings.energy_momentum})) {}
 
   MotionResult go() {
     std::vector<double> stops = settings_.stops;
     stops.push_back(settings_.end);
     std::sort(stops.begin(), stops.end());
     x_ = start_state(model_, growths_, 0, settings_.start);
-    alpha_.project_velocity(x_);
-    alpha_.make_consistent(x_);
+    integrator_->project_velocity(x_);
+    integrator_->make_consistent(x_);
     const Energies e = model_.energies(x_);
-    powers_ = measure();
+    powers_ = measure(x_);
     balance_.begin(0, e, powers_);
     see(e, false);
     const double tiny = kTiny * settings_.step;
@@ -58,14 +59,28 @@ class Run {
       while (x_.t < stop - tiny) to_next_event(std::min(stop, settings_.end));
     }
     result_.final = x_;
-    result_.counts = alpha_.counts();
+    result_.counts = integrator_->counts();
     result_.energy_defect = balance_.relative();
     return std::move(result_);
   }
 
  private:
-  Powers measure() const {
-    return settings_.balance ? powers(model_, growths_, x_, settings_.gravity) : Powers{};
+  Powers measure(const State& x) const {
+    return settings_.balance ? powers(model_, growths_, x, settings_.gravity) : Powers{};
+  }
+
+  /// Work of a step, at the time its multipliers belong to.
+  void balance(const Energies& e) {
+    const State* mean = integrator_->step_mean();
+    if (!settings_.balance || !mean) {
+      powers_ = measure(x_);
+      balance_.add(x_.t, e, powers_);
+      return;
+    }
+    model_.prepare(*mean);
+    powers_ = measure(*mean);
+    model_.prepare(x_);
+    balance_.add_mean(x_.t, e, powers_);
   }
 
   void see(const Energies& e, bool stop) {
@@ -97,12 +112,12 @@ class Run {
     const int n = std::max(1, static_cast<int>(std::ceil((end - begin) / settings_.step - 1e-6)));
     for (int k = 1; k <= n; ++k) {
       const double t = k == n ? end : begin + (end - begin) * k / n;
-      alpha_.advance(x_, t, [&](const State& x) {
+      integrator_->advance(x_, t, [&](const State& x) {
         const Energies e = model_.energies(x);
-        powers_ = measure();
-        balance_.add(x.t, e, powers_);
+        balance(e);
         drift();
         const bool at_stop = stop && x.t >= end;
+        if (at_stop && integrator_->step_mean()) integrator_->make_consistent(x_);
         see(e, at_stop);
         if (at_stop || ++since_watched_ == kWatchEvery) watch(x);
       });
@@ -120,7 +135,7 @@ class Run {
     std::snprintf(text, sizeof text,
                   "motion: the material has collapsed at t = %.6g s, step %d: smallest area ratio "
                   "|r_m x r_n| = %.2e. It is too soft for its loads.",
-                  x.t, alpha_.counts().steps, ratio);
+                  x.t, integrator_->counts().steps, ratio);
     throw Error::numerical(text);
   }
 
@@ -152,8 +167,8 @@ class Run {
     event.momentum_after = momentum(model_, x_);
     event.tip_jump = (point_motion(*body, x_, tip).position - tip_before).norm();
     result_.events.push_back(event);
-    alpha_.project_velocity(x_);
-    balance_.restart(x_.t, measure());
+    integrator_->project_velocity(x_);
+    balance_.restart(x_.t, measure(x_));
   }
 
   static constexpr double kTiny = 1e-6;   // of a step
@@ -164,7 +179,7 @@ class Run {
   std::span<const Growth> growths_;
   const MotionSettings& settings_;
   const MotionObserver& observe_;
-  GeneralizedAlpha alpha_;
+  std::unique_ptr<Integrator> integrator_;
   State x_;
   Powers powers_;
   EnergyBalance balance_;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fem/dynamics/balance.h"
-#include "fem/dynamics/generalized_alpha.h"
+#include "fem/dynamics/integrator.h"
 #include "fem/dynamics/start.h"
 
 namespace flexmorph::fem {
@@ -13,7 +13,9 @@ namespace flexmorph::fem {
 struct MotionSettings {
   double end = 1, step = 1e-3;  ///< [s]
   Start start = Start::prestretched;
+  std::string integrator = "generalized_alpha";  ///< see make_integrator()
   AlphaSettings alpha;
+  EnergyMomentumSettings energy_momentum;
   VectorXd gravity;           ///< (dim) or empty
   std::vector<double> stops;  ///< times a step must land on (loads, output), any order
   bool balance = true;        ///< keep the energy balance (costs a few percent)
@@ -29,7 +31,9 @@ struct MeshEvent {
   double tip_jump = 0;  ///< of the free end's mid-point [m]
 };
 
-/// What an observer of a motion sees at every accepted step (and at the start).
+/// What an observer of a motion sees at every accepted step (and at the start). With an integrator
+/// that has a step_mean(), accelerations, multipliers and powers are means over the step before,
+/// but at stops x is consistent.
 struct MotionStep {
   const Model& model;
   const State& x;

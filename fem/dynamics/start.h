@@ -11,7 +11,7 @@ enum class Start {
 };
 
 /// Positions and velocities at time t of a model whose bodies ride in hubs. Accelerations and
-/// multipliers are left zero: GeneralizedAlpha::make_consistent() finds them.
+/// multipliers are left zero: Integrator::make_consistent() finds them.
 ///
 /// @throws Error (numerical) when the static equilibrium is not found.
 State start_state(Model& model, std::span<const Growth> growths, double t, Start start);

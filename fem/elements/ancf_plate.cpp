@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+
+#include "fem/free_lines.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -13,15 +16,19 @@ Row4 powers(double s) { return {1, s, s * s, s * s * s}; }
 
 /// Values of a Hermite interval at one point: a row of four functions per derivative.
 struct At {
-  Row4 f, d;            // value, derivative by X
+  Row4 f, d, dd;        // value, derivatives by X
   Row4 f_t, f_tt, d_t;  // rates at fixed material point
 };
 
-At at_point(const Hermite& h, double s, bool rates) {
+At at_point(const Hermite& h, double s, bool rates, bool curvature = false) {
   const Row4 p = powers(s);
   At out;
   out.f = p * h.value.transpose();
   out.d = p * derivative(h.value).transpose() / h.length;
+  if (curvature)
+    out.dd = p * derivative(derivative(h.value)).transpose() / (h.length * h.length);
+  else
+    out.dd.setZero();
   if (rates) {
     out.f_t = p * h.rate.transpose();
     out.f_tt = p * h.acceleration.transpose();
@@ -85,16 +92,57 @@ AncfPlate::AncfPlate(int dim, ShapeSet shapes, std::vector<MaterialLine> m,
     for (int j = 0; j < n_n(); ++j)
       for (const int corner : {node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)})
         for (int k = 0; k < per_node_; ++k) vectors_.push_back(per_node_ * corner + k);
+  number_free_lines();
   move_to(t);
+}
+
+void AncfPlate::number_free_lines() {
+  const auto number = [&](const std::vector<MaterialLine>& lines) {
+    std::vector<int> out;
+    for (const MaterialLine& line : lines) {
+      if (line.free && line.drive) throw Error::input("ancf_plate: a driven line is not free");
+      out.push_back(line.free ? static_cast<int>(free_.size()) : -1);
+      if (line.free) free_.push_back({line.value, 0, 0});
+    }
+    return out;
+  };
+  const std::vector<int> m = number(m_), n = number(n_);
+  if (free_.empty()) return;
+  for (size_t i = 0; i + 1 < m.size(); ++i)
+    for (size_t j = 0; j + 1 < n.size(); ++j)
+      sides_.insert(sides_.end(), {m[i], m[i + 1], n[j], n[j + 1]});
+}
+
+std::span<const int> AncfPlate::free_sides(int e) const {
+  if (sides_.empty()) return {};
+  const std::span<const int> out(sides_.data() + kSides * e, kSides);
+  return std::all_of(out.begin(), out.end(), [](int s) { return s < 0; }) ? std::span<const int>{}
+                                                                          : out;
+}
+
+VectorXd AncfPlate::scalars() const {
+  VectorXd out(static_cast<Eigen::Index>(free_.size()));
+  for (size_t k = 0; k < free_.size(); ++k) out[static_cast<Eigen::Index>(k)] = free_[k].value;
+  return out;
+}
+
+void AncfPlate::move_lines(const VectorXd& p, const VectorXd& rate, const VectorXd& acceleration) {
+  for (size_t k = 0; k < free_.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    free_[k] = {p[i], rate[i], acceleration[i]};
+  }
+  move_to(t_);
 }
 
 void AncfPlate::move_to(double t) {
   t_ = t;
-  const auto place = [t](const std::vector<MaterialLine>& lines, std::vector<Motion>& at,
+  size_t next_free = 0;
+  const auto place = [&](const std::vector<MaterialLine>& lines, std::vector<Motion>& at,
                          std::vector<Hermite>& hermite) {
     at.clear();
     hermite.clear();
-    for (const MaterialLine& line : lines) at.push_back(motion_of(line, t));
+    for (const MaterialLine& line : lines)
+      at.push_back(line.free ? free_[next_free++] : motion_of(line, t));
     for (size_t i = 0; i + 1 < at.size(); ++i) {
       if (!(at[i + 1].value > at[i].value))
         throw Error::numerical("ancf_plate: material lines " + std::to_string(i) + " and " +
@@ -133,24 +181,46 @@ MatrixXd AncfPlate::reference() const {
   return q;
 }
 
+NodeVectors AncfPlate::vectors_of(int i, int j) const {
+  const int first = per_node_ * node(i, j);
+  return {first,
+          first + 1,
+          first + 2,
+          shapes_ == ShapeSet::h16 ? first + 3 : -1,
+          Vec2(line_m(i).value, line_n(j).value),
+          m_[static_cast<size_t>(i)].drive || n_[static_cast<size_t>(j)].drive};
+}
+
 std::vector<NodeVectors> AncfPlate::edge(const std::string& name) const {
-  int i = 0;
-  if (name == "free_end")
-    i = n_m();
-  else if (name != "root")
-    throw Error::input("edge '" + name + "': a plate has the edges 'root' and 'free_end'");
   std::vector<NodeVectors> out;
-  for (int j = 0; j <= n_n(); ++j) {
-    const int first = per_node_ * node(i, j);
-    out.push_back({first, first + 1, first + 2, shapes_ == ShapeSet::h16 ? first + 3 : -1,
-                   Vec2(line_m(i).value, line_n(j).value)});
+  int line = -1;
+  if (name == "root" || name == "free_end") {
+    for (int j = 0; j <= n_n(); ++j) out.push_back(vectors_of(name == "root" ? 0 : n_m(), j));
+  } else if (std::sscanf(name.c_str(), "line %d", &line) == 1 && line >= 0 && line <= n_m()) {
+    for (int j = 0; j <= n_n(); ++j) out.push_back(vectors_of(line, j));
+  } else if (name == "side_low" || name == "side_high") {
+    for (int i = 0; i <= n_m(); ++i) out.push_back(vectors_of(i, name == "side_low" ? 0 : n_n()));
+  } else {
+    throw Error::input("edge '" + name +
+                       "': a plate has the edges 'root', 'free_end', 'side_low', 'side_high' and "
+                       "'line 0' to 'line " +
+                       std::to_string(n_m()) + "'");
   }
+  return out;
+}
+
+std::vector<NodeVectors> AncfPlate::nodes() const {
+  std::vector<NodeVectors> out;
+  for (int i = 0; i <= n_m(); ++i)
+    for (int j = 0; j <= n_n(); ++j) out.push_back(vectors_of(i, j));
   return out;
 }
 
 bool AncfPlate::moving(int e) const {
   const auto driven = [](const std::vector<MaterialLine>& lines, int i) {
-    return lines[static_cast<size_t>(i)].drive || lines[static_cast<size_t>(i + 1)].drive;
+    const MaterialLine &one = lines[static_cast<size_t>(i)],
+                       &other = lines[static_cast<size_t>(i + 1)];
+    return one.drive || one.free || other.drive || other.free;
   };
   return driven(m_, e / n_n()) || driven(n_, e % n_n());
 }
@@ -161,7 +231,8 @@ void AncfPlate::fill(int e, std::span<const double> s, std::span<const double> u
   const Hermite& hn = hermite_n_[static_cast<size_t>(e % n_n())];
   const bool rates =
       (what == Tabulate::position_rates || what == Tabulate::gradient_rates) && moving(e);
-  const bool gradient = what == Tabulate::gradient || what == Tabulate::gradient_rates;
+  const bool curvature = what == Tabulate::curvature;
+  const bool gradient = what == Tabulate::gradient || what == Tabulate::gradient_rates || curvature;
   const auto n_points = static_cast<Eigen::Index>(s.size() * u.size());
   const auto size = [&](MatrixXd& x, bool wanted) {
     if (wanted)
@@ -178,12 +249,15 @@ void AncfPlate::fill(int e, std::span<const double> s, std::span<const double> u
   size(out.N_n, gradient);
   size(out.N_mt, gradient && rates);
   size(out.N_nt, gradient && rates);
+  size(out.N_mm, curvature);
+  size(out.N_nn, curvature);
+  size(out.N_mn, curvature);
 
   Eigen::Index p = 0;
   for (const double si : s) {
-    const At m = at_point(hm, si, rates);
+    const At m = at_point(hm, si, rates, curvature);
     for (const double uj : u) {
-      const At n = at_point(hn, uj, rates);
+      const At n = at_point(hn, uj, rates, curvature);
       out.material[static_cast<size_t>(p)] = {hm.start + si * hm.length, hn.start + uj * hn.length};
       int column = 0;
       for (const auto& [a, b] : kCorners)
@@ -197,6 +271,11 @@ void AncfPlate::fill(int e, std::span<const double> s, std::span<const double> u
           if (gradient) {
             out.N_m(p, column) = m.d[i] * n.f[j];
             out.N_n(p, column) = m.f[i] * n.d[j];
+          }
+          if (curvature) {
+            out.N_mm(p, column) = m.dd[i] * n.f[j];
+            out.N_nn(p, column) = m.f[i] * n.dd[j];
+            out.N_mn(p, column) = m.d[i] * n.d[j];
           }
           if (gradient && rates) {
             out.N_mt(p, column) = m.d_t[i] * n.f[j] + m.d[i] * n.f_t[j];
@@ -281,6 +360,85 @@ bool AncfPlate::tabulate_products(int e, int degree, const Factors& factors, Fac
   return true;
 }
 
+namespace {
+
+/// Derivatives of the Hermite functions of [x1, x2] by x1 and x2 at a fixed material point: their
+/// rates when one end, or both, move by one.
+struct EndDerivatives {
+  std::array<Eigen::Matrix4d, 2> first;
+  Eigen::Matrix4d second_11, second_22, second_12;
+
+  explicit EndDerivatives(const Hermite& h) {
+    const double x1 = h.start, x2 = h.start + h.length;
+    const Hermite one({x1, 1, 0}, {x2, 0, 0}), two({x1, 0, 0}, {x2, 1, 0}),
+        both({x1, 1, 0}, {x2, 1, 0});
+    first = {one.rate, two.rate};
+    second_11 = one.acceleration;
+    second_22 = two.acceleration;
+    second_12 = 0.5 * (both.acceleration - second_11 - second_22);
+  }
+};
+
+}  // namespace
+
+void AncfPlate::tabulate_free(int e, int degree, Tabulate what, FreeTable& out) const {
+  tabulate(e, degree, what, {}, FactorKind::none, out.at);
+  const auto i = static_cast<size_t>(e / n_n()), j = static_cast<size_t>(e % n_n());
+  out.side = {at_m_[i], at_m_[i + 1], at_n_[j], at_n_[j + 1]};
+  const std::span<const int> sides = free_sides(e);
+  std::copy(sides.begin(), sides.end(), out.unknown.begin());
+  out.power_m.clear();
+  out.power_n.clear();
+  for (int corner = 0; corner < 4; ++corner)
+    for (int k = 0; k < per_node_; ++k) {
+      out.power_m.push_back(k == 1 || k == 3);
+      out.power_n.push_back(k >= 2);
+    }
+  if (what != Tabulate::position) return;
+
+  const Hermite &hm = hermite_m_[i], &hn = hermite_n_[j];
+  const EndDerivatives dm(hm), dn(hn);
+  const auto n_points = out.at.N.rows();
+  for (int l = 0; l < kSides; ++l) {
+    out.N_p[static_cast<size_t>(l)].resize(n_points, n_shapes());
+    for (int k = 0; k <= l; ++k)
+      out.N_pp[static_cast<size_t>(l)][static_cast<size_t>(k)].resize(n_points, n_shapes());
+  }
+  for (Eigen::Index g = 0; g < n_points; ++g) {
+    const Vec2& x = out.at.material[static_cast<size_t>(g)];
+    const Row4 s = powers((x.x() - hm.start) / hm.length),
+               u = powers((x.y() - hn.start) / hn.length);
+    const auto along = [](const Row4& p, const Eigen::Matrix4d& c) -> Row4 {
+      return p * c.transpose();
+    };
+    const Row4 m = along(s, hm.value), m_1 = along(s, dm.first[0]), m_2 = along(s, dm.first[1]),
+               m_11 = along(s, dm.second_11), m_12 = along(s, dm.second_12),
+               m_22 = along(s, dm.second_22);
+    const Row4 n = along(u, hn.value), n_1 = along(u, dn.first[0]), n_2 = along(u, dn.first[1]),
+               n_11 = along(u, dn.second_11), n_12 = along(u, dn.second_12),
+               n_22 = along(u, dn.second_22);
+    int column = 0;
+    for (const auto& [ca, cb] : kCorners)
+      for (int k = 0; k < per_node_; ++k, ++column) {
+        const int p = function_m(ca, k), q = function_n(cb, k);
+        out.N_p[kM1](g, column) = m_1[p] * n[q];
+        out.N_p[kM2](g, column) = m_2[p] * n[q];
+        out.N_p[kN1](g, column) = m[p] * n_1[q];
+        out.N_p[kN2](g, column) = m[p] * n_2[q];
+        out.N_pp[kM1][kM1](g, column) = m_11[p] * n[q];
+        out.N_pp[kM2][kM1](g, column) = m_12[p] * n[q];
+        out.N_pp[kM2][kM2](g, column) = m_22[p] * n[q];
+        out.N_pp[kN1][kM1](g, column) = m_1[p] * n_1[q];
+        out.N_pp[kN1][kM2](g, column) = m_2[p] * n_1[q];
+        out.N_pp[kN1][kN1](g, column) = m[p] * n_11[q];
+        out.N_pp[kN2][kM1](g, column) = m_1[p] * n_2[q];
+        out.N_pp[kN2][kM2](g, column) = m_2[p] * n_2[q];
+        out.N_pp[kN2][kN1](g, column) = m[p] * n_12[q];
+        out.N_pp[kN2][kN2](g, column) = m[p] * n_22[q];
+      }
+  }
+}
+
 void AncfPlate::at(int e, double s, double u, Tabulate what, ShapeTable& out) const {
   fill(e, {&s, 1}, {&u, 1}, what, out);
   out.weight[0] = 1;
@@ -307,22 +465,33 @@ int AncfPlate::locate(const Vec2& material, Tabulate what, ShapeTable& out) cons
 
 std::unique_ptr<LineGrid> AncfPlate::copy() const { return std::make_unique<AncfPlate>(*this); }
 
+namespace {
+
+/// The same lines, free ones starting where they are.
+std::vector<MaterialLine> where(std::vector<MaterialLine> lines, const std::vector<Motion>& at) {
+  for (size_t i = 0; i < lines.size(); ++i)
+    if (lines[i].free) lines[i].value = at[i].value;
+  return lines;
+}
+
+}  // namespace
+
 std::unique_ptr<LineGrid> AncfPlate::with_line(int i, double value) const {
-  std::vector<MaterialLine> m = m_;
-  m.insert(m.begin() + i + 1, MaterialLine{value, {}});
-  return std::make_unique<AncfPlate>(dim_, shapes_, std::move(m), n_, t_);
+  std::vector<MaterialLine> m = where(m_, at_m_);
+  m.insert(m.begin() + i + 1, MaterialLine{value, {}, false});
+  return std::make_unique<AncfPlate>(dim_, shapes_, std::move(m), where(n_, at_n_), t_);
 }
 
 std::unique_ptr<LineGrid> AncfPlate::without_line(int i) const {
-  std::vector<MaterialLine> m = m_;
+  std::vector<MaterialLine> m = where(m_, at_m_);
   m.erase(m.begin() + i);
-  return std::make_unique<AncfPlate>(dim_, shapes_, std::move(m), n_, t_);
+  return std::make_unique<AncfPlate>(dim_, shapes_, std::move(m), where(n_, at_n_), t_);
 }
 
 std::unique_ptr<LineGrid> AncfPlate::frozen() const {
   std::vector<MaterialLine> m, n;
-  for (const Motion& line : at_m_) m.push_back({line.value, {}});
-  for (const Motion& line : at_n_) n.push_back({line.value, {}});
+  for (const Motion& line : at_m_) m.push_back({line.value, {}, false});
+  for (const Motion& line : at_n_) n.push_back({line.value, {}, false});
   return std::make_unique<AncfPlate>(dim_, shapes_, std::move(m), std::move(n), t_);
 }
 

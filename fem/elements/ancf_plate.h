@@ -31,8 +31,14 @@ class AncfPlate final : public LineGrid {
   bool is_position(int k) const override { return k % per_node_ == 0; }
   MatrixXd reference() const override;
   std::vector<NodeVectors> edge(const std::string& name) const override;
+  std::vector<NodeVectors> nodes() const override;
   void move_to(double t) override;
   bool moving(int e) const override;
+  int n_scalars() const override { return static_cast<int>(free_.size()); }
+  VectorXd scalars() const override;
+  void move_lines(const VectorXd& p, const VectorXd& rate, const VectorXd& acceleration) override;
+  std::span<const int> free_sides(int e) const override;
+  void tabulate_free(int e, int degree, Tabulate what, FreeTable& out) const override;
   void tabulate(int e, int degree, Tabulate what, const Factors& factors, FactorKind kind,
                 ShapeTable& out) const override;
   bool tabulate_products(int e, int degree, const Factors& factors, FactorKind kind,
@@ -51,6 +57,8 @@ class AncfPlate final : public LineGrid {
   std::unique_ptr<LineGrid> frozen() const override;
 
  private:
+  NodeVectors vectors_of(int i, int j) const;
+  void number_free_lines();
   void fill(int e, std::span<const double> s, std::span<const double> u, Tabulate what,
             ShapeTable& out) const;
   MatrixXd weights(int e, int n, const Factors& factors, FactorKind kind) const;
@@ -62,6 +70,8 @@ class AncfPlate final : public LineGrid {
   std::vector<Motion> at_m_, at_n_;
   std::vector<Hermite> hermite_m_, hermite_n_;
   std::vector<int> vectors_;  // n_shapes numbers per element
+  std::vector<Motion> free_;  // of the free lines: those along m first
+  std::vector<int> sides_;    // kSides numbers per element, or none
 };
 
 }  // namespace flexmorph::fem

@@ -20,16 +20,19 @@ class Weld final : public Joint {
   void bind(std::span<const BodyView> bodies) override {
     const auto& [body, element_at, first_dof] = find_body(bodies, name_, body_);
     const Element& element = *element_at;
-    if (element.dim() != 2) throw Error::input("joint '" + name_ + "': a weld of a planar plate");
     fixed_.clear();
     along_.clear();
-    const auto dof = [first = first_dof](int vector) { return first + 2 * vector; };
+    const int dim = element.dim();
+    const auto dof = [&](int vector) { return first_dof + dim * vector; };
     for (const NodeVectors& node : element.edge(edge_)) {
       const double y = node.material.y();
       for (int c = 0; c < 2; ++c) {
         fixed_.push_back({dof(node.r) + c, c, 1, {0, y}});
         fixed_.push_back({dof(node.r_n) + c, c, 0, {0, 1}});
       }
+      if (dim == 3)
+        for (const int vector : {node.r, node.r_n, node.r_m, node.r_mn})
+          if (vector >= 0) fixed_.push_back({dof(vector) + 2, 2, 0, {0, 0}});
       for (const int vector : {node.r_m, node.r_mn}) {
         if (vector < 0 || mode_ == WeldMode::edge) continue;
         if (mode_ == WeldMode::direction)
@@ -58,6 +61,12 @@ class Weld final : public Joint {
     rows.jacobian.clear();
     int i = 0;
     for (const Fixed& x : fixed_) {
+      if (x.direction == 2) {  // out of the plane in which the frame turns
+        rows.value[i] = q[x.dof];
+        rows.rate[i] = rows.acceleration[i] = 0;
+        rows.jacobian.emplace_back(i++, x.dof, 1.0);
+        continue;
+      }
       rows.value[i] =
           q[x.dof] - x.moves * f.origin[x.direction] - turn.row(x.direction).dot(x.local);
       rows.rate[i] = -x.moves * f.origin_rate[x.direction] - turn_t.row(x.direction).dot(x.local);
@@ -91,14 +100,17 @@ class Weld final : public Joint {
 
 class Pin final : public Joint {
  public:
-  Pin(std::string name, std::string body, const Vec2& material, FrameDrive point)
+  Pin(std::string name, std::string body, const Vec2& material, PointDrive point,
+      std::vector<int> components)
       : name_(std::move(name)),
         body_(std::move(body)),
         material_(material),
-        point_(std::move(point)) {}
+        point_(std::move(point)),
+        components_(std::move(components)),
+        all_(components_.empty()) {}
 
   std::string name() const override { return name_; }
-  int size() const override { return 2; }
+  int size() const override { return static_cast<int>(components_.size()); }
 
   void bind(std::span<const BodyView> bodies) override {
     const auto& [body, element_at, first_dof] = find_body(bodies, name_, body_);
@@ -107,6 +119,14 @@ class Pin final : public Joint {
     const int e = element.locate(material_, Tabulate::position, table);
     if (element.moving(e))
       throw Error::input("joint '" + name_ + "': a pin in an element whose material lines move");
+    if (all_) {
+      components_.clear();
+      for (int c = 0; c < element.dim(); ++c) components_.push_back(c);
+    }
+    for (const int c : components_)
+      if (c < 0 || c >= element.dim())
+        throw Error::input("joint '" + name_ + "': component " + std::to_string(c) +
+                           " of a body in " + std::to_string(element.dim()) + " dimensions");
     const auto vectors = element.vectors(e);
     terms_.clear();
     for (int k = 0; k < element.n_shapes(); ++k)
@@ -115,22 +135,34 @@ class Pin final : public Joint {
   }
 
   void evaluate(double t, const VectorXd& q, const VectorXd&, ConstraintRows& rows) const override {
-    const FrameMotion f = point_(t);
-    rows.value = -f.origin;
-    rows.rate = -f.origin_rate;
-    rows.acceleration = f.origin_acceleration;
+    const std::vector<Motion> drive = point_(t);
+    if (static_cast<int>(drive.size()) != size())
+      throw Error::input("joint '" + name_ + "': its drive has " + std::to_string(drive.size()) +
+                         " components of " + std::to_string(size()));
+    rows.value.resize(size());
+    rows.rate.resize(size());
+    rows.acceleration.resize(size());
     rows.jacobian.clear();
+    for (int i = 0; i < size(); ++i) {
+      const Motion& x = drive[static_cast<size_t>(i)];
+      rows.value[i] = -x.value;
+      rows.rate[i] = -x.rate;
+      rows.acceleration[i] = x.acceleration;
+    }
     for (const auto& [dof, weight] : terms_)
-      for (int c = 0; c < 2; ++c) {
-        rows.value[c] += weight * q[dof + c];
-        rows.jacobian.emplace_back(c, dof + c, weight);
+      for (int i = 0; i < size(); ++i) {
+        const int c = components_[static_cast<size_t>(i)];
+        rows.value[i] += weight * q[dof + c];
+        rows.jacobian.emplace_back(i, dof + c, weight);
       }
   }
 
  private:
   std::string name_, body_;
   Vec2 material_;
-  FrameDrive point_;
+  PointDrive point_;
+  std::vector<int> components_;
+  bool all_;  // components_ are those of the body
   std::vector<std::pair<int, double>> terms_;
 };
 
@@ -151,7 +183,18 @@ std::unique_ptr<Joint> make_weld(std::string name, std::string body, std::string
 
 std::unique_ptr<Joint> make_pin(std::string name, std::string body, const Vec2& material,
                                 FrameDrive point) {
-  return std::make_unique<Pin>(std::move(name), std::move(body), material, std::move(point));
+  PointDrive origin = [frame = std::move(point)](double t) {
+    const FrameMotion f = frame(t);
+    return std::vector<Motion>{{f.origin.x(), f.origin_rate.x(), f.origin_acceleration.x()},
+                               {f.origin.y(), f.origin_rate.y(), f.origin_acceleration.y()}};
+  };
+  return make_pin(std::move(name), std::move(body), material, std::move(origin), {0, 1});
+}
+
+std::unique_ptr<Joint> make_pin(std::string name, std::string body, const Vec2& material,
+                                PointDrive point, std::vector<int> components) {
+  return std::make_unique<Pin>(std::move(name), std::move(body), material, std::move(point),
+                               std::move(components));
 }
 
 }  // namespace flexmorph::fem

@@ -4,12 +4,17 @@
 
 #include <string>
 
+#include "fem/solve/saddle_cholesky.h"
+
 namespace flexmorph::fem {
 
 struct UnsymmetricSolver::Impl {
   void* symbolic = nullptr;
   void* numeric = nullptr;
   double control[UMFPACK_CONTROL];
+  SaddleCholesky cholesky;
+  bool may_cholesky = false, is_cholesky = false;
+  VectorXd remainder, correction;
 
   Impl() { umfpack_di_defaults(control); }
   ~Impl() {
@@ -41,17 +46,23 @@ void check(int status, const char* what) {
 
 void UnsymmetricSolver::analyze(const SparseMatrix& a) {
   impl_->release_numeric();
+  // UMFPACK analyses when it is needed.
   if (impl_->symbolic) umfpack_di_free_symbolic(&impl_->symbolic);
-  check(umfpack_di_symbolic(static_cast<int>(a.rows()), static_cast<int>(a.cols()),
-                            a.outerIndexPtr(), a.innerIndexPtr(), a.valuePtr(), &impl_->symbolic,
-                            impl_->control, nullptr),
-        "analysis");
+  impl_->is_cholesky = false;
+  impl_->may_cholesky = impl_->cholesky.analyze(a);
 }
 
 void UnsymmetricSolver::factorize(const SparseMatrix& a) {
   if (!Eigen::Map<const VectorXd>(a.valuePtr(), a.nonZeros()).allFinite())
     throw Error::numerical("linear solver: the matrix holds numbers that are not finite");
+  impl_->is_cholesky = impl_->may_cholesky && impl_->cholesky.factorize(a);
   impl_->release_numeric();
+  if (impl_->is_cholesky) return;
+  if (!impl_->symbolic)
+    check(umfpack_di_symbolic(static_cast<int>(a.rows()), static_cast<int>(a.cols()),
+                              a.outerIndexPtr(), a.innerIndexPtr(), a.valuePtr(), &impl_->symbolic,
+                              impl_->control, nullptr),
+          "analysis");
   check(umfpack_di_numeric(a.outerIndexPtr(), a.innerIndexPtr(), a.valuePtr(), impl_->symbolic,
                            &impl_->numeric, impl_->control, nullptr),
         "factorization");
@@ -59,11 +70,22 @@ void UnsymmetricSolver::factorize(const SparseMatrix& a) {
 
 void UnsymmetricSolver::solve(const SparseMatrix& a, const VectorXd& b, VectorXd& x,
                               bool refine) const {
+  if (impl_->is_cholesky) {
+    impl_->cholesky.solve(b, x);
+    if (!refine) return;
+    impl_->remainder = b;
+    impl_->remainder.noalias() -= a * x;
+    impl_->cholesky.solve(impl_->remainder, impl_->correction);
+    x += impl_->correction;
+    return;
+  }
   x.resize(b.size());
   impl_->control[UMFPACK_IRSTEP] = refine ? 1 : 0;
   check(umfpack_di_solve(UMFPACK_A, a.outerIndexPtr(), a.innerIndexPtr(), a.valuePtr(), x.data(),
                          b.data(), impl_->numeric, impl_->control, nullptr),
         "solution");
 }
+
+bool UnsymmetricSolver::is_cholesky() const { return impl_->is_cholesky; }
 
 }  // namespace flexmorph::fem

@@ -6,8 +6,15 @@
 
 namespace flexmorph::fem {
 
-/// Direct solver for square matrices without symmetry (UMFPACK): material flow and constraints
-/// make the matrices of dynamics unsymmetric and indefinite. The pattern is analysed once.
+/// Direct solver for the sparse square matrices of dynamics and statics,
+///
+///   [ A  Φ_qᵀ ]
+///   [ Φ_q  0  ]    in any order: rows of Φ_q are those without an entry on the diagonal.
+///
+/// Where the matrix is symmetric, A positive definite and Φ_q of few rows, by the supernodal
+/// Cholesky factor of A (CHOLMOD) and the Schur complement of the constraints. All others, those of
+/// material flow among them, by UMFPACK, at three to five times the cost. The pattern is analysed
+/// once; which of the two it is shows at every factorization anew.
 class UnsymmetricSolver {
  public:
   UnsymmetricSolver();
@@ -22,6 +29,9 @@ class UnsymmetricSolver {
   /// x = A⁻¹ b with the matrix of the last factorize(), which must still exist.
   /// @param refine  one step of iterative refinement; an outer iteration does not need it.
   void solve(const SparseMatrix& a, const VectorXd& b, VectorXd& x, bool refine = true) const;
+
+  /// Was the last factor that of Cholesky?
+  bool is_cholesky() const;
 
  private:
   struct Impl;

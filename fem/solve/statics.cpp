@@ -6,7 +6,7 @@ namespace flexmorph::fem {
 
 void solve_rotating_equilibrium(Model& model, const VectorXd& spin, const VectorXd& center,
                                 State& x) {
-  model.prepare(x.t);
+  model.prepare(x);
   const int n = model.n_dofs(), m = model.n_constraints();
   const VectorXd scales = model.scales();
   Constraints c;
@@ -16,6 +16,7 @@ void solve_rotating_equilibrium(Model& model, const VectorXd& spin, const Vector
   const double size = std::max(1e-300, (x.q - center).lpNorm<Eigen::Infinity>());
   for (int iteration = 0; iteration < 40; ++iteration) {
     x.a = -spin.cwiseProduct(x.q - center);
+    if (model.has_free_lines()) model.prepare(x);
     model.constraints(x, c);
     model.force(x, residual);
     model.add_constraint_force(c, x.lambda, residual);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "fem/model.h"
 
 namespace flexmorph::fem {
@@ -14,5 +16,66 @@ namespace flexmorph::fem {
 /// @throws Error (numerical) when Newton does not converge in 40 iterations.
 void solve_rotating_equilibrium(Model& model, const VectorXd& spin, const VectorXd& center,
                                 State& x);
+
+/// Small displacements of a linear analysis: one Newton step from x under the loads as they are
+/// (n_dofs). x is an equilibrium without loads, for instance the reference.
+/// @throws Error (numerical) when the tangent is singular.
+VectorXd linear_displacement(Model& model, const State& x);
+
+struct StaticSettings {
+  enum class Path {
+    load,       ///< the load factor grows step by step
+    arc_length  ///< displacements and load factor together: passes limit points, snaps through
+  };
+  Path path = Path::load;
+  double from = 0, to = 1;      ///< load factor at the start and at the end
+  double first_step = 0.1;      ///< part of |to - from|
+  double largest_step = 0.25;   ///< likewise; along the arc: growth over its first step, times 10
+  double smallest_step = 1e-6;  ///< likewise; below it the analysis gives up
+  int max_iterations = 15;      ///< Newton, per step
+  int easy_iterations = 5;      ///< steps that needed fewer let the next one grow
+  int max_steps = 1000;
+  /// Largest correction of the last iteration, in parts of the model's size, as a displacement.
+  double tolerance = 1e-10;
+};
+
+/// An equilibrium on the path.
+struct StaticStep {
+  int number;
+  double factor;
+  int iterations;
+  const State& x;
+};
+/// Sees every equilibrium; false ends the analysis there.
+using StaticObserver = std::function<bool(const StaticStep&)>;
+
+struct StaticResult {
+  double factor = 0;  ///< of the last equilibrium
+  int steps = 0, iterations = 0, rejected = 0;
+  bool completed = false;  ///< reached settings.to (and was not stopped by the observer)
+};
+
+/// Nonlinear statics along a path of equilibria,
+///
+///   F(q, μ) + Φ_qᵀ λ = 0,   Φ(q, x.t) = 0,   loads times the load factor μ  (Model::scale_loads),
+///
+/// by Newton's method with exact tangent. Steps are halved when it fails and grown when it is easy.
+///
+/// arc_length: Crisfield's spherical constraint on scaled displacements S Δq,
+///
+///   |S Δq|² / n + ψ² Δμ² = Δs²,   ψ = |S dq/dμ| / √n at the start,
+///
+/// the predictor goes on in the direction of the last step, and of the two roots the one is taken
+/// whose step turns least. Ends where the factor first passes `to`.
+///
+/// Source: Crisfield (1981), Comput. Struct. 13, 55-62; Riks (1979), Int. J. Solids Struct. 15,
+/// 529-551.
+///
+/// @param x  in: near the equilibrium at factor `from`; out: the last equilibrium; rates are zero.
+///           The model's loads are left at its factor.
+/// @throws Error (input) for settings that make no sense; Error (numerical) naming load factor and
+/// residuals when steps became too small or too many: x is then the last equilibrium.
+StaticResult solve_static(Model& model, State& x, const StaticSettings& settings = {},
+                          const StaticObserver& observe = {});
 
 }  // namespace flexmorph::fem

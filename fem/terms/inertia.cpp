@@ -1,4 +1,7 @@
+#include <algorithm>
+
 #include "fem/term.h"
+#include "fem/terms/free_work.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -15,12 +18,23 @@ namespace {
 /// in Q, Qᵈ and Qᵈᵈ and the tangent is exact.
 class Inertia final : public Term {
  public:
-  explicit Inertia(const PlaneSection& s) : area_density_(s.density * s.thickness) {}
+  explicit Inertia(const PlaneSection& s)
+      : area_density_(s.density * s.thickness), of_free_(area_density_, {}, true) {}
 
   void prepare(const Element& element, const Factors& factors, bool all) override {
+    free_.prepare(element, 6, Tabulate::position, factors);
     matrices_.resize(static_cast<size_t>(element.n_elements()));
     for (int e = 0; e < element.n_elements(); ++e)
-      if (all || element.moving(e)) integrate(element, e, factors);
+      if ((all || element.moving(e)) && !free_.has(e)) integrate(element, e, factors);
+    if (element.n_scalars() > 0) return;  // evaluated one by one
+    batches_.resize((matrices_.size() + kLanes - 1) / kLanes);
+    for (size_t b = 0; b < batches_.size(); ++b) {
+      const auto first = static_cast<int>(b) * kLanes,
+                 last = std::min(first + kLanes, element.n_elements());
+      bool changes = all;
+      for (int e = first; e < last; ++e) changes |= element.moving(e);
+      if (changes) side_by_side(first, last, batches_[b]);
+    }
   }
 
   void add_force(int e, const Local& x, LocalRows& force) const override {
@@ -41,8 +55,47 @@ class Inertia final : public Term {
         for (Eigen::Index c = 0; c < d; ++c) tangent(d * k + c, d * l + c) += scalar(k, l);
   }
 
+  void add_forces(const Batch& x, Lanes* force) const override {
+    const LaneMatrices& m = batches_[static_cast<size_t>(x.first / kLanes)];
+    add_product(m.mass, x.a, x, force);
+    if (m.convection.empty()) return;
+    add_product(m.convection, x.v, x, force);
+    add_product(m.transport, x.q, x, force);
+  }
+
+  void add_tangents(const Batch& x, const Weights& w, Lanes* tangent) const override {
+    const LaneMatrices& m = batches_[static_cast<size_t>(x.first / kLanes)];
+    const auto n = static_cast<size_t>(x.n_shapes), d = static_cast<size_t>(x.dim);
+    for (size_t l = 0; l < n; ++l)
+      for (size_t k = 0; k < n; ++k) {
+        const size_t at = l * n + k;
+        Lanes entry = w.a * m.mass[at];
+        if (!m.convection.empty()) entry += w.v * m.convection[at] + w.q * m.transport[at];
+        for (size_t c = 0; c < d; ++c) tangent[(d * l + c) * n * d + d * k + c] += entry;
+      }
+  }
+
+  void add_free_force(int e, const Local& x, FreeForce& force) const override {
+    of_free_.add_force(free_.of(e), x, force);
+  }
+  void add_free_tangent(int e, const Local& x, const Weights& w,
+                        FreeTangent& tangent) const override {
+    of_free_.add_tangent(free_.of(e), x, w, tangent);
+  }
+
+  // With a constant mass exact: M (v₁ - v₀)/h · (q₁ - q₀) = T₁ - T₀. Moving lines: at mid-step.
+  void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override {
+    add_force(e, x.mean, force);
+  }
+  void add_mean_tangent(int e, const LocalStep& x, const Weights& w,
+                        LocalTangent& tangent) const override {
+    add_tangent(e, x.mean, w, tangent);
+  }
+  std::string name() const override { return "inertia"; }
+
   /// T = ½ ∫ ρh |ṙ|² dA,  ṙ = Qᵈᵀ N + Qᵀ Ṅ.
   double kinetic_energy(int e, const Local& x) const override {
+    if (free_.has(e)) return of_free_.kinetic_energy(free_.of(e), x);
     const Matrices& m = matrices_[static_cast<size_t>(e)];
     double twice = x.v.cwiseProduct(m.mass * x.v).sum();
     if (m.flows)
@@ -67,6 +120,41 @@ class Inertia final : public Term {
     Square rate_product, rate_transport;  // ∫ρh Ṅ Ṅᵀ, ∫ρh Ṅ N̈ᵀ
   };
 
+  /// The matrices of eight elements, by columns; the last two only where one of them moves.
+  struct LaneMatrices {
+    std::vector<Lanes> mass, convection, transport;  // (n_shapes²)
+  };
+
+  void side_by_side(int first, int last, LaneMatrices& out) const {
+    const auto flows = [](const Matrices& m) { return m.flows; };
+    const bool any = std::any_of(matrices_.begin() + first, matrices_.begin() + last, flows);
+    const auto size = static_cast<size_t>(matrices_[static_cast<size_t>(first)].mass.size());
+    out.mass.resize(size);
+    out.convection.resize(any ? size : 0);
+    out.transport.resize(any ? size : 0);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const Matrices& m = matrices_[static_cast<size_t>(std::min(first + lane, last - 1))];
+      for (size_t k = 0; k < size; ++k) {
+        out.mass[k][lane] = m.mass.data()[k];
+        if (!any) continue;
+        out.convection[k][lane] = m.flows ? m.convection.data()[k] : 0;
+        out.transport[k][lane] = m.flows ? m.transport.data()[k] : 0;
+      }
+    }
+  }
+
+  /// force += matrix x of every lane.
+  static void add_product(const std::vector<Lanes>& matrix, const Lanes* x, const Batch& batch,
+                          Lanes* force) {
+    const int n = batch.n_shapes, d = batch.dim;
+    for (int c = 0; c < d; ++c)
+      for (int k = 0; k < n; ++k) {
+        Lanes sum = force[d * k + c];
+        for (int l = 0; l < n; ++l) sum += matrix[static_cast<size_t>(l * n + k)] * x[d * l + c];
+        force[d * k + c] = sum;
+      }
+  }
+
   void integrate(const Element& element, int e, const Factors& factors) {
     element.tabulate(e, 6, Tabulate::position_rates, factors, FactorKind::mass, table_);
     Matrices& m = matrices_[static_cast<size_t>(e)];
@@ -82,7 +170,10 @@ class Inertia final : public Term {
   }
 
   double area_density_;
+  FreeInertia of_free_;
+  FreeTables free_;
   std::vector<Matrices> matrices_;
+  std::vector<LaneMatrices> batches_;
   ShapeTable table_;
   MatrixXd weighted_;
 };

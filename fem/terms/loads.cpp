@@ -1,4 +1,5 @@
 #include "fem/term.h"
+#include "fem/terms/free_work.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -7,14 +8,17 @@ namespace {
 class Gravity final : public Term {
  public:
   Gravity(const PlaneSection& s, VectorXd gravity)
-      : area_density_(s.density * s.thickness), gravity_(std::move(gravity)) {}
+      : area_density_(s.density * s.thickness),
+        gravity_(std::move(gravity)),
+        of_free_(area_density_, gravity_, false) {}
 
   void prepare(const Element& element, const Factors& factors, bool all) override {
+    free_.prepare(element, 6, Tabulate::position, factors);
     mass_.resize(static_cast<size_t>(element.n_elements()));
     rate_.resize(mass_.size());
     ShapeTable table;
     for (int e = 0; e < element.n_elements(); ++e) {
-      if (!all && !element.moving(e)) continue;
+      if ((!all && !element.moving(e)) || free_.has(e)) continue;
       element.tabulate(e, 3, Tabulate::position_rates, factors, FactorKind::mass, table);
       mass_[static_cast<size_t>(e)] = area_density_ * table.N.transpose() * table.weight;
       rate_[static_cast<size_t>(e)] =
@@ -23,19 +27,49 @@ class Gravity final : public Term {
     }
   }
   void add_force(int e, const Local&, LocalRows& force) const override {
-    force.noalias() -= mass_[static_cast<size_t>(e)] * gravity_.transpose();
+    force.noalias() -= factor_ * mass_[static_cast<size_t>(e)] * gravity_.transpose();
   }
   void add_tangent(int, const Local&, const Weights&, LocalTangent&) const override {}
+  void add_forces(const Batch& x, Lanes* force) const override {
+    for (int k = 0; k < x.n_shapes; ++k) {
+      Lanes mass{};
+      for (int lane = 0; lane < x.count; ++lane)
+        mass[lane] = mass_[static_cast<size_t>(x.first + lane)][k];
+      for (int c = 0; c < x.dim; ++c) force[x.dim * k + c] -= factor_ * gravity_[c] * mass;
+    }
+  }
+  void add_tangents(const Batch&, const Weights&, Lanes*) const override {}
+
+  void add_free_force(int e, const Local& x, FreeForce& force) const override {
+    of_free_.add_force(free_.of(e), x, force);
+  }
+  void add_free_tangent(int e, const Local& x, const Weights& w,
+                        FreeTangent& tangent) const override {
+    of_free_.add_tangent(free_.of(e), x, w, tangent);
+  }
+
+  void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override {
+    add_force(e, x.mean, force);
+  }
+  void add_mean_tangent(int, const LocalStep&, const Weights&, LocalTangent&) const override {}
+  std::string name() const override { return "gravity"; }
   double potential_energy(int e, const Local& x) const override {
-    return -mass_[static_cast<size_t>(e)].dot(x.q * gravity_);
+    if (free_.has(e)) return of_free_.potential_energy(free_.of(e), x);
+    return -factor_ * mass_[static_cast<size_t>(e)].dot(x.q * gravity_);
   }
   double flow_power(int e, const Local& x) const override {
-    return -rate_[static_cast<size_t>(e)].dot(x.q * gravity_);
+    return -factor_ * rate_[static_cast<size_t>(e)].dot(x.q * gravity_);
+  }
+  void scale_load(double factor) override {
+    factor_ = factor;
+    of_free_.set_gravity(factor * gravity_);
   }
 
  private:
-  double area_density_;
+  double area_density_, factor_ = 1;
   VectorXd gravity_;
+  FreeInertia of_free_;
+  FreeTables free_;
   std::vector<VectorXd> mass_, rate_;  // ∫ρh N, ∫ρh Ṅ per element (n_shapes)
 };
 
@@ -48,6 +82,7 @@ class PointMass final : public Term {
   void prepare(const Element& element, const Factors&, bool) override {
     element_ = element.locate(material_, Tabulate::position_rates, table_);
     flows_ = table_.N_t.size() > 0;
+    if (!element.free_sides(element_).empty()) check_fixed(element, element_, material_);
   }
   void add_force(int e, const Local& x, LocalRows& force) const override {
     if (e != element_) return;
@@ -63,6 +98,32 @@ class PointMass final : public Term {
         for (Eigen::Index c = 0; c < d; ++c)
           tangent(d * k + c, d * l + c) += mass_ * table_.N(0, k) * row[l];
   }
+  void add_forces(const Batch& x, Lanes* force) const override {
+    if (is_in(x)) Term::add_forces(x, force);
+  }
+  void add_tangents(const Batch& x, const Weights& w, Lanes* tangent) const override {
+    if (is_in(x)) Term::add_tangents(x, w, tangent);
+  }
+
+  void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override {
+    add_force(e, x.mean, force);
+  }
+  void add_mean_tangent(int e, const LocalStep& x, const Weights& w,
+                        LocalTangent& tangent) const override {
+    add_tangent(e, x.mean, w, tangent);
+  }
+  std::string name() const override { return "point mass"; }
+  void add_free_force(int e, const Local& x, FreeForce& force) const override {
+    LocalRows rows = LocalRows::Zero(x.q.rows(), x.q.cols());
+    add_force(e, x, rows);
+    force.head(rows.size()) += Eigen::Map<const VectorXd>(rows.data(), rows.size());
+  }
+  void add_free_tangent(int e, const Local& x, const Weights& w,
+                        FreeTangent& tangent) const override {
+    LocalTangent rows = LocalTangent::Zero(x.q.size(), x.q.size());
+    add_tangent(e, x, w, rows);
+    tangent.topLeftCorner(x.q.size(), x.q.size()) += rows;
+  }
   double kinetic_energy(int e, const Local& x) const override {
     if (e != element_) return 0;
     Eigen::RowVectorXd velocity = table_.N * x.v;
@@ -71,22 +132,25 @@ class PointMass final : public Term {
   }
   double potential_energy(int e, const Local& x) const override {
     if (e != element_ || gravity_.size() == 0) return 0;
-    return -mass_ * (table_.N * x.q * gravity_)(0);
+    return -factor_ * mass_ * (table_.N * x.q * gravity_)(0);
   }
   double flow_power(int e, const Local& x) const override {
     if (e != element_ || !flows_) return 0;
     return mass_ * (table_.N_t * x.q * felt_acceleration(x).transpose())(0);
   }
+  void scale_load(double factor) override { factor_ = factor; }
 
  private:
+  bool is_in(const Batch& x) const { return element_ >= x.first && element_ < x.first + x.count; }
+
   Eigen::RowVectorXd felt_acceleration(const Local& x) const {
     Eigen::RowVectorXd out = table_.N * x.a;
     if (flows_) out += 2 * table_.N_t * x.v + table_.N_tt * x.q;
-    if (gravity_.size() > 0) out -= gravity_.transpose();
+    if (gravity_.size() > 0) out -= factor_ * gravity_.transpose();
     return out;
   }
 
-  double mass_;
+  double mass_, factor_ = 1;  // factor: of the weight
   Vec2 material_;
   VectorXd gravity_;
   int element_ = -1;

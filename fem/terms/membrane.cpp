@@ -1,9 +1,15 @@
+#include <algorithm>
 #include <memory>
 
 #include "fem/term.h"
+#include "fem/terms/assumed_strain.h"
+#include "fem/terms/densities.h"
+#include "fem/terms/gram.h"
 
 namespace flexmorph::fem {
 namespace {
+
+using gram::Coupling;
 
 /// In-plane elastic force of a thin St. Venant-Kirchhoff plate in Gram form.
 ///
@@ -14,76 +20,124 @@ namespace {
 /// the undeformed element. Hence U is exactly quadratic,
 ///
 ///   U = ½ (g - g°)ᵀ W (g - g°),   W = h ∫ Λᵀ C Λ dA,
-///   force   F_k = Σ_l S_kl q_l,   S_kl = (1 + δ_kl) s_kl,   s = W (g - g°)
-///   tangent K = S ⊗ 1 + Dᵀ W D,   D = ∂g/∂q
 ///
 /// and W is built once per design (per time for an element whose lines move), at the same cost of
-/// evaluation for uniform and for designed material. Positions enter relative to the first one:
-/// the force is the same (rigid translations strain nothing) and loses no digits far from the
-/// origin.
+/// evaluation whatever the cells. Force and tangent: gram.h, with sums and differences of the q_k
+/// instead of the q_k. Positions enter relative to the first one: the force is the same (rigid
+/// translations strain nothing) and loses no digits far from the origin.
+///
+/// Elements of a mesh are evaluated eight at a time, see Batch.
 ///
 /// Replaces P (11)-(15) and the tensors of the appendix; design.md section 2.
 class Membrane final : public Term {
  public:
-  explicit Membrane(const PlaneSection& s) : elasticity_(s.thickness * s.elasticity()) {}
+  enum class Strains { displacement, assumed };  // as they are, or see terms/assumed_strain.h
+
+  explicit Membrane(const PlaneSection& s, Strains strains = Strains::displacement)
+      : elasticity_(s.thickness * s.elasticity()), strains_(strains), density_(s) {}
 
   void prepare(const Element& element, const Factors& factors, bool all) override {
     element_ = &element;
     factors_ = &factors;
-    n_shapes_ = element.n_shapes();
     tabulated_ = -1;
-    pair_.resize(n_shapes_, n_shapes_);
-    for (int k = 0, p = 0; k < n_shapes_; ++k)
-      for (int l = k; l < n_shapes_; ++l, ++p) pair_(k, l) = pair_(l, k) = p;
-    invariants_.resize(static_cast<size_t>(element.n_elements()));
+    if (element.n_scalars() > 0 && strains_ == Strains::assumed)
+      throw Error::input("term 'membrane_assumed' does not know free material lines");
+    free_.prepare(element, 12, Tabulate::gradient, factors);
+    if (all) {
+      dim_ = element.dim();
+      coupling_ = factors.uniform() ? Coupling::classes : Coupling::all;
+      if (element.n_shapes() == 12)
+        number<3>();
+      else if (element.n_shapes() == 16)
+        number<4>();
+      else
+        throw Error::input("term 'membrane' needs 3 or 4 vectors at each of four nodes");
+      batches_.assign(static_cast<size_t>((element.n_elements() + kLanes - 1) / kLanes), {});
+    }
     const MatrixXd reference = element.reference();
-    for (int e = 0; e < element.n_elements(); ++e)
-      if (all || element.moving(e)) integrate(element, e, factors, reference);
+    for (size_t b = 0; b < batches_.size(); ++b)
+      prepare_batch(element, static_cast<int>(b) * kLanes, factors, reference, all, batches_[b]);
   }
 
   void add_force(int e, const Local& x, LocalRows& force) const override {
-    LocalRows q;
-    relative(e, x.q, q);
-    force.noalias() += stress(e, q) * q;
+    evaluate(e, x, [&]<int kKinds, int kDim, Coupling>(const double* s, const double* p, auto) {
+      gram::add_force<kKinds, kDim>(s, p, force.data());
+    });
   }
 
   void add_tangent(int e, const Local& x, const Weights& w, LocalTangent& tangent) const override {
     if (w.q == 0) return;
-    LocalRows q;
-    relative(e, x.q, q);
-    const Square s = stress(e, q);
-    const auto d = q.cols();
-    const MatrixXd& invariant = *invariants_[static_cast<size_t>(e)].w;
+    // By columns or by rows: K is symmetric.
+    evaluate(
+        e, x,
+        [&]<int kKinds, int kDim, Coupling coupling>(const double* s, const double* p, auto w_e) {
+          gram::add_tangent<kKinds, kDim, coupling>(w_e, s, p, p, w.q, tangent.data());
+        });
+  }
 
-    // T = W D, a column for unknown (l, c): ∂g_{li}/∂q_lc = (1 + δ_li) q_ic.
-    Eigen::Matrix<double, kMaxPairs, 1, 0, kMaxPairs, 1> column(kMaxPairs);
-    const auto n_pairs = invariant.rows();
-    Square spread(n_shapes_, n_shapes_);
-    LocalRows block(n_shapes_, d);
-    for (int l = 0; l < n_shapes_; ++l)
-      for (Eigen::Index c = 0; c < d; ++c) {
-        auto t = column.head(n_pairs);
-        t.setZero();
-        for (int i = 0; i < n_shapes_; ++i)
-          t += (i == l ? 2 : 1) * q(i, c) * invariant.col(pair_(l, i));
-        // Dᵀ T: the column as a symmetric matrix (diagonal twice) times q.
-        for (int k = 0, p = 0; k < n_shapes_; ++k) {
-          spread(k, k) = 2 * t[p++];
-          for (int i = k + 1; i < n_shapes_; ++i, ++p) spread(k, i) = spread(i, k) = t[p];
-        }
-        block.noalias() = spread * q;
-        for (int k = 0; k < n_shapes_; ++k) {
-          block(k, c) += s(k, l);
-          for (Eigen::Index b = 0; b < d; ++b) tangent(d * k + b, d * l + c) += w.q * block(k, b);
-        }
-      }
+  void add_forces(const Batch& x, Lanes* force) const override {
+    evaluate(x, [&]<int kKinds, int kDim, Coupling>(const Lanes* s, const Lanes* p, auto) {
+      gram::add_force<kKinds, kDim>(s, p, force);
+    });
+  }
+
+  void add_tangents(const Batch& x, const Weights& w, Lanes* tangent) const override {
+    if (w.q == 0) return;
+    evaluate(x, [&]<int kKinds, int kDim, Coupling coupling>(const Lanes* s, const Lanes* p,
+                                                             auto invariant) {
+      gram::add_tangent<kKinds, kDim, coupling>(invariant, s, p, p, w.q, tangent);
+    });
+  }
+
+  /// F̄ = S(ḡ) q̄ with the mean of the Gram entries at both ends,
+  ///
+  ///   ḡ = ½ (g₀ + g₁) = g(q̄) + ¼ g(d),   q̄ = ½ (q₀ + q₁),   d = q₁ - q₀
+  ///
+  /// an exact discrete gradient, because U is quadratic in g and g in q:
+  /// U₁ - U₀ = (g₁ - g₀)ᵀ W (ḡ - g°) = F̄ · d. S is symmetric, so F̄ has no moment about q̄.
+  /// Simo, Tarnow (1992), Z. angew. Math. Phys. 43, 757-792, have the same mean of the stress.
+  void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override {
+    evaluate_mean(e, x,
+                  [&]<int kKinds, int kDim, Coupling>(const double* s, const double* p, auto) {
+                    gram::add_force<kKinds, kDim>(s, p, force.data());
+                  });
+  }
+
+  /// ∂F̄/∂q₁ = ½ (S(ḡ) ⊗ 1 + D(q̄)ᵀ W D(q₁)): as the tangent, from two states.
+  void add_mean_tangent(int e, const LocalStep& x, const Weights& w,
+                        LocalTangent& tangent) const override {
+    if (w.q == 0) return;
+    LocalTangent by_columns = LocalTangent::Zero(tangent.rows(), tangent.cols());
+    evaluate_mean(
+        e, x,
+        [&]<int kKinds, int kDim, Coupling coupling>(const double* s, const double* p, auto w_e) {
+          double end[kMaxVectors * kMaxDim];
+          gram::vectors<kKinds, kDim>(x.end.data(), end);
+          gram::add_tangent<kKinds, kDim, coupling, false>(w_e, s, p, end, w.q, by_columns.data());
+        });
+    tangent += by_columns.transpose();
+  }
+  std::string name() const override { return "membrane"; }
+
+  void add_free_force(int e, const Local& x, FreeForce& force) const override {
+    FreeElastic(density_, free_.of(e)).add_force(x.q, force);
+  }
+  void add_free_tangent(int e, const Local& x, const Weights& w,
+                        FreeTangent& tangent) const override {
+    if (w.q != 0) FreeElastic(density_, free_.of(e)).add_tangent(x.q, w.q, tangent);
   }
 
   double strain_energy(int e, const Local& x) const override {
-    LocalRows q;
-    relative(e, x.q, q);
-    GramVector g = gram_difference(e, q);
-    return 0.5 * g.dot(*invariants_[static_cast<size_t>(e)].w * g);
+    if (free_.has(e)) return FreeElastic(density_, free_.of(e)).energy(x.q);
+    double energy = 0;
+    const BatchData& batch = batches_[static_cast<size_t>(e / kLanes)];
+    evaluate(e, x, [&]<int kKinds, int kDim, Coupling>(const double* s, const double* p, auto) {
+      double g[kMaxPairs];
+      gram::products<kKinds, kDim>(p, g);
+      for (size_t k = 0; k < batch.reference.size(); ++k)
+        energy += 0.5 * s[k] * (g[k] - batch.reference[k][e % kLanes]);
+    });
+    return energy;
   }
 
   /// ∫ h εᵀ C ε̇ dA at fixed unknowns, by points: the rates of r_m and r_n at fixed material point.
@@ -103,66 +157,222 @@ class Membrane final : public Term {
   }
 
  private:
-  static constexpr int kMaxPairs = kMaxShapes * (kMaxShapes + 1) / 2;
-  using GramVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxPairs, 1>;
-  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxShapes, kMaxShapes>;
+  static constexpr int kMaxPairs = gram::Numbering<4>::n_pairs;
+  static constexpr int kMaxVectors = gram::Numbering<4>::n;
+  using Packed = std::shared_ptr<const std::vector<double>>;
 
-  struct Invariant {
-    std::shared_ptr<const MatrixXd> w;  // shared by neighbours of equal size and material
-    GramVector reference;               // g°
-    std::vector<char> is_position;      // shape functions that carry positions
+  struct BatchData {
+    Packed shared;                 // squares; where all elements have the same W
+    std::vector<Lanes> different;  // packed; where they do not
+    std::vector<Lanes> reference;  // g°
   };
 
-  void relative(int e, const LocalRows& x, LocalRows& q) const {
-    q = x;
-    const auto& is_position = invariants_[static_cast<size_t>(e)].is_position;
-    for (int k = 0; k < n_shapes_; ++k)
-      if (is_position[static_cast<size_t>(k)]) q.row(k) -= x.row(0);
+  /// Tables of gram.h that integrate() needs, and the functions of one coordinate in every vector.
+  template <int kKinds>
+  void number() {
+    using N = gram::Numbering<kKinds>;
+    pair_i_.assign(N::tables.i.begin(), N::tables.i.end());
+    pair_j_.assign(N::tables.j.begin(), N::tables.j.end());
+    starts_.assign(N::tables.start.begin(), N::tables.start.end());
+    if (coupling_ == Coupling::all) starts_ = {0, N::n_pairs};
+    kinds_ = kKinds;
+    function_m_.resize(N::n);
+    function_n_.resize(N::n);
+    for (int c = 0; c < 4; ++c)
+      for (int kind = c == 0 ? 1 : 0; kind < kKinds; ++kind) {
+        const auto at = static_cast<size_t>(N::vector(kind, c));
+        function_m_[at] = 2 * gram::slope_m(kind) + c % 2;
+        function_n_[at] = 2 * gram::slope_n(kind) + c / 2;
+      }
   }
 
-  GramVector gram_difference(int e, const LocalRows& q) const {
-    const Square g = q * q.transpose();
-    GramVector out(n_shapes_ * (n_shapes_ + 1) / 2);
-    for (int k = 0, p = 0; k < n_shapes_; ++k)
-      for (int l = k; l < n_shapes_; ++l, ++p) out[p] = g(k, l);
-    return out - invariants_[static_cast<size_t>(e)].reference;
+  /// Calls f<kKinds, kDim>().
+  template <class F>
+  void dispatch(const F& f) const {
+    if (kinds_ == 3)
+      dim_ == 2 ? f.template operator()<3, 2>() : f.template operator()<3, 3>();
+    else
+      dim_ == 2 ? f.template operator()<4, 2>() : f.template operator()<4, 3>();
   }
 
-  /// S of the docstring.
-  Square stress(int e, const LocalRows& q) const {
-    const GramVector s = *invariants_[static_cast<size_t>(e)].w * gram_difference(e, q);
-    Square out(n_shapes_, n_shapes_);
-    for (int k = 0, p = 0; k < n_shapes_; ++k)
-      for (int l = k; l < n_shapes_; ++l, ++p) out(k, l) = out(l, k) = k == l ? 2 * s[p] : s[p];
-    return out;
+  /// Calls f<kKinds, kDim, coupling>(s, p, W) of one element.
+  template <class F>
+  void evaluate(int e, const Local& x, const F& f) const {
+    const BatchData& batch = batches_[static_cast<size_t>(e / kLanes)];
+    dispatch([&]<int kKinds, int kDim>() {
+      double p[kMaxVectors * kMaxDim], g[kMaxPairs], s[kMaxPairs];
+      gram::vectors<kKinds, kDim>(x.q.data(), p);
+      gram::products<kKinds, kDim>(p, g);
+      for (size_t k = 0; k < batch.reference.size(); ++k) g[k] -= batch.reference[k][e % kLanes];
+      with_invariant(e, batch, [&]<Coupling coupling>(auto w) {
+        gram::multiply<kKinds, coupling>(w, g, s);
+        f.template operator()<kKinds, kDim, coupling>(s, p, w);
+      });
+    });
   }
 
-  void integrate(const Element& element, int e, const Factors& factors, const MatrixXd& reference) {
-    Invariant& out = invariants_[static_cast<size_t>(e)];
+  /// Calls f<kKinds, kDim, coupling>(s, p, W) of one element, s at ḡ and p at q̄.
+  template <class F>
+  void evaluate_mean(int e, const LocalStep& x, const F& f) const {
+    const BatchData& batch = batches_[static_cast<size_t>(e / kLanes)];
+    const LocalRows change = x.end - x.start;
+    dispatch([&]<int kKinds, int kDim>() {
+      double p[kMaxVectors * kMaxDim], g[kMaxPairs], s[kMaxPairs], of_change[kMaxPairs];
+      gram::vectors<kKinds, kDim>(change.data(), p);
+      gram::products<kKinds, kDim>(p, of_change);
+      gram::vectors<kKinds, kDim>(x.mean.q.data(), p);
+      gram::products<kKinds, kDim>(p, g);
+      for (size_t k = 0; k < batch.reference.size(); ++k)
+        g[k] += 0.25 * of_change[k] - batch.reference[k][e % kLanes];
+      with_invariant(e, batch, [&]<Coupling coupling>(auto w) {
+        gram::multiply<kKinds, coupling>(w, g, s);
+        f.template operator()<kKinds, kDim, coupling>(s, p, w);
+      });
+    });
+  }
+
+  /// Calls f<coupling>(W) with W of one element.
+  template <class F>
+  void with_invariant(int e, const BatchData& batch, const F& f) const {
+    const gram::OneOf one{batch.different.data(), e % kLanes};
+    if (coupling_ == Coupling::all)
+      f.template operator()<Coupling::all>(one);
+    else if (batch.shared)
+      f.template operator()<Coupling::classes>(gram::Shared{batch.shared->data()});
+    else
+      f.template operator()<Coupling::classes>(one);
+  }
+
+  /// Calls f<kKinds, kDim, coupling>(s, p, W) of eight elements.
+  template <class F>
+  void evaluate(const Batch& x, const F& f) const {
+    const BatchData& batch = batches_[static_cast<size_t>(x.first / kLanes)];
+    dispatch([&]<int kKinds, int kDim>() {
+      Lanes p[kMaxVectors * kDim], g[kMaxPairs], s[kMaxPairs];
+      gram::vectors<kKinds, kDim>(x.q, p);
+      gram::products<kKinds, kDim>(p, g);
+      for (int k = 0; k < gram::Numbering<kKinds>::n_pairs; ++k)
+        g[k] -= batch.reference[static_cast<size_t>(k)];
+      const auto with = [&]<Coupling coupling>(auto w) {
+        gram::multiply<kKinds, coupling>(w, g, s);
+        f.template operator()<kKinds, kDim, coupling>(s, p, w);
+      };
+      const gram::Different different{batch.different.data()};
+      if (coupling_ == Coupling::all)
+        with.template operator()<Coupling::all>(different);
+      else if (batch.shared)
+        with.template operator()<Coupling::classes>(gram::Shared{batch.shared->data()});
+      else
+        with.template operator()<Coupling::classes>(different);
+    });
+  }
+
+  void prepare_batch(const Element& element, int first, const Factors& factors,
+                     const MatrixXd& reference, bool all, BatchData& out) {
+    const int count = std::min(kLanes, element.n_elements() - first);
+    int n_moving = 0, n_free = 0;  // elements with free lines are left to FreeElastic
+    for (int lane = 0; lane < count; ++lane) {
+      const bool is_free = free_.has(first + lane);
+      n_free += is_free;
+      n_moving += !is_free && element.moving(first + lane);
+    }
+    if (n_free == count || (!all && n_moving == 0)) return;
+    std::array<Packed, kLanes> w;
+    out.reference.resize(pair_i_.size());
+    for (int lane = 0; lane < count; ++lane)
+      if ((all || element.moving(first + lane)) && !free_.has(first + lane)) {
+        w[static_cast<size_t>(lane)] = integrate(element, first + lane, factors);
+        set_reference(element, first + lane, reference, out);
+      }
+    // A W that some elements share today and not tomorrow is not shared.
+    const bool alike =
+        coupling_ == Coupling::classes && n_free == 0 && (n_moving == 0 || n_moving == count) &&
+        std::all_of(w.begin(), w.begin() + count, [&](const Packed& x) { return x == w[0]; });
+    out.shared = alike ? squares(*w[0]) : nullptr;
+    if (!alike) {
+      const auto any =
+          std::find_if(w.begin(), w.end(), [](const Packed& x) { return x != nullptr; });
+      if (any != w.end()) out.different.resize((*any)->size());
+      for (int lane = 0; lane < count; ++lane)
+        if (const Packed& of_lane = w[static_cast<size_t>(lane)])
+          for (size_t k = 0; k < of_lane->size(); ++k) out.different[k][lane] = (*of_lane)[k];
+    }
+    for (int lane = count; lane < kLanes; ++lane) {
+      if (!alike)
+        for (Lanes& x : out.different) x[lane] = x[count - 1];
+      for (Lanes& x : out.reference) x[lane] = x[count - 1];
+    }
+  }
+
+  void set_reference(const Element& element, int e, const MatrixXd& reference, BatchData& out) {
+    const auto numbers = element.vectors(e);
+    double q[kMaxShapes * 2], p[kMaxVectors * 2], g[kMaxPairs];
+    for (size_t k = 0; k < numbers.size(); ++k)
+      for (size_t c = 0; c < 2; ++c)
+        q[2 * k + c] = reference(numbers[k], static_cast<Eigen::Index>(c));
+    if (kinds_ == 3) {
+      gram::vectors<3, 2>(q, p);
+      gram::products<3, 2>(p, g);
+    } else {
+      gram::vectors<4, 2>(q, p);
+      gram::products<4, 2>(p, g);
+    }
+    for (size_t k = 0; k < out.reference.size(); ++k) out.reference[k][e % kLanes] = g[k];
+  }
+
+  /// W of an element, packed; that of its neighbour where size and material are the same.
+  Packed integrate(const Element& element, int e, const Factors& factors) {
     std::swap(previous_, table_);
     if (!element.tabulate_products(e, 12, factors, FactorKind::stiffness, table_))
       throw Error::input("term 'membrane' needs shape functions that are products along m and n");
     const auto equal = [](const MatrixXd& x, const MatrixXd& y) {
       return x.rows() == y.rows() && x.cols() == y.cols() && x.isApprox(y, 1e-13);
     };
-    const bool same = e > 0 && tabulated_ == e - 1 && equal(previous_.weight, table_.weight) &&
-                      equal(previous_.f_m, table_.f_m) && equal(previous_.f_n, table_.f_n);
+    const bool same = tabulated_ >= 0 && tabulated_ == e - 1 &&
+                      equal(previous_.weight, table_.weight) && equal(previous_.f_m, table_.f_m) &&
+                      equal(previous_.f_n, table_.f_n);
     tabulated_ = e;
-    out.w = same ? invariants_[static_cast<size_t>(e - 1)].w : invariant();
+    if (!same) last_ = invariant();
+    return last_;
+  }
 
-    const auto vectors = element.vectors(e);
-    LocalRows q(n_shapes_, 2);
-    out.is_position.assign(static_cast<size_t>(n_shapes_), 0);
-    for (int k = 0; k < n_shapes_; ++k) {
-      q.row(k) = reference.row(vectors[static_cast<size_t>(k)]).head<2>();
-      out.is_position[static_cast<size_t>(k)] =
-          element.is_position(vectors[static_cast<size_t>(k)]);
+  /// Full squares of the blocks of W; those of the last W asked for are kept.
+  Packed squares(const std::vector<double>& w) {
+    if (squares_of_ == last_) return squares_;
+    auto out = std::make_shared<std::vector<double>>();
+    size_t at = 0;
+    for (size_t c = 0; c + 1 < starts_.size(); ++c) {
+      const auto m = static_cast<size_t>(starts_[c + 1] - starts_[c]), block = out->size();
+      out->resize(block + m * m);
+      for (size_t r = 0; r < m; ++r)
+        for (size_t t = 0; t <= r; ++t, ++at)
+          (*out)[block + r * m + t] = (*out)[block + t * m + r] = w[at];
     }
-    const LocalRows origin = q.row(0);
-    for (int k = 0; k < n_shapes_; ++k)
-      if (out.is_position[static_cast<size_t>(k)]) q.row(k) -= origin.row(0);
-    out.reference = GramVector::Zero(n_shapes_ * (n_shapes_ + 1) / 2);
-    out.reference = gram_difference(e, q);
+    squares_of_ = last_;
+    return squares_ = std::move(out);
+  }
+
+  /// The four functions of one coordinate as even and odd ones: of the values, of the slopes.
+  static MatrixXd even_and_odd(const MatrixXd& f) {
+    MatrixXd out(f.rows(), 4);
+    out << f.col(0) + f.col(2), f.col(2) - f.col(0), f.col(1) - f.col(3), f.col(1) + f.col(3);
+    return out;
+  }
+
+  Packed assumed_invariant() const {
+    const ProductTable vectors{table_.weight,
+                               even_and_odd(table_.f_m),
+                               even_and_odd(table_.d_m),
+                               even_and_odd(table_.f_n),
+                               even_and_odd(table_.d_n),
+                               function_m_,
+                               function_n_};
+    const MatrixXd w = assumed_membrane_invariant(vectors, pair_i_, pair_j_, elasticity_);
+    auto out = std::make_shared<std::vector<double>>();
+    for (size_t block = 0; block + 1 < starts_.size(); ++block)
+      for (int p = starts_[block]; p < starts_[block + 1]; ++p)
+        for (int q = starts_[block]; q <= p; ++q) out->push_back(w(p, q));
+    return out;
   }
 
   /// W = Σ_points Λᵀ C Λ. With N_k = f_i(m) g_a(n) every entry of Λᵀ C Λ is a sum of products of
@@ -172,25 +382,27 @@ class Membrane final : public Term {
   ///   X (p q, r s) = Σ_gh w_gh (x_p y_q)(m_g) (y_r x_s)(n_h)     p, q, r, s: pairs of functions
   ///
   /// with f' f' f' f' (11), f f f f (22) or f' f' f f (all others) along m.
-  std::shared_ptr<const MatrixXd> invariant() {
-    const MatrixXd dd_m = pairs(table_.d_m), ff_m = pairs(table_.f_m), dd_n = pairs(table_.d_n),
-                   ff_n = pairs(table_.f_n);
+  Packed invariant() {
+    if (strains_ == Strains::assumed) return assumed_invariant();
+    const MatrixXd dd_m = pairs(even_and_odd(table_.d_m)), ff_m = pairs(even_and_odd(table_.f_m)),
+                   dd_n = pairs(even_and_odd(table_.d_n)), ff_n = pairs(even_and_odd(table_.f_n));
     const MatrixXd& w = table_.weight;
     const MatrixXd x11 = products(dd_m, dd_m) * w * products(ff_n, ff_n).transpose();
     const MatrixXd x22 = products(ff_m, ff_m) * w * products(dd_n, dd_n).transpose();
     const MatrixXd x12 = products(dd_m, ff_m) * w * products(ff_n, dd_n).transpose();
 
-    const auto n = static_cast<int>(table_.f_m.cols()), n_pairs_1d = n * (n + 1) / 2;
-    const auto pair = [n](int i, int j) {  // number of {i, j} among the pairs
+    constexpr int n = 4, n_pairs_1d = n * (n + 1) / 2;
+    const auto pair = [](int i, int j) {  // number of {i, j} among the pairs
       if (i > j) std::swap(i, j);
       return i * (2 * n - i + 1) / 2 + j - i;
     };
-    Eigen::MatrixXi m_pair(n_shapes_, n_shapes_), n_pair(n_shapes_, n_shapes_);
-    for (int k = 0; k < n_shapes_; ++k)
-      for (int l = 0; l < n_shapes_; ++l) {
+    const auto n_vectors = static_cast<int>(function_m_.size());
+    Eigen::MatrixXi m_pair(n_vectors, n_vectors), n_pair(n_vectors, n_vectors);
+    for (int k = 0; k < n_vectors; ++k)
+      for (int l = 0; l < n_vectors; ++l) {
         const auto at = [](const std::vector<int>& x, int i) { return x[static_cast<size_t>(i)]; };
-        m_pair(k, l) = pair(at(table_.function_m, k), at(table_.function_m, l));
-        n_pair(k, l) = pair(at(table_.function_n, k), at(table_.function_n, l));
+        m_pair(k, l) = pair(at(function_m_, k), at(function_m_, l));
+        n_pair(k, l) = pair(at(function_n_, k), at(function_n_, l));
       }
     // Entry of one of the three: pairs (p, q) along m and the same unknowns (r, s) along n.
     const auto entry = [&](const MatrixXd& x, int p_m, int q_m, int p_n, int q_n) {
@@ -198,27 +410,25 @@ class Membrane final : public Term {
     };
     const double c11 = elasticity_(0, 0), c22 = elasticity_(1, 1), c12 = elasticity_(0, 1),
                  c33 = elasticity_(2, 2);
-    const int n_pairs = n_shapes_ * (n_shapes_ + 1) / 2;
-    auto out = std::make_shared<MatrixXd>(n_pairs, n_pairs);
-    for (int k = 0, p = 0; k < n_shapes_; ++k)
-      for (int l = k; l < n_shapes_; ++l, ++p)
-        for (int r = 0, q = 0; q <= p; ++r)
-          for (int s = r; s < n_shapes_ && q <= p; ++s, ++q) {
-            const int kl_m = m_pair(k, l), kl_n = n_pair(k, l), rs_m = m_pair(r, s),
-                      rs_n = n_pair(r, s), kr_m = m_pair(k, r), kr_n = n_pair(k, r),
-                      ls_m = m_pair(l, s), ls_n = n_pair(l, s), ks_m = m_pair(k, s),
-                      ks_n = n_pair(k, s), lr_m = m_pair(l, r), lr_n = n_pair(l, r);
-            // ε₁₁ and ε₂₂ have N_k,m N_l,m and N_k,n N_l,n; 2ε₁₂ the symmetric N_k,m N_l,n.
-            const double normal =
-                c11 * entry(x11, kl_m, rs_m, kl_n, rs_n) +
-                c22 * entry(x22, kl_m, rs_m, kl_n, rs_n) +
-                c12 * (entry(x12, kl_m, rs_m, kl_n, rs_n) + entry(x12, rs_m, kl_m, rs_n, kl_n));
-            const double shear =
-                entry(x12, kr_m, ls_m, kr_n, ls_n) + entry(x12, ks_m, lr_m, ks_n, lr_n) +
-                entry(x12, lr_m, ks_m, lr_n, ks_n) + entry(x12, ls_m, kr_m, ls_n, kr_n);
-            const double twice = (k == l ? 0.5 : 1) * (r == s ? 0.5 : 1);
-            (*out)(p, q) = (*out)(q, p) = twice * (normal + c33 * shear);
-          }
+    auto out = std::make_shared<std::vector<double>>();
+    for (size_t block = 0; block + 1 < starts_.size(); ++block)
+      for (int p = starts_[block]; p < starts_[block + 1]; ++p)
+        for (int q = starts_[block]; q <= p; ++q) {
+          const int k = pair_i_[static_cast<size_t>(p)], l = pair_j_[static_cast<size_t>(p)],
+                    r = pair_i_[static_cast<size_t>(q)], s = pair_j_[static_cast<size_t>(q)];
+          const int kl_m = m_pair(k, l), kl_n = n_pair(k, l), rs_m = m_pair(r, s),
+                    rs_n = n_pair(r, s), kr_m = m_pair(k, r), kr_n = n_pair(k, r),
+                    ls_m = m_pair(l, s), ls_n = n_pair(l, s), ks_m = m_pair(k, s),
+                    ks_n = n_pair(k, s), lr_m = m_pair(l, r), lr_n = n_pair(l, r);
+          // ε₁₁ and ε₂₂ have N_k,m N_l,m and N_k,n N_l,n; 2ε₁₂ the symmetric N_k,m N_l,n.
+          const double normal =
+              c11 * entry(x11, kl_m, rs_m, kl_n, rs_n) + c22 * entry(x22, kl_m, rs_m, kl_n, rs_n) +
+              c12 * (entry(x12, kl_m, rs_m, kl_n, rs_n) + entry(x12, rs_m, kl_m, rs_n, kl_n));
+          const double shear =
+              entry(x12, kr_m, ls_m, kr_n, ls_n) + entry(x12, ks_m, lr_m, ks_n, lr_n) +
+              entry(x12, lr_m, ks_m, lr_n, ks_n) + entry(x12, ls_m, kr_m, ls_n, kr_n);
+          out->push_back(normal + c33 * shear);
+        }
     return out;
   }
 
@@ -238,20 +448,31 @@ class Membrane final : public Term {
     return out;
   }
 
-  Eigen::Matrix3d elasticity_;        // h C [N/m]
+  Eigen::Matrix3d elasticity_;  // h C [N/m]
+  Strains strains_;
+  MembraneDensity density_;
+  FreeTables free_;
   const Element* element_ = nullptr;  // of the last prepare()
   const Factors* factors_ = nullptr;
-  int n_shapes_ = 0;
-  Eigen::MatrixXi pair_;
-  std::vector<Invariant> invariants_;
+  int dim_ = 0, kinds_ = 0;
+  Coupling coupling_ = Coupling::classes;
+  std::vector<int> pair_i_, pair_j_, starts_;  // of gram::Numbering
+  std::vector<int> function_m_, function_n_;   // even or odd function of every vector
+  std::vector<BatchData> batches_;
   ProductTable table_, previous_;
   int tabulated_ = -1;  // element of table_
+  Packed last_;         // its W
+  Packed squares_, squares_of_;
 };
 
 }  // namespace
 
 std::unique_ptr<Term> make_membrane(const PlaneSection& section) {
   return std::make_unique<Membrane>(section);
+}
+
+std::unique_ptr<Term> make_assumed_membrane(const PlaneSection& section) {
+  return std::make_unique<Membrane>(section, Membrane::Strains::assumed);
 }
 
 }  // namespace flexmorph::fem

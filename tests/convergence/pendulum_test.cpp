@@ -9,101 +9,16 @@
 #include <iostream>
 
 #include "fem/dynamics/generalized_alpha.h"
+#include "tests/support/particle_pendulum.h"
 #include "tests/support/rates.h"
 
 namespace flexmorph::fem {
 namespace {
 
-constexpr double kLength = 1, kGravity = 9.81, kMass = 2, kEnd = 2;
+using testing::exact_swing;
+using testing::Swing;
 
-/// A body of one point: r = q.
-class Particle final : public Element {
- public:
-  int dim() const override { return 2; }
-  int n_shapes() const override { return 1; }
-  int n_elements() const override { return 1; }
-  int n_vectors() const override { return 1; }
-  std::span<const int> vectors(int) const override { return {&zero_, 1}; }
-  double scale(int) const override { return 1; }
-  bool is_position(int) const override { return true; }
-  MatrixXd reference() const override { return Eigen::RowVector2d(0, -kLength); }
-  std::vector<NodeVectors> edge(const std::string&) const override {
-    return {{0, -1, -1, -1, {0, 0}}};
-  }
-  void move_to(double) override {}
-  bool moving(int) const override { return false; }
-  void tabulate(int, int, Tabulate, const Factors&, FactorKind, ShapeTable& out) const override {
-    out.weight = VectorXd::Ones(1);
-    out.material = {Vec2::Zero()};
-    out.N = MatrixXd::Ones(1, 1);
-    for (MatrixXd* none : {&out.N_t, &out.N_tt, &out.N_m, &out.N_n, &out.N_mt, &out.N_nt})
-      none->resize(0, 0);
-  }
-  int locate(const Vec2&, Tabulate what, ShapeTable& out) const override {
-    tabulate(0, 0, what, {}, FactorKind::none, out);
-    return 0;
-  }
-
- private:
-  int zero_ = 0;
-};
-
-/// (|r|² - L²) / 2 = 0.
-class Rod final : public Joint {
- public:
-  explicit Rod(bool exact_tangent) : exact_tangent_(exact_tangent) {}
-  std::string name() const override { return "rod"; }
-  int size() const override { return 1; }
-  void bind(std::span<const BodyView> bodies) override {
-    first_ = find_body(bodies, name(), "bob").first_dof;
-  }
-  void evaluate(double, const VectorXd& q, const VectorXd& v, ConstraintRows& rows) const override {
-    const auto r = q.segment<2>(first_), r_t = v.segment<2>(first_);
-    rows.value = VectorXd::Constant(1, (r.squaredNorm() - kLength * kLength) / 2);
-    rows.rate = VectorXd::Zero(1);
-    rows.acceleration = VectorXd::Constant(1, -r_t.squaredNorm());
-    rows.jacobian.clear();
-    for (int c = 0; c < 2; ++c) rows.jacobian.emplace_back(0, first_ + c, r[c]);
-  }
-  void add_stiffness(double, const VectorXd&, const VectorXd& lambda,
-                     std::vector<Eigen::Triplet<double>>& out) const override {
-    if (exact_tangent_)
-      for (int c = 0; c < 2; ++c) out.emplace_back(first_ + c, first_ + c, lambda[0]);
-  }
-
- private:
-  bool exact_tangent_;
-  int first_ = 0;
-};
-
-struct Swing {
-  double angle, rate;
-  Vec2 position() const { return kLength * Vec2(std::sin(angle), -std::cos(angle)); }
-  Vec2 velocity() const { return kLength * rate * Vec2(std::cos(angle), std::sin(angle)); }
-  /// Along r: m |v|² = λ L² + m g L cos(angle), λ < 0 pulls inwards with this sign of Φ.
-  double lambda() const { return kMass * (rate * rate + kGravity / kLength * std::cos(angle)); }
-};
-
-/// θ'' = -g/L sin θ by Runge-Kutta steps of 1e-5 s: error (1e-5)^4, nothing.
-Swing exact(double t) {
-  static std::vector<Swing> table = {{1.0, 0.8}};
-  constexpr double h = 1e-5;
-  const auto rate = [](const Swing& s) {
-    return Swing{s.rate, -kGravity / kLength * std::sin(s.angle)};
-  };
-  const auto moved = [](const Swing& s, double by, const Swing& d) {
-    return Swing{s.angle + by * d.angle, s.rate + by * d.rate};
-  };
-  const auto index = static_cast<size_t>(std::lround(t / h));
-  while (table.size() <= index) {
-    const Swing s = table.back();
-    const Swing k1 = rate(s), k2 = rate(moved(s, h / 2, k1)), k3 = rate(moved(s, h / 2, k2)),
-                k4 = rate(moved(s, h, k3));
-    table.push_back({s.angle + h / 6 * (k1.angle + 2 * k2.angle + 2 * k3.angle + k4.angle),
-                     s.rate + h / 6 * (k1.rate + 2 * k2.rate + 2 * k3.rate + k4.rate)});
-  }
-  return table[index];
-}
+constexpr double kEnd = 2;
 
 struct Errors {
   double q = 0, v = 0, lambda = 0;                       // at the end
@@ -112,25 +27,19 @@ struct Errors {
 };
 
 Errors run(double h, double rho_inf, bool exact_tangent = true, AlphaSettings settings = {}) {
-  Model model;
-  std::vector<std::unique_ptr<Term>> terms;
-  terms.push_back(make_point_mass(kMass, {0, 0}, Vec2(0, -kGravity)));
-  model.add_body("bob", std::make_unique<Particle>(), {}, std::move(terms));
-  model.add_joint(std::make_unique<Rod>(exact_tangent));
+  Model model = testing::particle_pendulum(exact_tangent);
   settings.rho_inf = rho_inf;
   // The multiplier sees errors of Newton's method divided by h^2: below its own error at 1 ms.
   settings.tolerance = 1e-14;
   GeneralizedAlpha alpha(model, settings);
-  State x = model.reference();
-  x.q.head<2>() = exact(0).position();
-  x.v.head<2>() = exact(0).velocity();
+  State x = testing::swing_start(model);
   alpha.make_consistent(x);
   Errors e;
-  EXPECT_NEAR(x.lambda[0], exact(0).lambda(), 1e-12);
+  EXPECT_NEAR(x.lambda[0], exact_swing(0).lambda(), 1e-12);
   const int n = static_cast<int>(std::lround(kEnd / h));
   for (int k = 1; k <= n; ++k)
     alpha.advance(x, kEnd * k / n, [&](const State& y) {
-      const Swing s = exact(y.t);
+      const Swing s = exact_swing(y.t);
       e.q = (y.q - s.position()).norm();
       e.v = (y.v - s.velocity()).norm();
       e.lambda = std::abs(y.lambda[0] - s.lambda());
@@ -189,7 +98,7 @@ TEST(Pendulum, WithoutDampingOnlyPositionAndVelocityConverge) {
     EXPECT_NEAR(rate.order(), 2, 0.1) << name << '\n' << rate.table();
   }
   std::cout << "rho_inf = 1: error of lambda " << run(4e-3, 1).lambda << " of "
-            << exact(kEnd).lambda() << " N/m\n";
+            << exact_swing(kEnd).lambda() << " N/m\n";
 }
 
 // With and without (Φ_qᵀ λ)_q Newton finds the same answer; the exact tangent never takes longer.

@@ -4,6 +4,7 @@
 #include "fem/model.h"
 
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <cmath>
 
@@ -164,6 +165,92 @@ TEST(Model, BodiesAddUp) {
   EXPECT_EQ(two.bodies()[1].first_dof, one.n_dofs());
   EXPECT_GT(two.energies(y).strain, one.energies(x).strain);
   EXPECT_THROW(one.body("arm"), Error);
+}
+
+// Eight elements side by side are eight elements one by one: the sum over elements of what every
+// term says of each (round-off of another order of summation).
+TEST(Model, BatchesAreTheirElements) {
+  const PlaneSection section{0.01, 1e3, 0.3, 2700};
+  for (const ShapeSet shapes : {ShapeSet::h12, ShapeSet::h16})
+    for (const bool designed : {false, true}) {
+      Model model;
+      // 15 elements: a batch that is not full, moving and standing elements in one batch.
+      std::vector<MaterialLine> lines = testing::even_lines(0.1, 0.45, 5);
+      lines[0] = testing::swinging_line(0.1, 0.03, 2.1);
+      Body& body = model.add_body(
+          "plate",
+          std::make_unique<AncfPlate>(2, shapes, lines, testing::even_lines(-0.05, 0.07, 3)),
+          section, all_terms(section));
+      if (designed) model.set_factors(body, testing::random_factors(3));
+      const State x =
+          testing::SmoothMotion(model.reference().q, 0.05 * model.scales().cwiseInverse(), 2)
+              .state(0.37);
+      model.prepare(0);
+      model.prepare(x.t);
+      VectorXd force, expected = VectorXd::Zero(model.n_dofs());
+      MatrixXd stiffness = MatrixXd::Zero(model.n_dofs(), model.n_dofs());
+      const Weights w{1, 3, 20};
+      for (int e = 0; e < 15; ++e) {
+        const auto vectors = body.element->vectors(e);
+        const auto rows = [&](const VectorXd& all) {
+          LocalRows out(static_cast<Eigen::Index>(vectors.size()), 2);
+          for (size_t k = 0; k < vectors.size(); ++k)
+            out.row(static_cast<Eigen::Index>(k)) = all.segment<2>(2 * vectors[k]).transpose();
+          return out;
+        };
+        const Local local{rows(x.q), rows(x.v), rows(x.a)};
+        LocalRows f = LocalRows::Zero(local.q.rows(), 2);
+        LocalTangent t = LocalTangent::Zero(local.q.size(), local.q.size());
+        for (const auto& term : body.terms) {
+          term->add_force(e, local, f);
+          term->add_tangent(e, local, w, t);
+        }
+        for (Eigen::Index i = 0; i < f.size(); ++i) {
+          const auto row = 2 * vectors[static_cast<size_t>(i / 2)] + i % 2;
+          expected[row] += f.data()[i];
+          for (Eigen::Index j = 0; j < f.size(); ++j)
+            stiffness(row, 2 * vectors[static_cast<size_t>(j / 2)] + j % 2) += t(i, j);
+        }
+      }
+      model.force(x, force);
+      EXPECT_LT((force - expected).norm(), 1e-14 * expected.norm());
+      Constraints c;
+      SparseMatrix kkt;
+      model.constraints(x, c);
+      model.kkt(x, c, w, 1, kkt);
+      EXPECT_LT((MatrixXd(kkt) - stiffness).norm(), 1e-14 * stiffness.norm());
+    }
+}
+
+// Sums are made in the order of the colours, by however many threads. (Enough elements for two.)
+TEST(Model, ThreadsChangeNothing) {
+  const PlaneSection section{0.01, 1e3, 0.3, 2700};
+  Model model;
+  std::vector<std::unique_ptr<Term>> terms;
+  terms.push_back(make_inertia(section));
+  terms.push_back(make_membrane(section));
+  model.add_body("plate",
+                 std::make_unique<AncfPlate>(2, ShapeSet::h12, testing::even_lines(0, 1, 92),
+                                             testing::even_lines(0, 1, 92)),
+                 section, std::move(terms));
+  const State x =
+      testing::SmoothMotion(model.reference().q, 1e-3 * model.scales().cwiseInverse(), 2)
+          .state(0.37);
+  model.prepare(x.t);
+  Constraints c;
+  model.constraints(x, c);
+  const int before = omp_get_max_threads();
+  VectorXd force[2];
+  SparseMatrix kkt[2];
+  for (const int k : {0, 1}) {
+    omp_set_num_threads(k + 1);
+    model.force(x, force[k]);
+    model.kkt(x, c, {1, 3, 20}, 1, kkt[k]);
+  }
+  omp_set_num_threads(before);
+  EXPECT_EQ((force[0] - force[1]).cwiseAbs().maxCoeff(), 0);
+  EXPECT_EQ((kkt[0] - kkt[1]).norm(), 0);
+  EXPECT_GT(force[0].norm(), 0);
 }
 
 // |r_m x r_n| of a plate stretched by (1.2, 0.5) everywhere.

@@ -1,0 +1,38 @@
+#include "fem/dynamics/integrator.h"
+
+#include <map>
+
+#include "fem/dynamics/energy_momentum.h"
+#include "fem/dynamics/generalized_alpha.h"
+
+namespace flexmorph::fem {
+namespace {
+
+using Maker = std::unique_ptr<Integrator> (*)(Model&, const IntegratorSettings&);
+
+const std::map<std::string, Maker>& table() {
+  static const std::map<std::string, Maker> kIntegrators = {
+      {"generalized_alpha",
+       [](Model& model, const IntegratorSettings& s) -> std::unique_ptr<Integrator> {
+         return std::make_unique<GeneralizedAlpha>(model, s.alpha);
+       }},
+      {"energy_momentum",
+       [](Model& model, const IntegratorSettings& s) -> std::unique_ptr<Integrator> {
+         return std::make_unique<EnergyMomentum>(model, s.energy_momentum);
+       }}};
+  return kIntegrators;
+}
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_integrator(Model& model, const IntegratorSettings& settings) {
+  const auto row = table().find(settings.name);
+  if (row == table().end()) {
+    std::string known;
+    for (const auto& [name, maker] : table()) known += (known.empty() ? "" : ", ") + name;
+    throw Error::input("integrator '" + settings.name + "' is unknown; known are: " + known);
+  }
+  return row->second(model, settings);
+}
+
+}  // namespace flexmorph::fem

@@ -1,0 +1,179 @@
+#include "fem/dynamics/step_solver.h"
+
+#include <cmath>
+#include <cstdio>
+
+namespace flexmorph::fem {
+
+StepSolver::StepSolver(Model& model, const StepSettings& settings, std::string name,
+                       std::string advice)
+    : model_(model), settings_(settings), name_(std::move(name)), advice_(std::move(advice)) {
+  if (!(settings.tolerance > 0) || settings.max_iterations < 1 || settings.max_halvings < 0)
+    throw Error::input(name_ +
+                       ": tolerance and max_iterations are positive, max_halvings is not negative");
+}
+
+void StepSolver::set_scales() {
+  if (scaled_version_ == model_.pattern_version()) return;
+  scales_ = model_.scales();
+  const State reference = model_.reference();
+  size_ = 0;
+  for (Eigen::Index i = 0; i < reference.q.size(); ++i)
+    if (scales_[i] == 1) size_ = std::max(size_, std::abs(reference.q[i]));
+  if (size_ == 0) size_ = 1;
+  scaled_version_ = model_.pattern_version();
+}
+
+void StepSolver::factorize() {
+  set_scales();
+  // Unknown i is solved as the displacement scales_i Δq_i; its equation as a virtual work on it.
+  for (int column = 0; column < kkt_.cols(); ++column)
+    for (SparseMatrix::InnerIterator entry(kkt_, column); entry; ++entry) {
+      if (column < model_.n_dofs()) entry.valueRef() /= scales_[column];
+      if (entry.row() < model_.n_dofs()) entry.valueRef() /= scales_[entry.row()];
+    }
+  if (analysed_version_ != model_.pattern_version()) {
+    solver_.analyze(kkt_);
+    analysed_version_ = model_.pattern_version();
+  }
+  solver_.factorize(kkt_);
+  ++counts_.factorizations;
+}
+
+void StepSolver::solve_mass(const State& x, const VectorXd& force, const VectorXd& constraint) {
+  factored_h_ = 0;
+  model_.kkt(x, constraints_, {0, 0, 1}, 1, kkt_);
+  factorize();
+  right_.resize(kkt_.rows());
+  right_.head(model_.n_dofs()) = force.cwiseQuotient(scales_);
+  right_.tail(model_.n_constraints()) = constraint;
+  solver_.solve(kkt_, right_, solution_);
+}
+
+void StepSolver::make_consistent(State& x) {
+  x.a.setZero(model_.n_dofs());
+  model_.prepare(x);
+  model_.constraints(x, constraints_);
+  model_.force(x, force_);
+  solve_mass(x, -force_, constraints_.acceleration);
+  x.a = solution_.head(model_.n_dofs()).cwiseQuotient(scales_);
+  x.lambda = solution_.tail(model_.n_constraints());
+  x.alpha = x.a;
+  if (model_.has_free_lines()) model_.prepare(x);
+}
+
+void StepSolver::project_velocity(State& x) {
+  model_.prepare(x);
+  model_.constraints(x, constraints_);
+  constraint_ = -constraints_.rate;
+  for (const auto& entry : constraints_.jacobian)
+    constraint_[entry.row()] -= entry.value() * x.v[entry.col()];
+  force_.setZero(model_.n_dofs());
+  solve_mass(x, force_, constraint_);
+  x.v += solution_.head(model_.n_dofs()).cwiseQuotient(scales_);
+}
+
+void StepSolver::solve_kept(const VectorXd& force, const VectorXd& constraint, VectorXd& dq,
+                            VectorXd& mu) {
+  right_.resize(kkt_.rows());
+  right_.head(model_.n_dofs()) = force.cwiseQuotient(scales_);
+  right_.tail(model_.n_constraints()) = constraint;
+  solver_.solve(kkt_, right_, solution_, false);
+  dq = solution_.head(model_.n_dofs()).cwiseQuotient(scales_);
+  mu = solution_.tail(model_.n_constraints());
+}
+
+bool StepSolver::try_step(State& x, double h) {
+  history_.clear();
+  try {
+    begin(x, h);
+    if (newton(h)) {
+      finish(x);
+      if (model_.has_free_lines()) model_.prepare(x);
+      return true;
+    }
+  } catch (const Error& error) {
+    if (error.kind() != Error::Kind::numerical) throw;
+    history_ += error.what();
+  }
+  factored_h_ = 0;
+  return false;
+}
+
+bool StepSolver::newton(double h) {
+  // A kept tangent that contracts less, or takes longer, is replaced.
+  constexpr double kContraction = 0.2;
+  constexpr int kPatience = 6;
+  // Corrections this small against the model that no longer shrink are round-off, with any tangent
+  // or with a fresh one.
+  constexpr double kRoundOff = 1e-14, kFreshRoundOff = 1e-12;
+  double last = 0;
+  bool fresh = false;
+  for (int iteration = 1; iteration <= settings_.max_iterations; ++iteration) {
+    residual(force_, constraint_);
+    if (std::abs(factored_h_ / h - 1) > 1e-6 || analysed_version_ != model_.pattern_version()) {
+      tangent(kkt_);
+      factorize();
+      factored_h_ = h;
+      fresh = true;
+    }
+    force_ *= -scale();
+    constraint_ *= -1;
+    solve_kept(force_, constraint_, dq_, mu_);
+    const double r = right_.lpNorm<Eigen::Infinity>();
+    const double correction = solution_.head(model_.n_dofs()).lpNorm<Eigen::Infinity>() / size_;
+    ++counts_.newton;
+    char text[80];
+    std::snprintf(text, sizeof text, "%d: |r| %.1e, |dq| %.1e; ", iteration, r, correction);
+    history_ += text;
+    if (!std::isfinite(r) || !std::isfinite(correction)) return false;
+    mu_ /= scale();
+    correct(dq_, mu_);
+
+    const double contraction = iteration > 1 ? correction / last : 1;
+    const double error =
+        contraction < 1 ? correction * contraction / (1 - contraction) : correction;
+    const double tolerance = settings_.tolerance * resolved() / size_;
+    if (correction <= tolerance || error <= 0.01 * tolerance) return true;
+    if (correction <= (fresh ? kFreshRoundOff : kRoundOff) && contraction > kContraction)
+      return true;
+    if (fresh && iteration > 3 && contraction > 2) return false;  // diverges with its own tangent
+    if (iteration > 1 && (contraction > kContraction || iteration >= kPatience)) factored_h_ = 0;
+    last = correction;
+  }
+  return false;
+}
+
+void StepSolver::advance(State& x, double t_end,
+                         const std::function<void(const State&)>& accepted) {
+  const double whole = t_end - x.t;
+  double h = whole;
+  int halvings = 0;
+  while (x.t < t_end) {
+    if (x.t + h > t_end - 1e-9 * whole) h = t_end - x.t;
+    if (try_step(x, h)) {
+      if (std::abs(x.t - t_end) <= 1e-9 * whole) x.t = t_end;
+      ++counts_.steps;
+      accepted(x);
+      if (halvings > 0) {
+        h *= 2;
+        --halvings;
+      }
+      continue;
+    }
+    ++counts_.rejected;
+    if (++halvings > settings_.max_halvings) {
+      char text[200];
+      std::snprintf(text, sizeof text,
+                    ": no convergence at t = %.6g s, step %d, step size %.2e s after %d halvings, "
+                    "smallest area ratio %.2e (",
+                    x.t, counts_.steps + 1, h, settings_.max_halvings,
+                    model_.smallest_area_ratio(x));
+      throw Error::numerical(name_ + text + history_ + "). " + advice_ +
+                             " An area ratio near zero means that the material has collapsed.");
+    }
+    h *= 0.5;
+  }
+}
+
+}  // namespace flexmorph::fem

@@ -1,0 +1,77 @@
+#pragma once
+
+#include "fem/dynamics/integrator.h"
+#include "fem/solve/linear_solver.h"
+
+namespace flexmorph::fem {
+
+/// What implicit one-step integrators of index-3 equations share: the scaling of unknowns and
+/// equations, the tangent that is kept while it contracts, Newton's method, and the halving of
+/// steps that fail. The scheme itself is the five functions below.
+///
+/// Slopes are scaled by the element size, constraints and multipliers by scale() of the step: the
+/// condition of the iteration matrix then does not depend on h (Bottasso, Dopico & Trainelli 2008).
+class StepSolver : public Integrator {
+ public:
+  void make_consistent(State& x) final;
+  void project_velocity(State& x) final;
+  void advance(State& x, double t_end, const std::function<void(const State&)>& accepted) final;
+  const StepCounts& counts() const final { return counts_; }
+
+ protected:
+  /// @throws Error (input) for settings that make no sense.
+  StepSolver(Model& model, const StepSettings& settings, std::string name, std::string advice);
+
+  /// First guess of the step from x to x.t + h, and preparation of the model. Keeps what
+  /// residual(), tangent() and correct() need.
+  virtual void begin(const State& x, double h) = 0;
+  /// Factor of the equations of motion of this step, β h² of the scheme.
+  virtual double scale() const = 0;
+  /// Equations of motion (n_dofs) and constraints (n_constraints) at the iterate.
+  virtual void residual(VectorXd& force, VectorXd& constraint) = 0;
+  /// Derivative of the residual by (q, λ / scale): [scale · A, Φ_qᵀ; Φ_q, 0]; only called after a
+  /// residual() at the same iterate.
+  virtual void tangent(SparseMatrix& out) = 0;
+  /// @param dq  correction of the unknowns at the end of the step
+  virtual void correct(const VectorXd& dq, const VectorXd& dlambda) = 0;
+  /// What a correction is small against [m].
+  virtual double resolved() const { return size_; }
+  /// x becomes the end of the converged step.
+  virtual void finish(State& x) = 0;
+
+  /// Solves with the factors of the last factorization: force (n_dofs, times scale()) and
+  /// constraint (n_constraints) as right side, dq and μ (λ times scale()) as result.
+  void solve_kept(const VectorXd& force, const VectorXd& constraint, VectorXd& dq, VectorXd& mu);
+
+  Model& model() { return model_; }
+  /// Largest displacement that a change of the unknowns means [m].
+  double displacement(const VectorXd& dq) const {
+    return dq.cwiseProduct(scales_).lpNorm<Eigen::Infinity>();
+  }
+  /// Largest coordinate of the undeformed model [m].
+  double size() const { return size_; }
+
+ private:
+  bool try_step(State& x, double h);
+  bool newton(double h);
+  void solve_mass(const State& x, const VectorXd& force, const VectorXd& constraint);
+  void set_scales();
+  void factorize();
+
+  Model& model_;
+  StepSettings settings_;
+  std::string name_, advice_;
+  StepCounts counts_;
+  UnsymmetricSolver solver_;
+  SparseMatrix kkt_;
+  int analysed_version_ = -1;
+  double factored_h_ = 0;  // step the kept factorization belongs to; 0: none
+  VectorXd scales_;        // displacement per unit of each unknown
+  double size_ = 1;
+  int scaled_version_ = -1;
+  Constraints constraints_;
+  VectorXd force_, constraint_, right_, solution_, dq_, mu_;
+  std::string history_;  // of the residuals of the last failed step
+};
+
+}  // namespace flexmorph::fem

@@ -1,0 +1,197 @@
+#include "fem/solve/saddle_cholesky.h"
+
+#include <cholmod.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <vector>
+
+namespace flexmorph::fem {
+
+namespace {
+
+/// With more rows of B their right-hand sides cost more than UMFPACK's factor.
+constexpr int kMostConstraints = 32;
+/// Entries that differ by less, relative to the largest, are equal: round-off of the elements.
+constexpr double kSymmetry = 1e-13;
+/// Estimates of the reciprocal condition below which UMFPACK, which pivots, is asked: A alone may
+/// be near to singular where the whole matrix is not (a body held by nothing but constraints).
+constexpr double kTrusted = 1e-9;
+
+}  // namespace
+
+struct SaddleCholesky::Impl {
+  cholmod_common common;
+  cholmod_sparse matrix{};  // lower triangle of A
+  cholmod_factor* factor = nullptr;
+  cholmod_dense *solution = nullptr, *work_y = nullptr, *work_e = nullptr;
+
+  struct Pair {
+    int lower, upper;  // places of (i, j) and (j, i) in the whole matrix
+  };
+  struct Entry {
+    int row, column, place;  // of B
+  };
+  std::vector<int> a_rows, b_rows;  // unknowns of the whole matrix
+  std::vector<int> starts, rows, places;
+  std::vector<double> values;
+  std::vector<Pair> pairs;
+  std::vector<Entry> b_entries;
+  std::vector<double> b_values;
+  MatrixXd spread, y;  // Bᵀ, A⁻¹ Bᵀ (n_a x m)
+  MatrixXd schur;
+  Eigen::LLT<MatrixXd> schur_factor;
+  VectorXd right, multipliers;
+
+  Impl() {
+    cholmod_start(&common);
+    common.print = 0;
+    common.supernodal = CHOLMOD_SUPERNODAL;
+    common.nmethods = 1;
+    common.method[0].ordering = CHOLMOD_AMD;
+    common.postorder = 1;
+  }
+  ~Impl() {
+    release();
+    cholmod_finish(&common);
+  }
+  void release() {
+    cholmod_free_factor(&factor, &common);
+    for (cholmod_dense** x : {&solution, &work_y, &work_e}) cholmod_free_dense(x, &common);
+  }
+
+  /// solution = A⁻¹ x, by columns.
+  bool apply_inverse(MatrixXd& x) {
+    cholmod_dense b{};
+    b.nrow = b.d = static_cast<size_t>(x.rows());
+    b.ncol = static_cast<size_t>(x.cols());
+    b.nzmax = static_cast<size_t>(x.size());
+    b.x = x.data();
+    b.xtype = CHOLMOD_REAL;
+    b.dtype = CHOLMOD_DOUBLE;
+    return cholmod_solve2(CHOLMOD_A, factor, &b, nullptr, &solution, nullptr, &work_y, &work_e,
+                          &common) != 0;
+  }
+  auto solved() const {
+    return Eigen::Map<const MatrixXd>(static_cast<const double*>(solution->x),
+                                      static_cast<Eigen::Index>(solution->nrow),
+                                      static_cast<Eigen::Index>(solution->ncol));
+  }
+
+  bool symmetric(const double* a, Eigen::Index n_entries) const {
+    const double allowed =
+        kSymmetry * Eigen::Map<const VectorXd>(a, n_entries).lpNorm<Eigen::Infinity>();
+    return std::all_of(pairs.begin(), pairs.end(),
+                       [&](const Pair& p) { return std::abs(a[p.lower] - a[p.upper]) <= allowed; });
+  }
+};
+
+SaddleCholesky::SaddleCholesky() : impl_(std::make_unique<Impl>()) {}
+SaddleCholesky::~SaddleCholesky() = default;
+
+bool SaddleCholesky::analyze(const SparseMatrix& a) {
+  Impl& s = *impl_;
+  s.release();
+  const auto n = static_cast<int>(a.rows());
+  const auto place = [&](int row, int column) {
+    const int *first = a.innerIndexPtr() + a.outerIndexPtr()[column],
+              *last = a.innerIndexPtr() + a.outerIndexPtr()[column + 1],
+              *at = std::lower_bound(first, last, row);
+    return at != last && *at == row ? static_cast<int>(at - a.innerIndexPtr()) : -1;
+  };
+  std::vector<int> number(static_cast<size_t>(n));  // in A, or - 1 - the one in B
+  s.a_rows.clear();
+  s.b_rows.clear();
+  for (int k = 0; k < n; ++k) {
+    auto& list = place(k, k) >= 0 ? s.a_rows : s.b_rows;
+    const auto at = static_cast<int>(list.size());
+    number[static_cast<size_t>(k)] = &list == &s.a_rows ? at : -1 - at;
+    list.push_back(k);
+  }
+  if (s.b_rows.size() > kMostConstraints || s.a_rows.empty()) return false;
+
+  s.starts = {0};
+  s.rows.clear();
+  s.places.clear();
+  s.pairs.clear();
+  s.b_entries.clear();
+  for (int column = 0; column < n; ++column) {
+    const int j = number[static_cast<size_t>(column)];
+    for (int p = a.outerIndexPtr()[column]; p < a.outerIndexPtr()[column + 1]; ++p) {
+      const int row = a.innerIndexPtr()[p], i = number[static_cast<size_t>(row)];
+      if (i < 0 && j < 0) return false;  // coupled constraints
+      if (row > column) {
+        const int other = place(column, row);
+        if (other < 0) return false;
+        s.pairs.push_back({p, other});
+      }
+      if (i >= 0 && j >= 0 && i >= j) {
+        s.rows.push_back(i);
+        s.places.push_back(p);
+      }
+      if (i < 0) s.b_entries.push_back({-1 - i, j, p});
+    }
+    if (j >= 0) s.starts.push_back(static_cast<int>(s.rows.size()));
+  }
+  s.values.resize(s.rows.size());
+  s.b_values.resize(s.b_entries.size());
+  s.matrix.nrow = s.matrix.ncol = s.a_rows.size();
+  s.matrix.nzmax = s.rows.size();
+  s.matrix.p = s.starts.data();
+  s.matrix.i = s.rows.data();
+  s.matrix.x = s.values.data();
+  s.matrix.stype = -1;
+  s.matrix.itype = CHOLMOD_INT;
+  s.matrix.xtype = CHOLMOD_REAL;
+  s.matrix.dtype = CHOLMOD_DOUBLE;
+  s.matrix.sorted = s.matrix.packed = 1;
+  s.factor = cholmod_analyze(&s.matrix, &s.common);
+  return s.factor != nullptr && s.common.status >= CHOLMOD_OK;
+}
+
+bool SaddleCholesky::factorize(const SparseMatrix& a) {
+  Impl& s = *impl_;
+  const double* entries = a.valuePtr();
+  if (!s.symmetric(entries, a.nonZeros())) return false;
+  for (size_t k = 0; k < s.places.size(); ++k) s.values[k] = entries[s.places[k]];
+  if (!cholmod_factorize(&s.matrix, s.factor, &s.common) || s.common.status != CHOLMOD_OK ||
+      s.factor->minor < s.factor->n || cholmod_rcond(s.factor, &s.common) < kTrusted)
+    return false;
+  const auto n = static_cast<Eigen::Index>(s.a_rows.size()),
+             m = static_cast<Eigen::Index>(s.b_rows.size());
+  if (m == 0) return true;
+  s.spread.setZero(n, m);
+  for (size_t k = 0; k < s.b_entries.size(); ++k) {
+    s.b_values[k] = entries[s.b_entries[k].place];
+    s.spread(s.b_entries[k].column, s.b_entries[k].row) = s.b_values[k];
+  }
+  if (!s.apply_inverse(s.spread)) return false;
+  s.y = s.solved();
+  s.schur.noalias() = s.spread.transpose() * s.y;
+  s.schur_factor.compute(s.schur);
+  return s.schur_factor.info() == Eigen::Success && s.schur_factor.rcond() > kTrusted;
+}
+
+void SaddleCholesky::solve(const VectorXd& b, VectorXd& x) {
+  // x = A⁻¹ f - Y λ,   B Y λ = B A⁻¹ f - g
+  Impl& s = *impl_;
+  const auto n = s.a_rows.size(), m = s.b_rows.size();
+  MatrixXd& f = s.spread;  // its room
+  f.resize(static_cast<Eigen::Index>(n), 1);
+  for (size_t k = 0; k < n; ++k) f(static_cast<Eigen::Index>(k), 0) = b[s.a_rows[k]];
+  if (!s.apply_inverse(f)) throw Error::numerical("linear solver: CHOLMOD failed in solution");
+  s.right = s.solved();
+  if (m > 0) {
+    s.multipliers.resize(static_cast<Eigen::Index>(m));
+    for (size_t k = 0; k < m; ++k) s.multipliers[static_cast<Eigen::Index>(k)] = -b[s.b_rows[k]];
+    for (size_t k = 0; k < s.b_entries.size(); ++k)
+      s.multipliers[s.b_entries[k].row] += s.b_values[k] * s.right[s.b_entries[k].column];
+    s.schur_factor.solveInPlace(s.multipliers);
+    s.right.noalias() -= s.y * s.multipliers;
+  }
+  x.resize(b.size());
+  for (size_t k = 0; k < n; ++k) x[s.a_rows[k]] = s.right[static_cast<Eigen::Index>(k)];
+  for (size_t k = 0; k < m; ++k) x[s.b_rows[k]] = s.multipliers[static_cast<Eigen::Index>(k)];
+}
+
+}  // namespace flexmorph::fem

@@ -1,0 +1,373 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "fem/solve/linear_solver.h"
+#include "fem/solve/statics.h"
+
+namespace flexmorph::fem {
+namespace {
+
+class Path {
+ public:
+  Path(Model& model, State& x, const StaticSettings& settings, const StaticObserver& observe)
+      : model_(model), x_(x), settings_(settings), observe_(observe), scales_(model.scales()) {
+    n_ = model.n_dofs();
+    m_ = model.n_constraints();
+    x_.v = x_.a = x_.alpha = VectorXd::Zero(n_);
+    if (x_.lambda.size() != m_) x_.lambda = VectorXd::Zero(m_);
+    size_ = extent();
+    range_ = std::abs(settings.to - settings.from);
+    direction_ = settings.to < settings.from ? -1 : 1;
+  }
+
+  StaticResult run() {
+    check();
+    model_.prepare(x_);
+    factor_ = settings_.from;
+    if (!newton(factor_)) fail("no equilibrium at the start");
+    result_.factor = factor_;
+    if (!accepted()) return result_;
+    if (range_ == 0) {
+      result_.completed = true;
+      return result_;
+    }
+    if (settings_.path == StaticSettings::Path::load)
+      follow_load();
+    else
+      follow_arc();
+    model_.scale_loads(factor_);
+    return result_;
+  }
+
+ private:
+  struct Point {
+    VectorXd q, lambda;
+    double factor;
+  };
+
+  void check() const {
+    const StaticSettings& s = settings_;
+    if (!(s.first_step > 0 && s.smallest_step > 0 && s.largest_step >= s.first_step &&
+          s.max_iterations > 0 && s.max_steps > 0 && s.tolerance > 0) ||
+        !std::isfinite(s.from) || !std::isfinite(s.to))
+      throw Error::input(
+          "statics: steps, limits and tolerance are positive, largest_step not below first_step");
+  }
+
+  /// Largest half-width of the positions over the directions [m].
+  double extent() const {
+    double out = 0;
+    for (const Body& b : model_.bodies())
+      for (int c = 0; c < b.element->dim(); ++c) {
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        for (int k = 0; k < b.element->n_vectors(); ++k) {
+          if (!b.element->is_position(k)) continue;
+          const double at = x_.q[b.first_dof + b.element->dim() * k + c];
+          low = std::min(low, at);
+          high = std::max(high, at);
+        }
+        out = std::max(out, 0.5 * (high - low));
+      }
+    return std::max(out, 1e-300);
+  }
+
+  Point here() const { return {x_.q, x_.lambda, factor_}; }
+  void go(const Point& p) {
+    x_.q = p.q;
+    x_.lambda = p.lambda;
+    factor_ = p.factor;
+    model_.scale_loads(factor_);
+  }
+
+  bool accepted() { return !observe_ || observe_({result_.steps, factor_, last_iterations_, x_}); }
+
+  /// Root mean square of scaled displacements, and the product that belongs to it.
+  double product(const VectorXd& a, const VectorXd& b) const {
+    return a.head(n_).cwiseProduct(scales_).dot(b.head(n_).cwiseProduct(scales_)) / n_;
+  }
+  double largest(const VectorXd& step) const {
+    return step.head(n_).cwiseProduct(scales_).lpNorm<Eigen::Infinity>() / size_;
+  }
+
+  /// Right side -(F + Φ_qᵀ λ, Φ) at x_ and factor_; false where it is not finite.
+  bool evaluate() {
+    model_.scale_loads(factor_);
+    if (model_.has_free_lines()) model_.prepare(x_);
+    model_.constraints(x_, c_);
+    model_.force(x_, force_);
+    model_.add_constraint_force(c_, x_.lambda, force_);
+    right_.resize(n_ + m_);
+    right_ << -force_, -c_.value;
+    history_.push_back(force_.cwiseQuotient(scales_).norm());
+    return right_.allFinite();
+  }
+
+  void factorize() {
+    model_.kkt(x_, c_, {1, 0, 0}, 1, kkt_);
+    if (analyzed_ != model_.pattern_version()) solver_.analyze(kkt_);
+    analyzed_ = model_.pattern_version();
+    solver_.factorize(kkt_);
+  }
+
+  /// Is the right side what rounding of the unknowns makes of an equilibrium? Then a smaller
+  /// correction cannot be had, which happens for very thin plates: stiffness in their plane times
+  /// the last digit of the positions.
+  bool at_round_off() const {
+    VectorXd noise = VectorXd::Zero(n_);
+    for (int column = 0; column < n_; ++column) {
+      const double q = std::abs(x_.q[column]);
+      for (int p = kkt_.outerIndexPtr()[column]; p < kkt_.outerIndexPtr()[column + 1]; ++p)
+        if (kkt_.innerIndexPtr()[p] < n_)
+          noise[kkt_.innerIndexPtr()[p]] += std::abs(kkt_.valuePtr()[p]) * q;
+    }
+    const double epsilon = std::numeric_limits<double>::epsilon();
+    return (right_.head(n_).cwiseAbs().array() <= epsilon * noise.array()).all();
+  }
+
+  /// dq/dμ (and dλ/dμ) at the matrix of the last factorize(): loads are linear in the factor.
+  void load_response(VectorXd& out) {
+    VectorXd full, none;
+    model_.scale_loads(1);
+    model_.force(x_, full);
+    model_.scale_loads(0);
+    model_.force(x_, none);
+    model_.scale_loads(factor_);
+    VectorXd load = VectorXd::Zero(n_ + m_);
+    load.head(n_) = none - full;
+    solver_.solve(kkt_, load, out);
+  }
+
+  /// Newton at a fixed factor from x_; on failure x_ is anywhere.
+  bool newton(double factor) {
+    factor_ = factor;
+    history_.clear();
+    return iterate([&](VectorXd& step) {
+      solver_.solve(kkt_, right_, step);
+      return true;
+    });
+  }
+
+  /// The iteration both paths share; correct() turns the right side into a step (and may change the
+  /// factor), false: it cannot.
+  template <class Correct>
+  bool iterate(const Correct& correct) {
+    VectorXd step;
+    double previous = std::numeric_limits<double>::infinity();
+    try {
+      for (last_iterations_ = 1; last_iterations_ <= settings_.max_iterations; ++last_iterations_) {
+        ++result_.iterations;
+        if (!evaluate()) return false;
+        factorize();
+        const bool rounded = last_iterations_ > 1 && at_round_off();
+        if (!correct(step)) return false;
+        x_.q += step.head(n_);
+        x_.lambda += step.tail(m_);
+        const double size = largest(step);
+        if (!std::isfinite(size) || size > 10) return false;
+        if (size < settings_.tolerance || (rounded && size < 1e-4)) return true;
+        // Corrections of the size of the body that do not shrink lead nowhere.
+        if (last_iterations_ > 4 && size > 0.1 && size > 2 * previous) return false;
+        previous = size;
+      }
+    } catch (const Error& error) {
+      if (error.kind() != Error::Kind::numerical) throw;
+      return false;  // a singular matrix on the way
+    }
+    return false;
+  }
+
+  void follow_load() {
+    double step = settings_.first_step;
+    Point last = here(), before = last;
+    while (factor_ != settings_.to) {
+      count_step();
+      const double left = std::abs(settings_.to - last.factor);
+      const bool ends = step * range_ >= left * (1 - 1e-9);
+      const double next = ends ? settings_.to : last.factor + direction_ * step * range_;
+      // Extrapolated along the chord of the last step.
+      if (last.factor != before.factor) {
+        const double ratio = (next - last.factor) / (last.factor - before.factor);
+        x_.q = last.q + ratio * (last.q - before.q);
+        x_.lambda = last.lambda + ratio * (last.lambda - before.lambda);
+      }
+      bool found = newton(next);
+      if (!found && last.factor != before.factor) {  // once more from the last equilibrium
+        go(last);
+        found = newton(next);
+      }
+      if (!found) {
+        go(last);
+        before = last;
+        ++result_.rejected;
+        step = std::min(step, left / range_) / 2;
+        if (step < settings_.smallest_step) fail("no convergence");
+        continue;
+      }
+      before = last;
+      last = here();
+      result_.factor = factor_;
+      ++result_.steps;
+      if (!accepted()) return;
+      if (last_iterations_ <= settings_.easy_iterations)
+        step = std::min(1.5 * step, settings_.largest_step);
+    }
+    result_.completed = true;
+  }
+
+  void follow_arc() {
+    Point last = here();
+    VectorXd response, increment = VectorXd::Zero(n_);
+    double increment_factor = direction_, length = 0, first_length = 0, psi = 0;
+    for (;;) {
+      count_step();
+      bool found = evaluate();
+      if (found) {
+        factorize();
+        load_response(response);
+        if (psi == 0) {
+          psi = std::sqrt(product(response, response));
+          if (!(psi > 0)) throw Error::input("statics: an arc needs a load that moves something");
+          first_length = length = std::sqrt(2.0) * psi * settings_.first_step * range_;
+        }
+        const double rise = std::sqrt(product(response, response) + psi * psi);
+        const double along = product(response, increment) + psi * psi * increment_factor;
+        const double d_factor = (along < 0 ? -1 : 1) * length / rise;
+        x_.q += d_factor * response.head(n_);
+        x_.lambda += d_factor * response.tail(m_);
+        factor_ += d_factor;
+        found = correct_on_sphere(last, length, psi);
+      }
+      if (!found) {
+        go(last);
+        ++result_.rejected;
+        length /= 2;
+        if (length < settings_.smallest_step * first_length / settings_.first_step)
+          fail("no convergence along the arc");
+        continue;
+      }
+      if ((factor_ - settings_.to) * direction_ >= 0) {
+        arrive(last);
+        return;
+      }
+      increment = x_.q - last.q;
+      increment_factor = factor_ - last.factor;
+      last = here();
+      result_.factor = factor_;
+      ++result_.steps;
+      if (!accepted()) return;
+      if (last_iterations_ <= settings_.easy_iterations)
+        length = std::min(1.5 * length, 10 * first_length * settings_.largest_step / 0.25);
+    }
+  }
+
+  /// Newton on the equilibrium and the sphere of that radius around `last`.
+  bool correct_on_sphere(const Point& last, double length, double psi) {
+    history_.clear();
+    VectorXd response;
+    return iterate([&](VectorXd& step) {
+      solver_.solve(kkt_, right_, step);
+      load_response(response);
+      const VectorXd before = x_.q - last.q, moved = before + step.head(n_);
+      const double before_factor = factor_ - last.factor;
+      // |moved + δ response|² + ψ² (before_factor + δ)² = length²
+      const double a = product(response, response) + psi * psi,
+                   b = 2 * (product(response, moved) + psi * psi * before_factor),
+                   c = product(moved, moved) + psi * psi * before_factor * before_factor -
+                       length * length;
+      const double discriminant = b * b - 4 * a * c;
+      if (!(discriminant >= 0)) return false;
+      double best = 0, best_turn = -std::numeric_limits<double>::infinity();
+      for (const double sign : {-1.0, 1.0}) {
+        const double delta = (-b + sign * std::sqrt(discriminant)) / (2 * a);
+        const double turn = product(before, moved) + delta * product(before, response) +
+                            psi * psi * before_factor * (before_factor + delta);
+        if (turn > best_turn) {
+          best_turn = turn;
+          best = delta;
+        }
+      }
+      step += best * response;
+      factor_ += best;
+      return true;
+    });
+  }
+
+  /// Equilibrium exactly at the end, from where the path passed it.
+  void arrive(const Point& last) {
+    const Point beyond = here();
+    const double part = (settings_.to - last.factor) / (beyond.factor - last.factor);
+    x_.q = last.q + part * (beyond.q - last.q);
+    x_.lambda = last.lambda + part * (beyond.lambda - last.lambda);
+    if (!newton(settings_.to)) {
+      go(last);
+      fail("no equilibrium at the end, though the path passed it");
+    }
+    result_.factor = factor_;
+    ++result_.steps;
+    result_.completed = accepted();
+  }
+
+  void count_step() {
+    if (result_.steps + result_.rejected >= settings_.max_steps) fail("too many steps");
+  }
+
+  [[noreturn]] void fail(const std::string& why) {
+    model_.scale_loads(factor_);
+    std::string residuals;
+    char number[40];
+    for (const double r : history_) {
+      std::snprintf(number, sizeof number, " %.2e", r);
+      residuals += number;
+    }
+    char where[160];
+    std::snprintf(where, sizeof where,
+                  " after the load factor %.6g (%d steps, %d rejected, smallest area ratio %.3g)",
+                  factor_, result_.steps, result_.rejected, model_.smallest_area_ratio(x_));
+    throw Error::numerical("statics: " + why + where +
+                           "; residuals of the last attempt:" + residuals);
+  }
+
+  Model& model_;
+  State& x_;
+  StaticSettings settings_;
+  const StaticObserver& observe_;
+  VectorXd scales_;
+  int n_ = 0, m_ = 0, last_iterations_ = 0, analyzed_ = -1;
+  double size_ = 1, range_ = 1, direction_ = 1, factor_ = 0;
+  StaticResult result_;
+  Constraints c_;
+  SparseMatrix kkt_;
+  UnsymmetricSolver solver_;
+  VectorXd force_, right_;
+  std::vector<double> history_;  // |residual| of the iterations of a step
+};
+
+}  // namespace
+
+VectorXd linear_displacement(Model& model, const State& x) {
+  model.prepare(x);
+  const int n = model.n_dofs(), m = model.n_constraints();
+  State at = x;
+  at.lambda = VectorXd::Zero(m);
+  Constraints c;
+  SparseMatrix kkt;
+  VectorXd residual, right(n + m), step;
+  model.constraints(at, c);
+  model.force(at, residual);
+  model.kkt(at, c, {1, 0, 0}, 1, kkt);
+  right << -residual, -c.value;
+  UnsymmetricSolver solver;
+  solver.analyze(kkt);
+  solver.factorize(kkt);
+  solver.solve(kkt, right, step);
+  return step.head(n);
+}
+
+StaticResult solve_static(Model& model, State& x, const StaticSettings& settings,
+                          const StaticObserver& observe) {
+  return Path(model, x, settings, observe).run();
+}
+
+}  // namespace flexmorph::fem

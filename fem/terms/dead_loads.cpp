@@ -1,0 +1,138 @@
+#include "fem/term.h"
+#include "fem/terms/free_work.h"
+
+namespace flexmorph::fem {
+namespace {
+
+/// Loads of fixed size and direction: the same generalized force whatever the shape of the body.
+class DeadLoad : public Term {
+ public:
+  explicit DeadLoad(VectorXd load) : load_(std::move(load)) {
+    if (!load_.allFinite()) throw Error::input("load: a number that is not finite");
+  }
+
+  void add_force(int e, const Local&, LocalRows& force) const override {
+    const VectorXd& share = share_[static_cast<size_t>(e)];
+    if (share.size() > 0) force.noalias() -= factor_ * share * load_.transpose();
+  }
+  void add_tangent(int, const Local&, const Weights&, LocalTangent&) const override {}
+  void add_free_force(int e, const Local& x, FreeForce& force) const override {
+    LocalRows rows = LocalRows::Zero(x.q.rows(), x.q.cols());
+    add_force(e, x, rows);
+    force.head(rows.size()) += Eigen::Map<const VectorXd>(rows.data(), rows.size());
+  }
+  void add_free_tangent(int, const Local&, const Weights&, FreeTangent&) const override {}
+
+  void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override {
+    add_force(e, x.mean, force);
+  }
+  void add_mean_tangent(int, const LocalStep&, const Weights&, LocalTangent&) const override {}
+  std::string name() const override { return "dead load"; }
+  double potential_energy(int e, const Local& x) const override {
+    const VectorXd& share = share_[static_cast<size_t>(e)];
+    return share.size() > 0 ? -factor_ * share.dot(x.q * load_) : 0;
+  }
+  void scale_load(double factor) override { factor_ = factor; }
+
+ protected:
+  void check(const Element& element, const std::string& what) const {
+    if (load_.size() != element.dim())
+      throw Error::input(what + ": " + std::to_string(load_.size()) +
+                         " components, and the body lives in " + std::to_string(element.dim()) +
+                         " dimensions");
+  }
+  /// Adds weight · N at a material point.
+  void add_point(const Element& element, const Vec2& material, double weight) {
+    const int e = element.locate(material, Tabulate::position_rates, table_);
+    // The flow of material through the point would do work that no balance counts.
+    if (!element.free_sides(e).empty())
+      check_fixed(element, e, material);
+    else if (table_.N_t.size() > 0)
+      throw Error::input("load: in an element whose material lines move");
+    VectorXd& share = share_[static_cast<size_t>(e)];
+    if (share.size() == 0) share.setZero(element.n_shapes());
+    share += weight * table_.N.row(0).transpose();
+  }
+
+  VectorXd load_;  // (dim)
+  double factor_ = 1;
+  std::vector<VectorXd> share_;  // ∫ N per element (n_shapes), or empty: not loaded
+  ShapeTable table_;
+};
+
+class PointForce final : public DeadLoad {
+ public:
+  PointForce(const Vec2& material, VectorXd force)
+      : DeadLoad(std::move(force)), material_(material) {}
+  void prepare(const Element& element, const Factors&, bool all) override {
+    if (!all) return;  // only elements whose lines stand still are loaded
+    check(element, "point force");
+    share_.assign(static_cast<size_t>(element.n_elements()), {});
+    add_point(element, material_, 1);
+  }
+
+ private:
+  Vec2 material_;
+};
+
+class EdgeLoad final : public DeadLoad {
+ public:
+  EdgeLoad(std::string edge, VectorXd load) : DeadLoad(std::move(load)), edge_(std::move(edge)) {}
+  void prepare(const Element& element, const Factors&, bool all) override {
+    if (!all) return;  // only elements whose lines stand still are loaded
+    check(element, "load of edge '" + edge_ + "'");
+    share_.assign(static_cast<size_t>(element.n_elements()), {});
+    const std::vector<NodeVectors> nodes = element.edge(edge_);
+    const GaussRule& rule = gauss(2);  // exact for the cubic N
+    for (size_t i = 0; i + 1 < nodes.size(); ++i) {
+      const Vec2 from = nodes[i].material, along = nodes[i + 1].material - from;
+      for (size_t g = 0; g < 2; ++g)
+        add_point(element, from + rule.points[g] * along, rule.weights[g] * along.norm());
+    }
+  }
+
+ private:
+  std::string edge_;
+};
+
+class SurfaceLoad final : public DeadLoad {
+ public:
+  using DeadLoad::DeadLoad;
+  void prepare(const Element& element, const Factors&, bool all) override {
+    check(element, "surface load");
+    if (element.n_scalars() > 0)
+      throw Error::input("surface load: on a body with free material lines");
+    share_.resize(static_cast<size_t>(element.n_elements()));
+    rate_.resize(share_.size());
+    for (int e = 0; e < element.n_elements(); ++e) {
+      if (!all && !element.moving(e)) continue;
+      element.tabulate(e, 3, Tabulate::position_rates, {}, FactorKind::none, table_);
+      share_[static_cast<size_t>(e)] = table_.N.transpose() * table_.weight;
+      rate_[static_cast<size_t>(e)] =
+          table_.N_t.size() > 0 ? VectorXd(table_.N_t.transpose() * table_.weight) : VectorXd();
+    }
+  }
+  double flow_power(int e, const Local& x) const override {
+    const VectorXd& rate = rate_[static_cast<size_t>(e)];
+    return rate.size() > 0 ? -factor_ * rate.dot(x.q * load_) : 0;
+  }
+
+ private:
+  std::vector<VectorXd> rate_;  // ∫ Ṅ per element whose lines move
+};
+
+}  // namespace
+
+std::unique_ptr<Term> make_point_force(const Vec2& material, const VectorXd& force) {
+  return std::make_unique<PointForce>(material, force);
+}
+
+std::unique_ptr<Term> make_edge_load(const std::string& edge, const VectorXd& load) {
+  return std::make_unique<EdgeLoad>(edge, load);
+}
+
+std::unique_ptr<Term> make_surface_load(const VectorXd& load) {
+  return std::make_unique<SurfaceLoad>(load);
+}
+
+}  // namespace flexmorph::fem

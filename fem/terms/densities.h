@@ -1,0 +1,19 @@
+#pragma once
+
+#include "fem/section.h"
+#include "fem/terms/free_work.h"
+
+namespace flexmorph::fem {
+
+/// W = h/2 εᵀ C ε of a St. Venant-Kirchhoff membrane, P (6)-(8); measures r_m, r_n.
+class MembraneDensity final : public EnergyDensity {
+ public:
+  explicit MembraneDensity(const PlaneSection& s) : elasticity_(s.thickness * s.elasticity()) {}
+  std::span<const Measure> measures() const override;
+  double energy(const Measures& z, Measures* gradient, MeasureHessian* hessian) const override;
+
+ private:
+  Eigen::Matrix3d elasticity_;  // h C [N/m]
+};
+
+}  // namespace flexmorph::fem

@@ -1,0 +1,234 @@
+// Shows that the bending term is ½ ∫ κᵀ D κ dA with the curvatures of the deformed surface: against
+// known surfaces (cylinder, saddle), against differences, and that rigid motions bend nothing; the
+// membrane in space beside it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/differences.h"
+#include "tests/support/space_plates.h"
+
+namespace flexmorph::fem {
+namespace {
+
+using testing::first_difference;
+using testing::ShapeSet;
+
+const PlaneSection kSection{0.01, 1e8, 0.3, 2700};
+
+struct Case {
+  std::string term;
+  ShapeSet shapes;
+  bool designed;
+};
+
+class SpaceTerm : public ::testing::TestWithParam<Case> {
+ protected:
+  SpaceTerm()
+      : plate(3, GetParam().shapes, {{0.1, {}}, {0.21, {}}, {0.3, {}}, {0.45, {}}},
+              {{-0.05, {}}, {0.01, {}}, {0.07, {}}}),
+        term(make_term(GetParam().term, kSection)) {
+    if (GetParam().designed) factors = testing::random_factors(5);
+    term->prepare(plate, factors, true);
+  }
+  Local local(int e, double size = 0.2, unsigned seed = 1) const {
+    Local x;
+    x.q = testing::rows_of_element(plate, testing::random_shape(plate, size, seed), e);
+    return x;
+  }
+  LocalRows force(int e, const Local& x) const {
+    LocalRows f = LocalRows::Zero(x.q.rows(), 3);
+    term->add_force(e, x, f);
+    return f;
+  }
+
+  AncfPlate plate;
+  Factors factors;
+  std::unique_ptr<Term> term;
+};
+INSTANTIATE_TEST_SUITE_P(
+    Shapes, SpaceTerm,
+    ::testing::Values(Case{"bending", ShapeSet::h12, false}, Case{"bending", ShapeSet::h16, false},
+                      Case{"bending", ShapeSet::h12, true}, Case{"bending", ShapeSet::h16, true},
+                      Case{"membrane", ShapeSet::h12, false}, Case{"membrane", ShapeSet::h16, true},
+                      Case{"membrane_assumed", ShapeSet::h12, false},
+                      Case{"membrane_assumed", ShapeSet::h16, true}),
+    [](const auto& c) {
+      return c.param.term + (c.param.shapes == ShapeSet::h12 ? "_h12" : "_h16") +
+             (c.param.designed ? "_designed" : "_uniform");
+    });
+
+// Steps of 1e-3 of the element: truncation 1e-12 times the growth of fifth derivatives, round-off
+// 1e-16 / 1e-3.
+TEST_P(SpaceTerm, TangentIsTheDerivativeOfTheForceAndForceThatOfTheEnergy) {
+  const int e = 3;
+  const Local x = local(e);
+  LocalTangent k = LocalTangent::Zero(x.q.size(), x.q.size());
+  term->add_tangent(e, x, {1, 0, 0}, k);
+  EXPECT_LT((k - k.transpose()).cwiseAbs().maxCoeff(), 1e-12 * k.cwiseAbs().maxCoeff());
+  const LocalRows f = force(e, x);
+  const auto vectors = plate.vectors(e);
+  for (Eigen::Index l = 0; l < x.q.rows(); ++l)
+    for (Eigen::Index c = 0; c < 3; ++c) {
+      const double step = 5e-5 / plate.scale(vectors[static_cast<size_t>(l)]);
+      const auto moved = [&](double by) {
+        Local y = x;
+        y.q(l, c) += by;
+        return y;
+      };
+      const MatrixXd df =
+          first_difference([&](double by) { return MatrixXd(force(e, moved(by))); }, step);
+      double worst = 0, largest = 0;
+      for (Eigen::Index row = 0; row < f.size(); ++row) {
+        worst = std::max(worst, std::abs(df(row / 3, row % 3) - k(row, 3 * l + c)));
+        largest = std::max(largest, std::abs(k(row, 3 * l + c)));
+      }
+      EXPECT_LT(worst, 1e-7 * largest);
+      const double du =
+          first_difference([&](double by) { return term->strain_energy(e, moved(by)); }, step);
+      EXPECT_NEAR(du, f(l, c), 1e-7 * f.col(c).cwiseAbs().maxCoeff());
+    }
+}
+
+// Scale: unit strain, and a curvature of one over the plate's width. Moved by 10 m, the positions
+// have round-off 1e-15 m, 2e-14 of an element, and curvatures 1e-12 of 1/width.
+TEST_P(SpaceTerm, RigidMotionStoresNoEnergyAndNeedsNoForce) {
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(2.3, Vec3(1, 2, 3).normalized()).matrix();
+  MatrixXd q = plate.reference() * turn.transpose();
+  for (int k = 0; k < plate.n_vectors(); ++k)
+    if (plate.is_position(k)) q.row(k) += Eigen::RowVector3d(8, -6, 1);
+  const double c = kSection.thickness, area = 0.1 * 0.06,
+               unit = kSection.youngs_modulus * area *
+                      (GetParam().term != "bending" ? c : c * c * c / 12 / 0.06 / 0.06);
+  for (int e = 0; e < plate.n_elements(); ++e) {
+    Local x;
+    x.q = testing::rows_of_element(plate, q, e);
+    EXPECT_LT(std::abs(term->strain_energy(e, x)), 1e-12 * unit);
+    EXPECT_LT(force(e, x).cwiseAbs().maxCoeff(), 1e-10 * unit / 0.06);
+  }
+}
+
+TEST_P(SpaceTerm, EnergyDoesNotSeeLargeRotationsAndForceTurnsAlong) {
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(2.3, Vec3(1, -2, 3).normalized()).matrix();
+  Local x = local(1);
+  const double before = term->strain_energy(1, x);
+  const MatrixXd turned = force(1, x) * turn.transpose();
+  x.q = (x.q * turn.transpose()).eval();
+  EXPECT_NEAR(term->strain_energy(1, x), before, 1e-12 * before);
+  EXPECT_LT((force(1, x) - turned).cwiseAbs().maxCoeff(), 1e-11 * turned.cwiseAbs().maxCoeff());
+}
+
+/// Energy of a surface r(m, n) interpolated by h16, the term integrated with n x n points.
+double energy_of_surface(const std::function<Vec3(double, double)>& r, int elements, int n_points) {
+  AncfPlate plate(3, ShapeSet::h16, testing::even_lines(0, 1, elements),
+                  testing::even_lines(0, 1, elements));
+  MatrixXd q = plate.reference();
+  for (const NodeVectors& node : plate.nodes()) {
+    const double m = node.material.x(), n = node.material.y(), h = 1e-3;
+    const auto by_n = [&](double at) {
+      return Vec3(first_difference([&](double d) { return r(at, n + d); }, h));
+    };
+    q.row(node.r) = r(m, n);
+    q.row(node.r_m) = first_difference([&](double d) { return r(m + d, n); }, h);
+    q.row(node.r_n) = by_n(m);
+    q.row(node.r_mn) = first_difference([&](double d) { return by_n(m + d); }, h);
+  }
+  const auto term = make_bending(kSection, n_points);
+  term->prepare(plate, {}, true);
+  double out = 0;
+  for (int e = 0; e < plate.n_elements(); ++e) {
+    Local x;
+    x.q = testing::rows_of_element(plate, q, e);
+    out += term->strain_energy(e, x);
+  }
+  return out;
+}
+
+// Rolled on a cylinder of radius R along a direction at angle a: κ = (cos², sin², 2 sin cos)/R, for
+// any a the energy D/(2 R²). Hermite interpolation errs by (h/R)²/12 in the curvature locally and
+// by its square in the energy: (0.125/0.6)⁴/144 = 1e-5, a few times that with cross derivatives.
+TEST(Bending, CylinderHasTheEnergyOfItsCurvature) {
+  const double d = kSection.elasticity()(0, 0) * std::pow(kSection.thickness, 3) / 12, radius = 0.6;
+  for (const double a : {0.0, 0.5, std::numbers::pi / 2}) {
+    const Vec3 along(std::cos(a), std::sin(a), 0), across(-std::sin(a), std::cos(a), 0);
+    const auto cylinder = [&](double m, double n) {
+      const double s = m * along.x() + n * along.y(), t = m * across.x() + n * across.y();
+      return Vec3(radius * std::sin(s / radius) * along + t * across +
+                  Vec3(0, 0, radius * (1 - std::cos(s / radius))));
+    };
+    EXPECT_NEAR(energy_of_surface(cylinder, 8, 5) / (d / (2 * radius * radius)), 1, 1e-4) << a;
+  }
+}
+
+// z = t m n with a small t: κ = (0, 0, 2 t), energy ½ D (1-ν)/2 (2t)²; corrections are t².
+TEST(Bending, SaddleHasTheEnergyOfItsTwist) {
+  const double d = kSection.elasticity()(2, 2) * std::pow(kSection.thickness, 3) / 12, t = 1e-4;
+  const double energy =
+      energy_of_surface([&](double m, double n) { return Vec3(m, n, t * m * n); }, 2, 5);
+  EXPECT_NEAR(energy / (0.5 * d * 4 * t * t), 1, 1e-7);
+}
+
+// The integrand is rational: at a moderate dome of 4 x 4 elements the default rule is converged.
+TEST(Bending, SevenPointsConfirmFive) {
+  const auto dome = [](double m, double n) {
+    return Vec3(m, n, 0.3 * std::sin(2 * m) * std::cos(n));
+  };
+  const double five = energy_of_surface(dome, 4, 5), seven = energy_of_surface(dome, 4, 7);
+  EXPECT_NEAR(five / seven, 1, 1e-6);
+}
+
+TEST(Bending, NeedsSpace) {
+  Model model;
+  std::vector<std::unique_ptr<Term>> terms;
+  terms.push_back(make_term("bending", kSection));
+  model.add_body("arm",
+                 std::make_unique<AncfPlate>(2, ShapeSet::h16, testing::even_lines(0, 1, 1),
+                                             testing::even_lines(0, 1, 1)),
+                 kSection, std::move(terms));
+  try {
+    model.prepare(0);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), Error::Kind::input);
+    EXPECT_STREQ(error.what(), "body 'arm': term 'bending' needs a body in space");
+  }
+}
+
+// Second derivatives of the shape functions against differences of the first ones.
+TEST(Bending, SecondDerivativesAreDerivativesOfTheFirst) {
+  for (const ShapeSet shapes : {ShapeSet::h12, ShapeSet::h16}) {
+    const AncfPlate plate = testing::swinging_plate(shapes, 0.4);
+    for (const int e : {0, 5}) {
+      const int i = e / plate.n_n(), j = e % plate.n_n();
+      const double a = plate.line_m(i + 1).value - plate.line_m(i).value,
+                   b = plate.line_n(j + 1).value - plate.line_n(j).value;
+      const auto table = [&](double s, double u) {
+        ShapeTable t;
+        plate.at(e, s, u, Tabulate::curvature, t);
+        return t;
+      };
+      const ShapeTable t = table(0.3, 0.6);
+      const auto along_m = [&](double d) { return MatrixXd(table(0.3 + d / a, 0.6).N_m); };
+      const auto along_n = [&](double d) { return MatrixXd(table(0.3, 0.6 + d / b).N_n); };
+      const auto mixed = [&](double d) { return MatrixXd(table(0.3, 0.6 + d / b).N_m); };
+      // Cubic: the differences are exact but for round-off 1e-16 / 1e-2 of values up to 1/a.
+      EXPECT_LT((t.N_mm - first_difference(along_m, 1e-2)).norm(), 1e-12 * t.N_mm.norm());
+      EXPECT_LT((t.N_nn - first_difference(along_n, 1e-2)).norm(), 1e-12 * t.N_nn.norm());
+      EXPECT_LT((t.N_mn - first_difference(mixed, 1e-2)).norm(), 1e-12 * t.N_mn.norm());
+    }
+  }
+}
+
+TEST(SpaceModel, SmallestAreaRatioIsThatOfTheSurface) {
+  testing::SpacePlate p;
+  p.nx = p.ny = 2;
+  Model model = p.model();
+  State x = model.reference();
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(1.1, Vec3(1, 2, 0).normalized()).matrix();
+  for (Eigen::Index k = 0; k < x.q.size(); k += 3)
+    x.q.segment<3>(k) = (turn * (Vec3(0.5, 1.2, 1).asDiagonal() * x.q.segment<3>(k))).eval();
+  EXPECT_NEAR(model.smallest_area_ratio(x), 0.6, 1e-14);
+}
+
+}  // namespace
+}  // namespace flexmorph::fem
