@@ -122,8 +122,9 @@ class Path {
         if (kkt_.innerIndexPtr()[p] < n_)
           noise[kkt_.innerIndexPtr()[p]] += std::abs(kkt_.valuePtr()[p]) * q;
     }
-    const double epsilon = std::numeric_limits<double>::epsilon();
-    return (right_.head(n_).cwiseAbs().array() <= epsilon * noise.array()).all();
+    // A few roundings per product, of the Gram entries and of their sums.
+    const double rounding = 16 * std::numeric_limits<double>::epsilon();
+    return (right_.head(n_).cwiseAbs().array() <= rounding * noise.array()).all();
   }
 
   /// dq/dμ (and dλ/dμ) at the matrix of the last factorize(): loads are linear in the factor.
