@@ -105,7 +105,7 @@ class Term {
 /// What a body is made of.
 std::unique_ptr<Term> make_inertia(const PlaneSection& section);
 std::unique_ptr<Term> make_membrane(const PlaneSection& section);
-/// The membrane with assumed strains: does not lock in thin bending (terms/assumed_strain.h).
+/// The membrane with assumed strains: does not lock in thin bending (terms/membrane_invariant.h).
 std::unique_ptr<Term> make_assumed_membrane(const PlaneSection& section);
 /// Bending of a thin plate in space, n x n Gauss points per element (5: force to 5e-4 at strong
 /// deformation; 7: 4e-7). @throws Error (input) at prepare() for a body in the plane.

@@ -2,9 +2,9 @@
 #include <memory>
 
 #include "fem/term.h"
-#include "fem/terms/assumed_strain.h"
 #include "fem/terms/densities.h"
 #include "fem/terms/gram.h"
+#include "fem/terms/membrane_invariant.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -31,9 +31,7 @@ using gram::Coupling;
 /// Replaces P (11)-(15) and the tensors of the appendix; design.md section 2.
 class Membrane final : public Term {
  public:
-  enum class Strains { displacement, assumed };  // as they are, or see terms/assumed_strain.h
-
-  explicit Membrane(const PlaneSection& s, Strains strains = Strains::displacement)
+  Membrane(const PlaneSection& s, Strains strains)
       : elasticity_(s.thickness * s.elasticity()), strains_(strains), density_(s) {}
 
   void prepare(const Element& element, const Factors& factors, bool all) override {
@@ -171,10 +169,10 @@ class Membrane final : public Term {
   template <int kKinds>
   void number() {
     using N = gram::Numbering<kKinds>;
-    pair_i_.assign(N::tables.i.begin(), N::tables.i.end());
-    pair_j_.assign(N::tables.j.begin(), N::tables.j.end());
-    starts_.assign(N::tables.start.begin(), N::tables.start.end());
-    if (coupling_ == Coupling::all) starts_ = {0, N::n_pairs};
+    pairs_.i.assign(N::tables.i.begin(), N::tables.i.end());
+    pairs_.j.assign(N::tables.j.begin(), N::tables.j.end());
+    pairs_.starts.assign(N::tables.start.begin(), N::tables.start.end());
+    if (coupling_ == Coupling::all) pairs_.starts = {0, N::n_pairs};
     kinds_ = kKinds;
     function_m_.resize(N::n);
     function_n_.resize(N::n);
@@ -278,7 +276,7 @@ class Membrane final : public Term {
     }
     if (n_free == count || (!all && n_moving == 0)) return;
     std::array<Packed, kLanes> w;
-    out.reference.resize(pair_i_.size());
+    out.reference.resize(pairs_.i.size());
     for (int lane = 0; lane < count; ++lane)
       if ((all || element.moving(first + lane)) && !free_.has(first + lane)) {
         w[static_cast<size_t>(lane)] = integrate(element, first + lane, factors);
@@ -332,7 +330,11 @@ class Membrane final : public Term {
                       equal(previous_.weight, table_.weight) && equal(previous_.f_m, table_.f_m) &&
                       equal(previous_.f_n, table_.f_n);
     tabulated_ = e;
-    if (!same) last_ = invariant();
+    if (!same) {
+      const ProductTable vectors = even_and_odd(table_, function_m_, function_n_);
+      last_ = std::make_shared<std::vector<double>>(
+          membrane_invariant(vectors, pairs_, elasticity_, strains_));
+    }
     return last_;
   }
 
@@ -341,8 +343,9 @@ class Membrane final : public Term {
     if (squares_of_ == last_) return squares_;
     auto out = std::make_shared<std::vector<double>>();
     size_t at = 0;
-    for (size_t c = 0; c + 1 < starts_.size(); ++c) {
-      const auto m = static_cast<size_t>(starts_[c + 1] - starts_[c]), block = out->size();
+    for (size_t c = 0; c + 1 < pairs_.starts.size(); ++c) {
+      const auto m = static_cast<size_t>(pairs_.starts[c + 1] - pairs_.starts[c]),
+                 block = out->size();
       out->resize(block + m * m);
       for (size_t r = 0; r < m; ++r)
         for (size_t t = 0; t <= r; ++t, ++at)
@@ -350,102 +353,6 @@ class Membrane final : public Term {
     }
     squares_of_ = last_;
     return squares_ = std::move(out);
-  }
-
-  /// The four functions of one coordinate as even and odd ones: of the values, of the slopes.
-  static MatrixXd even_and_odd(const MatrixXd& f) {
-    MatrixXd out(f.rows(), 4);
-    out << f.col(0) + f.col(2), f.col(2) - f.col(0), f.col(1) - f.col(3), f.col(1) + f.col(3);
-    return out;
-  }
-
-  Packed assumed_invariant() const {
-    const ProductTable vectors{table_.weight,
-                               even_and_odd(table_.f_m),
-                               even_and_odd(table_.d_m),
-                               even_and_odd(table_.f_n),
-                               even_and_odd(table_.d_n),
-                               function_m_,
-                               function_n_};
-    const MatrixXd w = assumed_membrane_invariant(vectors, pair_i_, pair_j_, elasticity_);
-    auto out = std::make_shared<std::vector<double>>();
-    for (size_t block = 0; block + 1 < starts_.size(); ++block)
-      for (int p = starts_[block]; p < starts_[block + 1]; ++p)
-        for (int q = starts_[block]; q <= p; ++q) out->push_back(w(p, q));
-    return out;
-  }
-
-  /// W = Σ_points Λᵀ C Λ. With N_k = f_i(m) g_a(n) every entry of Λᵀ C Λ is a sum of products of
-  /// four functions of m and four of n, so all of W is made of three matrices, each summed over m
-  /// first and over n then,
-  ///
-  ///   X (p q, r s) = Σ_gh w_gh (x_p y_q)(m_g) (y_r x_s)(n_h)     p, q, r, s: pairs of functions
-  ///
-  /// with f' f' f' f' (11), f f f f (22) or f' f' f f (all others) along m.
-  Packed invariant() {
-    if (strains_ == Strains::assumed) return assumed_invariant();
-    const MatrixXd dd_m = pairs(even_and_odd(table_.d_m)), ff_m = pairs(even_and_odd(table_.f_m)),
-                   dd_n = pairs(even_and_odd(table_.d_n)), ff_n = pairs(even_and_odd(table_.f_n));
-    const MatrixXd& w = table_.weight;
-    const MatrixXd x11 = products(dd_m, dd_m) * w * products(ff_n, ff_n).transpose();
-    const MatrixXd x22 = products(ff_m, ff_m) * w * products(dd_n, dd_n).transpose();
-    const MatrixXd x12 = products(dd_m, ff_m) * w * products(ff_n, dd_n).transpose();
-
-    constexpr int n = 4, n_pairs_1d = n * (n + 1) / 2;
-    const auto pair = [](int i, int j) {  // number of {i, j} among the pairs
-      if (i > j) std::swap(i, j);
-      return i * (2 * n - i + 1) / 2 + j - i;
-    };
-    const auto n_vectors = static_cast<int>(function_m_.size());
-    Eigen::MatrixXi m_pair(n_vectors, n_vectors), n_pair(n_vectors, n_vectors);
-    for (int k = 0; k < n_vectors; ++k)
-      for (int l = 0; l < n_vectors; ++l) {
-        const auto at = [](const std::vector<int>& x, int i) { return x[static_cast<size_t>(i)]; };
-        m_pair(k, l) = pair(at(function_m_, k), at(function_m_, l));
-        n_pair(k, l) = pair(at(function_n_, k), at(function_n_, l));
-      }
-    // Entry of one of the three: pairs (p, q) along m and the same unknowns (r, s) along n.
-    const auto entry = [&](const MatrixXd& x, int p_m, int q_m, int p_n, int q_n) {
-      return x(p_m * n_pairs_1d + q_m, p_n * n_pairs_1d + q_n);
-    };
-    const double c11 = elasticity_(0, 0), c22 = elasticity_(1, 1), c12 = elasticity_(0, 1),
-                 c33 = elasticity_(2, 2);
-    auto out = std::make_shared<std::vector<double>>();
-    for (size_t block = 0; block + 1 < starts_.size(); ++block)
-      for (int p = starts_[block]; p < starts_[block + 1]; ++p)
-        for (int q = starts_[block]; q <= p; ++q) {
-          const int k = pair_i_[static_cast<size_t>(p)], l = pair_j_[static_cast<size_t>(p)],
-                    r = pair_i_[static_cast<size_t>(q)], s = pair_j_[static_cast<size_t>(q)];
-          const int kl_m = m_pair(k, l), kl_n = n_pair(k, l), rs_m = m_pair(r, s),
-                    rs_n = n_pair(r, s), kr_m = m_pair(k, r), kr_n = n_pair(k, r),
-                    ls_m = m_pair(l, s), ls_n = n_pair(l, s), ks_m = m_pair(k, s),
-                    ks_n = n_pair(k, s), lr_m = m_pair(l, r), lr_n = n_pair(l, r);
-          // ε₁₁ and ε₂₂ have N_k,m N_l,m and N_k,n N_l,n; 2ε₁₂ the symmetric N_k,m N_l,n.
-          const double normal =
-              c11 * entry(x11, kl_m, rs_m, kl_n, rs_n) + c22 * entry(x22, kl_m, rs_m, kl_n, rs_n) +
-              c12 * (entry(x12, kl_m, rs_m, kl_n, rs_n) + entry(x12, rs_m, kl_m, rs_n, kl_n));
-          const double shear =
-              entry(x12, kr_m, ls_m, kr_n, ls_n) + entry(x12, ks_m, lr_m, ks_n, lr_n) +
-              entry(x12, lr_m, ks_m, lr_n, ks_n) + entry(x12, ls_m, kr_m, ls_n, kr_n);
-          out->push_back(normal + c33 * shear);
-        }
-    return out;
-  }
-
-  /// Products of two functions at all points: a row per pair i <= j.
-  static MatrixXd pairs(const MatrixXd& f) {
-    MatrixXd out(f.cols() * (f.cols() + 1) / 2, f.rows());
-    for (Eigen::Index i = 0, p = 0; i < f.cols(); ++i)
-      for (Eigen::Index j = i; j < f.cols(); ++j, ++p)
-        out.row(p) = f.col(i).cwiseProduct(f.col(j)).transpose();
-    return out;
-  }
-  /// Products of rows of x and rows of y at all points: row p y.rows() + q.
-  static MatrixXd products(const MatrixXd& x, const MatrixXd& y) {
-    MatrixXd out(x.rows() * y.rows(), x.cols());
-    for (Eigen::Index p = 0; p < x.rows(); ++p)
-      out.middleRows(p * y.rows(), y.rows()) = y * x.row(p).asDiagonal();
-    return out;
   }
 
   Eigen::Matrix3d elasticity_;  // h C [N/m]
@@ -456,8 +363,8 @@ class Membrane final : public Term {
   const Factors* factors_ = nullptr;
   int dim_ = 0, kinds_ = 0;
   Coupling coupling_ = Coupling::classes;
-  std::vector<int> pair_i_, pair_j_, starts_;  // of gram::Numbering
-  std::vector<int> function_m_, function_n_;   // even or odd function of every vector
+  PairNumbers pairs_;                         // of gram::Numbering
+  std::vector<int> function_m_, function_n_;  // even or odd function of every vector
   std::vector<BatchData> batches_;
   ProductTable table_, previous_;
   int tabulated_ = -1;  // element of table_
@@ -468,11 +375,11 @@ class Membrane final : public Term {
 }  // namespace
 
 std::unique_ptr<Term> make_membrane(const PlaneSection& section) {
-  return std::make_unique<Membrane>(section);
+  return std::make_unique<Membrane>(section, Strains::displacement);
 }
 
 std::unique_ptr<Term> make_assumed_membrane(const PlaneSection& section) {
-  return std::make_unique<Membrane>(section, Membrane::Strains::assumed);
+  return std::make_unique<Membrane>(section, Strains::assumed);
 }
 
 }  // namespace flexmorph::fem

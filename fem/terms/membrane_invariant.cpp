@@ -1,0 +1,179 @@
+#include "fem/terms/membrane_invariant.h"
+
+#include <array>
+
+namespace flexmorph::fem {
+namespace {
+
+/// Products of two functions at all points: a row per pair i <= j.
+MatrixXd products_of_two(const MatrixXd& f) {
+  MatrixXd out(f.cols() * (f.cols() + 1) / 2, f.rows());
+  for (Eigen::Index i = 0, p = 0; i < f.cols(); ++i)
+    for (Eigen::Index j = i; j < f.cols(); ++j, ++p)
+      out.row(p) = f.col(i).cwiseProduct(f.col(j)).transpose();
+  return out;
+}
+/// Products of rows of x and rows of y at all points: row p y.rows() + q.
+MatrixXd products(const MatrixXd& x, const MatrixXd& y) {
+  MatrixXd out(x.rows() * y.rows(), x.cols());
+  for (Eigen::Index p = 0; p < x.rows(); ++p)
+    out.middleRows(p * y.rows(), y.rows()) = y * x.row(p).asDiagonal();
+  return out;
+}
+
+/// Lower triangles of the blocks, entry(k, l, r, s) for the pairs (k, l) and (r, s).
+template <class Entry>
+std::vector<double> pack(const PairNumbers& pairs, const Entry& entry) {
+  std::vector<double> out;
+  for (size_t block = 0; block + 1 < pairs.starts.size(); ++block)
+    for (auto p = static_cast<size_t>(pairs.starts[block]);
+         p < static_cast<size_t>(pairs.starts[block + 1]); ++p)
+      for (auto q = static_cast<size_t>(pairs.starts[block]); q <= p; ++q)
+        out.push_back(entry(pairs.i[p], pairs.j[p], pairs.i[q], pairs.j[q]));
+  return out;
+}
+
+/// As the displacements have them: W = Σ_points Λᵀ C Λ. With N_k = f_i(m) g_a(n) every entry of Λᵀ
+/// C Λ is a sum of products of four functions of m and four of n, so all of W is made of three
+/// matrices, each summed over m first and over n then,
+///
+///   X (p q, r s) = Σ_gh w_gh (x_p y_q)(m_g) (y_r x_s)(n_h)     p, q, r, s: pairs of functions
+///
+/// with f' f' f' f' (11), f f f f (22) or f' f' f f (all others) along m.
+std::vector<double> of_displacements(const ProductTable& t, const PairNumbers& pairs,
+                                     const Eigen::Matrix3d& elasticity) {
+  const MatrixXd dd_m = products_of_two(t.d_m), ff_m = products_of_two(t.f_m),
+                 dd_n = products_of_two(t.d_n), ff_n = products_of_two(t.f_n);
+  const MatrixXd& w = t.weight;
+  const MatrixXd x11 = products(dd_m, dd_m) * w * products(ff_n, ff_n).transpose();
+  const MatrixXd x22 = products(ff_m, ff_m) * w * products(dd_n, dd_n).transpose();
+  const MatrixXd x12 = products(dd_m, ff_m) * w * products(ff_n, dd_n).transpose();
+
+  constexpr int n = 4, n_pairs_1d = n * (n + 1) / 2;
+  const auto pair = [](int i, int j) {  // number of {i, j} among the pairs
+    if (i > j) std::swap(i, j);
+    return i * (2 * n - i + 1) / 2 + j - i;
+  };
+  const auto n_vectors = static_cast<int>(t.function_m.size());
+  Eigen::MatrixXi m_pair(n_vectors, n_vectors), n_pair(n_vectors, n_vectors);
+  for (int k = 0; k < n_vectors; ++k)
+    for (int l = 0; l < n_vectors; ++l) {
+      const auto at = [](const std::vector<int>& x, int i) { return x[static_cast<size_t>(i)]; };
+      m_pair(k, l) = pair(at(t.function_m, k), at(t.function_m, l));
+      n_pair(k, l) = pair(at(t.function_n, k), at(t.function_n, l));
+    }
+  // Entry of one of the three: pairs (p, q) along m and the same unknowns (r, s) along n.
+  const auto entry = [&](const MatrixXd& x, int p_m, int q_m, int p_n, int q_n) {
+    return x(p_m * n_pairs_1d + q_m, p_n * n_pairs_1d + q_n);
+  };
+  const double c11 = elasticity(0, 0), c22 = elasticity(1, 1), c12 = elasticity(0, 1),
+               c33 = elasticity(2, 2);
+  return pack(pairs, [&](int k, int l, int r, int s) {
+    const int kl_m = m_pair(k, l), kl_n = n_pair(k, l), rs_m = m_pair(r, s), rs_n = n_pair(r, s),
+              kr_m = m_pair(k, r), kr_n = n_pair(k, r), ls_m = m_pair(l, s), ls_n = n_pair(l, s),
+              ks_m = m_pair(k, s), ks_n = n_pair(k, s), lr_m = m_pair(l, r), lr_n = n_pair(l, r);
+    // ε₁₁ and ε₂₂ have N_k,m N_l,m and N_k,n N_l,n; 2ε₁₂ the symmetric N_k,m N_l,n.
+    const double normal =
+        c11 * entry(x11, kl_m, rs_m, kl_n, rs_n) + c22 * entry(x22, kl_m, rs_m, kl_n, rs_n) +
+        c12 * (entry(x12, kl_m, rs_m, kl_n, rs_n) + entry(x12, rs_m, kl_m, rs_n, kl_n));
+    const double shear = entry(x12, kr_m, ls_m, kr_n, ls_n) + entry(x12, ks_m, lr_m, ks_n, lr_n) +
+                         entry(x12, lr_m, ks_m, lr_n, ks_n) + entry(x12, ls_m, kr_m, ls_n, kr_n);
+    return normal + c33 * shear;
+  });
+}
+
+/// Parabola through the values at 0, 1/2 and 1 of a polynomial of degree below n, all by values at
+/// the n Gauss points (n x n).
+MatrixXd parabola_through_samples(int n) {
+  const GaussRule& rule = gauss(n);
+  constexpr std::array<double, 3> kSamples = {0, 0.5, 1};
+  MatrixXd sample(3, n), interpolate(n, 3);
+  for (int g = 0; g < n; ++g) {
+    for (int i = 0; i < 3; ++i) {
+      double lagrange = rule.barycentric[static_cast<size_t>(g)];
+      for (int o = 0; o < n; ++o)
+        if (o != g)
+          lagrange *= kSamples[static_cast<size_t>(i)] - rule.points[static_cast<size_t>(o)];
+      sample(i, g) = lagrange;
+    }
+    const double s = rule.points[static_cast<size_t>(g)];
+    interpolate.row(g) << (2 * s - 1) * (s - 1), 4 * s * (1 - s), s * (2 * s - 1);
+  }
+  return interpolate * sample;
+}
+
+/// Products x_i y_j at all points: row i x.cols() + j, a column per point.
+MatrixXd all_products(const MatrixXd& x, const MatrixXd& y) {
+  MatrixXd out(x.cols() * y.cols(), x.rows());
+  for (Eigen::Index i = 0; i < x.cols(); ++i)
+    for (Eigen::Index j = 0; j < y.cols(); ++j)
+      out.row(i * y.cols() + j) = x.col(i).cwiseProduct(y.col(j)).transpose();
+  return out;
+}
+
+/// W of assumed strains, all pairs by all pairs.
+MatrixXd of_assumed_strains(const ProductTable& t, const PairNumbers& pairs,
+                            const Eigen::Matrix3d& elasticity) {
+  const MatrixXd assume = parabola_through_samples(static_cast<int>(t.f_m.rows())).transpose();
+  // Factors of ε₁₁, ε₂₂ and 2ε₁₂ along m and along n: a row per pair of functions.
+  const MatrixXd m11 = all_products(t.d_m, t.d_m) * assume, n11 = all_products(t.f_n, t.f_n),
+                 m22 = all_products(t.f_m, t.f_m), n22 = all_products(t.d_n, t.d_n) * assume,
+                 m12 = all_products(t.d_m, t.f_m) * assume,
+                 n12 = all_products(t.d_n, t.f_n) * assume;
+  const auto n_functions = t.f_m.cols();
+  const auto n_pairs = static_cast<Eigen::Index>(pairs.i.size());
+  const auto along = t.weight.rows(), across = t.weight.cols();
+  // Λ of each strain at all points, a row per pair.
+  MatrixXd l11(n_pairs, t.weight.size()), l22(n_pairs, t.weight.size()),
+      l12(n_pairs, t.weight.size());
+  for (Eigen::Index p = 0; p < n_pairs; ++p) {
+    const auto k = static_cast<size_t>(pairs.i[static_cast<size_t>(p)]),
+               l = static_cast<size_t>(pairs.j[static_cast<size_t>(p)]);
+    const auto kl_m = n_functions * t.function_m[k] + t.function_m[l],
+               lk_m = n_functions * t.function_m[l] + t.function_m[k],
+               kl_n = n_functions * t.function_n[k] + t.function_n[l],
+               lk_n = n_functions * t.function_n[l] + t.function_n[k];
+    for (Eigen::Index h = 0; h < across; ++h)
+      for (Eigen::Index g = 0; g < along; ++g) {
+        const auto point = h * along + g;
+        l11(p, point) = m11(kl_m, g) * n11(kl_n, h);
+        l22(p, point) = m22(kl_m, g) * n22(kl_n, h);
+        // N_k,m N_l,n + N_l,m N_k,n
+        l12(p, point) = (m12(kl_m, g) * n12(lk_n, h) + m12(lk_m, g) * n12(kl_n, h));
+      }
+  }
+  const auto weights = Eigen::Map<const VectorXd>(t.weight.data(), t.weight.size()).asDiagonal();
+  const MatrixXd w11 = l11 * weights;
+  MatrixXd out = elasticity(0, 1) * w11 * l22.transpose();
+  out += out.transpose().eval();
+  out += elasticity(0, 0) * w11 * l11.transpose();
+  out += elasticity(1, 1) * (l22 * weights) * l22.transpose();
+  out += elasticity(2, 2) * (l12 * weights) * l12.transpose();
+  return out;
+}
+
+}  // namespace
+
+ProductTable even_and_odd(const ProductTable& table, const std::vector<int>& function_m,
+                          const std::vector<int>& function_n) {
+  const auto both = [](const MatrixXd& f) {  // of the values, of the slopes
+    MatrixXd out(f.rows(), 4);
+    out << f.col(0) + f.col(2), f.col(2) - f.col(0), f.col(1) - f.col(3), f.col(1) + f.col(3);
+    return out;
+  };
+  return {table.weight,    both(table.f_m), both(table.d_m), both(table.f_n),
+          both(table.d_n), function_m,      function_n};
+}
+
+std::vector<double> membrane_invariant(const ProductTable& table, const PairNumbers& pairs,
+                                       const Eigen::Matrix3d& elasticity, Strains strains) {
+  if (strains == Strains::displacement) return of_displacements(table, pairs, elasticity);
+  const MatrixXd w = of_assumed_strains(table, pairs, elasticity);
+  std::vector<double> out;
+  for (size_t block = 0; block + 1 < pairs.starts.size(); ++block)
+    for (int p = pairs.starts[block]; p < pairs.starts[block + 1]; ++p)
+      for (int q = pairs.starts[block]; q <= p; ++q) out.push_back(w(p, q));
+  return out;
+}
+
+}  // namespace flexmorph::fem
