@@ -74,6 +74,8 @@ CLI::App* add_sweep(CLI::App& app, SweepOptions& options) {
   command->add_option("--index", options.index, "only this variant, from 1 (job arrays)")
       ->check(CLI::Range(1, 1'000'000));
   command->add_flag("--list", options.list, "prints the variants");
+  command->add_option("--reference", options.reference,
+                      "CSV with columns of motion.csv, drawn as points (scenes without a design)");
   return command;
 }
 

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 
 #include "cases/compare_report.h"
 #include "cases/run.h"
 #include "cases/scene.h"
+#include "cases/sweep_motion.h"
 #include "io/plots.h"
 #include "io/sheet.h"
 #include "io/tables.h"
@@ -43,6 +45,7 @@ struct Sweep {
   std::vector<Varied> varied;
   std::vector<Variant> variants;
   std::vector<mmc::Goal> goals;  // of every designed body of every variant: they may be varied
+  Motions reference;             // of scenes without a design
 
   size_t n_bodies() const { return goals.size() / variants.size(); }
   std::string value(size_t variant, size_t key) const {
@@ -155,15 +158,21 @@ std::pair<double, double> range_of(std::span<const VariantResult> runs, size_t b
   return {lowest, highest};
 }
 
+/// What is varied, and its values.
+std::string title_of(const Sweep& sweep, size_t variant) {
+  std::string out;
+  for (size_t v = 0; v < sweep.varied.size(); ++v)
+    out += (v > 0 ? ", " : "") + last_part(sweep.varied[v].key) + " = " + sweep.value(variant, v);
+  return out;
+}
+
 /// Designs above their histories, those of a body on the same axis: P Figs. 15-22 on one page.
 std::string sheet_of(const Sweep& sweep, std::span<const VariantResult> runs) {
   std::vector<io::SheetEntry> entries;
   for (size_t k = 0; k < runs.size(); ++k) {
     const VariantResult& run = runs[k];
     io::SheetEntry entry;
-    for (size_t v = 0; v < sweep.varied.size(); ++v)
-      entry.title +=
-          (v > 0 ? ", " : "") + last_part(sweep.varied[v].key) + " = " + sweep.value(k, v);
+    entry.title = title_of(sweep, k);
     if (!run.done()) entry.title += " (" + run.status + ")";
     for (size_t i = 0; i < run.bodies.size(); ++i) {
       const std::string stem = run.bodies.size() > 1 ? "/design_" + run.bodies[i].body : "/design";
@@ -181,9 +190,35 @@ std::string sheet_of(const Sweep& sweep, std::span<const VariantResult> runs) {
                            sweep.varied.size() > 1 && last <= 6 ? static_cast<int>(last) : 4);
 }
 
+std::vector<Motions> motions_of(const Sweep& sweep, std::span<const VariantResult> runs) {
+  std::vector<Motions> out;
+  for (size_t k = 0; k < runs.size(); ++k)
+    out.push_back(read_motions(runs[k].directory, title_of(sweep, k)));
+  return out;
+}
+
+/// The table on the terminal, designs or motions.
+std::vector<std::vector<std::string>> summary_of(const Sweep& sweep,
+                                                 std::span<const VariantResult> runs) {
+  return sweep.goals.empty() ? motion_table(motions_of(sweep, runs), runs) : table_of(sweep, runs);
+}
+
+void write_motions(const Sweep& sweep, std::span<const VariantResult> runs,
+                   const std::string& stem) {
+  const std::vector<Motions> motions = motions_of(sweep, runs);
+  const std::vector<std::vector<std::string>> rows = motion_table(motions, runs);
+  io::CsvWriter csv(stem + ".csv", rows[0]);
+  for (size_t r = 1; r < rows.size(); ++r)
+    csv.row(std::vector<io::Cell>(rows[r].begin(), rows[r].end()));
+  io::write_file(stem + ".md", "# " + sweep.case_name + "\n\n" + io::markdown_table(rows));
+  io::write_file(stem + ".svg",
+                 io::plot_svg(motion_figure(sweep.case_name, motions, sweep.reference)));
+}
+
 void write_all(const Sweep& sweep, std::span<const VariantResult> runs,
                const std::string& directory) {
   const std::string stem = directory + "/sweep";
+  if (sweep.goals.empty()) return write_motions(sweep, runs, stem);
   write_csv(sweep, runs, stem + ".csv");
   io::write_file(stem + ".md",
                  "# " + sweep.case_name + "\n\n" + io::markdown_table(table_of(sweep, runs)) +
@@ -192,14 +227,17 @@ void write_all(const Sweep& sweep, std::span<const VariantResult> runs,
   io::write_file(stem + ".svg", sheet_of(sweep, runs));
 }
 
-/// Scenes of all variants. @throws Error (input) when one has no design.
+/// Goals of the designs of all variants. @throws Error (input) when some have more designs than
+/// others.
 std::vector<mmc::Goal> goals_of(const StudyOptions& study, std::span<const Variant> variants) {
   std::vector<mmc::Goal> out;
+  std::optional<size_t> n_designs;
   for (const Variant& v : variants) {
     const Scene scene = read_scene(case_of(study, v));
-    if (scene.designs.empty())
-      throw Error::input("case '" + scene.name + "' has no [[design]]: there is nothing to sweep");
     for (const BodyDesign& d : scene.designs) out.push_back(d.goal);
+    if (scene.designs.size() != n_designs.value_or(scene.designs.size()))
+      throw Error::input("sweep: all variants have the same number of [[design]]s, or none");
+    n_designs = scene.designs.size();
   }
   return out;
 }
@@ -300,10 +338,13 @@ int sweep_case(const SweepOptions& options) {
   }
   check_variants(study, sweep.variants);
   sweep.goals = goals_of(study, sweep.variants);
+  if (!options.reference.empty() && !sweep.goals.empty())
+    throw Error::input("sweep: --reference is for scenes without a [[design]]");
+  sweep.reference = read_reference(options.reference);
   const StudyOutcome outcome = run_variants(
       study, sweep.variants,
       [&](std::span<const VariantResult> runs) { write_all(sweep, runs, study.directory); });
-  std::fputs(io::aligned_table(table_of(sweep, outcome.results)).c_str(), stdout);
+  std::fputs(io::aligned_table(summary_of(sweep, outcome.results)).c_str(), stdout);
   std::printf("%s/sweep.md, .csv, .svg\n", study.directory.c_str());
   return outcome.exit_code;
 }

@@ -9,6 +9,7 @@ struct SweepOptions {
   std::vector<std::string> vary;  ///< "KEY=V1,V2,..."
   int index = 0;                  ///< run this variant only, from 1; 0: all, and collect
   bool list = false;              ///< print the variants instead
+  std::string reference;          ///< CSV with columns of motion.csv, drawn as points; or empty
 };
 
 /// One key and its values.
@@ -25,7 +26,8 @@ Varied read_varied(const std::string& text);
 std::vector<Variant> combinations(const std::vector<Varied>& varied);
 
 /// Runs a case with every combination of values, and collects sweep.csv, sweep.md and sweep.svg
-/// (designs above their histories) in the study's folder; the table goes to the terminal.
+/// (designs above their histories; of scenes without a design observed quantities, one curve per
+/// variant) in the study's folder; the table goes to the terminal.
 /// @return exit code as run_variants(). @throws Error (input).
 int sweep_case(const SweepOptions& options);
 
