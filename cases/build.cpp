@@ -3,102 +3,17 @@
 #include <cmath>
 #include <random>
 
-#include "fem/elements/ancf_plate.h"
-
 namespace flexmorph::cases {
-namespace {
-
-fem::FrameDrive drive_of(const Hub& hub, const TimeSpan& time) {
-  fem::FrameMotion still;
-  still.origin = hub.position;
-  if (time.start != Start::hub_at_rest)
-    return [hub, still](double t) {
-      fem::FrameMotion f = still;
-      f.angle = hub.angle + hub.angular_velocity * t;
-      f.angle_rate = hub.angular_velocity;
-      return f;
-    };
-  // ω(t) = ω s(t/T), s = 10u³ - 15u⁴ + 6u⁵: rate and acceleration start and end smoothly.
-  return [hub, still, T = time.spin_up](double t) {
-    fem::FrameMotion f = still;
-    const double w = hub.angular_velocity, u = std::min(1.0, t / T);
-    f.angle = hub.angle + w * T * std::pow(u, 4) * (2.5 - 3 * u + u * u) + w * std::max(0.0, t - T);
-    f.angle_rate = w * std::pow(u, 3) * (10 - 15 * u + 6 * u * u);
-    f.angle_acceleration = w / T * 30 * u * u * (1 - u) * (1 - u);
-    return f;
-  };
-}
-
-std::unique_ptr<fem::Element> elements_of(const Body& body, double end,
-                                          const std::array<int, 2>& count) {
-  const double longest = body.longest(end);
-  std::vector<fem::MaterialLine> m, n;
-  for (int i = 0; i <= count[0]; ++i)
-    m.push_back({longest - body.length + body.length * i / count[0], {}});
-  if (body.flow)
-    m[0].drive = [longest, length = body.length, speed = body.flow->speed](double t) {
-      return fem::Motion{longest - length - speed * t, -speed, 0};
-    };
-  for (int j = 0; j <= count[1]; ++j)
-    n.push_back({-0.5 * body.width + body.width * j / count[1], {}});
-  const auto shapes =
-      body.shape == "h12" ? fem::AncfPlate::ShapeSet::h12 : fem::AncfPlate::ShapeSet::h16;
-  return std::make_unique<fem::AncfPlate>(2, shapes, std::move(m), std::move(n));
-}
-
 fem::PlaneSection section_of(const Body& body) {
   return {body.thickness, body.youngs_modulus, body.poisson_ratio, body.density};
 }
 
-VectorXd gravity_of(const Scene& scene) {
-  return scene.gravity ? VectorXd(*scene.gravity) : VectorXd();
-}
-
-}  // namespace
-
-Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh) {
-  Mechanism out;
-  const VectorXd gravity = gravity_of(scene);
-  for (const Body& body : scene.bodies) {
-    const fem::PlaneSection section = section_of(body);
-    std::vector<std::unique_ptr<fem::Term>> terms;
-    for (const std::string& name : body.terms) terms.push_back(fem::make_term(name, section));
-    if (gravity.size() > 0) terms.push_back(fem::make_gravity(section, gravity));
-    for (const fem::AttachedMass& m : attached_masses(scene, body.name))
-      terms.push_back(fem::make_point_mass(m.mass, m.material, gravity));
-    const std::array<int, 2> count = mesh.elements.value_or(body.elements);
-    out.model.add_body(body.name, elements_of(body, scene.time.end, count), section,
-                       std::move(terms));
-  }
-  for (const Joint& joint : scene.joints) {
-    const Body& body = scene.body(joint.body);
-    const auto hub = std::find_if(scene.hubs.begin(), scene.hubs.end(),
-                                  [&](const Hub& h) { return h.name == joint.to; });
-    const fem::FrameDrive drive = drive_of(*hub, scene.time);
-    out.model.add_joint(
-        fem::make_weld(joint.body + "." + joint.edge, joint.body, joint.edge, drive, joint.mode));
-    const double finer =
-        mesh.elements ? static_cast<double>(body.elements[0]) / (*mesh.elements)[0] : 1;
-    fem::Growth growth{joint.body, drive, 1, 0};
-    if (body.flow) {
-      growth.max_length = finer * body.flow->max_length;
-      growth.min_length = finer * body.flow->min_length;
-    }
-    out.growths.push_back(growth);
-  }
-  out.motion.end = scene.time.end;
-  out.motion.step = mesh.step.value_or(scene.time.step);
-  out.motion.start =
-      scene.time.start == Start::prestretched ? fem::Start::prestretched : fem::Start::rigid;
-  out.motion.alpha.rho_inf = scene.time.rho_inf;
-  out.motion.gravity = gravity;
-  return out;
-}
-
-std::vector<fem::AttachedMass> attached_masses(const Scene& scene, const std::string& body) {
+std::vector<fem::AttachedMass> attached_masses(const Scene& scene, const std::string& name) {
+  const Body& body = scene.body(name);
   std::vector<fem::AttachedMass> out;
   for (const PointMass& m : scene.point_masses)
-    if (m.body == body) out.push_back({m.mass, Vec2(scene.body(body).longest(scene.time.end), 0)});
+    if (m.body == name)
+      out.push_back({m.mass, Vec2(body.longest(scene.time.end), body.low() + 0.5 * body.width)});
   return out;
 }
 

@@ -10,10 +10,21 @@
 
 namespace flexmorph::cases {
 
+/// Where an undeformed body lies at the start: its m-line at `line` goes through `origin`, its
+/// axis along m is turned by `angle` about z.
+struct Pose {
+  Vec2 origin{0, 0};
+  double angle = 0;
+  double line = 0;  ///< material coordinate [m]
+
+  Vec3 place(const Vec2& material) const;
+};
+Pose start_pose(const Scene& scene, const Body& body);
+
 /// A scene ready to be moved: what it lists is in here, nothing else.
 struct Mechanism {
   fem::Model model;
-  std::vector<fem::Growth> growths;  ///< one per body
+  std::vector<fem::Growth> growths;  ///< one per body that sits in a hub or sleeve
   fem::MotionSettings motion;
 };
 
@@ -23,12 +34,15 @@ struct MeshChoice {
   std::optional<double> step;
 };
 
-/// Scene -> model, joints and integrator settings. Stops for loads and output are left empty.
+/// Scene -> model, joints and integrator settings. Stops for loads and output are left empty. The
+/// model of a [static] analysis has the same bodies, joints and loads.
 /// @throws Error (input) for combinations the tables of elements, terms and joints do not have.
 Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh = {});
 
+fem::PlaneSection section_of(const Body& body);
+
 /// Point masses of one body, for its loads.
-std::vector<fem::AttachedMass> attached_masses(const Scene& scene, const std::string& body);
+std::vector<fem::AttachedMass> attached_masses(const Scene& scene, const std::string& name);
 
 /// Scene -> design problems, with the initial layout.
 std::vector<mmc::BodyProblem> build_problems(const Scene& scene);

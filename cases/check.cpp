@@ -21,6 +21,33 @@ double element_operations(int n_shapes, int dim) {
          2.0 * n_shapes * dim * (n_shapes * n_pairs + n_shapes * n_shapes * dim);
 }
 
+/// A motion through time, or a path of equilibria.
+void describe_course(const Scene& scene, std::ostringstream& out) {
+  if (scene.statics) {
+    const bool load = scene.statics->path == fem::StaticSettings::Path::load;
+    out << row("static analysis", "nonlinear, load factor 0 to " + io::to_text(scene.statics->to) +
+                                      (load ? " in " : " along the arc, first step 1/") +
+                                      std::to_string(scene.statics->steps) +
+                                      (load ? " steps" : " of it"));
+    return;
+  }
+  const TimeSpan& time = scene.time;
+  const std::string scheme = time.integrator == "energy_momentum"
+                                 ? " s, energy_momentum, "
+                                 : " s, rho_inf " + io::to_text(time.rho_inf) + ", ";
+  out << row("time", "0 to " + io::to_text(time.end) + " s, step " + io::to_text(time.step) +
+                         scheme +
+                         std::to_string(static_cast<int>(std::ceil(time.end / time.step - 1e-9))) +
+                         " steps");
+}
+
+std::string load_words(const BodyLoad& load) {
+  if (load.type == "pressure") return "pressure, follows the plate";
+  if (load.type == "edge_moment") return "moment at '" + load.edge + "', follows the plate";
+  if (load.type == "point") return "force at a point";
+  return load.type == "edge" ? "force along '" + load.edge + "'" : "force per area";
+}
+
 void describe_body(const Body& body, const Mechanism& mechanism, std::ostringstream& out) {
   const fem::Body& built = mechanism.model.body(body.name);
   const int n = built.n_dofs(), per_element = built.element->n_shapes();
@@ -35,6 +62,12 @@ void describe_body(const Body& body, const Mechanism& mechanism, std::ostringstr
   std::string terms;
   for (const std::string& t : body.terms) terms += (terms.empty() ? "" : ", ") + t;
   out << row("", "terms: " + terms);
+  if (body.in_space())
+    out << row("", "out-of-plane: positions have three components; bending at Gauss points");
+  for (const BodyLine& line : body.lines)
+    if (line.free)
+      out << row("", "free material line " + std::to_string(line.index) +
+                         ": one more unknown; all elements evaluated one at a time");
   if (body.flow)
     out << row("", "material leaves the hub at " + io::to_text(body.flow->speed) +
                        " m/s: one prescribed material line, " + std::to_string(body.elements[1]) +
@@ -109,18 +142,15 @@ std::string check_case(const RunOptions& options) {
     return out.str();
   }
   Mechanism mechanism = build_mechanism(scene);
-  out << row(
-      "time",
-      "0 to " + io::to_text(scene.time.end) + " s, step " + io::to_text(scene.time.step) +
-          " s, rho_inf " + io::to_text(scene.time.rho_inf) + ", " +
-          std::to_string(static_cast<int>(std::ceil(scene.time.end / scene.time.step - 1e-9))) +
-          " steps");
+  describe_course(scene, out);
   for (const Body& body : scene.bodies) describe_body(body, mechanism, out);
   out << row("joints", std::to_string(scene.joints.size()) + ", " +
                            std::to_string(mechanism.model.n_constraints()) + " constraint rows");
   if (!scene.point_masses.empty())
     out << row("point masses", std::to_string(scene.point_masses.size()));
+  for (const BodyLoad& load : scene.loads) out << row("load on " + load.body, load_words(load));
   if (scene.gravity) out << row("gravity", "on");
+  if (!scene.observed.empty()) out << row("observed points", std::to_string(scene.observed.size()));
   for (const BodyDesign& d : scene.designs) describe_design(scene, d, out);
   if (!scene.designs.empty())
     out << row("optimizer", scene.optimizer.name + ", at most " +
@@ -132,9 +162,16 @@ std::string check_case(const RunOptions& options) {
                                    std::to_string(scene.verify->mesh[1]) + " elements, step " +
                                    io::to_text(scene.verify->step) + " s");
   out << "\nabsent: not built, costs nothing\n";
-  out << row("out-of-plane", "positions have two components; no bending term");
+  if (!scene.in_space())
+    out << row("out-of-plane", "positions have two components; no bending term");
   out << row("heat", "no thermal term");
-  out << row("free material lines", "no material coordinate is an unknown");
+  if (!scene.has_free_lines())
+    out << row("free material lines", "no material coordinate is an unknown");
+  if (scene.statics)
+    out << row("motion", "no time, no inertia, no integrator");
+  else
+    out << row("static analysis", "no path of equilibria");
+  if (scene.loads.empty()) out << row("loads", "none");
   if (std::none_of(scene.bodies.begin(), scene.bodies.end(),
                    [](const Body& b) { return b.flow.has_value(); }))
     out << row("material flow", "no shape function has rates");

@@ -21,9 +21,25 @@ class Recorder {
   Recorder(const Scene& scene, const MotionWishes& wishes, const Mechanism& mechanism,
            RunFolder& folder, MotionOutcome& out)
       : scene_(scene), wishes_(wishes), mechanism_(mechanism), folder_(folder), out_(out) {
-    for (const fem::Growth& growth : mechanism.growths) out.record.bodies.push_back(growth.body);
-    out.record.deflection.resize(mechanism.growths.size());
-    out.record.amplitude.assign(mechanism.growths.size(), 0);
+    MotionRecord& r = out.record;
+    for (const fem::Growth& growth : mechanism.growths) {
+      const Body& body = scene.body(growth.body);
+      const bool deflects = !body.in_space() && growth.line == 0;
+      if (deflects) tracked_.push_back(&growth);
+      if (deflects) r.bodies.push_back(growth.body);
+      if (deflects || body.flow) r.growing.push_back(growth.body);
+    }
+    r.deflection.resize(tracked_.size());
+    r.amplitude.assign(tracked_.size(), 0);
+    static const char* const kAxes[] = {"_x", "_y", "_z"};
+    for (const Observe& o : scene.observed)
+      for (int c = 0; c < scene.body(o.body).dim(); ++c)
+        r.observed.push_back({o.body + "." + o.name + kAxes[c], {}});
+    for (const Body& body : scene.bodies)
+      for (const BodyLine& line : body.lines)
+        if (line.free)
+          r.observed.push_back({body.name + ".line_" + std::to_string(line.index), {}});
+    for (const Body& body : scene.bodies) poses_.push_back(start_pose(scene, body));
     if (wishes.loads)
       for (const BodyDesign& d : scene.designs) out.loads.push_back({d.grid, {}, 0});
   }
@@ -38,18 +54,37 @@ class Recorder {
     r.strain.push_back(step.energies.strain);
     r.potential.push_back(step.energies.potential);
     r.defect.push_back(step.defect);
-    for (size_t i = 0; i < mechanism_.growths.size(); ++i) {
-      const double d = tip_deflection(step.model, mechanism_.growths[i], step.x);
+    for (size_t i = 0; i < tracked_.size(); ++i) {
+      const double d = tip_deflection(step.model, *tracked_[i], step.x);
       r.deflection[i].push_back(d);
       r.amplitude[i] = std::max(r.amplitude[i], std::abs(d));
     }
+    observe(step);
     if (step.stop || step.x.t == 0) at_stop(step);
     if (wishes_.go_on && !wishes_.go_on()) throw Interrupted();
   }
 
  private:
+  void observe(const fem::MotionStep& step) {
+    size_t column = 0;
+    const auto add = [&](double value) { out_.record.observed[column++].values.push_back(value); };
+    for (const Observe& o : scene_.observed) {
+      const Vec3 r = fem::point_position(step.model.body(o.body), step.x, o.point);
+      for (int c = 0; c < scene_.body(o.body).dim(); ++c) add(r[c]);
+    }
+    for (const fem::Body& body : step.model.bodies())
+      for (int k = 0; k < body.element->n_scalars(); ++k) add(step.x.q[body.first_scalar() + k]);
+  }
+
   void at_stop(const fem::MotionStep& step) {
     const double t = step.x.t;
+    if (scene_.designs.empty()) {
+      if (is_multiple(t, wishes_.frames_every))
+        for (size_t i = 0; i < scene_.bodies.size(); ++i)
+          folder_.add_surface_frame(step.model.body(scene_.bodies[i].name), step.x, poses_[i], t,
+                                    static_cast<int>(i));
+      return;
+    }
     for (size_t i = 0; i < mechanism_.growths.size(); ++i) {
       const fem::Growth& growth = mechanism_.growths[i];
       const size_t d = design_of(scene_, growth.body);
@@ -72,6 +107,8 @@ class Recorder {
   const Mechanism& mechanism_;
   RunFolder& folder_;
   MotionOutcome& out_;
+  std::vector<const fem::Growth*> tracked_;  // whose tip deflections are in the table
+  std::vector<Pose> poses_;                  // of the bodies at the start
 };
 
 }  // namespace
@@ -81,7 +118,7 @@ MotionOutcome run_motion(const Scene& scene, const MotionWishes& wishes, RunFold
   for (size_t i = 0; i < wishes.factors.size(); ++i)
     for (fem::Body& body : mechanism.model.bodies())
       if (body.name == scene.designs[i].body) mechanism.model.set_factors(body, wishes.factors[i]);
-  mechanism.motion.balance = wishes.balance;
+  mechanism.motion.balance = wishes.balance && scene.keeps_balance();
   if (wishes.loads) mechanism.motion.stops = load_times(scene);
   if (wishes.frames_every > 0)
     for (int k = 1; k * wishes.frames_every < scene.time.end + 1e-9; ++k)

@@ -68,12 +68,32 @@ io::Json body_results(const RunReport& report, size_t i) {
   return out;
 }
 
-io::Json motion_results(const MotionRecord& motion) {
+/// Last values of columns, by their names.
+io::Json last_values(const std::vector<Column>& columns) {
+  io::Json out = io::Json::object();
+  for (const Column& column : columns)
+    if (!column.values.empty()) out.set(column.name, column.values.back());
+  return out;
+}
+
+io::Json path_results(const PathRecord& path) {
+  io::Json out = io::Json::object();
+  out.set("equilibria", static_cast<int>(path.factor.size()));
+  if (!path.factor.empty()) out.set("load_factor", path.factor.back());
+  if (!path.strain.empty()) out.set("strain_energy", path.strain.back());
+  out.set("completed", path.result.completed).set("rejected_steps", path.result.rejected);
+  out.set("newton_iterations", path.result.iterations);
+  out.set("observed", last_values(path.observed));
+  return out;
+}
+
+io::Json motion_results(const Scene& scene, const MotionRecord& motion) {
   const fem::MotionResult& r = motion.result;
   io::Json out = io::Json::object();
   out.set("steps", r.counts.steps).set("newton_iterations", r.counts.newton);
   out.set("factorizations", r.counts.factorizations).set("rejected_steps", r.counts.rejected);
-  out.set("energy_defect", r.energy_defect).set("constraint_drift", r.constraint_drift);
+  out.set("energy_defect", scene.keeps_balance() ? io::Json(r.energy_defect) : io::Json());
+  out.set("constraint_drift", r.constraint_drift);
   out.set("velocity_drift", r.velocity_drift).set("smallest_area_ratio", r.smallest_area_ratio);
   io::Json events = io::Json::array();
   for (const fem::MeshEvent& e : r.events) {
@@ -87,7 +107,15 @@ io::Json motion_results(const MotionRecord& motion) {
     events.push(std::move(event));
   }
   out.set("events", std::move(events));
+  if (!motion.observed.empty()) out.set("observed", last_values(motion.observed));
   return out;
+}
+
+/// The value of an observed column at the end, if there is one of that name.
+std::optional<double> observed(const std::vector<Column>& columns, const std::string& name) {
+  for (const Column& column : columns)
+    if (column.name == name && !column.values.empty()) return column.values.back();
+  return {};
 }
 
 io::Json expectations(const Scene& scene, const RunReport& report) {
@@ -103,7 +131,10 @@ io::Json expectations(const Scene& scene, const RunReport& report) {
       if (name == "compliance_ratio") found = o.sharp.compliance / o.uniform_compliance;
       if (name == "sharp_ratio") found = o.sharp.compliance / o.compliance;
     }
-    if (name == "amplitude" && report.motion) found = report.motion->amplitude.at(0);
+    if (name == "amplitude" && report.motion && !report.motion->amplitude.empty())
+      found = report.motion->amplitude[0];
+    if (!found && report.motion) found = observed(report.motion->observed, name);
+    if (!found && report.path) found = observed(report.path->observed, name);
     io::Json entry = io::Json::object();
     entry.set("found", found ? io::Json(*found) : io::Json());
     entry.set("holds", found && wanted.holds(*found));
@@ -149,7 +180,8 @@ std::string run_json(const Scene& scene, const RunReport& report) {
     }
     out.set("cycles", std::move(cycles));
   }
-  if (report.motion) out.set("motion", motion_results(*report.motion));
+  if (report.motion) out.set("motion", motion_results(scene, *report.motion));
+  if (report.path) out.set("static", path_results(*report.path));
   if (!scene.expect.empty()) out.set("expect", expectations(scene, report));
   return out.text();
 }
@@ -196,7 +228,50 @@ std::string deflection_plot(const MotionRecord& design,
   return io::plot_svg(figure);
 }
 
-std::string energy_plot(const MotionRecord& motion) {
+/// Panels of observed columns: components of a point share one, and curves are named by what
+/// follows the last underscore.
+void add_observed(const std::vector<double>& x, const std::string& x_label,
+                  const std::vector<Column>& columns, const std::string& what, io::Figure& figure) {
+  for (const Column& column : columns) {
+    const size_t cut = column.name.rfind('_');
+    const std::string point = column.name.substr(0, cut);
+    const bool line = point.ends_with(".line");
+    const std::string title = line ? column.name : point;
+    if (figure.panels.empty() || figure.panels.back().title != title) {
+      io::Panel panel;
+      panel.title = title;
+      panel.x.label = x_label;
+      panel.y.label = line ? "material coordinate [m]" : what;
+      figure.panels.push_back(panel);
+    }
+    figure.panels.back().curves.push_back(
+        {line ? "" : column.name.substr(cut + 1), x, column.values, true, false, false});
+  }
+}
+
+std::string observed_plot(const MotionRecord& motion) {
+  io::Figure figure;
+  figure.title = "Observed motion";
+  add_observed(motion.time, "time [s]", motion.observed, "position [m]", figure);
+  return io::plot_svg(figure);
+}
+
+/// Displacements and strain energy against the load factor; along an arc the factor may go back.
+std::string path_plot(const PathRecord& path) {
+  io::Figure figure;
+  figure.title = "Path of equilibria";
+  add_observed(path.factor, "load factor", path.observed, "displacement [m]", figure);
+  for (io::Panel& panel : figure.panels)
+    for (io::Curve& curve : panel.curves) curve.markers = true;
+  io::Panel energy;
+  energy.x.label = "load factor";
+  energy.y.label = "strain energy [J]";
+  energy.curves.push_back({"", path.factor, path.strain, true, true, false});
+  figure.panels.push_back(energy);
+  return io::plot_svg(figure);
+}
+
+std::string energy_plot(const Scene& scene, const MotionRecord& motion) {
   io::Figure figure;
   figure.title = "Energies";
   const auto panel = [&](const char* label, const std::vector<double>& y) {
@@ -208,7 +283,8 @@ std::string energy_plot(const MotionRecord& motion) {
   };
   panel("kinetic [J]", motion.kinetic);
   panel("strain [J]", motion.strain);
-  panel("defect of the balance [J]", motion.defect);
+  if (scene.in_space()) panel("potential [J]", motion.potential);
+  if (scene.keeps_balance()) panel("defect of the balance [J]", motion.defect);
   return io::plot_svg(figure);
 }
 
@@ -250,9 +326,13 @@ void write_report(const Scene& scene, const RunReport& report, RunFolder& folder
   for (const RunFolder::History& h : folder.histories())
     add("convergence_" + h.body, "Convergence of " + h.body, convergence_plot(h));
   if (report.motion) {
-    add("deflection", "Tip deflection", deflection_plot(*report.motion, report.uniform_motion));
-    add("energies", "Energies of the motion", energy_plot(*report.motion));
+    if (!report.motion->deflection.empty())
+      add("deflection", "Tip deflection", deflection_plot(*report.motion, report.uniform_motion));
+    if (!report.motion->observed.empty())
+      add("observed", "Observed motion", observed_plot(*report.motion));
+    add("energies", "Energies of the motion", energy_plot(scene, *report.motion));
   }
+  if (report.path) add("path", "Path of equilibria", path_plot(*report.path));
   if (report.verified)
     add("deflection_verified", "Tip deflection on the finer mesh",
         deflection_plot(*report.verified, report.verified_uniform));

@@ -14,6 +14,7 @@ struct RunReport {
   std::vector<mmc::BodyProblem> problems;
   std::vector<mmc::BodyOutcome> outcomes;
   std::vector<mmc::CycleVerdict> verdicts;                 ///< of a run of several cycles
+  std::optional<PathRecord> path;                          ///< of a [static] analysis
   std::optional<MotionRecord> motion, uniform_motion;      ///< of the design; of uniform material
   std::optional<MotionRecord> verified, verified_uniform;  ///< the same on the finer mesh
 };

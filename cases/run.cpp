@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "cases/motion_run.h"
+#include "cases/path_run.h"
 #include "cases/report.h"
 #include "cases/version.h"
 #include "io/files.h"
@@ -183,15 +184,36 @@ void run_static(const Scene& scene, RunFolder& folder, Progress& progress, RunRe
 void run_scene(const Scene& scene, RunFolder& folder, Progress& progress, RunReport& report) {
   if (scene.domain) return run_static(scene, folder, progress, report);
   if (!scene.designs.empty()) return run_designs(scene, folder, progress, report);
+  if (scene.statics) {
+    report.path = run_path(scene, folder, go_on);
+    const fem::StaticResult& result = report.path->result;
+    progress.say("statics: load factor " + io::to_text(result.factor, 5) + " after " +
+                 std::to_string(result.steps) + " steps, " + std::to_string(result.iterations) +
+                 " Newton iterations");
+    return;
+  }
   MotionWishes wishes;
+  wishes.frames_every = scene.output.vtk ? scene.output.motion_every : 0;
   wishes.go_on = go_on;
   report.motion = run_motion(scene, wishes, folder).record;
+  const fem::MotionResult& result = report.motion->result;
+  progress.say("motion: " + std::to_string(result.counts.steps) + " steps, " +
+               std::to_string(result.counts.newton) + " Newton iterations, " +
+               std::to_string(result.events.size()) + " changes of the mesh");
 }
 
 }  // namespace
 
 void build_scene(const Scene& scene) {
-  if (!scene.domain) build_mechanism(scene);
+  if (!scene.domain) {
+    // One evaluation: loads and terms find their places, or say what they cannot do.
+    Mechanism mechanism = build_mechanism(scene);
+    const fem::State x = mechanism.model.reference();
+    VectorXd force;
+    mechanism.model.prepare(x);
+    mechanism.model.force(x, force);
+    if (scene.time.integrator == "energy_momentum") mechanism.model.mean_force(x, x.q, x.q, force);
+  }
   const std::vector<mmc::BodyProblem> problems = build_problems(scene);
   if (scene.domain) build_static_loads(scene, problems.front());
 }

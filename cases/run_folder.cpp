@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "cases/surface.h"
 #include "io/exports.h"
 #include "io/files.h"
 #include "io/plots.h"
@@ -45,6 +46,7 @@ const std::vector<std::string> kOurs = {"case.toml",
                                         "history.csv",
                                         "events.csv",
                                         "motion.csv",
+                                        "path.csv",
                                         "motion_uniform.csv",
                                         "motion_verified.csv",
                                         "motion_verified_uniform.csv",
@@ -226,7 +228,8 @@ void RunFolder::write_motion(const std::string& name, const Scene& scene,
                              const MotionRecord& motion) {
   std::vector<std::string> columns = {"time"};
   for (const std::string& body : motion.bodies) columns.push_back(body + ".tip_deflection");
-  for (const std::string& body : motion.bodies) columns.push_back(body + ".length");
+  for (const std::string& body : motion.growing) columns.push_back(body + ".length");
+  for (const Column& column : motion.observed) columns.push_back(column.name);
   for (const char* quantity :
        {"energy.kinetic", "energy.strain", "energy.potential", "energy.defect"})
     columns.emplace_back(quantity);
@@ -234,14 +237,40 @@ void RunFolder::write_motion(const std::string& name, const Scene& scene,
   for (size_t i = 0; i < motion.time.size(); ++i) {
     std::vector<io::Cell> row = {motion.time[i]};
     for (const auto& deflection : motion.deflection) row.emplace_back(deflection[i]);
-    for (const std::string& body : motion.bodies)
+    for (const std::string& body : motion.growing)
       row.emplace_back(scene.body(body).length_at(motion.time[i]));
+    for (const Column& column : motion.observed) row.emplace_back(column.values[i]);
     row.emplace_back(motion.kinetic[i]);
     row.emplace_back(motion.strain[i]);
     row.emplace_back(motion.potential[i]);
-    row.emplace_back(motion.defect[i]);
+    row.push_back(scene.keeps_balance() ? io::Cell(motion.defect[i]) : io::Cell());
     csv.row(row);
   }
+}
+
+void RunFolder::write_path(const PathRecord& path) {
+  std::vector<std::string> columns = {"step", "load_factor"};
+  for (const Column& column : path.observed) columns.push_back(column.name);
+  columns.emplace_back("energy.strain");
+  columns.emplace_back("iterations");
+  io::CsvWriter csv(path_ + "/path.csv", columns);
+  for (size_t i = 0; i < path.factor.size(); ++i) {
+    std::vector<io::Cell> row = {static_cast<int>(i), path.factor[i]};
+    for (const Column& column : path.observed) row.emplace_back(column.values[i]);
+    row.emplace_back(path.strain[i]);
+    row.emplace_back(path.iterations[i]);
+    csv.row(row);
+  }
+}
+
+void RunFolder::add_surface_frame(const fem::Body& body, const fem::State& x, const Pose& pose,
+                                  double time, int part) {
+  const Surface surface = deformed_surface(body, x, pose);
+  const io::Field cells[] = {{"strain_energy", surface.energy}};
+  const io::Field points[] = {{"displacement", surface.displacement, surface.mesh.dimension}};
+  const std::string file = numbered("motion_" + body.name + "_", ++motion_frames_, ".vtu");
+  io::write_quad_mesh(path_ + "/motion/" + file, surface.mesh, cells, points);
+  motion_.add(time, file, part);
 }
 
 void RunFolder::add_motion_frame(const fem::Model& model, const fem::Growth& growth,

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "cases/scene.h"
+#include "cases/build.h"
 #include "fem/dynamics/motion.h"
 #include "io/tables.h"
 #include "io/vtk.h"
@@ -12,14 +12,30 @@
 
 namespace flexmorph::cases {
 
+/// A column of a table, one value per step.
+struct Column {
+  std::string name;
+  std::vector<double> values;
+};
+
 /// What a motion did: its table, and the numbers a report quotes.
 struct MotionRecord {
-  std::vector<std::string> bodies;  ///< whose deflections these are: the welded ones
+  std::vector<std::string> bodies;   ///< whose deflections these are: those in hubs in the plane
+  std::vector<std::string> growing;  ///< whose lengths are in the table
   std::vector<double> time, kinetic, strain, potential, defect;
   std::vector<std::vector<double>> deflection;  ///< per body [m]
   std::vector<double> amplitude;                ///< largest |tip deflection| per body [m]
   double strain_integral = 0;                   ///< ∫ U dt of the whole model [J s]
+  std::vector<Column> observed;  ///< positions of points, and free lines' coordinates [m]
   fem::MotionResult result;
+};
+
+/// The path of a [static] analysis.
+struct PathRecord {
+  std::vector<double> factor, strain;  ///< load factor [-], strain energy [J]
+  std::vector<int> iterations;         ///< of Newton's method
+  std::vector<Column> observed;        ///< displacements of points [m]
+  fem::StaticResult result;
 };
 
 /// Tip deflection: coordinate across the hub's axis of the middle of the free end [m].
@@ -51,6 +67,12 @@ class RunFolder {
   /// One frame of motion/motion.pvd: the deformed body with its density.
   void add_motion_frame(const fem::Model& model, const fem::Growth& growth, const fem::State& x,
                         const Grid& grid, const VectorXd& density, int part);
+  /// path.csv: one row per equilibrium.
+  void write_path(const PathRecord& path);
+  /// One frame of motion/motion.pvd: the deformed mid-surface of a body without a design, with
+  /// displacements and strain energy per area.
+  void add_surface_frame(const fem::Body& body, const fem::State& x, const Pose& pose, double time,
+                         int part);
   /// Outlines, pictures and tables of a final design.
   void write_design(const mmc::BodyProblem& problem, const mmc::BodyOutcome& outcome);
   void write_text(const std::string& name, const std::string& text);

@@ -63,6 +63,26 @@ bool Expectation::holds(double found) const {
          (!at_least || found >= *at_least) && (!at_most || found <= *at_most);
 }
 
+std::vector<double> Body::start_lines(double root, int count) const {
+  std::vector<double> out;
+  for (int i = 0; i <= count; ++i) out.push_back(root + length * i / count);
+  for (const BodyLine& line : lines)
+    if (line.at) out[static_cast<size_t>(line.index)] = *line.at;
+  return out;
+}
+
+bool Scene::has_free_lines() const {
+  return std::any_of(bodies.begin(), bodies.end(),
+                     [](const Body& b) { return b.has_free_lines(); });
+}
+
+bool Scene::keeps_balance() const {
+  return std::none_of(bodies.begin(), bodies.end(), [](const Body& b) {
+    return (b.flow && b.has("bending")) ||
+           (!b.lines.empty() && b.lines.front().index == 0 && b.lines.front().free);
+  });
+}
+
 const Body& Scene::body(const std::string& body_name) const {
   for (const Body& each : bodies)
     if (each.name == body_name) return each;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fem/joint.h"
+#include "fem/solve/statics.h"
 #include "geometry/component.h"
 #include "geometry/grid.h"
 #include "geometry/tdf.h"
@@ -28,11 +29,21 @@ enum class Start {
 };
 
 struct TimeSpan {
-  double end = 1;        ///< [s], from 0
-  double step = 1e-3;    ///< [s]
+  double end = 1;                                ///< [s], from 0
+  double step = 1e-3;                            ///< [s]
+  std::string integrator = "generalized_alpha";  ///< or "energy_momentum"
   double rho_inf = 0.8;  ///< spectral radius of generalized-alpha at infinite frequency, 0..1
   Start start = Start::prestretched;
   double spin_up = 0;  ///< duration of the spin-up [s], 0 unless `hub_at_rest`
+};
+
+/// Nonlinear statics of the bodies, in place of a motion.
+struct StaticAnalysis {
+  fem::StaticSettings::Path path = fem::StaticSettings::Path::load;
+  double to = 1;            ///< load factor at the end, from 0
+  int steps = 10;           ///< equal steps to there; arc_length: the first step is one of them
+  int max_steps = 1000;     ///< equilibria before the analysis gives up
+  int max_iterations = 15;  ///< of Newton's method in a step
 };
 
 /// A driven hub: turns about its position at a constant rate.
@@ -50,12 +61,21 @@ struct Flow {
   double min_length = 0;  ///< a shorter one is merged with its neighbour [m]
 };
 
-/// A plate. Material coordinates: X from the root to the free end, Y across, -width/2..width/2.
+/// An m-line of a body's mesh that is not where an even mesh has it, or is free to move through the
+/// material.
+struct BodyLine {
+  int index = 0;  ///< 0 is the root
+  bool free = false;
+  std::optional<double> at;  ///< material coordinate at the start [m]
+};
+
+/// A plate. Material coordinates: X from the root to the free end; Y across, -width/2..width/2 in
+/// the plane and 0..width in space.
 struct Body {
   std::string name;
   std::string element;                ///< row of the table of elements
   std::string shape;                  ///< shape set: "h16", "h12"
-  std::string space;                  ///< "plane": positions have two components
+  std::string space;                  ///< "plane" or "space": two or three components
   std::vector<std::string> terms;     ///< rows of the table of terms
   double length = 0;                  ///< at the start [m]
   double width = 0, thickness = 0;    ///< [m]
@@ -64,16 +84,65 @@ struct Body {
   double poisson_ratio = 0;           ///< [-]
   std::array<int, 2> elements{1, 1};  ///< along the length at the start, across the width
   std::optional<Flow> flow;           ///< absent: no material flows
+  std::vector<BodyLine> lines;        ///< by index
 
   double length_at(double time) const { return flow ? length + flow->speed * time : length; }
   double longest(double end) const { return std::max(length, length_at(end)); }
+  double shortest(double end) const { return std::min(length, length_at(end)); }
+  bool in_space() const { return space == "space"; }
+  int dim() const { return in_space() ? 3 : 2; }
+  double low() const { return in_space() ? 0 : -0.5 * width; }  ///< where Y begins [m]
+  bool has(const std::string& term) const {
+    return std::find(terms.begin(), terms.end(), term) != terms.end();
+  }
+  bool has_free_lines() const {
+    return std::any_of(lines.begin(), lines.end(), [](const BodyLine& l) { return l.free; });
+  }
+  /// Material coordinates of the m-lines at the start, the first at `root` [m].
+  std::vector<double> start_lines(double root, int count) const;
 };
 
+/// A row of the table of joints, and what it needs:
+///
+/// weld        edge ("root" or "line 3") in the hub `to`
+/// sleeve      edge in a frame at rest at `position`, `angle`: material slides through a free line
+/// pin         the material point keeps `components` of its position at the start
+/// clamp, support, symmetry    `edges` of a body in space, see fem::clamped_edge()
+/// line_drive  the free line moves through the material at `speed`
 struct Joint {
-  std::string type;        ///< row of the table of joints: "weld"
-  std::string body, edge;  ///< edge "root"
-  std::string to;          ///< a hub
+  std::string type, body;
+  std::string edge;
+  std::string to;
   fem::WeldMode mode = fem::WeldMode::edge;
+  Vec2 position{0, 0};  ///< [m]
+  double angle = 0;     ///< [rad]
+  Vec2 point{0, 0};     ///< material [m]
+  std::vector<int> components;
+  std::vector<std::string> edges;
+  int line = 0;      ///< of line_drive; of weld and sleeve the line of their edge
+  double speed = 0;  ///< [m/s]
+
+  bool holds_frame() const { return type == "weld" || type == "sleeve"; }
+  bool holds_edges() const { return type == "clamp" || type == "support" || type == "symmetry"; }
+};
+
+/// A load on a body: a row of this table,
+///
+/// point        `force` [N] at a material point      edge         `force` [N/m] along an edge
+/// surface      `force` [N/m^2]                      pressure     `size` [N/m^2], follows
+/// edge_moment  `size` [N] per length of an edge, follows
+struct BodyLoad {
+  std::string type, body;
+  std::string edge;
+  Vec2 point{0, 0};  ///< material [m]
+  VectorXd force;    ///< (dim)
+  double size = 0;
+};
+
+/// A material point whose position is a result.
+struct Observe {
+  std::string name, body;
+  Vec2 point{0, 0};  ///< material [m]
 };
 
 struct PointMass {
@@ -188,11 +257,14 @@ struct Scene {
   std::string title;
   std::optional<Domain> domain;  ///< a static scene: nothing moves, all that follows is absent
   TimeSpan time;
-  std::optional<Vec2> gravity;  ///< [m/s^2]
+  std::optional<StaticAnalysis> statics;  ///< bodies at rest under growing loads: no time
+  std::optional<VectorXd> gravity;        ///< (dim) [m/s^2]
   std::vector<Hub> hubs;
   std::vector<Body> bodies;
   std::vector<Joint> joints;
   std::vector<PointMass> point_masses;
+  std::vector<BodyLoad> loads;
+  std::vector<Observe> observed;
   std::optional<Esl> esl;           ///< always there when bodies that move are designed
   std::vector<BodyDesign> designs;  ///< one per designed body
   optim::Settings optimizer;
@@ -202,14 +274,20 @@ struct Scene {
   std::map<std::string, Expectation> expect;  ///< by name of the result
 
   const Body& body(const std::string& name) const;  ///< name resolves: checked when read
+  bool in_space() const { return !bodies.empty() && bodies.front().in_space(); }  ///< all, or none
+  bool has_free_lines() const;
+  /// Is the energy balance known? Not where bending stiffness flows in or a root line is free.
+  bool keeps_balance() const;
 };
 
 /// The rows of the tables a scene may name.
 struct Vocabulary {
   std::vector<std::string> elements{"ancf_plate", "ale_ancf_plate"};
   std::vector<std::string> shapes{"h16", "h12"};
-  std::vector<std::string> terms{"inertia", "membrane"};
-  std::vector<std::string> joints{"weld"};
+  std::vector<std::string> terms{"inertia", "membrane"};  ///< in the plane
+  std::vector<std::string> space_terms{"inertia", "membrane", "membrane_assumed", "bending"};
+  std::vector<std::string> joints{"weld",    "sleeve",   "pin",       "clamp",
+                                  "support", "symmetry", "line_drive"};
   std::vector<std::string> optimizers = optim::optimizer_names();
 };
 

@@ -242,8 +242,10 @@ BodyDesign read_design(const Table& t, const Scene& scene) {
     if (other.body == design.body) t.fail("body", "this body has a [[design]] already");
   const Body& body = scene.body(design.body);
   const bool welded = std::any_of(scene.joints.begin(), scene.joints.end(), [&](const Joint& j) {
-    return j.body == body.name && j.edge == "root";
+    return j.type == "weld" && j.body == body.name && j.edge == "root";
   });
+  if (body.in_space() || body.has_free_lines())
+    t.fail("body", "a designed body lives in the plane and has no free lines");
   if (!welded) t.fail("body", "a designed body is welded to a hub at its root: see [[joint]]");
   if (std::find(body.terms.begin(), body.terms.end(), "membrane") == body.terms.end())
     t.fail("body", "a designed body has the term \"membrane\"");

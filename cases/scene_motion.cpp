@@ -15,13 +15,8 @@ using io::to_text;
 
 constexpr int kMostElements = 100'000;
 
-/// Part of column names and file names, so: a letter, then letters, digits, underscores.
 std::string read_name(const Table& t, const std::string& noun, const Scene& scene) {
-  std::string name = t.string("name", noun);
-  const auto is_word_letter = [](char c) { return std::isalnum(c) || c == '_'; };
-  if (name.empty() || static_cast<unsigned char>(name[0]) > 127 || !std::isalpha(name[0]) ||
-      !std::all_of(name.begin(), name.end(), is_word_letter))
-    t.fail("name", noun + " begins with a letter; letters, digits and _ follow");
+  std::string name = read_word(t, noun);
   if (name == "energy") t.fail("name", "'energy' names columns of motion.csv already");
   for (const std::vector<std::string>& taken : {names_of(scene.hubs), names_of(scene.bodies)})
     for (const std::string& other : taken)
@@ -34,6 +29,9 @@ TimeSpan read_time(const Table& t) {
   time.end = t.number("end", positive("an end time", "s"));
   time.step = t.number("step", positive("a time step", "s"), std::min(1e-3, time.end));
   if (time.step > time.end) t.fail("step", "a time step is no longer than time.end [s]");
+  time.integrator =
+      t.choice("integrator", "an integrator",
+               std::vector<std::string>{"generalized_alpha", "energy_momentum"}, time.integrator);
   time.rho_inf = t.number("rho_inf", between("a spectral radius", "", 0, 1), 0.8);
   time.start = t.choice<Start>("start", "a start",
                                {{"prestretched", Start::prestretched},
@@ -57,7 +55,11 @@ Hub read_hub(const Table& t, const Scene& scene) {
       t.numbers("position", any_number("a position", "m"), 2, std::vector<double>{0, 0});
   hub.position = {position[0], position[1]};
   hub.angle = t.number("angle", any_number("an angle", "rad"), 0.0);
-  hub.angular_velocity = t.number("angular_velocity", any_number("an angular velocity", "rad/s"));
+  const std::optional<double> rest = scene.statics ? std::optional<double>(0) : std::nullopt;
+  hub.angular_velocity =
+      t.number("angular_velocity", any_number("an angular velocity", "rad/s"), rest);
+  if (scene.statics && hub.angular_velocity != 0)
+    t.fail("angular_velocity", "in a [static] analysis hubs rest");
   return hub;
 }
 
@@ -90,19 +92,28 @@ Flow read_flow(const Table& t, const Body& body, double end) {
   return flow;
 }
 
-Body read_body(const Table& t, const Vocabulary& words, const Scene& scene) {
+Body read_body(const Table& t, const Vocabulary& words, const Scene& scene, bool has_gravity) {
   Body body;
   body.name = read_name(t, "the name of a body", scene);
   body.element = t.choice("element", "an element", words.elements);
   body.shape = t.choice("shape", "a shape set", words.shapes, "h16");
-  body.space = t.choice("space", "a space", std::vector<std::string>{"plane"}, "plane");
-  body.terms = t.choices("terms", "a term", words.terms);
-  if (std::find(body.terms.begin(), body.terms.end(), "inertia") == body.terms.end())
-    t.fail("terms", "a body that moves has \"inertia\"");
+  body.space = t.choice("space", "a space", std::vector<std::string>{"plane", "space"}, "plane");
+  if (!scene.bodies.empty() && scene.bodies.front().space != body.space)
+    t.fail("space", "all bodies of a scene live in the plane, or all in space");
+  body.terms = t.choices("terms", "a term", body.in_space() ? words.space_terms : words.terms);
+  if (!scene.statics && !body.has("inertia")) t.fail("terms", "a body that moves has \"inertia\"");
+  if (body.has("membrane") && body.has("membrane_assumed"))
+    t.fail("terms", "\"membrane_assumed\" stands in place of \"membrane\"");
+  if (body.in_space() &&
+      !(body.has("bending") && (body.has("membrane") || body.has("membrane_assumed"))))
+    t.fail("terms", "a plate in space has \"bending\" and \"membrane\" or \"membrane_assumed\"");
   body.length = t.number("length", positive("a length", "m"));
   body.width = t.number("width", positive("a width", "m"));
   body.thickness = t.number("thickness", positive("a thickness", "m"));
-  body.density = t.number("density", positive("a density", "kg/m^3"));
+  // Nothing at rest asks for the density but weight.
+  const std::optional<double> weightless =
+      scene.statics && !has_gravity ? std::optional<double>(1) : std::nullopt;
+  body.density = t.number("density", positive("a density", "kg/m^3"), weightless);
   body.youngs_modulus = t.number("youngs_modulus", positive("Young's modulus", "Pa"));
   body.poisson_ratio = t.number("poisson_ratio", between("Poisson's ratio", "", 0, 0.5));
   const std::vector<int> elements =
@@ -117,24 +128,9 @@ Body read_body(const Table& t, const Vocabulary& words, const Scene& scene) {
   } else if (t.has("flow")) {
     t.fail("flow", "material flows through \"ale_ancf_plate\" only");
   }
+  if (flows && scene.statics) t.fail("element", "in a [static] analysis no material flows");
+  body.lines = read_lines(t, body);
   return body;
-}
-
-Joint read_joint(const Table& t, const Vocabulary& words, const Scene& scene) {
-  Joint joint;
-  joint.type = t.choice("type", "a joint", words.joints);
-  joint.body = t.choice("body", "a body", names_of(scene.bodies));
-  joint.edge = t.choice("edge", "an edge", std::vector<std::string>{"root"});
-  joint.to = t.choice("to", "a hub", names_of(scene.hubs));
-  joint.mode = t.choice<fem::WeldMode>("mode", "a weld",
-                                       {{"edge", fem::WeldMode::edge},
-                                        {"direction", fem::WeldMode::direction},
-                                        {"full", fem::WeldMode::full}},
-                                       fem::WeldMode::edge);
-  for (const Joint& other : scene.joints)
-    if (other.body == joint.body && other.edge == joint.edge)
-      t.fail("edge", "this edge of '" + joint.body + "' is welded already");
-  return joint;
 }
 
 PointMass read_point_mass(const Table& t, const Scene& scene) {
@@ -148,25 +144,40 @@ PointMass read_point_mass(const Table& t, const Scene& scene) {
 }  // namespace
 
 void read_motion(const Table& root, const Vocabulary& words, Scene& scene) {
-  scene.time = read_time(root.table("time"));
-  if (root.has("gravity")) {
-    const auto gravity = root.numbers("gravity", any_number("gravity", "m/s^2"), 2);
-    scene.gravity = Vec2(gravity[0], gravity[1]);
+  if (root.has("static")) {
+    for (const char* key : {"time", "esl", "design", "optimizer", "cycle", "verify"})
+      if (root.has(key))
+        root.fail(key, "a scene with a [static] analysis has no '" + std::string(key) + "'");
+    scene.statics = read_analysis(root.table("static"));
+  } else {
+    scene.time = read_time(root.table("time"));
   }
   for (const Table& t : root.tables("hub")) scene.hubs.push_back(read_hub(t, scene));
   const std::vector<Table> bodies = root.tables("body");
   if (bodies.empty()) root.fail("body", "a scene has one or more [[body]]");
-  for (const Table& t : bodies) scene.bodies.push_back(read_body(t, words, scene));
-  for (const Table& t : root.tables("joint")) scene.joints.push_back(read_joint(t, words, scene));
+  for (const Table& t : bodies)
+    scene.bodies.push_back(read_body(t, words, scene, root.has("gravity")));
+  if (root.has("gravity")) {
+    const auto gravity =
+        root.numbers("gravity", any_number("gravity", "m/s^2"), scene.bodies.front().dim());
+    scene.gravity = Eigen::Map<const VectorXd>(gravity.data(), scene.bodies.front().dim());
+  }
+  read_joints(root, words, scene);
   for (const Table& t : root.tables("point_mass"))
     scene.point_masses.push_back(read_point_mass(t, scene));
+  read_loads(root, scene);
+  if (scene.statics) return;
 
-  for (size_t i = 0; i < bodies.size(); ++i) {
-    const bool welded = std::any_of(scene.joints.begin(), scene.joints.end(), [&](const Joint& j) {
-      return j.body == scene.bodies[i].name && j.edge == "root";
-    });
-    if (scene.bodies[i].flow && !welded)
-      bodies[i].fail("material flows out of a hub: a [[joint]] with edge = \"root\" is missing");
+  const Table time = root.table("time");
+  if (scene.time.integrator == "energy_momentum" && scene.has_free_lines())
+    time.fail("integrator",
+              "free material lines ([[body.line]]) need \"generalized_alpha\": \"energy_momentum\" "
+              "does not know them");
+  // Without a hub there is nothing to be stretched by, and a free line starts where it is put.
+  if (scene.hubs.empty() || scene.has_free_lines()) {
+    if (time.has("start") && scene.time.start == Start::prestretched)
+      time.fail("start", "\"prestretched\" is for bodies in hubs whose lines are not free");
+    if (scene.time.start == Start::prestretched) scene.time.start = Start::rigid;
   }
 }
 

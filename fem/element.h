@@ -46,6 +46,8 @@ struct ProductTable {
   MatrixXd weight;              ///< reference area of the point times the factor [m^2]
   MatrixXd f_m, d_m, f_n, d_n;  ///< functions and their material derivatives (points x functions)
   std::vector<int> function_m, function_n;  ///< (n_shapes)
+  bool curvature = false;   ///< said by the caller: are the second derivatives wanted, too?
+  MatrixXd dd_m{}, dd_n{};  ///< they, where wanted
 };
 
 /// What to fill besides N; `curvature` is the first and second derivatives without rates.

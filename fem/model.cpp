@@ -474,7 +474,8 @@ double Model::flow_power(const State& x) const {
   Local local;
   for (const Body& b : bodies_)
     for (int e = 0; e < b.element->n_elements(); ++e) {
-      if (!b.element->moving(e)) continue;
+      // Free lines are unknowns: what their motion does is no power at fixed unknowns.
+      if (!b.element->moving(e) || !b.element->free_sides(e).empty()) continue;
       gather(b, e, x, local);
       for (const auto& term : b.terms) out += term->flow_power(e, local);
     }

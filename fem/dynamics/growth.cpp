@@ -43,13 +43,22 @@ PointMotion point_motion(const Body& body, const State& x, const Vec2& material)
   const MatrixXd q = local_rows(body, x.q, e), v = local_rows(body, x.v, e),
                  a = local_rows(body, x.a, e);
   PointMotion out;
-  out.position = (t.N * q).transpose();
-  out.velocity = (t.N * v).transpose();
-  out.acceleration = (t.N * a).transpose();
+  const auto plane = [](const MatrixXd& row) { return Vec2(row(0, 0), row(0, 1)); };
+  out.position = plane(t.N * q);
+  out.velocity = plane(t.N * v);
+  out.acceleration = plane(t.N * a);
   if (t.N_t.size() > 0) {
-    out.velocity += (t.N_t * q).transpose();
-    out.acceleration += (2 * t.N_t * v + t.N_tt * q).transpose();
+    out.velocity += plane(t.N_t * q);
+    out.acceleration += plane(2 * t.N_t * v + t.N_tt * q);
   }
+  return out;
+}
+
+Vec3 point_position(const Body& body, const State& x, const Vec2& material) {
+  ShapeTable t;
+  const int e = body.element->locate(material, Tabulate::position, t);
+  Vec3 out = Vec3::Zero();
+  out.head(body.element->dim()) = (t.N * local_rows(body, x.q, e)).transpose();
   return out;
 }
 

@@ -9,12 +9,15 @@
 
 namespace flexmorph::fem {
 
-/// A plate that leaves a hub: the frame its root is welded to, and when its mesh changes.
+/// A plate that sits in a hub or a sleeve, in space in one that turns about z: the frame that its
+/// root (or another m-line) is welded to, and when its mesh changes.
 struct Growth {
   std::string body;
   FrameDrive hub;
   double max_length = 0.1;   ///< a longer boundary element is split in its middle [m]
   double min_length = 0.03;  ///< a shorter one is merged with its neighbour [m]
+  int line = 0;              ///< the m-line that is welded: 0 is the root
+  double slide = 0;          ///< rate at the start of that line, where it is free [m/s]
 };
 
 /// Columns are the axes of a frame turned by an angle [rad].
@@ -27,11 +30,16 @@ const LineGrid& grid_of(const Body& body);
 using VectorRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 VectorRows rows_of(const Body& body, const VectorXd& all);
 
-/// Position, material velocity and material acceleration of one material point.
+/// Position, material velocity and material acceleration of one material point, in the plane: of a
+/// body in space the first two entries.
 struct PointMotion {
   Vec2 position, velocity, acceleration;
 };
 PointMotion point_motion(const Body& body, const State& x, const Vec2& material);
+
+/// Position of one material point; z = 0 for a body in the plane.
+/// @throws Error (input) when the point is outside the body.
+Vec3 point_position(const Body& body, const State& x, const Vec2& material);
 
 enum class MeshChange { insertion, removal };
 

@@ -6,27 +6,30 @@
 
 namespace flexmorph::fem {
 
-Vec2 momentum(const Model& model, const State& x) {
-  Vec2 out = Vec2::Zero();
+Vec3 momentum_in_space(const Model& model, const State& x) {
+  Vec3 out = Vec3::Zero();
   ShapeTable t;
   for (const Body& body : model.bodies()) {
+    const int dim = body.element->dim();
     const VectorRows q = rows_of(body, x.q), v = rows_of(body, x.v);
+    const double area_density = body.section.density * body.section.thickness;
     for (int e = 0; e < body.element->n_elements(); ++e) {
       body.element->tabulate(e, 3, Tabulate::position_rates, body.factors, FactorKind::mass, t);
       const auto vectors = body.element->vectors(e);
       for (size_t k = 0; k < vectors.size(); ++k) {
-        const double area_density = body.section.density * body.section.thickness;
         const auto column = static_cast<Eigen::Index>(k);
-        out +=
-            area_density * t.N.col(column).dot(t.weight) * v.row(vectors[k]).head<2>().transpose();
+        out.head(dim) +=
+            area_density * t.N.col(column).dot(t.weight) * v.row(vectors[k]).transpose();
         if (t.N_t.size() > 0)
-          out += area_density * t.N_t.col(column).dot(t.weight) *
-                 q.row(vectors[k]).head<2>().transpose();
+          out.head(dim) +=
+              area_density * t.N_t.col(column).dot(t.weight) * q.row(vectors[k]).transpose();
       }
     }
   }
   return out;
 }
+
+Vec2 momentum(const Model& model, const State& x) { return momentum_in_space(model, x).head<2>(); }
 
 namespace {
 
@@ -160,12 +163,12 @@ class Run {
     event.change = change;
     const Vec2 tip(grid_of(*body).line_m(grid_of(*body).n_m()).value, 0);
     event.before = model_.energies(x_);
-    event.momentum_before = momentum(model_, x_);
-    const Vec2 tip_before = point_motion(*body, x_, tip).position;
+    event.momentum_before = momentum_in_space(model_, x_);
+    const Vec3 tip_before = point_position(*body, x_, tip);
     change_mesh(model_, *body, change, x_);
     event.after = model_.energies(x_);
-    event.momentum_after = momentum(model_, x_);
-    event.tip_jump = (point_motion(*body, x_, tip).position - tip_before).norm();
+    event.momentum_after = momentum_in_space(model_, x_);
+    event.tip_jump = (point_position(*body, x_, tip) - tip_before).norm();
     result_.events.push_back(event);
     integrator_->project_velocity(x_);
     balance_.restart(x_.t, measure(x_));

@@ -27,7 +27,7 @@ struct MeshEvent {
   std::string body;
   MeshChange change = MeshChange::insertion;
   Energies before, after;
-  Vec2 momentum_before{0, 0}, momentum_after{0, 0};
+  Vec3 momentum_before = Vec3::Zero(), momentum_after = Vec3::Zero();
   double tip_jump = 0;  ///< of the free end's mid-point [m]
 };
 
@@ -63,7 +63,9 @@ struct MotionResult {
 MotionResult integrate(Model& model, std::span<const Growth> growths,
                        const MotionSettings& settings, const MotionObserver& observe);
 
-/// Linear momentum of all bodies with inertia [kg m/s].
+/// Linear momentum of all bodies' own mass [kg m/s]; z = 0 in the plane.
+Vec3 momentum_in_space(const Model& model, const State& x);
+/// Its first two entries.
 Vec2 momentum(const Model& model, const State& x);
 
 }  // namespace flexmorph::fem

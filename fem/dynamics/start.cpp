@@ -15,20 +15,26 @@ Body& body_named(Model& model, const std::string& name) {
   throw Error::input("there is no body '" + name + "'");
 }
 
-/// Undeformed body in its hub, and the velocity of the rigid, extending body.
-void rigid_body(const Body& body, const FrameMotion& hub, State& x) {
+/// Undeformed body in its hub, and the velocity of the rigid, extending body. In space all of it
+/// lies in the plane z = 0.
+void rigid_body(const Body& body, const Growth& growth, double t, State& x) {
+  const FrameMotion hub = growth.hub(t);
   const LineGrid& plate = grid_of(body);
-  const Motion root = plate.line_m(0);
+  const auto line_rate = [&](int i) {
+    const bool slides = i == growth.line && plate.lines_m()[static_cast<size_t>(i)].free;
+    return slides ? growth.slide : plate.line_m(i).rate;
+  };
+  const double root = plate.line_m(growth.line).value, root_rate = line_rate(growth.line);
   const Eigen::Matrix2d turn = rotation(hub.angle);
   const MatrixXd reference = plate.reference();
   for (int k = 0; k < plate.n_vectors(); ++k) {
-    const int at = body.first_dof + 2 * k;
-    Vec2 local = reference.row(k).transpose();
+    const int at = body.first_dof + plate.dim() * k;
+    Vec2 local = reference.row(k).head<2>().transpose();
     Vec2 rate = Vec2::Zero();
     if (plate.is_position(k)) {
-      local.x() -= root.value;
+      local.x() -= root;
       // A node on a moving line goes along with the line, not with the material.
-      rate.x() = plate.line_m(k / plate.per_node() / (plate.n_n() + 1)).rate - root.rate;
+      rate.x() = line_rate(k / plate.per_node() / (plate.n_n() + 1)) - root_rate;
     }
     const Vec2 r = turn * local;
     x.q.segment<2>(at) = r;
@@ -38,6 +44,9 @@ void rigid_body(const Body& body, const FrameMotion& hub, State& x) {
       x.v.segment<2>(at) += hub.origin_rate;
     }
   }
+  int scalar = body.first_scalar();
+  for (int i = 0; i < growth.line; ++i) scalar += plate.lines_m()[static_cast<size_t>(i)].free;
+  if (plate.lines_m()[static_cast<size_t>(growth.line)].free) x.v[scalar] = growth.slide;
 }
 
 /// The same model with the lines of all plates frozen where they are at `lines`, for statics.
@@ -56,7 +65,7 @@ State start_state(Model& model, std::span<const Growth> growths, double t, Start
   for (Body& b : model.bodies()) b.element->move_to(t);
   State x = model.reference();
   x.t = t;
-  for (const Growth& g : growths) rigid_body(model.body(g.body), g.hub(t), x);
+  for (const Growth& g : growths) rigid_body(model.body(g.body), g, t, x);
   if (start == Start::rigid) return x;
 
   // Static equilibrium under centrifugal forces: q̈ = -ω² (q - origin), lines frozen. Its rate as
@@ -77,10 +86,13 @@ State start_state(Model& model, std::span<const Growth> growths, double t, Start
     for (const Growth& g : growths) {
       const Body& body = model.body(g.body);
       const FrameMotion hub = g.hub(t);
-      rigid_body(body, hub, s);
-      spin.segment(body.first_dof, body.n_dofs()).setConstant(hub.angle_rate * hub.angle_rate);
-      for (int k = 0; k < body.element->n_vectors(); ++k)
-        if (body.element->is_position(k)) center.segment<2>(body.first_dof + 2 * k) = hub.origin;
+      const int dim = body.element->dim();
+      rigid_body(body, g, t, s);
+      for (int k = 0; k < body.element->n_vectors(); ++k) {
+        const int at = body.first_dof + dim * k;
+        spin.segment<2>(at).setConstant(hub.angle_rate * hub.angle_rate);
+        if (body.element->is_position(k)) center.segment<2>(at) = hub.origin;
+      }
     }
     s.v.setZero();
     solve_rotating_equilibrium(model, spin, center, s);
@@ -96,12 +108,13 @@ State start_state(Model& model, std::span<const Growth> growths, double t, Start
     const Body& body = model.body(g.body);
     const FrameMotion hub = g.hub(t);
     for (int k = 0; k < body.element->n_vectors(); ++k) {
-      const int at = body.first_dof + 2 * k;
+      const int at = body.first_dof + body.element->dim() * k;
       const bool position = body.element->is_position(k);
       const Vec2 r = q.segment<2>(at) - (position ? hub.origin : Vec2::Zero());
       x.v.segment<2>(at) =
           hub.angle_rate * kQuarter * r + (later - earlier).segment<2>(at) / (2 * delta);
       if (position) x.v.segment<2>(at) += hub.origin_rate;
+      if (body.element->dim() == 3) x.v[at + 2] = (later - earlier)[at + 2] / (2 * delta);
     }
   }
   return x;

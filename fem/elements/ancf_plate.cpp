@@ -295,17 +295,19 @@ bool AncfPlate::tabulate_products(int e, int degree, const Factors& factors, Fac
                                   ProductTable& out) const {
   const int n = n_points(degree, weighted(factors, kind));
   out.weight = weights(e, n, factors, kind);
-  const auto line = [n](const Hermite& h, MatrixXd& f, MatrixXd& d) {
+  const auto line = [&](const Hermite& h, MatrixXd& f, MatrixXd& d, MatrixXd& dd) {
     f.resize(n, 4);
     d.resize(n, 4);
+    dd.resize(out.curvature ? n : 0, 4);
     for (int g = 0; g < n; ++g) {
-      const At point = at_point(h, gauss(n).points[static_cast<size_t>(g)], false);
+      const At point = at_point(h, gauss(n).points[static_cast<size_t>(g)], false, out.curvature);
       f.row(g) = point.f;
       d.row(g) = point.d;
+      if (out.curvature) dd.row(g) = point.dd;
     }
   };
-  line(hermite_m_[static_cast<size_t>(e / n_n())], out.f_m, out.d_m);
-  line(hermite_n_[static_cast<size_t>(e % n_n())], out.f_n, out.d_n);
+  line(hermite_m_[static_cast<size_t>(e / n_n())], out.f_m, out.d_m, out.dd_m);
+  line(hermite_n_[static_cast<size_t>(e % n_n())], out.f_n, out.d_n, out.dd_n);
   out.function_m.clear();
   out.function_n.clear();
   for (const auto& [a, b] : kCorners)

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "fem/solve/substitution.h"
+
 namespace flexmorph::fem {
 
 namespace {
@@ -42,6 +44,7 @@ struct SaddleCholesky::Impl {
   MatrixXd schur;
   Eigen::LLT<MatrixXd> schur_factor;
   VectorXd right, multipliers;
+  VectorXd permuted, block;  // in the order of the factor; rows of one supernode
 
   Impl() {
     cholmod_start(&common);
@@ -58,6 +61,36 @@ struct SaddleCholesky::Impl {
   void release() {
     cholmod_free_factor(&factor, &common);
     for (cholmod_dense** x : {&solution, &work_y, &work_e}) cholmod_free_dense(x, &common);
+  }
+
+  /// right = A⁻¹ of the rows of A of b: one right-hand side.
+  void substitute(const VectorXd& b) {
+    const auto* perm = static_cast<const int*>(factor->Perm);
+    const auto *first = static_cast<const int*>(factor->super),
+               *row_starts = static_cast<const int*>(factor->pi),
+               *starts = static_cast<const int*>(factor->px),
+               *all_rows = static_cast<const int*>(factor->s);
+    const auto* x = static_cast<const double*>(factor->x);
+    const auto n = static_cast<Eigen::Index>(a_rows.size());
+    for (Eigen::Index k = 0; k < n; ++k) permuted[k] = b[a_rows[static_cast<size_t>(perm[k])]];
+    // Rows of a supernode: its own columns first.
+    for (size_t k = 0; k < factor->nsuper; ++k) {
+      const int width = first[k + 1] - first[k], height = row_starts[k + 1] - row_starts[k];
+      const int* at = all_rows + row_starts[k];
+      std::copy_n(permuted.data() + first[k], width, block.data());
+      std::fill(block.data() + width, block.data() + height, 0.0);
+      forward_block(x + starts[k], width, height, block.data());
+      std::copy_n(block.data(), width, permuted.data() + first[k]);
+      for (int i = width; i < height; ++i) permuted[at[i]] += block[i];
+    }
+    for (size_t k = factor->nsuper; k-- > 0;) {
+      const int width = first[k + 1] - first[k], height = row_starts[k + 1] - row_starts[k];
+      const int* at = all_rows + row_starts[k];
+      for (int i = 0; i < height; ++i) block[i] = permuted[at[i]];
+      backward_block(x + starts[k], width, height, block.data());
+      std::copy_n(block.data(), width, permuted.data() + first[k]);
+    }
+    for (Eigen::Index k = 0; k < n; ++k) right[perm[k]] = permuted[k];
   }
 
   /// solution = A⁻¹ x, by columns.
@@ -146,7 +179,15 @@ bool SaddleCholesky::analyze(const SparseMatrix& a) {
   s.matrix.dtype = CHOLMOD_DOUBLE;
   s.matrix.sorted = s.matrix.packed = 1;
   s.factor = cholmod_analyze(&s.matrix, &s.common);
-  return s.factor != nullptr && s.common.status >= CHOLMOD_OK;
+  if (s.factor == nullptr || s.common.status < CHOLMOD_OK || !s.factor->is_super) return false;
+  const auto* row_starts = static_cast<const int*>(s.factor->pi);
+  int tallest = 0;
+  for (size_t k = 0; k < s.factor->nsuper; ++k)
+    tallest = std::max(tallest, row_starts[k + 1] - row_starts[k]);
+  s.block.resize(tallest);
+  s.permuted.resize(static_cast<Eigen::Index>(s.a_rows.size()));
+  s.right.resize(s.permuted.size());
+  return true;
 }
 
 bool SaddleCholesky::factorize(const SparseMatrix& a) {
@@ -176,11 +217,7 @@ void SaddleCholesky::solve(const VectorXd& b, VectorXd& x) {
   // x = A⁻¹ f - Y λ,   B Y λ = B A⁻¹ f - g
   Impl& s = *impl_;
   const auto n = s.a_rows.size(), m = s.b_rows.size();
-  MatrixXd& f = s.spread;  // its room
-  f.resize(static_cast<Eigen::Index>(n), 1);
-  for (size_t k = 0; k < n; ++k) f(static_cast<Eigen::Index>(k), 0) = b[s.a_rows[k]];
-  if (!s.apply_inverse(f)) throw Error::numerical("linear solver: CHOLMOD failed in solution");
-  s.right = s.solved();
+  s.substitute(b);
   if (m > 0) {
     s.multipliers.resize(static_cast<Eigen::Index>(m));
     for (size_t k = 0; k < m; ++k) s.multipliers[static_cast<Eigen::Index>(k)] = -b[s.b_rows[k]];

@@ -177,6 +177,89 @@ TEST(Bending, SevenPointsConfirmFive) {
   EXPECT_NEAR(five / seven, 1, 1e-6);
 }
 
+// The kernels sum over one direction after the other; here, point by point from the tables of all
+// shape functions: the same points and weights, κ by its definition. Sums of 25 to 81 points.
+TEST(Bending, EnergyIsThatOfItsPoints) {
+  const Eigen::Matrix3d d = std::pow(kSection.thickness, 3) / 12 * kSection.elasticity();
+  for (const ShapeSet shapes : {ShapeSet::h12, ShapeSet::h16})
+    for (const bool designed : {false, true}) {
+      const AncfPlate plate(3, shapes, {{0.1, {}}, {0.21, {}}, {0.3, {}}},
+                            {{-0.05, {}}, {0.01, {}}, {0.07, {}}});
+      const Factors factors = designed ? testing::random_factors(5) : Factors{};
+      const auto term = make_bending(kSection);
+      term->prepare(plate, factors, true);
+      const MatrixXd shape = testing::random_shape(plate, 0.2, 1);
+      for (int e = 0; e < plate.n_elements(); ++e) {
+        Local x;
+        x.q = testing::rows_of_element(plate, shape, e);
+        ShapeTable t;
+        plate.tabulate(e, 8, Tabulate::curvature, factors, FactorKind::stiffness, t);
+        const MatrixXd q = x.q, r_m = t.N_m * q, r_n = t.N_n * q, r_mm = t.N_mm * q,
+                       r_nn = t.N_nn * q, r_mn = t.N_mn * q;
+        double expected = 0;
+        for (Eigen::Index g = 0; g < t.weight.size(); ++g) {
+          const auto at = [g](const MatrixXd& rows) { return Vec3(rows.row(g).transpose()); };
+          const Vec3 n = at(r_m).cross(at(r_n));
+          const Vec3 kappa =
+              Vec3(at(r_mm).dot(n), at(r_nn).dot(n), 2 * at(r_mn).dot(n)) / std::pow(n.norm(), 3);
+          expected += 0.5 * t.weight[g] * kappa.dot(d * kappa);
+        }
+        EXPECT_NEAR(term->strain_energy(e, x) / expected, 1, 1e-13);
+      }
+    }
+}
+
+// Eight elements side by side are eight elements one by one, with one table for all (even lines),
+// with their own (a design, moving lines) and in a batch that is not full: 15 elements. Round-off
+// of the same sums in vector registers.
+TEST(Bending, BatchesAreTheirElements) {
+  for (const ShapeSet shapes : {ShapeSet::h12, ShapeSet::h16})
+    for (const bool designed : {false, true})
+      for (const bool moves : {false, true}) {
+        std::vector<MaterialLine> lines = testing::even_lines(0.1, 0.45, 5);
+        if (moves) lines[0] = testing::swinging_line(0.1, 0.03, 2.1);
+        AncfPlate plate(3, shapes, lines, testing::even_lines(-0.05, 0.07, 3));
+        const auto term = make_bending(kSection);
+        const Factors factors = designed ? testing::random_factors(3) : Factors{};
+        term->prepare(plate, factors, true);
+        plate.move_to(0.37);
+        term->prepare(plate, factors, false);
+        const MatrixXd shape = testing::random_shape(plate, 0.2, 4);
+        const int n = 3 * plate.n_shapes(), n_elements = plate.n_elements();
+        const Weights w{0.7, 3, 20};
+        for (int first = 0; first < n_elements; first += kLanes) {
+          const auto size = static_cast<size_t>(n);
+          std::vector<Lanes> q(size), f(size), t(size * size);
+          const int count = std::min(kLanes, n_elements - first);
+          for (int lane = 0; lane < kLanes; ++lane) {
+            const LocalRows rows =
+                testing::rows_of_element(plate, shape, first + std::min(lane, count - 1));
+            for (size_t k = 0; k < size; ++k) q[k][lane] = rows.data()[k];
+          }
+          const Batch batch{first, count, plate.n_shapes(), 3, q.data(), q.data(), q.data()};
+          term->add_forces(batch, f.data());
+          term->add_tangents(batch, w, t.data());
+          for (int lane = 0; lane < count; ++lane) {
+            Local x;
+            x.q = testing::rows_of_element(plate, shape, first + lane);
+            LocalRows force = LocalRows::Zero(x.q.rows(), 3);
+            LocalTangent tangent = LocalTangent::Zero(n, n);
+            term->add_force(first + lane, x, force);
+            term->add_tangent(first + lane, x, w, tangent);
+            double worst_force = 0, worst_tangent = 0;
+            for (int k = 0; k < n; ++k) {
+              worst_force = std::max(worst_force, std::abs(f[k][lane] - force.data()[k]));
+              for (int l = 0; l < n; ++l)
+                worst_tangent =
+                    std::max(worst_tangent, std::abs(t[n * l + k][lane] - tangent(k, l)));
+            }
+            EXPECT_LT(worst_force, 1e-13 * force.cwiseAbs().maxCoeff());
+            EXPECT_LT(worst_tangent, 1e-13 * tangent.cwiseAbs().maxCoeff());
+          }
+        }
+      }
+}
+
 TEST(Bending, NeedsSpace) {
   Model model;
   std::vector<std::unique_ptr<Term>> terms;

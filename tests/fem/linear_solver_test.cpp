@@ -8,6 +8,8 @@
 #include <Eigen/LU>
 #include <limits>
 
+#include "fem/solve/substitution.h"
+
 namespace flexmorph::fem {
 namespace {
 
@@ -48,6 +50,27 @@ void expect_solved(UnsymmetricSolver& solver, const SparseMatrix& a, bool refine
   // Condition below 1e3: thirteen digits.
   EXPECT_LT((x - expected).norm(), 1e-12 * expected.norm());
   EXPECT_LT((a * x - b).norm(), 1e-13 * b.norm());
+}
+
+// A block of columns of a factor against the same columns of a whole dense triangle: widths that
+// are and are not made of eights and fours, heights likewise. Ten times round-off.
+TEST(LinearSolver, SubstitutionThroughABlockIsThatOfTheTriangle) {
+  for (int width = 1; width <= 21; ++width)
+    for (const int below : {0, 1, 5, 8, 19}) {
+      const int height = width + below;
+      MatrixXd block = MatrixXd::Random(height, width) / height;
+      block.diagonal().array() += 2;
+      MatrixXd whole = MatrixXd::Identity(height, height);
+      whole.leftCols(width) = block.triangularView<Eigen::Lower>();
+      const VectorXd b = VectorXd::LinSpaced(height, -1, 2).array().cos();
+      VectorXd y = b;
+      forward_block(block.data(), width, height, y.data());
+      EXPECT_LT((whole * y - b).norm(), 1e-15 * height);
+      y = b;
+      backward_block(block.data(), width, height, y.data());
+      EXPECT_LT((whole.transpose() * y - b).norm(), 1e-15 * height);
+      EXPECT_EQ(y.tail(below), b.tail(below));
+    }
 }
 
 TEST(LinearSolver, SymmetricByCholeskyAndOthersByUmfpack) {

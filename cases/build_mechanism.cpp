@@ -1,0 +1,188 @@
+#include <cmath>
+
+#include "cases/build.h"
+#include "fem/elements/ancf_plate.h"
+
+namespace flexmorph::cases {
+namespace {
+
+fem::FrameDrive drive_of(const Hub& hub, const TimeSpan& time) {
+  fem::FrameMotion still;
+  still.origin = hub.position;
+  if (time.start != Start::hub_at_rest)
+    return [hub, still](double t) {
+      fem::FrameMotion f = still;
+      f.angle = hub.angle + hub.angular_velocity * t;
+      f.angle_rate = hub.angular_velocity;
+      return f;
+    };
+  // ω(t) = ω s(t/T), s = 10u³ - 15u⁴ + 6u⁵: rate and acceleration start and end smoothly.
+  return [hub, still, T = time.spin_up](double t) {
+    fem::FrameMotion f = still;
+    const double w = hub.angular_velocity, u = std::min(1.0, t / T);
+    f.angle = hub.angle + w * T * std::pow(u, 4) * (2.5 - 3 * u + u * u) + w * std::max(0.0, t - T);
+    f.angle_rate = w * std::pow(u, 3) * (10 - 15 * u + 6 * u * u);
+    f.angle_acceleration = w / T * 30 * u * u * (1 - u) * (1 - u);
+    return f;
+  };
+}
+
+std::unique_ptr<fem::Element> elements_of(const Body& body, double end,
+                                          const std::array<int, 2>& count) {
+  const double longest = body.longest(end);
+  std::vector<fem::MaterialLine> m, n;
+  for (const double at : body.start_lines(longest - body.length, count[0])) m.push_back({at, {}});
+  for (const BodyLine& line : body.lines) m[static_cast<size_t>(line.index)].free = line.free;
+  if (body.flow)
+    m[0].drive = [longest, length = body.length, speed = body.flow->speed](double t) {
+      return fem::Motion{longest - length - speed * t, -speed, 0};
+    };
+  for (int j = 0; j <= count[1]; ++j) n.push_back({body.low() + body.width * j / count[1], {}});
+  const auto shapes =
+      body.shape == "h12" ? fem::AncfPlate::ShapeSet::h12 : fem::AncfPlate::ShapeSet::h16;
+  return std::make_unique<fem::AncfPlate>(body.dim(), shapes, std::move(m), std::move(n));
+}
+
+fem::FrameDrive at_rest(const Vec2& origin, double angle) {
+  fem::FrameMotion still;
+  still.origin = origin;
+  still.angle = angle;
+  return [still](double) { return still; };
+}
+
+const Hub& hub_of(const Scene& scene, const Joint& joint) {
+  return *std::find_if(scene.hubs.begin(), scene.hubs.end(),
+                       [&](const Hub& h) { return h.name == joint.to; });
+}
+
+VectorXd gravity_of(const Scene& scene) { return scene.gravity ? *scene.gravity : VectorXd(); }
+
+std::unique_ptr<fem::Term> make_load(const BodyLoad& load) {
+  if (load.type == "point") return fem::make_point_force(load.point, load.force);
+  if (load.type == "edge") return fem::make_edge_load(load.edge, load.force);
+  if (load.type == "surface") return fem::make_surface_load(load.force);
+  if (load.type == "pressure") return fem::make_pressure(load.size);
+  return fem::make_edge_moment(load.edge, load.size);
+}
+
+void add_body(const Scene& scene, const Body& body, const std::array<int, 2>& count,
+              fem::Model& model) {
+  const VectorXd gravity = gravity_of(scene);
+  const fem::PlaneSection section = section_of(body);
+  std::vector<std::unique_ptr<fem::Term>> terms;
+  for (const std::string& name : body.terms) terms.push_back(fem::make_term(name, section));
+  if (gravity.size() > 0) terms.push_back(fem::make_gravity(section, gravity));
+  for (const fem::AttachedMass& m : attached_masses(scene, body.name))
+    terms.push_back(fem::make_point_mass(m.mass, m.material, gravity));
+  for (const BodyLoad& load : scene.loads)
+    if (load.body == body.name) terms.push_back(make_load(load));
+  model.add_body(body.name, elements_of(body, scene.time.end, count), section, std::move(terms));
+}
+
+/// Number of a free line among the free lines of its body.
+int scalar_of(const Body& body, int line) {
+  return static_cast<int>(
+      std::count_if(body.lines.begin(), body.lines.end(),
+                    [&](const BodyLine& l) { return l.free && l.index < line; }));
+}
+
+/// The speed at which a line is driven through the material; 0 where it is not.
+double slide_of(const Scene& scene, const Joint& frame) {
+  for (const Joint& j : scene.joints)
+    if (j.type == "line_drive" && j.body == frame.body && j.line == frame.line) return j.speed;
+  return 0;
+}
+
+/// A weld to a hub or a sleeve, and the body in it.
+void add_frame(const Scene& scene, const Joint& joint, double finer, Mechanism& out) {
+  const Body& body = scene.body(joint.body);
+  const fem::FrameDrive drive = joint.type == "sleeve" ? at_rest(joint.position, joint.angle)
+                                                       : drive_of(hub_of(scene, joint), scene.time);
+  out.model.add_joint(
+      fem::make_weld(joint.body + "." + joint.edge, joint.body, joint.edge, drive, joint.mode));
+  fem::Growth growth{joint.body, drive, 1, 0, joint.line, slide_of(scene, joint)};
+  if (body.flow) {
+    growth.max_length = finer * body.flow->max_length;
+    growth.min_length = finer * body.flow->min_length;
+  }
+  out.growths.push_back(growth);
+}
+
+void add_pin(const Scene& scene, const Joint& joint, fem::Model& model) {
+  const Vec3 at = start_pose(scene, scene.body(joint.body)).place(joint.point);
+  std::vector<fem::Motion> rest;
+  for (const int c : joint.components) rest.push_back({at[c], 0, 0});
+  model.add_joint(fem::make_pin(
+      joint.body + ".pin", joint.body, joint.point, [rest](double) { return rest; },
+      joint.components));
+}
+
+void add_line_drive(const Scene& scene, const Joint& joint, fem::Model& model) {
+  const Body& body = scene.body(joint.body);
+  const double start = body.start_lines(0, body.elements[0])[static_cast<size_t>(joint.line)];
+  model.add_joint(fem::make_line_drive(joint.body + ".line " + std::to_string(joint.line),
+                                       joint.body, scalar_of(body, joint.line),
+                                       [start, speed = joint.speed](double t) {
+                                         return fem::Motion{start + speed * t, speed, 0};
+                                       }));
+}
+
+/// All held edges of a body in one joint, so that a corner of two of them is held once.
+void add_holds(const Scene& scene, const Body& body, fem::Model& model) {
+  std::vector<fem::Held> all;
+  for (const Joint& joint : scene.joints) {
+    if (joint.body != body.name || !joint.holds_edges()) continue;
+    for (const std::string& edge : joint.edges) {
+      const std::vector<fem::Held> held = joint.type == "clamp"
+                                              ? fem::clamped_edge(edge, joint.mode)
+                                          : joint.type == "support" ? fem::supported_edge(edge)
+                                                                    : fem::symmetry_edge(edge);
+      all.insert(all.end(), held.begin(), held.end());
+    }
+  }
+  if (!all.empty()) model.add_joint(fem::make_hold(body.name + ".held", body.name, std::move(all)));
+}
+
+}  // namespace
+
+Vec3 Pose::place(const Vec2& material) const {
+  const Vec2 r = origin + fem::rotation(angle) * Vec2(material.x() - line, material.y());
+  return {r.x(), r.y(), 0};
+}
+
+Pose start_pose(const Scene& scene, const Body& body) {
+  for (const Joint& joint : scene.joints) {
+    if (joint.body != body.name || !joint.holds_frame()) continue;
+    const double root = body.longest(scene.time.end) - body.length;
+    const double line = body.start_lines(root, body.elements[0])[static_cast<size_t>(joint.line)];
+    if (joint.type == "sleeve") return {joint.position, joint.angle, line};
+    const Hub& hub = hub_of(scene, joint);
+    return {hub.position, hub.angle, line};
+  }
+  return {};
+}
+
+Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh) {
+  Mechanism out;
+  for (const Body& body : scene.bodies)
+    add_body(scene, body, mesh.elements.value_or(body.elements), out.model);
+  for (const Joint& joint : scene.joints) {
+    const double finer = mesh.elements ? static_cast<double>(scene.body(joint.body).elements[0]) /
+                                             (*mesh.elements)[0]
+                                       : 1;
+    if (joint.holds_frame()) add_frame(scene, joint, finer, out);
+    if (joint.type == "pin") add_pin(scene, joint, out.model);
+    if (joint.type == "line_drive") add_line_drive(scene, joint, out.model);
+  }
+  for (const Body& body : scene.bodies) add_holds(scene, body, out.model);
+  out.motion.end = scene.time.end;
+  out.motion.step = mesh.step.value_or(scene.time.step);
+  out.motion.start =
+      scene.time.start == Start::prestretched ? fem::Start::prestretched : fem::Start::rigid;
+  out.motion.integrator = scene.time.integrator;
+  out.motion.alpha.rho_inf = scene.time.rho_inf;
+  out.motion.gravity = gravity_of(scene);
+  return out;
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,61 @@
+#include "cases/path_run.h"
+
+#include "cases/motion_run.h"
+
+namespace flexmorph::cases {
+namespace {
+
+fem::StaticSettings settings_of(const StaticAnalysis& analysis) {
+  fem::StaticSettings out;
+  out.path = analysis.path;
+  out.to = analysis.to;
+  out.first_step = 1.0 / analysis.steps;
+  out.largest_step = out.first_step;
+  out.max_steps = analysis.max_steps;
+  out.max_iterations = analysis.max_iterations;
+  return out;
+}
+
+}  // namespace
+
+PathRecord run_path(const Scene& scene, RunFolder& folder, const std::function<bool()>& go_on) {
+  Mechanism mechanism = build_mechanism(scene);
+  fem::Model& model = mechanism.model;
+  fem::State x = fem::start_state(model, mechanism.growths, 0, fem::Start::rigid);
+  PathRecord out;
+  static const char* const kAxes[] = {"_ux", "_uy", "_uz"};
+  for (const Observe& o : scene.observed)
+    for (int c = 0; c < scene.body(o.body).dim(); ++c)
+      out.observed.push_back({o.body + "." + o.name + kAxes[c], {}});
+  const auto observe = [&](const fem::StaticStep& step) {
+    model.prepare(step.x);
+    const fem::Energies energies = model.energies(step.x);
+    out.factor.push_back(step.factor);
+    out.iterations.push_back(step.iterations);
+    out.strain.push_back(energies.strain);
+    size_t column = 0;
+    for (const Observe& o : scene.observed) {
+      const Body& body = scene.body(o.body);
+      const Vec3 u = fem::point_position(model.body(o.body), step.x, o.point) -
+                     start_pose(scene, body).place(o.point);
+      for (int c = 0; c < body.dim(); ++c) out.observed[column++].values.push_back(u[c]);
+    }
+    if (scene.output.vtk)
+      for (size_t i = 0; i < scene.bodies.size(); ++i)
+        folder.add_surface_frame(model.body(scene.bodies[i].name), step.x,
+                                 start_pose(scene, scene.bodies[i]), step.number,
+                                 static_cast<int>(i));
+    if (go_on && !go_on()) throw Interrupted();
+    return true;
+  };
+  try {
+    out.result = fem::solve_static(model, x, settings_of(*scene.statics), observe);
+  } catch (...) {
+    folder.write_path(out);
+    throw;
+  }
+  folder.write_path(out);
+  return out;
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,213 @@
+// Runs of the shipped spatial cases, shortened: their folders, and numbers from elsewhere.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "io/tables.h"
+#include "tests/cases/program.h"
+
+namespace flexmorph::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+Ended run(const Scratch& scratch, const std::string& name, const std::string& folder,
+          const Words& changes = {}) {
+  Words words = {"run", name, "-o", folder};
+  for (const std::string& change : changes) words.insert(words.end(), {"--set", change});
+  return flexmorph(scratch, words);
+}
+
+nlohmann::json run_json(const std::string& folder) {
+  return nlohmann::json::parse(contents_of(folder + "/run.json"));
+}
+
+size_t frames(const std::string& folder) {
+  const std::string index = contents_of(folder + "/motion/motion.pvd");
+  size_t n = 0;
+  for (size_t at = index.find("<DataSet "); at != std::string::npos;
+       at = index.find("<DataSet ", at + 1))
+    ++n;
+  return n;
+}
+
+const Words kEnergies = {"energy.kinetic", "energy.strain", "energy.potential", "energy.defect"};
+
+Words columns(Words first) {
+  first.insert(first.end(), kEnergies.begin(), kEnergies.end());
+  return first;
+}
+
+// Exudyn, 8 x 8 elements: x = y = 0.30000, z = -0.049049 m at 0.1 s; a corner in free fall would
+// be at -0.04905 m.
+TEST(SpaceRun, PendulumFallsAsThePublicCodeSays) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const Ended ended = run(scratch, "plate_pendulum", folder, {"time.end=0.1"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const io::CsvTable motion = io::read_csv(folder + "/motion.csv");
+  EXPECT_EQ(motion.columns,
+            columns({"time", "plate.corner_x", "plate.corner_y", "plate.corner_z"}));
+  ASSERT_EQ(motion.rows.size(), 101u);
+  EXPECT_NEAR(motion.numbers("plate.corner_z").back(), -0.049049, 1e-5);
+  EXPECT_NEAR(motion.numbers("plate.corner_x").back(), 0.3, 1e-5);
+  EXPECT_NEAR(motion.numbers("plate.corner_y").back(), 0.3, 1e-5);
+  EXPECT_EQ(frames(folder), 11u);
+  for (const char* name : {"plots/observed.svg", "plots/energies.svg", "report.html"})
+    EXPECT_TRUE(fs::is_regular_file(folder + "/" + name)) << name;
+  EXPECT_FALSE(fs::exists(folder + "/plots/deflection.svg"));  // no hub to be across of
+  const std::string frame = contents_of(folder + "/motion/motion_plate_00011.vtu");
+  EXPECT_TRUE(contains(frame, "NumberOfPoints=\"1089\" NumberOfCells=\"1024\""));
+  EXPECT_TRUE(contains(frame, "displacement"));
+  EXPECT_TRUE(contains(frame, "strain_energy"));
+}
+
+TEST(SpaceRun, EnergyMomentumKeepsThePendulumsEnergy) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const Ended ended =
+      run(scratch, "plate_pendulum", folder,
+          {"time.end=0.05", "body.elements=[4, 4]", "time.integrator=energy_momentum"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const io::CsvTable motion = io::read_csv(folder + "/motion.csv");
+  const double exchanged = motion.numbers("energy.kinetic").back();
+  EXPECT_GT(exchanged, 0.1);
+  for (const double defect : motion.numbers("energy.defect"))
+    EXPECT_LT(std::abs(defect), 1e-11 * exchanged);
+}
+
+// The tip of a strip that an end moment 2π EI/L has bent to a circle is back at the root.
+TEST(SpaceRun, CantileverRollsUp) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const Ended ended = run(scratch, "cantilever_roll_up", folder);
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const io::CsvTable path = io::read_csv(folder + "/path.csv");
+  EXPECT_EQ(path.columns, (Words{"step", "load_factor", "strip.tip_ux", "strip.tip_uy",
+                                 "strip.tip_uz", "energy.strain", "iterations"}));
+  EXPECT_EQ(path.rows.size(), 21u);
+  const double x = 1 + path.numbers("strip.tip_ux").back(), z = path.numbers("strip.tip_uz").back();
+  EXPECT_LT(std::hypot(x, z), 1e-3);
+  // ½ M² L w / (E I) of the arc.
+  const double energy = 0.5 * std::pow(523.5987755982989, 2) / (1e9 * 1e-6 / 12) * 0.2;
+  EXPECT_NEAR(path.numbers("energy.strain").back() / energy, 1, 2e-3);
+  EXPECT_EQ(frames(folder), 21u);
+  EXPECT_TRUE(fs::is_regular_file(folder + "/plots/path.svg"));
+  const nlohmann::json json = run_json(folder);
+  EXPECT_TRUE(json["static"]["completed"].get<bool>());
+  EXPECT_NEAR(json["static"]["load_factor"].get<double>(), 1, 1e-12);
+  EXPECT_TRUE(json["expect"]["strip.tip_ux"]["holds"].get<bool>());
+}
+
+TEST(SpaceRun, ArcLengthGoesTheSameWay) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const Ended ended = run(scratch, "square_plate_twist", folder, {"static.path=arc_length"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const io::CsvTable path = io::read_csv(folder + "/path.csv");
+  const auto factor = path.numbers("load_factor"), z = path.numbers("plate.corner_uz");
+  ASSERT_GE(factor.size(), 3u);
+  for (size_t i = 1; i < factor.size(); ++i)
+    EXPECT_NEAR(z[i], 7.8e-6 * factor[i], 1e-4 * std::abs(z[i])) << i;
+}
+
+// P L² / (2 D (1 - ν)) of Timoshenko's pure twist; h12 stops at 0.88 of it.
+TEST(SpaceRun, SquarePlateTwists) {
+  const Scratch scratch;
+  const auto twist = [&](const std::string& shape) {
+    const std::string folder = scratch / shape;
+    const Ended ended = run(scratch, "square_plate_twist", folder, {"body.shape=" + shape});
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    return io::read_csv(folder + "/path.csv").numbers("plate.corner_uz").back();
+  };
+  const double D = 1e9 * 1e-6 / 12 / (1 - 0.09), theory = 1e-3 / (2 * D * 0.7);
+  EXPECT_NEAR(twist("h16") / theory, 1, 1e-6);
+  const double incomplete = twist("h12") / theory;  // softer on coarse meshes
+  EXPECT_GT(incomplete, 0.88 - 0.003);
+  EXPECT_LT(incomplete, 0.9);
+}
+
+TEST(SpaceRun, SleeveLetsTheStripSlide) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const Ended ended = run(scratch, "elastic_sleeve", folder, {"time.end=0.1"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const io::CsvTable motion = io::read_csv(folder + "/motion.csv");
+  EXPECT_EQ(motion.columns,
+            columns({"time", "strip.front_x", "strip.front_y", "strip.front_z", "strip.back_x",
+                     "strip.back_y", "strip.back_z", "strip.line_3"}));
+  // While it is nearly straight it slides as a rigid body: ½ g_x t² through the frictionless
+  // sleeve; what bends by then is of the order of the squared slope, 3 %.
+  const double slid = 0.42 - motion.numbers("strip.line_3").back();
+  EXPECT_NEAR(slid / (0.5 * 1.0 * 0.1 * 0.1), 1, 0.03);
+  const auto kinetic = motion.numbers("energy.kinetic"), defect = motion.numbers("energy.defect");
+  for (const double each : defect) EXPECT_LT(std::abs(each), 1e-5 * kinetic.back());
+  EXPECT_EQ(frames(folder), 11u);
+}
+
+// A line that meets its neighbour ends the run with words, and what came before is kept.
+TEST(SpaceRun, ALineThatReachesItsNeighbourSaysSo) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const Ended ended =
+      run(scratch, "elastic_sleeve", folder,
+          {"joint=[{type='sleeve', body='strip', edge='line 3'}, {type='line_drive', "
+           "body='strip', line=3, speed=-4.0}]",
+           "output.vtk=false"});
+  EXPECT_EQ(ended.code, 3) << ended.out;
+  EXPECT_TRUE(contains(ended.err, "cross"));
+  EXPECT_GT(io::read_csv(folder + "/motion.csv").rows.size(), 5u);
+}
+
+TEST(SpaceRun, PlateDeploysAndGetsNewLines) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const Ended ended = run(scratch, "deploying_plate", folder, {"time.end=0.15"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const io::CsvTable motion = io::read_csv(folder + "/motion.csv");
+  EXPECT_EQ(motion.columns,
+            columns({"time", "plate.length", "plate.tip_x", "plate.tip_y", "plate.tip_z"}));
+  EXPECT_NEAR(motion.numbers("plate.length").back(), 0.475, 1e-12);
+  // Static sag of the start: ρ c g L⁴ / (8 E I) of a strip that is free to contract sideways,
+  // 1 - ν² of it where it is not; the clamped root lies between.
+  const double weight = 2700 * 0.005 * 9.81, EI = 7e9 * std::pow(0.005, 3) / 12;
+  const double sag = -motion.numbers("plate.tip_z")[0] / (weight * std::pow(0.4, 4) / (8 * EI));
+  EXPECT_GT(sag, 1 - 0.09);
+  EXPECT_LT(sag, 1);
+  for (const double defect : motion.numbers("energy.defect")) EXPECT_TRUE(std::isnan(defect));
+  const nlohmann::json json = run_json(folder);
+  EXPECT_TRUE(json["motion"]["energy_defect"].is_null());
+  const nlohmann::json& events = json["motion"]["events"];
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0]["change"], "insertion");
+  EXPECT_NEAR(events[0]["time"].get<double>(), 0.1, 1e-12);
+  EXPECT_LT(events[0]["momentum_jump"].get<double>(), 1e-12);
+  EXPECT_LT(events[0]["tip_jump"].get<double>(), 1e-12);
+}
+
+TEST(SpaceRun, CheckListsTheNewParts) {
+  const Scratch scratch;
+  const auto halves = [&](const std::string& name) {
+    const std::string out = flexmorph(scratch, {"check", name}).out;
+    const size_t middle = std::min(out.find("\nabsent"), out.size());
+    return std::pair(out.substr(0, middle), out.substr(middle));
+  };
+  const auto [pendulum, no_pendulum] = halves("plate_pendulum");
+  for (const char* part : {"out-of-plane", "bending", "972 unknowns", "gravity", "observed points"})
+    EXPECT_TRUE(contains(pendulum, part));
+  for (const char* part : {"static analysis", "free material lines", "loads"})
+    EXPECT_TRUE(contains(no_pendulum, part));
+  EXPECT_FALSE(contains(no_pendulum, "out-of-plane"));
+  const auto [roll, no_roll] = halves("cantilever_roll_up");
+  EXPECT_TRUE(contains(roll, "static analysis"));
+  EXPECT_TRUE(contains(roll, "load on strip"));
+  EXPECT_TRUE(contains(no_roll, "motion"));
+  EXPECT_FALSE(contains(no_roll, "static analysis"));
+  const auto [sleeve, no_sleeve] = halves("elastic_sleeve");
+  EXPECT_TRUE(contains(sleeve, "free material line 3"));
+  EXPECT_FALSE(contains(no_sleeve, "free material line"));
+}
+
+}  // namespace
+}  // namespace flexmorph::test
