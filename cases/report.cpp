@@ -9,6 +9,8 @@
 namespace flexmorph::cases {
 namespace {
 
+constexpr size_t kShapes = 4;  // pictures of a plate in space
+
 /// Thinnest half-thickness of any component anywhere along its axis [m].
 double thinnest(const mmc::BodyProblem& problem) {
   double out = problem.grid.width;
@@ -333,6 +335,9 @@ void write_report(const Scene& scene, const RunReport& report, RunFolder& folder
     add("energies", "Energies of the motion", energy_plot(scene, *report.motion));
   }
   if (report.path) add("path", "Path of equilibria", path_plot(*report.path));
+  if (const auto shapes = folder.shapes(kShapes); !shapes.empty())
+    add("shapes", "Deformed shapes",
+        io::surfaces_svg("Deformed shapes, light: strain energy", shapes));
   if (report.verified)
     add("deflection_verified", "Tip deflection on the finer mesh",
         deflection_plot(*report.verified, report.verified_uniform));

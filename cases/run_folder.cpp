@@ -271,6 +271,17 @@ void RunFolder::add_surface_frame(const fem::Body& body, const fem::State& x, co
   const std::string file = numbered("motion_" + body.name + "_", ++motion_frames_, ".vtu");
   io::write_quad_mesh(path_ + "/motion/" + file, surface.mesh, cells, points);
   motion_.add(time, file, part);
+  if (part == 0 && surface.mesh.dimension == 3)
+    shapes_.push_back(
+        {(scene_.statics ? "step " : "t = ") + io::to_text(time, 4) + (scene_.statics ? "" : " s"),
+         surface.mesh, surface.energy});
+}
+
+std::vector<io::SurfaceFrame> RunFolder::shapes(size_t most) const {
+  if (shapes_.size() <= most) return shapes_;
+  std::vector<io::SurfaceFrame> out;
+  for (size_t k = 0; k < most; ++k) out.push_back(shapes_[k * (shapes_.size() - 1) / (most - 1)]);
+  return out;
 }
 
 void RunFolder::add_motion_frame(const fem::Model& model, const fem::Growth& growth,

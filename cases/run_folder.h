@@ -6,6 +6,7 @@
 
 #include "cases/build.h"
 #include "fem/dynamics/motion.h"
+#include "io/surfaces.h"
 #include "io/tables.h"
 #include "io/vtk.h"
 #include "optim/mmc/esl_loop.h"
@@ -84,6 +85,9 @@ class RunFolder {
   };
   const std::vector<History>& histories() const { return histories_; }
 
+  /// Frames of the first body in space, for a picture: all up to a few, else some evenly spread.
+  std::vector<io::SurfaceFrame> shapes(size_t most) const;
+
  private:
   History& history_of(const std::string& body);
   void add_events(const mmc::IterationReport& report);
@@ -94,6 +98,7 @@ class RunFolder {
   io::Series iterations_, components_, motion_;
   std::vector<History> histories_;
   int rows_ = 0, motion_frames_ = 0;
+  std::vector<io::SurfaceFrame> shapes_;
   double output_seconds_ = 0;
 };
 

@@ -54,7 +54,8 @@ TEST(SpaceRun, PendulumFallsAsThePublicCodeSays) {
   EXPECT_NEAR(motion.numbers("plate.corner_x").back(), 0.3, 1e-5);
   EXPECT_NEAR(motion.numbers("plate.corner_y").back(), 0.3, 1e-5);
   EXPECT_EQ(frames(folder), 11u);
-  for (const char* name : {"plots/observed.svg", "plots/energies.svg", "report.html"})
+  for (const char* name :
+       {"plots/observed.svg", "plots/energies.svg", "plots/shapes.svg", "report.html"})
     EXPECT_TRUE(fs::is_regular_file(folder + "/" + name)) << name;
   EXPECT_FALSE(fs::exists(folder + "/plots/deflection.svg"));  // no hub to be across of
   const std::string frame = contents_of(folder + "/motion/motion_plate_00011.vtu");
@@ -94,6 +95,7 @@ TEST(SpaceRun, CantileverRollsUp) {
   EXPECT_NEAR(path.numbers("energy.strain").back() / energy, 1, 2e-3);
   EXPECT_EQ(frames(folder), 21u);
   EXPECT_TRUE(fs::is_regular_file(folder + "/plots/path.svg"));
+  EXPECT_TRUE(fs::is_regular_file(folder + "/plots/shapes.svg"));
   const nlohmann::json json = run_json(folder);
   EXPECT_TRUE(json["static"]["completed"].get<bool>());
   EXPECT_NEAR(json["static"]["load_factor"].get<double>(), 1, 1e-12);

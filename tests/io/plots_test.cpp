@@ -10,6 +10,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "io/surfaces.h"
 #include "tests/io/scratch.h"
 
 namespace flexmorph::io {
@@ -118,6 +119,29 @@ TEST(Drawing, IsInMetresAndYUp) {
   EXPECT_TRUE(contains(svg, "matrix(1 0 0 -1 0 0)"));  // the middle stays where it is
   EXPECT_TRUE(contains(svg, "fill-rule=\"evenodd\""));
   EXPECT_EQ(paths(svg).at(0), "M0 -0.05L0.6 -0.05L0.6 0.05ZM0.4 0L0.4 0.01L0.5 0Z");
+}
+
+/// A horizontal unit square at the height z.
+SurfaceFrame square(double z, double value) {
+  return {"square", {3, {0, 0, z, 1, 0, z, 1, 1, z, 0, 1, z}, {{0, 1, 2, 3}}}, {value}};
+}
+
+TEST(Surfaces, WhatIsNearerIsDrawnLater) {
+  // Two squares in one frame, the upper one first: seen from above, it must come last.
+  SurfaceFrame both = square(0.5, 4);
+  const SurfaceFrame lower = square(0, 0);
+  both.mesh.points.insert(both.mesh.points.end(), lower.mesh.points.begin(),
+                          lower.mesh.points.end());
+  both.mesh.quads.push_back({4, 5, 6, 7});
+  both.values.push_back(0);
+  const std::string svg = surfaces_svg("two", {both});
+  ASSERT_NE(parse(svg), nullptr);
+  const size_t light = svg.find("#fff0aa"), dark = svg.find("#264696");  // largest value, zero
+  ASSERT_NE(light, std::string::npos);
+  ASSERT_NE(dark, std::string::npos);
+  EXPECT_LT(dark, light);
+  EXPECT_THROW(surfaces_svg("none", {}), Error);
+  EXPECT_THROW(surfaces_svg("plane", {{"flat", {2, {0, 0, 1, 0, 1, 1, 0, 1}, {}}, {}}}), Error);
 }
 
 }  // namespace
