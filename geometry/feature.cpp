@@ -316,9 +316,13 @@ std::vector<NarrowPlace> narrow_places(std::span<const Region> regions,
 }
 
 Features smallest_features(std::span<const Region> regions, std::span<const Vec2> domain) {
+  return smallest_of(narrow_places(regions, domain, std::numeric_limits<double>::infinity()));
+}
+
+Features smallest_of(std::span<const NarrowPlace> places) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Features out{kInfinity, kInfinity};
-  for (const NarrowPlace& p : narrow_places(regions, domain, kInfinity)) {
+  for (const NarrowPlace& p : places) {
     double& smallest = p.solid ? out.solid : out.gap;
     smallest = std::min(smallest, p.width);
   }

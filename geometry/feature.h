@@ -47,4 +47,7 @@ struct Features {
 };
 Features smallest_features(std::span<const Region> regions, std::span<const Vec2> domain);
 
+/// The same of places that are known: all up to an infinite limit, or some of them.
+Features smallest_of(std::span<const NarrowPlace> places);
+
 }  // namespace flexmorph

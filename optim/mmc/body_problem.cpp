@@ -101,13 +101,8 @@ std::vector<NarrowPlace> narrow_places_of(const BodyProblem& problem,
 }
 
 Features features_of(const BodyProblem& problem, std::span<const Region> regions) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Features out{kInfinity, kInfinity};
-  for (const NarrowPlace& p : narrow_places_of(problem, regions, kInfinity)) {
-    double& smallest = p.solid ? out.solid : out.gap;
-    smallest = std::min(smallest, p.width);
-  }
-  return out;
+  return smallest_of(
+      narrow_places_of(problem, regions, std::numeric_limits<double>::infinity()));
 }
 
 Connectivity connectivity_of(const BodyProblem& problem, std::span<const Region> regions) {

@@ -125,9 +125,9 @@ TEST(SpaceRun, SquarePlateTwists) {
   };
   const double D = 1e9 * 1e-6 / 12 / (1 - 0.09), theory = 1e-3 / (2 * D * 0.7);
   EXPECT_NEAR(twist("h16") / theory, 1, 1e-6);
-  const double incomplete = twist("h12") / theory;  // softer on coarse meshes
-  EXPECT_GT(incomplete, 0.88 - 0.003);
-  EXPECT_LT(incomplete, 0.9);
+  // Another implementation of the incomplete shapes, made before this one, has 0.890 on 8 x 8 and
+  // tends to 0.880.
+  EXPECT_NEAR(twist("h12") / theory, 0.890, 0.001);
 }
 
 TEST(SpaceRun, SleeveLetsTheStripSlide) {
