@@ -4,15 +4,10 @@
 
 #include "cases/build.h"
 #include "cases/run.h"
+#include "tests/cases/scenes.h"
 
 namespace flexmorph::cases {
 namespace {
-
-using Changes = std::vector<std::string>;
-
-Scene read(const std::string& name, const Changes& changes = {}) {
-  return read_scene(io::CaseFile(std::string(FLEXMORPH_CASES) + "/" + name + ".toml", changes));
-}
 
 std::string complaint(const std::string& name, const Changes& changes) {
   try {

@@ -7,16 +7,11 @@
 
 #include "cases/build.h"
 #include "io/exports.h"
+#include "tests/cases/scenes.h"
 #include "tests/io/scratch.h"
 
 namespace flexmorph::cases {
 namespace {
-
-using Changes = std::vector<std::string>;
-
-Scene read(const std::string& name, const Changes& changes = {}) {
-  return read_scene(io::CaseFile(std::string(FLEXMORPH_CASES) + "/" + name + ".toml", changes));
-}
 
 std::string complaint(const std::string& name, const Changes& changes) {
   try {

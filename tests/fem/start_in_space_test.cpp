@@ -1,5 +1,5 @@
-// Growing plates in space: an inserted line changes no point's place and no momentum, starts
-// without weight are those of the plane, and starts under weight are equilibria.
+// Starts of growing plates in space: without weight they are those of the plane, under weight they
+// are equilibria.
 #include <gtest/gtest.h>
 
 #include "fem/dynamics/motion.h"
@@ -43,38 +43,8 @@ Model plate(int dim, double speed, const VectorXd& gravity, const FrameDrive& dr
   return model;
 }
 
-TEST(GrowthInSpace, InsertionLeavesFieldsAndMomentumUnchanged) {
-  Model model = plate(3, 0.5, {}, hub);
-  State x = start_state(model, std::vector<Growth>{{"plate", hub}}, 0, Start::rigid);
-  x.t = 0.05;
-  model.prepare(x.t);
-  const VectorXd scales = model.scales();
-  for (Eigen::Index k = 0; k < x.q.size(); ++k) {  // anything smooth in each element
-    x.q[k] += 0.05 * std::sin(1.0 + 0.7 * static_cast<double>(k)) / scales[k];
-    x.v[k] += 0.3 * std::cos(2.0 + 0.9 * static_cast<double>(k)) / scales[k];
-  }
-  Body& body = model.bodies()[0];
-  std::vector<Vec2> points;
-  const double root = grid_of(body).line_m(0).value;
-  for (int i = 0; i <= 20; ++i)
-    for (int j = 0; j <= 4; ++j)
-      points.emplace_back(root + (kWhole - root) * i / 20, kWidth * j / 4);
-  std::vector<Vec3> before;
-  for (const Vec2& p : points) before.push_back(point_position(body, x, p));
-  const Vec3 momentum = momentum_in_space(model, x);
-  EXPECT_GT(std::abs(before.back().z()), 1e-3);
-  EXPECT_GT(std::abs(momentum.z()), 1e-4);
-
-  change_mesh(model, body, MeshChange::insertion, x);
-  EXPECT_EQ(grid_of(body).n_m(), 5);
-  EXPECT_EQ(x.q.size(), model.n_dofs());
-  for (size_t i = 0; i < points.size(); ++i)
-    EXPECT_LT((point_position(body, x, points[i]) - before[i]).norm(), 1e-13);
-  EXPECT_LT((momentum_in_space(model, x) - momentum).norm(), 1e-13 * momentum.norm());
-}
-
 // Without weight nothing pulls out of the plane.
-TEST(GrowthInSpace, StartsAsInThePlane) {
+TEST(StartInSpace, IsThatOfThePlane) {
   for (const Start start : {Start::rigid, Start::prestretched}) {
     const std::vector<Growth> growths = {{"plate", hub}};
     Model plane = plate(2, 0.5, {}, hub), space = plate(3, 0.5, {}, hub);
@@ -89,7 +59,7 @@ TEST(GrowthInSpace, StartsAsInThePlane) {
 }
 
 // In a hub at rest the start is what load stepping finds from the undeformed plate.
-TEST(GrowthInSpace, StartsHangingUnderItsWeight) {
+TEST(StartInSpace, HangsUnderItsWeight) {
   const std::vector<Growth> growths = {{"plate", hub_at_rest}};
   const VectorXd gravity = vector(0, 0, -9.81);
   Model model = plate(3, 0, gravity, hub_at_rest);
