@@ -12,6 +12,7 @@
 #include "cases/build.h"
 #include "cases/motion_run.h"
 #include "cases/run.h"
+#include "tests/benchmark/iteration.h"
 #include "tests/benchmark/reference.h"
 
 namespace {
@@ -20,16 +21,6 @@ using namespace flexmorph;
 using namespace flexmorph::benchmark;
 
 /// Median CPU per iteration   [ms]
-struct Iteration {
-  double tdf = 0, factor = 0, solve = 0, sensitivity = 0, optimizer = 0, total = 0;
-  int right_hand_sides = 0;
-};
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return 1e3 * values[values.size() / 2];
-}
-
 /// Loads of the motion of the scene's first design.
 fem::EslSets loads_of(const cases::Scene& scene, const mmc::BodyProblem& problem) {
   const auto folder = std::filesystem::temp_directory_path() / "flexmorph_design_iteration";
@@ -57,33 +48,9 @@ Iteration measure(const cases::Scene& scene, const mmc::BodyProblem& problem,
                         problem.goal);
   optim::Settings optimizer = scene.optimizer;
   optimizer.max_iterations = kIterations;
-  std::vector<double> tdf, factor, solve, sensitivity, mma, total;
-  double mark = mmc::cpu_seconds();
-  int evaluations = 0;
-  optim::make_optimizer(optimizer)->minimize(state, [&](const optim::Iterate& iterate) {
-    const double now = mmc::cpu_seconds();
-    if (iterate.evaluations == evaluations + 1 && iterate.iteration > 2) {
-      const mmc::Compliance::Seconds s = state.seconds();
-      tdf.push_back(state.seconds_tdf());
-      factor.push_back(s.factor);
-      solve.push_back(s.solve);
-      sensitivity.push_back(s.sensitivity);
-      mma.push_back(iterate.seconds);
-      total.push_back(now - mark);
-    }
-    state.clear_seconds();
-    evaluations = iterate.evaluations;
-    mark = mmc::cpu_seconds();
-    return true;
-  });
+  const Iteration out = measure_iterations(state, optimizer, compliance.n_right_hand_sides());
   *stiffness = state.factors().stiffness;
-  return {median(tdf),
-          median(factor),
-          median(solve),
-          median(sensitivity),
-          median(mma),
-          median(total),
-          compliance.n_right_hand_sides()};
+  return out;
 }
 
 void print(const char* name, const Iteration& t, double reference) {

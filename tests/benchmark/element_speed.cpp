@@ -16,21 +16,17 @@
 #include "fem/elements/ancf_plate.h"
 #include "fem/term.h"
 #include "fem/terms/gram.h"
+#include "tests/benchmark/cpu.h"
 #include "tests/support/models.h"
 
 namespace {
 
 using namespace flexmorph;
+using benchmark::cpu;
 using namespace flexmorph::fem;
 using testing::ShapeSet;
 
 const PlaneSection kSection{0.01, 1e5, 0.3, 7810};
-
-double cpu() {
-  timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 /// CPU time [ns] of one call: the least of many batches of 0.1 ms or more, because others use the
 /// machine, too.

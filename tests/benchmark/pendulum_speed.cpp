@@ -27,18 +27,14 @@
 
 #include "fem/dynamics/integrator.h"
 #include "fem/solve/linear_solver.h"
+#include "tests/benchmark/cpu.h"
 #include "tests/support/space_plates.h"
 
 namespace {
 
 using namespace flexmorph;
+using benchmark::cpu;
 using testing::ShapeSet;
-
-double cpu() {
-  timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 /// CPU time [s] of one call: the mean over 20 ms or more.
 template <class F>

@@ -26,6 +26,7 @@
 #include "optim/mmc/fixed_loads.h"
 #include "optim/mmc/mmc_problem.h"
 #include "optim/optimizer.h"
+#include "tests/benchmark/iteration.h"
 #include "tests/benchmark/reference.h"
 
 namespace {
@@ -70,16 +71,6 @@ std::vector<mmc::LoadCase> moving_load(const Grid& g, int n) {
 }
 
 /// Median CPU per iteration   [ms]
-struct Iteration {
-  double tdf = 0, factor = 0, solve = 0, energies = 0, optimizer = 0, total = 0;
-  int right_hand_sides = 0;
-};
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return 1e3 * values[values.size() / 2];
-}
-
 std::vector<fem::HeldUnknown> clamped_left(const Grid& g) {
   std::vector<fem::HeldUnknown> held;
   for (int j = 0; j <= g.ny; ++j)
@@ -116,38 +107,14 @@ Iteration measure(const Plate& plate, const std::vector<mmc::LoadCase>& loads, b
   mmc::MmcProblem problem(g, design, ersatz, statics, tdf, goal);
   optim::Settings settings;
   settings.max_iterations = iterations;
-  std::vector<double> parts_tdf, factor, solve, energies, optimizer, total;
-  int evaluations = 0;
-  double mark = mmc::cpu_seconds();
-  optim::make_optimizer(settings)->minimize(problem, [&](const optim::Iterate& iterate) {
-    const double now = mmc::cpu_seconds();
-    if (iterate.evaluations == evaluations + 1 && iterate.iteration > 2) {
-      const mmc::LoadResponse::Seconds s = problem.seconds();
-      parts_tdf.push_back(problem.seconds_tdf());
-      factor.push_back(s.factor);
-      solve.push_back(s.solve);
-      energies.push_back(s.sensitivity);
-      optimizer.push_back(iterate.seconds);
-      total.push_back(now - mark);
-    }
-    problem.clear_seconds();
-    evaluations = iterate.evaluations;
-    mark = mmc::cpu_seconds();
-    return true;
-  });
+  const Iteration out = measure_iterations(problem, settings, statics.n_right_hand_sides());
   if (stiffness) *stiffness = problem.factors().stiffness;
-  return {median(parts_tdf),
-          median(factor),
-          median(solve),
-          median(energies),
-          median(optimizer),
-          median(total),
-          statics.n_right_hand_sides()};
+  return out;
 }
 
 void print(const std::string& name, const Iteration& t, double reference) {
   std::printf("%-34s %4d %7.1f %7.1f %7.1f %7.1f %7.1f %8.1f  %5.2f\n", name.c_str(),
-              t.right_hand_sides, t.tdf, t.factor, t.solve, t.energies, t.optimizer, t.total,
+              t.right_hand_sides, t.tdf, t.factor, t.solve, t.sensitivity, t.optimizer, t.total,
               t.total / reference);
 }
 
