@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 
 #include "cases/build.h"
 #include "fem/elements/ancf_plate.h"
@@ -100,10 +101,14 @@ void add_frame(const Scene& scene, const Joint& joint, double finer, Mechanism& 
                                                        : drive_of(hub_of(scene, joint), scene.time);
   out.model.add_joint(
       fem::make_weld(joint.body + "." + joint.edge, joint.body, joint.edge, drive, joint.mode));
-  fem::Growth growth{joint.body, drive, 1, 0, joint.line, slide_of(scene, joint)};
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  fem::Growth growth{joint.body, drive, kNever, 0, joint.line, slide_of(scene, joint)};
   if (body.flow) {
     growth.max_length = finer * body.flow->max_length;
     growth.min_length = finer * body.flow->min_length;
+  } else if (body.mesh_changes()) {
+    growth.max_length = finer * body.lines.front().max_length;
+    growth.min_length = finer * body.lines.front().min_length;
   }
   out.growths.push_back(growth);
 }

@@ -118,7 +118,7 @@ MotionOutcome run_motion(const Scene& scene, const MotionWishes& wishes, RunFold
   for (size_t i = 0; i < wishes.factors.size(); ++i)
     for (fem::Body& body : mechanism.model.bodies())
       if (body.name == scene.designs[i].body) mechanism.model.set_factors(body, wishes.factors[i]);
-  mechanism.motion.balance = wishes.balance && scene.keeps_balance();
+  mechanism.motion.balance = wishes.balance;
   if (wishes.loads) mechanism.motion.stops = load_times(scene);
   if (wishes.frames_every > 0)
     for (int k = 1; k * wishes.frames_every < scene.time.end + 1e-9; ++k)

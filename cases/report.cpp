@@ -89,12 +89,12 @@ io::Json path_results(const PathRecord& path) {
   return out;
 }
 
-io::Json motion_results(const Scene& scene, const MotionRecord& motion) {
+io::Json motion_results(const MotionRecord& motion) {
   const fem::MotionResult& r = motion.result;
   io::Json out = io::Json::object();
   out.set("steps", r.counts.steps).set("newton_iterations", r.counts.newton);
   out.set("factorizations", r.counts.factorizations).set("rejected_steps", r.counts.rejected);
-  out.set("energy_defect", scene.keeps_balance() ? io::Json(r.energy_defect) : io::Json());
+  out.set("energy_defect", r.energy_defect);
   out.set("constraint_drift", r.constraint_drift);
   out.set("velocity_drift", r.velocity_drift).set("smallest_area_ratio", r.smallest_area_ratio);
   io::Json events = io::Json::array();
@@ -182,7 +182,7 @@ std::string run_json(const Scene& scene, const RunReport& report) {
     }
     out.set("cycles", std::move(cycles));
   }
-  if (report.motion) out.set("motion", motion_results(scene, *report.motion));
+  if (report.motion) out.set("motion", motion_results(*report.motion));
   if (report.path) out.set("static", path_results(*report.path));
   if (!scene.expect.empty()) out.set("expect", expectations(scene, report));
   return out.text();
@@ -286,7 +286,7 @@ std::string energy_plot(const Scene& scene, const MotionRecord& motion) {
   panel("kinetic [J]", motion.kinetic);
   panel("strain [J]", motion.strain);
   if (scene.in_space()) panel("potential [J]", motion.potential);
-  if (scene.keeps_balance()) panel("defect of the balance [J]", motion.defect);
+  panel("defect of the balance [J]", motion.defect);
   return io::plot_svg(figure);
 }
 

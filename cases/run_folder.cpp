@@ -243,7 +243,7 @@ void RunFolder::write_motion(const std::string& name, const Scene& scene,
     row.emplace_back(motion.kinetic[i]);
     row.emplace_back(motion.strain[i]);
     row.emplace_back(motion.potential[i]);
-    row.push_back(scene.keeps_balance() ? io::Cell(motion.defect[i]) : io::Cell());
+    row.emplace_back(motion.defect[i]);
     csv.row(row);
   }
 }

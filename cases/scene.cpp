@@ -76,13 +76,6 @@ bool Scene::has_free_lines() const {
                      [](const Body& b) { return b.has_free_lines(); });
 }
 
-bool Scene::keeps_balance() const {
-  return std::none_of(bodies.begin(), bodies.end(), [](const Body& b) {
-    return (b.flow && b.has("bending")) ||
-           (!b.lines.empty() && b.lines.front().index == 0 && b.lines.front().free);
-  });
-}
-
 const Body& Scene::body(const std::string& body_name) const {
   for (const Body& each : bodies)
     if (each.name == body_name) return each;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -67,6 +69,9 @@ struct BodyLine {
   int index = 0;  ///< 0 is the root
   bool free = false;
   std::optional<double> at;  ///< material coordinate at the start [m]
+  /// Of a free root line: limits of the element next to it, as those of a Flow; none by default.
+  double max_length = std::numeric_limits<double>::infinity(), min_length = 0;
+  bool has_limits() const { return std::isfinite(max_length); }
 };
 
 /// A plate. Material coordinates: X from the root to the free end; Y across, -width/2..width/2 in
@@ -98,6 +103,8 @@ struct Body {
   bool has_free_lines() const {
     return std::any_of(lines.begin(), lines.end(), [](const BodyLine& l) { return l.free; });
   }
+  /// Do lines of nodes come and go?
+  bool mesh_changes() const { return flow || (!lines.empty() && lines.front().has_limits()); }
   /// Material coordinates of the m-lines at the start, the first at `root` [m].
   std::vector<double> start_lines(double root, int count) const;
 };
@@ -276,8 +283,6 @@ struct Scene {
   const Body& body(const std::string& name) const;  ///< name resolves: checked when read
   bool in_space() const { return !bodies.empty() && bodies.front().in_space(); }  ///< all, or none
   bool has_free_lines() const;
-  /// Is the energy balance known? Not where bending stiffness flows in or a root line is free.
-  bool keeps_balance() const;
 };
 
 /// The rows of the tables a scene may name.

@@ -25,10 +25,10 @@ std::string read_edge(const Table& t, const std::string& key, const Body& body,
                       const Words& names) {
   const std::string edge = t.string(key, "an edge");
   if (std::find(names.begin(), names.end(), edge) != names.end()) return edge;
-  if (!body.flow && line_of(edge, body) >= 0) return edge;
+  if (!body.mesh_changes() && line_of(edge, body) >= 0) return edge;
   std::string known;
   for (const std::string& name : names) known += "'" + name + "', ";
-  t.fail(key, body.flow
+  t.fail(key, body.mesh_changes()
                   ? "an edge is " + known.substr(0, known.size() - 2)
                   : "an edge is " + known + "'line 0' to 'line " + to_text(body.elements[0]) + "'");
 }
@@ -122,6 +122,7 @@ Joint read_joint(const Table& t, const Vocabulary& words, const Scene& scene) {
     joint.edges = t.choices("edges", noun, edge_names());
     if (joint.type == "clamp") joint.mode = read_mode(t, fem::WeldMode::edge);
     if (body.flow) t.fail("body", "material flows out of a hub: its edges are not held");
+    if (body.mesh_changes()) t.fail("body", "its lines of nodes come and go: edges are not held");
   }
   if (joint.type == "line_drive") read_line_drive(t, body, scene, joint);
   return joint;
@@ -219,6 +220,28 @@ StaticAnalysis read_analysis(const Table& t) {
   return out;
 }
 
+namespace {
+
+/// Limits of the element next to a free root line; two halves that were just split must not be
+/// merged again.
+void read_limits(const Table& t, const Body& body, BodyLine& line) {
+  const std::string key = t.has("max_length") ? "max_length" : "min_length";
+  if (!line.free || line.index != 0)
+    t.fail(key, "lines of nodes come and go next to a free root line: index = 0, free = true");
+  line.max_length = t.number("max_length", positive("a length", "m"));
+  line.min_length = t.number("min_length", positive("a length", "m"), 0.3 * line.max_length);
+  const double element = body.length / body.elements[0];
+  if (element > line.max_length * (1 + 1e-9) || element < line.min_length * (1 - 1e-9))
+    t.fail(key, "the elements are " + to_text(element, 4) +
+                    " m long at the start: between min_length and max_length [m]");
+  if (line.min_length + 0.5 * line.max_length > 0.9 * line.max_length * (1 + 1e-9))
+    t.fail(key,
+           "min_length + 0.5 max_length stays below 0.9 max_length, or elements are split and "
+           "merged in turn");
+}
+
+}  // namespace
+
 std::vector<BodyLine> read_lines(const Table& body_table, const Body& body) {
   std::vector<BodyLine> out;
   std::vector<Table> tables = body_table.tables("line");
@@ -233,11 +256,15 @@ std::vector<BodyLine> read_lines(const Table& body_table, const Body& body) {
     for (const BodyLine& other : out)
       if (other.index == line.index) t.fail("index", "there is another line of this number");
     if (body.flow) t.fail("material flows through '" + body.name + "': its lines come and go");
+    if (t.has("max_length") || t.has("min_length")) read_limits(t, body, line);
     out.push_back(line);
   }
   std::sort(out.begin(), out.end(),
             [](const BodyLine& a, const BodyLine& b) { return a.index < b.index; });
   if (out.empty()) return out;
+  if (out.front().has_limits() && out.size() > 1)
+    tables.front().fail(
+        "lines come and go next to the root: no other line has a number to name it");
   Body with_lines = body;
   with_lines.lines = out;
   const std::vector<double> at = with_lines.start_lines(0, body.elements[0]);

@@ -36,8 +36,9 @@ struct ShapeTable {
   MatrixXd N;                  ///< r = Qᵀ N
   MatrixXd N_t, N_tt;  ///< ∂N/∂t, ∂²N/∂t² at fixed material point: zero unless lines move
   MatrixXd N_m, N_n;   ///< derivatives by the material coordinates
-  MatrixXd N_mt, N_nt;        ///< their rates at fixed material point
-  MatrixXd N_mm, N_nn, N_mn;  ///< second derivatives by the material coordinates
+  MatrixXd N_mt, N_nt;           ///< their rates at fixed material point
+  MatrixXd N_mm, N_nn, N_mn;     ///< second derivatives by the material coordinates
+  MatrixXd N_mmt, N_nnt, N_mnt;  ///< their rates at fixed material point
 };
 
 /// Shape functions that are products of functions of one coordinate each, at a tensor grid of
@@ -50,8 +51,16 @@ struct ProductTable {
   MatrixXd dd_m{}, dd_n{};  ///< they, where wanted
 };
 
-/// What to fill besides N; `curvature` is the first and second derivatives without rates.
-enum class Tabulate { position, position_rates, gradient, gradient_rates, curvature };
+/// What to fill besides N; `curvature` is the first and second derivatives without rates,
+/// `curvature_rates` everything.
+enum class Tabulate {
+  position,
+  position_rates,
+  gradient,
+  gradient_rates,
+  curvature,
+  curvature_rates
+};
 
 /// Which factor multiplies the quadrature weight.
 enum class FactorKind { none, stiffness, mass };

@@ -34,6 +34,18 @@ using FreeForce = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxFree, 1>;
 using FreeTangent =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMaxFree, kMaxFree>;
 
+/// Energy per reference area of full material at points of a material line [J/m²], sorted by the
+/// factor of the design that multiplies it (one entry per point each).
+struct LineEnergy {
+  VectorXd stiffness;  ///< of strains
+  VectorXd mass;       ///< of motion and weight
+  VectorXd none;       ///< of loads that do not see the design
+
+  void set_zero(Eigen::Index n) {
+    for (VectorXd* x : {&stiffness, &mass, &none}) x->setZero(n);
+  }
+};
+
 /// The seam of virtual work: one physical effect of one body.
 ///
 /// A term keeps what it needs per element (invariants, mass matrices), refreshed by prepare() for
@@ -100,6 +112,15 @@ class Term {
   /// force per area times ∂r/∂t at fixed unknowns and fixed material point, integrated [W].
   /// Only called for elements whose lines move.
   virtual double flow_power(int, const Local&) const { return 0; }
+
+  /// Adds the energies per area that cross an m-line through which material enters or leaves. With
+  /// flow_power() they are the rate of the element's energy at fixed unknowns.
+  /// @param line  tables of one point each (curvature_rates; gradient_rates in the plane): the
+  ///              n >= 7 Gauss points along the line, in order, seen from the side of one element
+  /// @param x     unknowns of that element
+  /// @param out   (n) each
+  virtual void add_line_energy(std::span<const ShapeTable> /*line*/, const Local& /*x*/,
+                               LineEnergy& /*out*/) const {}
 };
 
 /// What a body is made of.

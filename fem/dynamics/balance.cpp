@@ -1,65 +1,160 @@
 #include "fem/dynamics/balance.h"
 
+#include <array>
 #include <cmath>
+
+#include "fem/free_lines.h"
 
 namespace flexmorph::fem {
 namespace {
 
-/// Energy per reference area at a point of the root line, times the factors of the cell that lies
-/// outside of it [J/m²].
-double energy_density(const Body& body, const State& x, int e, double u, const VectorXd& gravity) {
-  const LineGrid& plate = grid_of(body);
-  ShapeTable t;
-  plate.at(e, 0, u, Tabulate::gradient_rates, t);
-  const auto vectors = plate.vectors(e);
-  MatrixXd q(t.N.cols(), plate.dim()), v(t.N.cols(), plate.dim());
-  for (Eigen::Index k = 0; k < q.rows(); ++k) {
-    const int at = body.first_dof + plate.dim() * vectors[static_cast<size_t>(k)];
-    q.row(k) = x.q.segment(at, plate.dim());
-    v.row(k) = x.v.segment(at, plate.dim());
+/// Gauss points on a line across one element, exact for the strain energy (degree 12); with a
+/// stepwise factor the weights are interpolatory, exact up to n - 1.
+constexpr int kUniform = 7, kDesigned = 13;
+
+/// The power of moving material lines in the elements of one body.
+class LinePowers {
+ public:
+  LinePowers(const Body& body, const LineGrid& plate, const State& x)
+      : body_(body),
+        plate_(plate),
+        x_(x),
+        n_(body.factors.uniform() ? kUniform : kDesigned),
+        what_(plate.dim() == 3 ? Tabulate::curvature_rates : Tabulate::gradient_rates) {}
+
+  /// Energy that crosses the lines along n: into the body at its ends and, where a driven line
+  /// inside is a place where bending jumps, from one density to the other. Across a free line
+  /// inside none: motion and weight are continuous, and forces on free lines contain the rest.
+  double inflow() {
+    for (int j = 0; j <= plate_.n_n(); ++j) check_still(j);
+    double out = 0;
+    const int last = plate_.n_m();
+    for (int i = 0; i <= last; ++i) {
+      const double rate = plate_.line_m(i).rate;
+      const bool inside = i > 0 && i < last;
+      if (rate == 0 || (inside && plate_.lines_m()[static_cast<size_t>(i)].free)) continue;
+      for (int j = 0; j < plate_.n_n(); ++j) {
+        if (i > 0) out += rate * on_line(i - 1, j, 1);
+        if (i < last) out -= rate * on_line(i, j, 0);
+      }
+    }
+    return out;
   }
-  const Eigen::RowVectorXd r_m = t.N_m * q, r_n = t.N_n * q, velocity = t.N * v + t.N_t * q;
-  const Vec3 strain(0.5 * (r_m.squaredNorm() - 1), 0.5 * (r_n.squaredNorm() - 1), r_m.dot(r_n));
-  double stiffness = 1, mass = 1;
-  if (!body.factors.uniform()) {
-    const Grid& g = body.factors.grid;
+
+  /// Power of driven lines of elements that have free ones, too: their forces are known like those
+  /// on free lines.
+  double beside_free_lines() {
+    double out = 0;
+    for (int e = 0; e < plate_.n_elements(); ++e) {
+      const auto free = plate_.free_sides(e);
+      if (free.empty()) continue;
+      const int i = e / plate_.n_n(), j = e % plate_.n_n();
+      std::array<double, kSides> rate = {plate_.line_m(i).rate, plate_.line_m(i + 1).rate,
+                                         plate_.line_n(j).rate, plate_.line_n(j + 1).rate};
+      bool driven = false;
+      for (size_t l = 0; l < kSides; ++l) {
+        if (free[l] >= 0) rate[l] = 0;
+        driven |= rate[l] != 0;
+      }
+      if (!driven) continue;
+      gather(e);
+      FreeForce force = FreeForce::Zero(local_.q.size() + kSides);
+      for (const auto& term : body_.terms) term->add_free_force(e, local_, force);
+      for (int l = 0; l < kSides; ++l)
+        out += rate[static_cast<size_t>(l)] * force[local_.q.size() + l];
+    }
+    return out;
+  }
+
+ private:
+  void check_still(int j) const {
+    const bool outer = j == 0 || j == plate_.n_n();
+    const auto sides = plate_.free_sides(plate_.element(0, std::min(j, plate_.n_n() - 1)));
+    const bool free = !sides.empty() && sides[kN1] >= 0;
+    if (plate_.line_n(j).rate != 0 && (outer || !free))
+      throw Error::input("body '" + body_.name +
+                         "': the energy balance does not know n-lines that move");
+  }
+
+  void gather(int e) {
+    const auto vectors = plate_.vectors(e);
+    const int dim = plate_.dim();
+    const auto rows = [&](const VectorXd& all, LocalRows& out) {
+      out.resize(static_cast<Eigen::Index>(vectors.size()), dim);
+      for (Eigen::Index k = 0; k < out.rows(); ++k)
+        out.row(k) = all.segment(body_.first_dof + dim * vectors[static_cast<size_t>(k)], dim);
+    };
+    rows(x_.q, local_.q);
+    rows(x_.v, local_.v);
+    rows(x_.a, local_.a);
+  }
+
+  /// Energy per length along m [J/m] at the side s = 0 or 1 of element (i, j).
+  double on_line(int i, int j, double s) {
+    const int e = plate_.element(i, j);
+    gather(e);
+    line_.resize(static_cast<size_t>(n_));
+    for (size_t g = 0; g < line_.size(); ++g) plate_.at(e, s, gauss(n_).points[g], what_, line_[g]);
+    energy_.set_zero(n_);
+    for (const auto& term : body_.terms) term->add_line_energy(line_, local_, energy_);
+    // Forces on the lines of an element with free ones are the gradient of its strain energy,
+    // limits of integration included (FreeElastic).
+    if (!plate_.free_sides(e).empty()) energy_.stiffness.setZero();
+    const double width = plate_.line_n(j + 1).value - plate_.line_n(j).value;
+    const Eigen::Map<const VectorXd> weights(gauss(n_).weights.data(), n_);
+    double out = weights.dot(energy_.none);
+    if (body_.factors.uniform())
+      out += weights.dot(energy_.stiffness) + weights.dot(energy_.mass);
+    else
+      out += designed(j);
+    return width * out;
+  }
+
+  /// Energies times the factors of the cells along the line, each integrated exactly.
+  double designed(int j) const {
+    const Grid& grid = body_.factors.grid;
     const auto index = [](double at, double start, double cell, int n) {
       return std::clamp(static_cast<int>(std::floor((at - start) / cell + 1e-9)), 0, n - 1);
     };
-    const int cell = g.cell(index(t.material[0].x(), g.x0, g.dx(), g.nx),
-                            index(t.material[0].y(), g.y0, g.dy(), g.ny));
-    stiffness = body.factors.stiffness[cell];
-    mass = body.factors.mass[cell];
+    const double low = plate_.line_n(j).value, width = plate_.line_n(j + 1).value - low;
+    const int column = index(line_[0].material[0].x(), grid.x0, grid.dx(), grid.nx);
+    double out = 0;
+    for (int row = 0; row < grid.ny; ++row) {
+      const double from = row == 0 ? 0 : (grid.y0 + row * grid.dy() - low) / width,
+                   to = row == grid.ny - 1 ? 1 : (grid.y0 + (row + 1) * grid.dy() - low) / width;
+      if (to <= 0 || from >= 1) continue;
+      const VectorXd weights = lagrange_integrals(n_, std::max(0.0, from), std::min(1.0, to));
+      const int cell = grid.cell(column, row);
+      out += body_.factors.stiffness[cell] * weights.dot(energy_.stiffness) +
+             body_.factors.mass[cell] * weights.dot(energy_.mass);
+    }
+    return out;
   }
-  const PlaneSection& s = body.section;
-  double out = 0.5 * stiffness * s.thickness * strain.dot(s.elasticity() * strain) +
-               0.5 * mass * s.thickness * s.density * velocity.squaredNorm();
-  if (gravity.size() > 0) out -= mass * s.thickness * s.density * (t.N * q * gravity)(0);
-  return out;
-}
+
+  const Body& body_;
+  const LineGrid& plate_;
+  const State& x_;
+  int n_;
+  Tabulate what_;
+  Local local_;
+  std::vector<ShapeTable> line_;
+  LineEnergy energy_;
+};
 
 }  // namespace
 
-Powers powers(const Model& model, std::span<const Growth> growths, const State& x,
-              const VectorXd& gravity) {
+Powers powers(const Model& model, const State& x) {
   Powers out;
   Constraints c;
   model.constraints(x, c);
   out.drive = x.lambda.dot(c.rate);
   out.feed = model.flow_power(x);
-  for (const Growth& growth : growths) {
-    const Body& body = model.body(growth.body);
-    const LineGrid& plate = grid_of(body);
-    const double rate = plate.line_m(0).rate;
-    if (rate == 0) continue;
-    // Strain energy along the edge is of degree 12; a stepwise factor needs more points.
-    const GaussRule& rule = gauss(body.factors.uniform() ? 7 : 16);
-    for (int j = 0; j < plate.n_n(); ++j) {
-      const double width = plate.line_n(j + 1).value - plate.line_n(j).value;
-      for (size_t g = 0; g < rule.points.size(); ++g)
-        out.inflow -= rate * width * rule.weights[g] *
-                      energy_density(body, x, plate.element(0, j), rule.points[g], gravity);
-    }
+  for (const Body& body : model.bodies()) {
+    const auto* plate = dynamic_cast<const LineGrid*>(body.element.get());
+    if (!plate) continue;
+    LinePowers lines(body, *plate, x);
+    out.inflow += lines.inflow();
+    out.feed += lines.beside_free_lines();
   }
   return out;
 }

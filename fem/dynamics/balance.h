@@ -1,6 +1,10 @@
 #pragma once
 
-#include "fem/dynamics/growth.h"
+#include <algorithm>
+#include <cmath>
+
+#include "fem/line_grid.h"
+#include "fem/model.h"
 
 namespace flexmorph::fem {
 
@@ -19,35 +23,44 @@ struct Powers {
 /// which follows from the virtual work equation with δq = q̇ and the moving limit of the integrals
 /// (root line at m₀(t): each density e contributes -ṁ₀ ∫ e dn).
 ///
-/// @param growths  bodies that grow; x consistent (λ belongs to q̈); prepare(x.t) done
-Powers powers(const Model& model, std::span<const Growth> growths, const State& x,
-              const VectorXd& gravity);
+/// Where the root line is free, ṁ₀ is among q̇: no power at fixed unknowns. Its equation holds the
+/// virtual work of inertia and weight at fixed material points, so that their densities flow in as
+/// above; but of the strain energy the gradient, limits included (FreeElastic): dU/dt is ∂U/∂q · q̇
+/// and the strain density does not appear.
+///
+/// @param x  consistent (λ belongs to q̈); prepare(x) done
+/// @throws Error (input) where an n-line moves that is driven or an edge of its body
+Powers powers(const Model& model, const State& x);
 
 /// Integrates the powers along a run and compares with the energies.
 class EnergyBalance {
  public:
-  /// First state, or the state after a change of the mesh (same energies, other powers).
-  void restart(double t, const Powers& p) {
-    t_ = t;
-    power_ = p.total();
-  }
   void begin(double t, const Energies& e, const Powers& p) {
     start_ = e.total();
     work_ = 0;
     largest_ = std::abs(e.total());
-    restart(t, p);
+    t_ = t;
+    power_ = p.total();
+    known_ = true;
   }
+  /// After a change of the mesh: what accelerations and multipliers were carried over do not belong
+  /// to the new one (a root element of half the length takes half the weight), nor does their
+  /// power. The next step counts with the power at its end alone: once per change, an error of
+  /// second order.
+  void restart() { known_ = false; }
   /// After a step: trapezoidal rule.
   void add(double t, const Energies& e, const Powers& p) {
-    work_ += 0.5 * (t - t_) * (power_ + p.total());
-    restart(t, p);
+    work_ += 0.5 * (t - t_) * ((known_ ? power_ : p.total()) + p.total());
+    t_ = t;
+    power_ = p.total();
+    known_ = true;
     defect_ = e.total() - start_ - work_;
     largest_ = std::max({largest_, std::abs(e.total()), e.kinetic, e.strain});
     worst_ = std::max(worst_, std::abs(defect_));
   }
   /// After a step whose powers are those of its middle: mid-point rule.
   void add_mean(double t, const Energies& e, const Powers& p) {
-    power_ = p.total();
+    restart();
     add(t, e, p);
   }
   double work() const { return work_; }      ///< [J]
@@ -55,6 +68,7 @@ class EnergyBalance {
   double relative() const { return worst_ / std::max(largest_, 1e-300); }  ///< largest so far
 
  private:
+  bool known_ = false;  // is the power at t_?
   double t_ = 0, power_ = 0, start_ = 0, work_ = 0, defect_ = 0, largest_ = 0, worst_ = 0;
 };
 

@@ -96,6 +96,17 @@ NextChange next_change(const Body& body, const Growth& growth, double t, double 
   return never;
 }
 
+std::optional<MeshChange> change_due(const Body& body, const Growth& growth) {
+  const LineGrid& plate = grid_of(body);
+  if (growth.line != 0 || !plate.lines_m()[0].free) return {};
+  const double length = plate.line_m(1).value - plate.line_m(0).value;
+  if (length > growth.max_length) return MeshChange::insertion;
+  const bool may_merge = plate.n_m() > 1 && !plate.lines_m()[1].free && !plate.lines_m()[1].drive &&
+                         plate.line_m(2).value - plate.line_m(0).value < 0.9 * growth.max_length;
+  if (length < growth.min_length && may_merge) return MeshChange::removal;
+  return {};
+}
+
 namespace {
 
 /// Values of position-like rows and their material derivatives at a point of element e, in the

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,7 +53,18 @@ struct NextChange {
 };
 NextChange next_change(const Body& body, const Growth& growth, double t, double end, double step);
 
-/// Changes the mesh at x.t and carries the state over.
+/// The change that the boundary element of a *free* root line asks for where the line is now: split
+/// when longer than max_length, merged when shorter than min_length and the merged element stays
+/// below 0.9 max_length. Where the line will be is not known beforehand, so that there is no time
+/// to land on: the change is executed at the end of the step in which the limit was passed. A split
+/// does not alter the field (h16), whenever it comes.
+///
+/// Nothing where the welded line is not the root, or is not free. Joints of the body at "line 3"
+/// and the like do not follow the change: such models have no limits.
+std::optional<MeshChange> change_due(const Body& body, const Growth& growth);
+
+/// Changes the mesh at x.t and carries the state over; the line inserted or removed is the one next
+/// to the root. A free root line stays the scalar unknown it is.
 ///
 /// Insertion: new nodes take position, slopes, and material velocity with its derivatives from the
 /// field at the fixed material point; accelerations likewise (N q̈ + 2 Ṅ q̇ + N̈ q). With h16 the

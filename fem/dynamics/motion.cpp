@@ -68,9 +68,7 @@ class Run {
   }
 
  private:
-  Powers measure(const State& x) const {
-    return settings_.balance ? powers(model_, growths_, x, settings_.gravity) : Powers{};
-  }
+  Powers measure(const State& x) const { return settings_.balance ? powers(model_, x) : Powers{}; }
 
   /// Work of a step, at the time its multipliers belong to.
   void balance(const Energies& e) {
@@ -124,7 +122,14 @@ class Run {
         see(e, at_stop);
         if (at_stop || ++since_watched_ == kWatchEvery) watch(x);
       });
+      if (t < settings_.end - kTiny * settings_.step) changes_due();
     }
+  }
+
+  /// Changes at free root lines.
+  void changes_due() {
+    for (const Growth& g : growths_)
+      if (const auto change = change_due(model_.body(g.body), g)) execute(g, *change);
   }
 
   /// A St. Venant-Kirchhoff material that has collapsed or turned inside out has equilibria, but
@@ -171,7 +176,7 @@ class Run {
     event.tip_jump = (point_position(*body, x_, tip) - tip_before).norm();
     result_.events.push_back(event);
     integrator_->project_velocity(x_);
-    balance_.restart(x_.t, measure(x_));
+    balance_.restart();
   }
 
   static constexpr double kTiny = 1e-6;   // of a step

@@ -18,8 +18,8 @@ using plate::Row4;
 
 /// Values of a Hermite interval at one point: a row of four functions per derivative.
 struct At {
-  Row4 f, d, dd;        // value, derivatives by X
-  Row4 f_t, f_tt, d_t;  // rates at fixed material point
+  Row4 f, d, dd;              // value, derivatives by X
+  Row4 f_t, f_tt, d_t, dd_t;  // rates at fixed material point
 };
 
 At at_point(const Hermite& h, double s, bool rates, bool curvature = false) {
@@ -40,6 +40,10 @@ At at_point(const Hermite& h, double s, bool rates, bool curvature = false) {
     out.f_tt.setZero();
     out.d_t.setZero();
   }
+  if (rates && curvature)
+    out.dd_t = p * derivative(derivative(h.rate)).transpose() / (h.length * h.length);
+  else
+    out.dd_t.setZero();
   return out;
 }
 
@@ -185,9 +189,10 @@ void AncfPlate::fill(int e, std::span<const double> s, std::span<const double> u
                      ShapeTable& out) const {
   const Hermite& hm = hermite_m_[static_cast<size_t>(e / n_n())];
   const Hermite& hn = hermite_n_[static_cast<size_t>(e % n_n())];
-  const bool rates =
-      (what == Tabulate::position_rates || what == Tabulate::gradient_rates) && moving(e);
-  const bool curvature = what == Tabulate::curvature;
+  const bool rates = (what == Tabulate::position_rates || what == Tabulate::gradient_rates ||
+                      what == Tabulate::curvature_rates) &&
+                     moving(e);
+  const bool curvature = what == Tabulate::curvature || what == Tabulate::curvature_rates;
   const bool gradient = what == Tabulate::gradient || what == Tabulate::gradient_rates || curvature;
   const auto n_points = static_cast<Eigen::Index>(s.size() * u.size());
   const auto size = [&](MatrixXd& x, bool wanted) {
@@ -208,6 +213,9 @@ void AncfPlate::fill(int e, std::span<const double> s, std::span<const double> u
   size(out.N_mm, curvature);
   size(out.N_nn, curvature);
   size(out.N_mn, curvature);
+  size(out.N_mmt, curvature && rates);
+  size(out.N_nnt, curvature && rates);
+  size(out.N_mnt, curvature && rates);
 
   Eigen::Index p = 0;
   for (const double si : s) {
@@ -236,6 +244,11 @@ void AncfPlate::fill(int e, std::span<const double> s, std::span<const double> u
           if (gradient && rates) {
             out.N_mt(p, column) = m.d_t[i] * n.f[j] + m.d[i] * n.f_t[j];
             out.N_nt(p, column) = m.f_t[i] * n.d[j] + m.f[i] * n.d_t[j];
+          }
+          if (curvature && rates) {
+            out.N_mmt(p, column) = m.dd_t[i] * n.f[j] + m.dd[i] * n.f_t[j];
+            out.N_nnt(p, column) = m.f_t[i] * n.dd[j] + m.f[i] * n.dd_t[j];
+            out.N_mnt(p, column) = m.d_t[i] * n.d[j] + m.d[i] * n.d_t[j];
           }
         }
       ++p;

@@ -5,7 +5,7 @@
 #include "fem/gram_gradient.h"
 #include "fem/term.h"
 #include "fem/terms/bending_kernels.h"
-#include "fem/terms/free_work.h"
+#include "fem/terms/strain_flow.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -64,6 +64,8 @@ class Bending final : public Term {
 
   void prepare(const Element& element, const Factors& factors, bool all) override {
     if (element.dim() != 3) throw Error::input("term 'bending' needs a body in space");
+    element_ = &element;
+    factors_ = &factors;
     gradient_.prepare(element);
     free_.prepare(element, degree_, Tabulate::curvature, factors);
     tables_.resize(static_cast<size_t>(element.n_elements()));
@@ -134,6 +136,16 @@ class Bending final : public Term {
                                     x.q.data());
     });
     return out;
+  }
+
+  double flow_power(int e, const Local& x) const override {
+    ShapeTable t;
+    element_->tabulate(e, degree_, Tabulate::curvature_rates, *factors_, FactorKind::stiffness, t);
+    return fem::flow_power(density_, t, x.q);
+  }
+  void add_line_energy(std::span<const ShapeTable> line, const Local& x,
+                       LineEnergy& out) const override {
+    fem::add_line_energy(density_, line, x.q, out.stiffness);
   }
 
  private:
@@ -244,6 +256,8 @@ class Bending final : public Term {
   int degree_;
   BendingDensity density_;
   FreeTables free_;
+  const Element* element_ = nullptr;  // of the last prepare()
+  const Factors* factors_ = nullptr;
   GramGradient gradient_;
   bending::Places places_{};
   bool mixed_ = false;

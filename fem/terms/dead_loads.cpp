@@ -117,6 +117,12 @@ class SurfaceLoad final : public DeadLoad {
     return rate.size() > 0 ? -factor_ * rate.dot(x.q * load_) : 0;
   }
 
+  void add_line_energy(std::span<const ShapeTable> line, const Local& x,
+                       LineEnergy& out) const override {
+    for (size_t g = 0; g < line.size(); ++g)
+      out.none[static_cast<Eigen::Index>(g)] -= factor_ * (line[g].N * x.q * load_)(0);
+  }
+
  private:
   std::vector<VectorXd> rate_;  // ∫ Ṅ per element whose lines move
 };

@@ -12,6 +12,8 @@ constexpr int kLengths = 2;  // a, b: all that the energy of uniform material de
 constexpr double sign(int l) { return l == kM1 || l == kN1 ? -1 : 1; }
 constexpr int length_of(int l) { return l / 2; }
 
+}  // namespace
+
 const MatrixXd& table_of(const ShapeTable& t, const Measure& m) {
   if (m.m_order == 1 && m.n_order == 0) return t.N_m;
   if (m.m_order == 0 && m.n_order == 1) return t.N_n;
@@ -20,8 +22,6 @@ const MatrixXd& table_of(const ShapeTable& t, const Measure& m) {
   if (m.m_order == 1 && m.n_order == 1) return t.N_mn;
   throw Error::numerical("free_work: no table of this measure");
 }
-
-}  // namespace
 
 void check_fixed(const Element& element, int e, const Vec2& material) {
   FreeTable t;

@@ -20,6 +20,9 @@ using MeasureHessian =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxMeasures * kMaxDim,
                   kMaxMeasures * kMaxDim>;  ///< entry dim i + c of measure i, direction c
 
+/// The shape functions that give a measure. @throws Error (numerical) where there are none.
+const MatrixXd& table_of(const ShapeTable& t, const Measure& m);
+
 /// Elastic energy per reference area as a function of derivatives of the position.
 class EnergyDensity {
  public:
@@ -36,8 +39,9 @@ class EnergyDensity {
 /// differ by the jump of W, which bending has (r_mm jumps): a line that moves by δp turns a strip
 /// of that width from the curvature of one side to that of the other. At a sleeve out of which
 /// material comes the gradient is the configurational force M²/(2 EI), the virtual work twice as
-/// much. Source: Bigoni, Dal Corso, Bosi, Misseroni (2015), J. Mech. Phys. Solids 74; design.md
-/// section 2.
+/// much. Material that enters through a free root line brings no strain energy along, therefore:
+/// the force on the line has strained it. Source: Bigoni, Dal Corso, Bosi, Misseroni (2015), J.
+/// Mech. Phys. Solids 74; design.md section 2.
 class FreeElastic {
  public:
   /// @param table  with the material derivatives that the density asks for

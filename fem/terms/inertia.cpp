@@ -112,6 +112,15 @@ class Inertia final : public Term {
            x.q.cwiseProduct(m.rate_transport * x.q).sum();
   }
 
+  void add_line_energy(std::span<const ShapeTable> line, const Local& x,
+                       LineEnergy& out) const override {
+    for (size_t g = 0; g < line.size(); ++g) {
+      Eigen::RowVectorXd velocity = line[g].N * x.v;
+      if (line[g].N_t.size() > 0) velocity += line[g].N_t * x.q;
+      out.mass[static_cast<Eigen::Index>(g)] += 0.5 * area_density_ * velocity.squaredNorm();
+    }
+  }
+
  private:
   using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxShapes, kMaxShapes>;
   struct Matrices {

@@ -60,6 +60,12 @@ class Gravity final : public Term {
   double flow_power(int e, const Local& x) const override {
     return -factor_ * rate_[static_cast<size_t>(e)].dot(x.q * gravity_);
   }
+  void add_line_energy(std::span<const ShapeTable> line, const Local& x,
+                       LineEnergy& out) const override {
+    for (size_t g = 0; g < line.size(); ++g)
+      out.mass[static_cast<Eigen::Index>(g)] -=
+          factor_ * area_density_ * (line[g].N * x.q * gravity_)(0);
+  }
   void scale_load(double factor) override {
     factor_ = factor;
     of_free_.set_gravity(factor * gravity_);

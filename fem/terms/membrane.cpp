@@ -5,6 +5,7 @@
 #include "fem/terms/densities.h"
 #include "fem/terms/gram.h"
 #include "fem/terms/membrane_invariant.h"
+#include "fem/terms/strain_flow.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -138,20 +139,20 @@ class Membrane final : public Term {
     return energy;
   }
 
-  /// ∫ h εᵀ C ε̇ dA at fixed unknowns, by points: the rates of r_m and r_n at fixed material point.
   double flow_power(int e, const Local& x) const override {
+    if (strains_ == Strains::assumed)
+      return assumed_flow_power(*element_, e, *factors_, elasticity_, x.q);
     ShapeTable t;
     element_->tabulate(e, 12, Tabulate::gradient_rates, *factors_, FactorKind::stiffness, t);
-    const MatrixXd r_m = t.N_m * x.q, r_n = t.N_n * x.q, r_mt = t.N_mt * x.q, r_nt = t.N_nt * x.q;
-    double power = 0;
-    for (Eigen::Index p = 0; p < t.weight.size(); ++p) {
-      const Vec3 strain(0.5 * (r_m.row(p).squaredNorm() - 1), 0.5 * (r_n.row(p).squaredNorm() - 1),
-                        r_m.row(p).dot(r_n.row(p)));
-      const Vec3 rate(r_m.row(p).dot(r_mt.row(p)), r_n.row(p).dot(r_nt.row(p)),
-                      r_mt.row(p).dot(r_n.row(p)) + r_m.row(p).dot(r_nt.row(p)));
-      power += t.weight[p] * strain.dot(elasticity_ * rate);
-    }
-    return power;
+    return fem::flow_power(density_, t, x.q);
+  }
+
+  void add_line_energy(std::span<const ShapeTable> line, const Local& x,
+                       LineEnergy& out) const override {
+    if (strains_ == Strains::assumed)
+      add_assumed_line_energy(line, elasticity_, x.q, out.stiffness);
+    else
+      fem::add_line_energy(density_, line, x.q, out.stiffness);
   }
 
  private:

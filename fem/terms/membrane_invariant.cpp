@@ -82,26 +82,6 @@ std::vector<double> of_displacements(const ProductTable& t, const PairNumbers& p
   });
 }
 
-/// Parabola through the values at 0, 1/2 and 1 of a polynomial of degree below n, all by values at
-/// the n Gauss points (n x n).
-MatrixXd parabola_through_samples(int n) {
-  const GaussRule& rule = gauss(n);
-  constexpr std::array<double, 3> kSamples = {0, 0.5, 1};
-  MatrixXd sample(3, n), interpolate(n, 3);
-  for (int g = 0; g < n; ++g) {
-    for (int i = 0; i < 3; ++i) {
-      double lagrange = rule.barycentric[static_cast<size_t>(g)];
-      for (int o = 0; o < n; ++o)
-        if (o != g)
-          lagrange *= kSamples[static_cast<size_t>(i)] - rule.points[static_cast<size_t>(o)];
-      sample(i, g) = lagrange;
-    }
-    const double s = rule.points[static_cast<size_t>(g)];
-    interpolate.row(g) << (2 * s - 1) * (s - 1), 4 * s * (1 - s), s * (2 * s - 1);
-  }
-  return interpolate * sample;
-}
-
 /// Products x_i y_j at all points: row i x.cols() + j, a column per point.
 MatrixXd all_products(const MatrixXd& x, const MatrixXd& y) {
   MatrixXd out(x.cols() * y.cols(), x.rows());
@@ -153,6 +133,24 @@ MatrixXd of_assumed_strains(const ProductTable& t, const PairNumbers& pairs,
 }
 
 }  // namespace
+
+MatrixXd parabola_through_samples(int n) {
+  const GaussRule& rule = gauss(n);
+  constexpr std::array<double, 3> kSamples = {0, 0.5, 1};
+  MatrixXd sample(3, n), interpolate(n, 3);
+  for (int g = 0; g < n; ++g) {
+    for (int i = 0; i < 3; ++i) {
+      double lagrange = rule.barycentric[static_cast<size_t>(g)];
+      for (int o = 0; o < n; ++o)
+        if (o != g)
+          lagrange *= kSamples[static_cast<size_t>(i)] - rule.points[static_cast<size_t>(o)];
+      sample(i, g) = lagrange;
+    }
+    const double s = rule.points[static_cast<size_t>(g)];
+    interpolate.row(g) << (2 * s - 1) * (s - 1), 4 * s * (1 - s), s * (2 * s - 1);
+  }
+  return interpolate * sample;
+}
 
 ProductTable even_and_odd(const ProductTable& table, const std::vector<int>& function_m,
                           const std::vector<int>& function_n) {

@@ -18,6 +18,10 @@ ProductTable even_and_odd(const ProductTable& table, const std::vector<int>& fun
 /// Membrane strains as the displacements have them, or assumed ones against locking.
 enum class Strains { displacement, assumed };
 
+/// Parabola through the values at 0, 1/2 and 1 of a polynomial of degree below n, all by values at
+/// the n Gauss points (n x n).
+MatrixXd parabola_through_samples(int n);
+
 /// W = ∫ Λᵀ C Λ dA of the Gram form U = ½ (g - g°)ᵀ W (g - g°), entries of g being q_i · q_j, half
 /// of it where i = j; fem/terms/membrane.cpp.
 ///

@@ -1,11 +1,13 @@
 // Free material lines in whole models: a sleeve pushes a bent strip out with the configurational
 // force M²/(2 EI), and with the acceleration that follows from it; a free line that a joint drives
-// moves the plate exactly as a prescribed one; a strip on both sides of a sleeve keeps its energy.
+// moves the plate exactly as a prescribed one; a strip on both sides of a sleeve keeps its energy;
+// lines of nodes come and go beside a free root line.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "fem/dynamics/generalized_alpha.h"
+#include "fem/dynamics/motion.h"
 #include "tests/support/rates.h"
 #include "tests/support/space_plates.h"
 
@@ -223,6 +225,62 @@ TEST(FreeLine, AnInnerSleeveKeepsEnergyAndOrder) {
   EXPECT_NEAR((at - p.back()) / (0.5 * 1.0 * 0.1 * 0.1), 1, 0.03);
   const double order = std::log2(std::abs((p[2] - p[1]) / (p[3] - p[2])));
   EXPECT_NEAR(order, 2, 0.3);
+}
+
+/// A strip that its weight pulls out of a sleeve (or that is thrown back into it), while it sags.
+struct Pulled {
+  double line = 0;          // where the free line is at the end [m]
+  Vec3 tip = Vec3::Zero();  // [m]
+  double jump = 0;          // largest of energies, momentum (relative) and tip by an insertion
+  std::vector<MeshEvent> events;
+};
+Pulled pulled(int n, double max_length, double speed, double along) {
+  Strip strip;
+  strip.length = 0.3;
+  strip.n = n;
+  strip.section.youngs_modulus = 1e9;
+  Model model = strip.model(make_gravity(strip.section, vector(along, 0, -4)), true);
+  const std::vector<Growth> growths = {
+      {"strip", at_rest({0, 0}), max_length, max_length < 1 ? 0.3 * max_length : 0, 0, speed}};
+  MotionSettings settings;
+  settings.end = 0.2;
+  settings.start = Start::rigid;
+  Pulled out;
+  const MotionResult r = integrate(model, growths, settings, [](const MotionStep&) {});
+  out.line = r.final.q[r.final.q.size() - 1];
+  out.tip = point_position(model.bodies()[0], r.final, {strip.length, 0});
+  out.events = r.events;
+  for (const MeshEvent& e : r.events)
+    out.jump = std::max({out.jump, std::abs(e.after.kinetic / e.before.kinetic - 1),
+                         std::abs(e.after.strain / e.before.strain - 1),
+                         (e.momentum_after - e.momentum_before).norm() / e.momentum_before.norm(),
+                         e.tip_jump});
+  std::printf("%2d elements, limit %.3f m: line at %.6f m, tip (%.6f, %.6f) m, %zu events, %.1e\n",
+              n, max_length, out.line, out.tip.x(), out.tip.z(), out.events.size(), out.jump);
+  return out;
+}
+
+// Lines of nodes come in where the material does, at the end of the step that passes the limit.
+TEST(FreeRootLine, GetsNewLinesWhereTheStripIsPulledOut) {
+  const Pulled grown = pulled(5, 0.12, 0, 9.81), finer = pulled(10, 0.06, 0, 9.81),
+               without = pulled(10, 1, 0, 9.81);
+  EXPECT_GE(grown.events.size(), 2u);
+  EXPECT_TRUE(without.events.empty());
+  for (const MeshEvent& e : grown.events) EXPECT_EQ(e.change, MeshChange::insertion);
+  EXPECT_LT(grown.jump, 1e-6);  // quadrature of the bending energy
+  EXPECT_LT((grown.tip - without.tip).norm(), 0.002 * std::abs(without.tip.z()));
+  EXPECT_LT((finer.tip - without.tip).norm(), 0.002 * std::abs(without.tip.z()));
+  EXPECT_NEAR(grown.line / without.line, 1, 1e-4);
+  // What comes out brings its speed along: all of it falls freely, but for the sag.
+  EXPECT_NEAR(grown.line / (-0.5 * 9.81 * 0.2 * 0.2), 1, 0.03);
+}
+
+TEST(FreeRootLine, LosesLinesWhereTheStripGoesIn) {
+  const Pulled merged = pulled(5, 0.12, 0.5, 0), finer = pulled(20, 0.03, 0.5, 0);
+  EXPECT_GE(merged.events.size(), 1u);
+  for (const MeshEvent& e : merged.events) EXPECT_EQ(e.change, MeshChange::removal);
+  EXPECT_LT((finer.tip - merged.tip).norm(), 0.02 * std::abs(finer.tip.z()));
+  EXPECT_NEAR(merged.line / finer.line, 1, 1e-4);
 }
 
 }  // namespace

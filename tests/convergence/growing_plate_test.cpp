@@ -150,7 +150,7 @@ double loss_after_insertion(int nx, double h, double* strain = nullptr) {
   change_mesh(scene.model, scene.model.bodies()[0], MeshChange::insertion, x);
   GeneralizedAlpha alpha(scene.model, settings.alpha);
   EnergyBalance balance;
-  const auto power = [&] { return powers(scene.model, scene.growths, x, {}); };
+  const auto power = [&] { return powers(scene.model, x); };
   if (strain) *strain = scene.model.energies(x).strain;
   balance.begin(x.t, scene.model.energies(x), power());
   const double start = x.t;

@@ -114,6 +114,20 @@ TEST_P(EveryShapeSet, RatesAreDifferencesInTimeAtAFixedMaterialPoint) {
     EXPECT_LT((t.N_tt - second_difference(later(&ShapeTable::N), 1e-3)).norm(), 3e-8);
     EXPECT_LT((t.N_mt - first_difference(later(&ShapeTable::N_m), 1e-3)).norm(), 1e-7);
     EXPECT_LT((t.N_nt - first_difference(later(&ShapeTable::N_n), 1e-3)).norm(), 1e-7);
+    plate.locate(x, Tabulate::curvature_rates, t);
+    const auto rate = [&](MatrixXd ShapeTable::*field) {
+      return first_difference(
+          [&](double dt) {
+            moved.move_to(time + dt);
+            moved.locate(x, Tabulate::curvature, near);
+            return MatrixXd(near.*field);
+          },
+          1e-3);
+    };
+    // Second derivatives reach (1 / 0.06)².
+    EXPECT_LT((t.N_mmt - rate(&ShapeTable::N_mm)).norm(), 1e-5);
+    EXPECT_LT((t.N_nnt - rate(&ShapeTable::N_nn)).norm(), 1e-5);
+    EXPECT_LT((t.N_mnt - rate(&ShapeTable::N_mn)).norm(), 1e-5);
   }
 }
 
@@ -123,6 +137,8 @@ TEST(AncfPlate, TablesWithoutFlowHaveNoRates) {
   ShapeTable t;
   plate.tabulate(0, 3, Tabulate::gradient_rates, {}, FactorKind::none, t);
   EXPECT_EQ(t.N_t.size() + t.N_tt.size() + t.N_mt.size() + t.N_nt.size(), 0);
+  plate.tabulate(0, 3, Tabulate::curvature_rates, {}, FactorKind::none, t);
+  EXPECT_EQ(t.N_mmt.size() + t.N_nnt.size() + t.N_mnt.size(), 0);
   EXPECT_FALSE(plate.moving(0));
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
 #include "fem/dynamics/motion.h"
 #include "tests/support/space_plates.h"
@@ -17,10 +18,12 @@ const PlaneSection kSection{0.01, 1e7, 0.3, 2700};
 
 /// A plate that comes out of a hub at 0.3 m/s, with boundary element `first` and `n` others of
 /// `length`.
-Model plate(double first, double length, int n, int bending_points = 5) {
+/// The root line is free instead where asked for.
+Model plate(double first, double length, int n, int bending_points = 5, bool free_root = false) {
   std::vector<MaterialLine> m = {{0, [first](double t) {
                                     return Motion{-first - 0.3 * t, -0.3, 0};
                                   }}};
+  if (free_root) m[0] = {-first, {}, true};
   for (int i = 0; i <= n; ++i) m.push_back({length * i, {}});
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(make_membrane(kSection));
@@ -63,19 +66,22 @@ std::vector<Vec2> points(double from, double to) {
 double largest(const VectorXd& x) { return x.lpNorm<Eigen::Infinity>(); }
 
 /// Relative jump of the strain energy by an insertion; checks everything else on the way.
-double insertion(int bending_points) {
-  Model model = plate(0.12, 0.08, 3, bending_points);
+double insertion(int bending_points, bool free_root = false) {
+  Model model = plate(0.12, 0.08, 3, bending_points, free_root);
   model.prepare(0);
   const State rest = model.reference();
   State x = testing::SmoothMotion(rest.q, 0.02 * model.scales().cwiseInverse(), 5).state(0);
+  if (free_root) x.q[x.q.size() - 1] = -0.12;  // to the places of points()
   x.alpha = x.a;
   x.lambda = rest.lambda;
+  model.prepare(x);
   const Energies before = model.energies(x);
   const Vec3 momentum = momentum_in_space(model, x);
   std::vector<Field> fields;
   for (const Vec2& at : points(-0.12, 0.24)) fields.push_back(field_at(model, x, at));
   change_mesh(model, model.bodies()[0], MeshChange::insertion, x);
   const Energies after = model.energies(x);
+  EXPECT_NEAR(grid_of(model.bodies()[0]).line_m(1).value, -0.06, 1e-15);
   size_t i = 0;
   for (const Vec2& at : points(-0.12, 0.24)) {
     const Field f = field_at(model, x, at);
@@ -95,6 +101,54 @@ TEST(InsertionInSpace, ChangesNothing) {
   std::printf("jump of the strain energy: %.1e with 5 points each way, %.1e with 9\n", five, nine);
   EXPECT_LT(five, 1e-7);
   EXPECT_LT(nine, 1e-10);
+}
+
+// The same with a line that is an unknown: its place, rate and acceleration are carried along.
+TEST(InsertionInSpace, BesideAFreeRootLineChangesNothing) {
+  const double five = insertion(5, true), nine = insertion(9, true);
+  std::printf("jump of the strain energy: %.1e with 5 points each way, %.1e with 9\n", five, nine);
+  EXPECT_LT(five, 1e-7);
+  EXPECT_LT(nine, 1e-10);
+}
+
+TEST(RemovalInSpace, BesideAFreeRootLineUndoesAnInsertion) {
+  Model model = plate(0.12, 0.08, 3, 5, true);
+  const State rest = model.reference();
+  State x = testing::SmoothMotion(rest.q, 0.02 * model.scales().cwiseInverse(), 5).state(0);
+  x.alpha = x.a + 0.1 * x.v;
+  model.prepare(x);
+  const State before = x;
+  change_mesh(model, model.bodies()[0], MeshChange::insertion, x);
+  const auto scalar = x.q.size() - 1;
+  EXPECT_EQ(model.bodies()[0].first_scalar(), scalar);
+  EXPECT_EQ(grid_of(model.bodies()[0]).line_m(0).rate, before.v[before.v.size() - 1]);
+  EXPECT_EQ(grid_of(model.bodies()[0]).line_m(0).acceleration, before.a[before.a.size() - 1]);
+  change_mesh(model, model.bodies()[0], MeshChange::removal, x);
+  EXPECT_EQ((x.q - before.q).norm() + (x.v - before.v).norm() + (x.a - before.a).norm() +
+                (x.alpha - before.alpha).norm(),
+            0);
+}
+
+// Limits 0.1 and 0.03 m: what is due depends on where the free line is, and does not chatter.
+TEST(ChangeDue, FollowsTheFreeRootLine) {
+  Model model = plate(0.05, 0.05, 3, 5, true);
+  Growth growth{"plate", [](double) { return FrameMotion{}; }, 0.1, 0.03};
+  const auto due = [&](double root) {
+    State x = model.reference();
+    x.q[x.q.size() - 1] = root;
+    model.prepare(x);
+    return change_due(model.bodies()[0], growth);
+  };
+  EXPECT_EQ(due(-0.0999), std::nullopt);
+  EXPECT_EQ(due(-0.1001), MeshChange::insertion);
+  EXPECT_EQ(due(-0.0301), std::nullopt);
+  EXPECT_EQ(due(-0.0299), MeshChange::removal);
+  growth.max_length = 0.085;  // 0.0799 is above 0.9 of it
+  EXPECT_EQ(due(-0.0299), std::nullopt);
+  growth.line = 1;
+  EXPECT_EQ(due(-0.2), std::nullopt);
+  const Model driven = plate(0.2, 0.05, 3);
+  EXPECT_EQ(change_due(driven.bodies()[0], {"plate", growth.hub}), std::nullopt);
 }
 
 /// r(m, n) of an arched, twisted, stretched plate.

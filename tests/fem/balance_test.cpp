@@ -1,0 +1,164 @@
+// Shows that energies, forces and the powers of the balance belong together: for any motion, a
+// solution or not,
+//
+//   d(T + U + V)/dt = (M q̈ + F) · q̇ + feed + inflow,
+//
+// with material flowing through driven and free lines at the root and inside, with uniform and
+// designed material, for every term. And what crosses a line is the density of the term's energy.
+#include "fem/dynamics/balance.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/differences.h"
+#include "tests/support/models.h"
+#include "tests/support/space_plates.h"
+
+namespace flexmorph::fem {
+namespace {
+
+using testing::first_difference;
+using testing::ShapeSet;
+using testing::swinging_line;
+
+const PlaneSection kSection{0.01, 1e6, 0.3, 2700};
+
+/// Lines at 0.1, 0.21, 0.3 and 0.45 m: d driven, f free, | fixed.
+std::vector<MaterialLine> lines(const std::string& kinds) {
+  const double at[] = {0.1, 0.21, 0.3, 0.45};
+  std::vector<MaterialLine> out;
+  for (size_t i = 0; i < kinds.size(); ++i)
+    out.push_back(kinds[i] == 'd' ? swinging_line(at[i], 0.02, 1.3 + 0.4 * static_cast<double>(i))
+                                  : MaterialLine{at[i], {}, kinds[i] == 'f'});
+  return out;
+}
+
+struct Case {
+  std::string lines;
+  std::string terms;  ///< letters: m, a, b, i, g, s
+  bool designed = false;
+  ShapeSet shapes = ShapeSet::h16;
+  int dim = 3;
+};
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.lines << ' ' << c.terms << (c.designed ? " designed" : "")
+       << (c.shapes == ShapeSet::h12 ? " h12" : "") << ' ' << c.dim << 'd';
+}
+
+Model model_of(const Case& c) {
+  VectorXd load = VectorXd::LinSpaced(c.dim, 3, 5);
+  std::vector<std::unique_ptr<Term>> terms;
+  for (const char term : c.terms) {
+    if (term == 'm') terms.push_back(make_membrane(kSection));
+    if (term == 'a') terms.push_back(make_assumed_membrane(kSection));
+    // So many points that what quadrature leaves of the rational energy does not show.
+    if (term == 'b') terms.push_back(make_bending(kSection, c.designed ? 8 : 15));
+    if (term == 'i') terms.push_back(make_inertia(kSection));
+    if (term == 'g') terms.push_back(make_gravity(kSection, load));
+    if (term == 's') terms.push_back(make_surface_load(2 * load));
+  }
+  Model model;
+  Body& body = model.add_body("plate",
+                              std::make_unique<AncfPlate>(c.dim, c.shapes, lines(c.lines),
+                                                          testing::even_lines(-0.05, 0.07, 2)),
+                              kSection, std::move(terms));
+  if (c.designed) model.set_factors(body, testing::random_factors(5));
+  return model;
+}
+
+class AnyMotion : public ::testing::TestWithParam<Case> {};
+
+TEST_P(AnyMotion, ChangesTheEnergyByThePowers) {
+  Model model = model_of(GetParam());
+  model.prepare(0.0);
+  const State rest = model.reference();
+  const testing::SmoothMotion motion(rest.q, 0.02 * model.scales().cwiseInverse(), 7);
+  const auto state = [&](double t) {
+    State x = motion.state(t);
+    x.lambda = rest.lambda;
+    model.prepare(x);
+    return x;
+  };
+  for (const double time : {0.3, 0.9}) {
+    const double rate =
+        first_difference([&](double dt) { return model.energies(state(time + dt)).total(); }, 1e-3);
+    const State x = state(time);
+    VectorXd force;
+    model.force(x, force);
+    const Powers p = powers(model, x);
+    const double work = force.dot(x.v);
+    EXPECT_NEAR(work + p.total(), rate, 1e-8 * (std::abs(work) + std::abs(p.feed)));
+    // Nothing but strain energy at a free root: its motion is that of an unknown.
+    if (GetParam().lines == "f|||" && GetParam().terms == "mb")
+      EXPECT_EQ(p.total(), 0);
+    else
+      EXPECT_GT(std::abs(p.feed) + std::abs(p.inflow), 1e-4 * std::abs(rate));
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Scenes, AnyMotion,
+                         ::testing::Values(
+                             // A driven root: each term alone, all together.
+                             Case{"d|||", "m"}, Case{"d|||", "a"}, Case{"d|||", "b"},
+                             Case{"d|||", "i"}, Case{"d|||", "g"}, Case{"d|||", "s"},
+                             Case{"d|||", "abigs"}, Case{"d|||", "mbig", false, ShapeSet::h12},
+                             Case{"d|||", "migs", false, ShapeSet::h16, 2},
+                             // An end that moves, and lines inside, where bending jumps.
+                             Case{"|||d", "abig"}, Case{"dd|d", "mbig"},
+                             // Free lines: at the root, with others, beside driven ones.
+                             Case{"f|||", "mb"}, Case{"f|||", "i"}, Case{"f|||", "g"},
+                             Case{"f|||", "mbig"}, Case{"f|||", "mig", false, ShapeSet::h12, 2},
+                             Case{"f|ff", "mbig"}, Case{"df|d", "mbig"}));
+// Designed material: what the strain energy has at the root jumps when a cell border passes, so
+// the differences stay within a cell.
+INSTANTIATE_TEST_SUITE_P(Designed, AnyMotion,
+                         ::testing::Values(Case{"d|||", "m", true}, Case{"d|||", "a", true},
+                                           Case{"d|||", "b", true}, Case{"d|||", "ig", true},
+                                           Case{"d|||", "migs", true, ShapeSet::h12, 2}));
+
+// An n-line inside that moves turns no membrane energy over to its neighbour, strains are
+// continuous there: flow power alone. (Of the sampled strains it is the other direction.)
+TEST(FlowPower, OfMembranesIsThatOfAnInnerNLine) {
+  for (const bool assumed : {false, true}) {
+    std::vector<std::unique_ptr<Term>> terms;
+    terms.push_back(assumed ? make_assumed_membrane(kSection) : make_membrane(kSection));
+    auto across = testing::even_lines(-0.05, 0.07, 2);
+    across[1] = swinging_line(0.01, 0.02, 1.7);
+    Model model;
+    model.add_body("plate", std::make_unique<AncfPlate>(3, ShapeSet::h16, lines("|d|"), across),
+                   kSection, std::move(terms));
+    model.prepare(0.0);
+    const State rest = model.reference();
+    const testing::SmoothMotion motion(rest.q, 0.02 * model.scales().cwiseInverse(), 7);
+    const auto state = [&](double t) {
+      const State x = motion.state(t);
+      model.prepare(x);
+      return x;
+    };
+    const double rate =
+        first_difference([&](double dt) { return model.energies(state(0.3 + dt)).strain; }, 1e-3);
+    const State x = state(0.3);
+    VectorXd force;
+    model.force(x, force);
+    const double work = force.dot(x.v), feed = model.flow_power(x);
+    EXPECT_NEAR(work + feed, rate, 1e-8 * (std::abs(work) + std::abs(feed)));
+    EXPECT_GT(std::abs(feed), 1e-3 * std::abs(rate));
+  }
+}
+
+TEST(Powers, RefuseNLinesThatMove) {
+  Model model;
+  std::vector<std::unique_ptr<Term>> terms;
+  terms.push_back(make_membrane(kSection));
+  auto across = testing::even_lines(-0.05, 0.07, 1);
+  across[0] = swinging_line(-0.05, 0.01, 1);
+  model.add_body("plate", std::make_unique<AncfPlate>(2, ShapeSet::h16, lines("||||"), across),
+                 kSection, std::move(terms));
+  model.prepare(0.3);
+  State x = model.reference();
+  x.t = 0.3;
+  EXPECT_THROW(powers(model, x), Error);
+}
+
+}  // namespace
+}  // namespace flexmorph::fem
