@@ -17,6 +17,30 @@ std::vector<fem::AttachedMass> attached_masses(const Scene& scene, const std::st
   return out;
 }
 
+std::vector<fem::AttachedJoint> attached_joints(const Scene& scene, const std::string& name) {
+  std::vector<fem::AttachedJoint> out;
+  for (const Joint& j : scene.joints) {
+    if (j.body == name && j.edge == "free_end")
+      out.push_back({j.name, {scene.body(name).longest(scene.time.end), 0}, true});
+    if (!j.between_bodies()) continue;
+    if (j.a.body == name) out.push_back({j.name, j.a.point, false});
+    if (j.b.body == name) out.push_back({j.name, j.b.point, false});
+  }
+  return out;
+}
+
+std::vector<fem::AttachedForce> applied_forces(const Scene& scene, const std::string& name) {
+  std::vector<fem::AttachedForce> out;
+  const Body& body = scene.body(name);
+  const Vec2 end(body.longest(scene.time.end), 0);
+  for (const BodyLoad& load : scene.loads) {
+    if (load.body != name) continue;
+    if (load.type == "point") out.push_back({load.point, false, load.force.head<2>(), 0});
+    if (load.type == "edge") out.push_back({end, true, body.width * load.force.head<2>(), 0});
+  }
+  return out;
+}
+
 namespace {
 
 /// Moves every component at random: places and lengths by up to `jitter` of the half-length, angles

@@ -39,10 +39,22 @@ struct MeshChoice {
 /// @throws Error (input) for combinations the tables of elements, terms and joints do not have.
 Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh = {});
 
+/// A rigid body with its inertia, its weight (gravity (2) [m/s^2], or empty) and its unit axis.
+void add_rigid_body(const RigidBody& body, fem::Model& model, const VectorXd& gravity);
+
+/// The driven frame of a weld to a hub or of a sleeve at rest.
+fem::FrameDrive hub_drive(const Scene& scene, const Joint& joint);
+
 fem::PlaneSection section_of(const Body& body);
 
 /// Point masses of one body, for its loads.
 std::vector<fem::AttachedMass> attached_masses(const Scene& scene, const std::string& name);
+
+/// Joints of one body besides the one that carries it, for its loads.
+std::vector<fem::AttachedJoint> attached_joints(const Scene& scene, const std::string& name);
+
+/// Applied forces on one body, for its loads: constant in the world.
+std::vector<fem::AttachedForce> applied_forces(const Scene& scene, const std::string& name);
 
 /// Scene -> design problems, with the initial layout.
 std::vector<mmc::BodyProblem> build_problems(const Scene& scene);

@@ -2,12 +2,44 @@
 #include <limits>
 
 #include "cases/build.h"
+#include "cases/build_joints.h"
+#include "cases/twin.h"
 #include "fem/elements/ancf_plate.h"
+#include "fem/elements/rigid_body.h"
+#include "fem/rigid.h"
 
 namespace flexmorph::cases {
 namespace {
 
-fem::FrameDrive drive_of(const Hub& hub, const TimeSpan& time) {
+/// Angle and position as drives say, where they do.
+fem::FrameDrive driven_hub(const Scene& scene, const Hub& hub) {
+  const bool turns = !hub.turn.drive.empty(), travels = !hub.path[0].drive.empty();
+  const auto turn = scene.motion_of(hub.turn);
+  const std::array path = {scene.motion_of(hub.path[0]), scene.motion_of(hub.path[1])};
+  return [=](double t) {
+    fem::FrameMotion f;
+    f.origin = hub.position;
+    f.angle = hub.angle + hub.angular_velocity * t;
+    f.angle_rate = hub.angular_velocity;
+    if (turns) {
+      const fem::Motion angle = turn(t);
+      f.angle = angle.value;
+      f.angle_rate = angle.rate;
+      f.angle_acceleration = angle.acceleration;
+    }
+    for (int c = 0; c < 2 && travels; ++c) {
+      const fem::Motion x = path[static_cast<size_t>(c)](t);
+      f.origin[c] = x.value;
+      f.origin_rate[c] = x.rate;
+      f.origin_acceleration[c] = x.acceleration;
+    }
+    return f;
+  };
+}
+
+fem::FrameDrive drive_of(const Scene& scene, const Hub& hub) {
+  if (!hub.turn.drive.empty() || !hub.path[0].drive.empty()) return driven_hub(scene, hub);
+  const TimeSpan& time = scene.time;
   fem::FrameMotion still;
   still.origin = hub.position;
   if (time.start != Start::hub_at_rest)
@@ -34,7 +66,12 @@ std::unique_ptr<fem::Element> elements_of(const Body& body, double end,
   std::vector<fem::MaterialLine> m, n;
   for (const double at : body.start_lines(longest - body.length, count[0])) m.push_back({at, {}});
   for (const BodyLine& line : body.lines) m[static_cast<size_t>(line.index)].free = line.free;
-  if (body.flow)
+  if (body.flow && body.flow->motion)
+    m[0].drive = [longest, length = body.flow->motion](double t) {
+      const fem::Motion x = length(t);
+      return fem::Motion{longest - x.value, -x.rate, -x.acceleration};
+    };
+  else if (body.flow)
     m[0].drive = [longest, length = body.length, speed = body.flow->speed](double t) {
       return fem::Motion{longest - length - speed * t, -speed, 0};
     };
@@ -87,22 +124,31 @@ int scalar_of(const Body& body, int line) {
                     [&](const BodyLine& l) { return l.free && l.index < line; }));
 }
 
-/// The speed at which a line is driven through the material; 0 where it is not.
+/// The rate at the start of a line that is driven through the material; 0 where it is not.
 double slide_of(const Scene& scene, const Joint& frame) {
   for (const Joint& j : scene.joints)
-    if (j.type == "line_drive" && j.body == frame.body && j.line == frame.line) return j.speed;
+    if (j.type == "line_drive" && j.body == frame.body && j.line == frame.line)
+      return j.at.drive.empty() ? j.speed : scene.motion_of(j.at)(0).rate;
   return 0;
 }
 
-/// A weld to a hub or a sleeve, and the body in it.
+/// An edge in a hub, in a sleeve or on a rigid body; the first one of a body carries it.
 void add_frame(const Scene& scene, const Joint& joint, double finer, Mechanism& out) {
   const Body& body = scene.body(joint.body);
-  const fem::FrameDrive drive = joint.type == "sleeve" ? at_rest(joint.position, joint.angle)
-                                                       : drive_of(hub_of(scene, joint), scene.time);
-  out.model.add_joint(
-      fem::make_weld(joint.body + "." + joint.edge, joint.body, joint.edge, drive, joint.mode));
+  fem::Carrier carrier;
+  if (joint.on_rigid_body()) {
+    const Anchor& b = joint.b;
+    carrier = fem::Carrier(b.body, b.point, b.angle);
+    out.model.add_joint(fem::make_edge_weld(joint.name, joint.body, joint.edge,
+                                            {b.body, b.point, b.angle, {}}, joint.mode));
+  } else {
+    carrier = hub_drive(scene, joint);
+    out.model.add_joint(
+        fem::make_weld(joint.name, joint.body, joint.edge, carrier.drive(), joint.mode));
+  }
+  if (joint.edge == "free_end") return;
   constexpr double kNever = std::numeric_limits<double>::infinity();
-  fem::Growth growth{joint.body, drive, kNever, 0, joint.line, slide_of(scene, joint)};
+  fem::Growth growth{joint.body, carrier, kNever, 0, joint.line, slide_of(scene, joint)};
   if (body.flow) {
     growth.max_length = finer * body.flow->max_length;
     growth.min_length = finer * body.flow->min_length;
@@ -118,18 +164,18 @@ void add_pin(const Scene& scene, const Joint& joint, fem::Model& model) {
   std::vector<fem::Motion> rest;
   for (const int c : joint.components) rest.push_back({at[c], 0, 0});
   model.add_joint(fem::make_pin(
-      joint.body + ".pin", joint.body, joint.point, [rest](double) { return rest; },
-      joint.components));
+      joint.name, joint.body, joint.point, [rest](double) { return rest; }, joint.components));
 }
 
 void add_line_drive(const Scene& scene, const Joint& joint, fem::Model& model) {
   const Body& body = scene.body(joint.body);
   const double start = body.start_lines(0, body.elements[0])[static_cast<size_t>(joint.line)];
-  model.add_joint(fem::make_line_drive(joint.body + ".line " + std::to_string(joint.line),
-                                       joint.body, scalar_of(body, joint.line),
-                                       [start, speed = joint.speed](double t) {
-                                         return fem::Motion{start + speed * t, speed, 0};
-                                       }));
+  std::function<fem::Motion(double)> motion = [start, speed = joint.speed](double t) {
+    return fem::Motion{start + speed * t, speed, 0};
+  };
+  if (!joint.at.drive.empty()) motion = scene.motion_of(joint.at);
+  model.add_joint(
+      fem::make_line_drive(joint.name, joint.body, scalar_of(body, joint.line), std::move(motion)));
 }
 
 /// All held edges of a body in one joint, so that a corner of two of them is held once.
@@ -148,7 +194,42 @@ void add_holds(const Scene& scene, const Body& body, fem::Model& model) {
   if (!all.empty()) model.add_joint(fem::make_hold(body.name + ".held", body.name, std::move(all)));
 }
 
+/// Where bodies that ride in no hub are, by the rigid twin.
+fem::Placement placement_of(const Scene& scene) {
+  const auto kept = std::make_shared<const Scene>(scene);  // the twin looks at it
+  const auto twin = std::make_shared<TwinMotion>(*kept);
+  return [kept, twin](double t) {
+    const Scene& scene = *kept;
+    const fem::State& x = twin->at(t);
+    std::vector<fem::Placed> out;
+    for (const RigidBody& b : scene.rigid_bodies)
+      out.push_back({b.name, twin->twin().frame(b.name, x)});
+    for (const Body& b : scene.bodies) {
+      const bool rides = std::any_of(scene.joints.begin(), scene.joints.end(), [&](const Joint& j) {
+        return j.body == b.name && j.holds_frame() && j.edge != "free_end";
+      });
+      if (!rides) out.push_back({b.name, twin->twin().frame(b.name, x), b.longest(scene.time.end)});
+    }
+    return out;
+  };
+}
+
 }  // namespace
+
+fem::FrameDrive hub_drive(const Scene& scene, const Joint& joint) {
+  return joint.type == "sleeve" ? at_rest(joint.position, joint.angle)
+                                : drive_of(scene, hub_of(scene, joint));
+}
+
+void add_rigid_body(const RigidBody& body, fem::Model& model, const VectorXd& gravity) {
+  const fem::RigidSection section{body.mass, body.center, body.inertia};
+  std::vector<std::unique_ptr<fem::Term>> terms;
+  terms.push_back(fem::make_rigid_inertia(section));
+  if (gravity.size() > 0) terms.push_back(fem::make_rigid_gravity(section, gravity));
+  model.add_body(body.name, std::make_unique<fem::RigidBody>(std::sqrt(body.inertia / body.mass)),
+                 {}, std::move(terms));
+  model.add_joint(fem::make_unit_axis("axis of " + body.name, body.name));
+}
 
 Vec3 Pose::place(const Vec2& material) const {
   const Vec2 r = origin + fem::rotation(angle) * Vec2(material.x() - line, material.y());
@@ -157,21 +238,37 @@ Vec3 Pose::place(const Vec2& material) const {
 
 Pose start_pose(const Scene& scene, const Body& body) {
   for (const Joint& joint : scene.joints) {
-    if (joint.body != body.name || !joint.holds_frame()) continue;
+    if (joint.body != body.name || !joint.holds_frame() || joint.edge == "free_end") continue;
     const double root = body.longest(scene.time.end) - body.length;
     const double line = body.start_lines(root, body.elements[0])[static_cast<size_t>(joint.line)];
     if (joint.type == "sleeve") return {joint.position, joint.angle, line};
+    if (joint.on_rigid_body())
+      for (const RigidBody& b : scene.rigid_bodies)
+        if (b.name == joint.b.body)
+          return {start_place(scene, joint.b), b.angle + joint.b.angle, line};
     const Hub& hub = hub_of(scene, joint);
     return {hub.position, hub.angle, line};
   }
+  if (body.position)
+    return {*body.position, body.angle, body.longest(scene.time.end) - body.length};
   return {};
 }
 
 Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh) {
   Mechanism out;
+  for (const RigidBody& body : scene.rigid_bodies)
+    add_rigid_body(body, out.model, gravity_of(scene));
   for (const Body& body : scene.bodies)
     add_body(scene, body, mesh.elements.value_or(body.elements), out.model);
+  const FindPlace place = [](const Anchor& a) {
+    return fem::MarkerPlace{a.body, a.point, a.angle, {}};
+  };
+  for (const Spring& spring : scene.springs) out.model.add_link(make_link(spring, place));
   for (const Joint& joint : scene.joints) {
+    if (joint.between_bodies()) {
+      out.model.add_joint(make_body_joint(scene, joint, place));
+      continue;
+    }
     const double finer = mesh.elements ? static_cast<double>(scene.body(joint.body).elements[0]) /
                                              (*mesh.elements)[0]
                                        : 1;
@@ -184,6 +281,7 @@ Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh) {
   out.motion.step = mesh.step.value_or(scene.time.step);
   out.motion.start =
       scene.time.start == Start::prestretched ? fem::Start::prestretched : fem::Start::rigid;
+  if (scene.is_mechanism()) out.motion.placement = placement_of(scene);
   out.motion.integrator = scene.time.integrator;
   out.motion.alpha.rho_inf = scene.time.rho_inf;
   out.motion.gravity = gravity_of(scene);

@@ -4,6 +4,7 @@
 
 #include "cases/build.h"
 #include "cases/run.h"
+#include "cases/scene_parts.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
@@ -69,8 +70,12 @@ void describe_body(const Body& body, const Mechanism& mechanism, std::ostringstr
       out << row("", "free material line " + std::to_string(line.index) +
                          ": one more unknown; all elements evaluated one at a time");
   if (body.flow)
-    out << row("", "material leaves the hub at " + io::to_text(body.flow->speed) +
-                       " m/s: one prescribed material line, " + std::to_string(body.elements[1]) +
+    out << row("", (body.flow->motion
+                        ? "material leaves and enters the hub as '" + body.flow->length.drive +
+                              "' says, length " + io::to_text(body.flow->shortest, 6) + " to " +
+                              io::to_text(body.flow->longest, 6) + " m"
+                        : "material leaves the hub at " + io::to_text(body.flow->speed) + " m/s") +
+                       ": one prescribed material line, " + std::to_string(body.elements[1]) +
                        " elements refreshed per step");
 }
 
@@ -143,6 +148,11 @@ std::string check_case(const RunOptions& options) {
   }
   Mechanism mechanism = build_mechanism(scene);
   describe_course(scene, out);
+  for (const Drive& drive : scene.drives) {
+    const std::array<double, 2> range = range_of(drive.motion, scene.time.end);
+    out << row("drive " + drive.name, drive.words + ", from " + io::to_text(range[0], 6) + " to " +
+                                          io::to_text(range[1], 6));
+  }
   for (const Body& body : scene.bodies) describe_body(body, mechanism, out);
   out << row("joints", std::to_string(scene.joints.size()) + ", " +
                            std::to_string(mechanism.model.n_constraints()) + " constraint rows");

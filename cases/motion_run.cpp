@@ -90,9 +90,12 @@ class Recorder {
       const size_t d = design_of(scene_, growth.body);
       if (d == scene_.designs.size()) continue;
       if (wishes_.loads && t > 0 && is_multiple(t, scene_.esl->every)) {
+        std::vector<fem::AttachedForce> forces = fem::joint_forces(
+            step.model, step.x, step.model.body(growth.body), attached_joints(scene_, growth.body));
+        for (const fem::AttachedForce& f : applied_forces(scene_, growth.body)) forces.push_back(f);
         fem::EslSet set = fem::equivalent_static_load(
             step.model, step.x, growth, scene_.designs[d].grid,
-            attached_masses(scene_, growth.body), mechanism_.motion.gravity);
+            attached_masses(scene_, growth.body), forces, mechanism_.motion.gravity);
         set.weight = 1.0 / scene_.esl->count(scene_.time.end);
         out_.loads[d].sets.push_back(std::move(set));
       }

@@ -84,7 +84,7 @@ void empty_folder(const std::string& path) {
 double tip_deflection(const fem::Model& model, const fem::Growth& growth, const fem::State& x) {
   const fem::Body& body = model.body(growth.body);
   const fem::LineGrid& mesh = fem::grid_of(body);
-  const fem::FrameMotion hub = growth.hub(x.t);
+  const fem::FrameMotion hub = growth.hub.at(model, x);
   const Vec2 tip = fem::point_motion(body, x, {mesh.line_m(mesh.n_m()).value, 0}).position;
   return Vec2(-std::sin(hub.angle), std::cos(hub.angle)).dot(tip - hub.origin);
 }

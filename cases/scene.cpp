@@ -63,6 +63,19 @@ bool Expectation::holds(double found) const {
          (!at_least || found >= *at_least) && (!at_most || found <= *at_most);
 }
 
+double Body::length_at(double time) const {
+  if (!flow) return length;
+  return flow->motion ? flow->motion(time).value : length + flow->speed * time;
+}
+
+double Body::longest(double end) const {
+  return flow && flow->motion ? flow->longest : std::max(length, length_at(end));
+}
+
+double Body::shortest(double end) const {
+  return flow && flow->motion ? flow->shortest : std::min(length, length_at(end));
+}
+
 std::vector<double> Body::start_lines(double root, int count) const {
   std::vector<double> out;
   for (int i = 0; i <= count; ++i) out.push_back(root + length * i / count);
@@ -80,6 +93,23 @@ const Body& Scene::body(const std::string& body_name) const {
   for (const Body& each : bodies)
     if (each.name == body_name) return each;
   throw Error::input("there is no body '" + body_name + "' in this scene");
+}
+
+fem::Motion Body::length_motion(double t) const {
+  if (flow && flow->motion) return flow->motion(t);
+  return {length_at(t), flow ? flow->speed : 0, 0};
+}
+
+std::function<fem::Motion(double)> Scene::motion_of(const Law& law) const {
+  if (law.drive.empty()) return [value = law.value](double) { return fem::Motion{value, 0, 0}; };
+  return std::find_if(drives.begin(), drives.end(),
+                      [&](const Drive& d) { return d.name == law.drive; })
+      ->motion;
+}
+
+bool Scene::follows_trajectory(const Law& law) const {
+  return std::any_of(drives.begin(), drives.end(),
+                     [&](const Drive& d) { return d.from_trajectory && d.name == law.drive; });
 }
 
 bool is_whole(double ratio) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <optional>
@@ -48,17 +49,73 @@ struct StaticAnalysis {
   int max_iterations = 15;  ///< of Newton's method in a step
 };
 
-/// A driven hub: turns about its position at a constant rate.
+/// A motion: the name of a drive, or where there is none a constant.
+struct Law {
+  std::string drive;
+  double value = 0;
+};
+
+/// A place on a body, or on the ground.
+struct Anchor {
+  std::string body;   ///< empty: the ground
+  Vec2 point{0, 0};   ///< in the axes of a rigid body or the ground; material point of a plate [m]
+  double angle = 0;   ///< of its first axis in those axes [rad]
+  bool given = true;  ///< false: where the other anchor of the joint is at the start
+
+  bool on_ground() const { return body.empty(); }
+};
+
+/// A rigid body in the plane; its axes lie at `position`, turned by `angle`, at the start.
+struct RigidBody {
+  std::string name;
+  double mass = 0;                         ///< [kg]
+  double inertia = 0;                      ///< about the centre of mass [kg m^2]
+  Vec2 center{0, 0};                       ///< of mass, in the axes of the body [m]
+  Vec2 size{0, 0};                         ///< of the rectangle around it that is drawn [m]
+  Vec2 position{0, 0}, velocity{0, 0};     ///< [m], [m/s]; where joints leave them free
+  double angle = 0, angular_velocity = 0;  ///< [rad], [rad/s]
+};
+
+/// Spring and damper between two anchors: along the line between them, or between their axes.
+struct Spring {
+  std::string name;
+  bool torsion = false;
+  Anchor a, b;
+  double stiffness = 0, damping = 0;  ///< [N/m], [N s/m]; torsion: [N m/rad], [N m s/rad]
+  double rest = 0;                    ///< length [m] or angle [rad] without force
+};
+
+/// The path of a rigid body that drives with from = "trajectory" follow from.
+struct Trajectory {
+  std::string body;
+  Law x, y, angle;  ///< of the body's point and axis
+};
+
+/// A function of time that a case gives a name.
+struct Drive {
+  std::string name;
+  std::string words;  ///< as the case says it: the formula, or where the table comes from
+  /// Beyond the run's time it goes on as the parabola of value, rate and acceleration at its end.
+  std::function<fem::Motion(double)> motion;
+  bool from_trajectory = false;  ///< what the trajectory's body needs of it (follow_trajectory())
+};
+
+/// A driven hub: turns about its position at a constant rate, or as drives say.
 struct Hub {
   std::string name;
-  Vec2 position{0, 0};          ///< [m]
+  Vec2 position{0, 0};          ///< at the start [m]
   double angle = 0;             ///< at the start [rad]
-  double angular_velocity = 0;  ///< [rad/s]
+  double angular_velocity = 0;  ///< [rad/s], 0 where a drive turns the hub
+  Law turn;                     ///< the drive of the angle, if any
+  std::array<Law, 2> path;      ///< the drives of the position, both or none
 };
 
 /// Material that leaves the hub, and when node lines come and go (design.md section 5).
 struct Flow {
-  double speed = 0;       ///< rate at which material leaves the hub [m/s]; negative: enters it
+  double speed = 0;  ///< rate at which material leaves the hub [m/s]; negative: enters it
+  Law length;        ///< or the drive of the length outside of the hub; `speed` is 0 then
+  std::function<fem::Motion(double)> motion;  ///< that drive; empty: constant speed
+  double longest = 0, shortest = 0;           ///< with that drive: over the run [m]
   double max_length = 0;  ///< a longer boundary element is split in the middle [m]
   double min_length = 0;  ///< a shorter one is merged with its neighbour [m]
 };
@@ -90,10 +147,13 @@ struct Body {
   std::array<int, 2> elements{1, 1};  ///< along the length at the start, across the width
   std::optional<Flow> flow;           ///< absent: no material flows
   std::vector<BodyLine> lines;        ///< by index
+  std::optional<Vec2> position;       ///< of the middle of the root at the start, where given [m]
+  double angle = 0;                   ///< of its axis, with `position` [rad]
 
-  double length_at(double time) const { return flow ? length + flow->speed * time : length; }
-  double longest(double end) const { return std::max(length, length_at(end)); }
-  double shortest(double end) const { return std::min(length, length_at(end)); }
+  double length_at(double time) const;
+  fem::Motion length_motion(double time) const;
+  double longest(double end) const;   ///< in [0, end], the time of the run
+  double shortest(double end) const;  ///< likewise
   bool in_space() const { return space == "space"; }
   int dim() const { return in_space() ? 3 : 2; }
   double low() const { return in_space() ? 0 : -0.5 * width; }  ///< where Y begins [m]
@@ -111,13 +171,20 @@ struct Body {
 
 /// A row of the table of joints, and what it needs:
 ///
-/// weld        edge ("root" or "line 3") in the hub `to`
+/// weld        edge ("root" or "line 3") in the hub `to`, or edge ("free_end", too) on the rigid
+///             body b; without an edge: axes of the rigid bodies a and b
+/// revolute    points a and b are one
+/// slider      point b slides along the first axis of a, axes are parallel
+/// angle_drive, distance, point_drive   see fem/body_joints.h, by the laws
 /// sleeve      edge in a frame at rest at `position`, `angle`: material slides through a free line
 /// pin         the material point keeps `components` of its position at the start
 /// clamp, support, symmetry    `edges` of a body in space, see fem::clamped_edge()
-/// line_drive  the free line moves through the material at `speed`
+/// line_drive  the free line moves through the material at `speed`, or stands where `at` says
 struct Joint {
   std::string type, body;
+  std::string name;  ///< as messages and tables say it
+  Anchor a, b;       ///< of joints between bodies
+  std::vector<Law> laws;
   std::string edge;
   std::string to;
   fem::WeldMode mode = fem::WeldMode::edge;
@@ -128,8 +195,12 @@ struct Joint {
   std::vector<std::string> edges;
   int line = 0;      ///< of line_drive; of weld and sleeve the line of their edge
   double speed = 0;  ///< [m/s]
+  Law at;            ///< the drive of a line, if any
 
-  bool holds_frame() const { return type == "weld" || type == "sleeve"; }
+  /// Is an edge of a plate in a hub, in a sleeve or on a rigid body?
+  bool holds_frame() const { return (type == "weld" && !body.empty()) || type == "sleeve"; }
+  bool on_rigid_body() const { return holds_frame() && !b.on_ground(); }
+  bool between_bodies() const { return !holds_frame() && (!a.on_ground() || !b.on_ground()); }
   bool holds_edges() const { return type == "clamp" || type == "support" || type == "symmetry"; }
 };
 
@@ -266,9 +337,13 @@ struct Scene {
   TimeSpan time;
   std::optional<StaticAnalysis> statics;  ///< bodies at rest under growing loads: no time
   std::optional<VectorXd> gravity;        ///< (dim) [m/s^2]
+  std::vector<Drive> drives;
   std::vector<Hub> hubs;
+  std::vector<RigidBody> rigid_bodies;
   std::vector<Body> bodies;
   std::vector<Joint> joints;
+  std::vector<Spring> springs;
+  std::optional<Trajectory> trajectory;
   std::vector<PointMass> point_masses;
   std::vector<BodyLoad> loads;
   std::vector<Observe> observed;
@@ -281,6 +356,10 @@ struct Scene {
   std::map<std::string, Expectation> expect;  ///< by name of the result
 
   const Body& body(const std::string& name) const;  ///< name resolves: checked when read
+  /// A law in time; drives that follow from a trajectory: after follow_trajectory().
+  std::function<fem::Motion(double)> motion_of(const Law& law) const;
+  bool follows_trajectory(const Law& law) const;
+  bool is_mechanism() const { return !rigid_bodies.empty(); }
   bool in_space() const { return !bodies.empty() && bodies.front().in_space(); }  ///< all, or none
   bool has_free_lines() const;
 };
@@ -291,8 +370,9 @@ struct Vocabulary {
   std::vector<std::string> shapes{"h16", "h12"};
   std::vector<std::string> terms{"inertia", "membrane"};  ///< in the plane
   std::vector<std::string> space_terms{"inertia", "membrane", "membrane_assumed", "bending"};
-  std::vector<std::string> joints{"weld",    "sleeve",   "pin",       "clamp",
-                                  "support", "symmetry", "line_drive"};
+  std::vector<std::string> joints{"weld",    "sleeve",      "pin",        "clamp",
+                                  "support", "symmetry",    "line_drive", "revolute",
+                                  "slider",  "angle_drive", "distance",   "point_drive"};
   std::vector<std::string> optimizers = optim::optimizer_names();
 };
 

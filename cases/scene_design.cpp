@@ -36,9 +36,21 @@ Body plate_of(const Domain& domain) {
 }
 
 Grid read_grid(const Table& t, const Body& body, double end) {
-  const double cell = t.number("cell", positive("the size of a cell", "m"));
   const double length = body.longest(end);
   Grid grid{.x0 = 0, .y0 = -0.5 * body.width, .width = length, .height = body.width};
+  if (t.has("cells") == t.has("cell")) t.fail("a design has cells of the size `cell`, or `cells`");
+  if (t.has("cells")) {
+    const std::vector<int> cells = t.integers("cells", "a number of cells", 1, 100'000, 2);
+    grid.nx = cells[0];
+    grid.ny = cells[1];
+    if (1.0 * grid.nx * grid.ny > kMostCells)
+      t.fail("cells", "at most " + to_text(kMostCells, 3) + " cells");
+    if (const double ratio = grid.dx() / grid.dy(); ratio < 0.5 || ratio > 2)
+      t.fail("cells", "cells are nearly square; these are " + to_text(grid.dx(), 3) + " x " +
+                          to_text(grid.dy(), 3) + " m");
+    return grid;
+  }
+  const double cell = t.number("cell", positive("the size of a cell", "m"));
   const double nx = length / cell, ny = body.width / cell;
   if (nx * ny > kMostCells) {
     const double smallest = 1.005 * std::sqrt(length * body.width / kMostCells);
@@ -48,7 +60,7 @@ Grid read_grid(const Table& t, const Body& body, double end) {
   if (!is_whole(nx) || !is_whole(ny) || nx < 0.5 || ny < 0.5)
     t.fail("cell", "a cell divides the longest length " + to_text(length) + " and the width " +
                        to_text(body.width) + " of '" + body.name + "' [m]");
-  if (body.flow && !is_whole(body.flow->speed * end / cell))
+  if (body.flow && !body.flow->motion && !is_whole(body.flow->speed * end / cell))
     t.fail("cell", "a cell divides the " + to_text(std::abs(body.flow->speed) * end) +
                        " m by which '" + body.name + "' grows, so that its root is a mesh line");
   grid.nx = static_cast<int>(std::lround(nx));
@@ -246,7 +258,8 @@ BodyDesign read_design(const Table& t, const Scene& scene) {
   });
   if (body.in_space() || body.has_free_lines())
     t.fail("body", "a designed body lives in the plane and has no free lines");
-  if (!welded) t.fail("body", "a designed body is welded to a hub at its root: see [[joint]]");
+  if (!welded)
+    t.fail("body", "a designed body is welded to a hub or a rigid body at its root: see [[joint]]");
   if (std::find(body.terms.begin(), body.terms.end(), "membrane") == body.terms.end())
     t.fail("body", "a designed body has the term \"membrane\"");
 
@@ -282,6 +295,7 @@ Esl read_esl(const Table& t, const Scene& scene) {
            "have to follow the design");
   s.compress = t.boolean("compress", true);
 
+  // A root that drives move at will is taken to be on the nearest mesh line.
   for (const BodyDesign& design : scene.designs) {
     const Body& body = scene.body(design.body);
     if (!body.flow || body.flow->speed == 0) continue;

@@ -61,10 +61,17 @@ fem::WeldMode read_mode(const Table& t, fem::WeldMode fallback) {
 
 /// Hub or sleeve: a frame for one edge of the body, which also says where the body begins.
 void read_frame(const Table& t, const Scene& scene, const Body& body, Joint& joint) {
-  joint.edge = read_edge(t, "edge", body, {"root"});
-  joint.line = std::max(0, line_of(joint.edge, body));
+  const std::vector<std::string> rigid = names_of(scene.rigid_bodies);
   if (joint.type == "weld") {
-    joint.to = t.choice("to", "a hub", names_of(scene.hubs));
+    std::vector<std::string> carriers = names_of(scene.hubs);
+    carriers.insert(carriers.end(), rigid.begin(), rigid.end());
+    joint.to = t.choice("to", rigid.empty() ? "a hub" : "a hub or rigid body", carriers);
+  }
+  const bool on_rigid = std::find(rigid.begin(), rigid.end(), joint.to) != rigid.end();
+  joint.edge = read_edge(t, "edge", body, on_rigid ? Words{"root", "free_end"} : Words{"root"});
+  joint.line = std::max(0, line_of(joint.edge, body));
+  if (on_rigid) read_carrier(t, joint);
+  if (joint.type == "weld") {
     joint.mode = read_mode(t, fem::WeldMode::edge);
   } else {
     const double line = body.start_lines(0, body.elements[0])[static_cast<size_t>(joint.line)];
@@ -79,7 +86,8 @@ void read_frame(const Table& t, const Scene& scene, const Body& body, Joint& joi
     if (other.body != joint.body || !other.holds_frame()) continue;
     if (other.edge == joint.edge)
       t.fail("edge", "this edge of '" + joint.body + "' is welded already");
-    t.fail("edge", "'" + joint.body + "' sits in a hub or sleeve already");
+    if (joint.edge != "free_end" && other.edge != "free_end")
+      t.fail("edge", "'" + joint.body + "' sits in a hub or sleeve already");
   }
 }
 
@@ -99,7 +107,17 @@ void read_line_drive(const Table& t, const Body& body, const Scene& scene, Joint
   const bool free = std::any_of(body.lines.begin(), body.lines.end(),
                                 [&](const BodyLine& l) { return l.free && l.index == joint.line; });
   if (!free) t.fail("line", "only a free line is driven: see [[body.line]]");
-  joint.speed = t.number("speed", any_number("the speed of a line", "m/s"), 0.0);
+  if (t.has("at")) {
+    if (t.has("speed")) t.fail("speed", "a line moves at a `speed`, or as the drive `at` says");
+    joint.at.drive = t.choice("at", "a drive", names_of(scene.drives));
+    const double start = scene.motion_of(joint.at)(0).value;
+    const double line = body.start_lines(0, body.elements[0])[static_cast<size_t>(joint.line)];
+    if (std::abs(start - line) > 1e-9)
+      t.fail("at",
+             "this drive starts at " + to_text(start) + ", the line at " + to_text(line) + " [m]");
+  } else {
+    joint.speed = t.number("speed", any_number("the speed of a line", "m/s"), 0.0);
+  }
   if (scene.statics && joint.speed != 0) t.fail("speed", "in a [static] analysis lines rest");
   for (const Joint& other : scene.joints)
     if (other.type == "line_drive" && other.body == joint.body && other.line == joint.line)
@@ -109,9 +127,15 @@ void read_line_drive(const Table& t, const Body& body, const Scene& scene, Joint
 Joint read_joint(const Table& t, const Vocabulary& words, const Scene& scene) {
   Joint joint;
   joint.type = t.choice("type", "a joint", words.joints);
+  const bool between_bodies = joint.type != "weld" || !t.has("body");
+  if (between_bodies && read_body_joint(t, scene, joint)) return joint;
   joint.body = t.choice("body", "a body", names_of(scene.bodies));
   const Body& body = scene.body(joint.body);
-  if (joint.holds_frame()) read_frame(t, scene, body, joint);
+  joint.name = joint.body + "." + joint.type;
+  if (joint.holds_frame()) {
+    read_frame(t, scene, body, joint);
+    joint.name = joint.body + "." + joint.edge;
+  }
   if (joint.type == "pin") {
     joint.point = read_point(t, body, scene.time.end);
     read_components(t, body, joint);
@@ -124,7 +148,10 @@ Joint read_joint(const Table& t, const Vocabulary& words, const Scene& scene) {
     if (body.flow) t.fail("body", "material flows out of a hub: its edges are not held");
     if (body.mesh_changes()) t.fail("body", "its lines of nodes come and go: edges are not held");
   }
-  if (joint.type == "line_drive") read_line_drive(t, body, scene, joint);
+  if (joint.type == "line_drive") {
+    read_line_drive(t, body, scene, joint);
+    joint.name = joint.body + ".line " + std::to_string(joint.line);
+  }
   return joint;
 }
 
@@ -276,9 +303,16 @@ std::vector<BodyLine> read_lines(const Table& body_table, const Body& body) {
   return out;
 }
 
+std::vector<Joint> read_joint_list(const Table& root, const Vocabulary& words, const Scene& scene) {
+  Scene growing = scene;  // a joint must fit together with those before it
+  for (const Table& t : root.tables("joint"))
+    growing.joints.push_back(read_joint(t, words, growing));
+  return growing.joints;
+}
+
 void read_joints(const Table& root, const Vocabulary& words, Scene& scene) {
   const std::vector<Table> joints = root.tables("joint"), bodies = root.tables("body");
-  for (const Table& t : joints) scene.joints.push_back(read_joint(t, words, scene));
+  scene.joints = read_joint_list(root, words, scene);
   for (size_t i = 0; i < joints.size(); ++i) check_held(joints[i], scene.joints[i], scene);
   for (size_t i = 0; i < bodies.size(); ++i) {
     const Body& body = scene.bodies[i];

@@ -15,15 +15,6 @@ using io::to_text;
 
 constexpr int kMostElements = 100'000;
 
-std::string read_name(const Table& t, const std::string& noun, const Scene& scene) {
-  std::string name = read_word(t, noun);
-  if (name == "energy") t.fail("name", "'energy' names columns of motion.csv already");
-  for (const std::vector<std::string>& taken : {names_of(scene.hubs), names_of(scene.bodies)})
-    for (const std::string& other : taken)
-      if (name == other) t.fail("name", "there is another '" + name + "'");
-  return name;
-}
-
 TimeSpan read_time(const Table& t) {
   TimeSpan time;
   time.end = t.number("end", positive("an end time", "s"));
@@ -48,12 +39,43 @@ TimeSpan read_time(const Table& t) {
   return time;
 }
 
-Hub read_hub(const Table& t, const Scene& scene) {
-  Hub hub;
-  hub.name = read_name(t, "the name of a hub", scene);
+/// A drive says itself how it starts.
+void refuse_spin_up(const Table& t, const std::string& key, const Scene& scene) {
+  if (scene.time.start == Start::hub_at_rest)
+    t.fail(key,
+           "time.start = \"hub_at_rest\" spins up hubs that turn at a constant rate, not "
+           "driven ones");
+}
+
+/// Two numbers, or the names of two drives.
+void read_position(const Table& t, const Scene& scene, Hub& hub) {
+  if (t.is_list_of_strings("position")) {
+    refuse_spin_up(t, "position", scene);
+    const std::vector<std::string> names = t.choices("position", "a drive", names_of(scene.drives));
+    if (names.size() != 2) t.fail("position", "two drives, of x and of y");
+    for (size_t c = 0; c < 2; ++c) {
+      hub.path[c].drive = names[c];
+      hub.position[static_cast<int>(c)] = scene.motion_of(hub.path[c])(0).value;
+    }
+    return;
+  }
   const std::vector<double> position =
       t.numbers("position", any_number("a position", "m"), 2, std::vector<double>{0, 0});
   hub.position = {position[0], position[1]};
+}
+
+Hub read_hub(const Table& t, const Scene& scene) {
+  Hub hub;
+  hub.name = read_name(t, "the name of a hub", scene);
+  read_position(t, scene, hub);
+  if (t.is_string("angle")) {
+    refuse_spin_up(t, "angle", scene);
+    hub.turn = read_law(t, "angle", any_number("an angle", "rad"), scene);
+    hub.angle = scene.motion_of(hub.turn)(0).value;
+    if (t.has("angular_velocity"))
+      t.fail("angular_velocity", "the drive of `angle` says how the hub turns");
+    return hub;
+  }
   hub.angle = t.number("angle", any_number("an angle", "rad"), 0.0);
   const std::optional<double> rest = scene.statics ? std::optional<double>(0) : std::nullopt;
   hub.angular_velocity =
@@ -63,32 +85,17 @@ Hub read_hub(const Table& t, const Scene& scene) {
   return hub;
 }
 
-/// Limits of the boundary element. They must not chatter: two halves that were just split must
-/// not be short enough to be merged again, nor a merged element long enough to be split.
-Flow read_flow(const Table& t, const Body& body, double end) {
+Flow read_flow(const Table& t, const Scene& scene) {
   Flow flow;
-  flow.speed = t.number("speed", any_number("the speed of the material", "m/s"));
+  if (t.has("length")) {
+    if (t.has("speed"))
+      t.fail("speed", "material flows at a `speed`, or as the drive `length` says");
+    flow.length.drive = t.choice("length", "a drive", names_of(scene.drives));
+  } else {
+    flow.speed = t.number("speed", any_number("the speed of the material", "m/s"));
+  }
   flow.max_length = t.number("max_length", positive("a length", "m"));
   flow.min_length = t.number("min_length", positive("a length", "m"), 0.3 * flow.max_length);
-
-  const double element = body.length / body.elements[0];
-  const double shortest = std::min(body.length, body.length + flow.speed * end);
-  if (element > flow.max_length * (1 + 1e-9))
-    t.fail("max_length", "the elements are " + to_text(element, 4) +
-                             " m long at the start: more elements, or a larger max_length [m]");
-  const std::string min_key = t.has("min_length") ? "min_length" : "max_length";
-  if (element < flow.min_length * (1 - 1e-9))
-    t.fail(min_key, "the elements are " + to_text(element, 4) +
-                        " m long at the start, shorter than min_length = " +
-                        to_text(flow.min_length, 4) + " m, and would be merged at once");
-  const double neighbour =
-      flow.speed < 0 ? std::max(element, 0.5 * flow.max_length) : 0.5 * flow.max_length;
-  if (flow.min_length + neighbour > 0.9 * flow.max_length * (1 + 1e-9))
-    t.fail(min_key, "min_length + the neighbour's " + to_text(neighbour, 4) +
-                        " m stays below 0.9 max_length, or elements are split and merged in turn");
-  if (shortest < flow.min_length)
-    t.fail("speed", "the body keeps at least min_length, but " + to_text(shortest, 4) +
-                        " m are left at time.end");
   return flow;
 }
 
@@ -107,7 +114,10 @@ Body read_body(const Table& t, const Vocabulary& words, const Scene& scene, bool
   if (body.in_space() &&
       !(body.has("bending") && (body.has("membrane") || body.has("membrane_assumed"))))
     t.fail("terms", "a plate in space has \"bending\" and \"membrane\" or \"membrane_assumed\"");
-  body.length = t.number("length", positive("a length", "m"));
+  // A drive of the length says how it starts, too.
+  const bool driven = t.has("flow") && t.table("flow").has("length");
+  body.length = t.number("length", positive("a length", "m"),
+                         driven ? std::optional<double>(0) : std::nullopt);
   body.width = t.number("width", positive("a width", "m"));
   body.thickness = t.number("thickness", positive("a thickness", "m"));
   // Nothing at rest asks for the density but weight.
@@ -124,12 +134,17 @@ Body read_body(const Table& t, const Vocabulary& words, const Scene& scene, bool
 
   const bool flows = body.element == "ale_ancf_plate";
   if (flows) {
-    body.flow = read_flow(t.table("flow"), body, scene.time.end);
+    body.flow = read_flow(t.table("flow"), scene);
   } else if (t.has("flow")) {
     t.fail("flow", "material flows through \"ale_ancf_plate\" only");
   }
   if (flows && scene.statics) t.fail("element", "in a [static] analysis no material flows");
   body.lines = read_lines(t, body);
+  if (t.has("position")) {
+    const auto at = t.numbers("position", any_number("a position", "m"), 2);
+    body.position = Vec2(at[0], at[1]);
+    body.angle = t.number("angle", any_number("an angle", "rad"), 0.0);
+  }
   return body;
 }
 
@@ -143,26 +158,51 @@ PointMass read_point_mass(const Table& t, const Scene& scene) {
 
 }  // namespace
 
+std::string read_name(const Table& t, const std::string& noun, const Scene& scene) {
+  std::string name = read_word(t, noun);
+  if (name == "energy") t.fail("name", "'energy' names columns of motion.csv already");
+  if (name == "ground") t.fail("name", "'ground' is what does not move");
+  for (const std::vector<std::string>& taken :
+       {names_of(scene.hubs), names_of(scene.bodies), names_of(scene.rigid_bodies)})
+    for (const std::string& other : taken)
+      if (name == other) t.fail("name", "there is another '" + name + "'");
+  return name;
+}
+
 void read_motion(const Table& root, const Vocabulary& words, Scene& scene) {
   if (root.has("static")) {
-    for (const char* key : {"time", "esl", "design", "optimizer", "cycle", "verify"})
+    for (const char* key :
+         {"time", "drive", "constants", "esl", "design", "optimizer", "cycle", "verify"})
       if (root.has(key))
         root.fail(key, "a scene with a [static] analysis has no '" + std::string(key) + "'");
     scene.statics = read_analysis(root.table("static"));
   } else {
     scene.time = read_time(root.table("time"));
   }
+  read_drives(root, scene);
   for (const Table& t : root.tables("hub")) scene.hubs.push_back(read_hub(t, scene));
+  read_rigid_bodies(root, scene);
   const std::vector<Table> bodies = root.tables("body");
-  if (bodies.empty()) root.fail("body", "a scene has one or more [[body]]");
+  if (bodies.empty() && !scene.is_mechanism())
+    root.fail("body", "a scene has one or more [[body]]");
   for (const Table& t : bodies)
     scene.bodies.push_back(read_body(t, words, scene, root.has("gravity")));
   if (root.has("gravity")) {
     const auto gravity =
-        root.numbers("gravity", any_number("gravity", "m/s^2"), scene.bodies.front().dim());
-    scene.gravity = Eigen::Map<const VectorXd>(gravity.data(), scene.bodies.front().dim());
+        root.numbers("gravity", any_number("gravity", "m/s^2"), scene.in_space() ? 3 : 2);
+    scene.gravity = Eigen::Map<const VectorXd>(gravity.data(), scene.in_space() ? 3 : 2);
   }
+  const auto follow = [&](bool trajectory) {
+    for (size_t i = 0; i < bodies.size(); ++i)
+      if (Body& b = scene.bodies[i];
+          b.flow && scene.follows_trajectory(b.flow->length) == trajectory)
+        follow_length(bodies[i].table("flow"), scene, b);
+  };
+  follow(false);
+  if (root.has("trajectory")) read_trajectory(root, words, scene);
+  follow(true);
   read_joints(root, words, scene);
+  read_springs(root, scene);
   for (const Table& t : root.tables("point_mass"))
     scene.point_masses.push_back(read_point_mass(t, scene));
   read_loads(root, scene);
@@ -174,7 +214,7 @@ void read_motion(const Table& root, const Vocabulary& words, Scene& scene) {
               "free material lines ([[body.line]]) need \"generalized_alpha\": \"energy_momentum\" "
               "does not know them");
   // Without a hub there is nothing to be stretched by, and a free line starts where it is put.
-  if (scene.hubs.empty() || scene.has_free_lines()) {
+  if (!scene.is_mechanism() && (scene.hubs.empty() || scene.has_free_lines())) {
     if (time.has("start") && scene.time.start == Start::prestretched)
       time.fail("start", "\"prestretched\" is for bodies in hubs whose lines are not free");
     if (scene.time.start == Start::prestretched) scene.time.start = Start::rigid;

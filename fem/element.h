@@ -96,6 +96,9 @@ class Element {
   /// Is vector unknown k a position (and not a derivative of it)?
   virtual bool is_position(int k) const = 0;
 
+  /// Is this a rigid body: vector unknowns r and u (elements/rigid_body.h), no shape functions?
+  virtual bool is_rigid() const { return false; }
+
   /// Values of the undeformed body at rest in its own frame, all unknowns (n_vectors x dim).
   virtual MatrixXd reference() const = 0;
 

@@ -38,6 +38,9 @@ class Joint {
   virtual ~Joint() = default;
   virtual std::string name() const = 0;
   virtual int size() const = 0;  ///< rows
+  /// Is it part of a body (its unit axis) rather than of the mechanism? Messages about joints that
+  /// hold each other leave it out.
+  virtual bool belongs_to_body() const { return false; }
 
   /// Looks up the unknowns it acts on, by the names of bodies and edges; called again after every
   /// change of a mesh. @throws Error (input) for a body that does not exist.

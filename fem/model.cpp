@@ -23,6 +23,11 @@ void Model::add_joint(std::unique_ptr<Joint> joint) {
   number_dofs();
 }
 
+void Model::add_link(std::unique_ptr<Link> link) {
+  links_.push_back(std::move(link));
+  number_dofs();
+}
+
 const Body& Model::body(const std::string& name) const {
   for (const Body& b : bodies_)
     if (b.name == name) return b;
@@ -39,19 +44,27 @@ void Model::set_factors(Body& body, Factors factors) {
   fresh_ = false;
 }
 
+std::vector<BodyView> Model::views() const {
+  std::vector<BodyView> out;
+  for (const Body& b : bodies_) out.push_back({&b.name, b.element.get(), b.first_dof});
+  return out;
+}
+
 void Model::number_dofs() {
   n_dofs_ = 0;
-  std::vector<BodyView> views;
   for (Body& b : bodies_) {
     b.first_dof = n_dofs_;
     n_dofs_ += b.n_dofs();
-    views.push_back({&b.name, b.element.get(), b.first_dof});
   }
+  const std::vector<BodyView> bodies = views();
   n_constraints_ = 0;
+  first_rows_ = {0};
   for (const auto& joint : joints_) {
-    joint->bind(views);
+    joint->bind(bodies);
     n_constraints_ += joint->size();
+    first_rows_.push_back(n_constraints_);
   }
+  for (const auto& link : links_) link->bind(bodies);
   ++pattern_version_;
   fresh_ = false;
   number_batches();
@@ -154,6 +167,47 @@ void Model::add_constraint_force(const Constraints& c, const VectorXd& lambda,
 void Model::scale_loads(double factor) {
   for (Body& b : bodies_)
     for (const auto& term : b.terms) term->scale_load(factor);
+  for (const auto& link : links_) link->scale_load(factor);
+}
+
+VectorXd Model::joint_force(size_t joint, const State& x) const {
+  VectorXd out = VectorXd::Zero(n_dofs_);
+  joints_[joint]->evaluate(x.t, x.q, x.v, rows_);
+  for (const auto& entry : rows_.jacobian)
+    out[entry.col()] -= entry.value() * x.lambda[first_rows_[joint] + entry.row()];
+  return out;
+}
+
+PlaceMotion Model::place_motion(const MarkerPlace& place, const State& x) const {
+  Marker marker(place);
+  marker.bind(views(), "place", false);
+  const MarkerMotion m = marker.evaluate(x.t, x.q, x.v);
+  Eigen::Vector4d acceleration = m.convective;
+  for (size_t k = 0; k < marker.dofs().size(); ++k)
+    acceleration += x.a[marker.dofs()[k]] * marker.block().col(static_cast<Eigen::Index>(k));
+  return {m.y.head<2>(), m.rate.head<2>(), acceleration.head<2>(), m.y.tail<2>()};
+}
+
+Wrench Model::joint_wrench(size_t joint, const std::string& name, const Vec3& about,
+                           const State& x) const {
+  const Body& b = body(name);
+  const Element& element = *b.element;
+  const VectorXd force = joint_force(joint, x);
+  Wrench out;
+  for (int k = 0; k < element.n_vectors(); ++k) {
+    const int at = b.first_dof + element.dim() * k;
+    Vec3 f = Vec3::Zero(), arm = Vec3::Zero();
+    for (int c = 0; c < element.dim(); ++c) {
+      f[c] = force[at + c];
+      arm[c] = x.q[at + c];
+    }
+    if (element.is_position(k)) {
+      out.force += f;
+      arm -= about;
+    }
+    out.moment += arm.cross(f);
+  }
+  return out;
 }
 
 Energies Model::energies(const State& x) const {
@@ -168,6 +222,27 @@ Energies Model::energies(const State& x) const {
         out.potential += term->potential_energy(e, local);
       }
     }
+  for (const auto& link : links_) {
+    out.strain += link->strain_energy(x);
+    out.potential += link->potential_energy(x);
+  }
+  return out;
+}
+
+Vec3 Model::momentum(const State& x) const {
+  Vec3 out = Vec3::Zero();
+  Local local;
+  for (const Body& b : bodies_)
+    for (int e = 0; e < b.element->n_elements(); ++e) {
+      gather(b, e, x, local);
+      for (const auto& term : b.terms) out += term->momentum(e, local);
+    }
+  return out;
+}
+
+double Model::link_power(const State& x) const {
+  double out = 0;
+  for (const auto& link : links_) out += link->power(x);
   return out;
 }
 

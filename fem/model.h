@@ -7,6 +7,7 @@
 #include "fem/dofs.h"
 #include "fem/element.h"
 #include "fem/joint.h"
+#include "fem/link.h"
 #include "fem/term.h"
 
 namespace flexmorph::fem {
@@ -31,13 +32,25 @@ struct Energies {
   double total() const { return kinetic + strain + potential; }
 };
 
+/// Force [N] and moment about a point [N m]; in the plane only the z entry of the moment and no z
+/// entry of the force.
+struct Wrench {
+  Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
+};
+
+/// Motion of a place of a model (fem/marker.h).
+struct PlaceMotion {
+  Vec2 position{0, 0}, velocity{0, 0}, acceleration{0, 0};
+  Vec2 axis{0, 0};  ///< axis 1; zero for a point of a plate
+};
+
 /// All constraint rows of a model at one state.
 struct Constraints {
   VectorXd value, rate, acceleration;            ///< (m); see ConstraintRows
   std::vector<Eigen::Triplet<double>> jacobian;  ///< Φ_q
 };
 
-/// Bodies and joints: the equations of motion
+/// Bodies, joints and links: the equations of motion
 ///
 ///   M(t) q̈ + F(q, q̇, t) + Φ_qᵀ λ = 0,   Φ(q, t) = 0                          P (23)
 ///
@@ -53,10 +66,15 @@ class Model {
   Body& add_body(std::string name, std::unique_ptr<Element> element, const PlaneSection& section,
                  std::vector<std::unique_ptr<Term>> terms);
   void add_joint(std::unique_ptr<Joint> joint);
+  void add_link(std::unique_ptr<Link> link);
 
   std::vector<Body>& bodies() { return bodies_; }
   const std::vector<Body>& bodies() const { return bodies_; }
   const Body& body(const std::string& name) const;
+  const std::vector<std::unique_ptr<Joint>>& joints() const { return joints_; }
+  /// First row of joint i in the constraints; first_row(joints().size()) is their number.
+  int first_row(size_t joint) const { return first_rows_[joint]; }
+  const std::vector<std::unique_ptr<Link>>& links() const { return links_; }
 
   /// Gives a body another mesh; states of the old one no longer fit (dynamics/remesh carries over).
   void set_element(Body& body, std::unique_ptr<Element> element);
@@ -86,6 +104,15 @@ class Model {
   /// out += Φ_qᵀ λ.
   void add_constraint_force(const Constraints& c, const VectorXd& lambda, VectorXd& out) const;
 
+  /// Generalized force of joint i alone on all unknowns, -Φ_qᵀ λ (n_dofs).
+  VectorXd joint_force(size_t joint, const State& x) const;
+  /// What joint i does to a body: resultant force, and moment about a point of the world, by the
+  /// virtual work of its force under δr = δ and under δr = θ × (r - about), δr_m = θ × r_m, ...
+  /// (plates), δu = θ × u (rigid bodies). Forces on free material lines are no part of it.
+  /// @throws Error (input) for a body that does not exist.
+  Wrench joint_wrench(size_t joint, const std::string& body, const Vec3& about,
+                      const State& x) const;
+
   /// [ scale · (w.q (F + Φ_qᵀ λ)_q + w.v F_v + w.a M)   Φ_qᵀ ]
   /// [ Φ_q                                              0    ]   in a fixed pattern, which changes
   /// with pattern_version() only.
@@ -105,7 +132,15 @@ class Model {
                 const Constraints& at_mean, const Constraints& at_end, const Weights& w,
                 double scale, SparseMatrix& out) const;
 
+  /// Where a place is, and how it moves. For output: looks the place up at every call.
+  /// @throws Error (input) as Marker::bind().
+  PlaceMotion place_motion(const MarkerPlace& place, const State& x) const;
+
   Energies energies(const State& x) const;
+  /// Linear momentum of the bodies' own mass [kg m/s], see Term::momentum(); z = 0 in the plane.
+  Vec3 momentum(const State& x) const;
+  /// Power of all links, see Link::power() [W].
+  double link_power(const State& x) const;
   /// Power of all terms at fixed unknowns, see Term::flow_power() [W].
   double flow_power(const State& x) const;
   /// Smallest area ratio |r_m x r_n| over all elements (sampled at 3 x 3 points): a collapse of the
@@ -130,6 +165,7 @@ class Model {
     std::vector<int> entries;  // of the matrix, by rows (-1: none)
   };
 
+  std::vector<BodyView> views() const;
   void number_dofs();
   void number_batches();
   void number_singles(size_t body);
@@ -146,11 +182,14 @@ class Model {
   void gather(const Body& body, int e, const State& mean, const VectorXd& q0, const VectorXd& q1,
               LocalStep& step) const;
   void clear(SparseMatrix& out) const;
+  void add_link_entries(double scale, double* values) const;
   void fill_joints(const State& x, double stiffness_scale, const Constraints& rows,
                    const Constraints& columns, SparseMatrix& out) const;
 
   std::vector<Body> bodies_;
   std::vector<std::unique_ptr<Joint>> joints_;
+  std::vector<int> first_rows_ = {0};
+  std::vector<std::unique_ptr<Link>> links_;
   int n_dofs_ = 0, n_constraints_ = 0, pattern_version_ = 0;
   bool fresh_ = false;        // terms are prepared for this mesh and these factors
   std::vector<int> colours_;  // first batch of every colour, and their number
@@ -163,6 +202,8 @@ class Model {
   mutable std::vector<int> stiffness_places_;  // of the joints' (Φ_qᵀ λ)_q
   mutable std::vector<Eigen::Triplet<double>> stiffness_;
   mutable ConstraintRows rows_;
+  mutable std::vector<int> link_places_;  // of the links' tangents
+  mutable std::vector<Eigen::Triplet<double>> link_entries_;
 };
 
 }  // namespace flexmorph::fem

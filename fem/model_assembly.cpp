@@ -117,6 +117,7 @@ void Model::force(const State& x, VectorXd& out) const {
       for (int lane = 0; lane < batch.count; ++lane) out.data()[dof[lane]] += f[k][lane];
   });
   for (const Single& single : singles_) add_single_force(single, x, out);
+  for (const auto& link : links_) link->add_force(x, out);
 }
 
 void Model::add_single_force(const Single& single, const State& x, VectorXd& out) const {
@@ -174,6 +175,7 @@ void Model::mean_force(const State& mean, const VectorXd& q0, const VectorXd& q1
         out.segment(b.first_dof + dim * vectors[static_cast<size_t>(k)], dim) += f.row(k);
     }
   }
+  for (const auto& link : links_) link->add_mean_force(mean, q0, q1, out);
 }
 
 void Model::joint_stiffness(const State& x, std::vector<Eigen::Triplet<double>>& out) const {
@@ -204,6 +206,9 @@ void Model::build_pattern() const {
   std::vector<Eigen::Triplet<double>> stiffness;
   joint_stiffness(at, stiffness);
   entries.insert(entries.end(), stiffness.begin(), stiffness.end());
+  link_entries_.clear();
+  for (const auto& link : links_) link->add_pattern(link_entries_);
+  entries.insert(entries.end(), link_entries_.begin(), link_entries_.end());
   for (const auto& entry : c.jacobian) {
     entries.emplace_back(n_dofs_ + entry.row(), entry.col(), 1.0);
     entries.emplace_back(entry.col(), n_dofs_ + entry.row(), 1.0);
@@ -239,6 +244,8 @@ void Model::build_pattern() const {
   }
   stiffness_places_.clear();
   for (const auto& entry : stiffness) stiffness_places_.push_back(place(entry.row(), entry.col()));
+  link_places_.clear();
+  for (const auto& entry : link_entries_) link_places_.push_back(place(entry.row(), entry.col()));
   built_version_ = pattern_version_;
 }
 
@@ -258,6 +265,9 @@ void Model::kkt(const State& x, const Constraints& c, const Weights& w, double s
         for (int c = 0; c < batch.dim; ++c) values[place[lane] + c] += scale * entry[c][lane];
   });
   for (const Single& single : singles_) add_single_tangent(single, x, w, scale, values);
+  link_entries_.clear();
+  for (const auto& link : links_) link->add_tangent(x, w, link_entries_);
+  add_link_entries(scale, values);
   fill_joints(x, scale * w.q, c, c, out);
 }
 
@@ -281,7 +291,15 @@ void Model::mean_kkt(const State& mean, const VectorXd& q0, const VectorXd& q1,
           for (int c = 0; c < dim; ++c) values[*place + c] += scale * tangent(row + c, column);
     }
   }
+  link_entries_.clear();
+  for (const auto& link : links_) link->add_mean_tangent(mean, q0, q1, w, link_entries_);
+  add_link_entries(scale, values);
   fill_joints(mean, scale * w.q, at_end, at_mean, out);
+}
+
+void Model::add_link_entries(double scale, double* values) const {
+  for (size_t k = 0; k < link_entries_.size(); ++k)
+    values[link_places_[k]] += scale * link_entries_[k].value();
 }
 
 void Model::clear(SparseMatrix& out) const {

@@ -108,6 +108,9 @@ class Term {
   virtual double strain_energy(int, const Local&) const { return 0; }
   virtual double potential_energy(int, const Local&) const { return 0; }
 
+  /// Linear momentum of one element [kg m/s], of dim entries; zero where the term has none.
+  virtual Vec3 momentum(int, const Local&) const { return Vec3::Zero(); }
+
   /// Power of the term when material flows through a mesh whose unknowns stand still: the term's
   /// force per area times ∂r/∂t at fixed unknowns and fixed material point, integrated [W].
   /// Only called for elements whose lines move.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <set>
 
 #include "io/case_document.h"
@@ -145,6 +146,13 @@ bool Table::is_string(const std::string& key) const {
   return node != nullptr && node->kind == CaseNode::Kind::text;
 }
 
+bool Table::is_list_of_strings(const std::string& key) const {
+  const CaseNode* node = place_->find(key);
+  return node != nullptr && node->kind == Kind::list && !node->entries.empty() &&
+         std::all_of(node->entries.begin(), node->entries.end(),
+                     [](const CaseNode& entry) { return entry.kind == Kind::text; });
+}
+
 std::vector<std::string> Table::keys() const {
   std::vector<std::string> all;
   for (const CaseNode& node : place_->table->entries) all.push_back(node.key);
@@ -213,6 +221,22 @@ std::vector<int> Table::integers(const std::string& key, const std::string& noun
                            [&](const CaseNode& node) { return read_integer(node, lower, upper); });
 }
 
+std::vector<std::vector<double>> Table::rows(const std::string& key, const Quantity& each,
+                                             int columns) const {
+  using Row = std::vector<double>;
+  const std::string row = "lists of " + to_text(columns) + " numbers; " + each.allowed();
+  return place_->list<Row>(key, row, 0, {}, [&](const CaseNode& node) -> std::optional<Row> {
+    if (node.kind != Kind::list || node.entries.size() != static_cast<size_t>(columns)) return {};
+    Row out;
+    for (const CaseNode& entry : node.entries) {
+      const std::optional<double> value = read_number(entry, each);
+      if (!value) return {};
+      out.push_back(*value);
+    }
+    return out;
+  });
+}
+
 std::vector<std::string> Table::choices(const std::string& key, const std::string& noun,
                                         std::span<const std::string> allowed) const {
   std::set<std::string> seen;
@@ -248,6 +272,10 @@ std::vector<Table> Table::tables(const std::string& key) const {
     entries.push_back(Table(std::make_shared<Place>(Place{place_->document, entry, path})));
   }
   return entries;
+}
+
+std::string Table::beside(const std::string& name) const {
+  return (std::filesystem::path(place_->document->path).parent_path() / name).string();
 }
 
 void Table::fail(const std::string& key, const std::string& allowed) const {

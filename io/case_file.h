@@ -42,7 +42,8 @@ class Table {
   const std::string& path() const;               ///< "body.flow"; empty for the file itself
   bool has(const std::string& key) const;        ///< does the key exist? (makes it known)
   bool is_string(const std::string& key) const;  ///< is its value a string?
-  std::vector<std::string> keys() const;         ///< in the order of the file (makes none known)
+  bool is_list_of_strings(const std::string& key) const;
+  std::vector<std::string> keys() const;  ///< in the order of the file (makes none known)
 
   /// Whole numbers are numbers; inf and nan are refused.
   double number(const std::string& key, const Quantity& quantity,
@@ -76,6 +77,9 @@ class Table {
   std::vector<int> integers(const std::string& key, const std::string& noun, int lower, int upper,
                             int count = 0,
                             const std::optional<std::vector<int>>& fallback = {}) const;
+  /// A list of one or more lists of `columns` numbers each: [[0, 1], [2, 3]].
+  std::vector<std::vector<double>> rows(const std::string& key, const Quantity& each,
+                                        int columns) const;
   /// A list of one or more of the strings in `allowed`, none twice.
   std::vector<std::string> choices(const std::string& key, const std::string& noun,
                                    std::span<const std::string> allowed) const;
@@ -84,6 +88,9 @@ class Table {
   Table table(const std::string& key) const;
   /// Entries of [[key]]; none when it is missing.
   std::vector<Table> tables(const std::string& key) const;
+
+  /// Path of a file that the case names: relative names start at the folder of the case file.
+  std::string beside(const std::string& name) const;
 
   /// @throws Error (input): "<file:line>: <path.key> = <value>: <allowed>".
   [[noreturn]] void fail(const std::string& key, const std::string& allowed) const;

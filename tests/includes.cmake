@@ -9,7 +9,7 @@ cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH root)
 
 # Room -> the rooms it may include besides itself. `fem` stands for the seams, the files directly in
 # fem/ but for the model.
-set(fem fem fem/model fem/elements fem/terms fem/joints fem/solve fem/dynamics)
+set(fem fem fem/model fem/elements fem/terms fem/joints fem/links fem/solve fem/dynamics)
 set(may_geometry "")
 set(may_io geometry)
 set(may_fem geometry)
@@ -17,6 +17,7 @@ set(may_fem/model geometry fem)
 set(may_fem/elements geometry fem)
 set(may_fem/terms geometry fem)
 set(may_fem/joints geometry fem)
+set(may_fem/links geometry fem)
 set(may_fem/solve geometry fem fem/model)
 set(may_fem/dynamics geometry fem fem/model fem/solve)
 set(may_optim geometry)
@@ -25,7 +26,7 @@ set(may_cases geometry io ${fem} optim optim/mmc)
 set(may_tests geometry io ${fem} optim optim/mmc cases)
 
 # Wrapped library (how its headers begin) -> the folder whose .cpp files may include it.
-set(libraries CGAL SuiteSparse VTK NLopt Ipopt toml++ CLI11)
+set(libraries CGAL SuiteSparse VTK NLopt Ipopt toml++ CLI11 GiNaC)
 set(headers_CGAL "CGAL/|boost/")
 set(headers_SuiteSparse "cholmod|umfpack|klu|amd|colamd|SuiteSparse|Eigen/(Cholmod|UmfPack|KLU)")
 set(headers_VTK "vtk")
@@ -33,6 +34,7 @@ set(headers_NLopt "nlopt")
 set(headers_Ipopt "Ip[A-Z]|coin/")
 set(headers_toml++ "toml")
 set(headers_CLI11 "CLI/")
+set(headers_GiNaC "(ginac|cln)/")
 set(folder_CGAL geometry)
 set(folder_SuiteSparse fem)
 set(folder_VTK io)
@@ -40,6 +42,7 @@ set(folder_NLopt optim)
 set(folder_Ipopt optim)
 set(folder_toml++ io)
 set(folder_CLI11 cases)
+set(folder_GiNaC io)
 
 # The room a file lies in.
 function(room_of path room)
@@ -96,7 +99,8 @@ foreach(pair fem/terms/inertia.cpp>fem/element.h fem/dynamics/esl.cpp>fem/model.
   endif()
 endforeach()
 foreach(pair io/vtk.h>vtkNew.h fem/solve/newton.cpp>CGAL/Polygon_2.h
-             optim/nlopt.h>nlopt.hpp fem/model.h>Eigen/CholmodSupport)
+             optim/nlopt.h>nlopt.hpp fem/model.h>Eigen/CholmodSupport
+             io/formula.h>ginac/ginac.h cases/scene.cpp>cln/cln.h)
   string(REPLACE ">" ";" pair ${pair})
   judge_library(${pair} offence)
   if(NOT offence)

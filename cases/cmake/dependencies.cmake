@@ -45,12 +45,14 @@ if(NOT NLOPT_CXX_INCLUDE_DIR)
 endif()
 flexmorph_library(NLopt 2.7 NLopt_FOUND)
 
-# Ipopt has a pkg-config file only; it carries a define that the headers need.
+# Ipopt has a pkg-config file only; it carries a define that the headers need. GiNaC likewise.
 find_package(PkgConfig QUIET)
 if(PkgConfig_FOUND)
   pkg_check_modules(IPOPT QUIET IMPORTED_TARGET GLOBAL ipopt>=3.11)
+  pkg_check_modules(GINAC QUIET IMPORTED_TARGET GLOBAL ginac>=1.8)
 endif()
 flexmorph_library(IPOPT 3.11 IPOPT_FOUND)
+flexmorph_library(GINAC 1.8 GINAC_FOUND)
 
 # SuiteSparse 5 has neither CMake nor pkg-config files.
 find_path(SUITESPARSE_INCLUDE_DIR umfpack.h PATH_SUFFIXES suitesparse)

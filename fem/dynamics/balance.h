@@ -13,7 +13,8 @@ struct Powers {
   double drive = 0;   ///< of the drives of all joints, λ · ∂Φ/∂t
   double feed = 0;    ///< of what pushes the material through the mesh, Term::flow_power()
   double inflow = 0;  ///< kinetic, strain and potential energy that entering material brings along
-  double total() const { return drive + feed + inflow; }
+  double links = 0;   ///< of dampers, motors and shifted places of links, Model::link_power()
+  double total() const { return drive + feed + inflow + links; }
 };
 
 /// The energy balance of a model with material flow,

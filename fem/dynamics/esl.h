@@ -11,22 +11,44 @@ struct AttachedMass {
   Vec2 material{0, 0};  ///< material coordinates (m, n) [m]
 };
 
+/// A force on a body that is not its own weight or inertia: of a joint, or applied.
+struct AttachedForce {
+  Vec2 material{0, 0};  ///< where it acts; at an edge across: (X of the edge, 0) [m]
+  bool spread = false;  ///< over the whole width at that X, as on an edge that stays straight
+  Vec2 force{0, 0};     ///< in the world [N]
+  double moment = 0;    ///< about the point, where spread [N m]
+};
+
+/// A joint that acts on a plate besides the one that carries it, by its name in the model.
+struct AttachedJoint {
+  std::string name;
+  Vec2 material{0, 0};  ///< as above [m]
+  bool spread = false;
+};
+
+/// What the joints do to a body at x (multipliers of x). @throws Error (input) for unknown names.
+std::vector<AttachedForce> joint_forces(const Model& model, const State& x, const Body& body,
+                                        std::span<const AttachedJoint> joints);
+
 /// Equivalent static load of one body at one time.
 ///
 /// In the frame of the hub (origin o, rotation R), for nodes X of the design mesh outside of it:
 ///
 ///   u(X) = Rᵀ (r(X) - o) - (X - m₀),   a(X) = Rᵀ (r̈(X) - g)
 ///
-/// and the concentrated force -m a at the node of every point mass. Inside the hub u = 0, and a is
+/// and the concentrated forces: -m a at the node of every point mass, forces of joints and loads
+/// (spread ones: linearly across, with their resultant and moment). Inside the hub u = 0, and a is
 /// continued by the rigid, extending body: -ω² x + ω̇ × x + 2 ω × ẋ + ẍ with x = X - m₀(t).
 ///
+/// The root is taken to be on the nearest line of the grid: up to half a cell of plate that is in
+/// the hub counts as outside of it, or the other way round.
+///
 /// @param grid    design mesh in material coordinates (root side at x0)
-/// @param masses  must sit on nodes of the grid
-/// @throws Error (input) when the root line is not on a line of the grid (to 1e-6 of a cell).
+/// @param masses, forces  must sit on nodes of the grid
 ///
 /// Source: P (31), (32); design.md section 8.
 EslSet equivalent_static_load(const Model& model, const State& x, const Growth& growth,
                               const Grid& grid, std::span<const AttachedMass> masses,
-                              const VectorXd& gravity);
+                              std::span<const AttachedForce> forces, const VectorXd& gravity);
 
 }  // namespace flexmorph::fem

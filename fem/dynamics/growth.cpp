@@ -6,12 +6,6 @@
 
 namespace flexmorph::fem {
 
-Eigen::Matrix2d rotation(double angle) {
-  Eigen::Matrix2d r;
-  r << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
-  return r;
-}
-
 const LineGrid& grid_of(const Body& body) {
   const auto* lines = dynamic_cast<const LineGrid*>(body.element.get());
   if (!lines) throw Error::input("body '" + body.name + "' has no material lines to move");

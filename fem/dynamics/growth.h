@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "fem/dynamics/carrier.h"
 #include "fem/line_grid.h"
-#include "fem/model.h"
 
 namespace flexmorph::fem {
 
@@ -14,15 +14,12 @@ namespace flexmorph::fem {
 /// root (or another m-line) is welded to, and when its mesh changes.
 struct Growth {
   std::string body;
-  FrameDrive hub;
+  Carrier hub;
   double max_length = 0.1;   ///< a longer boundary element is split in its middle [m]
   double min_length = 0.03;  ///< a shorter one is merged with its neighbour [m]
   int line = 0;              ///< the m-line that is welded: 0 is the root
   double slide = 0;          ///< rate at the start of that line, where it is free [m/s]
 };
-
-/// Columns are the axes of a frame turned by an angle [rad].
-Eigen::Matrix2d rotation(double angle);
 
 /// The material lines of a body. @throws Error (input) when the body has other elements.
 const LineGrid& grid_of(const Body& body);

@@ -6,28 +6,7 @@
 
 namespace flexmorph::fem {
 
-Vec3 momentum_in_space(const Model& model, const State& x) {
-  Vec3 out = Vec3::Zero();
-  ShapeTable t;
-  for (const Body& body : model.bodies()) {
-    const int dim = body.element->dim();
-    const VectorRows q = rows_of(body, x.q), v = rows_of(body, x.v);
-    const double area_density = body.section.density * body.section.thickness;
-    for (int e = 0; e < body.element->n_elements(); ++e) {
-      body.element->tabulate(e, 3, Tabulate::position_rates, body.factors, FactorKind::mass, t);
-      const auto vectors = body.element->vectors(e);
-      for (size_t k = 0; k < vectors.size(); ++k) {
-        const auto column = static_cast<Eigen::Index>(k);
-        out.head(dim) +=
-            area_density * t.N.col(column).dot(t.weight) * v.row(vectors[k]).transpose();
-        if (t.N_t.size() > 0)
-          out.head(dim) +=
-              area_density * t.N_t.col(column).dot(t.weight) * q.row(vectors[k]).transpose();
-      }
-    }
-  }
-  return out;
-}
+Vec3 momentum_in_space(const Model& model, const State& x) { return model.momentum(x); }
 
 Vec2 momentum(const Model& model, const State& x) { return momentum_in_space(model, x).head<2>(); }
 
@@ -49,7 +28,7 @@ class Run {
     std::vector<double> stops = settings_.stops;
     stops.push_back(settings_.end);
     std::sort(stops.begin(), stops.end());
-    x_ = start_state(model_, growths_, 0, settings_.start);
+    x_ = start_state(model_, growths_, 0, settings_.start, settings_.placement);
     integrator_->project_velocity(x_);
     integrator_->make_consistent(x_);
     const Energies e = model_.energies(x_);

@@ -13,6 +13,7 @@ namespace flexmorph::fem {
 struct MotionSettings {
   double end = 1, step = 1e-3;  ///< [s]
   Start start = Start::prestretched;
+  Placement placement;  ///< of bodies that ride in no hub; empty where there are none
   std::string integrator = "generalized_alpha";  ///< see make_integrator()
   AlphaSettings alpha;
   EnergyMomentumSettings energy_momentum;

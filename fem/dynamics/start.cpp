@@ -1,5 +1,6 @@
 #include "fem/dynamics/start.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "fem/solve/statics.h"
@@ -15,38 +16,80 @@ Body& body_named(Model& model, const std::string& name) {
   throw Error::input("there is no body '" + name + "'");
 }
 
-/// Undeformed body in its hub, and the velocity of the rigid, extending body. In space all of it
-/// lies in the plane z = 0.
-void rigid_body(const Body& body, const Growth& growth, double t, State& x) {
-  const FrameMotion hub = growth.hub(t);
+/// A vector in the axes of a frame, with its rates as seen from there.
+struct Local2 {
+  Vec2 value{0, 0}, rate{0, 0}, acceleration{0, 0};
+};
+
+/// Puts the unknowns [at, at + 2) where the frame carries them.
+void carry(const FrameMotion& f, const Local2& local, bool position, int at, State& x) {
+  const Eigen::Matrix2d turn = rotation(f.angle);
+  const Vec2 r = turn * local.value, rate = turn * local.rate;
+  x.q.segment<2>(at) = r;
+  x.v.segment<2>(at) = f.angle_rate * kQuarter * r + rate;
+  x.a.segment<2>(at) = f.angle_acceleration * kQuarter * r - f.angle_rate * f.angle_rate * r +
+                       2 * f.angle_rate * kQuarter * rate + turn * local.acceleration;
+  if (!position) return;
+  x.q.segment<2>(at) += f.origin;
+  x.v.segment<2>(at) += f.origin_rate;
+  x.a.segment<2>(at) += f.origin_acceleration;
+}
+
+/// Undeformed plate in a frame, as a rigid, extending body. In space all of it lies in the plane
+/// z = 0.
+/// @param held  motion of the material coordinate that lies at the frame's origin [m]
+/// @param slides  the line of that coordinate where it is free, else -1
+void carry_plate(const Body& body, const FrameMotion& frame, const Motion& held, int slides,
+                 State& x) {
   const LineGrid& plate = grid_of(body);
-  const auto line_rate = [&](int i) {
-    const bool slides = i == growth.line && plate.lines_m()[static_cast<size_t>(i)].free;
-    return slides ? growth.slide : plate.line_m(i).rate;
-  };
-  const double root = plate.line_m(growth.line).value, root_rate = line_rate(growth.line);
-  const Eigen::Matrix2d turn = rotation(hub.angle);
   const MatrixXd reference = plate.reference();
   for (int k = 0; k < plate.n_vectors(); ++k) {
-    const int at = body.first_dof + plate.dim() * k;
-    Vec2 local = reference.row(k).head<2>().transpose();
-    Vec2 rate = Vec2::Zero();
+    Local2 local;
+    local.value = reference.row(k).head<2>().transpose();
     if (plate.is_position(k)) {
-      local.x() -= root;
       // A node on a moving line goes along with the line, not with the material.
-      rate.x() = line_rate(k / plate.per_node() / (plate.n_n() + 1)) - root_rate;
+      const int line = k / plate.per_node() / (plate.n_n() + 1);
+      const Motion m = line == slides ? held : plate.line_m(line);
+      local.value.x() -= held.value;
+      local.rate.x() = m.rate - held.rate;
+      local.acceleration.x() = m.acceleration - held.acceleration;
     }
-    const Vec2 r = turn * local;
-    x.q.segment<2>(at) = r;
-    x.v.segment<2>(at) = hub.angle_rate * kQuarter * r + turn * rate;
-    if (plate.is_position(k)) {
-      x.q.segment<2>(at) += hub.origin;
-      x.v.segment<2>(at) += hub.origin_rate;
-    }
+    carry(frame, local, plate.is_position(k), body.first_dof + plate.dim() * k, x);
   }
+}
+
+/// Undeformed body in its hub, and the motion of the rigid, extending body.
+void carry_in_hub(const Model& model, const Growth& growth, State& x) {
+  const Body& body = model.body(growth.body);
+  const LineGrid& plate = grid_of(body);
+  const auto line = static_cast<size_t>(growth.line);
+  const bool slides = plate.lines_m()[line].free;
+  Motion held = plate.line_m(growth.line);
+  if (slides) held.rate = growth.slide;
+  carry_plate(body, growth.hub.at(model, x), held, slides ? growth.line : -1, x);
+  if (!slides) return;
   int scalar = body.first_scalar();
-  for (int i = 0; i < growth.line; ++i) scalar += plate.lines_m()[static_cast<size_t>(i)].free;
-  if (plate.lines_m()[static_cast<size_t>(growth.line)].free) x.v[scalar] = growth.slide;
+  for (size_t i = 0; i < line; ++i) scalar += plate.lines_m()[i].free;
+  x.v[scalar] = growth.slide;
+}
+
+/// The whole model as rigid, extending bodies; prepare(x.t) done.
+State rigid_state(const Model& model, std::span<const Growth> growths, const Placement& placement,
+                  double t) {
+  State x = model.reference();
+  x.t = t;
+  if (placement)
+    for (const Placed& p : placement(t)) {
+      const Body& body = model.body(p.body);
+      if (dynamic_cast<const LineGrid*>(body.element.get())) {
+        carry_plate(body, p.frame, {p.line, 0, 0}, -1, x);
+        continue;
+      }
+      carry(p.frame, {}, true, body.first_dof, x);
+      carry(p.frame, {.value = {1, 0}}, false, body.first_dof + 2, x);
+    }
+  for (const Growth& g : growths) carry_in_hub(model, g, x);
+  return x;
 }
 
 /// The same model with the lines of all plates frozen where they are at `lines`, for statics.
@@ -59,17 +102,14 @@ void freeze(Model& model, std::span<const Growth> growths, double lines) {
   }
 }
 
-}  // namespace
-
-State start_state(Model& model, std::span<const Growth> growths, double t, Start start) {
+void move_lines(Model& model, double t) {
   for (Body& b : model.bodies()) b.element->move_to(t);
-  State x = model.reference();
-  x.t = t;
-  for (const Growth& g : growths) rigid_body(model.body(g.body), g, t, x);
-  if (start == Start::rigid) return x;
+}
 
-  // Static equilibrium under centrifugal forces: q̈ = -ω² (q - origin), lines frozen. Its rate as
-  // the body grows comes from equilibria a little earlier and later.
+/// Static equilibrium under centrifugal forces: q̈ = -ω² (q - origin), lines frozen. Its rate as
+/// the body grows comes from equilibria a little earlier and later.
+void stretch_in_hubs(Model& model, std::span<const Growth> growths, State& x) {
+  const double t = x.t;
   std::vector<std::unique_ptr<LineGrid>> moving;
   for (const Growth& g : growths) moving.push_back(grid_of(model.body(g.body)).copy());
   const auto restore = [&] {
@@ -79,17 +119,14 @@ State start_state(Model& model, std::span<const Growth> growths, double t, Start
   const auto equilibrium = [&](double lines) {
     restore();
     freeze(model, growths, lines);
-    State s = model.reference();
-    s.t = t;
+    State s = rigid_state(model, growths, {}, t);
     VectorXd spin(model.n_dofs()), center = VectorXd::Zero(model.n_dofs());
     spin.setZero();
     for (const Growth& g : growths) {
       const Body& body = model.body(g.body);
-      const FrameMotion hub = g.hub(t);
-      const int dim = body.element->dim();
-      rigid_body(body, g, t, s);
+      const FrameMotion hub = g.hub.at(model, s);
       for (int k = 0; k < body.element->n_vectors(); ++k) {
-        const int at = body.first_dof + dim * k;
+        const int at = body.first_dof + body.element->dim() * k;
         spin.segment<2>(at).setConstant(hub.angle_rate * hub.angle_rate);
         if (body.element->is_position(k)) center.segment<2>(at) = hub.origin;
       }
@@ -102,11 +139,11 @@ State start_state(Model& model, std::span<const Growth> growths, double t, Start
   const VectorXd q = equilibrium(t), later = equilibrium(t + delta),
                  earlier = equilibrium(t - delta);
   restore();
-  for (Body& b : model.bodies()) b.element->move_to(t);
+  move_lines(model, t);
   x.q = q;
   for (const Growth& g : growths) {
     const Body& body = model.body(g.body);
-    const FrameMotion hub = g.hub(t);
+    const FrameMotion hub = g.hub.at(model, x);
     for (int k = 0; k < body.element->n_vectors(); ++k) {
       const int at = body.first_dof + body.element->dim() * k;
       const bool position = body.element->is_position(k);
@@ -117,6 +154,39 @@ State start_state(Model& model, std::span<const Growth> growths, double t, Start
       if (body.element->dim() == 3) x.v[at + 2] = (later - earlier)[at + 2] / (2 * delta);
     }
   }
+}
+
+/// Static equilibrium under the inertia forces of the rigid motion; its rate from equilibria a
+/// little later (what drives a mechanism need not be defined before its start).
+void stretch_mechanism(Model& model, std::span<const Growth> growths, const Placement& placement,
+                       State& x) {
+  const auto strain = [&](double t) {
+    move_lines(model, t);
+    State s = rigid_state(model, growths, placement, t);
+    const VectorXd rigid = s.q;
+    solve_carried_equilibrium(model, s);
+    return VectorXd(s.q - rigid);
+  };
+  const double t = x.t, delta = 1e-4;
+  const VectorXd later = strain(t + delta), last = strain(t + 2 * delta), now = strain(t);
+  x.q += now;
+  x.v += (4 * later - 3 * now - last) / (2 * delta);
+}
+
+}  // namespace
+
+State start_state(Model& model, std::span<const Growth> growths, double t, Start start,
+                  const Placement& placement) {
+  move_lines(model, t);
+  State x = rigid_state(model, growths, placement, t);
+  if (start == Start::rigid) return x;
+  const bool in_hubs =
+      !placement && std::all_of(growths.begin(), growths.end(),
+                                [](const Growth& g) { return g.hub.body().empty(); });
+  if (in_hubs)
+    stretch_in_hubs(model, growths, x);
+  else
+    stretch_mechanism(model, growths, placement, x);
   return x;
 }
 

@@ -7,13 +7,27 @@ namespace flexmorph::fem {
 /// Starts of driven scenes (design.md section 4).
 enum class Start {
   rigid,        ///< undeformed, every material point with the velocity of the rigid, extending body
-  prestretched  ///< the same plus static equilibrium in the rotating frame: no axial ringing
+  prestretched  ///< the same plus static equilibrium under the inertia forces of the rigid motion
+                ///< (in a hub: in the rotating frame): no axial ringing
 };
 
-/// Positions and velocities at time t of a model whose bodies ride in hubs. Accelerations and
-/// multipliers are left zero: Integrator::make_consistent() finds them.
+/// A body that rides in no hub, as a rigid one: rigid bodies, and plates that other joints hold.
+struct Placed {
+  std::string body;
+  FrameMotion frame;
+  double line = 0;  ///< material coordinate X of a plate that lies at the frame's origin [m]
+};
+
+/// Where all such bodies of a mechanism are at a time, with rates and accelerations.
+using Placement = std::function<std::vector<Placed>(double t)>;
+
+/// Positions and velocities at time t of a model whose bodies ride in hubs or are placed.
+/// Integrator
+/// ::make_consistent() finds accelerations and multipliers.
 ///
+/// @param placement  prestretched: asked for a few times in [t, t + 2e-4 s]
 /// @throws Error (numerical) when the static equilibrium is not found.
-State start_state(Model& model, std::span<const Growth> growths, double t, Start start);
+State start_state(Model& model, std::span<const Growth> growths, double t, Start start,
+                  const Placement& placement = {});
 
 }  // namespace flexmorph::fem

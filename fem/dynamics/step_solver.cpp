@@ -20,6 +20,8 @@ void StepSolver::set_scales() {
   size_ = 0;
   for (Eigen::Index i = 0; i < reference.q.size(); ++i)
     if (scales_[i] == 1) size_ = std::max(size_, std::abs(reference.q[i]));
+  // Rigid bodies alone: all start at the origin, but they have lengths.
+  if (size_ == 0) size_ = reference.q.cwiseProduct(scales_).lpNorm<Eigen::Infinity>();
   if (size_ == 0) size_ = 1;
   scaled_version_ = model_.pattern_version();
 }

@@ -48,7 +48,7 @@ class StepSolver : public Integrator {
   double displacement(const VectorXd& dq) const {
     return dq.cwiseProduct(scales_).lpNorm<Eigen::Infinity>();
   }
-  /// Largest coordinate of the undeformed model [m].
+  /// Largest coordinate of the undeformed model [m]; of rigid bodies alone their largest length.
   double size() const { return size_; }
 
  private:

@@ -56,10 +56,12 @@ class Path {
           "statics: steps, limits and tolerance are positive, largest_step not below first_step");
   }
 
-  /// Largest half-width of the positions over the directions [m].
+  /// Largest half-width of the positions of a body over the directions [m]; rigid bodies have their
+  /// length.
   double extent() const {
     double out = 0;
-    for (const Body& b : model_.bodies())
+    for (const Body& b : model_.bodies()) {
+      if (b.element->is_rigid()) out = std::max(out, b.element->scale(1));
       for (int c = 0; c < b.element->dim(); ++c) {
         double low = std::numeric_limits<double>::infinity(), high = -low;
         for (int k = 0; k < b.element->n_vectors(); ++k) {
@@ -70,6 +72,7 @@ class Path {
         }
         out = std::max(out, 0.5 * (high - low));
       }
+    }
     return std::max(out, 1e-300);
   }
 

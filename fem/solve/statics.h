@@ -17,6 +17,11 @@ namespace flexmorph::fem {
 void solve_rotating_equilibrium(Model& model, const VectorXd& spin, const VectorXd& center,
                                 State& x);
 
+/// Equilibrium under the inertia forces of a motion that is known: F(q, v, a) + Φ_qᵀ λ = 0,
+/// Φ(q, x.t) = 0 for q and λ with v and a as they are (d'Alembert). Rates of material lines count.
+/// @throws Error (numerical) likewise.
+void solve_carried_equilibrium(Model& model, State& x);
+
 /// Small displacements of a linear analysis: one Newton step from x under the loads as they are
 /// (n_dofs). x is an equilibrium without loads, for instance the reference.
 /// @throws Error (numerical) when the tangent is singular.

@@ -237,6 +237,17 @@ double FreeInertia::kinetic_energy(const FreeTable& t, const Local& x) const {
   return out;
 }
 
+Vec3 FreeInertia::momentum(const FreeTable& t, const Local& x) const {
+  Vec3 out = Vec3::Zero();
+  if (!has_inertia_) return out;
+  for (Eigen::Index g = 0; g < t.at.weight.size(); ++g) {
+    const Moving at = moving(t, g, x, gravity_, true);
+    for (Eigen::Index c = 0; c < x.q.cols(); ++c)
+      out[c] += density_ * t.at.weight[g] * at.velocity[c];
+  }
+  return out;
+}
+
 double FreeInertia::potential_energy(const FreeTable& t, const Local& x) const {
   double out = 0;
   for (Eigen::Index g = 0; g < t.at.weight.size(); ++g) {

@@ -97,6 +97,7 @@ class FreeInertia {
 
   double kinetic_energy(const FreeTable& table, const Local& x) const;
   double potential_energy(const FreeTable& table, const Local& x) const;
+  Vec3 momentum(const FreeTable& table, const Local& x) const;
   void add_force(const FreeTable& table, const Local& x, FreeForce& force) const;
   void add_tangent(const FreeTable& table, const Local& x, const Weights& w,
                    FreeTangent& tangent) const;

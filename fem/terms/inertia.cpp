@@ -104,6 +104,18 @@ class Inertia final : public Term {
     return 0.5 * twice;
   }
 
+  /// ∫ ρh ṙ dA.
+  Vec3 momentum(int e, const Local& x) const override {
+    if (free_.has(e)) return of_free_.momentum(free_.of(e), x);
+    const Matrices& m = matrices_[static_cast<size_t>(e)];
+    Vec3 out = Vec3::Zero();
+    for (Eigen::Index c = 0; c < x.v.cols(); ++c) {
+      out[c] = m.first.dot(x.v.col(c));
+      if (m.flows) out[c] += m.first_rate.dot(x.q.col(c));
+    }
+    return out;
+  }
+
   /// ∫ ρh (Qᵀ Ṅ) · r̈ dA.
   double flow_power(int e, const Local& x) const override {
     const Matrices& m = matrices_[static_cast<size_t>(e)];
@@ -123,9 +135,11 @@ class Inertia final : public Term {
 
  private:
   using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxShapes, kMaxShapes>;
+  using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxShapes, 1>;
   struct Matrices {
     bool flows = false;
     Square mass, convection, transport;
+    Column first, first_rate;             // ∫ρh N, ∫ρh Ṅ
     Square rate_product, rate_transport;  // ∫ρh Ṅ Ṅᵀ, ∫ρh Ṅ N̈ᵀ
   };
 
@@ -169,11 +183,13 @@ class Inertia final : public Term {
     Matrices& m = matrices_[static_cast<size_t>(e)];
     m.flows = element.moving(e);
     weighted_.noalias() = (area_density_ * table_.weight).asDiagonal() * table_.N;
+    m.first = weighted_.colwise().sum().transpose();
     m.mass.noalias() = weighted_.transpose() * table_.N;
     if (!m.flows) return;
     m.convection.noalias() = 2 * weighted_.transpose() * table_.N_t;
     m.transport.noalias() = weighted_.transpose() * table_.N_tt;
     weighted_.noalias() = (area_density_ * table_.weight).asDiagonal() * table_.N_t;
+    m.first_rate = weighted_.colwise().sum().transpose();
     m.rate_product.noalias() = weighted_.transpose() * table_.N_t;
     m.rate_transport.noalias() = weighted_.transpose() * table_.N_tt;
   }

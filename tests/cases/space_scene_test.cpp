@@ -226,7 +226,8 @@ const Bad kBad[] = {
     {"unknown_joint",
      kPendulum,
      {"joint.0.type=hinge"},
-     "a joint is one of 'weld', 'sleeve', 'pin', 'clamp', 'support', 'symmetry', 'line_drive'"},
+     "a joint is one of 'weld', 'sleeve', 'pin', 'clamp', 'support', 'symmetry', 'line_drive', "
+     "'revolute', 'slider', 'angle_drive', 'distance', 'point_drive'"},
     {"pin_outside",
      kPendulum,
      {"joint.0.point=[0.4, 0]"},

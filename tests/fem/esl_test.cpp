@@ -68,9 +68,9 @@ class Esl : public ::testing::Test {
     return x;
   }
   EslSet load(const State& x, std::span<const AttachedMass> masses = {},
-              const VectorXd& gravity = {}) {
+              const VectorXd& gravity = {}, std::span<const AttachedForce> forces = {}) {
     model.prepare(x.t);
-    return equivalent_static_load(model, x, {"plate", hub, 1, 0.01}, grid, masses, gravity);
+    return equivalent_static_load(model, x, {"plate", hub, 1, 0.01}, grid, masses, forces, gravity);
   }
 
   Model model;
@@ -151,11 +151,44 @@ TEST_F(Esl, PointMassPushesWithItsInertia) {
   EXPECT_THROW(load(x, {&between, 1}), Error);
 }
 
-TEST_F(Esl, RefusesARootBetweenTwoColumns) {
-  model.prepare(kTime + 0.01);
+// Spread forces have the resultant and the moment they stand for, in the hub's axes.
+TEST_F(Esl, SpreadForcesKeepResultantAndMoment) {
+  model.prepare(kTime);
   const State x = testing::SmoothMotion(model.reference().q, 0.1 * model.scales().cwiseInverse(), 3)
-                      .state(kTime + 0.01);
-  EXPECT_THROW(load(x), Error);
+                      .state(kTime);
+  const AttachedForce edge{{kEnd, 0}, true, {3, -5}, 0.7}, point{{kEnd, 0.02}, false, {1, 2}, 0};
+  const EslSet set = load(x, {}, {}, std::vector{edge, point});
+  Vec2 force(0, 0);
+  double moment = 0;
+  for (size_t i = 0; i + 1 < set.forces.size(); ++i) {
+    const int node = set.forces[i].node;
+    ASSERT_EQ(node / (grid.ny + 1), grid.nx);
+    const double y = grid.node_position(grid.nx, node % (grid.ny + 1)).y();
+    force += set.forces[i].force;
+    moment -= y * set.forces[i].force.x();
+  }
+  EXPECT_LT((force - turn(kTime).transpose() * edge.force).norm(), 1e-14);
+  EXPECT_NEAR(moment, edge.moment, 1e-14);
+  EXPECT_EQ(set.forces.back().node, grid.node(30, 7));
+  EXPECT_LT((set.forces.back().force - turn(kTime).transpose() * point.force).norm(), 1e-15);
+}
+
+// A root between two columns is taken to be on the nearer one; the fields outside are as they are.
+TEST_F(Esl, RootBetweenTwoColumnsIsOnTheNearerOne) {
+  for (const double later : {0.003, 0.007}) {
+    const double t = kTime + later;
+    model.prepare(t);
+    const State x =
+        testing::SmoothMotion(model.reference().q, 0.1 * model.scales().cwiseInverse(), 3).state(t);
+    const EslSet set = load(x);
+    const double root = root_line(t).value / grid.dx();
+    ASSERT_GT(std::abs(root - std::round(root)), 0.01);
+    EXPECT_EQ(set.root_column, std::lround(root));
+    const Vec2 at = grid.node_position(20, 3);
+    const Vec2 r = point_motion(model.body("plate"), x, at).position;
+    const Vec2 u = turn(t).transpose() * (r - hub(t).origin) - (at - Vec2(root_line(t).value, 0));
+    EXPECT_LT((set.deformation.segment<2>(2 * grid.node(20, 3)) - u).norm(), 1e-14);
+  }
 }
 
 }  // namespace

@@ -87,7 +87,7 @@ double strip(ShapeSet shapes, int nx, int ny) {
                                       {p.length, -0.05 + 0.1 * (j + gauss(4).points[g]) / ny},
                                       Vec2(0, 1)));
   model.add_body("plate", grid_of(scene.model.bodies()[0]).copy(), p.section, std::move(terms));
-  model.add_joint(make_weld("root", "plate", "root", scene.growths[0].hub, WeldMode::edge));
+  model.add_joint(make_weld("root", "plate", "root", scene.growths[0].hub.drive(), WeldMode::edge));
   State x = model.reference();
   const VectorXd zero = VectorXd::Zero(x.q.size());
   solve_rotating_equilibrium(model, zero, zero, x);

@@ -76,6 +76,30 @@ TEST_F(CaseFiles, ValuesArriveAsWritten) {
   EXPECT_EQ(file.text(), kText);
 }
 
+TEST_F(CaseFiles, ListsOfLists) {
+  const std::string text =
+      "table = [[0, 1.5],\n         [1, -2]]\nnames = [\"a\", \"b\"]\nmixed = [1, \"b\"]\n";
+  const CaseFile file(scratch_.write("plate.toml", text));
+  const Table root = file.root();
+  EXPECT_EQ(root.rows("table", any_number("it"), 2),
+            (std::vector<std::vector<double>>{{0, 1.5}, {1, -2}}));
+  EXPECT_TRUE(root.is_list_of_strings("names"));
+  for (const char* key : {"table", "mixed", "none"}) EXPECT_FALSE(root.is_list_of_strings(key));
+  const std::string place = "plate.toml:1: table = [[0, 1.5], [1, -2]]: a list: lists of ";
+  EXPECT_EQ(error([](const Table& t) { t.rows("table", any_number("it"), 3); }, {}, text),
+            place + "3 numbers; it is a finite number");
+  EXPECT_EQ(error([](const Table& t) { t.rows("table", not_negative("it", "m"), 2); }, {}, text),
+            place + "2 numbers; it is not negative [m]");
+  EXPECT_EQ(error([](const Table& t) { t.rows("mixed", any_number("it"), 1); }, {}, text),
+            "plate.toml:4: mixed = [1, \"b\"]: a list: lists of 1 numbers; it is a finite number");
+}
+
+TEST_F(CaseFiles, FilesLieBesideTheCase) {
+  const CaseFile file(scratch_.write("plate.toml", kText));
+  EXPECT_EQ(file.root().beside("motion.csv"), scratch_ / "motion.csv");
+  EXPECT_EQ(plate(file.root()).beside("/tmp/motion.csv"), "/tmp/motion.csv");
+}
+
 TEST_F(CaseFiles, RangeIsSaidWithUnit) {
   const auto thickness = [](const Quantity& q) {
     return [q](const Table& root) { plate(root).number("thickness", q); };

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "fem/element.h"
+
+namespace flexmorph::fem {
+
+/// A planar rigid body in natural coordinates: a point r of the body and its first axis u,
+///
+///   x(X, Y) = r + X u + Y v,   v = u turned by +90 degrees,   |u|² = 1
+///
+/// u is an unknown with two entries, so that the mass matrix is constant and joints are of degree 2
+/// at most; its length is kept by make_unit_axis() (fem/body_joints.h), which every rigid body
+/// needs. The vector unknowns are r (number 0) and u (number 1).
+///
+/// v is no multiple of u, so that there are no shape functions r = Qᵀ N: points are found through a
+/// Marker (fem/marker.h), mass and weight are terms of their own (fem/rigid.h).
+///
+/// Source: García de Jalón & Bayo (1994), Kinematic and Dynamic Simulation of Multibody Systems,
+/// ch. 2 and 4.2; design.md section 6.
+class RigidBody final : public Element {
+ public:
+  /// @param length  makes the axis a displacement: a size of the body, such as its radius of
+  ///                gyration [m]
+  /// @throws Error (input) unless it is positive.
+  explicit RigidBody(double length);
+
+  int dim() const override { return 2; }
+  int n_shapes() const override { return 2; }
+  int n_elements() const override { return 1; }
+  int n_vectors() const override { return 2; }
+  std::span<const int> vectors(int e) const override;
+  double scale(int k) const override { return k == 0 ? 1 : length_; }
+  bool is_position(int k) const override { return k == 0; }
+  bool is_rigid() const override { return true; }
+  /// r = (0, 0), u = (1, 0).
+  MatrixXd reference() const override;
+  /// @throws Error (input) always: a rigid body has no edges.
+  std::vector<NodeVectors> edge(const std::string& name) const override;
+  void move_to(double /*t*/) override {}
+  bool moving(int /*e*/) const override { return false; }
+  /// An empty table: no points, no gradients.
+  void tabulate(int e, int degree, Tabulate what, const Factors& factors, FactorKind kind,
+                ShapeTable& out) const override;
+  /// @throws Error (input) always: a rigid body has no material coordinates.
+  int locate(const Vec2& material, Tabulate what, ShapeTable& out) const override;
+
+ private:
+  double length_;
+};
+
+}  // namespace flexmorph::fem

@@ -1,0 +1,257 @@
+#include <cmath>
+#include <numbers>
+
+#include "fem/links/pair_link.h"
+
+namespace flexmorph::fem {
+namespace {
+
+using Values = MarkerPair::Values;
+using Square = MarkerPair::Square;
+constexpr auto kPositionA = MarkerPair::kPositionA, kPositionB = MarkerPair::kPositionB;
+
+double checked(const std::string& link, const std::string& what, double value, double least) {
+  if (!(value >= least) || !std::isfinite(value))
+    throw Error::input("link '" + link + "': " + what + " = " + std::to_string(value));
+  return value;
+}
+
+/// Derivatives by y of a function of d = p_b - p_a.
+Values of_difference(const Vec2& by_d) {
+  Values out = Values::Zero();
+  out.segment<2>(kPositionA) = -by_d;
+  out.segment<2>(kPositionB) = by_d;
+  return out;
+}
+Square of_difference(const Eigen::Matrix2d& by_dd) {
+  Square out = Square::Zero();
+  out.block<2, 2>(kPositionA, kPositionA) = out.block<2, 2>(kPositionB, kPositionB) = by_dd;
+  out.block<2, 2>(kPositionA, kPositionB) = out.block<2, 2>(kPositionB, kPositionA) = -by_dd;
+  return out;
+}
+Vec2 difference(const Values& y) { return y.segment<2>(kPositionB) - y.segment<2>(kPositionA); }
+
+/// Tension N = k (l - l₀) + c l̇ along the line, l̇ = e · ḋ with e = d / l:
+///
+///   s_d = N e = k (1 - l₀/l) d + c (e · ḋ) e,   V = ½ k (l - l₀)²
+class Spring final : public PairLink {
+ public:
+  Spring(std::string name, MarkerPlace a, MarkerPlace b, const SpringData& spring)
+      : PairLink(name, std::move(a), std::move(b), {kPositionA, kPositionB}, true),
+        spring_(spring) {
+    checked(name, "stiffness", spring.stiffness, 0);
+    checked(name, "damping", spring.damping, 0);
+    checked(name, "free length", spring.free_length, 0);
+  }
+
+  /// V is a function of |d|², and d̄ · (d₁ - d₀) half of its difference: with
+  /// s_d = k (1 - 2 l₀/(l₀' + l₁')) d̄, l₀', l₁' the lengths at both ends, s_d · (d₁ - d₀) = V₁ -
+  /// V₀. The damper acts as at the mean state.
+  void add_mean_force(const State& mean, const VectorXd& q0, const VectorXd& q1,
+                      VectorXd& out) const override {
+    add_to(mean_force(mean, q0, q1).s, out);
+  }
+  void add_mean_tangent(const State& mean, const VectorXd& q0, const VectorXd& q1, const Weights& w,
+                        std::vector<Eigen::Triplet<double>>& out) const override {
+    const PairForce force = mean_force(mean, q0, q1);
+    append(w.q * force.s_y + w.v * force.s_rate, Square::Zero(), out);
+  }
+
+  double strain_energy(const State& x) const override {
+    pair().evaluate(x.t, x.q, x.v);
+    const double stretch = difference(pair().y()).norm() - spring_.free_length;
+    return 0.5 * spring_.stiffness * stretch * stretch;
+  }
+
+ private:
+  /// s_y is by the mean state, which moves half as far as the end.
+  PairForce mean_force(const State& mean, const VectorXd& q0, const VectorXd& q1) const {
+    if (pair().shifts()) Link::add_mean_force(mean, q0, q1, none_);  // refuses
+    const auto& [k, c, free_length] = spring_;
+    pair().evaluate(mean.t, q0, mean.v);
+    const double l0 = difference(pair().y()).norm();
+    pair().evaluate(mean.t, q1, mean.v);
+    const Vec2 d1 = difference(pair().y());
+    const double l1 = d1.norm();
+    pair().evaluate(mean.t, mean.q, mean.v);
+    const Vec2 d = difference(pair().y());
+    PairForce out;
+    if (c > 0) {  // without its spring
+      const SpringData damper{0, c, 0};
+      fill_spring(damper, pair().y(), pair().rate(), out);
+    }
+    double share = 1;
+    Eigen::Matrix2d by_d = k * Eigen::Matrix2d::Identity();
+    if (free_length > 0) {
+      if (!(l0 + l1 > 0) || !(l1 > 0)) refuse_to_meet();
+      share = 1 - 2 * free_length / (l0 + l1);
+      // ∂l₁ = d₁/l₁ · ∂d₁, ∂d₁ = 2 ∂d̄.
+      by_d = k * share * Eigen::Matrix2d::Identity() +
+             d * (4 * k * free_length / ((l0 + l1) * (l0 + l1)) / l1 * d1).transpose();
+    }
+    out.s += of_difference(Vec2(k * share * d));
+    out.s_y += of_difference(by_d);
+    return out;
+  }
+
+  [[noreturn]] void refuse_to_meet() const {
+    throw Error::numerical("spring '" + name() + "': its ends meet, it has no direction");
+  }
+
+  void fill(const Values& y, const Values& rate, PairForce& out) const override {
+    fill_spring(spring_, y, rate, out);
+  }
+
+  void fill_spring(const SpringData& spring, const Values& y, const Values& rate,
+                   PairForce& out) const {
+    const auto& [k, c, free_length] = spring;
+    const Vec2 d = difference(y), d_t = difference(rate);
+    const Eigen::Matrix2d one = Eigen::Matrix2d::Identity();
+    if (free_length == 0 && c == 0) {  // no direction is needed
+      out.s = out.stored = of_difference(Vec2(k * d));
+      out.s_y = of_difference(Eigen::Matrix2d(k * one));
+      return;
+    }
+    const double l = d.norm();
+    if (!(l > 0)) refuse_to_meet();
+    const Vec2 e = d / l;
+    const Eigen::Matrix2d e_d = (one - e * e.transpose()) / l;
+    const double pull = k * (l - free_length), rate_of_l = e.dot(d_t);
+    out.stored = of_difference(Vec2(pull * e));
+    out.s = of_difference(Vec2((pull + c * rate_of_l) * e));
+    out.s_y = of_difference(Eigen::Matrix2d(k * e * e.transpose() + (pull + c * rate_of_l) * e_d +
+                                            c * e * (e_d * d_t).transpose()));
+    out.s_rate = of_difference(Eigen::Matrix2d(c * e * e.transpose()));
+  }
+
+  SpringData spring_;
+  mutable VectorXd none_;
+};
+
+/// θ of an axis e, and its derivatives: θ_e = J e / |e|², θ_ee, J the quarter turn.
+struct Turn {
+  double angle;
+  Vec2 by_e;
+  Eigen::Matrix2d by_ee;
+
+  explicit Turn(const Vec2& e) {
+    const double x = e.x(), y = e.y(), square = e.squaredNorm();
+    angle = std::atan2(y, x);
+    by_e = Vec2(-y, x) / square;
+    by_ee << 2 * x * y, y * y - x * x, y * y - x * x, -2 * x * y;
+    by_ee /= square * square;
+  }
+};
+
+/// Moment M = k φ + c φ̇ on φ = θ_b - θ_a - φ₀; V = ½ k φ².
+class TorsionSpring final : public PairLink {
+ public:
+  TorsionSpring(std::string name, MarkerPlace a, MarkerPlace b, const TorsionSpringData& spring)
+      : PairLink(name, std::move(a), std::move(b), {MarkerPair::kAxisA, MarkerPair::kAxisB}, true),
+        spring_(spring) {
+    checked(name, "stiffness", spring.stiffness, 0);
+    checked(name, "damping", spring.damping, 0);
+    checked(name, "rest angle", spring.rest_angle, -1e6);
+  }
+
+  double strain_energy(const State& x) const override {
+    pair().evaluate(x.t, x.q, x.v);
+    const double phi = angle(Turn(pair().y().segment<2>(MarkerPair::kAxisA)),
+                             Turn(pair().y().segment<2>(MarkerPair::kAxisB)));
+    return 0.5 * spring_.stiffness * phi * phi;
+  }
+
+ private:
+  double angle(const Turn& a, const Turn& b) const {
+    const double phi = std::remainder(b.angle - a.angle - spring_.rest_angle, 2 * std::numbers::pi);
+    return phi > -std::numbers::pi ? phi : std::numbers::pi;
+  }
+
+  void fill(const Values& y, const Values& rate, PairForce& out) const override {
+    const Turn a(y.segment<2>(MarkerPair::kAxisA)), b(y.segment<2>(MarkerPair::kAxisB));
+    Values phi_y = Values::Zero();
+    phi_y.segment<2>(MarkerPair::kAxisA) = -a.by_e;
+    phi_y.segment<2>(MarkerPair::kAxisB) = b.by_e;
+    Square phi_yy = Square::Zero();
+    phi_yy.block<2, 2>(MarkerPair::kAxisA, MarkerPair::kAxisA) = -a.by_ee;
+    phi_yy.block<2, 2>(MarkerPair::kAxisB, MarkerPair::kAxisB) = b.by_ee;
+    const double elastic = spring_.stiffness * angle(a, b);
+    const double moment = elastic + spring_.damping * phi_y.dot(rate);
+    out.stored = elastic * phi_y;
+    out.s = moment * phi_y;
+    out.s_rate = spring_.damping * phi_y * phi_y.transpose();
+    out.s_y = spring_.stiffness * phi_y * phi_y.transpose() + moment * phi_yy +
+              spring_.damping * phi_y * (phi_yy * rate).transpose();
+  }
+
+  TorsionSpringData spring_;
+};
+
+/// s = -F on the point; V = -F · p.
+class PointForce final : public PairLink {
+ public:
+  PointForce(std::string name, MarkerPlace at, const Vec2& force)
+      : PairLink(name, std::move(at), {}, {kPositionA}, false), force_(force) {
+    if (!force.allFinite()) throw Error::input("link '" + name + "': its force is not finite");
+  }
+  void add_mean_force(const State& mean, const VectorXd& q0, const VectorXd& q1,
+                      VectorXd& out) const override {
+    if (pair().shifts()) Link::add_mean_force(mean, q0, q1, out);  // refuses
+    add_force(mean, out);
+  }
+  void add_mean_tangent(const State&, const VectorXd&, const VectorXd&, const Weights&,
+                        std::vector<Eigen::Triplet<double>>&) const override {}
+  double potential_energy(const State& x) const override {
+    pair().evaluate(x.t, x.q, x.v);
+    return -factor_ * force_.dot(pair().y().segment<2>(kPositionA));
+  }
+  void scale_load(double factor) override { factor_ = factor; }
+
+ private:
+  void fill(const Values&, const Values&, PairForce& out) const override {
+    out.s.segment<2>(kPositionA) = -factor_ * force_;
+    out.stored = out.s;
+  }
+  Vec2 force_;
+  double factor_ = 1;
+};
+
+/// s = -T θ_e on the axis; no energy: how often the body turned is no part of the state.
+class Torque final : public PairLink {
+ public:
+  Torque(std::string name, MarkerPlace at, double torque)
+      : PairLink(name, std::move(at), {}, {MarkerPair::kAxisA}, true), torque_(torque) {
+    if (!std::isfinite(torque)) throw Error::input("link '" + name + "': its torque is not finite");
+  }
+  void scale_load(double factor) override { factor_ = factor; }
+
+ private:
+  void fill(const Values& y, const Values&, PairForce& out) const override {
+    const Turn a(y.segment<2>(MarkerPair::kAxisA));
+    out.s.segment<2>(MarkerPair::kAxisA) = -factor_ * torque_ * a.by_e;
+    out.s_y.block<2, 2>(MarkerPair::kAxisA, MarkerPair::kAxisA) = -factor_ * torque_ * a.by_ee;
+  }
+  double torque_, factor_ = 1;
+};
+
+}  // namespace
+
+std::unique_ptr<Link> make_spring(std::string name, MarkerPlace a, MarkerPlace b,
+                                  const SpringData& spring) {
+  return std::make_unique<Spring>(std::move(name), std::move(a), std::move(b), spring);
+}
+
+std::unique_ptr<Link> make_torsion_spring(std::string name, MarkerPlace a, MarkerPlace b,
+                                          const TorsionSpringData& spring) {
+  return std::make_unique<TorsionSpring>(std::move(name), std::move(a), std::move(b), spring);
+}
+
+std::unique_ptr<Link> make_point_force(std::string name, MarkerPlace at, const Vec2& force) {
+  return std::make_unique<PointForce>(std::move(name), std::move(at), force);
+}
+
+std::unique_ptr<Link> make_torque(std::string name, MarkerPlace at, double torque) {
+  return std::make_unique<Torque>(std::move(name), std::move(at), torque);
+}
+
+}  // namespace flexmorph::fem

@@ -1,0 +1,291 @@
+#include "fem/solve/diagnosis.h"
+
+#include <Eigen/SparseQR>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+namespace flexmorph::fem {
+namespace {
+
+constexpr double kNewPart = 1e-9;     // of a row of unit size, below which it is dependent
+constexpr double kZeroEntry = 1e-7;   // of a null vector with largest entry 1
+constexpr double kConsistent = 1e-8;  // of what is added up to zero
+constexpr double kShift = 1e-14;      // of the Gram matrix of the watch
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+using Entry = std::pair<int, double>;
+/// A null vector of the rows: (row, entry), rows ascending, largest entry 1.
+using NullVector = std::vector<Entry>;
+
+/// Jᵀ without the unknowns that no row acts on, with at least as many rows as columns.
+SparseMatrix compressed_transpose(const SparseMatrix& j) {
+  std::vector<Eigen::Triplet<double>> entries;
+  int used = 0;
+  for (int column = 0; column < j.cols(); ++column) {
+    bool any = false;
+    for (SparseMatrix::InnerIterator it(j, column); it; ++it) {
+      if (it.value() == 0) continue;
+      entries.emplace_back(used, static_cast<int>(it.row()), it.value());
+      any = true;
+    }
+    used += any;
+  }
+  SparseMatrix out(std::max<Eigen::Index>(used, j.rows()), j.rows());
+  out.setFromTriplets(entries.begin(), entries.end());
+  out.makeCompressed();
+  return out;
+}
+
+NullVector normalized(const VectorXd& z) {
+  Eigen::Index at = 0;
+  z.cwiseAbs().maxCoeff(&at);
+  NullVector out;
+  for (Eigen::Index i = 0; i < z.size(); ++i)
+    if (std::abs(z[i]) > kZeroEntry * std::abs(z[at]))
+      out.emplace_back(static_cast<int>(i), z[i] / z[at]);
+  return out;
+}
+
+/// Independent rows (ascending) and a null vector for every other row.
+///
+/// With Jᵀ P = Q [R₁₁ R₁₂; 0 0]: null vectors are the columns of P [-R₁₁⁻¹ R₁₂; I]. Each of them
+/// says how a dependent row is spanned by the independent ones, in the one way there is.
+void factor_rows(const SparseMatrix& j, std::vector<int>& independent,
+                 std::vector<NullVector>& null_vectors) {
+  const SparseMatrix transpose = compressed_transpose(j);
+  Eigen::SparseQR<SparseMatrix, Eigen::COLAMDOrdering<int>> qr;
+  qr.setPivotThreshold(kNewPart);
+  qr.compute(transpose);
+  if (qr.info() != Eigen::Success)
+    throw Error::numerical("diagnosis of constraints: the QR factorization failed");
+  const auto& order = qr.colsPermutation().indices();
+  const Eigen::Index rank = qr.rank(), m = j.rows();
+  independent.assign(order.data(), order.data() + rank);
+  std::sort(independent.begin(), independent.end());
+  if (rank == m) return;
+  const Eigen::SparseMatrix<double, Eigen::RowMajor> sorted = qr.matrixR();
+  const SparseMatrix r = sorted;
+  const SparseMatrix r11 = r.topLeftCorner(rank, rank);
+  MatrixXd span = MatrixXd(r.block(0, rank, rank, m - rank));
+  r11.triangularView<Eigen::Upper>().solveInPlace(span);
+  VectorXd z(m);
+  for (Eigen::Index k = 0; k < m - rank; ++k) {
+    z.setZero();
+    for (Eigen::Index i = 0; i < rank; ++i) z[order[i]] = -span(i, k);
+    z[order[rank + k]] = 1;
+    null_vectors.push_back(normalized(z));
+  }
+}
+
+std::vector<int> joints_of(const NullVector& z, const std::vector<int>& joint_of) {
+  std::vector<int> out;
+  for (const auto& [row, entry] : z)
+    if (const int joint = joint_of[static_cast<size_t>(row)]; out.empty() || out.back() != joint)
+      out.push_back(joint);
+  return out;
+}
+
+/// a - c b with the c that removes an entry of `row`; both have one.
+NullVector without(const NullVector& a, const NullVector& b, int row, int m) {
+  const auto entry = [row](const NullVector& z) {
+    return std::find_if(z.begin(), z.end(), [row](const Entry& e) { return e.first == row; })
+        ->second;
+  };
+  const double c = entry(a) / entry(b);
+  VectorXd sum = VectorXd::Zero(m);
+  for (const auto& [i, value] : a) sum[i] += value;
+  for (const auto& [i, value] : b) sum[i] -= c * value;
+  sum[row] = 0;
+  // What cancels leaves round-off.
+  const double largest = std::max(1.0, std::abs(c));
+  return normalized((sum.array().abs() > kZeroEntry * largest).select(sum, 0.0));
+}
+
+/// Takes null vectors from each other while one of them then names fewer joints.
+void shorten(std::vector<NullVector>& all, const std::vector<int>& joint_of) {
+  constexpr size_t kMost = 60;  // of this many nobody reads the text
+  if (all.size() > kMost) return;
+  const int m = static_cast<int>(joint_of.size());
+  for (bool shorter = true; shorter;) {
+    shorter = false;
+    for (NullVector& a : all)
+      for (const NullVector& b : all) {
+        const auto of_a = joints_of(a, joint_of), of_b = joints_of(b, joint_of);
+        if (&a == &b || of_a.size() < 2 || of_a == of_b) continue;
+        std::vector<int> common;
+        for (const auto& [row, entry] : a)
+          if (std::any_of(b.begin(), b.end(), [r = row](const Entry& e) { return e.first == r; }))
+            common.push_back(row);
+        for (const int row : common) {
+          NullVector sum = without(a, b, row, m);
+          if (joints_of(sum, joint_of).size() >= of_a.size()) continue;
+          a = std::move(sum);
+          shorter = true;
+          break;
+        }
+      }
+  }
+}
+
+/// |Σ z f| where it is more than round-off and the allowance, else 0.
+double miss_of(const NullVector& z, const VectorXd& row_scale, const VectorXd& f,
+               double allowance) {
+  double sum = 0, size = 0;
+  for (const auto& [row, entry] : z) {
+    const double part = entry * row_scale[row] * f[row];
+    sum += part;
+    size += std::abs(part);
+  }
+  return std::abs(sum) > kConsistent * size + allowance ? std::abs(sum) : 0;
+}
+
+std::string describe(const DependentGroup& g) {
+  const bool one = g.joints.size() == 1;
+  std::string out = list_joints(g.joints);
+  if (!g.contradictory) {
+    out += one ? " holds " : " hold ";
+    out +=
+        g.surplus == 1 ? "the same freedom" : "the same " + std::to_string(g.surplus) + " freedoms";
+    return one ? out + " twice" : out;
+  }
+  out += one ? " contradicts itself: its rows miss by " : " contradict each other: they miss by ";
+  if (g.miss > 0) return out + number(g.miss) + " m";
+  if (g.rate_miss > 0) return out + number(g.rate_miss) + " m/s in velocity";
+  return out + number(g.acceleration_miss) + " m/s² in acceleration";
+}
+
+}  // namespace
+
+bool Diagnosis::is_contradictory() const {
+  return std::any_of(groups.begin(), groups.end(), [](const auto& g) { return g.contradictory; });
+}
+
+Diagnosis diagnose(const Model& model, const State& x) {
+  Diagnosis out;
+  out.unknowns = model.n_dofs();
+  out.constraints = model.n_constraints();
+  if (out.constraints == 0) return out;
+  ScaledConstraints rows;
+  rows.evaluate(model, x);
+  std::vector<NullVector> null_vectors;
+  factor_rows(rows.jacobian(), out.independent, null_vectors);
+  out.rank = static_cast<int>(out.independent.size());
+
+  std::vector<int> joint_of;
+  for (size_t i = 0; i < model.joints().size(); ++i)
+    joint_of.insert(joint_of.end(), static_cast<size_t>(model.joints()[i]->size()),
+                    static_cast<int>(i));
+  shorten(null_vectors, joint_of);
+  const auto shown = [&](const NullVector& z) {
+    std::vector<int> all = joints_of(z, joint_of), out = all;
+    std::erase_if(out,
+                  [&](int i) { return model.joints()[static_cast<size_t>(i)]->belongs_to_body(); });
+    return out.empty() ? all : out;
+  };
+
+  const double size = model_size(rows.scales(), x.q);
+  const double speed = rows.scales().cwiseProduct(x.v).lpNorm<Eigen::Infinity>();
+  std::map<std::vector<int>, DependentGroup> groups;
+  for (const NullVector& z : null_vectors) {
+    DependentGroup& g = groups[shown(z)];
+    ++g.surplus;
+    for (const auto& [row, entry] : z) g.rows.push_back(row);
+    const Constraints& c = rows.unscaled();
+    g.miss = std::max(g.miss, miss_of(z, rows.row_scale(), c.value, 1e-10 * size));
+    g.rate_miss = std::max(g.rate_miss, miss_of(z, rows.row_scale(), c.rate, kConsistent * speed));
+    g.acceleration_miss =
+        std::max(g.acceleration_miss,
+                 miss_of(z, rows.row_scale(), c.acceleration, kConsistent * speed * speed / size));
+    g.contradictory = g.miss > 0 || g.rate_miss > 0 || g.acceleration_miss > 0;
+  }
+  for (auto& [joints, g] : groups) {
+    for (const int joint : joints)
+      g.joints.push_back(model.joints()[static_cast<size_t>(joint)]->name());
+    std::sort(g.rows.begin(), g.rows.end());
+    g.rows.erase(std::unique(g.rows.begin(), g.rows.end()), g.rows.end());
+    out.groups.push_back(std::move(g));
+  }
+  return out;
+}
+
+int degrees_of_freedom(const Model& model, const State& x) {
+  return diagnose(model, x).degrees_of_freedom();
+}
+
+std::string describe(const Diagnosis& diagnosis) {
+  constexpr size_t kMost = 10;
+  std::vector<const DependentGroup*> groups;
+  for (const bool contradictory : {true, false})  // what has to be changed first
+    for (const DependentGroup& g : diagnosis.groups)
+      if (g.contradictory == contradictory) groups.push_back(&g);
+  std::string out;
+  for (size_t i = 0; i < std::min(groups.size(), kMost); ++i) {
+    if (i > 0) out += "\n";
+    out += describe(*groups[i]);
+  }
+  if (groups.size() > kMost)
+    out += "\nand " + std::to_string(groups.size() - kMost) + " groups of joints more";
+  return out;
+}
+
+void require_independent(const Diagnosis& diagnosis) {
+  if (!diagnosis.is_independent()) throw Error::input(describe(diagnosis));
+}
+
+Conditioning ConstraintWatch::look(const State& x) {
+  Conditioning out{x.t, 1, {}};
+  const int m = model_.n_constraints();
+  if (m == 0) return out;
+  rows_.evaluate(model_, x);
+  gram_ = rows_.jacobian() * rows_.jacobian().transpose();
+  if (version_ != model_.pattern_version()) {
+    factor_.setShift(kShift);
+    factor_.analyzePattern(gram_);
+    version_ = model_.pattern_version();
+  }
+  factor_.factorize(gram_);
+  if (factor_.info() != Eigen::Success)
+    throw Error::numerical("watch of constraints: the factorization failed at t = " + number(x.t) +
+                           " s");
+  // A start with parts of all rows, the same every time: multiples of the golden section.
+  z_.resize(m);
+  for (int i = 0; i < m; ++i) z_[i] = std::fmod(0.6180339887498949 * (i + 1), 1.0) - 0.37;
+  z_.normalize();
+  previous_ = z_;
+  double largest = 0, smallest_inverse = 0;
+  for (int k = 0; k < 12; ++k) {
+    z_ = gram_ * z_;
+    largest = std::max(largest, z_.norm());
+    z_.normalize();
+  }
+  z_ = previous_;
+  for (int k = 0; k < 12; ++k) {
+    z_ = factor_.solve(z_).eval();
+    const double norm = z_.norm();
+    z_ /= norm;
+    const bool settled = norm < smallest_inverse * (1 + 1e-3);
+    smallest_inverse = std::max(smallest_inverse, norm);
+    if (settled) break;
+  }
+  out.condition = std::sqrt(largest * smallest_inverse);
+  out.joints = heaviest_joints(model_, z_, 0.1);
+  return out;
+}
+
+double constraint_condition(const Model& model, const State& x) {
+  return ConstraintWatch(model).look(x).condition;
+}
+
+std::string describe(const Conditioning& c) {
+  return "constraints are nearly dependent at t = " + number(c.t) + " s: condition " +
+         number(c.condition) + ", " + list_joints(c.joints);
+}
+
+}  // namespace flexmorph::fem

@@ -1,0 +1,162 @@
+#include "fem/solve/kinematics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "fem/solve/assembly.h"
+
+namespace flexmorph::fem {
+namespace {
+
+constexpr double kSingular = 300;  // condition from which a failure is put down to it
+
+std::string time_text(double t) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.7g", t);
+  return text;
+}
+
+}  // namespace
+
+Kinematics::Kinematics(Model& model, State start, const KinematicsSettings& settings)
+    : model_(model), settings_(settings), x_(std::move(start)) {
+  if (!(settings.smallest_step > 0 && settings.largest_step >= settings.smallest_step &&
+        settings.correction > 0))
+    throw Error::input("kinematics: steps and correction are positive, smallest_step first");
+  const int n = model.n_dofs();
+  assemble(model, x_);
+  const Diagnosis diagnosis = diagnose(model, x_);
+  if (diagnosis.is_contradictory()) throw Error::input("kinematics: " + describe(diagnosis));
+  if (const int left = diagnosis.degrees_of_freedom(); left > 0) {
+    const std::string hint = describe(diagnosis);
+    throw Error::input("kinematics: " + std::to_string(left) +
+                       (left == 1 ? " freedom is" : " freedoms are") + " not driven" +
+                       (hint.empty() ? "" : "; " + hint));
+  }
+  place_of_row_.assign(static_cast<size_t>(model.n_constraints()), -1);
+  for (int i = 0; i < n; ++i)
+    place_of_row_[static_cast<size_t>(diagnosis.independent[static_cast<size_t>(i)])] = i;
+  x_.lambda.setZero(model.n_constraints());
+  rows_.evaluate(model_, x_);
+  size_ = model_size(rows_.scales(), x_.q);
+  if (!newton(x_, sign_)) give_up(x_.t);
+  find_rates(x_);
+}
+
+bool Kinematics::factorize(const State& x) {
+  rows_.evaluate(model_, x);
+  entries_.clear();
+  const SparseMatrix& j = rows_.jacobian();
+  for (int column = 0; column < j.cols(); ++column)
+    for (SparseMatrix::InnerIterator it(j, column); it; ++it)
+      if (const int row = place_of_row_[static_cast<size_t>(it.row())]; row >= 0)
+        entries_.emplace_back(row, column, it.value());
+  const bool fresh = square_.rows() == 0;
+  square_.resize(j.cols(), j.cols());
+  square_.setFromTriplets(entries_.begin(), entries_.end());
+  if (fresh) lu_.analyzePattern(square_);
+  lu_.factorize(square_);
+  return lu_.info() == Eigen::Success;
+}
+
+/// out = S⁻¹ (J⁻¹ R right)
+void Kinematics::solve(const VectorXd& right, VectorXd& out) const {
+  right_.resize(model_.n_dofs());
+  for (size_t i = 0; i < place_of_row_.size(); ++i)
+    if (const int row = place_of_row_[i]; row >= 0) {
+      const auto k = static_cast<Eigen::Index>(i);
+      right_[row] = rows_.row_scale()[k] * right[k];
+    }
+  out = lu_.solve(right_);
+  out.array() /= rows_.scales().array();
+}
+
+bool Kinematics::newton(State& x, double& sign) {
+  double last = 0;
+  for (int iteration = 0; iteration < 12; ++iteration) {
+    if (model_.has_free_lines()) model_.prepare(x);
+    if (!factorize(x)) return false;
+    if (iteration > 0 && last <= 1e-11 * size_) {  // of second order: the next one is round-off
+      sign = lu_.signDeterminant();
+      return true;
+    }
+    solve(-rows_.unscaled().value, correction_);
+    const double now = rows_.scales().cwiseProduct(correction_).lpNorm<Eigen::Infinity>();
+    if (!std::isfinite(now) || now > 1e3 * size_) return false;
+    if (iteration > 0 && now > 0.5 * last && now > 1e-11 * size_) return false;
+    x.q += correction_;
+    last = now;
+  }
+  return false;
+}
+
+void Kinematics::find_rates(State& x) {
+  solve(-rows_.unscaled().rate, x.v);
+  rows_.evaluate(model_, x);  // the right side of the accelerations needs v
+  solve(rows_.unscaled().acceleration, x.a);
+  x.alpha = x.a;
+}
+
+bool Kinematics::step_to(double t) {
+  const double h = t - x_.t;
+  trial_ = x_;
+  trial_.t = t;
+  trial_.q += h * x_.v + (0.5 * h * h) * x_.a;
+  const VectorXd predicted = trial_.q;
+  const VectorXd& scales = rows_.scales();
+  const double motion = scales.cwiseProduct(predicted - x_.q).lpNorm<Eigen::Infinity>();
+  model_.prepare(trial_);
+  double sign = 0;
+  if (!newton(trial_, sign) || sign != sign_) return false;
+  const double corrected = scales.cwiseProduct(trial_.q - predicted).lpNorm<Eigen::Infinity>();
+  if (corrected > settings_.correction * std::max(motion, 0.2 * size_)) return false;
+  VectorXd surplus = rows_.misses();
+  for (size_t i = 0; i < place_of_row_.size(); ++i)
+    if (place_of_row_[i] >= 0) surplus[static_cast<Eigen::Index>(i)] = 0;
+  if (surplus.lpNorm<Eigen::Infinity>() > 1e-9 * size_)
+    throw Error::numerical(
+        "kinematics: redundant at the start, but at t = " + time_text(t) +
+        " s they contradict the others: " + list_joints(heaviest_joints(model_, surplus, 0.01)));
+  find_rates(trial_);
+  std::swap(x_, trial_);
+  return true;
+}
+
+void Kinematics::give_up(double refused) {
+  const double t = 0.5 * (x_.t + refused);
+  const Conditioning now = ConstraintWatch(model_).look(x_);
+  const std::string where = "kinematics: path cannot be reached at t = " + time_text(t) + " s, ";
+  if (now.condition > kSingular) {
+    model_.prepare(x_);
+    throw Error::numerical(where + list_joints(now.joints) +
+                           ": singular position (dead centre, or too short to reach)");
+  }
+  // Not singular: what jumps misses most when nothing moves but time.
+  trial_ = x_;
+  trial_.t = refused;
+  model_.prepare(trial_);
+  rows_.evaluate(model_, trial_);
+  const auto joints = heaviest_joints(model_, rows_.misses(), 0.1);
+  model_.prepare(x_);
+  throw Error::numerical(where + list_joints(joints) + ": does a drive jump there?");
+}
+
+const State& Kinematics::at(double t) {
+  if (!std::isfinite(t)) throw Error::input("kinematics: the time is not a finite number");
+  const double direction = t >= x_.t ? 1 : -1;
+  double h = settings_.largest_step;
+  while (x_.t != t) {
+    const bool last = h >= std::abs(t - x_.t);
+    const double step = last ? std::abs(t - x_.t) : h;
+    if (step_to(last ? t : x_.t + direction * step)) {
+      h = std::min(2 * step, settings_.largest_step);
+    } else {
+      if (step < 2 * settings_.smallest_step) give_up(x_.t + direction * step);
+      h = 0.5 * step;
+    }
+  }
+  return x_;
+}
+
+}  // namespace flexmorph::fem

@@ -1,0 +1,118 @@
+#include "fem/rigid.h"
+
+#include <cmath>
+
+namespace flexmorph::fem {
+namespace {
+
+void check(const RigidSection& s) {
+  if (!(s.mass > 0) || !(s.inertia > 0) || !std::isfinite(s.mass) || !std::isfinite(s.inertia))
+    throw Error::input("rigid body: mass and inertia are positive [kg], [kg m²]");
+  if (!s.center.allFinite()) throw Error::input("rigid body: its centre of mass is not finite");
+}
+
+void check(const Element& element, const std::string& term) {
+  if (!element.is_rigid())
+    throw Error::input("term '" + term + "' is one of rigid bodies, and this is none");
+}
+
+/// X 1 + Y J, J the quarter turn: takes u to X u + Y v.
+Eigen::Matrix2d arm(const Vec2& point) {
+  Eigen::Matrix2d out;
+  out << point.x(), -point.y(), point.y(), point.x();
+  return out;
+}
+
+/// T = ½ ∫ |ṙ + X u̇ + Y v̇|² dm: with c the centre of mass and J = I + m |c|² about the point r,
+///
+///   M = [ m 1     m A ]     A = c_X 1 + c_Y (quarter turn)
+///       [ m Aᵀ    J 1 ]     since |X u̇ + Y v̇|² = (X² + Y²) |u̇|²
+///
+/// Source: García de Jalón & Bayo (1994), ch. 4.2.
+class RigidInertia final : public Term {
+ public:
+  explicit RigidInertia(const RigidSection& s) {
+    check(s);
+    mass_.setZero();
+    mass_.topLeftCorner<2, 2>() = s.mass * Eigen::Matrix2d::Identity();
+    mass_.topRightCorner<2, 2>() = s.mass * arm(s.center);
+    mass_.bottomLeftCorner<2, 2>() = s.mass * arm(s.center).transpose();
+    mass_.bottomRightCorner<2, 2>() =
+        (s.inertia + s.mass * s.center.squaredNorm()) * Eigen::Matrix2d::Identity();
+  }
+
+  void prepare(const Element& element, const Factors&, bool) override { check(element, name()); }
+  void add_force(int, const Local& x, LocalRows& force) const override {
+    const Eigen::Vector4d f = mass_ * column(x.a);
+    for (int i = 0; i < 4; ++i) force.data()[i] += f[i];
+  }
+  void add_tangent(int, const Local&, const Weights& w, LocalTangent& tangent) const override {
+    tangent += w.a * mass_;
+  }
+  // Linear: exact, M (v₁ - v₀)/h · (q₁ - q₀) = T₁ - T₀.
+  void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override {
+    add_force(e, x.mean, force);
+  }
+  void add_mean_tangent(int e, const LocalStep& x, const Weights& w,
+                        LocalTangent& tangent) const override {
+    add_tangent(e, x.mean, w, tangent);
+  }
+  double kinetic_energy(int, const Local& x) const override {
+    return 0.5 * column(x.v).dot(mass_ * column(x.v));
+  }
+  Vec3 momentum(int, const Local& x) const override {
+    Vec3 out = Vec3::Zero();
+    out.head<2>() = mass_.topRows<2>() * column(x.v);
+    return out;
+  }
+  std::string name() const override { return "rigid inertia"; }
+
+ private:
+  static Eigen::Vector4d column(const LocalRows& x) {
+    return Eigen::Map<const Eigen::Vector4d>(x.data());
+  }
+  Eigen::Matrix4d mass_;
+};
+
+/// V = -m g · (r + c_X u + c_Y v), linear in the unknowns.
+class RigidGravity final : public Term {
+ public:
+  RigidGravity(const RigidSection& s, const VectorXd& gravity) {
+    check(s);
+    if (gravity.size() != 2 || !gravity.allFinite())
+      throw Error::input("gravity of a planar rigid body has 2 finite components");
+    weight_.head<2>() = s.mass * gravity;
+    weight_.tail<2>() = s.mass * arm(s.center).transpose() * gravity;
+  }
+
+  void prepare(const Element& element, const Factors&, bool) override { check(element, name()); }
+  void add_force(int, const Local&, LocalRows& force) const override {
+    for (int i = 0; i < 4; ++i) force.data()[i] -= factor_ * weight_[i];
+  }
+  void add_tangent(int, const Local&, const Weights&, LocalTangent&) const override {}
+  void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override {
+    add_force(e, x.mean, force);
+  }
+  void add_mean_tangent(int, const LocalStep&, const Weights&, LocalTangent&) const override {}
+  double potential_energy(int, const Local& x) const override {
+    return -factor_ * weight_.dot(Eigen::Map<const Eigen::Vector4d>(x.q.data()));
+  }
+  void scale_load(double factor) override { factor_ = factor; }
+  std::string name() const override { return "rigid gravity"; }
+
+ private:
+  Eigen::Vector4d weight_;  // generalized force
+  double factor_ = 1;
+};
+
+}  // namespace
+
+std::unique_ptr<Term> make_rigid_inertia(const RigidSection& section) {
+  return std::make_unique<RigidInertia>(section);
+}
+
+std::unique_ptr<Term> make_rigid_gravity(const RigidSection& section, const VectorXd& gravity) {
+  return std::make_unique<RigidGravity>(section, gravity);
+}
+
+}  // namespace flexmorph::fem

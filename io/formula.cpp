@@ -1,0 +1,292 @@
+#include "io/formula.h"
+
+#include <ginac/ginac.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+#include <vector>
+
+#include "geometry/base.h"
+#include "io/files.h"
+#include "io/formula_words.h"
+
+namespace flexmorph::io {
+namespace {
+
+constexpr size_t kMostOperations = 8192;
+
+/// What GiNaC says, without the place in its own source and its name.
+std::string words_of(const std::exception& e) {
+  std::string words = e.what();
+  words = words.substr(0, words.find("\n["));
+  for (const std::string start : {"GiNaC: ", "parse error at line 0, column 0: "})
+    if (words.starts_with(start)) words = words.substr(start.size());
+  if (words.find("power should have exactly 2 operands") != std::string::npos)
+    return "a^b^c needs parentheses: (a^b)^c or a^(b^c)";
+  return words;
+}
+
+/// GiNaC's parse_error has no place, but its parser is one character behind the word it dislikes.
+size_t place_of(std::istringstream& stream, const DecimalFormula& decimal,
+                const std::exception& e) {
+  const std::string words = words_of(e);
+  const size_t got = words.find("got: \"");
+  if (got == std::string::npos || words.ends_with("EOF")) return decimal.origin.back();
+  const size_t length = words.rfind('"') - (got + 6);
+  const bool at_end = stream.eof() || stream.fail();
+  const size_t end = at_end ? decimal.text.size() : static_cast<size_t>(stream.tellg()) - 1;
+  return decimal.origin[end - std::min(end, length)];
+}
+
+GiNaC::ex parsed(const std::string& text, const std::map<std::string, double>& constants,
+                 const GiNaC::realsymbol& t) {
+  check_formula_words(text, constants);
+  GiNaC::symtab names = {{"t", t}, {"pi", GiNaC::Pi}};
+  for (const auto& [name, value] : constants) names[name] = GiNaC::numeric(value);
+  const DecimalFormula decimal(text);
+  std::istringstream stream(decimal.text);
+  stream.imbue(std::locale::classic());
+  try {
+    GiNaC::parser parser(names, true);
+    return parser(stream);
+  } catch (const GiNaC::parse_error& e) {
+    refuse_formula(text, place_of(stream, decimal, e), words_of(e));
+  } catch (const std::exception& e) {
+    refuse_formula(text, words_of(e));
+  }
+}
+
+enum class Op { constant, time, add, multiply, whole_power, power, call, atan2 };
+
+struct Operation {
+  Op op;
+  int a = 0, b = 0;   // operations whose results it takes
+  double number = 0;  // constant
+  int exponent = 0;   // whole_power
+  FormulaFunction call = nullptr;
+};
+
+double whole_power(double x, int n) {
+  double out = 1, square = n < 0 ? 1 / x : x;
+  for (unsigned k = static_cast<unsigned>(std::abs(n)); k > 0; k >>= 1, square *= square)
+    if (k & 1U) out *= square;
+  return out;
+}
+
+}  // namespace
+
+/// Operations in the order of evaluation; the result of each has its number.
+struct Formula::Program {
+  std::vector<Operation> operations;
+  std::array<int, 3> results{};  // value, rate, acceleration
+};
+
+namespace {
+
+/// Writes expressions as operations; equal ones once.
+class Translator {
+ public:
+  Translator(const std::string& text, const GiNaC::realsymbol& t) : text_(text), t_(t) {}
+
+  int translate(const GiNaC::ex& e) {
+    const auto known = known_.find(e);
+    if (known != known_.end()) return known->second;
+    const int result = write(e);
+    known_.emplace(e, result);
+    return result;
+  }
+
+  std::vector<Operation> operations;
+
+ private:
+  int push(const Operation& operation) {
+    if (operations.size() == kMostOperations)
+      refuse_formula(text_, "it is too long: value, rate and acceleration take more than " +
+                                std::to_string(kMostOperations) + " operations");
+    operations.push_back(operation);
+    return static_cast<int>(operations.size()) - 1;
+  }
+
+  int constant(double value) {
+    if (!std::isfinite(value)) refuse_formula(text_, "a number in it is too large");
+    return push({.op = Op::constant, .number = value});
+  }
+
+  int call(const std::string& name, int argument) {
+    return push({.op = Op::call, .a = argument, .call = formula_functions().at(name)});
+  }
+
+  int write(const GiNaC::ex& e) {
+    if (GiNaC::is_a<GiNaC::numeric>(e)) {
+      const GiNaC::numeric& number = GiNaC::ex_to<GiNaC::numeric>(e);
+      if (!number.is_real()) refuse_formula(text_, "its value is no real number");
+      return constant(number.to_double());
+    }
+    if (e.is_equal(t_)) return push({.op = Op::time});
+    if (e.is_equal(GiNaC::Pi)) return constant(std::numbers::pi);
+    if (GiNaC::is_a<GiNaC::add>(e)) return write_chain(e, Op::add);
+    if (GiNaC::is_a<GiNaC::mul>(e)) return write_chain(e, Op::multiply);
+    if (GiNaC::is_a<GiNaC::power>(e)) return write_power(e);
+    if (GiNaC::is_a<GiNaC::function>(e)) return write_function(e);
+    refuse_formula(text_, "a part of it has no value");
+  }
+
+  int write_chain(const GiNaC::ex& e, Op op) {
+    int result = translate(e.op(0));
+    for (size_t i = 1; i < e.nops(); ++i)
+      result = push({.op = op, .a = result, .b = translate(e.op(i))});
+    return result;
+  }
+
+  int write_power(const GiNaC::ex& e) {
+    const int base = translate(e.op(0));
+    if (GiNaC::is_a<GiNaC::numeric>(e.op(1)) && GiNaC::ex_to<GiNaC::numeric>(e.op(1)).is_real()) {
+      const double n = GiNaC::ex_to<GiNaC::numeric>(e.op(1)).to_double();
+      constexpr double kLargest = 64;
+      if (n == std::round(n) && std::abs(n) <= kLargest)
+        return push({.op = Op::whole_power, .a = base, .exponent = static_cast<int>(n)});
+      if (2 * n == std::round(2 * n) && std::abs(n) <= kLargest) {
+        const int root = translate_root(e.op(0), base);
+        return push({.op = Op::whole_power, .a = root, .exponent = static_cast<int>(2 * n)});
+      }
+    }
+    const int exponent = translate(e.op(1));
+    return push({.op = Op::power, .a = base, .b = exponent});
+  }
+
+  /// The square root that powers with exponents 1/2, -1/2, -3/2 share.
+  int translate_root(const GiNaC::ex& e, int base) {
+    const auto [place, is_new] = roots_.try_emplace(e, 0);
+    if (is_new) place->second = call("sqrt", base);
+    return place->second;
+  }
+
+  int write_function(const GiNaC::ex& e) {
+    const std::string name = GiNaC::ex_to<GiNaC::function>(e).get_name();
+    if (name == "conjugate") return translate(e.op(0));  // of a derivative of abs: all is real
+    if (name == "atan2") {
+      const int y = translate(e.op(0)), x = translate(e.op(1));
+      return push({.op = Op::atan2, .a = y, .b = x});
+    }
+    if (!formula_functions().contains(name)) refuse_formula(text_, "it has no derivative");
+    return call(name, translate(e.op(0)));
+  }
+
+  const std::string& text_;
+  const GiNaC::realsymbol& t_;
+  std::map<GiNaC::ex, int, GiNaC::ex_is_less> known_, roots_;
+};
+
+}  // namespace
+
+Formula::Formula(std::string text, const std::map<std::string, double>& constants)
+    : text_(std::move(text)) {
+  for (const auto& [name, value] : constants) {
+    const std::string why = refusal_of_name(name);
+    if (!why.empty()) throw Error::input("constant '" + name + "': " + why);
+    if (!std::isfinite(value)) throw Error::input("constant '" + name + "': not a finite number");
+  }
+  const GiNaC::realsymbol t("t");
+  const GiNaC::ex value = parsed(text_, constants, t);
+  auto program = std::make_shared<Program>();
+  Translator translator(text_, t);
+  try {
+    const GiNaC::ex rate = value.diff(t), acceleration = rate.diff(t);
+    program->results = {translator.translate(value), translator.translate(rate),
+                        translator.translate(acceleration)};
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& e) {
+    refuse_formula(text_, words_of(e));
+  }
+  program->operations = std::move(translator.operations);
+  program_ = std::move(program);
+}
+
+Jet Formula::operator()(double t) const {
+  double x[kMostOperations];  // NOLINT: no more of it is touched than the formula has operations
+  double* out = x;
+  for (const Operation& o : program_->operations) {
+    switch (o.op) {
+      case Op::constant:
+        *out = o.number;
+        break;
+      case Op::time:
+        *out = t;
+        break;
+      case Op::add:
+        *out = x[o.a] + x[o.b];
+        break;
+      case Op::multiply:
+        *out = x[o.a] * x[o.b];
+        break;
+      case Op::whole_power:
+        *out = whole_power(x[o.a], o.exponent);
+        break;
+      case Op::power:
+        *out = std::pow(x[o.a], x[o.b]);
+        break;
+      case Op::call:
+        *out = o.call(x[o.a]);
+        break;
+      case Op::atan2:
+        *out = std::atan2(x[o.a], x[o.b]);
+        break;
+    }
+    ++out;
+  }
+  const auto& [value, rate, acceleration] = program_->results;
+  return {x[value], x[rate], x[acceleration]};
+}
+
+int Formula::n_operations() const { return static_cast<int>(program_->operations.size()); }
+
+namespace {
+
+/// The time of the largest change of an entry between a and b, and what is left of that change
+/// between two neighbouring times: nothing where the function is continuous.
+std::pair<double, double> jump_between(const Formula& f, double Jet::*entry, double a, double b) {
+  double at_a = f(a).*entry, at_b = f(b).*entry;
+  for (int k = 0; k < 60 && b - a > 1e-12 * std::max(1.0, b); ++k) {
+    const double mid = 0.5 * (a + b), at_mid = f(mid).*entry;
+    const bool left = !(std::abs(at_b - at_mid) > std::abs(at_mid - at_a));
+    (left ? b : a) = mid;
+    (left ? at_b : at_a) = at_mid;
+  }
+  return {0.5 * (a + b), std::abs(at_b - at_a)};
+}
+
+}  // namespace
+
+void Formula::check(double end, int samples) const {
+  const auto time = [&](int i) { return end * i / samples; };
+  const auto at = [](double t) { return " at t = " + to_text(t, 6) + " s"; };
+  std::vector<Jet> jets;
+  Jet largest;
+  const std::pair<double Jet::*, const char*> entries[] = {
+      {&Jet::value, "value"}, {&Jet::rate, "rate"}, {&Jet::acceleration, "acceleration"}};
+  for (int i = 0; i <= samples; ++i) {
+    jets.push_back((*this)(time(i)));
+    for (const auto& [entry, what] : entries) {
+      const double number = jets.back().*entry;
+      largest.*entry = std::max(largest.*entry, std::abs(number));
+      if (!std::isfinite(number))
+        refuse_formula(text_, std::string("its ") + what + at(time(i)) +
+                                  (std::isnan(number) ? " is no real number" : " is infinite"));
+    }
+  }
+  constexpr double kJump = 1e-6;  // of the largest value; smooth functions are left with 1e-9
+  for (const auto& [entry, what] : {entries[0], entries[1]})
+    for (int i = 0; i < samples; ++i) {
+      const double before = jets[i].*entry, after = jets[i + 1].*entry;
+      if (std::abs(after - before) <= kJump * largest.*entry) continue;
+      const auto [t, jump] = jump_between(*this, entry, time(i), time(i + 1));
+      if (!(jump <= kJump * largest.*entry))
+        refuse_formula(text_, std::string("its ") + what + " jumps" + at(t));
+    }
+}
+
+}  // namespace flexmorph::io

@@ -1,0 +1,342 @@
+// Drives of case files: read from formulas, tables and CSV files, refused with their place; a
+// driven scene moves as the same one at constant speeds, as one under the inertia force of its
+// frame, and changes its mesh when its length says so, in both directions.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "cases/build.h"
+#include "cases/run.h"
+#include "cases/scene.h"
+#include "io/files.h"
+#include "tests/io/scratch.h"
+
+namespace flexmorph::cases {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+using Changes = std::vector<std::string>;
+
+/// A turning plate whose length goes up and down.
+const std::string kBreathing = R"toml(
+[time]
+end = 1.0
+
+[constants]
+L0 = 0.45
+swing = 0.2
+
+[[drive]]
+name = "out"
+formula = "L0 + swing*sin(2*pi*t)"
+
+[[drive]]
+name = "turn"
+table = [[0, 0], [0.25, 0.1], [0.5, 0.3], [0.75, 0.6], [1.0, 1.0], [1.25, 1.5]]
+
+[[drive]]
+name = "side"
+csv = "side.csv"
+column = "y"
+
+[[hub]]
+name = "hub"
+angle = "turn"
+position = ["out", "side"]
+
+[[body]]
+name = "plate"
+element = "ale_ancf_plate"
+terms = ["inertia", "membrane"]
+length = 0.45
+width = 0.1
+thickness = 0.01
+density = 2700.0
+youngs_modulus = 1e8
+poisson_ratio = 0.3
+elements = [9, 1]
+
+[body.flow]
+length = "out"
+max_length = 0.1
+
+[[joint]]
+type = "weld"
+body = "plate"
+edge = "root"
+to = "hub"
+)toml";
+
+class Drives : public ::testing::Test {
+ protected:
+  Scene read(const Changes& changes = {}, const std::string& text = kBreathing) const {
+    return read_scene(io::CaseFile(scratch_.write("breathing.toml", text), changes));
+  }
+
+  std::string complaint(const Changes& changes) const {
+    try {
+      read(changes);
+    } catch (const Error& e) {
+      EXPECT_EQ(e.kind(), Error::Kind::input);
+      return e.what();
+    }
+    return "";
+  }
+
+  void SetUp() override {
+    std::string rows = "time,y,note\n";
+    for (int i = 0; i <= 20; ++i)
+      rows += io::to_text(0.05 * i) + "," + io::to_text(std::sin(0.05 * i)) + ",here\n";
+    scratch_.write("side.csv", rows);
+  }
+
+  Scratch scratch_;
+};
+
+TEST_F(Drives, AreReadFromFormulasTablesAndFiles) {
+  const Scene s = read();
+  ASSERT_EQ(s.drives.size(), 3u);
+  EXPECT_EQ(s.drives[0].words, "L0 + swing*sin(2*pi*t)");
+  EXPECT_EQ(s.drives[1].words, "table of 6 points");
+  EXPECT_EQ(s.drives[2].words, "'side.csv', column 'y', 21 points");
+  EXPECT_EQ(s.hubs[0].turn.drive, "turn");
+  EXPECT_EQ(s.hubs[0].angle, 0);
+  EXPECT_EQ(s.hubs[0].position, Vec2(0.45, 0));
+  const fem::Motion length = s.drives[0].motion(0.3);
+  EXPECT_NEAR(length.value, 0.45 + 0.2 * std::sin(0.6 * kPi), 1e-15);
+  EXPECT_NEAR(length.rate, 0.4 * kPi * std::cos(0.6 * kPi), 1e-14);
+  EXPECT_NEAR(length.acceleration, -0.8 * kPi * kPi * std::sin(0.6 * kPi), 1e-13);
+  EXPECT_NEAR(s.drives[1].motion(0.75).value, 0.6, 1e-14);
+  // The spline of 21 points of the sine: h^6 times a number of order 1e-2.
+  EXPECT_NEAR(s.drives[2].motion(0.333).value, std::sin(0.333), 1e-9);
+  EXPECT_NEAR(s.drives[2].motion(0.333).rate, std::cos(0.333), 1e-7);
+}
+
+// Starts look a little before t = 0 and integrators a rounding error beyond the end.
+TEST_F(Drives, GoOnAsParabolasBeyondTheRun) {
+  const Scene s = read({"drive.out.formula=\"0.45 + t^2.5\""});
+  const fem::Motion before = s.drives[0].motion(-1e-4), end = s.drives[0].motion(1),
+                    after = s.drives[0].motion(1 + 1e-3);
+  EXPECT_EQ(before.value, 0.45);
+  EXPECT_NEAR(after.value, end.value + 1e-3 * end.rate + 0.5e-6 * end.acceleration, 1e-15);
+  EXPECT_NEAR(after.rate, end.rate + 1e-3 * end.acceleration, 1e-15);
+  EXPECT_EQ(after.acceleration, end.acceleration);
+}
+
+TEST_F(Drives, LengthsOfABodyFollowTheirDrive) {
+  const Scene s = read();
+  const Body& plate = s.bodies[0];
+  EXPECT_NEAR(plate.longest(1), 0.65, 1e-10);
+  EXPECT_NEAR(plate.shortest(1), 0.25, 1e-10);
+  EXPECT_NEAR(plate.length_at(0.75), 0.25, 1e-15);
+  // Extremes between the samples: at the stationary points of t sin(t).
+  const Scene odd =
+      read({"time.end=9", "hub.angle=0", "hub.angular_velocity=0", "hub.position=[0, 0]",
+            "drive=[{name=\"out\", formula=\"0.45 + 0.1/9*t*sin(t)\"}]"});
+  // t + tan t = 0: 2.028757838110434, 4.913180439434884, 7.978665712413241.
+  EXPECT_NEAR(odd.bodies[0].longest(9),
+              0.45 + 0.1 / 9 * 7.978665712413241 * std::sin(7.978665712413241), 1e-10);
+  EXPECT_NEAR(odd.bodies[0].shortest(9),
+              0.45 + 0.1 / 9 * 4.913180439434884 * std::sin(4.913180439434884), 1e-10);
+}
+
+TEST_F(Drives, AreRefusedWithTheirPlace) {
+  const std::vector<std::pair<Changes, std::string>> wrong = {
+      {{"drive.out.formula=\"L0 + swung*t\""},
+       "drive.out.formula=\"L0 + swung*t\": character 6: 'swung' is unknown"},
+      {{"drive.out.formula=\"0.45 + t*\""}, ": character 10: unexpected token, got: EOF"},
+      {{"drive.out.formula=\"0.45/(1 - t)\""}, "its value at t = 1 s is infinite"},
+      {{"drive.out.formula=\"0.45 + sqrt(t)\""}, "its rate at t = 0 s is infinite"},
+      {{"drive.out.formula=3"}, "a formula of the time t is a text in quotes"},
+      {{"drive.out.table=[[0, 0]]"}, "a drive has one of `formula`, `table`, `csv` and `from`"},
+      {{"drive.turn.table=[[0, 0], [0.5, 1], [1, 2]]"}, "a table has at least 4 points, not 3"},
+      {{"drive.turn.table=[[0, 0], [0.5, 1], [0.5, 2], [1, 3]]"},
+       "row 3 of the table: times increase"},
+      {{"drive.turn.table=[[0, 0], [0.5, 1], [0.7, 2], [0.9, 3]]"},
+       "a table covers the run from 0 to time.end = 1 s; this one lasts from 0 to 0.9 s"},
+      {{"drive.turn.table=[[0, 0], [0.5, 1, 2]]"}, "a list: lists of 2 numbers"},
+      {{"drive.side.csv=\"nowhere.csv\""}, "nowhere.csv: cannot be read"},
+      {{"drive.side.column=z"}, "'side.csv' has no column 'z'"},
+      {{"drive.side.column=note"}, "row 1 of the table: time and value are finite numbers"},
+      {{"drive.side.name=out"}, "there is another drive 'out'"},
+      {{"constants.pi=3"}, "constants.pi=3: this name has a meaning in formulas already"},
+      {{"constants.L0=long"}, "a constant is a finite number"},
+      {{"hub.angle=turns"}, "a drive is one of 'out', 'turn', 'side', did you mean 'turn'?"},
+      {{"hub.angular_velocity=1"}, "the drive of `angle` says how the hub turns"},
+      {{"hub.position=[\"side\"]"}, "two drives, of x and of y"},
+      {{"time.start=hub_at_rest"}, "spins up hubs that turn at a constant rate, not driven ones"},
+      {{"body.flow.speed=0.1"}, "material flows at a `speed`, or as the drive `length` says"},
+      {{"body.length=0.4"}, "this drive starts at 0.45, 'plate' at length = 0.4 [m]"},
+      {{"constants.swing=0.44"}, "0.01 m are left at its shortest"},
+      {{"body.flow.min_length=0.045"},
+       "stays below 0.9 max_length, or elements are split and merged in turn"},
+      {{"drive.extra=1"}, "drive"},
+  };
+  for (const auto& [changes, words] : wrong) {
+    const std::string message = complaint(changes);
+    EXPECT_TRUE(contains(message, words)) << changes[0];
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    EXPECT_TRUE(message.starts_with("--set ") || contains(message, "breathing.toml:")) << message;
+  }
+  // In the file itself: file, line, key.
+  std::string text = kBreathing;
+  text.replace(text.find("L0 + swing"), 10, "L0 + twist");
+  try {
+    read({}, text);
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_TRUE(contains(e.what(), "breathing.toml:11: drive.out.formula = "));
+    EXPECT_TRUE(contains(e.what(), "character 6: 'twist' is unknown"));
+  }
+}
+
+TEST_F(Drives, AreShownByCheck) {
+  RunOptions options;
+  options.case_name = scratch_.write("breathing.toml", kBreathing);
+  const std::string out = check_case(options);
+  EXPECT_TRUE(contains(out, "drive out             L0 + swing*sin(2*pi*t), from 0.25 to 0.65\n"));
+  EXPECT_TRUE(contains(
+      out, "drive side            'side.csv', column 'y', 21 points, from 0 to 0.841471\n"));
+  EXPECT_TRUE(
+      contains(out, "material leaves and enters the hub as 'out' says, length 0.25 to 0.65 m"));
+}
+
+struct Course {
+  fem::MotionResult result;
+  std::vector<double> times;
+  std::vector<Vec2> tips;  // in the hub
+};
+
+Course run(const Scene& scene) {
+  Mechanism m = build_mechanism(scene);
+  Course out;
+  out.result = fem::integrate(m.model, m.growths, m.motion, [&](const fem::MotionStep& step) {
+    out.times.push_back(step.x.t);
+    const Body& body = scene.bodies[0];
+    const fem::FrameMotion hub = m.growths[0].hub.drive()(step.x.t);
+    const Vec2 tip =
+        fem::point_position(step.model.body(body.name), step.x,
+                            {body.longest(scene.time.end), body.low() + 0.5 * body.width})
+            .head<2>();
+    out.tips.push_back(fem::rotation(hub.angle).transpose() * (tip - hub.origin));
+  });
+  return out;
+}
+
+// Times from arcsines. The root stands at m = 0.65 - L. Upwards the first element has 0.1 m at L =
+// 0.5, 0.55, 0.6, and a line comes in 0.05 m before the root; L = 0.65 is met at its turning point
+// between two steps. Downwards lines stand at 0.1, 0.15, ... and leave 0.03 m before the root, at
+// L = 0.58, 0.53, ..., the last one at 0.4 m. Upwards again the first line stands at 0.45 m.
+TEST_F(Drives, InsertAndRemoveLinesAsTheLengthGoesUpAndDown) {
+  const Scene scene = read({"hub.angle=0", "hub.angular_velocity=1", "hub.position=[0, 0]"});
+  const Course course = run(scene);
+  const std::vector<fem::MeshEvent>& events = course.result.events;
+  const auto rising = [](double length) { return std::asin((length - 0.45) / 0.2) / (2 * kPi); };
+  std::vector<std::pair<double, fem::MeshChange>> expected;
+  for (const double length : {0.5, 0.55, 0.6})
+    expected.emplace_back(rising(length), fem::MeshChange::insertion);
+  for (const double length : {0.58, 0.53, 0.48, 0.43, 0.38, 0.33, 0.28})
+    expected.emplace_back(0.5 - rising(length), fem::MeshChange::removal);
+  for (const double length : {0.3, 0.35, 0.4})
+    expected.emplace_back(1 + rising(length), fem::MeshChange::insertion);
+  ASSERT_EQ(events.size(), expected.size());
+  for (size_t i = 0; i < events.size(); ++i) {
+    EXPECT_NEAR(events[i].time, expected[i].first, 1e-9) << i;
+    EXPECT_EQ(events[i].change, expected[i].second) << i;
+    const bool opposite = i > 0 && events[i].change != events[i - 1].change;
+    if (opposite) {
+      EXPECT_GT(events[i].time - events[i - 1].time, 0.02);
+    }
+  }
+}
+
+// The mesh of the driven scene is the one of the constant speeds, and so is its motion: the same
+// equations to round-off, which a stiff plate in 200 steps amplifies to less than 1e-9.
+TEST_F(Drives, OfConstantSpeedAreConstantSpeeds) {
+  std::string text = kBreathing;
+  const std::string by_drive = "length = \"out\"";
+  text.replace(text.find(by_drive), by_drive.size(), "speed = 0.3");
+  const Scene constant = read(
+      {"time.end=0.2", "hub.position=[0, 0]", "hub.angle=0.1", "hub.angular_velocity=2"}, text);
+  const Scene driven = read({"time.end=0.2", "hub.position=[0, 0]",
+                             "drive=[{name=\"out\", formula=\"L0 + 0.3*t\"}, {name=\"turn\", "
+                             "formula=\"0.1 + 2*t\"}]"});
+  const Course a = run(constant), b = run(driven);
+  ASSERT_EQ(a.result.events.size(), 1u);
+  ASSERT_EQ(b.result.events.size(), 1u);
+  EXPECT_NEAR(a.result.events[0].time, b.result.events[0].time, 1e-12);
+  ASSERT_EQ(a.tips.size(), b.tips.size());
+  for (size_t i = 0; i < a.tips.size(); ++i) EXPECT_LT((a.tips[i] - b.tips[i]).norm(), 1e-9) << i;
+}
+
+// Einstein's lift: a hub that is accelerated upwards at 9.81 m/s^2 bends its plate as weight does.
+TEST_F(Drives, OfPositionsActLikeGravity) {
+  const auto with = [](const std::string& position, const std::string& gravity) {
+    return Changes{"time.end=0.1",
+                   "time.start=rigid",
+                   "hub.angle=0",
+                   "hub.angular_velocity=0",
+                   "drive=[{name=\"out\", formula=\"0.45\"}, {name=\"side\", formula=\"0\"}, "
+                   "{name=\"up\", formula=\"9.81/2*t^2\"}]",
+                   "hub.position=" + position,
+                   "gravity=" + gravity};
+  };
+  const Course lifted = run(read(with("[\"side\", \"up\"]", "[0, 0]")));
+  const Course heavy = run(read(with("[0, 0]", "[0, -9.81]")));
+  ASSERT_EQ(lifted.tips.size(), heavy.tips.size());
+  EXPECT_LT(heavy.tips.back().y(), -1e-3);
+  for (size_t i = 0; i < heavy.tips.size(); ++i)
+    EXPECT_LT((lifted.tips[i] - heavy.tips[i]).norm(), 1e-9) << i;
+}
+
+// A plate that is pushed out of a hub at rest and drawn back, L(t), is stretched by its own
+// inertia: u = -ρ L̈ L² / (2 E) at its end, quasi-statically. Waves run along it in L/c = 2 ms: what
+// the jump of the third derivative at the start sets off is 2π / (π c / (2 L)) = 1 % of the largest
+// stretch.
+TEST_F(Drives, OfLengthsAccelerateTheMaterial) {
+  const Scene scene = read(
+      {"hub.angle=0", "hub.angular_velocity=0", "hub.position=[0, 0]", "body.poisson_ratio=0"});
+  const Course course = run(scene);
+  const auto stretch = [&](double t) {
+    const fem::Motion length = scene.drives[0].motion(t);
+    return -2700 * length.acceleration * length.value * length.value / (2 * 1e8);
+  };
+  double largest = 0;
+  for (const double t : course.times) largest = std::max(largest, stretch(t));
+  EXPECT_GT(largest, 2e-5);
+  for (size_t i = 0; i < course.tips.size(); ++i) {
+    const double t = course.times[i];
+    EXPECT_NEAR(course.tips[i].x() - scene.bodies[0].length_at(t), stretch(t), 0.02 * largest) << t;
+    EXPECT_NEAR(course.tips[i].y(), 0, 1e-12);
+  }
+}
+
+// A line drive `at` a straight line is the one at a speed.
+TEST_F(Drives, OfFreeLinesMoveThemThroughTheMaterial) {
+  const std::string sleeve = contents_of(std::string(FLEXMORPH_CASES) + "/elastic_sleeve.toml");
+  const std::string drive = "\n[[drive]]\nname = \"slide\"\nformula = \"0.42 + 0.5*t\"\n";
+  const std::string joint = "\n[[joint]]\ntype = \"line_drive\"\nbody = \"strip\"\nline = 3\n";
+  const Changes brief = {"time.end=0.02"};
+  const Scene driven = read(brief, sleeve + joint + "at = \"slide\"\n" + drive);
+  const Scene constant = read(brief, sleeve + joint + "speed = 0.5\n");
+  const auto end = [](const Scene& scene) {
+    Mechanism m = build_mechanism(scene);
+    return fem::integrate(m.model, m.growths, m.motion, [](const fem::MotionStep&) {}).final.q;
+  };
+  EXPECT_LT((end(driven) - end(constant)).cwiseAbs().maxCoeff(), 1e-9);
+  for (const auto& [change, words] :
+       {std::pair<std::string, std::string>{"drive.formula=\"0.4 + t\"",
+                                            "this drive starts at 0.4, the line at 0.42 [m]"},
+        {"joint.1.speed=1", "a line moves at a `speed`, or as the drive `at` says"}}) {
+    try {
+      read({change}, sleeve + joint + "at = \"slide\"\n" + drive);
+      FAIL();
+    } catch (const Error& e) {
+      EXPECT_TRUE(contains(e.what(), words));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace flexmorph::cases

@@ -1,0 +1,288 @@
+// Shows that dependent joints are found: rank against a dense singular value decomposition, groups
+// against mechanisms where they are known, the watched condition against singular values; and that
+// plates come to their pins.
+#include "fem/solve/diagnosis.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <random>
+
+#include "fem/solve/assembly.h"
+#include "tests/support/models.h"
+#include "tests/support/point_mechanisms.h"
+
+namespace flexmorph::fem {
+namespace {
+
+using testing::add;
+using testing::constant;
+using testing::FourBar;
+using testing::linear;
+using testing::LinearRow;
+using testing::places;
+using testing::point_model;
+using testing::Rod;
+using Parts = std::vector<LinearRow::Part>;
+using Names = std::vector<std::string>;
+
+template <class F>
+std::string error_of(Error::Kind kind, const F& f) {
+  try {
+    f();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), kind) << error.what();
+    return error.what();
+  }
+  ADD_FAILURE() << "nothing was thrown";
+  return "";
+}
+bool says(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+FrameMotion at_place(const Vec2& origin, const Vec2& rate = {0, 0}) {
+  FrameMotion f;
+  f.origin = origin;
+  f.origin_rate = rate;
+  return f;
+}
+Model pinned_plate(const std::vector<std::pair<std::string, Vec2>>& pins, const Vec2& material,
+                   bool with_mass = true) {
+  const PlaneSection section{0.01, 1e9, 0.3, 1000};
+  std::vector<std::unique_ptr<Term>> terms;
+  if (with_mass) terms.push_back(make_inertia(section));
+  Model model;
+  model.add_body(
+      "plate",
+      std::make_unique<AncfPlate>(2, AncfPlate::ShapeSet::h16, testing::even_lines(0, 0.4, 3),
+                                  testing::even_lines(-0.05, 0.05, 2)),
+      section, std::move(terms));
+  for (const auto& [name, place] : pins)
+    model.add_joint(make_pin(name, "plate", material, [p = place](double) { return at_place(p); }));
+  return model;
+}
+
+// Without mass the norm is that of displacements; pins are linear: one step.
+TEST(Assembly, PlatesComeToTheirPins) {
+  for (const bool with_mass : {true, false}) {
+    Model model = pinned_plate({{"pin", {0.11, -0.07}}}, {0.1, 0.02}, with_mass);
+    State x = model.reference();
+    const Assembly report = assemble(model, x);
+    Constraints c;
+    model.constraints(x, c);
+    EXPECT_LT(c.value.lpNorm<Eigen::Infinity>(), 1e-14);
+    EXPECT_LE(report.iterations, 3);
+    EXPECT_EQ(report.velocity_change, 0);
+    EXPECT_EQ(diagnose(model, x).rank, 2);
+  }
+}
+
+TEST(Diagnosis, TwoPinsAtOnePlace) {
+  const Model twice = pinned_plate({{"pin_1", {0.1, 0}}, {"pin_2", {0.1, 0}}}, {0.1, 0});
+  const Diagnosis redundant = diagnose(twice, twice.reference());
+  EXPECT_EQ(redundant.rank, 2);
+  EXPECT_EQ(redundant.degrees_of_freedom(), twice.n_dofs() - 2);
+  ASSERT_EQ(redundant.groups.size(), 1u);
+  EXPECT_EQ(redundant.groups[0].joints, (Names{"pin_1", "pin_2"}));
+  EXPECT_EQ(redundant.groups[0].surplus, 2);
+  EXPECT_FALSE(redundant.is_contradictory());
+  EXPECT_EQ(describe(redundant), "joints 'pin_1', 'pin_2' hold the same 2 freedoms");
+
+  Model apart = pinned_plate({{"pin_1", {0.1, 0}}, {"pin_2", {0.112, 0}}}, {0.1, 0});
+  State x = apart.reference();
+  const Diagnosis diagnosis = diagnose(apart, x);
+  EXPECT_TRUE(diagnosis.is_contradictory());
+  // R counts the weights of a pin inside an element, whose root of squares is below 1, as 1.
+  EXPECT_GE(diagnosis.groups[0].miss, 0.012);
+  EXPECT_LE(diagnosis.groups[0].miss, 0.024);
+  EXPECT_TRUE(says(error_of(Error::Kind::input, [&] { require_independent(diagnosis); }),
+                   "joints 'pin_1', 'pin_2' contradict each other: they miss by"));
+  EXPECT_TRUE(
+      says(error_of(Error::Kind::numerical, [&] { assemble(apart, x); }), "contradict each other"));
+}
+
+TEST(Diagnosis, ContradictionsByValueRateAndAcceleration) {
+  const auto diagnosis_of = [](const testing::Course& second) {
+    Model model = point_model(places({{1, 0}}));
+    add<LinearRow>(model, "a", Parts{{0, 0}}, linear(1, 0.3));
+    add<LinearRow>(model, "b", Parts{{0, 0}}, second);
+    return diagnose(model, model.reference());
+  };
+  EXPECT_EQ(describe(diagnosis_of(linear(1, 0.3))), "joints 'a', 'b' hold the same freedom");
+  EXPECT_EQ(describe(diagnosis_of(linear(1.012, 0.3))),
+            "joints 'a', 'b' contradict each other: they miss by 0.012 m");
+  EXPECT_EQ(describe(diagnosis_of(linear(1, 0.5))),
+            "joints 'a', 'b' contradict each other: they miss by 0.2 m/s in velocity");
+  EXPECT_EQ(describe(diagnosis_of([](double) {
+              return Motion{1, 0.3, 2};
+            })),
+            "joints 'a', 'b' contradict each other: they miss by 2 m/s² in acceleration");
+}
+
+// x_a = 0, x_b = 1 and x_b - x_a = 1: any two of the three are independent. Others stay out of it.
+TEST(Diagnosis, ThreeJointsDependentOnlyTogether) {
+  for (const double distance : {1.0, 1.25}) {
+    Model model = point_model(places({{0, 0}, {1, 0}, {2, 1}}));
+    add<LinearRow>(model, "other", Parts{{0, 1}}, constant(0));
+    add<LinearRow>(model, "a", Parts{{0, 0}}, constant(0));
+    add<Rod>(model, "rod", 1, 2, constant(std::sqrt(2)));
+    add<LinearRow>(model, "b", Parts{{1, 0}}, constant(1));
+    add<LinearRow>(model, "between", Parts{{1, 0}, {0, 0, -1}}, constant(distance));
+    const Diagnosis d = diagnose(model, model.reference());
+    EXPECT_EQ(d.rank, 4);
+    EXPECT_EQ(d.degrees_of_freedom(), 2);
+    ASSERT_EQ(d.groups.size(), 1u);
+    EXPECT_EQ(d.groups[0].joints, (Names{"a", "b", "between"}));
+    EXPECT_EQ(d.groups[0].contradictory, distance != 1.0);
+    for (const Names& pair : {Names{"a", "b"}, Names{"a", "between"}, Names{"b", "between"}}) {
+      Model two = point_model(places({{0, 0}, {1, 0}}));
+      for (const auto& joint : pair) {
+        if (joint == "a") add<LinearRow>(two, joint, Parts{{0, 0}}, constant(0));
+        if (joint == "b") add<LinearRow>(two, joint, Parts{{1, 0}}, constant(1));
+        if (joint == "between")
+          add<LinearRow>(two, joint, Parts{{1, 0}, {0, 0, -1}}, constant(distance));
+      }
+      EXPECT_TRUE(diagnose(two, two.reference()).is_independent());
+    }
+  }
+}
+
+// A platform on three equal, parallel cranks: one too many, but only where the lengths are right.
+// From a start off, rows are independent; the assembled mechanism shows it.
+TEST(Diagnosis, ThreeParallelCranks) {
+  const Vec2 crank(0.2, 0.3);
+  const std::vector<Vec2> ground = {{0, 0}, {1, 0}, {0.4, 0.5}};
+  const auto model_with = [&](double third) {
+    std::vector<Vec2> points;
+    for (const Vec2& g : ground) points.push_back(g + crank);
+    Model model = point_model(places(points));
+    for (int i = 0; i < 3; ++i)
+      add<Rod>(model, "crank_" + std::to_string(i), i, -1,
+               constant(crank.norm() * (i == 2 ? third : 1)), ground[static_cast<size_t>(i)]);
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3;
+      const double length =
+          (ground[static_cast<size_t>(i)] - ground[static_cast<size_t>(j)]).norm();
+      add<Rod>(model, "side_" + std::to_string(i), i, j, constant(length));
+    }
+    return model;
+  };
+  Model model = model_with(1);
+  State x = model.reference();
+  for (int i = 0; i < 6; ++i) x.q[i] += 0.04 * std::cos(2.0 * i);
+  EXPECT_EQ(degrees_of_freedom(model, x), 0);
+  assemble(model, x);
+  const Diagnosis d = diagnose(model, x);
+  EXPECT_EQ(d.degrees_of_freedom(), 1);
+  ASSERT_EQ(d.groups.size(), 1u);
+  EXPECT_EQ(d.groups[0].joints.size(), 6u);
+  EXPECT_FALSE(d.is_contradictory());
+}
+
+// The closed chain of an edge held three times at once: every surplus joint is named with one
+// other, not with all.
+TEST(Diagnosis, NamesAsFewJointsAsItCan) {
+  Model model = point_model(places({{1, 0}, {2, 0}}));
+  add<LinearRow>(model, "a", Parts{{0, 0}}, constant(1));
+  add<LinearRow>(model, "b", Parts{{0, 0}, {1, 0}}, constant(3));
+  add<LinearRow>(model, "c", Parts{{0, 0}, {1, 0, -1}}, constant(-1));
+  add<LinearRow>(model, "d", Parts{{0, 0}, {1, 0}}, constant(3));
+  add<LinearRow>(model, "e", Parts{{0, 0}}, constant(1));
+  const Diagnosis d = diagnose(model, model.reference());
+  EXPECT_EQ(d.rank, 2);
+  int pairs = 0, triples = 0;
+  for (const DependentGroup& g : d.groups) {
+    pairs += g.joints.size() == 2;
+    triples += g.joints.size() == 3;
+  }
+  EXPECT_EQ(pairs, 2) << describe(d);
+  EXPECT_EQ(triples, 1) << describe(d);
+}
+
+MatrixXd dense_jacobian(const Model& model, const State& x) {
+  ScaledConstraints rows;
+  rows.evaluate(model, x);
+  return MatrixXd(rows.jacobian());
+}
+
+// Random nets of rods: some with freedoms, some overbraced, some rods twice, some points driven.
+TEST(Diagnosis, RankOfRandomMechanismsAgainstSingularValues) {
+  std::mt19937 random(11);
+  int dependent = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    const int n = 3 + trial % 10;
+    const MatrixXd at = MatrixXd::NullaryExpr(
+        n, 2, [&] { return std::uniform_real_distribution<double>(-1, 1)(random); });
+    Model model = point_model(at);
+    const auto point = [&] { return std::uniform_int_distribution<int>(0, n - 1)(random); };
+    const int rods = std::uniform_int_distribution<int>(n, 3 * n)(random);
+    for (int i = 0; i < rods; ++i) {
+      const int a = point(), b = point();
+      if (a == b) continue;
+      add<Rod>(model, "rod_" + std::to_string(i), a, b, constant((at.row(a) - at.row(b)).norm()));
+    }
+    for (int i = 0; i < trial % 4; ++i) {
+      const int a = point();
+      add<LinearRow>(model, "hold_" + std::to_string(i), Parts{{a, i % 2}}, constant(at(a, i % 2)));
+    }
+    const State x = model.reference();
+    const MatrixXd j = dense_jacobian(model, x);
+    Eigen::JacobiSVD<MatrixXd> svd(j);
+    const auto values = svd.singularValues();
+    const int rank = static_cast<int>((values.array() > 1e-9 * values[0]).count());
+    const Diagnosis d = diagnose(model, x);
+    EXPECT_EQ(d.rank, rank) << trial;
+    int surplus = 0;
+    for (const DependentGroup& g : d.groups) {
+      surplus += g.surplus;
+      EXPECT_FALSE(g.contradictory) << describe(d);
+      // The rows of a group are dependent, the independent ones are not.
+      MatrixXd part(g.rows.size(), j.cols());
+      for (size_t i = 0; i < g.rows.size(); ++i)
+        part.row(static_cast<Eigen::Index>(i)) = j.row(g.rows[i]);
+      EXPECT_LE(Eigen::FullPivLU<MatrixXd>(part).setThreshold(1e-9).rank(),
+                static_cast<Eigen::Index>(g.rows.size()) - 1);
+    }
+    EXPECT_EQ(surplus, model.n_constraints() - rank) << trial;
+    MatrixXd basis(rank, j.cols());
+    for (int i = 0; i < rank; ++i) basis.row(i) = j.row(d.independent[static_cast<size_t>(i)]);
+    EXPECT_EQ(Eigen::FullPivLU<MatrixXd>(basis).setThreshold(1e-9).rank(), rank);
+    dependent += rank < model.n_constraints();
+  }
+  EXPECT_GT(dependent, 15) << "too few of them show anything";
+}
+
+// Condition against the dense singular values, on the way of a four-bar to its dead centre; the
+// stretched rods are named.
+TEST(ConstraintWatch, ConditionOfAMechanismNearItsDeadCentre) {
+  const FourBar bar{.r = 0.3, .l = 0.35, .s = 0.25, .g = 0.45};
+  Model model = bar.model(linear(0, 0));
+  ConstraintWatch watch(model);
+  for (const double before : {0.5, 1e-2, 1e-4, 1e-6, 1e-8}) {
+    State x = model.reference();
+    x.q = bar.places(bar.limit_angle() - before);
+    const auto values = Eigen::JacobiSVD<MatrixXd>(dense_jacobian(model, x)).singularValues();
+    const double exact = values[0] / values[values.size() - 1];
+    const Conditioning found = watch.look(x);
+    EXPECT_LE(found.condition, 1.001 * exact) << before;
+    EXPECT_GE(found.condition, 0.95 * exact) << before;
+    EXPECT_EQ(found.condition, constraint_condition(model, x));
+    if (before > 1e-3) continue;
+    EXPECT_TRUE(std::count(found.joints.begin(), found.joints.end(), "coupler")) << before;
+    EXPECT_TRUE(says(describe(found), "'rocker'")) << describe(found);
+  }
+}
+
+TEST(ConstraintWatch, SaturatesWhereRowsAreDependent) {
+  Model model = point_model(places({{1, 0}}));
+  EXPECT_EQ(constraint_condition(model, model.reference()), 1);
+  add<Rod>(model, "a", 0, -1, constant(1));
+  add<Rod>(model, "b", 0, -1, constant(1));
+  EXPECT_GT(constraint_condition(model, model.reference()), 1e6);
+}
+
+}  // namespace
+}  // namespace flexmorph::fem

@@ -1,0 +1,204 @@
+// Formulas of time: values against functions written in C++, derivatives against differences and
+// against derivatives by hand, everything that is not a formula refused with its place.
+#include "io/formula.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "geometry/base.h"
+#include "tests/io/scratch.h"
+
+namespace flexmorph::io {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+using Constants = std::map<std::string, double>;
+
+std::string complaint(const std::string& text, const Constants& constants = {}) {
+  try {
+    const Formula formula(text, constants);
+    formula.check(1);
+  } catch (const Error& e) {
+    EXPECT_EQ(e.kind(), Error::Kind::input);
+    return e.what();
+  }
+  return "";
+}
+
+/// Path of a platform and the length of a bar that leads it, Sun et al. (2018), (36), (37): the bar
+/// from (x0, 0) to a point at x_c from the platform's middle.
+std::string bar_length(const std::string& x0, const std::string& x_c) {
+  const std::string theta = "(-2*pi*(t - 1/2)^3 + 3/2*pi*t - pi/4)";
+  const std::string x = "(0.5*cos(pi - " + theta + ") + " + x_c + " - " + x0 + ")";
+  const std::string y = "(0.5*sin(pi - " + theta + ") + 0.4)";
+  return "sqrt(" + x + "^2 + " + y + "^2) - 0.1";
+}
+
+double bar_length(double x0, double x_c, double t) {
+  const double theta = -2 * kPi * std::pow(t - 0.5, 3) + 1.5 * kPi * t - kPi / 4;
+  return std::hypot(0.5 * std::cos(kPi - theta) + x_c - x0, 0.5 * std::sin(kPi - theta) + 0.4) -
+         0.1;
+}
+
+struct Sample {
+  std::string text;
+  std::function<double(double)> same;
+};
+
+const std::vector<Sample>& samples() {
+  static const std::vector<Sample> kSamples = {
+      {"3", [](double) { return 3.0; }},
+      {"-t^2", [](double t) { return -t * t; }},
+      {"2 - 1 - t/4/2", [](double t) { return 1 - t / 8; }},
+      {"0.5 + 0.1*sin(2*pi*t)^2",
+       [](double t) { return 0.5 + 0.1 * std::pow(sin(2 * kPi * t), 2); }},
+      {"1.5e-1*t^3 - .5*t + 2E+1", [](double t) { return 0.15 * t * t * t - 0.5 * t + 20; }},
+      {"tan(t)*cos(3*t)", [](double t) { return std::tan(t) * std::cos(3 * t); }},
+      {"asin(0.9*t) + acos(t/2)", [](double t) { return std::asin(0.9 * t) + std::acos(t / 2); }},
+      {"atan(t) + atan2(t - 2, 1 - t)",
+       [](double t) { return std::atan(t) + std::atan2(t - 2, 1 - t); }},
+      {"sinh(t)/cosh(t) - tanh(2*t)",
+       [](double t) { return std::sinh(t) / std::cosh(t) - std::tanh(2 * t); }},
+      {"exp(-3*t)*log(1 + t)", [](double t) { return std::exp(-3 * t) * std::log(1 + t); }},
+      {"(1 + t)^(2*t)", [](double t) { return std::pow(1 + t, 2 * t); }},
+      {"(1 + t)^2.7 + 2^t", [](double t) { return std::pow(1 + t, 2.7) + std::exp2(t); }},
+      {"1/(1 + t)^3 + (2 + t)^(-3/2)",
+       [](double t) { return std::pow(1 + t, -3) + std::pow(2 + t, -1.5); }},
+      {"abs(t - 2)^3", [](double t) { return std::pow(2 - t, 3); }},
+      {"sqrt((t - 3)^2)", [](double t) { return 3 - t; }},
+      {"L + a_1*t", [](double t) { return 0.45 + 0.2 * t; }},
+      {bar_length("(-0.4)", "(-0.15)"), [](double t) { return bar_length(-0.4, -0.15, t); }},
+      {bar_length("0.4", "0.15"), [](double t) { return bar_length(0.4, 0.15, t); }},
+  };
+  return kSamples;
+}
+
+class EveryFormula : public ::testing::TestWithParam<size_t> {
+ protected:
+  const Sample& sample = samples()[GetParam()];
+  const Formula formula{sample.text, {{"L", 0.45}, {"a_1", 0.2}}};
+};
+
+// Round-off of a value of order 1, a few operations.
+TEST_P(EveryFormula, HasTheValueOfTheSameFunction) {
+  for (const double t : {0.05, 0.31, 0.5, 0.77, 1.0})
+    EXPECT_NEAR(formula(t).value, sample.same(t), 2e-14 * (1 + std::abs(sample.same(t))))
+        << sample.text << " at " << t;
+}
+
+// Differences of fourth order with h = 1e-3: error h^4 f^(5) / 30, at most 1e-8 for functions whose
+// fifth derivative is below 3e5 (the path of the platform: (2 pi)^5 times a few).
+TEST_P(EveryFormula, HasTheDerivativesOfItsDifferences) {
+  const double h = 1e-3;
+  const auto slope = [&](double t, double Jet::*entry) {
+    const auto f = [&](double at) { return formula(at).*entry; };
+    return (8 * (f(t + h) - f(t - h)) - (f(t + 2 * h) - f(t - 2 * h))) / (12 * h);
+  };
+  for (const double t : {0.05, 0.31, 0.5, 0.77, 0.98}) {
+    const Jet x = formula(t);
+    EXPECT_NEAR(x.rate, slope(t, &Jet::value), 2e-8 * (1 + std::abs(x.rate))) << sample.text;
+    EXPECT_NEAR(x.acceleration, slope(t, &Jet::rate), 2e-8 * (1 + std::abs(x.acceleration)))
+        << sample.text;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Table, EveryFormula, ::testing::Range<size_t>(0, samples().size()));
+
+// The start of the platform's path: theta'' (0) = 6 pi moves it at 0.5 * 6 pi (design.md 15).
+TEST(Formula, DerivativesOfThePlatformByHand) {
+  const Formula y("0.5*sin(pi - (-2*pi*(t - 1/2)^3 + 3/2*pi*t - pi/4)) + 0.4");
+  const Jet start = y(0);
+  EXPECT_NEAR(start.value, 0.4, 1e-15);
+  EXPECT_NEAR(start.rate, 0, 1e-14);
+  EXPECT_NEAR(start.acceleration, 3 * kPi, 1e-13);
+}
+
+TEST(Formula, LongestBarOfThePlatform) {
+  double longest = 0;
+  for (const Formula& length :
+       {Formula(bar_length("(-0.4)", "(-0.15)")), Formula(bar_length("0.4", "0.15"))})
+    for (int i = 0; i <= 1000; ++i) longest = std::max(longest, length(1e-3 * i).value);
+  EXPECT_NEAR(longest, 0.8717, 5e-5);  // design.md, section 15
+}
+
+// A formula of a formula: derivatives by the chain rule from those of the inner one.
+TEST(Formula, CompositionsKeepTheirDerivatives) {
+  const std::string inner = bar_length("0.4", "0.15");
+  const Formula f(inner), g("sin(3*(" + inner + "))/(1 + (" + inner + ")^2)");
+  const Formula outer("sin(3*t)/(1 + t^2)");
+  for (const double t : {0.0, 0.2, 0.5, 0.9}) {
+    const Jet x = f(t), y = outer(x.value), z = g(t);
+    EXPECT_NEAR(z.value, y.value, 1e-14);
+    EXPECT_NEAR(z.rate, y.rate * x.rate, 1e-13);
+    EXPECT_NEAR(z.acceleration, y.acceleration * x.rate * x.rate + y.rate * x.acceleration, 1e-11);
+  }
+  // What the three share is computed once: far fewer operations than the parts have together.
+  EXPECT_LT(g.n_operations(), f.n_operations() + 3 * outer.n_operations());
+}
+
+TEST(Formula, IsReadInAnyLocale) {
+  const CommaLocale comma;
+  EXPECT_EQ(Formula("1234.5*t")(2).value, 2469);
+  EXPECT_EQ(complaint("t + 1,5"), "formula 't + 1,5': character 6: expected EOF, got: \",\"");
+}
+
+TEST(Formula, SaysWhatIsWrongAndWhere) {
+  const std::vector<std::pair<std::string, std::string>> wrong = {
+      {"", "formula '': character 1: "},
+      {"0.5 + 0.1*sin(2*pi*x)", "character 20: 'x' is unknown"},
+      {"sinn(t)", "character 1: there is no function 'sinn'"},
+      {"2*zeta(t)", "character 3: there is no function 'zeta'"},
+      {"1 + I*t", "character 5: 'I' is unknown"},
+      {"Pi*t", "character 1: 'Pi' is unknown"},
+      {"sin*t", "character 1: the function 'sin' has its argument in parentheses"},
+      {"2*sqrt( )", "character 7: nothing is in these parentheses"},
+      {"sin(t, t)", "no function \"sin\" with 2 arguments"},
+      {"sin(t", "character 6: expected ')'"},
+      {"t + ", "character 5: unexpected token, got: EOF"},
+      {"2t", "character 2: expected EOF, got: \"t\""},
+      {"1 + t)", "character 6: expected EOF, got: \")\""},
+      {"10^2 + t**2", "character 10: unexpected token, got: \"*\""},
+      {"t^2^3", "a^b^c needs parentheses"},
+      {"{t, 1}", "character 1: a formula has no '{'"},
+      {"2·t", "character 2: a formula has no letters beyond a to z"},
+      {"t < 1", "character 3: a formula has no '<'"},
+      {"1.2.3*t", "character 1: '1.2.3' is no number"},
+      {"1e999*t", "character 1: '1e999' is no number"},
+      {"1/0", "division by zero"},
+      {"log(-1)", "no real number"},
+      {"sqrt(t - 0.5)", "its value at t = 0 s is no real number"},
+      {"1/(t - 0.5)", "its value at t = 0.5 s is infinite"},
+      {"t^1.5", "its acceleration at t = 0 s is infinite"},
+      {"abs(t - 0.25)", "its rate at t = 0.25 s is no real number"},
+      {"exp(1000*t)", "is infinite"},
+      {"abs(t - 1/3)", "its rate jumps at t = 0.333333 s"},
+      {"1/(t - 1/3)", "jumps at t = 0.333333 s"},
+      {"1/(t - 1/3)^2", "jumps at t = 0.333333 s"},
+      {"atan2(sin(7*t), cos(7*t))", "its value jumps at t = 0.448799 s"},
+      {"t*tan(2*t)", "jumps at t = 0.785398 s"},
+      {"9^(9^9)", "formula '9^(9^9)': "},
+      {std::string(200, '(') + "t" + std::string(200, ')'), "character 101: more than 100"},
+      {std::string(20'000, ' ') + "t", "at most 10000 characters"},
+  };
+  for (const auto& [text, words] : wrong) EXPECT_TRUE(contains(complaint(text), words)) << text;
+  // Fast, but smooth.
+  for (const char* text : {"sqrt(t)*t^2", "sin(2000*t)", "tanh(1e4*(t - 1/3))",
+                           "exp(-1e6*(t - 1/3)^2)", "1e-30*sin(t)", "1e8 + t^3", "abs(t - 1/3)^3"})
+    EXPECT_EQ(complaint(text), "");
+}
+
+TEST(Formula, ConstantsHaveNamesOfTheirOwn) {
+  for (const char* name : {"t", "pi", "I", "Euler", "sin", "atan2", "", "2a", "_a", "a-b", "é"})
+    EXPECT_NE(Formula::refusal_of_name(name), "") << name;
+  for (const char* name : {"a", "L1", "long_name", "e", "T"})
+    EXPECT_EQ(Formula::refusal_of_name(name), "") << name;
+  EXPECT_TRUE(contains(complaint("t", {{"sin", 1}}), "constant 'sin': this is a function"));
+  EXPECT_TRUE(contains(complaint("t", {{"a", std::nan("")}}), "constant 'a': not a finite number"));
+  EXPECT_EQ(Formula("e*t", {{"e", 0.1}})(1).value, 0.1);  // the very double
+}
+
+}  // namespace
+}  // namespace flexmorph::io

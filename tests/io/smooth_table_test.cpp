@@ -1,0 +1,123 @@
+// Smooth tables: through all points, derivatives that belong together and do not jump, the order of
+// splines of degree 5, polynomials of degree 5 exactly.
+#include "io/smooth_table.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "geometry/base.h"
+#include "tests/io/scratch.h"
+#include "tests/support/rates.h"
+
+namespace flexmorph::io {
+namespace {
+
+struct Points {
+  std::vector<double> t, x;
+};
+
+/// f at n + 1 times of [0, 2], moved by up to `uneven` of their distance.
+template <class F>
+Points sampled(int n, F f, double uneven = 0) {
+  std::mt19937 engine(7);
+  Points p;
+  for (int i = 0; i <= n; ++i) {
+    const double draw = 2 * (static_cast<double>(engine()) / 4294967295.0) - 1;
+    p.t.push_back(2.0 / n * (i + (i == 0 || i == n ? 0 : uneven * draw)));
+    p.x.push_back(f(p.t.back()));
+  }
+  return p;
+}
+
+double wave(double t) { return std::sin(3 * t) + 0.5 * std::exp(-t); }
+
+TEST(SmoothTable, GoesThroughItsPoints) {
+  for (const int n : {3, 4, 5, 6, 7, 40, 1000}) {
+    const Points p = sampled(n, wave, 0.3);
+    const SmoothTable table(p.t, p.x);
+    EXPECT_EQ(table.first(), 0);
+    EXPECT_EQ(table.last(), p.t.back());
+    for (size_t i = 0; i < p.t.size(); ++i)
+      EXPECT_NEAR(table(p.t[i]).value, p.x[i], 1e-12) << n << " " << i;
+  }
+}
+
+TEST(SmoothTable, ReproducesPolynomials) {
+  for (const int n : {3, 4, 5, 6, 30}) {
+    const int degree = std::min(n, 5);
+    const auto f = [&](double t) { return std::pow(t - 0.7, degree) + t; };
+    const Points p = sampled(n, f, 0.3);
+    const SmoothTable table(p.t, p.x);
+    for (double t = 0; t <= 2; t += 0.0625) {
+      const Jet x = table(t);
+      EXPECT_NEAR(x.value, f(t), 1e-10);
+      EXPECT_NEAR(x.rate, degree * std::pow(t - 0.7, degree - 1) + 1, 1e-9);
+      EXPECT_NEAR(x.acceleration, degree * (degree - 1) * std::pow(t - 0.7, degree - 2), 1e-7);
+    }
+  }
+}
+
+/// Largest errors of value, rate and acceleration of the table of the wave with distance h.
+std::array<double, 3> errors(double h) {
+  const Points p = sampled(static_cast<int>(std::lround(2 / h)), wave);
+  const SmoothTable table(p.t, p.x);
+  std::array<double, 3> out{};
+  for (int i = 0; i <= 4000; ++i) {
+    const double t = 2.0 * i / 4000;
+    const Jet x = table(t);
+    out[0] = std::max(out[0], std::abs(x.value - wave(t)));
+    out[1] = std::max(out[1], std::abs(x.rate - 3 * std::cos(3 * t) + 0.5 * std::exp(-t)));
+    out[2] = std::max(out[2], std::abs(x.acceleration + 9 * std::sin(3 * t) - 0.5 * std::exp(-t)));
+  }
+  return out;
+}
+
+TEST(SmoothTable, ConvergesWithOrderSix) {
+  for (size_t k = 0; k < 3; ++k) {
+    const auto rate =
+        testing::fit_rate({0.05, 0.025, 0.0125}, [&](double h) { return errors(h)[k]; });
+    EXPECT_NEAR(rate.order(), 6.0 - static_cast<double>(k), 0.4) << rate.table();
+  }
+}
+
+// Rates are differences of values, accelerations differences of rates, and no derivative jumps
+// between the polynomials: a jump would be as large as the difference over a step is small.
+TEST(SmoothTable, DerivativesBelongTogether) {
+  const Points p = sampled(24, wave, 0.3);
+  const SmoothTable table(p.t, p.x);
+  const double h = 1e-5;
+  for (int i = 1; i < 2000; ++i) {
+    const double t = 1e-3 * i;
+    const Jet before = table(t - h), x = table(t), after = table(t + h);
+    EXPECT_NEAR((after.value - before.value) / (2 * h), x.rate, 1e-8);
+    EXPECT_NEAR((after.rate - before.rate) / (2 * h), x.acceleration, 1e-8);
+    EXPECT_NEAR(after.acceleration, before.acceleration, 40 * 2 * h);  // its rate is below 30
+  }
+}
+
+TEST(SmoothTable, RefusesWhatIsNoTable) {
+  const auto complaint = [](std::vector<double> t, std::vector<double> x) -> std::string {
+    try {
+      const SmoothTable table(t, x);
+      table(-0.1);
+    } catch (const Error& e) {
+      EXPECT_EQ(e.kind(), Error::Kind::input);
+      return e.what();
+    }
+    return "";
+  };
+  const double nan = std::nan("");
+  EXPECT_TRUE(contains(complaint({0, 1, 2}, {0, 1, 2}), "at least 4 points, not 3"));
+  EXPECT_TRUE(contains(complaint({0, 1, 2, 3}, {0, 1, 2}), "as many times as values: 4 and 3"));
+  EXPECT_TRUE(
+      contains(complaint({0, 1, 1, 3}, {0, 1, 2, 3}), "row 3 of the table: times increase"));
+  EXPECT_TRUE(
+      contains(complaint({0, 1, 2, 3}, {0, nan, 2, 3}), "row 2 of the table: time and value"));
+  EXPECT_TRUE(
+      contains(complaint({0, 1, 2, 3}, {0, 1, 2, 3}), "covers 0 to 3 s; asked for t = -0.1"));
+}
+
+}  // namespace
+}  // namespace flexmorph::io
