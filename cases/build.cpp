@@ -100,7 +100,8 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
                    {},
                    d.drop_every,
                    d.refill,
-                   d.min_feature});
+                   d.min_feature,
+                   d.shares_mass});
     if (!scene.domain) continue;
     out.back().domain = scene.domain->polygon;
     if (!scene.domain->polygon.empty())

@@ -7,6 +7,7 @@
 #include "fem/elements/ancf_plate.h"
 #include "fem/elements/rigid_body.h"
 #include "fem/rigid.h"
+#include "io/files.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -194,11 +195,29 @@ void add_holds(const Scene& scene, const Body& body, fem::Model& model) {
   if (!all.empty()) model.add_joint(fem::make_hold(body.name + ".held", body.name, std::move(all)));
 }
 
+/// How a mechanism starts: at rest in equilibrium where its drives do not determine it all.
+/// @throws Error (input) when that is asked for but it does not rest.
+fem::Start start_of(const Scene& scene, TwinMotion& twin) {
+  if (scene.time.start != Start::prestretched) return fem::Start::rigid;
+  if (twin.degrees_of_freedom() == 0) return fem::Start::prestretched;
+  // What is left of it is the start of a swing; the equilibrium of the plates ends it.
+  const double nearly = 0.05 * std::max(1.0, scene.gravity ? scene.gravity->norm() : 0.0);
+  const double speed = twin.start_speed(), acceleration = twin.start_acceleration();
+  if (speed < 1e-6 && acceleration < nearly) return fem::Start::settled;
+  throw Error::input(
+      "time.start: \"prestretched\" puts a mechanism whose drives leave freedoms (" +
+      std::to_string(twin.degrees_of_freedom()) +
+      " here) into its equilibrium at rest, but this one sets off with " + io::to_text(speed, 3) +
+      " m/s and " + io::to_text(acceleration, 3) +
+      " m/s²: bodies where they hang at rest and drives that begin at rest, or start = \"rigid\"");
+}
+
 /// Where bodies that ride in no hub are, by the rigid twin.
-fem::Placement placement_of(const Scene& scene) {
+void place_bodies(const Scene& scene, fem::MotionSettings& motion) {
   const auto kept = std::make_shared<const Scene>(scene);  // the twin looks at it
   const auto twin = std::make_shared<TwinMotion>(*kept);
-  return [kept, twin](double t) {
+  motion.start = start_of(scene, *twin);
+  motion.placement = [kept, twin](double t) {
     const Scene& scene = *kept;
     const fem::State& x = twin->at(t);
     std::vector<fem::Placed> out;
@@ -281,7 +300,7 @@ Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh) {
   out.motion.step = mesh.step.value_or(scene.time.step);
   out.motion.start =
       scene.time.start == Start::prestretched ? fem::Start::prestretched : fem::Start::rigid;
-  if (scene.is_mechanism()) out.motion.placement = placement_of(scene);
+  if (scene.is_mechanism()) place_bodies(scene, out.motion);
   out.motion.integrator = scene.time.integrator;
   out.motion.alpha.rho_inf = scene.time.rho_inf;
   out.motion.gravity = gravity_of(scene);

@@ -5,6 +5,7 @@
 #include "cases/build.h"
 #include "cases/run.h"
 #include "cases/scene_parts.h"
+#include "cases/twin.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
@@ -86,6 +87,53 @@ std::string thickness_words(const BodyDesign& d) {
   return out;
 }
 
+/// "4 revolute, 4 weld, 1 angle_drive": kinds in the order of the case.
+template <class T, class Kind>
+std::string kinds_of(const std::vector<T>& list, const Kind& kind) {
+  std::vector<std::pair<std::string, int>> counts;
+  for (const T& each : list) {
+    const std::string name = kind(each);
+    const auto found = std::find_if(counts.begin(), counts.end(),
+                                    [&](const auto& count) { return count.first == name; });
+    if (found == counts.end())
+      counts.emplace_back(name, 1);
+    else
+      ++found->second;
+  }
+  std::string out;
+  for (const auto& [name, n] : counts)
+    out += (out.empty() ? "" : ", ") + std::to_string(n) + " " + name;
+  return out;
+}
+
+std::string law_words(const Law& law) {
+  return law.drive.empty() ? io::to_text(law.value, 6) : "'" + law.drive + "'";
+}
+
+void describe_mechanism(const Scene& scene, std::ostringstream& out) {
+  std::string names;
+  double mass = 0;
+  for (const RigidBody& body : scene.rigid_bodies) {
+    names += (names.empty() ? "" : ", ") + body.name;
+    mass += body.mass;
+  }
+  out << row("rigid bodies", std::to_string(scene.rigid_bodies.size()) + " (" + names + "), " +
+                                 std::to_string(4 * scene.rigid_bodies.size()) + " unknowns, " +
+                                 io::to_text(mass, 6) + " kg");
+  const int before = undriven_freedoms(scene), after = TwinMotion(scene).degrees_of_freedom();
+  out << row("freedoms", "of the rigid twin: " + std::to_string(before) +
+                             " without the drives of joints and flows, " + std::to_string(after) +
+                             " with them");
+  if (!scene.trajectory) return;
+  const Trajectory& path = *scene.trajectory;
+  std::string drives;
+  for (const Drive& drive : scene.drives)
+    if (drive.from_trajectory) drives += (drives.empty() ? "" : ", ") + drive.name;
+  out << row("trajectory", "of " + path.body + ": x " + law_words(path.x) + ", y " +
+                               law_words(path.y) + ", angle " + law_words(path.angle) +
+                               "; drives that follow: " + (drives.empty() ? "none" : drives));
+}
+
 void describe_design(const Scene& scene, const BodyDesign& d, std::ostringstream& out) {
   const Grid& g = d.grid;
   const int components = d.n_components();
@@ -98,7 +146,8 @@ void describe_design(const Scene& scene, const BodyDesign& d, std::ostringstream
                                         std::to_string(g.ny) + " cells, " + std::to_string(n) +
                                         " static unknowns");
   out << row("", std::to_string(loads) + " loads, volume at most " +
-                     io::to_text(d.goal.max_volume) + ", " + thickness_words(d));
+                     io::to_text(d.goal.max_volume) +
+                     (d.shares_mass ? " on average, mass is shared, " : ", ") + thickness_words(d));
   out << row("", "factor about " + io::to_text(8e-6 * factor, 3) + " MB, loads and displacements " +
                      io::to_text(8e-6 * 3.0 * n * loads, 3) + " MB; an iteration about " +
                      io::to_text(1e-9 * factor * (2 * g.ny + 5 + 3.0 * loads), 2) + " Gflop");
@@ -154,8 +203,16 @@ std::string check_case(const RunOptions& options) {
                                           io::to_text(range[1], 6));
   }
   for (const Body& body : scene.bodies) describe_body(body, mechanism, out);
+  if (scene.is_mechanism()) describe_mechanism(scene, out);
   out << row("joints", std::to_string(scene.joints.size()) + ", " +
-                           std::to_string(mechanism.model.n_constraints()) + " constraint rows");
+                           std::to_string(mechanism.model.n_constraints()) + " constraint rows" +
+                           (scene.joints.empty() ? "" : ": ") +
+                           kinds_of(scene.joints, [](const Joint& j) { return j.type; }));
+  if (!scene.springs.empty())
+    out << row("springs", std::to_string(scene.springs.size()) + ": " +
+                              kinds_of(scene.springs, [](const Spring& s) {
+                                return s.torsion ? "torsion" : "linear";
+                              }));
   if (!scene.point_masses.empty())
     out << row("point masses", std::to_string(scene.point_masses.size()));
   for (const BodyLoad& load : scene.loads) out << row("load on " + load.body, load_words(load));
@@ -185,7 +242,8 @@ std::string check_case(const RunOptions& options) {
   if (std::none_of(scene.bodies.begin(), scene.bodies.end(),
                    [](const Body& b) { return b.flow.has_value(); }))
     out << row("material flow", "no shape function has rates");
-  out << row("rigid bodies", "none");
+  if (!scene.is_mechanism()) out << row("rigid bodies", "none");
+  if (scene.is_mechanism() && scene.springs.empty()) out << row("springs", "none");
   if (!scene.gravity) out << row("gravity", "none");
   if (scene.designs.empty()) out << row("design", "full material; no loads, no optimizer");
   if (!scene.verify) out << row("verification", "no run on a finer mesh");

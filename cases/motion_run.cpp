@@ -2,6 +2,9 @@
 
 #include <cmath>
 
+#include "cases/mechanism_columns.h"
+#include "io/files.h"
+
 namespace flexmorph::cases {
 namespace {
 
@@ -20,7 +23,12 @@ class Recorder {
  public:
   Recorder(const Scene& scene, const MotionWishes& wishes, const Mechanism& mechanism,
            RunFolder& folder, MotionOutcome& out)
-      : scene_(scene), wishes_(wishes), mechanism_(mechanism), folder_(folder), out_(out) {
+      : scene_(scene),
+        wishes_(wishes),
+        mechanism_(mechanism),
+        folder_(folder),
+        out_(out),
+        columns_(scene) {
     MotionRecord& r = out.record;
     for (const fem::Growth& growth : mechanism.growths) {
       const Body& body = scene.body(growth.body);
@@ -40,6 +48,8 @@ class Recorder {
         if (line.free)
           r.observed.push_back({body.name + ".line_" + std::to_string(line.index), {}});
     for (const Body& body : scene.bodies) poses_.push_back(start_pose(scene, body));
+    if (scene.is_mechanism() && wishes.balance)
+      r.powers = {{"power.drive", {}}, {"power.feed", {}}, {"power.inflow", {}}};
     if (wishes.loads)
       for (const BodyDesign& d : scene.designs) out.loads.push_back({d.grid, {}, 0});
   }
@@ -60,9 +70,23 @@ class Recorder {
       r.amplitude[i] = std::max(r.amplitude[i], std::abs(d));
     }
     observe(step);
+    columns_.add(step.model, step.x);
+    if (!r.powers.empty()) {
+      r.powers[0].values.push_back(step.powers.drive);
+      r.powers[1].values.push_back(step.powers.feed);
+      r.powers[2].values.push_back(step.powers.inflow);
+    }
+    // The step that reaches a moment shows it: no step is cut for a picture.
+    const auto shown = static_cast<double>(r.moments.size());
+    if (shown < wishes_.moments &&
+        step.x.t >= shown / (wishes_.moments - 1) * scene_.time.end - 1e-9)
+      add_moment(step);
     if (step.stop || step.x.t == 0) at_stop(step);
     if (wishes_.go_on && !wishes_.go_on()) throw Interrupted();
   }
+
+  /// What comes after the last step, or after the one that failed.
+  void finish() { out_.record.mechanism = columns_.take(); }
 
  private:
   void observe(const fem::MotionStep& step) {
@@ -78,31 +102,72 @@ class Recorder {
 
   void at_stop(const fem::MotionStep& step) {
     const double t = step.x.t;
-    if (scene_.designs.empty()) {
-      if (is_multiple(t, wishes_.frames_every))
-        for (size_t i = 0; i < scene_.bodies.size(); ++i)
-          folder_.add_surface_frame(step.model.body(scene_.bodies[i].name), step.x, poses_[i], t,
-                                    static_cast<int>(i));
-      return;
+    for (size_t i = 0; wishes_.loads && t > 0 && i < mechanism_.growths.size(); ++i) {
+      const size_t d = design_of(scene_, mechanism_.growths[i].body);
+      if (d < scene_.designs.size() && is_multiple(t, scene_.esl->every))
+        add_load(step, mechanism_.growths[i], d);
     }
-    for (size_t i = 0; i < mechanism_.growths.size(); ++i) {
-      const fem::Growth& growth = mechanism_.growths[i];
-      const size_t d = design_of(scene_, growth.body);
-      if (d == scene_.designs.size()) continue;
-      if (wishes_.loads && t > 0 && is_multiple(t, scene_.esl->every)) {
-        std::vector<fem::AttachedForce> forces = fem::joint_forces(
-            step.model, step.x, step.model.body(growth.body), attached_joints(scene_, growth.body));
-        for (const fem::AttachedForce& f : applied_forces(scene_, growth.body)) forces.push_back(f);
-        fem::EslSet set = fem::equivalent_static_load(
-            step.model, step.x, growth, scene_.designs[d].grid,
-            attached_masses(scene_, growth.body), forces, mechanism_.motion.gravity);
-        set.weight = 1.0 / scene_.esl->count(scene_.time.end);
-        out_.loads[d].sets.push_back(std::move(set));
+    if (is_multiple(t, wishes_.frames_every)) add_frame(step);
+  }
+
+  void add_load(const fem::MotionStep& step, const fem::Growth& growth, size_t d) {
+    std::vector<fem::AttachedForce> forces = fem::joint_forces(
+        step.model, step.x, step.model.body(growth.body), attached_joints(scene_, growth.body));
+    for (const fem::AttachedForce& f : applied_forces(scene_, growth.body)) forces.push_back(f);
+    fem::EslSet set = fem::equivalent_static_load(
+        step.model, step.x, growth, scene_.designs[d].grid, attached_masses(scene_, growth.body),
+        forces, mechanism_.motion.gravity);
+    set.weight = 1.0 / scene_.esl->count(scene_.time.end);
+    out_.loads[d].sets.push_back(std::move(set));
+  }
+
+  /// All plates, then all rigid bodies that have a size; their numbers are those of the scene.
+  void add_frame(const fem::MotionStep& step) {
+    const double t = step.x.t;
+    int part = 0;
+    for (const Body& body : scene_.bodies) {
+      const auto i = static_cast<size_t>(part);
+      if (design_of(scene_, body.name) < scene_.designs.size())
+        folder_.add_motion_frame(body.name, designed(step, body), t, part);
+      else
+        folder_.add_surface_frame(step.model.body(body.name), step.x, poses_[i], t, part);
+      ++part;
+    }
+    for (const RigidBody& body : scene_.rigid_bodies) {
+      const std::vector<Vec2> corners = drawn_corners(body, step.model, step.x);
+      if (!corners.empty()) folder_.add_rigid_frame(body.name, corners, t, part);
+      ++part;
+    }
+  }
+
+  DesignedSurface designed(const fem::MotionStep& step, const Body& body) const {
+    const size_t d = design_of(scene_, body.name);
+    const Grid& grid = scene_.designs[d].grid;
+    const VectorXd density =
+        wishes_.factors.empty() ? VectorXd::Ones(grid.n_cells()) : wishes_.factors[d].mass;
+    return designed_surface(step.model.body(body.name), step.x, grid, density);
+  }
+
+  /// The mechanism as it is now, for a picture.
+  void add_moment(const fem::MotionStep& step) {
+    io::PlaneFrame frame;
+    frame.title = "t = " + io::to_text(step.x.t, 4) + " s";
+    for (size_t i = 0; i < scene_.bodies.size(); ++i) {
+      const Body& body = scene_.bodies[i];
+      if (const size_t d = design_of(scene_, body.name); d < scene_.designs.size()) {
+        DesignedSurface s = designed(step, body);
+        frame.plates.push_back(
+            {scene_.designs[d].grid.ny, std::move(s.mesh.points), std::move(s.density)});
+      } else {
+        Surface s = deformed_surface(step.model.body(body.name), step.x, poses_[i]);
+        const std::vector<double> full(s.mesh.quads.size(), 1.0);
+        frame.plates.push_back({s.across, std::move(s.mesh.points), full});
       }
-      if (is_multiple(t, wishes_.frames_every))
-        folder_.add_motion_frame(step.model, growth, step.x, scene_.designs[d].grid,
-                                 wishes_.factors[d].mass, static_cast<int>(i));
     }
+    for (const RigidBody& body : scene_.rigid_bodies)
+      if (auto corners = drawn_corners(body, step.model, step.x); !corners.empty())
+        frame.outlines.push_back(std::move(corners));
+    out_.record.moments.push_back(std::move(frame));
   }
 
   const Scene& scene_;
@@ -112,6 +177,7 @@ class Recorder {
   MotionOutcome& out_;
   std::vector<const fem::Growth*> tracked_;  // whose tip deflections are in the table
   std::vector<Pose> poses_;                  // of the bodies at the start
+  MechanismColumns columns_;
 };
 
 }  // namespace
@@ -133,9 +199,11 @@ MotionOutcome run_motion(const Scene& scene, const MotionWishes& wishes, RunFold
     out.record.result = fem::integrate(mechanism.model, mechanism.growths, mechanism.motion,
                                        [&](const fem::MotionStep& step) { record(step); });
   } catch (...) {
+    record.finish();
     folder.write_motion(wishes.table, scene, out.record);
     throw;
   }
+  record.finish();
   folder.write_motion(wishes.table, scene, out.record);
   for (fem::EslSets& sets : out.loads) sets.strain_energy_integral = out.record.strain_integral;
   return out;

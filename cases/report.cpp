@@ -2,9 +2,10 @@
 
 #include <cmath>
 
+#include "cases/mechanism_plots.h"
+#include "cases/report_plots.h"
 #include "cases/version.h"
 #include "io/files.h"
-#include "io/plots.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -89,7 +90,24 @@ io::Json path_results(const PathRecord& path) {
   return out;
 }
 
-io::Json motion_results(const MotionRecord& motion) {
+/// How far the trajectory's body was from its path at worst.
+io::Json trajectory_errors(const Scene& scene, const RunReport& report) {
+  const std::string& body = scene.trajectory->body;
+  io::Json out = io::Json::object();
+  out.set("body", body);
+  const auto add = [&](const std::string& prefix, const MotionRecord& motion) {
+    for (const char* quantity : {"delta_x", "delta_y", "delta_angle"}) {
+      const LargestError error = largest_error(motion, body, quantity);
+      out.set(prefix + quantity, error.size).set(prefix + quantity + "_time", error.time);
+    }
+  };
+  add("", *report.motion);
+  if (report.uniform_motion) add("uniform_", *report.uniform_motion);
+  return out;
+}
+
+io::Json motion_results(const Scene& scene, const RunReport& report) {
+  const MotionRecord& motion = *report.motion;
   const fem::MotionResult& r = motion.result;
   io::Json out = io::Json::object();
   out.set("steps", r.counts.steps).set("newton_iterations", r.counts.newton);
@@ -110,13 +128,18 @@ io::Json motion_results(const MotionRecord& motion) {
   }
   out.set("events", std::move(events));
   if (!motion.observed.empty()) out.set("observed", last_values(motion.observed));
+  if (scene.trajectory) out.set("platform_error", trajectory_errors(scene, report));
   return out;
 }
 
-/// The value of an observed column at the end, if there is one of that name.
+/// The value of a column at the end, if there is one of that name.
+std::optional<double> last_value(const std::vector<double>* values) {
+  if (!values || values->empty()) return {};
+  return values->back();
+}
 std::optional<double> observed(const std::vector<Column>& columns, const std::string& name) {
   for (const Column& column : columns)
-    if (column.name == name && !column.values.empty()) return column.values.back();
+    if (column.name == name) return last_value(&column.values);
   return {};
 }
 
@@ -135,13 +158,43 @@ io::Json expectations(const Scene& scene, const RunReport& report) {
     }
     if (name == "amplitude" && report.motion && !report.motion->amplitude.empty())
       found = report.motion->amplitude[0];
-    if (!found && report.motion) found = observed(report.motion->observed, name);
+    if (!found && report.motion) found = last_value(report.motion->column(name));
     if (!found && report.path) found = observed(report.path->observed, name);
     io::Json entry = io::Json::object();
     entry.set("found", found ? io::Json(*found) : io::Json());
     entry.set("holds", found && wanted.holds(*found));
     out.set(name, std::move(entry));
   }
+  return out;
+}
+
+io::Json cycle_results(const mmc::CycleVerdict& v) {
+  io::Json out = io::Json::object();
+  out.set("cycle", v.cycle).set("objective", v.objective);
+  io::Json bodies = io::Json::array();
+  for (const mmc::BodyVerdict& b : v.bodies) {
+    io::Json body = io::Json::object();
+    body.set("body", b.body).set("compliance", b.compliance);
+    body.set("sharp_compliance", b.sharp_compliance).set("design_change", b.design_change);
+    bodies.push(std::move(body));
+  }
+  out.set("bodies", std::move(bodies));
+  out.set("strain_energy_integral", v.strain_energy_integral).set("best", v.best);
+  return out;
+}
+
+/// What bodies with one budget take of it, if there are such.
+std::optional<io::Json> shared_mass(const RunReport& report) {
+  double used = 0, allowed = 0;
+  for (size_t i = 0; i < report.outcomes.size(); ++i) {
+    const mmc::BodyProblem& p = report.problems[i];
+    if (!p.shares_mass) continue;
+    used += mmc::full_mass_of(p) * report.outcomes[i].volume;
+    allowed += mmc::full_mass_of(p) * p.goal.max_volume;
+  }
+  if (allowed == 0) return {};
+  io::Json out = io::Json::object();
+  out.set("used", used).set("allowed", allowed);
   return out;
 }
 
@@ -168,126 +221,24 @@ std::string run_json(const Scene& scene, const RunReport& report) {
       warnings.push("body '" + o.body +
                     "': the sharp compliance is far above the blurred one: gaps are bridged");
   }
+  if (report.motion)
+    for (const fem::Conditioning& c : report.motion->result.near_singular)
+      warnings.push(fem::describe(c));
   out.set("warnings", std::move(warnings));
   io::Json results = io::Json::array();
   for (size_t i = 0; i < report.outcomes.size(); ++i) results.push(body_results(report, i));
   out.set("results", std::move(results));
+  if (std::optional<io::Json> shared = shared_mass(report))
+    out.set("shared_mass", std::move(*shared));
   if (!report.verdicts.empty()) {
     io::Json cycles = io::Json::array();
-    for (const mmc::CycleVerdict& v : report.verdicts) {
-      io::Json cycle = io::Json::object();
-      cycle.set("cycle", v.cycle).set("strain_energy_integral", v.strain_energy_integral);
-      cycle.set("best", v.best);
-      cycles.push(std::move(cycle));
-    }
+    for (const mmc::CycleVerdict& v : report.verdicts) cycles.push(cycle_results(v));
     out.set("cycles", std::move(cycles));
   }
-  if (report.motion) out.set("motion", motion_results(*report.motion));
+  if (report.motion) out.set("motion", motion_results(scene, report));
   if (report.path) out.set("static", path_results(*report.path));
   if (!scene.expect.empty()) out.set("expect", expectations(scene, report));
   return out.text();
-}
-
-std::string convergence_plot(const RunFolder::History& h) {
-  io::Figure figure;
-  figure.title = "Design of " + h.body;
-  io::Panel compliance;
-  compliance.x.label = "iteration";
-  compliance.y = {"compliance [J]", true, {}, {}};
-  compliance.curves.push_back({"blurred", h.row, h.compliance, true, false, false});
-  if (!h.sharp_row.empty())
-    compliance.curves.push_back({"sharp", h.sharp_row, h.sharp_compliance, false, true, false});
-  io::Panel volume;
-  volume.x.label = "iteration";
-  volume.y.label = "volume fraction";
-  volume.curves.push_back({"", h.row, h.volume, true, false, false});
-  io::Panel kkt;
-  kkt.x.label = "iteration";
-  kkt.y = {"KKT residual", true, {}, {}};
-  kkt.curves.push_back({"", h.row, h.kkt, true, false, false});
-  figure.panels = {compliance, volume, kkt};
-  return io::plot_svg(figure);
-}
-
-/// Deflection of the tip of every body against time: P Fig. 23.
-std::string deflection_plot(const MotionRecord& design,
-                            const std::optional<MotionRecord>& uniform) {
-  io::Figure figure;
-  figure.title = "Tip deflection";
-  for (size_t i = 0; i < design.deflection.size(); ++i) {
-    io::Panel panel;
-    panel.title = design.bodies.size() > 1 ? design.bodies[i] : "";
-    panel.x.label = "time [s]";
-    panel.y.label = "deflection [m]";
-    const bool designed = uniform.has_value();
-    panel.curves.push_back(
-        {designed ? "optimized" : "", design.time, design.deflection[i], true, false, false});
-    if (designed)
-      panel.curves.push_back(
-          {"uniform, same volume", uniform->time, uniform->deflection[i], true, false, true});
-    figure.panels.push_back(panel);
-  }
-  return io::plot_svg(figure);
-}
-
-/// Panels of observed columns: components of a point share one, and curves are named by what
-/// follows the last underscore.
-void add_observed(const std::vector<double>& x, const std::string& x_label,
-                  const std::vector<Column>& columns, const std::string& what, io::Figure& figure) {
-  for (const Column& column : columns) {
-    const size_t cut = column.name.rfind('_');
-    const std::string point = column.name.substr(0, cut);
-    const bool line = point.ends_with(".line");
-    const std::string title = line ? column.name : point;
-    if (figure.panels.empty() || figure.panels.back().title != title) {
-      io::Panel panel;
-      panel.title = title;
-      panel.x.label = x_label;
-      panel.y.label = line ? "material coordinate [m]" : what;
-      figure.panels.push_back(panel);
-    }
-    figure.panels.back().curves.push_back(
-        {line ? "" : column.name.substr(cut + 1), x, column.values, true, false, false});
-  }
-}
-
-std::string observed_plot(const MotionRecord& motion) {
-  io::Figure figure;
-  figure.title = "Observed motion";
-  add_observed(motion.time, "time [s]", motion.observed, "position [m]", figure);
-  return io::plot_svg(figure);
-}
-
-/// Displacements and strain energy against the load factor; along an arc the factor may go back.
-std::string path_plot(const PathRecord& path) {
-  io::Figure figure;
-  figure.title = "Path of equilibria";
-  add_observed(path.factor, "load factor", path.observed, "displacement [m]", figure);
-  for (io::Panel& panel : figure.panels)
-    for (io::Curve& curve : panel.curves) curve.markers = true;
-  io::Panel energy;
-  energy.x.label = "load factor";
-  energy.y.label = "strain energy [J]";
-  energy.curves.push_back({"", path.factor, path.strain, true, true, false});
-  figure.panels.push_back(energy);
-  return io::plot_svg(figure);
-}
-
-std::string energy_plot(const Scene& scene, const MotionRecord& motion) {
-  io::Figure figure;
-  figure.title = "Energies";
-  const auto panel = [&](const char* label, const std::vector<double>& y) {
-    io::Panel out;
-    out.x.label = "time [s]";
-    out.y.label = label;
-    out.curves.push_back({"", motion.time, y, true, false, false});
-    figure.panels.push_back(out);
-  };
-  panel("kinetic [J]", motion.kinetic);
-  panel("strain [J]", motion.strain);
-  if (scene.in_space()) panel("potential [J]", motion.potential);
-  panel("defect of the balance [J]", motion.defect);
-  return io::plot_svg(figure);
 }
 
 io::ReportSection results_section(const RunReport& report) {
@@ -306,6 +257,37 @@ io::ReportSection results_section(const RunReport& report) {
   return out;
 }
 
+io::ReportSection design_section(const RunFolder::DesignPictures& pictures) {
+  std::vector<std::string> all;
+  if (!pictures.start.empty()) all.push_back(pictures.start);
+  if (!pictures.result.empty()) all.push_back(pictures.result);
+  io::ReportSection out;
+  out.heading = "Components of " + pictures.body;
+  out.words = all.size() > 1 ? "At the start and in the end." : "";
+  out.pictures = std::move(all);
+  return out;
+}
+
+/// Cycles beside each other: did the motion get better, and not only the loads' compliance?
+io::ReportSection cycles_section(const RunReport& report) {
+  io::ReportSection out;
+  out.heading = "Cycles";
+  out.rows.push_back({"cycle", "compliance of all [J]", "strain energy over time [J s]", "best"});
+  std::vector<std::string>& header = out.rows.front();
+  for (const mmc::BodyVerdict& b : report.verdicts.front().bodies)
+    for (const char* what : {": compliance [J]", ": sharp compliance [J]", ": change of design"})
+      header.push_back(b.body + what);
+  for (const mmc::CycleVerdict& v : report.verdicts) {
+    std::vector<std::string>& row = out.rows.emplace_back();
+    row = {io::to_text(v.cycle), io::to_text(v.objective, 6),
+           io::to_text(v.strain_energy_integral, 6), v.best ? "yes" : ""};
+    for (const mmc::BodyVerdict& b : v.bodies)
+      for (const double value : {b.compliance, b.sharp_compliance, b.design_change})
+        row.push_back(io::to_text(value, 5));
+  }
+  return out;
+}
+
 }  // namespace
 
 void write_report(const Scene& scene, const RunReport& report, RunFolder& folder) {
@@ -317,14 +299,17 @@ void write_report(const Scene& scene, const RunReport& report, RunFolder& folder
   head.words = "Status: " + report.status + (report.message.empty() ? "" : " - " + report.message);
   sections.push_back(head);
   if (!report.outcomes.empty()) sections.push_back(results_section(report));
+  if (!report.verdicts.empty()) sections.push_back(cycles_section(report));
   const auto add = [&](const std::string& name, const std::string& heading, std::string svg) {
-    if (!scene.output.plots) return;
+    if (!scene.output.plots || svg.empty()) return;
     folder.write_text("plots/" + name + ".svg", svg);
     io::ReportSection section;
     section.heading = heading;
     section.pictures.push_back(std::move(svg));
     sections.push_back(std::move(section));
   };
+  for (const RunFolder::DesignPictures& p : folder.design_pictures())
+    sections.push_back(design_section(p));
   for (const RunFolder::History& h : folder.histories())
     add("convergence_" + h.body, "Convergence of " + h.body, convergence_plot(h));
   if (report.motion) {
@@ -332,6 +317,14 @@ void write_report(const Scene& scene, const RunReport& report, RunFolder& folder
       add("deflection", "Tip deflection", deflection_plot(*report.motion, report.uniform_motion));
     if (!report.motion->observed.empty())
       add("observed", "Observed motion", observed_plot(*report.motion));
+    if (scene.is_mechanism()) {
+      add("inputs", "Inputs", inputs_plot(scene));
+      add("mechanism", "Mechanism in motion", moments_plot(*report.motion));
+      if (scene.trajectory)
+        add("error_" + scene.trajectory->body, "Error of " + scene.trajectory->body,
+            error_plot(scene, *report.motion, report.uniform_motion));
+    }
+    add("joint_forces", "Joint forces", joint_forces_plot(scene, *report.motion));
     add("energies", "Energies of the motion", energy_plot(scene, *report.motion));
   }
   if (report.path) add("path", "Path of equilibria", path_plot(*report.path));

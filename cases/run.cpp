@@ -12,6 +12,7 @@
 #include "cases/motion_run.h"
 #include "cases/path_run.h"
 #include "cases/report.h"
+#include "cases/twin.h"
 #include "cases/version.h"
 #include "io/files.h"
 
@@ -83,14 +84,19 @@ std::vector<fem::Factors> final_factors(const std::vector<mmc::BodyProblem>& pro
   return out;
 }
 
+/// Pictures of a mechanism in its motion.
+int moments_of(const Scene& scene) { return scene.is_mechanism() && scene.output.plots ? 4 : 0; }
+
 /// The judge of a design is the motion with it; beside it the same volume spread evenly.
 void judge_by_motion(const Scene& scene, RunFolder& folder, Progress& progress, RunReport& report) {
   MotionWishes wishes;
   wishes.factors = final_factors(report.problems);
   wishes.frames_every = scene.output.vtk ? scene.output.motion_every : 0;
+  wishes.moments = moments_of(scene);
   wishes.go_on = go_on;
   report.motion = run_motion(scene, wishes, folder).record;
   wishes.frames_every = 0;
+  wishes.moments = 0;
   wishes.factors = uniform_factors(report.problems);
   wishes.table = "motion_uniform.csv";
   report.uniform_motion = run_motion(scene, wishes, folder).record;
@@ -109,6 +115,7 @@ void judge_by_motion(const Scene& scene, RunFolder& folder, Progress& progress, 
 /// The story of a run with designs; fills the report as far as it gets.
 void run_designs(const Scene& scene, RunFolder& folder, Progress& progress, RunReport& report) {
   report.problems = build_problems(scene);
+  for (const mmc::BodyProblem& problem : report.problems) folder.write_start(problem);
   const auto simulate = [&](std::span<const fem::Factors> factors) {
     MotionWishes wishes;
     wishes.factors.assign(factors.begin(), factors.end());
@@ -145,9 +152,12 @@ void run_designs(const Scene& scene, RunFolder& folder, Progress& progress, RunR
       scene.cycle.max_cycles, scene.cycle.tolerance, {scene.output.sharp_every, scene.optimizer}};
   observer.verdict = [&](std::span<const mmc::CycleVerdict> verdicts) {
     report.verdicts.assign(verdicts.begin(), verdicts.end());
-    for (const mmc::CycleVerdict& v : verdicts)
-      progress.say("cycle " + std::to_string(v.cycle) + ": strain energy over time " +
-                   io::to_text(v.strain_energy_integral, 5) + " J s" + (v.best ? ", best" : ""));
+    folder.write_cycles(verdicts);
+    const mmc::CycleVerdict& v = verdicts.back();
+    progress.say("cycle " + std::to_string(v.cycle) + ": compliance of all bodies " +
+                 io::to_text(v.objective, 5) + ", strain energy over time " +
+                 io::to_text(v.strain_energy_integral, 5) + " J s" +
+                 (v.best ? ", the least so far" : ""));
   };
   const std::vector<mmc::BodyOutcome> best =
       mmc::esl_loop(report.problems, simulate, settings, observer);
@@ -163,6 +173,7 @@ void run_designs(const Scene& scene, RunFolder& folder, Progress& progress, RunR
 /// The story of a plate at rest.
 void run_static(const Scene& scene, RunFolder& folder, Progress& progress, RunReport& report) {
   report.problems = build_problems(scene);
+  for (const mmc::BodyProblem& problem : report.problems) folder.write_start(problem);
   mmc::BodyProblem& problem = report.problems.front();
   const std::unique_ptr<mmc::LoadResponse> loads = build_static_loads(scene, problem);
   bool going = true;
@@ -194,6 +205,7 @@ void run_scene(const Scene& scene, RunFolder& folder, Progress& progress, RunRep
   }
   MotionWishes wishes;
   wishes.frames_every = scene.output.vtk ? scene.output.motion_every : 0;
+  wishes.moments = moments_of(scene);
   wishes.go_on = go_on;
   report.motion = run_motion(scene, wishes, folder).record;
   const fem::MotionResult& result = report.motion->result;
@@ -207,7 +219,12 @@ void run_scene(const Scene& scene, RunFolder& folder, Progress& progress, RunRep
 void build_scene(const Scene& scene) {
   if (!scene.domain) {
     // One evaluation: loads and terms find their places, or say what they cannot do.
+    if (scene.is_mechanism()) check_mechanism(scene);  // its joints have the names of the case
     Mechanism mechanism = build_mechanism(scene);
+    if (mechanism.model.n_constraints() > 0)
+      fem::require_independent(fem::diagnose(
+          mechanism.model, fem::start_state(mechanism.model, mechanism.growths, 0,
+                                            fem::Start::rigid, mechanism.motion.placement)));
     const fem::State x = mechanism.model.reference();
     VectorXd force;
     mechanism.model.prepare(x);

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <filesystem>
 
-#include "cases/surface.h"
 #include "io/exports.h"
 #include "io/files.h"
 #include "io/plots.h"
@@ -44,6 +43,7 @@ std::string numbered(const std::string& stem, int number, const std::string& end
 const std::vector<std::string> kOurs = {"case.toml",
                                         "run.json",
                                         "history.csv",
+                                        "cycles.csv",
                                         "events.csv",
                                         "motion.csv",
                                         "path.csv",
@@ -80,6 +80,13 @@ void empty_folder(const std::string& path) {
 }
 
 }  // namespace
+
+const std::vector<double>* MotionRecord::column(const std::string& name) const {
+  for (const auto* columns : {&observed, &mechanism})
+    for (const Column& column : *columns)
+      if (column.name == name) return &column.values;
+  return nullptr;
+}
 
 double tip_deflection(const fem::Model& model, const fem::Growth& growth, const fem::State& x) {
   const fem::Body& body = model.body(growth.body);
@@ -230,20 +237,28 @@ void RunFolder::write_motion(const std::string& name, const Scene& scene,
   for (const std::string& body : motion.bodies) columns.push_back(body + ".tip_deflection");
   for (const std::string& body : motion.growing) columns.push_back(body + ".length");
   for (const Column& column : motion.observed) columns.push_back(column.name);
+  for (const Column& column : motion.mechanism) columns.push_back(column.name);
   for (const char* quantity :
        {"energy.kinetic", "energy.strain", "energy.potential", "energy.defect"})
     columns.emplace_back(quantity);
+  for (const Column& column : motion.powers) columns.push_back(column.name);
   io::CsvWriter csv(path_ + "/" + name, columns);
-  for (size_t i = 0; i < motion.time.size(); ++i) {
+  // What failed while a row was being filled left it unfinished: it is not written.
+  size_t rows = motion.time.size();
+  for (const auto* group : {&motion.observed, &motion.mechanism, &motion.powers})
+    for (const Column& column : *group) rows = std::min(rows, column.values.size());
+  for (size_t i = 0; i < rows; ++i) {
     std::vector<io::Cell> row = {motion.time[i]};
     for (const auto& deflection : motion.deflection) row.emplace_back(deflection[i]);
     for (const std::string& body : motion.growing)
       row.emplace_back(scene.body(body).length_at(motion.time[i]));
     for (const Column& column : motion.observed) row.emplace_back(column.values[i]);
+    for (const Column& column : motion.mechanism) row.emplace_back(column.values[i]);
     row.emplace_back(motion.kinetic[i]);
     row.emplace_back(motion.strain[i]);
     row.emplace_back(motion.potential[i]);
     row.emplace_back(motion.defect[i]);
+    for (const Column& column : motion.powers) row.emplace_back(column.values[i]);
     csv.row(row);
   }
 }
@@ -263,18 +278,38 @@ void RunFolder::write_path(const PathRecord& path) {
   }
 }
 
+void RunFolder::write_part(const std::string& body, const io::QuadMesh& mesh,
+                           std::vector<io::Field> cells, std::span<const io::Field> points,
+                           double time, int part) {
+  const std::vector<double> number(mesh.quads.size(), part);
+  cells.push_back({"body", number});
+  const std::string file = numbered("motion_" + body + "_", ++motion_frames_, ".vtu");
+  io::write_quad_mesh(path_ + "/motion/" + file, mesh, cells, points);
+  motion_.add(time, file, part);
+}
+
 void RunFolder::add_surface_frame(const fem::Body& body, const fem::State& x, const Pose& pose,
                                   double time, int part) {
   const Surface surface = deformed_surface(body, x, pose);
-  const io::Field cells[] = {{"strain_energy", surface.energy}};
   const io::Field points[] = {{"displacement", surface.displacement, surface.mesh.dimension}};
-  const std::string file = numbered("motion_" + body.name + "_", ++motion_frames_, ".vtu");
-  io::write_quad_mesh(path_ + "/motion/" + file, surface.mesh, cells, points);
-  motion_.add(time, file, part);
+  write_part(body.name, surface.mesh, {{"strain_energy", surface.energy}}, points, time, part);
   if (part == 0 && surface.mesh.dimension == 3)
     shapes_.push_back(
         {(scene_.statics ? "step " : "t = ") + io::to_text(time, 4) + (scene_.statics ? "" : " s"),
          surface.mesh, surface.energy});
+}
+
+void RunFolder::add_rigid_frame(const std::string& body, std::span<const Vec2> corners, double time,
+                                int part) {
+  io::QuadMesh mesh;
+  for (const Vec2& corner : corners) mesh.points.insert(mesh.points.end(), {corner[0], corner[1]});
+  mesh.quads.push_back({0, 1, 2, 3});
+  write_part(body, mesh, {}, {}, time, part);
+}
+
+void RunFolder::add_motion_frame(const std::string& body, const DesignedSurface& surface,
+                                 double time, int part) {
+  write_part(body, surface.mesh, {{"density", surface.density}}, {}, time, part);
 }
 
 std::vector<io::SurfaceFrame> RunFolder::shapes(size_t most) const {
@@ -284,46 +319,63 @@ std::vector<io::SurfaceFrame> RunFolder::shapes(size_t most) const {
   return out;
 }
 
-void RunFolder::add_motion_frame(const fem::Model& model, const fem::Growth& growth,
-                                 const fem::State& x, const Grid& grid, const VectorXd& density,
-                                 int part) {
-  const fem::Body& body = model.body(growth.body);
-  const double root = fem::grid_of(body).line_m(0).value;
-  const int first = std::max(0, static_cast<int>(std::ceil((root - grid.x0) / grid.dx() - 1e-6)));
-  io::QuadMesh mesh;
-  std::vector<double> values;
-  const int ny = grid.ny;
-  for (int i = first; i <= grid.nx; ++i)
-    for (int j = 0; j <= ny; ++j) {
-      const Vec2 p = fem::point_motion(body, x, grid.node_position(i, j)).position;
-      mesh.points.push_back(p.x());
-      mesh.points.push_back(p.y());
-      if (i == grid.nx || j == ny) continue;
-      const int a = (i - first) * (ny + 1) + j;
-      mesh.quads.push_back({a, a + ny + 1, a + ny + 2, a + 1});
-      values.push_back(density[grid.cell(i, j)]);
-    }
-  const io::Field cells[] = {{"density", values}};
-  const std::string file = numbered("motion_" + body.name + "_", ++motion_frames_, ".vtu");
-  io::write_quad_mesh(path_ + "/motion/" + file, mesh, cells, {});
-  motion_.add(x.t, file, part);
+namespace {
+
+/// The union of a design's components in its domain, to a tolerance in cells.
+struct Outlines {
+  std::vector<Region> regions;
+  Box frame;
+
+  explicit Outlines(const mmc::BodyProblem& problem, double tolerance = mmc::kOutlineTolerance)
+      : regions(
+            mmc::regions_of(problem, problem.design.components(), tolerance * problem.grid.dx())) {
+    const Grid& g = problem.grid;
+    frame = {{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}};
+  }
+  std::string svg() const { return io::outline_svg(regions, frame); }
+  std::string picture() const { return io::outline_svg(regions, frame, 5); }
+};
+
+}  // namespace
+
+RunFolder::DesignPictures& RunFolder::pictures_of(const std::string& body) {
+  for (DesignPictures& p : pictures_)
+    if (p.body == body) return p;
+  pictures_.emplace_back().body = body;
+  return pictures_.back();
+}
+
+void RunFolder::write_start(const mmc::BodyProblem& problem) {
+  if (!scene_.output.plots) return;
+  std::string& svg = pictures_of(problem.body).start;
+  svg = Outlines(problem, 0.05).picture();
+  io::write_file(path_ + "/plots/start_" + problem.body + ".svg", svg);
 }
 
 void RunFolder::write_design(const mmc::BodyProblem& problem, const mmc::BodyOutcome& outcome) {
   const std::string stem = scene_.designs.size() > 1 ? "_" + problem.body : "";
   const std::vector<Component> components = problem.design.components();
   io::write_components_csv(path_ + "/components" + stem + ".csv", components);
-  const Grid& g = problem.grid;
-  const Box domain{{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}};
-  const std::vector<Region> regions =
-      mmc::regions_of(problem, components, mmc::kOutlineTolerance * g.dx());
-  io::write_file(path_ + "/design" + stem + ".svg", io::outline_svg(regions, domain));
-  io::write_dxf(path_ + "/design" + stem + ".dxf", regions);
-  io::write_stl(path_ + "/design" + stem + ".stl", regions, problem.section.thickness);
+  const Outlines outlines(problem);
+  io::write_file(path_ + "/design" + stem + ".svg", outlines.svg());
+  io::write_dxf(path_ + "/design" + stem + ".dxf", outlines.regions);
+  io::write_stl(path_ + "/design" + stem + ".stl", outlines.regions, problem.section.thickness);
   if (!scene_.output.plots) return;
+  pictures_of(problem.body).result = outlines.picture();
   const auto& sharp = outcome.sharp.fractions;
-  io::write_png(path_ + "/plots/design" + stem + ".png", g,
+  io::write_png(path_ + "/plots/design" + stem + ".png", problem.grid,
                 {sharp.data(), static_cast<size_t>(sharp.size())});
+}
+
+void RunFolder::write_cycles(std::span<const mmc::CycleVerdict> cycles) {
+  const std::vector<std::string> columns = {
+      "cycle", "body", "compliance", "sharp_compliance", "design_change", "strain_energy_integral",
+      "best"};
+  io::CsvWriter csv(path_ + "/cycles.csv", columns);
+  for (const mmc::CycleVerdict& c : cycles)
+    for (const mmc::BodyVerdict& b : c.bodies)
+      csv.row({c.cycle, b.body, b.compliance, b.sharp_compliance, b.design_change,
+               c.strain_energy_integral, c.best});
 }
 
 void RunFolder::write_text(const std::string& name, const std::string& text) {

@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "cases/build.h"
+#include "cases/surface.h"
 #include "fem/dynamics/motion.h"
+#include "io/plane_frames.h"
 #include "io/surfaces.h"
 #include "io/tables.h"
 #include "io/vtk.h"
@@ -27,8 +29,14 @@ struct MotionRecord {
   std::vector<std::vector<double>> deflection;  ///< per body [m]
   std::vector<double> amplitude;                ///< largest |tip deflection| per body [m]
   double strain_integral = 0;                   ///< ∫ U dt of the whole model [J s]
-  std::vector<Column> observed;  ///< positions of points, and free lines' coordinates [m]
+  std::vector<Column> observed;         ///< positions of points, and free lines' coordinates [m]
+  std::vector<Column> mechanism;        ///< see MechanismColumns
+  std::vector<Column> powers;           ///< that enter a mechanism, where the balance is kept [W]
+  std::vector<io::PlaneFrame> moments;  ///< pictures of a mechanism
   fem::MotionResult result;
+
+  /// The values of a column of `observed` or `mechanism`; null where there is none.
+  const std::vector<double>* column(const std::string& name) const;
 };
 
 /// The path of a [static] analysis.
@@ -65,17 +73,26 @@ class RunFolder {
   void write_static_loads(const Domain& domain, const mmc::BodyOutcome& outcome);
   /// motion.csv (or another name): one row per time step.
   void write_motion(const std::string& name, const Scene& scene, const MotionRecord& motion);
-  /// One frame of motion/motion.pvd: the deformed body with its density.
-  void add_motion_frame(const fem::Model& model, const fem::Growth& growth, const fem::State& x,
-                        const Grid& grid, const VectorXd& density, int part);
+  /// A part of a frame of motion/motion.pvd, which has one file per part and time; the field `body`
+  /// is its number. The deformed body with the density of its design:
+  void add_motion_frame(const std::string& body, const DesignedSurface& surface, double time,
+                        int part);
   /// path.csv: one row per equilibrium.
   void write_path(const PathRecord& path);
-  /// One frame of motion/motion.pvd: the deformed mid-surface of a body without a design, with
-  /// displacements and strain energy per area.
+  /// The deformed mid-surface of a body without a design, with displacements and strain energy per
+  /// area:
   void add_surface_frame(const fem::Body& body, const fem::State& x, const Pose& pose, double time,
                          int part);
+  /// A rigid body, by its corners:
+  void add_rigid_frame(const std::string& body, std::span<const Vec2> corners, double time,
+                       int part);
+
+  /// plots/start_<body>.svg: the layout before the first iteration.
+  void write_start(const mmc::BodyProblem& problem);
   /// Outlines, pictures and tables of a final design.
   void write_design(const mmc::BodyProblem& problem, const mmc::BodyOutcome& outcome);
+  /// cycles.csv, anew: one row per cycle and body.
+  void write_cycles(std::span<const mmc::CycleVerdict> cycles);
   void write_text(const std::string& name, const std::string& text);
 
   /// Rows of the history per body, for plots.
@@ -85,11 +102,20 @@ class RunFolder {
   };
   const std::vector<History>& histories() const { return histories_; }
 
+  /// Outlines of the designs as SVG: where they start, and what came out so far.
+  struct DesignPictures {
+    std::string body, start, result;
+  };
+  const std::vector<DesignPictures>& design_pictures() const { return pictures_; }
+
   /// Frames of the first body in space, for a picture: all up to a few, else some evenly spread.
   std::vector<io::SurfaceFrame> shapes(size_t most) const;
 
  private:
   History& history_of(const std::string& body);
+  DesignPictures& pictures_of(const std::string& body);
+  void write_part(const std::string& body, const io::QuadMesh& mesh, std::vector<io::Field> cells,
+                  std::span<const io::Field> points, double time, int part);
   void add_events(const mmc::IterationReport& report);
 
   std::string path_;
@@ -97,6 +123,7 @@ class RunFolder {
   std::unique_ptr<io::CsvWriter> history_, events_;  // events.csv: from the first one on
   io::Series iterations_, components_, motion_;
   std::vector<History> histories_;
+  std::vector<DesignPictures> pictures_;
   int rows_ = 0, motion_frames_ = 0;
   std::vector<io::SurfaceFrame> shapes_;
   double output_seconds_ = 0;

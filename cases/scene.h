@@ -182,8 +182,9 @@ struct Body {
 /// line_drive  the free line moves through the material at `speed`, or stands where `at` says
 struct Joint {
   std::string type, body;
-  std::string name;  ///< as messages and tables say it
-  Anchor a, b;       ///< of joints between bodies
+  std::string name;    ///< as messages and tables say it
+  bool named = false;  ///< by the case: its forces are in the table of the motion
+  Anchor a, b;         ///< of joints between bodies
   std::vector<Law> laws;
   std::string edge;
   std::string to;
@@ -293,6 +294,7 @@ struct BodyDesign {
   int seed = 1;                   ///< of the jitter
   int drop_every = 25;            ///< iterations between looks for dead components, 0: none
   bool refill = false;            ///< long components are split in place of dropped ones
+  bool shares_mass = false;       ///< with the other designs that do: see mmc::SharedProblem
   std::vector<Box> solid, empty;  ///< a cell belongs to a region that holds its centre [m]
 
   int n_components() const {

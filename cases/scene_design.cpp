@@ -229,6 +229,18 @@ mmc::Goal read_goal(const Table& t) {
   return goal;
 }
 
+/// Is the design solved with those of other bodies, under one budget of mass?
+void read_coupling(const Table& t, BodyDesign& design) {
+  design.shares_mass =
+      t.choice<bool>("coupling", "a coupling", {{"none", false}, {"shared_mass", true}}, false);
+  if (!design.shares_mass) return;
+  if (design.goal.minimize != mmc::Goal::Minimize::compliance)
+    t.fail("coupling",
+           "only with minimize = \"compliance\": what is shared is what max_volume allows");
+  if (design.goal.over != mmc::Goal::Over::sum)
+    t.fail("coupling", "only with loads = \"sum\": compliances of all bodies are added");
+}
+
 /// The design of a plate at rest: its grid lies where the domain does.
 BodyDesign read_static_design(const Table& t, const Scene& scene) {
   BodyDesign design;
@@ -240,6 +252,7 @@ BodyDesign read_static_design(const Table& t, const Scene& scene) {
   design.grid.x0 = domain.bounds.lower.x();
   design.grid.y0 = domain.bounds.lower.y();
   design.goal = read_goal(t);
+  read_coupling(t, design);
   read_components(t, body, design);
   read_tdf(t, design);
   read_regions(t, body, scene, design);
@@ -265,6 +278,7 @@ BodyDesign read_design(const Table& t, const Scene& scene) {
 
   design.grid = read_grid(t, body, scene.time.end);
   design.goal = read_goal(t);
+  read_coupling(t, design);
   read_components(t, body, design);
   read_tdf(t, design);
   read_regions(t, body, scene, design);
@@ -354,7 +368,13 @@ Verify read_verify(const Table& t, const Scene& scene) {
 }  // namespace
 
 void read_designs(const Table& root, const Vocabulary& words, Scene& scene) {
-  for (const Table& t : root.tables("design")) scene.designs.push_back(read_design(t, scene));
+  std::vector<Table> sharing;
+  for (const Table& t : root.tables("design")) {
+    scene.designs.push_back(read_design(t, scene));
+    if (scene.designs.back().shares_mass) sharing.push_back(t);
+  }
+  if (sharing.size() == 1)
+    sharing[0].fail("coupling", "no other [[design]] has \"shared_mass\" to share with");
   if (scene.domain) {
     if (scene.designs.empty()) root.fail("design", "a static scene has a [[design]]");
     if (root.has("optimizer")) scene.optimizer = read_optimizer(root.table("optimizer"), words);

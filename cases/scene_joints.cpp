@@ -82,6 +82,11 @@ void read_frame(const Table& t, const Scene& scene, const Body& body, Joint& joi
     joint.mode = read_mode(t, fem::WeldMode::direction);
     if (body.flow) t.fail("body", "material flows out of a hub, see \"weld\", not out of a sleeve");
   }
+  const bool free = std::any_of(body.lines.begin(), body.lines.end(), [&](const BodyLine& l) {
+    return l.free && joint.edge != "free_end" && l.index == joint.line;
+  });
+  if (free && scene.is_mechanism() && !joint.on_rigid_body())
+    t.fail("edge", "in a scene with rigid bodies a free line slides in one of them, not in a hub");
   for (const Joint& other : scene.joints) {
     if (other.body != joint.body || !other.holds_frame()) continue;
     if (other.edge == joint.edge)

@@ -158,6 +158,7 @@ bool read_body_joint(const Table& t, const Scene& scene, Joint& joint) {
     return false;
   }
   joint.name = name_of_joint(t, joint, scene);
+  joint.named = t.has("name");
   return true;
 }
 
@@ -169,6 +170,26 @@ void read_carrier(const Table& t, Joint& joint) {
 
 void read_springs(const Table& root, Scene& scene) {
   for (const Table& t : root.tables("spring")) scene.springs.push_back(read_spring(t, scene));
+}
+
+void check_mechanism_parts(const Table& root, const Scene& scene) {
+  if (!scene.is_mechanism()) return;
+  const auto check = [&](const Table& t, const std::string& name) {
+    const auto here = [&](const Anchor& anchor) { return anchor.body == name; };
+    const bool held =
+        std::any_of(scene.joints.begin(), scene.joints.end(),
+                    [&](const Joint& j) { return j.body == name || here(j.a) || here(j.b); }) ||
+        std::any_of(scene.springs.begin(), scene.springs.end(),
+                    [&](const Spring& s) { return here(s.a) || here(s.b); });
+    if (!held) t.fail("name", "nothing holds '" + name + "': a [[joint]] or [[spring]] is missing");
+  };
+  const std::vector<Table> rigid = root.tables("rigid_body"), bodies = root.tables("body");
+  for (size_t i = 0; i < rigid.size(); ++i) check(rigid[i], scene.rigid_bodies[i].name);
+  for (size_t i = 0; i < bodies.size(); ++i) check(bodies[i], scene.bodies[i].name);
+  if (scene.time.start == Start::hub_at_rest)
+    root.table("time").fail("start",
+                            "\"hub_at_rest\" spins up hubs; the drives of a scene with rigid "
+                            "bodies say themselves how they start");
 }
 
 void read_trajectory(const Table& root, const Vocabulary& words, Scene& scene) {

@@ -107,6 +107,8 @@ Body read_body(const Table& t, const Vocabulary& words, const Scene& scene, bool
   body.space = t.choice("space", "a space", std::vector<std::string>{"plane", "space"}, "plane");
   if (!scene.bodies.empty() && scene.bodies.front().space != body.space)
     t.fail("space", "all bodies of a scene live in the plane, or all in space");
+  if (scene.is_mechanism() && body.in_space())
+    t.fail("space", "rigid bodies live in the plane: in their scenes plates do, too");
   body.terms = t.choices("terms", "a term", body.in_space() ? words.space_terms : words.terms);
   if (!scene.statics && !body.has("inertia")) t.fail("terms", "a body that moves has \"inertia\"");
   if (body.has("membrane") && body.has("membrane_assumed"))
@@ -203,6 +205,7 @@ void read_motion(const Table& root, const Vocabulary& words, Scene& scene) {
   follow(true);
   read_joints(root, words, scene);
   read_springs(root, scene);
+  check_mechanism_parts(root, scene);
   for (const Table& t : root.tables("point_mass"))
     scene.point_masses.push_back(read_point_mass(t, scene));
   read_loads(root, scene);

@@ -48,6 +48,9 @@ void read_carrier(const io::Table& t, Joint& joint);
 /// [[spring]].
 void read_springs(const io::Table& root, Scene& scene);
 
+/// What a scene with rigid bodies asks of all its parts; needs joints and springs.
+void check_mechanism_parts(const io::Table& root, const Scene& scene);
+
 /// [trajectory]; fills the drives that follow from it (needs bodies and joints).
 void read_trajectory(const io::Table& root, const Vocabulary& words, Scene& scene);
 

@@ -1,5 +1,9 @@
 #include "cases/surface.h"
 
+#include <cmath>
+
+#include "fem/dynamics/carrier.h"
+
 namespace flexmorph::cases {
 namespace {
 
@@ -53,6 +57,7 @@ Surface deformed_surface(const fem::Body& body, const fem::State& x, const Pose&
   const int rows = static_cast<int>(across.size());
   Surface out;
   out.mesh.dimension = grid.dim();
+  out.across = rows - 1;
   for (size_t i = 0; i < along.size(); ++i)
     for (size_t j = 0; j < across.size(); ++j) {
       const Vec2 material(along[i], across[j]);
@@ -67,6 +72,36 @@ Surface deformed_surface(const fem::Body& body, const fem::State& x, const Pose&
       out.energy.push_back(energy[static_cast<size_t>(
           grid.element(static_cast<int>(i) / kFine, static_cast<int>(j) / kFine))]);
     }
+  return out;
+}
+
+DesignedSurface designed_surface(const fem::Body& body, const fem::State& x, const Grid& grid,
+                                 const VectorXd& density) {
+  const double root = fem::grid_of(body).line_m(0).value;
+  const int first = std::max(0, static_cast<int>(std::ceil((root - grid.x0) / grid.dx() - 1e-6)));
+  DesignedSurface out;
+  const int ny = grid.ny;
+  for (int i = first; i <= grid.nx; ++i)
+    for (int j = 0; j <= ny; ++j) {
+      const Vec2 p = fem::point_motion(body, x, grid.node_position(i, j)).position;
+      out.mesh.points.push_back(p.x());
+      out.mesh.points.push_back(p.y());
+      if (i == grid.nx || j == ny) continue;
+      const int a = (i - first) * (ny + 1) + j;
+      out.mesh.quads.push_back({a, a + ny + 1, a + ny + 2, a + 1});
+      out.density.push_back(density[grid.cell(i, j)]);
+    }
+  return out;
+}
+
+std::vector<Vec2> drawn_corners(const RigidBody& body, const fem::Model& model,
+                                const fem::State& x) {
+  std::vector<Vec2> out;
+  if (body.size.isZero()) return out;
+  const fem::FrameMotion frame = fem::frame_of(model.body(body.name), x);
+  const Eigen::Matrix2d axes = fem::rotation(frame.angle);
+  for (const Vec2& corner : {Vec2(-0.5, -0.5), Vec2(0.5, -0.5), Vec2(0.5, 0.5), Vec2(-0.5, 0.5)})
+    out.emplace_back(frame.origin + axes * (body.center + corner.cwiseProduct(body.size)));
   return out;
 }
 

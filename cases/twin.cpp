@@ -5,11 +5,16 @@
 
 #include "cases/build.h"
 #include "cases/build_joints.h"
+#include "fem/dynamics/integrator.h"
 #include "fem/elements/rigid_body.h"
 #include "fem/solve/assembly.h"
 
 namespace flexmorph::cases {
 namespace {
+
+// Joints of the twin that lead a body along its trajectory.
+const char* const kPath = "trajectory";
+const char* const kPathAngle = "angle of the trajectory";
 
 std::function<fem::Motion(double)> negative(std::function<fem::Motion(double)> motion) {
   return [motion = std::move(motion)](double t) {
@@ -37,10 +42,43 @@ fem::Motion distance_along(const fem::FrameMotion& frame, const fem::FrameMotion
           u.acceleration.dot(d) + 2 * u.rate.dot(d_t) + u.e.dot(d_tt)};
 }
 
+/// What is wrong with the joints, and which drives of the case take part: of many joints they are
+/// the ones to look at.
+Error refusal(const Scene& scene, const fem::Diagnosis& diagnosis) {
+  std::string words = scene.name + ": " + fem::describe(diagnosis);
+  for (const fem::DependentGroup& group : diagnosis.groups) {
+    std::vector<std::string> drives;
+    for (const std::string& name : group.joints)
+      if (name == kPath || name == kPathAngle ||
+          std::any_of(scene.joints.begin(), scene.joints.end(),
+                      [&](const Joint& j) { return j.name == name && !j.laws.empty(); }))
+        drives.push_back(name);
+    if (group.joints.size() > 5 && !drives.empty())
+      words += "\nof them drives: " + fem::list_joints(drives);
+  }
+  return Error::input(words);
+}
+
+/// Assembles; says which joints are to blame where there is no position or velocity because they
+/// hold more than there is, wherever the bodies are.
+void assemble_start(const Scene& scene, fem::Model& model, fem::State& x) {
+  const fem::State guess = x;
+  try {
+    fem::assemble(model, x);
+  } catch (const Error& error) {
+    const fem::Diagnosis anywhere = fem::diagnose(model, guess);
+    if (error.kind() == Error::Kind::input || anywhere.is_independent()) throw;
+    const fem::Diagnosis nearest = fem::diagnose(model, x);  // x is the best fit
+    throw refusal(scene, nearest.is_contradictory() ? nearest : anywhere);
+  }
+}
+
+VectorXd gravity_of(const Scene& scene) { return scene.gravity ? *scene.gravity : VectorXd(); }
+
 }  // namespace
 
 Twin::Twin(const Scene& scene, Driven driven) : scene_(scene), driven_(driven) {
-  for (const RigidBody& b : scene.rigid_bodies) add_rigid_body(b, model_, {});
+  for (const RigidBody& b : scene.rigid_bodies) add_rigid_body(b, model_, gravity_of(scene));
   for (const Body& b : scene.bodies) add_plate(b);
   const FindPlace place = [&](const Anchor& anchor) {
     Vec2 point = anchor.point;
@@ -48,34 +86,34 @@ Twin::Twin(const Scene& scene, Driven driven) : scene_(scene), driven_(driven) {
       if (b.name == anchor.body) point.x() -= b.longest(scene.time.end);
     return fem::MarkerPlace{anchor.body, point, anchor.angle, {}};
   };
+  for (const Spring& spring : scene.springs) model_.add_link(make_link(spring, place));
   for (const Joint& joint : scene.joints) {
     if (joint.holds_frame()) {
       add_carried(joint);
     } else if (joint.type == "pin") {
       const Vec2 at = start_place(scene, {joint.body, joint.point});
-      model_.add_joint(
-          fem::make_point_drive(joint.name, place({joint.body, joint.point}),
-                                [at](double) {
-                                  return std::vector<fem::Motion>{{at.x(), 0, 0}, {at.y(), 0, 0}};
-                                },
-                                {0, 1}));
-    } else if (joint.between_bodies() && (joint.laws.empty() || !follows(joint.laws[0]))) {
+      std::vector<fem::Motion> rest;
+      for (const int c : joint.components) rest.push_back({at[c], 0, 0});
+      model_.add_joint(fem::make_point_drive(
+          joint.name, place({joint.body, joint.point}), [rest](double) { return rest; },
+          joint.components));
+    } else if (joint.between_bodies() && (joint.laws.empty() || !let_go(joint.laws[0]))) {
       model_.add_joint(make_body_joint(scene, joint, place));
     }
   }
   if (driven != Driven::by_trajectory) return;
   const Trajectory& path = *scene.trajectory;
   const auto x = scene.motion_of(path.x), y = scene.motion_of(path.y);
-  model_.add_joint(fem::make_point_drive("trajectory", {path.body},
+  model_.add_joint(fem::make_point_drive(kPath, {path.body},
                                          [x, y](double t) {
                                            return std::vector{x(t), y(t)};
                                          },
                                          {}));
-  model_.add_joint(fem::make_angle_drive("angle of the trajectory", {}, {path.body},
-                                         scene.motion_of(path.angle)));
+  model_.add_joint(fem::make_angle_drive(kPathAngle, {}, {path.body}, scene.motion_of(path.angle)));
 }
 
-bool Twin::follows(const Law& law) const {
+bool Twin::let_go(const Law& law) const {
+  if (driven_ == Driven::free) return !law.drive.empty();
   return driven_ == Driven::by_trajectory && scene_.follows_trajectory(law);
 }
 
@@ -83,10 +121,14 @@ void Twin::add_plate(const Body& body) {
   RigidBody twin;
   twin.name = body.name;
   const double length = body.length > 0 ? body.length : body.width;  // not known yet: of no matter
-  twin.mass = body.density * body.thickness * body.width * length;
-  twin.inertia = twin.mass * (length * length + body.width * body.width) / 12;
-  twin.center = {-0.5 * length, 0};
-  add_rigid_body(twin, model_, {});
+  const double own = body.density * body.thickness * body.width * length;
+  double at_end = 0;
+  for (const PointMass& m : scene_.point_masses) at_end += m.body == body.name ? m.mass : 0;
+  twin.mass = own + at_end;
+  twin.center = {-0.5 * length * own / twin.mass, 0};
+  twin.inertia = own * (length * length + body.width * body.width) / 12 +
+                 own * at_end / twin.mass * 0.25 * length * length;
+  add_rigid_body(twin, model_, gravity_of(scene_));
 }
 
 void Twin::add_carried(const Joint& joint) {
@@ -94,7 +136,8 @@ void Twin::add_carried(const Joint& joint) {
   fem::MarkerPlace plate{joint.body, {0, 0}, 0, {}};
   bool free = false;
   if (joint.edge == "root" && body.flow) {
-    free = follows(body.flow->length);
+    // A constant speed is a drive, too; hubs keep theirs.
+    free = driven_ == Driven::free ? joint.on_rigid_body() : let_go(body.flow->length);
     if (!free) plate.along = negative([&body](double t) { return body.length_motion(t); });
   } else if (joint.edge != "free_end") {
     for (const BodyLine& line : body.lines) free = free || (line.free && line.index == joint.line);
@@ -186,12 +229,40 @@ fem::Motion Twin::motion_of(const std::string& drive, const fem::State& x) const
 
 TwinMotion::TwinMotion(const Scene& scene) : twin_(scene), start_(twin_.guess()) {
   twin_.model().prepare(start_);
-  fem::assemble(twin_.model(), start_);
-  freedoms_ = fem::degrees_of_freedom(twin_.model(), start_);
+  assemble_start(scene, twin_.model(), start_);
+  const fem::Diagnosis diagnosis = fem::diagnose(twin_.model(), start_);
+  if (!diagnosis.is_independent()) throw refusal(scene, diagnosis);
+  freedoms_ = diagnosis.degrees_of_freedom();
   if (freedoms_ == 0) kinematics_ = std::make_unique<fem::Kinematics>(twin_.model(), start_);
 }
 
+int undriven_freedoms(const Scene& scene) {
+  Twin twin(scene, Twin::Driven::free);
+  fem::State x = twin.guess();
+  twin.model().prepare(x);
+  fem::assemble(twin.model(), x);
+  return fem::degrees_of_freedom(twin.model(), x);
+}
+
 const fem::State& TwinMotion::at(double t) { return kinematics_ ? kinematics_->at(t) : start_; }
+
+double TwinMotion::start_speed() const {
+  return twin_.model().scales().cwiseProduct(start_.v).lpNorm<Eigen::Infinity>();
+}
+
+double TwinMotion::start_acceleration() {
+  fem::State x = start_;
+  twin_.model().prepare(x);
+  fem::make_integrator(twin_.model(), {})->make_consistent(x);
+  return twin_.model().scales().cwiseProduct(x.a).lpNorm<Eigen::Infinity>();
+}
+
+void check_mechanism(const Scene& scene) {
+  constexpr int kLooks = 200;
+  TwinMotion motion(scene);
+  if (motion.degrees_of_freedom() > 0) return;
+  for (int k = 1; k <= kLooks; ++k) motion.at(scene.time.end * k / kLooks);
+}
 
 namespace {
 
@@ -213,13 +284,15 @@ constexpr int kSamples = 2000;
 }  // namespace
 
 void follow_trajectory(Scene& scene) {
-  Twin twin(scene, Twin::Driven::by_trajectory);
-  fem::State start = twin.guess();
-  twin.model().prepare(start);
-  fem::Kinematics kinematics(twin.model(), start);
   std::vector<Drive*> drives;
   for (Drive& d : scene.drives)
     if (d.from_trajectory) drives.push_back(&d);
+  if (drives.empty()) throw Error::input("no [[drive]] has from = \"trajectory\"");
+  Twin twin(scene, Twin::Driven::by_trajectory);
+  fem::State start = twin.guess();
+  twin.model().prepare(start);
+  assemble_start(scene, twin.model(), start);
+  fem::Kinematics kinematics(twin.model(), start);
   std::vector<std::vector<fem::Motion>> samples(drives.size());
   const double h = scene.time.end / kSamples;
   for (int k = 0; k <= kSamples; ++k) {

@@ -14,7 +14,7 @@ namespace {
 // Okabe and Ito's colours: told apart by colour-blind eyes, and dark enough for thin lines.
 constexpr std::array<const char*, 7> kColors = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                 "#b8860b", "#56b4e9", "#444444"};
-constexpr double kLeft = 78, kRight = 22, kTop = 34, kBottom = 52, kLegendRow = 20;
+constexpr double kLeft = 88, kRight = 22, kTop = 34, kBottom = 52, kLegendRow = 20;
 constexpr double kLetter = 6.6;  // mean width of a letter at 12 px
 
 std::string px(double value) { return to_text(std::round(value * 100) / 100); }
@@ -248,8 +248,8 @@ std::string panel_svg(const Panel& panel, double top, double width, double heigh
   out += text(0.5 * (left + right), frame_bottom + 40, xml_escaped(panel.x.label),
               "text-anchor=\"middle\"");
   const double middle = 0.5 * (frame_top + frame_bottom);
-  out += text(18, middle, xml_escaped(panel.y.label),
-              "text-anchor=\"middle\" transform=\"rotate(-90 18 " + px(middle) + ")\"");
+  out += text(14, middle, xml_escaped(panel.y.label),
+              "text-anchor=\"middle\" transform=\"rotate(-90 14 " + px(middle) + ")\"");
   return out;
 }
 
@@ -285,13 +285,14 @@ std::string plot_svg(const Figure& figure) {
   return out + "</svg>\n";
 }
 
-std::string outline_svg(std::span<const Region> regions, const Box& frame) {
+std::string outline_svg(std::span<const Region> regions, const Box& frame, int digits) {
   const Vec2 size = frame.upper - frame.lower;
-  const auto ring = [](const std::vector<Vec2>& points) {
+  const auto number = [&](double x) { return digits > 0 ? to_text(x, digits) : to_text(x); };
+  const auto ring = [&](const std::vector<Vec2>& points) {
     std::string path;
     for (size_t i = 0; i < points.size(); ++i) {
       path += i ? "L" : "M";
-      path += to_text(points[i].x()) + " " + to_text(points[i].y());
+      path += number(points[i].x()) + " " + number(points[i].y());
     }
     return path + "Z";
   };

@@ -46,7 +46,8 @@ std::string plot_svg(const Figure& figure);
 std::vector<double> nice_ticks(double lower, double upper, int wanted);
 
 /// Regions with holes as one filled path, in metres, y up, inside `frame`, true to scale: one unit
-/// of the view box is one metre, the page is as large as the design.
-std::string outline_svg(std::span<const Region> regions, const Box& frame);
+/// of the view box is one metre, the page is as large as the design. Coordinates with so many
+/// digits, all where 0: five are enough to look at, and half as long.
+std::string outline_svg(std::span<const Region> regions, const Box& frame, int digits = 0);
 
 }  // namespace flexmorph::io

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 namespace flexmorph::fem {
 
@@ -22,7 +23,13 @@ class Run {
         settings_(settings),
         observe_(observe),
         integrator_(make_integrator(
-            model, {settings.integrator, settings.alpha, settings.energy_momentum})) {}
+            model, {settings.integrator, settings.alpha, settings.energy_momentum})) {
+    const auto is_rigid = [](const Body& b) {
+      return !dynamic_cast<const LineGrid*>(b.element.get());
+    };
+    if (std::any_of(model.bodies().begin(), model.bodies().end(), is_rigid))
+      joint_watch_.emplace(model);
+  }
 
   MotionResult go() {
     std::vector<double> stops = settings_.stops;
@@ -92,7 +99,7 @@ class Run {
     const int n = std::max(1, static_cast<int>(std::ceil((end - begin) / settings_.step - 1e-6)));
     for (int k = 1; k <= n; ++k) {
       const double t = k == n ? end : begin + (end - begin) * k / n;
-      integrator_->advance(x_, t, [&](const State& x) {
+      advance(t, [&](const State& x) {
         const Energies e = model_.energies(x);
         balance(e);
         drift();
@@ -100,6 +107,7 @@ class Run {
         if (at_stop && integrator_->step_mean()) integrator_->make_consistent(x_);
         see(e, at_stop);
         if (at_stop || ++since_watched_ == kWatchEvery) watch(x);
+        if (joint_watch_ && ++since_joints_ == kJointsEvery) watch_joints(x);
       });
       if (t < settings_.end - kTiny * settings_.step) changes_due();
     }
@@ -109,6 +117,30 @@ class Run {
   void changes_due() {
     for (const Growth& g : growths_)
       if (const auto change = change_due(model_.body(g.body), g)) execute(g, *change);
+  }
+
+  /// A step that fails near a singular position of rigid bodies fails because of it.
+  void advance(double t, const std::function<void(const State&)>& accepted) {
+    try {
+      integrator_->advance(x_, t, accepted);
+    } catch (const Error& error) {
+      if (!joint_watch_ || error.kind() != Error::Kind::numerical) throw;
+      const Conditioning now = joint_watch_->look(x_);
+      if (now.condition < kSingular) throw;
+      throw Error::numerical(std::string(error.what()) + " Dead centre? " + describe(now));
+    }
+  }
+
+  void watch_joints(const State& x) {
+    since_joints_ = 0;
+    const Conditioning now = joint_watch_->look(x);
+    std::vector<Conditioning>& all = result_.near_singular;
+    const bool near = now.condition > kNearlyDependent;
+    if (near && !was_near_)
+      all.push_back(now);
+    else if (near && now.condition > all.back().condition)
+      all.back() = now;
+    was_near_ = near;
   }
 
   /// A St. Venant-Kirchhoff material that has collapsed or turned inside out has equilibria, but
@@ -158,9 +190,12 @@ class Run {
     balance_.restart();
   }
 
-  static constexpr double kTiny = 1e-6;   // of a step
-  static constexpr int kWatchEvery = 10;  // steps between looks at the area ratio
-  int since_watched_ = 0;
+  static constexpr double kTiny = 1e-6;    // of a step
+  static constexpr int kWatchEvery = 10;   // steps between looks at the area ratio
+  static constexpr int kJointsEvery = 25;  // steps between looks at the joints of rigid bodies
+  static constexpr double kNearlyDependent = 1e6, kSingular = 1e3;  // conditions
+  int since_watched_ = 0, since_joints_ = 0;
+  bool was_near_ = false;
 
   Model& model_;
   std::span<const Growth> growths_;
@@ -170,6 +205,7 @@ class Run {
   State x_;
   Powers powers_;
   EnergyBalance balance_;
+  std::optional<ConstraintWatch> joint_watch_;  // only with rigid bodies
   MotionResult result_;
 };
 

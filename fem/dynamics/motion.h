@@ -7,6 +7,7 @@
 #include "fem/dynamics/balance.h"
 #include "fem/dynamics/integrator.h"
 #include "fem/dynamics/start.h"
+#include "fem/solve/diagnosis.h"
 
 namespace flexmorph::fem {
 
@@ -54,13 +55,17 @@ struct MotionResult {
   double constraint_drift = 0;     ///< largest |Φ| met [m]
   double velocity_drift = 0;       ///< largest |Φ_q q̇ + Φ_t| met [m/s]
   double smallest_area_ratio = 1;  ///< |r_m × r_n|, every tenth step and at the stops
+  /// With rigid bodies: times at which the joints were nearly dependent (condition above 1e6), seen
+  /// at every 25th step; of looks in a row the worst.
+  std::vector<Conditioning> near_singular;
 };
 
 /// Advances a model from t = 0 to the end: steps land on stops and on changes of the mesh; a
 /// change that falls on the end itself is not executed.
 ///
 /// @throws Error (numerical) when a step fails or the material collapses; the observer has seen
-///         every step before it.
+///         every step before it. Where rigid bodies are near a singular position, the message of a
+///         failed step names the joints.
 MotionResult integrate(Model& model, std::span<const Growth> growths,
                        const MotionSettings& settings, const MotionObserver& observe);
 

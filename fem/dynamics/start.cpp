@@ -180,6 +180,10 @@ State start_state(Model& model, std::span<const Growth> growths, double t, Start
   move_lines(model, t);
   State x = rigid_state(model, growths, placement, t);
   if (start == Start::rigid) return x;
+  if (start == Start::settled) {
+    solve_resting_equilibrium(model, x);
+    return x;
+  }
   const bool in_hubs =
       !placement && std::all_of(growths.begin(), growths.end(),
                                 [](const Growth& g) { return g.hub.body().empty(); });

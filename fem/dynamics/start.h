@@ -6,9 +6,10 @@ namespace flexmorph::fem {
 
 /// Starts of driven scenes (design.md section 4).
 enum class Start {
-  rigid,        ///< undeformed, every material point with the velocity of the rigid, extending body
-  prestretched  ///< the same plus static equilibrium under the inertia forces of the rigid motion
-                ///< (in a hub: in the rotating frame): no axial ringing
+  rigid,  ///< undeformed, every material point with the velocity of the rigid, extending body
+  prestretched,  ///< the same plus static equilibrium under the inertia forces of the rigid motion
+                 ///< (in a hub: in the rotating frame): no axial ringing
+  settled  ///< at rest, in static equilibrium: for mechanisms with freedoms that nothing drives
 };
 
 /// A body that rides in no hub, as a rigid one: rigid bodies, and plates that other joints hold.

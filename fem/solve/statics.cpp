@@ -1,5 +1,8 @@
 #include "fem/solve/statics.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "fem/solve/linear_solver.h"
 
 namespace flexmorph::fem {
@@ -7,12 +10,13 @@ namespace flexmorph::fem {
 namespace {
 
 /// Newton's method for q and λ.
-/// @param accelerate  sets x.a from x.q before a residual
+/// @param accelerate  sets x.a from x.q before a residual; false: this iteration is not the last
 /// @param soften      adds to the tangent what that depends on q by
 /// @param size        of the model [m]
+/// @param tolerance   of a correction that does not get smaller any more, in parts of the size
 template <class Accelerate, class Soften>
 void find_equilibrium(Model& model, State& x, double size, const Accelerate& accelerate,
-                      const Soften& soften, const char* failure) {
+                      const Soften& soften, const char* failure, double tolerance = 0) {
   model.prepare(x);
   const int n = model.n_dofs(), m = model.n_constraints();
   const VectorXd scales = model.scales();
@@ -20,8 +24,9 @@ void find_equilibrium(Model& model, State& x, double size, const Accelerate& acc
   SparseMatrix kkt;
   UnsymmetricSolver solver;
   VectorXd residual, right(n + m), step;
+  double correction = 0;
   for (int iteration = 0; iteration < 40; ++iteration) {
-    accelerate(x);
+    const bool may_end = accelerate(x);
     if (model.has_free_lines()) model.prepare(x);
     model.constraints(x, c);
     model.force(x, residual);
@@ -34,10 +39,11 @@ void find_equilibrium(Model& model, State& x, double size, const Accelerate& acc
     solver.solve(kkt, right, step);
     x.q += step.head(n);
     x.lambda += step.tail(m);
-    const double correction = step.head(n).cwiseProduct(scales).lpNorm<Eigen::Infinity>();
+    correction = step.head(n).cwiseProduct(scales).lpNorm<Eigen::Infinity>();
     if (!std::isfinite(correction)) break;
-    if (correction < 1e-13 * size) return;
+    if (may_end && correction < 1e-13 * size) return;
   }
+  if (correction < tolerance * size) return;  // NaN is not
   throw Error::numerical(failure);
 }
 
@@ -46,7 +52,10 @@ void find_equilibrium(Model& model, State& x, double size, const Accelerate& acc
 void solve_rotating_equilibrium(Model& model, const VectorXd& spin, const VectorXd& center,
                                 State& x) {
   SparseMatrix mass;
-  const auto accelerate = [&](State& s) { s.a = -spin.cwiseProduct(s.q - center); };
+  const auto accelerate = [&](State& s) {
+    s.a = -spin.cwiseProduct(s.q - center);
+    return true;
+  };
   // The tangent of -M ω² (q - center): columns of the mass matrix times their ω².
   const auto soften = [&](const State& s, const Constraints& c, SparseMatrix& kkt) {
     model.kkt(s, c, {0, 0, 1}, 1, mass);
@@ -61,9 +70,29 @@ void solve_rotating_equilibrium(Model& model, const VectorXd& spin, const Vector
 
 void solve_carried_equilibrium(Model& model, State& x) {
   find_equilibrium(
-      model, x, std::max(1e-300, x.q.lpNorm<Eigen::Infinity>()), [](State&) {},
+      model, x, std::max(1e-300, x.q.lpNorm<Eigen::Infinity>()), [](State&) { return true; },
       [](const State&, const Constraints&, SparseMatrix&) {},
       "statics: no equilibrium under the inertia forces of the start after 40 iterations");
+}
+
+void solve_resting_equilibrium(Model& model, State& x) {
+  constexpr double kFirst = 1e4, kLast = 1e-2;  // κ [1/s²]
+  const VectorXd start = x.q;
+  double hold = 10 * kFirst;
+  x.v.setZero();
+  // a = κ (q - q₀): its inertia force is that of the hold.
+  const auto accelerate = [&](State& s) {
+    hold = std::max(0.1 * hold, kLast);
+    s.a = hold * (s.q - start);
+    return hold == kLast;
+  };
+  const auto soften = [&](const State& s, const Constraints& c, SparseMatrix& kkt) {
+    model.kkt(s, c, {1, 0, hold}, 1, kkt);
+  };
+  // Along a freedom that only the hold keeps, forces are zero up to the round-off of stiff ones.
+  find_equilibrium(model, x, std::max(1e-300, x.q.lpNorm<Eigen::Infinity>()), accelerate, soften,
+                   "statics: no equilibrium at rest after 40 iterations", 1e-7);
+  x.a.setZero();
 }
 
 }  // namespace flexmorph::fem

@@ -22,6 +22,18 @@ void solve_rotating_equilibrium(Model& model, const VectorXd& spin, const Vector
 /// @throws Error (numerical) likewise.
 void solve_carried_equilibrium(Model& model, State& x);
 
+/// Static equilibrium of a model that joints leave free to move (a load that hangs): F(q, 0, 0) +
+/// Φ_qᵀ λ = 0, Φ(q, x.t) = 0, by Newton's method near x.
+///
+/// Where nothing but weight brings a body back, the tangent is singular until λ is known; so the
+/// model is held where it is by a force -κ M (q - q₀) that fades: κ falls from 10⁴ by a factor of
+/// ten per iteration to 0.01 s⁻² and stays there. A freedom with frequency ω misses its
+/// equilibrium by 0.01/ω² of what it moved; one that nothing brings back stays where it is.
+///
+/// @param x  in: near the equilibrium; out: q and λ of it, v = a = 0.
+/// @throws Error (numerical) likewise.
+void solve_resting_equilibrium(Model& model, State& x);
+
 /// Small displacements of a linear analysis: one Newton step from x under the loads as they are
 /// (n_dofs). x is an equilibrium without loads, for instance the reference.
 /// @throws Error (numerical) when the tangent is singular.

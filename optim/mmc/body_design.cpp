@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
+
+#include "optim/mmc/shared_problem.h"
 
 namespace flexmorph::mmc {
 namespace {
@@ -11,51 +14,112 @@ namespace {
 /// With a smallest feature, so many times a part of the iterations follows a clean-up.
 constexpr int kPolishes = 2, kPolishShare = 6;
 
-/// One cycle's design problem of one body.
-class BodyDesigner {
+/// One of the bodies that are designed together.
+struct Part {
+  BodyProblem& problem;
+  LoadResponse& loads;
+  Ersatz ersatz;
+  const TdfSettings* tdf = nullptr;  // of the stage
+  std::optional<Turnover> turnover;  // of the stage
+  BodyOutcome outcome;
+  Design next;  // when a list of components changed: where to go on
+
+  explicit Part(const LoadedBody& body)
+      : problem(body.problem),
+        loads(body.loads),
+        ersatz(ersatz_of(problem)),
+        next(problem.design) {}
+
+  MmcProblem state() const {
+    return {problem.grid, problem.design, ersatz, loads, *tdf, problem.goal, problem.places};
+  }
+};
+
+/// The problem of all parts at their designs: that of the only one, or the shared one.
+class Whole {
  public:
-  BodyDesigner(BodyProblem& problem, LoadResponse& loads, int cycle, const DesignSettings& settings,
-               const IterationObserver& observe)
-      : problem_(problem),
-        loads_(loads),
+  explicit Whole(const std::vector<Part>& parts) {
+    states.reserve(parts.size());
+    for (const Part& p : parts) states.push_back(p.state());
+    if (parts.size() == 1) return;
+    std::vector<SharedProblem::Part> all;
+    for (size_t k = 0; k < parts.size(); ++k)
+      all.push_back({&states[k], full_mass_of(parts[k].problem)});
+    shared_.emplace(std::move(all));
+  }
+  Whole(const Whole&) = delete;
+
+  optim::Problem& problem() {
+    if (shared_) return *shared_;
+    return states.front();
+  }
+  VectorXd part_of(const VectorXd& x, size_t k) const {
+    return shared_ ? shared_->part_of(x, k) : x;
+  }
+
+  std::vector<MmcProblem> states;
+
+ private:
+  std::optional<SharedProblem> shared_;
+};
+
+/// One cycle's design problem of one body, or of several together.
+class Designer {
+ public:
+  Designer(std::span<const LoadedBody> bodies, int cycle, const DesignSettings& settings,
+           const IterationObserver& observe)
+      : parts_(bodies.begin(), bodies.end()),
         cycle_(cycle),
         settings_(settings),
-        observe_(observe),
-        ersatz_(ersatz_of(problem)) {}
+        observe_(observe) {}
 
-  BodyOutcome go() {
-    outcome_.body = problem_.body;
-    outcome_.n_loads = loads_.n_loads();
-    outcome_.n_right_hand_sides = loads_.n_right_hand_sides();
+  std::vector<BodyOutcome> go() {
     // Stages share iterations and state solves evenly; polishes after a clean-up have their part.
-    const int polishes = problem_.min_feature > 0 ? kPolishes : 0;
+    const bool cleans = std::any_of(parts_.begin(), parts_.end(),
+                                    [](const Part& p) { return p.problem.min_feature > 0; });
+    const int polishes = cleans ? kPolishes : 0;
     const auto share = [&](int total) { return total - polishes * (total / kPolishShare); };
     const int iterations = share(settings_.optimizer.max_iterations);
     const int solves = share(settings_.optimizer.max_evaluations);
-    const auto n_stages = static_cast<int>(problem_.stages.size());
-    for (int stage = 0; stage < n_stages && going_; ++stage)
-      run_stage(stage, iterations * (stage + 1) / n_stages - iterations * stage / n_stages,
+    int n_stages = 0;
+    for (const Part& p : parts_)
+      n_stages = std::max(n_stages, static_cast<int>(p.problem.stages.size()));
+    for (int stage = 0; stage < n_stages && going_; ++stage) {
+      for (Part& p : parts_) {
+        const auto own = static_cast<int>(p.problem.stages.size());
+        p.tdf = &p.problem.stages[static_cast<size_t>(stage * own / n_stages)];
+      }
+      run_stage(iterations * (stage + 1) / n_stages - iterations * stage / n_stages,
                 solves * (stage + 1) / n_stages);
-    if (problem_.min_feature > 0 && going_) thicken();
-    finish();
-    outcome_.factorizations = loads_.factorizations();
-    return std::move(outcome_);
+    }
+    if (cleans && going_) thicken();
+    std::vector<BodyOutcome> out;
+    for (Part& p : parts_) {
+      finish(p);
+      out.push_back(std::move(p.outcome));
+    }
+    return out;
   }
   bool stopped() const { return !going_; }  ///< by the observer
 
  private:
-  /// A stage of the band: runs of the optimizer, a new one whenever the list of components changed.
+  /// The best designs of one run of the optimizer.
+  struct Candidate {
+    std::vector<Design> designs;
+    std::vector<double> changes;
+    optim::Result result;
+    bool newest = true;  ///< do they belong to the last run?
+  };
+
+  /// A stage of the bands: runs of the optimizer, a new one whenever a list of components changed.
   /// @param solves  state solves of the cycle after which it ends; 0: no limit
-  void run_stage(int stage, int left, int solves) {
-    const TdfSettings& tdf = problem_.stages[static_cast<size_t>(stage)];
-    const double shortest = problem_.refill ? problem_.design.shortest() : 0;
-    Turnover turnover(problem_.grid, tdf, ersatz_, shortest);
-    turnover_ = &turnover;
+  void run_stage(int left, int solves) {
+    for (Part& p : parts_)
+      p.turnover.emplace(p.problem.grid, *p.tdf, p.ersatz,
+                         p.problem.refill ? p.problem.design.shortest() : 0);
     std::optional<Candidate> best;
-    while (left > 0 && going_ && (solves == 0 || outcome_.evaluations < solves)) {
-      MmcProblem state(problem_.grid, problem_.design, ersatz_, loads_, tdf, problem_.goal,
-                       problem_.places);
-      Candidate found = run(state, left, solves);
+    while (left > 0 && going_ && (solves == 0 || evaluations_ < solves)) {
+      Candidate found = run(left, solves);
       left -= found.result.iterations;
       if (!best || better(found.result, best->result)) {
         best = std::move(found);
@@ -65,27 +129,25 @@ class BodyDesigner {
       }
       if (!changed_) break;
       changed_ = false;
-      problem_.design = problem_.design.with(turnover.next());
+      for (Part& p : parts_) p.problem.design = p.next;
     }
-    if (best) settle(*best, tdf);
+    if (best) settle(*best);
   }
 
-  /// The best design of one run of the optimizer.
-  struct Candidate {
-    Design design;
-    optim::Result result;
-    double change = 0;
-    bool newest = true;  ///< does it belong to the last run?
-  };
-
-  Candidate run(MmcProblem& state, int iterations, int solves) {
+  Candidate run(int iterations, int solves) {
     optim::Settings settings = settings_.optimizer;
     settings.max_iterations = iterations;
-    settings.max_evaluations = solves > 0 ? solves - outcome_.evaluations : 0;
-    const auto watch = [&](const optim::Iterate& iterate) { return see(state, iterate); };
-    Candidate out{problem_.design, optim::make_optimizer(settings)->minimize(state, watch)};
-    out.change = out.design.move_to(state.design_part(out.result.x));
-    outcome_.evaluations += out.result.evaluations;
+    settings.max_evaluations = solves > 0 ? solves - evaluations_ : 0;
+    Whole whole(parts_);
+    const auto watch = [&](const optim::Iterate& iterate) { return see(whole, iterate); };
+    Candidate out;
+    out.result = optim::make_optimizer(settings)->minimize(whole.problem(), watch);
+    for (size_t k = 0; k < parts_.size(); ++k) {
+      out.designs.push_back(parts_[k].problem.design);
+      out.changes.push_back(
+          out.designs.back().move_to(whole.states[k].design_part(whole.part_of(out.result.x, k))));
+    }
+    evaluations_ += out.result.evaluations;
     return out;
   }
 
@@ -96,110 +158,182 @@ class BodyDesigner {
     return feasible_a ? a.response.f <= b.response.f : a.violation <= b.violation;
   }
 
-  /// Takes the best design of a stage.
-  void settle(const Candidate& best, const TdfSettings& tdf) {
-    problem_.design = best.design;
-    if (!best.newest)
-      outcome_.events.push_back({ComponentEvent::Kind::restored, 0, best.design.n_components()});
-    outcome_.change = best.change;
-    outcome_.kkt = best.result.kkt;
-    outcome_.stop = optim::to_string(best.result.stop) +
-                    (best.result.message.empty() ? "" : ": " + best.result.message);
-    measure(tdf);
+  /// Takes the best designs of a stage.
+  void settle(const Candidate& best) {
+    for (size_t k = 0; k < parts_.size(); ++k) {
+      Part& p = parts_[k];
+      p.problem.design = best.designs[k];
+      if (!best.newest)
+        p.outcome.events.push_back(
+            {ComponentEvent::Kind::restored, 0, best.designs[k].n_components()});
+      p.outcome.change = best.changes[k];
+      p.outcome.kkt = best.result.kkt;
+      p.outcome.stop = optim::to_string(best.result.stop) +
+                       (best.result.message.empty() ? "" : ": " + best.result.message);
+      measure(p);
+    }
   }
 
-  /// Blurred figures of the design.
-  void measure(const TdfSettings& tdf) {
-    MmcProblem state(problem_.grid, problem_.design, ersatz_, loads_, tdf, problem_.goal,
-                     problem_.places);
+  /// Blurred figures of a design.
+  static void measure(Part& p) {
+    MmcProblem state = p.state();
     state.evaluate(state.start());
-    outcome_.compliance = state.compliance();
-    outcome_.volume = state.volume();
+    p.outcome.compliance = state.compliance();
+    p.outcome.volume = state.volume();
   }
 
-  /// Makes the design as thick as wanted; then optimizes from there, and does it again: what was
-  /// put over narrow places is shaped as well. The least compliant of the thick ones is kept.
+  /// Designs after a clean-up of all bodies that want one.
+  struct Cleaned {
+    std::vector<std::optional<CleanUp>> clean_ups;
+    std::vector<Design> designs;
+    bool reached = true;
+    double compliance = 0;                                       ///< of all sharp designs
+    double thickness = std::numeric_limits<double>::infinity();  ///< least part of what is wanted
+
+    bool better_than(const Cleaned& other) const {
+      if (reached != other.reached) return reached;
+      return reached ? compliance < other.compliance : thickness > other.thickness;
+    }
+  };
+
+  Cleaned clean() {
+    // What the budget leaves goes to the bodies as they have shared it so far.
+    double used = 0, allowed = 0;
+    for (const Part& p : parts_) {
+      used += full_mass_of(p.problem) * p.outcome.volume;
+      allowed += full_mass_of(p.problem) * p.problem.goal.max_volume;
+    }
+    Cleaned out;
+    for (Part& p : parts_) {
+      std::optional<CleanUp>& done = out.clean_ups.emplace_back();
+      if (p.problem.min_feature > 0) {
+        std::optional<double> volume;
+        if (parts_.size() > 1 && used > 0)
+          volume = std::min(1.0, p.outcome.volume * allowed / used);
+        done = clean_up(p.problem, p.loads, p.problem.min_feature, volume);
+        out.reached = out.reached && done->reached();
+        out.thickness = std::min(out.thickness, done->after / done->wanted);
+        out.compliance += done->compliance_after;
+      } else {
+        const VectorXd fractions = fractions_of(p.problem, p.problem.design.components());
+        out.compliance += judged_compliance(p.problem, p.loads, p.ersatz.sharp(fractions));
+      }
+      out.designs.push_back(p.problem.design);
+    }
+    return out;
+  }
+
+  /// Makes the designs as thick as wanted; then optimizes from there, and does it again: what was
+  /// put over narrow places is shaped as well. The least compliant of the thick ones are kept,
+  /// those of one round together: mass that one body gave, another has.
   void thicken() {
-    CleanUp best = clean_up(problem_, loads_, problem_.min_feature);
-    CleanUp sum = best;
-    Design kept = problem_.design;
-    const auto last = static_cast<int>(problem_.stages.size()) - 1;
+    Cleaned best = clean();
+    std::vector<std::optional<CleanUp>> sums = best.clean_ups;
     const int budget = settings_.optimizer.max_evaluations;
     for (int round = 1; round <= kPolishes && going_; ++round) {
-      run_stage(last, settings_.optimizer.max_iterations / kPolishShare,
+      run_stage(settings_.optimizer.max_iterations / kPolishShare,
                 budget - (kPolishes - round) * (budget / kPolishShare));
-      const CleanUp next = clean_up(problem_, loads_, problem_.min_feature);
-      sum.rounds += next.rounds;
-      sum.patches += next.patches;
-      sum.dropped += next.dropped;
-      const bool better = next.reached() == best.reached()
-                              ? (best.reached() ? next.compliance_after < best.compliance_after
-                                                : next.after > best.after)
-                              : next.reached();
-      if (!better) continue;
-      best = next;
-      kept = problem_.design;
+      Cleaned next = clean();
+      for (size_t k = 0; k < parts_.size(); ++k) {
+        if (!sums[k]) continue;
+        sums[k]->rounds += next.clean_ups[k]->rounds;
+        sums[k]->patches += next.clean_ups[k]->patches;
+        sums[k]->dropped += next.clean_ups[k]->dropped;
+      }
+      if (next.better_than(best)) best = std::move(next);
     }
-    problem_.design = kept;
-    sum.after = best.after;
-    sum.compliance_after = best.compliance_after;
-    outcome_.clean_up = sum;
-    measure(problem_.stages.back());
+    for (size_t k = 0; k < parts_.size(); ++k) {
+      Part& p = parts_[k];
+      p.problem.design = best.designs[k];
+      if (sums[k]) {
+        sums[k]->after = best.clean_ups[k]->after;
+        sums[k]->compliance_after = best.clean_ups[k]->compliance_after;
+        p.outcome.clean_up = sums[k];
+      }
+      measure(p);
+    }
   }
 
-  bool see(MmcProblem& state, const optim::Iterate& iterate) {
-    ++outcome_.iterations;
-    if (state.x() != *iterate.x) state.evaluate(*iterate.x);  // a trial came after it
-    SharpDesign sharp;
-    const bool wanted =
-        settings_.sharp_every > 0 && outcome_.iterations % settings_.sharp_every == 0;
-    if (wanted) sharp = sharp_design(problem_, state.components(), loads_);
-    const bool look = problem_.drop_every > 0 && outcome_.iterations % problem_.drop_every == 0;
-    changed_ = look && turnover_->look(state.components());
-    std::span<const ComponentEvent> events;
-    if (changed_) events = turnover_->events();
-    outcome_.events.insert(outcome_.events.end(), events.begin(), events.end());
-    if (observe_)
-      going_ = observe_({problem_, cycle_, outcome_.iterations,
-                         outcome_.evaluations + iterate.evaluations, iterate, state, state.value(),
-                         loads_, wanted ? &sharp : nullptr, events});
-    state.clear_seconds();
+  bool see(Whole& whole, const optim::Iterate& iterate) {
+    ++iterations_;
+    for (size_t k = 0; k < parts_.size(); ++k) {
+      MmcProblem& state = whole.states[k];
+      const VectorXd x = whole.part_of(*iterate.x, k);
+      if (state.x() != x) state.evaluate(x);  // a trial came after it
+      see(parts_[k], state, iterate, k == 0);
+    }
     return going_ && !changed_;
   }
 
-  void finish() {
-    outcome_.sharp = sharp_design(problem_, problem_.design.components(), loads_);
-    const CellFactors sharp = ersatz_.sharp(outcome_.sharp.fractions);
-    const VectorXd each = loads_.individual(sharp.stiffness, sharp.mass);
-    outcome_.load_compliances.assign(each.data(), each.data() + each.size());
-    outcome_.worst_compliance = each.maxCoeff();
-    // The paper's comparison: the volume that was allowed (or came out), spread evenly.
-    const bool given = problem_.goal.minimize == Goal::Minimize::compliance;
-    const double volume = given ? problem_.goal.max_volume : outcome_.sharp.volume;
-    const VectorXd even = VectorXd::Constant(problem_.grid.n_cells(), volume);
-    outcome_.uniform_compliance = judged_compliance(problem_, loads_, {even, even});
+  void see(Part& p, MmcProblem& state, const optim::Iterate& iterate, bool first) {
+    SharpDesign sharp;
+    const bool wanted = settings_.sharp_every > 0 && iterations_ % settings_.sharp_every == 0;
+    if (wanted) sharp = sharp_design(p.problem, state.components(), p.loads);
+    const bool look = p.problem.drop_every > 0 && iterations_ % p.problem.drop_every == 0;
+    std::span<const ComponentEvent> events;
+    p.next = p.problem.design;
+    if (look && p.turnover->look(state.components())) {
+      changed_ = true;
+      events = p.turnover->events();
+      p.next = p.problem.design.with(p.turnover->next());
+    } else {
+      p.next.move_to(state.design_part(state.x()));
+    }
+    p.outcome.events.insert(p.outcome.events.end(), events.begin(), events.end());
+    optim::Iterate own = iterate;
+    own.x = &state.x();
+    if (!first) own.seconds = 0;
+    if (observe_ &&
+        !observe_({p.problem, cycle_, iterations_, evaluations_ + iterate.evaluations, own, state,
+                   state.value(), p.loads, wanted ? &sharp : nullptr, events}))
+      going_ = false;
+    state.clear_seconds();
   }
 
-  BodyProblem& problem_;
-  LoadResponse& loads_;
+  void finish(Part& p) const {
+    BodyOutcome& out = p.outcome;
+    out.body = p.problem.body;
+    out.n_loads = p.loads.n_loads();
+    out.n_right_hand_sides = p.loads.n_right_hand_sides();
+    out.iterations = iterations_;
+    out.evaluations = evaluations_;
+    out.sharp = sharp_design(p.problem, p.problem.design.components(), p.loads);
+    const CellFactors sharp = p.ersatz.sharp(out.sharp.fractions);
+    const VectorXd each = p.loads.individual(sharp.stiffness, sharp.mass);
+    out.load_compliances.assign(each.data(), each.data() + each.size());
+    out.worst_compliance = each.maxCoeff();
+    // The paper's comparison: the volume that was allowed (or came out), spread evenly.
+    const bool given = p.problem.goal.minimize == Goal::Minimize::compliance;
+    const double volume = given ? p.problem.goal.max_volume : out.sharp.volume;
+    const VectorXd even = VectorXd::Constant(p.problem.grid.n_cells(), volume);
+    out.uniform_compliance = judged_compliance(p.problem, p.loads, {even, even});
+    out.factorizations = p.loads.factorizations();
+  }
+
+  std::vector<Part> parts_;
   int cycle_;
   const DesignSettings& settings_;
   const IterationObserver& observe_;
-  Ersatz ersatz_;
-  Turnover* turnover_ = nullptr;  // of the stage
-  BodyOutcome outcome_;
+  int iterations_ = 0, evaluations_ = 0;  // of the cycle
   bool going_ = true, changed_ = false;
 };
 
 }  // namespace
 
+std::vector<BodyOutcome> design_bodies(std::span<const LoadedBody> bodies, int cycle,
+                                       const DesignSettings& settings,
+                                       const IterationObserver& observe, bool& going) {
+  Designer designer(bodies, cycle, settings, observe);
+  std::vector<BodyOutcome> outcomes = designer.go();
+  going = !designer.stopped();
+  return outcomes;
+}
+
 BodyOutcome design_body(BodyProblem& problem, LoadResponse& loads, int cycle,
                         const DesignSettings& settings, const IterationObserver& observe,
                         bool& going) {
-  BodyDesigner designer(problem, loads, cycle, settings, observe);
-  BodyOutcome outcome = designer.go();
-  going = !designer.stopped();
-  return outcome;
+  const LoadedBody body{problem, loads};
+  return design_bodies({&body, 1}, cycle, settings, observe, going).front();
 }
 
 }  // namespace flexmorph::mmc

@@ -19,6 +19,8 @@ struct IterationReport {
   int cycle = 1;
   int iteration = 0;  ///< over all stages of the cycle, from 1
   int evaluations = 0;
+  /// x is the body's own; all else is of the problem it is a part of. Seconds that bodies share are
+  /// in the row of the first.
   const optim::Iterate& iterate;
   const MmcProblem& state;           ///< values at the iterate's x
   const LoadResponse::Value& value;  ///< compliance and its derivatives there
@@ -43,6 +45,7 @@ struct BodyOutcome {
   std::optional<CleanUp> clean_up;       ///< when a smallest feature was wanted
   std::vector<double> load_compliances;  ///< F_i . u_i of the sharp design
   std::vector<double> energy_ratios;     ///< ½ F_i . u_i of the starting design / strain energy
+  double design_change = 0;  ///< see esl_loop(): between the designs before and after the cycle
 };
 
 struct DesignSettings {
@@ -53,10 +56,23 @@ struct DesignSettings {
 /// Looks on; false stops the run after the current iteration.
 using IterationObserver = std::function<bool(const IterationReport&)>;
 
-/// The design of one body under given loads, over all stages of its band. The design of `problem`
-/// is left at the result.
+/// A body and the loads it is designed under.
+struct LoadedBody {
+  BodyProblem& problem;
+  LoadResponse& loads;
+};
+
+/// The designs of bodies under given loads, over all stages of their bands: of one body, or of
+/// several that share one budget of mass (see SharedProblem). These have one optimizer; every body
+/// keeps its own bands (of fewer stages each lasts longer), solid regions, drops and clean-up, and
+/// rows of its own in every iteration. The designs of the problems are left at the result.
 /// @param going  comes back false when the observer stopped the run
-/// @throws Error (numerical) from statics; rows reported before it stand.
+/// @throws Error (numerical) from statics; rows reported before it stand. Error (input) from
+///         SharedProblem.
+std::vector<BodyOutcome> design_bodies(std::span<const LoadedBody> bodies, int cycle,
+                                       const DesignSettings& settings,
+                                       const IterationObserver& observe, bool& going);
+/// The same of one body.
 BodyOutcome design_body(BodyProblem& problem, LoadResponse& loads, int cycle,
                         const DesignSettings& settings, const IterationObserver& observe,
                         bool& going);

@@ -22,6 +22,12 @@ double judged_compliance(const BodyProblem& problem, LoadResponse& loads,
   return value.f;
 }
 
+double full_mass_of(const BodyProblem& p) {
+  const auto none = std::count(p.outside.begin(), p.outside.end(), 1);
+  const double area = p.grid.dx() * p.grid.dy() * static_cast<double>(p.grid.n_cells() - none);
+  return p.section.density * p.section.thickness * area;
+}
+
 Ersatz ersatz_of(const BodyProblem& p) {
   return {p.grid, p.stages.back().alpha, p.solid, p.empty, p.outside};
 }
@@ -101,8 +107,7 @@ std::vector<NarrowPlace> narrow_places_of(const BodyProblem& problem,
 }
 
 Features features_of(const BodyProblem& problem, std::span<const Region> regions) {
-  return smallest_of(
-      narrow_places_of(problem, regions, std::numeric_limits<double>::infinity()));
+  return smallest_of(narrow_places_of(problem, regions, std::numeric_limits<double>::infinity()));
 }
 
 Connectivity connectivity_of(const BodyProblem& problem, std::span<const Region> regions) {

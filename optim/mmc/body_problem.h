@@ -31,7 +31,12 @@ struct BodyProblem {
   int drop_every = 25;                   ///< iterations between looks for dead components; 0: none
   bool refill = false;                   ///< long components are split in place of dropped ones
   double min_feature = 0;                ///< smallest solid feature of the result [m]; 0: any
+  /// Its mass comes from one budget for all bodies that say so: goal.max_volume of each together.
+  bool shares_mass = false;
 };
+
+/// ρ c A: the mass of the body when its whole domain is full [kg].
+double full_mass_of(const BodyProblem& problem);
 
 /// Chain of factors of the problem's cells.
 Ersatz ersatz_of(const BodyProblem& problem);

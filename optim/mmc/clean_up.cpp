@@ -20,10 +20,11 @@ constexpr int kHalvings = 30;
 
 class Cleaner {
  public:
-  Cleaner(BodyProblem& problem, LoadResponse& loads, double wanted)
+  Cleaner(BodyProblem& problem, LoadResponse& loads, double wanted, double max_volume)
       : problem_(problem),
         loads_(loads),
         wanted_(wanted),
+        max_volume_(max_volume),
         ersatz_(ersatz_of(problem)),
         tdf_(problem.grid, problem.stages.back()),
         parts_(problem.design.components()),
@@ -99,8 +100,7 @@ class Cleaner {
     ersatz_.factors(tdf_.density(), tdf_.eroded(), factors_);
     return factors_.mass.sum() / ersatz_.n_domain_cells();
   }
-  bool limited() const { return problem_.goal.minimize == Goal::Minimize::compliance; }
-  bool fits() { return !limited() || volume(parts_) <= problem_.goal.max_volume * (1 + 1e-9); }
+  bool fits() { return max_volume_ == kInfinity || volume(parts_) <= max_volume_ * (1 + 1e-9); }
 
   double compliance(const std::vector<Component>& parts) {
     return judged_compliance(problem_, loads_, ersatz_.sharp(fractions_of(problem_, parts)));
@@ -239,7 +239,7 @@ class Cleaner {
 
   BodyProblem& problem_;
   LoadResponse& loads_;
-  double wanted_;
+  double wanted_, max_volume_;
   Ersatz ersatz_;
   UnionTdf tdf_;
   CellFactors factors_;
@@ -254,8 +254,11 @@ class Cleaner {
 
 double half_thickness_for(double min_feature) { return 0.5 * kRoom * min_feature; }
 
-CleanUp clean_up(BodyProblem& problem, LoadResponse& loads, double wanted) {
-  return Cleaner(problem, loads, wanted).go();
+CleanUp clean_up(BodyProblem& problem, LoadResponse& loads, double wanted,
+                 std::optional<double> max_volume) {
+  const bool limited = problem.goal.minimize == Goal::Minimize::compliance;
+  const double by_goal = limited ? problem.goal.max_volume : kInfinity;
+  return Cleaner(problem, loads, wanted, max_volume.value_or(by_goal)).go();
 }
 
 }  // namespace flexmorph::mmc

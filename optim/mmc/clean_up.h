@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "optim/mmc/body_problem.h"
 
 namespace flexmorph::mmc {
@@ -25,8 +27,10 @@ struct CleanUp {
 ///
 /// The design of `problem` is left at the result, or where it was when that is thicker.
 /// @param wanted  smallest solid feature [m]
+/// @param max_volume  volume fraction it may take; absent: as its goal says
 /// @throws Error (numerical) from statics.
-CleanUp clean_up(BodyProblem& problem, LoadResponse& loads, double wanted);
+CleanUp clean_up(BodyProblem& problem, LoadResponse& loads, double wanted,
+                 std::optional<double> max_volume = {});
 
 /// Smallest half-thickness of components whose own middle is as thick as wanted, with room for
 /// their round ends and the tolerance of outlines.

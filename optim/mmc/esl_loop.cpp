@@ -2,24 +2,95 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
 
 namespace flexmorph::mmc {
 namespace {
 
-/// One cycle's design problem of one body, under the loads of a motion.
-BodyOutcome design_under(BodyProblem& problem, const fem::EslSets& loads, int cycle,
-                         const LoopSettings& settings, const LoopObserver& observer, bool& going) {
-  const CellFactors start =
-      ersatz_of(problem).sharp(fractions_of(problem, problem.design.components()));
-  Compliance compliance(loads, problem.section, problem.compliance, start.stiffness, start.mass);
-  const VectorXd energies = compliance.individual(start.stiffness, start.mass);
-  BodyOutcome outcome =
-      design_body(problem, compliance, cycle, settings.design, observer.iteration, going);
-  for (size_t i = 0; i < loads.sets.size(); ++i)
-    outcome.energy_ratios.push_back(0.5 * energies[static_cast<Eigen::Index>(i)] /
-                                    loads.sets[i].strain_energy);
-  return outcome;
+/// Problems by their place that are solved together: those that share mass, in the place of the
+/// first of them, and each of the others by itself.
+std::vector<std::vector<size_t>> groups_of(const std::vector<BodyProblem>& problems) {
+  std::vector<std::vector<size_t>> out;
+  std::optional<size_t> sharing;
+  for (size_t i = 0; i < problems.size(); ++i) {
+    if (problems[i].shares_mass && sharing) {
+      out[*sharing].push_back(i);
+      continue;
+    }
+    if (problems[i].shares_mass) sharing = out.size();
+    out.push_back({i});
+  }
+  return out;
 }
+
+/// A body under the loads of a motion, and its design before the cycle.
+struct Start {
+  VectorXd fractions;
+  CellFactors factors;
+  Compliance compliance;
+  VectorXd energies;
+
+  Start(const BodyProblem& p, const fem::EslSets& loads)
+      : fractions(fractions_of(p, p.design.components())),
+        factors(ersatz_of(p).sharp(fractions)),
+        compliance(loads, p.section, p.compliance, factors.stiffness, factors.mass),
+        energies(compliance.individual(factors.stiffness, factors.mass)) {}
+};
+
+/// The designs of all bodies in one cycle, up to the group that was stopped.
+class CycleDesigner {
+ public:
+  CycleDesigner(std::vector<BodyProblem>& problems, const std::vector<fem::EslSets>& loads)
+      : problems_(problems), loads_(loads), outcomes_(problems.size()) {}
+
+  /// @return false when the observer stopped it
+  bool go(int cycle, const LoopSettings& settings, const LoopObserver& observer) {
+    bool going = true;
+    for (const std::vector<size_t>& group : groups_of(problems_)) {
+      design(group, cycle, settings, observer, going);
+      if (!going) break;
+    }
+    return going;
+  }
+
+  /// Of the bodies up to the first one without.
+  std::vector<BodyOutcome> outcomes() {
+    std::vector<BodyOutcome> out;
+    for (std::optional<BodyOutcome>& o : outcomes_) {
+      if (!o) break;
+      out.push_back(std::move(*o));
+    }
+    return out;
+  }
+
+ private:
+  void design(const std::vector<size_t>& group, int cycle, const LoopSettings& settings,
+              const LoopObserver& observer, bool& going) {
+    std::vector<std::unique_ptr<Start>> starts;
+    std::vector<LoadedBody> bodies;
+    for (const size_t i : group) {
+      starts.push_back(std::make_unique<Start>(problems_[i], loads_[i]));
+      bodies.push_back({problems_[i], starts.back()->compliance});
+    }
+    std::vector<BodyOutcome> found =
+        design_bodies(bodies, cycle, settings.design, observer.iteration, going);
+    for (size_t k = 0; k < group.size(); ++k) {
+      BodyOutcome& outcome = outcomes_[group[k]].emplace(std::move(found[k]));
+      const std::vector<fem::EslSet>& sets = loads_[group[k]].sets;
+      for (size_t l = 0; l < sets.size(); ++l)
+        outcome.energy_ratios.push_back(0.5 * starts[k]->energies[static_cast<Eigen::Index>(l)] /
+                                        sets[l].strain_energy);
+      outcome.design_change = (outcome.sharp.fractions - starts[k]->fractions).cwiseAbs().sum() /
+                              ersatz_of(problems_[group[k]]).n_domain_cells();
+    }
+  }
+
+  std::vector<BodyProblem>& problems_;
+  const std::vector<fem::EslSets>& loads_;
+  std::vector<std::optional<BodyOutcome>> outcomes_;
+};
 
 bool rests(std::span<const BodyOutcome> now, std::span<const BodyOutcome> before,
            double tolerance) {
@@ -43,25 +114,29 @@ class Verdicts {
  public:
   void add(int cycle, const std::vector<BodyProblem>& problems,
            const std::vector<BodyOutcome>& outcome) {
-    verdicts_.push_back({cycle, 0, false});
+    CycleVerdict& v = verdicts_.emplace_back();
+    v.cycle = cycle;
+    for (const BodyOutcome& o : outcome) {
+      v.objective += o.compliance;
+      v.bodies.push_back({o.body, o.compliance, o.sharp.compliance, o.design_change});
+    }
     outcomes_.push_back(outcome);
     auto& designs = designs_.emplace_back();
     for (const BodyProblem& p : problems) designs.push_back(p.design);
   }
   /// The motion with the designs of the last cycle added.
   void judge(const std::vector<fem::EslSets>& motion) {
-    if (!verdicts_.empty())
-      verdicts_.back().strain_energy_integral = motion.front().strain_energy_integral;
+    CycleVerdict& last = verdicts_.back();
+    last.strain_energy_integral = motion.front().strain_energy_integral;
+    const size_t now = verdicts_.size() - 1;
+    if (now > 0 && !(last.strain_energy_integral < verdicts_[best_].strain_energy_integral)) return;
+    verdicts_[best_].best = false;
+    best_ = now;
+    last.best = true;
   }
-  std::vector<BodyOutcome> take_best(std::vector<BodyProblem>& problems) {
-    const auto best = std::min_element(verdicts_.begin(), verdicts_.end(),
-                                       [](const CycleVerdict& a, const CycleVerdict& b) {
-                                         return a.strain_energy_integral < b.strain_energy_integral;
-                                       });
-    best->best = true;
-    const auto i = static_cast<size_t>(best - verdicts_.begin());
-    for (size_t k = 0; k < problems.size(); ++k) problems[k].design = designs_[i][k];
-    return outcomes_[i];
+  std::vector<BodyOutcome> take_best(std::vector<BodyProblem>& problems) const {
+    for (size_t k = 0; k < problems.size(); ++k) problems[k].design = designs_[best_][k];
+    return outcomes_[best_];
   }
   const std::vector<CycleVerdict>& all() const { return verdicts_; }
 
@@ -69,6 +144,7 @@ class Verdicts {
   std::vector<CycleVerdict> verdicts_;
   std::vector<std::vector<BodyOutcome>> outcomes_;
   std::vector<std::vector<Design>> designs_;
+  size_t best_ = 0;
 };
 
 }  // namespace
@@ -76,29 +152,28 @@ class Verdicts {
 std::vector<BodyOutcome> esl_loop(std::vector<BodyProblem>& problems, const Simulate& simulate,
                                   const LoopSettings& settings, const LoopObserver& observer) {
   Verdicts verdicts;
+  const auto judge = [&](const std::vector<fem::EslSets>& motion) {
+    verdicts.judge(motion);
+    if (observer.verdict) observer.verdict(verdicts.all());
+  };
   std::vector<BodyOutcome> outcome;
-  bool stopped = false;
-  for (int cycle = 1; cycle <= settings.max_cycles && !stopped; ++cycle) {
+  for (int cycle = 1; cycle <= settings.max_cycles; ++cycle) {
     const std::vector<fem::EslSets> loads = move(problems, simulate);
-    verdicts.judge(loads);
+    if (cycle > 1) judge(loads);
     if (observer.loads) observer.loads(cycle, loads);
 
-    std::vector<BodyOutcome> before = std::move(outcome);
-    outcome.clear();
-    for (size_t i = 0; i < problems.size() && !stopped; ++i) {
-      bool going = true;
-      outcome.push_back(design_under(problems[i], loads[i], cycle, settings, observer, going));
-      stopped = !going;
-    }
+    const std::vector<BodyOutcome> before = std::move(outcome);
+    CycleDesigner designer(problems, loads);
+    const bool going = designer.go(cycle, settings, observer);
+    outcome = designer.outcomes();
     if (observer.cycle) observer.cycle(cycle, outcome);
+    if (!going) return outcome;
     verdicts.add(cycle, problems, outcome);
     if (rests(outcome, before, settings.tolerance)) break;
   }
-  if (stopped || verdicts.all().size() < 2) return outcome;
-  verdicts.judge(move(problems, simulate));
-  outcome = verdicts.take_best(problems);
-  if (observer.verdict) observer.verdict(verdicts.all());
-  return outcome;
+  if (verdicts.all().size() < 2) return outcome;
+  judge(move(problems, simulate));
+  return verdicts.take_best(problems);
 }
 
 }  // namespace flexmorph::mmc

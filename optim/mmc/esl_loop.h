@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "fem/esl_set.h"
@@ -12,11 +13,24 @@ namespace flexmorph::mmc {
 /// Motion of the whole scene with these factors (one per problem) -> loads of every body.
 using Simulate = std::function<std::vector<fem::EslSets>(std::span<const fem::Factors>)>;
 
+/// What a cycle made of one body.
+struct BodyVerdict {
+  std::string body;
+  double compliance = 0, sharp_compliance = 0;  ///< under the loads of the cycle [J]
+  /// Part of the domain whose material changed: mean |Δ| of the sharp area fractions between the
+  /// designs before and after the cycle. (The largest change of a cell would be 1 as soon as an
+  /// outline moves by one; variables come and go with components.)
+  double design_change = 0;
+};
+
 /// A cycle as a whole, judged by the motion with its designs.
 struct CycleVerdict {
   int cycle = 1;
-  double strain_energy_integral = 0;  ///< ∫ U dt of that motion [J s]; smaller is better
-  bool best = false;                  ///< of all cycles: its designs are the result
+  double objective = 0;             ///< Σ compliance of the bodies [J]
+  std::vector<BodyVerdict> bodies;  ///< one per problem
+  // Measures of that motion; smaller is better.
+  double strain_energy_integral = 0;  ///< ∫ U dt [J s]: what cycles are compared by
+  bool best = false;                  ///< of all cycles so far: its designs are the result
 };
 
 struct LoopSettings {
@@ -32,12 +46,14 @@ struct LoopObserver {
   /// After the motion of a cycle: its loads, one entry per problem.
   std::function<void(int cycle, std::span<const fem::EslSets>)> loads;
   std::function<void(int cycle, std::span<const BodyOutcome>)> cycle;
-  /// At the end of a run of several cycles.
+  /// In a run of several cycles whenever one more is judged, which is after the motion with its
+  /// designs: all cycles so far.
   std::function<void(std::span<const CycleVerdict>)> verdict;
 };
 
 /// dynamics -> ESL -> design problem -> dynamics ..., until the designs rest (design.md section
-/// 10). The designs of `problems` are left at the result; the outcome is that of the last cycle.
+/// 10). Bodies that share mass are one design problem, the others have one each. The designs of
+/// `problems` are left at the result, that of the best cycle, and the outcomes belong to it.
 /// @throws Error (numerical) from dynamics or statics; rows reported before it stand.
 std::vector<BodyOutcome> esl_loop(std::vector<BodyProblem>& problems, const Simulate& simulate,
                                   const LoopSettings& settings, const LoopObserver& observer);

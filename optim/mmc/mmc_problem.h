@@ -52,6 +52,8 @@ class MmcProblem final : public optim::Problem {
   /// its loads about as well as the best one all the same?
   bool acceptable(const VectorXd& x) override;
 
+  const Goal& goal() const { return goal_; }
+
   // What the last evaluate() saw.
   const VectorXd& x() const { return x_; }
   VectorXd design_part(const VectorXd& x) const { return x.head(design_.n_variables()); }

@@ -65,5 +65,27 @@ TEST_P(ShippedCase, EndsWithAGoodDesign) {
   EXPECT_LE(value("dynamic_amplitude") / value("uniform_dynamic_amplitude"), 0.75);  // finer mesh
 }
 
+/// Mechanisms whose loads do not come from a hub that turns evenly.
+class ShippedMechanism : public ShippedCase {};
+INSTANTIATE_TEST_SUITE_P(Cases, ShippedMechanism,
+                         ::testing::Values(Choice{"four_bar", "mma"},
+                                           Choice{"telescopic_crane", "mma"}),
+                         [](const auto& test) { return test.param.plate; });
+
+TEST_P(ShippedMechanism, EndsWithAGoodDesignAndWhereItIsExpected) {
+  const nlohmann::json json = run(), result = json["results"].at(0);
+  const auto value = [&](const char* key) { return result.at(key).get<double>(); };
+  EXPECT_LE(value("volume"), 0.5 + 1e-4);
+  EXPECT_NEAR(value("sharp_volume") / value("volume"), 1, 0.02);
+  EXPECT_LE(value("sharp_compliance") / value("compliance"), 1.15);
+  EXPECT_TRUE(result.at("connected").get<bool>());
+  EXPECT_GE(value("thinnest_component"), 0.005 - 1e-12);
+  EXPECT_LE(value("dynamic_amplitude") / value("uniform_dynamic_amplitude"), 0.8);
+  EXPECT_GE(json["expect"].size(), 5u);
+  for (const auto& [name, expected] : json["expect"].items())
+    EXPECT_TRUE(expected["holds"].get<bool>()) << name << ": " << expected;
+  EXPECT_TRUE(json["warnings"].empty()) << json["warnings"];
+}
+
 }  // namespace
 }  // namespace flexmorph

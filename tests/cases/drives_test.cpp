@@ -214,7 +214,7 @@ Course run(const Scene& scene) {
   out.result = fem::integrate(m.model, m.growths, m.motion, [&](const fem::MotionStep& step) {
     out.times.push_back(step.x.t);
     const Body& body = scene.bodies[0];
-    const fem::FrameMotion hub = m.growths[0].hub.drive()(step.x.t);
+    const fem::FrameMotion hub = m.growths[0].hub.at(step.model, step.x);
     const Vec2 tip =
         fem::point_position(step.model.body(body.name), step.x,
                             {body.longest(scene.time.end), body.low() + 0.5 * body.width})

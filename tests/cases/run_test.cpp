@@ -133,6 +133,58 @@ TEST(Run, WritesItsFolder) {
   EXPECT_TRUE(contains(check.out, "24 components, 168 variables, 112 x 20 cells"));
 }
 
+// Two designs, one budget of mass, three cycles: what stays of it.
+TEST(Run, KeepsTheBestOfItsCycles) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const Ended ended = flexmorph(scratch, {"run", FLEXMORPH_TWO_PLATES, "-o", folder});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const Table cycles = read_csv(folder + "/cycles.csv");
+  ASSERT_EQ(cycles.size(), 7u);
+  EXPECT_EQ(cycles[0], (Words{"cycle", "body", "compliance", "sharp_compliance", "design_change",
+                              "strain_energy_integral", "best"}));
+  const nlohmann::json run = run_json(folder);
+  ASSERT_EQ(run["cycles"].size(), 3u);
+  size_t best = 0;
+  for (size_t r = 1; r < cycles.size(); ++r) {
+    const Words& row = cycles[r];
+    const nlohmann::json& cycle = run["cycles"][(r - 1) / 2];
+    const nlohmann::json& body = cycle["bodies"][(r - 1) % 2];
+    EXPECT_EQ(row[0], std::to_string(1 + (r - 1) / 2));
+    EXPECT_EQ(row[1], r % 2 == 1 ? "heavy" : "light");
+    EXPECT_EQ(row[1], body["body"]);
+    EXPECT_EQ(std::stod(row[2]), body["compliance"]);
+    EXPECT_EQ(std::stod(row[3]), body["sharp_compliance"]);
+    EXPECT_EQ(std::stod(row[4]), body["design_change"]);
+    EXPECT_GT(std::stod(row[4]), 0);
+    EXPECT_EQ(std::stod(row[5]), cycle["strain_energy_integral"]);
+    EXPECT_EQ(row[6] == "1", cycle["best"].get<bool>());
+    if (row[6] == "1" && best == 0) best = r;
+  }
+  // The least strain energy is the best, and the result is that of this cycle.
+  ASSERT_GT(best, 0u);
+  for (size_t r = 1; r < cycles.size(); r += 2)
+    EXPECT_GE(std::stod(cycles[r][5]), std::stod(cycles[best][5]));
+  for (size_t b = 0; b < 2; ++b)
+    EXPECT_EQ(run["results"][b]["compliance"], std::stod(cycles[best + b][2]));
+  // Its motion, integrated once more for the tables.
+  const Table motion = read_csv(folder + "/motion.csv");
+  const auto strain = static_cast<size_t>(
+      std::find(motion[0].begin(), motion[0].end(), "energy.strain") - motion[0].begin());
+  ASSERT_LT(strain, motion[0].size());
+  double integral = 0;  // trapezoids, as any reader of the table would
+  for (size_t r = 2; r < motion.size(); ++r)
+    integral += 0.5 * (std::stod(motion[r][0]) - std::stod(motion[r - 1][0])) *
+                (std::stod(motion[r][strain]) + std::stod(motion[r - 1][strain]));
+  EXPECT_NEAR(integral, std::stod(cycles[best][5]), 1e-3 * integral);
+
+  EXPECT_NEAR(run["shared_mass"]["allowed"].get<double>(), 0.5 * 2700 * 0.05 * 0.015, 1e-12);
+  EXPECT_LE(run["shared_mass"]["used"].get<double>(),
+            run["shared_mass"]["allowed"].get<double>() * (1 + 1e-4));
+  EXPECT_GT(run["results"][0]["volume"].get<double>(), run["results"][1]["volume"].get<double>());
+  EXPECT_TRUE(contains(contents_of(folder + "/report.html"), "Cycles"));
+}
+
 TEST(Run, WritesNothingTheSceneDidNotAskFor) {
   const Scratch scratch;
   const std::string folder = scratch / "out";

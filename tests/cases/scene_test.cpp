@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <numbers>
 
 namespace flexmorph::cases {
@@ -253,6 +254,10 @@ const Bad kBadInputs[] = {
      "material flows out of a hub: a [[joint]] with edge = \"root\" is missing"},
     {"design_without_loads", {"esl=1"}, "[esl] is a table"},
     {"nothing_to_design", {"design=[]"}, "optimizer: without a [[design]] this does nothing"},
+    {"nobody_to_share_with",
+     {"design.coupling=shared_mass"},
+     "no other [[design]] has \"shared_mass\" to share with"},
+    {"unknown_coupling", {"design.coupling=shared"}, "a coupling is one of 'none', 'shared_mass'"},
     {"two_tolerances",
      {"expect.c={value=1, relative=1, absolute=1}"},
      "expect.c: a value comes with one tolerance, `relative` or `absolute`"},
@@ -294,6 +299,40 @@ TEST(SceneReader, ErrorsInTheFileNameLineKeyAndValue) {
   std::remove(path.c_str());
   EXPECT_EQ(message, path + ":" + std::to_string(found) +
                          ": body.thickness = -0.002: a thickness is positive [m]");
+}
+
+// Designs that share mass minimize sums of compliances, all of them; volumes may differ.
+TEST(SceneReader, OnlyDesignsWithTheSameGoalShareMass) {
+  std::string text;
+  {
+    std::ifstream in(FLEXMORPH_TWO_PLATES);
+    text.assign(std::istreambuf_iterator<char>(in), {});
+  }
+  const auto complaint_of = [&](const Changes& changes, bool volume) -> std::string {
+    std::string changed = text;
+    const std::string goal = "max_volume = 0.5";
+    if (volume)
+      changed.replace(changed.rfind(goal), goal.size(),
+                      "minimize = \"volume\"\nmax_compliance = 1.0");
+    const std::string path = ::testing::TempDir() + "flexmorph_two_plates.toml";
+    std::ofstream(path) << changed;
+    std::string message;
+    try {
+      const Scene scene = read_scene(io::CaseFile(path, changes));
+      EXPECT_TRUE(scene.designs[0].shares_mass && scene.designs[1].shares_mass);
+    } catch (const Error& e) {
+      message = e.what();
+    }
+    std::remove(path.c_str());
+    return message;
+  };
+  EXPECT_EQ(complaint_of({"design.light.max_volume=0.3"}, false), "");
+  EXPECT_TRUE(complaint_of({"design.light.loads=worst"}, false)
+                  .ends_with("only with loads = \"sum\": compliances of all bodies are added"));
+  EXPECT_TRUE(complaint_of({}, true).ends_with(
+      "only with minimize = \"compliance\": what is shared is what max_volume allows"));
+  EXPECT_TRUE(complaint_of({"design.light.coupling=none"}, false)
+                  .ends_with("no other [[design]] has \"shared_mass\" to share with"));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "io/plane_frames.h"
 #include "io/surfaces.h"
 #include "tests/io/scratch.h"
 
@@ -142,6 +143,92 @@ TEST(Surfaces, WhatIsNearerIsDrawnLater) {
   EXPECT_LT(dark, light);
   EXPECT_THROW(surfaces_svg("none", {}), Error);
   EXPECT_THROW(surfaces_svg("plane", {{"flat", {2, {0, 0, 1, 0, 1, 1, 0, 1}, {}}, {}}}), Error);
+}
+
+/// A sheared plate of 6 x 4 cells whose densities are whole eighths.
+PlanePlate sheared_plate() {
+  PlanePlate plate;
+  plate.n_across = 4;
+  for (int i = 0; i <= 6; ++i)
+    for (int j = 0; j <= 4; ++j) plate.points.insert(plate.points.end(), {i + 0.5 * j, 1.0 * j});
+  for (int k = 0; k < 24; ++k) plate.density.push_back((k * 5 / 3 % 9) / 8.0);
+  return plate;
+}
+
+/// Area of all rings of a path of straight lines.
+double area(std::string path) {
+  double sum = 0;
+  for (char& c : path)
+    if (c == 'L') c = ' ';
+  for (size_t from = 0; (from = path.find('M', from)) != std::string::npos; ++from) {
+    std::istringstream in(path.substr(from + 1, path.find('Z', from) - from - 1));
+    in.imbue(std::locale::classic());
+    std::vector<Vec2> ring;
+    for (double x, y; in >> x >> y;) ring.emplace_back(x, y);
+    double twice = 0;
+    for (size_t k = 0; k < ring.size(); ++k) {
+      const Vec2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
+      twice += a.x() * b.y() - a.y() * b.x();
+    }
+    sum += 0.5 * std::abs(twice);
+  }
+  return sum;
+}
+
+// The runs of all levels, weighed by their greys, are the material of the plate.
+TEST(PlaneFrames, GreysKeepTheMaterial) {
+  const PlanePlate plate = sheared_plate();
+  double material = 0;
+  for (const double each : plate.density) material += each;
+  const CommaLocale comma;
+  const std::string svg = plane_frames_svg("one", {{"t = 0 s", {plate}, {}}}, 1);
+  ASSERT_NE(parse(svg), nullptr);
+  const double scale = 940.0 / 8;  // eight metres wide, margins of 30
+  double drawn = 0;
+  for (size_t at = 0; (at = svg.find("fill=\"rgb(", at)) != std::string::npos; ++at) {
+    const double grey = std::stoi(svg.substr(at + 10, 3));
+    const size_t d = svg.rfind("d=\"", at) + 3;
+    drawn += (255 - grey) / 210 * area(svg.substr(d, svg.find('"', d) - d));
+  }
+  EXPECT_NEAR(drawn / (scale * scale), material, 0.01 * material);  // greys are whole numbers
+}
+
+TEST(PlaneFrames, ShareOneViewAndOneScale) {
+  const std::vector<Vec2> unit = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  std::vector<Vec2> moved = unit;
+  for (Vec2& p : moved) p += Vec2(3, 1);
+  const std::string svg =
+      plane_frames_svg("two", {{"t = 0 s", {}, {unit}}, {"t = 1 s", {}, {moved}}});
+  const auto drawn = paths(svg);  // an outline and a bar each
+  ASSERT_EQ(drawn.size(), 4u);
+  // 4 m on 940 units: 235 a metre; y points down, and 2 m are the height.
+  EXPECT_EQ(drawn[0], "M30 500L265 500L265 265L30 265Z");
+  EXPECT_EQ(drawn[2], "M735 265L970 265L970 30L735 30Z");
+  EXPECT_EQ(drawn[1], drawn[3]);
+  EXPECT_TRUE(drawn[1].ends_with("H147.5v-4v8")) << drawn[1];  // half a metre
+  EXPECT_TRUE(contains(svg, "0.5 m"));
+}
+
+TEST(PlaneFrames, OfMeshesThatDoNotFitAreRefused) {
+  EXPECT_THROW(plane_frames_svg("none", {}), Error);
+  EXPECT_THROW(plane_frames_svg("empty", {PlaneFrame{}}), Error);
+  PlanePlate plate = sheared_plate();
+  plate.density.pop_back();
+  EXPECT_THROW(plane_frames_svg("short", {{"", {plate}, {}}}), Error);
+  plate.density.push_back(std::nan(""));
+  EXPECT_THROW(plane_frames_svg("nan", {{"", {plate}, {}}}), Error);
+  plate = sheared_plate();
+  plate.points[3] = INFINITY;
+  EXPECT_THROW(plane_frames_svg("far", {{"", {plate}, {}}}), Error);
+}
+
+// Fewer digits are a shorter picture of the same design.
+TEST(Outline, HasFewerDigitsWhereAsked) {
+  const double third = 1.0 / 3;
+  const Region region{{{0, 0}, {third, 0}, {third, third}}, {}};
+  const Box frame{{0, 0}, {1, 1}};
+  EXPECT_TRUE(contains(outline_svg({&region, 1}, frame, 5), "M0 0L0.33333 0L0.33333 0.33333Z"));
+  EXPECT_TRUE(contains(outline_svg({&region, 1}, frame), "L0.3333333333333333 0"));
 }
 
 }  // namespace

@@ -1,0 +1,69 @@
+#include "optim/mmc/shared_problem.h"
+
+#include <cmath>
+#include <utility>
+
+namespace flexmorph::mmc {
+
+SharedProblem::SharedProblem(std::vector<Part> parts) : parts_(std::move(parts)), first_{0} {
+  if (parts_.empty()) throw Error::input("shared mass: there are no bodies to share it");
+  shares_.resize(static_cast<Eigen::Index>(parts_.size()));
+  for (size_t b = 0; b < parts_.size(); ++b) {
+    const Goal& goal = parts_[b].problem->goal();
+    if (goal.minimize != Goal::Minimize::compliance || goal.over != Goal::Over::sum)
+      throw Error::input("shared mass: every body minimizes the sum of its compliances");
+    if (!(parts_[b].full_mass > 0) || !std::isfinite(parts_[b].full_mass))
+      throw Error::input("shared mass: the mass of full body " + std::to_string(b + 1) + " is " +
+                         std::to_string(parts_[b].full_mass) + " kg; it is positive");
+    shares_[static_cast<Eigen::Index>(b)] = parts_[b].full_mass * goal.max_volume;
+    first_.push_back(first_.back() + parts_[b].problem->n_variables());
+  }
+  shares_ /= shares_.sum();
+}
+
+template <class Of>
+VectorXd SharedProblem::joined(Of&& of) const {
+  VectorXd out(n_variables());
+  for (size_t b = 0; b < parts_.size(); ++b)
+    out.segment(first_[b], first_[b + 1] - first_[b]) = of(*parts_[b].problem);
+  return out;
+}
+
+VectorXd SharedProblem::lower() const {
+  return joined([](const MmcProblem& p) { return p.lower(); });
+}
+VectorXd SharedProblem::upper() const {
+  return joined([](const MmcProblem& p) { return p.upper(); });
+}
+VectorXd SharedProblem::start() const {
+  return joined([](const MmcProblem& p) { return p.start(); });
+}
+
+optim::Response SharedProblem::evaluate(const VectorXd& x) {
+  optim::Response out;
+  out.df.resize(n_variables());
+  out.g.setZero(1);
+  out.dg.resize(1, n_variables());
+  double sum = 0;
+  for (size_t b = 0; b < parts_.size(); ++b) {
+    MmcProblem& part = *parts_[b].problem;
+    const optim::Response own = part.evaluate(part_of(x, b));
+    const int first = first_[b], n = first_[b + 1] - first;
+    const double share = shares_[static_cast<Eigen::Index>(b)];
+    sum += part.compliance();
+    out.df.segment(first, n) = part.compliance() * own.df;
+    out.g += share * own.g;
+    out.dg.middleCols(first, n) = share * own.dg;
+  }
+  out.f = std::log(sum);
+  out.df /= sum;
+  return out;
+}
+
+bool SharedProblem::acceptable(const VectorXd& x) {
+  for (size_t b = 0; b < parts_.size(); ++b)
+    if (!parts_[b].problem->acceptable(part_of(x, b))) return false;
+  return true;
+}
+
+}  // namespace flexmorph::mmc

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <vector>
+
+#include "optim/mmc/mmc_problem.h"
+
+namespace flexmorph::mmc {
+
+/// Designs of several bodies as one problem, with one budget of mass:
+///
+///   min log Σ_b C_b   s.t.  Σ_b m_b V_b / Σ_b m_b V_max,b - 1 <= 0
+///
+/// C_b  weighted compliance of body b under its own loads [J]
+/// V_b  its volume fraction, V_max,b what it would be allowed by itself [-]
+/// m_b  its mass when its domain is full, ρ c A [kg]
+///
+/// The variables are those of all bodies, one body after the other, each with its own scales and
+/// bounds. A body sees the others through the two sums only: values and gradients are made of the
+/// bodies' own, df = Σ (C_b / Σ C) df_b and g = Σ s_b g_b with the shares s_b of the budget.
+class SharedProblem final : public optim::Problem {
+ public:
+  struct Part {
+    MmcProblem* problem = nullptr;  ///< lives longer; minimizes the sum of its compliances
+    double full_mass = 0;           ///< m_b [kg]
+  };
+  /// @throws Error (input) for no parts, masses that are not positive, and other goals.
+  explicit SharedProblem(std::vector<Part> parts);
+
+  int n_variables() const override { return first_.back(); }
+  int n_constraints() const override { return 1; }
+  VectorXd lower() const override;
+  VectorXd upper() const override;
+  VectorXd start() const override;
+  /// Every part evaluates its own variables once.
+  optim::Response evaluate(const VectorXd& x) override;
+  /// Only when every body's design is.
+  bool acceptable(const VectorXd& x) override;
+
+  /// The variables of one body.
+  VectorXd part_of(const VectorXd& x, size_t body) const {
+    return x.segment(first_[body], first_[body + 1] - first_[body]);
+  }
+
+ private:
+  template <class Of>
+  VectorXd joined(Of&& of) const;
+
+  std::vector<Part> parts_;
+  std::vector<int> first_;  // variables of each body, and the end
+  VectorXd shares_;         // s_b of the budget
+};
+
+}  // namespace flexmorph::mmc

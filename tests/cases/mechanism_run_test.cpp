@@ -1,0 +1,313 @@
+// What runs leave of mechanisms: columns against rigid-body mechanics, parts of the motion, plots.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "cases/build.h"
+#include "cases/run.h"
+#include "cases/surface.h"
+#include "io/tables.h"
+#include "tests/cases/program.h"
+
+namespace flexmorph::test {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr double kPi = std::numbers::pi;
+
+// A rod that a motor turns about its end, more than once around; its centre of mass is 0.3 m from
+// there. A pointer turns likewise. Beside it a plate in a hub, so that the motion has a flexible
+// part, too.
+constexpr const char* kRod = R"toml(
+title = "Driven rod"
+gravity = [0.0, -9.81]
+
+[time]
+end = 0.5
+step = 1e-3
+
+[[drive]]
+name = "wanted"
+formula = "14*t + 0.2*sin(6*t)"
+
+[[drive]]
+name = "turn"
+from = "trajectory"
+
+[trajectory]
+body = "rod"
+angle = "wanted"
+x = 1.0
+y = 2.0
+
+[[rigid_body]]
+name = "rod"
+mass = 2.0
+inertia = 0.05
+center = [0.3, 0.0]
+size = [0.8, 0.1]
+position = [1.0, 2.0]
+
+[[rigid_body]]
+name = "pointer"
+mass = 0.1
+inertia = 0.001
+position = [1.0, 2.0]
+
+[[hub]]
+name = "wall"
+position = [0.0, 0.0]
+angular_velocity = 0.0
+
+[[body]]
+name = "flag"
+element = "ancf_plate"
+terms = ["inertia", "membrane"]
+length = 0.2
+width = 0.05
+thickness = 0.01
+density = 2700.0
+youngs_modulus = 7e9
+poisson_ratio = 0.3
+elements = [2, 1]
+
+[[joint]]
+type = "weld"
+body = "flag"
+edge = "root"
+to = "wall"
+
+[[joint]]
+type = "revolute"
+name = "hinge"
+point_a = [1.0, 2.0]
+b = "rod"
+
+[[joint]]
+type = "angle_drive"
+name = "motor"
+b = "rod"
+angle = "turn"
+
+[[joint]]
+type = "revolute"
+a = "rod"
+b = "pointer"
+
+[[drive]]
+name = "back"
+formula = "-14*t - 0.2*sin(6*t)"
+
+[[joint]]
+type = "angle_drive"
+name = "spin"
+a = "pointer"
+angle = "back"
+
+[output]
+motion_every = 0.1
+)toml";
+
+struct Turn {
+  double angle, rate, acceleration;
+  explicit Turn(double t)
+      : angle(14 * t + 0.2 * std::sin(6 * t)),
+        rate(14 + 1.2 * std::cos(6 * t)),
+        acceleration(-7.2 * std::sin(6 * t)) {}
+};
+
+Ended run(const Scratch& scratch, const std::string& name, const std::string& folder,
+          const Words& changes = {}) {
+  Words words = {"run", name, "-o", folder};
+  for (const std::string& change : changes) words.insert(words.end(), {"--set", change});
+  return flexmorph(scratch, words);
+}
+
+size_t count(const std::string& text, const std::string& part) {
+  size_t n = 0;
+  for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
+  return n;
+}
+
+// m (a - g) at the centre of mass. Accelerations of generalized-alpha, in natural coordinates, have
+// an error of the size of h² ω⁴ = 1e-6 · 15.2⁴ = 0.053 per second squared and metre of a body, and
+// at the start a transient of first order in h, n 0.8ⁿ after n steps: gone, 1e-4 of it, after 60.
+TEST(MechanismRun, ForcesOfADrivenRodAreThoseOfMechanics) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const Ended ended = run(scratch, scratch.write("rod.toml", kRod), folder);
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const io::CsvTable motion = io::read_csv(folder + "/motion.csv");
+  EXPECT_EQ(motion.columns,
+            (Words{"time",          "flag.tip_deflection", "flag.length",   "rod.x",
+                   "rod.y",         "rod.angle",           "pointer.x",     "pointer.y",
+                   "pointer.angle", "rod.delta_x",         "rod.delta_y",   "rod.delta_angle",
+                   "hinge.force_x", "hinge.force_y",       "hinge.moment",  "motor.force_x",
+                   "motor.force_y", "motor.moment",        "motor.power",   "spin.force_x",
+                   "spin.force_y",  "spin.moment",         "spin.power",    "energy.kinetic",
+                   "energy.strain", "energy.potential",    "energy.defect", "power.drive",
+                   "power.feed",    "power.inflow"}));
+  const auto column = [&](const char* name) { return motion.numbers(name); };
+  const auto t = column("time"), fx = column("hinge.force_x"), fy = column("hinge.force_y"),
+             moment = column("motor.moment"), power = column("motor.power"),
+             angle = column("rod.angle"), all = column("power.drive"), spin = column("spin.moment"),
+             spun = column("spin.power");
+  // What hangs on the rod at its hinge: the pointer's weight and turning, for it is centred there.
+  const double m = 2, l = 0.3, g = 9.81, I = 0.05, carried = 0.1;
+  ASSERT_EQ(t.size(), 501u);
+  for (size_t i = 0; i < t.size(); ++i) {
+    const Turn turn(t[i]);
+    const double s = std::sin(turn.angle), c = std::cos(turn.angle);
+    const Vec2 along(c, s), across(-s, c);
+    const Vec2 force = m * (l * (turn.acceleration * across - turn.rate * turn.rate * along)) +
+                       (m + carried) * Vec2(0, g);
+    EXPECT_NEAR(angle[i], turn.angle, 1e-9) << t[i];
+    EXPECT_NEAR(power[i], moment[i] * turn.rate, 1e-9 * 100) << t[i];
+    // On the pointer, for b is the ground.
+    EXPECT_NEAR(spun[i], spin[i] * turn.rate, 1e-9) << t[i];
+    EXPECT_NEAR(all[i], power[i] + spun[i], 1e-9 * 100) << t[i];
+    if (i < 60) continue;
+    EXPECT_NEAR(fx[i], force.x(), 0.053 * m * l) << t[i];
+    EXPECT_NEAR(fy[i], force.y(), 0.053 * m * l) << t[i];
+    const double wanted = (I + m * l * l) * turn.acceleration + m * g * l * c;
+    EXPECT_NEAR(moment[i], wanted, 0.053 * (I + m * l * l)) << t[i];
+    EXPECT_NEAR(spin[i], 0.001 * turn.acceleration, 0.053 * 0.001) << t[i];
+  }
+  EXPECT_GT(angle.back(), 2 * kPi);
+  for (const char* name : {"hinge.moment", "motor.force_x", "motor.force_y", "rod.delta_x",
+                           "rod.delta_y", "rod.delta_angle"})
+    for (const double each : column(name)) EXPECT_NEAR(each, 0, 1e-9) << name;
+
+  // Three bodies, of which the pointer has no size; six times from 0 to 0.5 s.
+  const std::string index = contents_of(folder + "/motion/motion.pvd");
+  for (const auto& [part, times] :
+       {std::pair{"part=\"0\"", 6u}, {"part=\"1\"", 6u}, {"part=\"2\"", 0u}})
+    EXPECT_EQ(count(index, part), times) << part;
+  const std::string rod = contents_of(folder + "/motion/motion_rod_00002.vtu");
+  EXPECT_TRUE(contains(rod, "NumberOfPoints=\"4\" NumberOfCells=\"1\""));
+  EXPECT_TRUE(contains(rod, "Name=\"body\""));
+  for (const char* name : {"inputs", "mechanism", "error_rod", "joint_forces"})
+    EXPECT_TRUE(fs::is_regular_file(folder + "/plots/" + name + ".svg")) << name;
+  const std::string report = contents_of(folder + "/report.html");
+  for (const char* heading : {"Inputs", "Mechanism in motion", "Error of rod", "Joint forces"})
+    EXPECT_TRUE(contains(report, "<h2>" + std::string(heading))) << heading;
+  const std::string moments = contents_of(folder + "/plots/mechanism.svg");
+  for (const char* title : {"t = 0 s", "t = 0.167 s", "t = 0.334 s", "t = 0.5 s"})
+    EXPECT_TRUE(contains(moments, title)) << title;
+}
+
+TEST(MechanismRun, RigidBodiesAreDrawnAroundTheirCentres) {
+  const Scratch scratch;
+  const cases::Scene scene = cases::read_scene(io::CaseFile(scratch.write("rod.toml", kRod)));
+  const cases::Mechanism mechanism = cases::build_mechanism(scene);
+  fem::State x = mechanism.model.reference();
+  const int at = mechanism.model.body("rod").first_dof;
+  x.q.segment<4>(at) << 1, 2, 0, 1;  // upright
+  const std::vector<Vec2> corners = cases::drawn_corners(scene.rigid_bodies[0], mechanism.model, x);
+  ASSERT_EQ(corners.size(), 4u);
+  const Vec2 wanted[] = {{1.05, 1.9}, {1.05, 2.7}, {0.95, 2.7}, {0.95, 1.9}};
+  for (size_t k = 0; k < 4; ++k) EXPECT_LT((corners[k] - wanted[k]).norm(), 1e-15) << k;
+  EXPECT_TRUE(cases::drawn_corners(scene.rigid_bodies[1], mechanism.model, x).empty());
+}
+
+// P (36), (37): two designs on moving bars, and what the platform misses of its path.
+TEST(MechanismRun, PlatformShowsItsDesignsAndItsError) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const Ended ended =
+      run(scratch, "motion_platform", folder,
+          {"time.end=0.03", "optimizer.max_iterations=2", "design.bar1.cells=[75, 20]",
+           "design.bar2.cells=[150, 20]", "output.motion_every=0.03"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const io::CsvTable motion = io::read_csv(folder + "/motion.csv");
+  const auto t = motion.numbers("time"), x = motion.numbers("platform.x"),
+             y = motion.numbers("platform.y"), dx = motion.numbers("platform.delta_x"),
+             dy = motion.numbers("platform.delta_y"), angle = motion.numbers("platform.angle"),
+             turned = motion.numbers("platform.delta_angle");
+  double largest = 0, when = 0;
+  for (size_t i = 0; i < t.size(); ++i) {
+    const double theta = -2 * kPi * std::pow(t[i] - 0.5, 3) + 1.5 * kPi * t[i] - kPi / 4;
+    EXPECT_NEAR(dx[i], x[i] - 0.5 * std::cos(kPi - theta), 1e-14);
+    EXPECT_NEAR(dy[i], y[i] - 0.5 * std::sin(kPi - theta) - 0.4, 1e-14);
+    EXPECT_EQ(turned[i], angle[i]);
+    if (std::abs(dy[i]) > largest) largest = std::abs(dy[i]), when = t[i];
+  }
+  // The platform starts with 0.5 θ'' = 3π m/s² upwards: 2 kg on the two bearings.
+  EXPECT_NEAR(motion.numbers("at_C.force_y")[0] + motion.numbers("at_D.force_y")[0], -6 * kPi,
+              0.02 * 6 * kPi);
+  const auto json = nlohmann::json::parse(contents_of(folder + "/run.json"));
+  const auto& error = json["motion"]["platform_error"];
+  EXPECT_EQ(error["body"], "platform");
+  EXPECT_EQ(error["delta_y"].get<double>(), largest);
+  EXPECT_EQ(error["delta_y_time"].get<double>(), when);
+  const auto uniform = io::read_csv(folder + "/motion_uniform.csv").numbers("platform.delta_x");
+  double most = 0;
+  for (const double each : uniform) most = std::max(most, std::abs(each));
+  EXPECT_EQ(error["uniform_delta_x"].get<double>(), most);
+
+  const std::string index = contents_of(folder + "/motion/motion.pvd");
+  for (int part = 0; part < 7; ++part)
+    EXPECT_EQ(count(index, "part=\"" + std::to_string(part) + "\""), 2u) << part;
+  for (const char* bar : {"bar1_00001", "bar2_00002"}) {
+    const std::string frame = contents_of(folder + "/motion/motion_" + bar + ".vtu");
+    EXPECT_TRUE(contains(frame, "Name=\"density\"")) << bar;
+    EXPECT_TRUE(contains(frame, "Name=\"body\"")) << bar;
+  }
+  for (const char* name : {"inputs.svg", "mechanism.svg", "error_platform.svg", "joint_forces.svg",
+                           "start_bar1.svg", "start_bar2.svg", "design_bar1.png", "design_bar2.png",
+                           "convergence_bar1.svg", "convergence_bar2.svg"})
+    EXPECT_TRUE(fs::is_regular_file(folder + "/plots/" + name)) << name;
+  EXPECT_TRUE(contains(contents_of(folder + "/report.html"), "Components of bar2"));
+}
+
+// A plate without a design moves beside one with a design, each with its own fields.
+TEST(MechanismRun, PlatesWithoutADesignAreThereToo) {
+  const Scratch scratch;
+  std::string text = contents_of(std::string(FLEXMORPH_CASES) + "/motion_platform.toml");
+  const size_t second = text.find("[[design]]\nbody = \"bar2\"");
+  ASSERT_NE(second, std::string::npos);
+  text.erase(second, text.find("[optimizer]") - second);
+  const std::string folder = scratch / "out";
+  const Ended ended = run(scratch, scratch.write("one.toml", text), folder,
+                          {"time.end=0.01", "optimizer.max_iterations=1", "design.cells=[75, 20]",
+                           "output.motion_every=0.01"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const std::string index = contents_of(folder + "/motion/motion.pvd");
+  for (int part = 0; part < 7; ++part)
+    EXPECT_EQ(count(index, "part=\"" + std::to_string(part) + "\""), 2u) << part;
+  const std::string with = contents_of(folder + "/motion/motion_bar1_00001.vtu"),
+                    without = contents_of(folder + "/motion/motion_bar2_00002.vtu");
+  EXPECT_TRUE(contains(with, "Name=\"density\""));
+  EXPECT_FALSE(contains(with, "Name=\"strain_energy\""));
+  EXPECT_TRUE(contains(without, "Name=\"strain_energy\""));
+  EXPECT_TRUE(contains(without, "Name=\"displacement\""));
+  EXPECT_FALSE(contains(without, "Name=\"density\""));
+}
+
+TEST(MechanismRun, CheckDescribesTheMechanism) {
+  const Scratch scratch;
+  const std::string out = flexmorph(scratch, {"check", "motion_platform"}).out;
+  for (const char* words :
+       {"rigid bodies          5 (platform, A, B, C, D), 20 unknowns, 2.4 kg\n",
+        "3 without the drives of joints and flows, 0 with them\n",
+        "of platform: x 'path_x', y 'path_y', angle 0; drives that follow: L1, L2, alpha1\n",
+        "constraint rows: 4 revolute, 4 weld, 1 angle_drive\n", "springs               none\n"})
+    EXPECT_TRUE(contains(out, words)) << words;
+  EXPECT_FALSE(contains(out, "rigid bodies          none"));
+  const Ended spring =
+      flexmorph(scratch, {"check", scratch.write("rod.toml", kRod), "--set",
+                          "spring=[{b='rod', stiffness=10.0}, {type='torsion', b='pointer', "
+                          "damping=0.1}, {b='pointer', stiffness=1.0}]"});
+  EXPECT_TRUE(contains(spring.out, "springs               3: 2 linear, 1 torsion\n"))
+      << spring.out << spring.err;
+  // Rod and pointer turn freely once their two drives are gone.
+  EXPECT_TRUE(contains(spring.out, "2 without the drives of joints and flows, 0 with them"));
+  EXPECT_TRUE(
+      contains(flexmorph(scratch, {"check", "plate_pendulum"}).out, "rigid bodies          none"));
+}
+
+}  // namespace
+}  // namespace flexmorph::test

@@ -1,0 +1,397 @@
+// Mechanisms that cannot be: each is refused with words that name what is wrong, exit code 2, and
+// leaves nothing behind; positions that cannot be reached end with code 3, time and joints.
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "io/tables.h"
+#include "tests/cases/program.h"
+
+namespace flexmorph::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Edit = std::pair<std::string, std::string>;  // what is replaced (empty: appended), by what
+
+/// Links of 0.15, 0.5, 0.5 and 0.55 m (ground), all rigid.
+const std::string kFourBar = R"(
+[time]
+end = 0.5
+step = 1e-3
+
+[[drive]]
+name = "turn"
+formula = "pi/2 + 2*t"
+
+[[rigid_body]]
+name = "crank"
+mass = 0.5
+size = [0.15, 0.04]
+angle = 1.5707963267948966
+
+[[rigid_body]]
+name = "coupler"
+mass = 1.0
+size = [0.5, 0.04]
+position = [0.0, 0.15]
+angle = 0.7
+
+[[rigid_body]]
+name = "rocker"
+mass = 1.0
+size = [0.5, 0.04]
+position = [0.55, 0.0]
+angle = 1.91
+
+[[joint]]
+type = "revolute"
+name = "A"
+point_a = [0.0, 0.0]
+b = "crank"
+
+[[joint]]
+type = "revolute"
+name = "B"
+a = "crank"
+point_a = [0.15, 0.0]
+b = "coupler"
+
+[[joint]]
+type = "revolute"
+name = "C"
+a = "coupler"
+point_a = [0.5, 0.0]
+b = "rocker"
+point_b = [0.5, 0.0]
+
+[[joint]]
+type = "revolute"
+name = "D"
+point_a = [0.55, 0.0]
+b = "rocker"
+
+[[joint]]
+type = "angle_drive"
+name = "motor"
+b = "crank"
+angle = "turn"
+)";
+
+/// Two links of 0.3 m and a hand at their end, moved along a path.
+const std::string kArm = R"(
+[time]
+end = 1.0
+
+[[drive]]
+name = "x"
+formula = "0.5 + 0.2*t"
+
+[[drive]]
+name = "shoulder"
+from = "trajectory"
+
+[[drive]]
+name = "elbow"
+from = "trajectory"
+
+[[drive]]
+name = "wrist"
+from = "trajectory"
+
+[trajectory]
+body = "hand"
+x = "x"
+y = 0.0
+
+[[rigid_body]]
+name = "upper"
+mass = 1.0
+size = [0.3, 0.05]
+angle = 0.6
+
+[[rigid_body]]
+name = "lower"
+mass = 1.0
+size = [0.3, 0.05]
+position = [0.25, 0.17]
+angle = -0.6
+
+[[rigid_body]]
+name = "hand"
+mass = 1.0
+size = [0.1, 0.05]
+position = [0.5, 0.0]
+
+[[joint]]
+type = "revolute"
+name = "at_shoulder"
+point_a = [0.0, 0.0]
+b = "upper"
+
+[[joint]]
+type = "revolute"
+name = "at_elbow"
+a = "upper"
+point_a = [0.3, 0.0]
+b = "lower"
+
+[[joint]]
+type = "revolute"
+name = "at_wrist"
+a = "lower"
+point_a = [0.3, 0.0]
+b = "hand"
+
+[[joint]]
+type = "angle_drive"
+b = "upper"
+angle = "shoulder"
+
+[[joint]]
+type = "angle_drive"
+a = "upper"
+b = "lower"
+angle = "elbow"
+
+[[joint]]
+type = "angle_drive"
+a = "lower"
+b = "hand"
+angle = "wrist"
+)";
+
+std::string edited(std::string text, const std::vector<Edit>& edits) {
+  for (const auto& [from, to] : edits) {
+    const size_t at = from.empty() ? text.size() : text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    if (at != std::string::npos) text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
+std::string shipped(const std::string& name) {
+  return contents_of(std::string(FLEXMORPH_CASES) + "/" + name + ".toml");
+}
+
+struct Told : Ended {
+  bool left_behind = false;  ///< is there a folder of the run?
+};
+
+Told run_text(const std::string& text, const Scratch& scratch) {
+  const std::string file = scratch / "scene.toml", folder = scratch / "out";
+  std::ofstream(file) << text;
+  Told told{flexmorph(scratch, {"run", file, "-o", folder, "--quiet"})};
+  told.left_behind = fs::exists(folder);
+  return told;
+}
+
+struct Bad {
+  std::string name;
+  std::string text;              ///< of the case
+  std::vector<Edit> edits;       ///< that make it bad
+  std::vector<std::string> say;  ///< what the message contains
+  int code = 2;
+};
+void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.name; }
+
+std::string joint(const std::string& type, const std::string& rest) {
+  return "\n[[joint]]\ntype = \"" + type + "\"\n" + rest + "\n";
+}
+
+std::vector<Bad> bad_ones() {
+  const std::string platform = shipped("motion_platform"), rocker = shipped("four_bar");
+  const std::string plate =
+      "\n[[body]]\nname = \"spare\"\nelement = \"ancf_plate\"\nterms = [\"inertia\", "
+      "\"membrane\"]\n"
+      "length = 0.4\nwidth = 0.1\nthickness = 0.01\ndensity = 1150.0\nyoungs_modulus = 2e9\n"
+      "poisson_ratio = 0.3\nelements = [4, 1]\n";
+  return {
+      {"rigid_body_without_joint",
+       kFourBar,
+       {{"", "\n[[rigid_body]]\nname = \"lost\"\nmass = 1.0\ninertia = 1.0\n"}},
+       {"rigid_body.lost.name", "nothing holds 'lost'", "[[spring]]"}},
+      {"plate_without_joint", rocker, {{"", plate}}, {"body.spare", "nothing holds 'spare'"}},
+      {"joint_to_nobody",
+       kFourBar,
+       {{"point_a = [0.15, 0.0]\nb = \"coupler\"", "point_a = [0.15, 0.0]\nb = \"copler\""}},
+       {"joint.B.b", "copler", "coupler"}},
+      {"two_drives_on_one_freedom",
+       kFourBar,
+       {{"", joint("angle_drive", "name = \"second\"\nb = \"rocker\"\nangle = 1.9")}},
+       {"of them drives: joints 'motor', 'second'"}},
+      {"second_drive_that_agrees",
+       kFourBar,
+       {{"", joint("angle_drive", "name = \"second\"\nb = \"crank\"\nangle = \"turn\"")}},
+       {"'motor', 'second' hold the same freedom"}},
+      {"drives_of_different_speed",
+       kFourBar,
+       {{"", joint("angle_drive", "name = \"second\"\nb = \"crank\"\nangle = 1.5707963267948966")}},
+       {"'motor', 'second' contradict each other", "m/s"}},
+      {"drive_of_a_bar_that_follows",
+       platform,
+       {{"[esl]", joint("angle_drive", "name = \"turn_B\"\nb = \"B\"\nangle = 2.65") + "[esl]"}},
+       {"of them drives: joints 'turn_B'", "'angle of the trajectory'"}},
+      {"redundant",
+       kFourBar,
+       {{"", joint("revolute", "name = \"again\"\npoint_a = [0.55, 0.0]\nb = \"rocker\"")}},
+       {"'D', 'again' hold the same 2 freedoms"}},
+      {"contradictory",
+       kFourBar,
+       {{"", joint("revolute", "name = \"off\"\npoint_a = [0.57, 0.0]\nb = \"rocker\"")}},
+       {"'D', 'off' contradict each other", "0.02 m"}},
+      {"bar_too_short",
+       platform,
+       {{"to = \"C\"\npoint = [-0.05, 0.0]", "to = \"C\"\npoint = [-0.4, 0.0]"}},
+       {"body.bar1.flow.min_length", "shorter than min_length"}},
+      {"mass_of_nothing", kFourBar, {{"mass = 0.5", "mass = 0.0"}}, {"a mass is positive"}},
+      {"negative_mass", kFourBar, {{"mass = 0.5", "mass = -0.5"}}, {"-0.5", "a mass is positive"}},
+      {"drive_from_a_path_for_nothing",
+       platform,
+       {{"[[rigid_body]]", "[[drive]]\nname = \"spare\"\nfrom = \"trajectory\"\n\n[[rigid_body]]"}},
+       {"drive 'spare' follows from the trajectory", "no flow, angle or distance"}},
+      {"path_that_nothing_follows",
+       kFourBar,
+       {{"", "\n[trajectory]\nbody = \"rocker\"\nx = 0.55\ny = 0.0\n"}},
+       {"trajectory", "from = \"trajectory\""}},
+      {"length_starts_elsewhere",
+       rocker,
+       {{"element = \"ancf_plate\"", "element = \"ale_ancf_plate\""},
+        {"elements = [8, 2]",
+         "elements = [8, 2]\n\n[body.flow]\nlength = \"grow\"\nmax_length = 0.1\n"},
+        {"[[rigid_body]]", "[[drive]]\nname = \"grow\"\nformula = \"0.5 + t\"\n\n[[rigid_body]]"}},
+       {"length", "starts at 0.5", "0.4"}},
+      {"drive_of_no_name",
+       kFourBar,
+       {{"angle = \"turn\"", "angle = \"trun\""}},
+       {"joint.motor.angle", "trun", "turn"}},
+      {"length_of_no_name",
+       platform,
+       {{"length = \"L1\"", "length = \"L7\""}},
+       {"body.bar1.flow.length", "L7", "L1"}},
+      {"spring_to_nobody",
+       kFourBar,
+       {{"", "\n[[spring]]\nb = \"mount\"\nstiffness = 100.0\n"}},
+       {"spring", "mount", "crank"}},
+      {"plate_in_space",
+       rocker,
+       {{"space = \"plane\"", "space = \"space\""}},
+       {"body.space", "rigid bodies live in the plane"}},
+      {"spin_up_of_a_hub",
+       kFourBar,
+       {{"step = 1e-3", "step = 1e-3\nstart = \"hub_at_rest\""}},
+       {"time.start", "drives"}},
+      {"free_line_in_a_hub",
+       rocker,
+       {{"", plate +
+                 "\n[[body.line]]\nindex = 2\nfree = true\n\n[[hub]]\nname = \"hub\"\n"
+                 "angular_velocity = 0.0\n" +
+                 joint("weld", "body = \"spare\"\nedge = \"line 2\"\nto = \"hub\"")}},
+       {"edge", "a free line slides in one of them"}},
+      {"freedoms_not_at_rest",
+       shipped("telescopic_crane"),
+       {{"position = [0.764, -0.064]", "position = [0.51, 0.077]\nangle = -1.0"}},
+       {"prestretched", "1 here", "start = \"rigid\""}},
+      // The reach of 0.6 m is passed at 0.5 s.
+      {"path_out_of_reach", kArm, {}, {"trajectory", "t = 0.49999", " s", "'at_elbow'"}, 3},
+      {"path_never_in_reach",
+       kArm,
+       {{"0.5 + 0.2*t", "5 + 0.2*t"}},
+       {"trajectory", "t = 0 s", "'"},
+       3},
+  };
+}
+
+class BadMechanism : public ::testing::TestWithParam<Bad> {};
+
+TEST_P(BadMechanism, IsRefusedWithWords) {
+  const Bad& bad = GetParam();
+  const Scratch scratch;
+  const Told told = run_text(edited(bad.text, bad.edits), scratch);
+  EXPECT_EQ(told.code, bad.code) << told.out << told.err;
+  EXPECT_FALSE(told.left_behind);
+  for (const std::string& words : bad.say) EXPECT_TRUE(contains(told.err, words)) << told.err;
+}
+INSTANTIATE_TEST_SUITE_P(Cases, BadMechanism, ::testing::ValuesIn(bad_ones()),
+                         [](const auto& test) { return test.param.name; });
+
+/// The rocker is driven: it can go no farther than where crank and coupler are stretched.
+const std::vector<Edit> kDeadCentre = {{"b = \"crank\"\nangle", "b = \"rocker\"\nangle"},
+                                       {"pi/2 + 2*t", "1.911 - 0.5*t"}};
+/// Cosine rule for a distance of 0.65 m between the pins of crank and coupler's end.
+const double kDeadTime =
+    (1.911 - (std::numbers::pi - std::acos((0.55 * 0.55 + 0.25 - 0.65 * 0.65) / (2 * 0.55 * 0.5)))) / 0.5;
+
+double time_in(const std::string& message) {
+  const size_t at = message.find("t = ");
+  return at == std::string::npos ? -1 : std::stod(message.substr(at + 4));
+}
+
+TEST(DeadCentre, IsFoundBeforeTheRunStarts) {
+  const Scratch scratch;
+  const Told told = run_text(edited(kFourBar, kDeadCentre), scratch);
+  EXPECT_EQ(told.code, 3) << told.err;
+  EXPECT_FALSE(told.left_behind);
+  EXPECT_TRUE(contains(told.err, "dead centre")) << told.err;
+  EXPECT_TRUE(contains(told.err, "'motor'")) << told.err;
+  EXPECT_NEAR(time_in(told.err), kDeadTime, 1e-6);
+}
+
+/// A pendulum that nothing drives: the path of the rest is not looked at before.
+const std::string kPendulum =
+    "\n[[rigid_body]]\nname = \"bob\"\nmass = 0.1\ninertia = 0.001\nposition = [0.25, 0.3]\n" +
+    joint("revolute",
+          "name = \"hook\"\na = \"coupler\"\npoint_a = [0.25, 0.0]\nb = \"bob\"\n"
+          "point_b = [0.0, 0.1]");
+
+TEST(DeadCentre, EndsARunWithTimeAndJoints) {
+  const Scratch scratch;
+  std::vector<Edit> edits = kDeadCentre;
+  edits.push_back({"step = 1e-3", "step = 1e-3\nstart = \"rigid\""});
+  edits.push_back({"", kPendulum});
+  const Told told = run_text(edited(kFourBar, edits), scratch);
+  EXPECT_EQ(told.code, 3) << told.err;
+  EXPECT_TRUE(contains(told.err, "nearly dependent")) << told.err;
+  EXPECT_TRUE(contains(told.err, "'motor'")) << told.err;
+  EXPECT_NEAR(time_in(told.err), kDeadTime, 2e-3);
+  const auto time = io::read_csv(scratch / "out/motion.csv").numbers("time");
+  EXPECT_NEAR(time.back(), kDeadTime, 2e-3);
+}
+
+/// A parallelogram at its change point is singular. Passed within 5e-7 of a radian at step 50.
+TEST(NearlySingular, WarnsWithTimeAndJoints) {
+  const Scratch scratch;
+  const Told told = run_text(
+      edited(kFourBar, {{"step = 1e-3", "step = 1e-3\nstart = \"rigid\""},
+                        {"end = 0.5", "end = 0.05"},
+                        {"pi/2 + 2*t", "3.1415921535897932 - 2*(0.05 - t)"},
+                        {"angle = 1.5707963267948966", "angle = 3.0415921"},
+                        {"position = [0.0, 0.15]\nangle = 0.7", "position = [-0.149, 0.015]"},
+                        {"angle = 1.91", "angle = 3.0415921"},
+                        {"point_b = [0.5, 0.0]", "point_b = [0.15, 0.0]"},
+                        {"position = [0.55, 0.0]", "position = [0.5, 0.0]"},
+                        {"point_a = [0.55, 0.0]", "point_a = [0.5, 0.0]"},
+                        {"", kPendulum}}),
+      scratch);
+  ASSERT_EQ(told.code, 0) << told.err;
+  const auto json = nlohmann::json::parse(contents_of(scratch / "out/run.json"));
+  ASSERT_EQ(json["warnings"].size(), 1u);
+  const std::string warning = json["warnings"][0];
+  EXPECT_NEAR(time_in(warning), 0.05, 1e-12);
+  // All pins lie on a line, along which the links may be under any tension.
+  for (const char* pin : {"'A'", "'B'", "'C'", "'D'"})
+    EXPECT_TRUE(contains(warning, pin)) << warning;
+  EXPECT_TRUE(contains(warning, "nearly dependent")) << warning;
+}
+
+TEST(GoodMechanism, RunsWithoutWarnings) {
+  const Scratch scratch;
+  const Told told = run_text(kFourBar, scratch);
+  ASSERT_EQ(told.code, 0) << told.err;
+  EXPECT_TRUE(nlohmann::json::parse(contents_of(scratch / "out/run.json"))["warnings"].empty());
+}
+
+}  // namespace
+}  // namespace flexmorph::test

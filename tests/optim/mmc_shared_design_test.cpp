@@ -1,0 +1,321 @@
+// Designs of bodies that share one budget of mass: equal bodies share equally, the one with more to
+// carry gets more, and nothing of what a body keeps for itself (bands, drops, clean-up, rows, its
+// place among the outcomes of a cycle) gets lost. Cycles make a table.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "tests/optim/mmc_sharing.h"
+
+namespace flexmorph::mmc::test {
+namespace {
+
+/// A body of a whole run. (Ten cells across are too few to take half a cell off all around.)
+BodyProblem body(const std::string& name, std::vector<double> bands = {1.5}) {
+  std::vector<TdfSettings> stages;
+  for (const double band : bands) {
+    stages.push_back(tdf_settings(band));
+    stages.back().erosion = 0;
+  }
+  BodyProblem out{name,    kGrid, kSection, Design(kGrid, layout(), kScale),
+                  strip(), {},    stages,   {},
+                  1e-4,    1e-3,  {},       {},
+                  {},      {}};
+  out.shares_mass = true;
+  return out;
+}
+
+struct Designed {
+  BodyProblem a, b;
+  std::vector<BodyOutcome> outcomes;
+  double compliance() const { return outcomes[0].compliance + outcomes[1].compliance; }
+};
+
+DesignSettings settings_of(const std::string& optimizer, int iterations) {
+  DesignSettings settings;
+  settings.sharp_every = 0;
+  settings.optimizer.name = optimizer;
+  settings.optimizer.max_iterations = iterations;
+  if (optimizer == "ipopt") settings.optimizer.options["box"] = 0.1;  // as cases have it
+  return settings;
+}
+
+/// Two equal bodies, forces at their tips.
+Designed designed(const std::string& optimizer, int iterations, double force_a, double force_b,
+                  bool together) {
+  Designed out{body("a"), body("b"), {}};
+  FixedLoads loads_a = tip_load(kSection, force_a), loads_b = tip_load(kSection, force_b);
+  const DesignSettings settings = settings_of(optimizer, iterations);
+  bool going = true;
+  if (together) {
+    const LoadedBody bodies[] = {{out.a, loads_a}, {out.b, loads_b}};
+    out.outcomes = design_bodies(bodies, 1, settings, {}, going);
+  } else {
+    out.outcomes = {design_body(out.a, loads_a, 1, settings, {}, going),
+                    design_body(out.b, loads_b, 1, settings, {}, going)};
+  }
+  return out;
+}
+
+/// Is there a piece of material from end to end, links of a tenth of the density included? (Ten
+/// cells across are too few for the sharp picture of such thin components.)
+bool hangs_together(const BodyProblem& p) {
+  UnionTdf tdf(p.grid, p.stages.back());
+  tdf.evaluate(p.design.components());
+  CellFactors factors;
+  ersatz_of(p).factors(tdf.density(), tdf.eroded(), factors);
+  return connectivity(p.grid, 5 * factors.mass, {}).connected;
+}
+
+class EveryOptimizer : public ::testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Table, EveryOptimizer, ::testing::ValuesIn(optim::optimizer_names()),
+                         [](const auto& test) { return test.param; });
+
+// By symmetry. Trajectories are chaotic, so round-off may part them: levels are compared.
+TEST_P(EveryOptimizer, EqualBodiesShareEqually) {
+  const Designed both = designed(GetParam(), 40, 1, 1, true);
+  const BodyOutcome &a = both.outcomes[0], &b = both.outcomes[1];
+  RecordProperty("volume_a", std::to_string(a.volume));
+  RecordProperty("volume_b", std::to_string(b.volume));
+  EXPECT_NEAR(a.volume, b.volume, 0.01);
+  EXPECT_NEAR(a.compliance, b.compliance, 0.03 * a.compliance);
+  EXPECT_LE(a.volume + b.volume, 2 * 0.5 * (1 + 1e-4));
+}
+
+// Ten times the force is a hundred times the compliance: mass goes there, until another gram saves
+// as much in either body, and the sum falls below that of designs with a budget each.
+TEST_P(EveryOptimizer, MassGoesWhereTheLoadIs) {
+  const Designed apart = designed(GetParam(), 80, 10, 1, false);
+  const Designed both = designed(GetParam(), 80, 10, 1, true);
+  const BodyOutcome &a = both.outcomes[0], &b = both.outcomes[1];
+  RecordProperty("volume_a", std::to_string(a.volume));
+  RecordProperty("volume_b", std::to_string(b.volume));
+  RecordProperty("compliance_ratio", std::to_string(both.compliance() / apart.compliance()));
+  EXPECT_GT(a.volume, b.volume + 0.1);
+  EXPECT_LE(a.volume + b.volume, 1 + 1e-4);
+  EXPECT_LT(both.compliance(), apart.compliance());
+  EXPECT_TRUE(hangs_together(both.a));
+  EXPECT_TRUE(hangs_together(both.b));
+}
+
+// A row per body and iteration, each about its own design; violation is that of the budget.
+TEST(DesignBodies, RowsDescribeTheirBodies) {
+  for (const char* name : {"mma", "nlopt_ccsaq"}) {
+    BodyProblem a = body("a", {2, 1}), b = body("b", {3, 2, 1.5, 1});
+    b.section = kOther;
+    b.goal.max_volume = 0.3;
+    FixedLoads loads_a = tip_load(kSection, 2), loads_b = tip_load(kOther, 1);
+    FixedLoads again_a = tip_load(kSection, 2), again_b = tip_load(kOther, 1);
+    const Ersatz ersatz = ersatz_of(a);
+    std::map<int, std::pair<double, double>> sums;  // compliance, and mass over the budget
+    std::map<std::string, std::vector<double>> bands;
+    int rows = 0;
+    const double mass_a = full_mass_of(a), mass_b = full_mass_of(b);
+    EXPECT_NEAR(mass_a, 2700 * 0.01 * 0.06, 1e-12);
+    EXPECT_NEAR(mass_b, 900 * 0.02 * 0.06, 1e-12);
+    const auto observe = [&](const IterationReport& r) {
+      const bool first = r.problem.body == "a";
+      EXPECT_EQ(first, rows++ % 2 == 0);
+      EXPECT_EQ(r.iteration, (rows + 1) / 2);
+      EXPECT_EQ(r.state.x(), *r.iterate.x);
+      EXPECT_EQ(r.sharp != nullptr, r.iteration % 8 == 0);
+      EXPECT_TRUE(first || r.iterate.seconds == 0);
+      const Design design(kGrid, r.state.components(), kScale);
+      TdfSettings tdf = tdf_settings(r.state.band() / kGrid.dx());
+      tdf.erosion = 0;
+      MmcProblem again(kGrid, design, ersatz, first ? again_a : again_b, tdf, Goal{});
+      again.evaluate(design.x());
+      EXPECT_NEAR(again.compliance(), r.state.compliance(), 1e-9 * again.compliance());
+      EXPECT_EQ(&r.value, &r.state.value());
+      auto& [compliance, mass] = sums[r.iteration];
+      compliance += again.compliance();
+      mass += (first ? mass_a : mass_b) * again.volume() / (0.5 * mass_a + 0.3 * mass_b);
+      if (!first) {
+        EXPECT_NEAR(r.iterate.response->f, std::log(compliance), 1e-9);
+        EXPECT_NEAR(r.iterate.violation, std::max(0.0, mass - 1), 1e-9);
+      }
+      std::vector<double>& seen = bands[r.problem.body];
+      const double band = r.state.band() / kGrid.dx();
+      if (seen.empty() || std::abs(seen.back() - band) > 1e-9) seen.push_back(band);
+      return true;
+    };
+    DesignSettings settings = settings_of(name, 12);
+    settings.sharp_every = 8;
+    bool going = false;
+    const LoadedBody bodies[] = {{a, loads_a}, {b, loads_b}};
+    const auto outcomes = design_bodies(bodies, 1, settings, observe, going);
+    EXPECT_TRUE(going);
+    ASSERT_EQ(outcomes.size(), 2u);
+    EXPECT_EQ(rows, 2 * outcomes[0].iterations);
+    EXPECT_EQ(outcomes[0].evaluations, outcomes[1].evaluations);
+    EXPECT_GE(outcomes[0].evaluations, 12);
+    ASSERT_EQ(bands["a"].size(), 2u);
+    ASSERT_EQ(bands["b"].size(), 4u);
+    EXPECT_NEAR(bands["b"][2], 1.5, 1e-12);
+    // One factorization per evaluation of a body; others for the best design of each of four
+    // stages, a sharp picture in between, and at the end the sharp and the uniform design.
+    EXPECT_LE(outcomes[0].factorizations, outcomes[0].evaluations + 4 + 1 + 2);
+  }
+}
+
+// The list of one body changes: the other one goes on from where it is, not from its start.
+TEST(DesignBodies, DropsOfOneBodyLeaveTheOtherWhereItIs) {
+  BodyProblem a = body("a"), b = body("b");
+  std::vector<Component> more = layout();
+  for (int k = 0; k < 3; ++k) {
+    more.push_back(more[0]);
+    more.back().center = {0.8, 0.05 * k};  // outside of the domain
+  }
+  a.design = a.design.with(more);
+  a.drop_every = 4;
+  b.drop_every = 0;
+  const int before = a.design.n_components();
+  FixedLoads loads_a = tip_load(kSection, 1), loads_b = tip_load(kSection, 1);
+  std::vector<VectorXd> of_b;
+  int changes = 0;
+  const auto observe = [&](const IterationReport& r) {
+    if (r.problem.body == "a") {
+      if (!r.events.empty()) ++changes;
+      return true;
+    }
+    EXPECT_TRUE(r.events.empty());
+    of_b.push_back(r.state.x());
+    return true;
+  };
+  const DesignSettings settings = settings_of("mma", 30);
+  bool going = true;
+  const LoadedBody bodies[] = {{a, loads_a}, {b, loads_b}};
+  const auto outcomes = design_bodies(bodies, 1, settings, observe, going);
+  EXPECT_GE(changes, 1);
+  EXPECT_LT(a.design.n_components(), before);
+  EXPECT_EQ(b.design.n_components(), 24);
+  for (size_t k = 1; k < of_b.size(); ++k)
+    EXPECT_LE((of_b[k] - of_b[k - 1]).lpNorm<Eigen::Infinity>(), 0.05 + 1e-12) << k;
+  EXPECT_LE(outcomes[0].volume + outcomes[1].volume, 1 + 1e-4);
+}
+
+// What a clean-up adds to one body is taken from what both may have together.
+TEST(DesignBodies, CleanUpsKeepTheBudget) {
+  constexpr double kWanted = 0.018;
+  BodyProblem a = body("a"), b = body("b");
+  for (BodyProblem* p : {&a, &b})
+    p->design = p->design.with(
+        crossing_layout(kGrid.x0, kGrid.y0, kGrid.width, kGrid.height, 4, 1, 0.012, 0.09));
+  a.min_feature = kWanted;
+  a.drop_every = b.drop_every = 0;
+  FixedLoads loads_a = tip_load(kSection, 3), loads_b = tip_load(kSection, 1);
+  bool going = true;
+  const LoadedBody bodies[] = {{a, loads_a}, {b, loads_b}};
+  const auto outcomes = design_bodies(bodies, 1, settings_of("mma", 30), {}, going);
+  ASSERT_TRUE(outcomes[0].clean_up);
+  EXPECT_FALSE(outcomes[1].clean_up);
+  EXPECT_TRUE(outcomes[0].clean_up->reached());
+  ASSERT_TRUE(outcomes[0].sharp.features);
+  EXPECT_GE(outcomes[0].sharp.features->solid, kWanted);
+  EXPECT_GT(outcomes[0].volume, outcomes[1].volume);
+  EXPECT_GT(outcomes[0].volume, 0.5);  // more than it had by itself
+  EXPECT_LE(outcomes[0].volume + outcomes[1].volume, 1 + 1e-4);
+}
+
+/// Motions of three bodies.
+std::vector<fem::EslSets> three(double swing) {
+  return {turning_plate(2, swing), turning_plate(2), turning_plate(2)};
+}
+
+std::vector<BodyProblem> three_bodies() {
+  std::vector<BodyProblem> out = {body("a"), body("b"), body("c")};
+  out[1].shares_mass = false;
+  return out;
+}
+
+// The first and the third share mass, the second is by itself: rows of groups, outcomes in order.
+TEST(EslLoop, SolvesThoseTogetherThatShare) {
+  std::vector<BodyProblem> problems = three_bodies();
+  std::string order;
+  LoopObserver observer;
+  observer.iteration = [&](const IterationReport& r) {
+    order += r.problem.body;
+    return true;
+  };
+  LoopSettings settings;
+  settings.design = settings_of("mma", 3);
+  const auto outcome = esl_loop(
+      problems, [](std::span<const fem::Factors>) { return three(3); }, settings, observer);
+  EXPECT_EQ(order, "acacacbbb");
+  ASSERT_EQ(outcome.size(), 3u);
+  EXPECT_EQ(outcome[0].body + outcome[1].body + outcome[2].body, "abc");
+
+  // Stopped in the first group: the second body has no outcome, so the third one has no place.
+  problems = three_bodies();
+  int rows = 0;
+  observer.iteration = [&](const IterationReport&) { return ++rows < 3; };
+  const auto stopped = esl_loop(
+      problems, [](std::span<const fem::Factors>) { return three(3); }, settings, observer);
+  EXPECT_EQ(rows, 4);  // both rows of the iteration
+  ASSERT_EQ(stopped.size(), 1u);
+  EXPECT_EQ(stopped[0].body, "a");
+}
+
+// Three cycles: the table is complete after every judged one, changes are those of the designs, and
+// the best one by its motion is the result.
+TEST(EslLoop, CyclesMakeATable) {
+  std::vector<BodyProblem> problems = {body("a"), body("b")};
+  LoopSettings settings;
+  settings.design = settings_of("mma", 12);
+  settings.max_cycles = 3;
+  settings.tolerance = 0;
+  int calls = 0;
+  std::vector<std::vector<VectorXd>> densities;  // of every motion and body
+  const auto simulate = [&](std::span<const fem::Factors>) {
+    auto& now = densities.emplace_back();
+    for (const BodyProblem& p : problems) now.push_back(fractions_of(p, p.design.components()));
+    std::vector<fem::EslSets> out = {turning_plate(2), turning_plate(2, 2)};
+    out[0].strain_energy_integral = std::vector<double>{9, 3, 1, 2}[static_cast<size_t>(calls++)];
+    return out;
+  };
+  LoopObserver observer;
+  std::vector<CycleVerdict> table;
+  std::vector<int> best;
+  observer.verdict = [&](std::span<const CycleVerdict> all) {
+    table.assign(all.begin(), all.end());
+    EXPECT_EQ(table.size(), best.size() + 1);
+    for (const CycleVerdict& v : table)
+      if (v.best) best.push_back(v.cycle);
+  };
+  std::vector<std::vector<BodyOutcome>> outcomes;
+  observer.cycle = [&](int, std::span<const BodyOutcome> o) {
+    outcomes.emplace_back(o.begin(), o.end());
+  };
+  const auto result = esl_loop(problems, simulate, settings, observer);
+  EXPECT_EQ(calls, 4);
+  ASSERT_EQ(table.size(), 3u);
+  EXPECT_EQ(best, (std::vector<int>{1, 2, 2}));
+  const double integrals[] = {3, 1, 2};
+  for (size_t c = 0; c < 3; ++c) {
+    EXPECT_EQ(table[c].cycle, static_cast<int>(c) + 1);
+    EXPECT_EQ(table[c].strain_energy_integral, integrals[c]);
+    ASSERT_EQ(table[c].bodies.size(), 2u);
+    double sum = 0;
+    for (size_t k = 0; k < 2; ++k) {
+      const BodyVerdict& v = table[c].bodies[k];
+      EXPECT_EQ(v.body, k == 0 ? "a" : "b");
+      EXPECT_EQ(v.compliance, outcomes[c][k].compliance);
+      EXPECT_EQ(v.sharp_compliance, outcomes[c][k].sharp.compliance);
+      EXPECT_NEAR(v.design_change, (densities[c + 1][k] - densities[c][k]).cwiseAbs().mean(),
+                  1e-14);
+      EXPECT_GT(v.design_change, 0);
+      EXPECT_LT(v.design_change, 1);
+      sum += outcomes[c][k].compliance;
+    }
+    EXPECT_NEAR(table[c].objective, sum, 1e-14 * sum);
+  }
+  for (size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(result[k].compliance, outcomes[1][k].compliance);
+    EXPECT_EQ(fractions_of(problems[k], problems[k].design.components()), densities[2][k]);
+  }
+}
+
+}  // namespace
+}  // namespace flexmorph::mmc::test
