@@ -31,6 +31,7 @@ struct Mechanism {
 /// Mesh of a run other than the scene's own (see Verify); limits of boundary elements scale along.
 struct MeshChoice {
   std::optional<std::array<int, 2>> elements;
+  int refine = 1;  ///< parts of every element in each direction
   std::optional<double> step;
 };
 

@@ -109,7 +109,9 @@ void add_body(const Scene& scene, const Body& body, const std::array<int, 2>& co
   const VectorXd gravity = gravity_of(scene);
   const fem::PlaneSection section = section_of(body);
   std::vector<std::unique_ptr<fem::Term>> terms;
-  for (const std::string& name : body.terms) terms.push_back(fem::make_term(name, section));
+  for (const std::string& name : body.terms)
+    terms.push_back(name == "bending" ? fem::make_bending(section, body.bending_points)
+                                      : fem::make_term(name, section));
   if (gravity.size() > 0) terms.push_back(fem::make_gravity(section, gravity));
   for (const fem::AttachedMass& m : attached_masses(scene, body.name))
     terms.push_back(fem::make_point_mass(m.mass, m.material, gravity));
@@ -275,10 +277,13 @@ Pose start_pose(const Scene& scene, const Body& body) {
 
 Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh) {
   Mechanism out;
+  const auto elements = [&](const Body& body) {
+    const std::array<int, 2> count = mesh.elements.value_or(body.elements);
+    return std::array{mesh.refine * count[0], mesh.refine * count[1]};
+  };
   for (const RigidBody& body : scene.rigid_bodies)
     add_rigid_body(body, out.model, gravity_of(scene));
-  for (const Body& body : scene.bodies)
-    add_body(scene, body, mesh.elements.value_or(body.elements), out.model);
+  for (const Body& body : scene.bodies) add_body(scene, body, elements(body), out.model);
   const FindPlace place = [](const Anchor& a) {
     return fem::MarkerPlace{a.body, a.point, a.angle, {}};
   };
@@ -288,9 +293,8 @@ Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh) {
       out.model.add_joint(make_body_joint(scene, joint, place));
       continue;
     }
-    const double finer = mesh.elements ? static_cast<double>(scene.body(joint.body).elements[0]) /
-                                             (*mesh.elements)[0]
-                                       : 1;
+    const Body& body = scene.body(joint.body);
+    const double finer = static_cast<double>(body.elements[0]) / elements(body)[0];
     if (joint.holds_frame()) add_frame(scene, joint, finer, out);
     if (joint.type == "pin") add_pin(scene, joint, out.model);
     if (joint.type == "line_drive") add_line_drive(scene, joint, out.model);

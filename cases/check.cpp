@@ -224,10 +224,8 @@ std::string check_case(const RunOptions& options) {
                                 std::to_string(scene.optimizer.max_iterations) + " iterations, " +
                                 std::to_string(scene.cycle.max_cycles) + " cycle(s)");
   if (scene.verify)
-    out << row("verification", "designed and uniform plate once more, " +
-                                   std::to_string(scene.verify->mesh[0]) + " x " +
-                                   std::to_string(scene.verify->mesh[1]) + " elements, step " +
-                                   io::to_text(scene.verify->step) + " s");
+    out << row("verification", "designed and uniform plate once more, " + scene.verify->words() +
+                                   ", step " + io::to_text(scene.verify->step) + " s");
   out << "\nabsent: not built, costs nothing\n";
   if (!scene.in_space())
     out << row("out-of-plane", "positions have two components; no bending term");

@@ -35,7 +35,8 @@ class Recorder {
       const bool deflects = !body.in_space() && growth.line == 0;
       if (deflects) tracked_.push_back(&growth);
       if (deflects) r.bodies.push_back(growth.body);
-      if (deflects || body.flow) r.growing.push_back(growth.body);
+      // A free root says where it is in a column of its own.
+      if ((deflects || body.flow) && !body.has_free_lines()) r.growing.push_back(growth.body);
     }
     r.deflection.resize(tracked_.size());
     r.amplitude.assign(tracked_.size(), 0);

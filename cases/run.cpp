@@ -101,9 +101,8 @@ void judge_by_motion(const Scene& scene, RunFolder& folder, Progress& progress, 
   wishes.table = "motion_uniform.csv";
   report.uniform_motion = run_motion(scene, wishes, folder).record;
   if (!scene.verify) return;
-  progress.say("verification on " + std::to_string(scene.verify->mesh[0]) + " x " +
-               std::to_string(scene.verify->mesh[1]) + " elements");
-  wishes.mesh = {scene.verify->mesh, scene.verify->step};
+  progress.say("verification on " + scene.verify->words());
+  wishes.mesh = {scene.verify->mesh, scene.verify->refine, scene.verify->step};
   wishes.balance = false;
   wishes.table = "motion_verified_uniform.csv";
   report.verified_uniform = run_motion(scene, wishes, folder).record;

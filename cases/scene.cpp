@@ -95,6 +95,11 @@ const Body& Scene::body(const std::string& body_name) const {
   throw Error::input("there is no body '" + body_name + "' in this scene");
 }
 
+std::string Verify::words() const {
+  if (!mesh) return std::to_string(refine) + " times the elements in each direction";
+  return std::to_string((*mesh)[0]) + " x " + std::to_string((*mesh)[1]) + " elements";
+}
+
 fem::Motion Body::length_motion(double t) const {
   if (flow && flow->motion) return flow->motion(t);
   return {length_at(t), flow ? flow->speed : 0, 0};

@@ -144,6 +144,7 @@ struct Body {
   double density = 0;                 ///< [kg/m^3]
   double youngs_modulus = 0;          ///< [Pa]
   double poisson_ratio = 0;           ///< [-]
+  int bending_points = 5;             ///< Gauss points of the bending per element and direction
   std::array<int, 2> elements{1, 1};  ///< along the length at the start, across the width
   std::optional<Flow> flow;           ///< absent: no material flows
   std::vector<BodyLine> lines;        ///< by index
@@ -312,8 +313,11 @@ struct Cycle {
 /// One more dynamic run of the final design on a finer mesh; the limits of flowing elements
 /// shrink with the elements.
 struct Verify {
-  std::array<int, 2> mesh{1, 1};  ///< elements along the length at the start, across the width
-  double step = 0;                ///< [s]
+  std::optional<std::array<int, 2>> mesh;  ///< elements along the length at the start, and across
+  int refine = 1;                          ///< or so many times those of every body
+  double step = 0;                         ///< [s]
+
+  std::string words() const;  ///< "20 x 4 elements"
 };
 
 struct Output {

@@ -353,11 +353,16 @@ optim::Settings read_optimizer(const Table& t, const Vocabulary& words) {
 
 Verify read_verify(const Table& t, const Scene& scene) {
   Verify verify;
-  const std::vector<int> mesh = t.integers("mesh", "a number of elements", 1, 10'000, 2);
-  verify.mesh = {mesh[0], mesh[1]};
+  verify.refine = t.integer("refine", "a number of parts of an element", 2, 100, 1);
+  if (t.has("refine") && t.has("mesh")) t.fail("refine", "a finer run has a `mesh` or `refine`");
+  std::vector<int> mesh;
+  if (!t.has("refine")) {
+    mesh = t.integers("mesh", "a number of elements", 1, 10'000, 2);
+    verify.mesh = {mesh[0], mesh[1]};
+  }
   for (const BodyDesign& design : scene.designs) {
     const Body& body = scene.body(design.body);
-    if (mesh[0] < body.elements[0] || mesh[1] < body.elements[1])
+    if (verify.mesh && (mesh[0] < body.elements[0] || mesh[1] < body.elements[1]))
       t.fail("mesh", "a finer mesh than the elements of '" + body.name + "'");
   }
   verify.step = t.number("step", positive("a time step", "s"), scene.time.step);

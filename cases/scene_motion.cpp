@@ -128,6 +128,9 @@ Body read_body(const Table& t, const Vocabulary& words, const Scene& scene, bool
   body.density = t.number("density", positive("a density", "kg/m^3"), weightless);
   body.youngs_modulus = t.number("youngs_modulus", positive("Young's modulus", "Pa"));
   body.poisson_ratio = t.number("poisson_ratio", between("Poisson's ratio", "", 0, 0.5));
+  if (body.has("bending"))
+    body.bending_points =
+        t.integer("bending_points", "a number of Gauss points in each direction", 3, 16, 5);
   const std::vector<int> elements =
       t.integers("elements", "a number of elements", 1, kMostElements, 2);
   body.elements = {elements[0], elements[1]};

@@ -16,9 +16,44 @@
 namespace flexmorph {
 namespace {
 
+/// Vertices and faces of the graph, numbered as they are made, which orders their handles (CGAL,
+/// Time_stamper.h). Otherwise handles are ordered by address, and the graph walks sets and maps of
+/// them when it makes and recycles faces (CGAL 5.5, add_bogus_vertices(),
+/// retriangulate_conflict_region()): where faces go, which vertex of theirs is the first, and with
+/// it the round-off of their centers would hang on the heap.
+template <class Base>
+class Numbered : public Base {
+ public:
+  template <class Structure>
+  struct Rebind_TDS {
+    using Other = Numbered<typename Base::template Rebind_TDS<Structure>::Other>;
+  };
+  using Has_timestamp = CGAL::Tag_true;
+
+  using Base::Base;
+  Numbered() = default;
+  // Copies are numbered anew: no two of a graph have the same number.
+  Numbered(const Numbered& other) : Base(other) {}
+  Numbered& operator=(const Numbered& other) {
+    Base::operator=(other);
+    return *this;
+  }
+
+  std::size_t time_stamp() const { return number_; }
+  void set_time_stamp(std::size_t number) { number_ = number; }
+
+ private:
+  std::size_t number_ = std::numeric_limits<std::size_t>::max();  // none yet
+};
+
 using Kernel = CGAL::Simple_cartesian<double>;
-using Graph =
-    CGAL::Segment_Delaunay_graph_2<CGAL::Segment_Delaunay_graph_filtered_traits_2<Kernel>>;
+using Traits = CGAL::Segment_Delaunay_graph_filtered_traits_2<Kernel>;
+using Storage = CGAL::Segment_Delaunay_graph_storage_traits_2<Traits>;
+using Graph = CGAL::Segment_Delaunay_graph_2<
+    Traits, Storage,
+    CGAL::Triangulation_data_structure_2<
+        Numbered<CGAL::Segment_Delaunay_graph_vertex_base_2<Storage>>,
+        Numbered<CGAL::Segment_Delaunay_graph_face_base_2<Traits>>>>;
 using Site = Graph::Site_2;
 
 /// Flanks within this of opposite make a bar   [rad].
@@ -43,10 +78,11 @@ Vec2 nearest_on(const Vec2& a, const Vec2& b, const Vec2& p) {
 struct Corner {
   Vec2 before{0, 0}, after{0, 0};  // directions of the sides that end and begin here
   int visits = 0;
+  size_t number = 0;  // among the vertices in the order of their coordinates
   bool border_before = false, border_after = false;
 };
 
-/// The outlines, and their sides by their ends.
+/// The outlines: vertices and sides in the order of their coordinates, wherever rings begin.
 class Outlines {
  public:
   Outlines(std::span<const Region> regions, std::span<const Vec2> domain)
@@ -56,6 +92,7 @@ class Outlines {
       add(r.outer);
       for (const auto& hole : r.holes) add(hole);
     }
+    number();
   }
 
   const std::vector<Vec2>& points() const { return points_; }
@@ -95,12 +132,9 @@ class Outlines {
 
  private:
   void add(const std::vector<Vec2>& ring) {
-    const size_t first = points_.size(), n = ring.size();
-    for (size_t k = 0; k < n; ++k) {
-      const Vec2 &p = ring[k], &q = ring[(k + 1) % n];
-      points_.push_back(p);
+    for (size_t k = 0; k < ring.size(); ++k) {
+      const Vec2 &p = ring[k], &q = ring[(k + 1) % ring.size()];
       if (p == q) continue;
-      sides_.emplace_back(first + k, first + (k + 1) % n);
       const bool border = on_border(p, q);
       Corner &at_p = corners_[{p.x(), p.y()}], &at_q = corners_[{q.x(), q.y()}];
       at_p.after = (q - p).normalized();
@@ -108,7 +142,16 @@ class Outlines {
       at_q.before = at_p.after;
       at_q.border_before = border;
       ++at_p.visits;
+      ends_.emplace_back(&at_p, &at_q);
     }
+  }
+  void number() {
+    for (auto& [at, corner] : corners_) {
+      corner.number = points_.size();
+      points_.emplace_back(at.first, at.second);
+    }
+    for (const auto& [p, q] : ends_) sides_.emplace_back(p->number, q->number);
+    std::sort(sides_.begin(), sides_.end());
   }
   bool near_line(const Vec2& p, const Vec2& a, const Vec2& b) const {
     return (p - nearest_on(a, b, p)).norm() <= 1e-12 * size_;
@@ -120,6 +163,7 @@ class Outlines {
   std::vector<Vec2> points_;
   std::vector<std::pair<size_t, size_t>> sides_;
   std::map<std::pair<double, double>, Corner> corners_;
+  std::vector<std::pair<const Corner*, const Corner*>> ends_;  // of the sides, as rings have them
 };
 
 Vec2 vec(const Graph::Point_2& p) { return {p.x(), p.y()}; }

@@ -95,11 +95,12 @@ class CycleDesigner {
 bool rests(std::span<const BodyOutcome> now, std::span<const BodyOutcome> before,
            double tolerance) {
   if (now.size() != before.size()) return false;
-  for (size_t i = 0; i < now.size(); ++i)
-    if (std::abs(now[i].sharp.compliance - before[i].sharp.compliance) >
-        tolerance * before[i].sharp.compliance)
-      return false;
-  return true;
+  const auto sum = [](std::span<const BodyOutcome> all) {
+    double out = 0;
+    for (const BodyOutcome& o : all) out += o.sharp.compliance;
+    return out;
+  };
+  return std::abs(sum(now) - sum(before)) <= tolerance * sum(before);
 }
 
 std::vector<fem::EslSets> move(const std::vector<BodyProblem>& problems, const Simulate& simulate) {

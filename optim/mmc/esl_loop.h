@@ -35,7 +35,8 @@ struct CycleVerdict {
 
 struct LoopSettings {
   int max_cycles = 1;
-  double tolerance = 0.01;  ///< stop when every compliance changes by less between cycles
+  double tolerance =
+      0.01;  ///< stop when the sum of sharp compliances changes by less between cycles
   DesignSettings design;
 };
 

@@ -242,6 +242,7 @@ const Bad kBadInputs[] = {
      {"esl.support=far_end"},
      "\"inertia\" loads need \"moving_root\": at the far end the reactions of the root would have "
      "to follow the design"},
+    {"two_verifications", {"verify.refine=2"}, "a finer run has a `mesh` or `refine`"},
     {"coarse_verification", {"verify.mesh=[5, 2]"}, "a finer mesh than the elements of 'plate'"},
     {"body_named_energy", {"body.name=energy"}, "'energy' names columns of motion.csv already"},
     {"body_named_hub", {"body.name=hub"}, "there is another 'hub'"},

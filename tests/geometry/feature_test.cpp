@@ -1,15 +1,18 @@
 // Narrow places of constructed shapes whose widths are known; every reported disc is inscribed; no
-// opposite pair of sampled points is closer than what was found.
+// opposite pair of sampled points is closer than what was found; runs agree bit for bit.
 
 #include "geometry/feature.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <random>
 
 #include "tests/geometry/random_components.h"
+#include "tests/geometry/scrambled_heap.h"
 
 namespace flexmorph {
 namespace {
@@ -270,6 +273,66 @@ TEST(NarrowPlaces, OfRandomDesignsAgreeWithSampledOutlines) {
     }
     EXPECT_LE(found, sampled + 1e-9) << seed;
     EXPECT_LE(found_gap, sampled_gap + 1e-9) << seed;
+  }
+}
+
+bool same(const NarrowPlace& x, const NarrowPlace& y) {
+  return x.kind == y.kind && x.solid == y.solid && x.width == y.width && x.center == y.center &&
+         x.a == y.a && x.b == y.b;
+}
+bool same(const std::vector<NarrowPlace>& x, const std::vector<NarrowPlace>& y) {
+  return std::equal(
+      x.begin(), x.end(), y.begin(), y.end(),
+      [](const NarrowPlace& one, const NarrowPlace& other) { return same(one, other); });
+}
+
+/// Shapes with many ties, where round-off decides: pairs of crossing bars on a lattice, square, so
+/// that discs have four contacts and places come in equal widths; and a random one.
+std::vector<std::vector<Region>> shapes(const Polygon& domain) {
+  std::vector<Polygon> lattice, outlines;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 2; ++j)
+      for (const double angle : {-0.7, 0.7})
+        lattice.push_back(bar({(i + 0.5) / 2, (j + 0.5) / 2}, 0.3, 0.03, angle));
+  test::RandomComponents random(5);
+  for (const Component& c : random.several(12, 2, 1))
+    outlines.push_back(outline_within(c, 0.02, 1e-2));
+  const Polygon hole = bar({0.5, 0.5}, 0.1, 0.1, 0.0);
+  return {unite(lattice, domain, {}), unite(outlines, domain, std::vector<Polygon>{hole})};
+}
+
+// CGAL orders what it made by address unless told otherwise: then no two calls agree.
+TEST(NarrowPlaces, AreTheSameBitForBitWhereverTheHeapPutsThings) {
+  const Polygon domain = box(0, 0, 2, 1);
+  test::ScrambledHeap heap(1);
+  for (const std::vector<Region>& regions : shapes(domain)) {
+    const std::vector<NarrowPlace> first = narrow_places(regions, domain, 0.2);
+    ASSERT_GT(first.size(), 50u);
+    for (int k = 0; k < 20; ++k) {
+      heap.again();
+      EXPECT_TRUE(same(narrow_places(regions, domain, 0.2), first)) << k;
+    }
+  }
+}
+
+TEST(NarrowPlaces, AreTheSameBitForBitWhereverRingsBegin) {
+  const Polygon domain = box(0, 0, 2, 1);
+  std::mt19937 engine(1);
+  for (std::vector<Region> regions : shapes(domain)) {
+    const std::vector<NarrowPlace> first = narrow_places(regions, domain, 0.2);
+    const auto rotate = [&](Polygon& ring) {
+      std::rotate(ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(engine() % ring.size()),
+                  ring.end());
+    };
+    for (int k = 0; k < 20; ++k) {
+      for (Region& r : regions) {
+        rotate(r.outer);
+        std::for_each(r.holes.begin(), r.holes.end(), rotate);
+        std::shuffle(r.holes.begin(), r.holes.end(), engine);
+      }
+      std::shuffle(regions.begin(), regions.end(), engine);
+      EXPECT_TRUE(same(narrow_places(regions, domain, 0.2), first)) << k;
+    }
   }
 }
 
