@@ -134,6 +134,34 @@ void read_regions(const Table& t, const Body& body, const Scene& scene, BodyDesi
     if (mass.body == body.name && std::none_of(design.solid.begin(), design.solid.end(), carries))
       t.fail("the point mass at the free end of '" + body.name +
              "' needs solid material: [[design.solid]] with strip = \"free_end\", cells = 2");
+  const bool welded = std::any_of(scene.joints.begin(), scene.joints.end(), [&](const Joint& j) {
+    return j.body == body.name && j.edge == "free_end";
+  });
+  const int strip = 2 * grid.ny;  // cells of the last two columns, each of which must be solid
+  int solid = 0;
+  for (int i = std::max(0, grid.nx - 2); i < grid.nx; ++i)
+    for (int j = 0; j < grid.ny; ++j)
+      solid += std::any_of(design.solid.begin(), design.solid.end(),
+                           [&](const Box& box) { return holds(box, grid.cell_center(i, j)); });
+  if (welded && solid < strip)
+    t.fail("the welded free end of '" + body.name +
+           "' needs solid material: [[design.solid]] with strip = \"free_end\", cells = 2");
+}
+
+/// Loads that equivalent static loads know: forces at nodes of the design mesh, and along the free
+/// end. Others would act in the motion and be missing in the design problem.
+void check_loads(const Table& t, const Scene& scene, const BodyDesign& design) {
+  const Grid& g = design.grid;
+  for (const BodyLoad& load : scene.loads) {
+    if (load.body != design.body) continue;
+    const bool at_node =
+        is_whole((load.point.x() - g.x0) / g.dx()) && is_whole((load.point.y() - g.y0) / g.dy());
+    if (load.type == "point" && !at_node)
+      t.fail("body", "a force on a designed body acts at a node of its design mesh");
+    if (load.type != "point" && !(load.type == "edge" && load.edge == "free_end"))
+      t.fail("body", "a designed body is loaded at points or along its \"free_end\", not by \"" +
+                         load.type + "\"" + (load.edge.empty() ? "" : " at \"" + load.edge + "\""));
+  }
 }
 
 /// A width, or the word for that of the thinnest component.
@@ -282,6 +310,7 @@ BodyDesign read_design(const Table& t, const Scene& scene) {
   read_components(t, body, design);
   read_tdf(t, design);
   read_regions(t, body, scene, design);
+  check_loads(t, scene, design);
   return design;
 }
 

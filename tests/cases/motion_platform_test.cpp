@@ -75,6 +75,18 @@ TEST_F(MotionPlatform, RigidTwinFollowsThePathAndIsDetermined) {
   }
 }
 
+TEST_F(MotionPlatform, WeldedEndsOfDesignsAreSolid) {
+  try {
+    read("motion_platform", {"design.bar2.solid=[]"});
+    ADD_FAILURE() << "not refused";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), Error::Kind::input);
+    EXPECT_NE(std::string(error.what()).find("the welded free end of 'bar2' needs solid material"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 /// The scene with plates of another stiffness, moved; what the observer sees of the platform.
 double largest_error(double stiffness, double end) {
   Scene scene = read("motion_platform", {"time.step=2e-3"});

@@ -242,6 +242,12 @@ const Bad kBadInputs[] = {
      {"esl.support=far_end"},
      "\"inertia\" loads need \"moving_root\": at the far end the reactions of the root would have "
      "to follow the design"},
+    {"load_a_design_does_not_know",
+     {"load=[{type='surface', body='plate', force=[0, 1]}]"},
+     "a designed body is loaded at points or along its \"free_end\", not by \"surface\""},
+    {"load_off_the_design_mesh",
+     {"load=[{type='point', body='plate', point=[0.6, 0.0011], force=[0, 1]}]"},
+     "a force on a designed body acts at a node of its design mesh"},
     {"two_verifications", {"verify.refine=2"}, "a finer run has a `mesh` or `refine`"},
     {"coarse_verification", {"verify.mesh=[5, 2]"}, "a finer mesh than the elements of 'plate'"},
     {"body_named_energy", {"body.name=energy"}, "'energy' names columns of motion.csv already"},

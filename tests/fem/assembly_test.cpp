@@ -9,6 +9,7 @@
 
 #include "fem/solve/diagnosis.h"
 #include "tests/support/differences.h"
+#include "tests/support/errors.h"
 #include "tests/support/point_mechanisms.h"
 
 namespace flexmorph::fem {
@@ -16,28 +17,15 @@ namespace {
 
 using testing::add;
 using testing::constant;
+using testing::error_of;
 using testing::FourBar;
 using testing::linear;
 using testing::LinearRow;
 using testing::places;
 using testing::point_model;
 using testing::Rod;
+using testing::says;
 using Parts = std::vector<LinearRow::Part>;
-
-template <class F>
-std::string error_of(Error::Kind kind, const F& f) {
-  try {
-    f();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), kind) << error.what();
-    return error.what();
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return "";
-}
-bool says(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 // Two masses on a rod: they are drawn together along their line, their centre of mass rests, and
 // the speeds along the rod become equal as in an inelastic impact. All masses count 1e-8 of the

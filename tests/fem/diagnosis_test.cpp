@@ -11,6 +11,7 @@
 #include <random>
 
 #include "fem/solve/assembly.h"
+#include "tests/support/errors.h"
 #include "tests/support/models.h"
 #include "tests/support/point_mechanisms.h"
 
@@ -19,29 +20,16 @@ namespace {
 
 using testing::add;
 using testing::constant;
+using testing::error_of;
 using testing::FourBar;
 using testing::linear;
 using testing::LinearRow;
 using testing::places;
 using testing::point_model;
 using testing::Rod;
+using testing::says;
 using Parts = std::vector<LinearRow::Part>;
 using Names = std::vector<std::string>;
-
-template <class F>
-std::string error_of(Error::Kind kind, const F& f) {
-  try {
-    f();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), kind) << error.what();
-    return error.what();
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return "";
-}
-bool says(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 FrameMotion at_place(const Vec2& origin, const Vec2& rate = {0, 0}) {
   FrameMotion f;
