@@ -10,21 +10,25 @@
 
 namespace flexmorph::cases {
 
-/// Where an undeformed body lies at the start: its m-line at `line` goes through `origin`, its
-/// axis along m is turned by `angle` about z.
+/// Where an undeformed body lies at the start: its m-line at `line` goes through `origin`, where
+/// its axis along m is turned by `angle` about z.
 struct Pose {
   Vec2 origin{0, 0};
   double angle = 0;
-  double line = 0;  ///< material coordinate [m]
+  double line = 0;       ///< material coordinate [m]
+  double curvature = 0;  ///< of the axis of a beam [1/m]
 
   Vec3 place(const Vec2& material) const;
 };
+/// A material point in the axes of the undeformed body at its root: the point itself, but of a beam
+/// that is an arc.
+Vec2 undeformed_place(const Body& body, const Vec2& material);
 Pose start_pose(const Scene& scene, const Body& body);
 
 /// A scene ready to be moved: what it lists is in here, nothing else.
 struct Mechanism {
   fem::Model model;
-  std::vector<fem::Growth> growths;  ///< one per body that sits in a hub or sleeve
+  std::vector<fem::Growth> growths;  ///< one per plate that sits in a hub or sleeve
   fem::MotionSettings motion;
 };
 

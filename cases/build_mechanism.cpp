@@ -3,7 +3,9 @@
 
 #include "cases/build.h"
 #include "cases/build_joints.h"
+#include "cases/heat.h"
 #include "cases/twin.h"
+#include "fem/elements/ancf_beam.h"
 #include "fem/elements/ancf_plate.h"
 #include "fem/elements/rigid_body.h"
 #include "fem/rigid.h"
@@ -61,8 +63,15 @@ fem::FrameDrive drive_of(const Scene& scene, const Hub& hub) {
   };
 }
 
+std::unique_ptr<fem::Element> beam_of(const Body& body, int count) {
+  if (body.arc == 0) return std::make_unique<fem::AncfBeam>(body.length, body.width, count);
+  return std::make_unique<fem::AncfBeam>(fem::even_nodes(body.length, count), body.width,
+                                         fem::arc_reference(body.length, body.arc, count));
+}
+
 std::unique_ptr<fem::Element> elements_of(const Body& body, double end,
                                           const std::array<int, 2>& count) {
+  if (body.is_beam()) return beam_of(body, count[0]);
   const double longest = body.longest(end);
   std::vector<fem::MaterialLine> m, n;
   for (const double at : body.start_lines(longest - body.length, count[0])) m.push_back({at, {}});
@@ -149,7 +158,7 @@ void add_frame(const Scene& scene, const Joint& joint, double finer, Mechanism& 
     out.model.add_joint(
         fem::make_weld(joint.name, joint.body, joint.edge, carrier.drive(), joint.mode));
   }
-  if (joint.edge == "free_end") return;
+  if (joint.edge == "free_end" || body.is_beam()) return;
   constexpr double kNever = std::numeric_limits<double>::infinity();
   fem::Growth growth{joint.body, carrier, kNever, 0, joint.line, slide_of(scene, joint)};
   if (body.flow) {
@@ -226,11 +235,39 @@ void place_bodies(const Scene& scene, fem::MotionSettings& motion) {
     for (const RigidBody& b : scene.rigid_bodies)
       out.push_back({b.name, twin->twin().frame(b.name, x)});
     for (const Body& b : scene.bodies) {
-      const bool rides = std::any_of(scene.joints.begin(), scene.joints.end(), [&](const Joint& j) {
-        return j.body == b.name && j.holds_frame() && j.edge != "free_end";
-      });
+      const bool rides = !b.is_beam() &&
+                         std::any_of(scene.joints.begin(), scene.joints.end(), [&](const Joint& j) {
+                           return j.body == b.name && j.holds_frame() && j.edge != "free_end";
+                         });
       if (!rides) out.push_back({b.name, twin->twin().frame(b.name, x), b.longest(scene.time.end)});
     }
+    return out;
+  };
+}
+
+/// Without rigid bodies: where beams are, as the case says or with their hubs.
+void place_alone(const Scene& scene, fem::MotionSettings& motion) {
+  struct Frame {
+    std::string body;
+    fem::FrameDrive drive;
+    double line;
+  };
+  std::vector<Frame> frames;
+  for (const Body& body : scene.bodies) {
+    const auto holds = [&](const Joint& j) {
+      return j.body == body.name && j.holds_frame() && j.edge != "free_end";
+    };
+    const auto hub = std::find_if(scene.joints.begin(), scene.joints.end(), holds);
+    const bool rides = hub != scene.joints.end();
+    if (!body.is_beam()) continue;
+    const Pose pose = start_pose(scene, body);
+    frames.push_back(
+        {body.name, rides ? hub_drive(scene, *hub) : at_rest(pose.origin, pose.angle), pose.line});
+  }
+  if (frames.empty()) return;
+  motion.placement = [frames](double t) {
+    std::vector<fem::Placed> out;
+    for (const Frame& f : frames) out.push_back({f.body, f.drive(t), f.line});
     return out;
   };
 }
@@ -252,12 +289,31 @@ void add_rigid_body(const RigidBody& body, fem::Model& model, const VectorXd& gr
   model.add_joint(fem::make_unit_axis("axis of " + body.name, body.name));
 }
 
+namespace {
+
+/// A point of a strip whose axis is an arc that begins along the first axis.
+Vec2 on_arc(double curvature, const Vec2& material) {
+  const double turn = curvature * material.x(), half = 0.5 * turn;
+  const double chord = material.x() * (turn == 0 ? 1 : std::sin(half) / half);
+  return chord * Vec2(std::cos(half), std::sin(half)) +
+         material.y() * Vec2(-std::sin(turn), std::cos(turn));
+}
+
+}  // namespace
+
 Vec3 Pose::place(const Vec2& material) const {
-  const Vec2 r = origin + fem::rotation(angle) * Vec2(material.x() - line, material.y());
+  const Vec2 flat(material.x() - line, material.y());
+  const Vec2 r = origin + fem::rotation(angle) * (curvature == 0 ? flat : on_arc(curvature, flat));
   return {r.x(), r.y(), 0};
 }
 
-Pose start_pose(const Scene& scene, const Body& body) {
+Vec2 undeformed_place(const Body& body, const Vec2& material) {
+  return body.arc == 0 ? material : on_arc(body.arc / body.length, material);
+}
+
+namespace {
+
+Pose straight_pose(const Scene& scene, const Body& body) {
   for (const Joint& joint : scene.joints) {
     if (joint.body != body.name || !joint.holds_frame() || joint.edge == "free_end") continue;
     const double root = body.longest(scene.time.end) - body.length;
@@ -273,6 +329,14 @@ Pose start_pose(const Scene& scene, const Body& body) {
   if (body.position)
     return {*body.position, body.angle, body.longest(scene.time.end) - body.length};
   return {};
+}
+
+}  // namespace
+
+Pose start_pose(const Scene& scene, const Body& body) {
+  Pose pose = straight_pose(scene, body);
+  if (body.arc != 0) pose.curvature = body.arc / body.length;
+  return pose;
 }
 
 Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh) {
@@ -302,12 +366,24 @@ Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh) {
   for (const Body& body : scene.bodies) add_holds(scene, body, out.model);
   out.motion.end = scene.time.end;
   out.motion.step = mesh.step.value_or(scene.time.step);
+  // A run with a step of its own has that.
+  if (scene.time.tolerance && out.motion.step == scene.time.step) {
+    out.motion.adaptive = fem::AdaptiveStep{};
+    out.motion.adaptive->tolerance = *scene.time.tolerance;
+    out.motion.adaptive->largest = scene.time.largest_step;
+    if (scene.time.start == Start::hub_at_rest) out.motion.kinks = {scene.time.spin_up};
+  }
   out.motion.start =
       scene.time.start == Start::prestretched ? fem::Start::prestretched : fem::Start::rigid;
-  if (scene.is_mechanism()) place_bodies(scene, out.motion);
+  if (scene.is_mechanism())
+    place_bodies(scene, out.motion);
+  else
+    place_alone(scene, out.motion);
   out.motion.integrator = scene.time.integrator;
   out.motion.alpha.rho_inf = scene.time.rho_inf;
+  out.motion.minimal_coordinates.tolerance = scene.time.explicit_tolerance;
   out.motion.gravity = gravity_of(scene);
+  if (scene.has_heat()) add_heat(scene, out);
   return out;
 }
 

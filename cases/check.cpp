@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "cases/build.h"
+#include "cases/heat.h"
 #include "cases/run.h"
 #include "cases/scene_parts.h"
 #include "cases/twin.h"
@@ -23,6 +24,12 @@ double element_operations(int n_shapes, int dim) {
          2.0 * n_shapes * dim * (n_shapes * n_pairs + n_shapes * n_shapes * dim);
 }
 
+/// Loads alone are what one expects.
+std::string growing_words(const StaticAnalysis& analysis) {
+  if (!analysis.temperatures_grow) return "";
+  return analysis.loads_grow ? ", of loads and temperatures" : ", of temperatures";
+}
+
 /// A motion through time, or a path of equilibria.
 void describe_course(const Scene& scene, std::ostringstream& out) {
   if (scene.statics) {
@@ -30,17 +37,39 @@ void describe_course(const Scene& scene, std::ostringstream& out) {
     out << row("static analysis", "nonlinear, load factor 0 to " + io::to_text(scene.statics->to) +
                                       (load ? " in " : " along the arc, first step 1/") +
                                       std::to_string(scene.statics->steps) +
-                                      (load ? " steps" : " of it"));
+                                      (load ? " steps" : " of it") + growing_words(*scene.statics));
     return;
   }
   const TimeSpan& time = scene.time;
+  const std::string until = "0 to " + io::to_text(time.end) + " s, ";
+  if (time.integrator == "minimal_coordinates") {
+    out << row("time", until + "step " + io::to_text(time.step) +
+                           " s, minimal_coordinates in shorter ones, tolerance " +
+                           io::to_text(time.explicit_tolerance));
+    return;
+  }
+  if (time.tolerance) {
+    fem::AdaptiveStep adaptive;
+    adaptive.largest = time.largest_step;
+    out << row("time", until + "rho_inf " + io::to_text(time.rho_inf) +
+                           ", adaptive steps, tolerance " + io::to_text(*time.tolerance) +
+                           ", none longer than " +
+                           io::to_text(fem::StepControl(adaptive, time.end).largest()) + " s");
+    return;
+  }
   const std::string scheme = time.integrator == "energy_momentum"
-                                 ? " s, energy_momentum, "
-                                 : " s, rho_inf " + io::to_text(time.rho_inf) + ", ";
-  out << row("time", "0 to " + io::to_text(time.end) + " s, step " + io::to_text(time.step) +
-                         scheme +
+                                 ? "energy_momentum, "
+                                 : "rho_inf " + io::to_text(time.rho_inf) + ", ";
+  out << row("time", until + scheme +
                          std::to_string(static_cast<int>(std::ceil(time.end / time.step - 1e-9))) +
                          " steps");
+}
+
+std::string measure_words(const Measure& measure) {
+  std::string out;
+  for (const std::string& quantity : measure.quantities)
+    out += (out.empty() ? "" : ", ") + quantity;
+  return out + " of " + measure.body;
 }
 
 std::string load_words(const BodyLoad& load) {
@@ -53,10 +82,12 @@ std::string load_words(const BodyLoad& load) {
 void describe_body(const Body& body, const Mechanism& mechanism, std::ostringstream& out) {
   const fem::Body& built = mechanism.model.body(body.name);
   const int n = built.n_dofs(), per_element = built.element->n_shapes();
+  const std::string mesh = body.is_beam()
+                               ? ", " + std::to_string(body.elements[0])
+                               : " " + body.shape + ", " + std::to_string(body.elements[0]) +
+                                     " x " + std::to_string(body.elements[1]);
   out << row("body " + body.name,
-             body.element + " " + body.shape + ", " + std::to_string(body.elements[0]) + " x " +
-                 std::to_string(body.elements[1]) + " elements, " + std::to_string(n) +
-                 " unknowns, about " +
+             body.element + mesh + " elements, " + std::to_string(n) + " unknowns, about " +
                  io::to_text(1e-6 * built.element->n_elements() *
                                  element_operations(per_element, built.element->dim()),
                              2) +
@@ -64,6 +95,14 @@ void describe_body(const Body& body, const Mechanism& mechanism, std::ostringstr
   std::string terms;
   for (const std::string& t : body.terms) terms += (terms.empty() ? "" : ", ") + t;
   out << row("", "terms: " + terms);
+  if (body.arc != 0) out << row("", "undeformed an arc of " + io::to_text(body.arc, 4) + " rad");
+  if (body.heat) {
+    out << row("heat of " + body.name, temperature_words(*body.heat) + ", expansion " +
+                                           io::to_text(body.heat->expansion, 6) +
+                                           " 1/K, thermal volume " +
+                                           volume_name(body.heat->volume));
+    out << row("", body.heat->force ? "thermal force Q_tk" : "no thermal force");
+  }
   if (body.in_space())
     out << row("", "out-of-plane: positions have three components; bending at Gauss points");
   for (const BodyLine& line : body.lines)
@@ -218,6 +257,7 @@ std::string check_case(const RunOptions& options) {
   for (const BodyLoad& load : scene.loads) out << row("load on " + load.body, load_words(load));
   if (scene.gravity) out << row("gravity", "on");
   if (!scene.observed.empty()) out << row("observed points", std::to_string(scene.observed.size()));
+  for (const Measure& measure : scene.measures) out << row("measured", measure_words(measure));
   for (const BodyDesign& d : scene.designs) describe_design(scene, d, out);
   if (!scene.designs.empty())
     out << row("optimizer", scene.optimizer.name + ", at most " +
@@ -225,11 +265,13 @@ std::string check_case(const RunOptions& options) {
                                 std::to_string(scene.cycle.max_cycles) + " cycle(s)");
   if (scene.verify)
     out << row("verification", "designed and uniform plate once more, " + scene.verify->words() +
-                                   ", step " + io::to_text(scene.verify->step) + " s");
+                                   (scene.time.tolerance && scene.verify->step == scene.time.step
+                                        ? ", adaptive steps"
+                                        : ", step " + io::to_text(scene.verify->step) + " s"));
   out << "\nabsent: not built, costs nothing\n";
   if (!scene.in_space())
     out << row("out-of-plane", "positions have two components; no bending term");
-  out << row("heat", "no thermal term");
+  if (!scene.has_heat()) out << row("heat", "no thermal term");
   if (!scene.has_free_lines())
     out << row("free material lines", "no material coordinate is an unknown");
   if (scene.statics)

@@ -4,8 +4,10 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "cases/accuracy.h"
 #include "cases/compare.h"
 #include "cases/run.h"
+#include "cases/stability.h"
 #include "cases/sweep.h"
 #include "cases/version.h"
 
@@ -79,6 +81,40 @@ CLI::App* add_sweep(CLI::App& app, SweepOptions& options) {
   return command;
 }
 
+CLI::App* add_accuracy(CLI::App& app, AccuracyOptions& options) {
+  CLI::App* command = app.add_subcommand(
+      "accuracy", "error against run time of a case, and its cheapest settings for 1 % and less");
+  add_case(*command, options.study.case_name, options.study.overrides);
+  command->add_option("-o,--output", options.study.directory, "folder of the study");
+  command->add_option("--budget", options.budget, "CPU time for all runs: 120s, 2min, 1h");
+  command
+      ->add_option("--ladders", options.ladders, "names, with commas (default: as the case says)")
+      ->delimiter(',');
+  command->add_flag("--verify,!--no-verify", options.verify, "runs what is recommended (default)");
+  command->add_option("--threads", options.study.threads, "threads of each run")
+      ->check(CLI::Range(1, 256));
+  command->add_flag("--quiet", options.study.quiet, "no progress");
+  return command;
+}
+
+CLI::App* add_stability(CLI::App& app, StabilityOptions& options) {
+  CLI::App* command = app.add_subcommand(
+      "stability", "makes cases stiff, extreme and empty, and judges what becomes of them");
+  command->add_option("case", options.cases, "case files or names (default: all shipped cases)");
+  command->add_option("--suites", options.suites, "names, with commas (default: all but long)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command->add_option("--set", options.overrides, "KEY=VALUE, changes every case")
+      ->take_all()
+      ->allow_extra_args(false);
+  command->add_option("--jobs", options.jobs, "processes at a time")->check(CLI::Range(1, 1024));
+  command->add_option("--timeout", options.timeout, "CPU time of each row [s]")
+      ->check(CLI::Range(0.1, 1e6));
+  command->add_option("-o,--output", options.directory, "folder (default runs/stability)");
+  command->add_flag("--quiet", options.quiet, "only the summary, and what is wrong");
+  return command;
+}
+
 int parse_and_run(int argc, char** argv) {
   CLI::App app("Topology optimization of flexible mechanisms", "flexmorph");
   app.set_version_flag("--version", std::string("flexmorph ") + kVersion);
@@ -97,6 +133,10 @@ int parse_and_run(int argc, char** argv) {
   CLI::App* compare = add_compare(app, compare_options);
   SweepOptions sweep_options;
   CLI::App* sweep = add_sweep(app, sweep_options);
+  AccuracyOptions accuracy_options;
+  CLI::App* accuracy = add_accuracy(app, accuracy_options);
+  StabilityOptions stability_options;
+  CLI::App* stability = add_stability(app, stability_options);
   CLI::App* cases = app.add_subcommand("cases", "lists the shipped cases");
   try {
     app.parse(argc, argv);
@@ -109,6 +149,8 @@ int parse_and_run(int argc, char** argv) {
   }
   if (*compare) return compare_case(compare_options);
   if (*sweep) return sweep_case(sweep_options);
+  if (*accuracy) return accuracy_case(accuracy_options);
+  if (*stability) return check_stability(stability_options);
   if (*check) std::fputs(check_case(options).c_str(), stdout);
   if (*cases)
     for (const std::string& name : shipped_cases()) std::printf("%s\n", name.c_str());

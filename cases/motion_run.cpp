@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "cases/measures.h"
 #include "cases/mechanism_columns.h"
 #include "io/files.h"
 
@@ -21,8 +22,8 @@ size_t design_of(const Scene& scene, const std::string& body) {
 /// Fills the record and the loads as the motion goes on.
 class Recorder {
  public:
-  Recorder(const Scene& scene, const MotionWishes& wishes, const Mechanism& mechanism,
-           RunFolder& folder, MotionOutcome& out)
+  Recorder(const Scene& scene, const MotionWishes& wishes, Mechanism& mechanism, RunFolder& folder,
+           MotionOutcome& out)
       : scene_(scene),
         wishes_(wishes),
         mechanism_(mechanism),
@@ -51,6 +52,10 @@ class Recorder {
     for (const Body& body : scene.bodies) poses_.push_back(start_pose(scene, body));
     if (scene.is_mechanism() && wishes.balance)
       r.powers = {{"power.drive", {}}, {"power.feed", {}}, {"power.inflow", {}}};
+    if (!r.powers.empty() && scene.has_heat()) r.powers.push_back({"power.heat", {}});
+    if (!scene.measures.empty())
+      undeformed_ = fem::start_state(mechanism.model, mechanism.growths, 0, fem::Start::rigid,
+                                     mechanism.motion.placement);
     if (wishes.loads)
       for (const BodyDesign& d : scene.designs) out.loads.push_back({d.grid, {}, 0});
   }
@@ -71,11 +76,13 @@ class Recorder {
       r.amplitude[i] = std::max(r.amplitude[i], std::abs(d));
     }
     observe(step);
+    if (!scene_.measures.empty()) measure(step);
     columns_.add(step.model, step.x);
     if (!r.powers.empty()) {
       r.powers[0].values.push_back(step.powers.drive);
       r.powers[1].values.push_back(step.powers.feed);
       r.powers[2].values.push_back(step.powers.inflow);
+      if (scene_.has_heat()) r.powers[3].values.push_back(step.powers.heat);
     }
     // The step that reaches a moment shows it: no step is cut for a picture.
     const auto shown = static_cast<double>(r.moments.size());
@@ -87,7 +94,10 @@ class Recorder {
   }
 
   /// What comes after the last step, or after the one that failed.
-  void finish() { out_.record.mechanism = columns_.take(); }
+  void finish() {
+    out_.record.mechanism = columns_.take();
+    if (measures_) out_.record.measured = measures_->take();
+  }
 
  private:
   void observe(const fem::MotionStep& step) {
@@ -99,6 +109,11 @@ class Recorder {
     }
     for (const fem::Body& body : step.model.bodies())
       for (int k = 0; k < body.element->n_scalars(); ++k) add(step.x.q[body.first_scalar() + k]);
+  }
+
+  void measure(const fem::MotionStep& step) {
+    if (!measures_) measures_.emplace(scene_, step.model, undeformed_);
+    measures_->add(step.model, step.x);
   }
 
   void at_stop(const fem::MotionStep& step) {
@@ -179,6 +194,8 @@ class Recorder {
   std::vector<const fem::Growth*> tracked_;  // whose tip deflections are in the table
   std::vector<Pose> poses_;                  // of the bodies at the start
   MechanismColumns columns_;
+  fem::State undeformed_;  // at the start, where something is measured
+  std::optional<BodyMeasures> measures_;
 };
 
 }  // namespace
@@ -189,7 +206,8 @@ MotionOutcome run_motion(const Scene& scene, const MotionWishes& wishes, RunFold
     for (fem::Body& body : mechanism.model.bodies())
       if (body.name == scene.designs[i].body) mechanism.model.set_factors(body, wishes.factors[i]);
   mechanism.motion.balance = wishes.balance;
-  if (wishes.loads) mechanism.motion.stops = load_times(scene);
+  if (wishes.loads)
+    for (const double t : load_times(scene)) mechanism.motion.stops.push_back(t);
   if (wishes.frames_every > 0)
     for (int k = 1; k * wishes.frames_every < scene.time.end + 1e-9; ++k)
       mechanism.motion.stops.push_back(k * wishes.frames_every);

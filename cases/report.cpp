@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "cases/heat.h"
+#include "cases/measured_plots.h"
 #include "cases/mechanism_plots.h"
 #include "cases/report_plots.h"
 #include "cases/version.h"
@@ -10,7 +12,8 @@
 namespace flexmorph::cases {
 namespace {
 
-constexpr size_t kShapes = 4;  // pictures of a plate in space
+constexpr double kLargestDefect = 0.1;  // of the balance of energy before a motion is warned of
+constexpr size_t kShapes = 4;           // pictures of a plate in space
 
 /// Thinnest half-thickness of any component anywhere along its axis [m].
 double thinnest(const mmc::BodyProblem& problem) {
@@ -21,6 +24,23 @@ double thinnest(const mmc::BodyProblem& problem) {
           out,
           profile(c, c.half_length * (k / 100.0 - 1), problem.stages.back().min_half_thickness).g);
   return out;
+}
+
+/// Has the optimizer left a design that is not feasible? (One that is analysed as it starts was not
+/// asked.)
+bool is_too_heavy(const mmc::BodyProblem& p, const mmc::BodyOutcome& o) {
+  return o.iterations > 0 && !p.shares_mass && p.goal.minimize == mmc::Goal::Minimize::compliance &&
+         o.volume > p.goal.max_volume + 1e-3;
+}
+
+/// Is the balance of energy so bad that nobody should trust the motion? Strains of 1e-13, which
+/// slopes of size one have by round-off, are no energy.
+bool misses_energy(const Scene& scene, const MotionRecord& motion) {
+  double round_off = 0, worst = 0;
+  for (const Body& body : scene.bodies)
+    round_off += 1e-26 * body.youngs_modulus * body.length_at(0) * body.width * body.thickness;
+  for (const double defect : motion.defect) worst = std::max(worst, std::abs(defect));
+  return motion.result.energy_defect > kLargestDefect && worst > round_off;
 }
 
 io::Json body_results(const RunReport& report, size_t i) {
@@ -87,6 +107,7 @@ io::Json path_results(const PathRecord& path) {
   out.set("completed", path.result.completed).set("rejected_steps", path.result.rejected);
   out.set("newton_iterations", path.result.iterations);
   out.set("observed", last_values(path.observed));
+  if (!path.measured.empty()) out.set("measured", last_values(path.measured));
   return out;
 }
 
@@ -112,6 +133,12 @@ io::Json motion_results(const Scene& scene, const RunReport& report) {
   io::Json out = io::Json::object();
   out.set("steps", r.counts.steps).set("newton_iterations", r.counts.newton);
   out.set("factorizations", r.counts.factorizations).set("rejected_steps", r.counts.rejected);
+  if (r.counts.evaluations > 0)
+    out.set("evaluations", r.counts.evaluations).set("partitions", r.counts.partitions);
+  if (scene.time.tolerance)
+    out.set("inaccurate_steps", r.counts.inaccurate)
+        .set("smallest_step", r.smallest_step)
+        .set("largest_step", r.largest_step);
   out.set("energy_defect", r.energy_defect);
   out.set("constraint_drift", r.constraint_drift);
   out.set("velocity_drift", r.velocity_drift).set("smallest_area_ratio", r.smallest_area_ratio);
@@ -128,19 +155,24 @@ io::Json motion_results(const Scene& scene, const RunReport& report) {
   }
   out.set("events", std::move(events));
   if (!motion.observed.empty()) out.set("observed", last_values(motion.observed));
+  if (!motion.measured.empty()) out.set("measured", last_values(motion.measured));
   if (scene.trajectory) out.set("platform_error", trajectory_errors(scene, report));
   return out;
 }
 
-/// The value of a column at the end, if there is one of that name.
-std::optional<double> last_value(const std::vector<double>* values) {
+/// The value of a column at the end, or with "<column>.largest" its largest absolute value.
+std::optional<double> value_of(
+    const std::function<const std::vector<double>*(const std::string&)>& column,
+    const std::string& name) {
+  if (const std::vector<double>* values = column(name))
+    return values->empty() ? std::optional<double>() : values->back();
+  static const std::string kLargest = ".largest";
+  if (!name.ends_with(kLargest)) return {};
+  const std::vector<double>* values = column(name.substr(0, name.size() - kLargest.size()));
   if (!values || values->empty()) return {};
-  return values->back();
-}
-std::optional<double> observed(const std::vector<Column>& columns, const std::string& name) {
-  for (const Column& column : columns)
-    if (column.name == name) return last_value(&column.values);
-  return {};
+  double largest = 0;
+  for (const double v : *values) largest = std::max(largest, std::abs(v));
+  return largest;
 }
 
 io::Json expectations(const Scene& scene, const RunReport& report) {
@@ -158,8 +190,10 @@ io::Json expectations(const Scene& scene, const RunReport& report) {
     }
     if (name == "amplitude" && report.motion && !report.motion->amplitude.empty())
       found = report.motion->amplitude[0];
-    if (!found && report.motion) found = last_value(report.motion->column(name));
-    if (!found && report.path) found = observed(report.path->observed, name);
+    if (!found && report.motion)
+      found = value_of([&](const std::string& n) { return report.motion->column(n); }, name);
+    if (!found && report.path)
+      found = value_of([&](const std::string& n) { return report.path->column(n); }, name);
     io::Json entry = io::Json::object();
     entry.set("found", found ? io::Json(*found) : io::Json());
     entry.set("holds", found && wanted.holds(*found));
@@ -180,6 +214,19 @@ io::Json cycle_results(const mmc::CycleVerdict& v) {
   }
   out.set("bodies", std::move(bodies));
   out.set("strain_energy_integral", v.strain_energy_integral).set("best", v.best);
+  return out;
+}
+
+io::Json heat_results(const Scene& scene) {
+  io::Json out = io::Json::array();
+  for (const Body& body : scene.bodies) {
+    if (!body.heat) continue;
+    io::Json hot = io::Json::object();
+    hot.set("body", body.name).set("temperature", temperature_words(*body.heat));
+    hot.set("expansion", body.heat->expansion);
+    hot.set("thermal_volume", volume_name(body.heat->volume)).set("force", body.heat->force);
+    out.push(std::move(hot));
+  }
   return out;
 }
 
@@ -221,9 +268,21 @@ std::string run_json(const Scene& scene, const RunReport& report) {
       warnings.push("body '" + o.body +
                     "': the sharp compliance is far above the blurred one: gaps are bridged");
   }
-  if (report.motion)
+  for (const mmc::BodyProblem& p : report.problems)
+    for (const mmc::BodyOutcome& o : report.outcomes)
+      if (o.body == p.body && is_too_heavy(p, o))
+        warnings.push("body '" + o.body + "': the volume " + io::to_text(o.volume, 4) +
+                      " is above what is allowed, " + io::to_text(p.goal.max_volume, 4) +
+                      ": no design that was found is as light");
+  if (report.motion) {
     for (const fem::Conditioning& c : report.motion->result.near_singular)
       warnings.push(fem::describe(c));
+    if (misses_energy(scene, *report.motion))
+      warnings.push(
+          "the balance of energy is missed by " +
+          io::to_text(100 * report.motion->result.energy_defect, 3) +
+          " % of the largest energy: do not trust this motion; a smaller time.step helps");
+  }
   out.set("warnings", std::move(warnings));
   io::Json results = io::Json::array();
   for (size_t i = 0; i < report.outcomes.size(); ++i) results.push(body_results(report, i));
@@ -235,6 +294,7 @@ std::string run_json(const Scene& scene, const RunReport& report) {
     for (const mmc::CycleVerdict& v : report.verdicts) cycles.push(cycle_results(v));
     out.set("cycles", std::move(cycles));
   }
+  if (scene.has_heat()) out.set("heat", heat_results(scene));
   if (report.motion) out.set("motion", motion_results(scene, report));
   if (report.path) out.set("static", path_results(*report.path));
   if (!scene.expect.empty()) out.set("expect", expectations(scene, report));
@@ -254,6 +314,18 @@ io::ReportSection results_section(const RunReport& report) {
                         io::to_text(o.sharp.compliance / o.uniform_compliance, 4),
                         o.sharp.connectivity.connected ? "yes" : "no", io::to_text(o.iterations),
                         io::to_text(o.evaluations), o.stop});
+  return out;
+}
+
+io::ReportSection heat_section(const Scene& scene) {
+  io::ReportSection out;
+  out.heading = "Heat";
+  out.rows.push_back({"body", "temperature", "expansion [1/K]", "thermal volume", "thermal force"});
+  for (const Body& body : scene.bodies)
+    if (body.heat)
+      out.rows.push_back({body.name, temperature_words(*body.heat),
+                          io::to_text(body.heat->expansion, 6), volume_name(body.heat->volume),
+                          body.heat->force ? "yes" : "no"});
   return out;
 }
 
@@ -298,6 +370,7 @@ void write_report(const Scene& scene, const RunReport& report, RunFolder& folder
   head.heading = "Run";
   head.words = "Status: " + report.status + (report.message.empty() ? "" : " - " + report.message);
   sections.push_back(head);
+  if (scene.has_heat()) sections.push_back(heat_section(scene));
   if (!report.outcomes.empty()) sections.push_back(results_section(report));
   if (!report.verdicts.empty()) sections.push_back(cycles_section(report));
   const auto add = [&](const std::string& name, const std::string& heading, std::string svg) {
@@ -317,6 +390,8 @@ void write_report(const Scene& scene, const RunReport& report, RunFolder& folder
       add("deflection", "Tip deflection", deflection_plot(*report.motion, report.uniform_motion));
     if (!report.motion->observed.empty())
       add("observed", "Observed motion", observed_plot(*report.motion));
+    if (!report.motion->measured.empty())
+      add("measured", "Measured quantities", measured_plot(*report.motion));
     if (scene.is_mechanism()) {
       add("inputs", "Inputs", inputs_plot(scene));
       add("mechanism", "Mechanism in motion", moments_plot(*report.motion));

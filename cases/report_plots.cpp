@@ -1,5 +1,7 @@
 #include "cases/report_plots.h"
 
+#include "cases/measured_plots.h"
+
 namespace flexmorph::cases {
 namespace {
 
@@ -78,6 +80,7 @@ std::string path_plot(const PathRecord& path) {
   io::Figure figure;
   figure.title = "Path of equilibria";
   add_observed(path.factor, "load factor", path.observed, "displacement [m]", figure);
+  add_measured(path.factor, "load factor", path.measured, figure);
   for (io::Panel& panel : figure.panels)
     for (io::Curve& curve : panel.curves) curve.markers = true;
   io::Panel energy;

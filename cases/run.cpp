@@ -115,6 +115,7 @@ void judge_by_motion(const Scene& scene, RunFolder& folder, Progress& progress, 
 void run_designs(const Scene& scene, RunFolder& folder, Progress& progress, RunReport& report) {
   report.problems = build_problems(scene);
   for (const mmc::BodyProblem& problem : report.problems) folder.write_start(problem);
+  const bool analysed = scene.optimizer.max_iterations == 0;  // as they start: one motion says all
   const auto simulate = [&](std::span<const fem::Factors> factors) {
     MotionWishes wishes;
     wishes.factors.assign(factors.begin(), factors.end());
@@ -124,6 +125,7 @@ void run_designs(const Scene& scene, RunFolder& folder, Progress& progress, RunR
     progress.say("motion: " + std::to_string(motion.record.result.counts.steps) + " steps, " +
                  std::to_string(motion.record.result.events.size()) + " changes of the mesh, " +
                  "largest tip deflection " + io::to_text(motion.record.amplitude.at(0), 4) + " m");
+    if (analysed) report.motion = motion.record;
     return std::move(motion.loads);
   };
   std::vector<fem::EslSets> loads;
@@ -147,8 +149,9 @@ void run_designs(const Scene& scene, RunFolder& folder, Progress& progress, RunR
       progress.say(summary(outcomes[i]));
     }
   };
-  mmc::LoopSettings settings{
-      scene.cycle.max_cycles, scene.cycle.tolerance, {scene.output.sharp_every, scene.optimizer}};
+  mmc::LoopSettings settings{analysed ? 1 : scene.cycle.max_cycles,
+                             scene.cycle.tolerance,
+                             {scene.output.sharp_every, scene.optimizer}};
   observer.verdict = [&](std::span<const mmc::CycleVerdict> verdicts) {
     report.verdicts.assign(verdicts.begin(), verdicts.end());
     folder.write_cycles(verdicts);
@@ -166,7 +169,7 @@ void run_designs(const Scene& scene, RunFolder& folder, Progress& progress, RunR
     for (size_t i = 0; i < best.size(); ++i) folder.write_design(report.problems[i], best[i]);
   }
 
-  judge_by_motion(scene, folder, progress, report);
+  if (!analysed) judge_by_motion(scene, folder, progress, report);
 }
 
 /// The story of a plate at rest.

@@ -82,7 +82,14 @@ void empty_folder(const std::string& path) {
 }  // namespace
 
 const std::vector<double>* MotionRecord::column(const std::string& name) const {
-  for (const auto* columns : {&observed, &mechanism})
+  for (const auto* columns : {&observed, &measured, &mechanism})
+    for (const Column& column : *columns)
+      if (column.name == name) return &column.values;
+  return nullptr;
+}
+
+const std::vector<double>* PathRecord::column(const std::string& name) const {
+  for (const auto* columns : {&observed, &measured})
     for (const Column& column : *columns)
       if (column.name == name) return &column.values;
   return nullptr;
@@ -123,8 +130,11 @@ void RunFolder::add_iteration(const mmc::IterationReport& r) {
       (r.iteration == 1 || r.iteration % wish.design_every == 0)) {
     const std::string stem = scene_.designs.size() > 1 ? r.problem.body + "_" : "";
     const mmc::CellFactors& factors = r.state.factors();
-    // Σ w ½ uᵀ K_cell u: the derivative by the stiffness factor holds it.
-    const VectorXd energy = -0.5 * r.value.d_stiffness.cwiseProduct(factors.stiffness);
+    // Σ w ½ uᵀ K_cell u: the derivative by the stiffness factor holds it. The energies of loads and
+    // of held growth are added; what they do on each other sums to zero over the cells.
+    VectorXd by_stiffness = -r.value.d_stiffness;
+    if (r.value.d_held.size() > 0) by_stiffness += 2 * r.value.d_held;
+    const VectorXd energy = 0.5 * by_stiffness.cwiseProduct(factors.stiffness);
     const VectorXd displacement =
         r.loads.displacement(factors.stiffness, factors.mass, r.loads.n_loads() - 1);
     const auto view = [](const VectorXd& v) {
@@ -237,6 +247,7 @@ void RunFolder::write_motion(const std::string& name, const Scene& scene,
   for (const std::string& body : motion.bodies) columns.push_back(body + ".tip_deflection");
   for (const std::string& body : motion.growing) columns.push_back(body + ".length");
   for (const Column& column : motion.observed) columns.push_back(column.name);
+  for (const Column& column : motion.measured) columns.push_back(column.name);
   for (const Column& column : motion.mechanism) columns.push_back(column.name);
   for (const char* quantity :
        {"energy.kinetic", "energy.strain", "energy.potential", "energy.defect"})
@@ -245,7 +256,7 @@ void RunFolder::write_motion(const std::string& name, const Scene& scene,
   io::CsvWriter csv(path_ + "/" + name, columns);
   // What failed while a row was being filled left it unfinished: it is not written.
   size_t rows = motion.time.size();
-  for (const auto* group : {&motion.observed, &motion.mechanism, &motion.powers})
+  for (const auto* group : {&motion.observed, &motion.measured, &motion.mechanism, &motion.powers})
     for (const Column& column : *group) rows = std::min(rows, column.values.size());
   for (size_t i = 0; i < rows; ++i) {
     std::vector<io::Cell> row = {motion.time[i]};
@@ -253,6 +264,7 @@ void RunFolder::write_motion(const std::string& name, const Scene& scene,
     for (const std::string& body : motion.growing)
       row.emplace_back(scene.body(body).length_at(motion.time[i]));
     for (const Column& column : motion.observed) row.emplace_back(column.values[i]);
+    for (const Column& column : motion.measured) row.emplace_back(column.values[i]);
     for (const Column& column : motion.mechanism) row.emplace_back(column.values[i]);
     row.emplace_back(motion.kinetic[i]);
     row.emplace_back(motion.strain[i]);
@@ -265,13 +277,15 @@ void RunFolder::write_motion(const std::string& name, const Scene& scene,
 
 void RunFolder::write_path(const PathRecord& path) {
   std::vector<std::string> columns = {"step", "load_factor"};
-  for (const Column& column : path.observed) columns.push_back(column.name);
+  for (const auto* group : {&path.observed, &path.measured})
+    for (const Column& column : *group) columns.push_back(column.name);
   columns.emplace_back("energy.strain");
   columns.emplace_back("iterations");
   io::CsvWriter csv(path_ + "/path.csv", columns);
   for (size_t i = 0; i < path.factor.size(); ++i) {
     std::vector<io::Cell> row = {static_cast<int>(i), path.factor[i]};
-    for (const Column& column : path.observed) row.emplace_back(column.values[i]);
+    for (const auto* group : {&path.observed, &path.measured})
+      for (const Column& column : *group) row.emplace_back(column.values[i]);
     row.emplace_back(path.strain[i]);
     row.emplace_back(path.iterations[i]);
     csv.row(row);
@@ -289,10 +303,12 @@ void RunFolder::write_part(const std::string& body, const io::QuadMesh& mesh,
 }
 
 void RunFolder::add_surface_frame(const fem::Body& body, const fem::State& x, const Pose& pose,
-                                  double time, int part) {
-  const Surface surface = deformed_surface(body, x, pose);
+                                  double time, int part, double heating) {
+  const Surface surface = deformed_surface(body, x, pose, heating);
   const io::Field points[] = {{"displacement", surface.displacement, surface.mesh.dimension}};
-  write_part(body.name, surface.mesh, {{"strain_energy", surface.energy}}, points, time, part);
+  std::vector<io::Field> cells = {{"strain_energy", surface.energy}};
+  if (!surface.strain.empty()) cells.push_back({"elastic_strain", surface.strain, 3});
+  write_part(body.name, surface.mesh, std::move(cells), points, time, part);
   if (part == 0 && surface.mesh.dimension == 3)
     shapes_.push_back(
         {(scene_.statics ? "step " : "t = ") + io::to_text(time, 4) + (scene_.statics ? "" : " s"),

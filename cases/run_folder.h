@@ -30,12 +30,13 @@ struct MotionRecord {
   std::vector<double> amplitude;                ///< largest |tip deflection| per body [m]
   double strain_integral = 0;                   ///< ∫ U dt of the whole model [J s]
   std::vector<Column> observed;         ///< positions of points, and free lines' coordinates [m]
+  std::vector<Column> measured;         ///< see BodyMeasures
   std::vector<Column> mechanism;        ///< see MechanismColumns
   std::vector<Column> powers;           ///< that enter a mechanism, where the balance is kept [W]
   std::vector<io::PlaneFrame> moments;  ///< pictures of a mechanism
   fem::MotionResult result;
 
-  /// The values of a column of `observed` or `mechanism`; null where there is none.
+  /// The values of a column of `observed`, `measured` or `mechanism`; null where there is none.
   const std::vector<double>* column(const std::string& name) const;
 };
 
@@ -44,6 +45,10 @@ struct PathRecord {
   std::vector<double> factor, strain;  ///< load factor [-], strain energy [J]
   std::vector<int> iterations;         ///< of Newton's method
   std::vector<Column> observed;        ///< displacements of points [m]
+  std::vector<Column> measured;        ///< see BodyMeasures
+
+  /// The values of a column of `observed` or `measured`; null where there is none.
+  const std::vector<double>* column(const std::string& name) const;
   fem::StaticResult result;
 };
 
@@ -80,9 +85,9 @@ class RunFolder {
   /// path.csv: one row per equilibrium.
   void write_path(const PathRecord& path);
   /// The deformed mid-surface of a body without a design, with displacements and strain energy per
-  /// area:
+  /// area, a beam with its elastic strain (`heating`: see deformed_surface()):
   void add_surface_frame(const fem::Body& body, const fem::State& x, const Pose& pose, double time,
-                         int part);
+                         int part, double heating = 1);
   /// A rigid body, by its corners:
   void add_rigid_frame(const std::string& body, std::span<const Vec2> corners, double time,
                        int part);

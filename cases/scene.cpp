@@ -89,6 +89,11 @@ bool Scene::has_free_lines() const {
                      [](const Body& b) { return b.has_free_lines(); });
 }
 
+bool Scene::has_heat() const {
+  return std::any_of(bodies.begin(), bodies.end(),
+                     [](const Body& b) { return b.heat.has_value(); });
+}
+
 const Body& Scene::body(const std::string& body_name) const {
   for (const Body& each : bodies)
     if (each.name == body_name) return each;
@@ -132,6 +137,7 @@ Scene read_scene(const io::CaseFile& file, const Vocabulary& words) {
     read_motion(root, words, scene);
   read_designs(root, words, scene);
   scene.output = read_output(root);
+  if (root.has("accuracy")) scene.accuracy = read_accuracy(root.table("accuracy"));
   if (root.has("expect")) {
     const io::Table expect = root.table("expect");
     for (const std::string& key : expect.keys())

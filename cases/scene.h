@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "cases/scene_accuracy.h"
+#include "fem/heat.h"
 #include "fem/joint.h"
 #include "fem/solve/statics.h"
 #include "geometry/component.h"
@@ -32,9 +34,13 @@ enum class Start {
 };
 
 struct TimeSpan {
-  double end = 1;                                ///< [s], from 0
-  double step = 1e-3;                            ///< [s]
-  std::string integrator = "generalized_alpha";  ///< or "energy_momentum"
+  double end = 1;      ///< [s], from 0
+  double step = 1e-3;  ///< [s]; not of adaptive steps
+  /// Steps that adapt to this tolerance (fem::AdaptiveStep); absent: equal ones.
+  std::optional<double> tolerance;
+  double largest_step = 0;                       ///< of adaptive steps [s]; 0: the default
+  std::string integrator = "generalized_alpha";  ///< see fem::make_integrator()
+  double explicit_tolerance = 1e-8;              ///< of the steps of `minimal_coordinates`
   double rho_inf = 0.8;  ///< spectral radius of generalized-alpha at infinite frequency, 0..1
   Start start = Start::prestretched;
   double spin_up = 0;  ///< duration of the spin-up [s], 0 unless `hub_at_rest`
@@ -47,6 +53,8 @@ struct StaticAnalysis {
   int steps = 10;           ///< equal steps to there; arc_length: the first step is one of them
   int max_steps = 1000;     ///< equilibria before the analysis gives up
   int max_iterations = 15;  ///< of Newton's method in a step
+  /// What the load factor multiplies; the other one is there as it is from the start.
+  bool loads_grow = true, temperatures_grow = false;
 };
 
 /// A motion: the name of a drive, or where there is none a constant.
@@ -131,16 +139,28 @@ struct BodyLine {
   bool has_limits() const { return std::isfinite(max_length); }
 };
 
-/// A plate. Material coordinates: X from the root to the free end; Y across, -width/2..width/2 in
-/// the plane and 0..width in space.
+/// Uniform heat of a body: what it is warmer than without stress.
+struct BodyHeat {
+  double expansion = 0;          ///< [1/K]
+  Law rise;                      ///< [K]: in the end, or at all times where a drive says it
+  std::string profile;           ///< of the rise in time; empty: constant, or a drive
+  double start = 0, settle = 0;  ///< the rise begins, and how long it takes [s]
+  fem::ThermalVolume volume = fem::ThermalVolume::grown;
+  bool force = false;  ///< the thermal force Q_tk acts
+};
+
+/// A plate or a beam. Material coordinates: X from the root to the free end; Y across,
+/// -width/2..width/2 in the plane and 0..width in space.
 struct Body {
   std::string name;
-  std::string element;                ///< row of the table of elements
-  std::string shape;                  ///< shape set: "h16", "h12"
-  std::string space;                  ///< "plane" or "space": two or three components
-  std::vector<std::string> terms;     ///< rows of the table of terms
-  double length = 0;                  ///< at the start [m]
-  double width = 0, thickness = 0;    ///< [m]
+  std::string element;             ///< row of the table of elements
+  std::string shape;               ///< shape set: "h16", "h12"
+  std::string space;               ///< "plane" or "space": two or three components
+  std::vector<std::string> terms;  ///< rows of the table of terms
+  double length = 0;               ///< at the start [m]
+  /// Across the axis, and across the surface [m]. Of a beam (in the case: `height` and `width`): in
+  /// the plane of the motion, and across it.
+  double width = 0, thickness = 0;
   double density = 0;                 ///< [kg/m^3]
   double youngs_modulus = 0;          ///< [Pa]
   double poisson_ratio = 0;           ///< [-]
@@ -150,7 +170,10 @@ struct Body {
   std::vector<BodyLine> lines;        ///< by index
   std::optional<Vec2> position;       ///< of the middle of the root at the start, where given [m]
   double angle = 0;                   ///< of its axis, with `position` [rad]
+  double arc = 0;  ///< angle that the axis of an undeformed beam turns by, an arc of a circle [rad]
+  std::optional<BodyHeat> heat;  ///< absent: cold
 
+  bool is_beam() const { return element == "ancf_beam"; }
   double length_at(double time) const;
   fem::Motion length_motion(double time) const;
   double longest(double end) const;   ///< in [0, end], the time of the run
@@ -217,6 +240,12 @@ struct BodyLoad {
   Vec2 point{0, 0};  ///< material [m]
   VectorXd force;    ///< (dim)
   double size = 0;
+};
+
+/// Quantities of a body that are results, see BodyMeasures.
+struct Measure {
+  std::string body;
+  std::vector<std::string> quantities;
 };
 
 /// A material point whose position is a result.
@@ -353,12 +382,14 @@ struct Scene {
   std::vector<PointMass> point_masses;
   std::vector<BodyLoad> loads;
   std::vector<Observe> observed;
+  std::vector<Measure> measures;
   std::optional<Esl> esl;           ///< always there when bodies that move are designed
   std::vector<BodyDesign> designs;  ///< one per designed body
   optim::Settings optimizer;
   Cycle cycle;
   std::optional<Verify> verify;
   Output output;
+  std::optional<Accuracy> accuracy;           ///< for the command of that name; no run needs it
   std::map<std::string, Expectation> expect;  ///< by name of the result
 
   const Body& body(const std::string& name) const;  ///< name resolves: checked when read
@@ -368,13 +399,15 @@ struct Scene {
   bool is_mechanism() const { return !rigid_bodies.empty(); }
   bool in_space() const { return !bodies.empty() && bodies.front().in_space(); }  ///< all, or none
   bool has_free_lines() const;
+  bool has_heat() const;
 };
 
 /// The rows of the tables a scene may name.
 struct Vocabulary {
-  std::vector<std::string> elements{"ancf_plate", "ale_ancf_plate"};
+  std::vector<std::string> elements{"ancf_plate", "ale_ancf_plate", "ancf_beam"};
   std::vector<std::string> shapes{"h16", "h12"};
   std::vector<std::string> terms{"inertia", "membrane"};  ///< in the plane
+  std::vector<std::string> beam_terms{"inertia", "gcm", "ecm"};
   std::vector<std::string> space_terms{"inertia", "membrane", "membrane_assumed", "bending"};
   std::vector<std::string> joints{"weld",    "sleeve",      "pin",        "clamp",
                                   "support", "symmetry",    "line_drive", "revolute",

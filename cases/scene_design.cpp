@@ -204,6 +204,16 @@ void read_components(const Table& t, const Body& body, BodyDesign& design) {
     } catch (const Error& error) {
       t.fail("start", error.what());
     }
+    const Grid& g = design.grid;
+    const double near = 1e-9 * (g.width + g.height);
+    for (size_t c = 0; c < design.start.size(); ++c) {
+      const Vec2 at = design.start[c].center - Vec2(g.x0, g.y0);
+      if (at.minCoeff() < -near || at.x() > g.width + near || at.y() > g.height + near)
+        t.fail("start", "the centre of component " + to_text(static_cast<int>(c + 1)) +
+                            " lies in the domain, [" + to_text(g.x0) + ", " +
+                            to_text(g.x0 + g.width) + "] x [" + to_text(g.y0) + ", " +
+                            to_text(g.y0 + g.height) + "] [m]");
+    }
   }
   design.jitter = t.number("jitter", between("a jitter", "", 0, 1), 0.0);
   design.seed = t.integer("seed", "a seed", 0, 1'000'000'000, 1);
@@ -291,6 +301,9 @@ BodyDesign read_design(const Table& t, const Scene& scene) {
   if (scene.domain) return read_static_design(t, scene);
   BodyDesign design;
   design.body = t.choice("body", "a body", names_of(scene.bodies));
+  if (scene.body(design.body).is_beam()) t.fail("body", "plates are designed, beams are not");
+  if (const auto& heat = scene.body(design.body).heat; heat && heat->force)
+    t.fail("body", "the thermal force is that of full material: body.heat.force = false");
   for (const BodyDesign& other : scene.designs)
     if (other.body == design.body) t.fail("body", "this body has a [[design]] already");
   const Body& body = scene.body(design.body);
@@ -354,7 +367,8 @@ Esl read_esl(const Table& t, const Scene& scene) {
 optim::Settings read_optimizer(const Table& t, const Vocabulary& words) {
   optim::Settings s;
   s.name = t.choice("name", "an optimizer", words.optimizers, s.name);
-  s.max_iterations = t.integer("max_iterations", "a number of iterations", 1, 1'000'000, 300);
+  // 0: the design is analysed as it starts.
+  s.max_iterations = t.integer("max_iterations", "a number of iterations", 0, 1'000'000, 300);
   s.max_evaluations = t.integer("max_solves", "a number of state solves", 0, 100'000'000, 0);
   s.move_limit = t.number("move_limit", fraction("a move limit"), s.move_limit);
   s.kkt_tolerance = t.number("kkt_tolerance", not_negative("a tolerance"), s.kkt_tolerance);
@@ -369,7 +383,9 @@ optim::Settings read_optimizer(const Table& t, const Vocabulary& words) {
   // Ipopt's first steps are far longer than a component; in a moving box they are not.
   if (s.name == "ipopt") s.options.try_emplace("box", 0.1);
   try {
-    optim::make_optimizer(s);  // only it knows its options and their ranges
+    optim::Settings checked = s;
+    checked.max_iterations = std::max(1, s.max_iterations);
+    optim::make_optimizer(checked);  // only it knows its options and their ranges
   } catch (const Error& error) {
     const std::string what = error.what();
     for (const auto& [key, value] : s.options)

@@ -59,6 +59,16 @@ fem::WeldMode read_mode(const Table& t, fem::WeldMode fallback) {
                                  fallback);
 }
 
+/// How the end of a beam is welded: its section keeps its direction and is free to grow (partial);
+/// it keeps direction and size (edge); the axis is not stretched, either (full).
+fem::WeldMode read_beam_mode(const Table& t) {
+  return t.choice<fem::WeldMode>("mode", "the weld of a beam",
+                                 {{"partial", fem::WeldMode::partial},
+                                  {"edge", fem::WeldMode::edge},
+                                  {"full", fem::WeldMode::full}},
+                                 fem::WeldMode::partial);
+}
+
 /// Hub or sleeve: a frame for one edge of the body, which also says where the body begins.
 void read_frame(const Table& t, const Scene& scene, const Body& body, Joint& joint) {
   const std::vector<std::string> rigid = names_of(scene.rigid_bodies);
@@ -70,10 +80,12 @@ void read_frame(const Table& t, const Scene& scene, const Body& body, Joint& joi
   const bool on_rigid = std::find(rigid.begin(), rigid.end(), joint.to) != rigid.end();
   joint.edge = read_edge(t, "edge", body, on_rigid ? Words{"root", "free_end"} : Words{"root"});
   joint.line = std::max(0, line_of(joint.edge, body));
+  if (body.is_beam() && joint.line != 0) t.fail("edge", "a beam is welded at one of its ends");
   if (on_rigid) read_carrier(t, joint);
   if (joint.type == "weld") {
-    joint.mode = read_mode(t, fem::WeldMode::edge);
+    joint.mode = body.is_beam() ? read_beam_mode(t) : read_mode(t, fem::WeldMode::edge);
   } else {
+    if (body.is_beam()) t.fail("body", "material slides through the sleeves of plates only");
     const double line = body.start_lines(0, body.elements[0])[static_cast<size_t>(joint.line)];
     const auto at =
         t.numbers("position", any_number("a position", "m"), 2, std::vector<double>{line, 0});
@@ -191,6 +203,7 @@ BodyLoad read_load(const Table& t, const Scene& scene) {
   if (load.type == "point") load.point = read_point(t, body, scene.time.end);
   if (load.type == "edge" || load.type == "edge_moment")
     load.edge = read_edge(t, "edge", body, edge_names());
+  if (body.is_beam() && load.type != "point") t.fail("type", "loads on a beam act at points");
   const bool follows = load.type == "pressure" || load.type == "edge_moment";
   if (follows && !body.in_space()) t.fail("type", "this load acts on a plate in space");
   if (follows && scene.time.integrator == "energy_momentum")
@@ -250,6 +263,23 @@ StaticAnalysis read_analysis(const Table& t) {
   if (out.max_steps < out.steps) t.fail("max_steps", "at least static.steps");
   out.max_iterations = t.integer("max_iterations", "a number of iterations", 1, 1000, 15);
   return out;
+}
+
+void read_growing(const Table& root, Scene& scene) {
+  enum class Grows { loads, temperatures, both };
+  const Table t = root.table("static");
+  const bool loaded = !scene.loads.empty() || scene.gravity, hot = scene.has_heat();
+  if (!loaded && !hot)
+    root.fail("static", "nothing loads the bodies: gravity, a [[load]] or [body.heat] is missing");
+  const Grows grows = t.choice<Grows>(
+      "grows", "what the load factor multiplies",
+      {{"loads", Grows::loads}, {"temperatures", Grows::temperatures}, {"both", Grows::both}},
+      loaded ? Grows::loads : Grows::temperatures);
+  StaticAnalysis& out = *scene.statics;
+  out.loads_grow = grows != Grows::temperatures;
+  out.temperatures_grow = grows != Grows::loads;
+  if (out.loads_grow && !loaded) t.fail("grows", "there is no load and no gravity to grow");
+  if (out.temperatures_grow && !hot) t.fail("grows", "no body has a temperature: [body.heat]");
 }
 
 namespace {
@@ -333,8 +363,6 @@ void read_joints(const Table& root, const Vocabulary& words, Scene& scene) {
 void read_loads(const Table& root, Scene& scene) {
   for (const Table& t : root.tables("load")) scene.loads.push_back(read_load(t, scene));
   for (const Table& t : root.tables("observe")) scene.observed.push_back(read_observe(t, scene));
-  if (scene.statics && scene.loads.empty() && !scene.gravity)
-    root.fail("static", "nothing loads the bodies: gravity or a [[load]] is missing");
 }
 
 }  // namespace flexmorph::cases

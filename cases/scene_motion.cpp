@@ -1,6 +1,8 @@
 #include <cmath>
 
+#include "cases/heat.h"
 #include "cases/scene_parts.h"
+#include "fem/dynamics/step_control.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
@@ -15,14 +17,40 @@ using io::to_text;
 
 constexpr int kMostElements = 100'000;
 
+/// A number, or "adaptive" with what belongs to it; the integrator is read.
+void read_step(const Table& t, TimeSpan& time) {
+  time.step = std::min(1e-3, time.end);
+  if (t.is_string("step")) {
+    t.choice("step", "a time step in words", std::vector<std::string>{"adaptive"});
+    if (time.integrator != "generalized_alpha")
+      t.fail("step", "only \"generalized_alpha\" knows its local error, which \"adaptive\" needs");
+    auto span = between("a tolerance", "", 0, 0.1);
+    span.lower_open = true;
+    time.tolerance = t.number("tolerance", span, fem::AdaptiveStep{}.tolerance);
+    if (!t.has("largest_step")) return;
+    time.largest_step = t.number("largest_step", positive("a time step", "s"));
+    if (time.largest_step > time.end)
+      t.fail("largest_step", "a time step is no longer than time.end [s]");
+    return;
+  }
+  if (t.has("largest_step")) t.fail("largest_step", "only step = \"adaptive\" has one");
+  if (time.integrator == "minimal_coordinates")
+    time.explicit_tolerance =
+        t.number("tolerance", between("a tolerance", "", 1e-13, 0.1), time.explicit_tolerance);
+  else if (t.has("tolerance"))
+    t.fail("tolerance", "only step = \"adaptive\" and \"minimal_coordinates\" have one");
+  time.step = t.number("step", positive("a time step", "s"), time.step);
+  if (time.step > time.end) t.fail("step", "a time step is no longer than time.end [s]");
+}
+
 TimeSpan read_time(const Table& t) {
   TimeSpan time;
   time.end = t.number("end", positive("an end time", "s"));
-  time.step = t.number("step", positive("a time step", "s"), std::min(1e-3, time.end));
-  if (time.step > time.end) t.fail("step", "a time step is no longer than time.end [s]");
-  time.integrator =
-      t.choice("integrator", "an integrator",
-               std::vector<std::string>{"generalized_alpha", "energy_momentum"}, time.integrator);
+  time.integrator = t.choice(
+      "integrator", "an integrator",
+      std::vector<std::string>{"generalized_alpha", "energy_momentum", "minimal_coordinates"},
+      time.integrator);
+  read_step(t, time);
   time.rho_inf = t.number("rho_inf", between("a spectral radius", "", 0, 1), 0.8);
   time.start = t.choice<Start>("start", "a start",
                                {{"prestretched", Start::prestretched},
@@ -99,10 +127,8 @@ Flow read_flow(const Table& t, const Scene& scene) {
   return flow;
 }
 
-Body read_body(const Table& t, const Vocabulary& words, const Scene& scene, bool has_gravity) {
-  Body body;
-  body.name = read_name(t, "the name of a body", scene);
-  body.element = t.choice("element", "an element", words.elements);
+void read_plate(const Table& t, const Vocabulary& words, const Scene& scene, bool has_density,
+                Body& body) {
   body.shape = t.choice("shape", "a shape set", words.shapes, "h16");
   body.space = t.choice("space", "a space", std::vector<std::string>{"plane", "space"}, "plane");
   if (!scene.bodies.empty() && scene.bodies.front().space != body.space)
@@ -122,10 +148,8 @@ Body read_body(const Table& t, const Vocabulary& words, const Scene& scene, bool
                          driven ? std::optional<double>(0) : std::nullopt);
   body.width = t.number("width", positive("a width", "m"));
   body.thickness = t.number("thickness", positive("a thickness", "m"));
-  // Nothing at rest asks for the density but weight.
-  const std::optional<double> weightless =
-      scene.statics && !has_gravity ? std::optional<double>(1) : std::nullopt;
-  body.density = t.number("density", positive("a density", "kg/m^3"), weightless);
+  body.density = t.number("density", positive("a density", "kg/m^3"),
+                          has_density ? std::nullopt : std::optional<double>(1));
   body.youngs_modulus = t.number("youngs_modulus", positive("Young's modulus", "Pa"));
   body.poisson_ratio = t.number("poisson_ratio", between("Poisson's ratio", "", 0, 0.5));
   if (body.has("bending"))
@@ -145,11 +169,24 @@ Body read_body(const Table& t, const Vocabulary& words, const Scene& scene, bool
   }
   if (flows && scene.statics) t.fail("element", "in a [static] analysis no material flows");
   body.lines = read_lines(t, body);
+}
+
+Body read_body(const Table& t, const Vocabulary& words, const Scene& scene, bool has_gravity) {
+  Body body;
+  body.name = read_name(t, "the name of a body", scene);
+  body.element = t.choice("element", "an element", words.elements);
+  // Nothing at rest asks for the density but weight.
+  const bool has_density = !scene.statics || has_gravity;
+  if (body.is_beam())
+    read_beam(t, words, scene, has_density, body);
+  else
+    read_plate(t, words, scene, has_density, body);
   if (t.has("position")) {
     const auto at = t.numbers("position", any_number("a position", "m"), 2);
     body.position = Vec2(at[0], at[1]);
     body.angle = t.number("angle", any_number("an angle", "rad"), 0.0);
   }
+  if (t.has("heat")) body.heat = read_heat(t.table("heat"), scene, body);
   return body;
 }
 
@@ -212,13 +249,16 @@ void read_motion(const Table& root, const Vocabulary& words, Scene& scene) {
   for (const Table& t : root.tables("point_mass"))
     scene.point_masses.push_back(read_point_mass(t, scene));
   read_loads(root, scene);
-  if (scene.statics) return;
+  read_measures(root, scene);
+  if (scene.statics) {
+    read_growing(root, scene);
+    return;
+  }
 
   const Table time = root.table("time");
-  if (scene.time.integrator == "energy_momentum" && scene.has_free_lines())
-    time.fail("integrator",
-              "free material lines ([[body.line]]) need \"generalized_alpha\": \"energy_momentum\" "
-              "does not know them");
+  if (scene.time.integrator != "generalized_alpha" && scene.has_free_lines())
+    time.fail("integrator", "free material lines ([[body.line]]) need \"generalized_alpha\": \"" +
+                                scene.time.integrator + "\" does not know them");
   // Without a hub there is nothing to be stretched by, and a free line starts where it is put.
   if (!scene.is_mechanism() && (scene.hubs.empty() || scene.has_free_lines())) {
     if (time.has("start") && scene.time.start == Start::prestretched)

@@ -36,6 +36,14 @@ void read_joints(const io::Table& root, const Vocabulary& words, Scene& scene);
 /// [[load]] on bodies, [[observe]].
 void read_loads(const io::Table& root, Scene& scene);
 
+/// The keys of a beam's [[body]] that follow `element`, but for its place.
+/// @param has_density  without it the density does not matter: nothing moves and nothing weighs
+void read_beam(const io::Table& t, const Vocabulary& words, const Scene& scene, bool has_density,
+               Body& body);
+
+/// [[measure]].
+void read_measures(const io::Table& root, Scene& scene);
+
 /// [[rigid_body]].
 void read_rigid_bodies(const io::Table& root, Scene& scene);
 
@@ -59,6 +67,8 @@ std::string read_name(const io::Table& t, const std::string& noun, const Scene& 
 
 /// [static].
 StaticAnalysis read_analysis(const io::Table& t);
+/// What grows in it: needs loads and bodies.
+void read_growing(const io::Table& root, Scene& scene);
 
 /// [[body.line]].
 std::vector<BodyLine> read_lines(const io::Table& body_table, const Body& body);

@@ -1,11 +1,13 @@
 #include "cases/study.h"
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -54,6 +56,11 @@ pid_t start(const StudyOptions& options, const Variant& variant) {
   if (child == 0) {
     dup2(out, STDOUT_FILENO);
     dup2(out, STDERR_FILENO);
+    if (options.time_limit > 0) {
+      const auto limit = static_cast<rlim_t>(std::ceil(options.time_limit));
+      const rlimit seconds{limit, limit};
+      setrlimit(RLIMIT_CPU, &seconds);
+    }
     execv("/proc/self/exe", argv.data());
     _exit(127);
   }
@@ -142,6 +149,8 @@ VariantResult result_of(const StudyOptions& options, const Variant& variant, con
   } else if (ended.signal != 0) {
     out.status = "failed";
     out.message = "ended by signal " + std::to_string(ended.signal);
+    if (options.time_limit > 0 && (ended.signal == SIGXCPU || ended.signal == SIGKILL))
+      out.message = "ended after " + io::to_text(options.time_limit, 3) + " CPU seconds";
   } else if (ended.code != 0) {
     out.status = "failed";
     if (out.message.empty()) out.message = last_words(out.directory + ".log");

@@ -18,6 +18,7 @@ struct StudyOptions {
   int jobs = 1;                        ///< processes at a time
   int threads = 1;                     ///< of each
   bool quiet = false;
+  double time_limit = 0;  ///< CPU time after which a run is ended [s]; 0: none
 };
 
 struct Variant {
@@ -48,7 +49,7 @@ struct VariantResult {
   std::string name, directory;
   std::string status = "missing";  ///< "done", "failed", "interrupted", "running", "missing"
   std::string message;             ///< why it failed
-  double seconds_cpu = 0, seconds_wall = 0;
+  double seconds_cpu = 0, seconds_wall = 0, peak_memory_bytes = 0;
   std::vector<BodyResult> bodies;
 
   bool done() const { return status == "done"; }

@@ -103,6 +103,7 @@ void read_run(const std::string& text, VariantResult& out) {
   out.message = run.value("message", "");
   out.seconds_cpu = number(run, "seconds_cpu");
   out.seconds_wall = number(run, "seconds_wall");
+  out.peak_memory_bytes = number(run, "peak_memory_bytes");
   for (const nlohmann::json& r : run.value("results", nlohmann::json::array()))
     out.bodies.push_back(read_body(r));
   if (!out.bodies.empty()) read_history(out.directory + "/history.csv", out.bodies);

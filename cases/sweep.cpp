@@ -203,6 +203,32 @@ std::vector<std::vector<std::string>> summary_of(const Sweep& sweep,
   return sweep.goals.empty() ? motion_table(motions_of(sweep, runs), runs) : table_of(sweep, runs);
 }
 
+std::optional<double> number_of(const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  return !text.empty() && *end == 0 && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+/// Ends of the runs against the numbers of the last key, where it has three numbers or more; else
+/// empty.
+std::string ends_picture(const Sweep& sweep, std::span<const Motions> motions) {
+  const size_t last = sweep.varied.size() - 1;
+  if (sweep.varied[last].values.size() < 3) return "";
+  std::vector<double> numbers;
+  std::vector<std::string> curves;
+  for (size_t k = 0; k < motions.size(); ++k) {
+    const std::optional<double> number = number_of(sweep.value(k, last));
+    if (!number) return "";
+    numbers.push_back(*number);
+    std::string& curve = curves.emplace_back();
+    for (size_t v = 0; v < last; ++v)
+      curve += (v > 0 ? ", " : "") + last_part(sweep.varied[v].key) + " = " + sweep.value(k, v);
+  }
+  const io::Figure figure =
+      final_figure(sweep.case_name, sweep.varied[last].key, motions, numbers, curves);
+  return figure.panels.empty() ? "" : io::plot_svg(figure);
+}
+
 void write_motions(const Sweep& sweep, std::span<const VariantResult> runs,
                    const std::string& stem) {
   const std::vector<Motions> motions = motions_of(sweep, runs);
@@ -213,6 +239,8 @@ void write_motions(const Sweep& sweep, std::span<const VariantResult> runs,
   io::write_file(stem + ".md", "# " + sweep.case_name + "\n\n" + io::markdown_table(rows));
   io::write_file(stem + ".svg",
                  io::plot_svg(motion_figure(sweep.case_name, motions, sweep.reference)));
+  if (const std::string ends = ends_picture(sweep, motions); !ends.empty())
+    io::write_file(stem + "_ends.svg", ends);
 }
 
 void write_all(const Sweep& sweep, std::span<const VariantResult> runs,

@@ -27,7 +27,8 @@ std::vector<Variant> combinations(const std::vector<Varied>& varied);
 
 /// Runs a case with every combination of values, and collects sweep.csv, sweep.md and sweep.svg
 /// (designs above their histories; of scenes without a design observed quantities, one curve per
-/// variant) in the study's folder; the table goes to the terminal.
+/// variant, and where the last key has three numbers or more sweep_ends.svg, the ends of the runs
+/// against them) in the study's folder; the table goes to the terminal.
 /// @return exit code as run_variants(). @throws Error (input).
 int sweep_case(const SweepOptions& options);
 

@@ -17,9 +17,12 @@ Motions columns_of(const std::string& path, const std::string& label) {
   return out;
 }
 
+/// By more than rounding; what is zero but for rounding is far below 1e-18 of any unit.
 bool varies(const std::vector<double>& y) {
   const auto [low, high] = std::minmax_element(y.begin(), y.end());
-  return low != y.end() && *high - *low > 1e-12 * std::max(std::abs(*low), std::abs(*high));
+  if (low == y.end()) return false;
+  const double rounding = std::max(1e-18, 1e-12 * std::max(std::abs(*low), std::abs(*high)));
+  return *high - *low > rounding;
 }
 
 }  // namespace
@@ -70,6 +73,44 @@ io::Figure motion_figure(const std::string& title, std::span<const Motions> vari
       panel.curves.push_back(std::move(points));
     }
     if (any) figure.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
+io::Figure final_figure(const std::string& title, const std::string& label,
+                        std::span<const Motions> variants, std::span<const double> number,
+                        std::span<const std::string> curve) {
+  io::Figure figure;
+  figure.title = title;
+  figure.panel_height = 240;
+  const auto first = std::find_if(variants.begin(), variants.end(),
+                                  [](const Motions& m) { return m.names.size() > 1; });
+  if (first == variants.end()) return figure;
+  for (size_t c = 1; c < first->names.size(); ++c) {
+    io::Panel panel;
+    panel.title = first->names[c];
+    panel.x.label = label;
+    for (size_t v = 0; v < variants.size(); ++v) {
+      const std::vector<double>* y = variants[v].column(panel.title);
+      if (!y || y->empty()) continue;
+      auto at = std::find_if(panel.curves.begin(), panel.curves.end(),
+                             [&](const io::Curve& each) { return each.name == curve[v]; });
+      if (at == panel.curves.end()) at = panel.curves.insert(at, io::Curve{curve[v]});
+      at->x.push_back(number[v]);
+      at->y.push_back(y->back());
+    }
+    if (std::none_of(panel.curves.begin(), panel.curves.end(),
+                     [](const io::Curve& each) { return varies(each.y); }))
+      continue;
+    const bool relative = std::all_of(panel.curves.begin(), panel.curves.end(),
+                                      [](const io::Curve& each) { return each.y[0] != 0; });
+    panel.y.label = relative ? "change at the end [%]" : "at the end";
+    for (io::Curve& each : panel.curves) {
+      each.markers = true;
+      const double base = each.y[0];
+      for (double& y : each.y) y = relative ? 100 * (y / base - 1) : y;
+    }
+    figure.panels.push_back(std::move(panel));
   }
   return figure;
 }

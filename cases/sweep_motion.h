@@ -30,6 +30,16 @@ Motions read_reference(const std::string& path);
 io::Figure motion_figure(const std::string& title, std::span<const Motions> variants,
                          const Motions& reference);
 
+/// What the runs of a sweep came to, against the numbers that were varied: a panel per column that
+/// differs between runs, T Fig. 15. `change` is that of the value at the end of the run against the
+/// first of its curve [%] where that is not zero, else the value at the end.
+/// @param label   of the numbers
+/// @param number  of every variant
+/// @param curve   what else was varied: variants of the same one make a curve
+io::Figure final_figure(const std::string& title, const std::string& label,
+                        std::span<const Motions> variants, std::span<const double> number,
+                        std::span<const std::string> curve);
+
 /// A row per variant and observed column: smallest, largest and last value.
 std::vector<std::vector<std::string>> motion_table(std::span<const Motions> variants,
                                                    std::span<const VariantResult> runs);

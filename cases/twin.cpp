@@ -83,7 +83,8 @@ Twin::Twin(const Scene& scene, Driven driven) : scene_(scene), driven_(driven) {
   const FindPlace place = [&](const Anchor& anchor) {
     Vec2 point = anchor.point;
     for (const Body& b : scene.bodies)
-      if (b.name == anchor.body) point.x() -= b.longest(scene.time.end);
+      if (b.name == anchor.body)
+        point = undeformed_place(b, point) - Vec2(b.longest(scene.time.end), 0);
     return fem::MarkerPlace{anchor.body, point, anchor.angle, {}};
   };
   for (const Spring& spring : scene.springs) model_.add_link(make_link(spring, place));
@@ -139,7 +140,11 @@ void Twin::add_carried(const Joint& joint) {
     // A constant speed is a drive, too; hubs keep theirs.
     free = driven_ == Driven::free ? joint.on_rigid_body() : let_go(body.flow->length);
     if (!free) plate.along = negative([&body](double t) { return body.length_motion(t); });
-  } else if (joint.edge != "free_end") {
+  } else if (joint.edge == "free_end") {
+    plate.point = undeformed_place(body, {body.longest(scene_.time.end), 0}) -
+                  Vec2(body.longest(scene_.time.end), 0);
+    plate.angle = body.arc;
+  } else {
     for (const BodyLine& line : body.lines) free = free || (line.free && line.index == joint.line);
     const double longest = body.longest(scene_.time.end);
     plate.point.x() =
@@ -182,7 +187,9 @@ fem::State Twin::guess() const {
     put(b.name, b.position, b.angle, b.velocity, b.angular_velocity);
   for (const Body& b : scene_.bodies) {
     const Pose pose = start_pose(scene_, b);
-    Vec2 end = pose.place({b.longest(scene_.time.end), 0}).head<2>();
+    // The origin of the twin: the end of the straight axis, also of an arc.
+    Vec2 end =
+        pose.origin + fem::rotation(pose.angle) * Vec2(b.longest(scene_.time.end) - pose.line, 0);
     for (const Joint& j : scene_.joints)
       if (j.body == b.name && j.edge == "free_end" && b.flow) end = start_place(scene_, j.b);
     put(b.name, end, pose.angle, Vec2::Zero(), 0);

@@ -19,16 +19,24 @@ struct NodalForce {
 ///
 /// Source: design.md section 8; the idea P (31), (32).
 struct EslSet {
-  double time = 0;       ///< [s]
-  double weight = 1;     ///< w_i of P (35)
-  int root_column = 0;   ///< column i of nodes on the root line; columns < i are inside
-  VectorXd deformation;  ///< u_i (2 n_nodes) [m], zero on and inside the root line
+  double time = 0;      ///< [s]
+  double weight = 1;    ///< w_i of P (35)
+  int root_column = 0;  ///< column i of nodes on the root line; columns < i are inside
+  /// Elastic displacement w_i (2 n_nodes) [m]: of a hot body from where it would be had it grown
+  /// freely about its root, of a cold one the displacement itself. Zero inside the root line; on it
+  /// -held_stretch (0, Y).
+  VectorXd deformation;
   /// Material acceleration minus gravity (2 n_nodes) [m/s^2]. Inside the hub it is continued
   /// smoothly (the acceleration of the rigid, extending body), which costs nothing, because rows
   /// outside never see it, and keeps the rank of all loads together small.
   VectorXd acceleration;
   std::vector<NodalForce> forces;  ///< concentrated forces: -m a of point masses, applied loads
-  double strain_energy = 0;        ///< of the dynamic run at that time [J], to compare 1/2 u.F with
+  double strain_energy = 0;    ///< of the dynamic run at that time [J], to compare 1/2 w.K w with
+  double thermal_stretch = 0;  ///< a_i = α ΔT: free, the body is 1 + a_i times as large [-]
+  /// What is missing of it across the root line: a_i where that cannot grow, 0 where it is free to.
+  double held_stretch = 0;
+  /// The same across the far edge, where a joint holds it; 0 where none does.
+  double held_end_stretch = 0;
 };
 
 /// The loads of one body: what dynamics hands to the design problem.

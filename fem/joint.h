@@ -29,7 +29,8 @@ struct ConstraintRows {
 struct BodyView {
   const std::string* name;
   const Element* element;
-  int first_dof;  ///< number of the body's first unknown in the model
+  int first_dof;                     ///< number of the body's first unknown in the model
+  const Factors* factors = nullptr;  ///< of its design
 };
 
 /// The seam of constraints Φ(q, t) = 0.
@@ -66,7 +67,9 @@ enum class WeldMode {
   edge,       ///< the edge is straight and across the hub's axis; r_m is free: the material that
               ///< leaves the hub may stretch and shear, as at a clamped edge of the continuum
   direction,  ///< r_m stays parallel to the axis: no shear at the root (first order in mesh size)
-  full        ///< r_m is the unit axis: no root strain at all
+  full,       ///< r_m is the unit axis: no root strain at all
+  partial     ///< of beams: position and direction of the section only, it may grow and the axis
+              ///< stretch: T section 3.3, Fig. 1
 };
 
 /// Plate edge welded to a driven frame: for every node, with the axes e₁(t), e₂(t) of the frame,
@@ -74,6 +77,11 @@ enum class WeldMode {
 ///   r = origin + y e₂,   r_n = e₂                                           (edge)
 ///   and r_m · e₂ = 0, r_mn · e₂ = 0                                         (direction)
 ///   or r_m = e₁, r_mn = 0                                                   (full)
+///
+/// The end of a beam is one node; e₁ is along its r_m in the undeformed beam, and e₂ stands for its
+/// r_n there, e₁ in `full` for its r_m (a tapered or sheared reference keeps its own). Besides:
+///
+///   r = origin, and r_n keeps its direction only                            (partial)
 ///
 /// y is the node's coordinate across. In space the frame turns about z, and the z entries of all
 /// these vectors are zero too: the edge is clamped against bending. With the edge "line 3" and a

@@ -14,7 +14,7 @@ class Link {
   virtual std::string name() const = 0;
 
   /// Looks up the unknowns it acts on, by the names of bodies; called again after every change of a
-  /// mesh. @throws Error (input) for a body that does not exist.
+  /// mesh or a design. @throws Error (input) for a body that does not exist.
   virtual void bind(std::span<const BodyView> bodies) = 0;
 
   /// Adds the generalized force that stands on the left of  M q̈ + F = Q  (n_dofs).

@@ -42,11 +42,13 @@ void Model::set_element(Body& body, std::unique_ptr<Element> element) {
 void Model::set_factors(Body& body, Factors factors) {
   body.factors = std::move(factors);
   fresh_ = false;
+  // The inertia of a body may be what a link acts by.
+  for (const auto& link : links_) link->bind(views());
 }
 
 std::vector<BodyView> Model::views() const {
   std::vector<BodyView> out;
-  for (const Body& b : bodies_) out.push_back({&b.name, b.element.get(), b.first_dof});
+  for (const Body& b : bodies_) out.push_back({&b.name, b.element.get(), b.first_dof, &b.factors});
   return out;
 }
 
@@ -81,6 +83,8 @@ void Model::prepare(const State& x) {
 void Model::prepare(double t) {
   for (Body& b : bodies_) {
     b.element->move_to(t);
+    if (b.heat)
+      for (const auto& term : b.terms) term->heat_to(t);
     try {
       for (const auto& term : b.terms) term->prepare(*b.element, b.factors, !fresh_);
     } catch (const Error& error) {
@@ -166,8 +170,15 @@ void Model::add_constraint_force(const Constraints& c, const VectorXd& lambda,
 
 void Model::scale_loads(double factor) {
   for (Body& b : bodies_)
-    for (const auto& term : b.terms) term->scale_load(factor);
+    for (const auto& term : b.terms)
+      if (term->is_elastic() ? scales_temperatures_ : scales_loads_) term->scale_load(factor);
+  if (!scales_loads_) return;
   for (const auto& link : links_) link->scale_load(factor);
+}
+
+void Model::choose_scaled(bool loads, bool temperatures) {
+  scales_loads_ = loads;
+  scales_temperatures_ = temperatures;
 }
 
 VectorXd Model::joint_force(size_t joint, const State& x) const {
@@ -243,6 +254,19 @@ Vec3 Model::momentum(const State& x) const {
 double Model::link_power(const State& x) const {
   double out = 0;
   for (const auto& link : links_) out += link->power(x);
+  return out;
+}
+
+double Model::heat_power(const State& x) const {
+  double out = 0;
+  Local local;
+  for (const Body& b : bodies_) {
+    if (!b.heat) continue;
+    for (int e = 0; e < b.element->n_elements(); ++e) {
+      gather(b, e, x, local);
+      for (const auto& term : b.terms) out += term->heat_power(e, local);
+    }
+  }
   return out;
 }
 

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "fem/dofs.h"
 #include "fem/element.h"
+#include "fem/heat.h"
 #include "fem/joint.h"
 #include "fem/link.h"
 #include "fem/term.h"
@@ -19,6 +21,7 @@ struct Body {
   PlaneSection section;
   std::vector<std::unique_ptr<Term>> terms;
   Factors factors;
+  std::optional<Heat> heat{};  ///< absent: cold
   int first_dof = 0;
 
   /// Vector unknowns, entry by entry, then scalar ones.
@@ -89,6 +92,9 @@ class Model {
 
   /// Multiplies all loads (Term::scale_load) by a factor; 1 until the first call.
   void scale_loads(double factor);
+  /// What scale_loads() multiplies, loads and the temperature of hot bodies: both until the first
+  /// call.
+  void choose_scaled(bool loads, bool temperatures);
 
   int n_dofs() const { return n_dofs_; }
   int n_constraints() const { return n_constraints_; }
@@ -143,6 +149,8 @@ class Model {
   double link_power(const State& x) const;
   /// Power of all terms at fixed unknowns, see Term::flow_power() [W].
   double flow_power(const State& x) const;
+  /// Power that the temperature of hot bodies gives to their energy, see Term::heat_power() [W].
+  double heat_power(const State& x) const;
   /// Smallest area ratio |r_m x r_n| over all elements (sampled at 3 x 3 points): a collapse of the
   /// St. Venant-Kirchhoff material shows here before Newton fails.
   double smallest_area_ratio(const State& x) const;
@@ -191,6 +199,7 @@ class Model {
   std::vector<int> first_rows_ = {0};
   std::vector<std::unique_ptr<Link>> links_;
   int n_dofs_ = 0, n_constraints_ = 0, pattern_version_ = 0;
+  bool scales_loads_ = true, scales_temperatures_ = true;
   bool fresh_ = false;        // terms are prepared for this mesh and these factors
   std::vector<int> colours_;  // first batch of every colour, and their number
   // Pattern of the KKT matrix and where element entries go; rebuilt after a change of the mesh.

@@ -116,6 +116,14 @@ class Term {
   /// Only called for elements whose lines move.
   virtual double flow_power(int, const Local&) const { return 0; }
 
+  /// Is its energy that of strains, a function of q (and of free lines) alone that does not change
+  /// when the body moves as a rigid one? Heat acts on such terms (thermal/heated.h).
+  virtual bool is_elastic() const { return false; }
+  /// Puts a term of a hot body (Body::heat) where its temperature is at time t.
+  virtual void heat_to(double /*t*/) {}
+  /// Rate of the term's energy at fixed unknowns and fixed lines, by the temperature [W].
+  virtual double heat_power(int, const Local&) const { return 0; }
+
   /// Adds the energies per area that cross an m-line through which material enters or leaves. With
   /// flow_power() they are the rate of the element's energy at fixed unknowns.
   /// @param line  tables of one point each (curvature_rates; gradient_rates in the plane): the
@@ -131,6 +139,11 @@ std::unique_ptr<Term> make_inertia(const PlaneSection& section);
 std::unique_ptr<Term> make_membrane(const PlaneSection& section);
 /// The membrane with assumed strains: does not lock in thin bending (terms/membrane_invariant.h).
 std::unique_ptr<Term> make_assumed_membrane(const PlaneSection& section);
+/// Fully parameterized beam in the plane (elements/ancf_beam.h), section.thickness: its width
+/// across the plane. General continuum mechanics, plane stress; and enhanced continuum mechanics,
+/// which does not lock by Poisson's effect (terms/beam.cpp).
+std::unique_ptr<Term> make_beam_gcm(const PlaneSection& section);
+std::unique_ptr<Term> make_beam_ecm(const PlaneSection& section);
 /// Bending of a thin plate in space, n x n Gauss points per element (5: force to 5e-4 at strong
 /// deformation; 7: 4e-7). @throws Error (input) at prepare() for a body in the plane.
 std::unique_ptr<Term> make_bending(const PlaneSection& section, int n_points = 5);
@@ -152,8 +165,8 @@ std::unique_ptr<Term> make_surface_load(const VectorXd& load);                  
 std::unique_ptr<Term> make_pressure(double pressure);
 std::unique_ptr<Term> make_edge_moment(const std::string& edge, double moment);
 
-/// Builds a term of the table by name ("inertia", "membrane", "membrane_assumed",
-/// "bending").
+/// Builds a term of the table by name ("inertia", "membrane", "membrane_assumed", "bending", "gcm",
+/// "ecm").
 /// @throws Error (input) naming the known terms.
 std::unique_ptr<Term> make_term(const std::string& name, const PlaneSection& section);
 

@@ -8,6 +8,8 @@ std::unique_ptr<Term> make_term(const std::string& name, const PlaneSection& sec
   using Maker = std::unique_ptr<Term> (*)(const PlaneSection&);
   static const std::map<std::string, Maker> kTerms = {
       {"bending", [](const PlaneSection& s) { return make_bending(s); }},
+      {"ecm", make_beam_ecm},
+      {"gcm", make_beam_gcm},
       {"inertia", make_inertia},
       {"membrane", make_membrane},
       {"membrane_assumed", make_assumed_membrane}};
@@ -15,7 +17,7 @@ std::unique_ptr<Term> make_term(const std::string& name, const PlaneSection& sec
   if (row == kTerms.end()) {
     std::string known;
     for (const auto& [term, maker] : kTerms) known += (known.empty() ? "" : ", ") + term;
-    throw Error::input("term '" + name + "' is unknown; a plate has: " + known);
+    throw Error::input("term '" + name + "' is unknown; known are: " + known);
   }
   return row->second(section);
 }

@@ -2,60 +2,50 @@
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
-
-#include <deque>
 
 namespace flexmorph {
 
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-struct Face {
-  int depth = -1;  // rings between the face and infinity
+struct Point {
+  int index = -1;  // in the triangulation that is returned
 };
-using Vertices = CGAL::Triangulation_vertex_base_with_info_2<int, Kernel>;
-using Faces = CGAL::Constrained_triangulation_face_base_2<
-    Kernel, CGAL::Triangulation_face_base_with_info_2<Face, Kernel>>;
+using Vertices = CGAL::Triangulation_vertex_base_with_info_2<Point, Kernel>;
+using Faces = CGAL::Constrained_triangulation_face_base_2<Kernel>;
 using Data = CGAL::Triangulation_data_structure_2<Vertices, Faces>;
-using Cdt =
-    CGAL::Constrained_Delaunay_triangulation_2<Kernel, Data, CGAL::No_constraint_intersection_tag>;
+// Outlines are exact before they are rounded to doubles: after that, points may coincide and edges
+// cross by round-off, which this tag allows.
+using Cdt = CGAL::Constrained_Delaunay_triangulation_2<Kernel, Data, CGAL::Exact_predicates_tag>;
 
 void insert_ring(Cdt& cdt, const std::vector<Vec2>& ring, std::vector<Vec2>& points) {
   std::vector<Cdt::Vertex_handle> handles;
   for (const Vec2& p : ring) {
     const Cdt::Vertex_handle v = cdt.insert(Kernel::Point_2(p.x(), p.y()));
-    v->info() = static_cast<int>(points.size());
+    v->info().index = static_cast<int>(points.size());
     points.push_back(p);
     handles.push_back(v);
   }
-  for (std::size_t k = 0; k < handles.size(); ++k)
-    cdt.insert_constraint(handles[k], handles[(k + 1) % handles.size()]);
+  for (std::size_t k = 0; k < handles.size(); ++k) {
+    const Cdt::Vertex_handle a = handles[k], b = handles[(k + 1) % handles.size()];
+    if (a != b) cdt.insert_constraint(a, b);
+  }
 }
 
-/// Counts the rings between every face and infinity: odd faces are material.
-void mark_depths(Cdt& cdt) {
-  std::deque<std::pair<Cdt::Face_handle, int>> front = {{cdt.infinite_face(), 0}};
-  while (!front.empty()) {
-    const auto [seed, depth] = front.front();
-    front.pop_front();
-    std::vector<Cdt::Face_handle> stack = {seed};
-    while (!stack.empty()) {
-      const Cdt::Face_handle face = stack.back();
-      stack.pop_back();
-      if (face->info().depth >= 0) continue;
-      face->info().depth = depth;
-      for (int k = 0; k < 3; ++k) {
-        const Cdt::Face_handle next = face->neighbor(k);
-        if (next->info().depth >= 0) continue;
-        if (cdt.is_constrained({face, k}))
-          front.emplace_back(next, depth + 1);
-        else
-          stack.push_back(next);
-      }
+/// Even-odd rule over all rings.
+bool is_inside(const Region& region, const Vec2& p) {
+  bool inside = false;
+  const auto count = [&](const std::vector<Vec2>& ring) {
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const Vec2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
+      if ((a.y() > p.y()) == (b.y() > p.y())) continue;
+      if (p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) inside = !inside;
     }
-  }
+  };
+  count(region.outer);
+  for (const auto& hole : region.holes) count(hole);
+  return inside;
 }
 
 }  // namespace
@@ -63,17 +53,22 @@ void mark_depths(Cdt& cdt) {
 Triangulation triangulate(const Region& region) {
   Triangulation out;
   Cdt cdt;
-  try {
-    insert_ring(cdt, region.outer, out.points);
-    for (const auto& hole : region.holes) insert_ring(cdt, hole, out.points);
-  } catch (const Cdt::Intersection_of_constraints_exception&) {
-    throw Error::numerical("triangulate: rings of the region cross");
+  insert_ring(cdt, region.outer, out.points);
+  for (const auto& hole : region.holes) insert_ring(cdt, hole, out.points);
+  for (const Cdt::Vertex_handle v : cdt.finite_vertex_handles()) {
+    if (v->info().index >= 0) continue;  // else where edges cross
+    v->info().index = static_cast<int>(out.points.size());
+    out.points.emplace_back(v->point().x(), v->point().y());
   }
-  mark_depths(cdt);
   for (const Cdt::Face_handle face : cdt.finite_face_handles()) {
-    if (face->info().depth % 2 == 0) continue;
-    out.triangles.push_back(
-        {face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()});
+    std::array<int, 3> corners{};
+    Vec2 middle = Vec2::Zero();
+    for (int k = 0; k < 3; ++k) {
+      corners[static_cast<std::size_t>(k)] = face->vertex(k)->info().index;
+      middle += Vec2(face->vertex(k)->point().x(), face->vertex(k)->point().y()) / 3;
+    }
+    // Not by counting constraints on the way from outside: rings that touch share some.
+    if (is_inside(region, middle)) out.triangles.push_back(corners);
   }
   if (out.triangles.empty()) throw Error::numerical("triangulate: the region has no area");
   return out;

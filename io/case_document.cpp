@@ -202,7 +202,9 @@ void CaseDocument::apply(const std::string& change) {
   if (equals == std::string::npos || change.find_first_of("\r\n") != std::string::npos)
     throw Error::input(option + ": an override is written KEY=VALUE");
   const std::vector<std::string> keys = split_key(trimmed(change.substr(0, equals)), option);
-  CaseNode value = parse_option(trimmed(change.substr(equals + 1)), option);
+  const std::string text_of_value = trimmed(change.substr(equals + 1));
+  const bool removes = text_of_value.empty();
+  CaseNode value = removes ? CaseNode() : parse_option(text_of_value, option);
 
   CaseNode* here = &root;
   std::string so_far;
@@ -210,6 +212,7 @@ void CaseDocument::apply(const std::string& change) {
     const std::string& key = keys[next++];
     so_far += (so_far.empty() ? "" : ".") + key;
     CaseNode* node = here->find(key);
+    if (!node && removes) return changes.push_back(change);
     if (!node) {
       CaseNode table;
       table.key = key;
@@ -223,7 +226,9 @@ void CaseDocument::apply(const std::string& change) {
     here = node;
   }
   value.key = keys.back();
-  if (CaseNode* old = here->find(value.key)) {
+  if (removes) {
+    std::erase_if(here->entries, [&](const CaseNode& node) { return node.key == value.key; });
+  } else if (CaseNode* old = here->find(value.key)) {
     *old = std::move(value);
   } else {
     here->entries.push_back(std::move(value));

@@ -36,7 +36,7 @@ struct CaseNode {
 struct CaseDocument {
   explicit CaseDocument(const std::string& file);  ///< @throws Error (input)
 
-  /// Carries out one "KEY=VALUE" of the command line. @throws Error (input)
+  /// Carries out one "KEY=VALUE" of the command line; "KEY=" takes KEY away. @throws Error (input)
   void apply(const std::string& change);
 
   void refuse_unknown_keys() const;  ///< @throws Error (input)

@@ -249,6 +249,13 @@ std::vector<std::string> Table::choices(const std::string& key, const std::strin
       });
 }
 
+std::vector<std::string> Table::strings(const std::string& key, const std::string& noun) const {
+  return place_->list<std::string>(
+      key, noun, 0, {}, [](const CaseNode& node) -> std::optional<std::string> {
+        return node.kind == Kind::text ? std::optional(node.text) : std::nullopt;
+      });
+}
+
 Table Table::table(const std::string& key) const {
   const CaseNode* node = place_->find(key);
   const std::string full = place_->full(key);

@@ -83,6 +83,8 @@ class Table {
   /// A list of one or more of the strings in `allowed`, none twice.
   std::vector<std::string> choices(const std::string& key, const std::string& noun,
                                    std::span<const std::string> allowed) const;
+  /// A list of one or more strings.
+  std::vector<std::string> strings(const std::string& key, const std::string& noun) const;
 
   /// @throws Error (input) when it is missing or not a table.
   Table table(const std::string& key) const;
@@ -110,7 +112,7 @@ class CaseFile {
   /// Reads the file and applies `overrides`, each "KEY=VALUE": KEY a dotted path (an entry of a
   /// list of tables goes by its name, its index, or nothing when it is the only one:
   /// body.plate.thickness, body.0.thickness, body.thickness), VALUE as in TOML; a bare word is
-  /// taken as a string.
+  /// taken as a string; without VALUE the key is taken away, where it is there.
   /// @throws Error (input) for a missing or unreadable file, a syntax error (file:line), or an
   ///         override that names no place.
   explicit CaseFile(const std::string& path, std::span<const std::string> overrides = {});

@@ -9,7 +9,8 @@ cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH root)
 
 # Room -> the rooms it may include besides itself. `fem` stands for the seams, the files directly in
 # fem/ but for the model.
-set(fem fem fem/model fem/elements fem/terms fem/joints fem/links fem/solve fem/dynamics)
+set(fem fem fem/model fem/elements fem/terms fem/joints fem/links fem/solve fem/dynamics
+        fem/thermal)
 set(may_geometry "")
 set(may_io geometry)
 set(may_fem geometry)
@@ -19,6 +20,7 @@ set(may_fem/terms geometry fem)
 set(may_fem/joints geometry fem)
 set(may_fem/links geometry fem)
 set(may_fem/solve geometry fem fem/model)
+set(may_fem/thermal geometry fem fem/model)
 set(may_fem/dynamics geometry fem fem/model fem/solve)
 set(may_optim geometry)
 set(may_optim/mmc geometry ${fem} optim)
@@ -26,8 +28,9 @@ set(may_cases geometry io ${fem} optim optim/mmc)
 set(may_tests geometry io ${fem} optim optim/mmc cases)
 
 # Wrapped library (how its headers begin) -> the folder whose .cpp files may include it.
-set(libraries CGAL SuiteSparse VTK NLopt Ipopt toml++ CLI11 GiNaC)
-set(headers_CGAL "CGAL/|boost/")
+set(libraries CGAL Boost SuiteSparse VTK NLopt Ipopt toml++ CLI11 GiNaC)
+set(headers_CGAL "CGAL/")
+set(headers_Boost "boost/")
 set(headers_SuiteSparse "cholmod|umfpack|klu|amd|colamd|SuiteSparse|Eigen/(Cholmod|UmfPack|KLU)")
 set(headers_VTK "vtk")
 set(headers_NLopt "nlopt")
@@ -36,6 +39,7 @@ set(headers_toml++ "toml")
 set(headers_CLI11 "CLI/")
 set(headers_GiNaC "(ginac|cln)/")
 set(folder_CGAL geometry)
+set(folder_Boost "geometry|fem/dynamics")
 set(folder_SuiteSparse fem)
 set(folder_VTK io)
 set(folder_NLopt optim)
@@ -83,6 +87,7 @@ endfunction()
 foreach(pair geometry/grid.h>io/vtk.h io/vtk.cpp>fem/model.h fem/element.h>fem/model.h
              fem/terms/inertia.cpp>fem/elements/ale_ancf_plate.h fem/model.cpp>fem/terms/terms.h
              fem/solve/newton.cpp>fem/dynamics/esl.h optim/mma.cpp>optim/mmc/design.h
+             fem/thermal/heated.cpp>fem/elements/ancf_plate.h
              optim/mma.cpp>fem/model.h cases/run.h>tests/support/rate.h)
   string(REPLACE ">" ";" pair ${pair})
   judge_room(${pair} offence)
@@ -100,6 +105,7 @@ foreach(pair fem/terms/inertia.cpp>fem/element.h fem/dynamics/esl.cpp>fem/model.
 endforeach()
 foreach(pair io/vtk.h>vtkNew.h fem/solve/newton.cpp>CGAL/Polygon_2.h
              optim/nlopt.h>nlopt.hpp fem/model.h>Eigen/CholmodSupport
+             fem/model.cpp>boost/numeric/odeint.hpp
              io/formula.h>ginac/ginac.h cases/scene.cpp>cln/cln.h)
   string(REPLACE ">" ";" pair ${pair})
   judge_library(${pair} offence)

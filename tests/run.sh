@@ -13,10 +13,12 @@ trap 'echo "$passed passed, $failed failed"' EXIT
 
 build_target all
 
-# Tests run side by side; threads inside each of them would only compete.
+# Tests run side by side; threads inside each of them would only compete. (nproc itself counts no
+# more than OMP_THREAD_LIMIT.)
+jobs=$(nproc)
 export OMP_THREAD_LIMIT=1 OPENBLAS_NUM_THREADS=1
 log="$build/tests.log"
-ctest --test-dir "$build" --parallel "$(nproc)" --output-on-failure "$@" 2>&1 | tee "$log"
+ctest --test-dir "$build" --parallel "$jobs" --output-on-failure "$@" 2>&1 | tee "$log"
 
 # ctest sums up: "98% tests passed, 1 tests failed out of 57".
 summary='^[0-9]*% tests passed, \([0-9]*\) tests failed out of \([0-9]*\)$'

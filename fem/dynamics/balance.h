@@ -14,7 +14,8 @@ struct Powers {
   double feed = 0;    ///< of what pushes the material through the mesh, Term::flow_power()
   double inflow = 0;  ///< kinetic, strain and potential energy that entering material brings along
   double links = 0;   ///< of dampers, motors and shifted places of links, Model::link_power()
-  double total() const { return drive + feed + inflow + links; }
+  double heat = 0;    ///< of the temperature of hot bodies, Model::heat_power()
+  double total() const { return drive + feed + inflow + links + heat; }
 };
 
 /// The energy balance of a model with material flow,

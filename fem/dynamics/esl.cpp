@@ -1,6 +1,7 @@
 #include "fem/dynamics/esl.h"
 
 #include <cmath>
+#include <optional>
 
 namespace flexmorph::fem {
 namespace {
@@ -11,6 +12,95 @@ Vec2 rigid_acceleration(const FrameMotion& hub, const Eigen::Matrix2d& to_hub, c
   const double w = hub.angle_rate, x_dot = -root.rate, x_ddot = -root.acceleration;
   return to_hub * hub.origin_acceleration - w * w * at +
          hub.angle_acceleration * Vec2(-at.y(), at.x()) + Vec2(x_ddot, 2 * w * x_dot);
+}
+
+/// Growth of a hot body along and across its axis, as factors of lengths, and how much of it the
+/// root line does not take part in.
+struct HotBody {
+  Motion along, across;
+  double stretch = 0, held = 0;  ///< a, g
+};
+
+/// Less than a millionth of the growth is rounding and what a Newton iteration leaves: its energy
+/// is 1e-12 of that of a held edge.
+constexpr double kSameGrowth = 1e-6;
+
+/// How a root line that is straight takes part in the growth: γ of u_y = γ (Y - Ȳ), least squares.
+double growth_of_root(const Body& body, const State& x, const FrameMotion& hub,
+                      const Eigen::Matrix2d& to_hub, const Grid& grid, double root) {
+  const double middle = grid.y0 + 0.5 * grid.height;
+  double moment = 0, second = 0;
+  for (int j = 0; j <= grid.ny; ++j) {
+    const Vec2 material(root, grid.node_position(0, j).y());
+    const Vec2 at = to_hub * (point_motion(body, x, material).position - hub.origin);
+    const double arm = material.y() - middle;
+    moment += arm * (at.y() - material.y());
+    second += arm * arm;
+  }
+  return moment / second;
+}
+
+/// The same for an edge that is turned as well: |e| - 1 of r = e (Y - Ȳ) + const.
+double growth_of_edge(const Body& body, const State& x, const Grid& grid, int column) {
+  const double middle = grid.y0 + 0.5 * grid.height;
+  Vec2 moment(0, 0);
+  double second = 0;
+  for (int j = 0; j <= grid.ny; ++j) {
+    const Vec2 material = grid.node_position(column, j);
+    const double arm = material.y() - middle;
+    moment += arm * Vec2(point_motion(body, x, material).position);
+    second += arm * arm;
+  }
+  return moment.norm() / second - 1;
+}
+
+/// How much of the growth a line takes part in that grows by so much.
+double part_of_growth(double growth, double stretch) {
+  const double small = kSameGrowth * std::abs(stretch);
+  if (stretch == 0 || std::abs(growth) <= small) return 0;
+  if (std::abs(growth - stretch) <= small) return 1;
+  return growth / stretch;
+}
+
+HotBody hot_body(const Body& body, const State& x, double growth_of_root) {
+  HotBody out;
+  out.along = body.heat->stretch(x.t);
+  out.stretch = out.along.value - 1;
+  if (!std::isfinite(out.stretch) || !(out.along.value > 0))
+    throw Error::numerical("esl: the thermal stretch of body '" + body.name + "' is " +
+                           std::to_string(out.along.value) + "; it is positive");
+  const double part = part_of_growth(growth_of_root, out.stretch);
+  out.held = (1 - part) * out.stretch;
+  out.across = {1 + part * out.stretch, part * out.along.rate, part * out.along.acceleration};
+  return out;
+}
+
+/// The same for a hot body: p = (s (X - m₀), s_y Y) in the hub's axes.
+Vec2 grown_acceleration(const FrameMotion& hub, const Eigen::Matrix2d& to_hub, const Vec2& at,
+                        const Motion& root, const HotBody& hot) {
+  const Motion &s = hot.along, &s_y = hot.across;
+  const double w = hub.angle_rate;
+  const Vec2 p(s.value * at.x(), s_y.value * at.y());
+  const Vec2 p_t(s.rate * at.x() - s.value * root.rate, s_y.rate * at.y());
+  const Vec2 p_tt(s.acceleration * at.x() - 2 * s.rate * root.rate - s.value * root.acceleration,
+                  s_y.acceleration * at.y());
+  return to_hub * hub.origin_acceleration - w * w * p +
+         hub.angle_acceleration * Vec2(-p.y(), p.x()) + 2 * w * Vec2(-p_t.y(), p_t.x()) + p_tt;
+}
+
+/// u -> w = u - e_Θ outside of the root line, and what the root line holds back on it.
+void take_off_growth(const Grid& grid, double root, const HotBody& hot, EslSet& set) {
+  set.thermal_stretch = hot.stretch;
+  set.held_stretch = hot.held;
+  for (int i = set.root_column; i <= grid.nx; ++i)
+    for (int j = 0; j <= grid.ny; ++j) {
+      const Vec2 at = grid.node_position(i, j) - Vec2(root, 0);
+      const int entry = 2 * grid.node(i, j);
+      if (i == set.root_column)
+        set.deformation.segment<2>(entry) = Vec2(0, -hot.held * at.y());
+      else
+        set.deformation.segment<2>(entry) -= hot.stretch * at;
+    }
 }
 
 int nearest_node(const Grid& grid, const Vec2& point) {
@@ -48,7 +138,8 @@ std::vector<AttachedForce> joint_forces(const Model& model, const State& x, cons
     const Vec3 about = point_position(body, x, attached.material);
     const Wrench w =
         model.joint_wrench(static_cast<size_t>(found - all.begin()), body.name, about, x);
-    out.push_back({attached.material, attached.spread, w.force.head<2>(), w.moment.z()});
+    out.push_back({attached.material, attached.spread, w.force.head<2>(), w.moment.z(),
+                   /*held=*/attached.spread});
   }
   return out;
 }
@@ -61,6 +152,13 @@ EslSet equivalent_static_load(const Model& model, const State& x, const Growth& 
   const FrameMotion hub = growth.hub.at(model, x);
   const Eigen::Matrix2d to_hub = rotation(hub.angle).transpose();
   const Vec2 g = gravity.size() > 0 ? Vec2(to_hub * gravity.head<2>()) : Vec2(0, 0);
+
+  std::optional<HotBody> hot;
+  if (body.heat) hot = hot_body(body, x, growth_of_root(body, x, hub, to_hub, grid, root.value));
+  const auto continued = [&](const Vec2& at) {
+    return hot ? grown_acceleration(hub, to_hub, at, root, *hot)
+               : rigid_acceleration(hub, to_hub, at, root);
+  };
 
   EslSet out;
   out.time = x.t;
@@ -75,7 +173,7 @@ EslSet equivalent_static_load(const Model& model, const State& x, const Growth& 
       // Less than a millionth of a cell inside is rounding.
       const bool inside = material.x() < root.value - 1e-6 * grid.dx();
       if (i < out.root_column || inside) {
-        out.acceleration.segment<2>(entry) = rigid_acceleration(hub, to_hub, at, root) - g;
+        out.acceleration.segment<2>(entry) = continued(at) - g;
         continue;
       }
       const PointMotion p = point_motion(body, x, material);
@@ -83,6 +181,7 @@ EslSet equivalent_static_load(const Model& model, const State& x, const Growth& 
       if (i > out.root_column)
         out.deformation.segment<2>(entry) = to_hub * (p.position - hub.origin) - at;
     }
+  if (hot) take_off_growth(grid, root.value, *hot, out);
   for (const AttachedMass& m : masses) {
     const int node = nearest_node(grid, m.material);
     out.forces.push_back({node, -m.mass * out.acceleration.segment<2>(2 * node)});
@@ -90,10 +189,16 @@ EslSet equivalent_static_load(const Model& model, const State& x, const Growth& 
   for (const AttachedForce& f : forces) {
     const Vec2 force = to_hub * f.force;
     const int node = nearest_node(grid, f.material);
-    if (f.spread)
-      spread(grid, node / (grid.ny + 1), force, f.moment, out.forces);
-    else
+    if (!f.spread) {
       out.forces.push_back({node, force});
+      continue;
+    }
+    const int column = node / (grid.ny + 1);
+    spread(grid, column, force, f.moment, out.forces);
+    if (hot && f.held && column == grid.nx) {
+      const double growth = growth_of_edge(body, x, grid, column);
+      out.held_end_stretch = (1 - part_of_growth(growth, hot->stretch)) * hot->stretch;
+    }
   }
   out.strain_energy = model.energies(x).strain;
   return out;

@@ -17,6 +17,7 @@ struct AttachedForce {
   bool spread = false;  ///< over the whole width at that X, as on an edge that stays straight
   Vec2 force{0, 0};     ///< in the world [N]
   double moment = 0;    ///< about the point, where spread [N m]
+  bool held = false;    ///< of a joint at an edge: it may hold back the edge's thermal growth
 };
 
 /// A joint that acts on a plate besides the one that carries it, by its name in the model.
@@ -40,13 +41,24 @@ std::vector<AttachedForce> joint_forces(const Model& model, const State& x, cons
 /// (spread ones: linearly across, with their resultant and moment). Inside the hub u = 0, and a is
 /// continued by the rigid, extending body: -ω² x + ω̇ × x + 2 ω × ẋ + ẍ with x = X - m₀(t).
 ///
+/// A hot body (Body::heat) that is free is s = 1 + a times as large, a = α ΔT, and nothing strains
+/// it; its deformation is what is left when that growth about the root point (m₀, 0) is taken off,
+///
+///   w(X) = u(X) - e_Θ(X),   e_Θ = a (X - m₀, Y)
+///
+/// An edge that is welded to a cold hub stays as wide as it was, w = -g (0, Y) with g = a there;
+/// g is measured on the root line (least squares), because other edges grow, wholly or in part. The
+/// continuation into the hub grows like the body, across it as its edge does. What a joint holds
+/// back across the far edge, whichever way that is turned, is measured in the same way (with the
+/// length of ∂r/∂Y); the deformation has it already.
+///
 /// The root is taken to be on the nearest line of the grid: up to half a cell of plate that is in
 /// the hub counts as outside of it, or the other way round.
 ///
 /// @param grid    design mesh in material coordinates (root side at x0)
 /// @param masses, forces  must sit on nodes of the grid
 ///
-/// Source: P (31), (32); design.md section 8.
+/// Source: P (31), (32); design.md sections 8 and 11.
 EslSet equivalent_static_load(const Model& model, const State& x, const Growth& growth,
                               const Grid& grid, std::span<const AttachedMass> masses,
                               std::span<const AttachedForce> forces, const VectorXd& gravity);

@@ -1,6 +1,13 @@
 #include "fem/dynamics/generalized_alpha.h"
 
+#include <cmath>
+
 namespace flexmorph::fem {
+namespace {
+
+constexpr int kFilters = 3;  // of an error that is too large
+
+}  // namespace
 
 GeneralizedAlpha::GeneralizedAlpha(Model& model, const AlphaSettings& settings)
     : StepSolver(model, settings, "generalized_alpha",
@@ -15,13 +22,39 @@ GeneralizedAlpha::GeneralizedAlpha(Model& model, const AlphaSettings& settings)
 
 void GeneralizedAlpha::begin(const State& x, double h) {
   h_ = h;
+  set_start(x);
   next_ = x;
   next_.t = x.t + h;
   // Start of the iteration: the true acceleration stays what it was.
-  next_.alpha = ((1 - alpha_f_) * x.a + alpha_f_ * x.a - alpha_m_ * x.alpha) / (1 - alpha_m_);
-  next_.q += h * x.v + h * h * ((0.5 - beta_) * x.alpha + beta_ * next_.alpha);
-  next_.v += h * ((1 - gamma_) * x.alpha + gamma_ * next_.alpha);
+  next_.alpha = ((1 - alpha_f_) * x.a + alpha_f_ * x.a - alpha_m_ * start_alpha_) / (1 - alpha_m_);
+  next_.q += h * start_v_ + h * h * ((0.5 - beta_) * start_alpha_ + beta_ * next_.alpha);
+  next_.v = start_v_ + h * ((1 - gamma_) * start_alpha_ + gamma_ * next_.alpha);
   model().prepare(next_);
+}
+
+void GeneralizedAlpha::set_start(const State& x) {
+  start_alpha_ = x.alpha;
+  start_v_ = x.v;
+  if (last_h_ < 0) return;
+  const bool same_mesh = jerk_version_ == model().pattern_version();
+  if (same_mesh && h_ == last_h_) return;
+  if (!same_mesh) {
+    if (last_h_ == 0 || shift() == 0) return;
+    jerk_ = (x.alpha - x.a) / (shift() * last_h_);
+  }
+  start_alpha_ += shift() * (h_ - last_h_) * jerk_;
+
+  // Of the velocity, what is not free.
+  const bool projected = !same_mesh || last_h_ == 0;
+  const double last = projected ? 0 : last_h_;
+  change_ = error_constant() * (h_ * h_ - last * last) * jerk_;
+  next_ = x;
+  model().prepare(next_);
+  residual(balance_, miss_);
+  if (projected) factorize_here(h_);
+  error_ = change_;
+  filter(error_, balance_);
+  start_v_ += change_ - error_;
 }
 
 Weights GeneralizedAlpha::weights() const {
@@ -48,10 +81,76 @@ void GeneralizedAlpha::correct(const VectorXd& dq, const VectorXd& dlambda) {
   next_.lambda += dlambda;
 }
 
+void GeneralizedAlpha::set_end_alpha(const State& x) {
+  next_.alpha =
+      ((1 - alpha_f_) * next_.a + alpha_f_ * x.a - alpha_m_ * start_alpha_) / (1 - alpha_m_);
+}
+
+double GeneralizedAlpha::first_step(const State& x, double allowed, double longest) {
+  // Short against the motion, long against round-off: displacements of 1e-4 of the model.
+  const double speed = displacement(x.v), pull = displacement(x.a);
+  double s = 1e-3 * longest;
+  if (speed > 0) s = std::min(s, 1e-4 * size() / speed);
+  if (pull > 0) s = std::min(s, std::sqrt(1e-4 * size() / pull));
+  State later = x;
+  later.t += s;
+  later.q += s * x.v + 0.5 * s * s * x.a;
+  later.v += s * x.a;
+  solve_accelerations(later);
+  jerk_ = (later.a - x.a) / s;
+  jerk_version_ = model().pattern_version();
+  last_h_ = 0;
+  step_jerk_.resize(0);
+  model().prepare(x);
+  const double jerk = std::abs(error_constant()) * displacement(jerk_) / size();
+  return jerk > 0 ? std::min(longest, 0.5 * std::cbrt(allowed / jerk)) : longest;
+}
+
+double GeneralizedAlpha::local_error(const State& x, double allowed) {
+  set_end_alpha(x);
+  error_ = error_constant() * h_ * h_ * (next_.alpha - start_alpha_);
+  if (model().has_free_lines()) model().prepare(next_);
+  double out = 0;
+  // What is resolved passes the filter unchanged, any number of times.
+  for (int pass = 0; pass < kFilters; ++pass) {
+    // Forces at q̈ balance the multipliers, but for the next correction of Newton's method, far
+    // below any error of interest.
+    filter(error_, {});
+    out = displacement(error_) / size();
+    if (out <= allowed) break;
+  }
+  return out;
+}
+
+void GeneralizedAlpha::filter(VectorXd& e, const VectorXd& balance) {
+  // A_M e as a difference of forces, which are linear in the acceleration.
+  kept_a_ = next_.a;
+  next_.a += weights().a * e;
+  model().force(next_, force_);
+  next_.a.swap(kept_a_);
+  model().add_constraint_force(constraints_, next_.lambda, force_);
+  if (balance.size() > 0) force_ -= balance;
+  force_ *= scale();
+  none_.setZero(model().n_constraints());
+  solve_kept(force_, none_, e, mu_);
+}
+
 void GeneralizedAlpha::finish(State& x) {
-  // The algorithmic acceleration that belongs to the true one.
-  next_.alpha = ((1 - alpha_f_) * next_.a + alpha_f_ * x.a - alpha_m_ * x.alpha) / (1 - alpha_m_);
+  set_end_alpha(x);
+  if (last_h_ >= 0) keep_jerk();
   x = next_;
+}
+
+void GeneralizedAlpha::keep_jerk() {
+  change_ = (next_.alpha - start_alpha_) / h_;
+  const int version = model().pattern_version();
+  if (last_h_ > 0 && jerk_version_ == version && step_jerk_.size() == change_.size())
+    jerk_ = (h_ * change_ + last_h_ * step_jerk_) / (h_ + last_h_);
+  else
+    jerk_ = change_;
+  step_jerk_.swap(change_);
+  jerk_version_ = version;
+  last_h_ = h_;
 }
 
 }  // namespace flexmorph::fem

@@ -13,11 +13,39 @@ namespace flexmorph::fem {
 ///
 ///   α_m = (2ρ-1)/(ρ+1), α_f = ρ/(ρ+1), γ = ½ + α_f - α_m, β = (γ + ½)²/4
 ///
-/// Source: Arnold, Brüls (2007), Multibody Syst. Dyn. 18, 185-202; design.md section 4.
+/// Steps that adapt (try_step()): where the motion is smooth, a_n = q̈(t_n + δ h) + O(h²) with
+/// δ = α_m - α_f, as both sides of the first line say. So
+///
+///   - the position misses by  q_{n+1} - q(t_{n+1}) = -C h³ q⃛ + O(h⁴),  C = 1/6 - β - δ/2
+///     = -(1/12 + δ²/4): from 1/12 (ρ = 1) to 1/3 (ρ = 0), never zero;  h³ q⃛ = h² (a_{n+1} - a_n).
+///     Of frequencies that the step does not resolve, and of what constraints hold, that says
+///     nothing: the estimate e is filtered as Newton's method would,
+///         [ A  Φ_qᵀ ; Φ_q  0 ] (e, μ) = (A_M C h² (a_{n+1} - a_n), 0)
+///     with the kept iteration matrix A and its part A_M of the mass.
+///   - a step of another size h' starts from a_n + δ (h' - h) q⃛, and the first one from
+///     q̈_0 + δ h q⃛_0. Where constraints hold the position, q_{n+1} is exact and the velocity misses
+///     by C h² q⃛ instead: it starts with C (h'² - h²) q⃛ more (the first one with C h² q⃛_0) in
+///     those directions, that is, of it what the filter takes away. Else the multipliers miss by
+///     O(h) for a while after every change (as ρ^n n²).
+///   - q⃛ is the mean of (a_{n+1} - a_n) / h over two steps: one alone contains the sign-changing
+///     part of a, and steps of random sizes would feed it (unstable for ρ = 0.9).
+///
+/// Fixed steps (advance()) start from a_0 = q̈_0 and take no notice of their size.
+///
+/// Source: Arnold, Brüls (2007), Multibody Syst. Dyn. 18, 185-202; design.md section 4. Start and
+/// error terms: Arnold, Brüls, Cardona (2015), Numer. Math. 129, 149-179; filter: Shampine (1980)
+/// as in Hairer & Wanner (1996), Solving Ordinary Differential Equations II, IV.8.
 class GeneralizedAlpha final : public StepSolver {
  public:
   /// @throws Error (input) when rho_inf is outside [0, 1].
   GeneralizedAlpha(Model& model, const AlphaSettings& settings);
+
+  /// From q⃛_0 by a difference of consistent accelerations; the first step starts with it.
+  double first_step(const State& x, double allowed, double longest) override;
+  /// δ: the algorithmic acceleration is that of the time t + δ h.
+  double shift() const { return alpha_m_ - alpha_f_; }
+  /// C: the local error of the position is -C h³ q⃛.
+  double error_constant() const { return 1.0 / 6 - beta_ - 0.5 * shift(); }
 
  private:
   void begin(const State& x, double h) override;
@@ -25,13 +53,29 @@ class GeneralizedAlpha final : public StepSolver {
   void residual(VectorXd& force, VectorXd& constraint) override;
   void tangent(SparseMatrix& out) override;
   void correct(const VectorXd& dq, const VectorXd& dlambda) override;
+  double local_error(const State& x, double allowed) override;
+  /// e becomes what Newton's method would make of A_M e, at the iterate.
+  /// @param balance  the residual there; empty: zero
+  void filter(VectorXd& e, const VectorXd& balance);
   void finish(State& x) override;
+  /// The algorithmic acceleration at the end of the step, which belongs to the true one.
+  void set_end_alpha(const State& x);
+  /// Velocity and algorithmic acceleration that the step starts from.
+  void set_start(const State& x);
+  void keep_jerk();
   /// Derivatives of (q, q̇, q̈) by q at the end of the step.
   Weights weights() const;
 
   double alpha_m_, alpha_f_, beta_, gamma_;
   double h_ = 0;
-  State next_;  // the iterate
+  State next_;                      // the iterate
+  VectorXd start_v_, start_alpha_;  // as the step takes them
+  // Of steps that adapt: the size of the last one (0: none so far; negative: steps are fixed), q⃛
+  // there, and the pattern of the model that q⃛ belongs to.
+  double last_h_ = -1;
+  VectorXd jerk_, step_jerk_;
+  int jerk_version_ = -1;
+  VectorXd error_, change_, force_, kept_a_, balance_, miss_, none_, mu_;
   Constraints constraints_;
 };
 

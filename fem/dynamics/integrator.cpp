@@ -4,6 +4,7 @@
 
 #include "fem/dynamics/energy_momentum.h"
 #include "fem/dynamics/generalized_alpha.h"
+#include "fem/dynamics/minimal_coordinates.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -19,11 +20,22 @@ const std::map<std::string, Maker>& table() {
       {"energy_momentum",
        [](Model& model, const IntegratorSettings& s) -> std::unique_ptr<Integrator> {
          return std::make_unique<EnergyMomentum>(model, s.energy_momentum);
+       }},
+      {"minimal_coordinates",
+       [](Model& model, const IntegratorSettings& s) -> std::unique_ptr<Integrator> {
+         return std::make_unique<MinimalCoordinates>(model, s.minimal_coordinates);
        }}};
   return kIntegrators;
 }
 
 }  // namespace
+
+TriedStep Integrator::try_step(State&, double, double) {
+  throw Error::input(
+      "adaptive steps need \"generalized_alpha\": this integrator does not tell its local error");
+}
+
+double Integrator::first_step(const State&, double, double longest) { return longest; }
 
 std::unique_ptr<Integrator> make_integrator(Model& model, const IntegratorSettings& settings) {
   const auto row = table().find(settings.name);

@@ -25,15 +25,33 @@ struct EnergyMomentumSettings : StepSettings {
   EnergyMomentumSettings() { tolerance = 1e-14; }
 };
 
+struct MinimalCoordinatesSettings {
+  /// Of a step: positions against the size of the model, velocities against the fastest; 1e-13..1.
+  double tolerance = 1e-8;
+  int max_steps = 100'000;  ///< accepted and rejected in one advance(): of more the scene is stiff
+};
+
 struct IntegratorSettings {
   std::string name = "generalized_alpha";  ///< a row of the table of make_integrator()
   AlphaSettings alpha;
   EnergyMomentumSettings energy_momentum;
+  MinimalCoordinatesSettings minimal_coordinates;
 };
 
 /// What a time integration spent so far.
 struct StepCounts {
-  int steps = 0, newton = 0, factorizations = 0, rejected = 0;
+  int steps = 0, newton = 0, factorizations = 0;
+  int rejected = 0;     ///< steps that Newton's method did not solve
+  int inaccurate = 0;   ///< steps of Integrator::try_step() whose local error was too large
+  int evaluations = 0;  ///< of accelerations, by explicit integrators
+  int partitions = 0;   ///< choices of independent coordinates
+};
+
+/// What became of a step of Integrator::try_step().
+struct TriedStep {
+  bool converged = false;
+  double error = 0;    ///< estimate of the local error, relative to the size of the model
+  int iterations = 0;  ///< of Newton's method
 };
 
 /// The seam of time integration: advances the equations that a model states.
@@ -47,12 +65,22 @@ class Integrator {
   /// The same for velocities that miss Φ_q q̇ + Φ_t = 0 a little: the nearest in the mass norm.
   virtual void project_velocity(State& x) = 0;
 
-  /// Advances x to t_end in one step; halves and retries where Newton fails, growing back later.
+  /// Advances x to t_end: in one step, halved and retried where Newton fails, growing back later;
+  /// or in as many as the tolerance of the integrator asks for.
   /// `accepted` sees every accepted step, with the model prepared for its time.
   /// @throws Error (numerical) naming time, step and the residual history; x is the last good
   /// state.
   virtual void advance(State& x, double t_end,
                        const std::function<void(const State&)>& accepted) = 0;
+
+  /// Tries one step from x to x.t + h: x becomes its end where Newton's method converges and the
+  /// estimated local error is not above `allowed`, else x stays what it is.
+  /// @throws Error (numerical) when Newton's method failed in StepSettings::max_halvings tries in a
+  ///         row; Error (input) from an integrator that knows no local error.
+  virtual TriedStep try_step(State& x, double h, double allowed);
+  /// Length of a first step from a consistent state whose local error is about `allowed`, at most
+  /// `longest`; to be called before the first try_step().
+  virtual double first_step(const State& x, double allowed, double longest);
 
   /// The state in the middle of the last accepted step, of an integrator whose multipliers and
   /// accelerations belong there (and are those of the accepted state as well, which has none of its
@@ -62,7 +90,8 @@ class Integrator {
   virtual const StepCounts& counts() const = 0;
 };
 
-/// "generalized_alpha" or "energy_momentum". The model must outlive the integrator.
+/// "generalized_alpha", "energy_momentum" or "minimal_coordinates". The model must outlive the
+/// integrator.
 /// @throws Error (input) naming the known integrators, or for settings that make no sense.
 std::unique_ptr<Integrator> make_integrator(Model& model, const IntegratorSettings& settings);
 

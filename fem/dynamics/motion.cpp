@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <optional>
 
+#include "fem/dynamics/dense_output.h"
+
 namespace flexmorph::fem {
 
 Vec3 momentum_in_space(const Model& model, const State& x) { return model.momentum(x); }
@@ -22,19 +24,15 @@ class Run {
         growths_(growths),
         settings_(settings),
         observe_(observe),
-        integrator_(make_integrator(
-            model, {settings.integrator, settings.alpha, settings.energy_momentum})) {
-    const auto is_rigid = [](const Body& b) {
-      return !dynamic_cast<const LineGrid*>(b.element.get());
-    };
+        integrator_(
+            make_integrator(model, {settings.integrator, settings.alpha, settings.energy_momentum,
+                                    settings.minimal_coordinates})) {
+    const auto is_rigid = [](const Body& b) { return b.element->is_rigid(); };
     if (std::any_of(model.bodies().begin(), model.bodies().end(), is_rigid))
       joint_watch_.emplace(model);
   }
 
   MotionResult go() {
-    std::vector<double> stops = settings_.stops;
-    stops.push_back(settings_.end);
-    std::sort(stops.begin(), stops.end());
     x_ = start_state(model_, growths_, 0, settings_.start, settings_.placement);
     integrator_->project_velocity(x_);
     integrator_->make_consistent(x_);
@@ -42,10 +40,11 @@ class Run {
     powers_ = measure(x_);
     balance_.begin(0, e, powers_);
     see(e, false);
+    if (settings_.adaptive) adapt();
     const double tiny = kTiny * settings_.step;
-    for (const double stop : stops) {
+    for (const auto& [stop, seen] : landings()) {
       if (stop <= x_.t + tiny || stop > settings_.end + tiny) continue;
-      while (x_.t < stop - tiny) to_next_event(std::min(stop, settings_.end));
+      while (x_.t < stop - tiny) to_next_event(std::min(stop, settings_.end), seen);
     }
     result_.final = x_;
     result_.counts = integrator_->counts();
@@ -74,8 +73,36 @@ class Run {
     observe_({model_, x_, e, powers_, balance_.work(), balance_.defect(), stop});
   }
 
+  /// Times that steps must land on, in order, and whether they are stops.
+  std::vector<std::pair<double, bool>> landings() const {
+    std::vector<std::pair<double, bool>> out;
+    if (!settings_.adaptive)
+      for (const double t : settings_.stops) out.emplace_back(t, true);
+    for (const double t : settings_.kinks) out.emplace_back(t, false);
+    out.emplace_back(settings_.end, true);
+    // Of equal times the stop first: what comes second is passed already.
+    std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) {
+      return a.first < b.first || (a.first == b.first && a.second && !b.second);
+    });
+    return out;
+  }
+
+  /// Prepares steps that adapt.
+  void adapt() {
+    if (integrator_->step_mean())
+      throw Error::input("adaptive steps need \"generalized_alpha\": \"" + settings_.integrator +
+                         "\" does not estimate its local error");
+    control_.emplace(*settings_.adaptive, settings_.end);
+    // Asked for in any case: the start of the algorithmic acceleration comes with it.
+    const double first = integrator_->first_step(x_, control_->allowed(), control_->largest());
+    control_->begin(settings_.adaptive->first > 0 ? settings_.adaptive->first : first);
+    dense_.emplace(model_);
+    between_ = settings_.stops;
+    std::sort(between_.begin(), between_.end());
+  }
+
   /// To the stop, or to the first change of a mesh before it.
-  void to_next_event(double stop) {
+  void to_next_event(double stop, bool seen) {
     NextChange next{stop, MeshChange::insertion};
     const Growth* changing = nullptr;
     for (const Growth& g : growths_) {
@@ -88,7 +115,13 @@ class Run {
     // A change this near to a stop is meant to fall on it; a step this short would be noise.
     if (std::abs(next.t - stop) < kTiny * settings_.step) next.t = stop;
     // A limit that is passed already (a boundary element too long from the start) takes no step.
-    if (next.t - x_.t > kTiny * settings_.step) steps_to(next.t, next.t == stop);
+    if (next.t - x_.t > kTiny * settings_.step) {
+      const bool at_stop = seen && next.t == stop;
+      if (control_)
+        adaptive_steps_to(next.t, at_stop);
+      else
+        steps_to(next.t, at_stop);
+    }
     const bool at_end = next.t >= settings_.end - kTiny * settings_.step;
     if (changing && !at_end) execute(*changing, next.change);
   }
@@ -99,18 +132,72 @@ class Run {
     const int n = std::max(1, static_cast<int>(std::ceil((end - begin) / settings_.step - 1e-6)));
     for (int k = 1; k <= n; ++k) {
       const double t = k == n ? end : begin + (end - begin) * k / n;
-      advance(t, [&](const State& x) {
-        const Energies e = model_.energies(x);
-        balance(e);
-        drift();
-        const bool at_stop = stop && x.t >= end;
-        if (at_stop && integrator_->step_mean()) integrator_->make_consistent(x_);
-        see(e, at_stop);
-        if (at_stop || ++since_watched_ == kWatchEvery) watch(x);
-        if (joint_watch_ && ++since_joints_ == kJointsEvery) watch_joints(x);
+      double last = x_.t;
+      watching_joints([&] {
+        integrator_->advance(x_, t, [&](const State& x) {
+          accepted(x.t - last, stop && x.t >= end);
+          last = x.t;
+        });
       });
       if (t < settings_.end - kTiny * settings_.step) changes_due();
     }
+  }
+
+  /// Steps as the local error lets them be.
+  void adaptive_steps_to(double end, bool stop) {
+    const double tiny = kTiny * settings_.step;
+    while (x_.t < end - tiny) {
+      const double left = end - x_.t, h = control_->next(left);
+      before_ = x_;
+      TriedStep tried;
+      watching_joints([&] { tried = integrator_->try_step(x_, h, control_->allowed()); });
+      if (!tried.converged) {
+        control_->failed(h, before_.t);
+        continue;
+      }
+      if (!(tried.error <= control_->allowed())) {
+        control_->rejected(h, tried.error, before_.t);
+        continue;
+      }
+      control_->accepted(h, tried.error, tried.iterations);
+      if (h == left) x_.t = end;
+      const bool at_stop = see_between(tiny) || (stop && x_.t == end);
+      accepted(h, at_stop);
+      if (x_.t < settings_.end - tiny) changes_due();
+    }
+  }
+
+  /// Stops within the step from before_ to x_; true where its end is one.
+  bool see_between(double tiny) {
+    bool seen = false;
+    while (next_between_ < between_.size() && between_[next_between_] < x_.t - tiny) {
+      const double t = between_[next_between_++];
+      if (t <= before_.t + tiny) continue;
+      dense_->set_step(before_, x_);
+      dense_->at(t, within_);
+      const Energies e = model_.energies(within_);
+      if (settings_.balance) powers_ = powers(model_, within_);
+      balance_.add(t, e, powers_);
+      observe_({model_, within_, e, powers_, balance_.work(), balance_.defect(), true});
+      watch(within_);
+      seen = true;
+    }
+    if (seen) model_.prepare(x_);
+    return next_between_ < between_.size() && std::abs(between_[next_between_] - x_.t) <= tiny;
+  }
+
+  /// After every accepted step.
+  void accepted(double h, bool at_stop) {
+    const Energies e = model_.energies(x_);
+    balance(e);
+    drift();
+    if (at_stop && integrator_->step_mean()) integrator_->make_consistent(x_);
+    see(e, at_stop);
+    if (at_stop || ++since_watched_ == kWatchEvery) watch(x_);
+    if (joint_watch_ && ++since_joints_ == kJointsEvery) watch_joints(x_);
+    double& smallest = result_.smallest_step;
+    smallest = smallest > 0 ? std::min(smallest, h) : h;
+    result_.largest_step = std::max(result_.largest_step, h);
   }
 
   /// Changes at free root lines.
@@ -120,9 +207,10 @@ class Run {
   }
 
   /// A step that fails near a singular position of rigid bodies fails because of it.
-  void advance(double t, const std::function<void(const State&)>& accepted) {
+  template <class Step>
+  void watching_joints(const Step& step) {
     try {
-      integrator_->advance(x_, t, accepted);
+      step();
     } catch (const Error& error) {
       if (!joint_watch_ || error.kind() != Error::Kind::numerical) throw;
       const Conditioning now = joint_watch_->look(x_);
@@ -206,6 +294,12 @@ class Run {
   Powers powers_;
   EnergyBalance balance_;
   std::optional<ConstraintWatch> joint_watch_;  // only with rigid bodies
+  // Only where steps adapt.
+  std::optional<StepControl> control_;
+  std::optional<DenseOutput> dense_;
+  State before_, within_;  // the start of the step, a state within it
+  std::vector<double> between_;
+  size_t next_between_ = 0;
   MotionResult result_;
 };
 

@@ -1,25 +1,34 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "fem/dynamics/balance.h"
 #include "fem/dynamics/integrator.h"
 #include "fem/dynamics/start.h"
+#include "fem/dynamics/step_control.h"
 #include "fem/solve/diagnosis.h"
 
 namespace flexmorph::fem {
 
 struct MotionSettings {
-  double end = 1, step = 1e-3;  ///< [s]
+  double end = 1;      ///< [s]
+  double step = 1e-3;  ///< [s]; where steps adapt only the spacing of looks for mesh changes
+  /// Steps that adapt to their local error, where the integrator knows it (generalized_alpha);
+  /// absent: equal steps.
+  std::optional<AdaptiveStep> adaptive;
   Start start = Start::prestretched;
   Placement placement;  ///< of bodies that ride in no hub; empty where there are none
   std::string integrator = "generalized_alpha";  ///< see make_integrator()
   AlphaSettings alpha;
   EnergyMomentumSettings energy_momentum;
+  MinimalCoordinatesSettings minimal_coordinates;
   VectorXd gravity;           ///< (dim) or empty
-  std::vector<double> stops;  ///< times a step must land on (loads, output), any order
+  std::vector<double> stops;  ///< times to be seen (loads, output), any order: equal steps land on
+                              ///< them, adaptive ones are interpolated (DenseOutput)
+  std::vector<double> kinks;  ///< times every step must land on: kinks of drives, any order
   bool balance = true;        ///< keep the energy balance (costs a few percent)
 };
 
@@ -50,6 +59,7 @@ using MotionObserver = std::function<void(const MotionStep&)>;
 struct MotionResult {
   State final;
   StepCounts counts;
+  double smallest_step = 0, largest_step = 0;  ///< of the accepted ones [s]
   std::vector<MeshEvent> events;
   double energy_defect = 0;        ///< largest relative defect of the balance
   double constraint_drift = 0;     ///< largest |Φ| met [m]
@@ -60,9 +70,10 @@ struct MotionResult {
   std::vector<Conditioning> near_singular;
 };
 
-/// Advances a model from t = 0 to the end: steps land on stops and on changes of the mesh; a
-/// change that falls on the end itself is not executed.
+/// Advances a model from t = 0 to the end: steps land on stops (see MotionSettings), kinks and
+/// changes of the mesh; a change that falls on the end itself is not executed.
 ///
+/// @throws Error (input) for an integrator whose steps cannot adapt, where they should.
 /// @throws Error (numerical) when a step fails or the material collapses; the observer has seen
 ///         every step before it. Where rigid bodies are near a singular position, the message of a
 ///         failed step names the joints.

@@ -58,6 +58,18 @@ void carry_plate(const Body& body, const FrameMotion& frame, const Motion& held,
   }
 }
 
+/// Undeformed beam in a frame, as a rigid body; the frame's origin is at the coordinate `held`.
+void carry_beam(const Body& body, const FrameMotion& frame, double held, State& x) {
+  const MatrixXd reference = body.element->reference();
+  for (int k = 0; k < body.element->n_vectors(); ++k) {
+    Local2 local;
+    local.value = reference.row(k).transpose();
+    const bool position = body.element->is_position(k);
+    if (position) local.value.x() -= held;
+    carry(frame, local, position, body.first_dof + 2 * k, x);
+  }
+}
+
 /// Undeformed body in its hub, and the motion of the rigid, extending body.
 void carry_in_hub(const Model& model, const Growth& growth, State& x) {
   const Body& body = model.body(growth.body);
@@ -83,6 +95,10 @@ State rigid_state(const Model& model, std::span<const Growth> growths, const Pla
       const Body& body = model.body(p.body);
       if (dynamic_cast<const LineGrid*>(body.element.get())) {
         carry_plate(body, p.frame, {p.line, 0, 0}, -1, x);
+        continue;
+      }
+      if (!body.element->is_rigid()) {
+        carry_beam(body, p.frame, p.line, x);
         continue;
       }
       carry(p.frame, {}, true, body.first_dof, x);

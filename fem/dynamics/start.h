@@ -12,11 +12,12 @@ enum class Start {
   settled  ///< at rest, in static equilibrium: for mechanisms with freedoms that nothing drives
 };
 
-/// A body that rides in no hub, as a rigid one: rigid bodies, and plates that other joints hold.
+/// A body that rides in no hub, as a rigid one: rigid bodies, beams, and plates that other joints
+/// hold.
 struct Placed {
   std::string body;
   FrameMotion frame;
-  double line = 0;  ///< material coordinate X of a plate that lies at the frame's origin [m]
+  double line = 0;  ///< of a plate or beam the coordinate X that lies at the frame's origin [m]
 };
 
 /// Where all such bodies of a mechanism are at a time, with rates and accelerations.

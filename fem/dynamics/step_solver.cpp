@@ -2,6 +2,9 @@
 
 #include <cmath>
 #include <cstdio>
+#include <limits>
+
+#include "fem/solve/scaled_constraints.h"
 
 namespace flexmorph::fem {
 
@@ -16,13 +19,7 @@ StepSolver::StepSolver(Model& model, const StepSettings& settings, std::string n
 void StepSolver::set_scales() {
   if (scaled_version_ == model_.pattern_version()) return;
   scales_ = model_.scales();
-  const State reference = model_.reference();
-  size_ = 0;
-  for (Eigen::Index i = 0; i < reference.q.size(); ++i)
-    if (scales_[i] == 1) size_ = std::max(size_, std::abs(reference.q[i]));
-  // Rigid bodies alone: all start at the origin, but they have lengths.
-  if (size_ == 0) size_ = reference.q.cwiseProduct(scales_).lpNorm<Eigen::Infinity>();
-  if (size_ == 0) size_ = 1;
+  size_ = undeformed_size(model_, scales_);
   scaled_version_ = model_.pattern_version();
 }
 
@@ -42,6 +39,12 @@ void StepSolver::factorize() {
   ++counts_.factorizations;
 }
 
+void StepSolver::factorize_here(double h) {
+  tangent(kkt_);
+  factorize();
+  factored_h_ = h;
+}
+
 void StepSolver::solve_mass(const State& x, const VectorXd& force, const VectorXd& constraint) {
   factored_h_ = 0;
   model_.kkt(x, constraints_, {0, 0, 1}, 1, kkt_);
@@ -52,7 +55,7 @@ void StepSolver::solve_mass(const State& x, const VectorXd& force, const VectorX
   solver_.solve(kkt_, right_, solution_);
 }
 
-void StepSolver::make_consistent(State& x) {
+void StepSolver::solve_accelerations(State& x) {
   x.a.setZero(model_.n_dofs());
   model_.prepare(x);
   model_.constraints(x, constraints_);
@@ -60,8 +63,12 @@ void StepSolver::make_consistent(State& x) {
   solve_mass(x, -force_, constraints_.acceleration);
   x.a = solution_.head(model_.n_dofs()).cwiseQuotient(scales_);
   x.lambda = solution_.tail(model_.n_constraints());
-  x.alpha = x.a;
   if (model_.has_free_lines()) model_.prepare(x);
+}
+
+void StepSolver::make_consistent(State& x) {
+  solve_accelerations(x);
+  x.alpha = x.a;
 }
 
 void StepSolver::project_velocity(State& x) {
@@ -85,21 +92,42 @@ void StepSolver::solve_kept(const VectorXd& force, const VectorXd& constraint, V
   mu = solution_.tail(model_.n_constraints());
 }
 
-bool StepSolver::try_step(State& x, double h) {
+TriedStep StepSolver::solve_step(State& x, double h, double allowed) {
   history_.clear();
+  const int before = counts_.newton;
   try {
     begin(x, h);
     if (newton(h)) {
+      const TriedStep out{true, std::isfinite(allowed) ? local_error(x, allowed) : 0,
+                          counts_.newton - before};
+      // An error that is not a number is too large.
+      if (!(out.error <= allowed)) return out;
       finish(x);
       if (model_.has_free_lines()) model_.prepare(x);
-      return true;
+      return out;
     }
   } catch (const Error& error) {
     if (error.kind() != Error::Kind::numerical) throw;
     history_ += error.what();
   }
   factored_h_ = 0;
-  return false;
+  return {};
+}
+
+double StepSolver::local_error(const State&, double) {
+  throw Error::input(name_ + " does not estimate its local error: its steps cannot adapt to it");
+}
+
+TriedStep StepSolver::try_step(State& x, double h, double allowed) {
+  const TriedStep out = solve_step(x, h, allowed);
+  if (!out.converged) {
+    ++counts_.rejected;
+    if (++failures_ > settings_.max_halvings) give_up(x, h, failures_);
+    return out;
+  }
+  failures_ = 0;
+  ++(out.error <= allowed ? counts_.steps : counts_.inaccurate);
+  return out;
 }
 
 bool StepSolver::newton(double h) {
@@ -114,9 +142,7 @@ bool StepSolver::newton(double h) {
   for (int iteration = 1; iteration <= settings_.max_iterations; ++iteration) {
     residual(force_, constraint_);
     if (std::abs(factored_h_ / h - 1) > 1e-6 || analysed_version_ != model_.pattern_version()) {
-      tangent(kkt_);
-      factorize();
-      factored_h_ = h;
+      factorize_here(h);
       fresh = true;
     }
     force_ *= -scale();
@@ -146,6 +172,16 @@ bool StepSolver::newton(double h) {
   return false;
 }
 
+void StepSolver::give_up(const State& x, double h, int failures) const {
+  char text[200];
+  std::snprintf(text, sizeof text,
+                ": no convergence at t = %.6g s, step %d, step size %.2e s after %d halvings, "
+                "smallest area ratio %.2e (",
+                x.t, counts_.steps + 1, h, failures - 1, model_.smallest_area_ratio(x));
+  throw Error::numerical(name_ + text + history_ + "). " + advice_ +
+                         " An area ratio near zero means that the material has collapsed.");
+}
+
 void StepSolver::advance(State& x, double t_end,
                          const std::function<void(const State&)>& accepted) {
   const double whole = t_end - x.t;
@@ -153,7 +189,7 @@ void StepSolver::advance(State& x, double t_end,
   int halvings = 0;
   while (x.t < t_end) {
     if (x.t + h > t_end - 1e-9 * whole) h = t_end - x.t;
-    if (try_step(x, h)) {
+    if (solve_step(x, h, std::numeric_limits<double>::infinity()).converged) {
       if (std::abs(x.t - t_end) <= 1e-9 * whole) x.t = t_end;
       ++counts_.steps;
       accepted(x);
@@ -164,16 +200,7 @@ void StepSolver::advance(State& x, double t_end,
       continue;
     }
     ++counts_.rejected;
-    if (++halvings > settings_.max_halvings) {
-      char text[200];
-      std::snprintf(text, sizeof text,
-                    ": no convergence at t = %.6g s, step %d, step size %.2e s after %d halvings, "
-                    "smallest area ratio %.2e (",
-                    x.t, counts_.steps + 1, h, settings_.max_halvings,
-                    model_.smallest_area_ratio(x));
-      throw Error::numerical(name_ + text + history_ + "). " + advice_ +
-                             " An area ratio near zero means that the material has collapsed.");
-    }
+    if (++halvings > settings_.max_halvings) give_up(x, h, halvings);
     h *= 0.5;
   }
 }

@@ -16,6 +16,7 @@ class StepSolver : public Integrator {
   void make_consistent(State& x) final;
   void project_velocity(State& x) final;
   void advance(State& x, double t_end, const std::function<void(const State&)>& accepted) final;
+  TriedStep try_step(State& x, double h, double allowed) final;
   const StepCounts& counts() const final { return counts_; }
 
  protected:
@@ -36,12 +37,21 @@ class StepSolver : public Integrator {
   virtual void correct(const VectorXd& dq, const VectorXd& dlambda) = 0;
   /// What a correction is small against [m].
   virtual double resolved() const { return size_; }
+  /// Local error of the converged step that began at x, relative to size(); before finish().
+  /// @throws Error (input) where there is no estimate.
+  virtual double local_error(const State& x, double allowed);
   /// x becomes the end of the converged step.
   virtual void finish(State& x) = 0;
 
   /// Solves with the factors of the last factorization: force (n_dofs, times scale()) and
   /// constraint (n_constraints) as right side, dq and μ (λ times scale()) as result.
   void solve_kept(const VectorXd& force, const VectorXd& constraint, VectorXd& dq, VectorXd& mu);
+
+  /// Factors of the tangent at the iterate, after a residual() there; kept for steps h.
+  void factorize_here(double h);
+
+  /// Consistent q̈ and λ at x, the algorithmic acceleration left alone.
+  void solve_accelerations(State& x);
 
   Model& model() { return model_; }
   /// Largest displacement that a change of the unknowns means [m].
@@ -52,8 +62,11 @@ class StepSolver : public Integrator {
   double size() const { return size_; }
 
  private:
-  bool try_step(State& x, double h);
+  /// One step; x moves where it converged with a local error that is allowed (infinite: any, and
+  /// it is not looked at).
+  TriedStep solve_step(State& x, double h, double allowed);
   bool newton(double h);
+  [[noreturn]] void give_up(const State& x, double h, int failures) const;
   void solve_mass(const State& x, const VectorXd& force, const VectorXd& constraint);
   void set_scales();
   void factorize();
@@ -69,6 +82,7 @@ class StepSolver : public Integrator {
   VectorXd scales_;        // displacement per unit of each unknown
   double size_ = 1;
   int scaled_version_ = -1;
+  int failures_ = 0;  // of try_step() in a row
   Constraints constraints_;
   VectorXd force_, constraint_, right_, solution_, dq_, mu_;
   std::string history_;  // of the residuals of the last failed step

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "fem/joint.h"
+#include "fem/joints/weld_rows.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -18,30 +19,18 @@ class Weld final : public Joint {
   int size() const override { return static_cast<int>(fixed_.size() + along_.size()); }
 
   void bind(std::span<const BodyView> bodies) override {
-    const auto& [body, element_at, first_dof] = find_body(bodies, name_, body_);
-    const Element& element = *element_at;
+    const BodyView& body = find_body(bodies, name_, body_);
+    const int dim = body.element->dim();
+    const WeldRows rows = weld_rows(*body.element, body.element->edge(edge_), mode_, name_);
     fixed_.clear();
     along_.clear();
-    const int dim = element.dim();
-    const auto dof = [&](int vector) { return first_dof + dim * vector; };
-    for (const NodeVectors& node : element.edge(edge_)) {
-      const double y = node.material.y();
-      for (int c = 0; c < 2; ++c) {
-        fixed_.push_back({dof(node.r) + c, c, 1, {0, y}});
-        fixed_.push_back({dof(node.r_n) + c, c, 0, {0, 1}});
-      }
-      if (dim == 3)
-        for (const int vector : {node.r, node.r_n, node.r_m, node.r_mn})
-          if (vector >= 0) fixed_.push_back({dof(vector) + 2, 2, 0, {0, 0}});
-      for (const int vector : {node.r_m, node.r_mn}) {
-        if (vector < 0 || mode_ == WeldMode::edge) continue;
-        if (mode_ == WeldMode::direction)
-          along_.push_back(dof(vector));
-        else
-          for (int c = 0; c < 2; ++c)
-            fixed_.push_back({dof(vector) + c, c, 0, {vector == node.r_m ? 1.0 : 0.0, 0}});
-      }
-    }
+    for (const WeldRows::Fixed& x : rows.fixed)
+      for (int c = 0; c < 2; ++c)
+        fixed_.push_back({body.first_dof + dim * x.vector + c, c, x.moves, x.local});
+    for (const int vector : rows.flat)
+      fixed_.push_back({body.first_dof + dim * vector + 2, 2, 0, {0, 0}});
+    for (const WeldRows::Along& x : rows.along)
+      along_.push_back({body.first_dof + dim * x.vector, x.normal});
   }
 
   void evaluate(double t, const VectorXd& q, const VectorXd& v,
@@ -75,12 +64,13 @@ class Weld final : public Joint {
       rows.jacobian.emplace_back(i, x.dof, 1.0);
       ++i;
     }
-    for (const int dof : along_) {
+    for (const auto& [dof, normal] : along_) {
       const auto x = q.segment<2>(dof), x_t = v.segment<2>(dof);
-      rows.value[i] = turn.col(1).dot(x);
-      rows.rate[i] = turn_t.col(1).dot(x);
-      rows.acceleration[i] = -turn_tt.col(1).dot(x) - 2 * turn_t.col(1).dot(x_t);
-      for (int c = 0; c < 2; ++c) rows.jacobian.emplace_back(i, dof + c, turn(c, 1));
+      const Vec2 n = turn * normal, n_t = turn_t * normal, n_tt = turn_tt * normal;
+      rows.value[i] = n.dot(x);
+      rows.rate[i] = n_t.dot(x);
+      rows.acceleration[i] = -n_tt.dot(x) - 2 * n_t.dot(x_t);
+      for (int c = 0; c < 2; ++c) rows.jacobian.emplace_back(i, dof + c, n[c]);
       ++i;
     }
   }
@@ -91,11 +81,16 @@ class Weld final : public Joint {
     double moves;  // 1: the vector starts at the frame's origin
     Vec2 local;
   };
+  struct Along {  // a vector has no part along a direction given in the frame
+    int dof;      // its first unknown
+    Vec2 normal;
+  };
+
   std::string name_, body_, edge_;
   FrameDrive frame_;
   WeldMode mode_;
   std::vector<Fixed> fixed_;
-  std::vector<int> along_;  // first unknown of vectors that keep to e₁
+  std::vector<Along> along_;
 };
 
 class Pin final : public Joint {
@@ -113,8 +108,8 @@ class Pin final : public Joint {
   int size() const override { return static_cast<int>(components_.size()); }
 
   void bind(std::span<const BodyView> bodies) override {
-    const auto& [body, element_at, first_dof] = find_body(bodies, name_, body_);
-    const Element& element = *element_at;
+    const BodyView& body = find_body(bodies, name_, body_);
+    const Element& element = *body.element;
     ShapeTable table;
     const int e = element.locate(material_, Tabulate::position, table);
     if (element.moving(e))
@@ -130,7 +125,7 @@ class Pin final : public Joint {
     const auto vectors = element.vectors(e);
     terms_.clear();
     for (int k = 0; k < element.n_shapes(); ++k)
-      terms_.emplace_back(first_dof + element.dim() * vectors[static_cast<size_t>(k)],
+      terms_.emplace_back(body.first_dof + element.dim() * vectors[static_cast<size_t>(k)],
                           table.N(0, k));
   }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "fem/body_joints.h"
+#include "fem/joints/weld_rows.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -9,7 +10,7 @@ namespace {
 ///
 ///   Φ = q_i - g · (p, e),   g (4) constant
 ///
-/// or a vector x of the plate keeps to axis 1: Φ = e × x = x · e₂, bilinear.
+/// or a vector x of the plate keeps to one axis: Φ = n · x, bilinear, n = e₂ or e₁ the other axis.
 class EdgeWeld final : public Joint {
  public:
   EdgeWeld(std::string name, std::string plate, std::string edge, MarkerPlace frame, WeldMode mode)
@@ -24,8 +25,8 @@ class EdgeWeld final : public Joint {
 
   void bind(std::span<const BodyView> bodies) override {
     frame_.bind(bodies, "joint '" + name_ + "'", true);
-    const auto& [body, element_at, first_dof] = find_body(bodies, name_, plate_);
-    const Element& element = *element_at;
+    const BodyView& body = find_body(bodies, name_, plate_);
+    const Element& element = *body.element;
     const int dim = element.dim();
     const std::vector<NodeVectors> nodes = element.edge(edge_);
     const auto on_line = [&](const NodeVectors& node) {
@@ -36,21 +37,13 @@ class EdgeWeld final : public Joint {
                          "' runs along the plate; a weld is at an edge across it");
     fixed_.clear();
     along_.clear();
-    for (const NodeVectors& node : nodes) {
-      const auto dof = [&, first = first_dof](int vector) { return first + dim * vector; };
-      fix(dof(node.r), 1, {0, node.material.y()});
-      fix(dof(node.r_n), 0, {0, 1});
-      for (const int vector : {node.r_m, node.r_mn}) {
-        if (vector < 0 || mode_ == WeldMode::edge) continue;
-        if (mode_ == WeldMode::direction)
-          along_.push_back(dof(vector));
-        else
-          fix(dof(vector), 0, {vector == node.r_m ? 1.0 : 0.0, 0});
-      }
-      if (dim == 3)  // the frame turns in the plane z = 0
-        for (const int vector : {node.r, node.r_n, node.r_m, node.r_mn})
-          if (vector >= 0) fixed_.push_back({dof(vector) + 2, Eigen::Vector4d::Zero()});
-    }
+    const WeldRows rows = weld_rows(element, nodes, mode_, name_);
+    for (const WeldRows::Fixed& x : rows.fixed)
+      fix(body.first_dof + dim * x.vector, x.moves, x.local);
+    for (const int vector : rows.flat)  // the frame turns in the plane z = 0
+      fixed_.push_back({body.first_dof + dim * vector + 2, Eigen::Vector4d::Zero()});
+    for (const WeldRows::Along& x : rows.along)
+      along_.push_back({body.first_dof + dim * x.vector, x.normal});
   }
 
   void evaluate(double t, const VectorXd& q, const VectorXd& v,
@@ -70,17 +63,17 @@ class EdgeWeld final : public Joint {
         if (reads(x.g, k)) rows.jacobian.emplace_back(i, frame_.dofs()[k], -x.g.dot(column(k)));
       ++i;
     }
-    const Vec2 e = f.y.tail<2>(), e_t = f.rate.tail<2>();
-    for (const int dof : along_) {
-      const Vec2 x = q.segment<2>(dof), x_t = v.segment<2>(dof);
-      rows.value[i] = cross(e, x);
+    for (const Along& along : along_) {
+      const Vec2 n = along.normal(f.y.tail<2>()), n_t = along.normal(f.rate.tail<2>());
+      const Vec2 x = q.segment<2>(along.dof), x_t = v.segment<2>(along.dof);
+      rows.value[i] = n.dot(x);
       rows.rate[i] = 0;
-      rows.acceleration[i] = -2 * cross(e_t, x_t);
-      rows.jacobian.emplace_back(i, dof, -e.y());
-      rows.jacobian.emplace_back(i, dof + 1, e.x());
+      rows.acceleration[i] = -2 * n_t.dot(x_t);
+      rows.jacobian.emplace_back(i, along.dof, n.x());
+      rows.jacobian.emplace_back(i, along.dof + 1, n.y());
       for (size_t k = 0; k < frame_.dofs().size(); ++k)
         if (turns(k))
-          rows.jacobian.emplace_back(i, frame_.dofs()[k], cross(column(k).tail<2>(), x));
+          rows.jacobian.emplace_back(i, frame_.dofs()[k], along.normal(column(k).tail<2>()).dot(x));
       ++i;
     }
   }
@@ -88,14 +81,13 @@ class EdgeWeld final : public Joint {
   void add_stiffness(double, const VectorXd&, const VectorXd& lambda,
                      std::vector<Eigen::Triplet<double>>& out) const override {
     auto i = static_cast<Eigen::Index>(fixed_.size());
-    for (const int dof : along_) {
+    for (const Along& along : along_) {
       for (size_t k = 0; k < frame_.dofs().size(); ++k) {
         if (!turns(k)) continue;
-        const Vec2 e = column(k).tail<2>();
-        const double by_x[2] = {-lambda[i] * e.y(), lambda[i] * e.x()};
+        const Vec2 by_x = lambda[i] * along.normal(column(k).tail<2>());
         for (int c = 0; c < 2; ++c) {
-          out.emplace_back(dof + c, frame_.dofs()[k], by_x[c]);
-          out.emplace_back(frame_.dofs()[k], dof + c, by_x[c]);
+          out.emplace_back(along.dof + c, frame_.dofs()[k], by_x[c]);
+          out.emplace_back(frame_.dofs()[k], along.dof + c, by_x[c]);
         }
       }
       ++i;
@@ -108,7 +100,15 @@ class EdgeWeld final : public Joint {
     Eigen::Vector4d g;
   };
 
-  static double cross(const Vec2& x, const Vec2& y) { return x.x() * y.y() - x.y() * y.x(); }
+  struct Along {
+    int dof;     // first unknown of the vector
+    Vec2 local;  // direction along which it has no part, in the frame
+
+    /// The same in the world, of a frame with axis 1 = e; linear in e.
+    Vec2 normal(const Vec2& e) const {
+      return {local.x() * e.x() - local.y() * e.y(), local.x() * e.y() + local.y() * e.x()};
+    }
+  };
 
   /// Vector at `dof` equals moves p + local.x e₁ + local.y e₂, e₁ = e, e₂ = (-e_y, e_x).
   void fix(int dof, double moves, const Vec2& local) {
@@ -130,7 +130,7 @@ class EdgeWeld final : public Joint {
   Marker frame_;
   WeldMode mode_;
   std::vector<Fixed> fixed_;
-  std::vector<int> along_;  // first unknown of vectors that keep to e₁
+  std::vector<Along> along_;
 };
 
 }  // namespace

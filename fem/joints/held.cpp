@@ -67,6 +67,8 @@ class Hold final : public Joint {
   };
 
   void check(const Held& held, int dim) const {
+    if (held.components.empty())
+      throw Error::input("joint '" + name_ + "': a hold without components holds nothing");
     for (const int c : held.components)
       if (c < 0 || c >= dim)
         throw Error::input("joint '" + name_ + "': component " + std::to_string(c) +

@@ -160,11 +160,13 @@ class Assembler {
   /// Smallest change of v; repeated, because δ leaves a part of it.
   void find_velocity() {
     correction_.factorize(x_, rows_, kLeastCompliance);
+    double size =
+        0;  // of the fastest pass: where all comes to rest, nothing is left to compare with
     for (int pass = 0;; ++pass) {
       const VectorXd speed = rows_.scales().cwiseProduct(x_.v);
       const VectorXd rate = rows_.row_scale().cwiseProduct(rows_.unscaled().rate);
       const VectorXd miss = rows_.jacobian() * speed + rate;
-      const double size = std::max(speed.lpNorm<Eigen::Infinity>(), rate.lpNorm<Eigen::Infinity>());
+      size = std::max({size, speed.lpNorm<Eigen::Infinity>(), rate.lpNorm<Eigen::Infinity>()});
       const double largest = miss.lpNorm<Eigen::Infinity>();
       if (largest <= 1e-14 * size || (pass >= 3 && largest <= 1e-9 * size)) return;
       if (pass >= 6)

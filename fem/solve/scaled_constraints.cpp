@@ -88,4 +88,13 @@ double model_size(const VectorXd& scales, const VectorXd& q) {
   return size > 0 ? size : 1;
 }
 
+double undeformed_size(const Model& model, const VectorXd& scales) {
+  const VectorXd q = model.reference().q;
+  double size = 0;
+  for (Eigen::Index i = 0; i < q.size(); ++i)
+    if (scales[i] == 1) size = std::max(size, std::abs(q[i]));
+  // Rigid bodies alone: all start at the origin, but they have lengths.
+  return size > 0 ? size : model_size(scales, q);
+}
+
 }  // namespace flexmorph::fem

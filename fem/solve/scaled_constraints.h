@@ -50,4 +50,8 @@ std::vector<std::string> heaviest_joints(const Model& model, const VectorXd& wei
 /// [m].
 double model_size(const VectorXd& scales, const VectorXd& q);
 
+/// Largest coordinate of the undeformed model in its own frames; of rigid bodies alone their
+/// largest length; 1 where there is neither [m].
+double undeformed_size(const Model& model, const VectorXd& scales);
+
 }  // namespace flexmorph::fem

@@ -130,16 +130,19 @@ class Path {
     return (right_.head(n_).cwiseAbs().array() <= rounding * noise.array()).all();
   }
 
-  /// dq/dμ (and dλ/dμ) at the matrix of the last factorize(): loads are linear in the factor.
+  /// dq/dμ (and dλ/dμ) at the matrix of the last factorize(). The central difference is exact for
+  /// loads, which are linear in the factor, and good to 1e-6 (α ΔT)² for temperatures, which are
+  /// not.
   void load_response(VectorXd& out) {
-    VectorXd full, none;
-    model_.scale_loads(1);
-    model_.force(x_, full);
-    model_.scale_loads(0);
-    model_.force(x_, none);
+    const double by = 1e-3 * range_;
+    VectorXd more, less;
+    model_.scale_loads(factor_ + by);
+    model_.force(x_, more);
+    model_.scale_loads(factor_ - by);
+    model_.force(x_, less);
     model_.scale_loads(factor_);
     VectorXd load = VectorXd::Zero(n_ + m_);
-    load.head(n_) = none - full;
+    load.head(n_) = (less - more) / (2 * by);
     solver_.solve(kkt_, load, out);
   }
 
@@ -232,7 +235,9 @@ class Path {
         load_response(response);
         if (psi == 0) {
           psi = std::sqrt(product(response, response));
-          if (!(psi > 0)) throw Error::input("statics: an arc needs a load that moves something");
+          if (!(psi > 0))
+            throw Error::input(
+                "statics: path 'arc_length' needs a load or a temperature that moves something");
           first_length = length = std::sqrt(2.0) * psi * settings_.first_step * range_;
         }
         const double rise = std::sqrt(product(response, response) + psi * psi);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <string>
@@ -37,6 +38,8 @@ struct StaticSolver::Impl {
   std::unique_ptr<SupernodalFactor> factor;
   std::vector<int> scatter;  // by cell and pair of unknowns (36): entry of the pattern, -1: held
   VectorXd stiffness;        // factors of the last factorize()
+  double edge_stiffness = 0;
+  int edge_ends = -1;  // entry of the pattern: x of the edge's two ends
 
   // Work space.
   mutable std::vector<int> active, order, all_active;
@@ -61,6 +64,7 @@ struct StaticSolver::Impl {
   }
 
   void build_pattern();
+  void add_edge(std::span<double> values) const;
   void check_roots(std::span<const int> root_columns, Eigen::Index n_loads) const;
   bool arrange(std::span<const int> root_columns) const;
   void to_order(MatrixXd& x) const;
@@ -78,9 +82,12 @@ void StaticSolver::Impl::build_pattern() {
         for (int r = row(i, j) + c; r <= row(i, std::min(j + 1, grid.ny)) + 1; ++r) {
           rows.push_back(r);
         }
+        const int end = row(i, grid.ny);
+        if (edge_stiffness > 0 && i == grid.nx && j + c == 0 && end > rows.back())
+          rows.push_back(end);
         if (i - 1 > first_root) {
-          const int end = row(i - 1, std::min(j + 1, grid.ny)) + 1;
-          for (int r = row(i - 1, std::max(j - 1, 0)); r <= end; ++r) rows.push_back(r);
+          const int last = row(i - 1, std::min(j + 1, grid.ny)) + 1;
+          for (int r = row(i - 1, std::max(j - 1, 0)); r <= last; ++r) rows.push_back(r);
         }
         starts.push_back(static_cast<int>(rows.size()));
       }
@@ -103,7 +110,27 @@ void StaticSolver::Impl::build_pattern() {
       }
     }
   }
+  if (edge_stiffness > 0) edge_ends = entry(row(grid.nx, grid.ny), row(grid.nx, 0));
   factor = std::make_unique<SupernodalFactor>(std::move(starts), std::move(rows));
+}
+
+/// Neighbours on the edge are corners 1 and 2 of a cell: unknowns 2 and 4 (x), 3 and 5 (y) of it.
+/// Σ (δ_j - Σ δ / ny)² = Σ δ_j² - (u_ny - u_0)² / ny couples its ends.
+void StaticSolver::Impl::add_edge(std::span<double> values) const {
+  const auto value = [&](int j, std::size_t a, std::size_t b) -> double& {
+    const std::size_t cell = scatter.size() - 36 * static_cast<std::size_t>(grid.ny - j);
+    return values[static_cast<std::size_t>(scatter[cell + a * (a + 1) / 2 + b])];
+  };
+  for (int j = 0; j < grid.ny; ++j)
+    for (const std::size_t c : {2u, 3u}) {
+      value(j, c, c) += edge_stiffness;
+      value(j, c + 2, c + 2) += edge_stiffness;
+      value(j, c + 2, c) -= edge_stiffness;
+    }
+  const double mean = edge_stiffness / grid.ny;
+  value(0, 2, 2) -= mean;
+  value(grid.ny - 1, 4, 4) -= mean;
+  values[static_cast<std::size_t>(edge_ends)] += mean;
 }
 
 void StaticSolver::Impl::check_roots(std::span<const int> root_columns,
@@ -159,12 +186,17 @@ void StaticSolver::Impl::from_order(MatrixXd& x) const {
   }
 }
 
-StaticSolver::StaticSolver(const Grid& grid, const PlaneSection& section, int first_root)
+StaticSolver::StaticSolver(const Grid& grid, const PlaneSection& section, int first_root,
+                           double edge_stiffness)
     : impl_(std::make_unique<Impl>()) {
   if (first_root < 0 || first_root >= grid.nx) {
     throw Error::input("static solver: root column " + std::to_string(first_root) +
                        " leaves nothing of " + std::to_string(grid.nx) + " columns of cells");
   }
+  if (!std::isfinite(edge_stiffness) || edge_stiffness < 0)
+    throw Error::input("static solver: the stiffness of an edge is at least 0, not " +
+                       std::to_string(edge_stiffness));
+  impl_->edge_stiffness = edge_stiffness;
   impl_->grid = grid;
   impl_->first_root = first_root;
   impl_->cell_stiffness = q4_stiffness(section, grid.dx(), grid.dy());
@@ -198,6 +230,7 @@ void StaticSolver::factorize(const VectorXd& stiffness_factor) {
       }
     }
   }
+  if (m.edge_stiffness > 0) m.add_edge(values);
   const int column = m.factor->factorize();
   if (column < 0) return;
   const int node = column / 2, i = m.grid.nx - node / (m.grid.ny + 1);
@@ -214,6 +247,16 @@ void StaticSolver::solve(MatrixXd& loads, std::span<const int> root_columns) con
   const bool reorder = m.arrange(root_columns);
   if (reorder) m.to_order(loads);
   m.factor->forward(loads, m.active);
+  m.factor->backward(loads, m.active);
+  if (reorder) m.from_order(loads);
+}
+
+void StaticSolver::solve_at_clamp(MatrixXd& loads, std::span<const int> root_columns) const {
+  const Impl& m = *impl_;
+  m.check_roots(root_columns, loads.rows());
+  const bool reorder = m.arrange(root_columns);
+  if (reorder) m.to_order(loads);
+  m.factor->forward(loads, m.active, m.block_size());
   m.factor->backward(loads, m.active);
   if (reorder) m.from_order(loads);
 }
@@ -279,6 +322,18 @@ void StaticSolver::cell_energies(const MatrixXd& displacements, const VectorXd& 
       energies(g.cell(i, j)) = each.head(n).sum();
     }
   }
+}
+
+double StaticSolver::edge_energy(const MatrixXd& displacements, const VectorXd& weights) const {
+  const Impl& m = *impl_;
+  if (m.edge_stiffness == 0) return 0;
+  const int ny = m.grid.ny, first = m.row(m.grid.nx, 0), last = m.row(m.grid.nx, ny);
+  const auto w = [&](int row) { return displacements.col(row).array(); };
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(displacements.rows());
+  const Eigen::ArrayXd mean = (w(last) - w(first)) / ny;
+  for (int row = first; row < last; row += 2)
+    sum += (w(row + 3) - w(row + 1)).square() + (w(row + 2) - w(row) - mean).square();
+  return m.edge_stiffness * sum.matrix().dot(weights);
 }
 
 void StaticSolver::apply(const MatrixXd& displacements, MatrixXd& forces) const {

@@ -24,8 +24,12 @@ class StaticSolver {
  public:
   /// Everything behind column `first_root` of nodes to the free end is unknown (column first_root
   /// itself is held); root columns of the loads are in [first_root, nx].
-  /// @throws Error (input) when first_root is not in [0, nx).
-  StaticSolver(const Grid& grid, const PlaneSection& section, int first_root = 0);
+  /// @param edge_stiffness  κ [N/m]: column nx is kept straight and as wide as it is by
+  ///        κ Σ_j ((v_j+1 - v_j)² + (u_j+1 - u_j - (u_ny - u_0) / ny)²) / 2, which is part of K; 0:
+  ///        nothing keeps it
+  /// @throws Error (input) when first_root is not in [0, nx), or κ is negative or not finite.
+  StaticSolver(const Grid& grid, const PlaneSection& section, int first_root = 0,
+               double edge_stiffness = 0);
   ~StaticSolver();
   StaticSolver(StaticSolver&&) noexcept;
 
@@ -44,6 +48,10 @@ class StaticSolver {
   /// entries on and behind the clamp are ignored and come back 0.
   void solve(MatrixXd& loads, std::span<const int> root_columns) const;
 
+  /// The same for loads that act on the column of nodes in front of their clamp only, as a clamp
+  /// does that moves: half the work.
+  void solve_at_clamp(MatrixXd& loads, std::span<const int> root_columns) const;
+
   /// The same when loads = mix * basis (mix (n_loads x r), basis (r x n_unknowns)) up to entries
   /// behind each load's clamp: r forward substitutions instead of n_loads. `basis` comes back as
   /// L⁻¹ basis.
@@ -59,7 +67,11 @@ class StaticSolver {
   void cell_energies(const MatrixXd& displacements, const VectorXd& weights, VectorXd& energies,
                      std::span<const int> root_columns = {}) const;
 
-  /// K u with the factors of the last factorize() (n_loads x n_unknowns).
+  /// Twice the energy of what keeps the edge, summed over loads with weights [J].
+  double edge_energy(const MatrixXd& displacements, const VectorXd& weights) const;
+
+  /// K u of the cells alone, with the factors of the last factorize() (n_loads x
+  /// n_unknowns).
   void apply(const MatrixXd& displacements, MatrixXd& forces) const;
 
  private:

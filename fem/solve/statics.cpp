@@ -64,15 +64,18 @@ void solve_rotating_equilibrium(Model& model, const VectorXd& spin, const Vector
         if (kkt.innerIndexPtr()[p] < model.n_dofs())
           kkt.valuePtr()[p] -= spin[column] * mass.valuePtr()[p];
   };
-  find_equilibrium(model, x, std::max(1e-300, (x.q - center).lpNorm<Eigen::Infinity>()), accelerate,
-                   soften, "statics: no equilibrium in the rotating frame after 40 iterations");
+  find_equilibrium(
+      model, x, std::max(1e-300, (x.q - center).lpNorm<Eigen::Infinity>()), accelerate, soften,
+      "statics: no equilibrium in the rotating frame at the start, t = 0, after 40 "
+      "iterations: the bodies are too soft for their loads, or nothing holds a part of them");
 }
 
 void solve_carried_equilibrium(Model& model, State& x) {
   find_equilibrium(
       model, x, std::max(1e-300, x.q.lpNorm<Eigen::Infinity>()), [](State&) { return true; },
       [](const State&, const Constraints&, SparseMatrix&) {},
-      "statics: no equilibrium under the inertia forces of the start after 40 iterations");
+      "statics: no equilibrium under the inertia forces of the start, t = 0, after 40 iterations: "
+      "the bodies are too soft for them, or nothing holds a part of them");
 }
 
 void solve_resting_equilibrium(Model& model, State& x) {

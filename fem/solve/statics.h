@@ -74,7 +74,8 @@ struct StaticResult {
 
 /// Nonlinear statics along a path of equilibria,
 ///
-///   F(q, μ) + Φ_qᵀ λ = 0,   Φ(q, x.t) = 0,   loads times the load factor μ  (Model::scale_loads),
+///   F(q, μ) + Φ_qᵀ λ = 0,   Φ(q, x.t) = 0,   loads times the load factor μ  (Model::scale_loads;
+///                                            in hot bodies the temperature is one of them),
 ///
 /// by Newton's method with exact tangent. Steps are halved when it fails and grown when it is easy.
 ///

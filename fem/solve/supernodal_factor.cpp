@@ -172,7 +172,7 @@ struct SupernodalFactor::Impl {
   void add_update(int child, const double* update, int parent, double* block, double* own) const;
   int factorize_block(int s, double* block, double keep, double* own) const;
   int smallest_pivot(int s) const;
-  void forward(MatrixXd& x, std::span<const int> active, const LoadRange& mine) const;
+  void forward(MatrixXd& x, std::span<const int> active, int tail, const LoadRange& mine) const;
   void backward(MatrixXd& x, std::span<const int> active, const Fill& fill,
                 const LoadRange& mine) const;
   void make_room(Eigen::Index n_loads) const {
@@ -303,10 +303,10 @@ int SupernodalFactor::factorize() {
   return -1;
 }
 
-void SupernodalFactor::forward(MatrixXd& x, std::span<const int> active) const {
+void SupernodalFactor::forward(MatrixXd& x, std::span<const int> active, int tail) const {
   const Impl& m = *impl_;
   m.make_room(x.rows());
-  each_share(x.rows(), [&](const LoadRange& mine) { m.forward(x, active, mine); });
+  each_share(x.rows(), [&](const LoadRange& mine) { m.forward(x, active, tail, mine); });
 }
 
 void SupernodalFactor::backward(MatrixXd& x, std::span<const int> active, const Fill& fill) const {
@@ -315,13 +315,17 @@ void SupernodalFactor::backward(MatrixXd& x, std::span<const int> active, const 
   each_share(x.rows(), [&](const LoadRange& mine) { m.backward(x, active, fill, mine); });
 }
 
-void SupernodalFactor::Impl::forward(MatrixXd& x, std::span<const int> active,
+void SupernodalFactor::Impl::forward(MatrixXd& x, std::span<const int> active, int tail,
                                      const LoadRange& mine) const {
   const int ld = static_cast<int>(x.rows());
   for (int s = 0; s < n_supernodes(); ++s) {
     const Supernode node = supernode(s);
-    const auto [load, count] = reaching(active, node.first, mine);
-    if (count == 0) break;  // the blocks of later supernodes reach even fewer loads
+    const LoadRange reached = reaching(active, node.first, mine);
+    if (reached.count == 0) break;  // the blocks of later supernodes reach even fewer loads
+    const LoadRange zero = reaching(active, node.last + tail - 1, mine);
+    const int count = reached.count - zero.count;
+    if (count == 0) continue;
+    const int load = reached.first + (zero.first == reached.first ? zero.count : 0);
     double* y = &x(load, node.first);
     solve_triangle(node.block, node.width(), node.height, true, y, ld, count);
     if (node.n_below == 0) continue;

@@ -35,7 +35,10 @@ class SupernodalFactor {
 
   /// Ys L_sᵀ = Xs of the leading blocks s: the first `active[l]` entries of load l become L⁻¹ x,
   /// the others are not meaningful. `active` (n_loads) is monotone, in either direction.
-  void forward(MatrixXd& x, std::span<const int> active) const;
+  void forward(MatrixXd& x, std::span<const int> active) const { forward(x, active, size()); }
+  /// The same for loads that are zero but for the last `tail` of their active entries: what comes
+  /// before is passed over.
+  void forward(MatrixXd& x, std::span<const int> active, int tail) const;
 
   /// Writes entries [first, last) of loads [load, load + count) of the right-hand side, just
   /// before backward() needs them.

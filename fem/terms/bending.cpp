@@ -127,6 +127,7 @@ class Bending final : public Term {
     gradient_.add_tangent(*this, e, x, w, tangent);
   }
   std::string name() const override { return "bending"; }
+  bool is_elastic() const override { return true; }
 
   double strain_energy(int e, const Local& x) const override {
     if (free_.has(e)) return FreeElastic(density_, free_.of(e)).energy(x.q);

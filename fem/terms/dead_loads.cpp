@@ -83,6 +83,10 @@ class EdgeLoad final : public DeadLoad {
     check(element, "load of edge '" + edge_ + "'");
     share_.assign(static_cast<size_t>(element.n_elements()), {});
     const std::vector<NodeVectors> nodes = element.edge(edge_);
+    if (nodes.size() == 1)
+      throw Error::input("load of edge '" + edge_ +
+                         "': the end of a beam is one node; a point force loads it, and a surface "
+                         "load [N/m²] all of the beam");
     const GaussRule& rule = gauss(2);  // exact for the cubic N
     for (size_t i = 0; i + 1 < nodes.size(); ++i) {
       const Vec2 from = nodes[i].material, along = nodes[i + 1].material - from;

@@ -117,6 +117,7 @@ class Membrane final : public Term {
     tangent += by_columns.transpose();
   }
   std::string name() const override { return "membrane"; }
+  bool is_elastic() const override { return true; }
 
   void add_free_force(int e, const Local& x, FreeForce& force) const override {
     FreeElastic(density_, free_.of(e)).add_force(x.q, force);

@@ -49,8 +49,8 @@ struct BodyOutcome {
 };
 
 struct DesignSettings {
-  int sharp_every = 25;  ///< iterations between sharp evaluations; 0: only at the end
-  optim::Settings optimizer;
+  int sharp_every = 25;       ///< iterations between sharp evaluations; 0: only at the end
+  optim::Settings optimizer;  ///< max_iterations 0: designs are analysed, at their last band
 };
 
 /// Looks on; false stops the run after the current iteration.

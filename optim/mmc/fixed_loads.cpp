@@ -1,6 +1,10 @@
 #include "optim/mmc/fixed_loads.h"
 
+#include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include "optim/mmc/mmc_problem.h"
 #include "optim/mmc/static_loads.h"
@@ -9,10 +13,41 @@ namespace flexmorph::mmc {
 
 namespace {
 
+constexpr double kSmall = 1e-12;    // of the growth: round-off of the rigid motion taken off it
 constexpr double kLeftOut = 1e-10;  // part of the energy that compression may leave out
 
 void refuse(const LoadCase& load, const std::string& what) {
   throw Error::input("load '" + load.name + "': " + what);
+}
+
+/// Does the node belong to a cell of the domain?
+bool exists(const Grid& g, std::span<const signed char> outside, int node) {
+  const int i = node / (g.ny + 1), j = node % (g.ny + 1);
+  for (int ci = std::max(0, i - 1); ci <= std::min(g.nx - 1, i); ++ci)
+    for (int cj = std::max(0, j - 1); cj <= std::min(g.ny - 1, j); ++cj)
+      if (outside.empty() || outside[static_cast<std::size_t>(g.cell(ci, cj))] == 0) return true;
+  return false;
+}
+
+/// e + ρ of one unit of growth (2 n_nodes): free growth about the middle of the plate, turned and
+/// shifted so that it leaves the held displacements as near to zero as it can.
+VectorXd growth_on(std::span<const fem::HeldUnknown> held, const Grid& g) {
+  MatrixXd rigid = MatrixXd::Zero(2 * static_cast<Eigen::Index>(g.n_nodes()), 3);
+  VectorXd growth(rigid.rows());
+  const Vec2 middle(g.x0 + 0.5 * g.width, g.y0 + 0.5 * g.height);
+  for (int node = 0; node < g.n_nodes(); ++node) {
+    const Vec2 at = g.node_position(node / (g.ny + 1), node % (g.ny + 1)) - middle;
+    growth.segment<2>(2 * node) = at;
+    rigid.block<2, 3>(2 * node, 0) << 1, 0, -at.y(), 0, 1, at.x();
+  }
+  MatrixXd rigid_held(static_cast<Eigen::Index>(held.size()), 3);
+  VectorXd growth_held(rigid_held.rows());
+  for (Eigen::Index k = 0; k < growth_held.size(); ++k) {
+    const fem::HeldUnknown& h = held[static_cast<std::size_t>(k)];
+    rigid_held.row(k) = rigid.row(2 * h.node + h.component);
+    growth_held(k) = growth(2 * h.node + h.component);
+  }
+  return growth - rigid * rigid_held.completeOrthogonalDecomposition().solve(growth_held);
 }
 
 }  // namespace
@@ -37,8 +72,12 @@ FixedLoads::FixedLoads(const Grid& grid, const fem::PlaneSection& section,
         if (row >= 0) loads_(l, row) += f.force[c];
       }
     }
-    if (loads_.row(l).isZero(0)) refuse(load, "nothing of it acts on a displacement that is free");
+    const double a = load.thermal_stretch;
+    if (!(a > -1) || !std::isfinite(a)) refuse(load, "a thermal stretch is a number above -1");
+    if (loads_.row(l).isZero(0) && a == 0)
+      refuse(load, "nothing of it acts on a displacement that is free");
   }
+  warm_up(section, outside, held, loads);
   solved_ = loads_;
   if (!compress || n == 1) return;
   factorize(VectorXd::Ones(grid.n_cells()));
@@ -49,6 +88,52 @@ FixedLoads::FixedLoads(const Grid& grid, const fem::PlaneSection& section,
   if (U.cols() >= n) return;
   solved_ = U.transpose() * (roots.asDiagonal() * loads_);
   solved_weights_ = VectorXd::Ones(U.cols());
+}
+
+/// What there is to know about heat; nothing when all loads are cold.
+void FixedLoads::warm_up(const fem::PlaneSection& section, std::span<const signed char> outside,
+                         std::span<const fem::HeldUnknown> held, std::span<const LoadCase> loads) {
+  const auto is_hot = [](const LoadCase& load) { return load.thermal_stretch != 0; };
+  if (std::none_of(loads.begin(), loads.end(), is_hot)) return;
+  const Grid& g = solver_.grid();
+  const auto n = static_cast<Eigen::Index>(loads.size());
+  stretch_.resize(n);
+  for (Eigen::Index l = 0; l < n; ++l)
+    stretch_(l) = loads[static_cast<std::size_t>(l)].thermal_stretch;
+
+  std::vector<fem::HeldUnknown> there;
+  std::copy_if(held.begin(), held.end(), std::back_inserter(there),
+               [&](const fem::HeldUnknown& h) { return exists(g, outside, h.node); });
+  growth_ = growth_on(there, g);
+  MatrixXd prescribed = MatrixXd::Zero(1, growth_.size());
+  const double large = g.width + g.height;
+  for (const fem::HeldUnknown& h : there) {
+    const double left = growth_(2 * h.node + h.component);
+    if (std::abs(left) > kSmall * large) prescribed(0, 2 * h.node + h.component) = -left;
+  }
+  std::vector<int> rows;
+  for (int k = 0; k < growth_.size(); ++k) rows.push_back(solver_.row(k / 2, k % 2));
+  const bool holds = !prescribed.isZero(0);
+  for (Eigen::Index l = 0; l < n && !holds; ++l)
+    if (loads_.row(l).isZero(0))
+      refuse(loads[static_cast<std::size_t>(l)],
+             "heat alone, and the supports let the plate grow: nothing is strained");
+  if (!holds) return;
+  std::vector<int> lines(loads.size());
+  for (std::size_t l = 0; l < loads.size(); ++l) lines[l] = is_hot(loads[l]) ? 0 : -1;
+  held_.emplace(HeldGrowth::Plate{g,
+                                  section,
+                                  std::move(rows),
+                                  solver_.n_unknowns(),
+                                  std::move(prescribed),
+                                  {0},
+                                  {outside.begin(), outside.end()}},
+                std::move(lines), stretch_, solved_weights_);
+}
+
+HeldGrowth& FixedLoads::held_at(const VectorXd& stiffness) {
+  held_->update(stiffness, [this](MatrixXd& x) { solver_.solve(x); });
+  return *held_;
 }
 
 void FixedLoads::factorize(const VectorXd& stiffness) {
@@ -65,6 +150,7 @@ void FixedLoads::evaluate(const VectorXd& stiffness, const VectorXd& mass, Value
   const double factored = cpu_seconds();
   u_ = solved_;
   solver_.solve(u_);
+  if (held_) held_at(stiffness);
   const double solved = cpu_seconds();
   solver_.cell_energies(u_, solved_weights_, energies_);
   // 2 F . u - u . K u: equal to F . u at the solution, but round-off in u enters squared.
@@ -72,6 +158,7 @@ void FixedLoads::evaluate(const VectorXd& stiffness, const VectorXd& mass, Value
             stiffness.dot(energies_);
   value.d_stiffness = -energies_;
   value.d_mass.setZero(mass.size());
+  if (held_) held_->add_to(value);
   if (!std::isfinite(value.f) || !value.d_stiffness.allFinite())
     throw Error::numerical("compliance: the objective or its derivative is not finite");
   seconds_ = {factored - start, solved - factored, cpu_seconds() - solved};
@@ -83,11 +170,13 @@ void FixedLoads::evaluate_each(const VectorXd& stiffness, const VectorXd& /*mass
   const double factored = cpu_seconds();
   u_ = loads_;
   solver_.solve(u_);
+  if (held_) held_at(stiffness);
   const double solved = cpu_seconds();
   solver_.cell_energies(u_, each.d_stiffness);
   each.f = 2 * loads_.cwiseProduct(u_).rowwise().sum() - each.d_stiffness * stiffness;
   each.d_stiffness *= -1;
   each.d_mass.resize(0, 0);
+  if (held_) held_->add_to(each);
   if (!each.f.allFinite() || !each.d_stiffness.allFinite())
     throw Error::numerical("compliance: a load's objective or its derivative is not finite");
   seconds_ = {factored - start, solved - factored, cpu_seconds() - solved};
@@ -97,7 +186,9 @@ VectorXd FixedLoads::individual(const VectorXd& stiffness, const VectorXd& /*mas
   factorize(stiffness);
   u_ = loads_;
   solver_.solve(u_);
-  return loads_.cwiseProduct(u_).rowwise().sum();
+  VectorXd compliances = loads_.cwiseProduct(u_).rowwise().sum();
+  if (held_) held_at(stiffness).add_to(compliances);
+  return compliances;
 }
 
 VectorXd FixedLoads::displacement(const VectorXd& stiffness, const VectorXd& /*mass*/, int load) {
@@ -112,7 +203,13 @@ VectorXd FixedLoads::displacement(const VectorXd& stiffness, const VectorXd& /*m
     for (int c = 0; c < 2; ++c) {
       const int row = solver_.row(node, c);
       if (row >= 0) at_nodes[2 * node + c] = u(0, row);
+      if (row >= 0 && stretch_.size() > 0)
+        at_nodes[2 * node + c] += stretch_(load) * growth_[2 * node + c];
     }
+  if (!held_) return at_nodes;
+  const VectorXd thermal = held_at(stiffness).displacement(load);
+  for (int k = 0; k < at_nodes.size(); ++k)
+    if (solver_.row(k / 2, k % 2) >= 0) at_nodes[k] += thermal[k];
   return at_nodes;
 }
 

@@ -1,32 +1,40 @@
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "fem/esl_set.h"
 #include "fem/solve/plate_solver.h"
+#include "optim/mmc/held_growth.h"
 #include "optim/mmc/load_response.h"
 
 namespace flexmorph::mmc {
 
-/// Nodal forces that act at the same time.
+/// What acts on the plate at the same time: nodal forces, and heat.
 struct LoadCase {
   std::string name;
   double weight = 1;
   std::vector<fem::NodalForce> forces;
+  /// a = α ΔT of the whole plate: free, it is 1 + a times as large [-]
+  double thermal_stretch = 0;
 };
 
 /// The statics of a plate at rest: loads that do not follow the design, one set of supports for all
 /// of them. Derivatives by the mass factors vanish.
+///
+/// A hot plate is held where it was while cold, u = 0: supports prescribe the elastic displacement
+/// w_c = -a (X - X₀, Y - Y₀) of the held components, X₀ any point. A rigid motion ρ takes off what
+/// it can of that (least squares, small rotation), so that supports that let the plate grow cost
+/// nothing, and what is left makes thermal stress (HeldGrowth).
 class FixedLoads final : public LoadResponse {
  public:
   /// @param outside   cells outside of the domain, see PlateSolver
   /// @param compress  the weighted sum depends on Σ w F Fᵀ only: evaluate() solves as many
   ///        right-hand sides as that has directions (design.md section 9)
-  /// @throws Error (input) for no loads, loads that are zero or act where nothing can move, weights
-  ///         that are not positive.
+  /// @throws Error (input) for no loads, loads that are zero or act where nothing can move, heat
+  ///         alone on a plate that its supports let grow, weights that are not positive.
   FixedLoads(const Grid& grid, const fem::PlaneSection& section,
              std::span<const signed char> outside, std::span<const fem::HeldUnknown> held,
              std::span<const LoadCase> loads, bool compress);
@@ -37,18 +45,26 @@ class FixedLoads final : public LoadResponse {
   VectorXd displacement(const VectorXd& stiffness, const VectorXd& mass, int load) override;
 
   int n_loads() const override { return static_cast<int>(loads_.rows()); }
-  int n_right_hand_sides() const override { return static_cast<int>(solved_.rows()); }
+  int n_right_hand_sides() const override {
+    return static_cast<int>(solved_.rows()) + (held_ ? held_->n_lines() : 0);
+  }
   int factorizations() const override { return factorizations_; }
   Seconds seconds() const override { return seconds_; }
 
  private:
   void factorize(const VectorXd& stiffness);
+  void warm_up(const fem::PlaneSection& section, std::span<const signed char> outside,
+               std::span<const fem::HeldUnknown> held, std::span<const LoadCase> loads);
+  HeldGrowth& held_at(const VectorXd& stiffness);
 
   fem::PlateSolver solver_;
   MatrixXd loads_;   // F (n_loads x n_unknowns)
   MatrixXd solved_;  // what evaluate() solves: loads, or the leading combinations of sqrt(w) F
   VectorXd solved_weights_, factored_, energies_;
   MatrixXd u_;
+  std::optional<HeldGrowth> held_;  // where supports hold back the growth of a hot plate
+  VectorXd stretch_;                // a of each load; empty when all are cold
+  VectorXd growth_;                 // e + ρ of one unit (2 n_nodes) [m]
   int factorizations_ = 0;
   Seconds seconds_;
 };

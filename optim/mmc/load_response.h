@@ -6,6 +6,8 @@ namespace flexmorph::mmc {
 
 /// What a design problem asks of the statics of one plate under many loads: compliances
 /// C_l = F_l . u_l with K(b) u_l = F_l, and their derivatives by the factors of every design cell.
+/// Of a hot plate C_l is u_lᵀ K u_l of the elastic displacements, twice the elastic energy: heat
+/// counts as far as supports hold its growth back (HeldGrowth).
 ///
 /// Factors are per cell: stiffness (n_cells, 0..1), mass (n_cells, 0..1, 0 in the void).
 class LoadResponse {
@@ -16,6 +18,9 @@ class LoadResponse {
   struct Value {
     double f = 0;
     VectorXd d_stiffness, d_mass;  ///< (n_cells)
+    /// The part of d_stiffness that heat adds where supports hold its growth back (n_cells), or
+    /// empty: its sign is that of an energy, while the rest has the other one.
+    VectorXd d_held;
   };
   /// One factorization, one block solve, one energy pass.
   /// @throws Error (numerical) when K cannot be factored or f is not finite.
@@ -33,7 +38,8 @@ class LoadResponse {
   /// C_l of every load at the given factors (n_loads).
   virtual VectorXd individual(const VectorXd& stiffness, const VectorXd& mass) = 0;
 
-  /// Displacements of one load, node by node (2 n_nodes), at the given factors.
+  /// Displacements of one load, node by node (2 n_nodes), at the given factors: of a hot plate all
+  /// of it, thermal growth included, so that it is zero where held.
   virtual VectorXd displacement(const VectorXd& stiffness, const VectorXd& mass, int load) = 0;
 
   virtual int n_loads() const = 0;

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <cstddef>
 #include <ctime>
+#include <optional>
 #include <span>
 #include <utility>
 
+#include "optim/mmc/held_growth.h"
 #include "optim/mmc/static_loads.h"
 
 namespace flexmorph::mmc {
@@ -25,6 +27,10 @@ void check_set(const fem::EslSet& set, const Grid& g, bool needs_deformation, in
            std::to_string(g.nx) + ")");
   }
   if (!std::isfinite(set.weight) || set.weight < 0) refuse(where + "a weight is at least 0");
+  if (!std::isfinite(set.thermal_stretch) || !(set.thermal_stretch > -1) ||
+      !std::isfinite(set.held_stretch) || !std::isfinite(set.held_end_stretch)) {
+    refuse(where + "a thermal stretch is a number above -1");
+  }
   const VectorXd& field = needs_deformation ? set.deformation : set.acceleration;
   if (field.size() != 2 * g.n_nodes() || !field.allFinite()) {
     refuse(where + (needs_deformation ? "the deformation" : "the acceleration") +
@@ -45,6 +51,13 @@ void check(const fem::EslSets& loads, const ComplianceSettings& settings,
         "'inertia' with support 'far_end': loads that follow the design need a reaction on the "
         "root line that follows it too, which is what support 'moving_root' is; use that, or "
         "'frozen' or 'stiffness' loads");
+  }
+  if (settings.support == Support::far_end &&
+      std::any_of(loads.sets.begin(), loads.sets.end(),
+                  [](const fem::EslSet& s) { return s.held_end_stretch != 0; })) {
+    refuse(
+        "a hot plate whose far edge a joint holds across, with support 'far_end': that one clamps "
+        "an edge of the grid which is not held in the motion; use 'moving_root'");
   }
   double sum = 0;
   for (std::size_t l = 0; l < loads.sets.size(); ++l) {
@@ -99,11 +112,13 @@ struct Compliance::Impl {
   VectorXd factored;       // stiffness factors the solver holds
   MatrixXd F, work, U, Z;  // reused by every evaluation
   VectorXd energies, products;
+  std::optional<HeldGrowth> held;  // where edges cannot grow with a hot plate
+  VectorXd stretch;                // a of each load; empty when all are cold
   Seconds seconds;
   int factorizations = 0;
 
   Impl(const fem::EslSets& sets, const fem::PlaneSection& section, int root)
-      : solver(sets.grid, section, root), inertia(solver, section) {}
+      : solver(sets.grid, section, root, edge_stiffness(sets, section)), inertia(solver, section) {}
 
   const StaticLoads& solved() const { return path == Path::each ? loads : basis; }
 
@@ -114,8 +129,14 @@ struct Compliance::Impl {
     solver.factorize(stiffness);
     factored = stiffness;
   }
-  void fixed_loads(const fem::EslSets& sets, const ComplianceSettings& settings,
-                   const VectorXd& stiffness0, const VectorXd& mass0);
+  HeldGrowth& held_at(const VectorXd& stiffness) {
+    held->update(stiffness, solver);
+    return *held;
+  }
+  void warm_up(const fem::EslSets& sets, const fem::PlaneSection& section);
+  void fixed_loads(const fem::EslSets& sets, const fem::PlaneSection& section,
+                   const ComplianceSettings& settings, const VectorXd& stiffness0,
+                   const VectorXd& mass0);
   void keep_outside(MatrixXd& field, std::span<const int> columns, bool keep_root_line) const;
   void compress(double tolerance);
   void solve_all();
@@ -134,10 +155,21 @@ void Compliance::Impl::keep_outside(MatrixXd& field, std::span<const int> column
   }
 }
 
+/// What there is to know about heat; nothing when all loads are cold.
+void Compliance::Impl::warm_up(const fem::EslSets& sets, const fem::PlaneSection& section) {
+  held = held_edges(sets, section, solver, root_columns, weights);
+  const auto is_hot = [](const fem::EslSet& s) { return s.thermal_stretch != 0; };
+  if (!held && std::none_of(sets.sets.begin(), sets.sets.end(), is_hot)) return;
+  stretch.resize(weights.size());
+  for (Eigen::Index l = 0; l < stretch.size(); ++l)
+    stretch(l) = sets.sets[static_cast<std::size_t>(l)].thermal_stretch;
+}
+
 /// The loads of definitions `frozen` and `stiffness`. With the far end held, the nodal forces on
 /// the root line belong to them: they are what holds the plate there in the motion.
-void Compliance::Impl::fixed_loads(const fem::EslSets& sets, const ComplianceSettings& settings,
-                                   const VectorXd& stiffness0, const VectorXd& mass0) {
+void Compliance::Impl::fixed_loads(const fem::EslSets& sets, const fem::PlaneSection& section,
+                                   const ComplianceSettings& settings, const VectorXd& stiffness0,
+                                   const VectorXd& mass0) {
   const Grid& g = sets.grid;
   const std::vector<int> roots = root_columns_of(sets);
   const bool far_end = settings.support == Support::far_end;
@@ -160,6 +192,11 @@ void Compliance::Impl::fixed_loads(const fem::EslSets& sets, const ComplianceSet
                 .deformation.segment(2 * g.node(i, 0), 2 * (g.ny + 1))
                 .transpose();
       }
+    }
+    // What loads answer for: w -> μ = w - g τ at the design of the motion.
+    if (auto edges = held_edges(sets, section, solver, roots, weights)) {
+      edges->update(stiffness0, solver);
+      edges->take_from(u);
     }
     keep_outside(u, roots, false);
   }
@@ -239,10 +276,11 @@ Compliance::Compliance(const fem::EslSets& loads, const fem::PlaneSection& secti
   }
   m.solved_weights = m.weights;
   m.solved_columns = m.root_columns;
+  m.warm_up(loads, section);
   if (settings.loads == LoadDefinition::inertia) {
     m.loads = inertia_loads(loads, m.solver);
   } else {
-    m.fixed_loads(loads, settings, stiffness0, mass0);
+    m.fixed_loads(loads, section, settings, stiffness0, mass0);
   }
   if (settings.compress) m.compress(settings.compression_tolerance);
 }
@@ -257,11 +295,13 @@ void Compliance::evaluate(const VectorXd& stiffness, const VectorXd& mass, Value
   const double factored = cpu_seconds();
   m.inertia.forces(m.solved(), mass, m.F);
   m.solve_all();
+  if (m.held) m.held_at(stiffness);
   const double solved = cpu_seconds();
 
   m.solver.cell_energies(m.U, m.solved_weights, m.energies, m.solved_columns);
   // 2 F . u - u . K u: equal to F . u at the solution, but round-off in u enters squared.
-  value.f = 2 * m.F.cwiseProduct(m.Z).sum() - stiffness.dot(m.energies);
+  value.f = 2 * m.F.cwiseProduct(m.Z).sum() - stiffness.dot(m.energies) -
+            m.solver.edge_energy(m.U, m.solved_weights);
   value.d_stiffness = -m.energies;
   if (m.loads.follows_design()) {
     m.inertia.products(m.Z, m.solved().acceleration, m.products);
@@ -269,6 +309,7 @@ void Compliance::evaluate(const VectorXd& stiffness, const VectorXd& mass, Value
   } else {
     value.d_mass.setZero(m.solver.grid().n_cells());
   }
+  if (m.held) m.held->add_to(value);
   if (!std::isfinite(value.f) || !value.d_stiffness.allFinite() || !value.d_mass.allFinite()) {
     throw Error::numerical("compliance: the objective or its derivative is not finite");
   }
@@ -283,6 +324,7 @@ void Compliance::evaluate_each(const VectorXd& stiffness, const VectorXd& mass, 
   m.inertia.forces(m.loads, mass, m.work);
   MatrixXd u = m.work;
   m.solver.solve(u, m.root_columns);
+  if (m.held) m.held_at(stiffness);
   const double solved = cpu_seconds();
 
   each.d_stiffness.resize(u.rows(), stiffness.size());
@@ -293,12 +335,14 @@ void Compliance::evaluate_each(const VectorXd& stiffness, const VectorXd& mass, 
     m.U = u.row(l);
     m.solver.cell_energies(m.U, one, m.energies,
                            std::span<const int>(&m.root_columns[static_cast<std::size_t>(l)], 1));
-    each.f(l) = 2 * m.work.row(l).dot(u.row(l)) - stiffness.dot(m.energies);
+    each.f(l) = 2 * m.work.row(l).dot(u.row(l)) - stiffness.dot(m.energies) -
+                m.solver.edge_energy(m.U, one);
     each.d_stiffness.row(l) = -m.energies;
     if (!m.loads.follows_design()) continue;
     m.inertia.products(m.U, m.loads.acceleration.row(l), m.products);
     each.d_mass.row(l) = -2 * m.products;
   }
+  if (m.held) m.held->add_to(each);
   if (!each.f.allFinite() || !each.d_stiffness.allFinite() || !each.d_mass.allFinite()) {
     throw Error::numerical("compliance: a load's objective or its derivative is not finite");
   }
@@ -313,7 +357,9 @@ VectorXd Compliance::individual(const VectorXd& stiffness, const VectorXd& mass)
   m.inertia.forces(m.loads, mass, m.work);
   MatrixXd u = m.work;
   m.solver.solve(u, m.root_columns);
-  return m.work.cwiseProduct(u).rowwise().sum();
+  VectorXd compliances = m.work.cwiseProduct(u).rowwise().sum();
+  if (m.held) m.held_at(stiffness).add_to(compliances);
+  return compliances;
 }
 
 void Compliance::Impl::solve_single(int load, const VectorXd& mass, MatrixXd& u) {
@@ -338,12 +384,22 @@ VectorXd Compliance::displacement(const VectorXd& stiffness, const VectorXd& mas
     at_nodes.segment(2 * g.node(i, 0), 2 * (g.ny + 1)) =
         u.block(0, m.solver.row(i, 0), 1, 2 * (g.ny + 1)).transpose();
   }
+  if (m.held) at_nodes += m.held_at(stiffness).displacement(load);
+  if (m.stretch.size() > 0) {
+    const double a = m.stretch(load);
+    const int root = m.root_columns[static_cast<std::size_t>(load)];
+    for (int n = g.node(root, 0); n < g.n_nodes(); ++n)
+      at_nodes.segment<2>(2 * n) += a * (g.node_position(n / (g.ny + 1), n % (g.ny + 1)) -
+                                         Vec2(g.node_position(root, 0).x(), 0));
+  }
   return at_nodes;
 }
 
 int Compliance::n_loads() const { return static_cast<int>(impl_->weights.size()); }
 
-int Compliance::n_right_hand_sides() const { return static_cast<int>(impl_->solved().size()); }
+int Compliance::n_right_hand_sides() const {
+  return static_cast<int>(impl_->solved().size()) + (impl_->held ? impl_->held->n_lines() : 0);
+}
 
 LoadResponse::Seconds Compliance::seconds() const { return impl_->seconds; }
 

@@ -33,13 +33,20 @@ struct ComplianceSettings {
 ///
 /// Factors are per cell: stiffness (n_cells, 0..1), mass (n_cells, 0..1, 0 in the void).
 ///
-/// Source: P (33)-(35), design.md sections 8 and 9.
+/// Hot plates (EslSet::thermal_stretch = a): u is the elastic displacement, counted from the plate
+/// grown freely about its root, and f = Σ w_i u_iᵀ K u_i. Root lines that cannot grow with the
+/// plate prescribe u = -g (0, Y) there, g = EslSet::held_stretch, and their thermal stress counts:
+/// see HeldGrowth. With support `far_end` that is the clamp at the far end. Where a load is held at
+/// the other end too (EslSet::held_end_stretch), springs keep that edge straight and as wide as it
+/// is under all loads; their energy, next to nothing, belongs to f.
+///
+/// Source: P (33)-(35), design.md sections 8, 9 and 11.
 class Compliance final : public LoadResponse {
  public:
   /// @param stiffness0, mass0  factors of the design the motion was computed with; not read by
   ///        `inertia`.
-  /// @throws Error (input) for `inertia` with `far_end`, no loads, or loads that do not fit the
-  ///         grid.
+  /// @throws Error (input) for `inertia` or a held far edge with `far_end`, no loads, or loads that
+  ///         do not fit the grid.
   Compliance(const fem::EslSets& loads, const fem::PlaneSection& section,
              const ComplianceSettings& settings, const VectorXd& stiffness0, const VectorXd& mass0);
   ~Compliance() override;
@@ -49,6 +56,7 @@ class Compliance final : public LoadResponse {
   /// Never compressed.
   void evaluate_each(const VectorXd& stiffness, const VectorXd& mass, Each& each) override;
   VectorXd individual(const VectorXd& stiffness, const VectorXd& mass) override;
+  /// In front of the clamp; growth is counted from the clamp at Y = 0.
   VectorXd displacement(const VectorXd& stiffness, const VectorXd& mass, int load) override;
 
   int n_loads() const override;

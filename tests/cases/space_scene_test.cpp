@@ -158,6 +158,10 @@ TEST(SpaceScene, AnalysisAndIntegratorAreRead) {
   EXPECT_EQ(roll.observed.at(0).point, Vec2(1, 0.1));
   const Scene free = read("plate_pendulum", {"time.integrator=energy_momentum"});
   EXPECT_EQ(build_mechanism(free).motion.integrator, "energy_momentum");
+  const Scene minimal =
+      read("plate_pendulum", {"time.integrator=minimal_coordinates", "time.tolerance=1e-6"});
+  EXPECT_EQ(build_mechanism(minimal).motion.integrator, "minimal_coordinates");
+  EXPECT_EQ(build_mechanism(minimal).motion.minimal_coordinates.tolerance, 1e-6);
   EXPECT_EQ(read("deploying_plate").observed.at(0).point, Vec2(0.9, 0.05));
 }
 
@@ -209,7 +213,7 @@ const Bad kBad[] = {
     {"unknown_integrator",
      kPendulum,
      {"time.integrator=euler"},
-     "an integrator is one of 'generalized_alpha', 'energy_momentum'"},
+     "an integrator is one of 'generalized_alpha', 'energy_momentum', 'minimal_coordinates'"},
     {"start_without_a_hub",
      kPendulum,
      {"time.start=prestretched"},
@@ -219,6 +223,18 @@ const Bad kBad[] = {
      {"time.integrator=energy_momentum"},
      "free material lines ([[body.line]]) need \"generalized_alpha\": \"energy_momentum\" does not "
      "know them"},
+    {"minimal_coordinates_with_free_lines",
+     kSleeve,
+     {"time.integrator=minimal_coordinates"},
+     "need \"generalized_alpha\": \"minimal_coordinates\" does not know them"},
+    {"tolerance_of_another_integrator",
+     kPendulum,
+     {"time.tolerance=1e-8"},
+     "only step = \"adaptive\" and \"minimal_coordinates\" have one"},
+    {"tolerance_too_small",
+     kPendulum,
+     {"time.integrator=minimal_coordinates", "time.tolerance=1e-15"},
+     "a tolerance lies between 1e-13 and 0.1"},
     {"energy_momentum_with_pressure",
      kPendulum,
      {"time.integrator=energy_momentum", "load=[{type='pressure', body='plate', pressure=1}]"},
@@ -370,7 +386,7 @@ const Bad kBad[] = {
     {"nothing_loads",
      kRoll,
      {"load=[]"},
-     "nothing loads the bodies: gravity or a [[load]] is missing"},
+     "nothing loads the bodies: gravity, a [[load]] or [body.heat] is missing"},
     {"static_flow",
      kRoll,
      {"body.element=ale_ancf_plate", "body.flow={speed=0.1, max_length=0.2, min_length=0.01}"},

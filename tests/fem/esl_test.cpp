@@ -81,7 +81,8 @@ TEST_F(Esl, FieldsAreThoseOfMaterialPointsInTheHubsAxes) {
   model.prepare(kTime);
   const testing::SmoothMotion motion(model.reference().q, 0.1 * model.scales().cwiseInverse(), 3);
   const State x = motion.state(kTime);
-  const Vec2 g(0.5, -9.81);
+  VectorXd g(2);
+  g << 0.5, -9.81;
   const EslSet set = load(x, {}, g);
   EXPECT_EQ(set.root_column, 5);
   EXPECT_NEAR(set.strain_energy, model.energies(x).strain, 0);
@@ -188,6 +189,166 @@ TEST_F(Esl, RootBetweenTwoColumnsIsOnTheNearerOne) {
     const Vec2 r = point_motion(model.body("plate"), x, at).position;
     const Vec2 u = turn(t).transpose() * (r - hub(t).origin) - (at - Vec2(root_line(t).value, 0));
     EXPECT_LT((set.deformation.segment<2>(2 * grid.node(20, 3)) - u).norm(), 1e-14);
+  }
+}
+
+/// ΔT in kelvin that rises and speeds up.
+Motion temperature(double t) {
+  const double s = t - kTime;
+  return {80 + 50 * s + 400 * s * s, 50 + 800 * s, 800};
+}
+constexpr double kExpansion = 1e-3;
+
+class HotEsl : public Esl {
+ protected:
+  HotEsl() { model.bodies()[0].heat = Heat{kExpansion, temperature}; }
+
+  EslSet load_of(const State& x, const AttachedForce& force) {
+    return load(x, {}, {}, {&force, 1});
+  }
+
+  /// Nodal values of r = R(t) (s (X - m₀), y(X - m₀, Y)) + o(t); y and its derivatives by x, y, xy.
+  template <class Across>
+  VectorXd grown(double t, const Across& across) {
+    VectorXd q(model.n_dofs());
+    model.prepare(t);
+    const Element& element = *model.bodies()[0].element;
+    const MatrixXd reference = element.reference();
+    const double s = model.bodies()[0].heat->stretch(t).value;
+    for (int k = 0; k < element.n_vectors(); ++k) {
+      const Vec2 X = reference.row(k - k % 4).transpose();
+      const double x = X.x() - root_line(t).value;
+      const Eigen::Vector4d y = across(x, X.y());
+      const Vec2 local(k % 4 == 0 ? s * x : k % 4 == 1 ? s : 0.0, y[k % 4]);
+      q.segment<2>(2 * k) = turn(t) * local + (k % 4 == 0 ? hub(t).origin : Vec2(0, 0));
+    }
+    return q;
+  }
+};
+
+// Issue line 11: a hot body that nothing holds back. Its loads are those of the mass where it is,
+// by the twice-differenced motion R (1 + a) (X - m₀) + o, also in the hub.
+TEST_F(HotEsl, FreeGrowthIsNoDeformation) {
+  const auto stretch = [](double t) { return 1 + kExpansion * temperature(t).value; };
+  const State x = state([&](double t) {
+    return grown(
+        t, [&](double, double y) { return Eigen::Vector4d(stretch(t) * y, 0, stretch(t), 0); });
+  });
+  const EslSet set = load(x);
+  EXPECT_NEAR(set.thermal_stretch, 0.08, 1e-15);
+  EXPECT_EQ(set.held_stretch, 0);
+  EXPECT_LT(set.deformation.norm(), 1e-13);
+  for (int i = 0; i <= grid.nx; ++i)
+    for (int j = 0; j <= grid.ny; j += 5) {
+      const Vec2 at = grid.node_position(i, j);
+      const auto position = [&](double dt) {
+        const double t = kTime + dt;
+        return Vec2(turn(t) * stretch(t) * (at - Vec2(root_line(t).value, 0)) + hub(t).origin);
+      };
+      const Vec2 a = turn(kTime).transpose() * second_difference(position, 1e-3);
+      EXPECT_LT((set.acceleration.segment<2>(2 * grid.node(i, j)) - a).norm(), 1e-7) << i;
+    }
+}
+
+// An edge that a share of the growth is left to holds back the rest, and that is deformation: what
+// is left of the motion without the growth of the plate.
+TEST_F(HotEsl, TheEdgeHoldsBackWhatItDoesNotTakePartIn) {
+  const double length = kEnd - kRoot;
+  for (const double share : {0.0, 0.4, 1.0}) {
+    const auto across = [&](double t) {
+      const double a = kExpansion * temperature(t).value;
+      return [&, a](double x, double y) {
+        const double s = x / length, grow = 1 + a * (share + (1 - share) * s * s);
+        const double slope = 2 * a * (1 - share) * s / length;
+        return Eigen::Vector4d(grow * y, slope * y, grow, slope);
+      };
+    };
+    const State x = state([&](double t) { return grown(t, across(t)); });
+    const EslSet set = load(x);
+    const double a = 0.08;
+    EXPECT_NEAR(set.thermal_stretch, a, 1e-15);
+    EXPECT_NEAR(set.held_stretch, (1 - share) * a, 1e-14);
+    if (share == 0) {
+      EXPECT_EQ(set.held_stretch, set.thermal_stretch);
+    }
+    for (int i = 0; i <= grid.nx; ++i)
+      for (int j = 0; j <= grid.ny; ++j) {
+        const Vec2 X = grid.node_position(i, j) - Vec2(kRoot, 0);
+        const double missing = (1 - share) * a * (1 - std::pow(X.x() / length, 2));
+        const Vec2 w(0, i < set.root_column ? 0.0 : -missing * X.y());
+        EXPECT_LT((set.deformation.segment<2>(2 * grid.node(i, j)) - w).norm(), 1e-14) << i;
+      }
+    // The continuation into the hub meets the plate on the root line: root between two columns.
+    const auto rigid = [&](double t, const Vec2& X) {
+      const double s = 1 + kExpansion * temperature(t).value;
+      const double s_y = 1 + share * kExpansion * temperature(t).value;
+      const Vec2 p = X - Vec2(root_line(t).value, 0);
+      return Vec2(turn(t) * Vec2(s * p.x(), s_y * p.y()) + hub(t).origin);
+    };
+    const Vec2 X = grid.node_position(2, 9);
+    const Vec2 expected = turn(kTime).transpose() *
+                          second_difference([&](double dt) { return rigid(kTime + dt, X); }, 1e-3);
+    EXPECT_LT((set.acceleration.segment<2>(2 * grid.node(2, 9)) - expected).norm(), 1e-7);
+  }
+}
+
+// The far edge: a where a joint keeps its width, however the plate is turned in the hub's axes; the
+// rest where it takes part; nothing where it grows freely, or nothing but a load is at it.
+TEST_F(HotEsl, TheFarEdgeIsHeldByItsJoint) {
+  const double length = kEnd - kRoot, a = 0.08;
+  const AttachedForce joint{{kEnd, 0}, true, {3, -5}, 0.7, true};
+  AttachedForce load = joint, inner = joint, point = joint;
+  load.held = false;
+  inner.material.x() = 0.2;
+  point.spread = false;
+  for (const double share : {0.0, 0.4, 1.0}) {
+    const auto across = [&](double x, double y) {
+      const double s = x / length, grow = 1 + a * (1 - (1 - share) * s * s);
+      const double slope = -2 * a * (1 - share) * s / length;
+      return Eigen::Vector4d(grow * y, slope * y, grow, slope);
+    };
+    for (const double angle : {0.0, 0.3}) {
+      State x = state([&](double t) { return grown(t, across); });
+      const Eigen::Matrix2d turned = rotation(angle);
+      for (Eigen::Index k = 0; k < x.q.size() / 2; ++k)
+        x.q.segment<2>(2 * k) = (turned * x.q.segment<2>(2 * k)).eval();
+      EXPECT_NEAR(load_of(x, joint).held_end_stretch, (1 - share) * a, 1e-14) << angle;
+      if (share == 0) {
+        EXPECT_EQ(load_of(x, joint).held_end_stretch, load_of(x, joint).thermal_stretch);
+      }
+      if (share == 1) {
+        EXPECT_EQ(load_of(x, joint).held_end_stretch, 0);
+      }
+      for (const AttachedForce& other : {load, inner, point})
+        EXPECT_EQ(load_of(x, other).held_end_stretch, 0);
+    }
+  }
+  model.bodies()[0].heat.reset();
+  EXPECT_EQ(load_of(state([&](double) { return model.reference().q; }), joint).held_end_stretch, 0);
+}
+
+// A hot body at its reference temperature is a cold one.
+TEST_F(HotEsl, WithoutRiseItIsCold) {
+  model.prepare(kTime);
+  const State x = testing::SmoothMotion(model.reference().q, 0.1 * model.scales().cwiseInverse(), 3)
+                      .state(kTime);
+  model.bodies()[0].heat->temperature = [](double) { return Motion{}; };
+  const EslSet hot = load(x);
+  model.bodies()[0].heat.reset();
+  const EslSet cold = load(x);
+  EXPECT_EQ(hot.deformation, cold.deformation);
+  EXPECT_LT((hot.acceleration - cold.acceleration).norm(), 1e-13 * cold.acceleration.norm());
+  EXPECT_EQ(hot.held_stretch, 0);
+  EXPECT_EQ(hot.thermal_stretch, 0);
+}
+
+TEST_F(HotEsl, RefusesATemperatureThatIsNone) {
+  model.prepare(kTime);
+  const State x = testing::SmoothMotion(model.reference().q, 0.1 * model.scales().cwiseInverse(), 3)
+                      .state(kTime);
+  for (const double bad : {-1001.0, std::nan("")}) {
+    model.bodies()[0].heat->temperature = [bad](double) { return Motion{bad, 0, 0}; };
+    EXPECT_THROW(load(x), Error);
   }
 }
 

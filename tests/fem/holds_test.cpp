@@ -158,6 +158,7 @@ TEST(Holds, SayWhatIsWrong) {
   };
   EXPECT_TRUE(has(message({{HoldPlace::at({0.4, 1}), NodeVector::r, {2}, {}}}), "no node"));
   EXPECT_TRUE(has(message({{HoldPlace::at({0, 0}), NodeVector::r, {3}, {}}}), "component 3"));
+  EXPECT_TRUE(has(message({{HoldPlace::at({0, 0}), NodeVector::r, {}, {}}}), "holds nothing"));
   EXPECT_TRUE(has(message({{{.edge = "top"}, NodeVector::r, {2}, {}}}), "'side_high'"));
   EXPECT_TRUE(has(message({{HoldPlace::at({0, 0}), NodeVector::r, {2}, {}},
                            {HoldPlace::at({0, 0}), NodeVector::r, {2}, testing::vector(0, 0, 1)}}),

@@ -341,5 +341,26 @@ TEST(SupernodalFactor, ScatteredRowsAndLeadingBlocks) {
   }
 }
 
+// Loads next to the clamp only: what the whole substitution gives, whatever the order of clamps.
+TEST(StaticSolver, LoadsAtTheClampSkipWhatIsZero) {
+  const Grid g{0, 0, 0.4, 0.1, 16, 4};
+  StaticSolver solver(g, kSection, 1);
+  std::mt19937 engine(9);
+  std::uniform_real_distribution<double> uniform(0.01, 1);
+  VectorXd factor(g.n_cells());
+  for (double& f : factor) f = uniform(engine);
+  solver.factorize(factor);
+  for (std::vector<int> roots : {std::vector{1, 2, 2, 5, 9, 15}, {15, 7, 3, 3, 1}, {4, 12, 1, 9}}) {
+    MatrixXd loads = MatrixXd::Zero(static_cast<Eigen::Index>(roots.size()), solver.n_unknowns());
+    for (Eigen::Index l = 0; l < loads.rows(); ++l)
+      for (int k = 0; k < 2 * (g.ny + 1); ++k)
+        loads(l, solver.row(roots[static_cast<std::size_t>(l)] + 1, 0) + k) = uniform(engine);
+    MatrixXd all = loads;
+    solver.solve(all, roots);
+    solver.solve_at_clamp(loads, roots);
+    EXPECT_LT((loads - all).norm(), 1e-12 * all.norm());
+  }
+}
+
 }  // namespace
 }  // namespace flexmorph::fem

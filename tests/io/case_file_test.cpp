@@ -234,10 +234,21 @@ TEST_F(CaseFiles, OverridesAreLocatedByTheirOption) {
             "--set time.end.x=1: time.end has no keys of its own");
   EXPECT_TRUE(contains(error(touch_all, {"a..b=1"}), "KEY is a dotted path"));
   EXPECT_TRUE(starts(error(touch_all, {"a=1 2"}), "--set a=1 2: VALUE is not TOML"));
-  EXPECT_TRUE(starts(error(touch_all, {"a="}), "--set a=: VALUE is not TOML"));
   EXPECT_EQ(error([](const Table& root) { root.table("verify").integer("mesh", "it", 1, 2); },
                   {"verify.step=1"}),
             "--set verify.step=1: verify.mesh is missing: it is a whole number between 1 and 2");
+}
+
+TEST_F(CaseFiles, OverridesWithoutAValueTakeKeysAway) {
+  const CaseFile file(scratch_.write("plate.toml", kText),
+                      Overrides{"verify=", "body.arm.thickness=", "nowhere.at.all="});
+  EXPECT_FALSE(file.root().has("verify"));
+  EXPECT_FALSE(arm(file.root()).has("thickness"));
+  EXPECT_EQ(plate(file.root()).number("thickness", any_number("it")), -0.002);
+  EXPECT_FALSE(file.root().has("nowhere"));
+  const CaseFile again(scratch_.write("again.toml", file.text()));
+  EXPECT_FALSE(again.root().has("verify"));
+  EXPECT_TRUE(again.root().has("time"));
 }
 
 // The effective case is a case again, with the changes in it and every other value unchanged.

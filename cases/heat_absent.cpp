@@ -1,0 +1,11 @@
+#include "cases/heat.h"
+
+namespace flexmorph::cases {
+
+BodyHeat read_heat(const io::Table& t, const Scene&, const Body&) {
+  t.fail("this flexmorph was built without heat: FLEXMORPH_HEAT=ON builds it");
+}
+
+void add_heat(const Scene&, Mechanism&) {}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,199 @@
+#include "fem/thermal/heated.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace flexmorph::fem {
+namespace {
+
+class Heated final : public Term {
+ public:
+  Heated(std::unique_ptr<Term> elastic, const Heat& heat)
+      : elastic_(std::move(elastic)), heat_(heat), power_(heat.volume_exponent()) {}
+
+  void prepare(const Element& element, const Factors& factors, bool all) override {
+    element_ = &element;
+    elastic_->prepare(element, factors, all);
+  }
+
+  void heat_to(double t) override {
+    elastic_->heat_to(t);
+    rise_ = heat_.stretch(t);
+    rise_.value -= 1;
+    t_ = t;
+    update();
+  }
+  void scale_load(double factor) override {
+    elastic_->scale_load(factor);
+    factor_ = factor;
+    update();
+  }
+
+  void add_force(int e, const Local& x, LocalRows& force) const override {
+    LocalRows f = LocalRows::Zero(force.rows(), force.cols());
+    elastic_->add_force(e, shrunk(x), f);
+    force += force_scale_ * f;
+  }
+  void add_tangent(int e, const Local& x, const Weights& w, LocalTangent& tangent) const override {
+    elastic_->add_tangent(e, shrunk(x), scaled(w), tangent);
+  }
+
+  void add_forces(const Batch& x, Lanes* force) const override {
+    Lanes unknowns[kMaxLocal], f[kMaxLocal];
+    const int n = x.n_local();
+    const Batch cold = shrunk(x, unknowns);
+    std::fill(f, f + n, Lanes{});
+    elastic_->add_forces(cold, f);
+    for (int k = 0; k < n; ++k) force[k] += force_scale_ * f[k];
+  }
+  void add_tangents(const Batch& x, const Weights& w, Lanes* tangent) const override {
+    Lanes unknowns[kMaxLocal];
+    elastic_->add_tangents(shrunk(x, unknowns), scaled(w), tangent);
+  }
+
+  void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override {
+    LocalRows f = LocalRows::Zero(force.rows(), force.cols());
+    elastic_->add_mean_force(e, shrunk(x), f);
+    force += force_scale_ * f;
+  }
+  void add_mean_tangent(int e, const LocalStep& x, const Weights& w,
+                        LocalTangent& tangent) const override {
+    elastic_->add_mean_tangent(e, shrunk(x), scaled(w), tangent);
+  }
+
+  void add_free_force(int e, const Local& x, FreeForce& force) const override {
+    FreeForce f = FreeForce::Zero(force.size());
+    elastic_->add_free_force(e, shrunk(x), f);
+    const Eigen::Index n = x.q.size();
+    force.head(n) += force_scale_ * f.head(n);
+    force.tail(force.size() - n) += energy_scale_ * f.tail(force.size() - n);
+  }
+  void add_free_tangent(int e, const Local& x, const Weights& w,
+                        FreeTangent& tangent) const override {
+    FreeTangent k = FreeTangent::Zero(tangent.rows(), tangent.cols());
+    elastic_->add_free_tangent(e, shrunk(x), w, k);
+    const Eigen::Index n = x.q.size(), m = tangent.rows() - n;
+    tangent.topLeftCorner(n, n) += tangent_scale_ * k.topLeftCorner(n, n);
+    tangent.topRightCorner(n, m) += force_scale_ * k.topRightCorner(n, m);
+    tangent.bottomLeftCorner(m, n) += force_scale_ * k.bottomLeftCorner(m, n);
+    tangent.bottomRightCorner(m, m) += energy_scale_ * k.bottomRightCorner(m, m);
+  }
+
+  double strain_energy(int e, const Local& x) const override {
+    return energy_scale_ * elastic_->strain_energy(e, shrunk(x));
+  }
+  double flow_power(int e, const Local& x) const override {
+    return energy_scale_ * elastic_->flow_power(e, shrunk(x));
+  }
+  void add_line_energy(std::span<const ShapeTable> line, const Local& x,
+                       LineEnergy& out) const override {
+    LineEnergy cold;
+    cold.set_zero(out.stiffness.size());
+    elastic_->add_line_energy(line, shrunk(x), cold);
+    out.stiffness += energy_scale_ * cold.stiffness;
+    out.mass += energy_scale_ * cold.mass;
+    out.none += energy_scale_ * cold.none;
+  }
+
+  double heat_power(int e, const Local& x) const override {
+    if (rate_ == 0) return 0;
+    return rate_ / s_ * (power_ * strain_energy(e, x) - work_of_growth(e, x));
+  }
+
+  bool is_elastic() const override { return true; }
+  std::string name() const override { return elastic_->name(); }
+
+ private:
+  static constexpr int kMaxLocal = kMaxShapes * kMaxDim;
+
+  void update() {
+    s_ = 1 + factor_ * rise_.value;
+    rate_ = factor_ * rise_.rate;
+    if (!(s_ > 0) || !std::isfinite(s_) || !std::isfinite(rate_)) {
+      char text[120];
+      std::snprintf(text, sizeof text, "heat: 1 + alpha dT = %.6g at t = %.6g s, must be positive",
+                    s_, t_);
+      throw Error::numerical(text);
+    }
+    energy_scale_ = std::pow(s_, power_);
+    force_scale_ = energy_scale_ / s_;
+    tangent_scale_ = force_scale_ / s_;
+  }
+
+  Weights scaled(const Weights& w) const { return {tangent_scale_ * w.q, 0, 0}; }
+
+  /// Elastic terms see q alone.
+  LocalRows shrunk(const LocalRows& q) const { return q * (1 / s_); }
+  Local shrunk(const Local& x) const { return {shrunk(x.q), x.v, x.a}; }
+  LocalStep shrunk(const LocalStep& x) const {
+    return {shrunk(x.start), shrunk(x.end), shrunk(x.mean)};
+  }
+  /// The batch over s, kept in `room` (kMaxLocal).
+  Batch shrunk(const Batch& x, Lanes* room) const {
+    const double scale = 1 / s_;
+    for (int k = 0; k < x.n_local(); ++k) room[k] = scale * x.q[k];
+    Batch out = x;
+    out.q = room;
+    return out;
+  }
+
+  /// F · q. Positions count from the first one, which changes nothing (translations strain nothing)
+  /// and loses no digits far from the origin.
+  double work_of_growth(int e, const Local& x) const {
+    LocalRows force;
+    if (element_->free_sides(e).empty()) {
+      force.setZero(x.q.rows(), x.q.cols());
+      add_force(e, x, force);
+    } else {
+      FreeForce all = FreeForce::Zero(x.q.size() + 4);
+      add_free_force(e, x, all);
+      force = Eigen::Map<const LocalRows>(all.data(), x.q.rows(), x.q.cols());
+    }
+    const auto vectors = element_->vectors(e);
+    const Eigen::Index dim = x.q.cols();
+    const double* first = nullptr;
+    double out = 0;
+    for (Eigen::Index k = 0; k < x.q.rows(); ++k) {
+      const double *q = x.q.data() + dim * k, *f = force.data() + dim * k;
+      const bool position = element_->is_position(vectors[static_cast<size_t>(k)]);
+      if (position && !first) first = q;
+      for (Eigen::Index c = 0; c < dim; ++c) out += f[c] * (q[c] - (position ? first[c] : 0.0));
+    }
+    return out;
+  }
+
+  std::unique_ptr<Term> elastic_;
+  Heat heat_;
+  int power_;
+  const Element* element_ = nullptr;  // of the last prepare()
+  Motion rise_;                       // α ΔT at t_
+  double t_ = 0, factor_ = 1;
+  double s_ = 1, rate_ = 0;                                        // s, ṡ
+  double energy_scale_ = 1, force_scale_ = 1, tangent_scale_ = 1;  // sᵖ, sᵖ⁻¹, sᵖ⁻²
+};
+
+}  // namespace
+
+std::unique_ptr<Term> make_heated(std::unique_ptr<Term> elastic, const Heat& heat) {
+  if (!elastic->is_elastic())
+    throw Error::input("heat acts on elastic terms, the term '" + elastic->name() + "' is none");
+  if (!heat.temperature) throw Error::input("heat without a temperature");
+  if (!std::isfinite(heat.expansion))
+    throw Error::input("the coefficient of thermal expansion is not a finite number");
+  return std::make_unique<Heated>(std::move(elastic), heat);
+}
+
+void heat(Body& body, const Heat& heat) {
+  const std::string who = "body '" + body.name + "': ";
+  if (body.element->is_rigid()) throw Error::input(who + "a rigid body cannot be heated");
+  if (body.heat) throw Error::input(who + "is heated already");
+  const auto is_elastic = [](const std::unique_ptr<Term>& t) { return t->is_elastic(); };
+  if (std::none_of(body.terms.begin(), body.terms.end(), is_elastic))
+    throw Error::input(who + "has no elastic term that heat could act on");
+  for (auto& term : body.terms)
+    if (is_elastic(term)) term = make_heated(std::move(term), heat);
+  body.heat = heat;
+}
+
+}  // namespace flexmorph::fem

@@ -1,0 +1,93 @@
+#include "fem/thermal/temperature.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+namespace flexmorph::fem {
+namespace {
+
+const std::map<std::string, Profile>& table() {
+  static const std::map<std::string, Profile> kProfiles = {{"quartic", Profile::quartic},
+                                                           {"cosine", Profile::cosine},
+                                                           {"quintic", Profile::quintic},
+                                                           {"linear", Profile::linear},
+                                                           {"step", Profile::step}};
+  return kProfiles;
+}
+
+void check(const TemperatureRise& r) {
+  if (!std::isfinite(r.rise) || !std::isfinite(r.start) || !std::isfinite(r.settle))
+    throw Error::input("temperature: rise, start and settle are finite numbers");
+  if (r.profile != Profile::step && !(r.settle > 0))
+    throw Error::input("temperature: the time of settling is positive");
+}
+
+/// s(u) and its derivatives by u in [0, 1].
+Motion shape(Profile profile, double u) {
+  constexpr double pi = std::numbers::pi;
+  switch (profile) {
+    case Profile::quartic:
+      return {u * u * (6 + u * (-8 + 3 * u)), 12 * u * (1 - u) * (1 - u),
+              12 * (1 - u) * (1 - 3 * u)};
+    case Profile::cosine:
+      return {0.5 * (1 - std::cos(pi * u)), 0.5 * pi * std::sin(pi * u),
+              0.5 * pi * pi * std::cos(pi * u)};
+    case Profile::quintic:
+      return {u * u * u * (10 + u * (-15 + 6 * u)), 30 * u * u * (1 - u) * (1 - u),
+              60 * u * (1 - u) * (1 - 2 * u)};
+    case Profile::linear:
+      return {u, 1, 0};
+    case Profile::step:
+      break;
+  }
+  return {1, 0, 0};
+}
+
+}  // namespace
+
+Profile profile_of(const std::string& name) {
+  const auto row = table().find(name);
+  if (row != table().end()) return row->second;
+  std::string known;
+  for (const auto& [each, profile] : table()) known += (known.empty() ? "" : ", ") + each;
+  throw Error::input("temperature profile '" + name + "' is unknown; known are: " + known);
+}
+
+std::function<Motion(double t)> make_temperature(const TemperatureRise& rise) {
+  check(rise);
+  return [r = rise](double t) -> Motion {
+    if (r.profile == Profile::step) return {t < r.start ? 0 : r.rise, 0, 0};
+    constexpr double kSame = 1e-12;  // start + settle is rounded
+    const double u = (t - r.start) / r.settle;
+    if (u < -kSame) return {};
+    if (u > 1 + kSame) return {r.rise, 0, 0};
+    const bool kink = std::abs(u - 1) <= kSame || (std::abs(u) <= kSame && r.start != 0);
+    const Motion s = shape(r.profile, std::clamp(u, 0.0, 1.0));
+    const double part = (kink ? 0.5 : 1) * r.rise;  // of two sides, one is constant
+    return {r.rise * s.value, part * s.rate / r.settle,
+            part * s.acceleration / (r.settle * r.settle)};
+  };
+}
+
+std::vector<double> kinks(const TemperatureRise& rise) {
+  check(rise);
+  const double end = rise.start + rise.settle;
+  switch (rise.profile) {
+    case Profile::quartic:  // its acceleration ends at 0
+      return {rise.start};
+    case Profile::quintic:
+      return {};
+    case Profile::step:
+      return {rise.start};
+    default:
+      return {rise.start, end};
+  }
+}
+
+bool accelerates(const TemperatureRise& rise) {
+  return rise.rise != 0 && rise.profile != Profile::linear && rise.profile != Profile::step;
+}
+
+}  // namespace flexmorph::fem

@@ -1,0 +1,36 @@
+// The shipped cases with heat, as they are: what they expect of themselves holds.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/io/scratch.h"
+
+namespace flexmorph {
+namespace {
+
+class HeatedCase : public ::testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Cases, HeatedCase,
+                         ::testing::Values("free_beam_heated", "slider_crank_heated",
+                                           "beam_heated_static", "beam_heated_held",
+                                           "clamped_expansion", "heated_boom", "heated_boom_held"),
+                         [](const auto& test) { return test.param; });
+
+TEST_P(HeatedCase, EndsAsItExpects) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const std::string command = std::string(FLEXMORPH_PROGRAM) + " run " + GetParam() + " -o '" +
+                              folder + "' --quiet --set output.vtk=false";
+  const int status = std::system(command.c_str());
+  ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << command;
+  const nlohmann::json json = nlohmann::json::parse(contents_of(folder + "/run.json"));
+  ASSERT_FALSE(json["expect"].empty());
+  for (const auto& [name, expected] : json["expect"].items())
+    EXPECT_TRUE(expected["holds"].get<bool>()) << name << ": " << expected;
+}
+
+}  // namespace
+}  // namespace flexmorph

@@ -1,0 +1,513 @@
+// Accuracy: orders and limits of sequences whose laws are known, levels under a budget with a clock
+// of its own, cheapest combinations against enumeration by hand, values of columns; and the command
+// on small cases with closed forms.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "cases/accuracy_budget.h"
+#include "cases/accuracy_choice.h"
+#include "cases/accuracy_study.h"
+#include "cases/run.h"
+#include "io/tables.h"
+#include "tests/cases/program.h"
+
+namespace flexmorph::cases {
+namespace {
+
+using test::Ended;
+using test::Words;
+
+constexpr double kPi = 3.14159265358979323846;
+
+template <class Law>
+std::vector<LevelValue> sequence(const std::vector<double>& h, const Law& law) {
+  std::vector<LevelValue> out;
+  for (const double each : h) out.push_back({each, law(each)});
+  return out;
+}
+
+const std::vector<double> kHalves = {4, 2, 1, 0.5, 0.25};
+const Theory kSecond{2, "a textbook"};
+
+TEST(Orders, ArePreciseForPowersWithAnyRatio) {
+  for (const double p : {0.7, 1.0, 2.0, 4.0, 6.0})
+    for (const std::vector<double>& h : {kHalves, std::vector<double>{1.5, 1, 0.75, 0.5, 0.3}}) {
+      const auto values = sequence(h, [&](double x) { return 3 - 2 * std::pow(x, p); });
+      const Limit limit = limit_of(values, Approach::power, {}, 3);
+      EXPECT_TRUE(limit.converged) << limit.sentence;
+      ASSERT_EQ(limit.orders.size(), 3U);
+      // Differences of the finest levels are of 1e-3 at least: rounding leaves 12 digits.
+      for (const double order : limit.orders) EXPECT_NEAR(order, p, 1e-9);
+      EXPECT_NEAR(limit.value, 3, 1e-9);
+      EXPECT_LT(limit.uncertainty, 1e-9);
+    }
+}
+
+TEST(Orders, ASecondTermIsWithinTheUncertainty) {
+  // Q = 1 + h² + 0.3 h⁴ at h = 0.4 .. 0.05: the limit is 1.
+  const auto values =
+      sequence({0.4, 0.2, 0.1, 0.05}, [](double h) { return 1 + h * h + 0.3 * std::pow(h, 4); });
+  const Limit limit = limit_of(values, Approach::power, kSecond, 1);
+  EXPECT_TRUE(limit.converged) << limit.sentence;
+  EXPECT_NEAR(limit.order, 2, 0.02);
+  EXPECT_LT(std::abs(limit.value - 1), limit.uncertainty);
+  EXPECT_LT(limit.uncertainty, 0.05 * 0.05);  // the extrapolation is worth something
+}
+
+TEST(Orders, ThatDisagreeAreNotCalledConverged) {
+  // The order falls from 2 towards 1/2: 1.75, 1.46, 1.09.
+  const auto values = sequence({1, 0.5, 0.25, 0.125, 0.0625},
+                               [](double h) { return 1 + h * h + 0.3 * std::sqrt(h); });
+  const Limit limit = limit_of(values, Approach::power, {}, 1);
+  EXPECT_FALSE(limit.converged);
+  EXPECT_NE(limit.sentence.find("disagree"), std::string::npos) << limit.sentence;
+  EXPECT_EQ(limit.value, values.back().value);
+  EXPECT_TRUE(limit.bounded());  // differences fall
+  EXPECT_GE(limit.uncertainty, values[3].value - values[4].value);
+}
+
+TEST(Orders, OtherThanTheoryAreNotCalledConverged) {
+  const auto first = sequence(kHalves, [](double h) { return 1 + h; });
+  const Limit limit = limit_of(first, Approach::power, kSecond, 1);
+  EXPECT_FALSE(limit.converged);
+  EXPECT_NE(limit.sentence.find("a textbook"), std::string::npos) << limit.sentence;
+  EXPECT_TRUE(limit_of(first, Approach::power, Theory{1, ""}, 1).converged);
+  const auto near = sequence(kHalves, [](double h) { return 1 + std::pow(h, 1.9); });
+  EXPECT_TRUE(limit_of(near, Approach::power, kSecond, 1).converged);  // within 0.15
+}
+
+TEST(Orders, AValueThatSwingsHasNone) {
+  const auto values = sequence(kHalves, [](double h) {
+    return 1 + 0.1 * h * (std::lround(std::log2(h)) % 2 == 0 ? 1 : -1);
+  });
+  const Limit limit = limit_of(values, Approach::power, {}, 1);
+  EXPECT_FALSE(limit.converged);
+  for (const double order : limit.orders) EXPECT_TRUE(std::isnan(order));
+}
+
+TEST(Orders, ALogarithmHasNoLimit) {
+  // Point loads on a plane continuum: equal differences, order 0.
+  const auto values = sequence(kHalves, [](double h) { return 10 - std::log(h); });
+  const Limit limit = limit_of(values, Approach::power, {}, 10);
+  EXPECT_FALSE(limit.converged);
+  EXPECT_FALSE(limit.bounded()) << limit.sentence;
+}
+
+TEST(Orders, TheFloorOfRoundingIsNoOrder) {
+  // h⁴ from 1e-4 on falls below 1e-9 of the value; rounding of 1e-11 lies over it.
+  const std::vector<double> h = {0.1, 0.05, 0.025, 0.0125, 0.00625, 0.003125, 0.0015625};
+  int i = 0;
+  const auto values =
+      sequence(h, [&](double x) { return 1 + std::pow(x, 4) + 1e-11 * (++i % 2 == 0 ? 1 : -1); });
+  const Limit limit = limit_of(values, Approach::power, Theory{4, ""}, 1);
+  EXPECT_TRUE(limit.converged) << limit.sentence;
+  EXPECT_NEAR(limit.value, 1, 1e-9);
+  EXPECT_TRUE(std::isnan(limit.orders.back()));
+  // No difference at all: independent of the knob.
+  const auto same = sequence(kHalves, [](double) { return 5.0; });
+  const Limit none = limit_of(same, Approach::power, kSecond, 5);
+  EXPECT_TRUE(none.converged);
+  EXPECT_EQ(none.uncertainty, 0);
+}
+
+TEST(Orders, ThreeLevelsCheckNothing) {
+  const auto law = [](double h) { return 1 + h * h; };
+  EXPECT_FALSE(limit_of(sequence({4, 2, 1}, law), Approach::power, kSecond, 1).converged);
+  EXPECT_FALSE(limit_of(sequence({4, 2}, law), Approach::power, kSecond, 1).bounded());
+  EXPECT_FALSE(limit_of({}, Approach::power, kSecond, 1).bounded());
+  EXPECT_TRUE(limit_of(sequence({4, 2, 1, 0.5}, law), Approach::power, kSecond, 1).converged);
+}
+
+TEST(Orders, FastOnesEndAtTheFinestLevel) {
+  const auto values = sequence({3, 2, 1.5, 1.2}, [](double h) { return 1 + std::exp(-12 / h); });
+  const Limit limit = limit_of(values, Approach::fast, {}, 1);
+  EXPECT_TRUE(limit.converged);
+  EXPECT_EQ(limit.value, values.back().value);
+  EXPECT_LT(std::abs(limit.value - 1), limit.uncertainty);
+  const auto swings = sequence({3, 2, 1}, [](double h) { return h == 2 ? 1.1 : 1.0; });
+  EXPECT_FALSE(limit_of(swings, Approach::fast, {}, 1).converged);
+}
+
+TEST(Budget, ReadsTimes) {
+  EXPECT_EQ(read_budget("120s"), 120);
+  EXPECT_EQ(read_budget("90"), 90);
+  EXPECT_EQ(read_budget("2min"), 120);
+  EXPECT_EQ(read_budget("1.5h"), 5400);
+  for (const char* bad : {"", "s", "-1s", "0", "1,5s", "2 days", "inf", "nan"})
+    EXPECT_THROW(read_budget(bad), Error) << bad;
+}
+
+/// Ladders of runs that take known times, on a clock of their own.
+struct Runs {
+  double now = 100;
+  std::vector<Track> tracks;
+  std::vector<std::pair<size_t, size_t>> ran, cut;
+
+  void add(const std::vector<double>& h, double growth) {
+    Track t;
+    t.h = h;
+    t.seconds.resize(h.size());
+    t.closed.resize(h.size());
+    t.growth = growth;
+    t.first_guess = 1;
+    tracks.push_back(t);
+  }
+  /// @param seconds  of ladder and h
+  template <class Time>
+  void go(double budget, const Time& seconds) {
+    const Budget clock(budget, [&] { return now; });
+    while (const auto next = next_level(tracks, clock.left(),
+                                        [&](size_t t, size_t i) { cut.emplace_back(t, i); })) {
+      const auto [t, i] = *next;
+      const double took = seconds(t, tracks[t].h[i]);
+      now += took;
+      tracks[t].seconds[i] = took;
+      tracks[t].closed[i] = true;
+      ran.push_back(*next);
+    }
+  }
+};
+
+TEST(Budget, CoarseLevelsFirstAndTheLadderIsCut) {
+  Runs runs;
+  runs.add({4, 2, 1, 0.5, 0.25, 0.125}, 1);
+  runs.add({2, 1, 0.5, 0.25}, 3);
+  // Ladder 0 takes 1/h: 0.25, 0.5, 1, 2, 4, 8; ladder 1 takes h^-3: 0.125, 1, 8, 64.
+  const auto seconds = [](size_t t, double h) { return std::pow(h, t == 0 ? -1 : -3); };
+  runs.go(10, seconds);
+  // In all 0.125 + 0.25 + 0.5 + 1 + 1 + 2 + 4 = 8.875; 8 more of either ladder do not fit.
+  EXPECT_EQ(runs.now - 100, 8.875);
+  EXPECT_EQ(runs.ran.front(), (std::pair<size_t, size_t>{1, 0}));
+  const std::vector<std::pair<size_t, size_t>> cut = {{1, 2}, {1, 3}, {0, 5}};
+  for (const auto& each : cut)
+    EXPECT_NE(std::find(runs.cut.begin(), runs.cut.end(), each), runs.cut.end());
+  EXPECT_EQ(runs.cut.size(), cut.size());
+  for (size_t t = 0; t < 2; ++t)  // coarse to fine
+    for (size_t i = 1; i < runs.ran.size(); ++i)
+      for (size_t j = 0; j < i; ++j)
+        if (runs.ran[i].first == t && runs.ran[j].first == t) {
+          EXPECT_LT(runs.ran[j].second, runs.ran[i].second);
+        }
+}
+
+TEST(Budget, IsKeptWhenTimesGrowFasterThanThought) {
+  Runs runs;
+  runs.add({8, 4, 2, 1, 0.5, 0.25}, 1);
+  const auto seconds = [](size_t, double h) { return std::pow(h, -1.9); };
+  runs.go(18, seconds);
+  // 0.02 + 0.07 + 0.27 + 1 + 3.7; the next would take 14, which the measured growth foresees.
+  EXPECT_EQ(runs.ran.size(), 5U);
+  EXPECT_LT(runs.now - 100, 18);
+  EXPECT_NEAR(runs.tracks[0].predicted(5), std::pow(0.25, -1.9), 1e-9);
+}
+
+TEST(Budget, WithoutTimeNothingRuns) {
+  Runs runs;
+  runs.add({2, 1, 0.5}, 1);
+  runs.go(0.1, [](size_t, double h) { return 1 / h; });
+  EXPECT_TRUE(runs.ran.empty());
+  EXPECT_EQ(runs.cut.size(), 3U);
+}
+
+TEST(ParetoFront, KeepsWhatNothingBeats) {
+  const std::vector<std::pair<double, double>> points = {{3, 1}, {1, 4},   {2, 4},  {2, 2},
+                                                         {4, 1}, {NAN, 0}, {2.5, 3}};
+  EXPECT_EQ(pareto_front(points), (std::vector<size_t>{1, 3, 0}));
+  EXPECT_TRUE(pareto_front({}).empty());
+}
+
+Candidate candidate(double error, double cost) { return {"", {}, {error}, {cost}}; }
+
+TEST(Cheapest, SplitsThePromiseOverTheKnobs) {
+  const std::vector<Group> groups = {
+      {"a", {candidate(8e-3, 0.1), candidate(4e-3, 0.3), candidate(1e-3, 1), candidate(1e-4, 9)}},
+      {"b", {candidate(5e-3, 0.5), candidate(1e-3, 1), candidate(2e-4, 2)}}};
+  const std::vector<double> base = {10}, sure = {0};
+  // 1 %: 8e-3 + 1e-3 at 0.1 x 1 beats 4e-3 + 5e-3 at 0.3 x 0.5.
+  const auto loose = cheapest(groups, base, sure, 1e-2);
+  ASSERT_TRUE(loose);
+  EXPECT_EQ(loose->picked, (std::vector<size_t>{0, 1}));
+  EXPECT_NEAR(loose->cost, 1, 1e-12);
+  EXPECT_NEAR(loose->errors[0], 9e-3, 1e-15);
+  EXPECT_EQ(cheapest(groups, base, sure, 1.25e-3)->picked, (std::vector<size_t>{2, 2}));
+  EXPECT_FALSE(cheapest(groups, base, sure, 1e-4));
+  // What the limits are uncertain by is part of it.
+  const std::vector<double> unsure = {9.5e-4};
+  EXPECT_EQ(cheapest(groups, base, unsure, 1.26e-3)->picked, (std::vector<size_t>{3, 2}));
+  const std::vector<double> unknown = {INFINITY};
+  EXPECT_FALSE(cheapest(groups, base, unknown, 1e-2));
+}
+
+TEST(Cheapest, PassesOverWhatIsNotKnownAndKeepsAllQuantities) {
+  const auto two = [](double e1, double e2, double cost) {
+    return Candidate{"", {}, {e1, e2}, {cost, 1}};
+  };
+  const std::vector<Group> groups = {
+      {"a", {two(1e-3, NAN, 0.01), two(1e-3, 2e-2, 0.1), two(2e-3, 5e-3, 0.5)}}};
+  const std::vector<double> base = {4, 1}, sure = {0, 0};
+  const auto best = cheapest(groups, base, sure, 1e-2);
+  ASSERT_TRUE(best);
+  EXPECT_EQ(best->picked, (std::vector<size_t>{2}));
+  EXPECT_EQ(best->cost, 3);  // 0.5 x 4 of the one part, all of the other
+}
+
+TEST(ValueAt, InterpolatesColumns) {
+  std::vector<double> x, y;
+  for (int i = 0; i <= 10; ++i) x.push_back(0.1 * i + 0.01 * (i % 2));
+  for (const double t : x) y.push_back(1 + t - 2 * t * t + t * t * t);
+  Interest interest;
+  EXPECT_EQ(value_at(x, y, interest), y.back());
+  interest.at = Interest::At::time;
+  for (const double t : {0.0, 0.05, 0.433, 0.97, 1.0}) {
+    interest.time = t;  // cubics are exact
+    EXPECT_NEAR(value_at(x, y, interest), 1 + t - 2 * t * t + t * t * t, 1e-14);
+  }
+  interest.time = 1.2;
+  EXPECT_TRUE(std::isnan(value_at(x, y, interest)));
+  // The largest size between rows: -3 + 5 (t - 0.52)².
+  for (size_t i = 0; i < x.size(); ++i) y[i] = -3 + 5 * std::pow(x[i] - 0.52, 2);
+  interest.at = Interest::At::max;
+  EXPECT_NEAR(value_at(x, y, interest), 3, 1e-14);
+}
+
+// A study whose errors are known: Q = 1 + 0.02 h² + 0.1 g⁴, steps h and meshes g.
+AccuracyStudy known_study() {
+  AccuracyStudy study;
+  study.interests.emplace_back().name = "q";
+  study.parts = {Part::motion};
+  const auto value = [](double h, double g) { return 1 + 0.02 * h * h + 0.1 * std::pow(g, 4); };
+  Rung own;
+  own.status = "measured";
+  own.values = {value(1, 1)};
+  own.seconds_cpu = 1;
+  study.own[Part::motion] = own;
+  for (const bool mesh : {true, false}) {
+    Ladder& ladder = study.ladders.emplace_back();
+    ladder.knob = &knob(mesh ? "elements" : "step");
+    ladder.theory = Theory{mesh ? 4.0 : 2.0, ""};
+    for (const double h : kHalves) {
+      Rung& rung = ladder.rungs.emplace_back();
+      rung.level.h = h;
+      rung.level.name = std::to_string(h);
+      if (h != 1) rung.level.overrides = {(mesh ? "g=" : "h=") + std::to_string(h)};
+      rung.status = "measured";
+      rung.seconds_cpu = std::pow(h, mesh ? -3 : -1);
+      rung.values = {mesh ? value(1, h) : value(h, 1)};
+    }
+  }
+  evaluate(study, {1.0});
+  return study;
+}
+
+TEST(Study, AddsWhatIsMissingToTheLimits) {
+  const AccuracyStudy study = known_study();
+  const Truth& truth = study.truths[0];
+  EXPECT_NEAR(truth.value, 1, 1e-9);  // 1.12 less both terms
+  EXPECT_LT(truth.uncertainty, 1e-9);
+  for (const Ladder& ladder : study.ladders)
+    for (const Rung& rung : ladder.rungs) {
+      const bool mesh = ladder.knob->name == "elements";
+      // Against the ladder's own limit: the other knob's error is not in it.
+      const double error =
+          mesh ? 0.1 * std::pow(rung.level.h, 4) : 0.02 * std::pow(rung.level.h, 2);
+      EXPECT_NEAR(rung.errors[0], error / 1.12, 1e-9);
+    }
+}
+
+TEST(Study, RecommendsWhatKeepsThePromiseAndWithdrawsWhatDoesNot) {
+  const AccuracyStudy study = known_study();
+  std::vector<Recommendation> all = recommend(study, {1e-2, 1e-5});
+  ASSERT_TRUE(all[0].choice);
+  // By hand: mesh 1/2 (0.56 %, 8 s) with step 1/2 (0.45 %, x 2) is over 1 %, so mesh 1/2 and step
+  // 1/4 (0.11 %, x 4), or mesh 1/4 (0.03 %, 64 s) and step 1/2: the first is cheaper.
+  EXPECT_EQ(all[0].overrides, (Words{"g=0.500000", "h=0.250000"}));
+  EXPECT_NEAR(all[0].choice->cost, 32, 1e-9);
+  EXPECT_FALSE(all[1].choice);
+  EXPECT_FALSE(all[1].sentence.empty());
+  Recommendation kept = all[0];
+  judge(kept, study, {1 + 0.02 / 16 + 0.1 / 16}, 1);
+  EXPECT_FALSE(kept.withdrawn) << kept.sentence;
+  for (const double wrong : {1.02, std::nan("")}) {
+    Recommendation broken = all[0];
+    judge(broken, study, {wrong}, 1);
+    EXPECT_TRUE(broken.withdrawn);
+    EXPECT_NE(broken.sentence.find("withdrawn"), std::string::npos);
+  }
+}
+
+TEST(Study, ALadderThatIsNotConvergedOffersItsFinestLevel) {
+  AccuracyStudy study = known_study();
+  for (Rung& rung : study.ladders[1].rungs)  // the order of the step is 1.3, not 2
+    rung.values[0] = 1.1 + 0.02 * std::pow(rung.level.h, 1.3);
+  evaluate(study, {std::nullopt});
+  EXPECT_FALSE(study.ladders[1].limits[0].converged);
+  // Coarser levels count where the limit is known ten times better than is promised.
+  const double unsure = study.ladders[1].limits[0].uncertainty / study.truths[0].scale;
+  for (const double promise : {9 * unsure, 11 * unsure})
+    for (const Group& group : groups_of(study, promise)) {
+      size_t usable = 0;
+      for (const Candidate& c : group.candidates) usable += std::isfinite(c.errors[0]);
+      EXPECT_EQ(usable, group.name == "step" && promise < 10 * unsure ? 1U : 5U) << group.name;
+    }
+}
+
+TEST(Knobs, AreThoseOfTheScene) {
+  const auto present = [](const std::string& name, Part part) {
+    const Scene scene = read_scene(io::CaseFile(find_case(name)));
+    Words out;
+    for (const Knob& each : knobs())
+      if (each.absent(scene, part).empty()) out.push_back(each.name);
+    return out;
+  };
+  EXPECT_EQ(present("plate_pendulum", Part::motion),
+            (Words{"elements", "shape", "step", "rho_inf", "integrator", "quadrature"}));
+  EXPECT_EQ(present("square_plate_twist", Part::motion),
+            (Words{"elements", "shape", "quadrature", "load_steps"}));
+  EXPECT_EQ(present("short_beam", Part::design),
+            (Words{"design_mesh", "void", "sharpness", "band"}));
+  EXPECT_EQ(present("four_bar", Part::design),
+            (Words{"elements", "step", "loads", "design_mesh", "void", "sharpness", "band"}));
+}
+
+TEST(Knobs, LevelsOfOneKnobLeaveTheOthersAlone) {
+  const io::CaseFile file(find_case("short_beam"));
+  const Scene scene = read_scene(file);
+  for (const Level& level : knob("design_mesh").levels(scene, file)) {
+    const Scene finer = read_scene(io::CaseFile(find_case("short_beam"), level.overrides));
+    const BodyDesign &a = scene.designs[0], &b = finer.designs[0];
+    EXPECT_NEAR(b.grid.dx(), level.h * a.grid.dx(), 1e-12);
+    EXPECT_NEAR(b.tdf.band, a.tdf.band, 1e-12);  // in metres
+    EXPECT_NEAR(b.tdf.sharpness, a.tdf.sharpness, 1e-9);
+    EXPECT_EQ(b.min_thickness, a.min_thickness);
+  }
+  // Finer cells and another band: bands in cells multiply.
+  const Words both = together(
+      scene, {"design.0.cell=0.0125", "design.0.band=[5, 3]", "design.0.band=[1.25, 0.75]"});
+  EXPECT_EQ(both, (Words{"design.0.cell=0.0125", "design.0.band=[2.5, 1.5]"}));
+}
+
+/// `flexmorph accuracy` with changes.
+Ended accuracy(const Scratch& scratch, const std::string& name, const std::string& folder,
+               const Words& more) {
+  Words words = {"accuracy", name, "-o", folder};
+  words.insert(words.end(), more.begin(), more.end());
+  return test::flexmorph(scratch, words);
+}
+
+// A weight at the end of a strip at rest: Euler's cantilever, u = F L³/(3 E I), with Poisson's
+// ratio 0 and a deflection of 1e-5 of the length, so that nothing nonlinear matters.
+const char* const kStrip = R"toml(
+[static]
+steps = 4
+[[body]]
+name = "strip"
+element = "ancf_plate"
+space = "space"
+terms = ["membrane", "bending"]
+length = 1.0
+width = 0.1
+thickness = 0.01
+youngs_modulus = 1e9
+poisson_ratio = 0.0
+elements = [2, 1]
+[[joint]]
+type = "clamp"
+body = "strip"
+edges = ["root"]
+[[load]]
+type = "edge"
+body = "strip"
+edge = "free_end"
+force = [0.0, 0.0, 2.5e-3]
+[[observe]]
+name = "tip"
+body = "strip"
+at = "free_end"
+[accuracy]
+quantity = "strip.tip_uz"
+# 2.5e-4 N at 1 m; E I = 1e9 x 0.1 x 1e-6 / 12 N m^2
+reference = { value = 1e-5, source = "F L^3/(3 E I), 2.5e-4 N, E I = 1e9 x 0.1 x 1e-6 / 12" }
+ladders = ["elements", "quadrature", "load_steps"]
+)toml";
+
+TEST(Accuracy, ReproducesTheCantileverAndWritesCasesThatRun) {
+  const Scratch scratch;
+  const std::string file = scratch.write("strip.toml", kStrip), folder = scratch / "out";
+  const Ended ended = accuracy(scratch, file, folder, {"--budget", "5s"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const io::CsvTable table = io::read_csv(folder + "/accuracy.csv");
+  const auto limits = table.numbers("limit"), values = table.numbers("value");
+  const Words ladders = table.texts("ladder");
+  for (const char* name : {"elements", "quadrature", "load_steps"})
+    EXPECT_GE(std::count(ladders.begin(), ladders.end(), name), 5) << name;
+  // Cubic elements bend exactly under an end load. The plate's curvature and the beam's differ by
+  // terms of the square of the slope, 1e-10.
+  for (size_t i = 0; i < limits.size(); ++i) EXPECT_NEAR(limits[i], 1e-5, 1e-5 * 1e-6);
+  for (const char* name : {"/accuracy.md", "/accuracy.svg", "/strip_1pct.toml"})
+    EXPECT_TRUE(std::filesystem::exists(folder + name)) << name << ended.out;
+  EXPECT_NE(ended.out.find("kept"), std::string::npos) << ended.out;
+  const Ended run = test::flexmorph(
+      scratch, {"run", folder + "/strip_0.01pct.toml", "-o", scratch / "again", "--quiet"});
+  EXPECT_EQ(run.code, 0) << run.err;
+
+  // Nothing is run a second time, and the numbers are the same.
+  const Ended again = accuracy(scratch, file, folder, {"--budget", "5s"});
+  EXPECT_EQ(again.code, 0);
+  const io::CsvTable second = io::read_csv(folder + "/accuracy.csv");
+  const auto once_more = second.numbers("value");
+  ASSERT_EQ(once_more.size(), values.size());
+  for (size_t i = 0; i < values.size(); ++i)
+    if (std::isfinite(values[i]) && std::isfinite(once_more[i])) {
+      EXPECT_EQ(values[i], once_more[i]);
+    }
+}
+
+TEST(Accuracy, RefusesWhatItCannotMeasure) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const std::string file = scratch.write("strip.toml", kStrip);
+  const auto fails = [&](const Words& more, const std::string& part) {
+    const Ended ended = accuracy(scratch, file, folder, more);
+    EXPECT_EQ(ended.code, 2) << ended.out;
+    EXPECT_NE(ended.err.find(part), std::string::npos) << ended.err;
+    EXPECT_EQ(test::lines_of(ended.err).size(), 1U) << ended.err;
+    EXPECT_FALSE(std::filesystem::exists(folder));
+  };
+  fails({"--set", "accuracy="}, "strip.tip_uz");  // what there is
+  fails({"--set", "accuracy.quantity=compliance"}, "strip.tip_uz");
+  fails({"--set", "accuracy.at=2"}, "after the end");
+  fails({"--set", "accuracy.ladders=[\"mesh\"]"}, "a ladder");
+  fails({"--set", "accuracy.reference={ value = 1, file = \"x.csv\", source = \"\" }"}, "either");
+  fails({"--ladders", "mesh"}, "elements");
+  fails({"--ladders", "step"}, "nothing moves");
+  fails({"--budget", "soon"}, "--budget soon");
+  fails({"--set", "accuracy.reference={ file = \"nowhere.csv\", source = \"\" }"}, "nowhere.csv");
+}
+
+// The start design of the short beam: volume of the blurred layout, which no load touches.
+TEST(Accuracy, AnalysesADesignAsItStarts) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const Ended ended =
+      accuracy(scratch, "short_beam", folder,
+               {"--set", "accuracy.quantity=volume", "--ladders", "band", "--budget", "3s",
+                "--no-verify", "--set", "design.cell=0.05", "--set", "design.min_thickness=0.05"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const io::CsvTable table = io::read_csv(folder + "/accuracy.csv");
+  EXPECT_GE(table.rows.size(), 5U);
+  for (const double value : table.numbers("value"))
+    if (std::isfinite(value)) {
+      EXPECT_TRUE(value > 0.2 && value < 0.6) << value;
+    }
+  // A run of no iterations leaves the layout alone.
+  const Ended run = test::flexmorph(scratch, {"run", "short_beam", "-o", scratch / "start", "--set",
+                                              "optimizer.max_iterations=0", "--quiet"});
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(io::read_csv(scratch / "start/history.csv").rows.size(), 0U);
+}
+
+}  // namespace
+}  // namespace flexmorph::cases

@@ -1,0 +1,48 @@
+// Scenes whose steps adapt: what the keys of [time] become.
+#include <gtest/gtest.h>
+
+#include "cases/build.h"
+
+namespace flexmorph::cases {
+namespace {
+
+Scene read(std::vector<std::string> changes) {
+  changes.insert(changes.begin(), "time.step=adaptive");
+  return read_scene(
+      io::CaseFile(std::string(FLEXMORPH_CASES) + "/rotating_plate_v01.toml", changes));
+}
+
+TEST(AdaptiveScene, HasDefaults) {
+  const fem::MotionSettings motion = build_mechanism(read({})).motion;
+  ASSERT_TRUE(motion.adaptive);
+  EXPECT_EQ(motion.adaptive->tolerance, 1e-4);
+  EXPECT_EQ(motion.adaptive->largest, 0);
+  EXPECT_TRUE(motion.kinks.empty());
+  EXPECT_EQ(motion.step, 1e-3);
+}
+
+TEST(AdaptiveScene, TakesToleranceAndLargestStep) {
+  const fem::MotionSettings motion =
+      build_mechanism(read({"time.tolerance=1e-3", "time.largest_step=0.02"})).motion;
+  ASSERT_TRUE(motion.adaptive);
+  EXPECT_EQ(motion.adaptive->tolerance, 1e-3);
+  EXPECT_EQ(motion.adaptive->largest, 0.02);
+}
+
+TEST(AdaptiveScene, LandsOnTheEndOfTheSpinUp) {
+  const Scene scene = read({"time.start=hub_at_rest", "time.spin_up=0.3"});
+  EXPECT_EQ(build_mechanism(scene).motion.kinks, std::vector<double>{0.3});
+}
+
+// A verification has the scene's kind of steps, or equal ones where it names their size.
+TEST(AdaptiveScene, VerificationMayHaveItsOwnSteps) {
+  const auto adapts = [](const Scene& scene) {
+    const MeshChoice mesh{scene.verify->mesh, scene.verify->refine, scene.verify->step};
+    return build_mechanism(scene, mesh).motion.adaptive.has_value();
+  };
+  EXPECT_TRUE(adapts(read({})));
+  EXPECT_FALSE(adapts(read({"verify.step=5e-4"})));
+}
+
+}  // namespace
+}  // namespace flexmorph::cases

@@ -1,0 +1,190 @@
+// The heated boom: what its scenes hold, that without a temperature it is the cold boom, its
+// energies, its equivalent static loads and the gradient of its design problem.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "cases/motion_run.h"
+#include "cases/run.h"
+#include "optim/gradient_check.h"
+#include "optim/mmc/mmc_problem.h"
+#include "tests/cases/scenes.h"
+#include "tests/io/scratch.h"
+
+namespace flexmorph::cases {
+namespace {
+
+/// Seconds: a coarse mesh of motion, cells of 1 cm.
+Changes quick(const Changes& more = {}) {
+  Changes out = {"output.vtk=false", "body.elements=[5,2]",      "body.flow.max_length=0.15",
+                 "design.cell=0.01", "design.components=[10,1]", "design.min_thickness=0.01",
+                 "esl.every=0.02"};
+  out.insert(out.end(), more.begin(), more.end());
+  return out;
+}
+
+MotionOutcome move(const Scene& scene, bool loads = false) {
+  const Scratch scratch;
+  RunFolder folder(scratch / "out", scene, "");
+  MotionWishes wishes;
+  wishes.loads = loads;
+  return run_motion(scene, wishes, folder);
+}
+
+TEST(HeatedBoom, ScenesAreBuilt) {
+  for (const char* name : {"heated_boom", "heated_boom_held"}) {
+    const Scene scene = read(name);
+    build_scene(scene);
+    ASSERT_TRUE(scene.body("plate").heat) << name;
+    EXPECT_NEAR(scene.body("plate").heat->expansion * scene.body("plate").heat->rise.value, 0.02,
+                1e-15);
+    EXPECT_EQ(scene.designs.size(), 1u);
+    EXPECT_EQ(scene.is_mechanism(), std::string(name) == "heated_boom_held");
+    // The quintic has no kinks, a cosine has two.
+    EXPECT_TRUE(build_mechanism(scene).motion.kinks.empty());
+  }
+  const Scene cosine = read("heated_boom", {"body.heat.profile=cosine", "body.heat.start=0.113"});
+  EXPECT_EQ(build_mechanism(cosine).motion.kinks, (std::vector<double>{0.113, 0.613}));
+}
+
+// Without a temperature, or without expansion: rotating_plate_v05, but for the order of sums.
+TEST(HeatedBoom, WithoutTemperatureIsTheColdBoom) {
+  const Changes both = quick({"time.end=0.12", "time.step=2e-3", "esl.every=0.02"});
+  Changes plain = both;
+  plain.emplace_back("verify.mesh=[10,4]");
+  const MotionRecord cold = move(read("rotating_plate_v05", plain)).record;
+  for (const char* none : {"body.heat.rise=0", "body.heat.expansion=0"}) {
+    Changes changes = both;
+    changes.emplace_back(none);
+    const MotionRecord hot = move(read("heated_boom", changes)).record;
+    ASSERT_EQ(hot.time.size(), cold.time.size());
+    for (size_t k = 0; k < hot.time.size(); ++k) {
+      EXPECT_NEAR(hot.deflection[0][k], cold.deflection[0][k], 1e-11) << none;
+      EXPECT_NEAR(hot.strain[k], cold.strain[k], 1e-9 * cold.strain.back()) << none;
+      EXPECT_NEAR(hot.kinetic[k], cold.kinetic[k], 1e-10 * cold.kinetic.back()) << none;
+    }
+  }
+}
+
+// Energy, work of the drives, what the material brings along and the power of the heat balance to
+// second order in the step; the root element is not split within this time.
+TEST(HeatedBoom, EnergyBalanceIsOfSecondOrder) {
+  const auto defect = [](const char* step) {
+    const MotionRecord r = move(read("heated_boom", quick({"time.end=0.08", "body.heat.settle=0.08",
+                                                           std::string("time.step=") + step})))
+                               .record;
+    EXPECT_TRUE(r.result.events.empty());
+    EXPECT_GT(r.strain.back(), 0.2);  // J: of the held root
+    return std::abs(r.defect.back());
+  };
+  const double coarse = defect("2e-3"), fine = defect("1e-3"), finest = defect("5e-4");
+  EXPECT_NEAR(std::log2(coarse / fine), 2, 0.3) << coarse << " " << fine;
+  EXPECT_NEAR(std::log2(fine / finest), 2, 0.3) << fine << " " << finest;
+}
+
+// A split of the hot root element changes neither energies nor momentum.
+TEST(HeatedBoom, SplitsAreExact) {
+  const MotionRecord r =
+      move(read("heated_boom", quick({"time.end=0.32", "time.step=4e-3", "body.heat.settle=0.2",
+                                      "esl.every=0.04"})))
+          .record;
+  ASSERT_GE(r.result.events.size(), 2u);
+  for (const fem::MeshEvent& e : r.result.events) {
+    EXPECT_GT(e.before.strain, 0.02);
+    EXPECT_NEAR(e.after.strain, e.before.strain, 1e-12 * e.before.kinetic);
+    EXPECT_NEAR(e.after.kinetic, e.before.kinetic, 1e-12 * e.before.kinetic);
+    EXPECT_NEAR((e.momentum_after - e.momentum_before).norm(), 0, 1e-12 * e.before.kinetic);
+  }
+}
+
+/// The design problem of a boom that is hot within 0.1 s.
+struct HotProblem {
+  Scene scene = read("heated_boom", quick({"time.end=0.2", "time.step=4e-3", "esl.every=0.04",
+                                           "body.heat.settle=0.1", "design.jitter=0.1",
+                                           "design.half_thickness=0.014"}));
+  MotionOutcome motion = move(scene, true);
+  mmc::BodyProblem problem = std::move(build_problems(scene).front());
+};
+
+// The hub's edge keeps its width: all of the growth is held there, by α ΔT(t) of the quintic.
+TEST(HeatedBoom, LoadsKnowTheHeldRoot) {
+  const HotProblem hot;
+  ASSERT_EQ(hot.motion.loads.front().sets.size(), 5u);
+  for (const fem::EslSet& set : hot.motion.loads.front().sets) {
+    const double u = std::min(1.0, set.time / 0.1);
+    const double a = 0.02 * u * u * u * (10 + u * (-15 + 6 * u));
+    EXPECT_NEAR(set.thermal_stretch, a, 1e-14);
+    EXPECT_NEAR(set.held_stretch, a, 1e-6 * a);
+    EXPECT_EQ(set.root_column, static_cast<int>(std::lround((0.1 - 0.5 * set.time) / 0.01)));
+  }
+}
+
+// Full material: half the compliance of a load is the strain energy of the motion, as far as the
+// meshes are fine (5 x 2 elements, 1 cm) and strains small (2 %).
+TEST(HeatedBoom, ComplianceIsTheStrainEnergyOfTheMotion) {
+  const HotProblem hot;
+  const fem::EslSets& loads = hot.motion.loads.front();
+  const VectorXd full = VectorXd::Ones(loads.grid.n_cells());
+  mmc::Compliance compliance(loads, hot.problem.section, hot.problem.compliance, full, full);
+  const VectorXd each = compliance.individual(full, full);
+  for (size_t l = 2; l < loads.sets.size(); ++l) {
+    EXPECT_GT(loads.sets[l].strain_energy, 0.2);
+    EXPECT_NEAR(0.5 * each[static_cast<Eigen::Index>(l)] / loads.sets[l].strain_energy, 1, 0.2)
+        << loads.sets[l].time;
+  }
+}
+
+// A rigid, cold tip: the far edge keeps its width as well. What it holds back is in the statics:
+// half the compliance of a load is the strain energy of the motion, and was less without it.
+TEST(HeatedBoom, LoadsKnowTheHeldTip) {
+  const Scene scene =
+      read("heated_boom_held", quick({"time.end=0.2", "time.step=4e-3", "esl.every=0.04",
+                                      "body.heat.settle=0.1", "body.elements=[10,4]"}));
+  const MotionOutcome motion = move(scene, true);
+  const mmc::BodyProblem problem = std::move(build_problems(scene).front());
+  fem::EslSets loads = motion.loads.front();
+  const VectorXd full = VectorXd::Ones(loads.grid.n_cells());
+  const auto energies = [&] {
+    return VectorXd(0.5 * mmc::Compliance(loads, problem.section, problem.compliance, full, full)
+                              .individual(full, full));
+  };
+  const VectorXd held = energies();
+  for (fem::EslSet& set : loads.sets) {
+    EXPECT_NEAR(set.held_end_stretch, set.thermal_stretch, 1e-6 * set.thermal_stretch);
+    EXPECT_NEAR(set.held_stretch, set.thermal_stretch, 1e-6 * set.thermal_stretch);
+    set.held_end_stretch = 0;
+  }
+  const VectorXd free = energies();
+  for (size_t l = 2; l < loads.sets.size(); ++l) {
+    const double moved = loads.sets[l].strain_energy;
+    const auto at = static_cast<Eigen::Index>(l);
+    EXPECT_NEAR(held(at) / moved, 1, 0.1) << loads.sets[l].time;
+    EXPECT_LT(free(at) / moved, 0.6) << loads.sets[l].time;
+  }
+}
+
+// Taylor test of log f of the real case, along single components. The start is jittered: at the
+// regular layout, where components lie symmetrically upon each other, the order is 1, hot or cold.
+TEST(HeatedBoom, GradientOfTheDesignProblem) {
+  HotProblem hot;
+  const mmc::BodyProblem& p = hot.problem;
+  const fem::EslSets& loads = hot.motion.loads.front();
+  const VectorXd full = VectorXd::Ones(loads.grid.n_cells());
+  mmc::Compliance compliance(loads, p.section, p.compliance, full, full);
+  const mmc::Ersatz ersatz = mmc::ersatz_of(p);
+  mmc::MmcProblem problem(p.grid, p.design, ersatz, compliance, p.stages.front(), p.goal, p.places);
+  const VectorXd x = problem.start();
+  const optim::Response at = problem.evaluate(x);
+  for (const int component : {0, 7, 19}) {
+    VectorXd direction = VectorXd::Zero(x.size());
+    for (int k = 0; k < Component::kParameters; ++k)
+      direction[component * Component::kParameters + k] = k % 2 == 0 ? 1 : -0.6;
+    const optim::TaylorTest test =
+        optim::taylor_test([&](const VectorXd& y) { return problem.evaluate(y).f; }, at.df, x,
+                           direction, 1e-4, 3, 1e-13);
+    EXPECT_NEAR(test.order, 2, 0.05) << component << "\n" << test.table();
+  }
+}
+
+}  // namespace
+}  // namespace flexmorph::cases

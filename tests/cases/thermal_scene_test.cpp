@@ -1,0 +1,209 @@
+// Beams, heat and measures in case files: what they mean, and what is refused.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <numbers>
+
+#include "cases/build.h"
+#include "cases/heat.h"
+#include "cases/measures.h"
+#include "fem/elements/ancf_beam.h"
+#include "tests/cases/scenes.h"
+#include "tests/io/scratch.h"
+#include "tests/support/errors.h"
+
+namespace flexmorph::cases {
+namespace {
+
+TEST(ThermalScene, BeamIsReadAndBuilt) {
+  const Scene scene = read("slider_crank_heated");
+  const Body& rod = scene.body("rod");
+  EXPECT_TRUE(rod.is_beam());
+  EXPECT_EQ(rod.elements, (std::array{6, 1}));
+  EXPECT_EQ(rod.width, 5.76e-3);     // in the plane of the motion
+  EXPECT_EQ(rod.thickness, 5.5e-3);  // across it
+  const Mechanism mechanism = build_mechanism(scene);
+  const fem::Body& built = mechanism.model.body("rod");
+  const auto& beam = dynamic_cast<const fem::AncfBeam&>(*built.element);
+  EXPECT_EQ(beam.height(), 5.76e-3);
+  EXPECT_EQ(built.section.thickness, 5.5e-3);
+  // At rest where the case puts it, with the velocities of the rigid mechanism: the crank pin goes
+  // up at r ω, the slider rests.
+  fem::Model& model = const_cast<fem::Model&>(mechanism.model);
+  const fem::State x = fem::start_state(model, mechanism.growths, 0, mechanism.motion.start,
+                                        mechanism.motion.placement);
+  const fem::PointMotion pin = fem::point_motion(built, x, {0, 0}),
+                         middle = fem::point_motion(built, x, {0.152, 0}),
+                         slider = fem::point_motion(built, x, {0.304, 0});
+  EXPECT_NEAR((pin.position - Vec2(0.152, 0)).norm(), 0, 1e-12);
+  EXPECT_NEAR((pin.velocity - Vec2(0, 0.152 * std::numbers::pi)).norm(), 0, 1e-12);
+  EXPECT_NEAR((middle.velocity - Vec2(0, 0.076 * std::numbers::pi)).norm(), 0, 1e-12);
+  EXPECT_NEAR(slider.velocity.norm(), 0, 1e-12);
+}
+
+TEST(ThermalScene, HeatOfABodyIsThatOfTheModel) {
+  const Scene scene = read("slider_crank_heated", {"body.heat.start=0.2"});
+  ASSERT_TRUE(scene.has_heat());
+  const BodyHeat& heat = *scene.body("rod").heat;
+  EXPECT_EQ(heat.profile, "quartic");
+  EXPECT_TRUE(heat.force);
+  const Mechanism mechanism = build_mechanism(scene);
+  const std::optional<fem::Heat>& hot = mechanism.model.body("rod").heat;
+  ASSERT_TRUE(hot.has_value());
+  EXPECT_EQ(hot->volume_exponent(), 3);
+  EXPECT_EQ(hot->temperature(0.1).value, 0);
+  const double u = 0.25;  // 6u² - 8u³ + 3u⁴
+  EXPECT_NEAR(hot->temperature(0.45).value, 50 * (6 * u * u - 8 * u * u * u + 3 * u * u * u * u),
+              1e-12);
+  EXPECT_EQ(hot->temperature(1.5).value, 50);
+  EXPECT_EQ(hot->expansion, 80e-6);
+  // Steps land where the acceleration of the temperature jumps: s'' is 12 at first and 0 at last.
+  const auto stops_at = [](const Mechanism& m, double kink) {
+    return std::any_of(m.motion.kinks.begin(), m.motion.kinks.end(),
+                       [&](double t) { return std::abs(t - kink) < 1e-12; });
+  };
+  EXPECT_TRUE(stops_at(mechanism, 0.2));
+  const Mechanism linear = build_mechanism(
+      read("slider_crank_heated", {"body.heat.start=0.2", "body.heat.profile=linear"}));
+  for (const double kink : {0.2, 1.2}) EXPECT_TRUE(stops_at(linear, kink)) << kink;
+}
+
+TEST(ThermalScene, DriveMaySayTheTemperature) {
+  const Scene scene =
+      read("slider_crank_heated", {"body.heat={expansion=1e-5, rise=\"warm\"}",
+                                   "drive=[{name=\"turn\", formula=\"pi*t\"}, {name=\"warm\", "
+                                   "formula=\"20*sin(t)\"}]"});
+  const Mechanism mechanism = build_mechanism(scene);
+  const fem::Motion at = mechanism.model.body("rod").heat->temperature(0.5);
+  EXPECT_NEAR(at.value, 20 * std::sin(0.5), 1e-13);
+  EXPECT_NEAR(at.acceleration, -20 * std::sin(0.5), 1e-13);
+  EXPECT_TRUE(mechanism.motion.kinks.empty());
+}
+
+TEST(ThermalScene, ColdSceneHasNothingOfIt) {
+  const Mechanism cold = build_mechanism(read("four_bar"));
+  for (const fem::Body& body : cold.model.bodies()) EXPECT_FALSE(body.heat.has_value());
+  EXPECT_TRUE(cold.model.links().empty());
+  EXPECT_TRUE(cold.motion.stops.empty());
+}
+
+// Thermal force: a link that is there when asked for, and where a temperature accelerates.
+TEST(ThermalScene, ThermalForceIsThereWhenItActs) {
+  const auto links = [](const Changes& changes) {
+    return build_mechanism(read("free_beam_heated", changes)).model.links().size();
+  };
+  EXPECT_EQ(links({}), 1u);
+  EXPECT_EQ(links({"body.heat.force=false"}), 0u);
+  EXPECT_EQ(links({"body.heat.profile=step"}), 0u);
+}
+
+TEST(ThermalScene, UndeformedArcLiesOnItsCircle) {
+  Body body;
+  body.length = 2;
+  body.arc = 0.5 * std::numbers::pi;
+  const double R = 2 / body.arc;
+  EXPECT_NEAR((undeformed_place(body, {2, 0}) - Vec2(R, R)).norm(), 0, 1e-14);
+  EXPECT_NEAR((undeformed_place(body, {1, 0.1}) -
+               (Vec2(0, R) + (R - 0.1) * Vec2(std::sin(1 / R), -std::cos(1 / R))))
+                  .norm(),
+              0, 1e-14);
+}
+
+TEST(ThermalScene, ErrorsNameFileLineAndKey) {
+  std::ifstream in(std::string(FLEXMORPH_CASES) + "/free_beam_heated.toml");
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  text.replace(text.find("\"quartic\""), 9, "\"abrupt\"");
+  const auto line = 1 + std::count(text.begin(), text.begin() + long(text.find("abrupt")), '\n');
+  const Scratch scratch;
+  const std::string file = scratch.write("wrong.toml", text);
+  const std::string error =
+      testing::error_of(Error::Kind::input, [&] { read_scene(io::CaseFile(file)); });
+  EXPECT_TRUE(testing::says(error, "wrong.toml:" + std::to_string(line) +
+                                       ": body.heat.profile = \"abrupt\": a profile is one of"))
+      << error;
+}
+
+struct Bad {
+  const char* what;
+  const char* scene;
+  Changes changes;
+  const char* message;
+};
+void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.what; }
+class BadThermal : public ::testing::TestWithParam<Bad> {};
+
+TEST_P(BadThermal, IsRefusedAtItsPlace) {
+  const std::string text =
+      testing::error_of(Error::Kind::input, [&] { read(GetParam().scene, GetParam().changes); });
+  EXPECT_TRUE(testing::says(text, GetParam().message)) << text;
+  EXPECT_TRUE(text.starts_with("--set ") || testing::says(text, ".toml:")) << text;  // the place
+}
+
+constexpr const char* kFree = "free_beam_heated";
+constexpr const char* kCrank = "slider_crank_heated";
+constexpr const char* kHeld = "beam_heated_held";
+const std::vector<Bad> kBad = {
+    {"plate_term", kFree, {"body.terms=[\"inertia\", \"membrane\"]"}, "a term of a beam"},
+    {"two_models",
+     kFree,
+     {"body.terms=[\"inertia\", \"gcm\", \"ecm\"]"},
+     "either \"gcm\" or \"ecm\""},
+    {"no_inertia", kFree, {"body.terms=[\"gcm\"]"}, "a body that moves has \"inertia\""},
+    {"plate_elements", kFree, {"body.elements=[2, 1]"}, "body.elements"},
+    {"thickness", kFree, {"body.thickness=0.1"}, "a beam has a `height`"},
+    {"beam_in_space", kFree, {"body.space=space"}, "body.space"},
+    {"flow", kFree, {"body.flow={speed=0.1, max_length=1}"}, "material flows through"},
+    {"lines", kFree, {"body.line=[{index=0, free=true}]"}, "no [[body.line]]"},
+    {"tight_arc",
+     kFree,
+     {"body.arc=6", "body.height=0.4"},
+     "half the height stays below the radius"},
+    {"no_expansion", kFree, {"body.heat={rise=1, settle=1}"}, "body.heat.expansion is missing"},
+    {"no_settle", kFree, {"body.heat={rise=1, expansion=1e-4}"}, "body.heat.settle is missing"},
+    {"profile",
+     kFree,
+     {"body.heat.profile=cubic"},
+     "'quartic', 'cosine', 'quintic', 'linear', 'step'"},
+    {"volume", kFree, {"body.heat.volume=shrunk"}, "'grown', 'grown_plane', 'reference'"},
+    {"too_cold", kFree, {"body.heat.rise=-20000"}, "is positive"},
+    {"drive", kFree, {"body.heat.rise=warm"}, "a drive"},
+    {"unknown_key", kFree, {"body.heat.colour=red"}, "colour"},
+    {"profile_of_drive",
+     kCrank,
+     {"body.heat.rise=turn"},
+     "the drive of `rise` says how the temperature goes"},
+    {"profile_at_rest", kHeld, {"body.heat.profile=linear"}, "static.grows"},
+    {"force_at_rest", kHeld, {"body.heat.force=true"}, "nothing is in motion"},
+    {"grows", kHeld, {"static.grows=everything"}, "'loads', 'temperatures', 'both'"},
+    {"no_load_grows", kHeld, {"static.grows=both", "load=[]"}, "there is no load"},
+    {"cold_grows",
+     "cantilever_roll_up",
+     {"static.grows=temperatures"},
+     "no body has a temperature"},
+    {"quantity", kFree, {"measure.quantities=[\"colour\"]"}, "a measured quantity"},
+    {"velocity_at_rest", kHeld, {"measure.quantities=[\"end_velocity\"]"}, "nothing moves"},
+    {"cold_temperature",
+     "four_bar",
+     {"measure=[{body=\"rocker\", quantities=[\"temperature\"]}]"},
+     "'rocker' has no [body.heat]"},
+    {"load",
+     kHeld,
+     {"load=[{type=\"edge\", body=\"beam\", edge=\"free_end\", force=[0, 1]}]"},
+     "loads on a beam act at points"},
+    {"design",
+     kCrank,
+     {"design=[{body='rod', cell=0.001, components=[4, 1], max_volume=0.5, min_thickness=0.0005}]",
+      "esl.every=0.1"},
+     "plates are designed, beams are not"},
+    {"force_with_flow",
+     "rotating_plate_v05",
+     {"body.heat={expansion=1e-5, rise=10, settle=1, force=true}"},
+     "no thermal force where material flows"},
+};
+INSTANTIATE_TEST_SUITE_P(Inputs, BadThermal, ::testing::ValuesIn(kBad),
+                         [](const auto& test) { return std::string(test.param.what); });
+
+}  // namespace
+}  // namespace flexmorph::cases

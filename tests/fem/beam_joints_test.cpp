@@ -1,0 +1,204 @@
+// Shows that loads, joints, links and the start of a motion take beams: resultants of gravity and
+// loads, markers on beam points, welds of curved and sheared ends with their derivatives, held
+// nodes, placement.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "fem/body_joints.h"
+#include "fem/dynamics/start.h"
+#include "fem/elements/ancf_beam.h"
+#include "fem/link.h"
+#include "tests/support/errors.h"
+#include "tests/support/rigid_models.h"
+
+namespace flexmorph::fem {
+namespace {
+
+const PlaneSection kSection{0.05, 2e8, 0.3, 7200};
+constexpr double kHeight = 0.1;
+
+VectorXd vector(double x, double y) {
+  VectorXd out(2);
+  out << x, y;
+  return out;
+}
+
+std::unique_ptr<AncfBeam> quarter_arc() {
+  return std::make_unique<AncfBeam>(even_nodes(0.9, 6), kHeight,
+                                    arc_reference(0.9, std::numbers::pi / 2, 6));
+}
+
+/// Force of one load alone on the reference; its resultant is what a translation feels.
+Vec2 resultant(std::unique_ptr<Term> load, double* moment = nullptr) {
+  std::vector<std::unique_ptr<Term>> terms;
+  terms.push_back(std::move(load));
+  Model model;
+  model.add_body("beam", quarter_arc(), kSection, std::move(terms));
+  model.prepare(0);
+  const State x = model.reference();
+  VectorXd f;
+  model.force(x, f);
+  Vec2 sum = Vec2::Zero();
+  if (moment) *moment = 0;
+  for (int k = 0; k < model.n_dofs() / 2; ++k) {
+    if (k % 3 == 0) sum -= f.segment<2>(2 * k);
+    if (moment) *moment -= x.q[2 * k] * f[2 * k + 1] - x.q[2 * k + 1] * f[2 * k];
+  }
+  return sum;
+}
+
+TEST(BeamLoads, HaveTheirResultants) {
+  const std::unique_ptr<AncfBeam> beam = quarter_arc();
+  double area = 0;
+  ShapeTable t;
+  for (int e = 0; e < 6; ++e) {
+    beam->tabulate(e, 8, Tabulate::position, {}, FactorKind::none, t);
+    area += t.weight.sum();
+  }
+  EXPECT_NEAR(area, 0.09 * (1 - std::pow(std::numbers::pi / 12, 2) / 12), 1e-6);
+  const Vec2 weight = resultant(make_gravity(kSection, vector(1, -9.81)));
+  EXPECT_NEAR(weight.x(), 7200 * 0.05 * area, 1e-11);
+  EXPECT_NEAR(weight.y(), -9.81 * 7200 * 0.05 * area, 1e-11);
+  const Vec2 surface = resultant(make_surface_load(vector(3, 4)));
+  EXPECT_NEAR(surface.x(), 3 * area, 1e-14);
+  EXPECT_NEAR(surface.y(), 4 * area, 1e-14);
+  // A force off the axis has its moment, at the face of the free end: a quarter turn to the left.
+  double moment = 0;
+  const Vec2 force = resultant(make_point_force({0.9, kHeight / 2}, vector(5, -7)), &moment);
+  EXPECT_NEAR(force.x(), 5, 1e-13);
+  EXPECT_NEAR(force.y(), -7, 1e-13);
+  const double radius = 0.9 / (std::numbers::pi / 2);
+  const Vec2 at(radius - kHeight / 2, radius);
+  EXPECT_NEAR(moment, at.x() * -7 - at.y() * 5, 1e-12);
+  const Vec2 mass = resultant(make_point_mass(2, {0.9, kHeight / 2}, vector(0, -9.81)));
+  EXPECT_NEAR(mass.y(), -2 * 9.81, 1e-12);
+}
+
+/// A beam and a rigid body, some joint between them, a state near the one where it is closed.
+struct Pair {
+  Model model;
+  State x;
+
+  explicit Pair(std::unique_ptr<Joint> joint, std::unique_ptr<AncfBeam> beam = quarter_arc()) {
+    model.add_body("beam", std::move(beam), kSection, {});
+    testing::add_rigid(model, "hub", {2, {0, 0}, 0.1});
+    model.add_joint(std::move(joint));
+    x = model.reference();
+  }
+  VectorXd value(const VectorXd& q) const {
+    State y = x;
+    y.q = q;
+    Constraints c;
+    model.constraints(y, c);
+    return c.value;
+  }
+};
+
+// Rows vanish on the undeformed bodies where the frame stands at the node with its first axis along
+// r_m; the Jacobian is that of differences (rows are of degree 2: central ones are exact), and
+// accelerations are those of the second derivative along a motion.
+TEST(BeamWelds, HoldCurvedEndsAndHaveExactDerivatives) {
+  const double radius = 0.9 / (std::numbers::pi / 2);
+  for (const WeldMode mode :
+       {WeldMode::partial, WeldMode::edge, WeldMode::direction, WeldMode::full}) {
+    Pair pair(make_edge_weld("weld", "beam", "free_end",
+                             {"hub", {radius, radius}, std::numbers::pi / 2}, mode));
+    const int rows = mode == WeldMode::partial     ? 3
+                     : mode == WeldMode::edge      ? 4
+                     : mode == WeldMode::direction ? 5
+                                                   : 6;
+    ASSERT_EQ(pair.model.joints()[1]->size(), rows);
+    EXPECT_LT(pair.value(pair.x.q).norm(), 1e-14);
+
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> part(-0.3, 0.3);
+    State& x = pair.x;
+    for (int i = 0; i < x.q.size(); ++i) {
+      x.q[i] += part(random);
+      x.v[i] = part(random);
+    }
+    Constraints c;
+    pair.model.constraints(x, c);
+    MatrixXd jacobian = MatrixXd::Zero(c.value.size(), x.q.size());
+    for (const auto& entry : c.jacobian) jacobian(entry.row(), entry.col()) += entry.value();
+    for (int i = 0; i < x.q.size(); ++i) {
+      VectorXd up = x.q, down = x.q;
+      up[i] += 0.1;
+      down[i] -= 0.1;
+      EXPECT_LT((jacobian.col(i) - (pair.value(up) - pair.value(down)) / 0.2).norm(), 1e-14);
+    }
+    const VectorXd second =
+        (pair.value(x.q + 0.1 * x.v) + pair.value(x.q - 0.1 * x.v) - 2 * pair.value(x.q)) / 0.01;
+    EXPECT_LT((c.acceleration + second).norm(), 1e-12);
+  }
+}
+
+// A sheared, tapered end keeps its reference vectors in the frame (full), or its section (edge).
+TEST(BeamWelds, TakeTheReferenceVectorsOfTheEnd) {
+  const std::vector<double> x = {0, 0.5};
+  const std::vector<BeamNode> nodes = {{{0, 0}, {1.2, 0}, {0.2, 0.9}}, {{0.5, 0}, {1, 0}, {0, 1}}};
+  for (const WeldMode mode :
+       {WeldMode::partial, WeldMode::edge, WeldMode::direction, WeldMode::full}) {
+    const Pair pair(make_edge_weld("weld", "beam", "root", {"hub"}, mode),
+                    std::make_unique<AncfBeam>(x, kHeight, nodes));
+    EXPECT_LT(pair.value(pair.x.q).norm(), 1e-15);
+    const Pair driven(make_weld(
+                          "weld", "beam", "root", [](double) { return FrameMotion{}; }, mode),
+                      std::make_unique<AncfBeam>(x, kHeight, nodes));
+    EXPECT_LT(driven.value(driven.x.q).norm(), 1e-15);
+  }
+}
+
+// Joints and springs find points of a beam, on the axis and off it.
+TEST(BeamMarkers, ArePointsOfTheBeam) {
+  Pair pair(make_revolute("hinge", {"hub", {0.45, 0.03}}, {"beam", {0.45, 0.03}}),
+            std::make_unique<AncfBeam>(0.9, kHeight, 5));
+  EXPECT_LT(pair.value(pair.x.q).norm(), 1e-15);
+  pair.model.add_link(make_spring("spring", {}, {"beam", {0.9, -kHeight / 2}}, {100, 0, 0}));
+  pair.model.prepare(0);
+  const double length2 = 0.9 * 0.9 + kHeight * kHeight / 4;
+  EXPECT_NEAR(pair.model.energies(pair.x).strain, 50 * length2, 1e-12);
+  const PlaceMotion place = pair.model.place_motion({"beam", {0.3, 0.04}}, pair.x);
+  EXPECT_LT((place.position - Vec2(0.3, 0.04)).norm(), 1e-15);
+  const std::string text = testing::error_of(Error::Kind::input, [&] {
+    pair.model.add_joint(make_revolute("off", {}, {"beam", {0.3, 0.06}}));
+  });
+  EXPECT_TRUE(testing::says(text, "outside the beam")) << text;
+}
+
+TEST(BeamHolds, FindNodesByTheirCoordinates) {
+  const Pair pair(make_hold("held", "beam",
+                            {{HoldPlace::at({0.45, 0}), NodeVector::r, {1}, {}},
+                             {{.edge = "free_end"}, NodeVector::r_n, {0, 1}, {}}}));
+  ASSERT_EQ(pair.model.joints()[1]->size(), 3);
+  EXPECT_LT(pair.value(pair.x.q).norm(), 1e-15);  // at the reference of the arc
+  const std::string text = testing::error_of(Error::Kind::input, [] {
+    Pair(make_hold("held", "beam", {{HoldPlace::at({0.4, 0}), NodeVector::r, {1}, {}}}));
+  });
+  EXPECT_TRUE(testing::says(text, "no node of body 'beam'")) << text;
+}
+
+// A beam that is placed moves as a rigid body: every point as the frame says.
+TEST(BeamStart, PlacedBeamsMoveAsRigidBodies) {
+  std::vector<std::unique_ptr<Term>> terms;
+  terms.push_back(make_inertia(kSection));
+  Model model;
+  model.add_body("beam", quarter_arc(), kSection, std::move(terms));
+  const FrameMotion f{{0.3, -0.2}, {1, 2}, {0, 0}, 0.8, 3, 0};
+  const Placement placement = [&](double) { return std::vector<Placed>{{"beam", f}}; };
+  const State x = start_state(model, {}, 0, Start::rigid, placement);
+  const Vec2 at(0.4, 0.03);
+  State reference = model.reference();
+  const Vec2 X = model.place_motion({"beam", at}, reference).position;
+  const PlaceMotion place = model.place_motion({"beam", at}, x);
+  const double c = std::cos(0.8), s = std::sin(0.8);
+  const Vec2 arm(c * X.x() - s * X.y(), s * X.x() + c * X.y());
+  EXPECT_LT((place.position - f.origin - arm).norm(), 1e-15);
+  EXPECT_LT((place.velocity - f.origin_rate - 3 * Vec2(-arm.y(), arm.x())).norm(), 1e-14);
+}
+
+}  // namespace
+}  // namespace flexmorph::fem

@@ -1,0 +1,321 @@
+// Shows that the elastic terms of the beam are what they say: energy against Gauss points in the
+// straight coordinates with J J_o⁻¹ written out, force and tangent against differences, rigid
+// motions, uniform strains, batches, and that the mean force is a discrete gradient; for straight,
+// curved and crooked references.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "fem/elements/ancf_beam.h"
+#include "fem/term.h"
+#include "tests/support/differences.h"
+#include "tests/support/errors.h"
+#include "tests/support/models.h"
+
+namespace flexmorph::fem {
+namespace {
+
+using testing::first_difference;
+using testing::rows_of_element;
+
+const PlaneSection kSection{0.05, 2e8, 0.3, 7200};
+constexpr double kHeight = 0.1;
+
+struct Case {
+  const char *model, *reference;
+  bool ecm() const { return std::string(model) == "ecm"; }
+};
+
+AncfBeam beam_of(const std::string& reference) {
+  if (reference == "straight") return {{0, 0.2, 0.45, 0.6}, kHeight};
+  if (reference == "arc")  // 90 degrees, 9 elements: a batch and one more
+    return {even_nodes(0.9, 9), kHeight, arc_reference(0.9, std::numbers::pi / 2, 9)};
+  const std::vector<double> x = {0, 0.2, 0.35, 0.6};
+  std::vector<BeamNode> nodes = curve_reference(
+      [](double s) {
+        return CentreLine{{s, 0.6 * s * s}, {1, 1.2 * s}, 1 - 0.8 * s};
+      },
+      x);
+  for (BeamNode& n : nodes) n.r_y += 0.2 * n.r_x;
+  return {x, kHeight, nodes};
+}
+
+class BeamTerm : public ::testing::TestWithParam<Case> {
+ protected:
+  BeamTerm() { term->prepare(beam, {}, true); }
+
+  MatrixXd random_shape(double size, unsigned seed) const {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> part(-size, size);
+    MatrixXd q = beam.reference();
+    for (int k = 0; k < beam.n_vectors(); ++k)
+      for (int c = 0; c < 2; ++c) q(k, c) += part(random) * (k % 3 == 0 ? beam.scale(1) : 1);
+    return q;
+  }
+  Local local(int e, const MatrixXd& all) const {
+    Local x;
+    x.q = rows_of_element(beam, all, e);
+    x.v = x.a = LocalRows::Zero(6, 2);
+    return x;
+  }
+  LocalRows force(int e, const Local& x) const {
+    LocalRows f = LocalRows::Zero(6, 2);
+    term->add_force(e, x, f);
+    return f;
+  }
+  double energy(const MatrixXd& all) const {
+    double sum = 0;
+    for (int e = 0; e < beam.n_elements(); ++e) sum += term->strain_energy(e, local(e, all));
+    return sum;
+  }
+  double area() const {
+    double sum = 0;
+    ShapeTable t;
+    for (int e = 0; e < beam.n_elements(); ++e) {
+      beam.tabulate(e, 8, Tabulate::position, {}, FactorKind::none, t);
+      sum += t.weight.sum();
+    }
+    return sum;
+  }
+
+  AncfBeam beam = beam_of(GetParam().reference);
+  std::unique_ptr<Term> term = make_term(GetParam().model, kSection);
+};
+INSTANTIATE_TEST_SUITE_P(Beams, BeamTerm,
+                         ::testing::Values(Case{"gcm", "straight"}, Case{"ecm", "straight"},
+                                           Case{"gcm", "arc"}, Case{"ecm", "arc"},
+                                           Case{"gcm", "crooked"}, Case{"ecm", "crooked"}),
+                         [](const auto& c) {
+                           return std::string(c.param.model) + "_" + c.param.reference;
+                         });
+
+/// The strain energy of one element from T (A.2), with derivatives by x and y as polynomials, by 16
+/// Gauss points each way.
+double energy_by_points(const Case& which, const LocalRows& X, const LocalRows& q, double l) {
+  using Matrix2 = Eigen::Matrix2d;
+  const auto gradients = [&](const LocalRows& nodal, double s, double y) {  // (r_x r_y)
+    Eigen::Matrix<double, 6, 2> by;
+    by << 6 / l * (s * s - s), 0, 1 - 4 * s + 3 * s * s, 0, -y / l, 1 - s, 6 / l * (s - s * s), 0,
+        3 * s * s - 2 * s, 0, y / l, s;
+    return Matrix2(nodal.transpose() * by);
+  };
+  const double E = kSection.youngs_modulus, nu = kSection.poisson_ratio, G = E / (2 * (1 + nu)),
+               c = E / (1 - nu * nu);
+  const GaussRule& rule = gauss(16);
+  double sum = 0;
+  for (size_t g = 0; g < 16; ++g) {
+    // Axes of the section: 2 along X_y.
+    const Matrix2 axis_o = gradients(X, rule.points[g], 0);
+    const Vec2 e2 = axis_o.col(1).normalized();
+    Matrix2 axes;
+    axes << e2.y(), e2.x(), -e2.x(), e2.y();
+    const auto strain = [&](double y) {
+      const Matrix2 F =
+          gradients(q, rule.points[g], y) * gradients(X, rule.points[g], y).inverse() * axes;
+      return Matrix2((F.transpose() * F - Matrix2::Identity()) / 2);
+    };
+    for (size_t h = 0; h < 16; ++h) {
+      const double y = (rule.points[h] - 0.5) * kHeight;
+      const Matrix2 e = strain(y);
+      const double twice =
+          which.ecm() ? E * e(0, 0) * e(0, 0) + E * e(1, 1) * e(1, 1) + 4 * G * e(0, 1) * e(0, 1)
+                      : c * (e(0, 0) * e(0, 0) + e(1, 1) * e(1, 1) + 2 * nu * e(0, 0) * e(1, 1)) +
+                            4 * G * e(0, 1) * e(0, 1);
+      sum += rule.weights[g] * rule.weights[h] * gradients(X, rule.points[g], y).determinant() *
+             twice / 2;
+    }
+    if (!which.ecm()) continue;
+    const Matrix2 e = strain(0);
+    sum += rule.weights[g] * axis_o.determinant() * nu * c / 2 *
+           (nu * e(0, 0) * e(0, 0) + nu * e(1, 1) * e(1, 1) + 2 * e(0, 0) * e(1, 1));
+  }
+  return sum * l * kHeight * kSection.thickness;
+}
+
+// Straight: both rules are exact. Else 7 x 4 points of a rational integrand.
+TEST_P(BeamTerm, EnergyIsThatOfTheStrains) {
+  const double tolerance = std::string(GetParam().reference) == "straight" ? 1e-12 : 2e-6;
+  const MatrixXd X = beam.reference(), q = random_shape(0.2, 3);
+  const auto nodes = beam.nodes();
+  for (int e = 0; e < beam.n_elements(); ++e) {
+    const double l =
+        nodes[static_cast<size_t>(e + 1)].material.x() - nodes[static_cast<size_t>(e)].material.x();
+    const double exact =
+        energy_by_points(GetParam(), rows_of_element(beam, X, e), rows_of_element(beam, q, e), l);
+    EXPECT_NEAR(term->strain_energy(e, local(e, q)), exact, tolerance * exact) << e;
+  }
+}
+
+// A motion of 10 m has round-off of 10 m x 1e-16 in the positions, 1e-14 of the element size.
+TEST_P(BeamTerm, RigidMotionStrainsNothing) {
+  Eigen::Matrix2d turn;
+  turn << std::cos(2.7), -std::sin(2.7), std::sin(2.7), std::cos(2.7);
+  MatrixXd q = beam.reference() * turn.transpose();
+  for (int k = 0; k < beam.n_vectors(); k += 3) q.row(k) += Eigen::RowVector2d(8, -6);
+  const double stiffness = kSection.youngs_modulus * kSection.thickness * kHeight;  // E A
+  EXPECT_LT(std::abs(energy(q)), 1e-20 * stiffness);
+  for (int e = 0; e < beam.n_elements(); ++e) {
+    const LocalRows f = force(e, local(e, q));
+    for (int k = 0; k < 6; ++k)  // as forces: those of slopes over their scale
+      EXPECT_LT(f.row(k).norm() / beam.scale(beam.vectors(e)[static_cast<size_t>(k)]),
+                1e-11 * stiffness);
+  }
+}
+
+TEST_P(BeamTerm, EnergyDoesNotSeeRotations) {
+  Eigen::Matrix2d turn;
+  turn << std::cos(2.1), -std::sin(2.1), std::sin(2.1), std::cos(2.1);
+  const MatrixXd q = random_shape(0.1, 5);
+  EXPECT_NEAR(energy(q * turn.transpose()), energy(q), 1e-12 * energy(q));
+}
+
+// Any linear map of the reference configuration is represented exactly: uniform strain, energy
+// ½ ε·Dε times the volume, D plane stress, in both models and in any axes, because D is isotropic.
+TEST_P(BeamTerm, UniformStrainHasTheExactEnergyAndStress) {
+  for (const auto& [f11, f12, f21, f22] :
+       {std::array{1.1, 0.0, 0.0, 1.0}, {1.0, 0.15, 0.0, 1.0}, {0.95, 0.1, -0.2, 1.2}}) {
+    Eigen::Matrix2d F;
+    F << f11, f12, f21, f22;
+    const Eigen::Matrix2d e = (F.transpose() * F - Eigen::Matrix2d::Identity()) / 2;
+    const Vec3 strain(e(0, 0), e(1, 1), 2 * e(0, 1));
+    const double exact =
+        0.5 * strain.dot(kSection.elasticity() * strain) * area() * kSection.thickness;
+    EXPECT_NEAR(energy(beam.reference() * F.transpose()), exact, 1e-12 * exact);
+    // Virtual work of δF on the force is P : δF times the volume, P = F S.
+    const Vec3 s = kSection.elasticity() * strain;
+    Eigen::Matrix2d S;
+    S << s[0], s[2], s[2], s[1];
+    Eigen::Matrix2d dF;
+    dF << 0.3, -0.7, 0.2, 0.5;
+    const MatrixXd q = beam.reference() * F.transpose(), dq = beam.reference() * dF.transpose();
+    double work = 0;
+    for (int e1 = 0; e1 < beam.n_elements(); ++e1)
+      work += force(e1, local(e1, q)).cwiseProduct(rows_of_element(beam, dq, e1)).sum();
+    const double expected = (F * S).cwiseProduct(dF).sum() * area() * kSection.thickness;
+    EXPECT_NEAR(work, expected, 1e-12 * s.norm() * area() * kSection.thickness);
+  }
+}
+
+// The force is cubic in the unknowns: differences of order 4 are exact but for round-off.
+TEST_P(BeamTerm, TangentIsTheDerivativeOfTheForceAndForceThatOfTheEnergy) {
+  const int e = beam.n_elements() - 1;
+  const Local x = local(e, random_shape(0.2, 1));
+  LocalTangent k = LocalTangent::Zero(12, 12);
+  term->add_tangent(e, x, {1, 0, 0}, k);
+  const LocalRows f = force(e, x);
+  EXPECT_LT((k - k.transpose()).cwiseAbs().maxCoeff(), 1e-13 * k.cwiseAbs().maxCoeff());
+  for (Eigen::Index l = 0; l < 6; ++l)
+    for (Eigen::Index c = 0; c < 2; ++c) {
+      const double step = l % 3 == 0 ? 1e-3 * beam.scale(1) : 1e-3;
+      const auto moved = [&](double by) {
+        Local y = x;
+        y.q(l, c) += by;
+        return y;
+      };
+      const MatrixXd df =
+          first_difference([&](double by) { return MatrixXd(force(e, moved(by))); }, step);
+      for (Eigen::Index row = 0; row < 12; ++row)
+        EXPECT_NEAR(df(row / 2, row % 2), k(row, 2 * l + c),
+                    1e-9 * k.col(2 * l + c).cwiseAbs().maxCoeff());
+      const double du =
+          first_difference([&](double by) { return term->strain_energy(e, moved(by)); }, step);
+      EXPECT_NEAR(du, f(l, c), 1e-9 * f.col(c).cwiseAbs().maxCoeff());
+    }
+}
+
+// Eight elements side by side: force and tangent of each as by itself.
+TEST_P(BeamTerm, BatchesAreElements) {
+  const MatrixXd all = random_shape(0.2, 2);
+  for (int first = 0; first < beam.n_elements(); first += kLanes) {
+    const int count = std::min(kLanes, beam.n_elements() - first);
+    std::array<Lanes, 12> q, zero{}, f{};
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const LocalRows rows = rows_of_element(beam, all, first + std::min(lane, count - 1));
+      for (size_t k = 0; k < 12; ++k) q[k][lane] = rows.data()[k];
+    }
+    const Batch batch{first, count, 6, 2, q.data(), zero.data(), zero.data()};
+    term->add_forces(batch, f.data());
+    std::vector<Lanes> tangent(144, Lanes{});
+    term->add_tangents(batch, {0.7, 3, 5}, tangent.data());
+    for (int lane = 0; lane < count; ++lane) {
+      const Local x = local(first + lane, all);
+      const LocalRows alone = force(first + lane, x);
+      LocalTangent k = LocalTangent::Zero(12, 12);
+      term->add_tangent(first + lane, x, {0.7, 3, 5}, k);
+      // The order of sums may differ by the compiler's contraction.
+      for (size_t i = 0; i < 12; ++i)
+        EXPECT_NEAR(f[i][lane], alone.data()[i], 1e-13 * alone.cwiseAbs().maxCoeff());
+      for (Eigen::Index i = 0; i < 144; ++i)
+        EXPECT_NEAR(tangent[static_cast<size_t>(i)][lane], k(i % 12, i / 12),
+                    1e-13 * k.cwiseAbs().maxCoeff());
+    }
+  }
+}
+
+// F̄ · (q₁ - q₀) = U₁ - U₀ over a large step; no resultant, no moment about the mean positions.
+TEST_P(BeamTerm, MeanForceIsADiscreteGradient) {
+  const int e = 1;
+  LocalStep x;
+  x.start = rows_of_element(beam, random_shape(0.2, 7), e);
+  x.end = rows_of_element(beam, random_shape(0.2, 8), e);
+  x.mean = {0.5 * (x.start + x.end), LocalRows::Zero(6, 2), LocalRows::Zero(6, 2)};
+  LocalRows f = LocalRows::Zero(6, 2);
+  term->add_mean_force(e, x, f);
+  const double u0 = term->strain_energy(e, {x.start, {}, {}}),
+               u1 = term->strain_energy(e, {x.end, {}, {}});
+  EXPECT_NEAR(f.cwiseProduct(x.end - x.start).sum(), u1 - u0, 1e-12 * (u0 + u1));
+  EXPECT_LT((f.row(0) + f.row(3)).norm(), 1e-14 * f.norm());
+  double moment = 0;
+  for (int k = 0; k < 6; ++k) moment += x.mean.q(k, 0) * f(k, 1) - x.mean.q(k, 1) * f(k, 0);
+  EXPECT_LT(std::abs(moment), 1e-13 * f.norm() * x.mean.q.norm());
+
+  LocalTangent k = LocalTangent::Zero(12, 12);
+  term->add_mean_tangent(e, x, {0.5, 0, 0}, k);  // the end moves by one, the mean by a half
+  for (Eigen::Index l = 0; l < 12; ++l) {
+    const double step = l / 2 % 3 == 0 ? 1e-3 * beam.scale(1) : 1e-3;
+    const MatrixXd df = first_difference(
+        [&](double by) {
+          LocalStep y = x;
+          y.end(l / 2, l % 2) += by;
+          y.mean.q(l / 2, l % 2) += by / 2;
+          LocalRows out = LocalRows::Zero(6, 2);
+          term->add_mean_force(e, y, out);
+          return MatrixXd(out);
+        },
+        step);
+    for (Eigen::Index row = 0; row < 12; ++row)
+      EXPECT_NEAR(df(row / 2, row % 2), k(row, l), 1e-9 * k.col(l).cwiseAbs().maxCoeff());
+  }
+}
+
+// Pure bending of a straight beam, r = (x, ½κx²) with r_y along the normal, to first order in κ:
+// ε₁₁ = -κy. gcm stores E/(1 - ν²) I κ²/2 per length because r_y cannot shrink and swell over the
+// height, ecm E I κ²/2.
+TEST(BeamBending, PoissonLockingIsOneOverOneMinusNuSquared) {
+  const double l = 0.5, kappa = 1e-4, inertia = kSection.thickness * std::pow(kHeight, 3) / 12;
+  const AncfBeam beam(l, kHeight, 1);
+  Local x;
+  x.q.resize(6, 2);
+  x.q << 0, 0, 1, 0, 0, 1, l, kappa * l * l / 2, 1, kappa * l, -kappa * l, 1;
+  const double exact = kSection.youngs_modulus * inertia * kappa * kappa / 2 * l;
+  for (const auto& [name, factor] : {std::pair{"ecm", 1.0}, {"gcm", 1 / (1 - 0.3 * 0.3)}}) {
+    const std::unique_ptr<Term> term = make_term(name, kSection);
+    term->prepare(beam, {}, true);
+    // Terms of fourth order in κ: (κl)²/h² of the strain on the axis is below 1e-4 of it.
+    EXPECT_NEAR(term->strain_energy(0, x) / exact, factor, 1e-6) << name;
+  }
+}
+
+TEST(BeamTerms, BelongToBeamsInThePlane) {
+  const AncfPlate plate(2, testing::ShapeSet::h12, testing::even_lines(0, 1, 2),
+                        testing::even_lines(0, 1, 1));
+  const std::string text = testing::error_of(
+      Error::Kind::input, [&] { make_beam_ecm(kSection)->prepare(plate, {}, true); });
+  EXPECT_TRUE(testing::says(text, "'ecm' is that of a beam")) << text;
+}
+
+}  // namespace
+}  // namespace flexmorph::fem

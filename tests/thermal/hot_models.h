@@ -1,0 +1,101 @@
+#pragma once
+
+#include <string>
+
+#include "fem/elements/ancf_beam.h"
+#include "fem/elements/ancf_plate.h"
+#include "fem/model.h"
+#include "fem/thermal/heated.h"
+#include "fem/thermal/temperature.h"
+#include "fem/thermal/thermal_displacement.h"
+#include "fem/thermal/thermal_force.h"
+#include "tests/support/models.h"
+
+/// Hot beams and plates for tests.
+namespace flexmorph::testing {
+
+/// Heat with α = 1: `rise` is α ΔT with its rate.
+inline fem::Heat heat_of(std::function<fem::Motion(double)> rise,
+                         fem::ThermalVolume volume = fem::ThermalVolume::grown) {
+  return {1, std::move(rise), volume};
+}
+inline fem::Heat constant_heat(double a, fem::ThermalVolume volume = fem::ThermalVolume::grown) {
+  return heat_of([a](double) { return fem::Motion{a, 0, 0}; }, volume);
+}
+
+/// The beam of T 11.1: free, 200 K within half a second.
+struct HotBeam {
+  double length = 1, height = 0.1, expansion = 1e-4;
+  int n = 1;
+  std::string term = "gcm";
+  fem::PlaneSection section{0.1, 7e8, 0.3, 7200};
+  fem::TemperatureRise rise{fem::Profile::quartic, 200, 0, 0.5};
+  fem::ThermalVolume volume = fem::ThermalVolume::grown;
+  bool thermal_force = true;
+
+  fem::Heat heat() const { return {expansion, fem::make_temperature(rise), volume}; }
+  double mass() const { return section.density * section.thickness * height * length; }
+
+  fem::Model model() const {
+    std::vector<std::unique_ptr<fem::Term>> terms;
+    terms.push_back(fem::make_inertia(section));
+    terms.push_back(fem::make_term(term, section));
+    fem::Model out;
+    fem::Body& body = out.add_body("beam", std::make_unique<fem::AncfBeam>(length, height, n),
+                                   section, std::move(terms));
+    fem::heat(body, heat());
+    if (thermal_force)
+      out.add_link(std::make_unique<fem::ThermalForce>("thermal force", "beam", heat(),
+                                                       section.density * section.thickness));
+    return out;
+  }
+};
+
+/// Unknowns of the first body as rows (n_vectors x dim).
+inline MatrixXd rows_of_body(const fem::Model& model, const VectorXd& q) {
+  const fem::Element& e = *model.bodies()[0].element;
+  return Eigen::Map<const VectorRows>(q.data() + model.bodies()[0].first_dof, e.n_vectors(),
+                                      e.dim());
+}
+inline VectorXd flat(const MatrixXd& rows) {
+  const VectorRows by_rows = rows;
+  return Eigen::Map<const VectorXd>(by_rows.data(), by_rows.size());
+}
+
+/// Largest elastic strain over points of the first body of a model in the plane, straight from
+/// ½ ((F/s)ᵀ(F/s) - 1).
+inline double largest_strain(const fem::Model& model, const VectorXd& q, double s) {
+  const fem::Element& element = *model.bodies()[0].element;
+  const MatrixXd all = rows_of_body(model, q);
+  fem::ShapeTable t;
+  double out = 0;
+  for (int e = 0; e < element.n_elements(); ++e) {
+    element.tabulate(e, 8, fem::Tabulate::gradient, {}, fem::FactorKind::none, t);
+    const MatrixXd local = rows_of_element(element, all, e);
+    for (Eigen::Index p = 0; p < t.weight.size(); ++p) {
+      const Eigen::RowVectorXd r_m = t.N_m.row(p) * local / s, r_n = t.N_n.row(p) * local / s;
+      out = std::max({out, std::abs(0.5 * (r_m.squaredNorm() - 1)),
+                      std::abs(0.5 * (r_n.squaredNorm() - 1)), std::abs(0.5 * r_m.dot(r_n))});
+    }
+  }
+  return out;
+}
+
+/// Angular momentum about the origin of the first body in the plane, ∫ ρb r × ṙ dA, point by point.
+inline double angular_momentum(const fem::Model& model, const fem::State& x) {
+  const fem::Body& body = model.bodies()[0];
+  const MatrixXd q = rows_of_body(model, x.q), v = rows_of_body(model, x.v);
+  fem::ShapeTable t;
+  double out = 0;
+  for (int e = 0; e < body.element->n_elements(); ++e) {
+    body.element->tabulate(e, 6, fem::Tabulate::position, {}, fem::FactorKind::none, t);
+    const MatrixXd r = t.N * rows_of_element(*body.element, q, e),
+                   r_t = t.N * rows_of_element(*body.element, v, e);
+    for (Eigen::Index p = 0; p < t.weight.size(); ++p)
+      out += body.section.density * body.section.thickness * t.weight[p] *
+             (r(p, 0) * r_t(p, 1) - r(p, 1) * r_t(p, 0));
+  }
+  return out;
+}
+
+}  // namespace flexmorph::testing

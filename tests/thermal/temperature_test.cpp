@@ -1,0 +1,110 @@
+// Shows that profiles of temperature start at 0, settle at their rise, have the rates they say, and
+// name every time at which the rate or the acceleration jumps.
+#include "fem/thermal/temperature.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/support/differences.h"
+#include "tests/support/errors.h"
+
+namespace flexmorph::fem {
+namespace {
+
+using testing::error_of;
+using testing::first_difference;
+using testing::says;
+
+const char* const kSmooth[] = {"quartic", "cosine", "quintic", "linear"};
+
+TEST(Temperature, RisesFromNothingToAll) {
+  for (const char* name : kSmooth) {
+    const auto T = make_temperature({profile_of(name), 80, 0.3, 0.7});
+    EXPECT_EQ(T(0.2999).value, 0);
+    EXPECT_EQ(T(0.3).value, 0);
+    EXPECT_NEAR(T(1).value, 80, 1e-12);
+    EXPECT_EQ(T(1.01).value, 80);
+    EXPECT_EQ(T(1.01).rate, 0);
+    double last = 0;
+    for (double t = 0.31; t < 1; t += 0.01) {
+      const Motion at = T(t);
+      EXPECT_GT(at.value, last) << name << " never falls";
+      last = at.value;
+      EXPECT_NEAR(at.rate, first_difference([&](double h) { return T(t + h).value; }, 1e-3),
+                  1e-6 * 80);
+      EXPECT_NEAR(at.acceleration, first_difference([&](double h) { return T(t + h).rate; }, 1e-3),
+                  1e-5 * 80);
+    }
+  }
+  // Half-way, by hand.
+  const auto half = [](Profile p) { return make_temperature({p, 1, 0, 1})(0.5).value; };
+  EXPECT_NEAR(half(Profile::quartic), 6. / 4 - 1 + 3. / 16, 1e-15);
+  EXPECT_NEAR(half(Profile::cosine), 0.5, 1e-15);
+  EXPECT_NEAR(half(Profile::quintic), 0.5, 1e-15);
+  EXPECT_NEAR(half(Profile::linear), 0.5, 1e-15);
+}
+
+TEST(Temperature, StepIsThereFromItsStart) {
+  const auto T = make_temperature({Profile::step, 80, 0, 0});
+  EXPECT_EQ(T(0).value, 80);
+  EXPECT_EQ(T(-1e-9).value, 0);
+  EXPECT_EQ(T(0).rate, 0);
+}
+
+// Values just before and just after: what jumps is a kink, and what is no kink does not jump.
+TEST(Temperature, KinksAreWhereSomethingJumps) {
+  for (const char* name : {"quartic", "cosine", "quintic", "linear", "step"}) {
+    const TemperatureRise rise{profile_of(name), 80, 0.3, 0.7};
+    const auto T = make_temperature(rise);
+    const std::vector<double> list = kinks(rise);
+    for (const double t : {0.3, 0.55, 1.0}) {
+      const Motion before = T(t - 1e-7), after = T(t + 1e-7);
+      const double jump = std::abs(after.value - before.value) +
+                          std::abs(after.rate - before.rate) +
+                          std::abs(after.acceleration - before.acceleration);
+      const bool listed =
+          std::any_of(list.begin(), list.end(), [&](double k) { return std::abs(k - t) < 1e-12; });
+      EXPECT_EQ(jump > 1, listed) << name << " at " << t;
+    }
+  }
+}
+
+// Steps land there, also where start + settle is rounded: the mean of both sides.
+TEST(Temperature, IsTheMeanOfBothSidesAtAKink) {
+  for (const double start : {0.0, 0.1, 0.3, 1.7}) {
+    const TemperatureRise rise{Profile::cosine, 1, start, 0.7};
+    const auto T = make_temperature(rise);
+    const double jump = 4.9348022 / 0.49;  // π²/2 / settle²
+    EXPECT_NEAR(T(kinks(rise).back()).acceleration, -jump / 2, 1e-5);
+    EXPECT_NEAR(T(kinks(rise).front()).acceleration, start == 0 ? jump : jump / 2, 1e-5);
+    EXPECT_NEAR(T(start + 0.7).value, 1, 1e-12);
+  }
+}
+
+TEST(Temperature, OnlyBendsCarryThermalForces) {
+  for (const char* name : {"quartic", "cosine", "quintic"})
+    EXPECT_TRUE(accelerates({profile_of(name), 80, 0, 1}));
+  for (const char* name : {"linear", "step"})
+    EXPECT_FALSE(accelerates({profile_of(name), 80, 0, 1}));
+  EXPECT_FALSE(accelerates({Profile::quartic, 0, 0, 1}));
+}
+
+TEST(Temperature, RefusesNonsense) {
+  EXPECT_TRUE(says(error_of(Error::Kind::input, [] { profile_of("sudden"); }),
+                   "known are: cosine, linear, quartic, quintic, step"));
+  EXPECT_TRUE(says(error_of(Error::Kind::input,
+                            [] {
+                              make_temperature({Profile::cosine, 1, 0, 0});
+                            }),
+                   "settling"));
+  EXPECT_TRUE(says(error_of(Error::Kind::input,
+                            [] {
+                              make_temperature({Profile::cosine, std::nan(""), 0, 1});
+                            }),
+                   "finite"));
+}
+
+}  // namespace
+}  // namespace flexmorph::fem
