@@ -60,7 +60,7 @@ void describe_course(const Scene& scene, std::ostringstream& out) {
   const std::string scheme = time.integrator == "energy_momentum"
                                  ? "energy_momentum, "
                                  : "rho_inf " + io::to_text(time.rho_inf) + ", ";
-  out << row("time", until + scheme +
+  out << row("time", until + "step " + io::to_text(time.step) + " s, " + scheme +
                          std::to_string(static_cast<int>(std::ceil(time.end / time.step - 1e-9))) +
                          " steps");
 }

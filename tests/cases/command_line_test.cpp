@@ -51,8 +51,9 @@ TEST(CommandLine, CheckSaysWhatIsThereAndWhatIsNot) {
     return std::pair(out.substr(0, middle), out.substr(middle));
   };
   const auto [active, absent] = halves({});
-  for (const char* part : {"body plate", "24 components, 168 variables", "112 x 20 cells",
-                           "12 loads", "unknowns", "MB", "mma", "terms: inertia, membrane"})
+  for (const char* part :
+       {" s, step ", "body plate", "24 components, 168 variables", "112 x 20 cells", "12 loads",
+        "unknowns", "MB", "mma", "terms: inertia, membrane"})
     EXPECT_TRUE(contains(active, part));
   for (const char* part : {"gravity", "heat", "out-of-plane", "rigid bodies", "verification"})
     EXPECT_TRUE(contains(absent, part));
