@@ -22,15 +22,6 @@ const std::map<std::string, std::vector<const char*>>& columns_of() {
   return kColumns;
 }
 
-MatrixXd local_rows(const fem::Body& body, const VectorXd& all, int e) {
-  const auto vectors = body.element->vectors(e);
-  const int dim = body.element->dim();
-  MatrixXd out(static_cast<Eigen::Index>(vectors.size()), dim);
-  for (Eigen::Index k = 0; k < out.rows(); ++k)
-    out.row(k) = all.segment(body.first_dof + dim * vectors[static_cast<size_t>(k)], dim);
-  return out;
-}
-
 Vec2 place(const fem::Body& body, const fem::State& x, const Vec2& material) {
   return fem::point_position(body, x, material).head<2>();
 }
@@ -52,10 +43,11 @@ std::vector<fem::ShapeTable> gauss_points(const fem::Body& body) {
 /// Largest entry of (FᵀF/s² - 1)/2.
 double largest_strain(const fem::Body& body, const fem::State& x, double s,
                       const std::vector<fem::ShapeTable>& tables) {
+  const fem::VectorRows unknowns = fem::rows_of(body, x.q) / s;
   double largest = 0;
   for (int e = 0; e < body.element->n_elements(); ++e) {
     const fem::ShapeTable& t = tables[static_cast<size_t>(e)];
-    const MatrixXd q = local_rows(body, x.q, e) / s;
+    const MatrixXd q = unknowns(body.element->vectors(e), Eigen::placeholders::all);
     const MatrixXd r_x = t.N_m * q, r_y = t.N_n * q;  // a row per point
     for (Eigen::Index g = 0; g < r_x.rows(); ++g)
       for (const double strain :
@@ -171,7 +163,7 @@ void BodyMeasures::put_quantity(const Measured& m, const std::string& quantity,
   } else if (quantity == "end_slopes") {
     fem::ShapeTable t;
     const int e = body.element->locate(m.material[2], fem::Tabulate::gradient, t);
-    const MatrixXd q = local_rows(body, x.q, e);
+    const MatrixXd q = fem::rows_of(body, x.q)(body.element->vectors(e), Eigen::placeholders::all);
     put((t.N_m * q).norm());
     put((t.N_n * q).norm());
   } else {

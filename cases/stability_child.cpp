@@ -41,7 +41,7 @@ pid_t start(const Child& child, const ChildLimits& limits) {
     setrlimit(RLIMIT_CORE, &no_core);
     dup2(out, STDOUT_FILENO);
     dup2(out, STDERR_FILENO);
-    execv("/proc/self/exe", argv.data());
+    execv(child.program.c_str(), argv.data());
     _exit(127);
   }
   close(out);

@@ -23,8 +23,9 @@ struct Ending {
 };
 
 struct Child {
-  std::vector<std::string> words;  ///< arguments of this program
-  std::string log;                 ///< file for its output
+  std::vector<std::string> words;          ///< its arguments
+  std::string log;                         ///< file for its output
+  std::string program = "/proc/self/exe";  ///< this one
 };
 
 /// Runs children, `jobs` at a time, in the order given. SIGINT and SIGTERM are passed on once; no

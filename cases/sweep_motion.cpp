@@ -43,19 +43,34 @@ Motions read_reference(const std::string& path) {
   return columns_of(path, std::filesystem::path(path).stem().string());
 }
 
-io::Figure motion_figure(const std::string& title, std::span<const Motions> variants,
-                         const Motions& reference) {
-  io::Figure figure;
-  figure.title = title;
-  figure.panel_height = 240;
+namespace {
+
+io::Figure figure_of(const std::string& title) {
+  io::Figure out;
+  out.title = title;
+  out.panel_height = 240;
+  return out;
+}
+
+/// Columns of the first variant that has any, time or load factor first.
+std::span<const std::string> names_of(std::span<const Motions> variants) {
   const auto first = std::find_if(variants.begin(), variants.end(),
                                   [](const Motions& m) { return m.names.size() > 1; });
-  if (first == variants.end()) return figure;
-  for (size_t c = 1; c < first->names.size(); ++c) {
-    const std::string& name = first->names[c];
+  if (first == variants.end()) return {};
+  return first->names;
+}
+
+}  // namespace
+
+io::Figure motion_figure(const std::string& title, std::span<const Motions> variants,
+                         const Motions& reference) {
+  io::Figure figure = figure_of(title);
+  const std::span<const std::string> names = names_of(variants);
+  for (size_t c = 1; c < names.size(); ++c) {
+    const std::string& name = names[c];
     io::Panel panel;
     panel.title = name;
-    panel.x.label = first->names[0];
+    panel.x.label = names[0];
     bool any = false;
     for (size_t v = 0; v < variants.size(); ++v) {
       const std::vector<double>* y = variants[v].column(name);
@@ -80,15 +95,11 @@ io::Figure motion_figure(const std::string& title, std::span<const Motions> vari
 io::Figure final_figure(const std::string& title, const std::string& label,
                         std::span<const Motions> variants, std::span<const double> number,
                         std::span<const std::string> curve) {
-  io::Figure figure;
-  figure.title = title;
-  figure.panel_height = 240;
-  const auto first = std::find_if(variants.begin(), variants.end(),
-                                  [](const Motions& m) { return m.names.size() > 1; });
-  if (first == variants.end()) return figure;
-  for (size_t c = 1; c < first->names.size(); ++c) {
+  io::Figure figure = figure_of(title);
+  const std::span<const std::string> names = names_of(variants);
+  for (size_t c = 1; c < names.size(); ++c) {
     io::Panel panel;
-    panel.title = first->names[c];
+    panel.title = names[c];
     panel.x.label = label;
     for (size_t v = 0; v < variants.size(); ++v) {
       const std::vector<double>* y = variants[v].column(panel.title);

@@ -11,7 +11,7 @@
 
 #include <cmath>
 
-#include "tests/support/differences.h"
+#include "tests/support/energy_rate.h"
 #include "tests/support/models.h"
 #include "tests/support/space_plates.h"
 
@@ -71,23 +71,9 @@ class AnyMotion : public ::testing::TestWithParam<Case> {};
 
 TEST_P(AnyMotion, ChangesTheEnergyByThePowers) {
   Model model = model_of(GetParam());
-  model.prepare(0.0);
-  const State rest = model.reference();
-  const testing::SmoothMotion motion(rest.q, 0.02 * model.scales().cwiseInverse(), 7);
-  const auto state = [&](double t) {
-    State x = motion.state(t);
-    x.lambda = rest.lambda;
-    model.prepare(x);
-    return x;
-  };
+  const testing::SmoothMotion motion = testing::any_motion(model);
   for (const double time : {0.3, 0.9}) {
-    const double rate =
-        first_difference([&](double dt) { return model.energies(state(time + dt)).total(); }, 1e-3);
-    const State x = state(time);
-    VectorXd force;
-    model.force(x, force);
-    const Powers p = powers(model, x);
-    const double work = force.dot(x.v);
+    const auto [rate, work, p] = testing::energy_rate(model, motion, time);
     EXPECT_NEAR(work + p.total(), rate, 1e-8 * (std::abs(work) + std::abs(p.feed)));
     // Nothing but strain energy at a free root: its motion is that of an unknown.
     if (GetParam().lines == "f|||" && GetParam().terms == "mb")

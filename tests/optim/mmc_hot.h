@@ -1,10 +1,13 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <random>
 #include <vector>
 
 #include "optim/mmc/fixed_loads.h"
+#include "optim/mmc/responses.h"
 #include "tests/optim/mmc_small.h"
 
 /// Hot plates for tests.
@@ -49,6 +52,57 @@ inline std::vector<fem::HeldUnknown> operator+(std::vector<fem::HeldUnknown> a,
                                                const std::vector<fem::HeldUnknown>& b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;
+}
+
+/// One load found in another way: wᵀ K w, its derivative by the stiffness factors, w.
+struct Found {
+  double compliance = 0;
+  VectorXd derivative, w;
+};
+
+/// Relative errors: of a load, of individual() beside it, of the sum and its derivative.
+struct Allowed {
+  double load, individual, sum, d_sum;
+};
+
+/// All of the displacement: the elastic one and the growth about the root.
+inline VectorXd whole(const VectorXd& w, const fem::EslSet& set, const Grid& g) {
+  const Vec2 root(g.node_position(set.root_column, 0).x(), 0);
+  VectorXd u = w;
+  for (int n = g.node(set.root_column, 0); n < g.n_nodes(); ++n)
+    u.segment<2>(2 * n) +=
+        set.thermal_stretch * (g.node_position(n / (g.ny + 1), n % (g.ny + 1)) - root);
+  return u;
+}
+
+/// All answers of Compliance for `inertia` loads against `found(load)`.
+template <class FoundOf>
+void expect_answers(const fem::EslSets& loads, const VectorXd& k, const VectorXd& m, bool compress,
+                    const Allowed& allowed, const FoundOf& found) {
+  Compliance compliance(loads, kSection, {.compress = compress}, {}, {});
+  Compliance::Value value;
+  Compliance::Each each;
+  compliance.evaluate(k, m, value);
+  compliance.evaluate_each(k, m, each);
+  const VectorXd individual = compliance.individual(k, m);
+  const Grid& g = loads.grid;
+  double sum = 0;
+  VectorXd d_sum = VectorXd::Zero(k.size());
+  for (int l = 0; l < compliance.n_loads(); ++l) {
+    const fem::EslSet& set = loads.sets[static_cast<size_t>(l)];
+    const Found expected = found(static_cast<size_t>(l));
+    sum += set.weight * expected.compliance;
+    d_sum += set.weight * expected.derivative;
+    EXPECT_NEAR(each.f(l), expected.compliance, allowed.load * expected.compliance) << l;
+    EXPECT_NEAR(individual(l), each.f(l), allowed.individual * each.f(l)) << l;
+    EXPECT_LT((each.d_stiffness.row(l).transpose() - expected.derivative).norm(),
+              allowed.load * expected.derivative.norm())
+        << l;
+    const VectorXd u = whole(expected.w, set, g);
+    EXPECT_LT((compliance.displacement(k, m, l) - u).norm(), allowed.load * u.norm()) << l;
+  }
+  EXPECT_NEAR(value.f, sum, allowed.sum * sum);
+  EXPECT_LT((value.d_stiffness - d_sum).norm(), allowed.d_sum * d_sum.norm());
 }
 
 }  // namespace flexmorph::mmc::test

@@ -132,35 +132,11 @@ fem::EslSets few_hot_loads() {
 TEST(HotCompliance, EnergiesAreThoseOfTheDenseEquations) {
   const fem::EslSets loads = few_hot_loads();
   const VectorXd k = random_factors(loads.grid, 1e-2, 1), m = random_factors(loads.grid, 1e-1, 2);
-  for (const bool compress : {false, true}) {
-    Compliance compliance(loads, kSection, {.compress = compress}, {}, {});
-    Compliance::Value value;
-    Compliance::Each each;
-    compliance.evaluate(k, m, value);
-    compliance.evaluate_each(k, m, each);
-    const VectorXd individual = compliance.individual(k, m);
-    double sum = 0;
-    VectorXd d_sum = VectorXd::Zero(k.size());
-    for (int l = 0; l < 4; ++l) {
-      const fem::EslSet& set = loads.sets[static_cast<size_t>(l)];
-      const Dense expected = dense_load(loads, static_cast<size_t>(l), k, m);
-      sum += set.weight * expected.compliance;
-      const VectorXd d = expected.derivative();
-      d_sum += set.weight * d;
-      EXPECT_NEAR(each.f(l), expected.compliance, 1e-10 * expected.compliance);
-      EXPECT_NEAR(individual(l), expected.compliance, 1e-10 * expected.compliance);
-      EXPECT_LT((each.d_stiffness.row(l).transpose() - d).norm(), 1e-10 * d.norm());
-      // All of the displacement: the elastic one and the growth about the root.
-      VectorXd u = expected.w;
-      for (int n = loads.grid.node(set.root_column, 0); n < loads.grid.n_nodes(); ++n)
-        u.segment<2>(2 * n) +=
-            set.thermal_stretch * (loads.grid.node_position(n / 4, n % 4) -
-                                   Vec2(loads.grid.node_position(set.root_column, 0).x(), 0));
-      EXPECT_LT((compliance.displacement(k, m, l) - u).norm(), 1e-10 * u.norm());
-    }
-    EXPECT_NEAR(value.f, sum, 1e-9 * sum);
-    EXPECT_LT((value.d_stiffness - d_sum).norm(), 1e-8 * d_sum.norm());
-  }
+  for (const bool compress : {false, true})
+    expect_answers(loads, k, m, compress, {1e-10, 1e-10, 1e-9, 1e-8}, [&](size_t l) {
+      const Dense dense = dense_load(loads, l, k, m);
+      return Found{dense.compliance, dense.derivative(), dense.w};
+    });
 }
 
 // Several held places, some along one direction only, and a domain with a hole.

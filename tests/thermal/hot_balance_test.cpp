@@ -9,14 +9,13 @@
 
 #include "fem/dynamics/balance.h"
 #include "fem/dynamics/integrator.h"
-#include "tests/support/differences.h"
+#include "tests/support/energy_rate.h"
 #include "tests/support/rates.h"
 #include "tests/thermal/hot_models.h"
 
 namespace flexmorph::fem {
 namespace {
 
-using testing::first_difference;
 using testing::HotBeam;
 using testing::ShapeSet;
 using testing::swinging_line;
@@ -54,23 +53,9 @@ INSTANTIATE_TEST_SUITE_P(Lines, AnyMotion, ::testing::Values("|||", "d||", "dd|"
 
 TEST_P(AnyMotion, ChangesTheEnergyByThePowers) {
   Model model = plate_of(GetParam());
-  model.prepare(0.0);
-  const State rest = model.reference();
-  const testing::SmoothMotion motion(rest.q, 0.02 * model.scales().cwiseInverse(), 7);
-  const auto state = [&](double t) {
-    State x = motion.state(t);
-    x.lambda = rest.lambda;
-    model.prepare(x);
-    return x;
-  };
+  const testing::SmoothMotion motion = testing::any_motion(model);
   for (const double time : {0.3, 0.9}) {
-    const double rate =
-        first_difference([&](double dt) { return model.energies(state(time + dt)).total(); }, 1e-3);
-    const State x = state(time);
-    VectorXd force;
-    model.force(x, force);
-    const Powers p = powers(model, x);
-    const double work = force.dot(x.v);
+    const auto [rate, work, p] = testing::energy_rate(model, motion, time);
     EXPECT_NEAR(work + p.total(), rate,
                 1e-8 * (std::abs(work) + std::abs(p.feed) + std::abs(p.heat)));
     EXPECT_GT(std::abs(p.heat), 1e-3 * std::abs(rate));

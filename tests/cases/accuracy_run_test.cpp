@@ -1,0 +1,139 @@
+// `flexmorph accuracy` from the command line, on small cases with closed forms.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "cases/run.h"
+#include "io/tables.h"
+#include "tests/cases/program.h"
+
+namespace flexmorph::cases {
+namespace {
+
+using test::Ended;
+using test::Words;
+
+/// `flexmorph accuracy` with changes.
+Ended accuracy(const Scratch& scratch, const std::string& name, const std::string& folder,
+               const Words& more) {
+  Words words = {"accuracy", name, "-o", folder};
+  words.insert(words.end(), more.begin(), more.end());
+  return test::flexmorph(scratch, words);
+}
+
+// A weight at the end of a strip at rest: Euler's cantilever, u = F L³/(3 E I), with Poisson's
+// ratio 0 and a deflection of 1e-5 of the length, so that nothing nonlinear matters.
+const char* const kStrip = R"toml(
+[static]
+steps = 4
+[[body]]
+name = "strip"
+element = "ancf_plate"
+space = "space"
+terms = ["membrane", "bending"]
+length = 1.0
+width = 0.1
+thickness = 0.01
+youngs_modulus = 1e9
+poisson_ratio = 0.0
+elements = [2, 1]
+[[joint]]
+type = "clamp"
+body = "strip"
+edges = ["root"]
+[[load]]
+type = "edge"
+body = "strip"
+edge = "free_end"
+force = [0.0, 0.0, 2.5e-3]
+[[observe]]
+name = "tip"
+body = "strip"
+at = "free_end"
+[accuracy]
+quantity = "strip.tip_uz"
+# 2.5e-4 N at 1 m; E I = 1e9 x 0.1 x 1e-6 / 12 N m^2
+reference = { value = 1e-5, source = "F L^3/(3 E I), 2.5e-4 N, E I = 1e9 x 0.1 x 1e-6 / 12" }
+ladders = ["elements", "quadrature", "load_steps"]
+)toml";
+
+TEST(Accuracy, ReproducesTheCantileverAndWritesCasesThatRun) {
+  const Scratch scratch;
+  const std::string file = scratch.write("strip.toml", kStrip), folder = scratch / "out";
+  const Ended ended = accuracy(scratch, file, folder, {"--budget", "5s"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const io::CsvTable table = io::read_csv(folder + "/accuracy.csv");
+  const auto limits = table.numbers("limit"), values = table.numbers("value");
+  const Words ladders = table.texts("ladder");
+  for (const char* name : {"elements", "quadrature", "load_steps"})
+    EXPECT_GE(std::count(ladders.begin(), ladders.end(), name), 5) << name;
+  // Cubic elements bend exactly under an end load. The plate's curvature and the beam's differ by
+  // terms of the square of the slope, 1e-10.
+  for (size_t i = 0; i < limits.size(); ++i) EXPECT_NEAR(limits[i], 1e-5, 1e-5 * 1e-6);
+  for (const char* name : {"/accuracy.md", "/accuracy.svg", "/strip_1pct.toml"})
+    EXPECT_TRUE(std::filesystem::exists(folder + name)) << name << ended.out;
+  EXPECT_NE(ended.out.find("kept"), std::string::npos) << ended.out;
+  const Ended run = test::flexmorph(
+      scratch, {"run", folder + "/strip_0.01pct.toml", "-o", scratch / "again", "--quiet"});
+  EXPECT_EQ(run.code, 0) << run.err;
+
+  // Nothing is run a second time, and the numbers are the same.
+  const Ended again = accuracy(scratch, file, folder, {"--budget", "5s"});
+  EXPECT_EQ(again.code, 0);
+  const io::CsvTable second = io::read_csv(folder + "/accuracy.csv");
+  const auto once_more = second.numbers("value");
+  ASSERT_EQ(once_more.size(), values.size());
+  for (size_t i = 0; i < values.size(); ++i)
+    if (std::isfinite(values[i]) && std::isfinite(once_more[i])) {
+      EXPECT_EQ(values[i], once_more[i]);
+    }
+}
+
+TEST(Accuracy, RefusesWhatItCannotMeasure) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const std::string file = scratch.write("strip.toml", kStrip);
+  const auto fails = [&](const Words& more, const std::string& part) {
+    const Ended ended = accuracy(scratch, file, folder, more);
+    EXPECT_EQ(ended.code, 2) << ended.out;
+    EXPECT_NE(ended.err.find(part), std::string::npos) << ended.err;
+    EXPECT_EQ(test::lines_of(ended.err).size(), 1U) << ended.err;
+    EXPECT_FALSE(std::filesystem::exists(folder));
+  };
+  fails({"--set", "accuracy="}, "strip.tip_uz");  // what there is
+  fails({"--set", "accuracy.quantity=compliance"}, "strip.tip_uz");
+  fails({"--set", "accuracy.at=2"}, "after the end");
+  fails({"--set", "accuracy.ladders=[\"mesh\"]"}, "a ladder");
+  fails({"--set", "accuracy.reference={ value = 1, file = \"x.csv\", source = \"\" }"}, "either");
+  fails({"--ladders", "mesh"}, "elements");
+  fails({"--ladders", "step"}, "nothing moves");
+  fails({"--budget", "soon"}, "--budget soon");
+  fails({"--set", "accuracy.reference={ file = \"nowhere.csv\", source = \"\" }"}, "nowhere.csv");
+}
+
+// The start design of the short beam: volume of the blurred layout, which no load touches.
+TEST(Accuracy, AnalysesADesignAsItStarts) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const Ended ended =
+      accuracy(scratch, "short_beam", folder,
+               {"--set", "accuracy.quantity=volume", "--ladders", "band", "--budget", "3s",
+                "--no-verify", "--set", "design.cell=0.05", "--set", "design.min_thickness=0.05"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const io::CsvTable table = io::read_csv(folder + "/accuracy.csv");
+  EXPECT_GE(table.rows.size(), 5U);
+  for (const double value : table.numbers("value"))
+    if (std::isfinite(value)) {
+      EXPECT_TRUE(value > 0.2 && value < 0.6) << value;
+    }
+  // A run of no iterations leaves the layout alone.
+  const Ended run = test::flexmorph(scratch, {"run", "short_beam", "-o", scratch / "start", "--set",
+                                              "optimizer.max_iterations=0", "--quiet"});
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(io::read_csv(scratch / "start/history.csv").rows.size(), 0U);
+}
+
+}  // namespace
+}  // namespace flexmorph::cases

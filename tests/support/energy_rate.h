@@ -1,0 +1,40 @@
+#pragma once
+
+#include "fem/dynamics/balance.h"
+#include "tests/support/differences.h"
+#include "tests/support/models.h"
+
+namespace flexmorph::testing {
+
+/// How the energy of a model changes along a motion, a solution or not, at one time [W].
+struct EnergyRate {
+  double rate = 0;  ///< d(T + U + V)/dt, by differences
+  double work = 0;  ///< of the generalized force on the unknowns
+  fem::Powers powers;
+};
+
+inline EnergyRate energy_rate(fem::Model& model, const SmoothMotion& motion, double time) {
+  const auto state = [&](double t) {
+    fem::State x = motion.state(t);
+    x.lambda = VectorXd::Zero(model.n_constraints());
+    model.prepare(x);
+    return x;
+  };
+  EnergyRate out;
+  out.rate =
+      first_difference([&](double dt) { return model.energies(state(time + dt)).total(); }, 1e-3);
+  const fem::State x = state(time);
+  VectorXd force;
+  model.force(x, force);
+  out.powers = fem::powers(model, x);
+  out.work = force.dot(x.v);
+  return out;
+}
+
+/// A motion of all unknowns about the undeformed model.
+inline SmoothMotion any_motion(fem::Model& model) {
+  model.prepare(0.0);
+  return {model.reference().q, 0.02 * model.scales().cwiseInverse(), 7};
+}
+
+}  // namespace flexmorph::testing
