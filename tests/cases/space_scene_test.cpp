@@ -351,7 +351,7 @@ const Bad kBad[] = {
     {"load_on_an_unknown_edge",
      kRoll,
      {"load.0.edge=end"},
-     "an edge is 'root', 'free_end', 'side_low', 'side_high', 'line 0' to 'line 8'"},
+     "an edge is 'root', 'free_end', 'side_low', 'side_high', 'line 0' to 'line 16'"},
     {"moment_in_the_plane",
      kPlanar,
      {"load=[{type='edge_moment', body='plate', edge='free_end', moment=1}]"},
