@@ -1,6 +1,6 @@
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "cases/accuracy_knobs.h"
@@ -16,7 +16,9 @@ std::string pair(int a, int b) {
   return std::string("[").append(to_text(a)).append(", ").append(to_text(b)).append("]");
 }
 
-std::optional<Theory> no_theory(const Scene&, Part) { return {}; }
+Theory no_order(const std::string& why) {
+  return {std::numeric_limits<double>::quiet_NaN(), why};
+}
 
 std::string no_loads(const Scene& scene, Part part) {
   if (part == Part::motion) return "of designs only";
@@ -37,7 +39,7 @@ std::vector<Level> load_levels(const Scene& scene, const io::CaseFile&) {
   return out;
 }
 
-std::optional<Theory> load_theory(const Scene&, Part) {
+std::optional<Theory> load_theory(const Scene&, Part, const std::string&) {
   return Theory{1, "a sum over load times is a one-sided rectangle rule"};
 }
 
@@ -56,8 +58,8 @@ std::string scaled_list(const std::vector<double>& values, double factor) {
   return out + "]";
 }
 
-/// Overrides of one design on cells `size`/`own` times as many in each direction. What the case
-/// gives in cells stays as large in metres: the mesh alone changes.
+/// Overrides of one design on cells `size`/`own` times as many in each direction. The band, the
+/// erosion and the smooth maximum stay as many cells: finer cells show sharper components.
 void refine_design(const BodyDesign& d, const io::Table& t, size_t index, int own, int size,
                    Overrides& out) {
   const double finer = static_cast<double>(size) / own;
@@ -66,12 +68,6 @@ void refine_design(const BodyDesign& d, const io::Table& t, size_t index, int ow
     out.push_back(design_key(index, "cells") + pair(nx, ny));
   else
     out.push_back(design_key(index, "cell") + to_text(d.grid.width / nx));
-  const double cell = d.grid.dx() / finer;
-  if (d.tdf.kind != TdfSettings::Kind::paper) {
-    out.push_back(design_key(index, "band") + scaled_list(d.band, finer));
-    out.push_back(design_key(index, "erosion") + to_text(d.tdf.erosion / cell));
-  }
-  out.push_back(design_key(index, "sharpness") + to_text(d.tdf.sharpness * cell));
   out.push_back(design_key(index, "min_thickness") + to_text(d.min_thickness));
   const std::vector<io::Table> solid = t.tables("solid"), empty = t.tables("void");
   const auto strips = [&](const std::vector<io::Table>& regions, const std::string& name) {
@@ -164,49 +160,43 @@ std::vector<Level> sharpness_levels(const Scene& scene, const io::CaseFile&) {
   return out;
 }
 
-std::optional<Theory> void_theory(const Scene&, Part) {
+std::optional<Theory> void_theory(const Scene&, Part, const std::string&) {
   return Theory{1, "the Heaviside function is linear in alpha"};
 }
-std::optional<Theory> sharpness_theory(const Scene&, Part) {
-  return Theory{1, "the smooth maximum of n lies up to ln n / sharpness above the maximum"};
+std::optional<Theory> sharpness_theory(const Scene&, Part, const std::string&) {
+  return no_order(
+      "where n components coincide their smooth maximum lies ln n / sharpness above the maximum "
+      "(order 1), where they cross it does so on a strip as narrow (order 2)");
 }
 
-/// Keys in cells: a finer mesh and another value of their own multiply.
-const char* const kPerCell[] = {"band", "sharpness"};
+/// Displacements under a force at a point of a plane continuum are infinite, and so is its work.
+std::optional<Theory> cell_theory(const Scene& scene, Part, const std::string& quantity) {
+  const bool points =
+      scene.domain && std::any_of(scene.domain->loads.begin(), scene.domain->loads.end(),
+                                  [](const LoadCase& load) {
+                                    return std::any_of(
+                                        load.forces.begin(), load.forces.end(),
+                                        [](const PlaneForce& f) { return f.place.kind == Place::Kind::point; });
+                                  });
+  if (points && quantity.ends_with("compliance"))
+    return Theory{0, "under a force at a point it grows with the logarithm of the cells"};
+  return no_order("edges of components cross the cells anywhere");
+}
+
+std::optional<Theory> band_theory(const Scene&, Part, const std::string&) {
+  return no_order("a band of less than a cell falls between the cells");
+}
 
 }  // namespace
 
 std::vector<Knob> design_knobs() {
   const auto power = Approach::power;
-  return {
-      {"loads", "loads", power, 0.5, true, no_loads, load_levels, load_theory},
-      {"design_mesh", "design_mesh", power, 2.5, true, no_design, cell_levels, no_theory},
-      {"void", "void", power, 0.1, true, no_design, void_levels, void_theory},
-      {"sharpness", "sharpness", power, 0.1, true, no_design, sharpness_levels, sharpness_theory},
-      {"band", "band", power, 0.1, true, no_band, band_levels, no_theory}};
-}
-
-std::vector<std::string> together(const Scene& scene, const std::vector<std::string>& overrides) {
-  Overrides out = overrides;
-  for (size_t i = 0; i < scene.designs.size(); ++i)
-    for (const std::string key : kPerCell) {
-      const BodyDesign& d = scene.designs[i];
-      const std::string start = design_key(i, key);
-      const auto is_it = [&](const std::string& each) { return each.starts_with(start); };
-      if (std::count_if(out.begin(), out.end(), is_it) < 2) continue;
-      const double own = key == "band" ? d.band.front() : d.tdf.sharpness * d.grid.dx();
-      double factor = 1;
-      for (const std::string& each : out) {
-        if (!is_it(each)) continue;
-        const std::string value = each.substr(start.size() + (each[start.size()] == '['));
-        double first = 0;
-        std::from_chars(value.data(), value.data() + value.size(), first);
-        factor *= first / own;
-      }
-      std::erase_if(out, is_it);
-      out.push_back(start + (key == "band" ? scaled_list(d.band, factor) : to_text(own * factor)));
-    }
-  return out;
+  return {{"loads", "loads", power, 0.5, true, no_loads, load_levels, load_theory},
+          {"design_mesh", "design_mesh", power, 2.5, true, no_design, cell_levels, cell_theory},
+          {"void", "void", power, 0.1, true, no_design, void_levels, void_theory},
+          {"sharpness", "design_mesh", power, 0.1, true, no_design, sharpness_levels,
+           sharpness_theory},
+          {"band", "design_mesh", power, 0.1, true, no_band, band_levels, band_theory}};
 }
 
 }  // namespace flexmorph::cases

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "io/files.h"
 
@@ -32,6 +33,16 @@ std::string pair(int a, int b) {
   return std::string("[").append(to_text(a)).append(", ").append(to_text(b)).append("]");
 }
 
+bool any_beams(const Scene& scene) {
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                     [](const Body& b) { return b.is_beam(); });
+}
+
+bool all_beams(const Scene& scene) {
+  return !scene.bodies.empty() && std::all_of(scene.bodies.begin(), scene.bodies.end(),
+                                              [](const Body& b) { return b.is_beam(); });
+}
+
 /// A number of elements `factor` times as large; nothing where that is no whole number. A strip of
 /// one element across stays one on coarser meshes.
 std::optional<int> times(int count, double factor) {
@@ -58,12 +69,15 @@ std::vector<Level> mesh_levels(const Scene& scene, const io::CaseFile&) {
     level.h = 1 / factor;
     bool whole = factor <= 4 || scene.bodies.front().elements[0] * factor <= kMostAlong;
     for (const Body& b : scene.bodies) {
-      const std::optional<int> m = times(b.elements[0], factor), n = times(b.elements[1], factor);
+      const std::optional<int> m = times(b.elements[0], factor),
+                               n = b.is_beam() ? 1 : times(b.elements[1], factor);
       whole = whole && m && n;
       if (!whole) break;
-      level.name += (level.name.empty() ? "" : ", ") + to_text(*m) + " x " + to_text(*n);
+      level.name += (level.name.empty() ? "" : ", ") + to_text(*m) +
+                    (b.is_beam() ? " elements" : " x " + to_text(*n));
       if (factor == 1) continue;
-      level.overrides.push_back(key(b.name, "elements") + pair(*m, *n));
+      level.overrides.push_back(key(b.name, "elements") +
+                                (b.is_beam() ? to_text(*m) : pair(*m, *n)));
       if (!b.flow) continue;
       level.overrides.push_back(key(b.name, "flow.max_length") +
                                 to_text(b.flow->max_length * level.h));
@@ -75,18 +89,28 @@ std::vector<Level> mesh_levels(const Scene& scene, const io::CaseFile&) {
   return out;
 }
 
-std::optional<Theory> mesh_theory(const Scene& scene, Part part) {
-  // Plates in the plane are held at edges whose corners are singular, pins and point loads are
-  // singular, too; material that flows changes its mesh at times that depend on it.
+Theory no_order(const std::string& why) {
+  return {std::numeric_limits<double>::quiet_NaN(), why};
+}
+
+std::optional<Theory> mesh_theory(const Scene& scene, Part part, const std::string&) {
+  if (part == Part::design) return no_order("the motion is only where the loads come from");
+  if (all_beams(scene))
+    return Theory{2, "sections whose gradient is linear along the axis, 2 (1 + 1 - 1), "
+                     "Strang & Fix 1973"};
+  if (any_beams(scene)) return {};
   if (std::any_of(scene.joints.begin(), scene.joints.end(),
                   [](const Joint& j) { return j.type == "pin"; }) ||
       std::any_of(scene.loads.begin(), scene.loads.end(),
                   [](const BodyLoad& l) { return l.type == "point"; }))
-    return {};
-  if (part == Part::design || !bends(scene) || scene.bodies.front().shape != "h16") return {};
+    return no_order("stresses are singular at pins and point loads");
   if (std::any_of(scene.bodies.begin(), scene.bodies.end(),
                   [](const Body& b) { return b.mesh_changes(); }))
-    return {};
+    return no_order(
+        "the mesh changes at times that depend on it, and the corners of held edges are singular");
+  if (!bends(scene)) return no_order("stresses are singular at the corners of held edges");
+  if (scene.bodies.front().shape != "h16")
+    return no_order("the incomplete shape functions are not conforming in bending");
   return Theory{4, "energy of cubic Hermite plates, 2 (3 + 1 - 2), Strang & Fix 1973"};
 }
 
@@ -96,6 +120,7 @@ std::string other_shape(const Scene& scene) {
 
 std::string no_shape(const Scene& scene, Part part) {
   if (part == Part::design) return "designs are analysed with cells";
+  if (any_beams(scene)) return "beams have one shape set";
   for (const Body& b : scene.bodies)
     if (b.shape != scene.bodies.front().shape) return "bodies have different shape sets";
   return no_elements(scene, part);
@@ -111,7 +136,28 @@ std::vector<Level> shape_levels(const Scene& scene, const io::CaseFile& file) {
   return out;
 }
 
-std::optional<Theory> no_theory(const Scene&, Part) { return {}; }
+std::optional<Theory> no_theory(const Scene&, Part, const std::string&) { return {}; }
+
+std::string no_model(const Scene& scene, Part) {
+  return all_beams(scene) ? "" : "\"gcm\" and \"ecm\" are models of beams";
+}
+
+/// The other beam model on all meshes: not an approximation of the case's own, so its errors are
+/// the difference of the models.
+std::vector<Level> model_levels(const Scene& scene, const io::CaseFile& file) {
+  std::vector<Level> out = mesh_levels(scene, file);
+  for (Level& level : out) {
+    std::string models;
+    for (const Body& b : scene.bodies) {
+      const std::string other = b.has("gcm") ? "ecm" : "gcm";
+      models += (models.empty() ? "" : ", ") + other;
+      level.overrides.push_back(key(b.name, "terms") +
+                                (b.has("inertia") ? "['inertia', '" : "['") + other + "']");
+    }
+    level.name = models + " " + level.name;
+  }
+  return out;
+}
 
 std::string no_time(const Scene& scene, Part) {
   return moves(scene) ? "" : "nothing moves: there is no time";
@@ -125,7 +171,12 @@ Level step_level(const Scene& scene, double factor) {
   level.h = factor;
   const double step = scene.time.step * factor;
   level.name = to_text(step) + " s";
-  if (factor != 1) level.overrides = {"time.step=" + to_text(step)};
+  const bool adapts = scene.time.tolerance || scene.time.integrator == "minimal_coordinates";
+  if (factor == 1 && !adapts) return level;
+  level.overrides = {"time.step=" + to_text(step)};
+  if (scene.time.tolerance) level.overrides.insert(level.overrides.end(), {"time.tolerance=", "time.largest_step="});
+  if (scene.time.integrator == "minimal_coordinates")
+    level.overrides.insert(level.overrides.end(), {"time.integrator='generalized_alpha'", "time.tolerance="});
   return level;
 }
 
@@ -136,8 +187,61 @@ std::vector<Level> step_levels(const Scene& scene, const io::CaseFile&) {
   return out;
 }
 
-std::optional<Theory> step_theory(const Scene&, Part) {
+bool mesh_changes(const Scene& scene) {
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                     [](const Body& b) { return b.mesh_changes(); });
+}
+
+std::optional<Theory> step_theory(const Scene& scene, Part part, const std::string&) {
+  if (part == Part::design) return no_order("loads of a motion sampled in time");
+  if (mesh_changes(scene) || (!scene.hubs.empty() && scene.time.start == Start::rigid))
+    return no_order(
+        "axial ringing, set off by the start and by every change of the mesh, is not resolved");
   return Theory{2, "generalized-alpha, Arnold & Bruls 2007; energy_momentum: midpoint rule"};
+}
+
+std::string no_adaptive(const Scene& scene, Part part) {
+  if (scene.time.integrator != "generalized_alpha")
+    return "only \"generalized_alpha\" knows its local error";
+  return no_time_or_design(scene, part);
+}
+
+std::string no_explicit(const Scene& scene, Part part) {
+  if (mesh_changes(scene)) return "\"minimal_coordinates\" keep their mesh";
+  if (!all_beams(scene) && !scene.bodies.empty()) return "the stiffness of plates needs implicit steps";
+  return no_time_or_design(scene, part);
+}
+
+/// Tolerances from coarse to fine, of steps that adapt.
+std::vector<Level> tolerance_levels(const std::vector<double>& tolerances, double own,
+                                    const std::string& name,
+                                    const std::vector<std::string>& others) {
+  std::vector<Level> out;
+  for (const double tolerance : tolerances) {
+    Level& level = out.emplace_back();
+    level.h = tolerance / tolerances[tolerances.size() / 2];
+    level.name = name + " " + to_text(tolerance);
+    if (tolerance == own) continue;
+    level.overrides = others;
+    level.overrides.push_back("time.tolerance=" + to_text(tolerance));
+  }
+  return out;
+}
+
+std::vector<Level> adaptive_levels(const Scene& scene, const io::CaseFile&) {
+  return tolerance_levels({1e-2, 1e-3, 1e-4, 1e-5, 1e-6}, scene.time.tolerance.value_or(0),
+                          "tolerance", {"time.step='adaptive'"});
+}
+
+std::vector<Level> explicit_levels(const Scene& scene, const io::CaseFile&) {
+  const bool own = scene.time.integrator == "minimal_coordinates";
+  return tolerance_levels({1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8},
+                          own ? scene.time.explicit_tolerance : 0, "tolerance",
+                          {"time.integrator='minimal_coordinates'"});
+}
+
+std::optional<Theory> tolerance_theory(const Scene&, Part, const std::string&) {
+  return no_order("steps of another tolerance fall elsewhere, so errors scatter about order 1");
 }
 
 std::string no_rho(const Scene& scene, Part part) {
@@ -160,6 +264,8 @@ std::vector<Level> rho_levels(const Scene& scene, const io::CaseFile&) {
 
 std::string no_integrator(const Scene& scene, Part part) {
   if (scene.has_free_lines()) return "free lines need \"generalized_alpha\"";
+  if (scene.time.tolerance || scene.time.integrator == "minimal_coordinates")
+    return "the steps of the case adapt";
   return no_time_or_design(scene, part);
 }
 
@@ -217,7 +323,12 @@ const std::vector<Knob>& knobs() {
     std::vector<Knob> rows = {
         {"elements", "elements", Approach::power, 2.5, true, no_elements, mesh_levels, mesh_theory},
         {"shape", "elements", Approach::power, 2.5, true, no_shape, shape_levels, no_theory},
+        {"model", "elements", Approach::power, 2.5, true, no_model, model_levels, mesh_theory},
         {"step", "step", Approach::power, 1, true, no_time, step_levels, step_theory},
+        {"adaptive", "step", Approach::power, 0.4, true, no_adaptive, adaptive_levels,
+         tolerance_theory},
+        {"minimal_coordinates", "step", Approach::power, 0.2, true, no_explicit, explicit_levels,
+         tolerance_theory},
         {"rho_inf", "step", Approach::power, 0, false, no_rho, rho_levels, no_theory},
         {"integrator", "step", Approach::power, 1, true, no_integrator, integrator_levels,
          step_theory},

@@ -29,7 +29,7 @@ struct Knob {
   /// Levels of the scene, coarse to fine; one is the scene's own where it is a level at all. Some
   /// may be refused when they are read.
   std::vector<Level> (*levels)(const Scene& scene, const io::CaseFile& file);
-  std::optional<Theory> (*theory)(const Scene& scene, Part part);
+  std::optional<Theory> (*theory)(const Scene& scene, Part part, const std::string& quantity);
 };
 
 const std::vector<Knob>& knobs();
@@ -38,9 +38,6 @@ std::vector<Knob> design_knobs();
 std::vector<std::string> knob_names();
 /// The row of that name. @throws Error (input).
 const Knob& knob(const std::string& name);
-
-/// Overrides of levels of several knobs as those of one case.
-std::vector<std::string> together(const Scene& scene, const std::vector<std::string>& overrides);
 
 /// What turns a run of the case into one of a part, without files that nobody asked for.
 std::vector<std::string> lean_overrides(const Scene& scene, Part part);

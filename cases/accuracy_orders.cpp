@@ -13,6 +13,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kLeastOrder = 0.05, kMostOrder = 20;
 constexpr double kLowOrder = 0.3;  // of what may still be bounded
+constexpr double kFalls = 0.9, kGrows = 1.5;  // ratios of neighbouring differences per ratio of h
 
 /// (h₁ᵖ - h₂ᵖ)/(h₂ᵖ - h₃ᵖ), which grows with p.
 double ratio_at(double p, double h1, double h2, double h3) {
@@ -30,29 +31,40 @@ std::vector<size_t> finest_orders(const std::vector<double>& orders) {
 
 std::string share(double difference, double scale) { return io::to_text(difference / scale, 2); }
 
-/// Without an order: the finest level, and how far its last changes went.
-void bound(std::span<const LevelValue> levels, double scale, Limit& out) {
+/// How far the limit may lie from the finest of levels without an order.
+double reach(std::span<const LevelValue> levels, double scale) {
   const size_t n = levels.size();
-  out.value = levels[n - 1].value;
-  out.uncertainty = kInfinite;
-  if (n < 3) return;
+  if (n < 3) return kInfinite;
   const double last = levels[n - 1].value - levels[n - 2].value;
   const double before = levels[n - 2].value - levels[n - 3].value;
+  if (last * before < 0) {
+    const auto [low, high] = std::minmax(
+        {levels[n - 1].value, levels[n - 2].value, levels[n - 3].value,
+         levels[n > 3 ? n - 4 : n - 3].value});
+    return kSwing * (high - low);
+  }
   const double ratio = levels[n - 2].h / levels[n - 1].h;
   const double slope = std::abs(last) / std::log(ratio),
                slope_before = std::abs(before) / std::log(levels[n - 3].h / levels[n - 2].h);
-  if (slope < 0.9 * slope_before || std::max(std::abs(last), std::abs(before)) <= kFloor * scale) {
-    // What is left if it goes on with first order, or with the lower one that was seen.
-    const double seen = order_of(levels[n - 3], levels[n - 2], levels[n - 1], 0);
-    const double order = std::isfinite(seen) ? std::clamp(seen, kLowOrder, 1.0) : 1;
-    out.uncertainty = std::max(std::abs(last), std::abs(last) / (std::pow(ratio, order) - 1));
-    if (last * before < 0) out.uncertainty = std::max(out.uncertainty, std::abs(before));
-  }
+  const bool rests = std::max(std::abs(last), std::abs(before)) <= kFloor * scale;
+  if (!rests && slope > kGrows * slope_before) return kInfinite;
+  if (!rests && slope >= kFalls * slope_before)
+    return std::max(slope, slope_before) * std::log(kFarthest);
+  // What is left if it goes on with first order, or with the lower one that was seen.
+  const double seen = order_of(levels[n - 3], levels[n - 2], levels[n - 1], 0);
+  const double order = std::isfinite(seen) ? std::clamp(seen, kLowOrder, 1.0) : 1;
+  return std::max(std::abs(last), std::abs(last) / (std::pow(ratio, order) - 1));
+}
+
+/// Without an order: the finest level, and how far its last changes went.
+void bound(std::span<const LevelValue> levels, double scale, Limit& out) {
+  out.value = levels.back().value;
+  out.uncertainty = reach(levels, scale);
   out.sentence +=
       std::isfinite(out.uncertainty)
           ? "; no level is recommended by its order, the finest stands with an uncertainty of " +
                 share(out.uncertainty, scale)
-          : "; its differences do not fall, so nothing bounds the error";
+          : "; its differences grow, so nothing bounds the error";
 }
 
 void judge_fast(std::span<const LevelValue> levels, double scale, Limit& out) {
@@ -87,12 +99,13 @@ void judge_orders(std::span<const LevelValue> levels, const std::optional<Theory
                    io::to_text(b, 3);
     return bound(levels, scale, out);
   }
-  if (theory && std::abs(b - theory->order) > kTheorySpread) {
+  const bool known = theory && theory->has_order();
+  if (known && std::abs(b - theory->order) > kTheorySpread) {
     out.sentence = "the order " + io::to_text(b, 3) + " is not that of theory, " +
                    io::to_text(theory->order) + " (" + theory->source + ")";
     return bound(levels, scale, out);
   }
-  if (!theory && b < 0.5) {
+  if (!known && b < 0.5) {
     out.sentence = "the order " + io::to_text(b, 3) + " is too low to extrapolate";
     return bound(levels, scale, out);
   }
@@ -104,7 +117,7 @@ void judge_orders(std::span<const LevelValue> levels, const std::optional<Theory
   const double other = extrapolated(before[1], before[2], a);
   out.uncertainty = std::min(std::abs(out.value - other), std::abs(out.value - fine[2].value));
   out.sentence = "order " + io::to_text(b, 3) +
-                 (theory ? " (theory " + io::to_text(theory->order) + ": " + theory->source + ")"
+                 (known ? " (theory " + io::to_text(theory->order) + ": " + theory->source + ")"
                          : " (no theory; triples agree)");
 }
 
@@ -156,8 +169,11 @@ Limit limit_of(std::span<const LevelValue> levels, Approach approach,
     out.sentence = "makes no difference above " + share(largest, scale);
   } else if (approach == Approach::fast) {
     judge_fast(levels, scale, out);
+  } else if (theory && theory->has_no_limit()) {
+    out.sentence = "no limit: " + theory->source;
   } else {
     judge_orders(levels, theory, scale, out);
+    if (!out.converged && theory && !theory->has_order()) out.sentence += "; " + theory->source;
   }
   return out;
 }

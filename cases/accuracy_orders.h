@@ -19,10 +19,13 @@ enum class Approach {
   fast    ///< faster than any power: the finest level stands for the limit
 };
 
-/// The order that is known of a scheme, and from where.
+/// What is known of a scheme before it is measured.
 struct Theory {
-  double order = 0;
-  std::string source;
+  double order = 0;    ///< 0: there is no limit; NaN: none is known
+  std::string source;  ///< from where, or why there is none
+
+  bool has_order() const { return order > 0; }
+  bool has_no_limit() const { return order == 0; }
 };
 
 /// Orders of neighbouring triples differ by no more, or the ladder is not called converged.
@@ -31,6 +34,12 @@ inline constexpr double kOrderSpread = 0.3;
 inline constexpr double kTheorySpread = 0.15;
 /// Differences below so many parts of the scale are taken for rounding and Newton's tolerance.
 inline constexpr double kFloor = 1e-9;
+/// Where differences per ratio of h do not fall, as those of a logarithm, the limit is taken to lie
+/// within what they add up to on a level so many times finer.
+inline constexpr double kFarthest = 1000;
+/// Differences that change their sign: so many times the range of the last levels; Eca & Hoekstra
+/// (2014), J. Comput. Phys. 262, 104-130.
+inline constexpr double kSwing = 3;
 
 /// The limit of a ladder.
 struct Limit {
@@ -56,9 +65,10 @@ double extrapolated(const LevelValue& coarse, const LevelValue& fine, double ord
 /// agree (kOrderSpread) and the finest is that of theory (kTheorySpread), where there is one; or
 /// when all differences are below the floor. The uncertainty of an extrapolated limit is its
 /// difference from the one before it, at most the extrapolation itself. Else the finest level
-/// stands; where differences per ratio of h fall, its uncertainty is what first order (or the lower
-/// one that was seen) would leave, at least the last difference, of values that swing the last two.
-/// Source: Roache (1994), J. Fluids Eng. 116, 405-413.
+/// stands; its uncertainty is what first order (or the lower one that was seen) would leave, at
+/// least the last difference, where differences per ratio of h fall; what a logarithm would add
+/// (kFarthest) where they stay; that of kSwing where they change their sign; infinite where they
+/// grow, and where theory knows of no limit. Source: Roache (1994), J. Fluids Eng. 116, 405-413.
 /// @param scale  of the values (> 0), see kFloor
 Limit limit_of(std::span<const LevelValue> levels, Approach approach,
                const std::optional<Theory>& theory, double scale);

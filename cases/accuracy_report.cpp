@@ -47,7 +47,7 @@ Rows quantity_rows(const AccuracyStudy& study) {
     std::vector<std::string>& row = rows.emplace_back();
     row = {study.interests[q].words(),
            to_text(t.own, 9),
-           std::isfinite(t.uncertainty) ? to_text(t.value, 9) : "?",
+           !t.has_limit ? "none" : std::isfinite(t.uncertainty) ? to_text(t.value, 9) : "?",
            percent(t.uncertainty),
            percent(std::abs(t.own - t.value) / t.scale),
            "",
@@ -122,10 +122,13 @@ Rows recommendation_rows(const AccuracyStudy& study) {
     return percent(out);
   };
   for (const Recommendation& r : study.recommendations) {
+    std::vector<double> found;
+    for (size_t q = 0; q < r.found.size(); ++q)
+      if (r.covers[q]) found.push_back(r.found[q]);
     std::string names;
     for (const std::string& name : r.names) names += (names.empty() ? "" : "; ") + name;
     rows.push_back({percent(r.promise), names, r.choice ? largest(r.choice->errors) : "",
-                    r.verified ? largest(r.found) : "", r.choice ? to_text(r.choice->cost, 3) : "",
+                    r.verified ? largest(found) : "", r.choice ? to_text(r.choice->cost, 3) : "",
                     r.verified ? to_text(r.seconds_cpu, 3) : "", r.sentence, r.file});
   }
   return rows;

@@ -58,6 +58,8 @@ Truth truth_of(const AccuracyStudy& study, size_t q) {
   for (const Ladder& ladder : study.ladders) {
     if (!ladder.leads() || ladder.part != study.parts[q]) continue;
     const Limit& limit = ladder.limits[q];
+    const std::optional<Theory>& theory = ladder.theories[q];
+    if (theory && theory->has_no_limit()) out.has_limit = false;
     if (!limit.bounded()) {
       out.unbounded += (out.unbounded.empty() ? "" : ", ") + ladder.knob->name;
       out.uncertainty = std::numeric_limits<double>::infinity();
@@ -111,11 +113,11 @@ void cover(Ladder& ladder, size_t q) {
 }
 
 Candidate candidate_of(const AccuracyStudy& study, const Ladder& ladder, const Rung& rung,
-                       double promise) {
+                       double promise, const std::vector<bool>& covers) {
   Candidate out{ladder.knob->name + " " + rung.level.name, rung.level.overrides, {}, {}};
   for (size_t q = 0; q < study.interests.size(); ++q) {
     const Part part = study.parts[q];
-    if (!touches(study, ladder.knob->group, part)) {
+    if (!covers[q] || !touches(study, ladder.knob->group, part)) {
       out.errors.push_back(0);
       continue;
     }
@@ -135,6 +137,20 @@ Candidate candidate_of(const AccuracyStudy& study, const Ladder& ladder, const R
     const Rung* own = part == ladder.part ? &rung : same_level(study, ladder, rung, part);
     const double seconds = !own ? kNone : own->measured() ? own->seconds_cpu : own->predicted_cpu;
     out.costs.push_back(seconds / base.seconds_cpu);
+  }
+  return out;
+}
+
+/// Quantities that a promise is not about, and why.
+std::string left_out(const AccuracyStudy& study, const Recommendation& r) {
+  std::string out;
+  for (size_t q = 0; q < r.covers.size(); ++q) {
+    if (r.covers[q]) continue;
+    const Truth& t = study.truths[q];
+    out += (out.empty() ? "" : ", ") + study.interests[q].words() +
+           (!t.has_limit            ? ": it has no limit"
+            : !t.unbounded.empty() ? ": nothing bounds the error of " + t.unbounded
+                                   : ": its limit is known to " + percent(t.uncertainty) + " only");
   }
   return out;
 }
@@ -168,7 +184,7 @@ void evaluate(AccuracyStudy& study, const std::vector<std::optional<double>>& re
       std::vector<LevelValue> values;
       for (const Rung& rung : ladder.rungs)
         if (rung.measured()) values.push_back({rung.level.h, rung.values[q]});
-      limit = limit_of(values, ladder.knob->approach, ladder.theory, study.truths[q].scale);
+      limit = limit_of(values, ladder.knob->approach, ladder.theories[q], study.truths[q].scale);
     }
     predict_costs(ladder);
   }
@@ -183,13 +199,18 @@ void evaluate(AccuracyStudy& study, const std::vector<std::optional<double>>& re
 
 std::vector<Group> groups_of(const AccuracyStudy& study, double promise) {
   std::vector<Group> out;
+  const std::vector<bool> covers = covered(study, promise);
   for (const Ladder& ladder : study.ladders) {
+    bool matters = false;
+    for (size_t q = 0; q < covers.size(); ++q)
+      matters = matters || (covers[q] && touches(study, ladder.knob->group, study.parts[q]));
+    if (!matters) continue;
     auto at = std::find_if(out.begin(), out.end(),
                            [&](const Group& g) { return g.name == ladder.knob->group; });
     if (at == out.end()) at = out.insert(at, Group{ladder.knob->group, {}});
     for (const Rung& rung : ladder.rungs) {
       if (!rung.measured() && rung.status != "cut") continue;
-      Candidate candidate = candidate_of(study, ladder, rung, promise);
+      Candidate candidate = candidate_of(study, ladder, rung, promise, covers);
       const bool known =
           std::any_of(at->candidates.begin(), at->candidates.end(),
                       [&](const Candidate& c) { return c.overrides == candidate.overrides; });
@@ -199,36 +220,37 @@ std::vector<Group> groups_of(const AccuracyStudy& study, double promise) {
   return out;
 }
 
-std::vector<Recommendation> recommend(const AccuracyStudy& study,
-                                      const std::vector<double>& promises) {
+std::vector<bool> covered(const AccuracyStudy& study, double promise) {
+  std::vector<bool> out;
+  for (const Truth& truth : study.truths)
+    out.push_back(truth.has_limit && truth.uncertainty <= promise);
+  return out;
+}
+
+Recommendation recommend(const AccuracyStudy& study, double promise, double share) {
+  Recommendation r;
+  r.promise = promise;
+  r.covers = covered(study, promise);
   std::vector<double> costs, uncertainties;
   for (const auto& [part, rung] : study.own) costs.push_back(rung.seconds_cpu);
-  std::string unbounded;
-  for (const Truth& truth : study.truths) {
-    uncertainties.push_back(truth.uncertainty);
-    if (unbounded.empty()) unbounded = truth.unbounded;
+  for (size_t q = 0; q < study.truths.size(); ++q)
+    uncertainties.push_back(r.covers[q] ? study.truths[q].uncertainty : 0);
+  if (std::find(r.covers.begin(), r.covers.end(), true) == r.covers.end()) {
+    r.sentence = left_out(study, r);
+    return r;
   }
-  std::vector<Recommendation> out;
-  for (const double promise : promises) {
-    Recommendation& r = out.emplace_back();
-    r.promise = promise;
-    const std::vector<Group> groups = groups_of(study, promise);
-    r.choice = cheapest(groups, costs, uncertainties, promise);
-    if (!r.choice) {
-      const double least = *std::max_element(uncertainties.begin(), uncertainties.end());
-      r.sentence = !unbounded.empty() ? "nothing bounds the error of: " + unbounded
-                   : least > promise
-                       ? "the limits themselves are known to " + percent(least) + " only"
-                       : "no setting among those measured or predicted reaches it";
-      continue;
-    }
-    for (size_t g = 0; g < groups.size(); ++g) {
-      const Candidate& picked = groups[g].candidates[r.choice->picked[g]];
-      r.names.push_back(picked.name);
-      r.overrides.insert(r.overrides.end(), picked.overrides.begin(), picked.overrides.end());
-    }
+  const std::vector<Group> groups = groups_of(study, promise);
+  r.choice = cheapest(groups, costs, uncertainties, share * promise);
+  if (!r.choice) {
+    r.sentence = "no setting among those measured or predicted reaches it";
+    return r;
   }
-  return out;
+  for (size_t g = 0; g < groups.size(); ++g) {
+    const Candidate& picked = groups[g].candidates[r.choice->picked[g]];
+    r.names.push_back(picked.name);
+    r.overrides.insert(r.overrides.end(), picked.overrides.begin(), picked.overrides.end());
+  }
+  return r;
 }
 
 void judge(Recommendation& r, const AccuracyStudy& study, const std::vector<double>& values,
@@ -239,13 +261,14 @@ void judge(Recommendation& r, const AccuracyStudy& study, const std::vector<doub
   for (size_t q = 0; q < values.size(); ++q) {
     const Truth& truth = study.truths[q];
     r.found.push_back(std::abs(values[q] - truth.value) / truth.scale);
-    if (r.found[q] <= kPromiseFactor * r.promise) continue;  // NaN is not
+    if (!r.covers[q] || r.found[q] <= kPromiseFactor * r.promise) continue;  // NaN is not
     r.withdrawn = true;
     r.sentence += (r.sentence.empty() ? "withdrawn: " : "; ") + study.interests[q].words() +
                   " is off by " + percent(r.found[q]) + " where " + percent(r.promise) +
                   " was promised, so the knobs do not add up";
   }
-  if (!r.withdrawn) r.sentence = "kept";
+  const std::string without = left_out(study, r);
+  if (!r.withdrawn) r.sentence = "kept" + (without.empty() ? "" : "; not of " + without);
 }
 
 }  // namespace flexmorph::cases

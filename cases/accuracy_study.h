@@ -34,7 +34,7 @@ struct Rung {
 struct Ladder {
   const Knob* knob = nullptr;
   Part part = Part::motion;
-  std::optional<Theory> theory;
+  std::vector<std::optional<Theory>> theories;  ///< of all quantities
   std::vector<Rung> rungs;    ///< coarse to fine
   std::vector<Limit> limits;  ///< of all quantities; those of the other part are empty
   bool leads() const { return knob->name == knob->group; }
@@ -48,7 +48,8 @@ struct Truth {
   double value = 0;        ///< own + Σ over knobs of what is missing to their limits
   double uncertainty = 0;  ///< Σ, relative to the scale; infinite where a limit is not bounded
   std::optional<double> reference;
-  std::string unbounded;  ///< knobs without a bounded limit
+  std::string unbounded;   ///< knobs without a bounded limit
+  bool has_limit = true;   ///< false: theory knows of none, and no promise covers it
 };
 
 /// Settings for a promised error.
@@ -57,6 +58,7 @@ struct Recommendation {
   std::optional<Choice> choice;
   std::vector<std::string> overrides, names;  ///< of the groups' levels
   bool verified = false;
+  std::vector<bool> covers;   ///< of all quantities: is the promise about it?
   std::vector<double> found;  ///< measured errors, relative, against the truths
   double seconds_cpu = 0;     ///< measured
   bool withdrawn = false;
@@ -81,16 +83,18 @@ struct AccuracyStudy {
 /// @param references  of each quantity
 void evaluate(AccuracyStudy& study, const std::vector<std::optional<double>>& references);
 
-/// Groups of knobs with the levels that may be recommended: measured ones, and those cut by the
+/// What a promise can be about: quantities whose limits are known to it.
+std::vector<bool> covered(const AccuracyStudy& study, double promise);
+
+/// Groups of knobs that matter to what is covered, with the levels that may be recommended: measured ones, and those cut by the
 /// budget where the order predicts their errors. A ladder that is not converged is not
 /// extrapolated: it offers its finest level, and coarser measured ones by their distance from it
 /// where the limit's uncertainty is at most promise / kClearance.
 inline constexpr double kClearance = 10;
 std::vector<Group> groups_of(const AccuracyStudy& study, double promise);
 
-/// The cheapest settings for each promise.
-std::vector<Recommendation> recommend(const AccuracyStudy& study,
-                                      const std::vector<double>& promises);
+/// The cheapest settings for a promise whose errors add up to `share` of it at most.
+Recommendation recommend(const AccuracyStudy& study, double promise, double share = 1);
 
 /// Judges a recommendation by what its run found: kept within kPromiseFactor, or withdrawn.
 inline constexpr double kPromiseFactor = 1.5;

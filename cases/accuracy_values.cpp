@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cases/build.h"
+#include "cases/measures.h"
 #include "cases/mechanism_columns.h"
 #include "cases/study.h"
 #include "io/files.h"
@@ -36,12 +37,18 @@ void add_points(const Scene& scene, const std::string& letter, std::vector<std::
       out.push_back(o.body + "." + o.name + "_" + letter + kAxes[c]);
 }
 
+void add_measures(const Scene& scene, std::vector<std::string>& out) {
+  for (const Measure& measure : scene.measures)
+    for (const std::string& column : measured_columns(measure)) out.push_back(column);
+}
+
 std::vector<std::string> motion_columns(const Scene& scene) {
   std::vector<std::string> out;
   for (const fem::Growth& growth : build_mechanism(scene).growths)
     if (!scene.body(growth.body).in_space() && growth.line == 0)
       out.push_back(growth.body + ".tip_deflection");
   add_points(scene, "", out);
+  add_measures(scene, out);
   for (const Body& body : scene.bodies)
     for (const BodyLine& line : body.lines)
       if (line.free) out.push_back(body.name + ".line_" + std::to_string(line.index));
@@ -136,6 +143,7 @@ std::vector<std::string> candidates(const Scene& scene, Part part) {
   if (part == Part::motion) {
     if (!scene.statics) return motion_columns(scene);
     add_points(scene, "u", out);
+    add_measures(scene, out);
     out.emplace_back("energy.strain");
     return out;
   }

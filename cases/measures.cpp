@@ -93,6 +93,13 @@ const std::vector<std::string>& measured_quantities() {
   return kNames;
 }
 
+std::vector<std::string> measured_columns(const Measure& measure) {
+  std::vector<std::string> out;
+  for (const std::string& quantity : measure.quantities)
+    for (const char* column : columns_of().at(quantity)) out.push_back(measure.body + "." + column);
+  return out;
+}
+
 std::string refusal_of_measure(const Scene& scene, const Body& body, const std::string& quantity) {
   if (body.flow || body.has_free_lines() || body.mesh_changes())
     return "bodies are measured whose material does not flow and whose lines are not free";
@@ -125,8 +132,7 @@ BodyMeasures::BodyMeasures(const Scene& scene, const fem::Model& model, const fe
       m.arm = place(built, model.reference(), m.material[2]) - center;
       m.polar = polar;
     }
-    for (const std::string& quantity : measure.quantities)
-      for (const char* column : columns_of().at(quantity)) add_column(body.name, column);
+    for (const std::string& name : measured_columns(measure)) columns_.push_back({name, {}});
     bodies_.push_back(std::move(m));
   }
 }

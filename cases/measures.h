@@ -24,6 +24,9 @@ namespace flexmorph::cases {
 ///                      centre of mass, and kinetic energy (α Ṫ)² ½ ∫ ρ |X - X_c|² dV; T (12), (19)
 const std::vector<std::string>& measured_quantities();
 
+/// Names of the columns of a [[measure]].
+std::vector<std::string> measured_columns(const Measure& measure);
+
 /// Why a quantity cannot be measured; empty where it can.
 std::string refusal_of_measure(const Scene& scene, const Body& body, const std::string& quantity);
 
@@ -53,9 +56,6 @@ class BodyMeasures {
     double polar = 0;  // ∫ ρ |X - X_c|² dV
   };
 
-  void add_column(const std::string& body, const char* quantity) {
-    columns_.push_back({body + "." + quantity, {}});
-  }
   void put(double value) { columns_[next_++].values.push_back(value + 0.0); }  // no "-0"
   void put_quantity(const Measured& m, const std::string& quantity, const fem::Body& body,
                     const fem::State& x, double heating);

@@ -354,6 +354,10 @@ struct Outlines {
 
 }  // namespace
 
+std::string components_name(const Scene& scene, const std::string& body) {
+  return scene.designs.size() > 1 ? "components_" + body + ".csv" : "components.csv";
+}
+
 RunFolder::DesignPictures& RunFolder::pictures_of(const std::string& body) {
   for (DesignPictures& p : pictures_)
     if (p.body == body) return p;
@@ -371,7 +375,7 @@ void RunFolder::write_start(const mmc::BodyProblem& problem) {
 void RunFolder::write_design(const mmc::BodyProblem& problem, const mmc::BodyOutcome& outcome) {
   const std::string stem = scene_.designs.size() > 1 ? "_" + problem.body : "";
   const std::vector<Component> components = problem.design.components();
-  io::write_components_csv(path_ + "/components" + stem + ".csv", components);
+  io::write_components_csv(path_ + "/" + components_name(scene_, problem.body), components);
   const Outlines outlines(problem);
   io::write_file(path_ + "/design" + stem + ".svg", outlines.svg());
   io::write_dxf(path_ + "/design" + stem + ".dxf", outlines.regions);

@@ -56,6 +56,9 @@ struct PathRecord {
 double tip_deflection(const fem::Model& model, const fem::Growth& growth, const fem::State& x);
 
 /// The folder of one run (design.md section 12): every file is written here and nowhere else.
+/// Name of the file with the components of a body's result.
+std::string components_name(const Scene& scene, const std::string& body);
+
 class RunFolder {
  public:
   /// Makes the folder and writes case.toml. A folder that holds another run (its run.json is there)

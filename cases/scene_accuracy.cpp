@@ -49,6 +49,8 @@ std::string Interest::words() const {
 Accuracy read_accuracy(const Table& t) {
   Accuracy out;
   if (t.has("ladders")) out.ladders = t.choices("ladders", "a ladder", knob_names());
+  out.optimized =
+      t.choice<bool>("design", "a design", {{"start", false}, {"optimized", true}}, false);
   Interest shared;
   read_shared(t, shared);
   if (t.is_string("quantity")) {

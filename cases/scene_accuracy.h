@@ -14,7 +14,7 @@ struct Interest {
   /// When a column of a table is looked at.
   enum class At { end, max, time };
 
-  /// A column of motion.csv or path.csv ("plate.corner_z"), a figure of the design as it starts
+  /// A column of motion.csv or path.csv ("plate.corner_z"), a figure of the design
   /// ("compliance", "arm.volume"), or a number of run.json ("motion.energy_defect").
   std::string name;
   At at = At::end;              ///< max: the largest size
@@ -32,6 +32,7 @@ struct Interest {
 struct Accuracy {
   std::vector<Interest> quantities;  ///< at least one
   std::vector<std::string> ladders;  ///< names of knobs; empty: all that apply
+  bool optimized = false;            ///< design = "optimized": the result, not the start
 };
 
 /// Reads [accuracy].

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "cases/accuracy_budget.h"
 #include "cases/accuracy_choice.h"
@@ -88,11 +89,34 @@ TEST(Orders, AValueThatSwingsHasNone) {
 }
 
 TEST(Orders, ALogarithmHasNoLimit) {
-  // Point loads on a plane continuum: equal differences, order 0.
+  // Point loads on a plane continuum: equal differences, order 0. Where nobody knows, the limit may
+  // be as far away as a level a thousand times finer: ln 1000.
   const auto values = sequence(kHalves, [](double h) { return 10 - std::log(h); });
   const Limit limit = limit_of(values, Approach::power, {}, 10);
   EXPECT_FALSE(limit.converged);
-  EXPECT_FALSE(limit.bounded()) << limit.sentence;
+  EXPECT_NEAR(limit.uncertainty, std::log(1000), 1e-9) << limit.sentence;
+  const Limit none = limit_of(values, Approach::power, Theory{0, "a point load"}, 10);
+  EXPECT_FALSE(none.converged);
+  EXPECT_FALSE(none.bounded());
+  EXPECT_NE(none.sentence.find("a point load"), std::string::npos) << none.sentence;
+}
+
+TEST(Orders, DifferencesThatGrowBoundNothing) {
+  const auto values = sequence(kHalves, [](double h) { return 1 / h; });
+  EXPECT_FALSE(limit_of(values, Approach::power, {}, 1).bounded());
+}
+
+TEST(Orders, WhereNoneIsKnownItIsSaidWhy) {
+  const Theory why{std::numeric_limits<double>::quiet_NaN(), "corners are singular"};
+  const auto swings = sequence(kHalves, [](double h) {
+    return 1 + 0.1 * h * (std::lround(std::log2(h)) % 2 == 0 ? 1 : -1);
+  });
+  const Limit limit = limit_of(swings, Approach::power, why, 1);
+  EXPECT_NE(limit.sentence.find("corners are singular"), std::string::npos) << limit.sentence;
+  // Three times the range of the last four, 0.9 .. 1.2.
+  EXPECT_NEAR(limit.uncertainty, 3 * 0.3, 1e-12);
+  const auto first = sequence(kHalves, [](double h) { return 1 + h; });
+  EXPECT_TRUE(limit_of(first, Approach::power, why, 1).converged);
 }
 
 TEST(Orders, TheFloorOfRoundingIsNoOrder) {
@@ -286,7 +310,7 @@ AccuracyStudy known_study() {
   for (const bool mesh : {true, false}) {
     Ladder& ladder = study.ladders.emplace_back();
     ladder.knob = &knob(mesh ? "elements" : "step");
-    ladder.theory = Theory{mesh ? 4.0 : 2.0, ""};
+    ladder.theories = {Theory{mesh ? 4.0 : 2.0, ""}};
     for (const double h : kHalves) {
       Rung& rung = ladder.rungs.emplace_back();
       rung.level.h = h;
@@ -318,7 +342,7 @@ TEST(Study, AddsWhatIsMissingToTheLimits) {
 
 TEST(Study, RecommendsWhatKeepsThePromiseAndWithdrawsWhatDoesNot) {
   const AccuracyStudy study = known_study();
-  std::vector<Recommendation> all = recommend(study, {1e-2, 1e-5});
+  const std::vector<Recommendation> all = {recommend(study, 1e-2), recommend(study, 1e-5)};
   ASSERT_TRUE(all[0].choice);
   // By hand: mesh 1/2 (0.56 %, 8 s) with step 1/2 (0.45 %, x 2) is over 1 %, so mesh 1/2 and step
   // 1/4 (0.11 %, x 4), or mesh 1/4 (0.03 %, 64 s) and step 1/2: the first is cheaper.
@@ -326,6 +350,10 @@ TEST(Study, RecommendsWhatKeepsThePromiseAndWithdrawsWhatDoesNot) {
   EXPECT_NEAR(all[0].choice->cost, 32, 1e-9);
   EXPECT_FALSE(all[1].choice);
   EXPECT_FALSE(all[1].sentence.empty());
+  // With 0.3 % only mesh 1/4 (0.03 %) and step 1/4 (0.11 %) are left of the cheap ones.
+  const Recommendation careful = recommend(study, 1e-2, 0.3);
+  ASSERT_TRUE(careful.choice);
+  EXPECT_EQ(careful.overrides, (Words{"g=0.250000", "h=0.250000"}));
   Recommendation kept = all[0];
   judge(kept, study, {1 + 0.02 / 16 + 0.1 / 16}, 1);
   EXPECT_FALSE(kept.withdrawn) << kept.sentence;
@@ -353,6 +381,17 @@ TEST(Study, ALadderThatIsNotConvergedOffersItsFinestLevel) {
     }
 }
 
+// What has no limit is in no promise.
+TEST(Study, APromiseLeavesOutWhatHasNoLimit) {
+  AccuracyStudy study = known_study();
+  for (Ladder& ladder : study.ladders) ladder.theories = {Theory{0, "a point load"}};
+  evaluate(study, {std::nullopt});
+  EXPECT_FALSE(study.truths[0].has_limit);
+  const Recommendation r = recommend(study, 1e-2);
+  EXPECT_FALSE(r.choice);
+  EXPECT_NE(r.sentence.find("limit"), std::string::npos);
+}
+
 TEST(Knobs, AreThoseOfTheScene) {
   const auto present = [](const std::string& name, Part part) {
     const Scene scene = read_scene(io::CaseFile(find_case(name)));
@@ -362,9 +401,12 @@ TEST(Knobs, AreThoseOfTheScene) {
     return out;
   };
   EXPECT_EQ(present("plate_pendulum", Part::motion),
-            (Words{"elements", "shape", "step", "rho_inf", "integrator", "quadrature"}));
+            (Words{"elements", "shape", "step", "adaptive", "rho_inf", "integrator", "quadrature"}));
   EXPECT_EQ(present("square_plate_twist", Part::motion),
             (Words{"elements", "shape", "quadrature", "load_steps"}));
+  EXPECT_EQ(present("slider_crank_heated", Part::motion),
+            (Words{"elements", "model", "step", "adaptive", "minimal_coordinates", "rho_inf",
+                   "integrator"}));
   EXPECT_EQ(present("short_beam", Part::design),
             (Words{"design_mesh", "void", "sharpness", "band"}));
   EXPECT_EQ(present("four_bar", Part::design),
@@ -378,14 +420,40 @@ TEST(Knobs, LevelsOfOneKnobLeaveTheOthersAlone) {
     const Scene finer = read_scene(io::CaseFile(find_case("short_beam"), level.overrides));
     const BodyDesign &a = scene.designs[0], &b = finer.designs[0];
     EXPECT_NEAR(b.grid.dx(), level.h * a.grid.dx(), 1e-12);
-    EXPECT_NEAR(b.tdf.band, a.tdf.band, 1e-12);  // in metres
-    EXPECT_NEAR(b.tdf.sharpness, a.tdf.sharpness, 1e-9);
+    EXPECT_NEAR(b.tdf.band, level.h * a.tdf.band, 1e-12);  // as many cells
+    EXPECT_NEAR(b.tdf.sharpness, a.tdf.sharpness / level.h, 1e-9);
     EXPECT_EQ(b.min_thickness, a.min_thickness);
   }
-  // Finer cells and another band: bands in cells multiply.
-  const Words both = together(
-      scene, {"design.0.cell=0.0125", "design.0.band=[5, 3]", "design.0.band=[1.25, 0.75]"});
-  EXPECT_EQ(both, (Words{"design.0.cell=0.0125", "design.0.band=[2.5, 1.5]"}));
+}
+
+// The other beam model on the same meshes; elements of beams are one number.
+TEST(Knobs, ModelsOfBeams) {
+  const std::string name = "slider_crank_heated";
+  const io::CaseFile file(find_case(name));
+  const Scene scene = read_scene(file);
+  for (const Level& level : knob("model").levels(scene, file)) {
+    const Scene other = read_scene(io::CaseFile(find_case(name), level.overrides));
+    EXPECT_TRUE(other.bodies[0].has("ecm") && !other.bodies[0].has("gcm"));
+    EXPECT_TRUE(other.bodies[0].has("inertia"));
+    EXPECT_NEAR(other.bodies[0].elements[0] * level.h, scene.bodies[0].elements[0], 1e-9);
+  }
+}
+
+// A step of the case itself is not among the tolerances, and each is a case that can be read.
+TEST(Knobs, StepsThatAdapt) {
+  const std::string name = "slider_crank_heated";
+  const io::CaseFile file(find_case(name));
+  const Scene scene = read_scene(file);
+  double last = 1;
+  for (const Level& level : knob("adaptive").levels(scene, file)) {
+    const Scene other = read_scene(io::CaseFile(find_case(name), level.overrides));
+    ASSERT_TRUE(other.time.tolerance.has_value());
+    EXPECT_LT(*other.time.tolerance, last);
+    last = *other.time.tolerance;
+  }
+  for (const Level& level : knob("minimal_coordinates").levels(scene, file))
+    EXPECT_EQ(read_scene(io::CaseFile(find_case(name), level.overrides)).time.integrator,
+              "minimal_coordinates");
 }
 
 }  // namespace
