@@ -40,7 +40,7 @@ std::vector<Level> load_levels(const Scene& scene, const io::CaseFile&) {
 }
 
 std::optional<Theory> load_theory(const Scene&, Part, const std::string&) {
-  return Theory{1, "a sum over load times is a one-sided rectangle rule"};
+  return Theory{1, "many loads, whose sum is a one-sided rectangle rule"};
 }
 
 std::string no_design(const Scene&, Part part) {
@@ -161,7 +161,7 @@ std::vector<Level> sharpness_levels(const Scene& scene, const io::CaseFile&) {
 }
 
 std::optional<Theory> void_theory(const Scene&, Part, const std::string&) {
-  return Theory{1, "the Heaviside function is linear in alpha"};
+  return Theory{1, "small alpha, in which the Heaviside function is linear"};
 }
 std::optional<Theory> sharpness_theory(const Scene&, Part, const std::string&) {
   return no_order(

@@ -43,13 +43,17 @@ bool all_beams(const Scene& scene) {
                                               [](const Body& b) { return b.is_beam(); });
 }
 
-/// A number of elements `factor` times as large; nothing where that is no whole number. A strip of
-/// one element across stays one on coarser meshes.
+/// A number of elements `factor` times as large; nothing where that is no whole number.
 std::optional<int> times(int count, double factor) {
   const double exact = count * factor;
-  if (count == 1 && factor < 1) return 1;
   if (exact < 0.5 || std::abs(exact - std::round(exact)) > 1e-9) return {};
   return static_cast<int>(std::lround(exact));
+}
+
+/// A strip of one element across stays one on coarser meshes, a beam on all.
+std::optional<int> across(const Body& b, double factor) {
+  if (b.is_beam() || (b.elements[1] == 1 && factor < 1)) return 1;
+  return times(b.elements[1], factor);
 }
 
 std::string no_elements(const Scene& scene, Part) {
@@ -70,7 +74,7 @@ std::vector<Level> mesh_levels(const Scene& scene, const io::CaseFile&) {
     bool whole = factor <= 4 || scene.bodies.front().elements[0] * factor <= kMostAlong;
     for (const Body& b : scene.bodies) {
       const std::optional<int> m = times(b.elements[0], factor),
-                               n = b.is_beam() ? 1 : times(b.elements[1], factor);
+                               n = across(b, factor);
       whole = whole && m && n;
       if (!whole) break;
       level.name += (level.name.empty() ? "" : ", ") + to_text(*m) +
@@ -96,8 +100,9 @@ Theory no_order(const std::string& why) {
 std::optional<Theory> mesh_theory(const Scene& scene, Part part, const std::string&) {
   if (part == Part::design) return no_order("the motion is only where the loads come from");
   if (all_beams(scene))
-    return Theory{2, "sections whose gradient is linear along the axis, 2 (1 + 1 - 1), "
-                     "Strang & Fix 1973"};
+    return Theory{2,
+                  "smooth motions, gradients across the axis being linear along it: "
+                  "2 (1 + 1 - 1), Strang & Fix 1973"};
   if (any_beams(scene)) return {};
   if (std::any_of(scene.joints.begin(), scene.joints.end(),
                   [](const Joint& j) { return j.type == "pin"; }) ||
@@ -111,7 +116,7 @@ std::optional<Theory> mesh_theory(const Scene& scene, Part part, const std::stri
   if (!bends(scene)) return no_order("stresses are singular at the corners of held edges");
   if (scene.bodies.front().shape != "h16")
     return no_order("the incomplete shape functions are not conforming in bending");
-  return Theory{4, "energy of cubic Hermite plates, 2 (3 + 1 - 2), Strang & Fix 1973"};
+  return Theory{4, "smooth deflections, cubic Hermite: 2 (3 + 1 - 2), Strang & Fix 1973"};
 }
 
 std::string other_shape(const Scene& scene) {
@@ -194,10 +199,11 @@ bool mesh_changes(const Scene& scene) {
 
 std::optional<Theory> step_theory(const Scene& scene, Part part, const std::string&) {
   if (part == Part::design) return no_order("loads of a motion sampled in time");
-  if (mesh_changes(scene) || (!scene.hubs.empty() && scene.time.start == Start::rigid))
-    return no_order(
-        "axial ringing, set off by the start and by every change of the mesh, is not resolved");
-  return Theory{2, "generalized-alpha, Arnold & Bruls 2007; energy_momentum: midpoint rule"};
+  if (mesh_changes(scene))
+    return no_order("every change of the mesh sets off axial ringing that steps do not resolve");
+  if (scene.time.start == Start::rigid && !scene.bodies.empty())
+    return no_order("the start sets off axial ringing that steps do not resolve");
+  return Theory{2, "steps that resolve the motion, Arnold & Bruls 2007"};
 }
 
 std::string no_adaptive(const Scene& scene, Part part) {
@@ -323,7 +329,8 @@ const std::vector<Knob>& knobs() {
     std::vector<Knob> rows = {
         {"elements", "elements", Approach::power, 2.5, true, no_elements, mesh_levels, mesh_theory},
         {"shape", "elements", Approach::power, 2.5, true, no_shape, shape_levels, no_theory},
-        {"model", "elements", Approach::power, 2.5, true, no_model, model_levels, mesh_theory},
+        {"model", "elements", Approach::power, 2.5, true, no_model, model_levels, mesh_theory,
+         false},
         {"step", "step", Approach::power, 1, true, no_time, step_levels, step_theory},
         {"adaptive", "step", Approach::power, 0.4, true, no_adaptive, adaptive_levels,
          tolerance_theory},

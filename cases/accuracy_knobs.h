@@ -30,6 +30,7 @@ struct Knob {
   /// may be refused when they are read.
   std::vector<Level> (*levels)(const Scene& scene, const io::CaseFile& file);
   std::optional<Theory> (*theory)(const Scene& scene, Part part, const std::string& quantity);
+  bool is_setting = true;  ///< false: another model, which is never recommended
 };
 
 const std::vector<Knob>& knobs();

@@ -101,8 +101,7 @@ void judge_orders(std::span<const LevelValue> levels, const std::optional<Theory
   }
   const bool known = theory && theory->has_order();
   if (known && std::abs(b - theory->order) > kTheorySpread) {
-    out.sentence = "the order " + io::to_text(b, 3) + " is not that of theory, " +
-                   io::to_text(theory->order) + " (" + theory->source + ")";
+    out.sentence = "the order " + io::to_text(b, 3) + " is not that of theory";
     return bound(levels, scale, out);
   }
   if (!known && b < 0.5) {
@@ -117,7 +116,7 @@ void judge_orders(std::span<const LevelValue> levels, const std::optional<Theory
   const double other = extrapolated(before[1], before[2], a);
   out.uncertainty = std::min(std::abs(out.value - other), std::abs(out.value - fine[2].value));
   out.sentence = "order " + io::to_text(b, 3) +
-                 (known ? " (theory " + io::to_text(theory->order) + ": " + theory->source + ")"
+                 (known ? " (theory " + io::to_text(theory->order) + " for " + theory->source + ")"
                          : " (no theory; triples agree)");
 }
 
@@ -173,7 +172,10 @@ Limit limit_of(std::span<const LevelValue> levels, Approach approach,
     out.sentence = "no limit: " + theory->source;
   } else {
     judge_orders(levels, theory, scale, out);
-    if (!out.converged && theory && !theory->has_order()) out.sentence += "; " + theory->source;
+    if (!out.converged && theory)
+      out.sentence +=
+          "; " + (theory->has_order() ? "order " + io::to_text(theory->order) + " is for " : "") +
+          theory->source;
   }
   return out;
 }

@@ -33,7 +33,7 @@ inline constexpr double kOrderSpread = 0.3;
 /// The finest order differs from theory by no more.
 inline constexpr double kTheorySpread = 0.15;
 /// Differences below so many parts of the scale are taken for rounding and Newton's tolerance.
-inline constexpr double kFloor = 1e-9;
+inline constexpr double kFloor = 1e-7;
 /// Where differences per ratio of h do not fall, as those of a logarithm, the limit is taken to lie
 /// within what they add up to on a level so many times finer.
 inline constexpr double kFarthest = 1000;

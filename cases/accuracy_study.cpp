@@ -90,7 +90,7 @@ bool touches(const AccuracyStudy& study, const std::string& group, Part part) {
 bool is_sound(const AccuracyStudy& study, const Ladder& ladder, const Rung& rung, size_t q,
               double promise) {
   const Ladder* leader = leader_of(study, ladder.knob->group, ladder.part);
-  if (!leader) return false;
+  if (!leader || !ladder.knob->is_setting) return false;
   const Limit& limit = leader->limits[q];
   if (limit.converged) return rung.measured() || rung.status == "cut";
   if (!limit.bounded() || !rung.measured()) return false;
