@@ -19,9 +19,9 @@ namespace fs = std::filesystem;
 
 const std::vector<std::pair<double, std::string>> kPromises = {
     {1e-2, "1pct"}, {1e-3, "0.1pct"}, {1e-4, "0.01pct"}};
-constexpr double kReserve = 0.25;  // of the budget, for verification
+constexpr double kReserve = 0.25;                   // of the budget, for verification
 const std::vector<double> kShares = {1, 0.3, 0.1};  // of a promise
-constexpr double kMotionShare = 0.2;  // of the time that a design takes
+constexpr double kMotionShare = 0.2;                // of the time that a design takes
 
 /// A knob of the motion that is turned for the sake of a design.
 bool of_motion(const Ladder& ladder) {
@@ -153,8 +153,7 @@ class Story {
     StudyOptions quiet = options_.study;
     quiet.quiet = true;
     const Variant one{
-        "optimized",
-        {"output.vtk=false", "output.plots=false", "output.sharp_every=0", "verify="}};
+        "optimized", {"output.vtk=false", "output.plots=false", "output.sharp_every=0", "verify="}};
     const StudyOutcome outcome = run_variants(quiet, {&one, 1}, [](auto) {});
     if (outcome.exit_code == 4) throw Stopped();
     const VariantResult& result = outcome.results.front();

@@ -16,9 +16,7 @@ std::string pair(int a, int b) {
   return std::string("[").append(to_text(a)).append(", ").append(to_text(b)).append("]");
 }
 
-Theory no_order(const std::string& why) {
-  return {std::numeric_limits<double>::quiet_NaN(), why};
-}
+Theory no_order(const std::string& why) { return {std::numeric_limits<double>::quiet_NaN(), why}; }
 
 std::string no_loads(const Scene& scene, Part part) {
   if (part == Part::motion) return "of designs only";
@@ -88,7 +86,7 @@ std::vector<Level> cell_levels(const Scene& scene, const io::CaseFile& file) {
   for (const BodyDesign& d : scene.designs) own = std::gcd(own, std::gcd(d.grid.nx, d.grid.ny));
   const std::vector<io::Table> tables = file.root().tables("design");
   std::vector<Level> out;
-  for (const int quarters : {1, 2, 3, 4, 6, 8, 10, 12, 16}) {
+  for (const int quarters : {1, 2, 3, 4, 6, 8, 10, 12, 16, 24, 32}) {
     if (own * quarters % 4 != 0) continue;
     const int size = own * quarters / 4;
     Level& level = out.emplace_back();
@@ -172,12 +170,11 @@ std::optional<Theory> sharpness_theory(const Scene&, Part, const std::string&) {
 /// Displacements under a force at a point of a plane continuum are infinite, and so is its work.
 std::optional<Theory> cell_theory(const Scene& scene, Part, const std::string& quantity) {
   const bool points =
-      scene.domain && std::any_of(scene.domain->loads.begin(), scene.domain->loads.end(),
-                                  [](const LoadCase& load) {
-                                    return std::any_of(
-                                        load.forces.begin(), load.forces.end(),
-                                        [](const PlaneForce& f) { return f.place.kind == Place::Kind::point; });
-                                  });
+      scene.domain &&
+      std::any_of(scene.domain->loads.begin(), scene.domain->loads.end(), [](const LoadCase& load) {
+        return std::any_of(load.forces.begin(), load.forces.end(),
+                           [](const PlaneForce& f) { return f.place.kind == Place::Kind::point; });
+      });
   if (points && quantity.ends_with("compliance"))
     return Theory{0, "under a force at a point it grows with the logarithm of the cells"};
   return no_order("edges of components cross the cells anywhere");
@@ -191,12 +188,12 @@ std::optional<Theory> band_theory(const Scene&, Part, const std::string&) {
 
 std::vector<Knob> design_knobs() {
   const auto power = Approach::power;
-  return {{"loads", "loads", power, 0.5, true, no_loads, load_levels, load_theory},
-          {"design_mesh", "design_mesh", power, 2.5, true, no_design, cell_levels, cell_theory},
-          {"void", "void", power, 0.1, true, no_design, void_levels, void_theory},
-          {"sharpness", "design_mesh", power, 0.1, true, no_design, sharpness_levels,
-           sharpness_theory},
-          {"band", "design_mesh", power, 0.1, true, no_band, band_levels, band_theory}};
+  return {
+      {"loads", "loads", power, 0.5, true, no_loads, load_levels, load_theory},
+      {"design_mesh", "design_mesh", power, 2.5, true, no_design, cell_levels, cell_theory},
+      {"void", "void", power, 0.1, true, no_design, void_levels, void_theory},
+      {"sharpness", "design_mesh", power, 0.1, true, no_design, sharpness_levels, sharpness_theory},
+      {"band", "design_mesh", power, 0.1, true, no_band, band_levels, band_theory}};
 }
 
 }  // namespace flexmorph::cases

@@ -73,8 +73,7 @@ std::vector<Level> mesh_levels(const Scene& scene, const io::CaseFile&) {
     level.h = 1 / factor;
     bool whole = factor <= 4 || scene.bodies.front().elements[0] * factor <= kMostAlong;
     for (const Body& b : scene.bodies) {
-      const std::optional<int> m = times(b.elements[0], factor),
-                               n = across(b, factor);
+      const std::optional<int> m = times(b.elements[0], factor), n = across(b, factor);
       whole = whole && m && n;
       if (!whole) break;
       level.name += (level.name.empty() ? "" : ", ") + to_text(*m) +
@@ -93,9 +92,7 @@ std::vector<Level> mesh_levels(const Scene& scene, const io::CaseFile&) {
   return out;
 }
 
-Theory no_order(const std::string& why) {
-  return {std::numeric_limits<double>::quiet_NaN(), why};
-}
+Theory no_order(const std::string& why) { return {std::numeric_limits<double>::quiet_NaN(), why}; }
 
 std::optional<Theory> mesh_theory(const Scene& scene, Part part, const std::string&) {
   if (part == Part::design) return no_order("the motion is only where the loads come from");
@@ -156,8 +153,8 @@ std::vector<Level> model_levels(const Scene& scene, const io::CaseFile& file) {
     for (const Body& b : scene.bodies) {
       const std::string other = b.has("gcm") ? "ecm" : "gcm";
       models += (models.empty() ? "" : ", ") + other;
-      level.overrides.push_back(key(b.name, "terms") +
-                                (b.has("inertia") ? "['inertia', '" : "['") + other + "']");
+      level.overrides.push_back(key(b.name, "terms") + (b.has("inertia") ? "['inertia', '" : "['") +
+                                other + "']");
     }
     level.name = models + " " + level.name;
   }
@@ -179,9 +176,11 @@ Level step_level(const Scene& scene, double factor) {
   const bool adapts = scene.time.tolerance || scene.time.integrator == "minimal_coordinates";
   if (factor == 1 && !adapts) return level;
   level.overrides = {"time.step=" + to_text(step)};
-  if (scene.time.tolerance) level.overrides.insert(level.overrides.end(), {"time.tolerance=", "time.largest_step="});
+  if (scene.time.tolerance)
+    level.overrides.insert(level.overrides.end(), {"time.tolerance=", "time.largest_step="});
   if (scene.time.integrator == "minimal_coordinates")
-    level.overrides.insert(level.overrides.end(), {"time.integrator='generalized_alpha'", "time.tolerance="});
+    level.overrides.insert(level.overrides.end(),
+                           {"time.integrator='generalized_alpha'", "time.tolerance="});
   return level;
 }
 
@@ -214,7 +213,8 @@ std::string no_adaptive(const Scene& scene, Part part) {
 
 std::string no_explicit(const Scene& scene, Part part) {
   if (mesh_changes(scene)) return "\"minimal_coordinates\" keep their mesh";
-  if (!all_beams(scene) && !scene.bodies.empty()) return "the stiffness of plates needs implicit steps";
+  if (!all_beams(scene) && !scene.bodies.empty())
+    return "the stiffness of plates needs implicit steps";
   return no_time_or_design(scene, part);
 }
 

@@ -12,7 +12,7 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kLeastOrder = 0.05, kMostOrder = 20;
-constexpr double kLowOrder = 0.3;  // of what may still be bounded
+constexpr double kLowOrder = 0.3;             // of what may still be bounded
 constexpr double kFalls = 0.9, kGrows = 1.5;  // ratios of neighbouring differences per ratio of h
 
 /// (h₁ᵖ - h₂ᵖ)/(h₂ᵖ - h₃ᵖ), which grows with p.
@@ -38,9 +38,9 @@ double reach(std::span<const LevelValue> levels, double scale) {
   const double last = levels[n - 1].value - levels[n - 2].value;
   const double before = levels[n - 2].value - levels[n - 3].value;
   if (last * before < 0) {
-    const auto [low, high] = std::minmax(
-        {levels[n - 1].value, levels[n - 2].value, levels[n - 3].value,
-         levels[n > 3 ? n - 4 : n - 3].value});
+    const auto [low, high] =
+        std::minmax({levels[n - 1].value, levels[n - 2].value, levels[n - 3].value,
+                     levels[n > 3 ? n - 4 : n - 3].value});
     return kSwing * (high - low);
   }
   const double ratio = levels[n - 2].h / levels[n - 1].h;
@@ -117,7 +117,7 @@ void judge_orders(std::span<const LevelValue> levels, const std::optional<Theory
   out.uncertainty = std::min(std::abs(out.value - other), std::abs(out.value - fine[2].value));
   out.sentence = "order " + io::to_text(b, 3) +
                  (known ? " (theory " + io::to_text(theory->order) + " for " + theory->source + ")"
-                         : " (no theory; triples agree)");
+                        : " (no theory; triples agree)");
 }
 
 }  // namespace

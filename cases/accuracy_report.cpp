@@ -12,6 +12,8 @@ namespace {
 using io::to_text;
 using Rows = std::vector<std::vector<std::string>>;
 
+constexpr double kLeastError = 1e-12;  // in pictures: less is rounding
+
 std::string percent(double share) {
   return std::isfinite(share) ? to_text(100 * share, 2) + " %" : "?";
 }
@@ -47,7 +49,9 @@ Rows quantity_rows(const AccuracyStudy& study) {
     std::vector<std::string>& row = rows.emplace_back();
     row = {study.interests[q].words(),
            to_text(t.own, 9),
-           !t.has_limit ? "none" : std::isfinite(t.uncertainty) ? to_text(t.value, 9) : "?",
+           !t.has_limit                   ? "none"
+           : std::isfinite(t.uncertainty) ? to_text(t.value, 9)
+                                          : "?",
            percent(t.uncertainty),
            percent(std::abs(t.own - t.value) / t.scale),
            "",
@@ -169,6 +173,91 @@ std::string composed(const AccuracyStudy& study, bool markdown) {
   return out;
 }
 
+/// Error of the whole run, where its limit is bounded, against the time it takes.
+io::Panel times_panel(const AccuracyStudy& study, size_t q) {
+  const Truth& truth = study.truths[q];
+  const bool whole = truth.has_limit && std::isfinite(truth.uncertainty);
+  io::Panel out;
+  out.title = study.interests[q].words() + ": error against CPU time";
+  out.x = {"CPU time [s]", true};
+  out.y = {whole ? "error of all knobs together [-]" : "error against the ladder's limit [-]",
+           true};
+  std::vector<std::pair<double, double>> points;
+  size_t color = 0;
+  for (const Ladder& ladder : study.ladders) {
+    if (ladder.part != study.parts[q]) continue;
+    io::Curve curve;
+    for (const Rung& rung : ladder.rungs) {
+      if (!rung.measured()) continue;
+      const double error =
+          whole ? std::abs(rung.values[q] - truth.value) / truth.scale : rung.errors[q];
+      if (!(error > kLeastError)) continue;
+      curve.x.push_back(rung.seconds_cpu);
+      curve.y.push_back(error);
+      points.emplace_back(rung.seconds_cpu, error);
+    }
+    curve.name = ladder.knob->name;
+    curve.markers = true;
+    curve.line = ladder.knob->is_ladder;
+    curve.color = color++;
+    if (!curve.x.empty()) out.curves.push_back(curve);
+  }
+  const auto dashed = [&](const std::string& name) {
+    io::Curve curve;
+    curve.name = name;
+    curve.dashed = true;
+    curve.color = color++;
+    return curve;
+  };
+  io::Curve front = dashed("Pareto front");
+  for (const size_t i : pareto_front(points)) {
+    front.x.push_back(points[i].first);
+    front.y.push_back(points[i].second);
+  }
+  if (front.x.size() > 1) out.curves.push_back(front);
+  if (whole && truth.uncertainty > kLeastError && !points.empty()) {
+    const auto [first, last] = std::minmax_element(points.begin(), points.end());
+    io::Curve known = dashed("what the limit is known to");
+    known.x = {first->first, last->first};
+    known.y = {truth.uncertainty, truth.uncertainty};
+    out.curves.push_back(known);
+  }
+  return out;
+}
+
+/// Errors against the limits of the ladders, with the orders of those that converge.
+io::Panel knobs_panel(const AccuracyStudy& study, size_t q) {
+  io::Panel out;
+  out.title = study.interests[q].words() + ": error against the knobs";
+  out.x = {"knob, relative to the case", true};
+  out.y = {"error against the ladder's limit [-]", true};
+  size_t color = 0;
+  for (const Ladder& ladder : study.ladders) {
+    if (ladder.part != study.parts[q]) continue;
+    io::Curve curve, fit;
+    for (const Rung& rung : ladder.rungs) {
+      if (!rung.measured() || !(rung.errors[q] > kLeastError)) continue;
+      curve.x.push_back(rung.level.h);
+      curve.y.push_back(rung.errors[q]);
+    }
+    curve.name = ladder.knob->name;
+    curve.markers = true;
+    curve.color = fit.color = color++;
+    if (!ladder.knob->is_ladder || curve.x.empty()) continue;
+    out.curves.push_back(curve);
+    const Limit& limit = ladder.limits[q];
+    if (!ladder.leads() || !limit.converged || !std::isfinite(limit.order) || curve.x.size() < 2)
+      continue;
+    fit.name = "order " + to_text(limit.order, 3);
+    fit.dashed = true;
+    fit.x = {curve.x.front(), curve.x.back()};
+    const double end = curve.y.back();
+    fit.y = {end * std::pow(fit.x[0] / fit.x[1], limit.order), end};
+    out.curves.push_back(fit);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string accuracy_text(const AccuracyStudy& study) { return composed(study, false); }
@@ -210,52 +299,8 @@ std::string accuracy_svg(const AccuracyStudy& study) {
   figure.title = study.title;
   figure.panel_height = 360;
   for (size_t q = 0; q < study.interests.size(); ++q) {
-    io::Panel times, levels;
-    times.title = study.interests[q].words() + ": error against CPU time";
-    times.x = {"CPU time [s]", true};
-    levels.title = study.interests[q].words() + ": error against the knobs";
-    levels.x = {"knob, relative to the case", true};
-    times.y = levels.y = {"error against the ladder's limit [-]", true};
-    std::vector<std::pair<double, double>> points;
-    size_t color = 0;
-    for (const Ladder& ladder : study.ladders) {
-      if (ladder.part != study.parts[q]) continue;
-      const Limit& limit = ladder.limits[q];
-      io::Curve time, level, fit;
-      for (const Rung& rung : ladder.rungs) {
-        if (!rung.measured() || !(rung.errors[q] > 0)) continue;
-        time.x.push_back(rung.seconds_cpu);
-        level.x.push_back(rung.level.h);
-        time.y.push_back(rung.errors[q]);
-        level.y.push_back(rung.errors[q]);
-        points.emplace_back(rung.seconds_cpu, rung.errors[q]);
-      }
-      time.name = level.name = ladder.knob->name;
-      time.markers = level.markers = true;
-      time.line = ladder.knob->is_ladder;
-      time.color = level.color = fit.color = color++;
-      if (limit.converged && std::isfinite(limit.order) && level.x.size() > 1) {
-        fit.name = "order " + to_text(limit.order, 3);
-        fit.dashed = true;
-        fit.x = {level.x.front(), level.x.back()};
-        const double end = level.y.back();
-        fit.y = {end * std::pow(fit.x[0] / fit.x[1], limit.order), end};
-      }
-      if (!time.x.empty()) times.curves.push_back(time);
-      if (ladder.knob->is_ladder && !level.x.empty()) levels.curves.push_back(level);
-      if (!fit.x.empty()) levels.curves.push_back(fit);
-    }
-    io::Curve front;
-    front.name = "Pareto front";
-    front.dashed = true;
-    front.color = color;
-    for (const size_t i : pareto_front(points)) {
-      front.x.push_back(points[i].first);
-      front.y.push_back(points[i].second);
-    }
-    if (front.x.size() > 1) times.curves.push_back(front);
-    figure.panels.push_back(std::move(times));
-    figure.panels.push_back(std::move(levels));
+    figure.panels.push_back(times_panel(study, q));
+    figure.panels.push_back(knobs_panel(study, q));
   }
   return io::plot_svg(figure);
 }

@@ -148,7 +148,7 @@ std::string left_out(const AccuracyStudy& study, const Recommendation& r) {
     if (r.covers[q]) continue;
     const Truth& t = study.truths[q];
     out += (out.empty() ? "" : ", ") + study.interests[q].words() +
-           (!t.has_limit            ? ": it has no limit"
+           (!t.has_limit           ? ": it has no limit"
             : !t.unbounded.empty() ? ": nothing bounds the error of " + t.unbounded
                                    : ": its limit is known to " + percent(t.uncertainty) + " only");
   }

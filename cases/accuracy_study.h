@@ -35,7 +35,7 @@ struct Ladder {
   const Knob* knob = nullptr;
   Part part = Part::motion;
   std::vector<std::optional<Theory>> theories;  ///< of all quantities
-  std::vector<Rung> rungs;    ///< coarse to fine
+  std::vector<Rung> rungs;                      ///< coarse to fine
   std::vector<Limit> limits;  ///< of all quantities; those of the other part are empty
   bool leads() const { return knob->name == knob->group; }
   size_t count(const std::string& status) const;
@@ -48,8 +48,8 @@ struct Truth {
   double value = 0;        ///< own + Σ over knobs of what is missing to their limits
   double uncertainty = 0;  ///< Σ, relative to the scale; infinite where a limit is not bounded
   std::optional<double> reference;
-  std::string unbounded;   ///< knobs without a bounded limit
-  bool has_limit = true;   ///< false: theory knows of none, and no promise covers it
+  std::string unbounded;  ///< knobs without a bounded limit
+  bool has_limit = true;  ///< false: theory knows of none, and no promise covers it
 };
 
 /// Settings for a promised error.
@@ -86,10 +86,10 @@ void evaluate(AccuracyStudy& study, const std::vector<std::optional<double>>& re
 /// What a promise can be about: quantities whose limits are known to it.
 std::vector<bool> covered(const AccuracyStudy& study, double promise);
 
-/// Groups of knobs that matter to what is covered, with the levels that may be recommended: measured ones, and those cut by the
-/// budget where the order predicts their errors. A ladder that is not converged is not
-/// extrapolated: it offers its finest level, and coarser measured ones by their distance from it
-/// where the limit's uncertainty is at most promise / kClearance.
+/// Groups of knobs that matter to what is covered, with the levels that may be recommended:
+/// measured ones, and those cut by the budget where the order predicts their errors. A ladder that
+/// is not converged is not extrapolated: it offers its finest level, and coarser measured ones by
+/// their distance from it where the limit's uncertainty is at most promise / kClearance.
 inline constexpr double kClearance = 10;
 std::vector<Group> groups_of(const AccuracyStudy& study, double promise);
 

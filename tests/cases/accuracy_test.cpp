@@ -400,8 +400,9 @@ TEST(Knobs, AreThoseOfTheScene) {
       if (each.absent(scene, part).empty()) out.push_back(each.name);
     return out;
   };
-  EXPECT_EQ(present("plate_pendulum", Part::motion),
-            (Words{"elements", "shape", "step", "adaptive", "rho_inf", "integrator", "quadrature"}));
+  EXPECT_EQ(
+      present("plate_pendulum", Part::motion),
+      (Words{"elements", "shape", "step", "adaptive", "rho_inf", "integrator", "quadrature"}));
   EXPECT_EQ(present("square_plate_twist", Part::motion),
             (Words{"elements", "shape", "quadrature", "load_steps"}));
   EXPECT_EQ(present("slider_crank_heated", Part::motion),
