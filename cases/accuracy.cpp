@@ -31,6 +31,8 @@ bool of_motion(const Ladder& ladder) {
 // A run may take so many times what was predicted, and so long in any case [s].
 constexpr double kPatience = 6, kLeastLimit = 5;
 
+const char* const kEnded = "ended after";  // the message of runs whose time is up
+
 struct Stopped {};  // by the user
 
 void append(const std::vector<std::string>& more, std::vector<std::string>& out) {
@@ -204,7 +206,7 @@ class Story {
     rung.message = result.message;
     rung.seconds_cpu = result.seconds_cpu;
     // What an earlier study left counts as if it were run: the same levels are reached again.
-    const bool ended = result.message.starts_with("ended after");
+    const bool ended = result.message.starts_with(kEnded);
     if (ended || std::isfinite(result.seconds_cpu)) spent_ += ended ? limit : result.seconds_cpu;
     rung.seconds_wall = result.seconds_wall;
     rung.memory = result.peak_memory_bytes;
@@ -285,6 +287,10 @@ class Story {
       Rung rung;
       rung.level.overrides = r.overrides;
       measure(part, to_string(part) + "_" + name, rung, std::max(1.0, budget_.left()));
+      if (rung.message.starts_with(kEnded)) {
+        r.sentence = "not verified: its run was " + rung.message;
+        return;
+      }
       if (!rung.measured()) {
         r.withdrawn = true;
         r.sentence = "withdrawn: its run failed: " + rung.message;

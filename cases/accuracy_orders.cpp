@@ -31,26 +31,40 @@ std::vector<size_t> finest_orders(const std::vector<double>& orders) {
 
 std::string share(double difference, double scale) { return io::to_text(difference / scale, 2); }
 
+/// Differences per ratio of h (>= 0), coarse to fine.
+std::vector<double> slopes_of(std::span<const LevelValue> levels) {
+  std::vector<double> out;
+  for (size_t i = 0; i + 1 < levels.size(); ++i)
+    out.push_back(std::abs(levels[i + 1].value - levels[i].value) /
+                  std::log(levels[i].h / levels[i + 1].h));
+  return out;
+}
+
+double range_of_last(std::span<const LevelValue> levels, size_t count) {
+  const auto last = levels.last(std::min(count, levels.size()));
+  const auto [low, high] = std::minmax_element(
+      last.begin(), last.end(),
+      [](const LevelValue& a, const LevelValue& b) { return a.value < b.value; });
+  return high->value - low->value;
+}
+
 /// How far the limit may lie from the finest of levels without an order.
 double reach(std::span<const LevelValue> levels, double scale) {
   const size_t n = levels.size();
   if (n < 3) return kInfinite;
   const double last = levels[n - 1].value - levels[n - 2].value;
   const double before = levels[n - 2].value - levels[n - 3].value;
-  if (last * before < 0) {
-    const auto [low, high] =
-        std::minmax({levels[n - 1].value, levels[n - 2].value, levels[n - 3].value,
-                     levels[n > 3 ? n - 4 : n - 3].value});
-    return kSwing * (high - low);
-  }
-  const double ratio = levels[n - 2].h / levels[n - 1].h;
-  const double slope = std::abs(last) / std::log(ratio),
-               slope_before = std::abs(before) / std::log(levels[n - 3].h / levels[n - 2].h);
+  const std::vector<double> slopes = slopes_of(levels);
+  const double slope = slopes[n - 2], slope_before = slopes[n - 3];
   const bool rests = std::max(std::abs(last), std::abs(before)) <= kFloor * scale;
-  if (!rests && slope > kGrows * slope_before) return kInfinite;
+  if (!rests && slope > kGrows * *std::max_element(slopes.begin(), slopes.end() - 1))
+    return kInfinite;
+  if (last * before < 0 || (!rests && slope > kGrows * slope_before))
+    return kSwing * range_of_last(levels, 4);
   if (!rests && slope >= kFalls * slope_before)
     return std::max(slope, slope_before) * std::log(kFarthest);
   // What is left if it goes on with first order, or with the lower one that was seen.
+  const double ratio = levels[n - 2].h / levels[n - 1].h;
   const double seen = order_of(levels[n - 3], levels[n - 2], levels[n - 1], 0);
   const double order = std::isfinite(seen) ? std::clamp(seen, kLowOrder, 1.0) : 1;
   return std::max(std::abs(last), std::abs(last) / (std::pow(ratio, order) - 1));
