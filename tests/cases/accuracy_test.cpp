@@ -427,6 +427,23 @@ TEST(Knobs, LevelsOfOneKnobLeaveTheOthersAlone) {
   }
 }
 
+// Every shipped case says what is measured of it, on three ladders at least.
+TEST(Knobs, OfShippedCases) {
+  for (const std::string& name_of_case : shipped_cases()) {
+    const Scene scene = read_scene(io::CaseFile(find_case(name_of_case)));
+    ASSERT_TRUE(scene.accuracy) << name_of_case;
+    size_t ladders = 0;
+    for (const std::string& name : scene.accuracy->ladders) {
+      bool present = false;
+      for (const Interest& interest : scene.accuracy->quantities)
+        present = present || knob(name).absent(scene, part_of(scene, interest)).empty();
+      EXPECT_TRUE(present) << name_of_case << ": " << name;
+      ladders += present;
+    }
+    EXPECT_GE(ladders, 3U) << name_of_case;
+  }
+}
+
 // The other beam model on the same meshes; elements of beams are one number.
 TEST(Knobs, ModelsOfBeams) {
   const std::string name = "slider_crank_heated";
