@@ -28,7 +28,8 @@ set(may_cases geometry io ${fem} optim optim/mmc)
 set(may_tests geometry io ${fem} optim optim/mmc cases)
 
 # Wrapped library (how its headers begin) -> the folder whose .cpp files may include it.
-set(libraries CGAL Boost SuiteSparse VTK NLopt Ipopt toml++ CLI11 GiNaC)
+set(libraries CGAL Boost SuiteSparse VTK NLopt Ipopt toml++ CLI11 GiNaC
+              SUNDIALS)
 set(headers_CGAL "CGAL/")
 set(headers_Boost "boost/")
 set(headers_SuiteSparse "cholmod|umfpack|klu|amd|colamd|SuiteSparse|Eigen/(Cholmod|UmfPack|KLU)")
@@ -38,6 +39,7 @@ set(headers_Ipopt "Ip[A-Z]|coin/")
 set(headers_toml++ "toml")
 set(headers_CLI11 "CLI/")
 set(headers_GiNaC "(ginac|cln)/")
+set(headers_SUNDIALS "(ida|sundials|nvector|sunlinsol|sunmatrix)/")
 set(folder_CGAL geometry)
 set(folder_Boost "geometry|fem/dynamics")
 set(folder_SuiteSparse fem)
@@ -47,6 +49,7 @@ set(folder_Ipopt optim)
 set(folder_toml++ io)
 set(folder_CLI11 cases)
 set(folder_GiNaC io)
+set(folder_SUNDIALS tests)
 
 # The room a file lies in.
 function(room_of path room)
@@ -106,7 +109,8 @@ endforeach()
 foreach(pair io/vtk.h>vtkNew.h fem/solve/newton.cpp>CGAL/Polygon_2.h
              optim/nlopt.h>nlopt.hpp fem/model.h>Eigen/CholmodSupport
              fem/model.cpp>boost/numeric/odeint.hpp
-             io/formula.h>ginac/ginac.h cases/scene.cpp>cln/cln.h)
+             io/formula.h>ginac/ginac.h cases/scene.cpp>cln/cln.h
+             fem/dynamics/integrator.cpp>ida/ida.h)
   string(REPLACE ">" ";" pair ${pair})
   judge_library(${pair} offence)
   if(NOT offence)
