@@ -44,6 +44,9 @@ struct MeshChoice {
 /// @throws Error (input) for combinations the tables of elements, terms and joints do not have.
 Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh = {});
 
+/// Energy of strains of 1e-13, which slopes of size one have by round-off [J].
+double stress_round_off(const Scene& scene);
+
 /// A rigid body with its inertia, its weight (gravity (2) [m/s^2], or empty) and its unit axis.
 void add_rigid_body(const RigidBody& body, fem::Model& model, const VectorXd& gravity);
 

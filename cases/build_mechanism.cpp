@@ -339,6 +339,13 @@ Pose start_pose(const Scene& scene, const Body& body) {
   return pose;
 }
 
+double stress_round_off(const Scene& scene) {
+  double out = 0;
+  for (const Body& body : scene.bodies)
+    out += 1e-26 * body.youngs_modulus * body.length_at(0) * body.width * body.thickness;
+  return out;
+}
+
 Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh) {
   Mechanism out;
   const auto elements = [&](const Body& body) {
@@ -383,6 +390,11 @@ Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh) {
   out.motion.alpha.rho_inf = scene.time.rho_inf;
   out.motion.minimal_coordinates.tolerance = scene.time.explicit_tolerance;
   out.motion.gravity = gravity_of(scene);
+  const auto follows = [](const BodyLoad& l) {
+    return l.type == "pressure" || l.type == "edge_moment";
+  };
+  if (std::none_of(scene.loads.begin(), scene.loads.end(), follows))
+    out.motion.energy_round_off = stress_round_off(scene);
   if (scene.has_heat()) add_heat(scene, out);
   return out;
 }

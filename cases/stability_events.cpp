@@ -172,8 +172,10 @@ Rows long_runs(const Scene& scene) {
     row.overrides.insert(row.overrides.end(),
                          {scheme, "time.step=" + to_text(step), "time.end=" + to_text(1e5 * step)});
   };
+  // Soft bodies buckle and collapse in so long a time: a step that cannot follow that is refused.
   for (const char* scheme : {"time.rho_inf=1", "time.rho_inf=0.9"}) {
     add(scheme, scene.time.step, scheme);
+    out.back().demand = Demand::none;
     add(std::string(scheme) + ", a tenth of the step", 0.1 * scene.time.step, scheme);
   }
   add("energy_momentum", scene.time.step, "time.integrator=energy_momentum");

@@ -39,6 +39,8 @@ class Run {
     const Energies e = model_.energies(x_);
     powers_ = measure(x_);
     balance_.begin(0, e, powers_);
+    if (settings_.balance && settings_.energy_round_off)
+      growth_.begin(e, *settings_.energy_round_off);
     see(e, false);
     if (settings_.adaptive) adapt();
     const double tiny = kTiny * settings_.step;
@@ -49,6 +51,7 @@ class Run {
     result_.final = x_;
     result_.counts = integrator_->counts();
     result_.energy_defect = balance_.relative();
+    result_.energy_gain = growth_.gain();
     return std::move(result_);
   }
 
@@ -193,6 +196,7 @@ class Run {
     drift();
     if (at_stop && integrator_->step_mean()) integrator_->make_consistent(x_);
     see(e, at_stop);
+    if (growth_.is_watched()) watch_energy(e);
     if (at_stop || ++since_watched_ == kWatchEvery) watch(x_);
     if (joint_watch_ && ++since_joints_ == kJointsEvery) watch_joints(x_);
     double& smallest = result_.smallest_step;
@@ -246,6 +250,28 @@ class Run {
     throw Error::numerical(text);
   }
 
+  /// Better to stop than to go on until Newton's method fails: see EnergyGrowth.
+  void watch_energy(const Energies& e) {
+    growth_.see(x_.t, e, powers_, balance_.defect());
+    if (!growth_.is_too_large()) return;
+    const EnergyGain gain = growth_.gain();
+    std::string remedy = "A smaller time.step";
+    if (settings_.integrator == "generalized_alpha") {
+      if (settings_.alpha.rho_inf > kWeaklyDamped && model_.n_constraints() > 0)
+        remedy += ", or a smaller time.rho_inf where joint forces alternate from step to step,";
+      remedy += " helps; time.integrator = \"energy_momentum\" keeps the energy exactly";
+    } else {
+      remedy += " helps";
+    }
+    char text[300];
+    std::snprintf(text, sizeof text,
+                  "motion: nothing drives it, but by t = %.6g s, step %d, the energy has grown by "
+                  "%.3g J, %.0f %% of the largest (by more than 10 %% from t = %.6g s on): the "
+                  "steps do not follow the motion. ",
+                  x_.t, integrator_->counts().steps, balance_.defect(), 100 * gain.part, gain.time);
+    throw Error::numerical(text + remedy + ".");
+  }
+
   void drift() {
     Constraints c;
     model_.constraints(x_, c);
@@ -281,6 +307,7 @@ class Run {
   static constexpr double kTiny = 1e-6;    // of a step
   static constexpr int kWatchEvery = 10;   // steps between looks at the area ratio
   static constexpr int kJointsEvery = 25;  // steps between looks at the joints of rigid bodies
+  static constexpr double kWeaklyDamped = 0.98;  // rho_inf: multipliers may gain more
   static constexpr double kNearlyDependent = 1e6, kSingular = 1e3;  // conditions
   int since_watched_ = 0, since_joints_ = 0;
   bool was_near_ = false;
@@ -293,6 +320,7 @@ class Run {
   State x_;
   Powers powers_;
   EnergyBalance balance_;
+  EnergyGrowth growth_;
   std::optional<ConstraintWatch> joint_watch_;  // only with rigid bodies
   // Only where steps adapt.
   std::optional<StepControl> control_;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fem/dynamics/balance.h"
+#include "fem/dynamics/energy_growth.h"
 #include "fem/dynamics/integrator.h"
 #include "fem/dynamics/start.h"
 #include "fem/dynamics/step_control.h"
@@ -30,6 +31,9 @@ struct MotionSettings {
                               ///< them, adaptive ones are interpolated (DenseOutput)
   std::vector<double> kinks;  ///< times every step must land on: kinks of drives, any order
   bool balance = true;        ///< keep the energy balance (costs a few percent)
+  /// Energies that are round-off [J]. Given, a balanced motion that nothing drives is stopped when
+  /// it gains energy (EnergyGrowth); absent: loads without an energy act, and it may.
+  std::optional<double> energy_round_off;
 };
 
 /// A change of the mesh, and what it did to the state.
@@ -62,6 +66,7 @@ struct MotionResult {
   double smallest_step = 0, largest_step = 0;  ///< of the accepted ones [s]
   std::vector<MeshEvent> events;
   double energy_defect = 0;        ///< largest relative defect of the balance
+  EnergyGain energy_gain;          ///< out of nothing, where nothing drives
   double constraint_drift = 0;     ///< largest |Φ| met [m]
   double velocity_drift = 0;       ///< largest |Φ_q q̇ + Φ_t| met [m/s]
   double smallest_area_ratio = 1;  ///< |r_m × r_n|, every tenth step and at the stops
@@ -74,8 +79,9 @@ struct MotionResult {
 /// changes of the mesh; a change that falls on the end itself is not executed.
 ///
 /// @throws Error (input) for an integrator whose steps cannot adapt, where they should.
-/// @throws Error (numerical) when a step fails or the material collapses; the observer has seen
-///         every step before it. Where rigid bodies are near a singular position, the message of a
+/// @throws Error (numerical) when a step fails, the material collapses, or a motion that nothing
+///         drives has gained more than EnergyGrowth::kLargest; the observer has seen every step
+///         before it. Where rigid bodies are near a singular position, the message of a
 ///         failed step names the joints.
 MotionResult integrate(Model& model, std::span<const Growth> growths,
                        const MotionSettings& settings, const MotionObserver& observe);

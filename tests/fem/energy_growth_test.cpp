@@ -1,0 +1,132 @@
+// Energy out of nothing: what is noticed and what is not, by numbers made up; and a soft plate that
+// falls, stretches and collapses, whose motion is stopped before Newton's method fails.
+#include "fem/dynamics/energy_growth.h"
+
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+#include "fem/dynamics/motion.h"
+#include "tests/support/errors.h"
+#include "tests/support/space_plates.h"
+
+namespace flexmorph::fem {
+namespace {
+
+using testing::error_of;
+using testing::says;
+
+TEST(EnergyGrowth, IsMeasuredAgainstTheLargestEnergy) {
+  EnergyGrowth watch;
+  EXPECT_FALSE(watch.is_watched());
+  watch.begin({0, 0, 50}, 0);  // its own height does not count
+  watch.see(1, {4, 2, 46}, {}, 0.3);
+  EXPECT_DOUBLE_EQ(watch.gain().part, 0.3 / 4);
+  EXPECT_EQ(watch.gain().time, 0);
+  watch.see(2, {1, 1, 40}, {}, -8);  // a loss is none
+  EXPECT_DOUBLE_EQ(watch.gain().part, 0.3 / 4);
+  watch.see(3, {5, 6, 44}, {}, 1.5);  // of the 10 J fallen
+  EXPECT_DOUBLE_EQ(watch.gain().part, 0.15);
+  watch.see(4, {9, 3, 46}, {}, 5);
+  EXPECT_EQ(watch.gain().time, 3);
+  EXPECT_FALSE(watch.is_too_large());
+  watch.see(5, {12, 3, 46}, {}, 7);
+  EXPECT_TRUE(watch.is_too_large());
+}
+
+TEST(EnergyGrowth, LooksAwayWherePowerComesIn) {
+  for (double Powers::*way : {&Powers::drive, &Powers::feed, &Powers::inflow, &Powers::heat}) {
+    EnergyGrowth watch;
+    watch.begin({1, 0, 0}, 0);
+    Powers p;
+    p.*way = 1e-6;
+    watch.see(1, {3, 0, 0}, p, 2);
+    watch.see(2, {9, 0, 0}, {}, 8);
+    EXPECT_FALSE(watch.is_watched());
+    EXPECT_FALSE(watch.is_too_large());
+    EXPECT_EQ(watch.gain().part, 0);
+  }
+  EnergyGrowth damped;  // links are in the balance
+  damped.begin({1, 0, 0}, 0);
+  Powers p;
+  p.links = -1;
+  damped.see(1, {3, 0, 0}, p, 2);
+  EXPECT_TRUE(damped.is_too_large());
+}
+
+TEST(EnergyGrowth, RoundOffIsNoGain) {
+  EnergyGrowth still;  // nothing at all
+  still.begin({}, 0);
+  still.see(1, {}, {}, 0);
+  EXPECT_EQ(still.gain().part, 0);
+  EnergyGrowth hanging;  // at rest, 1 kJ above zero
+  hanging.begin({0, 0, 1e3}, 0);
+  hanging.see(1, {1e-30, 0, 1e3}, {}, 1e-12);
+  EXPECT_LT(hanging.gain().part, 1e-5);
+  EnergyGrowth stiff;  // stresses of 1e-13
+  stiff.begin({}, 1e-15);
+  stiff.see(1, {1e-17, 1e-17, 0}, {}, 2e-17);
+  EXPECT_LT(stiff.gain().part, EnergyGrowth::kNoticed);
+}
+
+/// One element of the plate pendulum of P 4.1, with steps of 1 ms.
+Model pendulum() {
+  testing::SpacePlate p;
+  p.length = p.width = 0.3;
+  p.nx = p.ny = 1;
+  p.section = {0.01, 1e5, 0.3, 7810};
+  p.terms = {"membrane", "bending", "inertia"};
+  Model model = p.model(make_gravity(p.section, testing::vector(0, 0, -9.81)));
+  const auto still = [](double) { return std::vector<Motion>(3); };
+  model.add_joint(make_pin("pin", "plate", {0, 0}, still, {}));
+  return model;
+}
+
+MotionSettings fall(double end) {
+  MotionSettings s;
+  s.end = end;
+  s.step = 1e-3;
+  s.start = Start::rigid;
+  const FrameMotion rest;
+  s.placement = [rest](double) { return std::vector<Placed>{{"plate", rest, 0}}; };
+  s.gravity = testing::vector(0, 0, -9.81);
+  s.alpha.rho_inf = 1;
+  s.energy_round_off = 0;
+  return s;
+}
+
+TEST(EnergyGrowth, StopsAPlateWhoseStepsDoNotFollow) {
+  Model model = pendulum();
+  double last = 0, largest = 0;
+  const std::string text = error_of(Error::Kind::numerical, [&] {
+    integrate(model, {}, fall(20), [&](const MotionStep& step) {
+      last = step.x.t;
+      largest = std::max(largest, step.energies.total());
+    });
+  });
+  std::cout << text << '\n';
+  for (const char* word : {"nothing drives it", "by t = ", "from t = ", "the energy has grown by",
+                           "smaller time.step", "smaller time.rho_inf", "energy_momentum"})
+    EXPECT_TRUE(says(text, word)) << word;
+  // All energy there was, from 14 J kinetic at the bottom; Newton's method would have gone on to
+  // 1e16 J before it failed.
+  EXPECT_LT(largest, 100);
+  EXPECT_GT(last, 1);
+}
+
+// While it still swings as a plate the error is that of the step, and no loss is taken for a gain.
+TEST(EnergyGrowth, LetsGoodMotionsPass) {
+  Model model = pendulum();
+  const EnergyGain early = integrate(model, {}, fall(1), [](const MotionStep&) {}).energy_gain;
+  EXPECT_LT(early.part, 1e-3);
+  EXPECT_EQ(early.time, 0);
+  // Kept exactly through the collapse.
+  MotionSettings settings = fall(3);
+  settings.integrator = "energy_momentum";
+  Model other = pendulum();
+  const EnergyGain kept = integrate(other, {}, settings, [](const MotionStep&) {}).energy_gain;
+  EXPECT_LT(kept.part, 1e-11);
+}
+
+}  // namespace
+}  // namespace flexmorph::fem
