@@ -125,6 +125,8 @@ int parse_and_run(int argc, char** argv) {
   run->add_option("-o,--output", options.directory, "run folder (default runs/<name>)");
   run->add_option("--threads", options.threads, "threads for loads and cells")
       ->check(CLI::Range(1, 256));
+  run->add_flag("--condition", options.condition,
+                "estimates the condition of the last matrices, for run.json");
   run->add_flag("--quiet", options.quiet, "no progress");
   CLI::App* check =
       app.add_subcommand("check", "validates a case; says what it contains and costs");

@@ -206,6 +206,7 @@ MotionOutcome run_motion(const Scene& scene, const MotionWishes& wishes, RunFold
     for (fem::Body& body : mechanism.model.bodies())
       if (body.name == scene.designs[i].body) mechanism.model.set_factors(body, wishes.factors[i]);
   mechanism.motion.balance = wishes.balance;
+  mechanism.motion.condition = wishes.condition;
   if (wishes.loads)
     for (const double t : load_times(scene)) mechanism.motion.stops.push_back(t);
   if (wishes.frames_every > 0)

@@ -14,6 +14,7 @@ struct MotionWishes {
   bool loads = false;                ///< collect equivalent static loads
   double frames_every = 0;           ///< VTK frames [s]; 0: none
   int moments = 0;                   ///< pictures of a mechanism, evenly over the run
+  bool condition = false;            ///< estimate it at the end
   bool balance = true;               ///< keep the energy balance
   std::string table = "motion.csv";  ///< file of the folder: the steps, up to a failure too
   std::function<bool()> go_on;       ///< asked at every step; false ends it with Interrupted

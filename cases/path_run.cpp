@@ -36,7 +36,8 @@ void put_on(const Scene& scene, fem::Model& model, fem::State& x) {
 
 }  // namespace
 
-PathRecord run_path(const Scene& scene, RunFolder& folder, const std::function<bool()>& go_on) {
+PathRecord run_path(const Scene& scene, RunFolder& folder, const std::function<bool()>& go_on,
+                    bool condition) {
   Mechanism mechanism = build_mechanism(scene);
   fem::Model& model = mechanism.model;
   fem::State x =
@@ -79,7 +80,9 @@ PathRecord run_path(const Scene& scene, RunFolder& folder, const std::function<b
   };
   try {
     if (scene.has_heat()) put_on(scene, model, x);
-    out.result = fem::solve_static(model, x, settings_of(*scene.statics), observe);
+    fem::StaticSettings settings = settings_of(*scene.statics);
+    settings.condition = condition;
+    out.result = fem::solve_static(model, x, settings, observe);
   } catch (...) {
     out.measured = measures.take();
     folder.write_path(out);

@@ -88,8 +88,10 @@ std::vector<fem::Factors> final_factors(const std::vector<mmc::BodyProblem>& pro
 int moments_of(const Scene& scene) { return scene.is_mechanism() && scene.output.plots ? 4 : 0; }
 
 /// The judge of a design is the motion with it; beside it the same volume spread evenly.
-void judge_by_motion(const Scene& scene, RunFolder& folder, Progress& progress, RunReport& report) {
+void judge_by_motion(const Scene& scene, bool condition, RunFolder& folder, Progress& progress,
+                     RunReport& report) {
   MotionWishes wishes;
+  wishes.condition = condition;
   wishes.factors = final_factors(report.problems);
   wishes.frames_every = scene.output.vtk ? scene.output.motion_every : 0;
   wishes.moments = moments_of(scene);
@@ -97,6 +99,7 @@ void judge_by_motion(const Scene& scene, RunFolder& folder, Progress& progress, 
   report.motion = run_motion(scene, wishes, folder).record;
   wishes.frames_every = 0;
   wishes.moments = 0;
+  wishes.condition = false;
   wishes.factors = uniform_factors(report.problems);
   wishes.table = "motion_uniform.csv";
   report.uniform_motion = run_motion(scene, wishes, folder).record;
@@ -112,7 +115,8 @@ void judge_by_motion(const Scene& scene, RunFolder& folder, Progress& progress, 
 }
 
 /// The story of a run with designs; fills the report as far as it gets.
-void run_designs(const Scene& scene, RunFolder& folder, Progress& progress, RunReport& report) {
+void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress& progress,
+                 RunReport& report) {
   report.problems = build_problems(scene);
   for (const mmc::BodyProblem& problem : report.problems) folder.write_start(problem);
   const bool analysed = scene.optimizer.max_iterations == 0;  // as they start: one motion says all
@@ -120,6 +124,7 @@ void run_designs(const Scene& scene, RunFolder& folder, Progress& progress, RunR
     MotionWishes wishes;
     wishes.factors.assign(factors.begin(), factors.end());
     wishes.loads = true;
+    wishes.condition = condition && analysed;
     wishes.go_on = go_on;
     MotionOutcome motion = run_motion(scene, wishes, folder);
     progress.say("motion: " + std::to_string(motion.record.result.counts.steps) + " steps, " +
@@ -151,7 +156,7 @@ void run_designs(const Scene& scene, RunFolder& folder, Progress& progress, RunR
   };
   mmc::LoopSettings settings{analysed ? 1 : scene.cycle.max_cycles,
                              scene.cycle.tolerance,
-                             {scene.output.sharp_every, scene.optimizer}};
+                             {scene.output.sharp_every, scene.optimizer, condition}};
   observer.verdict = [&](std::span<const mmc::CycleVerdict> verdicts) {
     report.verdicts.assign(verdicts.begin(), verdicts.end());
     folder.write_cycles(verdicts);
@@ -169,11 +174,12 @@ void run_designs(const Scene& scene, RunFolder& folder, Progress& progress, RunR
     for (size_t i = 0; i < best.size(); ++i) folder.write_design(report.problems[i], best[i]);
   }
 
-  if (!analysed) judge_by_motion(scene, folder, progress, report);
+  if (!analysed) judge_by_motion(scene, condition, folder, progress, report);
 }
 
 /// The story of a plate at rest.
-void run_static(const Scene& scene, RunFolder& folder, Progress& progress, RunReport& report) {
+void run_static(const Scene& scene, bool condition, RunFolder& folder, Progress& progress,
+                RunReport& report) {
   report.problems = build_problems(scene);
   for (const mmc::BodyProblem& problem : report.problems) folder.write_start(problem);
   mmc::BodyProblem& problem = report.problems.front();
@@ -185,7 +191,7 @@ void run_static(const Scene& scene, RunFolder& folder, Progress& progress, RunRe
     return go_on();
   };
   const mmc::BodyOutcome outcome = mmc::design_body(
-      problem, *loads, 1, {scene.output.sharp_every, scene.optimizer}, observe, going);
+      problem, *loads, 1, {scene.output.sharp_every, scene.optimizer, condition}, observe, going);
   report.cycles = 1;
   report.outcomes = {outcome};
   folder.write_static_loads(*scene.domain, outcome);
@@ -194,11 +200,12 @@ void run_static(const Scene& scene, RunFolder& folder, Progress& progress, RunRe
   if (interrupted) throw Interrupted();
 }
 
-void run_scene(const Scene& scene, RunFolder& folder, Progress& progress, RunReport& report) {
-  if (scene.domain) return run_static(scene, folder, progress, report);
-  if (!scene.designs.empty()) return run_designs(scene, folder, progress, report);
+void run_scene(const Scene& scene, bool condition, RunFolder& folder, Progress& progress,
+               RunReport& report) {
+  if (scene.domain) return run_static(scene, condition, folder, progress, report);
+  if (!scene.designs.empty()) return run_designs(scene, condition, folder, progress, report);
   if (scene.statics) {
-    report.path = run_path(scene, folder, go_on);
+    report.path = run_path(scene, folder, go_on, condition);
     const fem::StaticResult& result = report.path->result;
     progress.say("statics: load factor " + io::to_text(result.factor, 5) + " after " +
                  std::to_string(result.steps) + " steps, " + std::to_string(result.iterations) +
@@ -208,6 +215,7 @@ void run_scene(const Scene& scene, RunFolder& folder, Progress& progress, RunRep
   MotionWishes wishes;
   wishes.frames_every = scene.output.vtk ? scene.output.motion_every : 0;
   wishes.moments = moments_of(scene);
+  wishes.condition = condition;
   wishes.go_on = go_on;
   report.motion = run_motion(scene, wishes, folder).record;
   const fem::MotionResult& result = report.motion->result;
@@ -285,7 +293,7 @@ int run_case(const RunOptions& options) {
   };
   close("running", "");
   try {
-    run_scene(scene, folder, progress, report);
+    run_scene(scene, options.condition, folder, progress, report);
   } catch (const Interrupted&) {
     close("interrupted", "");
     progress.say("interrupted: what was computed is in " + directory);

@@ -13,6 +13,7 @@ struct RunOptions {
   std::vector<std::string> overrides;  ///< KEY=VALUE
   int threads = 1;
   bool quiet = false;
+  bool condition = false;  ///< estimate the conditions of matrices at the end, for run.json
 };
 
 /// Path of a case file: the path itself, or that of a shipped case of this name.

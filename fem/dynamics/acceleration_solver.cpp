@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fem/solve/condition.h"
+
 namespace flexmorph::fem {
 namespace {
 
@@ -122,6 +124,11 @@ void AccelerationSolver::factorize(const State& x, const Constraints& c) {
     large_.factorize(kkt_);
   is_factored_ = true;
   ++factorizations_;
+}
+
+std::optional<double> AccelerationSolver::condition() const {
+  if (factorizations_ == 0) return {};
+  return condition_estimate(kkt_);
 }
 
 void AccelerationSolver::solve(const VectorXd& force, const VectorXd& constraint, VectorXd& a,

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "fem/model.h"
 #include "fem/solve/klu_solver.h"
 #include "fem/solve/linear_solver.h"
@@ -27,6 +29,8 @@ class AccelerationSolver {
   /// @param force, constraint  f (n) and γ (m)
   void solve(const VectorXd& force, const VectorXd& constraint, VectorXd& a, VectorXd& lambda);
   int factorizations() const { return factorizations_; }
+  /// condition_estimate() of the matrix of the last factorize(); none before.
+  std::optional<double> condition() const;
 
  private:
   void number(const State& x, const Constraints& c);

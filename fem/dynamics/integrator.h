@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "fem/model.h"
@@ -88,6 +89,9 @@ class Integrator {
   virtual const State* step_mean() const { return nullptr; }
 
   virtual const StepCounts& counts() const = 0;
+  /// condition_estimate() of the matrix that was factored last; none before there is one. Costs a
+  /// factorization.
+  virtual std::optional<double> condition() const = 0;
 };
 
 /// "generalized_alpha", "energy_momentum" or "minimal_coordinates". The model must outlive the

@@ -315,6 +315,9 @@ MinimalCoordinates::MinimalCoordinates(Model& model, const MinimalCoordinatesSet
 MinimalCoordinates::~MinimalCoordinates() = default;
 
 const StepCounts& MinimalCoordinates::counts() const { return impl_->counts; }
+std::optional<double> MinimalCoordinates::condition() const {
+  return impl_->accelerations.condition();
+}
 
 void MinimalCoordinates::make_consistent(State& x) {
   Impl& s = *impl_;

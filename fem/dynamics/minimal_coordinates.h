@@ -38,6 +38,7 @@ class MinimalCoordinates final : public Integrator {
   /// vibration.
   void advance(State& x, double t_end, const std::function<void(const State&)>& accepted) override;
   const StepCounts& counts() const override;
+  std::optional<double> condition() const override;
 
  private:
   struct Impl;

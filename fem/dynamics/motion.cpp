@@ -33,7 +33,9 @@ class Run {
   }
 
   MotionResult go() {
-    x_ = start_state(model_, growths_, 0, settings_.start, settings_.placement);
+    // What drives a motion need not be defined behind its end.
+    x_ = start_state(model_, growths_, 0, settings_.start, settings_.placement,
+                     std::min(1e-4, 0.5 * settings_.end));
     integrator_->project_velocity(x_);
     integrator_->make_consistent(x_);
     const Energies e = model_.energies(x_);
@@ -52,6 +54,7 @@ class Run {
     result_.counts = integrator_->counts();
     result_.energy_defect = balance_.relative();
     result_.energy_gain = growth_.gain();
+    if (settings_.condition) result_.condition = integrator_->condition();
     return std::move(result_);
   }
 
@@ -242,11 +245,13 @@ class Run {
     const double ratio = model_.smallest_area_ratio(x);
     result_.smallest_area_ratio = std::min(result_.smallest_area_ratio, ratio);
     if (ratio > 0) return;
-    char text[200];
-    std::snprintf(text, sizeof text,
-                  "motion: the material has collapsed at t = %.6g s, step %d: smallest area ratio "
-                  "|r_m x r_n| = %.2e. It is too soft for its loads.",
-                  x.t, integrator_->counts().steps, ratio);
+    char text[300];
+    std::snprintf(
+        text, sizeof text,
+        "motion: the material has collapsed at t = %.6g s, step %d: smallest area ratio "
+        "|r_m x r_n| = %.2e. It is too soft for its loads or too hot, or time.step is too "
+        "long for what changes in it: then a smaller one helps.",
+        x.t, integrator_->counts().steps, ratio);
     throw Error::numerical(text);
   }
 

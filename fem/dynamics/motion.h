@@ -32,8 +32,9 @@ struct MotionSettings {
   std::vector<double> kinks;  ///< times every step must land on: kinks of drives, any order
   bool balance = true;        ///< keep the energy balance (costs a few percent)
   /// Energies that are round-off [J]. Given, a balanced motion that nothing drives is stopped when
-  /// it gains energy (EnergyGrowth); absent: loads without an energy act, and it may.
+  /// it gains energy (EnergyGrowth); absent where it may: loads without an energy, sudden drives.
   std::optional<double> energy_round_off;
+  bool condition = false;  ///< estimate the condition at the end (costs a factorization)
 };
 
 /// A change of the mesh, and what it did to the state.
@@ -65,10 +66,12 @@ struct MotionResult {
   StepCounts counts;
   double smallest_step = 0, largest_step = 0;  ///< of the accepted ones [s]
   std::vector<MeshEvent> events;
-  double energy_defect = 0;        ///< largest relative defect of the balance
-  EnergyGain energy_gain;          ///< out of nothing, where nothing drives
-  double constraint_drift = 0;     ///< largest |Φ| met [m]
-  double velocity_drift = 0;       ///< largest |Φ_q q̇ + Φ_t| met [m/s]
+  double energy_defect = 0;     ///< largest relative defect of the balance
+  EnergyGain energy_gain;       ///< out of nothing, where nothing drives
+  double constraint_drift = 0;  ///< largest |Φ| met [m]
+  double velocity_drift = 0;    ///< largest |Φ_q q̇ + Φ_t| met [m/s]
+  /// Of the matrix that was factored last, where it was asked for: Integrator::condition().
+  std::optional<double> condition;
   double smallest_area_ratio = 1;  ///< |r_m × r_n|, every tenth step and at the stops
   /// With rigid bodies: times at which the joints were nearly dependent (condition above 1e6), seen
   /// at every 25th step; of looks in a row the worst.

@@ -124,7 +124,7 @@ void move_lines(Model& model, double t) {
 
 /// Static equilibrium under centrifugal forces: q̈ = -ω² (q - origin), lines frozen. Its rate as
 /// the body grows comes from equilibria a little earlier and later.
-void stretch_in_hubs(Model& model, std::span<const Growth> growths, State& x) {
+void stretch_in_hubs(Model& model, std::span<const Growth> growths, double delta, State& x) {
   const double t = x.t;
   std::vector<std::unique_ptr<LineGrid>> moving;
   for (const Growth& g : growths) moving.push_back(grid_of(model.body(g.body)).copy());
@@ -151,7 +151,6 @@ void stretch_in_hubs(Model& model, std::span<const Growth> growths, State& x) {
     solve_rotating_equilibrium(model, spin, center, s);
     return s.q;
   };
-  const double delta = 1e-4;
   const VectorXd q = equilibrium(t), later = equilibrium(t + delta),
                  earlier = equilibrium(t - delta);
   restore();
@@ -175,7 +174,7 @@ void stretch_in_hubs(Model& model, std::span<const Growth> growths, State& x) {
 /// Static equilibrium under the inertia forces of the rigid motion; its rate from equilibria a
 /// little later (what drives a mechanism need not be defined before its start).
 void stretch_mechanism(Model& model, std::span<const Growth> growths, const Placement& placement,
-                       State& x) {
+                       double delta, State& x) {
   const auto strain = [&](double t) {
     move_lines(model, t);
     State s = rigid_state(model, growths, placement, t);
@@ -183,7 +182,7 @@ void stretch_mechanism(Model& model, std::span<const Growth> growths, const Plac
     solve_carried_equilibrium(model, s);
     return VectorXd(s.q - rigid);
   };
-  const double t = x.t, delta = 1e-4;
+  const double t = x.t;
   const VectorXd later = strain(t + delta), last = strain(t + 2 * delta), now = strain(t);
   x.q += now;
   x.v += (4 * later - 3 * now - last) / (2 * delta);
@@ -192,7 +191,7 @@ void stretch_mechanism(Model& model, std::span<const Growth> growths, const Plac
 }  // namespace
 
 State start_state(Model& model, std::span<const Growth> growths, double t, Start start,
-                  const Placement& placement) {
+                  const Placement& placement, double delta) {
   move_lines(model, t);
   State x = rigid_state(model, growths, placement, t);
   if (start == Start::rigid) return x;
@@ -204,9 +203,9 @@ State start_state(Model& model, std::span<const Growth> growths, double t, Start
       !placement && std::all_of(growths.begin(), growths.end(),
                                 [](const Growth& g) { return g.hub.body().empty(); });
   if (in_hubs)
-    stretch_in_hubs(model, growths, x);
+    stretch_in_hubs(model, growths, delta, x);
   else
-    stretch_mechanism(model, growths, placement, x);
+    stretch_mechanism(model, growths, placement, delta, x);
   return x;
 }
 

@@ -27,9 +27,11 @@ using Placement = std::function<std::vector<Placed>(double t)>;
 /// Integrator
 /// ::make_consistent() finds accelerations and multipliers.
 ///
-/// @param placement  prestretched: asked for a few times in [t, t + 2e-4 s]
+/// @param placement  prestretched: asked for a few times in [t, t + 2 δ]
+/// @param delta  δ [s] of the difference that gives the rate of the prestretched shape; lines move
+///        to t ± 2 δ for it, so that motions shorter than that need a smaller one
 /// @throws Error (numerical) when the static equilibrium is not found.
 State start_state(Model& model, std::span<const Growth> growths, double t, Start start,
-                  const Placement& placement = {});
+                  const Placement& placement = {}, double delta = 1e-4);
 
 }  // namespace flexmorph::fem

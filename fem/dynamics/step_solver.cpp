@@ -1,9 +1,11 @@
 #include "fem/dynamics/step_solver.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 
+#include "fem/solve/condition.h"
 #include "fem/solve/scaled_constraints.h"
 
 namespace flexmorph::fem {
@@ -37,6 +39,11 @@ void StepSolver::factorize() {
   }
   solver_.factorize(kkt_);
   ++counts_.factorizations;
+}
+
+std::optional<double> StepSolver::condition() const {
+  if (counts_.factorizations == 0) return {};
+  return condition_estimate(kkt_);
 }
 
 void StepSolver::factorize_here(double h) {
@@ -102,9 +109,7 @@ TriedStep StepSolver::solve_step(State& x, double h, double allowed) {
                           counts_.newton - before};
       // An error that is not a number is too large.
       if (!(out.error <= allowed)) return out;
-      finish(x);
-      if (model_.has_free_lines()) model_.prepare(x);
-      return out;
+      if (finish_sound(x)) return out;
     }
   } catch (const Error& error) {
     if (error.kind() != Error::Kind::numerical) throw;
@@ -112,6 +117,18 @@ TriedStep StepSolver::solve_step(State& x, double h, double allowed) {
   }
   factored_h_ = 0;
   return {};
+}
+
+bool StepSolver::finish_sound(State& x) {
+  constexpr double kLarge = 1e-3;  // a tenth of an element, of a hundred in a row
+  const bool look = largest_correction_ > kLarge;
+  if (look) before_ = x;
+  finish(x);
+  if (model_.has_free_lines()) model_.prepare(x);
+  if (!look || model_.smallest_area_ratio(x) > 0) return true;
+  history_ += "converged with material turned inside out";
+  x = before_;
+  return false;
 }
 
 double StepSolver::local_error(const State&, double) {
@@ -139,6 +156,7 @@ bool StepSolver::newton(double h) {
   constexpr double kRoundOff = 1e-14, kFreshRoundOff = 1e-12;
   double last = 0;
   bool fresh = false;
+  largest_correction_ = 0;
   for (int iteration = 1; iteration <= settings_.max_iterations; ++iteration) {
     residual(force_, constraint_);
     if (std::abs(factored_h_ / h - 1) > 1e-6 || analysed_version_ != model_.pattern_version()) {
@@ -150,6 +168,7 @@ bool StepSolver::newton(double h) {
     solve_kept(force_, constraint_, dq_, mu_);
     const double r = right_.lpNorm<Eigen::Infinity>();
     const double correction = solution_.head(model_.n_dofs()).lpNorm<Eigen::Infinity>() / size_;
+    largest_correction_ = std::max(largest_correction_, correction);
     ++counts_.newton;
     char text[80];
     std::snprintf(text, sizeof text, "%d: |r| %.1e, |dq| %.1e; ", iteration, r, correction);

@@ -18,6 +18,7 @@ class StepSolver : public Integrator {
   void advance(State& x, double t_end, const std::function<void(const State&)>& accepted) final;
   TriedStep try_step(State& x, double h, double allowed) final;
   const StepCounts& counts() const final { return counts_; }
+  std::optional<double> condition() const final;
 
  protected:
   /// @throws Error (input) for settings that make no sense.
@@ -66,6 +67,10 @@ class StepSolver : public Integrator {
   /// it is not looked at).
   TriedStep solve_step(State& x, double h, double allowed);
   bool newton(double h);
+  /// finish() of a converged step; false, and x is what it was, where Newton's method has gone
+  /// astray: to a solution with material turned inside out, which only steps find that need large
+  /// corrections. Others are not looked at.
+  bool finish_sound(State& x);
   [[noreturn]] void give_up(const State& x, double h, int failures) const;
   void solve_mass(const State& x, const VectorXd& force, const VectorXd& constraint);
   void set_scales();
@@ -78,8 +83,10 @@ class StepSolver : public Integrator {
   UnsymmetricSolver solver_;
   SparseMatrix kkt_;
   int analysed_version_ = -1;
-  double factored_h_ = 0;  // step the kept factorization belongs to; 0: none
-  VectorXd scales_;        // displacement per unit of each unknown
+  double largest_correction_ = 0;  // of the last newton(), relative to size_
+  State before_;                   // a step that is looked at
+  double factored_h_ = 0;          // step the kept factorization belongs to; 0: none
+  VectorXd scales_;                // displacement per unit of each unknown
   double size_ = 1;
   int scaled_version_ = -1;
   int failures_ = 0;  // of try_step() in a row

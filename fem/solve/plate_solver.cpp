@@ -152,6 +152,8 @@ int PlateSolver::row(int node, int component) const {
   return impl_->rows[2 * static_cast<std::size_t>(node) + static_cast<std::size_t>(component)];
 }
 
+double PlateSolver::condition() const { return impl_->factor->condition(); }
+
 void PlateSolver::factorize(const VectorXd& stiffness_factor) {
   Impl& m = *impl_;
   if (stiffness_factor.size() != m.grid.n_cells() || !stiffness_factor.allFinite())

@@ -41,6 +41,8 @@ class PlateSolver {
   /// K(stiffness factors (n_cells)), factored. Cells outside of the domain are not read.
   /// @throws Error (numerical) when K is not positive definite or a factor is not finite.
   void factorize(const VectorXd& stiffness_factor);
+  /// condition_estimate() of K of the last factorize().
+  double condition() const;
 
   /// Solves in place: (n_loads x n_unknowns).
   void solve(MatrixXd& loads) const;

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "fem/solve/condition.h"
 #include "fem/solve/linear_solver.h"
 #include "fem/solve/statics.h"
 
@@ -38,6 +39,7 @@ class Path {
     else
       follow_arc();
     model_.scale_loads(factor_);
+    if (settings_.condition) result_.condition = condition_estimate(kkt_);
     return result_;
   }
 

@@ -211,6 +211,8 @@ const Grid& StaticSolver::grid() const { return impl_->grid; }
 int StaticSolver::n_unknowns() const { return impl_->n_unknowns(); }
 int StaticSolver::row(int i, int j) const { return impl_->row(i, j); }
 
+double StaticSolver::condition() const { return impl_->factor->condition(); }
+
 void StaticSolver::factorize(const VectorXd& stiffness_factor) {
   Impl& m = *impl_;
   if (stiffness_factor.size() != m.grid.n_cells() || !stiffness_factor.allFinite()) {

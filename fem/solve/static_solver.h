@@ -42,6 +42,8 @@ class StaticSolver {
   /// K(stiffness factors (n_cells)), factored. Cells behind column first_root are not read.
   /// @throws Error (numerical) when K is not positive definite or a factor is not finite.
   void factorize(const VectorXd& stiffness_factor);
+  /// condition_estimate() of K of the last factorize().
+  double condition() const;
 
   /// Solves in place. `loads` is (n_loads x n_unknowns): column = unknown, so that the values of
   /// all loads at one unknown lie next to each other. Load l is clamped at root_columns[l]; its

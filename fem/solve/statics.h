@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "fem/model.h"
 
@@ -54,6 +55,7 @@ struct StaticSettings {
   int max_steps = 1000;
   /// Largest correction of the last iteration, in parts of the model's size, as a displacement.
   double tolerance = 1e-10;
+  bool condition = false;  ///< estimate the condition at the end (costs a factorization)
 };
 
 /// An equilibrium on the path.
@@ -69,6 +71,8 @@ using StaticObserver = std::function<bool(const StaticStep&)>;
 struct StaticResult {
   double factor = 0;  ///< of the last equilibrium
   int steps = 0, iterations = 0, rejected = 0;
+  /// condition_estimate() of the tangent at the end, where it was asked for.
+  std::optional<double> condition;
   bool completed = false;  ///< reached settings.to (and was not stopped by the observer)
 };
 

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "fem/solve/condition.h"
 #include "fem/solve/supernodes.h"
 
 namespace flexmorph::fem {
@@ -210,6 +211,29 @@ SupernodalFactor::SupernodalFactor(SupernodalFactor&&) noexcept = default;
 
 int SupernodalFactor::size() const { return static_cast<int>(impl_->starts.size()) - 1; }
 std::span<double> SupernodalFactor::values() { return impl_->values; }
+
+double SupernodalFactor::condition() const {
+  const Impl& m = *impl_;
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(2 * m.values.size());
+  for (int s = 0; s < m.n_supernodes(); ++s) {
+    const Impl::Supernode block = m.supernode(s);
+    const std::size_t begin = m.blocks.offset[static_cast<std::size_t>(s)];
+    for (int c = block.first; c < block.last; ++c)
+      for (int k = m.starts[static_cast<std::size_t>(c)];
+           k < m.starts[static_cast<std::size_t>(c) + 1]; ++k) {
+        const auto at = static_cast<std::size_t>(k);
+        const auto row =
+            static_cast<int>((m.blocks.place[at] - begin) % static_cast<std::size_t>(block.height));
+        const int i = row < block.width() ? block.first + row : block.below[row - block.width()];
+        entries.emplace_back(i, c, m.values[at]);
+        if (i != c) entries.emplace_back(c, i, m.values[at]);
+      }
+  }
+  SparseMatrix full(size(), size());
+  full.setFromTriplets(entries.begin(), entries.end());
+  return condition_estimate(std::move(full));
+}
 
 /// Entries of K in the columns of a block.
 void SupernodalFactor::Impl::fill_block(int s, double* block) {

@@ -33,6 +33,9 @@ class SupernodalFactor {
   /// @returns the column at which K is found not to be positive definite or not finite, or -1.
   int factorize();
 
+  /// condition_estimate() of K as its values are now.
+  double condition() const;
+
   /// Ys L_sᵀ = Xs of the leading blocks s: the first `active[l]` entries of load l become L⁻¹ x,
   /// the others are not meaningful. `active` (n_loads) is monotone, in either direction.
   void forward(MatrixXd& x, std::span<const int> active) const { forward(x, active, size()); }

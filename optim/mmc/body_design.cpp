@@ -319,6 +319,7 @@ class Designer {
     const VectorXd each = p.loads.individual(sharp.stiffness, sharp.mass);
     out.load_compliances.assign(each.data(), each.data() + each.size());
     out.worst_compliance = each.maxCoeff();
+    if (settings_.condition) out.condition = p.loads.condition();
     // The paper's comparison: the volume that was allowed (or came out), spread evenly.
     const bool given = p.problem.goal.minimize == Goal::Minimize::compliance;
     const double volume = given ? p.problem.goal.max_volume : out.sharp.volume;

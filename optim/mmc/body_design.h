@@ -40,7 +40,8 @@ struct BodyOutcome {
   double kkt = 0, change = 0;
   int iterations = 0, evaluations = 0, n_loads = 0, n_right_hand_sides = 0;
   int factorizations = 0;
-  std::string stop;  ///< why the optimizer stopped
+  std::optional<double> condition;  ///< of the stiffness of the sharp design, when asked for
+  std::string stop;                 ///< why the optimizer stopped
   std::vector<ComponentEvent> events;
   std::optional<CleanUp> clean_up;       ///< when a smallest feature was wanted
   std::vector<double> load_compliances;  ///< F_i . u_i of the sharp design
@@ -51,6 +52,7 @@ struct BodyOutcome {
 struct DesignSettings {
   int sharp_every = 25;       ///< iterations between sharp evaluations; 0: only at the end
   optim::Settings optimizer;  ///< max_iterations 0: designs are analysed, at their last band
+  bool condition = false;     ///< estimate it at the end (costs a factorization)
 };
 
 /// Looks on; false stops the run after the current iteration.

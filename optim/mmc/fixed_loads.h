@@ -49,6 +49,7 @@ class FixedLoads final : public LoadResponse {
     return static_cast<int>(solved_.rows()) + (held_ ? held_->n_lines() : 0);
   }
   int factorizations() const override { return factorizations_; }
+  double condition() const override { return solver_.condition(); }
   Seconds seconds() const override { return seconds_; }
 
  private:

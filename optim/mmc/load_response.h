@@ -45,7 +45,9 @@ class LoadResponse {
   virtual int n_loads() const = 0;
   virtual int n_right_hand_sides() const = 0;  ///< after compression
   virtual int factorizations() const = 0;      ///< since construction
-  struct Seconds {                             ///< CPU seconds of the last evaluation
+  /// Estimated condition of K of the last factorization, see fem::condition_estimate().
+  virtual double condition() const = 0;
+  struct Seconds {  ///< CPU seconds of the last evaluation
     double factor = 0, solve = 0, sensitivity = 0;
   };
   virtual Seconds seconds() const = 0;

@@ -401,6 +401,7 @@ int Compliance::n_right_hand_sides() const {
   return static_cast<int>(impl_->solved().size()) + (impl_->held ? impl_->held->n_lines() : 0);
 }
 
+double Compliance::condition() const { return impl_->solver.condition(); }
 LoadResponse::Seconds Compliance::seconds() const { return impl_->seconds; }
 
 }  // namespace flexmorph::mmc

@@ -62,6 +62,7 @@ class Compliance final : public LoadResponse {
   int n_loads() const override;
   int n_right_hand_sides() const override;
   int factorizations() const override;
+  double condition() const override;
   Seconds seconds() const override;
 
  private:

@@ -1,0 +1,45 @@
+#include "fem/solve/condition.h"
+
+#include <cmath>
+#include <limits>
+
+#include "fem/solve/klu_solver.h"
+
+namespace flexmorph::fem {
+namespace {
+
+/// The diagonal of D. Rows without an entry on the diagonal take the length that the others leave
+/// them.
+VectorXd unit_scales(const SparseMatrix& a) {
+  VectorXd out = a.diagonal().cwiseAbs(), squares = VectorXd::Zero(a.rows());
+  for (Eigen::Index i = 0; i < out.size(); ++i) out[i] = out[i] > 0 ? 1 / std::sqrt(out[i]) : 0;
+  for (int column = 0; column < a.outerSize(); ++column)
+    for (SparseMatrix::InnerIterator it(a, column); it; ++it)
+      squares[it.row()] += std::pow(it.value() * out[column], 2);
+  for (Eigen::Index i = 0; i < out.size(); ++i)
+    if (out[i] == 0) out[i] = squares[i] > 0 ? 1 / std::sqrt(squares[i]) : 1;
+  return out;
+}
+
+}  // namespace
+
+double condition_estimate(SparseMatrix a) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  if (a.rows() == 0) return 1;
+  a.makeCompressed();
+  const VectorXd scales = unit_scales(a);
+  for (int column = 0; column < a.outerSize(); ++column)
+    for (SparseMatrix::InnerIterator it(a, column); it; ++it)
+      it.valueRef() *= scales[it.row()] * scales[column];
+  try {
+    KluSolver solver;
+    solver.analyze(a);
+    solver.factorize(a);
+    const double out = solver.condition(a);
+    return out >= 1 ? out : kNone;  // not a number is no condition
+  } catch (const Error&) {
+    return kNone;
+  }
+}
+
+}  // namespace flexmorph::fem
