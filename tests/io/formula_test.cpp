@@ -190,6 +190,15 @@ TEST(Formula, SaysWhatIsWrongAndWhere) {
     EXPECT_EQ(complaint(text), "");
 }
 
+// A path that sets off from rest: in 1e-5 s it moves by less than the last digit of where it is,
+// and its rate is round-off. A corner in as short a time is still one.
+TEST(Formula, IsCheckedOverShortTimes) {
+  const Formula path("0.5*cos(pi - (-2*pi*(t - 1/2)^3 + 3/2*pi*t - pi/4))");
+  for (const double end : {1e-9, 1e-7, 1e-5, 1e-3, 1.0}) EXPECT_NO_THROW(path.check(end)) << end;
+  EXPECT_THROW(Formula("abs(t - 1/300000)").check(1e-5), Error);
+  EXPECT_THROW(Formula("1 + abs(t - 1/300000)").check(1e-5), Error);
+}
+
 TEST(Formula, ConstantsHaveNamesOfTheirOwn) {
   for (const char* name : {"t", "pi", "I", "Euler", "sin", "atan2", "", "2a", "_a", "a-b", "é"})
     EXPECT_NE(Formula::refusal_of_name(name), "") << name;
