@@ -45,11 +45,15 @@ class Check {
     fs::create_directories(options_.directory, error);
     if (error) throw Error::input("folder '" + options_.directory + "': " + error.message());
     prepare();
+    for (const Job& job : jobs_) judge_row(job);
     const bool whole = run();
-    judge_all();
-    write();
+    // Once more: a row may have ended before the one it is measured against.
+    for (const Job& job : jobs_) judge_row(job);
+    const std::vector<StabilityRow> ran = write();
+    std::fputs(stability_text(ran, !options_.quiet).c_str(), stdout);
+    std::printf("%s.csv, .md, .svg\n", stem().c_str());
     if (!whole) return 4;
-    const auto wrong = std::count_if(rows_.begin(), rows_.end(), [](const StabilityRow& row) {
+    const auto wrong = std::count_if(ran.begin(), ran.end(), [](const StabilityRow& row) {
       return row.judgement.verdict == Verdict::wrong;
     });
     return wrong > 0 ? 3 : 0;
@@ -160,7 +164,7 @@ class Check {
       // Only what an earlier run of this row has left.
       if (fs::exists(job.stem + "/run.json")) fs::remove_all(job.stem);
       Child& child = children.emplace_back();
-      child.words = {"run", job.path, "-o", job.stem, "--quiet", "--threads", "1"};
+      child.words = {"run", job.path, "-o", job.stem, "--quiet", "--threads", "1", "--condition"};
       for (const std::string& change : job.overrides) {
         child.words.emplace_back("--set");
         child.words.push_back(change);
@@ -180,40 +184,45 @@ class Check {
       out.set("over_time", ending.over_time).set("seconds_cpu", ending.seconds);
       out.set("key", of[i]->key);
       io::write_file(of[i]->stem + ".json", out.text());
+      judge_row(*of[i]);
+      if (++done % kBatch == 0) write();
       if (options_.quiet) return;
-      std::printf("%zu/%zu %s %s, %s: exit %d, %s s\n", ++done, children.size(),
+      std::printf("%zu/%zu %s %s, %s: exit %d, %s s\n", done, children.size(),
                   row.case_name.c_str(), row.suite.c_str(), row.perturbation.parameter.c_str(),
                   ending.code, io::to_text(ending.seconds, 2).c_str());
       std::fflush(stdout);
     });
   }
 
-  void judge_all() {
-    for (const Job& job : jobs_) {
-      StabilityRow& row = rows_[job.row];
-      if (!row.ran) continue;
-      Evidence e;
-      e.folder = job.stem;
-      e.words = text_of(job.stem + ".log");
-      e.ending = row.ending;
-      e.row = &row.perturbation;
-      e.bounds = job.bounds;
-      e.reference = job.reference;
-      e.largest_volume = job.largest_volume;
-      row.judgement = judge(e);
-    }
-    std::erase_if(rows_, [](const StabilityRow& row) { return !row.ran; });
+  void judge_row(const Job& job) {
+    StabilityRow& row = rows_[job.row];
+    if (!row.ran) return;
+    Evidence e;
+    e.folder = job.stem;
+    e.words = text_of(job.stem + ".log");
+    e.ending = row.ending;
+    e.row = &row.perturbation;
+    e.bounds = job.bounds;
+    e.reference = job.reference;
+    e.largest_volume = job.largest_volume;
+    row.judgement = judge(e);
   }
 
-  void write() const {
-    const std::string stem = options_.directory + "/stability";
-    write_stability_csv(rows_, stem + ".csv");
-    io::write_file(stem + ".md", stability_markdown(rows_));
-    io::write_file(stem + ".svg", stability_svg(rows_));
-    std::fputs(stability_text(rows_, !options_.quiet).c_str(), stdout);
-    std::printf("%s.csv, .md, .svg\n", stem.c_str());
+  std::string stem() const { return options_.directory + "/stability"; }
+
+  /// The tables as far as they are known. @return the rows in them
+  std::vector<StabilityRow> write() const {
+    std::vector<StabilityRow> ran;
+    std::copy_if(rows_.begin(), rows_.end(), std::back_inserter(ran),
+                 [](const StabilityRow& row) { return row.ran; });
+    write_stability_csv(ran, stem() + ".csv.tmp");
+    fs::rename(stem() + ".csv.tmp", stem() + ".csv");
+    io::write_file(stem() + ".md", stability_markdown(ran));
+    io::write_file(stem() + ".svg", stability_svg(ran));
+    return ran;
   }
 
+  static constexpr size_t kBatch = 10;  // rows between two writes of the tables
   StabilityOptions options_;
   std::vector<const Suite*> wanted_;
   std::vector<Job> jobs_;

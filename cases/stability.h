@@ -27,8 +27,9 @@ struct StabilityRow {
 };
 
 /// Runs the suites on cases, every row in a process of its own with limits of time and memory, and
-/// judges what became of them. Leaves stability.csv, .md and .svg in the folder, with a run folder
-/// per row below it; rows that ended before, with the very same case, are judged again from what
+/// judges what became of them. Leaves stability.csv, .md and .svg in the folder, written anew after
+/// every tenth row, so that an interrupted check keeps what it has, with a run folder per row below
+/// it; rows that ended before, with the very same case, are judged again from what
 /// they left but not run again.
 /// @return exit code: 0, 3 when a row is WRONG, 4 when interrupted
 /// @throws Error (input) for a case or suite that is not there, or a case that is refused as it is.

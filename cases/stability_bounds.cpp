@@ -35,6 +35,9 @@ void offer_body(const Scene& scene, const Body& body, Bounds& out) {
   const bool sudden = body.heat && (body.heat->profile.empty() || body.heat->profile == "step" ||
                                     body.heat->profile == "linear");
   const bool falls = scene.gravity && !carried;
+  // A smooth change is one swing of its acceleration.
+  if (body.heat && !sudden)
+    offer(2 * std::numbers::pi / body.heat->settle, "the warming of '" + body.name + "'", out);
   if (scene.time.start == Start::rigid || sudden || falls || held == 0)
     offer(0.5 * std::numbers::pi * wave / length, "axial vibration of '" + body.name + "'", out);
 }
@@ -86,6 +89,8 @@ Bounds bounds_of(const Scene& scene) {
   for (const Hub& hub : scene.hubs)
     offer(std::max(std::abs(hub.angular_velocity), largest_rate(scene, hub.turn)),
           "the turning of '" + hub.name + "'", out);
+  if (scene.time.start == Start::hub_at_rest)
+    offer(2 * std::numbers::pi / scene.time.spin_up, "the spin-up", out);
   for (const Joint& joint : scene.joints)
     if (joint.type == "angle_drive")
       for (const Law& law : joint.laws)
@@ -99,7 +104,7 @@ double Bounds::position() const { return kPositionDrift * length; }
 double Bounds::velocity(double kinetic) const {
   const double speed = mass > 0 ? std::sqrt(2 * kinetic / mass) : 1;
   const double rounding = step > 0 ? 1e-14 * length / step : 0;  // of positions, by the step
-  return std::max({1e-9, rounding, 1e-6 * speed, h_omega() * h_omega() * speed});
+  return std::max({1e-9, rounding, defect() * speed});
 }
 
 }  // namespace flexmorph::cases

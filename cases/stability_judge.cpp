@@ -59,7 +59,13 @@ Figures figures_of(const std::string& folder, const json& run, double& kinetic) 
   out.position_drift = number(motion, "constraint_drift");
   out.velocity_drift = number(motion, "velocity_drift");
   out.area_ratio = number(motion, "smallest_area_ratio");
-  out.condition = number(motion, "condition");
+  const auto worst = [&](const json& part) {
+    if (const auto c = number(part, "condition"))
+      out.condition = std::max(*c, out.condition.value_or(1));
+  };
+  worst(motion);
+  worst(path);
+  for (const json& body : run.value("results", json::array())) worst(body);
   out.rejected = number(motion.is_null() ? path : motion, "rejected_steps");
   const std::optional<double> newton =
                                   number(motion.is_null() ? path : motion, "newton_iterations"),
@@ -169,8 +175,9 @@ void judge_finished(const Evidence& e, Judgement& out) {
       findings.add(Verdict::wrong, "the volume is " + to_text(violation, 2) +
                                        " above what is allowed; no warning says so");
     else if (violation > 1e-3)
-      findings.add(Verdict::degraded,
-                   "the volume that is allowed is not reached, and a warning says so");
+      findings.add(Verdict::degraded, "the volume that is allowed is not reached in " +
+                                          to_text(number(body, "iterations").value_or(0), 4) +
+                                          " iterations, and a warning says so");
   }
   out.verdict = findings.verdict();
   out.reason = findings.reason();

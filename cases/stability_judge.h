@@ -29,7 +29,7 @@ struct Figures {
   std::optional<double> velocity_drift;  ///< largest |Φ_t + Φ_q q̇| [m/s]
   std::optional<double> newton;          ///< Newton iterations per step or equilibrium
   std::optional<double> rejected;        ///< steps
-  std::optional<double> condition;       ///< worst of the joints, where run.json has one
+  std::optional<double> condition;       ///< worst of motion, path and designs
   std::optional<double> area_ratio;      ///< smallest
 };
 
@@ -39,7 +39,7 @@ struct Figures {
 /// a motion of circular frequency ω its defect is (h ω)² of the energy that is moved, times a
 /// constant of about one. Where h ω is above 0.3 the motion is not resolved and the bound ends at
 /// 10 %. Rows of the constraints are solved to round-off at position level; at velocity level they
-/// are only as good as the step: (h ω)² of the fastest velocity.
+/// are only as good as the step: the same share of the fastest velocity.
 struct Bounds {
   double step = 0;        ///< h [s]; 0: nothing moves
   double omega = 0;       ///< fastest of bending, spin, start [rad/s], see bounds_of()

@@ -40,16 +40,17 @@ std::string shortened(std::string text, size_t most) {
 }
 
 std::vector<std::vector<std::string>> table_of(std::span<const StabilityRow> rows, size_t most) {
-  std::vector<std::vector<std::string>> out = {{"case", "suite", "parameter", "verdict", "exit",
-                                                "energy defect", "|C| [m]", "|dC/dt| [m/s]",
-                                                "Newton/step", "rejected", "CPU s", "why"}};
+  std::vector<std::vector<std::string>> out = {
+      {"case", "suite", "parameter", "verdict", "exit", "energy defect", "|C| [m]", "|dC/dt| [m/s]",
+       "Newton/step", "rejected", "condition", "CPU s", "why"}};
   for (const StabilityRow& row : rows) {
     const Figures& f = row.judgement.figures;
     out.push_back({row.case_name, row.suite, row.perturbation.parameter,
                    to_string(row.judgement.verdict), to_text(row.ending.code),
                    figure(f.energy_defect, 2), figure(f.position_drift, 2),
                    figure(f.velocity_drift, 2), figure(f.newton, 3), figure(f.rejected, 3),
-                   to_text(row.ending.seconds, 2), shortened(row.judgement.reason, most)});
+                   figure(f.condition, 2), to_text(row.ending.seconds, 2),
+                   shortened(row.judgement.reason, most)});
   }
   return out;
 }
@@ -75,11 +76,16 @@ const char* colour_of(Verdict verdict) {
   return "#e31a1c";
 }
 
-constexpr double kNames = 300, kCell = 46, kLine = 18, kHead = 130, kGap = 30;
+constexpr double kNames = 300, kCell = 46, kLine = 18, kHead = 170, kGap = 26;
 
 std::string text_at(double x, double y, const std::string& words, const std::string& more = "") {
   return "<text x=\"" + to_text(x) + "\" y=\"" + to_text(y) + "\"" + more + ">" +
          io::xml_escaped(words) + "</text>\n";
+}
+
+std::string rectangle(double x, double y, double width, double height, const std::string& fill) {
+  return "<rect x=\"" + to_text(x) + "\" y=\"" + to_text(y) + "\" width=\"" + to_text(width) +
+         "\" height=\"" + to_text(height) + "\" fill=\"" + fill + "\"/>\n";
 }
 
 std::string box_at(double x, double y, const StabilityRow& row) {
@@ -92,36 +98,44 @@ std::string box_at(double x, double y, const StabilityRow& row) {
          io::xml_escaped(row.case_name + ", " + row.perturbation.parameter + ": " +
                          to_string(row.judgement.verdict) +
                          (row.judgement.reason.empty() ? "" : ": " + row.judgement.reason)) +
-         "</title><rect x=\"" + to_text(x) + "\" y=\"" + to_text(y) + "\" width=\"" +
-         to_text(kCell - 2) + "\" height=\"" + to_text(kLine - 2) + "\" fill=\"" +
-         colour_of(row.judgement.verdict) + "\"/>" +
+         "</title>" + rectangle(x, y, kCell - 2, kLine - 2, colour_of(row.judgement.verdict)) +
          text_at(x + 0.5 * kCell - 1, y + 12, words, " font-size=\"9\" text-anchor=\"middle\"") +
          "</g>\n";
 }
 
-/// One suite: parameters down, cases across. @return where it ends.
-double add_map(std::span<const StabilityRow> rows, const std::string& name, double top,
-               double& right, std::string& out) {
-  std::vector<std::string> cases, parameters;
-  std::string boxes;
-  for (const StabilityRow& row : rows) {
-    if (row.suite != name) continue;
-    const auto column = static_cast<double>(place_in(cases, row.case_name));
-    const auto line = static_cast<double>(place_in(parameters, row.perturbation.parameter));
-    boxes += box_at(kNames + column * kCell, top + kHead + line * kLine, row);
-  }
-  out += text_at(10, top + 20, name, " font-size=\"14\" font-weight=\"bold\"");
+/// Names of the cases over their columns.
+std::string heads(const std::vector<std::string>& cases, double y) {
+  std::string out;
   for (size_t i = 0; i < cases.size(); ++i) {
-    const double x = kNames + (static_cast<double>(i) + 0.6) * kCell, y = top + kHead - 6;
+    const double x = kNames + (static_cast<double>(i) + 0.6) * kCell;
     out +=
         text_at(x, y, cases[i], " transform=\"rotate(-50 " + to_text(x) + " " + to_text(y) + ")\"");
   }
+  return out;
+}
+
+/// One suite: parameters down, cases in their columns. @return where it ends.
+double add_map(std::span<const StabilityRow> rows, const std::string& name,
+               const std::vector<std::string>& cases, double top, std::string& out) {
+  std::vector<std::string> parameters;
+  std::string boxes;
+  for (const StabilityRow& row : rows) {
+    if (row.suite != name) continue;
+    const auto column = std::find(cases.begin(), cases.end(), row.case_name) - cases.begin();
+    const auto line = static_cast<double>(place_in(parameters, row.perturbation.parameter));
+    boxes += box_at(kNames + static_cast<double>(column) * kCell, top + line * kLine, row);
+  }
+  const auto lines = static_cast<double>(parameters.size());
+  out += text_at(10, top + 12, name, " font-size=\"14\" font-weight=\"bold\"");
+  // Bands that lead the eye from a parameter to its boxes.
+  for (size_t i = 0; i < parameters.size(); i += 2)
+    out += rectangle(90, top + static_cast<double>(i) * kLine - 1,
+                     kNames - 90 + static_cast<double>(cases.size()) * kCell, kLine, "#f2f2f2");
   for (size_t i = 0; i < parameters.size(); ++i)
-    out += text_at(kNames - 8, top + kHead + static_cast<double>(i) * kLine + 12, parameters[i],
+    out += text_at(kNames - 8, top + static_cast<double>(i) * kLine + 12, parameters[i],
                    " text-anchor=\"end\"");
   out += boxes;
-  right = std::max(right, kNames + static_cast<double>(cases.size()) * kCell + 120);
-  return top + kHead + static_cast<double>(parameters.size()) * kLine + kGap;
+  return top + lines * kLine + kGap;
 }
 
 }  // namespace
@@ -158,9 +172,9 @@ std::string stability_markdown(std::span<const StabilityRow> rows) {
   out << "# Stability\n\n" << summary(rows) << ".\n\n";
   out << "stable: every number of every file is finite, constraints hold to 1e-8 of the length of "
          "the scene, the balance of energy to (h omega)^2 of the largest energy (between 1e-6 and "
-         "0.1; omega: the fastest of bending, turning and, where the start is no equilibrium, "
-         "axial "
-         "vibration), exact laws hold.\n\nrefused: exit 2 or 3, and the message says what and "
+         "0.1; omega: the fastest of bending, turning, spin-up, warming and, where the start is no "
+         "equilibrium, axial vibration), exact laws hold.\n\nrefused: exit 2 or 3, and the message "
+         "says what and "
          "where.\n\ndegraded: a bound is missed, and why.\n\nWRONG: NaN, a crash, a hang, a broken "
          "law, a refusal without a cause.\n\n";
   std::vector<std::vector<std::string>> counts = {{"suite", "rows"}};
@@ -189,21 +203,27 @@ std::string stability_text(std::span<const StabilityRow> rows, bool all) {
 }
 
 std::string stability_svg(std::span<const StabilityRow> rows) {
-  std::vector<std::string> names;
-  for (const StabilityRow& row : rows) place_in(names, row.suite);
+  std::vector<std::string> names, cases;
+  for (const StabilityRow& row : rows) {
+    place_in(names, row.suite);
+    place_in(cases, row.case_name);
+  }
   std::string body;
-  double top = 50, right = 600, x = 10;
+  double x = 10;
   for (const Verdict v : kVerdicts) {
-    body += "<rect x=\"" + to_text(x) + "\" y=\"14\" width=\"14\" height=\"14\" fill=\"" +
-            colour_of(v) + "\"/>" + text_at(x + 20, 26, to_string(v));
+    const std::string words = to_string(v) + " " + std::to_string(count(rows, v));
+    body += rectangle(x, 14, 14, 14, colour_of(v)) + text_at(x + 20, 26, words);
     x += 110;
   }
-  for (const std::string& name : names) top = add_map(rows, name, top, right, body);
+  body += text_at(10, 48, "in the boxes: missed energy over the largest, else Newton iterations");
+  body += heads(cases, kHead - 6);
+  double top = kHead;
+  for (const std::string& name : names) top = add_map(rows, name, cases, top, body);
+  const double right = std::max(600.0, kNames + static_cast<double>(cases.size()) * kCell + 120);
   return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + to_text(right) + "\" height=\"" +
          to_text(top) + "\" viewBox=\"0 0 " + to_text(right) + " " + to_text(top) +
-         "\" font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"100%\" height=\"100%\" "
-         "fill=\"white\"/>\n" +
-         body + "</svg>\n";
+         "\" font-family=\"sans-serif\" font-size=\"11\">\n" +
+         rectangle(0, 0, right, top, "white") + body + "</svg>\n";
 }
 
 }  // namespace flexmorph::cases

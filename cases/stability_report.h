@@ -12,8 +12,8 @@ void write_stability_csv(std::span<const StabilityRow> rows, const std::string& 
 std::string stability_markdown(std::span<const StabilityRow> rows);
 /// For the terminal: all rows, or how many of each verdict alone.
 std::string stability_text(std::span<const StabilityRow> rows, bool all);
-/// A map per suite: parameters down, cases across, the verdict as colour, the energy defect (else
-/// the Newton iterations) as text.
+/// A map: parameters down, suite by suite, cases across, the verdict as colour, the energy defect
+/// (else the Newton iterations) as text.
 std::string stability_svg(std::span<const StabilityRow> rows);
 
 }  // namespace flexmorph::cases

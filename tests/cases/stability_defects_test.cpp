@@ -1,0 +1,160 @@
+// What the suites of stability have found, repaired, and what their rows tell: conditions, tables
+// of a check that is not over, starts of short motions, changes that a step does not resolve.
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "cases/run.h"
+#include "cases/stability.h"
+#include "io/tables.h"
+#include "tests/cases/program.h"
+
+namespace flexmorph::cases {
+namespace {
+
+using nlohmann::json;
+using test::Ended;
+using test::Words;
+
+Ended run(const Scratch& scratch, const std::string& name, const Words& changes,
+          const Words& more = {}) {
+  Words words = {"run", name, "-o", scratch / "run", "--quiet"};
+  words.insert(words.end(), more.begin(), more.end());
+  for (const std::string& change : changes) words.insert(words.end(), {"--set", change});
+  return test::flexmorph(scratch, words);
+}
+
+json run_of(const Scratch& scratch) {
+  return json::parse(contents_of(scratch / "run" + "/run.json"));
+}
+
+const Words kLean = {"expect=", "accuracy=", "output.vtk=false", "output.plots=false"};
+
+Words lean(const Words& more) {
+  Words out = kLean;
+  out.insert(out.end(), more.begin(), more.end());
+  return out;
+}
+
+// Nobody pays for a number that was not asked for.
+TEST(ConditionOfARun, IsThereOnDemand) {
+  const Scratch scratch;
+  const Words short_motion = lean({"time.end=2e-3", "body.elements=[2, 2]"});
+  ASSERT_EQ(run(scratch, "plate_pendulum", short_motion).code, 0);
+  EXPECT_FALSE(run_of(scratch)["motion"].contains("condition"));
+  ASSERT_EQ(run(scratch, "plate_pendulum", short_motion, {"--condition"}).code, 0);
+  EXPECT_GE(run_of(scratch)["motion"]["condition"].get<double>(), 1);
+}
+
+/// Largest of the motion, the path and the designs.
+double condition_of(const Scratch& scratch, const std::string& name, const Words& changes) {
+  const Ended ended = run(scratch, name, lean(changes), {"--condition"});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  const json out = run_of(scratch);
+  double worst = 0;
+  for (const char* part : {"motion", "static"})
+    if (out.contains(part)) worst = std::max(worst, out[part].value("condition", 0.0));
+  for (const json& design : out["results"]) worst = std::max(worst, design.value("condition", 0.0));
+  return worst;
+}
+
+// A void of stiffness alpha² between pieces of material costs 2 log10(1/alpha) digits; units cost
+// none.
+TEST(ConditionOfARun, OfDesignsGrowsAsTheVoidThins) {
+  const Scratch scratch;
+  const std::string start =
+      scratch.write("start.csv", "X0,Y0,half_length,angle,c1,c2,c3\n0.3,0.5,0.2,0,0.2,0.2,0.2\n");
+  const Words analysed = {"optimizer.max_iterations=0", "design.cell=0.05",
+                          "design.start='" + start + "'"};
+  const auto with = [&](const std::string& change) {
+    Words changes = analysed;
+    changes.push_back(change);
+    return condition_of(scratch, "short_beam", changes);
+  };
+  const double own = with("design.alpha=1e-2"), thin = with("design.alpha=1e-4");
+  EXPECT_GT(own, 1e3);
+  EXPECT_NEAR(std::log10(thin / own), 4, 0.5);
+  const double stiff = with("domain.youngs_modulus=2e11"), soft = with("domain.youngs_modulus=1");
+  EXPECT_NEAR(stiff, soft, 1e-3 * soft);
+}
+
+// The tangent of a cantilever at rest: κ grows with the fourth power of the number of elements
+// where bending counts, so that twice as many cost more than a digit.
+TEST(ConditionOfARun, OfPathsGrowsWithTheMesh) {
+  const Scratch scratch;
+  const auto with = [&](const char* elements) {
+    return condition_of(scratch, "cantilever_roll_up",
+                        {"static.steps=1", "static.to=1e-3", elements});
+  };
+  const double coarse = with("body.elements=[4, 1]"), fine = with("body.elements=[8, 1]");
+  EXPECT_GT(coarse, 1);
+  EXPECT_GT(fine, 4 * coarse);
+  EXPECT_LT(fine, 32 * coarse);
+}
+
+// Killed in the middle, with whole tables.
+TEST(Tables, AreThereBeforeTheEnd) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out", table = folder + "/stability.csv";
+  const pid_t check = test::start(
+      scratch, {"stability", "plate_pendulum", "-o", folder, "--suites",
+                "rest,joints,stiffness,step,start,rho_inf", "--set", "body.elements=[2, 2]"});
+  for (int k = 0; k < 3000 && !std::filesystem::exists(table); ++k)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  kill(check, SIGKILL);
+  waitpid(check, nullptr, 0);
+  ASSERT_TRUE(std::filesystem::exists(table));
+  const io::CsvTable rows = io::read_csv(table);  // refuses lines that are cut
+  EXPECT_GE(rows.rows.size(), 10u);
+  EXPECT_EQ(rows.texts("suite")[0], "base");
+}
+
+// The rate of the start's shape was a difference over 2e-4 s: beyond the end of this motion, where
+// its drives are not defined ("material lines 0 and 1 cross").
+TEST(Starts, OfMotionsShorterThanADifference) {
+  const Scratch scratch;
+  const Ended ended =
+      run(scratch, "motion_platform",
+          lean({"design=", "optimizer=", "esl=", "verify=", "time.step=1e-6", "time.end=1e-5"}));
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_LT(run_of(scratch)["motion"]["velocity_drift"].get<double>(), 1e-6);
+}
+
+// A temperature that jumps: the first guess of a step turned the beam inside out, and Newton's
+// method stayed there. Its ends swing by α ΔT L/2 (1 - cos ω t) = 0.01 m (1 - cos ω t).
+TEST(Starts, AtTemperaturesThatJump) {
+  const Scratch scratch;
+  const Ended ended =
+      run(scratch, "free_beam_heated", lean({"time.end=0.04", "body.heat.profile=step"}));
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  EXPECT_GT(run_of(scratch)["motion"]["smallest_area_ratio"].get<double>(), 0.9);
+  const std::vector<double> end =
+      io::read_csv(scratch / "run" + "/motion.csv").numbers("beam.end_ux");
+  double mean = 0;
+  for (const double u : end) mean += u / static_cast<double>(end.size());
+  EXPECT_NEAR(mean, 0.01, 1e-3);
+  EXPECT_LT(*std::max_element(end.begin(), end.end()), 0.0205);
+  EXPECT_GT(*std::min_element(end.begin(), end.end()), -5e-4);
+}
+
+// What changes within eight steps, or one, is not resolved, and that is what a row says.
+TEST(BoundsOfAScene, KnowSpinUpsAndWarming) {
+  const auto bounds = [](const std::string& name, const Words& changes) {
+    return bounds_of(read_scene(io::CaseFile(find_case(name), changes)));
+  };
+  const Bounds spun = bounds("rotating_plate_v01", {"time.start=hub_at_rest", "time.spin_up=8e-3"});
+  EXPECT_EQ(spun.fastest, "the spin-up");
+  EXPECT_NEAR(spun.omega, 785.4, 0.1);  // 2 π / 8e-3 s
+  const Bounds warmed = bounds("heated_boom", {"body.heat.settle=2e-3"});
+  EXPECT_EQ(warmed.fastest, "the warming of 'plate'");
+  EXPECT_NEAR(warmed.h_omega(), 6.283, 1e-3);  // one step
+  // Nobody takes velocities that miss their constraints by more than a tenth for good.
+  EXPECT_NEAR(warmed.velocity(0.5 * warmed.mass), 0.1, 1e-12);
+}
+
+}  // namespace
+}  // namespace flexmorph::cases
