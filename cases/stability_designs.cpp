@@ -43,7 +43,8 @@ Rows voids(const Scene& scene) {
            0.3,
            0,
            false,
-           "a thinner void changes little, unless mass hangs on it: its stiffness is alpha^2"});
+           "a thinner void changes little, unless masses or loads hang on it: its stiffness is "
+           "alpha^2"});
   }
   return out;
 }

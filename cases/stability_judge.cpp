@@ -99,11 +99,16 @@ class Findings {
   std::string reason_;
 };
 
+/// What is only round-off of stresses is no energy: a share of nothing says nothing.
+void forget_round_off(const Evidence& e, Figures& f) {
+  if (!(quantity_in(e.folder, "energy.defect.largest").value_or(0) < e.bounds->rounding)) return;
+  f.energy_defect.reset();
+  f.energy_growth.reset();
+}
+
 void judge_energy(const Evidence& e, const json& run, const Figures& f, Findings& out) {
   const Bounds& b = *e.bounds;
   if (!f.energy_defect || *f.energy_defect <= b.defect()) return;
-  // What is only round-off of stresses is no energy.
-  if (quantity_in(e.folder, "energy.defect.largest").value_or(0) < b.rounding) return;
   const double growth = f.energy_growth.value_or(0);
   const bool grows = b.undriven && growth > b.defect();
   const double size = grows ? growth : *f.energy_defect;
@@ -131,7 +136,14 @@ void judge_constraints(const Evidence& e, const Figures& f, double kinetic, Find
                 " for " + b.fastest);
 }
 
-void judge_invariances(const Evidence& e, Findings& out) {
+/// What a run warns of first: "; the run warns: ..."; empty: nothing.
+std::string warning_in(const json& run) {
+  const json warnings = run.value("warnings", json::array());
+  if (warnings.empty() || !warnings.front().is_string()) return "";
+  return "; the run warns: " + warnings.front().get<std::string>();
+}
+
+void judge_invariances(const Evidence& e, const json& run, Findings& out) {
   for (const Invariance& law : e.row->invariances) {
     std::optional<double> wanted = law.value;
     if (!wanted && !e.reference.empty()) wanted = quantity_in(e.reference, law.quantity);
@@ -142,7 +154,7 @@ void judge_invariances(const Evidence& e, Findings& out) {
     if (found && std::abs(*found - *wanted) <= allowed) continue;
     out.add(law.exact ? Verdict::wrong : Verdict::degraded,
             law.quantity + " = " + (found ? to_text(*found, 8) : "nothing") + ", not " +
-                to_text(*wanted, 8) + ": " + law.why);
+                to_text(*wanted, 8) + ": " + law.why + (law.exact ? "" : warning_in(run)));
   }
 }
 
@@ -163,12 +175,13 @@ void judge_finished(const Evidence& e, Judgement& out) {
   double kinetic = 0;
   out.figures = figures_of(e.folder, run, kinetic);
   if (e.bounds && run.contains("motion")) {
+    forget_round_off(e, out.figures);
     judge_constraints(e, out.figures, kinetic, findings);
     judge_energy(e, run, out.figures, findings);
   }
   if (out.figures.area_ratio && *out.figures.area_ratio <= 0)
     findings.add(Verdict::wrong, "material is turned inside out");
-  judge_invariances(e, findings);
+  judge_invariances(e, run, findings);
   for (const json& body : run.value("results", json::array())) {
     const double violation = number(body, "volume").value_or(0) - e.largest_volume;
     if (violation > 1e-3 && !warns_of(run, "volume"))

@@ -76,7 +76,7 @@ const char* colour_of(Verdict verdict) {
   return "#e31a1c";
 }
 
-constexpr double kNames = 300, kCell = 46, kLine = 18, kHead = 170, kGap = 26;
+constexpr double kNames = 370, kBand = 115, kCell = 46, kLine = 18, kHead = 170, kGap = 26;
 
 std::string text_at(double x, double y, const std::string& words, const std::string& more = "") {
   return "<text x=\"" + to_text(x) + "\" y=\"" + to_text(y) + "\"" + more + ">" +
@@ -129,8 +129,8 @@ double add_map(std::span<const StabilityRow> rows, const std::string& name,
   out += text_at(10, top + 12, name, " font-size=\"14\" font-weight=\"bold\"");
   // Bands that lead the eye from a parameter to its boxes.
   for (size_t i = 0; i < parameters.size(); i += 2)
-    out += rectangle(90, top + static_cast<double>(i) * kLine - 1,
-                     kNames - 90 + static_cast<double>(cases.size()) * kCell, kLine, "#f2f2f2");
+    out += rectangle(kBand, top + static_cast<double>(i) * kLine - 1,
+                     kNames - kBand + static_cast<double>(cases.size()) * kCell, kLine, "#f2f2f2");
   for (size_t i = 0; i < parameters.size(); ++i)
     out += text_at(kNames - 8, top + static_cast<double>(i) * kLine + 12, parameters[i],
                    " text-anchor=\"end\"");

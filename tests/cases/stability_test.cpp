@@ -137,6 +137,18 @@ TEST_F(Judged, EnergyThatGrowsWithoutADrive) {
   says(Verdict::degraded, "bound 0.01 %");
 }
 
+// Half of what is round-off is no defect.
+TEST_F(Judged, EnergyThatIsRoundOff) {
+  evidence_.bounds->rounding = 1e-9;
+  write("motion.csv", std::string(kHead) + "0,0,1e-12,0,0\n0.001,0,1e-12,0,5e-13\n");
+  run(R"(, "energy_defect": 0.5)");
+  const Judgement out = judge(evidence_);
+  EXPECT_EQ(out.verdict, Verdict::stable) << out.reason;
+  EXPECT_FALSE(out.figures.energy_defect);
+  evidence_.bounds->rounding = 1e-13;
+  says(Verdict::wrong, "energy defect 50 %");
+}
+
 TEST_F(Judged, StepsThatAreTooCoarse) {
   evidence_.bounds->omega = 2000;
   write("motion.csv", std::string(kHead) + "0,2,0,0,0\n0.001,1,0.2,0,-0.8\n");
@@ -163,6 +175,8 @@ TEST_F(Judged, ExactLawsAndSaneRanges) {
   says(Verdict::stable, "");
   row_.invariances = {{"energy.strain", 1.2, 1, 0.1, 0, false, "about 1.2"}};
   says(Verdict::degraded, "about 1.2");
+  run({}, R"("warnings": ["it hangs on void"])");
+  says(Verdict::degraded, "about 1.2; the run warns: it hangs on void");
   row_.invariances = {{"nothing.there", 1.2, 1, 0.1, 0, true, "is there"}};
   says(Verdict::wrong, "nothing.there = nothing");
 }
