@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -339,6 +340,20 @@ Pose start_pose(const Scene& scene, const Body& body) {
   return pose;
 }
 
+namespace {
+
+/// Does no load act that has no energy, and nothing that could bring energy in within a step and be
+/// at rest at both of its ends, as a step of temperature? What moves for longer shows as power.
+bool keeps_energy(const Scene& scene) {
+  const auto follows = [](const BodyLoad& l) {
+    return l.type == "pressure" || l.type == "edge_moment";
+  };
+  return !scene.has_heat() && scene.drives.empty() &&
+         std::none_of(scene.loads.begin(), scene.loads.end(), follows);
+}
+
+}  // namespace
+
 double stress_round_off(const Scene& scene) {
   double out = 0;
   for (const Body& body : scene.bodies)
@@ -390,11 +405,7 @@ Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh) {
   out.motion.alpha.rho_inf = scene.time.rho_inf;
   out.motion.minimal_coordinates.tolerance = scene.time.explicit_tolerance;
   out.motion.gravity = gravity_of(scene);
-  const auto follows = [](const BodyLoad& l) {
-    return l.type == "pressure" || l.type == "edge_moment";
-  };
-  if (std::none_of(scene.loads.begin(), scene.loads.end(), follows))
-    out.motion.energy_round_off = stress_round_off(scene);
+  if (keeps_energy(scene)) out.motion.energy_round_off = stress_round_off(scene);
   if (scene.has_heat()) add_heat(scene, out);
   return out;
 }

@@ -303,7 +303,7 @@ std::string run_json(const Scene& scene, const RunReport& report) {
                     " hardly damps multipliers: joint forces may alternate from step to step and "
                     "grow; time.rho_inf = 0.9 damps them");
     if (const fem::EnergyGain& gain = report.motion->result.energy_gain; gain.time > 0)
-      warnings.push("nothing drives the motion, but its energy has grown by " +
+      warnings.push("no drive brings energy in, but the energy of the motion has grown by " +
                     io::to_text(100 * gain.part, 3) + " % of the largest, by more than 10 % from " +
                     "t = " + io::to_text(gain.time, 4) +
                     " s on: do not trust what comes after; a smaller time.step helps, "

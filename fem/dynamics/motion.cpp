@@ -269,11 +269,12 @@ class Run {
       remedy += " helps";
     }
     char text[300];
-    std::snprintf(text, sizeof text,
-                  "motion: nothing drives it, but by t = %.6g s, step %d, the energy has grown by "
-                  "%.3g J, %.0f %% of the largest (by more than 10 %% from t = %.6g s on): the "
-                  "steps do not follow the motion. ",
-                  x_.t, integrator_->counts().steps, balance_.defect(), 100 * gain.part, gain.time);
+    std::snprintf(
+        text, sizeof text,
+        "motion: no drive brings energy in, but by t = %.6g s, step %d, the energy has grown by "
+        "%.3g J, %.0f %% of the largest (by more than 10 %% from t = %.6g s on): the "
+        "steps do not follow the motion. ",
+        x_.t, integrator_->counts().steps, balance_.defect(), 100 * gain.part, gain.time);
     throw Error::numerical(text + remedy + ".");
   }
 
