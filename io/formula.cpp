@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <sstream>
 #include <vector>
@@ -134,11 +136,50 @@ class Translator {
     refuse_formula(text_, "a part of it has no value");
   }
 
+  /// GiNaC keeps operands in an order that depends on where its library lies in memory; sums would
+  /// be rounded in another way in every process.
   int write_chain(const GiNaC::ex& e, Op op) {
-    int result = translate(e.op(0));
-    for (size_t i = 1; i < e.nops(); ++i)
-      result = push({.op = op, .a = result, .b = translate(e.op(i))});
+    std::vector<std::pair<std::uint64_t, GiNaC::ex>> operands;
+    for (size_t i = 0; i < e.nops(); ++i) operands.emplace_back(mark_of(e.op(i)), e.op(i));
+    std::stable_sort(operands.begin(), operands.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    int result = translate(operands.front().second);
+    for (size_t i = 1; i < operands.size(); ++i)
+      result = push({.op = op, .a = result, .b = translate(operands[i].second)});
     return result;
+  }
+
+  /// A number that depends on what an expression is, whatever the order of its operands.
+  std::uint64_t mark_of(const GiNaC::ex& e) {
+    const auto known = marks_.find(e);
+    if (known != marks_.end()) return known->second;
+    const bool commutes = GiNaC::is_a<GiNaC::add>(e) || GiNaC::is_a<GiNaC::mul>(e);
+    std::vector<std::uint64_t> parts;
+    for (size_t i = 0; i < e.nops(); ++i) parts.push_back(mark_of(e.op(i)));
+    if (commutes) std::sort(parts.begin(), parts.end());
+    std::uint64_t mark = mixed(0, e.nops());
+    if (GiNaC::is_a<GiNaC::numeric>(e) && GiNaC::ex_to<GiNaC::numeric>(e).is_real())
+      mark = mixed(1, std::bit_cast<std::uint64_t>(GiNaC::ex_to<GiNaC::numeric>(e).to_double()));
+    else if (e.is_equal(t_))
+      mark = mixed(2, 0);
+    else if (GiNaC::is_a<GiNaC::add>(e))
+      mark = mixed(3, 0);
+    else if (GiNaC::is_a<GiNaC::mul>(e))
+      mark = mixed(4, 0);
+    else if (GiNaC::is_a<GiNaC::function>(e))
+      for (const char c : GiNaC::ex_to<GiNaC::function>(e).get_name())
+        mark = mixed(mark, static_cast<unsigned char>(c));
+    for (const std::uint64_t part : parts) mark = mixed(mark, part);
+    marks_.emplace(e, mark);
+    return mark;
+  }
+
+  /// One more number into a mark: the finalizer of SplitMix64 (Steele, Lea & Flood 2014).
+  static std::uint64_t mixed(std::uint64_t mark, std::uint64_t number) {
+    std::uint64_t z = mark * 31 + number + 0x9e3779b97f4a7c15U;
+    z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
+    z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
+    return z ^ (z >> 31U);
   }
 
   int write_power(const GiNaC::ex& e) {
@@ -178,6 +219,7 @@ class Translator {
   const std::string& text_;
   const GiNaC::realsymbol& t_;
   std::map<GiNaC::ex, int, GiNaC::ex_is_less> known_, roots_;
+  std::map<GiNaC::ex, std::uint64_t, GiNaC::ex_is_less> marks_;
 };
 
 }  // namespace
