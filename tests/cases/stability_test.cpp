@@ -349,64 +349,6 @@ TEST(Stability, RefusesWhatIsNotThere) {
   }
 }
 
-std::string warnings_of(const Scratch& scratch, const std::string& name, const Words& changes) {
-  const std::string folder = scratch / "run";
-  Words words = {"run", name, "-o", folder, "--quiet"};
-  for (const std::string& change : changes) words.insert(words.end(), {"--set", change});
-  const Ended ended = test::flexmorph(scratch, words);
-  EXPECT_EQ(ended.code, 0) << ended.err;
-  const std::string text = contents_of(folder + "/run.json");
-  const size_t begin = text.find("\"warnings\"");
-  return text.substr(begin, text.find("\"results\"") - begin);
-}
-
-// What ends well and is not to be trusted says so; what is only round-off does not.
-TEST(Warnings, OfEnergyThatIsMissed) {
-  const Scratch scratch;
-  const Words lean = {"time.end=0.04", "expect=", "accuracy=", "output.vtk=false",
-                      "output.plots=false"};
-  Words hit = lean, rest = lean;
-  hit.emplace_back("body.heat.settle=1e-3");  // one step, two thirds of an axial period
-  EXPECT_TRUE(contains(warnings_of(scratch, "free_beam_heated", hit), "the balance of energy"));
-  rest.emplace_back("body.heat.rise=0");
-  EXPECT_FALSE(contains(warnings_of(scratch, "free_beam_heated", rest), "the balance of energy"));
-}
-
-TEST(Warnings, OfVolumesThatAreNotReached) {
-  const Scratch scratch;
-  const Words lean = {"optimizer.max_iterations=5", "output.vtk=false", "output.plots=false",
-                      "design.cell=0.05"};
-  Words small = lean;
-  small.emplace_back("design.max_volume=0.01");
-  EXPECT_TRUE(contains(warnings_of(scratch, "short_beam", small), "above what is allowed, 0.01"));
-  small.back() = "design.max_volume=0.9";
-  EXPECT_FALSE(contains(warnings_of(scratch, "short_beam", small), "above what is allowed"));
-}
-
-// A crank at rest by its drive: what the case says of its velocity is projected away, to nothing.
-TEST(Starts, AtSpeedsThatTheDriveDoesNotAllow) {
-  const Scratch scratch;
-  Words words = {"run", "four_bar", "-o", scratch / "run", "--quiet"};
-  for (const char* change :
-       {"design=", "optimizer=", "esl=", "expect=", "accuracy=", "time.end=4e-3",
-        "output.vtk=false", "output.plots=false", "rigid_body.crank.velocity=[100, -70]"})
-    words.insert(words.end(), {"--set", change});
-  const Ended ended = test::flexmorph(scratch, words);
-  EXPECT_EQ(ended.code, 0) << ended.err;
-}
-
-// Components would be moved into the domain, silently: another design than that of the file.
-TEST(Starts, OutsideOfTheDomainAreRefused) {
-  const Scratch scratch;
-  const std::string header = "X0,Y0,half_length,angle,c1,c2,c3\n";
-  const std::string start =
-      scratch.write("start.csv", header + "1,0.5,1,0,0.1,0.1,0.1\n1,-0.1,1,0,0.1,0.1,0.1\n");
-  const Ended ended =
-      test::flexmorph(scratch, {"check", "short_beam", "--set", "design.start='" + start + "'"});
-  EXPECT_EQ(ended.code, 2);
-  EXPECT_TRUE(contains(ended.err, "the centre of component 2 lies in the domain, [0, 2] x [0, 1]"));
-}
-
 // The maps and tables are the same whatever the locale of the program that writes them.
 TEST(Stability, WritesTheSameInEveryLocale) {
   const Scratch scratch;
