@@ -5,7 +5,11 @@
 namespace flexmorph::fem {
 namespace {
 
-constexpr int kFilters = 3;  // of an error that is too large
+constexpr int kFilters = 3;      // of an error that is too large
+constexpr int kMoreFilters = 8;  // where, filtered once, it is below this part of the tolerance
+constexpr double kFaint = 0.3;
+// Change of q⃛ from step to step, against the larger of both, up to which it is not ringing.
+constexpr double kSmooth = 1.2;
 
 }  // namespace
 
@@ -42,6 +46,7 @@ void GeneralizedAlpha::set_start(const State& x) {
     if (last_h_ == 0 || shift() == 0) return;
     jerk_ = (x.alpha - x.a) / (shift() * last_h_);
   }
+  if (!smooth_) return;
   start_alpha_ += shift() * (h_ - last_h_) * jerk_;
 
   // Of the velocity, what is not free.
@@ -111,13 +116,17 @@ double GeneralizedAlpha::local_error(const State& x, double allowed) {
   error_ = error_constant() * h_ * h_ * (next_.alpha - start_alpha_);
   if (model().has_free_lines()) model().prepare(next_);
   double out = 0;
+  const double tolerance = std::pow(allowed, 2.0 / 3);
   // What is resolved passes the filter unchanged, any number of times.
-  for (int pass = 0; pass < kFilters; ++pass) {
+  for (int pass = 0, passes = kFilters; pass < passes; ++pass) {
     // Forces at q̈ balance the multipliers, but for the next correction of Newton's method, far
     // below any error of interest.
     filter(error_, {});
     out = displacement(error_) / size();
     if (out <= allowed) break;
+    // Filtered once, a vibration that the step leaves unresolved counts with about half of its
+    // amplitude: that far below the tolerance, it need not be resolved.
+    if (pass == 0 && out <= kFaint * tolerance) passes = kMoreFilters;
   }
   return out;
 }
@@ -144,10 +153,13 @@ void GeneralizedAlpha::finish(State& x) {
 void GeneralizedAlpha::keep_jerk() {
   change_ = (next_.alpha - start_alpha_) / h_;
   const int version = model().pattern_version();
-  if (last_h_ > 0 && jerk_version_ == version && step_jerk_.size() == change_.size())
+  if (last_h_ > 0 && jerk_version_ == version && step_jerk_.size() == change_.size()) {
     jerk_ = (h_ * change_ + last_h_ * step_jerk_) / (h_ + last_h_);
-  else
+    smooth_ = displacement(change_ - step_jerk_) <=
+              kSmooth * std::max(displacement(change_), displacement(step_jerk_));
+  } else {
     jerk_ = change_;
+  }
   step_jerk_.swap(change_);
   jerk_version_ = version;
   last_h_ = h_;

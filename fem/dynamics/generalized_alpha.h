@@ -21,7 +21,10 @@ namespace flexmorph::fem {
 ///     Of frequencies that the step does not resolve, and of what constraints hold, that says
 ///     nothing: the estimate e is filtered as Newton's method would,
 ///         [ A  Φ_qᵀ ; Φ_q  0 ] (e, μ) = (A_M C h² (a_{n+1} - a_n), 0)
-///     with the kept iteration matrix A and its part A_M of the mass.
+///     with the kept iteration matrix A and its part A_M of the mass: up to three times, and up to
+///     eight times where e, filtered once, is below 0.3 of the tolerance: a vibration with an
+///     amplitude below the tolerance misses by no more if nothing of it is right, while e would
+///     ask for steps of a small part of its period.
 ///   - a step of another size h' starts from a_n + δ (h' - h) q⃛, and the first one from
 ///     q̈_0 + δ h q⃛_0. Where constraints hold the position, q_{n+1} is exact and the velocity misses
 ///     by C h² q⃛ instead: it starts with C (h'² - h²) q⃛ more (the first one with C h² q⃛_0) in
@@ -29,6 +32,9 @@ namespace flexmorph::fem {
 ///     O(h) for a while after every change (as ρ^n n²).
 ///   - q⃛ is the mean of (a_{n+1} - a_n) / h over two steps: one alone contains the sign-changing
 ///     part of a, and steps of random sizes would feed it (unstable for ρ = 0.9).
+///     Where that does not help, q⃛ is ringing that the step does not resolve: its sign says
+///     nothing, and starts that follow it would feed it with every change of the step, until
+///     Newton's method fails. A q⃛ that turns round from step to step is left alone.
 ///
 /// Fixed steps (advance()) start from a_0 = q̈_0 and take no notice of their size.
 ///
@@ -75,6 +81,7 @@ class GeneralizedAlpha final : public StepSolver {
   double last_h_ = -1;
   VectorXd jerk_, step_jerk_;
   int jerk_version_ = -1;
+  bool smooth_ = true;  // does q⃛ change little from step to step?
   VectorXd error_, change_, force_, kept_a_, balance_, miss_, none_, mu_;
   Constraints constraints_;
 };

@@ -52,7 +52,8 @@ struct StepCounts {
 struct TriedStep {
   bool converged = false;
   double error = 0;    ///< estimate of the local error, relative to the size of the model
-  int iterations = 0;  ///< of Newton's method
+  int iterations = 0;  ///< of Newton's method; where the error is far below the allowed one
+                       ///< only those since the first new tangent of the step
 };
 
 /// The seam of time integration: advances the equations that a model states.

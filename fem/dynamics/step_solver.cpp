@@ -9,6 +9,12 @@
 #include "fem/solve/scaled_constraints.h"
 
 namespace flexmorph::fem {
+namespace {
+
+// An error this small against the allowed one lets a step grow at once.
+constexpr double kFar = 0.1;
+
+}  // namespace
 
 StepSolver::StepSolver(Model& model, const StepSettings& settings, std::string name,
                        std::string advice)
@@ -105,8 +111,10 @@ TriedStep StepSolver::solve_step(State& x, double h, double allowed) {
   try {
     begin(x, h);
     if (newton(h)) {
-      const TriedStep out{true, std::isfinite(allowed) ? local_error(x, allowed) : 0,
-                          counts_.newton - before};
+      TriedStep out{true, std::isfinite(allowed) ? local_error(x, allowed) : 0,
+                    counts_.newton - before};
+      // That a kept tangent contracts slowly is no reason to stay with steps this small.
+      if (out.error < kFar * allowed) out.iterations = fresh_iterations_;
       // An error that is not a number is too large.
       if (!(out.error <= allowed)) return out;
       if (finish_sound(x)) return out;
@@ -157,6 +165,7 @@ bool StepSolver::newton(double h) {
   double last = 0;
   bool fresh = false;
   largest_correction_ = 0;
+  fresh_iterations_ = 0;
   for (int iteration = 1; iteration <= settings_.max_iterations; ++iteration) {
     residual(force_, constraint_);
     if (std::abs(factored_h_ / h - 1) > 1e-6 || analysed_version_ != model_.pattern_version()) {
@@ -170,6 +179,7 @@ bool StepSolver::newton(double h) {
     const double correction = solution_.head(model_.n_dofs()).lpNorm<Eigen::Infinity>() / size_;
     largest_correction_ = std::max(largest_correction_, correction);
     ++counts_.newton;
+    fresh_iterations_ += fresh;
     char text[80];
     std::snprintf(text, sizeof text, "%d: |r| %.1e, |dq| %.1e; ", iteration, r, correction);
     history_ += text;

@@ -89,7 +89,8 @@ class StepSolver : public Integrator {
   VectorXd scales_;                // displacement per unit of each unknown
   double size_ = 1;
   int scaled_version_ = -1;
-  int failures_ = 0;  // of try_step() in a row
+  int failures_ = 0;          // of try_step() in a row
+  int fresh_iterations_ = 0;  // of the last step, since its first factorization
   Constraints constraints_;
   VectorXd force_, constraint_, right_, solution_, dq_, mu_;
   std::string history_;  // of the residuals of the last failed step

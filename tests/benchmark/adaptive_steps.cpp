@@ -1,30 +1,54 @@
-// Error against steps and CPU seconds, fixed steps and adaptive ones, by hand:
+// Error against steps and CPU seconds, equal steps and adaptive ones, by hand:
 //
-//   OPENBLAS_NUM_THREADS=1 adaptive_steps
+//   OMP_THREAD_LIMIT=1 OPENBLAS_NUM_THREADS=1 adaptive_steps [part of a scene's name]...
 //
-// Errors are the largest at 40 stops, against fixed steps eight times finer than the finest shown.
+// Errors are the largest at 40 stops, in parts of the model's size, against equal steps at least
+// four times finer than the finest shown. Equal steps land on the stops, so that there are at least
+// 40 of them; adaptive ones are interpolated there. "best equal": of the fewest equal steps that
+// miss by no more, between the measured ones by the line through their logarithms.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <numbers>
+#include <optional>
 #include <string>
 
-#include "fem/dynamics/motion.h"
+#include "cases/build.h"
 #include "tests/benchmark/cpu.h"
-#include "tests/support/models.h"
 #include "tests/support/rigid_models.h"
 
 namespace {
 
 using namespace flexmorph;
-using testing::RotatingPlate;
 
+/// What a run is told: equal steps of a size, or adaptive ones.
+struct Wish {
+  double step = 1e-3;
+  std::optional<fem::AdaptiveStep> adaptive;
+  std::vector<double> stops;
+};
 struct Course {
-  std::vector<Vec2> points;  // at the stops
+  std::vector<Vec3> points;  // at the stops
   fem::MotionResult result;
   double seconds = 0;
 };
-using Problem = std::function<Course(fem::MotionSettings)>;
+using Problem = std::function<Course(const Wish&)>;
+
+struct Scene {
+  std::string name;
+  double end = 1, size = 1;   // [s], [m]
+  double shipped = 1e-3;      // the step of the case [s]
+  std::vector<double> steps;  // coarse to fine; the last one a reference
+  Problem problem;
+};
+
+struct Measured {
+  double error = 0;
+  int steps = 0;
+  double seconds = 0;
+};
 
 double error(const Course& a, const Course& b) {
   double out = 0;
@@ -33,97 +57,146 @@ double error(const Course& a, const Course& b) {
   return out;
 }
 
-std::vector<double> stops(double end) {
-  std::vector<double> out;
-  for (int k = 1; k <= 40; ++k) out.push_back(end * k / 40);
+/// Of the fewest equal steps that miss by at most this much; zero steps where none do.
+Measured best_equal(const std::vector<Measured>& equal, double error) {
+  Measured out;
+  for (size_t i = 0; i < equal.size(); ++i) {
+    if (equal[i].error > error) continue;
+    out = equal[i];
+    if (i > 0 && equal[i - 1].error > error) {
+      const double part =
+          std::log(equal[i - 1].error / error) / std::log(equal[i - 1].error / out.error);
+      const auto between = [part](double a, double b) { return a * std::pow(b / a, part); };
+      out.steps = static_cast<int>(std::lround(between(equal[i - 1].steps, out.steps)));
+      out.seconds = between(equal[i - 1].seconds, out.seconds);
+    }
+    break;
+  }
   return out;
 }
 
-void compare(const char* name, double end, double size, std::vector<double> steps,
-             const Problem& problem) {
-  fem::MotionSettings settings;
-  settings.end = end;
-  settings.balance = false;
-  settings.stops = stops(end);
-  settings.step = steps.back() / 8;
-  const Course exact = problem(settings);
-  std::printf("%s (size %.2g m; reference %d steps)\n", name, size, exact.result.counts.steps);
-  const auto show = [&](const std::string& what, const Course& c) {
+std::optional<Measured> measure(const char* what, const Scene& scene, const Wish& wish,
+                                const Course& exact) {
+  try {
+    const Course c = scene.problem(wish);
     const fem::StepCounts& n = c.result.counts;
-    std::printf(
-        "  %-18s error %.2e, %5d steps (%d + %d repeated), %6d Newton, %5d factors, %.2f s\n",
-        what.c_str(), error(c, exact) / size, n.steps, n.inaccurate, n.rejected, n.newton,
-        n.factorizations, c.seconds);
-  };
-  char text[40];
-  for (const double h : steps) {
-    settings.step = h;
-    std::snprintf(text, sizeof text, "step %.1e s", h);
-    try {
-      show(text, problem(settings));
-    } catch (const Error& e) {
-      std::printf("  %-18s %.60s\n", text, e.what());
-    }
-  }
-  settings.step = 1e-3;
-  for (const double tolerance : {1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5}) {
-    settings.adaptive = fem::AdaptiveStep{};
-    settings.adaptive->tolerance = tolerance;
-    std::snprintf(text, sizeof text, "tolerance %.0e", tolerance);
-    try {
-      show(text, problem(settings));
-    } catch (const Error& e) {
-      std::printf("  %-18s %.60s\n", text, e.what());
-    }
+    const Measured out = {error(c, exact) / scene.size, n.steps, c.seconds};
+    std::printf("  %-16s error %.2e, %5d steps (%d + %d repeated), %6d Newton, %5d factors, %.2f s",
+                what, out.error, n.steps, n.inaccurate, n.rejected, n.newton, n.factorizations,
+                c.seconds);
+    return out;
+  } catch (const Error& e) {
+    std::printf("  %-16s %.60s\n", what, e.what());
+    return {};
   }
 }
 
-Problem rotating_plate(double speed, double stiffness, fem::Start start) {
-  return [=](fem::MotionSettings settings) {
-    RotatingPlate p;
-    p.speed = speed;
-    p.section.youngs_modulus *= stiffness;
-    testing::Scene scene = testing::make_scene(p);
-    settings.start = start;
+void compare(const Scene& scene) {
+  Wish wish;
+  for (int k = 1; k <= 40; ++k) wish.stops.push_back(scene.end * k / 40);
+  wish.step = scene.steps.back();
+  const Course exact = scene.problem(wish);
+  std::printf("%s (size %.2g m; reference %d steps)\n", scene.name.c_str(), scene.size,
+              exact.result.counts.steps);
+  char text[40];
+  std::vector<Measured> equal;
+  int shipped = 0;  // steps of the case
+  for (size_t i = 0; i + 1 < scene.steps.size(); ++i) {
+    wish.step = scene.steps[i];
+    std::snprintf(text, sizeof text, "step %.2e s", wish.step);
+    const auto m = measure(text, scene, wish, exact);
+    std::printf("\n");
+    if (m) equal.push_back(*m);
+  }
+  shipped = static_cast<int>(std::lround(scene.end / scene.shipped));
+  wish.step = 1e-3;
+  for (const double tolerance : {1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5}) {
+    wish.adaptive = fem::AdaptiveStep{};
+    wish.adaptive->tolerance = tolerance;
+    std::snprintf(text, sizeof text, "tolerance %.0e", tolerance);
+    const auto m = measure(text, scene, wish, exact);
+    if (!m) continue;
+    const Measured best = best_equal(equal, m->error);
+    if (best.steps > 0)
+      std::printf("; / best equal: steps %.2f, CPU %.2f; / shipped: %.2f\n",
+                  1.0 * m->steps / best.steps, m->seconds / best.seconds, 1.0 * m->steps / shipped);
+    else
+      std::printf("; no equal steps are as good\n");
+  }
+  std::fflush(stdout);
+}
+
+/// A shipped case with changes; its observed points, or the middles of the free ends of plates.
+Problem shipped_case(const std::string& name, const std::vector<std::string>& changes) {
+  return [=](const Wish& wish) {
+    const cases::Scene scene = cases::read_scene(
+        io::CaseFile(std::string(FLEXMORPH_CASES) + "/" + name + ".toml", changes));
+    cases::Mechanism mechanism = cases::build_mechanism(scene);
+    fem::MotionSettings& motion = mechanism.motion;
+    motion.step = wish.step;
+    motion.adaptive = wish.adaptive;
+    motion.stops = wish.stops;
+    motion.balance = false;
     Course out;
+    const auto see = [&](const fem::MotionStep& s) {
+      if (!s.stop) return;
+      for (const cases::Observe& o : scene.observed)
+        out.points.push_back(fem::point_position(s.model.body(o.body), s.x, o.point));
+      for (const fem::Growth& g : mechanism.growths) {
+        const fem::Body& body = s.model.body(g.body);
+        const fem::LineGrid& grid = fem::grid_of(body);
+        out.points.push_back(
+            fem::point_position(body, s.x, Vec2(grid.line_m(grid.n_m()).value, 0)));
+      }
+    };
     const double begin = benchmark::cpu();
-    out.result =
-        fem::integrate(scene.model, scene.growths, settings, [&](const fem::MotionStep& s) {
-          if (s.stop) out.points.push_back(testing::in_hub(p, s.model, s.x, p.tip()));
-        });
+    out.result = fem::integrate(mechanism.model, mechanism.growths, motion, see);
     out.seconds = benchmark::cpu() - begin;
     return out;
   };
+}
+
+/// Rigid models: their position in the first two unknowns of a body.
+Course move(fem::Model& model, const Wish& wish, double end, fem::Placement placement,
+            const char* body) {
+  fem::MotionSettings motion;
+  motion.end = end;
+  motion.step = wish.step;
+  motion.adaptive = wish.adaptive;
+  motion.stops = wish.stops;
+  motion.balance = false;
+  motion.start = fem::Start::rigid;
+  motion.placement = std::move(placement);
+  Course out;
+  const double begin = benchmark::cpu();
+  out.result = fem::integrate(model, {}, motion, [&](const fem::MotionStep& s) {
+    const Vec2 p = s.x.q.segment<2>(s.model.body(body).first_dof);
+    if (s.stop) out.points.emplace_back(p.x(), p.y(), 0);
+  });
+  out.seconds = benchmark::cpu() - begin;
+  return out;
 }
 
 /// A block on a spring about the origin, from the horizontal: a pendulum whose rod gives.
 Problem spring_pendulum(double stiffness) {
-  return [=](fem::MotionSettings settings) {
-    const fem::RigidSection section{2, {0, 0}, 0.02};
+  return [=](const Wish& wish) {
     fem::Model model;
-    testing::add_rigid(model, "bob", section, Vec2(0, -9.81));
+    testing::add_rigid(model, "bob", {2, {0, 0}, 0.02}, Vec2(0, -9.81));
     model.add_link(
         fem::make_spring("rod", {.point = {0, 0}}, {.body = "bob"}, {stiffness, 0, 1.0}));
-    settings.start = fem::Start::rigid;
-    settings.placement = [](double) {
+    const auto placement = [](double) {
       fem::FrameMotion f;
       f.origin = {1, 0};
       return std::vector<fem::Placed>{{"bob", f, 0}};
     };
-    Course out;
-    const double begin = benchmark::cpu();
-    out.result = fem::integrate(model, {}, settings, [&](const fem::MotionStep& s) {
-      if (s.stop) out.points.push_back(s.x.q.segment<2>(s.model.body("bob").first_dof));
-    });
-    out.seconds = benchmark::cpu() - begin;
-    return out;
+    return move(model, wish, 3, placement, "bob");
   };
 }
 
 /// A crank that turns freely, a block that slides on a line through its axis, and a rod that gives
 /// between them.
-Problem slider_crank(double stiffness, double damping) {
-  return [=](fem::MotionSettings settings) {
+Problem slider_crank(double stiffness) {
+  return [=](const Wish& wish) {
     fem::Model model;
     const Vec2 gravity(0, -9.81);
     testing::add_rigid(model, "crank", {1, {0.08, 0}, 0.003}, gravity);
@@ -131,9 +204,8 @@ Problem slider_crank(double stiffness, double damping) {
     model.add_joint(fem::make_revolute("axis", {}, {.body = "crank"}));
     model.add_joint(fem::make_slider("guide", {}, {.body = "block"}));
     model.add_link(fem::make_spring("rod", {.body = "crank", .point = {0.15, 0}}, {.body = "block"},
-                                    {stiffness, damping, 0.4}));
-    settings.start = fem::Start::rigid;
-    settings.placement = [](double) {
+                                    {stiffness, 0, 0.4}));
+    const auto placement = [](double) {
       fem::FrameMotion crank, block;
       crank.angle = std::numbers::pi / 2;
       crank.angle_rate = 6;
@@ -141,35 +213,67 @@ Problem slider_crank(double stiffness, double damping) {
       block.origin_rate = {-0.15 * 6, 0};
       return std::vector<fem::Placed>{{"crank", crank, 0}, {"block", block, 0}};
     };
-    Course out;
-    const double begin = benchmark::cpu();
-    out.result = fem::integrate(model, {}, settings, [&](const fem::MotionStep& s) {
-      if (s.stop) out.points.push_back(s.x.q.segment<2>(s.model.body("block").first_dof));
-    });
-    out.seconds = benchmark::cpu() - begin;
-    return out;
+    return move(model, wish, 2, placement, "block");
   };
+}
+
+/// From `coarse` by halves, as many as told, and a reference.
+std::vector<double> halves(double coarse, int levels, double reference) {
+  std::vector<double> out;
+  for (int k = 0; k < levels; ++k) out.push_back(coarse / std::exp2(k));
+  out.push_back(reference);
+  return out;
+}
+
+std::vector<Scene> scenes() {
+  std::vector<Scene> out;
+  const std::vector<double> one = halves(0.025, 7, 6.25e-5), two = halves(0.05, 8, 6.25e-5);
+  for (const char* k : {"1e4", "1e6", "1e8"}) {
+    out.push_back({std::string("spring pendulum, k ") + k, 3, 1, 1e-3, halves(0.075, 8, 6.25e-5),
+                   spring_pendulum(std::atof(k))});
+    out.push_back(
+        {std::string("free slider-crank, k ") + k, 2, 0.4, 1e-3, two, slider_crank(std::atof(k))});
+  }
+  const auto add = [&](const std::string& name, const char* file, double end, double size,
+                       const std::vector<double>& steps, const std::vector<std::string>& changes) {
+    out.push_back({name, end, size, 1e-3, steps, shipped_case(file, changes)});
+  };
+  const std::string stiff = "body.youngs_modulus=1e10";
+  for (const char* v : {"v01", "v05"}) {
+    const std::string plate = std::string("rotating_plate_") + v;
+    add(plate, plate.c_str(), 1, 0.5, one, {});
+    add(plate + ", E x 100", plate.c_str(), 1, 0.5, one, {stiff});
+  }
+  const std::string rigid = "time.start=rigid", rest = "time.start=hub_at_rest";
+  const char* const slow = "rotating_plate_v01";
+  add("rotating_plate_v01, rigid start", slow, 1, 0.5, one, {rigid});
+  add("rotating_plate_v01, rigid start, E x 100", slow, 1, 0.5, one, {rigid, stiff});
+  add("rotating_plate_v01, spin-up", slow, 1, 0.5, one, {rest});
+  add("rotating_plate_v01, spin-up, E x 100", slow, 1, 0.5, one, {rest, stiff});
+#ifdef FLEXMORPH_HEAT
+  const char* const hot = "slider_crank_heated";
+  const std::string rod = "body.youngs_modulus=2e10", jump = "body.heat.profile=step";
+  add("slider_crank_heated", hot, 2, 0.46, two, {});
+  add("slider_crank_heated, E x 100", hot, 2, 0.46, two, {rod});
+  add("slider_crank_heated, 4 s", hot, 4, 0.46, halves(0.1, 8, 1.25e-4), {"time.end=4"});
+  add("slider_crank_heated, 4 s, E x 100", hot, 4, 0.46, halves(0.1, 8, 1.25e-4),
+      {"time.end=4", rod});
+  add("slider_crank_heated, temperature step", hot, 2, 0.46, two, {jump});
+  add("slider_crank_heated, temperature step, E x 100", hot, 2, 0.46, two, {jump, rod});
+#endif
+  return out;
 }
 
 }  // namespace
 
-int main() {
-  const std::vector<double> steps = {8e-3, 4e-3, 2e-3, 1e-3, 5e-4};
-  compare("spring pendulum, k 1e4", 3, 1, steps, spring_pendulum(1e4));
-  compare("spring pendulum, k 1e6", 3, 1, steps, spring_pendulum(1e6));
-  compare("spring pendulum, k 1e8", 3, 1, steps, spring_pendulum(1e8));
-  compare("slider-crank, k 1e4", 2, 0.4, steps, slider_crank(1e4, 0));
-  compare("slider-crank, k 1e6", 2, 0.4, steps, slider_crank(1e6, 0));
-  compare("slider-crank, k 1e8", 2, 0.4, steps, slider_crank(1e8, 0));
-  for (const double speed : {0.1, 0.5}) {
-    char name[60];
-    for (const double stiffness : {1.0, 100.0}) {
-      std::snprintf(name, sizeof name, "rotating plate, v %.1f, E x %.0f", speed, stiffness);
-      compare(name, 1, 0.5, steps, rotating_plate(speed, stiffness, fem::Start::prestretched));
+int main(int argc, char** argv) {
+  for (const Scene& scene : scenes()) {
+    bool wanted = argc == 1;
+    for (int i = 1; i < argc; ++i) wanted = wanted || scene.name.find(argv[i]) != std::string::npos;
+    try {
+      if (wanted) compare(scene);
+    } catch (const Error& e) {  // of the reference
+      std::printf("%s: %s\n", scene.name.c_str(), e.what());
     }
   }
-  compare("rotating plate, v 0.1, rigid start", 1, 0.5, steps,
-          rotating_plate(0.1, 1, fem::Start::rigid));
-  compare("rotating plate, v 0.1, E x 100, rigid start", 1, 0.5, steps,
-          rotating_plate(0.1, 100, fem::Start::rigid));
 }

@@ -146,6 +146,20 @@ TEST(Filter, ForgetsWhatTheStepDoesNotResolve) {
   }
 }
 
+// One of 40 Hz, near to what the step resolves, swings by a tenth of the tolerance.
+TEST(Filter, DoesNotFollowWhatIsBelowTheTolerance) {
+  for (const double tolerance : {1e-4, 1e-5}) {
+    const int slow = steps_over({{3, 3}}, tolerance);
+    double error = 0;
+    const double omega = 2.5 * slow / 2;  // two and a half radians in a step
+    const int both = steps_over({{3, omega}, {1, 0.1 * tolerance}}, tolerance, &error);
+    std::printf("tolerance %.0e: %d steps alone, %d with %.0f rad/s; error %.2e m\n", tolerance,
+                slow, both, omega, error);
+    EXPECT_LT(both, 1.3 * slow);
+    EXPECT_LT(error, 10 * tolerance);
+  }
+}
+
 TEST(StepControl, LandsWithTwoEqualSteps) {
   AdaptiveStep settings;
   settings.largest = 0.3;
