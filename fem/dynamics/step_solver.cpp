@@ -31,7 +31,7 @@ void StepSolver::set_scales() {
   scaled_version_ = model_.pattern_version();
 }
 
-void StepSolver::factorize() {
+void StepSolver::factorize(double miss) {
   set_scales();
   // Unknown i is solved as the displacement scales_i Δq_i; its equation as a virtual work on it.
   for (int column = 0; column < kkt_.cols(); ++column)
@@ -43,7 +43,7 @@ void StepSolver::factorize() {
     solver_.analyze(kkt_);
     analysed_version_ = model_.pattern_version();
   }
-  solver_.factorize(kkt_);
+  solver_.factorize(kkt_, miss);
   ++counts_.factorizations;
 }
 
@@ -53,15 +53,17 @@ std::optional<double> StepSolver::condition() const {
 }
 
 void StepSolver::factorize_here(double h) {
+  // A tenth of the contraction that Newton's method accepts of a kept tangent.
+  constexpr double kMiss = 0.02;
   tangent(kkt_);
-  factorize();
+  factorize(kMiss);
   factored_h_ = h;
 }
 
 void StepSolver::solve_mass(const State& x, const VectorXd& force, const VectorXd& constraint) {
   factored_h_ = 0;
   model_.kkt(x, constraints_, {0, 0, 1}, 1, kkt_);
-  factorize();
+  factorize(0);
   right_.resize(kkt_.rows());
   right_.head(model_.n_dofs()) = force.cwiseQuotient(scales_);
   right_.tail(model_.n_constraints()) = constraint;

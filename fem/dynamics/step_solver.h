@@ -74,7 +74,7 @@ class StepSolver : public Integrator {
   [[noreturn]] void give_up(const State& x, double h, int failures) const;
   void solve_mass(const State& x, const VectorXd& force, const VectorXd& constraint);
   void set_scales();
-  void factorize();
+  void factorize(double miss);  ///< of kkt_; see UnsymmetricSolver
 
   Model& model_;
   StepSettings settings_;

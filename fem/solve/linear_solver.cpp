@@ -52,10 +52,10 @@ void UnsymmetricSolver::analyze(const SparseMatrix& a) {
   impl_->may_cholesky = impl_->cholesky.analyze(a);
 }
 
-void UnsymmetricSolver::factorize(const SparseMatrix& a) {
+void UnsymmetricSolver::factorize(const SparseMatrix& a, double miss) {
   if (!Eigen::Map<const VectorXd>(a.valuePtr(), a.nonZeros()).allFinite())
     throw Error::numerical("linear solver: the matrix holds numbers that are not finite");
-  impl_->is_cholesky = impl_->may_cholesky && impl_->cholesky.factorize(a);
+  impl_->is_cholesky = impl_->may_cholesky && impl_->cholesky.factorize(a, miss);
   impl_->release_numeric();
   if (impl_->is_cholesky) return;
   if (!impl_->symbolic)

@@ -12,9 +12,9 @@ namespace flexmorph::fem {
 ///   [ Φ_q  0  ]    in any order: rows of Φ_q are those without an entry on the diagonal.
 ///
 /// Where the matrix is symmetric, A positive definite and Φ_q of few rows, by the supernodal
-/// Cholesky factor of A (CHOLMOD) and the Schur complement of the constraints. All others, those of
-/// material flow among them, by UMFPACK, at three to five times the cost. The pattern is analysed
-/// once; which of the two it is shows at every factorization anew.
+/// Cholesky factor of A (CHOLMOD) and the Schur complement of the constraints. All others by
+/// UMFPACK, at three to five times the cost. The pattern is analysed once; which of the two it is
+/// shows at every factorization anew.
 class UnsymmetricSolver {
  public:
   UnsymmetricSolver();
@@ -25,7 +25,10 @@ class UnsymmetricSolver {
   /// Analyses the pattern of a compressed matrix; values may change afterwards.
   void analyze(const SparseMatrix& a);
   /// @throws Error (numerical) when the matrix is singular or not finite.
-  void factorize(const SparseMatrix& a);
+  /// @param miss  for the tangents of an outer iteration: solutions may miss by this part of
+  ///              themselves, so that a matrix that is nearly symmetric (material flow adds a part
+  ///              of order h |rate| / length) is factored by Cholesky, too
+  void factorize(const SparseMatrix& a, double miss = 0);
   /// x = A⁻¹ b with the matrix of the last factorize(), which must still exist.
   /// @param refine  one step of iterative refinement; an outer iteration does not need it.
   void solve(const SparseMatrix& a, const VectorXd& b, VectorXd& x, bool refine = true) const;

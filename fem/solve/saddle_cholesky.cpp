@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "fem/solve/substitution.h"
@@ -36,8 +37,9 @@ struct SaddleCholesky::Impl {
   };
   std::vector<int> a_rows, b_rows;  // unknowns of the whole matrix
   std::vector<int> starts, rows, places;
+  std::vector<int> mirrors;  // places of the same entries in the other triangle
   std::vector<double> values;
-  std::vector<Pair> pairs;
+  std::vector<Pair> a_pairs, b_pairs;
   std::vector<Entry> b_entries;
   std::vector<double> b_values;
   MatrixXd spread, y;  // Bᵀ, A⁻¹ Bᵀ (n_a x m)
@@ -45,6 +47,8 @@ struct SaddleCholesky::Impl {
   Eigen::LLT<MatrixXd> schur_factor;
   VectorXd right, multipliers;
   VectorXd permuted, block;  // in the order of the factor; rows of one supernode
+  VectorXd tried, image, back;
+  bool refused = false;  // the symmetric part of a matrix with this pattern
 
   Impl() {
     cholmod_start(&common);
@@ -111,11 +115,12 @@ struct SaddleCholesky::Impl {
                                       static_cast<Eigen::Index>(solution->ncol));
   }
 
-  bool symmetric(const double* a, Eigen::Index n_entries) const {
+  static bool symmetric(const std::vector<Pair>& pairs, const SparseMatrix& a) {
+    const double* x = a.valuePtr();
     const double allowed =
-        kSymmetry * Eigen::Map<const VectorXd>(a, n_entries).lpNorm<Eigen::Infinity>();
+        kSymmetry * Eigen::Map<const VectorXd>(x, a.nonZeros()).lpNorm<Eigen::Infinity>();
     return std::all_of(pairs.begin(), pairs.end(),
-                       [&](const Pair& p) { return std::abs(a[p.lower] - a[p.upper]) <= allowed; });
+                       [&](const Pair& p) { return std::abs(x[p.lower] - x[p.upper]) <= allowed; });
   }
 };
 
@@ -125,6 +130,7 @@ SaddleCholesky::~SaddleCholesky() = default;
 bool SaddleCholesky::analyze(const SparseMatrix& a) {
   Impl& s = *impl_;
   s.release();
+  s.refused = false;
   const auto n = static_cast<int>(a.rows());
   const auto place = [&](int row, int column) {
     const int *first = a.innerIndexPtr() + a.outerIndexPtr()[column],
@@ -146,7 +152,9 @@ bool SaddleCholesky::analyze(const SparseMatrix& a) {
   s.starts = {0};
   s.rows.clear();
   s.places.clear();
-  s.pairs.clear();
+  s.mirrors.clear();
+  s.a_pairs.clear();
+  s.b_pairs.clear();
   s.b_entries.clear();
   for (int column = 0; column < n; ++column) {
     const int j = number[static_cast<size_t>(column)];
@@ -156,11 +164,12 @@ bool SaddleCholesky::analyze(const SparseMatrix& a) {
       if (row > column) {
         const int other = place(column, row);
         if (other < 0) return false;
-        s.pairs.push_back({p, other});
+        (i >= 0 && j >= 0 ? s.a_pairs : s.b_pairs).push_back({p, other});
       }
       if (i >= 0 && j >= 0 && i >= j) {
         s.rows.push_back(i);
         s.places.push_back(p);
+        s.mirrors.push_back(place(column, row));
       }
       if (i < 0) s.b_entries.push_back({-1 - i, j, p});
     }
@@ -190,11 +199,39 @@ bool SaddleCholesky::analyze(const SparseMatrix& a) {
   return true;
 }
 
-bool SaddleCholesky::factorize(const SparseMatrix& a) {
+bool SaddleCholesky::factorize(const SparseMatrix& a, double miss) {
+  const bool symmetric = Impl::symmetric(impl_->a_pairs, a);
+  if (!Impl::symmetric(impl_->b_pairs, a)) return false;
+  if (symmetric) return factorize_symmetric_part(a);
+  if (!(miss > 0) || impl_->refused) return false;
+  impl_->refused = !factorize_symmetric_part(a) || misses(a) > miss;
+  return !impl_->refused;
+}
+
+double SaddleCholesky::misses(const SparseMatrix& a) {
+  constexpr int kPasses = 2;
+  Impl& s = *impl_;
+  s.tried.setZero(a.rows());
+  for (size_t k = 0; k < s.a_rows.size(); ++k)  // any vector that is no eigenvector
+    s.tried[s.a_rows[k]] = std::cos(static_cast<double>(k * k));
+  double out = 0;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    s.tried /= s.tried.lpNorm<Eigen::Infinity>();
+    s.image.noalias() = a * s.tried;
+    solve(s.image, s.back);
+    s.tried -= s.back;
+    for (const int row : s.b_rows) s.tried[row] = 0;
+    out = s.tried.lpNorm<Eigen::Infinity>();
+    if (out == 0) break;
+  }
+  return out;
+}
+
+bool SaddleCholesky::factorize_symmetric_part(const SparseMatrix& a) {
   Impl& s = *impl_;
   const double* entries = a.valuePtr();
-  if (!s.symmetric(entries, a.nonZeros())) return false;
-  for (size_t k = 0; k < s.places.size(); ++k) s.values[k] = entries[s.places[k]];
+  for (size_t k = 0; k < s.places.size(); ++k)
+    s.values[k] = 0.5 * (entries[s.places[k]] + entries[s.mirrors[k]]);
   if (!cholmod_factorize(&s.matrix, s.factor, &s.common) || s.common.status != CHOLMOD_OK ||
       s.factor->minor < s.factor->n || cholmod_rcond(s.factor, &s.common) < kTrusted)
     return false;

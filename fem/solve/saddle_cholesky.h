@@ -18,13 +18,20 @@ class SaddleCholesky {
   /// @returns whether the pattern is symmetric with few rows of B; if not, factorize() must not be
   ///          called.
   bool analyze(const SparseMatrix& a);
-  /// @returns false, and nothing can be solved, when the matrix is not symmetric, A not positive
-  ///          definite, or one of the two factors too near to singular to be trusted.
-  bool factorize(const SparseMatrix& a);
-  /// x = a⁻¹ b (n).
+  /// Where A is not symmetric, its symmetric part stands for it if solutions then miss by no more
+  /// than a part `miss` of themselves: an estimate of the spectral radius of 1 - a_s⁻¹ a, by two
+  /// steps of the power method. Refused once, it is not tried again before the next analyze().
+  /// @returns false, and nothing can be solved, when B and Bᵀ differ, A is not symmetric enough or
+  ///          its symmetric part not positive definite, or one of the two factors is too near to
+  ///          singular to be trusted.
+  bool factorize(const SparseMatrix& a, double miss = 0);
+  /// x = a⁻¹ b (n), or that of the symmetric part.
   void solve(const VectorXd& b, VectorXd& x);
 
  private:
+  bool factorize_symmetric_part(const SparseMatrix& a);
+  double misses(const SparseMatrix& a);
+
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
