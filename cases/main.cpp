@@ -10,6 +10,7 @@
 #include "cases/stability.h"
 #include "cases/sweep.h"
 #include "cases/version.h"
+#include "geometry/plain_numbers.h"
 
 namespace {
 
@@ -163,6 +164,7 @@ int parse_and_run(int argc, char** argv) {
 
 /// Exit codes: 0 done, 1 a defect of the program, 2 bad input, 3 numerical failure, 4 interrupted.
 int main(int argc, char** argv) {
+  const flexmorph::PlainNumbers plain;  // messages, too
   try {
     return parse_and_run(argc, argv);
   } catch (const Error& error) {

@@ -1,6 +1,7 @@
 #include "cases/sweep.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -204,9 +205,11 @@ std::vector<std::vector<std::string>> summary_of(const Sweep& sweep,
 }
 
 std::optional<double> number_of(const std::string& text) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  return !text.empty() && *end == 0 && std::isfinite(value) ? std::optional(value) : std::nullopt;
+  double value = 0;
+  const char *first = text.data() + text.starts_with('+'), *last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(first, last, value);
+  const bool whole = error == std::errc() && end == last;
+  return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
 /// Ends of the runs against the numbers of the last key, where it has three numbers or more; else

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "geometry/base.h"
+#include "io/files.h"
 #include "io/sheet.h"
 
 namespace flexmorph::io {
@@ -13,6 +14,8 @@ namespace {
 
 constexpr double kAzimuth = -55 * std::numbers::pi / 180, kElevation = 25 * std::numbers::pi / 180;
 constexpr double kWidth = 1000;  // of a picture, in its own units
+
+std::string tenths(double value) { return to_text(std::round(10 * value) / 10); }
 
 /// Where a point is seen: to the right, up, and towards the viewer.
 Vec3 seen(const double* p) {
@@ -69,16 +72,14 @@ std::string picture(const SurfaceFrame& frame, const View& view) {
                    [](const Quad& a, const Quad& b) { return a.depth < b.depth; });
   const double scale = 0.96 * kWidth / view.size();
   const double height = scale * (view.high - view.low) + 0.04 * kWidth;
-  char text[96];
-  std::snprintf(text, sizeof text, "viewBox=\"0 0 %.0f %.0f\"", kWidth, height);
-  std::string out = "<svg xmlns=\"http://www.w3.org/2000/svg\" " + std::string(text) + ">\n";
+  std::string out = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + to_text(kWidth) +
+                    " " + to_text(std::round(height)) + "\">\n";
   for (const Quad& quad : order) {
     out += "<polygon points=\"";
     for (const int corner : frame.mesh.quads[quad.number]) {
       const Vec3 at = seen(&frame.mesh.points[3 * corner]);
-      std::snprintf(text, sizeof text, "%.1f,%.1f ", scale * (at[0] - view.left) + 0.02 * kWidth,
-                    scale * (view.high - at[1]) + 0.02 * kWidth);
-      out += text;
+      out += tenths(scale * (at[0] - view.left) + 0.02 * kWidth) + "," +
+             tenths(scale * (view.high - at[1]) + 0.02 * kWidth) + " ";
     }
     const double share = view.largest > 0 ? std::sqrt(frame.values[quad.number] / view.largest) : 0;
     out += "\" fill=\"" + colour(share) + "\" stroke=\"#222\" stroke-width=\"0.5\"/>\n";

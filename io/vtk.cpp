@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/plain_numbers.h"
 #include "io/files.h"
 #include "io/tables.h"
 
@@ -65,6 +66,7 @@ void write_xml(const std::string& path, Data* data) {
   writer->SetCompressorTypeToZLib();
   writer->SetCompressionLevel(1);
   writer->WriteToOutputStringOn();
+  const PlainNumbers plain;  // VTK prints ranges in the language of the process
   if (writer->Write() != 1) throw Error::numerical(path + ": VTK could not encode the data");
   write_file(path, writer->GetOutputString());
 }

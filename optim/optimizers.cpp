@@ -1,5 +1,6 @@
 #include <cmath>
 #include <functional>
+#include <locale>
 #include <sstream>
 
 #include "optim/makers.h"
@@ -26,6 +27,7 @@ std::string joined(const std::vector<std::string>& names) {
 
 std::string number(double value) {
   std::ostringstream text;
+  text.imbue(std::locale::classic());
   text << value;
   return text.str();
 }

@@ -1,8 +1,9 @@
 #include "optim/search.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <ctime>
 
 #include "optim/kkt.h"
@@ -36,9 +37,10 @@ double violation(const Response& response) {
 }
 
 std::string scientific(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1e", value);
-  return text;
+  std::array<char, 32> text;
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value,
+                                 std::chars_format::scientific, 1);
+  return {text.data(), end.ptr};
 }
 
 Search::Search(Problem& problem, const Settings& settings, const Observer& observe)

@@ -20,6 +20,7 @@
 #include <vtkXMLUtilities.h>
 
 #include <cmath>
+#include <sstream>
 
 #include "tests/io/scratch.h"
 
@@ -202,6 +203,32 @@ TEST(VtkFiles, AreTheSameBytesTwice) {
   EXPECT_TRUE(contains(text, "format=\"binary\""));
   EXPECT_TRUE(contains(text, "vtkZLibDataCompressor"));
   EXPECT_FALSE(contains(text, "appended"));
+}
+
+// VTK writes ranges of fields as text, in the language of the process.
+TEST(VtkFiles, AreTheSameBytesWithADecimalComma) {
+  const Scratch scratch;
+  const Grid grid{.x0 = -0.5, .width = 1.5, .height = 0.7, .nx = 2, .ny = 2};
+  const std::vector<double> cells = {0.25, 1234.5, -0.125, 1e-7, 3, 4, 5, 6.5};
+  const std::vector<Field> fields = {{"displacement", cells, 2}};
+  const std::vector<std::vector<Vec2>> outlines = {{{0.5, 0.25}, {1.5, 0.25}, {1.5, 2.75}}};
+  const QuadMesh mesh{2, {0.5, 0, 1.5, 0, 1.5, 1.25, 0.5, 1.25}, {{0, 1, 2, 3}}};
+  const auto write = [&](const std::string& name) {
+    write_image_data(scratch / name + ".vti", grid, fields, {});
+    write_outlines(scratch / name + ".vtp", outlines, {});
+    write_quad_mesh(scratch / name + ".vtu", mesh, {}, {});
+  };
+  write("point");
+  const CommaLocale comma;
+  write("comma");
+  std::ostringstream text;
+  text << 1234.5;
+  EXPECT_EQ(text.str(), "1.234,5");  // the language is what it was
+  for (const char* ending : {".vti", ".vtp", ".vtu"}) {
+    EXPECT_TRUE(contains(contents_of(scratch / "point" + ending), "L2_NORM_RANGE")) << ending;
+    EXPECT_TRUE(contents_of(scratch / "point" + ending) == contents_of(scratch / "comma" + ending))
+        << ending;
+  }
 }
 
 TEST(VtkFiles, RefuseWrongSizesAndNumbersThatAreNone) {

@@ -1,0 +1,176 @@
+// Numbers do not depend on the language of the machine: the program writes the same bytes, times
+// apart, where printf, strtod and streams have a decimal comma.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "io/tables.h"
+#include "tests/cases/program.h"
+
+namespace flexmorph::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// While it lives, programs that are started speak German.
+class Comma {
+ public:
+  explicit Comma(const Scratch& scratch) : said_(scratch / "said") {
+    // Made here: few machines have it installed.
+    const std::string folder = scratch / "locales";
+    fs::create_directories(folder);
+    made_ = std::system(("localedef -i de_DE -f UTF-8 '" + folder + "/de_DE.UTF-8'").c_str()) == 0;
+    set("LOCPATH", folder);
+    set("LC_ALL", "de_DE.UTF-8");
+    set("LD_PRELOAD", FLEXMORPH_COMMA_LOCALE);
+    set("FLEXMORPH_SPEAKS", said_);
+  }
+  ~Comma() {
+    for (const std::string& name : names_) unsetenv(name.c_str());
+  }
+  Comma(const Comma&) = delete;
+  Comma& operator=(const Comma&) = delete;
+
+  /// Did every process that was started speak so?
+  ::testing::AssertionResult spoken() const {
+    if (!made_)
+      return ::testing::AssertionFailure() << "localedef made no de_DE.UTF-8: package 'locales'?";
+    const Words said = lines_of(contents_of(said_));
+    if (said.empty()) return ::testing::AssertionFailure() << "no process said anything";
+    for (const std::string& line : said)
+      if (line != "printf 0,5 strtod 250 stream 1.234,5")
+        return ::testing::AssertionFailure() << line;
+    return ::testing::AssertionSuccess();
+  }
+
+ private:
+  void set(const char* name, const std::string& value) {
+    names_.emplace_back(name);
+    setenv(name, value.c_str(), 1);
+  }
+  std::string said_;
+  std::vector<std::string> names_;
+  bool made_ = false;
+};
+
+/// A table without its columns of times and memory.
+std::string without_times(const io::CsvTable& table) {
+  std::string out;
+  for (size_t c = 0; c < table.columns.size(); ++c) {
+    const std::string& name = table.columns[c];
+    if (name.starts_with("seconds") || name == "CPU s" || name == "peak_memory_bytes") continue;
+    out += name;
+    for (const auto& row : table.rows) out += "," + row[c];
+    out += "\n";
+  }
+  return out;
+}
+
+/// All files of a folder by their path in it, times apart: those of run.json, of tables, and
+/// `timed` files as a whole.
+std::map<std::string, std::string> files_of(const std::string& folder, const Words& timed = {}) {
+  std::map<std::string, std::string> out;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (!entry.is_regular_file()) continue;
+    const std::string name = fs::relative(entry.path(), folder).string(),
+                      path = entry.path().string();
+    if (std::find(timed.begin(), timed.end(), name) != timed.end()) continue;
+    std::string text = contents_of(path);
+    if (name.ends_with("run.json")) {
+      auto json = nlohmann::ordered_json::parse(text);
+      for (const char* key : {"seconds_wall", "seconds_cpu", "peak_memory_bytes"}) json.erase(key);
+      text = json.dump();
+    } else if (name.ends_with(".csv")) {
+      text = without_times(io::read_csv(path));
+    }
+    out[name] = text;
+  }
+  return out;
+}
+
+void expect_same(const std::map<std::string, std::string>& a,
+                 const std::map<std::string, std::string>& b) {
+  for (const auto& [name, text] : a) {
+    if (!b.contains(name)) {
+      ADD_FAILURE() << name << " is missing";
+      continue;
+    }
+    if (b.at(name) == text) continue;
+    const auto differ =
+        std::mismatch(text.begin(), text.end(), b.at(name).begin(), b.at(name).end());
+    const auto at = static_cast<size_t>(differ.first - text.begin());
+    const size_t from = at < 40 ? 0 : at - 40;
+    ADD_FAILURE() << name << ": ..." << text.substr(from, 80) << "... and ..."
+                  << b.at(name).substr(from, 80) << "...";
+  }
+  EXPECT_EQ(a.size(), b.size());
+}
+
+/// The same command in both languages.
+/// @returns how many files were compared
+size_t expect_same_files(const Words& command, const Words& timed = {}) {
+  const Scratch scratch;
+  const auto run = [&](const std::string& folder) {
+    Words words = command;
+    words.insert(words.end(), {"-o", folder});
+    const Ended ended = flexmorph(scratch, words);
+    EXPECT_EQ(ended.code, 0) << ended.err;
+  };
+  const std::string plain = scratch / "plain" + "/out", comma = scratch / "comma" + "/out";
+  run(plain);
+  {
+    const Comma german(scratch);
+    run(comma);
+    EXPECT_TRUE(german.spoken());
+  }
+  const auto files = files_of(plain, timed);
+  expect_same(files, files_of(comma, timed));
+  return files.size();
+}
+
+Words with(Words command, const Words& changes) {
+  for (const std::string& change : changes) command.insert(command.end(), {"--set", change});
+  return command;
+}
+
+TEST(Comma, ADesignAndItsMotion) {
+  EXPECT_GE(expect_same_files({"run", FLEXMORPH_SHORT_CASE}), 30u);
+}
+
+// In space; in the plane rigid bodies, formulas and heat.
+TEST(Comma, ShapesInSpaceAndMechanismsWithHeat) {
+  EXPECT_GE(expect_same_files(
+                with({"run", "cantilever_roll_up"}, {"body.elements=[4, 1]", "static.steps=4"})),
+            6u);
+  EXPECT_GE(expect_same_files(with({"run", "slider_crank_heated"}, {"time.end=0.01"})), 6u);
+}
+
+// Run times are in sweep.md, compare.md and compare.svg.
+TEST(Comma, Studies) {
+  EXPECT_GE(expect_same_files(
+                with({"sweep", "plate_pendulum", "--vary", "body.thickness=0.009,0.01,0.011"},
+                     {"body.elements=[2, 2]", "time.end=0.01", "output.vtk=false"}),
+                {"sweep.md"}),
+            15u);
+  EXPECT_GE(expect_same_files(with({"compare", "short_beam", "--optimizers", "mma,ipopt",
+                                    "--starts", "1", "--budget", "8"},
+                                   {"design.cell=0.1", "output.vtk=false"}),
+                              {"compare.md", "compare.svg"}),
+            15u);
+}
+
+// Ladders that fit into the budget as a whole; what is recommended then depends on run times.
+TEST(Comma, Accuracy) {
+  EXPECT_GE(expect_same_files(with({"accuracy", "short_beam", "--ladders", "band", "--budget",
+                                    "10min", "--no-verify", "--quiet"},
+                                   {"design.cell=0.1", "accuracy.quantity=volume"}),
+                              {"accuracy.md", "accuracy.svg", "short_beam_1pct.toml",
+                               "short_beam_0.1pct.toml", "short_beam_0.01pct.toml"}),
+            20u);
+}
+
+}  // namespace
+}  // namespace flexmorph::test
