@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "cases/build.h"
+#include "cases/check_cost.h"
 #include "cases/heat.h"
 #include "cases/run.h"
 #include "cases/scene_parts.h"
@@ -16,13 +17,7 @@ std::string row(const std::string& what, const std::string& words) {
   return "  " + what + std::string(what.size() < 22 ? 22 - what.size() : 1, ' ') + words + "\n";
 }
 
-/// Floating-point operations of one force and tangent of a plate element, from the Gram form: n_p
-/// pairs, force n_p², tangent 2 n_k d (n_k n_p + n_k² d).
-double element_operations(int n_shapes, int dim) {
-  const double n_pairs = 0.5 * n_shapes * (n_shapes + 1);
-  return 2 * n_pairs * n_pairs +
-         2.0 * n_shapes * dim * (n_shapes * n_pairs + n_shapes * n_shapes * dim);
-}
+std::string millions(double operations) { return io::to_text(1e-6 * operations, 2); }
 
 /// Loads alone are what one expects.
 std::string growing_words(const StaticAnalysis& analysis) {
@@ -81,17 +76,17 @@ std::string load_words(const BodyLoad& load) {
 
 void describe_body(const Body& body, const Mechanism& mechanism, std::ostringstream& out) {
   const fem::Body& built = mechanism.model.body(body.name);
-  const int n = built.n_dofs(), per_element = built.element->n_shapes();
+  const int n = built.n_dofs();
   const std::string mesh = body.is_beam()
                                ? ", " + std::to_string(body.elements[0])
                                : " " + body.shape + ", " + std::to_string(body.elements[0]) +
                                      " x " + std::to_string(body.elements[1]);
-  out << row("body " + body.name,
-             body.element + mesh + " elements, " + std::to_string(n) + " unknowns, about " +
-                 io::to_text(1e-6 * built.element->n_elements() *
-                                 element_operations(per_element, built.element->dim()),
-                             2) +
-                 " Mflop for a force and tangent");
+  out << row(
+      "body " + body.name,
+      body.element + mesh + " elements, " + std::to_string(n) + " unknowns, about " +
+          millions(built.element->n_elements() * (force_operations(body, *built.element) +
+                                                  tangent_operations(body, *built.element))) +
+          " Mflop for a force and tangent");
   std::string terms;
   for (const std::string& t : body.terms) terms += (terms.empty() ? "" : ", ") + t;
   out << row("", "terms: " + terms);
@@ -222,6 +217,45 @@ void describe_static(const Scene& scene, std::ostringstream& out) {
   if (!scene.output.vtk) out << row("VTK files", "none");
 }
 
+void describe_operations(const Scene& scene, const Mechanism& mechanism, std::ostringstream& out) {
+  if (scene.time.integrator == "minimal_coordinates") return;
+  const StepOperations each = step_operations(scene, mechanism);
+  std::string parts = "forces " + millions(each.forces);
+  if (each.tangents > 0) parts += ", tangents " + millions(each.tangents);
+  parts += ", sparse solver " + millions(each.solver);
+  if (each.flow > 0) parts += ", flow of material " + millions(each.flow);
+  out << row("operations", "about " + millions(each.total()) + " million per step: " + parts);
+}
+
+void describe_absent(const Scene& scene, std::ostringstream& out) {
+  if (!scene.in_space())
+    out << row("out-of-plane", "positions have two components; no bending term");
+  if (!scene.has_heat()) out << row("heat", "no thermal term");
+  if (!scene.has_free_lines())
+    out << row("free material lines", "no material coordinate is an unknown");
+  if (scene.statics)
+    out << row("motion", "no time, no inertia, no integrator");
+  else
+    out << row("static analysis", "no path of equilibria");
+  if (!scene.statics && !scene.time.tolerance)
+    out << row("adaptive steps", "no estimate of errors, no dense output");
+  if (scene.loads.empty()) out << row("loads", "none");
+  if (std::none_of(scene.bodies.begin(), scene.bodies.end(),
+                   [](const Body& b) { return b.flow.has_value(); }))
+    out << row("material flow", "no shape function has rates");
+  if (!scene.is_mechanism()) out << row("rigid bodies", "none");
+  if (scene.is_mechanism() && scene.springs.empty()) out << row("springs", "none");
+  if (!scene.gravity) out << row("gravity", "none");
+  if (scene.designs.empty()) out << row("design", "full material; no loads, no optimizer");
+  if (!scene.verify) out << row("verification", "no run on a finer mesh");
+  if (scene.observed.empty()) out << row("observed points", "none");
+  if (scene.measures.empty()) out << row("measured", "no quantities of bodies");
+  if (!scene.output.vtk) out << row("VTK files", "none");
+  if (scene.output.vtk && scene.output.motion_every == 0)
+    out << row("VTK files", "none of the motion");
+  if (!scene.output.plots) out << row("plots", "none");
+}
+
 }  // namespace
 
 std::string check_case(const RunOptions& options) {
@@ -268,26 +302,9 @@ std::string check_case(const RunOptions& options) {
                                    (scene.time.tolerance && scene.verify->step == scene.time.step
                                         ? ", adaptive steps"
                                         : ", step " + io::to_text(scene.verify->step) + " s"));
+  describe_operations(scene, mechanism, out);
   out << "\nabsent: not built, costs nothing\n";
-  if (!scene.in_space())
-    out << row("out-of-plane", "positions have two components; no bending term");
-  if (!scene.has_heat()) out << row("heat", "no thermal term");
-  if (!scene.has_free_lines())
-    out << row("free material lines", "no material coordinate is an unknown");
-  if (scene.statics)
-    out << row("motion", "no time, no inertia, no integrator");
-  else
-    out << row("static analysis", "no path of equilibria");
-  if (scene.loads.empty()) out << row("loads", "none");
-  if (std::none_of(scene.bodies.begin(), scene.bodies.end(),
-                   [](const Body& b) { return b.flow.has_value(); }))
-    out << row("material flow", "no shape function has rates");
-  if (!scene.is_mechanism()) out << row("rigid bodies", "none");
-  if (scene.is_mechanism() && scene.springs.empty()) out << row("springs", "none");
-  if (!scene.gravity) out << row("gravity", "none");
-  if (scene.designs.empty()) out << row("design", "full material; no loads, no optimizer");
-  if (!scene.verify) out << row("verification", "no run on a finer mesh");
-  if (!scene.output.vtk) out << row("VTK files", "none");
+  describe_absent(scene, out);
   return out.str();
 }
 

@@ -53,12 +53,16 @@ TEST(CommandLine, CheckSaysWhatIsThereAndWhatIsNot) {
   const auto [active, absent] = halves({});
   for (const char* part :
        {" s, step ", "body plate", "24 components, 168 variables", "112 x 20 cells", "12 loads",
-        "unknowns", "MB", "mma", "terms: inertia, membrane"})
+        "unknowns", "MB", "mma", "terms: inertia, membrane", "million per step: forces"})
     EXPECT_TRUE(contains(active, part));
-  for (const char* part : {"gravity", "heat", "out-of-plane", "rigid bodies", "verification"})
+  for (const char* part : {"gravity", "heat", "out-of-plane", "rigid bodies", "verification",
+                           "free material lines", "adaptive steps", "observed points", "loads"})
     EXPECT_TRUE(contains(absent, part));
   // What is listed moves from one half to the other.
-  const auto [more, less] = halves({"gravity=[0, -9.81]", "verify.mesh=[20, 4]"});
+  const auto [more, less] = halves({"gravity=[0, -9.81]", "verify.mesh=[20, 4]",
+                                    "time.step=\"adaptive\"", "output.plots=false"});
+  EXPECT_FALSE(contains(less, "adaptive steps"));
+  EXPECT_TRUE(contains(less, "plots"));
   EXPECT_TRUE(contains(more, "gravity"));
   EXPECT_FALSE(contains(less, "gravity"));
   EXPECT_TRUE(contains(more, "verification"));
