@@ -2,6 +2,15 @@
 
 namespace flexmorph::fem {
 
+const MatrixXd& table_of(const ShapeTable& t, const Measure& m) {
+  if (m.m_order == 1 && m.n_order == 0) return t.N_m;
+  if (m.m_order == 0 && m.n_order == 1) return t.N_n;
+  if (m.m_order == 2 && m.n_order == 0) return t.N_mm;
+  if (m.m_order == 0 && m.n_order == 2) return t.N_nn;
+  if (m.m_order == 1 && m.n_order == 1) return t.N_mn;
+  throw Error::numerical("density: no table of this measure");
+}
+
 std::span<const Measure> MembraneDensity::measures() const {
   static constexpr Measure kList[] = {{1, 0}, {0, 1}};
   return kList;

@@ -14,15 +14,6 @@ constexpr int length_of(int l) { return l / 2; }
 
 }  // namespace
 
-const MatrixXd& table_of(const ShapeTable& t, const Measure& m) {
-  if (m.m_order == 1 && m.n_order == 0) return t.N_m;
-  if (m.m_order == 0 && m.n_order == 1) return t.N_n;
-  if (m.m_order == 2 && m.n_order == 0) return t.N_mm;
-  if (m.m_order == 0 && m.n_order == 2) return t.N_nn;
-  if (m.m_order == 1 && m.n_order == 1) return t.N_mn;
-  throw Error::numerical("free_work: no table of this measure");
-}
-
 void check_fixed(const Element& element, int e, const Vec2& material) {
   FreeTable t;
   element.tabulate_free(e, 0, Tabulate::position, t);
