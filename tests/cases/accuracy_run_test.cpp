@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "cases/run.h"
+#include "cases/scene.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"
 
@@ -133,6 +134,23 @@ TEST(Accuracy, AnalysesADesignAsItStarts) {
                                               "optimizer.max_iterations=0", "--quiet"});
   EXPECT_EQ(run.code, 0) << run.err;
   EXPECT_EQ(io::read_csv(scratch / "start/history.csv").rows.size(), 0U);
+}
+
+// The case has a final run on a finer mesh than its own: what is recommended may be finer still.
+TEST(Accuracy, RecommendsMeshesThatTheWholeCaseTakes) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const Ended ended =
+      accuracy(scratch, "rotating_plate_v05", folder,
+               {"--ladders", "elements", "--budget", "6s", "--quiet", "--set", "accuracy.at=0.05",
+                "--set", "accuracy.scale=1e-3", "--set", "verify.mesh=[11, 3]"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const std::string file = folder + "/rotating_plate_v05_1pct.toml";
+  ASSERT_TRUE(std::filesystem::exists(file)) << ended.out;
+  const Scene finer = read_scene(io::CaseFile(file));
+  EXPECT_GT(finer.bodies[0].elements[0], 11) << ended.out;
+  EXPECT_FALSE(finer.verify);
+  EXPECT_EQ(finer.designs.size(), 1u);
 }
 
 }  // namespace
