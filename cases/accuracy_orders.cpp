@@ -59,6 +59,7 @@ double reach(std::span<const LevelValue> levels, double scale) {
   const bool rests = std::max(std::abs(last), std::abs(before)) <= kFloor * scale;
   if (!rests && slope > kGrows * *std::max_element(slopes.begin(), slopes.end() - 1))
     return kInfinite;
+  if (last * before < 0 && slope <= slope_before) return kSwing * range_of_last(levels, 3);
   if (last * before < 0 || (!rests && slope > kGrows * slope_before))
     return kSwing * range_of_last(levels, 4);
   if (!rests && slope >= kFalls * slope_before)

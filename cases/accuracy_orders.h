@@ -37,8 +37,8 @@ inline constexpr double kFloor = 1e-7;
 /// Where differences per ratio of h do not fall, as those of a logarithm, the limit is taken to lie
 /// within what they add up to on a level so many times finer.
 inline constexpr double kFarthest = 1000;
-/// Differences that change their sign, or scatter: so many times the range of the last levels; Eca & Hoekstra
-/// (2014), J. Comput. Phys. 262, 104-130.
+/// Differences that change their sign, or scatter: so many times the range of the last levels,
+/// three where differences fall, else four; Eca & Hoekstra (2014), J. Comput. Phys. 262, 104-130.
 inline constexpr double kSwing = 3;
 
 /// The limit of a ladder.
@@ -68,7 +68,8 @@ double extrapolated(const LevelValue& coarse, const LevelValue& fine, double ord
 /// stands; its uncertainty is what first order (or the lower one that was seen) would leave, at
 /// least the last difference, where differences per ratio of h fall; what a logarithm would add
 /// (kFarthest) where they stay; that of kSwing where they change their sign or scatter; infinite
-/// where they grow, and where theory knows of no limit. Source: Roache (1994), J. Fluids Eng. 116, 405-413.
+/// where they grow, and where theory knows of no limit. Source: Roache (1994), J. Fluids Eng. 116,
+/// 405-413.
 /// @param scale  of the values (> 0), see kFloor
 Limit limit_of(std::span<const LevelValue> levels, Approach approach,
                const std::optional<Theory>& theory, double scale);

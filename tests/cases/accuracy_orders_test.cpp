@@ -102,8 +102,11 @@ TEST(Orders, WhereNoneIsKnownItIsSaidWhy) {
   });
   const Limit limit = limit_of(swings, Approach::power, why, 1);
   EXPECT_NE(limit.sentence.find("corners are singular"), std::string::npos) << limit.sentence;
-  // Three times the range of the last four, 0.9 .. 1.2.
-  EXPECT_NEAR(limit.uncertainty, 3 * 0.3, 1e-12);
+  // Three times the range of the last three, 0.95 .. 1.1: differences fall.
+  EXPECT_NEAR(limit.uncertainty, 3 * 0.15, 1e-12);
+  // That of the last four where they do not.
+  const std::vector<LevelValue> grow = {{8, 1.5}, {4, 1}, {2, 1.3}, {1, 1.1}, {0.5, 1.35}};
+  EXPECT_NEAR(limit_of(grow, Approach::power, why, 1).uncertainty, 3 * 0.35, 1e-12);
   const auto first = sequence(kHalves, [](double h) { return 1 + h; });
   EXPECT_TRUE(limit_of(first, Approach::power, why, 1).converged);
 }
