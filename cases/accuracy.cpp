@@ -22,18 +22,18 @@ const std::vector<std::pair<double, std::string>> kPromises = {
 constexpr double kReserve = 0.25;                   // of the budget, for verification
 const std::vector<double> kShares = {1, 0.3, 0.1};  // of a promise
 constexpr double kMotionShare = 0.2;                // of the time that a design takes
-
-/// A knob of the motion that is turned for the sake of a design.
-bool of_motion(const Ladder& ladder) {
-  return ladder.part == Part::design &&
-         (ladder.knob->group == "elements" || ladder.knob->group == "step");
-}
 // A run may take so many times what was predicted, and so long in any case [s].
 constexpr double kPatience = 6, kLeastLimit = 5;
 
 const char* const kEnded = "ended after";  // the message of runs whose time is up
 
 struct Stopped {};  // by the user
+
+/// A knob of the motion that is turned for the sake of a design.
+bool of_motion(const Ladder& ladder) {
+  return ladder.part == Part::design &&
+         (ladder.knob->group == "elements" || ladder.knob->group == "step");
+}
 
 void append(const std::vector<std::string>& more, std::vector<std::string>& out) {
   out.insert(out.end(), more.begin(), more.end());
@@ -82,6 +82,9 @@ class Story {
 
  private:
   std::string path(const std::string& name) const { return options_.study.directory + "/" + name; }
+  std::string case_file(const std::string& name) const {
+    return study_.case_name + "_" + name + ".toml";
+  }
 
   void name_quantities() {
     if (!scene_.accuracy)
@@ -260,6 +263,7 @@ class Story {
 
   /// Knobs that do not add up: settings whose errors are a part of the promise are tried, too.
   Recommendation recommended(double promise, const std::string& name) {
+    fs::remove(path(case_file(name)));  // what an earlier study promised may not hold any more
     Recommendation first;
     for (size_t attempt = 0; attempt < kShares.size(); ++attempt) {
       Recommendation r = recommend(study_, promise, kShares[attempt]);
@@ -268,8 +272,10 @@ class Story {
         verify(r, attempt == 0 ? name : name + "_" + std::to_string(attempt + 1));
       else if (r.choice)
         r.sentence = "not verified";
-      if (r.choice && !r.withdrawn) write_case(r, name);
-      if (!r.withdrawn && (attempt == 0 || r.verified)) return r;
+      // Once a promise was broken, only a run can restore it.
+      const bool stands = !r.withdrawn && (attempt == 0 || r.verified);
+      if (stands && r.choice) write_case(r, name);
+      if (stands && !r.withdrawn) return r;
       if (attempt == 0) first = std::move(r);
     }
     return first;
@@ -339,7 +345,7 @@ class Story {
       r.sentence = std::string("withdrawn: the whole case refuses it: ") + error.what();
       return;
     }
-    r.file = study_.case_name + "_" + name + ".toml";
+    r.file = case_file(name);
     io::write_file(path(r.file), changed.text());
   }
 

@@ -11,6 +11,7 @@
 #include <random>
 
 #include "fem/term.h"
+#include "tests/support/crooked_beam.h"
 #include "tests/support/differences.h"
 #include "tests/support/errors.h"
 #include "tests/support/fractions.h"
@@ -244,21 +245,9 @@ TEST(AncfBeam, ShapesInterpolateNodalValues) {
   EXPECT_EQ(beam.reference().row(6), Eigen::RowVector2d(0.8, 0));
 }
 
-/// A bent, tapered, sheared and unevenly divided reference.
-AncfBeam crooked() {
-  const std::vector<double> x = {0, 0.2, 0.35, 0.6};
-  std::vector<BeamNode> nodes = curve_reference(
-      [](double s) {
-        return CentreLine{{s, 0.6 * s * s}, {1, 1.2 * s}, 1 - 0.8 * s};
-      },
-      x);
-  for (BeamNode& n : nodes) n.r_y += 0.2 * n.r_x;
-  return {x, 0.1, nodes};
-}
-
 // r_m and r_n are derivatives by X: the chain rule takes them to those by x and y, by differences.
 TEST(AncfBeam, GradientsAreThoseByTheReferenceCoordinates) {
-  const AncfBeam beam = crooked();
+  const AncfBeam beam = testing::crooked_beam(0.1);
   const MatrixXd X = beam.reference();
   for (const Vec2& at : {Vec2(0.07, 0.02), Vec2(0.3, -0.04), Vec2(0.5, 0.049)}) {
     ShapeTable t;

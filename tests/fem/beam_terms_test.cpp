@@ -11,6 +11,7 @@
 
 #include "fem/elements/ancf_beam.h"
 #include "fem/term.h"
+#include "tests/support/crooked_beam.h"
 #include "tests/support/differences.h"
 #include "tests/support/errors.h"
 #include "tests/support/models.h"
@@ -33,14 +34,7 @@ AncfBeam beam_of(const std::string& reference) {
   if (reference == "straight") return {{0, 0.2, 0.45, 0.6}, kHeight};
   if (reference == "arc")  // 90 degrees, 9 elements: a batch and one more
     return {even_nodes(0.9, 9), kHeight, arc_reference(0.9, std::numbers::pi / 2, 9)};
-  const std::vector<double> x = {0, 0.2, 0.35, 0.6};
-  std::vector<BeamNode> nodes = curve_reference(
-      [](double s) {
-        return CentreLine{{s, 0.6 * s * s}, {1, 1.2 * s}, 1 - 0.8 * s};
-      },
-      x);
-  for (BeamNode& n : nodes) n.r_y += 0.2 * n.r_x;
-  return {x, kHeight, nodes};
+  return testing::crooked_beam(kHeight);
 }
 
 class BeamTerm : public ::testing::TestWithParam<Case> {
