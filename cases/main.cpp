@@ -1,8 +1,5 @@
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <cstdlib>
 
 #include "cases/accuracy.h"
 #include "cases/compare.h"
@@ -11,31 +8,12 @@
 #include "cases/sweep.h"
 #include "cases/version.h"
 #include "geometry/plain_numbers.h"
+#include "geometry/processor.h"
 
 namespace {
 
 using flexmorph::Error;
 using namespace flexmorph::cases;
-
-/// OpenMP and OpenBLAS read their number of threads when they are loaded: the process starts itself
-/// once more with the wish in its environment. The threads are ours, for loads and cells; those of
-/// OpenBLAS only slow down the small blocks of a factor.
-void restart_with_threads(int threads, char** argv) {
-  const char* mark = "FLEXMORPH_THREADS";
-  const std::string n = std::to_string(threads);
-  const char* seen = std::getenv(mark);
-  if (seen && n == seen) return;
-  setenv(mark, n.c_str(), 1);
-  setenv("OMP_THREAD_LIMIT", n.c_str(), 1);
-  setenv("OMP_NUM_THREADS", n.c_str(), 1);
-  setenv("OMP_WAIT_POLICY", "passive", 0);  // motions have nothing for a second thread
-  setenv("OPENBLAS_NUM_THREADS", "1", 1);
-  // OpenBLAS 0.3.21 does not know newer processors and falls back to kernels for older ones.
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw"))
-    setenv("OPENBLAS_CORETYPE", "SkylakeX", 0);
-  execv("/proc/self/exe", argv);  // returns only on failure: then the library defaults stand
-}
 
 void add_case(CLI::App& command, std::string& name, std::vector<std::string>& overrides) {
   command.add_option("case", name, "case file, or name of a shipped case")->required();
@@ -146,10 +124,8 @@ int parse_and_run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  if (*run) {
-    restart_with_threads(options.threads, argv);
-    return run_case(options);
-  }
+  flexmorph::settle_processor(*run ? options.threads : 1, argv);
+  if (*run) return run_case(options);
   if (*compare) return compare_case(compare_options);
   if (*sweep) return sweep_case(sweep_options);
   if (*accuracy) return accuracy_case(accuracy_options);

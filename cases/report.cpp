@@ -8,6 +8,7 @@
 #include "cases/report_plots.h"
 #include "cases/run_warnings.h"
 #include "cases/version.h"
+#include "fem/solve/linear_solver.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
@@ -241,7 +242,7 @@ std::string run_json(const Scene& scene, const RunReport& report) {
   out.set("case", scene.name).set("title", scene.title).set("version", kVersion);
   io::Json libraries = io::Json::object();
   for (const auto& [name, version] : library_versions()) libraries.set(name, version);
-  out.set("libraries", std::move(libraries)).set("blas_kernel", blas_kernel());
+  out.set("libraries", std::move(libraries)).set("blas_kernel", fem::blas_kernel());
   out.set("threads", report.threads).set("status", report.status);
   if (!report.message.empty()) out.set("message", report.message);
   out.set("seconds_wall", report.seconds_wall).set("seconds_cpu", report.seconds_cpu);

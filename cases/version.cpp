@@ -2,8 +2,6 @@
 
 #include <Eigen/Core>
 
-extern "C" char* openblas_get_corename();
-
 namespace flexmorph::cases {
 
 std::vector<std::pair<std::string, std::string>> library_versions() {
@@ -15,7 +13,5 @@ std::vector<std::pair<std::string, std::string>> library_versions() {
           {"NLopt", FLEXMORPH_NLOPT}, {"Ipopt", FLEXMORPH_IPOPT},
           {"GiNaC", FLEXMORPH_GINAC}};
 }
-
-std::string blas_kernel() { return openblas_get_corename(); }
 
 }  // namespace flexmorph::cases

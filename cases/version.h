@@ -11,7 +11,5 @@ inline constexpr const char* kCasesFolder = FLEXMORPH_CASES;
 
 /// Names and versions of the libraries Flexmorph was built with.
 std::vector<std::pair<std::string, std::string>> library_versions();
-/// Kernel that OpenBLAS chose for this processor.
-std::string blas_kernel();
 
 }  // namespace flexmorph::cases

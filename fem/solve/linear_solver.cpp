@@ -6,6 +6,8 @@
 
 #include "fem/solve/saddle_cholesky.h"
 
+extern "C" char* openblas_get_corename();  // cblas.h of other vendors has no such call
+
 namespace flexmorph::fem {
 
 struct UnsymmetricSolver::Impl {
@@ -87,5 +89,7 @@ void UnsymmetricSolver::solve(const SparseMatrix& a, const VectorXd& b, VectorXd
 }
 
 bool UnsymmetricSolver::is_cholesky() const { return impl_->is_cholesky; }
+
+std::string blas_kernel() { return openblas_get_corename(); }
 
 }  // namespace flexmorph::fem

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "fem/dofs.h"
 
@@ -40,5 +41,8 @@ class UnsymmetricSolver {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// Kernels that OpenBLAS, under all direct solvers, runs on: "Haswell", "SkylakeX", ...
+std::string blas_kernel();
 
 }  // namespace flexmorph::fem

@@ -1,6 +1,6 @@
 // Error against steps and CPU seconds, equal steps and adaptive ones, by hand:
 //
-//   OMP_THREAD_LIMIT=1 OPENBLAS_NUM_THREADS=1 adaptive_steps [part of a scene's name]...
+//   adaptive_steps [part of a scene's name]...
 //
 // Errors are the largest at 40 stops, in parts of the model's size, against equal steps at least
 // four times finer than the finest shown. Equal steps land on the stops, so that there are at least
@@ -267,6 +267,7 @@ std::vector<Scene> scenes() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  flexmorph::benchmark::begin(argv);
   for (const Scene& scene : scenes()) {
     bool wanted = argc == 1;
     for (int i = 1; i < argc; ++i) wanted = wanted || scene.name.find(argv[i]) != std::string::npos;

@@ -1,8 +1,25 @@
 #pragma once
 
+#include <cstdio>
 #include <ctime>
+#include <fstream>
+#include <string>
+
+#include "fem/solve/linear_solver.h"
+#include "geometry/processor.h"
 
 namespace flexmorph::benchmark {
+
+/// First thing in main(): one thread, the kernels every program takes; and a line of what it runs
+/// on, for the tables.
+inline void begin(char** argv) {
+  settle_processor(1, argv);
+  std::string model = "unknown processor";
+  std::ifstream cpuinfo("/proc/cpuinfo");
+  for (std::string line; std::getline(cpuinfo, line);)
+    if (line.starts_with("model name")) model = line.substr(line.find(':') + 2);
+  std::printf("%s, OpenBLAS kernels %s, one thread\n", model.c_str(), fem::blas_kernel().c_str());
+}
 
 /// CPU time of the process [s].
 inline double cpu() {

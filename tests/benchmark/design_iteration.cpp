@@ -12,6 +12,7 @@
 #include "cases/build.h"
 #include "cases/motion_run.h"
 #include "cases/run.h"
+#include "tests/benchmark/cpu.h"
 #include "tests/benchmark/iteration.h"
 #include "tests/benchmark/reference.h"
 
@@ -87,8 +88,8 @@ void compare(Bench& bench, mmc::LoadDefinition definition, mmc::Support support,
 
 }  // namespace
 
-int main() {
-  use_one_thread();
+int main(int, char** argv) {
+  begin(argv);
   using mmc::LoadDefinition, mmc::Support;
   Bench growing({});
   growing.measure(LoadDefinition::inertia, Support::moving_root, true);

@@ -2,7 +2,7 @@
 // elements, without and with a design (20 x 20 cells per element; limit 6 s on one core), and of
 // one evaluation of force and tangent of one element.
 //
-//   OPENBLAS_NUM_THREADS=1 dynamics_speed [integrators]
+//   dynamics_speed [integrators]
 //
 // "integrators": instead, error against CPU time of both integrators on a planar pendulum.
 #include <cmath>
@@ -11,6 +11,7 @@
 #include <string>
 
 #include "fem/dynamics/motion.h"
+#include "tests/benchmark/cpu.h"
 #include "tests/support/models.h"
 
 namespace {
@@ -131,6 +132,7 @@ void compare_integrators() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  flexmorph::benchmark::begin(argv);
   if (argc > 1 && std::string(argv[1]) == "integrators") {
     compare_integrators();
     return 0;

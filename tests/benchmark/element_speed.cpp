@@ -4,7 +4,7 @@
 // full tensors as P (11) prints them, their entries that are not zero, and 7 x 7 Gauss points. All
 // of them must agree to 1e-12. Prints tables; fails only where the ways disagree.
 //
-//   OMP_THREAD_LIMIT=1 OPENBLAS_NUM_THREADS=1 element_speed
+//   element_speed
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cstdio>
@@ -315,7 +315,8 @@ bool ways() {
 
 }  // namespace
 
-int main() {
+int main(int, char** argv) {
+  flexmorph::benchmark::begin(argv);
   term_rows(dgemm_rate());
   if (ways()) return 0;
   std::printf("THE WAYS DISAGREE\n");

@@ -2,8 +2,8 @@
 // m, 7810 kg/m³, ν 0.3, one corner pinned, released from the horizontal under gravity; inertia,
 // membrane and bending.
 //
-//   OMP_THREAD_LIMIT=1 OPENBLAS_NUM_THREADS=1 pendulum_speed [mesh shape dt end E]
-//   OMP_THREAD_LIMIT=1 OPENBLAS_NUM_THREADS=1 pendulum_speed growth [shape]
+//   pendulum_speed [mesh shape dt end E]
+//   pendulum_speed growth [shape]
 //
 // growth: 40 steps with E 1e8 on 8 x 8 to 64 x 64 elements (h16), and exponents of the cost by the
 // number of unknowns. mesh: elements per side (8), shape: h12 or h16 (h12), dt and end [s] (5e-4,
@@ -201,6 +201,7 @@ void growth(ShapeSet shapes) {
 }  // namespace
 
 int main(int count, char** text) {
+  flexmorph::benchmark::begin(text);
   const auto number = [&](int k, double otherwise) {
     return count > k ? std::atof(text[k]) : otherwise;
   };

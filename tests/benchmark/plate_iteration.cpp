@@ -2,7 +2,7 @@
 // short_beam: from the variables through TDF, ersatz, statics and chain rule to the next variables
 // of MMA. One core. Prints tables and asserts nothing.
 //
-//   OMP_THREAD_LIMIT=1 OPENBLAS_NUM_THREADS=1 plate_iteration [large]
+//   plate_iteration [large]
 //
 // Without an argument: 400 x 80 cells with 672 variables under 1, 20 and 100 loads, beside CHOLMOD
 // (factorization, solve of all right-hand sides, one pass for the energies) on the matrix of the
@@ -26,6 +26,7 @@
 #include "optim/mmc/fixed_loads.h"
 #include "optim/mmc/mmc_problem.h"
 #include "optim/optimizer.h"
+#include "tests/benchmark/cpu.h"
 #include "tests/benchmark/iteration.h"
 #include "tests/benchmark/reference.h"
 
@@ -171,7 +172,7 @@ void large() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  use_one_thread();
+  begin(argv);
   if (argc > 1 && std::strcmp(argv[1], "large") == 0) {
     large();
     return 0;

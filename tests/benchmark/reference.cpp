@@ -10,15 +10,7 @@
 #include <ctime>
 #include <vector>
 
-extern "C" void openblas_set_num_threads(int n);  // cblas.h of other vendors has no such call
-
 namespace flexmorph::benchmark {
-
-void use_one_thread() {
-  openblas_set_num_threads(1);
-  if (!std::getenv("OMP_THREAD_LIMIT"))  // read when the library of OpenMP is loaded
-    std::fprintf(stderr, "OMP_THREAD_LIMIT=1 is not set: waiting threads are counted as work\n");
-}
 
 double milliseconds(const std::function<void()>& call, int repeats) {
   std::vector<double> times;

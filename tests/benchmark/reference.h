@@ -14,10 +14,6 @@ inline const Grid kGrid{0, -0.05, 1.0, 0.1, 400, 40};
 inline const fem::PlaneSection kSection{0.01, 1e8, 0.3, 2700};
 inline constexpr int kLoads = 100;
 
-/// One thread for OpenBLAS; says so when OpenMP, which CHOLMOD uses too, is not told the same by
-/// OMP_THREAD_LIMIT=1.
-void use_one_thread();
-
 /// Process CPU milliseconds of a call: median.
 double milliseconds(const std::function<void()>& call, int repeats = 9);
 

@@ -12,6 +12,7 @@
 
 #include "fem/solve/static_solver.h"
 #include "optim/mmc/responses.h"
+#include "tests/benchmark/cpu.h"
 #include "tests/benchmark/reference.h"
 
 namespace {
@@ -152,8 +153,8 @@ void moving_root() {
 
 }  // namespace
 
-int main() {
-  use_one_thread();
+int main(int, char** argv) {
+  begin(argv);
   iterations();
   moving_root();
 }

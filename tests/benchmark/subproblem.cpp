@@ -8,6 +8,7 @@
 
 #include "optim/kkt.h"
 #include "optim/mma_subproblem.h"
+#include "tests/benchmark/cpu.h"
 #include "tests/benchmark/reference.h"
 
 namespace {
@@ -94,8 +95,8 @@ void print_row(int n, int m, double spread) {
 
 }  // namespace
 
-int main() {
-  use_one_thread();
+int main(int, char** argv) {
+  begin(argv);
   std::printf("    n    m  spread   active   steps        ms    of 5   KKT      KKT of x, ms\n");
   for (const int n : {112, 672, 1120}) {
     for (const int m : {1, 2, 11, 101}) print_row(n, m, 0.3);

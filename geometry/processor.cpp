@@ -1,0 +1,34 @@
+#include "geometry/processor.h"
+
+#include <unistd.h>
+
+#include <cstdlib>
+
+namespace flexmorph {
+
+std::string kernel_for_processor() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw"))
+    return "SkylakeX";
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return "Haswell";
+#endif
+  return "";
+}
+
+void settle_processor(int threads, char** argv) {
+  const char* mark = "FLEXMORPH_THREADS";  // the second time around nothing is left to do
+  const std::string n = std::to_string(threads);
+  const char* seen = std::getenv(mark);
+  if (seen && n == seen) return;
+  setenv(mark, n.c_str(), 1);
+  setenv("OMP_THREAD_LIMIT", n.c_str(), 1);
+  setenv("OMP_NUM_THREADS", n.c_str(), 1);
+  setenv("OMP_WAIT_POLICY", "passive", 0);  // motions have nothing for a second thread
+  setenv("OPENBLAS_NUM_THREADS", "1", 1);
+  if (const std::string kernel = kernel_for_processor(); !kernel.empty())
+    setenv("OPENBLAS_CORETYPE", kernel.c_str(), 0);
+  execv("/proc/self/exe", argv);  // returns only on failure: then the library defaults stand
+}
+
+}  // namespace flexmorph
