@@ -79,13 +79,16 @@ Rows ladder_rows(const AccuracyStudy& study, const Ladder& ladder) {
     for (const size_t q : quantities) {
       row.push_back(rung.measured() ? to_text(rung.values[q], 9) : "");
       const double error = rung.errors[q];
-      row.push_back(!std::isfinite(error) ? "" : (rung.measured() ? "" : "~") + to_text(error, 2));
+      row.push_back(
+          !std::isfinite(error) ? "" : std::string(rung.measured() ? "" : "~") + to_text(error, 2));
       row.push_back(order_at(ladder, i, q));
     }
     const bool measured = rung.measured();
     row.push_back(rung.unknowns > 0 ? to_text(rung.unknowns) : "");
-    row.push_back(measured ? to_text(rung.seconds_cpu, 3)
-                           : (rung.predicted_cpu > 0 ? "~" + to_text(rung.predicted_cpu, 2) : ""));
+    row.push_back(
+        measured
+            ? to_text(rung.seconds_cpu, 3)
+            : (rung.predicted_cpu > 0 ? std::string("~") + to_text(rung.predicted_cpu, 2) : ""));
     row.push_back(measured ? to_text(rung.seconds_wall, 3) : "");
     row.push_back(measured ? to_text(1e-6 * rung.memory, 3) : "");
     row.push_back(measured ? "" : rung.status + (rung.message.empty() ? "" : ": " + rung.message));

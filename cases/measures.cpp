@@ -47,7 +47,7 @@ double largest_strain(const fem::Body& body, const fem::State& x, double s,
   double largest = 0;
   for (int e = 0; e < body.element->n_elements(); ++e) {
     const fem::ShapeTable& t = tables[static_cast<size_t>(e)];
-    const MatrixXd q = unknowns(body.element->vectors(e), Eigen::placeholders::all);
+    const MatrixXd q = unknowns(body.element->vectors(e), Eigen::all);
     const MatrixXd r_x = t.N_m * q, r_y = t.N_n * q;  // a row per point
     for (Eigen::Index g = 0; g < r_x.rows(); ++g)
       for (const double strain :
@@ -169,7 +169,7 @@ void BodyMeasures::put_quantity(const Measured& m, const std::string& quantity,
   } else if (quantity == "end_slopes") {
     fem::ShapeTable t;
     const int e = body.element->locate(m.material[2], fem::Tabulate::gradient, t);
-    const MatrixXd q = fem::rows_of(body, x.q)(body.element->vectors(e), Eigen::placeholders::all);
+    const MatrixXd q = fem::rows_of(body, x.q)(body.element->vectors(e), Eigen::all);
     put((t.N_m * q).norm());
     put((t.N_n * q).norm());
   } else {
