@@ -43,7 +43,7 @@ class Run {
     balance_.begin(0, e, powers_);
     if (settings_.balance && settings_.energy_round_off)
       growth_.begin(e, *settings_.energy_round_off);
-    see(e, false);
+    see(x_, e, false);
     if (settings_.adaptive) adapt();
     const double tiny = kTiny * settings_.step;
     for (const auto& [stop, seen] : landings()) {
@@ -61,12 +61,12 @@ class Run {
  private:
   Powers measure(const State& x) const { return settings_.balance ? powers(model_, x) : Powers{}; }
 
-  /// Work of a step, at the time its multipliers belong to.
-  void balance(const Energies& e) {
+  /// Work of a step to x, at the time its multipliers belong to.
+  void balance(const State& x, const Energies& e) {
     const State* mean = integrator_->step_mean();
     if (!settings_.balance || !mean) {
-      powers_ = measure(x_);
-      balance_.add(x_.t, e, powers_);
+      powers_ = measure(x);
+      balance_.add(x.t, e, powers_);
       return;
     }
     model_.prepare(*mean);
@@ -75,8 +75,8 @@ class Run {
     balance_.add_mean(x_.t, e, powers_);
   }
 
-  void see(const Energies& e, bool stop) {
-    observe_({model_, x_, e, powers_, balance_.work(), balance_.defect(), stop});
+  void see(const State& x, const Energies& e, bool stop) {
+    observe_({model_, x, e, powers_, balance_.work(), balance_.defect(), stop});
   }
 
   /// Times that steps must land on, in order, and whether they are stops.
@@ -182,9 +182,8 @@ class Run {
       dense_->set_step(before_, x_);
       dense_->at(t, within_);
       const Energies e = model_.energies(within_);
-      if (settings_.balance) powers_ = powers(model_, within_);
-      balance_.add(t, e, powers_);
-      observe_({model_, within_, e, powers_, balance_.work(), balance_.defect(), true});
+      balance(within_, e);
+      see(within_, e, true);
       watch(within_);
       seen = true;
     }
@@ -192,13 +191,23 @@ class Run {
     return next_between_ < between_.size() && std::abs(between_[next_between_] - x_.t) <= tiny;
   }
 
+  /// The end of the step as stops within one are shown. Multipliers of steps that adapt carry what
+  /// changes of the step left in them (loosely: as much as the force itself); these belong to the
+  /// position.
+  const State& settled() {
+    dense_->set_step(before_, x_);
+    dense_->at(x_.t, within_);
+    return within_;
+  }
+
   /// After every accepted step.
   void accepted(double h, bool at_stop) {
-    const Energies e = model_.energies(x_);
-    balance(e);
+    const State& x = at_stop && control_ ? settled() : x_;
+    const Energies e = model_.energies(x);
+    balance(x, e);
     drift();
     if (at_stop && integrator_->step_mean()) integrator_->make_consistent(x_);
-    see(e, at_stop);
+    see(x, e, at_stop);
     if (growth_.is_watched()) watch_energy(e);
     if (at_stop || ++since_watched_ == kWatchEvery) watch(x_);
     if (joint_watch_ && ++since_joints_ == kJointsEvery) watch_joints(x_);
