@@ -12,7 +12,9 @@ case "${1--}" in
   *) scene=$1 && shift ;;
 esac
 
-build_target flexmorph
+announce 15
+step 1 "runs $(basename "$scene" .toml) (rotating_plate_v01; others take up to five)"
+build_targets flexmorph
 for option in "$@"; do
   case "$option" in
     -o* | --output*) exec "$build/cases/flexmorph" run "$scene" "$@" ;;

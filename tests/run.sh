@@ -1,8 +1,9 @@
 #!/bin/sh
-# tests/run.sh [OPTION]...
-# Installs missing packages, builds everything and runs all tests; options go to ctest, as in
-# `tests/run.sh -L unit`. The last line says `N passed, N failed`; the exit code is 0 when at least
-# one test ran and none failed.
+# tests/run.sh [--all] [OPTION]...
+# Installs missing packages, builds everything and runs the tests; options go to ctest, as in
+# `tests/run.sh -L unit`. With --all the benchmarks too, which run the shipped cases with several
+# optimizers, in a build of its own that a warning of the compiler stops. The last line says
+# `N passed, N failed`; the exit code is 0 when at least one test ran and none failed.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 . "$root/cases/cmake/setup.sh"
@@ -11,14 +12,27 @@ passed=0
 failed=0
 trap 'echo "$passed passed, $failed failed"' EXIT
 
-build_target all
+if [ "${1-}" = --all ]; then
+  shift
+  preset=strict
+  build="$root/build-strict"
+  announce 24
+  step 14 "runs all tests"
+  step 20 "runs shipped cases with several optimizers, from the longest on, among them"
+  build_targets all benchmarks
+else
+  case " $* " in
+    *" -L "*) ;;
+    *) set -- -LE benchmark "$@" ;;
+  esac
+  announce 22
+  step 14 "runs all tests but the benchmarks (--all)"
+  build_targets all
+fi
 
-# Tests run side by side; threads inside each of them would only compete. (nproc itself counts no
-# more than OMP_THREAD_LIMIT.)
-jobs=$(nproc)
-export OMP_THREAD_LIMIT=1 OPENBLAS_NUM_THREADS=1
+# Tests run side by side, each with one thread: tests/support/test_main.cpp.
 log="$build/tests.log"
-ctest --test-dir "$build" --parallel "$jobs" --output-on-failure "$@" 2>&1 | tee "$log"
+ctest --test-dir "$build" --parallel "$cores" --output-on-failure "$@" 2>&1 | tee "$log"
 
 # ctest sums up: "98% tests passed, 1 tests failed out of 57".
 summary='^[0-9]*% tests passed, \([0-9]*\) tests failed out of \([0-9]*\)$'

@@ -182,9 +182,9 @@ inline void multiply_block(Shared w, const V* g, V* s) {
   }
 }
 
-/// s = W g.
+/// s = W g. One copy for all that need it.
 template <int kKinds, Coupling coupling, class V, class W>
-inline void multiply(W w, const V* g, V* s) {
+[[gnu::noinline]] void multiply(W w, const V* g, V* s) {
   constexpr auto& start = Numbering<kKinds>::tables.start;
   if constexpr (coupling == Coupling::all) {
     multiply_block<start[4]>(w, g, s);
@@ -291,7 +291,7 @@ inline void add_pairs(W w, const V* left, const V* right, V* stiffness) {
 
 /// Adds weight (S ⊗ 1 + D(left)ᵀ W D(right)) to the nodal tangent (4 kKinds dim)², by columns.
 template <int kKinds, int kDim, Coupling coupling, bool kSymmetric = true, class V, class W>
-inline void add_tangent(W w, const V* s, const V* left, const V* right, double weight, V* tangent) {
+[[gnu::noinline]] void add_tangent(W w, const V* s, const V* left, const V* right, double weight, V* tangent) {
   using N = Numbering<kKinds>;
   constexpr auto& t = N::tables;
   constexpr int n = N::n, kSquare = kDim * kDim;

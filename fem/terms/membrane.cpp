@@ -66,11 +66,12 @@ class Membrane final : public Term {
 
   void add_tangent(int e, const Local& x, const Weights& w, LocalTangent& tangent) const override {
     if (w.q == 0) return;
-    // By columns or by rows: K is symmetric.
+    // By columns or by rows: K is symmetric. Single elements are rare, and compiling kernels takes
+    // minutes: they share those of add_mean_tangent(), which compute both halves.
     evaluate(
         e, x,
         [&]<int kKinds, int kDim, Coupling coupling>(const double* s, const double* p, auto w_e) {
-          gram::add_tangent<kKinds, kDim, coupling>(w_e, s, p, p, w.q, tangent.data());
+          gram::add_tangent<kKinds, kDim, coupling, false>(w_e, s, p, p, w.q, tangent.data());
         });
   }
 

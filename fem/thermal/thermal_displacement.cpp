@@ -1,6 +1,9 @@
 #include "fem/thermal/thermal_displacement.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include "fem/singular_values.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -35,7 +38,7 @@ VectorXd without(const VectorXd& x, Eigen::Index k) {
 }
 
 double condition_of(const MatrixXd& a) {
-  const VectorXd s = Eigen::JacobiSVD<MatrixXd>(a).singularValues();
+  const VectorXd s = singular_values(a).values;
   return s[0] / s[s.size() - 1];
 }
 

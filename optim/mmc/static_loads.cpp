@@ -1,7 +1,6 @@
 #include "optim/mmc/static_loads.h"
 
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -140,14 +139,13 @@ MatrixXd leading_combinations(const MatrixXd& y, double tolerance) {
   const Eigen::Index n = y.rows(), k = std::min(n, y.cols());
   MatrixXd R = MatrixXd::Zero(n, n);
   R.topRows(k) = qr.matrixQR().topRows(k).triangularView<Eigen::Upper>();
-  const Eigen::JacobiSVD<MatrixXd, Eigen::NoQRPreconditioner> svd(R.transpose(),
-                                                                  Eigen::ComputeFullU);
-  const VectorXd energy = svd.singularValues().cwiseAbs2();
+  const fem::SingularValues svd = fem::singular_values(R.transpose());
+  const VectorXd energy = svd.values.cwiseAbs2();
   Eigen::Index r = energy.size();
   double left_out = 0;
   const double allowed = tolerance * energy.sum();
   while (r > 1 && left_out + energy(r - 1) <= allowed) left_out += energy(--r);
-  return svd.matrixU().leftCols(r);
+  return svd.left.leftCols(r);
 }
 
 }  // namespace flexmorph::mmc
