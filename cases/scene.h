@@ -26,7 +26,7 @@
 /// list is absent here too (empty lists, empty optionals), not zero.
 namespace flexmorph::cases {
 
-/// How a driven scene starts (design.md section 4).
+/// How a driven scene starts (fem/README.md, Starts).
 enum class Start {
   prestretched,  ///< velocity of the rigid, extending body, in equilibrium in the turning frame
   rigid,         ///< the same velocity, unstrained: sets off axial ringing
@@ -118,7 +118,8 @@ struct Hub {
   std::array<Law, 2> path;      ///< the drives of the position, both or none
 };
 
-/// Material that leaves the hub, and when node lines come and go (design.md section 5).
+/// Material that leaves the hub, and when node lines come and go (fem/README.md, Insertion and
+/// removal).
 struct Flow {
   double speed = 0;  ///< rate at which material leaves the hub [m/s]; negative: enters it
   Law length;        ///< or the drive of the length outside of the hub; `speed` is 0 then
@@ -296,7 +297,8 @@ struct Domain {
   std::vector<LoadCase> loads;
 };
 
-/// When the motion is turned into equivalent static loads, and what kind (design.md section 8).
+/// When the motion is turned into equivalent static loads, and what kind (fem/README.md, Equivalent
+/// static loads).
 struct Esl {
   double every = 0;  ///< a load at every multiple of it up to the end [s]
   mmc::ComplianceSettings settings;

@@ -124,7 +124,7 @@ void read_regions(const Table& t, const Body& body, const Scene& scene, BodyDesi
   if (design.goal.minimize == mmc::Goal::Minimize::compliance && filled >= design.goal.max_volume)
     t.fail("max_volume", "the solid regions alone fill " + to_text(filled, 3) + " of the domain");
 
-  // Without material under it the mass would end up in the void (design.md section 8).
+  // Without material under it the mass would end up in the void (optim/README.md, Passive regions).
   const Vec2 end(grid.x0 + grid.width, grid.y0 + 0.5 * grid.height);
   const auto carries = [&](const Box& box) {
     return holds(box, end - Vec2(2 * grid.dx() - small, grid.dy() - small)) &&

@@ -7,7 +7,8 @@
 #include "cases/accuracy_values.h"
 #include "cases/scene.h"
 
-/// The suites of stability (design.md section 14): how a case is made stiff, extreme or empty.
+/// The suites of stability: how a case is made stiff, extreme or empty (cases/README.md,
+/// Stability).
 namespace flexmorph::cases {
 
 /// A number that is known however extreme a row is: exactly (a law of nature), or as a range beyond

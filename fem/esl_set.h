@@ -17,7 +17,7 @@ struct NodalForce {
 /// All vectors are in the body frame (origin and axes of the hub at that time), node by node,
 /// (x, y) interleaved: entry 2 node + c.
 ///
-/// Source: design.md section 8; the idea P (31), (32).
+/// Source: fem/README.md, Equivalent static loads; the idea P (31), (32).
 struct EslSet {
   double time = 0;      ///< [s]
   double weight = 1;    ///< w_i of P (35)

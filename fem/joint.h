@@ -62,7 +62,7 @@ class Joint {
 const BodyView& find_body(std::span<const BodyView> bodies, const std::string& joint,
                           const std::string& body);
 
-/// How the root edge sits in its hub (design.md section 6).
+/// How the root edge sits in its hub (fem/README.md, The weld of an edge).
 enum class WeldMode {
   edge,       ///< the edge is straight and across the hub's axis; r_m is free: the material that
               ///< leaves the hub may stretch and shear, as at a clamped edge of the continuum

@@ -79,7 +79,8 @@ class Model {
   int first_row(size_t joint) const { return first_rows_[joint]; }
   const std::vector<std::unique_ptr<Link>>& links() const { return links_; }
 
-  /// Gives a body another mesh; states of the old one no longer fit (dynamics/remesh carries over).
+  /// Gives a body another mesh; states of the old one no longer fit (dynamics/growth.h carries
+  /// over).
   void set_element(Body& body, std::unique_ptr<Element> element);
   void set_factors(Body& body, Factors factors);
 

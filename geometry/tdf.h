@@ -29,7 +29,7 @@ struct TdfSettings {
   double min_half_thickness = 1e-4;  ///< lower bound of every profile [m]
 };
 
-/// H_ε(φ) and dH/dφ, design.md section 7: 1 above ε, α below -ε, cubic between.
+/// H_ε(φ) and dH/dφ, optim/README.md, TDF: 1 above ε, α below -ε, cubic between.
 ///
 ///   H = 3 (1 - α)/4 (φ/ε - φ³/(3 ε³)) + (1 + α)/2,   |φ| < ε
 struct Heaviside {

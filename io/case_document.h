@@ -21,7 +21,7 @@ struct CaseNode {
   bool is_inline = false;         ///< a table in braces
   std::vector<CaseNode> entries;  ///< of tables and lists
 
-  std::string place;                    ///< "cases/plate.toml:14", or "--set KEY=VALUE"
+  std::string place;                    ///< "cases/four_bar.toml:14", or "--set KEY=VALUE"
   std::string shown;                    ///< as it was written: "-0.002", "[10, 2]"
   unsigned line = 0;                    ///< to sort messages
   bool is_option = false;               ///< the very value of a --set option
@@ -47,7 +47,7 @@ struct CaseDocument {
   CaseNode root;
 };
 
-/// "cases/plate.toml:14: body.thickness = -0.002"; of a table its path only.
+/// "cases/four_bar.toml:14: body.thickness = -0.002"; of a table its path only.
 std::string located(const CaseNode& node, const std::string& key_path);
 
 /// How an entry of a list of tables is called: its name, else the body it is about, else its index.

@@ -33,7 +33,7 @@ Quantity between(std::string noun, std::string unit, double lower, double upper)
 ///
 /// Every reader throws Error (input) with file, line, key, value and what is allowed:
 ///
-///   cases/plate.toml:14: body.thickness = -0.002: a thickness is positive [m]
+///   cases/four_bar.toml:14: body.thickness = -0.002: a thickness is positive [m]
 ///
 /// A `fallback` makes a key optional; without it a missing key is an error. Asking for a key makes
 /// it known: CaseFile::finish() refuses all others. Copies are cheap and keep the file alive.

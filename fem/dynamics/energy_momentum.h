@@ -30,7 +30,7 @@ namespace flexmorph::fem {
 /// order 2. Nothing is damped: unresolved frequencies keep ringing.
 ///
 /// Source: Simo & Tarnow (1992), Z. angew. Math. Phys. 43, 757-792; Gonzalez (1999), Physica D 132,
-/// 165-174, for constraints; design.md section 4.
+/// 165-174, for constraints; fem/README.md, Energy and momentum.
 class EnergyMomentum final : public StepSolver {
  public:
   EnergyMomentum(Model& model, const EnergyMomentumSettings& settings);

@@ -58,7 +58,7 @@ std::vector<AttachedForce> joint_forces(const Model& model, const State& x, cons
 /// @param grid    design mesh in material coordinates (root side at x0)
 /// @param masses, forces  must sit on nodes of the grid
 ///
-/// Source: P (31), (32); design.md sections 8 and 11.
+/// Source: P (31), (32); fem/README.md, Equivalent static loads.
 EslSet equivalent_static_load(const Model& model, const State& x, const Growth& growth,
                               const Grid& grid, std::span<const AttachedMass> masses,
                               std::span<const AttachedForce> forces, const VectorXd& gravity);

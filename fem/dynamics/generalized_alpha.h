@@ -38,9 +38,9 @@ namespace flexmorph::fem {
 ///
 /// Fixed steps (advance()) start from a_0 = q̈_0 and take no notice of their size.
 ///
-/// Source: Arnold, Brüls (2007), Multibody Syst. Dyn. 18, 185-202; design.md section 4. Start and
-/// error terms: Arnold, Brüls, Cardona (2015), Numer. Math. 129, 149-179; filter: Shampine (1980)
-/// as in Hairer & Wanner (1996), Solving Ordinary Differential Equations II, IV.8.
+/// Source: Arnold, Brüls (2007), Multibody Syst. Dyn. 18, 185-202; fem/README.md, Time integration.
+/// Start and error terms: Arnold, Brüls, Cardona (2015), Numer. Math. 129, 149-179; filter:
+/// Shampine (1980) as in Hairer & Wanner (1996), Solving Ordinary Differential Equations II, IV.8.
 class GeneralizedAlpha final : public StepSolver {
  public:
   /// @throws Error (input) when rho_inf is outside [0, 1].

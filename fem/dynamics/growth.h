@@ -43,7 +43,7 @@ enum class MeshChange { insertion, removal };
 
 /// When the boundary element next leaves [min_length, max_length] in (t, end], and how; t =
 /// infinity when it does not. A removal needs a merged element below 0.9 max_length (else the pair
-/// would chatter: design.md section 5).
+/// would chatter: fem/README.md, Insertion and removal).
 struct NextChange {
   double t;
   MeshChange change;
@@ -68,7 +68,7 @@ std::optional<MeshChange> change_due(const Body& body, const Growth& growth);
 /// field of position and velocity does not change at all. Removal keeps the values of the
 /// remaining nodes (a loss, of the size of the interpolation error). Multipliers keep their values.
 ///
-/// Source: P Fig. 3, 4; design.md section 5.
+/// Source: P Fig. 3, 4; fem/README.md, Insertion and removal.
 void change_mesh(Model& model, Body& body, MeshChange change, State& x);
 
 }  // namespace flexmorph::fem

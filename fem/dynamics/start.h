@@ -4,7 +4,7 @@
 
 namespace flexmorph::fem {
 
-/// Starts of driven scenes (design.md section 4).
+/// Starts of driven scenes (fem/README.md, Starts).
 enum class Start {
   rigid,  ///< undeformed, every material point with the velocity of the rigid, extending body
   prestretched,  ///< the same plus static equilibrium under the inertia forces of the rigid motion

@@ -12,7 +12,7 @@ namespace flexmorph::fem {
 /// mixed derivative. With driven lines (ALE-ANCF) material flows through the mesh and the shape
 /// functions get rates; without them nothing of that is computed.
 ///
-/// Source: P (1)-(5); Hyldahl et al. 2013; h16: design.md section 2.
+/// Source: P (1)-(5); Hyldahl et al. (2013); h16: fem/README.md, Plate element.
 class AncfPlate final : public LineGrid {
  public:
   enum class ShapeSet { h12, h16 };

@@ -16,7 +16,7 @@ namespace flexmorph::fem {
 /// Marker (fem/marker.h), mass and weight are terms of their own (fem/rigid.h).
 ///
 /// Source: García de Jalón & Bayo (1994), Kinematic and Dynamic Simulation of Multibody Systems,
-/// ch. 2 and 4.2; design.md section 6.
+/// ch. 2 and 4.2; fem/README.md, Rigid bodies and joints.
 class RigidBody final : public Element {
  public:
   /// @param length  makes the axis a displacement: a size of the body, such as its radius of

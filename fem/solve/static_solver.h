@@ -15,8 +15,9 @@ namespace flexmorph::fem {
 ///
 /// Unknowns are numbered column by column from the free end (largest i) to the root, so that the
 /// Cholesky factor of the plate clamped at any column is a leading block of one factor: one
-/// factorization serves all root columns (design.md section 8). SupernodalFactor, natural order,
-/// analysed once; many right-hand sides are solved at once, unknown by unknown next to each other.
+/// factorization serves all root columns (fem/README.md, Static solver). SupernodalFactor, natural
+/// order, analysed once; many right-hand sides are solved at once, unknown by unknown next to each
+/// other.
 ///
 /// Loads may come in any order; when their root columns are monotone (times in order), no rows
 /// are moved. Work space belongs to the object: one thread at a time.

@@ -54,7 +54,7 @@ class BendingDensity final : public EnergyDensity {
 /// κ is a rational function of the unknowns, so it is integrated at Gauss points; tables of shape
 /// functions are shared by neighbours of equal size and material.
 ///
-/// Source: Sun, Tian, Hu, Pedersen 2018, eq. (7); design.md section 2.
+/// Source: P (7); fem/README.md, Bending.
 class Bending final : public Term {
  public:
   Bending(const PlaneSection& s, int n_points)

@@ -40,8 +40,8 @@ class EnergyDensity {
 /// of that width from the curvature of one side to that of the other. At a sleeve out of which
 /// material comes the gradient is the configurational force M²/(2 EI), the virtual work twice as
 /// much. Material that enters through a free root line brings no strain energy along, therefore:
-/// the force on the line has strained it. Source: Bigoni, Dal Corso, Bosi, Misseroni (2015), J.
-/// Mech. Phys. Solids 74; design.md section 2.
+/// the force on the line has strained it. Source: Bigoni, Dal Corso, Bosi, Misseroni
+/// (2015); fem/README.md, Material flow.
 class FreeElastic {
  public:
   /// @param table  with the material derivatives that the density asks for

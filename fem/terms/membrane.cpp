@@ -29,7 +29,7 @@ using gram::Coupling;
 ///
 /// Elements of a mesh are evaluated eight at a time, see Batch.
 ///
-/// Replaces P (11)-(15) and the tensors of the appendix; design.md section 2.
+/// Replaces P (11)-(15) and the tensors of the appendix; fem/README.md, Gram form.
 class Membrane final : public Term {
  public:
   Membrane(const PlaneSection& s, Strains strains)

@@ -25,7 +25,7 @@ namespace flexmorph::fem {
 /// temperature the energy is kept.
 ///
 /// T (26), the elastic strain of the displacements without their thermal part, is not objective and
-/// is not used; design.md section 11.
+/// is not used; fem/README.md, Heat.
 ///
 /// scale_load() multiplies the temperature, ΔT → μ ΔT: paths of equilibria may follow it.
 ///

@@ -11,7 +11,7 @@ namespace flexmorph::fem {
 /// How a temperature rises from 0 to its final value between `start` and `start` + `settle`,
 /// u = (t - start)/settle in [0, 1]:
 ///
-///   quartic   6u² - 8u³ + 3u⁴          fits what T says of its Fig. 4 (design.md section 11)
+///   quartic   6u² - 8u³ + 3u⁴          fits what T says of its Fig. 4
 ///   cosine    (1 - cos πu)/2
 ///   quintic   10u³ - 15u⁴ + 6u⁵        the only one without a jump of the acceleration
 ///   linear    u

@@ -19,8 +19,8 @@ struct DesignScale {
 ///   X0, Y0, L in 2 half_length (a component's size), θ in π, c1..c3 in half_length
 ///
 /// so that a step of 0.05 is a cell or so in place and a twentieth of a component in shape:
-/// scaled by the domain instead, one step would move a component by many cells (design.md
-/// section 9). Bounds: centres inside the domain, L up to eight times its start and never below
+/// scaled by the domain instead, one step would move a component by many cells (optim/README.md,
+/// Components). Bounds: centres inside the domain, L up to eight times its start and never below
 /// c_min (a component shorter than thick is a thin one the other way round), θ within a turn of its
 /// start.
 class Design {

@@ -18,7 +18,7 @@ struct CellFactors {
 ///
 /// H = density, E = eroded of UnionTdf. Stiffness comes from the eroded design, because corners
 /// see no gap narrower than a cell: without it optimizers leave slits there, which weigh nothing.
-/// The void keeps α^q of its stiffness and no mass (design.md sections 7 and 8). Cells whose
+/// The void keeps α^q of its stiffness and no mass (optim/README.md, Ersatz material). Cells whose
 /// centre lies in a `solid` box are full material, those in an `empty` box void, whatever the
 /// components do; solid wins. Cells outside of the domain are void.
 class Ersatz {

@@ -32,7 +32,7 @@ class FixedLoads final : public LoadResponse {
  public:
   /// @param outside   cells outside of the domain, see PlateSolver
   /// @param compress  the weighted sum depends on Σ w F Fᵀ only: evaluate() solves as many
-  ///        right-hand sides as that has directions (design.md section 9)
+  ///        right-hand sides as that has directions (optim/README.md, Compression)
   /// @throws Error (input) for no loads, loads that are zero or act where nothing can move, heat
   ///         alone on a plate that its supports let grow, weights that are not positive.
   FixedLoads(const Grid& grid, const fem::PlaneSection& section,

@@ -29,7 +29,7 @@ namespace flexmorph::mmc {
 /// (τ_f makes τᵀ K τ least: dτ adds nothing). The first term is the compliance without heat,
 /// whatever way it is found; this class adds the second one. Its derivative has the sign that
 /// K has: taking material off a plate that is only hot relieves it. The sum of both derivatives is
-/// dU/db = wᵀ K_b w / 2 - μᵀ K_b w + μ_fᵀ dF_f/db of design.md 11 with U = wᵀ K w / 2.
+/// dU/db = wᵀ K_b w / 2 - μᵀ K_b w + μ_fᵀ dF_f/db of optim/README.md, Hot plates, U = wᵀ K w / 2.
 ///
 /// The far edge may be held too, straight and as wide as it is, wherever it goes: by springs that
 /// do not grow with the plate, of elongations B w (StaticSolver's edge_stiffness κ). Counted like w

@@ -10,7 +10,7 @@
 
 namespace flexmorph::mmc {
 
-/// How the equivalent static loads meet a changing design (design.md section 8).
+/// How the equivalent static loads meet a changing design (optim/README.md, Load definitions).
 enum class LoadDefinition { inertia, frozen, stiffness };
 /// Where the plate is held.
 enum class Support { moving_root, far_end };
@@ -40,7 +40,7 @@ struct ComplianceSettings {
 /// the other end too (EslSet::held_end_stretch), springs keep that edge straight and as wide as it
 /// is under all loads; their energy, next to nothing, belongs to f.
 ///
-/// Source: P (33)-(35), design.md sections 8, 9 and 11.
+/// Source: P (33)-(35); optim/README.md, Responses.
 class Compliance final : public LoadResponse {
  public:
   /// @param stiffness0, mass0  factors of the design the motion was computed with; not read by

@@ -1,6 +1,6 @@
 // The shipped cases with every optimizer: their final designs are feasible, hang together, mean
-// what their blurred pictures say (issue line 4), and beat the same plate of uniform half density
-// under the same loads and in motion (line 5).
+// what their blurred pictures say, and beat the same plate of uniform half density under the same
+// loads and in motion.
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>

@@ -1,5 +1,5 @@
 // The program as a user meets it: its commands, its exit codes, and its one-line complaints about
-// bad input, which leave no folder behind (issue line 17).
+// bad input, which leave no folder behind.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// Runs of the program: the folder of a short one (design.md section 12), the same bytes twice
-// (issue line 16), and what stays after a failure and an interruption.
+// Runs of the program: the folder of a short one (cases/README.md, The run folder), the same bytes
+// twice, and what stays after a failure and an interruption.
 
 #include <gtest/gtest.h>
 #include <signal.h>

@@ -45,7 +45,7 @@ double at(const std::vector<double>& x, const std::vector<double>& y, double val
   return 0;
 }
 
-// T 11.1 and issue line 3: ends at α ΔT (X - X_c) at all times, no elastic strain, and the kinetic
+// T 11.1: ends at α ΔT (X - X_c) at all times, no elastic strain, and the kinetic
 // energy ½ (α Ṫ)² m (l² + h²)/12, all with the thermal force.
 TEST(FreeBeam, GrowsAsTheClosedFormSays) {
   for (const double rise : {50.0, 100.0, 200.0}) {

@@ -101,7 +101,7 @@ class SmallDeflections {
   double bending_, mass_;
 };
 
-// Issue line 6: within 3 % of the largest deflection over the whole turn; 48 elements come as near,
+// Within 3 % of the largest deflection over the whole turn; 48 elements come as near,
 // and the paper's six are off by 13 %. The two elastic models bend with E I ("ecm") and E I / (1 -
 // ν²) ("gcm").
 TEST(SliderCrank, ColdRodFollowsTheSmallDeflectionModel) {

@@ -67,7 +67,7 @@ void expect_no_jumps(const std::vector<MeshEvent>& events) {
   }
 }
 
-// Lines 12 and 13 of the issue. The root passes 0.05 m by 0.5 s at v 0.1, every 0.1 s at v 0.5; the
+// The root passes 0.05 m by 0.5 s at v 0.1, every 0.1 s at v 0.5; the
 // event that would fall on the end is left out.
 TEST(GrowingPlate, SlowGrowthInsertsOnceAndBalances) {
   RotatingPlate p;
@@ -119,7 +119,7 @@ TEST(GrowingPlate, IncompleteShapesJumpAtInsertions) {
   }
 }
 
-// Line 13. Order 2 up to the first insertion; what an insertion itself loses has another cause (see
+// Order 2 up to the first insertion; what an insertion itself loses has another cause (see
 // the next test).
 TEST(EnergyBalance, IsOfOrderTwoBetweenChangesOfTheMesh) {
   for (const double speed : {0.1, 0.5}) {

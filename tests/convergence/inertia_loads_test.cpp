@@ -1,5 +1,5 @@
 // Shows that equivalent static loads of the kind `inertia`, put on the design mesh, reproduce the
-// deflection of the dynamic run (line 7): within 6 % of the largest deflection at every load time.
+// deflection of the dynamic run: within 6 % of the largest deflection at every load time.
 // The rest is centrifugal stiffening, which linear statics does not know: it has one sign, and
 // falls with the square of the spin.
 #include <gtest/gtest.h>

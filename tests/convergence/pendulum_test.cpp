@@ -61,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(RhoInf, Pendulum, ::testing::Values(0.0, 0.6, 0.8, 0.9)
                                   std::to_string(static_cast<int>(std::lround(100 * rho.param)));
                          });
 
-// Line 14 (Arnold & Brüls 2007).
+// Arnold & Brüls (2007).
 TEST_P(Pendulum, ConvergesWithOrderTwoInPositionVelocityAndMultiplier) {
   for (const auto& [name, value] :
        {std::pair{"q", &Errors::q}, {"v", &Errors::v}, {"lambda", &Errors::lambda}}) {

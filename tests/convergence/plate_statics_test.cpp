@@ -125,7 +125,7 @@ TEST(LinearPlate, PointLoadConvergesWithOrderTwo) {
 
 TEST(LinearPlate, CompleteShapesTwistExactly) { EXPECT_NEAR(twisted(ShapeSet::h16, 2), 1, 1e-9); }
 
-// What the incomplete shapes of the paper converge to (design.md section 2).
+// What the incomplete shapes of P converge to (fem/README.md, Plate element).
 TEST(LinearPlate, IncompleteShapesStopAtTheirPlateaus) {
   EXPECT_NEAR(uniform(supported(ShapeSet::h12, 16)) / navier(), 1 - 0.047, 0.003);
   EXPECT_NEAR(uniform(clamped(ShapeSet::h12, 16)) / 0.00126532, 1 - 0.022, 0.003);

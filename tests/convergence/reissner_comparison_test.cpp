@@ -57,7 +57,7 @@ double difference(double speed, ShapeSet shapes, WeldMode weld) {
   return out;
 }
 
-// Line 11. With 20 x 4 elements h16 the differences are 0.32 and 1.22 % (0.40 and 1.54 % here):
+// With 20 x 4 elements h16 the differences are 0.32 and 1.22 % (0.40 and 1.54 % here):
 // most of them is the models', not the mesh (the clamp of a plate suppresses lateral contraction,
 // strains of a beam are averages over the section).
 TEST(Reissner, PlateMovesLikeTheBeam) {

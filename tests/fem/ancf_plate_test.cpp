@@ -54,7 +54,8 @@ TEST_P(EveryShapeSet, ReproducesLinearFields) {
   }
 }
 
-// Bogner-Fox-Schmit contains the twist m n, the incomplete set does not (design.md section 2).
+// Bogner-Fox-Schmit contains the twist m n, the incomplete set does not (fem/README.md, Plate
+// element).
 TEST(AncfPlate, OnlyTheCompleteSetContainsTheTwist) {
   for (const ShapeSet shapes : {ShapeSet::h12, ShapeSet::h16}) {
     const AncfPlate plate(2, shapes, testing::even_lines(0, 1, 1), testing::even_lines(0, 1, 1));
@@ -147,7 +148,7 @@ double polynomial(const Vec2& x, int degree) {
   return std::pow(3 * x.x() - 0.4, degree) * std::pow(9 * x.y() + 0.3, degree);
 }
 
-// Line 10 of the issue: cells cut by moving lines count exactly.
+// Cells cut by moving lines count exactly.
 TEST_P(EveryShapeSet, FactorsAreIntegratedCellByCell) {
   const Factors factors = testing::random_factors(7);
   AncfPlate plate = swinging_plate(GetParam());

@@ -226,7 +226,7 @@ class HotEsl : public Esl {
   }
 };
 
-// Issue line 11: a hot body that nothing holds back. Its loads are those of the mass where it is,
+// A hot body that nothing holds back. Its loads are those of the mass where it is,
 // by the twice-differenced motion R (1 + a) (X - m₀) + o, also in the hub.
 TEST_F(HotEsl, FreeGrowthIsNoDeformation) {
   const auto stretch = [](double t) { return 1 + kExpansion * temperature(t).value; };

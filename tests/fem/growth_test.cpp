@@ -67,7 +67,7 @@ Jump jump_of(const RotatingPlate& p, testing::Scene& scene, State& x, MeshChange
           jump.acceleration / largest.acceleration.norm()};
 }
 
-// Line 12: the two halves of a bicubic are bicubic.
+// The two halves of a bicubic are bicubic.
 TEST(Insertion, LeavesTheFieldsOfCompleteShapesUnchanged) {
   RotatingPlate p;
   p.speed = 0.5;

@@ -124,7 +124,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, Membrane,
                                   (c.param.designed ? "_designed" : "_uniform");
                          });
 
-// Line 10: both are exact for the polynomial of degree 12, so they differ by round-off of about
+// Both are exact for the polynomial of degree 12, so they differ by round-off of about
 // 10^4 products.
 TEST_P(Membrane, ForceAndEnergyAreThoseOfGaussPoints) {
   for (int e = 0; e < plate.n_elements(); ++e) {

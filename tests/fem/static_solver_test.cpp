@@ -153,7 +153,7 @@ std::vector<std::vector<int>> root_column_orders() {
   return {{20, 17, 17, 11, 5, 4, 2}, {2, 3, 8, 13, 13, 21, 24}, {9, 2, 23, 2, 16, 4, 7}};
 }
 
-// Loads clamped at different columns, in falling, rising and mixed order (issue line 8).
+// Loads clamped at different columns, in falling, rising and mixed order.
 TEST(StaticSolver, EveryRootColumnEqualsRefactoring) {
   StaticSolver solver(kGrid, kSection, 2);
   const VectorXd factor = random_factors(kGrid, 1e-3, 1);

@@ -107,7 +107,7 @@ TEST_P(EveryFormula, HasTheDerivativesOfItsDifferences) {
 }
 INSTANTIATE_TEST_SUITE_P(Table, EveryFormula, ::testing::Range<size_t>(0, samples().size()));
 
-// The start of the platform's path: theta'' (0) = 6 pi moves it at 0.5 * 6 pi (design.md 15).
+// The start of the platform's path: theta'' (0) = 6 pi moves it at 0.5 * 6 pi (P (36)).
 TEST(Formula, DerivativesOfThePlatformByHand) {
   const Formula y("0.5*sin(pi - (-2*pi*(t - 1/2)^3 + 3/2*pi*t - pi/4)) + 0.4");
   const Jet start = y(0);
@@ -121,7 +121,7 @@ TEST(Formula, LongestBarOfThePlatform) {
   for (const Formula& length :
        {Formula(bar_length("(-0.4)", "(-0.15)")), Formula(bar_length("0.4", "0.15"))})
     for (int i = 0; i <= 1000; ++i) longest = std::max(longest, length(1e-3 * i).value);
-  EXPECT_NEAR(longest, 0.8717, 5e-5);  // design.md, section 15
+  EXPECT_NEAR(longest, 0.8717, 5e-5);  // as the platform is built
 }
 
 // A formula of a formula: derivatives by the chain rule from those of the inner one.

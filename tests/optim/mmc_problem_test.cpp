@@ -1,5 +1,5 @@
 // The design problem over fixed loads: its values are those of its parts, its gradients pass the
-// Taylor test over three decades for every load definition and support (issue line 6), and a
+// Taylor test over three decades for every load definition and support, and a
 // design that has come apart is refused.
 
 #include <gtest/gtest.h>

@@ -109,7 +109,7 @@ class EveryLoadDefinition : public ::testing::TestWithParam<Choice> {
 INSTANTIATE_TEST_SUITE_P(Table, EveryLoadDefinition, ::testing::ValuesIn(choices()),
                          [](const auto& choice) { return choice.param.name; });
 
-// f(s + h) - f(s) - h f'(s) = O(h^2) over three decades (issue line 6). The steps stay above the
+// f(s + h) - f(s) - h f'(s) = O(h^2) over three decades. The steps stay above the
 // level where round-off of f (1e-12, conditioning of a plate with 1e-3 in its cells) is felt.
 TEST_P(EveryLoadDefinition, TaylorRemainderIsOfSecondOrder) {
   const fem::EslSets loads = growing_plate(kGrid, 6, 12, 2);
@@ -161,7 +161,7 @@ std::pair<double, double> energy_inside(const fem::StaticSolver& solver, const V
   return {energies.head(g.cell(root_column, 0)).sum(), energies.sum()};
 }
 
-// Static analysis at the design of the motion returns the motion's deformation (issue line 7).
+// Static analysis at the design of the motion returns the motion's deformation.
 TEST(Recovery, StiffnessLoadsReturnTheDeformation) {
   const fem::EslSets loads = growing_plate(kGrid, 4, 12, 2);
   for (double smallest : {1e-3, 1e-6}) {
@@ -239,7 +239,7 @@ TEST(Compliance, ARodUnderItsOwnWeightHasTheCompliance) {
   EXPECT_NEAR(value.d_mass.sum(), 2 * value.f, 1e-11 * value.f);    // f ~ m^2
 }
 
-// Objective and gradient with and without compression, for all definitions (issue line 9).
+// Objective and gradient with and without compression, for all definitions.
 TEST_P(EveryLoadDefinition, CompressionChangesNothing) {
   const fem::EslSets loads = growing_plate(kGrid, 40, 20, 1);
   const SmoothDesign start(kGrid, 20);

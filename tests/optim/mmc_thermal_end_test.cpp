@@ -49,7 +49,7 @@ fem::EslSets few_loads(int nx, int ny) {
 /// One load: K w = F + Bᵀ n, w_c = -g (0, Y) at the root; at the far edge differences of v are
 /// -g_e dy, second differences of u zero.
 struct Rigid {
-  VectorXd w, derivative;  // of wᵀ K w, by the formula of design.md 11
+  VectorXd w, derivative;  // of wᵀ K w, by optim/README.md, Hot plates
   double compliance = 0;
 
   Rigid(const fem::EslSets& loads, size_t l, const VectorXd& stiffness, const VectorXd& mass) {

@@ -1,6 +1,6 @@
-// Heat in the design problem: Taylor tests of every derivative (issue line 10) up to the variables
+// Heat in the design problem: Taylor tests of every derivative up to the variables
 // of the design; loads of hot plates from the state of a motion, whose strain energy is that of the
-// statics or, where nothing is held, none (issue line 11).
+// statics or, where nothing is held, none.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@
 namespace flexmorph::mmc::test {
 namespace {
 
-// ------------------------------------------------------------ Taylor tests (issue line 10)
+// ------------------------------------------------------------ Taylor tests
 
 struct Choice {
   const char* name;
@@ -126,7 +126,7 @@ struct HotDynamics {
   fem::Model model;
   fem::State x;
   fem::Growth growth;
-  double strain_energy = 0;  // s³ U_cold(q / s), design.md 11
+  double strain_energy = 0;  // s³ U_cold(q / s), fem/README.md, Heat
 
   HotDynamics(bool edge_grows, double stretch) : a(stretch) {
     fem::FrameMotion hub;
@@ -215,7 +215,7 @@ TEST(HotDynamicsLoads, AnEdgeThatIsHeldHasTheStaticAnswer) {
   EXPECT_NEAR(ratios[2], 1, 0.01);
 }
 
-// Issue line 11: free growth, all the way from the state.
+// Free growth, all the way from the state.
 TEST(HotDynamicsLoads, FreeGrowthHasNoAnswer) {
   const HotDynamics free(true, 8e-3), held(false, 8e-3);
   const fem::EslSets loads = load_of(free, kGrid), others = load_of(held, kGrid);

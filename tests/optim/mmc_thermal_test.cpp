@@ -1,6 +1,6 @@
 // Heat in the statics of a design problem: elastic energies of hot plates against a dense solution
 // of the same equations, closed forms of held plates and other supports' answers; the sign that
-// heat has; loads of plates that grow freely (issue line 11), which are those of cold ones, bit for
+// heat has; loads of plates that grow freely, which are those of cold ones, bit for
 // bit.
 
 #include <gtest/gtest.h>
@@ -21,7 +21,8 @@ using ::flexmorph::testing::says;
 
 // ------------------------------------------------------------ one dense plate
 
-/// wᵀ K w and its derivative as design.md 11 has it, all unknowns in one dense matrix.
+/// wᵀ K w and its derivative as optim/README.md, Hot plates, has it, all unknowns in one dense
+/// matrix.
 struct Dense {
   Grid g;
   fem::PlaneSection section = kSection;
@@ -339,7 +340,7 @@ TEST(HotCompliance, AClampedEdgeIsThatOfAPlateAtRest) {
   EXPECT_LT(u.head(2 * 11).norm(), 1e-15);
 }
 
-// Issue line 11: hot plates whose edge grows with them.
+// Hot plates whose edge grows with them.
 TEST(HotCompliance, FreeGrowthIsColdBitForBit) {
   const VectorXd k = random_factors(kGrid, 1e-3, 8), m = random_factors(kGrid, 1e-2, 9);
   for (const LoadDefinition definition : {LoadDefinition::inertia, LoadDefinition::frozen}) {

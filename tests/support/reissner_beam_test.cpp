@@ -123,7 +123,7 @@ TEST(ReissnerBeam, FrequenciesAtRestSolveTheFrequencyEquations) {
   const double z = bisect(1e-3, 1.57, [=](double x) { return x * std::tan(x) - ratio; });
   const double axial = z / beam.length * std::sqrt(beam.youngs_modulus / beam.density);
   EXPECT_LT(((found.array() - axial).abs() / axial).minCoeff(), 1e-10);
-  // The 73 Hz of the method (section 4) is Rayleigh's quotient of a linear mode, an upper bound.
+  // The 73 Hz of fem/README.md, Starts, are Rayleigh's quotient of a linear mode, an upper bound.
   const double linear = std::sqrt(beam.axial_stiffness() / beam.length /
                                   (beam.tip_mass + beam.line_density() * beam.length / 3));
   EXPECT_NEAR(linear / (2 * std::numbers::pi), 73, 0.1);

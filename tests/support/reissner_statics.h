@@ -30,8 +30,8 @@ inline SectionLaw linear_law(const BeamSection& s) {
 }
 
 /// A section that stays straight and becomes λ times as high, of St. Venant-Kirchhoff material with
-/// the enhanced continuum mechanics of design.md 11 (D⁰ over the section, D^ν by the strains of the
-/// axis):
+/// the enhanced continuum mechanics of fem/README.md, Beams (D⁰ over the section, D^ν by the
+/// strains of the axis):
 ///
 ///   F e₁ = (1 + Γ₁ - yλκ) t₁ + Γ₂ t₂,   F e₂ = λ t₂
 ///   ε₁₁ = a₀ + a₁ y + a₂ y²,   ε₂₂ = ½ (λ² - 1),   2ε₁₂ = λ Γ₂
