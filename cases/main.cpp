@@ -138,7 +138,8 @@ int parse_and_run(int argc, char** argv) {
 
 }  // namespace
 
-/// Exit codes: 0 done, 1 a defect of the program, 2 bad input, 3 numerical failure, 4 interrupted.
+/// Exit codes: 0 done, 1 a defect of the program, 2 bad input, 3 numerical failure, 4 interrupted,
+/// 5 done, but an expectation of the case was missed.
 int main(int argc, char** argv) {
   const flexmorph::PlainNumbers plain;  // messages, too
   try {

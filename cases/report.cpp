@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "cases/expectations.h"
 #include "cases/heat.h"
 #include "cases/measured_plots.h"
 #include "cases/mechanism_plots.h"
@@ -152,44 +153,13 @@ io::Json motion_results(const Scene& scene, const RunReport& report) {
   return out;
 }
 
-/// The value of a column at the end, or with "<column>.largest" its largest absolute value.
-std::optional<double> value_of(
-    const std::function<const std::vector<double>*(const std::string&)>& column,
-    const std::string& name) {
-  if (const std::vector<double>* values = column(name))
-    return values->empty() ? std::optional<double>() : values->back();
-  static const std::string kLargest = ".largest";
-  if (!name.ends_with(kLargest)) return {};
-  const std::vector<double>* values = column(name.substr(0, name.size() - kLargest.size()));
-  if (!values || values->empty()) return {};
-  double largest = 0;
-  for (const double v : *values) largest = std::max(largest, std::abs(v));
-  return largest;
-}
-
 io::Json expectations(const Scene& scene, const RunReport& report) {
   io::Json out = io::Json::object();
-  for (const auto& [name, wanted] : scene.expect) {
-    std::optional<double> found;
-    if (!report.outcomes.empty()) {
-      const mmc::BodyOutcome& o = report.outcomes.front();
-      if (name == "compliance") found = o.compliance;
-      if (name == "volume") found = o.volume;
-      if (name == "sharp_compliance") found = o.sharp.compliance;
-      if (name == "sharp_volume") found = o.sharp.volume;
-      if (name == "compliance_ratio") found = o.sharp.compliance / o.uniform_compliance;
-      if (name == "sharp_ratio") found = o.sharp.compliance / o.compliance;
-    }
-    if (name == "amplitude" && report.motion && !report.motion->amplitude.empty())
-      found = report.motion->amplitude[0];
-    if (!found && report.motion)
-      found = value_of([&](const std::string& n) { return report.motion->column(n); }, name);
-    if (!found && report.path)
-      found = value_of([&](const std::string& n) { return report.path->column(n); }, name);
+  for (const Expected& expected : judge_expectations(scene, report)) {
     io::Json entry = io::Json::object();
-    entry.set("found", found ? io::Json(*found) : io::Json());
-    entry.set("holds", found && wanted.holds(*found));
-    out.set(name, std::move(entry));
+    entry.set("found", expected.found ? io::Json(*expected.found) : io::Json());
+    entry.set("holds", expected.holds);
+    out.set(expected.name, std::move(entry));
   }
   return out;
 }
@@ -283,6 +253,17 @@ io::ReportSection results_section(const RunReport& report) {
   return out;
 }
 
+/// Expectations that were missed come before everything else.
+io::ReportSection expect_section(const Scene& scene, const RunReport& report) {
+  io::ReportSection out;
+  out.heading = "Expected";
+  out.rows.push_back({"", "number, what was found and what was expected"});
+  for (const bool holds : {false, true})
+    for (const Expected& expected : judge_expectations(scene, report))
+      if (expected.holds == holds) out.rows.push_back({holds ? "met" : "MISSED", expected.words});
+  return out;
+}
+
 io::ReportSection heat_section(const Scene& scene) {
   io::ReportSection out;
   out.heading = "Heat";
@@ -336,6 +317,8 @@ void write_report(const Scene& scene, const RunReport& report, RunFolder& folder
   head.heading = "Run";
   head.words = "Status: " + report.status + (report.message.empty() ? "" : " - " + report.message);
   sections.push_back(head);
+  if (!scene.expect.empty() && report.status == "done")
+    sections.push_back(expect_section(scene, report));
   if (scene.has_heat()) sections.push_back(heat_section(scene));
   if (!report.outcomes.empty()) sections.push_back(results_section(report));
   if (!report.verdicts.empty()) sections.push_back(cycles_section(report));

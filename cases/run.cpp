@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "cases/expectations.h"
 #include "cases/motion_run.h"
 #include "cases/path_run.h"
 #include "cases/report.h"
@@ -241,6 +242,7 @@ void build_scene(const Scene& scene) {
     mechanism.model.force(x, force);
     if (scene.time.integrator == "energy_momentum") mechanism.model.mean_force(x, x.q, x.q, force);
   }
+  check_expectations(scene);
   const std::vector<mmc::BodyProblem> problems = build_problems(scene);
   if (scene.domain) build_static_loads(scene, problems.front());
 }
@@ -303,8 +305,18 @@ int run_case(const RunOptions& options) {
     throw;
   }
   close("done", "");
-  progress.say("done: " + directory + "/report.html");
-  return 0;
+  int missed = 0;
+  for (const Expected& expected : judge_expectations(scene, report)) {
+    if (expected.holds) continue;
+    ++missed;
+    std::fprintf(stderr, "flexmorph: missed: %s\n", expected.words.c_str());
+  }
+  progress.say("done" +
+               (missed > 0 ? ", " + std::to_string(missed) +
+                                 (missed > 1 ? " expectations missed" : " expectation missed")
+                           : "") +
+               ": " + directory + "/report.html");
+  return missed > 0 ? kMissed : 0;
 }
 
 }  // namespace flexmorph::cases

@@ -25,8 +25,11 @@ void build_scene(const Scene& scene);
 /// Names of the shipped cases.
 std::vector<std::string> shipped_cases();
 
+/// Exit code of a run that is whole, but misses an expectation of its case.
+inline constexpr int kMissed = 5;
+
 /// Runs a case from file to folder. @return exit code: 0 done, 4 interrupted (what was computed is
-/// kept). @throws Error; a numerical one after the folder says what failed.
+/// kept), kMissed. @throws Error; a numerical one after the folder says what failed.
 int run_case(const RunOptions& options);
 
 /// Says what a case contains, what it leaves out, and what each part costs.

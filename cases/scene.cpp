@@ -25,6 +25,7 @@ Output read_output(const io::Table& root) {
 
 Expectation read_expectation(const io::Table& t) {
   Expectation expected;
+  expected.place = t.place();
   const auto bound = [&](const char* key) -> std::optional<double> {
     if (!t.has(key)) return {};
     return t.number(key, io::any_number("a bound"));

@@ -363,6 +363,7 @@ struct Output {
 struct Expectation {
   std::optional<double> value, at_least, at_most;
   double tolerance = 0;  ///< absolute, around `value`
+  std::string place;     ///< file and line, for messages
 
   bool holds(double found) const;
 };

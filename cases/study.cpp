@@ -151,7 +151,7 @@ VariantResult result_of(const StudyOptions& options, const Variant& variant, con
     out.message = "ended by signal " + std::to_string(ended.signal);
     if (options.time_limit > 0 && (ended.signal == SIGXCPU || ended.signal == SIGKILL))
       out.message = "ended after " + io::to_text(options.time_limit, 3) + " CPU seconds";
-  } else if (ended.code != 0) {
+  } else if (ended.code != 0 && ended.code != kMissed) {
     out.status = "failed";
     if (out.message.empty()) out.message = last_words(out.directory + ".log");
   } else if (!out.done()) {

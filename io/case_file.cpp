@@ -139,6 +139,8 @@ std::string one_of(const std::string& noun, std::span<const std::string> allowed
 
 const std::string& Table::path() const { return place_->path; }
 
+std::string Table::place() const { return place_->table->place; }
+
 bool Table::has(const std::string& key) const { return place_->find(key) != nullptr; }
 
 bool Table::is_string(const std::string& key) const {

@@ -40,6 +40,7 @@ Quantity between(std::string noun, std::string unit, double lower, double upper)
 class Table {
  public:
   const std::string& path() const;               ///< "body.flow"; empty for the file itself
+  std::string place() const;                     ///< "cases/four_bar.toml:14"
   bool has(const std::string& key) const;        ///< does the key exist? (makes it known)
   bool is_string(const std::string& key) const;  ///< is its value a string?
   bool is_list_of_strings(const std::string& key) const;
