@@ -1,12 +1,12 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
-#include "cases/accuracy.h"
-#include "cases/compare.h"
-#include "cases/run.h"
-#include "cases/stability.h"
-#include "cases/sweep.h"
-#include "cases/version.h"
+#include "cases/accuracy/accuracy.h"
+#include "cases/study/compare.h"
+#include "cases/run/run.h"
+#include "cases/stability/stability.h"
+#include "cases/study/sweep.h"
+#include "cases/run/version.h"
 #include "geometry/plain_numbers.h"
 #include "geometry/processor.h"
 

@@ -24,8 +24,17 @@ set(may_fem/thermal geometry fem fem/model)
 set(may_fem/dynamics geometry fem fem/model fem/solve)
 set(may_optim geometry)
 set(may_optim/mmc geometry ${fem} optim)
-set(may_cases geometry io ${fem} optim optim/mmc)
-set(may_tests geometry io ${fem} optim optim/mmc cases)
+# The door, main.cpp, and its wings, each on top of those before it.
+set(below geometry io ${fem} optim optim/mmc)
+foreach(wing scene build run study)
+  set(may_cases/${wing} ${below})
+  list(APPEND below cases/${wing})
+endforeach()
+set(may_cases/accuracy ${below})
+set(may_cases/stability ${below})
+list(APPEND below cases/accuracy cases/stability)
+set(may_cases ${below})
+set(may_tests ${below} cases)
 
 # Wrapped library (how its headers begin) -> the folder whose .cpp files may include it.
 set(libraries CGAL Boost SuiteSparse VTK NLopt Ipopt toml++ CLI11 GiNaC
@@ -55,7 +64,7 @@ set(folder_SUNDIALS tests)
 function(room_of path room)
   if(path MATCHES "^fem/model[^/]*$")
     set(${room} fem/model PARENT_SCOPE)
-  elseif(path MATCHES "^(fem/[^/]+|optim/mmc)/")
+  elseif(path MATCHES "^(fem/[^/]+|optim/mmc|cases/[^/]+)/")
     set(${room} ${CMAKE_MATCH_1} PARENT_SCOPE)
   elseif(path MATCHES "^([^/]+)/")
     set(${room} ${CMAKE_MATCH_1} PARENT_SCOPE)
@@ -91,7 +100,7 @@ foreach(pair geometry/grid.h>io/vtk.h io/vtk.cpp>fem/model.h fem/element.h>fem/m
              fem/terms/inertia.cpp>fem/elements/ale_ancf_plate.h fem/model.cpp>fem/terms/terms.h
              fem/solve/newton.cpp>fem/dynamics/esl.h optim/mma.cpp>optim/mmc/design.h
              fem/thermal/heated.cpp>fem/elements/ancf_plate.h
-             optim/mma.cpp>fem/model.h cases/run.h>tests/support/rate.h)
+             optim/mma.cpp>fem/model.h cases/run/run.h>tests/support/rate.h)
   string(REPLACE ">" ";" pair ${pair})
   judge_room(${pair} offence)
   if(NOT offence)
@@ -109,7 +118,7 @@ endforeach()
 foreach(pair io/vtk.h>vtkNew.h fem/solve/newton.cpp>CGAL/Polygon_2.h
              optim/nlopt.h>nlopt.hpp fem/model.h>Eigen/CholmodSupport
              fem/model.cpp>boost/numeric/odeint.hpp
-             io/formula.h>ginac/ginac.h cases/scene.cpp>cln/cln.h
+             io/formula.h>ginac/ginac.h cases/scene/scene.cpp>cln/cln.h
              fem/dynamics/integrator.cpp>ida/ida.h)
   string(REPLACE ">" ";" pair ${pair})
   judge_library(${pair} offence)

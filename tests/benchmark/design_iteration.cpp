@@ -9,9 +9,9 @@
 #include <filesystem>
 #include <vector>
 
-#include "cases/build.h"
-#include "cases/motion_run.h"
-#include "cases/run.h"
+#include "cases/build/build.h"
+#include "cases/run/motion_run.h"
+#include "cases/run/run.h"
 #include "tests/benchmark/cpu.h"
 #include "tests/benchmark/iteration.h"
 #include "tests/benchmark/reference.h"

@@ -1,6 +1,6 @@
 // Orders and limits of sequences whose laws are known.
 
-#include "cases/accuracy_orders.h"
+#include "cases/study/orders.h"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "cases/run.h"
-#include "cases/scene.h"
+#include "cases/run/run.h"
+#include "cases/build/build.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"
 

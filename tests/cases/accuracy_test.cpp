@@ -6,10 +6,10 @@
 #include <cmath>
 #include <filesystem>
 
-#include "cases/accuracy_budget.h"
-#include "cases/accuracy_choice.h"
-#include "cases/accuracy_study.h"
-#include "cases/run.h"
+#include "cases/accuracy/budget.h"
+#include "cases/accuracy/choice.h"
+#include "cases/accuracy/study.h"
+#include "cases/run/run.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"
 

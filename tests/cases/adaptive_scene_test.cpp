@@ -1,7 +1,7 @@
 // Scenes whose steps adapt: what the keys of [time] become.
 #include <gtest/gtest.h>
 
-#include "cases/build.h"
+#include "cases/build/build.h"
 
 namespace flexmorph::cases {
 namespace {

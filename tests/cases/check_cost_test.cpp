@@ -1,12 +1,12 @@
 // What `flexmorph check` says of a step's cost, against instructions that valgrind counted.
-#include "cases/check_cost.h"
+#include "cases/run/check_cost.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
-#include "cases/run.h"
+#include "cases/run/run.h"
 
 namespace flexmorph::cases {
 namespace {

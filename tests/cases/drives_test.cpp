@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "cases/build.h"
-#include "cases/run.h"
-#include "cases/scene.h"
+#include "cases/build/build.h"
+#include "cases/run/run.h"
+#include "cases/scene/scene.h"
 #include "io/files.h"
 #include "tests/io/scratch.h"
 

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "cases/motion_run.h"
-#include "cases/run.h"
+#include "cases/run/motion_run.h"
+#include "cases/run/run.h"
 #include "optim/gradient_check.h"
 #include "optim/mmc/mmc_problem.h"
 #include "tests/cases/scenes.h"

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "cases/build.h"
-#include "cases/run_folder.h"
-#include "cases/twin.h"
+#include "cases/build/build.h"
+#include "cases/run/run_folder.h"
+#include "cases/build/twin.h"
 #include "tests/cases/scenes.h"
 
 namespace flexmorph::cases {

@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cases/motion_run.h"
-#include "cases/report.h"
-#include "cases/run.h"
+#include "cases/run/motion_run.h"
+#include "cases/run/report.h"
+#include "cases/run/run.h"
 #include "io/exports.h"
 #include "tests/cases/program.h"
 

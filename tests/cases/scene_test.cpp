@@ -1,6 +1,6 @@
 // Scenes: both shipped cases load with the numbers of Sun et al. (2018), section 4.2; defaults are
 // those of the method; every bad input is refused with one message that says where and why.
-#include "cases/scene.h"
+#include "cases/build/build.h"
 
 #include <gtest/gtest.h>
 
@@ -137,7 +137,7 @@ TEST(SceneReader, LaterTablesMayAddWords) {
   words.terms.push_back("bending");
   const io::CaseFile file(shipped("rotating_plate_v01"),
                           Changes{"body.terms=[\"inertia\", \"membrane\", \"bending\"]"});
-  EXPECT_EQ(read_scene(file, words).bodies[0].terms.size(), 3u);
+  EXPECT_EQ(read_scene(file, {}, words).bodies[0].terms.size(), 3u);
   EXPECT_THROW(read_scene(file), Error);
 }
 

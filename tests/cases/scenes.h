@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "cases/scene.h"
+#include "cases/build/build.h"
 
 /// Shipped cases as tests read them.
 namespace flexmorph::cases {

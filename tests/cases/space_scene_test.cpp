@@ -2,8 +2,8 @@
 // reaches the model; every bad input is refused with one message that says where and why.
 #include <gtest/gtest.h>
 
-#include "cases/build.h"
-#include "cases/run.h"
+#include "cases/build/build.h"
+#include "cases/run/run.h"
 #include "tests/cases/scenes.h"
 
 namespace flexmorph::cases {

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "cases/run.h"
-#include "cases/stability.h"
+#include "cases/run/run.h"
+#include "cases/stability/stability.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"
 

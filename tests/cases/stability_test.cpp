@@ -1,7 +1,7 @@
 // Stability: verdicts on folders that are made up, the table of suites, limits around processes,
 // and the command on a small scene.
 
-#include "cases/stability.h"
+#include "cases/stability/stability.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <filesystem>
 #include <set>
 
-#include "cases/run.h"
-#include "cases/stability_report.h"
+#include "cases/run/run.h"
+#include "cases/stability/report.h"
 #include "io/files.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"

@@ -7,8 +7,8 @@
 #include <csignal>
 #include <filesystem>
 
-#include "cases/statistics.h"
-#include "cases/sweep.h"
+#include "cases/study/statistics.h"
+#include "cases/study/sweep.h"
 #include "geometry/base.h"
 #include "io/files.h"
 #include "io/tables.h"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "cases/motion_run.h"
-#include "cases/path_run.h"
+#include "cases/run/motion_run.h"
+#include "cases/run/path_run.h"
 #include "tests/cases/scenes.h"
 #include "tests/io/scratch.h"
 

@@ -6,9 +6,9 @@
 #include <fstream>
 #include <numbers>
 
-#include "cases/build.h"
-#include "cases/heat.h"
-#include "cases/measures.h"
+#include "cases/build/build.h"
+#include "cases/build/heat.h"
+#include "cases/run/measures.h"
 #include "fem/elements/ancf_beam.h"
 #include "tests/cases/scenes.h"
 #include "tests/io/scratch.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "cases/motion_run.h"
+#include "cases/run/motion_run.h"
 #include "tests/cases/scenes.h"
 #include "tests/io/scratch.h"
 #include "tests/support/rates.h"

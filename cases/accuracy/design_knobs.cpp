@@ -1,0 +1,199 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "cases/accuracy/knobs.h"
+#include "io/files.h"
+
+namespace flexmorph::cases {
+namespace {
+
+using io::to_text;
+using Overrides = std::vector<std::string>;
+
+std::string pair(int a, int b) {
+  return std::string("[").append(to_text(a)).append(", ").append(to_text(b)).append("]");
+}
+
+Theory no_order(const std::string& why) { return {std::numeric_limits<double>::quiet_NaN(), why}; }
+
+std::string no_loads(const Scene& scene, Part part) {
+  if (part == Part::motion) return "of designs only";
+  return scene.esl && !scene.domain ? "" : "loads are given, not those of a motion";
+}
+
+/// Whole numbers of loads up to the very end: else the last load moves.
+std::vector<Level> load_levels(const Scene& scene, const io::CaseFile&) {
+  std::vector<Level> out;
+  for (const double factor : {20.0, 10.0, 5.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.2, 0.1}) {
+    const double every = scene.esl->every * factor, count = scene.time.end / every;
+    if (factor != 1 && (count < 1.5 || std::abs(count - std::round(count)) > 1e-6)) continue;
+    Level& level = out.emplace_back();
+    level.h = factor;
+    level.name = "every " + to_text(every) + " s";
+    if (factor != 1) level.overrides = {"esl.every=" + to_text(every)};
+  }
+  return out;
+}
+
+std::optional<Theory> load_theory(const Scene&, Part, const std::string&) {
+  return Theory{1, "many loads, whose sum is a one-sided rectangle rule"};
+}
+
+std::string no_design(const Scene&, Part part) {
+  return part == Part::design ? "" : "of designs only";
+}
+
+std::string design_key(size_t design, const std::string& rest) {
+  return "design." + std::to_string(design) + "." + rest + "=";
+}
+
+std::string scaled_list(const std::vector<double>& values, double factor) {
+  std::string out = "[";
+  for (size_t i = 0; i < values.size(); ++i)
+    out += (i > 0 ? ", " : "") + to_text(values[i] * factor);
+  return out + "]";
+}
+
+/// Overrides of one design on cells `size`/`own` times as many in each direction. The band, the
+/// erosion and the smooth maximum stay as many cells: finer cells show sharper components.
+void refine_design(const BodyDesign& d, const io::Table& t, size_t index, int own, int size,
+                   Overrides& out) {
+  const double finer = static_cast<double>(size) / own;
+  const int nx = d.grid.nx / own * size, ny = d.grid.ny / own * size;
+  if (t.has("cells"))
+    out.push_back(design_key(index, "cells") + pair(nx, ny));
+  else
+    out.push_back(design_key(index, "cell") + to_text(d.grid.width / nx));
+  out.push_back(design_key(index, "min_thickness") + to_text(d.min_thickness));
+  const std::vector<io::Table> solid = t.tables("solid"), empty = t.tables("void");
+  const auto strips = [&](const std::vector<io::Table>& regions, const std::string& name) {
+    for (size_t k = 0; k < regions.size(); ++k) {
+      if (!regions[k].has("strip")) continue;
+      const int cells = regions[k].integer("cells", "the width of a strip", 1, d.grid.nx, 2);
+      // Not a whole number: no level, for the strip would be another.
+      out.push_back(design_key(index, name + "." + std::to_string(k) + ".cells") +
+                    to_text(cells * finer));
+    }
+  };
+  strips(solid, "solid");
+  strips(empty, "void");
+}
+
+std::vector<Level> cell_levels(const Scene& scene, const io::CaseFile& file) {
+  int own = 0;
+  for (const BodyDesign& d : scene.designs) own = std::gcd(own, std::gcd(d.grid.nx, d.grid.ny));
+  const std::vector<io::Table> tables = file.root().tables("design");
+  std::vector<Level> out;
+  for (const int quarters : {1, 2, 3, 4, 6, 8, 10, 12, 16, 24, 32}) {
+    if (own * quarters % 4 != 0) continue;
+    const int size = own * quarters / 4;
+    Level& level = out.emplace_back();
+    level.h = static_cast<double>(own) / size;
+    for (size_t i = 0; i < scene.designs.size(); ++i) {
+      const Grid& g = scene.designs[i].grid;
+      level.name +=
+          (i > 0 ? ", " : "") + to_text(g.nx / own * size) + " x " + to_text(g.ny / own * size);
+      if (size != own) refine_design(scene.designs[i], tables[i], i, own, size, level.overrides);
+    }
+  }
+  return out;
+}
+
+std::string no_band(const Scene& scene, Part part) {
+  for (const BodyDesign& d : scene.designs)
+    if (d.tdf.kind == TdfSettings::Kind::paper) return "the band of tdf = \"paper\" is no length";
+  return no_design(scene, part);
+}
+
+std::vector<Level> band_levels(const Scene& scene, const io::CaseFile&) {
+  std::vector<Level> out;
+  for (const double factor : {4.0, 2.0 * std::sqrt(2.0), 2.0, std::sqrt(2.0), 1.0, std::sqrt(0.5),
+                              0.5, 0.5 * std::sqrt(0.5)}) {
+    Level& level = out.emplace_back();
+    level.h = factor;
+    for (size_t i = 0; i < scene.designs.size(); ++i) {
+      const double band = scene.designs[i].band.back() * factor;
+      level.name += (i > 0 ? ", " : "") + to_text(band, 4) + " cells";
+      if (factor != 1)
+        level.overrides.push_back(design_key(i, "band") +
+                                  scaled_list(scene.designs[i].band, factor));
+    }
+  }
+  return out;
+}
+
+/// Levels of a number that every design has.
+std::vector<Level> number_levels(const Scene& scene, const std::string& name,
+                                 const std::vector<double>& factors,
+                                 double (*own)(const BodyDesign& design)) {
+  std::vector<Level> out;
+  for (const double factor : factors) {
+    Level& level = out.emplace_back();
+    for (size_t i = 0; i < scene.designs.size(); ++i) {
+      const double value = own(scene.designs[i]) * factor;
+      level.name += (i > 0 ? ", " : "") + to_text(value, 4);
+      if (factor != 1) level.overrides.push_back(design_key(i, name) + to_text(value));
+    }
+  }
+  return out;
+}
+
+std::vector<Level> void_levels(const Scene& scene, const io::CaseFile&) {
+  const std::vector<double> factors = {16, 8, 4, 2, 1, 0.5, 0.25, 0.125};
+  std::vector<Level> out =
+      number_levels(scene, "alpha", factors, [](const BodyDesign& d) { return d.tdf.alpha; });
+  for (size_t i = 0; i < out.size(); ++i) out[i].h = factors[i];
+  return out;
+}
+
+/// The smooth maximum over components: ln(n) / sharpness above the maximum of n equal ones.
+std::vector<Level> sharpness_levels(const Scene& scene, const io::CaseFile&) {
+  const std::vector<double> factors = {0.25, 0.5, 1, 2, 4, 8, 16};
+  std::vector<Level> out = number_levels(scene, "sharpness", factors, [](const BodyDesign& d) {
+    return d.tdf.sharpness * d.grid.dx();  // as the case gives it, per cell
+  });
+  for (size_t i = 0; i < out.size(); ++i) out[i].h = 1 / factors[i];
+  return out;
+}
+
+std::optional<Theory> void_theory(const Scene&, Part, const std::string&) {
+  return Theory{1, "small alpha, in which the Heaviside function is linear"};
+}
+std::optional<Theory> sharpness_theory(const Scene&, Part, const std::string&) {
+  return no_order(
+      "where n components coincide their smooth maximum lies ln n / sharpness above the maximum "
+      "(order 1), where they cross it does so on a strip as narrow (order 2)");
+}
+
+/// Displacements under a force at a point of a plane continuum are infinite, and so is its work.
+std::optional<Theory> cell_theory(const Scene& scene, Part, const std::string& quantity) {
+  const bool points =
+      scene.domain &&
+      std::any_of(scene.domain->loads.begin(), scene.domain->loads.end(), [](const LoadCase& load) {
+        return std::any_of(load.forces.begin(), load.forces.end(),
+                           [](const PlaneForce& f) { return f.place.kind == Place::Kind::point; });
+      });
+  if (points && quantity.ends_with("compliance"))
+    return Theory{0, "under a force at a point it grows with the logarithm of the cells"};
+  return no_order("edges of components cross the cells anywhere");
+}
+
+std::optional<Theory> band_theory(const Scene&, Part, const std::string&) {
+  return no_order("a band of less than a cell falls between the cells");
+}
+
+}  // namespace
+
+std::vector<Knob> design_knobs() {
+  const auto power = Approach::power;
+  return {
+      {"loads", "loads", power, 0.5, true, no_loads, load_levels, load_theory},
+      {"design_mesh", "design_mesh", power, 2.5, true, no_design, cell_levels, cell_theory},
+      {"void", "void", power, 0.1, true, no_design, void_levels, void_theory},
+      {"sharpness", "design_mesh", power, 0.1, true, no_design, sharpness_levels, sharpness_theory},
+      {"band", "design_mesh", power, 0.1, true, no_band, band_levels, band_theory}};
+}
+
+}  // namespace flexmorph::cases

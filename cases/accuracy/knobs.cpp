@@ -1,0 +1,367 @@
+#include "cases/accuracy/knobs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "io/files.h"
+
+namespace flexmorph::cases {
+namespace {
+
+using io::to_text;
+using Overrides = std::vector<std::string>;
+
+bool any_lines(const Scene& scene) {
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                     [](const Body& b) { return !b.lines.empty(); });
+}
+
+bool bends(const Scene& scene) {
+  return !scene.bodies.empty() && std::all_of(scene.bodies.begin(), scene.bodies.end(),
+                                              [](const Body& b) { return b.has("bending"); });
+}
+
+/// Is there a motion behind this part?
+bool moves(const Scene& scene) { return !scene.domain && !scene.statics; }
+
+std::string key(const std::string& body, const std::string& rest) {
+  return "body." + body + "." + rest + "=";
+}
+
+std::string pair(int a, int b) {
+  return std::string("[").append(to_text(a)).append(", ").append(to_text(b)).append("]");
+}
+
+bool any_beams(const Scene& scene) {
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                     [](const Body& b) { return b.is_beam(); });
+}
+
+bool all_beams(const Scene& scene) {
+  return !scene.bodies.empty() && std::all_of(scene.bodies.begin(), scene.bodies.end(),
+                                              [](const Body& b) { return b.is_beam(); });
+}
+
+/// A number of elements `factor` times as large; nothing where that is no whole number.
+std::optional<int> times(int count, double factor) {
+  const double exact = count * factor;
+  if (exact < 0.5 || std::abs(exact - std::round(exact)) > 1e-9) return {};
+  return static_cast<int>(std::lround(exact));
+}
+
+/// A strip of one element across stays one on coarser meshes, a beam on all.
+std::optional<int> across(const Body& b, double factor) {
+  if (b.is_beam() || (b.elements[1] == 1 && factor < 1)) return 1;
+  return times(b.elements[1], factor);
+}
+
+std::string no_elements(const Scene& scene, Part) {
+  if (scene.bodies.empty()) return "the case has no plates with elements";
+  if (any_lines(scene)) return "[[body.line]] numbers lines of the case's own mesh";
+  return "";
+}
+
+constexpr int kMostAlong =
+    64;  // elements along a plate, where that is more than four times its own
+
+/// All bodies refined together, limits of boundary elements with them.
+std::vector<Level> mesh_levels(const Scene& scene, const io::CaseFile&) {
+  std::vector<Level> out;
+  for (const double factor : {0.25, 0.375, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0}) {
+    Level level;
+    level.h = 1 / factor;
+    bool whole = factor <= 4 || scene.bodies.front().elements[0] * factor <= kMostAlong;
+    for (const Body& b : scene.bodies) {
+      const std::optional<int> m = times(b.elements[0], factor), n = across(b, factor);
+      whole = whole && m && n;
+      if (!whole) break;
+      level.name += (level.name.empty() ? "" : ", ") + to_text(*m) +
+                    (b.is_beam() ? " elements" : " x " + to_text(*n));
+      if (factor == 1) continue;
+      level.overrides.push_back(key(b.name, "elements") +
+                                (b.is_beam() ? to_text(*m) : pair(*m, *n)));
+      if (!b.flow) continue;
+      level.overrides.push_back(key(b.name, "flow.max_length") +
+                                to_text(b.flow->max_length * level.h));
+      level.overrides.push_back(key(b.name, "flow.min_length") +
+                                to_text(b.flow->min_length * level.h));
+    }
+    if (whole) out.push_back(std::move(level));
+  }
+  return out;
+}
+
+Theory no_order(const std::string& why) { return {std::numeric_limits<double>::quiet_NaN(), why}; }
+
+std::optional<Theory> mesh_theory(const Scene& scene, Part part, const std::string&) {
+  if (part == Part::design) return no_order("the motion is only where the loads come from");
+  if (all_beams(scene))
+    return Theory{2,
+                  "smooth motions, gradients across the axis being linear along it: "
+                  "2 (1 + 1 - 1), Strang & Fix 1973"};
+  if (any_beams(scene)) return {};
+  if (std::any_of(scene.joints.begin(), scene.joints.end(),
+                  [](const Joint& j) { return j.type == "pin"; }) ||
+      std::any_of(scene.loads.begin(), scene.loads.end(),
+                  [](const BodyLoad& l) { return l.type == "point"; }))
+    return no_order("stresses are singular at pins and point loads");
+  if (std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                  [](const Body& b) { return b.mesh_changes(); }))
+    return no_order(
+        "the mesh changes at times that depend on it, and the corners of held edges are singular");
+  if (!bends(scene)) return no_order("stresses are singular at the corners of held edges");
+  if (scene.bodies.front().shape != "h16")
+    return no_order("the incomplete shape functions are not conforming in bending");
+  return Theory{4, "smooth deflections, cubic Hermite: 2 (3 + 1 - 2), Strang & Fix 1973"};
+}
+
+std::string other_shape(const Scene& scene) {
+  return scene.bodies.front().shape == "h16" ? "h12" : "h16";
+}
+
+std::string no_shape(const Scene& scene, Part part) {
+  if (part == Part::design) return "designs are analysed with cells";
+  if (any_beams(scene)) return "beams have one shape set";
+  for (const Body& b : scene.bodies)
+    if (b.shape != scene.bodies.front().shape) return "bodies have different shape sets";
+  return no_elements(scene, part);
+}
+
+std::vector<Level> shape_levels(const Scene& scene, const io::CaseFile& file) {
+  std::vector<Level> out = mesh_levels(scene, file);
+  for (Level& level : out) {
+    level.name = other_shape(scene) + " " + level.name;
+    for (const Body& b : scene.bodies)
+      level.overrides.push_back(key(b.name, "shape") + other_shape(scene));
+  }
+  return out;
+}
+
+std::optional<Theory> no_theory(const Scene&, Part, const std::string&) { return {}; }
+
+std::string no_model(const Scene& scene, Part) {
+  return all_beams(scene) ? "" : "\"gcm\" and \"ecm\" are models of beams";
+}
+
+/// The other beam model on all meshes: not an approximation of the case's own, so its errors are
+/// the difference of the models.
+std::vector<Level> model_levels(const Scene& scene, const io::CaseFile& file) {
+  std::vector<Level> out = mesh_levels(scene, file);
+  for (Level& level : out) {
+    std::string models;
+    for (const Body& b : scene.bodies) {
+      const std::string other = b.has("gcm") ? "ecm" : "gcm";
+      models += (models.empty() ? "" : ", ") + other;
+      level.overrides.push_back(key(b.name, "terms") + (b.has("inertia") ? "['inertia', '" : "['") +
+                                other + "']");
+    }
+    level.name = models + " " + level.name;
+  }
+  return out;
+}
+
+std::string no_time(const Scene& scene, Part) {
+  return moves(scene) ? "" : "nothing moves: there is no time";
+}
+std::string no_time_or_design(const Scene& scene, Part part) {
+  return part == Part::design ? "of the motion only" : no_time(scene, part);
+}
+
+Level step_level(const Scene& scene, double factor) {
+  Level level;
+  level.h = factor;
+  const double step = scene.time.step * factor;
+  level.name = to_text(step) + " s";
+  const bool adapts = scene.time.tolerance || scene.time.integrator == "minimal_coordinates";
+  if (factor == 1 && !adapts) return level;
+  level.overrides = {"time.step=" + to_text(step)};
+  if (scene.time.tolerance)
+    level.overrides.insert(level.overrides.end(), {"time.tolerance=", "time.largest_step="});
+  if (scene.time.integrator == "minimal_coordinates")
+    level.overrides.insert(level.overrides.end(),
+                           {"time.integrator='generalized_alpha'", "time.tolerance="});
+  return level;
+}
+
+std::vector<Level> step_levels(const Scene& scene, const io::CaseFile&) {
+  std::vector<Level> out;
+  for (const double factor : {4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625})
+    if (scene.time.step * factor <= scene.time.end / 4) out.push_back(step_level(scene, factor));
+  return out;
+}
+
+bool mesh_changes(const Scene& scene) {
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                     [](const Body& b) { return b.mesh_changes(); });
+}
+
+std::optional<Theory> step_theory(const Scene& scene, Part part, const std::string&) {
+  if (part == Part::design) return no_order("loads of a motion sampled in time");
+  if (mesh_changes(scene))
+    return no_order("every change of the mesh sets off axial ringing that steps do not resolve");
+  if (scene.time.start == Start::rigid && !scene.bodies.empty())
+    return no_order("the start sets off axial ringing that steps do not resolve");
+  return Theory{2, "steps that resolve the motion, Arnold & Bruls 2007"};
+}
+
+std::string no_adaptive(const Scene& scene, Part part) {
+  if (scene.time.integrator != "generalized_alpha")
+    return "only \"generalized_alpha\" knows its local error";
+  return no_time_or_design(scene, part);
+}
+
+std::string no_explicit(const Scene& scene, Part part) {
+  if (mesh_changes(scene)) return "\"minimal_coordinates\" keep their mesh";
+  if (!all_beams(scene) && !scene.bodies.empty())
+    return "the stiffness of plates needs implicit steps";
+  return no_time_or_design(scene, part);
+}
+
+/// Tolerances from coarse to fine, of steps that adapt.
+std::vector<Level> tolerance_levels(const std::vector<double>& tolerances, double own,
+                                    const std::string& name,
+                                    const std::vector<std::string>& others) {
+  std::vector<Level> out;
+  for (const double tolerance : tolerances) {
+    Level& level = out.emplace_back();
+    level.h = tolerance / tolerances[tolerances.size() / 2];
+    level.name = name + " " + to_text(tolerance);
+    if (tolerance == own) continue;
+    level.overrides = others;
+    level.overrides.push_back("time.tolerance=" + to_text(tolerance));
+  }
+  return out;
+}
+
+std::vector<Level> adaptive_levels(const Scene& scene, const io::CaseFile&) {
+  return tolerance_levels({1e-2, 1e-3, 1e-4, 1e-5, 1e-6}, scene.time.tolerance.value_or(0),
+                          "tolerance", {"time.step='adaptive'"});
+}
+
+std::vector<Level> explicit_levels(const Scene& scene, const io::CaseFile&) {
+  const bool own = scene.time.integrator == "minimal_coordinates";
+  return tolerance_levels({1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8},
+                          own ? scene.time.explicit_tolerance : 0, "tolerance",
+                          {"time.integrator='minimal_coordinates'"});
+}
+
+std::optional<Theory> tolerance_theory(const Scene&, Part, const std::string&) {
+  return no_order("steps of another tolerance fall elsewhere, so errors scatter about order 1");
+}
+
+std::string no_rho(const Scene& scene, Part part) {
+  if (scene.time.integrator != "generalized_alpha") return "\"generalized_alpha\" has it";
+  return no_time_or_design(scene, part);
+}
+
+std::vector<Level> rho_levels(const Scene& scene, const io::CaseFile&) {
+  std::vector<double> values = {0, 0.2, 0.4, 0.6, 0.8, 0.9, 1, scene.time.rho_inf};
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  std::vector<Level> out;
+  for (const double rho : values) {
+    Level& level = out.emplace_back();
+    level.name = to_text(rho);
+    if (rho != scene.time.rho_inf) level.overrides = {"time.rho_inf=" + to_text(rho)};
+  }
+  return out;
+}
+
+std::string no_integrator(const Scene& scene, Part part) {
+  if (scene.has_free_lines()) return "free lines need \"generalized_alpha\"";
+  if (scene.time.tolerance || scene.time.integrator == "minimal_coordinates")
+    return "the steps of the case adapt";
+  return no_time_or_design(scene, part);
+}
+
+std::vector<Level> integrator_levels(const Scene& scene, const io::CaseFile& file) {
+  const std::string other =
+      scene.time.integrator == "generalized_alpha" ? "energy_momentum" : "generalized_alpha";
+  std::vector<Level> out = step_levels(scene, file);
+  for (Level& level : out) {
+    level.name = other + " " + level.name;
+    level.overrides.push_back("time.integrator=" + other);
+  }
+  return out;
+}
+
+std::string no_bending(const Scene& scene, Part part) {
+  return part == Part::motion && bends(scene) ? "" : "there is no bending at Gauss points";
+}
+
+std::vector<Level> quadrature_levels(const Scene& scene, const io::CaseFile&) {
+  const int own = scene.bodies.front().bending_points;
+  std::vector<Level> out;
+  for (int points = std::min(3, own); points <= std::max(9, own); ++points) {
+    Level& level = out.emplace_back();
+    level.h = static_cast<double>(own) / points;
+    level.name = to_text(points) + " x " + to_text(points);
+    if (points == own) continue;
+    for (const Body& b : scene.bodies)
+      level.overrides.push_back(key(b.name, "bending_points") + to_text(points));
+  }
+  return out;
+}
+
+std::string no_path(const Scene& scene, Part part) {
+  return scene.statics && part == Part::motion ? "" : "there is no path of equilibria";
+}
+
+std::vector<Level> path_levels(const Scene& scene, const io::CaseFile&) {
+  std::vector<Level> out;
+  const int own = scene.statics->steps;
+  for (const double factor : {0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0}) {
+    const auto steps = static_cast<int>(std::lround(own * factor));
+    if (steps < 1 || (!out.empty() && out.back().h == static_cast<double>(own) / steps)) continue;
+    Level& level = out.emplace_back();
+    level.h = static_cast<double>(own) / steps;
+    level.name = to_text(steps) + " steps";
+    if (steps != own) level.overrides = {"static.steps=" + to_text(steps)};
+  }
+  return out;
+}
+
+}  // namespace
+
+const std::vector<Knob>& knobs() {
+  static const std::vector<Knob> table = [] {
+    std::vector<Knob> rows = {
+        {"elements", "elements", Approach::power, 2.5, true, no_elements, mesh_levels, mesh_theory},
+        {"shape", "elements", Approach::power, 2.5, true, no_shape, shape_levels, no_theory},
+        {"model", "elements", Approach::power, 2.5, true, no_model, model_levels, mesh_theory,
+         false},
+        {"step", "step", Approach::power, 1, true, no_time, step_levels, step_theory},
+        {"adaptive", "step", Approach::power, 0.4, true, no_adaptive, adaptive_levels,
+         tolerance_theory},
+        {"minimal_coordinates", "step", Approach::power, 0.2, true, no_explicit, explicit_levels,
+         tolerance_theory},
+        {"rho_inf", "step", Approach::power, 0, false, no_rho, rho_levels, no_theory},
+        {"integrator", "step", Approach::power, 1, true, no_integrator, integrator_levels,
+         step_theory},
+        {"quadrature", "quadrature", Approach::fast, 1, true, no_bending, quadrature_levels,
+         no_theory},
+        {"load_steps", "load_steps", Approach::fast, 1, true, no_path, path_levels, no_theory},
+    };
+    for (Knob& row : design_knobs()) rows.push_back(std::move(row));
+    return rows;
+  }();
+  return table;
+}
+
+std::vector<std::string> knob_names() {
+  std::vector<std::string> out;
+  for (const Knob& each : knobs()) out.push_back(each.name);
+  return out;
+}
+
+const Knob& knob(const std::string& name) {
+  std::string known;
+  for (const Knob& each : knobs()) {
+    if (each.name == name) return each;
+    known += (known.empty() ? "" : ", ") + each.name;
+  }
+  throw Error::input("ladder '" + name + "' is not known; there are: " + known);
+}
+
+}  // namespace flexmorph::cases

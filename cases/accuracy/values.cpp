@@ -1,0 +1,159 @@
+#include "cases/accuracy/values.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "cases/study/study.h"
+#include "io/files.h"
+#include "io/tables.h"
+
+namespace flexmorph::cases {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+bool holds(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// A number of run.json by its path.
+bool is_of_run(const Scene& scene, const std::string& name) {
+  return name.starts_with(scene.statics ? "static." : "motion.");
+}
+
+/// Lagrange's polynomial through rows first .. first + count - 1.
+double interpolated(const std::vector<double>& x, const std::vector<double>& y, size_t first,
+                    size_t count, double at) {
+  double out = 0;
+  for (size_t i = first; i < first + count; ++i) {
+    double weight = 1;
+    for (size_t j = first; j < first + count; ++j)
+      if (j != i) weight *= (at - x[j]) / (x[i] - x[j]);
+    out += weight * y[i];
+  }
+  return out;
+}
+
+double largest_size(const std::vector<double>& x, const std::vector<double>& y) {
+  size_t top = 0;
+  for (size_t i = 0; i < y.size(); ++i)
+    if (std::abs(y[i]) > std::abs(y[top])) top = i;
+  const double peak = std::abs(y[top]);
+  if (top == 0 || top + 1 == y.size()) return peak;
+  // Newton's form about the row: y = y₀ + s (x - x₀) + c (x - x₀)(x - x₋).
+  const double hm = x[top] - x[top - 1], hp = x[top + 1] - x[top];
+  const double left = (peak - std::abs(y[top - 1])) / hm,
+               right = (std::abs(y[top + 1]) - peak) / hp;
+  const double c = (right - left) / (hm + hp), slope = left + c * hm;
+  return c < 0 ? peak - slope * slope / (4 * c) : peak;
+}
+
+/// Columns of a table: one row per place; a mesh that changes leaves two rows at one time.
+double column_value(const io::CsvTable& table, const std::string& abscissa,
+                    const Interest& interest) {
+  const std::vector<double> x = table.numbers(abscissa), y = table.numbers(interest.name);
+  std::vector<double> places, values;
+  for (size_t i = 0; i < x.size(); ++i) {
+    if (!places.empty() && x[i] <= places.back()) {
+      values.back() = y[i];
+      continue;
+    }
+    places.push_back(x[i]);
+    values.push_back(y[i]);
+  }
+  return places.empty() ? kNone : value_at(places, values, interest);
+}
+
+double json_value(const nlohmann::json& run, const std::string& path) {
+  const nlohmann::json* here = &run;
+  for (size_t begin = 0; begin <= path.size();) {
+    const size_t dot = std::min(path.find('.', begin), path.size());
+    // Names of columns hold dots themselves: the whole rest may be the key.
+    if (const std::string rest = path.substr(begin); here->is_object() && here->contains(rest)) {
+      here = &(*here)[rest];
+      break;
+    }
+    const std::string key = path.substr(begin, dot - begin);
+    if (!here->is_object() || !here->contains(key)) return kNone;
+    here = &(*here)[key];
+    begin = dot + 1;
+  }
+  return here->is_number() ? here->get<double>() : kNone;
+}
+
+double design_value(const nlohmann::json& run, const std::string& name) {
+  const size_t dot = name.find('.');
+  const std::string body = dot == std::string::npos ? "" : name.substr(0, dot);
+  const std::string figure = dot == std::string::npos ? name : name.substr(dot + 1);
+  for (const nlohmann::json& each : run.value("results", nlohmann::json::array()))
+    if (body.empty() || each.value("body", "") == body) return json_value(each, figure);
+  return kNone;
+}
+
+}  // namespace
+
+Part part_of(const Scene& scene, const Interest& interest) {
+  const std::string what = "accuracy.quantity = \"" + interest.name + "\": ";
+  for (const Part part : parts_of(scene)) {
+    const bool known = holds(candidates(scene, part), interest.name) ||
+                       (part == Part::motion && is_of_run(scene, interest.name));
+    if (!known) continue;
+    if (interest.at != Interest::At::end &&
+        (part == Part::design || is_of_run(scene, interest.name)))
+      throw Error::input(what + "it is one number of a run: `at` is for columns");
+    const double end = scene.statics ? scene.statics->to : scene.time.end;
+    if (interest.at == Interest::At::time && interest.time > end * (1 + 1e-9))
+      throw Error::input(what + "at = " + io::to_text(interest.time) + " is after the end, " +
+                         io::to_text(end));
+    return part;
+  }
+  throw Error::input(what + "this case has no such quantity; there are: " + all_candidates(scene) +
+                     ", and numbers of run.json such as motion.constraint_drift");
+}
+
+double value_at(const std::vector<double>& x, const std::vector<double>& y,
+                const Interest& interest) {
+  if (x.empty()) return kNone;
+  if (interest.at == Interest::At::max) return largest_size(x, y);
+  if (interest.at == Interest::At::end) return y.back();
+  const double t = interest.time, near = 1e-9 * std::max(std::abs(x.back()), std::abs(t));
+  if (t < x.front() - near || t > x.back() + near) return kNone;
+  const auto above = static_cast<size_t>(std::lower_bound(x.begin(), x.end(), t) - x.begin());
+  for (const size_t i : {above, above - 1})
+    if (i < x.size() && std::abs(x[i] - t) <= near) return y[i];
+  const size_t count = std::min<size_t>(4, x.size());
+  const size_t first = std::min(above > 1 ? above - 2 : 0, x.size() - count);
+  return interpolated(x, y, first, count, t);
+}
+
+double value_in(const std::string& folder, const Interest& interest, Part part) {
+  double out = kNone;
+  const nlohmann::json run = nlohmann::json::parse(text_of(folder + "/run.json"), nullptr, false);
+  if (part == Part::design) {
+    if (run.is_object()) out = design_value(run, interest.name);
+  } else {
+    const bool path = std::filesystem::exists(folder + "/path.csv");
+    const io::CsvTable table = io::read_csv(folder + (path ? "/path.csv" : "/motion.csv"));
+    if (holds(table.columns, interest.name))
+      out = column_value(table, path ? "load_factor" : "time", interest);
+    else if (run.is_object())
+      out = json_value(run, interest.name);
+  }
+  if (!std::isfinite(out))
+    throw Error::numerical(folder + ": there is no value of " + interest.words());
+  return out;
+}
+
+double reference_of(const Interest& interest) {
+  if (interest.value) return *interest.value;
+  const io::CsvTable table = io::read_csv(interest.file);
+  if (!holds(table.columns, interest.name))
+    throw Error::input(interest.file + ": no column " + interest.name);
+  const double out = column_value(table, table.columns.front(), interest);
+  if (!std::isfinite(out)) throw Error::input(interest.file + ": no value of " + interest.words());
+  return out;
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,125 @@
+#include "cases/build/build.h"
+
+#include <cmath>
+#include <random>
+
+#include "cases/build/twin.h"
+
+namespace flexmorph::cases {
+fem::PlaneSection section_of(const Body& body) {
+  return {body.thickness, body.youngs_modulus, body.poisson_ratio, body.density};
+}
+
+std::vector<fem::AttachedMass> attached_masses(const Scene& scene, const std::string& name) {
+  const Body& body = scene.body(name);
+  std::vector<fem::AttachedMass> out;
+  for (const PointMass& m : scene.point_masses)
+    if (m.body == name)
+      out.push_back({m.mass, Vec2(body.longest(scene.time.end), body.low() + 0.5 * body.width)});
+  return out;
+}
+
+std::vector<fem::AttachedJoint> attached_joints(const Scene& scene, const std::string& name) {
+  std::vector<fem::AttachedJoint> out;
+  for (const Joint& j : scene.joints) {
+    if (j.body == name && j.edge == "free_end")
+      out.push_back({j.name, {scene.body(name).longest(scene.time.end), 0}, true});
+    if (!j.between_bodies()) continue;
+    if (j.a.body == name) out.push_back({j.name, j.a.point, false});
+    if (j.b.body == name) out.push_back({j.name, j.b.point, false});
+  }
+  return out;
+}
+
+std::vector<fem::AttachedForce> applied_forces(const Scene& scene, const std::string& name) {
+  std::vector<fem::AttachedForce> out;
+  const Body& body = scene.body(name);
+  const Vec2 end(body.longest(scene.time.end), 0);
+  for (const BodyLoad& load : scene.loads) {
+    if (load.body != name) continue;
+    if (load.type == "point") out.push_back({load.point, false, load.force.head<2>(), 0});
+    if (load.type == "edge") out.push_back({end, true, body.width * load.force.head<2>(), 0});
+  }
+  return out;
+}
+
+namespace {
+
+/// Moves every component at random: places and lengths by up to `jitter` of the half-length, angles
+/// of a radian, half-thicknesses of themselves. The same seed gives the same start.
+void shake(std::vector<Component>& components, double jitter, int seed) {
+  if (jitter == 0) return;
+  std::mt19937 engine(static_cast<unsigned>(seed));
+  // Not std::uniform_real_distribution, which differs between standard libraries.
+  const auto draw = [&] {
+    return jitter * (2 * (static_cast<double>(engine()) / 4294967295.0) - 1);
+  };
+  for (Component& c : components) {
+    const double size = c.half_length;
+    c.center += size * Vec2(draw(), draw());
+    c.half_length += size * draw();
+    c.angle += draw();
+    for (double* thickness : {&c.c1, &c.c2, &c.c3}) *thickness *= 1 + draw();
+  }
+}
+
+fem::PlaneSection section_of_design(const Scene& scene, const BodyDesign& d) {
+  if (!scene.domain) return section_of(scene.body(d.body));
+  const Domain& domain = *scene.domain;
+  return {domain.thickness, domain.youngs_modulus, domain.poisson_ratio, 0};
+}
+
+}  // namespace
+
+std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
+  std::vector<mmc::BodyProblem> out;
+  for (const BodyDesign& d : scene.designs) {
+    const Grid& g = d.grid;
+    mmc::DesignScale scale;
+    scale.half_length = d.half_length;
+    scale.min_thickness = std::max(d.min_thickness, mmc::half_thickness_for(d.min_feature));
+    scale.max_thickness = std::max({0.3 * g.height, 1.5 * scale.min_thickness, d.half_thickness});
+    auto layout = d.start.empty()
+                      ? crossing_layout(g.x0, g.y0, g.width, g.height, d.components[0],
+                                        d.components[1], d.half_thickness, d.half_length)
+                      : d.start;
+    shake(layout, d.jitter, d.seed);
+    std::vector<TdfSettings> stages;
+    for (size_t i = 0; i < d.band.size(); ++i) stages.push_back(d.stage(i));
+    out.push_back({d.body,
+                   g,
+                   section_of_design(scene, d),
+                   mmc::Design(g, layout, scale),
+                   d.solid,
+                   d.empty,
+                   stages,
+                   d.goal,
+                   d.stiffness_void,
+                   d.mass_void,
+                   scene.esl ? scene.esl->settings : mmc::ComplianceSettings{},
+                   {},
+                   {},
+                   {},
+                   d.drop_every,
+                   d.refill,
+                   d.min_feature,
+                   d.shares_mass});
+    if (!scene.domain) continue;
+    out.back().domain = scene.domain->polygon;
+    if (!scene.domain->polygon.empty())
+      out.back().outside = cells_outside(g, scene.domain->polygon);
+    out.back().places = static_places(scene, g, out.back().outside);
+  }
+  return out;
+}
+
+std::vector<double> load_times(const Scene& scene) {
+  std::vector<double> out;
+  if (scene.esl)
+    for (int i = 1; i <= scene.esl->count(scene.time.end); ++i) out.push_back(i * scene.esl->every);
+  return out;
+}
+
+Scene read_scene(const io::CaseFile& file) { return read_scene(file, follow_trajectory); }
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "cases/scene/scene.h"
+#include "fem/dynamics/esl.h"
+#include "fem/dynamics/motion.h"
+#include "optim/mmc/esl_loop.h"
+
+namespace flexmorph::cases {
+
+/// Where an undeformed body lies at the start: its m-line at `line` goes through `origin`, where
+/// its axis along m is turned by `angle` about z.
+struct Pose {
+  Vec2 origin{0, 0};
+  double angle = 0;
+  double line = 0;       ///< material coordinate [m]
+  double curvature = 0;  ///< of the axis of a beam [1/m]
+
+  Vec3 place(const Vec2& material) const;
+};
+/// A material point in the axes of the undeformed body at its root: the point itself, but of a beam
+/// that is an arc.
+Vec2 undeformed_place(const Body& body, const Vec2& material);
+Pose start_pose(const Scene& scene, const Body& body);
+
+/// The scene of a case file, drives that follow from a trajectory included.
+/// @throws Error (input) located in the file, see io::Table; Error (numerical) where the path of the
+///         trajectory cannot be reached.
+Scene read_scene(const io::CaseFile& file);
+
+/// A scene ready to be moved: what it lists is in here, nothing else.
+struct Mechanism {
+  fem::Model model;
+  std::vector<fem::Growth> growths;  ///< one per plate that sits in a hub or sleeve
+  fem::MotionSettings motion;
+};
+
+/// Mesh of a run other than the scene's own (see Verify); limits of boundary elements scale along.
+struct MeshChoice {
+  std::optional<std::array<int, 2>> elements;
+  int refine = 1;  ///< parts of every element in each direction
+  std::optional<double> step;
+};
+
+/// Scene -> model, joints and integrator settings. Stops for loads and output are left empty. The
+/// model of a [static] analysis has the same bodies, joints and loads.
+/// @throws Error (input) for combinations the tables of elements, terms and joints do not have.
+Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh = {});
+
+/// Energy of strains of 1e-13, which slopes of size one have by round-off [J].
+double stress_round_off(const Scene& scene);
+
+/// A rigid body with its inertia, its weight (gravity (2) [m/s^2], or empty) and its unit axis.
+void add_rigid_body(const RigidBody& body, fem::Model& model, const VectorXd& gravity);
+
+/// The driven frame of a weld to a hub or of a sleeve at rest.
+fem::FrameDrive hub_drive(const Scene& scene, const Joint& joint);
+
+fem::PlaneSection section_of(const Body& body);
+
+/// Point masses of one body, for its loads.
+std::vector<fem::AttachedMass> attached_masses(const Scene& scene, const std::string& name);
+
+/// Joints of one body besides the one that carries it, for its loads.
+std::vector<fem::AttachedJoint> attached_joints(const Scene& scene, const std::string& name);
+
+/// Applied forces on one body, for its loads: constant in the world.
+std::vector<fem::AttachedForce> applied_forces(const Scene& scene, const std::string& name);
+
+/// Scene -> design problems, with the initial layout.
+std::vector<mmc::BodyProblem> build_problems(const Scene& scene);
+
+/// Cells of every held and every loaded place of a static scene.
+/// @throws Error (input) for a place without a node of the domain.
+std::vector<std::vector<int>> static_places(const Scene& scene, const Grid& grid,
+                                            std::span<const signed char> outside);
+/// Supports and loads of a static scene on its design mesh.
+/// @throws Error (input) likewise.
+std::unique_ptr<mmc::LoadResponse> build_static_loads(const Scene& scene,
+                                                      const mmc::BodyProblem& problem);
+
+/// Load times: multiples of esl.every up to the end [s].
+std::vector<double> load_times(const Scene& scene);
+
+}  // namespace flexmorph::cases

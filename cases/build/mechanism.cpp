@@ -1,0 +1,413 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "cases/build/build.h"
+#include "cases/build/joints.h"
+#include "cases/build/heat.h"
+#include "cases/build/twin.h"
+#include "fem/elements/ancf_beam.h"
+#include "fem/elements/ancf_plate.h"
+#include "fem/elements/rigid_body.h"
+#include "fem/rigid.h"
+#include "io/files.h"
+
+namespace flexmorph::cases {
+namespace {
+
+/// Angle and position as drives say, where they do.
+fem::FrameDrive driven_hub(const Scene& scene, const Hub& hub) {
+  const bool turns = !hub.turn.drive.empty(), travels = !hub.path[0].drive.empty();
+  const auto turn = scene.motion_of(hub.turn);
+  const std::array path = {scene.motion_of(hub.path[0]), scene.motion_of(hub.path[1])};
+  return [=](double t) {
+    fem::FrameMotion f;
+    f.origin = hub.position;
+    f.angle = hub.angle + hub.angular_velocity * t;
+    f.angle_rate = hub.angular_velocity;
+    if (turns) {
+      const fem::Motion angle = turn(t);
+      f.angle = angle.value;
+      f.angle_rate = angle.rate;
+      f.angle_acceleration = angle.acceleration;
+    }
+    for (int c = 0; c < 2 && travels; ++c) {
+      const fem::Motion x = path[static_cast<size_t>(c)](t);
+      f.origin[c] = x.value;
+      f.origin_rate[c] = x.rate;
+      f.origin_acceleration[c] = x.acceleration;
+    }
+    return f;
+  };
+}
+
+fem::FrameDrive drive_of(const Scene& scene, const Hub& hub) {
+  if (!hub.turn.drive.empty() || !hub.path[0].drive.empty()) return driven_hub(scene, hub);
+  const TimeSpan& time = scene.time;
+  fem::FrameMotion still;
+  still.origin = hub.position;
+  if (time.start != Start::hub_at_rest)
+    return [hub, still](double t) {
+      fem::FrameMotion f = still;
+      f.angle = hub.angle + hub.angular_velocity * t;
+      f.angle_rate = hub.angular_velocity;
+      return f;
+    };
+  // ω(t) = ω s(t/T), s = 10u³ - 15u⁴ + 6u⁵: rate and acceleration start and end smoothly.
+  return [hub, still, T = time.spin_up](double t) {
+    fem::FrameMotion f = still;
+    const double w = hub.angular_velocity, u = std::min(1.0, t / T);
+    f.angle = hub.angle + w * T * std::pow(u, 4) * (2.5 - 3 * u + u * u) + w * std::max(0.0, t - T);
+    f.angle_rate = w * std::pow(u, 3) * (10 - 15 * u + 6 * u * u);
+    f.angle_acceleration = w / T * 30 * u * u * (1 - u) * (1 - u);
+    return f;
+  };
+}
+
+std::unique_ptr<fem::Element> beam_of(const Body& body, int count) {
+  if (body.arc == 0) return std::make_unique<fem::AncfBeam>(body.length, body.width, count);
+  return std::make_unique<fem::AncfBeam>(fem::even_nodes(body.length, count), body.width,
+                                         fem::arc_reference(body.length, body.arc, count));
+}
+
+std::unique_ptr<fem::Element> elements_of(const Body& body, double end,
+                                          const std::array<int, 2>& count) {
+  if (body.is_beam()) return beam_of(body, count[0]);
+  const double longest = body.longest(end);
+  std::vector<fem::MaterialLine> m, n;
+  for (const double at : body.start_lines(longest - body.length, count[0])) m.push_back({at, {}});
+  for (const BodyLine& line : body.lines) m[static_cast<size_t>(line.index)].free = line.free;
+  if (body.flow && body.flow->motion)
+    m[0].drive = [longest, length = body.flow->motion](double t) {
+      const fem::Motion x = length(t);
+      return fem::Motion{longest - x.value, -x.rate, -x.acceleration};
+    };
+  else if (body.flow)
+    m[0].drive = [longest, length = body.length, speed = body.flow->speed](double t) {
+      return fem::Motion{longest - length - speed * t, -speed, 0};
+    };
+  for (int j = 0; j <= count[1]; ++j) n.push_back({body.low() + body.width * j / count[1], {}});
+  const auto shapes =
+      body.shape == "h12" ? fem::AncfPlate::ShapeSet::h12 : fem::AncfPlate::ShapeSet::h16;
+  return std::make_unique<fem::AncfPlate>(body.dim(), shapes, std::move(m), std::move(n));
+}
+
+fem::FrameDrive at_rest(const Vec2& origin, double angle) {
+  fem::FrameMotion still;
+  still.origin = origin;
+  still.angle = angle;
+  return [still](double) { return still; };
+}
+
+const Hub& hub_of(const Scene& scene, const Joint& joint) {
+  return *std::find_if(scene.hubs.begin(), scene.hubs.end(),
+                       [&](const Hub& h) { return h.name == joint.to; });
+}
+
+VectorXd gravity_of(const Scene& scene) { return scene.gravity ? *scene.gravity : VectorXd(); }
+
+std::unique_ptr<fem::Term> make_load(const BodyLoad& load) {
+  if (load.type == "point") return fem::make_point_force(load.point, load.force);
+  if (load.type == "edge") return fem::make_edge_load(load.edge, load.force);
+  if (load.type == "surface") return fem::make_surface_load(load.force);
+  if (load.type == "pressure") return fem::make_pressure(load.size);
+  return fem::make_edge_moment(load.edge, load.size);
+}
+
+void add_body(const Scene& scene, const Body& body, const std::array<int, 2>& count,
+              fem::Model& model) {
+  const VectorXd gravity = gravity_of(scene);
+  const fem::PlaneSection section = section_of(body);
+  std::vector<std::unique_ptr<fem::Term>> terms;
+  for (const std::string& name : body.terms)
+    terms.push_back(name == "bending" ? fem::make_bending(section, body.bending_points)
+                                      : fem::make_term(name, section));
+  if (gravity.size() > 0) terms.push_back(fem::make_gravity(section, gravity));
+  for (const fem::AttachedMass& m : attached_masses(scene, body.name))
+    terms.push_back(fem::make_point_mass(m.mass, m.material, gravity));
+  for (const BodyLoad& load : scene.loads)
+    if (load.body == body.name) terms.push_back(make_load(load));
+  model.add_body(body.name, elements_of(body, scene.time.end, count), section, std::move(terms));
+}
+
+/// Number of a free line among the free lines of its body.
+int scalar_of(const Body& body, int line) {
+  return static_cast<int>(
+      std::count_if(body.lines.begin(), body.lines.end(),
+                    [&](const BodyLine& l) { return l.free && l.index < line; }));
+}
+
+/// The rate at the start of a line that is driven through the material; 0 where it is not.
+double slide_of(const Scene& scene, const Joint& frame) {
+  for (const Joint& j : scene.joints)
+    if (j.type == "line_drive" && j.body == frame.body && j.line == frame.line)
+      return j.at.drive.empty() ? j.speed : scene.motion_of(j.at)(0).rate;
+  return 0;
+}
+
+/// An edge in a hub, in a sleeve or on a rigid body; the first one of a body carries it.
+void add_frame(const Scene& scene, const Joint& joint, double finer, Mechanism& out) {
+  const Body& body = scene.body(joint.body);
+  fem::Carrier carrier;
+  if (joint.on_rigid_body()) {
+    const Anchor& b = joint.b;
+    carrier = fem::Carrier(b.body, b.point, b.angle);
+    out.model.add_joint(fem::make_edge_weld(joint.name, joint.body, joint.edge,
+                                            {b.body, b.point, b.angle, {}}, joint.mode));
+  } else {
+    carrier = hub_drive(scene, joint);
+    out.model.add_joint(
+        fem::make_weld(joint.name, joint.body, joint.edge, carrier.drive(), joint.mode));
+  }
+  if (joint.edge == "free_end" || body.is_beam()) return;
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  fem::Growth growth{joint.body, carrier, kNever, 0, joint.line, slide_of(scene, joint)};
+  if (body.flow) {
+    growth.max_length = finer * body.flow->max_length;
+    growth.min_length = finer * body.flow->min_length;
+  } else if (body.mesh_changes()) {
+    growth.max_length = finer * body.lines.front().max_length;
+    growth.min_length = finer * body.lines.front().min_length;
+  }
+  out.growths.push_back(growth);
+}
+
+void add_pin(const Scene& scene, const Joint& joint, fem::Model& model) {
+  const Vec3 at = start_pose(scene, scene.body(joint.body)).place(joint.point);
+  std::vector<fem::Motion> rest;
+  for (const int c : joint.components) rest.push_back({at[c], 0, 0});
+  model.add_joint(fem::make_pin(
+      joint.name, joint.body, joint.point, [rest](double) { return rest; }, joint.components));
+}
+
+void add_line_drive(const Scene& scene, const Joint& joint, fem::Model& model) {
+  const Body& body = scene.body(joint.body);
+  const double start = body.start_lines(0, body.elements[0])[static_cast<size_t>(joint.line)];
+  std::function<fem::Motion(double)> motion = [start, speed = joint.speed](double t) {
+    return fem::Motion{start + speed * t, speed, 0};
+  };
+  if (!joint.at.drive.empty()) motion = scene.motion_of(joint.at);
+  model.add_joint(
+      fem::make_line_drive(joint.name, joint.body, scalar_of(body, joint.line), std::move(motion)));
+}
+
+/// All held edges of a body in one joint, so that a corner of two of them is held once.
+void add_holds(const Scene& scene, const Body& body, fem::Model& model) {
+  std::vector<fem::Held> all;
+  for (const Joint& joint : scene.joints) {
+    if (joint.body != body.name || !joint.holds_edges()) continue;
+    for (const std::string& edge : joint.edges) {
+      const std::vector<fem::Held> held = joint.type == "clamp"
+                                              ? fem::clamped_edge(edge, joint.mode)
+                                          : joint.type == "support" ? fem::supported_edge(edge)
+                                                                    : fem::symmetry_edge(edge);
+      all.insert(all.end(), held.begin(), held.end());
+    }
+  }
+  if (!all.empty()) model.add_joint(fem::make_hold(body.name + ".held", body.name, std::move(all)));
+}
+
+/// How a mechanism starts: at rest in equilibrium where its drives do not determine it all.
+/// @throws Error (input) when that is asked for but it does not rest.
+fem::Start start_of(const Scene& scene, TwinMotion& twin) {
+  if (scene.time.start != Start::prestretched) return fem::Start::rigid;
+  if (twin.degrees_of_freedom() == 0) return fem::Start::prestretched;
+  // What is left of it is the start of a swing; the equilibrium of the plates ends it.
+  const double nearly = 0.05 * std::max(1.0, scene.gravity ? scene.gravity->norm() : 0.0);
+  const double speed = twin.start_speed(), acceleration = twin.start_acceleration();
+  if (speed < 1e-6 && acceleration < nearly) return fem::Start::settled;
+  throw Error::input(
+      "time.start: \"prestretched\" puts a mechanism whose drives leave freedoms (" +
+      std::to_string(twin.degrees_of_freedom()) +
+      " here) into its equilibrium at rest, but this one sets off with " + io::to_text(speed, 3) +
+      " m/s and " + io::to_text(acceleration, 3) +
+      " m/s²: bodies where they hang at rest and drives that begin at rest, or start = \"rigid\"");
+}
+
+/// Where bodies that ride in no hub are, by the rigid twin.
+void place_bodies(const Scene& scene, fem::MotionSettings& motion) {
+  const auto kept = std::make_shared<const Scene>(scene);  // the twin looks at it
+  const auto twin = std::make_shared<TwinMotion>(*kept);
+  motion.start = start_of(scene, *twin);
+  motion.placement = [kept, twin](double t) {
+    const Scene& scene = *kept;
+    const fem::State& x = twin->at(t);
+    std::vector<fem::Placed> out;
+    for (const RigidBody& b : scene.rigid_bodies)
+      out.push_back({b.name, twin->twin().frame(b.name, x)});
+    for (const Body& b : scene.bodies) {
+      const bool rides = !b.is_beam() &&
+                         std::any_of(scene.joints.begin(), scene.joints.end(), [&](const Joint& j) {
+                           return j.body == b.name && j.holds_frame() && j.edge != "free_end";
+                         });
+      if (!rides) out.push_back({b.name, twin->twin().frame(b.name, x), b.longest(scene.time.end)});
+    }
+    return out;
+  };
+}
+
+/// Without rigid bodies: where beams are, as the case says or with their hubs.
+void place_alone(const Scene& scene, fem::MotionSettings& motion) {
+  struct Frame {
+    std::string body;
+    fem::FrameDrive drive;
+    double line;
+  };
+  std::vector<Frame> frames;
+  for (const Body& body : scene.bodies) {
+    const auto holds = [&](const Joint& j) {
+      return j.body == body.name && j.holds_frame() && j.edge != "free_end";
+    };
+    const auto hub = std::find_if(scene.joints.begin(), scene.joints.end(), holds);
+    const bool rides = hub != scene.joints.end();
+    if (!body.is_beam()) continue;
+    const Pose pose = start_pose(scene, body);
+    frames.push_back(
+        {body.name, rides ? hub_drive(scene, *hub) : at_rest(pose.origin, pose.angle), pose.line});
+  }
+  if (frames.empty()) return;
+  motion.placement = [frames](double t) {
+    std::vector<fem::Placed> out;
+    for (const Frame& f : frames) out.push_back({f.body, f.drive(t), f.line});
+    return out;
+  };
+}
+
+}  // namespace
+
+fem::FrameDrive hub_drive(const Scene& scene, const Joint& joint) {
+  return joint.type == "sleeve" ? at_rest(joint.position, joint.angle)
+                                : drive_of(scene, hub_of(scene, joint));
+}
+
+void add_rigid_body(const RigidBody& body, fem::Model& model, const VectorXd& gravity) {
+  const fem::RigidSection section{body.mass, body.center, body.inertia};
+  std::vector<std::unique_ptr<fem::Term>> terms;
+  terms.push_back(fem::make_rigid_inertia(section));
+  if (gravity.size() > 0) terms.push_back(fem::make_rigid_gravity(section, gravity));
+  model.add_body(body.name, std::make_unique<fem::RigidBody>(std::sqrt(body.inertia / body.mass)),
+                 {}, std::move(terms));
+  model.add_joint(fem::make_unit_axis("axis of " + body.name, body.name));
+}
+
+namespace {
+
+/// A point of a strip whose axis is an arc that begins along the first axis.
+Vec2 on_arc(double curvature, const Vec2& material) {
+  const double turn = curvature * material.x(), half = 0.5 * turn;
+  const double chord = material.x() * (turn == 0 ? 1 : std::sin(half) / half);
+  return chord * Vec2(std::cos(half), std::sin(half)) +
+         material.y() * Vec2(-std::sin(turn), std::cos(turn));
+}
+
+}  // namespace
+
+Vec3 Pose::place(const Vec2& material) const {
+  const Vec2 flat(material.x() - line, material.y());
+  const Vec2 r = origin + fem::rotation(angle) * (curvature == 0 ? flat : on_arc(curvature, flat));
+  return {r.x(), r.y(), 0};
+}
+
+Vec2 undeformed_place(const Body& body, const Vec2& material) {
+  return body.arc == 0 ? material : on_arc(body.arc / body.length, material);
+}
+
+namespace {
+
+Pose straight_pose(const Scene& scene, const Body& body) {
+  for (const Joint& joint : scene.joints) {
+    if (joint.body != body.name || !joint.holds_frame() || joint.edge == "free_end") continue;
+    const double root = body.longest(scene.time.end) - body.length;
+    const double line = body.start_lines(root, body.elements[0])[static_cast<size_t>(joint.line)];
+    if (joint.type == "sleeve") return {joint.position, joint.angle, line};
+    if (joint.on_rigid_body())
+      for (const RigidBody& b : scene.rigid_bodies)
+        if (b.name == joint.b.body)
+          return {start_place(scene, joint.b), b.angle + joint.b.angle, line};
+    const Hub& hub = hub_of(scene, joint);
+    return {hub.position, hub.angle, line};
+  }
+  if (body.position)
+    return {*body.position, body.angle, body.longest(scene.time.end) - body.length};
+  return {};
+}
+
+}  // namespace
+
+Pose start_pose(const Scene& scene, const Body& body) {
+  Pose pose = straight_pose(scene, body);
+  if (body.arc != 0) pose.curvature = body.arc / body.length;
+  return pose;
+}
+
+namespace {
+
+/// Does no load act that has no energy, and nothing that could bring energy in within a step and be
+/// at rest at both of its ends, as a step of temperature? What moves for longer shows as power.
+bool keeps_energy(const Scene& scene) {
+  const auto follows = [](const BodyLoad& l) {
+    return l.type == "pressure" || l.type == "edge_moment";
+  };
+  return !scene.has_heat() && scene.drives.empty() &&
+         std::none_of(scene.loads.begin(), scene.loads.end(), follows);
+}
+
+}  // namespace
+
+double stress_round_off(const Scene& scene) {
+  double out = 0;
+  for (const Body& body : scene.bodies)
+    out += 1e-26 * body.youngs_modulus * body.length_at(0) * body.width * body.thickness;
+  return out;
+}
+
+Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh) {
+  Mechanism out;
+  const auto elements = [&](const Body& body) {
+    const std::array<int, 2> count = mesh.elements.value_or(body.elements);
+    return std::array{mesh.refine * count[0], mesh.refine * count[1]};
+  };
+  for (const RigidBody& body : scene.rigid_bodies)
+    add_rigid_body(body, out.model, gravity_of(scene));
+  for (const Body& body : scene.bodies) add_body(scene, body, elements(body), out.model);
+  const FindPlace place = [](const Anchor& a) {
+    return fem::MarkerPlace{a.body, a.point, a.angle, {}};
+  };
+  for (const Spring& spring : scene.springs) out.model.add_link(make_link(spring, place));
+  for (const Joint& joint : scene.joints) {
+    if (joint.between_bodies()) {
+      out.model.add_joint(make_body_joint(scene, joint, place));
+      continue;
+    }
+    const Body& body = scene.body(joint.body);
+    const double finer = static_cast<double>(body.elements[0]) / elements(body)[0];
+    if (joint.holds_frame()) add_frame(scene, joint, finer, out);
+    if (joint.type == "pin") add_pin(scene, joint, out.model);
+    if (joint.type == "line_drive") add_line_drive(scene, joint, out.model);
+  }
+  for (const Body& body : scene.bodies) add_holds(scene, body, out.model);
+  out.motion.end = scene.time.end;
+  out.motion.step = mesh.step.value_or(scene.time.step);
+  // A run with a step of its own has that.
+  if (scene.time.tolerance && out.motion.step == scene.time.step) {
+    out.motion.adaptive = fem::AdaptiveStep{};
+    out.motion.adaptive->tolerance = *scene.time.tolerance;
+    out.motion.adaptive->largest = scene.time.largest_step;
+    if (scene.time.start == Start::hub_at_rest) out.motion.kinks = {scene.time.spin_up};
+  }
+  out.motion.start =
+      scene.time.start == Start::prestretched ? fem::Start::prestretched : fem::Start::rigid;
+  if (scene.is_mechanism())
+    place_bodies(scene, out.motion);
+  else
+    place_alone(scene, out.motion);
+  out.motion.integrator = scene.time.integrator;
+  out.motion.alpha.rho_inf = scene.time.rho_inf;
+  out.motion.minimal_coordinates.tolerance = scene.time.explicit_tolerance;
+  out.motion.gravity = gravity_of(scene);
+  if (keeps_energy(scene)) out.motion.energy_round_off = stress_round_off(scene);
+  if (scene.has_heat()) add_heat(scene, out);
+  return out;
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,121 @@
+#include <algorithm>
+#include <cmath>
+
+#include "cases/build/build.h"
+#include "io/files.h"
+#include "optim/mmc/fixed_loads.h"
+
+namespace flexmorph::cases {
+namespace {
+
+/// Nodes of the domain at a place, each with its share of a force spread evenly over the place.
+struct PlaceNodes {
+  std::vector<int> nodes;
+  std::vector<double> shares;  // sum 1
+  std::vector<int> cells;      // of the domain, that touch these nodes
+};
+
+class NodeFinder {
+ public:
+  NodeFinder(const Grid& grid, std::span<const signed char> outside)
+      : grid_(grid), outside_(outside) {}
+
+  /// @throws Error (input) when no node of the domain is there.
+  PlaceNodes at(const Place& place, const std::string& what) const {
+    const double small = 1e-6 * grid_.dx();
+    Box box = place.box;
+    if (place.kind == Place::Kind::point) box = nearest(box.lower);
+    PlaceNodes out;
+    for (int i = 0; i <= grid_.nx; ++i)
+      for (int j = 0; j <= grid_.ny; ++j) {
+        const Vec2 p = grid_.node_position(i, j);
+        if (((box.lower - p).array() > small).any() || ((p - box.upper).array() > small).any())
+          continue;
+        const int cells = touch(i, j, out.cells);
+        if (cells == 0) continue;
+        out.nodes.push_back(grid_.node(i, j));
+        // Along an edge a node carries the traction of the half cells beside it.
+        out.shares.push_back(place.kind == Place::Kind::edge ? cells : 1.0);
+      }
+    if (out.nodes.empty())
+      throw Error::input(what + ": no node of the domain is there; the cells are " +
+                         io::to_text(grid_.dx()) + " m wide");
+    double sum = 0;
+    for (const double s : out.shares) sum += s;
+    for (double& s : out.shares) s /= sum;
+    return out;
+  }
+
+ private:
+  Box nearest(const Vec2& point) const {
+    const auto clamp = [](double v, int n) { return std::clamp(std::lround(v), 0L, long(n)); };
+    const auto i = static_cast<int>(clamp((point.x() - grid_.x0) / grid_.dx(), grid_.nx));
+    const auto j = static_cast<int>(clamp((point.y() - grid_.y0) / grid_.dy(), grid_.ny));
+    const Vec2 p = grid_.node_position(i, j);
+    return {p, p};
+  }
+  /// Adds the cells of the domain around a node. @return their number
+  int touch(int i, int j, std::vector<int>& cells) const {
+    int count = 0;
+    for (int ci = std::max(0, i - 1); ci <= std::min(grid_.nx - 1, i); ++ci)
+      for (int cj = std::max(0, j - 1); cj <= std::min(grid_.ny - 1, j); ++cj) {
+        const int cell = grid_.cell(ci, cj);
+        if (!outside_.empty() && outside_[static_cast<size_t>(cell)]) continue;
+        cells.push_back(cell);
+        ++count;
+      }
+    return count;
+  }
+
+  const Grid& grid_;
+  std::span<const signed char> outside_;
+};
+
+std::string name_of(const char* what, size_t index) {
+  return std::string("[[") + what + "]] " + std::to_string(index + 1);
+}
+
+}  // namespace
+
+std::vector<std::vector<int>> static_places(const Scene& scene, const Grid& grid,
+                                            std::span<const signed char> outside) {
+  const NodeFinder find(grid, outside);
+  std::vector<std::vector<int>> places;
+  const Domain& domain = *scene.domain;
+  for (size_t s = 0; s < domain.supports.size(); ++s)
+    places.push_back(find.at(domain.supports[s].place, name_of("support", s)).cells);
+  for (size_t l = 0; l < domain.loads.size(); ++l)
+    for (const PlaneForce& f : domain.loads[l].forces)
+      places.push_back(find.at(f.place, name_of("load", l)).cells);
+  return places;
+}
+
+std::unique_ptr<mmc::LoadResponse> build_static_loads(const Scene& scene,
+                                                      const mmc::BodyProblem& problem) {
+  const Domain& domain = *scene.domain;
+  const Grid& grid = problem.grid;
+  const NodeFinder find(grid, problem.outside);
+  std::vector<fem::HeldUnknown> held;
+  for (size_t s = 0; s < domain.supports.size(); ++s) {
+    const PlaneSupport& support = domain.supports[s];
+    for (const int node : find.at(support.place, name_of("support", s)).nodes) {
+      if (support.x) held.push_back({node, 0});
+      if (support.y) held.push_back({node, 1});
+    }
+  }
+  std::vector<mmc::LoadCase> loads;
+  for (size_t l = 0; l < domain.loads.size(); ++l) {
+    mmc::LoadCase& out = loads.emplace_back();
+    out.name = domain.loads[l].name;
+    out.weight = domain.loads[l].weight;
+    for (const PlaneForce& f : domain.loads[l].forces) {
+      const PlaceNodes place = find.at(f.place, name_of("load", l));
+      for (size_t k = 0; k < place.nodes.size(); ++k)
+        out.forces.push_back({place.nodes[k], place.shares[k] * f.force});
+    }
+  }
+  return std::make_unique<mmc::FixedLoads>(grid, problem.section, problem.outside, held, loads,
+                                           problem.goal.over == mmc::Goal::Over::sum);
+}
+
+}  // namespace flexmorph::cases

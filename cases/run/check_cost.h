@@ -1,0 +1,22 @@
+#pragma once
+
+#include "cases/build/build.h"
+
+namespace flexmorph::cases {
+
+/// Estimated operations of a time step, or of a step of a [static] path.
+struct StepOperations {
+  double forces = 0, tangents = 0, solver = 0, flow = 0;
+  double total() const { return forces + tangents + solver + flow; }
+};
+
+/// From counts of elements, shape functions, Gauss points and unknowns, and from how often Newton's
+/// method asks on the average of the shipped cases: within a factor of 2 of instructions counted by
+/// valgrind in a portable build (README, "Measured"). Not of `minimal_coordinates`.
+StepOperations step_operations(const Scene& scene, const Mechanism& mechanism);
+
+/// Operations of one force and one tangent of an element of a body.
+double force_operations(const Body& body, const fem::Element& element);
+double tangent_operations(const Body& body, const fem::Element& element);
+
+}  // namespace flexmorph::cases

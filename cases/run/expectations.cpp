@@ -1,0 +1,118 @@
+#include "cases/run/expectations.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "cases/run/quantities.h"
+#include "io/tables.h"
+
+namespace flexmorph::cases {
+namespace {
+
+const std::string kLargest = ".largest";
+
+/// Figures of the first design of a run.
+const std::vector<std::pair<std::string, std::function<double(const mmc::BodyOutcome&)>>> kFigures =
+    {
+        {"compliance", [](const mmc::BodyOutcome& o) { return o.compliance; }},
+        {"volume", [](const mmc::BodyOutcome& o) { return o.volume; }},
+        {"sharp_compliance", [](const mmc::BodyOutcome& o) { return o.sharp.compliance; }},
+        {"sharp_volume", [](const mmc::BodyOutcome& o) { return o.sharp.volume; }},
+        {"compliance_ratio",
+         [](const mmc::BodyOutcome& o) { return o.sharp.compliance / o.uniform_compliance; }},
+        {"sharp_ratio",
+         [](const mmc::BodyOutcome& o) { return o.sharp.compliance / o.compliance; }},
+};
+const std::string kAmplitude = "amplitude";
+
+/// A column of motion.csv or path.csv; null where there is none.
+const std::vector<double>* column_of(const MotionRecord& motion, const std::string& name) {
+  if (name == "energy.kinetic") return &motion.kinetic;
+  if (name == "energy.strain") return &motion.strain;
+  if (name == "energy.potential") return &motion.potential;
+  if (name == "energy.defect") return &motion.defect;
+  for (size_t i = 0; i < motion.bodies.size(); ++i)
+    if (name == motion.bodies[i] + ".tip_deflection") return &motion.deflection[i];
+  return motion.column(name);
+}
+const std::vector<double>* column_of(const PathRecord& path, const std::string& name) {
+  return name == "energy.strain" ? &path.strain : path.column(name);
+}
+
+/// The value of a column at the end, or with "<column>.largest" its largest absolute value.
+template <class Record>
+std::optional<double> value_of(const Record& record, const std::string& name) {
+  if (const std::vector<double>* values = column_of(record, name))
+    return values->empty() ? std::optional<double>() : values->back();
+  if (!name.ends_with(kLargest)) return {};
+  const std::vector<double>* values =
+      column_of(record, name.substr(0, name.size() - kLargest.size()));
+  if (!values || values->empty()) return {};
+  double largest = 0;
+  for (const double v : *values) largest = std::max(largest, std::abs(v));
+  return largest;
+}
+
+std::optional<double> find(const RunReport& report, const std::string& name) {
+  if (!report.outcomes.empty())
+    for (const auto& [figure, value] : kFigures)
+      if (figure == name) return value(report.outcomes.front());
+  if (report.motion) {
+    if (name == kAmplitude && !report.motion->amplitude.empty()) return report.motion->amplitude[0];
+    if (const auto found = value_of(*report.motion, name)) return found;
+  }
+  if (report.path) return value_of(*report.path, name);
+  return {};
+}
+
+std::string words_of(const Expectation& wanted) {
+  std::string out;
+  const auto add = [&](const std::string& words) { out += (out.empty() ? "" : ", ") + words; };
+  if (wanted.value)
+    add(io::to_text(*wanted.value, 9) + " within " + io::to_text(wanted.tolerance, 3));
+  if (wanted.at_least) add("at least " + io::to_text(*wanted.at_least, 9));
+  if (wanted.at_most) add("at most " + io::to_text(*wanted.at_most, 9));
+  return out;
+}
+
+}  // namespace
+
+std::vector<Expected> judge_expectations(const Scene& scene, const RunReport& report) {
+  std::vector<Expected> out;
+  for (const auto& [name, wanted] : scene.expect) {
+    Expected e;
+    e.name = name;
+    e.found = find(report, name);
+    e.holds = e.found && wanted.holds(*e.found);
+    e.words = name + " = " + (e.found ? io::to_text(*e.found, 9) : std::string("nothing")) +
+              ": expected " + words_of(wanted);
+    out.push_back(std::move(e));
+  }
+  return out;
+}
+
+void check_expectations(const Scene& scene) {
+  if (scene.expect.empty()) return;
+  std::vector<std::string> known;
+  for (const Part part : parts_of(scene)) {
+    if (part == Part::design) {
+      for (const auto& [figure, value] : kFigures) known.push_back(figure);
+      if (!scene.domain) known.push_back(kAmplitude);
+    } else {
+      for (const std::string& column : candidates(scene, part)) known.push_back(column);
+    }
+  }
+  for (const auto& [name, wanted] : scene.expect) {
+    const std::string column =
+        name.ends_with(kLargest) ? name.substr(0, name.size() - kLargest.size()) : name;
+    if (std::find(known.begin(), known.end(), column) != known.end()) continue;
+    std::string all;
+    for (const std::string& each : known) all += (all.empty() ? "" : ", ") + each;
+    throw Error::input(wanted.place + ": expect.\"" + name +
+                       "\": a run of this case has no such number; there are: " + all +
+                       "; of columns also their largest size, COLUMN.largest");
+  }
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,90 @@
+#include "cases/run/mechanism_columns.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "cases/build/joints.h"
+#include "fem/dynamics/carrier.h"
+
+namespace flexmorph::cases {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+/// The value nearest to another one that is the same angle.
+double unwrapped(double angle, double near) { return near + std::remainder(angle - near, kTurn); }
+
+}  // namespace
+
+MechanismColumns::MechanismColumns(const Scene& scene) : scene_(scene) {
+  const auto name = [&](const std::string& of, std::initializer_list<const char*> quantities) {
+    for (const char* quantity : quantities) columns_.push_back({of + "." + quantity, {}});
+  };
+  for (const RigidBody& body : scene.rigid_bodies) {
+    name(body.name, {"x", "y", "angle"});
+    frames_.emplace_back().angle = body.angle;
+  }
+  if (scene.trajectory) {
+    const Trajectory& t = *scene.trajectory;
+    name(t.body, {"delta_x", "delta_y", "delta_angle"});
+    path_ = {scene.motion_of(t.x), scene.motion_of(t.y), scene.motion_of(t.angle)};
+  }
+  for (const Joint& joint : scene.joints) {
+    if (!joint.named) continue;
+    const bool driven = std::any_of(joint.laws.begin(), joint.laws.end(),
+                                    [](const Law& law) { return !law.drive.empty(); });
+    const Anchor about = joint.type == "point_drive" ? joint.a : completed(scene, joint.b, joint.a);
+    joints_.push_back({&joint, about, driven});
+    name(joint.name, {"force_x", "force_y", "moment"});
+    if (driven) name(joint.name, {"power"});
+  }
+}
+
+void MechanismColumns::add(const fem::Model& model, const fem::State& x) {
+  next_ = 0;
+  for (size_t i = 0; i < frames_.size(); ++i) {
+    const double before = frames_[i].angle;
+    frames_[i] = fem::frame_of(model.body(scene_.rigid_bodies[i].name), x);
+    frames_[i].angle = unwrapped(frames_[i].angle, before);
+    put(frames_[i].origin.x());
+    put(frames_[i].origin.y());
+    put(frames_[i].angle);
+  }
+  if (scene_.trajectory) add_trajectory(x.t);
+  for (const Watched& watched : joints_) add_joint(watched, model, x);
+}
+
+void MechanismColumns::add_trajectory(double t) {
+  size_t i = 0;
+  while (scene_.rigid_bodies[i].name != scene_.trajectory->body) ++i;
+  const fem::FrameMotion& frame = frames_[i];
+  const double angle = path_[2](t).value;
+  // Whole turns between the two are a matter of how the case counts them.
+  if (!turns_) turns_ = kTurn * std::round((frame.angle - angle) / kTurn);
+  put(frame.origin.x() - path_[0](t).value);
+  put(frame.origin.y() - path_[1](t).value);
+  put(frame.angle - angle - *turns_);
+}
+
+void MechanismColumns::add_joint(const Watched& watched, const fem::Model& model,
+                                 const fem::State& x) {
+  const auto& all = model.joints();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const auto& joint) {
+    return joint->name() == watched.joint->name;
+  });
+  const auto index = static_cast<size_t>(found - all.begin());
+  const Joint& joint = *watched.joint;
+  const Vec2 about =
+      model.place_motion({watched.about.body, watched.about.point, 0, {}}, x).position;
+  const std::string& body = joint.b.on_ground() ? joint.a.body : joint.b.body;
+  const fem::Wrench wrench = model.joint_wrench(index, body, {about.x(), about.y(), 0}, x);
+  put(wrench.force.x());
+  put(wrench.force.y());
+  put(wrench.moment.z());
+  if (!watched.driven) return;
+  fem::ConstraintRows rows;
+  (*found)->evaluate(x.t, x.q, x.v, rows);
+  put(x.lambda.segment(model.first_row(index), (*found)->size()).dot(rows.rate));
+}
+
+}  // namespace flexmorph::cases

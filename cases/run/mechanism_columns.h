@@ -1,0 +1,50 @@
+#pragma once
+
+#include <optional>
+
+#include "cases/run/run_folder.h"
+
+namespace flexmorph::cases {
+
+/// What the table of a motion says of a mechanism, step by step, in this order:
+///
+/// every rigid body      <name>.x, .y [m], .angle [rad]: its point and first axis; the angle goes
+///                       on through half turns, from the one of the case
+/// with a trajectory     <body>.delta_x, .delta_y [m], .delta_angle [rad]: where its body is, less
+///                       where it should be
+/// every named joint     <joint>.force_x, .force_y [N], .moment [N m]: what it does to its body b,
+///                       or to a where b is the ground; the moment about the joint's point (that
+///                       of b, the driven one of point_drive)
+/// the driven ones       <joint>.power [W]: λ · ∂Φ/∂t, what the drive puts into the mechanism
+///
+/// Scenes without rigid bodies and named joints have none of these.
+class MechanismColumns {
+ public:
+  explicit MechanismColumns(const Scene& scene);
+
+  /// The next row. @param x  the model is prepared for it, λ belongs to it
+  void add(const fem::Model& model, const fem::State& x);
+  std::vector<Column> take() { return std::move(columns_); }
+
+ private:
+  /// A named joint: the body it acts on, and the place its moment is about.
+  struct Watched {
+    const Joint* joint;
+    Anchor about;
+    bool driven;
+  };
+
+  void add_trajectory(double t);
+  void add_joint(const Watched& watched, const fem::Model& model, const fem::State& x);
+  void put(double value) { columns_[next_++].values.push_back(value + 0.0); }  // no "-0"
+
+  const Scene& scene_;
+  std::vector<fem::FrameMotion> frames_;  // of the rigid bodies, angles unwrapped
+  std::optional<double> turns_;           // of the trajectory's angle against the body's [rad]
+  std::array<std::function<fem::Motion(double)>, 3> path_;
+  std::vector<Watched> joints_;
+  std::vector<Column> columns_;
+  size_t next_ = 0;
+};
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,232 @@
+#include "cases/run/motion_run.h"
+
+#include <cmath>
+
+#include "cases/run/measures.h"
+#include "cases/run/mechanism_columns.h"
+#include "io/files.h"
+
+namespace flexmorph::cases {
+namespace {
+
+bool is_multiple(double t, double every) {
+  return every > 0 && std::abs(t / every - std::round(t / every)) < 1e-6;
+}
+
+size_t design_of(const Scene& scene, const std::string& body) {
+  size_t i = 0;
+  while (i < scene.designs.size() && scene.designs[i].body != body) ++i;
+  return i;
+}
+
+/// Fills the record and the loads as the motion goes on.
+class Recorder {
+ public:
+  Recorder(const Scene& scene, const MotionWishes& wishes, Mechanism& mechanism, RunFolder& folder,
+           MotionOutcome& out)
+      : scene_(scene),
+        wishes_(wishes),
+        mechanism_(mechanism),
+        folder_(folder),
+        out_(out),
+        columns_(scene) {
+    MotionRecord& r = out.record;
+    for (const fem::Growth& growth : mechanism.growths) {
+      const Body& body = scene.body(growth.body);
+      const bool deflects = !body.in_space() && growth.line == 0;
+      if (deflects) tracked_.push_back(&growth);
+      if (deflects) r.bodies.push_back(growth.body);
+      // A free root says where it is in a column of its own.
+      if ((deflects || body.flow) && !body.has_free_lines()) r.growing.push_back(growth.body);
+    }
+    r.deflection.resize(tracked_.size());
+    r.amplitude.assign(tracked_.size(), 0);
+    static const char* const kAxes[] = {"_x", "_y", "_z"};
+    for (const Observe& o : scene.observed)
+      for (int c = 0; c < scene.body(o.body).dim(); ++c)
+        r.observed.push_back({o.body + "." + o.name + kAxes[c], {}});
+    for (const Body& body : scene.bodies)
+      for (const BodyLine& line : body.lines)
+        if (line.free)
+          r.observed.push_back({body.name + ".line_" + std::to_string(line.index), {}});
+    for (const Body& body : scene.bodies) poses_.push_back(start_pose(scene, body));
+    if (scene.is_mechanism() && wishes.balance)
+      r.powers = {{"power.drive", {}}, {"power.feed", {}}, {"power.inflow", {}}};
+    if (!r.powers.empty() && scene.has_heat()) r.powers.push_back({"power.heat", {}});
+    if (!scene.measures.empty())
+      undeformed_ = fem::start_state(mechanism.model, mechanism.growths, 0, fem::Start::rigid,
+                                     mechanism.motion.placement);
+    if (wishes.loads)
+      for (const BodyDesign& d : scene.designs) out.loads.push_back({d.grid, {}, 0});
+  }
+
+  void operator()(const fem::MotionStep& step) {
+    MotionRecord& r = out_.record;
+    if (!r.time.empty())
+      r.strain_integral +=
+          0.5 * (step.x.t - r.time.back()) * (r.strain.back() + step.energies.strain);
+    r.time.push_back(step.x.t);
+    r.kinetic.push_back(step.energies.kinetic);
+    r.strain.push_back(step.energies.strain);
+    r.potential.push_back(step.energies.potential);
+    r.defect.push_back(step.defect);
+    for (size_t i = 0; i < tracked_.size(); ++i) {
+      const double d = tip_deflection(step.model, *tracked_[i], step.x);
+      r.deflection[i].push_back(d);
+      r.amplitude[i] = std::max(r.amplitude[i], std::abs(d));
+    }
+    observe(step);
+    if (!scene_.measures.empty()) measure(step);
+    columns_.add(step.model, step.x);
+    if (!r.powers.empty()) {
+      r.powers[0].values.push_back(step.powers.drive);
+      r.powers[1].values.push_back(step.powers.feed);
+      r.powers[2].values.push_back(step.powers.inflow);
+      if (scene_.has_heat()) r.powers[3].values.push_back(step.powers.heat);
+    }
+    // The step that reaches a moment shows it: no step is cut for a picture.
+    const auto shown = static_cast<double>(r.moments.size());
+    if (shown < wishes_.moments &&
+        step.x.t >= shown / (wishes_.moments - 1) * scene_.time.end - 1e-9)
+      add_moment(step);
+    if (step.stop || step.x.t == 0) at_stop(step);
+    if (wishes_.go_on && !wishes_.go_on()) throw Interrupted();
+  }
+
+  /// What comes after the last step, or after the one that failed.
+  void finish() {
+    out_.record.mechanism = columns_.take();
+    if (measures_) out_.record.measured = measures_->take();
+  }
+
+ private:
+  void observe(const fem::MotionStep& step) {
+    size_t column = 0;
+    const auto add = [&](double value) { out_.record.observed[column++].values.push_back(value); };
+    for (const Observe& o : scene_.observed) {
+      const Vec3 r = fem::point_position(step.model.body(o.body), step.x, o.point);
+      for (int c = 0; c < scene_.body(o.body).dim(); ++c) add(r[c]);
+    }
+    for (const fem::Body& body : step.model.bodies())
+      for (int k = 0; k < body.element->n_scalars(); ++k) add(step.x.q[body.first_scalar() + k]);
+  }
+
+  void measure(const fem::MotionStep& step) {
+    if (!measures_) measures_.emplace(scene_, step.model, undeformed_);
+    measures_->add(step.model, step.x);
+  }
+
+  void at_stop(const fem::MotionStep& step) {
+    const double t = step.x.t;
+    for (size_t i = 0; wishes_.loads && t > 0 && i < mechanism_.growths.size(); ++i) {
+      const size_t d = design_of(scene_, mechanism_.growths[i].body);
+      if (d < scene_.designs.size() && is_multiple(t, scene_.esl->every))
+        add_load(step, mechanism_.growths[i], d);
+    }
+    if (is_multiple(t, wishes_.frames_every)) add_frame(step);
+  }
+
+  void add_load(const fem::MotionStep& step, const fem::Growth& growth, size_t d) {
+    std::vector<fem::AttachedForce> forces = fem::joint_forces(
+        step.model, step.x, step.model.body(growth.body), attached_joints(scene_, growth.body));
+    for (const fem::AttachedForce& f : applied_forces(scene_, growth.body)) forces.push_back(f);
+    fem::EslSet set = fem::equivalent_static_load(
+        step.model, step.x, growth, scene_.designs[d].grid, attached_masses(scene_, growth.body),
+        forces, mechanism_.motion.gravity);
+    set.weight = 1.0 / scene_.esl->count(scene_.time.end);
+    out_.loads[d].sets.push_back(std::move(set));
+  }
+
+  /// All plates, then all rigid bodies that have a size; their numbers are those of the scene.
+  void add_frame(const fem::MotionStep& step) {
+    const double t = step.x.t;
+    int part = 0;
+    for (const Body& body : scene_.bodies) {
+      const auto i = static_cast<size_t>(part);
+      if (design_of(scene_, body.name) < scene_.designs.size())
+        folder_.add_motion_frame(body.name, designed(step, body), t, part);
+      else
+        folder_.add_surface_frame(step.model.body(body.name), step.x, poses_[i], t, part);
+      ++part;
+    }
+    for (const RigidBody& body : scene_.rigid_bodies) {
+      const std::vector<Vec2> corners = drawn_corners(body, step.model, step.x);
+      if (!corners.empty()) folder_.add_rigid_frame(body.name, corners, t, part);
+      ++part;
+    }
+  }
+
+  DesignedSurface designed(const fem::MotionStep& step, const Body& body) const {
+    const size_t d = design_of(scene_, body.name);
+    const Grid& grid = scene_.designs[d].grid;
+    const VectorXd density =
+        wishes_.factors.empty() ? VectorXd::Ones(grid.n_cells()) : wishes_.factors[d].mass;
+    return designed_surface(step.model.body(body.name), step.x, grid, density);
+  }
+
+  /// The mechanism as it is now, for a picture.
+  void add_moment(const fem::MotionStep& step) {
+    io::PlaneFrame frame;
+    frame.title = "t = " + io::to_text(step.x.t, 4) + " s";
+    for (size_t i = 0; i < scene_.bodies.size(); ++i) {
+      const Body& body = scene_.bodies[i];
+      if (const size_t d = design_of(scene_, body.name); d < scene_.designs.size()) {
+        DesignedSurface s = designed(step, body);
+        frame.plates.push_back(
+            {scene_.designs[d].grid.ny, std::move(s.mesh.points), std::move(s.density)});
+      } else {
+        Surface s = deformed_surface(step.model.body(body.name), step.x, poses_[i]);
+        const std::vector<double> full(s.mesh.quads.size(), 1.0);
+        frame.plates.push_back({s.across, std::move(s.mesh.points), full});
+      }
+    }
+    for (const RigidBody& body : scene_.rigid_bodies)
+      if (auto corners = drawn_corners(body, step.model, step.x); !corners.empty())
+        frame.outlines.push_back(std::move(corners));
+    out_.record.moments.push_back(std::move(frame));
+  }
+
+  const Scene& scene_;
+  const MotionWishes& wishes_;
+  const Mechanism& mechanism_;
+  RunFolder& folder_;
+  MotionOutcome& out_;
+  std::vector<const fem::Growth*> tracked_;  // whose tip deflections are in the table
+  std::vector<Pose> poses_;                  // of the bodies at the start
+  MechanismColumns columns_;
+  fem::State undeformed_;  // at the start, where something is measured
+  std::optional<BodyMeasures> measures_;
+};
+
+}  // namespace
+
+MotionOutcome run_motion(const Scene& scene, const MotionWishes& wishes, RunFolder& folder) {
+  Mechanism mechanism = build_mechanism(scene, wishes.mesh);
+  for (size_t i = 0; i < wishes.factors.size(); ++i)
+    for (fem::Body& body : mechanism.model.bodies())
+      if (body.name == scene.designs[i].body) mechanism.model.set_factors(body, wishes.factors[i]);
+  mechanism.motion.balance = wishes.balance;
+  mechanism.motion.condition = wishes.condition;
+  if (wishes.loads)
+    for (const double t : load_times(scene)) mechanism.motion.stops.push_back(t);
+  if (wishes.frames_every > 0)
+    for (int k = 1; k * wishes.frames_every < scene.time.end + 1e-9; ++k)
+      mechanism.motion.stops.push_back(k * wishes.frames_every);
+
+  MotionOutcome out;
+  Recorder record(scene, wishes, mechanism, folder, out);
+  try {
+    out.record.result = fem::integrate(mechanism.model, mechanism.growths, mechanism.motion,
+                                       [&](const fem::MotionStep& step) { record(step); });
+  } catch (...) {
+    record.finish();
+    folder.write_motion(wishes.table, scene, out.record);
+    throw;
+  }
+  record.finish();
+  folder.write_motion(wishes.table, scene, out.record);
+  for (fem::EslSets& sets : out.loads) sets.strain_energy_integral = out.record.strain_integral;
+  return out;
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,96 @@
+#include "cases/run/path_run.h"
+
+#include "cases/run/measures.h"
+#include "cases/run/motion_run.h"
+
+namespace flexmorph::cases {
+namespace {
+
+fem::StaticSettings settings_of(const StaticAnalysis& analysis) {
+  fem::StaticSettings out;
+  out.path = analysis.path;
+  out.to = analysis.to;
+  out.first_step = 1.0 / analysis.steps;
+  out.largest_step = out.first_step;
+  out.max_steps = analysis.max_steps;
+  out.max_iterations = analysis.max_iterations;
+  return out;
+}
+
+/// Of loads and temperatures, what does not grow along the path is put on before, step by step.
+void put_on(const Scene& scene, fem::Model& model, fem::State& x) {
+  const StaticAnalysis& analysis = *scene.statics;
+  model.prepare(x);
+  model.scale_loads(0);
+  const bool loads = !analysis.loads_grow && (!scene.loads.empty() || scene.gravity),
+             temperatures = !analysis.temperatures_grow;
+  if (loads || temperatures) {
+    model.choose_scaled(loads, temperatures);
+    fem::StaticSettings settings = settings_of(analysis);
+    settings.path = fem::StaticSettings::Path::load;
+    settings.to = 1;
+    fem::solve_static(model, x, settings, {});
+  }
+  model.choose_scaled(analysis.loads_grow, analysis.temperatures_grow);
+}
+
+}  // namespace
+
+PathRecord run_path(const Scene& scene, RunFolder& folder, const std::function<bool()>& go_on,
+                    bool condition) {
+  Mechanism mechanism = build_mechanism(scene);
+  fem::Model& model = mechanism.model;
+  fem::State x =
+      fem::start_state(model, mechanism.growths, 0, fem::Start::rigid, mechanism.motion.placement);
+  model.prepare(x);
+  BodyMeasures measures(scene, model, x);
+  PathRecord out;
+  static const char* const kAxes[] = {"_ux", "_uy", "_uz"};
+  for (const Observe& o : scene.observed)
+    for (int c = 0; c < scene.body(o.body).dim(); ++c)
+      out.observed.push_back({o.body + "." + o.name + kAxes[c], {}});
+  std::vector<Vec3> starts;  // of the observed points
+  for (const Observe& o : scene.observed) {
+    const Body& body = scene.body(o.body);
+    starts.push_back(body.is_beam() ? fem::point_position(model.body(o.body), x, o.point)
+                                    : start_pose(scene, body).place(o.point));
+  }
+  const auto observe = [&](const fem::StaticStep& step) {
+    model.prepare(step.x);
+    const fem::Energies energies = model.energies(step.x);
+    out.factor.push_back(step.factor);
+    out.iterations.push_back(step.iterations);
+    out.strain.push_back(energies.strain);
+    size_t column = 0;
+    for (size_t i = 0; i < scene.observed.size(); ++i) {
+      const Observe& o = scene.observed[i];
+      const Vec3 u = fem::point_position(model.body(o.body), step.x, o.point) - starts[i];
+      for (int c = 0; c < scene.body(o.body).dim(); ++c)
+        out.observed[column++].values.push_back(u[c]);
+    }
+    const double heating = scene.statics->temperatures_grow ? step.factor : 1;
+    measures.add(model, step.x, heating);
+    if (scene.output.vtk)
+      for (size_t i = 0; i < scene.bodies.size(); ++i)
+        folder.add_surface_frame(model.body(scene.bodies[i].name), step.x,
+                                 start_pose(scene, scene.bodies[i]), step.number,
+                                 static_cast<int>(i), heating);
+    if (go_on && !go_on()) throw Interrupted();
+    return true;
+  };
+  try {
+    if (scene.has_heat()) put_on(scene, model, x);
+    fem::StaticSettings settings = settings_of(*scene.statics);
+    settings.condition = condition;
+    out.result = fem::solve_static(model, x, settings, observe);
+  } catch (...) {
+    out.measured = measures.take();
+    folder.write_path(out);
+    throw;
+  }
+  out.measured = measures.take();
+  folder.write_path(out);
+  return out;
+}
+
+}  // namespace flexmorph::cases

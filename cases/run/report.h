@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+
+#include "cases/run/run_folder.h"
+
+namespace flexmorph::cases {
+
+/// Everything a run knows at its end (or at its failure).
+struct RunReport {
+  std::string status, message;
+  int threads = 1, cycles = 0;
+  double seconds_wall = 0, seconds_cpu = 0, peak_memory_bytes = 0;
+  std::vector<mmc::BodyProblem> problems;
+  std::vector<mmc::BodyOutcome> outcomes;
+  std::vector<mmc::CycleVerdict> verdicts;                 ///< of a run of several cycles
+  std::optional<PathRecord> path;                          ///< of a [static] analysis
+  std::optional<MotionRecord> motion, uniform_motion;      ///< of the design; of uniform material
+  std::optional<MotionRecord> verified, verified_uniform;  ///< the same on the finer mesh
+};
+
+/// Writes run.json, the plots and report.html.
+void write_report(const Scene& scene, const RunReport& report, RunFolder& folder);
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,322 @@
+#include "cases/run/run.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+
+#include "cases/run/expectations.h"
+#include "cases/run/motion_run.h"
+#include "cases/run/path_run.h"
+#include "cases/run/report.h"
+#include "cases/build/twin.h"
+#include "cases/run/version.h"
+#include "io/files.h"
+
+namespace flexmorph::cases {
+namespace {
+
+volatile std::sig_atomic_t interrupted = 0;
+
+bool go_on() { return interrupted == 0; }
+
+/// A line that rewrites itself on a terminal, plain lines now and then elsewhere.
+class Progress {
+ public:
+  explicit Progress(bool quiet) : quiet_(quiet), terminal_(isatty(STDOUT_FILENO) != 0) {}
+  ~Progress() { end_line(); }
+
+  void say(const std::string& text) {
+    end_line();
+    if (!quiet_) std::printf("%s\n", text.c_str());
+    std::fflush(stdout);
+  }
+  void iteration(const mmc::IterationReport& r) {
+    if (quiet_) return;
+    for (const mmc::ComponentEvent& e : r.events)
+      say(r.problem.body + " iteration " + std::to_string(r.iteration) + ": component " +
+          std::to_string(e.component + 1) + " " + to_string(e.kind) + ", " +
+          std::to_string(e.n_components) + " components");
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "%s cycle %d iteration %d: compliance %.5g, volume %.4f, kkt %.1e",
+                  r.problem.body.c_str(), r.cycle, r.iteration, r.state.compliance(),
+                  r.state.volume(), r.iterate.kkt);
+    if (terminal_) {
+      std::printf("\r%-100s", text);
+      open_ = true;
+    } else if (r.iteration == 1 || r.iteration % 25 == 0) {
+      std::printf("%s\n", text);
+    }
+    std::fflush(stdout);
+  }
+
+ private:
+  void end_line() {
+    if (open_) std::printf("\n");
+    open_ = false;
+  }
+  bool quiet_, terminal_, open_ = false;
+};
+
+std::string summary(const mmc::BodyOutcome& o) {
+  return o.body + ": compliance " + io::to_text(o.compliance, 5) + ", sharp " +
+         io::to_text(o.sharp.compliance, 5) + " at volume " + io::to_text(o.sharp.volume, 4) +
+         ", uniform material " + io::to_text(o.uniform_compliance, 5);
+}
+
+std::vector<fem::Factors> uniform_factors(const std::vector<mmc::BodyProblem>& problems) {
+  std::vector<fem::Factors> out;
+  for (const mmc::BodyProblem& p : problems) {
+    const VectorXd even = VectorXd::Constant(p.grid.n_cells(), p.goal.max_volume);
+    out.push_back({p.grid, even, even});
+  }
+  return out;
+}
+
+std::vector<fem::Factors> final_factors(const std::vector<mmc::BodyProblem>& problems) {
+  std::vector<fem::Factors> out;
+  for (const mmc::BodyProblem& p : problems)
+    out.push_back(mmc::dynamic_factors(p, p.design.components()));
+  return out;
+}
+
+/// Pictures of a mechanism in its motion.
+int moments_of(const Scene& scene) { return scene.is_mechanism() && scene.output.plots ? 4 : 0; }
+
+/// The judge of a design is the motion with it; beside it the same volume spread evenly.
+void judge_by_motion(const Scene& scene, bool condition, RunFolder& folder, Progress& progress,
+                     RunReport& report) {
+  MotionWishes wishes;
+  wishes.condition = condition;
+  wishes.factors = final_factors(report.problems);
+  wishes.frames_every = scene.output.vtk ? scene.output.motion_every : 0;
+  wishes.moments = moments_of(scene);
+  wishes.go_on = go_on;
+  report.motion = run_motion(scene, wishes, folder).record;
+  wishes.frames_every = 0;
+  wishes.moments = 0;
+  wishes.condition = false;
+  wishes.factors = uniform_factors(report.problems);
+  wishes.table = "motion_uniform.csv";
+  report.uniform_motion = run_motion(scene, wishes, folder).record;
+  if (!scene.verify) return;
+  progress.say("verification on " + scene.verify->words());
+  wishes.mesh = {scene.verify->mesh, scene.verify->refine, scene.verify->step};
+  wishes.balance = false;
+  wishes.table = "motion_verified_uniform.csv";
+  report.verified_uniform = run_motion(scene, wishes, folder).record;
+  wishes.factors = final_factors(report.problems);
+  wishes.table = "motion_verified.csv";
+  report.verified = run_motion(scene, wishes, folder).record;
+}
+
+/// The story of a run with designs; fills the report as far as it gets.
+void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress& progress,
+                 RunReport& report) {
+  report.problems = build_problems(scene);
+  for (const mmc::BodyProblem& problem : report.problems) folder.write_start(problem);
+  const bool analysed = scene.optimizer.max_iterations == 0;  // as they start: one motion says all
+  const auto simulate = [&](std::span<const fem::Factors> factors) {
+    MotionWishes wishes;
+    wishes.factors.assign(factors.begin(), factors.end());
+    wishes.loads = true;
+    wishes.condition = condition && analysed;
+    wishes.go_on = go_on;
+    MotionOutcome motion = run_motion(scene, wishes, folder);
+    progress.say("motion: " + std::to_string(motion.record.result.counts.steps) + " steps, " +
+                 std::to_string(motion.record.result.events.size()) + " changes of the mesh, " +
+                 "largest tip deflection " + io::to_text(motion.record.amplitude.at(0), 4) + " m");
+    if (analysed) report.motion = motion.record;
+    return std::move(motion.loads);
+  };
+  std::vector<fem::EslSets> loads;
+  mmc::LoopObserver observer;
+  observer.loads = [&](int, std::span<const fem::EslSets> sets) {
+    loads.assign(sets.begin(), sets.end());
+    for (size_t i = 0; i < sets.size(); ++i)
+      folder.write_loads(scene.designs[i].body, sets[i], nullptr);
+  };
+  observer.iteration = [&](const mmc::IterationReport& r) {
+    folder.add_iteration(r);
+    progress.iteration(r);
+    return go_on();
+  };
+  observer.cycle = [&](int cycle, std::span<const mmc::BodyOutcome> outcomes) {
+    report.cycles = cycle;
+    report.outcomes.assign(outcomes.begin(), outcomes.end());
+    for (size_t i = 0; i < outcomes.size(); ++i) {
+      folder.write_loads(outcomes[i].body, loads[i], &outcomes[i]);
+      folder.write_design(report.problems[i], outcomes[i]);
+      progress.say(summary(outcomes[i]));
+    }
+  };
+  mmc::LoopSettings settings{analysed ? 1 : scene.cycle.max_cycles,
+                             scene.cycle.tolerance,
+                             {scene.output.sharp_every, scene.optimizer, condition}};
+  observer.verdict = [&](std::span<const mmc::CycleVerdict> verdicts) {
+    report.verdicts.assign(verdicts.begin(), verdicts.end());
+    folder.write_cycles(verdicts);
+    const mmc::CycleVerdict& v = verdicts.back();
+    progress.say("cycle " + std::to_string(v.cycle) + ": compliance of all bodies " +
+                 io::to_text(v.objective, 5) + ", strain energy over time " +
+                 io::to_text(v.strain_energy_integral, 5) + " J s" +
+                 (v.best ? ", the least so far" : ""));
+  };
+  const std::vector<mmc::BodyOutcome> best =
+      mmc::esl_loop(report.problems, simulate, settings, observer);
+  if (interrupted) throw Interrupted();
+  if (!report.verdicts.empty()) {
+    report.outcomes = best;
+    for (size_t i = 0; i < best.size(); ++i) folder.write_design(report.problems[i], best[i]);
+  }
+
+  if (!analysed) judge_by_motion(scene, condition, folder, progress, report);
+}
+
+/// The story of a plate at rest.
+void run_static(const Scene& scene, bool condition, RunFolder& folder, Progress& progress,
+                RunReport& report) {
+  report.problems = build_problems(scene);
+  for (const mmc::BodyProblem& problem : report.problems) folder.write_start(problem);
+  mmc::BodyProblem& problem = report.problems.front();
+  const std::unique_ptr<mmc::LoadResponse> loads = build_static_loads(scene, problem);
+  bool going = true;
+  const mmc::IterationObserver observe = [&](const mmc::IterationReport& r) {
+    folder.add_iteration(r);
+    progress.iteration(r);
+    return go_on();
+  };
+  const mmc::BodyOutcome outcome = mmc::design_body(
+      problem, *loads, 1, {scene.output.sharp_every, scene.optimizer, condition}, observe, going);
+  report.cycles = 1;
+  report.outcomes = {outcome};
+  folder.write_static_loads(*scene.domain, outcome);
+  folder.write_design(problem, outcome);
+  progress.say(summary(outcome));
+  if (interrupted) throw Interrupted();
+}
+
+void run_scene(const Scene& scene, bool condition, RunFolder& folder, Progress& progress,
+               RunReport& report) {
+  if (scene.domain) return run_static(scene, condition, folder, progress, report);
+  if (!scene.designs.empty()) return run_designs(scene, condition, folder, progress, report);
+  if (scene.statics) {
+    report.path = run_path(scene, folder, go_on, condition);
+    const fem::StaticResult& result = report.path->result;
+    progress.say("statics: load factor " + io::to_text(result.factor, 5) + " after " +
+                 std::to_string(result.steps) + " steps, " + std::to_string(result.iterations) +
+                 " Newton iterations");
+    return;
+  }
+  MotionWishes wishes;
+  wishes.frames_every = scene.output.vtk ? scene.output.motion_every : 0;
+  wishes.moments = moments_of(scene);
+  wishes.condition = condition;
+  wishes.go_on = go_on;
+  report.motion = run_motion(scene, wishes, folder).record;
+  const fem::MotionResult& result = report.motion->result;
+  progress.say("motion: " + std::to_string(result.counts.steps) + " steps, " +
+               std::to_string(result.counts.newton) + " Newton iterations, " +
+               std::to_string(result.events.size()) + " changes of the mesh");
+}
+
+}  // namespace
+
+void build_scene(const Scene& scene) {
+  if (!scene.domain) {
+    // One evaluation: loads and terms find their places, or say what they cannot do.
+    if (scene.is_mechanism()) check_mechanism(scene);  // its joints have the names of the case
+    Mechanism mechanism = build_mechanism(scene);
+    if (mechanism.model.n_constraints() > 0)
+      fem::require_independent(fem::diagnose(
+          mechanism.model, fem::start_state(mechanism.model, mechanism.growths, 0,
+                                            fem::Start::rigid, mechanism.motion.placement)));
+    const fem::State x = mechanism.model.reference();
+    VectorXd force;
+    mechanism.model.prepare(x);
+    mechanism.model.force(x, force);
+    if (scene.time.integrator == "energy_momentum") mechanism.model.mean_force(x, x.q, x.q, force);
+  }
+  check_expectations(scene);
+  const std::vector<mmc::BodyProblem> problems = build_problems(scene);
+  if (scene.domain) build_static_loads(scene, problems.front());
+}
+
+std::vector<std::string> shipped_cases() {
+  std::vector<std::string> out;
+  for (const auto& entry : std::filesystem::directory_iterator(kCasesFolder))
+    if (entry.path().extension() == ".toml") out.push_back(entry.path().stem().string());
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::string find_case(const std::string& name) {
+  if (std::filesystem::is_regular_file(name)) return name;
+  std::string known;
+  for (const std::string& shipped : shipped_cases()) {
+    if (shipped == name) return std::string(kCasesFolder) + "/" + name + ".toml";
+    known += (known.empty() ? "" : ", ") + shipped;
+  }
+  throw Error::input("case '" + name + "': no such file, and not a shipped case (" + known + ")");
+}
+
+int run_case(const RunOptions& options) {
+  const auto wall = std::chrono::steady_clock::now();
+  const io::CaseFile file(find_case(options.case_name), options.overrides);
+  const Scene scene = read_scene(file);
+  // What cannot be built is refused before a folder exists.
+  build_scene(scene);
+  std::string directory = options.directory;
+  if (directory.empty()) directory = scene.output.directory;
+  if (directory.empty()) directory = "runs/" + scene.name;
+  RunFolder folder(directory, scene, file.text());
+
+  std::signal(SIGINT, [](int) { interrupted = 1; });
+  std::signal(SIGTERM, [](int) { interrupted = 1; });
+  Progress progress(options.quiet);
+  progress.say(scene.title + " -> " + directory);
+  RunReport report;
+  report.threads = options.threads;
+  const auto close = [&](const std::string& status, const std::string& message) {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    report.status = status;
+    report.message = message;
+    report.seconds_cpu = mmc::cpu_seconds();
+    report.seconds_wall =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
+    report.peak_memory_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
+    write_report(scene, report, folder);
+  };
+  close("running", "");
+  try {
+    run_scene(scene, options.condition, folder, progress, report);
+  } catch (const Interrupted&) {
+    close("interrupted", "");
+    progress.say("interrupted: what was computed is in " + directory);
+    return 4;
+  } catch (const std::exception& error) {
+    close("failed", error.what());
+    throw;
+  }
+  close("done", "");
+  int missed = 0;
+  for (const Expected& expected : judge_expectations(scene, report)) {
+    if (expected.holds) continue;
+    ++missed;
+    std::fprintf(stderr, "flexmorph: missed: %s\n", expected.words.c_str());
+  }
+  progress.say("done" +
+               (missed > 0 ? ", " + std::to_string(missed) +
+                                 (missed > 1 ? " expectations missed" : " expectation missed")
+                           : "") +
+               ": " + directory + "/report.html");
+  return missed > 0 ? kMissed : 0;
+}
+
+}  // namespace flexmorph::cases

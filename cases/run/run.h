@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cases/build/build.h"
+
+namespace flexmorph::cases {
+
+struct RunOptions {
+  std::string case_name;               ///< path, or name of a shipped case
+  std::string directory;               ///< of the run folder; empty: runs/<name>
+  std::vector<std::string> overrides;  ///< KEY=VALUE
+  int threads = 1;
+  bool quiet = false;
+  bool condition = false;  ///< estimate the conditions of matrices at the end, for run.json
+};
+
+/// Path of a case file: the path itself, or that of a shipped case of this name.
+/// @throws Error (input) naming the shipped cases.
+std::string find_case(const std::string& name);
+/// Builds everything a run of the scene would build: what cannot be built is refused here.
+/// @throws Error (input).
+void build_scene(const Scene& scene);
+/// Names of the shipped cases.
+std::vector<std::string> shipped_cases();
+
+/// Exit code of a run that is whole, but misses an expectation of its case.
+inline constexpr int kMissed = 5;
+
+/// Runs a case from file to folder. @return exit code: 0 done, 4 interrupted (what was computed is
+/// kept), kMissed. @throws Error; a numerical one after the folder says what failed.
+int run_case(const RunOptions& options);
+
+/// Says what a case contains, what it leaves out, and what each part costs.
+/// @throws Error (input) when the case cannot be used.
+std::string check_case(const RunOptions& options);
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,405 @@
+#include "cases/run/run_folder.h"
+
+#include <cmath>
+#include <filesystem>
+
+#include "io/exports.h"
+#include "io/files.h"
+#include "io/plots.h"
+
+namespace flexmorph::cases {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> kHistoryColumns = {"body",
+                                                  "cycle",
+                                                  "iteration",
+                                                  "evaluations",
+                                                  "objective",
+                                                  "compliance",
+                                                  "volume",
+                                                  "violation",
+                                                  "kkt",
+                                                  "change",
+                                                  "band",
+                                                  "sharp_compliance",
+                                                  "sharp_volume",
+                                                  "connected",
+                                                  "min_feature",
+                                                  "seconds_tdf",
+                                                  "seconds_factor",
+                                                  "seconds_solve",
+                                                  "seconds_sensitivity",
+                                                  "seconds_optimizer",
+                                                  "seconds_output"};
+
+std::string numbered(const std::string& stem, int number, const std::string& ending) {
+  std::string digits = io::to_text(number);
+  return stem + std::string(digits.size() < 5 ? 5 - digits.size() : 0, '0') + digits + ending;
+}
+
+/// The parts of a folder that a run writes: these, and only these, are removed before a new one.
+const std::vector<std::string> kOurs = {"case.toml",
+                                        "run.json",
+                                        "history.csv",
+                                        "cycles.csv",
+                                        "events.csv",
+                                        "motion.csv",
+                                        "path.csv",
+                                        "motion_uniform.csv",
+                                        "motion_verified.csv",
+                                        "motion_verified_uniform.csv",
+                                        "report.html",
+                                        "components.csv",
+                                        "design.svg",
+                                        "design.dxf",
+                                        "design.stl",
+                                        "design",
+                                        "motion",
+                                        "loads",
+                                        "plots"};
+/// With several designs their files carry the bodies' names.
+bool is_ours(const std::string& name) {
+  return std::find(kOurs.begin(), kOurs.end(), name) != kOurs.end() ||
+         name.starts_with("components_") || name.starts_with("design_");
+}
+
+void empty_folder(const std::string& path) {
+  if (fs::is_empty(path)) return;
+  if (!fs::exists(fs::path(path) / "run.json"))
+    throw Error::input("output folder '" + path +
+                       "' is not empty and holds no run; choose another with -o");
+  for (const auto& entry : fs::directory_iterator(path)) {
+    const std::string name = entry.path().filename().string();
+    if (!is_ours(name))
+      throw Error::input("output folder '" + path + "' holds '" + name +
+                         "', which no run has written; choose another with -o");
+  }
+  for (const auto& entry : fs::directory_iterator(path)) fs::remove_all(entry.path());
+}
+
+}  // namespace
+
+const std::vector<double>* MotionRecord::column(const std::string& name) const {
+  for (const auto* columns : {&observed, &measured, &mechanism})
+    for (const Column& column : *columns)
+      if (column.name == name) return &column.values;
+  return nullptr;
+}
+
+const std::vector<double>* PathRecord::column(const std::string& name) const {
+  for (const auto* columns : {&observed, &measured})
+    for (const Column& column : *columns)
+      if (column.name == name) return &column.values;
+  return nullptr;
+}
+
+double tip_deflection(const fem::Model& model, const fem::Growth& growth, const fem::State& x) {
+  const fem::Body& body = model.body(growth.body);
+  const fem::LineGrid& mesh = fem::grid_of(body);
+  const fem::FrameMotion hub = growth.hub.at(model, x);
+  const Vec2 tip = fem::point_motion(body, x, {mesh.line_m(mesh.n_m()).value, 0}).position;
+  return Vec2(-std::sin(hub.angle), std::cos(hub.angle)).dot(tip - hub.origin);
+}
+
+RunFolder::RunFolder(std::string path, const Scene& scene, const std::string& case_text)
+    : path_(std::move(path)),
+      scene_(scene),
+      iterations_(path_ + "/design/iterations.pvd"),
+      components_(path_ + "/design/components.pvd"),
+      motion_(path_ + "/motion/motion.pvd") {
+  try {
+    fs::create_directories(path_);
+    empty_folder(path_);
+  } catch (const fs::filesystem_error& error) {
+    throw Error::input("output folder '" + path_ + "': " + error.code().message());
+  }
+  io::write_file(path_ + "/case.toml", case_text);
+  if (!scene.designs.empty())
+    history_ = std::make_unique<io::CsvWriter>(path_ + "/history.csv", kHistoryColumns);
+}
+
+double RunFolder::take_output_seconds() { return std::exchange(output_seconds_, 0); }
+
+void RunFolder::add_iteration(const mmc::IterationReport& r) {
+  const double clock = mmc::cpu_seconds();
+  ++rows_;
+  const Output& wish = scene_.output;
+  if (wish.vtk && wish.design_every > 0 &&
+      (r.iteration == 1 || r.iteration % wish.design_every == 0)) {
+    const std::string stem = scene_.designs.size() > 1 ? r.problem.body + "_" : "";
+    const mmc::CellFactors& factors = r.state.factors();
+    // Σ w ½ uᵀ K_cell u: the derivative by the stiffness factor holds it. The energies of loads and
+    // of held growth are added; what they do on each other sums to zero over the cells.
+    VectorXd by_stiffness = -r.value.d_stiffness;
+    if (r.value.d_held.size() > 0) by_stiffness += 2 * r.value.d_held;
+    const VectorXd energy = 0.5 * by_stiffness.cwiseProduct(factors.stiffness);
+    const VectorXd displacement =
+        r.loads.displacement(factors.stiffness, factors.mass, r.loads.n_loads() - 1);
+    const auto view = [](const VectorXd& v) {
+      return std::span<const double>(v.data(), static_cast<size_t>(v.size()));
+    };
+    const io::Field cells[] = {{"density", view(factors.mass)},
+                               {"stiffness_factor", view(factors.stiffness)},
+                               {"strain_energy", view(energy)}};
+    const io::Field points[] = {{"tdf", view(r.state.phi())},
+                                {"displacement", view(displacement), 2}};
+    const std::string image = numbered("iteration_" + stem, rows_, ".vti");
+    io::write_image_data(path_ + "/design/" + image, r.problem.grid, cells, points);
+    iterations_.add(rows_, image);
+    const std::string lines = numbered("components_" + stem, rows_, ".vtp");
+    io::write_components(path_ + "/design/" + lines, r.state.components(),
+                         r.problem.stages.back().min_half_thickness);
+    components_.add(rows_, lines);
+  }
+  History& h = history_of(r.problem.body);
+  h.row.push_back(static_cast<double>(h.row.size() + 1));
+  h.compliance.push_back(r.state.compliance());
+  h.volume.push_back(r.state.volume());
+  h.kkt.push_back(r.iterate.kkt);
+  io::Cell sharp_c, sharp_v, connected, min_feature;
+  if (r.sharp) {
+    h.sharp_row.push_back(h.row.back());
+    h.sharp_compliance.push_back(r.sharp->compliance);
+    sharp_c = r.sharp->compliance;
+    sharp_v = r.sharp->volume;
+    connected = r.sharp->connectivity.connected;
+    if (r.sharp->features && std::isfinite(r.sharp->features->solid))
+      min_feature = r.sharp->features->solid;
+  }
+  add_events(r);
+  output_seconds_ += mmc::cpu_seconds() - clock;
+  const mmc::LoadResponse::Seconds s = r.state.seconds();
+  history_->row({r.problem.body,
+                 r.cycle,
+                 r.iteration,
+                 r.evaluations,
+                 r.iterate.response->f,
+                 r.state.compliance(),
+                 r.state.volume(),
+                 r.iterate.violation,
+                 r.iterate.kkt,
+                 r.iterate.change,
+                 r.state.band() / r.problem.grid.dx(),
+                 sharp_c,
+                 sharp_v,
+                 connected,
+                 min_feature,
+                 r.state.seconds_tdf(),
+                 s.factor,
+                 s.solve,
+                 s.sensitivity,
+                 r.iterate.seconds,
+                 take_output_seconds()});
+}
+
+RunFolder::History& RunFolder::history_of(const std::string& body) {
+  for (History& h : histories_)
+    if (h.body == body) return h;
+  histories_.emplace_back().body = body;
+  return histories_.back();
+}
+
+void RunFolder::add_events(const mmc::IterationReport& r) {
+  if (r.events.empty()) return;
+  if (!events_) {
+    const std::vector<std::string> columns = {"body",  "cycle",     "iteration",
+                                              "event", "component", "components"};
+    events_ = std::make_unique<io::CsvWriter>(path_ + "/events.csv", columns);
+  }
+  for (const mmc::ComponentEvent& e : r.events)
+    events_->row(
+        {r.problem.body, r.cycle, r.iteration, to_string(e.kind), e.component + 1, e.n_components});
+}
+
+void RunFolder::write_loads(const std::string& body, const fem::EslSets& loads,
+                            const mmc::BodyOutcome* outcome) {
+  const std::vector<std::string> columns = {"time",          "root_column",  "weight",
+                                            "strain_energy", "energy_ratio", "compliance",
+                                            "force_x",       "force_y"};
+  io::CsvWriter csv(path_ + "/loads/" + body + ".csv", columns);
+  for (size_t i = 0; i < loads.sets.size(); ++i) {
+    const fem::EslSet& s = loads.sets[i];
+    Vec2 force(0, 0);
+    for (const fem::NodalForce& f : s.forces) force += f.force;
+    io::Cell ratio, compliance;
+    if (outcome) {
+      ratio = outcome->energy_ratios[i];
+      compliance = outcome->load_compliances[i];
+    }
+    csv.row({s.time, s.root_column, s.weight, s.strain_energy, ratio, compliance, force.x(),
+             force.y()});
+  }
+}
+
+void RunFolder::write_static_loads(const Domain& domain, const mmc::BodyOutcome& outcome) {
+  const std::vector<std::string> columns = {"load", "weight", "compliance", "active"};
+  io::CsvWriter csv(path_ + "/loads/" + domain.name + ".csv", columns);
+  for (size_t l = 0; l < domain.loads.size(); ++l)
+    csv.row({domain.loads[l].name, domain.loads[l].weight, outcome.load_compliances[l],
+             outcome.load_compliances[l] >= 0.99 * outcome.worst_compliance});
+}
+
+void RunFolder::write_motion(const std::string& name, const Scene& scene,
+                             const MotionRecord& motion) {
+  std::vector<std::string> columns = {"time"};
+  for (const std::string& body : motion.bodies) columns.push_back(body + ".tip_deflection");
+  for (const std::string& body : motion.growing) columns.push_back(body + ".length");
+  for (const Column& column : motion.observed) columns.push_back(column.name);
+  for (const Column& column : motion.measured) columns.push_back(column.name);
+  for (const Column& column : motion.mechanism) columns.push_back(column.name);
+  for (const char* quantity :
+       {"energy.kinetic", "energy.strain", "energy.potential", "energy.defect"})
+    columns.emplace_back(quantity);
+  for (const Column& column : motion.powers) columns.push_back(column.name);
+  io::CsvWriter csv(path_ + "/" + name, columns);
+  // What failed while a row was being filled left it unfinished: it is not written.
+  size_t rows = motion.time.size();
+  for (const auto* group : {&motion.observed, &motion.measured, &motion.mechanism, &motion.powers})
+    for (const Column& column : *group) rows = std::min(rows, column.values.size());
+  for (size_t i = 0; i < rows; ++i) {
+    std::vector<io::Cell> row = {motion.time[i]};
+    for (const auto& deflection : motion.deflection) row.emplace_back(deflection[i]);
+    for (const std::string& body : motion.growing)
+      row.emplace_back(scene.body(body).length_at(motion.time[i]));
+    for (const Column& column : motion.observed) row.emplace_back(column.values[i]);
+    for (const Column& column : motion.measured) row.emplace_back(column.values[i]);
+    for (const Column& column : motion.mechanism) row.emplace_back(column.values[i]);
+    row.emplace_back(motion.kinetic[i]);
+    row.emplace_back(motion.strain[i]);
+    row.emplace_back(motion.potential[i]);
+    row.emplace_back(motion.defect[i]);
+    for (const Column& column : motion.powers) row.emplace_back(column.values[i]);
+    csv.row(row);
+  }
+}
+
+void RunFolder::write_path(const PathRecord& path) {
+  std::vector<std::string> columns = {"step", "load_factor"};
+  for (const auto* group : {&path.observed, &path.measured})
+    for (const Column& column : *group) columns.push_back(column.name);
+  columns.emplace_back("energy.strain");
+  columns.emplace_back("iterations");
+  io::CsvWriter csv(path_ + "/path.csv", columns);
+  for (size_t i = 0; i < path.factor.size(); ++i) {
+    std::vector<io::Cell> row = {static_cast<int>(i), path.factor[i]};
+    for (const auto* group : {&path.observed, &path.measured})
+      for (const Column& column : *group) row.emplace_back(column.values[i]);
+    row.emplace_back(path.strain[i]);
+    row.emplace_back(path.iterations[i]);
+    csv.row(row);
+  }
+}
+
+void RunFolder::write_part(const std::string& body, const io::QuadMesh& mesh,
+                           std::vector<io::Field> cells, std::span<const io::Field> points,
+                           double time, int part) {
+  const std::vector<double> number(mesh.quads.size(), part);
+  cells.push_back({"body", number});
+  const std::string file = numbered("motion_" + body + "_", ++motion_frames_, ".vtu");
+  io::write_quad_mesh(path_ + "/motion/" + file, mesh, cells, points);
+  motion_.add(time, file, part);
+}
+
+void RunFolder::add_surface_frame(const fem::Body& body, const fem::State& x, const Pose& pose,
+                                  double time, int part, double heating) {
+  const Surface surface = deformed_surface(body, x, pose, heating);
+  const io::Field points[] = {{"displacement", surface.displacement, surface.mesh.dimension}};
+  std::vector<io::Field> cells = {{"strain_energy", surface.energy}};
+  if (!surface.strain.empty()) cells.push_back({"elastic_strain", surface.strain, 3});
+  write_part(body.name, surface.mesh, std::move(cells), points, time, part);
+  if (part == 0 && surface.mesh.dimension == 3)
+    shapes_.push_back(
+        {(scene_.statics ? "step " : "t = ") + io::to_text(time, 4) + (scene_.statics ? "" : " s"),
+         surface.mesh, surface.energy});
+}
+
+void RunFolder::add_rigid_frame(const std::string& body, std::span<const Vec2> corners, double time,
+                                int part) {
+  io::QuadMesh mesh;
+  for (const Vec2& corner : corners) mesh.points.insert(mesh.points.end(), {corner[0], corner[1]});
+  mesh.quads.push_back({0, 1, 2, 3});
+  write_part(body, mesh, {}, {}, time, part);
+}
+
+void RunFolder::add_motion_frame(const std::string& body, const DesignedSurface& surface,
+                                 double time, int part) {
+  write_part(body, surface.mesh, {{"density", surface.density}}, {}, time, part);
+}
+
+std::vector<io::SurfaceFrame> RunFolder::shapes(size_t most) const {
+  if (shapes_.size() <= most) return shapes_;
+  std::vector<io::SurfaceFrame> out;
+  for (size_t k = 0; k < most; ++k) out.push_back(shapes_[k * (shapes_.size() - 1) / (most - 1)]);
+  return out;
+}
+
+namespace {
+
+/// The union of a design's components in its domain, to a tolerance in cells.
+struct Outlines {
+  std::vector<Region> regions;
+  Box frame;
+
+  explicit Outlines(const mmc::BodyProblem& problem, double tolerance = mmc::kOutlineTolerance)
+      : regions(
+            mmc::regions_of(problem, problem.design.components(), tolerance * problem.grid.dx())) {
+    const Grid& g = problem.grid;
+    frame = {{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}};
+  }
+  std::string svg() const { return io::outline_svg(regions, frame); }
+  std::string picture() const { return io::outline_svg(regions, frame, 5); }
+};
+
+}  // namespace
+
+std::string components_name(const Scene& scene, const std::string& body) {
+  return scene.designs.size() > 1 ? "components_" + body + ".csv" : "components.csv";
+}
+
+RunFolder::DesignPictures& RunFolder::pictures_of(const std::string& body) {
+  for (DesignPictures& p : pictures_)
+    if (p.body == body) return p;
+  pictures_.emplace_back().body = body;
+  return pictures_.back();
+}
+
+void RunFolder::write_start(const mmc::BodyProblem& problem) {
+  if (!scene_.output.plots) return;
+  std::string& svg = pictures_of(problem.body).start;
+  svg = Outlines(problem, 0.05).picture();
+  io::write_file(path_ + "/plots/start_" + problem.body + ".svg", svg);
+}
+
+void RunFolder::write_design(const mmc::BodyProblem& problem, const mmc::BodyOutcome& outcome) {
+  const std::string stem = scene_.designs.size() > 1 ? "_" + problem.body : "";
+  const std::vector<Component> components = problem.design.components();
+  io::write_components_csv(path_ + "/" + components_name(scene_, problem.body), components);
+  const Outlines outlines(problem);
+  io::write_file(path_ + "/design" + stem + ".svg", outlines.svg());
+  io::write_dxf(path_ + "/design" + stem + ".dxf", outlines.regions);
+  io::write_stl(path_ + "/design" + stem + ".stl", outlines.regions, problem.section.thickness);
+  if (!scene_.output.plots) return;
+  pictures_of(problem.body).result = outlines.picture();
+  const auto& sharp = outcome.sharp.fractions;
+  io::write_png(path_ + "/plots/design" + stem + ".png", problem.grid,
+                {sharp.data(), static_cast<size_t>(sharp.size())});
+}
+
+void RunFolder::write_cycles(std::span<const mmc::CycleVerdict> cycles) {
+  const std::vector<std::string> columns = {
+      "cycle", "body", "compliance", "sharp_compliance", "design_change", "strain_energy_integral",
+      "best"};
+  io::CsvWriter csv(path_ + "/cycles.csv", columns);
+  for (const mmc::CycleVerdict& c : cycles)
+    for (const mmc::BodyVerdict& b : c.bodies)
+      csv.row({c.cycle, b.body, b.compliance, b.sharp_compliance, b.design_change,
+               c.strain_energy_integral, c.best});
+}
+
+void RunFolder::write_text(const std::string& name, const std::string& text) {
+  io::write_file(path_ + "/" + name, text);
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,141 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cases/build/build.h"
+#include "cases/run/surface.h"
+#include "fem/dynamics/motion.h"
+#include "io/plane_frames.h"
+#include "io/surfaces.h"
+#include "io/tables.h"
+#include "io/vtk.h"
+#include "optim/mmc/esl_loop.h"
+
+namespace flexmorph::cases {
+
+/// A column of a table, one value per step.
+struct Column {
+  std::string name;
+  std::vector<double> values;
+};
+
+/// What a motion did: its table, and the numbers a report quotes.
+struct MotionRecord {
+  std::vector<std::string> bodies;   ///< whose deflections these are: those in hubs in the plane
+  std::vector<std::string> growing;  ///< whose lengths are in the table
+  std::vector<double> time, kinetic, strain, potential, defect;
+  std::vector<std::vector<double>> deflection;  ///< per body [m]
+  std::vector<double> amplitude;                ///< largest |tip deflection| per body [m]
+  double strain_integral = 0;                   ///< ∫ U dt of the whole model [J s]
+  std::vector<Column> observed;         ///< positions of points, and free lines' coordinates [m]
+  std::vector<Column> measured;         ///< see BodyMeasures
+  std::vector<Column> mechanism;        ///< see MechanismColumns
+  std::vector<Column> powers;           ///< that enter a mechanism, where the balance is kept [W]
+  std::vector<io::PlaneFrame> moments;  ///< pictures of a mechanism
+  fem::MotionResult result;
+
+  /// The values of a column of `observed`, `measured` or `mechanism`; null where there is none.
+  const std::vector<double>* column(const std::string& name) const;
+};
+
+/// The path of a [static] analysis.
+struct PathRecord {
+  std::vector<double> factor, strain;  ///< load factor [-], strain energy [J]
+  std::vector<int> iterations;         ///< of Newton's method
+  std::vector<Column> observed;        ///< displacements of points [m]
+  std::vector<Column> measured;        ///< see BodyMeasures
+
+  /// The values of a column of `observed` or `measured`; null where there is none.
+  const std::vector<double>* column(const std::string& name) const;
+  fem::StaticResult result;
+};
+
+/// Tip deflection: coordinate across the hub's axis of the middle of the free end [m].
+double tip_deflection(const fem::Model& model, const fem::Growth& growth, const fem::State& x);
+
+/// The folder of one run (cases/README.md, The run folder): every file is written here and nowhere
+/// else.
+/// Name of the file with the components of a body's result.
+std::string components_name(const Scene& scene, const std::string& body);
+
+class RunFolder {
+ public:
+  /// Makes the folder and writes case.toml. A folder that holds another run (its run.json is there)
+  /// is emptied of its files first.
+  /// @throws Error (input) when it cannot be made, or holds files that no run has written.
+  RunFolder(std::string path, const Scene& scene, const std::string& case_text);
+
+  const std::string& path() const { return path_; }
+
+  /// One design iteration: a row of history.csv, and the VTK files the scene asks for.
+  void add_iteration(const mmc::IterationReport& report);
+  /// CPU seconds spent on files since the last call.
+  double take_output_seconds();
+
+  /// loads/<body>.csv: one row per load set.
+  void write_loads(const std::string& body, const fem::EslSets& loads,
+                   const mmc::BodyOutcome* outcome);
+  /// The same for a plate at rest: one row per load, with its compliance; `active` loads are
+  /// within 1 % of the largest.
+  void write_static_loads(const Domain& domain, const mmc::BodyOutcome& outcome);
+  /// motion.csv (or another name): one row per time step.
+  void write_motion(const std::string& name, const Scene& scene, const MotionRecord& motion);
+  /// A part of a frame of motion/motion.pvd, which has one file per part and time; the field `body`
+  /// is its number. The deformed body with the density of its design:
+  void add_motion_frame(const std::string& body, const DesignedSurface& surface, double time,
+                        int part);
+  /// path.csv: one row per equilibrium.
+  void write_path(const PathRecord& path);
+  /// The deformed mid-surface of a body without a design, with displacements and strain energy per
+  /// area, a beam with its elastic strain (`heating`: see deformed_surface()):
+  void add_surface_frame(const fem::Body& body, const fem::State& x, const Pose& pose, double time,
+                         int part, double heating = 1);
+  /// A rigid body, by its corners:
+  void add_rigid_frame(const std::string& body, std::span<const Vec2> corners, double time,
+                       int part);
+
+  /// plots/start_<body>.svg: the layout before the first iteration.
+  void write_start(const mmc::BodyProblem& problem);
+  /// Outlines, pictures and tables of a final design.
+  void write_design(const mmc::BodyProblem& problem, const mmc::BodyOutcome& outcome);
+  /// cycles.csv, anew: one row per cycle and body.
+  void write_cycles(std::span<const mmc::CycleVerdict> cycles);
+  void write_text(const std::string& name, const std::string& text);
+
+  /// Rows of the history per body, for plots.
+  struct History {
+    std::string body;
+    std::vector<double> row, compliance, volume, kkt, sharp_row, sharp_compliance;
+  };
+  const std::vector<History>& histories() const { return histories_; }
+
+  /// Outlines of the designs as SVG: where they start, and what came out so far.
+  struct DesignPictures {
+    std::string body, start, result;
+  };
+  const std::vector<DesignPictures>& design_pictures() const { return pictures_; }
+
+  /// Frames of the first body in space, for a picture: all up to a few, else some evenly spread.
+  std::vector<io::SurfaceFrame> shapes(size_t most) const;
+
+ private:
+  History& history_of(const std::string& body);
+  DesignPictures& pictures_of(const std::string& body);
+  void write_part(const std::string& body, const io::QuadMesh& mesh, std::vector<io::Field> cells,
+                  std::span<const io::Field> points, double time, int part);
+  void add_events(const mmc::IterationReport& report);
+
+  std::string path_;
+  const Scene& scene_;
+  std::unique_ptr<io::CsvWriter> history_, events_;  // events.csv: from the first one on
+  io::Series iterations_, components_, motion_;
+  std::vector<History> histories_;
+  std::vector<DesignPictures> pictures_;
+  int rows_ = 0, motion_frames_ = 0;
+  std::vector<io::SurfaceFrame> shapes_;
+  double output_seconds_ = 0;
+};
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,94 @@
+#include "cases/run/run_warnings.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cases/build/build.h"
+#include "io/files.h"
+
+namespace flexmorph::cases {
+namespace {
+
+using Words = std::vector<std::string>;
+
+constexpr double kLargestDefect = 0.1;  // of the balance of energy before a motion is warned of
+// Compliance of the blurred design over that of the sharp one. Where the start of a design is
+// analysed it is about 2; 10 is no design any more but heavy, soft edges.
+constexpr double kHangingMass = 10;
+
+/// Has the optimizer left a design that is not feasible? (One that is analysed as it starts was not
+/// asked.)
+bool is_too_heavy(const mmc::BodyProblem& p, const mmc::BodyOutcome& o) {
+  return o.iterations > 0 && !p.shares_mass && p.goal.minimize == mmc::Goal::Minimize::compliance &&
+         o.volume > p.goal.max_volume + 1e-3;
+}
+
+/// Is the balance of energy so bad that nobody should trust the motion?
+bool misses_energy(const Scene& scene, const MotionRecord& motion) {
+  double worst = 0;
+  for (const double defect : motion.defect) worst = std::max(worst, std::abs(defect));
+  return motion.result.energy_defect > kLargestDefect && worst > stress_round_off(scene);
+}
+
+/// On constraints that are not linear generalized_alpha is stable for rho_inf < 1 - c h only, with
+/// c of the rates of the mechanism (Arnold & Brüls 2007 assume rho_inf < 1): a free slider-crank
+/// with h = 1e-3 is lost at 0.99, after 8 s.
+bool damps_no_multipliers(const Scene& scene) {
+  return scene.is_mechanism() && scene.time.integrator == "generalized_alpha" &&
+         scene.time.rho_inf > 0.98;
+}
+
+void add_designs(const RunReport& report, Words& out) {
+  for (const mmc::BodyOutcome& o : report.outcomes) {
+    if (!o.sharp.connectivity.connected)
+      out.push_back("body '" + o.body +
+                    "': no piece of material joins what is held and what is loaded");
+    if (o.clean_up && !o.clean_up->reached())
+      out.push_back("body '" + o.body + "': the smallest feature is " +
+                    io::to_text(o.clean_up->after, 4) + " m where " +
+                    io::to_text(o.clean_up->wanted, 4) + " m was wanted");
+    if (o.sharp.compliance > 1.15 * o.compliance)
+      out.push_back("body '" + o.body +
+                    "': the sharp compliance is far above the blurred one: gaps are bridged");
+    if (o.compliance > kHangingMass * o.sharp.compliance)
+      out.push_back("body '" + o.body + "': the compliance is " +
+                    io::to_text(o.compliance / o.sharp.compliance, 2) +
+                    " times the sharp one: edges of material hang on void of hardly any stiffness; "
+                    "a larger design.alpha helps");
+  }
+  for (const mmc::BodyProblem& p : report.problems)
+    for (const mmc::BodyOutcome& o : report.outcomes)
+      if (o.body == p.body && is_too_heavy(p, o))
+        out.push_back("body '" + o.body + "': the volume " + io::to_text(o.volume, 4) +
+                      " is above what is allowed, " + io::to_text(p.goal.max_volume, 4) +
+                      ": no design that was found is as light");
+}
+
+void add_motion(const Scene& scene, const MotionRecord& motion, Words& out) {
+  for (const fem::Conditioning& c : motion.result.near_singular) out.push_back(fem::describe(c));
+  if (damps_no_multipliers(scene))
+    out.push_back("rho_inf = " + io::to_text(scene.time.rho_inf, 3) +
+                  " hardly damps multipliers: joint forces may alternate from step to step and "
+                  "grow; time.rho_inf = 0.9 damps them");
+  if (const fem::EnergyGain& gain = motion.result.energy_gain; gain.time > 0)
+    out.push_back("no drive brings energy in, but the energy of the motion has grown by " +
+                  io::to_text(100 * gain.part, 3) + " % of the largest, by more than 10 % from " +
+                  "t = " + io::to_text(gain.time, 4) +
+                  " s on: do not trust what comes after; a smaller time.step helps, "
+                  "time.integrator = \"energy_momentum\" keeps the energy");
+  else if (misses_energy(scene, motion))
+    out.push_back("the balance of energy is missed by " +
+                  io::to_text(100 * motion.result.energy_defect, 3) +
+                  " % of the largest energy: do not trust this motion; a smaller time.step helps");
+}
+
+}  // namespace
+
+Words warnings_of(const Scene& scene, const RunReport& report) {
+  Words out;
+  add_designs(report, out);
+  if (report.motion) add_motion(scene, *report.motion, out);
+  return out;
+}
+
+}  // namespace flexmorph::cases

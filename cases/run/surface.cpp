@@ -1,0 +1,151 @@
+#include "cases/run/surface.h"
+
+#include <cmath>
+
+#include "fem/dynamics/carrier.h"
+#include "fem/elements/ancf_beam.h"
+
+namespace flexmorph::cases {
+namespace {
+
+constexpr int kFine = 4;       // quads along an edge of an element
+constexpr int kFineAlong = 8;  // of a beam, whose elements are few
+
+/// Where the elements of a body meet, in material coordinates, and into how many quads they are cut
+/// in both directions. Elements are numbered across first.
+struct Cuts {
+  explicit Cuts(const fem::Body& body) {
+    if (const auto* beam = dynamic_cast<const fem::AncfBeam*>(body.element.get())) {
+      for (const fem::NodeVectors& node : beam->nodes()) m.push_back(node.material.x());
+      n = {-0.5 * beam->height(), 0.5 * beam->height()};
+      fine_m = kFineAlong;
+      return;
+    }
+    const fem::LineGrid& grid = fem::grid_of(body);
+    for (int i = 0; i <= grid.n_m(); ++i) m.push_back(grid.line_m(i).value);
+    for (int j = 0; j <= grid.n_n(); ++j) n.push_back(grid.line_n(j).value);
+  }
+  std::vector<double> m, n;
+  int fine_m = kFine, fine_n = kFine;
+
+  size_t element(size_t i, size_t j) const { return i * (n.size() - 1) + j; }
+};
+
+/// Material coordinates of the points along one direction.
+std::vector<double> fine_lines(const std::vector<double>& lines, int fine) {
+  std::vector<double> out;
+  for (size_t i = 0; i + 1 < lines.size(); ++i)
+    for (int k = 0; k < fine; ++k)
+      out.push_back(lines[i] + (lines[i + 1] - lines[i]) * k / static_cast<double>(fine));
+  out.push_back(lines.back());
+  return out;
+}
+
+/// Strain energy of every element over its area [J/m^2].
+std::vector<double> energies(const fem::Body& body, const Cuts& cuts, const fem::State& x) {
+  std::vector<double> out;
+  fem::Local local;
+  const fem::Element& element = *body.element;
+  const int dim = element.dim();
+  for (int e = 0; e < element.n_elements(); ++e) {
+    const auto vectors = element.vectors(e);
+    const auto gather = [&](const VectorXd& all, fem::LocalRows& rows) {
+      rows.resize(element.n_shapes(), dim);
+      for (int k = 0; k < element.n_shapes(); ++k)
+        rows.row(k) = all.segment(body.first_dof + dim * vectors[static_cast<size_t>(k)], dim);
+    };
+    gather(x.q, local.q);
+    gather(x.v, local.v);
+    gather(x.a, local.a);
+    double energy = 0;
+    for (const auto& term : body.terms) energy += term->strain_energy(e, local);
+    const size_t n = cuts.n.size() - 1, i = static_cast<size_t>(e) / n,
+                 j = static_cast<size_t>(e) % n;
+    out.push_back(energy / (cuts.m[i + 1] - cuts.m[i]) / (cuts.n[j + 1] - cuts.n[j]));
+  }
+  return out;
+}
+
+/// Appends the elastic Green strain (FᵀF/s² - 1)/2 of a body in the plane at a material point.
+void add_strain(const fem::Body& body, const fem::State& x, const Vec2& material, double s,
+                std::vector<double>& out) {
+  fem::ShapeTable t;
+  const int e = body.element->locate(material, fem::Tabulate::gradient, t);
+  const auto vectors = body.element->vectors(e);
+  Eigen::Matrix2d F = Eigen::Matrix2d::Zero();
+  for (size_t k = 0; k < vectors.size(); ++k) {
+    const Vec2 q = x.q.segment<2>(body.first_dof + 2 * vectors[k]) / s;
+    F.col(0) += t.N_m(0, static_cast<Eigen::Index>(k)) * q;
+    F.col(1) += t.N_n(0, static_cast<Eigen::Index>(k)) * q;
+  }
+  const Eigen::Matrix2d strain = 0.5 * (F.transpose() * F - Eigen::Matrix2d::Identity());
+  for (const double each : {strain(0, 0), strain(1, 1), strain(0, 1)}) out.push_back(each);
+}
+
+}  // namespace
+
+Surface deformed_surface(const fem::Body& body, const fem::State& x, const Pose& pose,
+                         double heating) {
+  const Cuts cuts(body);
+  const std::vector<double> along = fine_lines(cuts.m, cuts.fine_m),
+                            across = fine_lines(cuts.n, cuts.fine_n);
+  const std::vector<double> energy = energies(body, cuts, x);
+  const int rows = static_cast<int>(across.size());
+  const bool is_beam = dynamic_cast<const fem::AncfBeam*>(body.element.get()) != nullptr;
+  const double stretch =
+      body.heat ? 1 + body.heat->expansion * heating * body.heat->temperature(x.t).value : 1;
+  Surface out;
+  const int dim = body.element->dim();
+  out.mesh.dimension = dim;
+  out.across = rows - 1;
+  for (size_t i = 0; i < along.size(); ++i)
+    for (size_t j = 0; j < across.size(); ++j) {
+      const Vec2 material(along[i], across[j]);
+      const Vec3 r = fem::point_position(body, x, material), u = r - pose.place(material);
+      for (int c = 0; c < dim; ++c) {
+        out.mesh.points.push_back(r[c]);
+        out.displacement.push_back(u[c]);
+      }
+      if (i + 1 == along.size() || j + 1 == across.size()) continue;
+      const int a = static_cast<int>(i) * rows + static_cast<int>(j);
+      out.mesh.quads.push_back({a, a + rows, a + rows + 1, a + 1});
+      if (is_beam)
+        add_strain(body, x, 0.5 * Vec2(along[i] + along[i + 1], across[j] + across[j + 1]), stretch,
+                   out.strain);
+      out.energy.push_back(energy[cuts.element(i / static_cast<size_t>(cuts.fine_m),
+                                               j / static_cast<size_t>(cuts.fine_n))]);
+    }
+  return out;
+}
+
+DesignedSurface designed_surface(const fem::Body& body, const fem::State& x, const Grid& grid,
+                                 const VectorXd& density) {
+  const double root = fem::grid_of(body).line_m(0).value;
+  const int first = std::max(0, static_cast<int>(std::ceil((root - grid.x0) / grid.dx() - 1e-6)));
+  DesignedSurface out;
+  const int ny = grid.ny;
+  for (int i = first; i <= grid.nx; ++i)
+    for (int j = 0; j <= ny; ++j) {
+      const Vec2 p = fem::point_motion(body, x, grid.node_position(i, j)).position;
+      out.mesh.points.push_back(p.x());
+      out.mesh.points.push_back(p.y());
+      if (i == grid.nx || j == ny) continue;
+      const int a = (i - first) * (ny + 1) + j;
+      out.mesh.quads.push_back({a, a + ny + 1, a + ny + 2, a + 1});
+      out.density.push_back(density[grid.cell(i, j)]);
+    }
+  return out;
+}
+
+std::vector<Vec2> drawn_corners(const RigidBody& body, const fem::Model& model,
+                                const fem::State& x) {
+  std::vector<Vec2> out;
+  if (body.size.isZero()) return out;
+  const fem::FrameMotion frame = fem::frame_of(model.body(body.name), x);
+  const Eigen::Matrix2d axes = fem::rotation(frame.angle);
+  for (const Vec2& corner : {Vec2(-0.5, -0.5), Vec2(0.5, -0.5), Vec2(0.5, 0.5), Vec2(-0.5, 0.5)})
+    out.emplace_back(frame.origin + axes * (body.center + corner.cwiseProduct(body.size)));
+  return out;
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,128 @@
+#include "cases/stability/child.h"
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <ctime>
+#include <map>
+#include <thread>
+
+#include "geometry/base.h"
+
+namespace flexmorph::cases {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+volatile std::sig_atomic_t interrupted = 0;
+
+double since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+pid_t start(const Child& child, const ChildLimits& limits) {
+  std::vector<std::string> words = child.words;
+  words.insert(words.begin(), "flexmorph");
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  const int out = open(child.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (out < 0) throw Error::input("stability: '" + child.log + "' cannot be written");
+  const auto bytes = static_cast<rlim_t>(limits.memory);
+  const rlimit memory{bytes, bytes}, no_core{0, 0};
+  const pid_t pid = fork();
+  if (pid < 0) throw Error::numerical("stability: a process cannot be started");
+  if (pid == 0) {
+    setrlimit(RLIMIT_AS, &memory);
+    setrlimit(RLIMIT_CORE, &no_core);
+    dup2(out, STDOUT_FILENO);
+    dup2(out, STDERR_FILENO);
+    execv(child.program.c_str(), argv.data());
+    _exit(127);
+  }
+  close(out);
+  return pid;
+}
+
+/// CPU time of a process that has not been waited for [s].
+double cpu_seconds_of(pid_t pid) {
+  clockid_t clock{};
+  timespec time{};
+  if (clock_getcpuclockid(pid, &clock) != 0 || clock_gettime(clock, &time) != 0) return 0;
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+struct Running {
+  size_t place = 0;
+  Clock::time_point begin = Clock::now(), asked = {};
+  bool over_time = false, told = false;
+};
+
+Ending ending_of(int status, const rusage& usage, bool over_time) {
+  Ending out;
+  out.over_time = over_time;
+  if (WIFEXITED(status)) out.code = WEXITSTATUS(status);
+  if (WIFSIGNALED(status)) out.signal = WTERMSIG(status);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  out.seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  return out;
+}
+
+/// Asks those that are over their time to end, and ends those that do not.
+void keep_limits(std::map<pid_t, Running>& running, const ChildLimits& limits) {
+  for (auto& [pid, child] : running) {
+    if (child.over_time || child.told) {
+      if (since(child.asked) > limits.grace) kill(pid, SIGKILL);
+      continue;
+    }
+    const bool over =
+        cpu_seconds_of(pid) > limits.seconds || since(child.begin) > 10 * limits.seconds;
+    if (!over && !interrupted) continue;
+    (over ? child.over_time : child.told) = true;
+    child.asked = Clock::now();
+    kill(pid, SIGINT);
+  }
+}
+
+}  // namespace
+
+bool run_children(const std::vector<Child>& children, int jobs, const ChildLimits& limits,
+                  const std::function<void(size_t, const Ending&)>& ended) {
+  interrupted = 0;
+  struct sigaction action {};
+  action.sa_handler = [](int) { interrupted = 1; };  // no SA_RESTART: waiting ends
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  std::map<pid_t, Running> running;
+  size_t next = 0;
+  while (!running.empty() || (next < children.size() && !interrupted)) {
+    while (!interrupted && next < children.size() && running.size() < static_cast<size_t>(jobs)) {
+      const pid_t pid = start(children[next], limits);
+      running[pid].place = next++;
+    }
+    keep_limits(running, limits);
+    bool any = false;
+    for (auto at = running.begin(); at != running.end();) {
+      int status = 0;
+      rusage usage{};
+      if (wait4(at->first, &status, WNOHANG, &usage) != at->first) {
+        ++at;
+        continue;
+      }
+      const Running child = at->second;
+      at = running.erase(at);
+      any = true;
+      if (!child.told) ended(child.place, ending_of(status, usage, child.over_time));
+    }
+    if (!any) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return !interrupted;
+}
+
+}  // namespace flexmorph::cases

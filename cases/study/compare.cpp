@@ -1,0 +1,76 @@
+#include "cases/study/compare.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "cases/study/compare_report.h"
+#include "cases/run/run.h"
+#include "io/tables.h"
+#include "optim/optimizer.h"
+
+namespace flexmorph::cases {
+namespace {
+
+/// The names that are compared. @throws Error (input) for an unknown name, or one that is twice.
+std::vector<std::string> optimizers_of(const CompareOptions& options) {
+  const std::vector<std::string> known = optim::optimizer_names();
+  if (options.optimizers.empty()) return known;
+  std::string all;
+  for (const std::string& name : known) all += (all.empty() ? "" : ", ") + name;
+  for (const std::string& name : options.optimizers) {
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw Error::input("compare: --optimizers: '" + name + "' is unknown; there are " + all);
+    if (std::count(options.optimizers.begin(), options.optimizers.end(), name) > 1)
+      throw Error::input("compare: --optimizers: '" + name + "' is there twice");
+  }
+  return options.optimizers;
+}
+
+/// Plans the runs; chooses the folder where none is given.
+Comparison plan(CompareOptions& options) {
+  StudyOptions& study = options.study;
+  Comparison out;
+  out.case_name = study.case_name;
+  out.optimizers = optimizers_of(options);
+  out.starts = options.starts;
+  const Scene scene = read_scene(io::CaseFile(find_case(study.case_name), study.overrides));
+  if (scene.designs.empty())
+    throw Error::input("case '" + scene.name + "' has no [[design]]: there is nothing to compare");
+  for (const BodyDesign& d : scene.designs) out.goals.push_back(d.goal);
+  if (study.directory.empty()) study.directory = "runs/compare_" + scene.name;
+  const int budget = options.budget > 0 ? options.budget : scene.optimizer.max_iterations + 1;
+  const std::string solves = std::to_string(budget);
+  // Pictures of every iteration of every run are more than anybody looks at; --set output.vtk=true
+  // brings them back.
+  study.overrides.insert(study.overrides.begin(), "output.vtk=false");
+  for (const std::string& optimizer : out.optimizers)
+    for (int start = 1; start <= options.starts; ++start) {
+      Variant v{optimizer + "_" + std::to_string(start),
+                {"optimizer.name=" + optimizer, "optimizer.max_iterations=" + solves,
+                 "optimizer.max_solves=" + solves}};
+      for (size_t d = 0; start > 1 && d < scene.designs.size(); ++d) {
+        const std::string key = "design." + std::to_string(d);
+        v.overrides.push_back(key + ".jitter=" + io::to_text(options.jitter));
+        v.overrides.push_back(key + ".seed=" + std::to_string(start - 1));
+      }
+      out.variants.push_back(std::move(v));
+    }
+  return out;
+}
+
+}  // namespace
+
+int compare_case(const CompareOptions& wanted) {
+  CompareOptions options = wanted;
+  const Comparison comparison = plan(options);
+  const std::string& directory = options.study.directory;
+  check_variants(options.study, comparison.variants);
+  const StudyOutcome outcome = run_variants(
+      options.study, comparison.variants,
+      [&](std::span<const VariantResult> runs) { write_comparison(comparison, runs, directory); });
+  std::fputs(io::aligned_table(summary_of(comparison, outcome.results)).c_str(), stdout);
+  std::printf("%s/compare.md, .csv, .svg\n", directory.c_str());
+  return outcome.exit_code;
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,259 @@
+#include "cases/study/compare_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cases/study/statistics.h"
+#include "io/files.h"
+#include "io/tables.h"
+
+namespace flexmorph::cases {
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+/// The figure of a run; of several bodies the geometric mean, which no body's size dominates.
+double figure_of(const VariantResult& run, const Comparison& plan) {
+  double logs = 0;
+  for (size_t b = 0; b < run.bodies.size(); ++b)
+    logs += std::log(cases::figure_of(run.bodies[b], plan.goals.at(b)));
+  return run.bodies.empty() ? std::nan("")
+                            : std::exp(logs / static_cast<double>(run.bodies.size()));
+}
+
+bool connected(const VariantResult& run) {
+  return std::all_of(run.bodies.begin(), run.bodies.end(),
+                     [](const BodyResult& b) { return b.connected; });
+}
+
+template <class Get>
+std::vector<double> values_of(const Comparison& plan, std::span<const VariantResult> runs,
+                              size_t optimizer, const Get& get) {
+  std::vector<double> out;
+  for (const auto& [run, start] : runs_of(plan, runs, optimizer))
+    out.push_back(static_cast<double>(get(*run)));
+  return out;
+}
+
+/// Numbers of a member of the first body.
+auto of_first(auto member) {
+  return [member](const VariantResult& run) { return run.bodies.front().*member; };
+}
+
+/// In how many starts each optimizer has the best figure.
+std::vector<int> wins(const Comparison& plan, std::span<const VariantResult> runs) {
+  std::vector<int> out(plan.optimizers.size(), 0);
+  for (size_t s = 0; s < static_cast<size_t>(plan.starts); ++s) {
+    double best = INFINITY;
+    std::optional<size_t> winner;
+    for (size_t o = 0; o < out.size(); ++o) {
+      const VariantResult& run = runs[o * static_cast<size_t>(plan.starts) + s];
+      const double figure = run.done() ? figure_of(run, plan) : std::nan("");
+      if (!(figure < best)) continue;
+      best = figure;
+      winner = o;
+    }
+    if (winner) ++out[*winner];
+  }
+  return out;
+}
+
+void write_csv(const Comparison& plan, std::span<const VariantResult> runs,
+               const std::string& path) {
+  const std::vector<std::string> columns = {"run",
+                                            "optimizer",
+                                            "start",
+                                            "status",
+                                            "body",
+                                            "figure",
+                                            "compliance",
+                                            "volume",
+                                            "sharp_compliance",
+                                            "sharp_volume",
+                                            "violation",
+                                            "kkt",
+                                            "connected",
+                                            "min_feature",
+                                            "iterations",
+                                            "state_solves",
+                                            "gradients",
+                                            "factorizations",
+                                            "seconds_cpu",
+                                            "seconds_wall",
+                                            "seconds_design",
+                                            "seconds_optimizer",
+                                            "peaks",
+                                            "disconnected",
+                                            "stop"};
+  io::CsvWriter csv(path, columns);
+  const auto starts = static_cast<size_t>(plan.starts);
+  for (size_t k = 0; k < runs.size(); ++k) {
+    const VariantResult& run = runs[k];
+    const std::vector<io::Cell> head = {run.name, plan.optimizers[k / starts],
+                                        static_cast<int>(k % starts) + 1, run.status};
+    for (size_t b = 0; b < run.bodies.size(); ++b) {
+      const BodyResult& r = run.bodies[b];
+      std::vector<io::Cell> row = head;
+      // One solve gives values and gradients: there are as many of these.
+      for (const io::Cell& cell : std::initializer_list<io::Cell>{
+               r.body,
+               cases::figure_of(r, plan.goals.at(b)),
+               r.compliance,
+               r.volume,
+               r.sharp_compliance,
+               r.sharp_volume,
+               violation_of(r, plan.goals.at(b)),
+               r.kkt,
+               r.connected,
+               r.min_feature ? io::Cell(*r.min_feature) : io::Cell(),
+               r.iterations,
+               r.solves,
+               r.solves,
+               r.factorizations,
+               run.seconds_cpu,
+               run.seconds_wall,
+               r.history_seconds.empty() ? 0.0 : r.history_seconds.back(),
+               r.seconds_optimizer,
+               r.peaks,
+               r.disconnected,
+               r.stop})
+        row.push_back(cell);
+      csv.row(row);
+    }
+    if (!run.bodies.empty()) continue;
+    std::vector<io::Cell> row = head;
+    row.resize(columns.size());
+    row.back() = run.message;
+    csv.row(row);
+  }
+}
+
+Rows rows_of(const Comparison& plan, std::span<const VariantResult> runs) {
+  Rows rows = {{"run", "status", "figure", "sharp compliance", "sharp volume", "violation", "kkt",
+                "solves", "CPU s", "peaks", "stopped"}};
+  for (const VariantResult& run : runs) {
+    if (run.bodies.empty()) {
+      rows.push_back({run.name, run.status, "", "", "", "", "", "", "", "", run.message});
+      continue;
+    }
+    const BodyResult& b = run.bodies.front();
+    rows.push_back({run.name, run.status, io::to_text(figure_of(run, plan), 5),
+                    io::to_text(b.sharp_compliance, 5), io::to_text(b.sharp_volume, 5),
+                    io::to_text(violation_of(b, plan.goals.front()), 2), io::to_text(b.kkt, 2),
+                    io::to_text(b.solves), io::to_text(run.seconds_cpu, 3), io::to_text(b.peaks),
+                    b.stop});
+  }
+  return rows;
+}
+
+/// One row of the summary.
+std::vector<std::string> summary_row(const Comparison& plan, std::span<const VariantResult> runs,
+                                     size_t o, const std::vector<double>& best, int won) {
+  const auto done = runs_of(plan, runs, o);
+  const std::string starts = std::string("/").append(io::to_text(plan.starts));
+  std::vector<std::string> row = {plan.optimizers[o],
+                                  io::to_text(static_cast<int>(done.size())) + starts};
+  if (done.empty()) return row;
+  const auto middle = [&](auto member, int digits) {
+    return io::to_text(median(values_of(plan, runs, o, of_first(member))), digits);
+  };
+  const auto figures =
+      values_of(plan, runs, o, [&](const VariantResult& r) { return figure_of(r, plan); });
+  const auto [least, most] = std::minmax_element(figures.begin(), figures.end());
+  const auto joined = values_of(plan, runs, o, connected);
+  const int whole = static_cast<int>(std::count(joined.begin(), joined.end(), 1.0));
+  const double share = median(values_of(plan, runs, o, [](const VariantResult& r) {
+    const BodyResult& b = r.bodies.front();
+    return b.history_seconds.empty() ? 0.0 : b.seconds_optimizer / b.history_seconds.back();
+  }));
+  double feature = INFINITY;
+  for (const auto& [run, start] : done)
+    for (const BodyResult& b : run->bodies)
+      feature = std::min(feature, b.min_feature.value_or(INFINITY));
+  const double over = 100 * (median(figures) / median(best) - 1);
+  const bool leads = over <= 0;
+  const auto cpu = values_of(plan, runs, o, [](const VariantResult& r) { return r.seconds_cpu; });
+  const std::vector<std::string> rest = {io::to_text(median(figures), 5),
+                                         io::to_text(*least, 5) + " .. " + io::to_text(*most, 5),
+                                         io::to_text(over, 2) + " %",
+                                         leads                       ? "best"
+                                         : told_apart(figures, best) ? "yes"
+                                                                     : "no",
+                                         io::to_text(won) + starts,
+                                         middle(&BodyResult::sharp_compliance, 5),
+                                         middle(&BodyResult::compliance, 5),
+                                         middle(&BodyResult::kkt, 2),
+                                         middle(&BodyResult::solves, 5),
+                                         middle(&BodyResult::factorizations, 5),
+                                         io::to_text(median(cpu), 3),
+                                         io::to_text(100 * share, 2) + " %",
+                                         middle(&BodyResult::peaks, 3),
+                                         io::to_text(whole) + "/" + io::to_text(int(done.size())),
+                                         std::isfinite(feature) ? io::to_text(feature, 3) : "-"};
+  row.insert(row.end(), rest.begin(), rest.end());
+  return row;
+}
+
+}  // namespace
+
+std::vector<std::pair<const VariantResult*, int>> runs_of(const Comparison& plan,
+                                                          std::span<const VariantResult> runs,
+                                                          size_t optimizer) {
+  std::vector<std::pair<const VariantResult*, int>> out;
+  for (int s = 0; s < plan.starts; ++s) {
+    const VariantResult& run =
+        runs[optimizer * static_cast<size_t>(plan.starts) + static_cast<size_t>(s)];
+    if (run.done() && !run.bodies.empty()) out.emplace_back(&run, s);
+  }
+  return out;
+}
+
+double figure_of(const BodyResult& result, const mmc::Goal& goal) {
+  if (goal.minimize == mmc::Goal::Minimize::volume) return result.sharp_volume;
+  return result.sharp_compliance * result.sharp_volume / goal.max_volume;
+}
+
+double violation_of(const BodyResult& result, const mmc::Goal& goal) {
+  const bool volume = goal.minimize == mmc::Goal::Minimize::volume;
+  const double beyond =
+      volume ? result.compliance / goal.max_compliance - 1 : result.volume / goal.max_volume - 1;
+  return beyond < 0 ? 0 : beyond;
+}
+
+std::vector<std::vector<std::string>> summary_of(const Comparison& plan,
+                                                 std::span<const VariantResult> runs) {
+  Rows rows = {{"optimizer", "done", "figure: median", "range", "over best", "told apart",
+                "best in", "sharp compliance", "compliance", "kkt", "solves", "factorizations",
+                "CPU s", "optimizer's share", "peaks", "connected", "smallest feature"}};
+  std::vector<double> best;
+  for (size_t o = 0; o < plan.optimizers.size(); ++o) {
+    const auto figures =
+        values_of(plan, runs, o, [&](const VariantResult& r) { return figure_of(r, plan); });
+    if (!figures.empty() && (best.empty() || median(figures) < median(best))) best = figures;
+  }
+  const std::vector<int> won = wins(plan, runs);
+  for (size_t o = 0; o < plan.optimizers.size(); ++o) {
+    rows.push_back(summary_row(plan, runs, o, best, won[o]));
+    rows.back().resize(rows.front().size());
+  }
+  return rows;
+}
+
+void write_comparison(const Comparison& plan, std::span<const VariantResult> runs,
+                      const std::string& directory) {
+  const std::string stem = directory + "/compare";
+  write_csv(plan, runs, stem + ".csv");
+  io::write_file(
+      stem + ".md",
+      "# " + plan.case_name + "\n\n" + io::markdown_table(summary_of(plan, runs)) +
+          "\nMedians over the starts. Figure: sharp compliance x sharp volume / volume allowed "
+          "(the "
+          "sharp volume where that is minimized). Told apart: neither median lies within the range "
+          "of the other; where it says no, the starts spread too far for a verdict. One state "
+          "solve gives values and gradients. Peaks stand out by more than 2 % of the best "
+          "compliance so far.\n\n" +
+          io::markdown_table(rows_of(plan, runs)));
+  io::write_file(stem + ".svg", comparison_svg(plan, runs));
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,198 @@
+#include "cases/study/orders.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "io/files.h"
+
+namespace flexmorph::cases {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kLeastOrder = 0.05, kMostOrder = 20;
+constexpr double kLowOrder = 0.3;             // of what may still be bounded
+constexpr double kFalls = 0.9, kGrows = 1.5;  // ratios of neighbouring differences per ratio of h
+
+/// (h₁ᵖ - h₂ᵖ)/(h₂ᵖ - h₃ᵖ), which grows with p.
+double ratio_at(double p, double h1, double h2, double h3) {
+  const double a = std::pow(h1 / h2, p), b = std::pow(h3 / h2, p);
+  return (a - 1) / (1 - b);
+}
+
+/// The finest triples with an order, from the finest one on.
+std::vector<size_t> finest_orders(const std::vector<double>& orders) {
+  std::vector<size_t> out;
+  for (size_t i = orders.size(); i-- > 0;)
+    if (std::isfinite(orders[i])) out.push_back(i);
+  return out;
+}
+
+std::string share(double difference, double scale) { return io::to_text(difference / scale, 2); }
+
+/// Differences per ratio of h (>= 0), coarse to fine.
+std::vector<double> slopes_of(std::span<const LevelValue> levels) {
+  std::vector<double> out;
+  for (size_t i = 0; i + 1 < levels.size(); ++i)
+    out.push_back(std::abs(levels[i + 1].value - levels[i].value) /
+                  std::log(levels[i].h / levels[i + 1].h));
+  return out;
+}
+
+double range_of_last(std::span<const LevelValue> levels, size_t count) {
+  const auto last = levels.last(std::min(count, levels.size()));
+  const auto [low, high] = std::minmax_element(
+      last.begin(), last.end(),
+      [](const LevelValue& a, const LevelValue& b) { return a.value < b.value; });
+  return high->value - low->value;
+}
+
+/// How far the limit may lie from the finest of levels without an order.
+double reach(std::span<const LevelValue> levels, double scale) {
+  const size_t n = levels.size();
+  if (n < 3) return kInfinite;
+  const double last = levels[n - 1].value - levels[n - 2].value;
+  const double before = levels[n - 2].value - levels[n - 3].value;
+  const std::vector<double> slopes = slopes_of(levels);
+  const double slope = slopes[n - 2], slope_before = slopes[n - 3];
+  const bool rests = std::max(std::abs(last), std::abs(before)) <= kFloor * scale;
+  if (!rests && slope > kGrows * *std::max_element(slopes.begin(), slopes.end() - 1))
+    return kInfinite;
+  if (last * before < 0 && slope <= slope_before) return kSwing * range_of_last(levels, 3);
+  if (last * before < 0 || (!rests && slope > kGrows * slope_before))
+    return kSwing * range_of_last(levels, 4);
+  if (!rests && slope >= kFalls * slope_before)
+    return std::max(slope, slope_before) * std::log(kFarthest);
+  // What is left if it goes on with first order, or with the lower one that was seen.
+  const double ratio = levels[n - 2].h / levels[n - 1].h;
+  const double seen = order_of(levels[n - 3], levels[n - 2], levels[n - 1], 0);
+  const double order = std::isfinite(seen) ? std::clamp(seen, kLowOrder, 1.0) : 1;
+  return std::max(std::abs(last), std::abs(last) / (std::pow(ratio, order) - 1));
+}
+
+/// Without an order: the finest level, and how far its last changes went.
+void bound(std::span<const LevelValue> levels, double scale, Limit& out) {
+  out.value = levels.back().value;
+  out.uncertainty = reach(levels, scale);
+  out.sentence +=
+      std::isfinite(out.uncertainty)
+          ? "; no level is recommended by its order, the finest stands with an uncertainty of " +
+                share(out.uncertainty, scale)
+          : "; its differences grow, so nothing bounds the error";
+}
+
+void judge_fast(std::span<const LevelValue> levels, double scale, Limit& out) {
+  const size_t n = levels.size();
+  out.order = kNone;
+  out.value = levels[n - 1].value;
+  const double last = std::abs(levels[n - 1].value - levels[n - 2].value);
+  double largest = 0;
+  for (size_t i = 0; i + 1 < n; ++i)
+    largest = std::max(largest, std::abs(levels[i].value - levels[n - 1].value));
+  out.converged = last <= std::max(0.5 * largest, kFloor * scale);
+  out.uncertainty = out.converged ? last : kInfinite;
+  out.sentence =
+      out.converged
+          ? "the finest level stands for the limit, its last change is " + share(last, scale)
+          : "the last change, " + share(last, scale) + ", is as large as those before";
+}
+
+void judge_orders(std::span<const LevelValue> levels, const std::optional<Theory>& theory,
+                  double scale, Limit& out) {
+  const std::vector<size_t> finest = finest_orders(out.orders);
+  out.order = finest.empty() ? kNone : out.orders[finest[0]];
+  if (finest.size() < 2 || finest[0] != finest[1] + 1) {
+    out.sentence = finest.empty() ? "no triple of levels has an order"
+                                  : "one triple of levels has an order (" +
+                                        io::to_text(out.order, 3) + "): nothing checks it";
+    return bound(levels, scale, out);
+  }
+  const double a = out.orders[finest[1]], b = out.order;
+  if (std::abs(a - b) > kOrderSpread) {
+    out.sentence = "orders of the two finest triples disagree: " + io::to_text(a, 3) + " and " +
+                   io::to_text(b, 3);
+    return bound(levels, scale, out);
+  }
+  const bool known = theory && theory->has_order();
+  if (known && std::abs(b - theory->order) > kTheorySpread) {
+    out.sentence = "the order " + io::to_text(b, 3) + " is not that of theory";
+    return bound(levels, scale, out);
+  }
+  if (!known && b < 0.5) {
+    out.sentence = "the order " + io::to_text(b, 3) + " is too low to extrapolate";
+    return bound(levels, scale, out);
+  }
+  // The finest triple with an order; levels finer than that are at the floor.
+  const std::span<const LevelValue> fine = levels.subspan(finest[0], 3);
+  const std::span<const LevelValue> before = levels.subspan(finest[1], 3);
+  out.converged = true;
+  out.value = extrapolated(fine[1], fine[2], b);
+  const double other = extrapolated(before[1], before[2], a);
+  out.uncertainty = std::min(std::abs(out.value - other), std::abs(out.value - fine[2].value));
+  out.sentence = "order " + io::to_text(b, 3) +
+                 (known ? " (theory " + io::to_text(theory->order) + " for " + theory->source + ")"
+                        : " (no theory; triples agree)");
+}
+
+}  // namespace
+
+bool Limit::bounded() const { return std::isfinite(value) && std::isfinite(uncertainty); }
+
+double order_of(const LevelValue& coarse, const LevelValue& middle, const LevelValue& fine,
+                double floor) {
+  const double d1 = coarse.value - middle.value, d2 = middle.value - fine.value;
+  if (!(std::abs(d1) > floor && std::abs(d2) > floor) || d1 * d2 < 0) return kNone;
+  const double wanted = d1 / d2;
+  double low = kLeastOrder, high = kMostOrder;
+  const auto ratio = [&](double p) { return ratio_at(p, coarse.h, middle.h, fine.h); };
+  if (!(ratio(low) < wanted && wanted < ratio(high))) return kNone;
+  for (int i = 0; i < 100; ++i) {
+    const double middle_order = 0.5 * (low + high);
+    (ratio(middle_order) < wanted ? low : high) = middle_order;
+  }
+  return 0.5 * (low + high);
+}
+
+double extrapolated(const LevelValue& coarse, const LevelValue& fine, double order) {
+  const double factor = 1 / (std::pow(coarse.h / fine.h, order) - 1);
+  return fine.value + (fine.value - coarse.value) * factor;
+}
+
+Limit limit_of(std::span<const LevelValue> levels, Approach approach,
+               const std::optional<Theory>& theory, double scale) {
+  Limit out;
+  out.order = out.value = kNone;
+  out.uncertainty = kInfinite;
+  const size_t n = levels.size();
+  if (n == 0) {
+    out.sentence = "no level was measured";
+    return out;
+  }
+  out.value = levels[n - 1].value;
+  double largest = 0;
+  for (size_t i = 0; i + 1 < n; ++i)
+    largest = std::max(largest, std::abs(levels[i + 1].value - levels[i].value));
+  for (size_t i = 0; i + 2 < n; ++i)
+    out.orders.push_back(order_of(levels[i], levels[i + 1], levels[i + 2], kFloor * scale));
+  if (n < 3) {
+    out.sentence = "fewer than three levels";
+  } else if (largest <= kFloor * scale) {
+    out.converged = true;
+    out.uncertainty = largest;
+    out.sentence = "makes no difference above " + share(largest, scale);
+  } else if (approach == Approach::fast) {
+    judge_fast(levels, scale, out);
+  } else if (theory && theory->has_no_limit()) {
+    out.sentence = "no limit: " + theory->source;
+  } else {
+    judge_orders(levels, theory, scale, out);
+    if (!out.converged && theory)
+      out.sentence +=
+          "; " + (theory->has_order() ? "order " + io::to_text(theory->order) + " is for " : "") +
+          theory->source;
+  }
+  return out;
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,141 @@
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "cases/study/statistics.h"
+#include "cases/study/study.h"
+#include "io/tables.h"
+
+namespace flexmorph::cases {
+namespace {
+
+double number(const nlohmann::json& object, const char* key) {
+  return object.contains(key) && object[key].is_number() ? object[key].get<double>() : std::nan("");
+}
+
+BodyResult read_body(const nlohmann::json& r) {
+  BodyResult out;
+  out.body = r.value("body", "");
+  out.stop = r.value("stop", "");
+  out.compliance = number(r, "compliance");
+  out.volume = number(r, "volume");
+  out.sharp_compliance = number(r, "sharp_compliance");
+  out.sharp_volume = number(r, "sharp_volume");
+  out.uniform_compliance = number(r, "uniform_compliance");
+  out.kkt = number(r, "kkt");
+  out.connected = r.value("connected", false);
+  if (r.contains("min_feature") && r["min_feature"].is_number())
+    out.min_feature = r["min_feature"].get<double>();
+  out.iterations = r.value("iterations", 0);
+  out.solves = r.value("state_solves", 0);
+  out.factorizations = r.value("factorizations", 0);
+  out.components = r.value("components", 0);
+  return out;
+}
+
+/// CPU seconds of every row: all evaluations since the row before.
+std::vector<double> row_seconds(const io::CsvTable& table) {
+  std::vector<double> seconds(table.rows.size(), 0);
+  for (const std::string& name : table.columns) {
+    if (!name.starts_with("seconds_")) continue;
+    const std::vector<double> part = table.numbers(name);
+    for (size_t i = 0; i < part.size(); ++i)
+      if (std::isfinite(part[i])) seconds[i] += part[i];
+  }
+  return seconds;
+}
+
+/// Evaluations between a row and the row before it of the same body and cycle.
+std::vector<int> row_evaluations(const io::CsvTable& table) {
+  const std::vector<std::string> body = table.texts("body"), cycle = table.texts("cycle");
+  const std::vector<double> total = table.numbers("evaluations");
+  std::vector<int> out;
+  std::map<std::string, double> before;
+  for (size_t i = 0; i < total.size(); ++i) {
+    double& last = before[body[i] + "," + cycle[i]];
+    out.push_back(static_cast<int>(std::max(0.0, total[i] - last)));
+    last = total[i];
+  }
+  return out;
+}
+
+void read_history(const std::string& path, std::vector<BodyResult>& bodies) {
+  const io::CsvTable table = io::read_csv(path);
+  const std::vector<std::string> body = table.texts("body"), cycle = table.texts("cycle"),
+                                 band = table.texts("band");
+  const std::vector<double> compliance = table.numbers("compliance"),
+                            violation = table.numbers("violation"),
+                            sharp = table.numbers("sharp_compliance"),
+                            connected = table.numbers("connected"),
+                            optimizer = table.numbers("seconds_optimizer");
+  const std::vector<int> evaluations = row_evaluations(table);
+  const std::vector<double> seconds = row_seconds(table);
+  for (BodyResult& b : bodies) {
+    std::string stage;
+    double solves = 0, clock = 0;
+    for (size_t i = 0; i < body.size(); ++i) {
+      if (body[i] != b.body) continue;
+      const std::string own = cycle[i] + "," + band[i];
+      const int place = b.history_stage.empty() ? 0 : b.history_stage.back() + (own != stage);
+      stage = own;
+      b.history_stage.push_back(place);
+      b.history_solves.push_back(solves += evaluations[i]);
+      b.history_seconds.push_back(clock += seconds[i]);
+      b.history_compliance.push_back(compliance[i]);
+      b.history_violation.push_back(violation[i]);
+      if (std::isfinite(optimizer[i])) b.seconds_optimizer += optimizer[i];
+      if (connected[i] == 0) ++b.disconnected;
+      if (!std::isfinite(sharp[i])) continue;
+      b.sharp_iteration.push_back(static_cast<double>(b.history_solves.size()));
+      b.sharp_history.push_back(sharp[i]);
+    }
+    b.peaks = peaks(b.history_compliance, b.history_stage);
+  }
+}
+
+void read_run(const std::string& text, VariantResult& out) {
+  const nlohmann::json run = nlohmann::json::parse(text, nullptr, false);
+  if (!run.is_object()) throw Error::input(out.directory + "/run.json: not as a run writes it");
+  out.status = run.value("status", "missing");
+  out.message = run.value("message", "");
+  out.seconds_cpu = number(run, "seconds_cpu");
+  out.seconds_wall = number(run, "seconds_wall");
+  out.peak_memory_bytes = number(run, "peak_memory_bytes");
+  for (const nlohmann::json& r : run.value("results", nlohmann::json::array()))
+    out.bodies.push_back(read_body(r));
+  if (!out.bodies.empty()) read_history(out.directory + "/history.csv", out.bodies);
+}
+
+}  // namespace
+
+std::string folder_of(const StudyOptions& options, const Variant& variant) {
+  return options.directory + "/" + variant.name;
+}
+
+std::string text_of(const std::string& path) {
+  std::ifstream file(path);
+  std::ostringstream out;
+  if (file) out << file.rdbuf();
+  return out.str();
+}
+
+VariantResult read_result(const StudyOptions& options, const Variant& variant) {
+  VariantResult out;
+  out.name = variant.name;
+  out.directory = folder_of(options, variant);
+  const std::string text = text_of(out.directory + "/run.json");
+  if (text.empty()) return out;
+  try {
+    read_run(text, out);
+  } catch (const std::exception& error) {  // files of somebody else, or cut off
+    out.status = "failed";
+    out.message = error.what();
+    out.bodies.clear();
+  }
+  return out;
+}
+
+}  // namespace flexmorph::cases
