@@ -12,8 +12,8 @@ case "${1--}" in
   *) scene=$1 && shift ;;
 esac
 
-announce 15
-step 1 "runs $(basename "$scene" .toml) (rotating_plate_v01; others take up to five)"
+announce 14
+step 1 "runs $(basename "$scene" .toml), if it is as long as rotating_plate_v01"
 build_targets flexmorph
 for option in "$@"; do
   case "$option" in

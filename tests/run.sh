@@ -16,17 +16,17 @@ if [ "${1-}" = --all ]; then
   shift
   preset=strict
   build="$root/build-strict"
-  announce 24
-  step 14 "runs all tests"
-  step 20 "runs shipped cases with several optimizers, from the longest on, among them"
+  announce 29
+  step 9 "runs all tests"
+  step 15 "runs shipped cases with several optimizers, from the longest on, among them"
   build_targets all benchmarks
 else
   case " $* " in
     *" -L "*) ;;
     *) set -- -LE benchmark "$@" ;;
   esac
-  announce 22
-  step 14 "runs all tests but the benchmarks (--all)"
+  announce 27
+  step 9 "runs all tests but the benchmarks (--all)"
   build_targets all
 fi
 

@@ -5,6 +5,8 @@
 #include <array>
 #include <cstddef>
 
+#include "fem/singular_values.h"
+
 namespace flexmorph::mmc {
 
 namespace {

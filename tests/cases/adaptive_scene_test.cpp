@@ -2,14 +2,14 @@
 #include <gtest/gtest.h>
 
 #include "cases/build/build.h"
+#include "tests/cases/scenes.h"
 
 namespace flexmorph::cases {
 namespace {
 
-Scene read(std::vector<std::string> changes) {
+Scene read(Changes changes) {
   changes.insert(changes.begin(), "time.step=adaptive");
-  return read_scene(
-      io::CaseFile(std::string(FLEXMORPH_CASES) + "/rotating_plate_v01.toml", changes));
+  return cases::read("rotating_plate_v01", changes);
 }
 
 TEST(AdaptiveScene, HasDefaults) {

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "cases/build/build.h"
+#include "tests/support/disturbance.h"
 
 /// Shipped cases as tests read them.
 namespace flexmorph::cases {
@@ -12,7 +14,10 @@ using Changes = std::vector<std::string>;
 
 /// A shipped case with overrides, "key=value" each. @throws Error (input).
 inline Scene read(const std::string& name, const Changes& changes = {}) {
-  return read_scene(io::CaseFile(std::string(FLEXMORPH_CASES) + "/" + name + ".toml", changes));
+  const auto path = std::filesystem::path(FLEXMORPH_CASES) / (name + ".toml");
+  Scene scene = read_scene(io::CaseFile(path.string(), changes));
+  for (Body& body : scene.bodies) body.youngs_modulus = testing::disturbed(body.youngs_modulus);
+  return scene;
 }
 
 }  // namespace flexmorph::cases

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "optim/mmc/esl_loop.h"
+#include "tests/support/disturbance.h"
 
 /// A plate small enough for tests: 60 x 10 cells, 24 components, a few loads.
 namespace flexmorph::mmc::test {
@@ -28,8 +29,8 @@ inline std::vector<Box> strip() { return {{{0.58, -0.05}, {0.6, 0.05}}}; }
 
 /// 12 x 1 boxes of two crossing components.
 inline std::vector<Component> layout(double half_thickness = 0.008) {
-  return crossing_layout(kGrid.x0, kGrid.y0, kGrid.width, kGrid.height, 12, 1, half_thickness,
-                         kScale.half_length);
+  return crossing_layout(kGrid.x0, kGrid.y0, kGrid.width, kGrid.height, 12, 1,
+                         testing::disturbed(half_thickness), kScale.half_length);
 }
 
 /// The layout with every parameter moved at random by up to `amount` of its unit: positions and

@@ -9,6 +9,7 @@
 
 #include "optim/optimizer.h"
 #include "optim/problem.h"
+#include "tests/support/disturbance.h"
 
 namespace flexmorph::optim::test {
 
@@ -31,7 +32,7 @@ class Analytic : public Problem {
   int n_constraints() const override { return n_constraints_; }
   VectorXd lower() const override { return lower_; }
   VectorXd upper() const override { return upper_; }
-  VectorXd start() const override { return start_; }
+  VectorXd start() const override { return testing::disturbed(start_); }
 
   Response evaluate(const VectorXd& x) override {
     ++evaluations;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <random>
 
+#include "tests/support/disturbance.h"
+
 namespace flexmorph::testing {
 
 using fem::MaterialLine;
@@ -145,18 +147,19 @@ Scene make_scene(const RotatingPlate& p) {
   std::vector<MaterialLine> m = even_lines(root, p.whole(), p.nx);
   if (p.speed != 0)
     m[0].drive = [root, speed = p.speed](double t) { return Motion{root - speed * t, -speed, 0}; };
+  const fem::PlaneSection section = disturbed(p.section);
   std::vector<std::unique_ptr<fem::Term>> terms;
-  terms.push_back(fem::make_inertia(p.section));
-  terms.push_back(fem::make_membrane(p.section));
+  terms.push_back(fem::make_inertia(section));
+  terms.push_back(fem::make_membrane(section));
   if (p.tip_mass > 0) terms.push_back(fem::make_point_mass(p.tip_mass, p.tip(), p.gravity));
-  if (p.gravity.size() > 0) terms.push_back(fem::make_gravity(p.section, p.gravity));
+  if (p.gravity.size() > 0) terms.push_back(fem::make_gravity(section, p.gravity));
 
   Scene scene;
   fem::Body& body = scene.model.add_body(
       "plate",
       std::make_unique<AncfPlate>(2, p.shapes, std::move(m),
                                   even_lines(-p.width() / 2, p.width() / 2, p.ny)),
-      p.section, std::move(terms));
+      section, std::move(terms));
   const fem::FrameDrive hub = [omega = p.omega](double t) {
     fem::FrameMotion frame;
     frame.angle = omega * t;

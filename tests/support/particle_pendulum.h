@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fem/model.h"
+#include "tests/support/disturbance.h"
 
 /// A pendulum in Cartesian coordinates (index 3) whose motion is known: one point on a rod.
 namespace flexmorph::testing {
@@ -114,7 +115,7 @@ inline fem::Model particle_pendulum(bool exact_tangent = true) {
 inline fem::State swing_start(const fem::Model& model) {
   fem::State x = model.reference();
   x.q.head<2>() = exact_swing(0).position();
-  x.v.head<2>() = exact_swing(0).velocity();
+  x.v.head<2>() = disturbed(1.0) * exact_swing(0).velocity();
   return x;
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "fem/solve/statics.h"
+#include "tests/support/disturbance.h"
 #include "tests/support/models.h"
 
 /// Plates in space for tests: a rectangle with terms by name, loads and holds.
@@ -34,6 +35,7 @@ struct SpacePlate {
 
   template <class... Loads>
   fem::Model model(Loads... loads) const {
+    const fem::PlaneSection section = disturbed(this->section);
     std::vector<std::unique_ptr<fem::Term>> all;
     for (const std::string& name : terms) all.push_back(fem::make_term(name, section));
     (all.push_back(std::move(loads)), ...);

@@ -218,7 +218,7 @@ TEST(TurningBeam, KeepsItsAngularMomentumWhileItIsHeated) {
             if (at.t == 0) first = L;
             drift = std::max(drift, std::abs(L / first - 1));
           },
-          omega, {.name = integrator}, &counts);
+          omega, {integrator, {}, {}, {}}, &counts);
       EXPECT_NEAR(first, 6.06 * omega, 1e-10);
       if (integrator == "energy_momentum")
         EXPECT_LT(drift, 1e-10);

@@ -139,7 +139,7 @@ TEST(HotBeam, KeepsItsEnergyAtConstantTemperature) {
     Model model = beam.model();
     model.prepare(0.0);
     State x = model.reference();
-    const auto scheme = make_integrator(model, {.name = "energy_momentum"});
+    const auto scheme = make_integrator(model, {"energy_momentum", {}, {}, {}});
     scheme->make_consistent(x);
     const double first = model.energies(x).total();
     double drift = 0, kinetic = 0;

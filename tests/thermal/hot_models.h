@@ -9,6 +9,7 @@
 #include "fem/thermal/temperature.h"
 #include "fem/thermal/thermal_displacement.h"
 #include "fem/thermal/thermal_force.h"
+#include "tests/support/disturbance.h"
 #include "tests/support/models.h"
 
 /// Hot beams and plates for tests.
@@ -37,6 +38,7 @@ struct HotBeam {
   double mass() const { return section.density * section.thickness * height * length; }
 
   fem::Model model() const {
+    const fem::PlaneSection section = disturbed(this->section);
     std::vector<std::unique_ptr<fem::Term>> terms;
     terms.push_back(fem::make_inertia(section));
     terms.push_back(fem::make_term(term, section));

@@ -1,0 +1,154 @@
+#!/bin/sh
+# tests/every_processor.sh [--builds A,B] [--kernels A,B] [--disturbances N] [--all]
+# Shows that no verdict hangs on the last bits: all tests in three builds (native; portable, for any
+# processor of the family; uncontracted, where products and sums are rounded one by one), each with
+# four kernels of OpenBLAS; kernels that the processor lacks are named and skipped. Then, in the
+# first build, the tests from several starts disturbed by 1e-13 (five unless given;
+# tests/support/disturbance.h). --all takes the benchmarks too, shipped cases with their [expect].
+#
+# A row per run goes to the screen and into every_processor.md in the folder of the builds: verdicts,
+# and which numbers that tests print moved from those of the first run. On two cores a build takes
+# about fourteen minutes, a run of the tests about four. The last line says `N passed, N failed`, of
+# runs.
+set -eu
+root=$(cd "$(dirname "$0")/.." && pwd)
+. "$root/cases/cmake/setup.sh"
+
+builds=native,portable,uncontracted
+kernels=Haswell,SkylakeX,Zen,Sandybridge
+disturbances=5
+without="-LE benchmark"
+while [ $# -gt 0 ]; do
+  case "$1" in
+    --builds) builds=$2 && shift ;;
+    --kernels) kernels=$2 && shift ;;
+    --disturbances) disturbances=$2 && shift ;;
+    --all) without= ;;
+    *) sed -n '2,4p' "$0" >&2 && exit 2 ;;
+  esac
+  shift
+done
+folder="$root/build-every-processor"
+mkdir -p "$folder"
+table="$folder/every_processor.md"
+passed=0
+failed=0
+first=
+trap 'echo "$passed passed, $failed failed"' EXIT
+
+# runs_here KERNEL : does this processor know its instructions?
+runs_here() {
+  case "$1" in
+    SkylakeX | Cooperlake | SapphireRapids) word=avx512vl ;;
+    Haswell | Zen) word=avx2 ;;
+    Sandybridge) word=avx ;;
+    *) return 0 ;;
+  esac
+  grep -m 1 '^flags' /proc/cpuinfo | grep -qw "$word"
+}
+
+# The native build is that of tests/run.sh.
+folder_of() {
+  if [ "$1" = native ]; then echo "$build"; else echo "$folder/$1"; fi
+}
+options() {
+  case "$1" in
+    native) ;;
+    portable) echo -DFLEXMORPH_NATIVE=OFF ;;
+    uncontracted) echo -DCMAKE_CXX_FLAGS=-ffp-contract=off ;;
+    *) echo "every_processor.sh: builds are native, portable, uncontracted" >&2 && exit 2 ;;
+  esac
+}
+
+# moved FIRST OTHER : numbers that two logs of ctest have at the same places of the same tests, and
+# that differ by more than 1e-6 of themselves. Times are left out, and what is below 1e-9: round-off.
+moved() {
+  awk '
+    function numbers(line, list,    n, s) {
+      n = 0
+      while (match(line, /[-+]?[0-9]+\.[0-9]+(e[-+]?[0-9]+)?/)) {
+        s = substr(line, RSTART, RLENGTH)
+        list[++n] = s + 0
+        line = substr(line, RSTART + RLENGTH)
+      }
+      return n
+    }
+    /^ +Start +[0-9]+: / { k = $2; sub(":", "", k); name[k] = $3 }
+    !/^[0-9]+: / || /^[0-9]+: \[/ || / ms\)?$| s,? CPU|CPU s|seconds|Test command/ { next }
+    {
+      k = $1
+      sub(":", "", k)
+      n = numbers(substr($0, length($1) + 1), x)
+      for (i = 1; i <= n; ++i) {
+        at = k " " ++count[FILENAME, k]
+        if (FILENAME == ARGV[1]) value[at] = x[i]
+        else if (at in value) {
+          size = value[at] < 0 ? -value[at] : value[at]
+          off = x[i] - value[at]
+          off = off < 0 ? -off : off
+          ++n_seen
+          if (size > 1e-9 && off > 1e-6 * size) {
+            ++n_moved
+            if (off / size > most[k]) most[k] = off / size
+          }
+        }
+      }
+    }
+    END {
+      for (k in most) {
+        ++tests
+        for (r = 1; r <= 3; ++r)
+          if (!best[r] || most[k] > most[best[r]]) {
+            for (s = 3; s > r; --s) best[s] = best[s - 1]
+            best[r] = k
+            break
+          }
+      }
+      printf "%d of %d numbers, in %d tests", n_moved, n_seen, tests
+      for (r = 1; r <= 3; ++r)
+        if (best[r]) printf "%s%s by %.2g", r == 1 ? "; most: " : ", ", name[best[r]], most[best[r]]
+    }' "$1" "$2"
+}
+
+# run NAME BUILD : one row of the table.
+run() {
+  log="$folder/$1.log"
+  ctest --test-dir "$(folder_of "$2")" --parallel "$cores" --verbose $without >"$log" 2>&1 || true
+  summary='^[0-9]*% tests passed, \([0-9]*\) tests failed out of \([0-9]*\)$'
+  counts=$(sed -n "s/$summary/\1 \2/p" "$log")
+  if [ "${counts% *}" = 0 ]; then
+    passed=$((passed + 1))
+    verdict="all ${counts#* } pass"
+  else
+    failed=$((failed + 1))
+    verdict="failed: $(sed -n 's/^[[:blank:]]*[0-9]* - \([^ ]*\) .*/\1/p' "$log" | paste -sd ' ')"
+  fi
+  first=${first:-$log}
+  echo "| $1 | $verdict | $(moved "$first" "$log") |" | tee -a "$table"
+}
+
+echo "$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), $(date +%F)" >"$table"
+printf '\n| build, kernels | verdicts | moved by more than 1e-6 |\n| --- | --- | --- |\n' >>"$table"
+install_packages
+for name in $(echo "$builds" | tr "," " "); do
+  at=$(folder_of "$name")
+  # shellcheck disable=SC2046  # words
+  cmake -S "$root" -B "$at" -G Ninja -DCMAKE_BUILD_TYPE=Release $(options "$name") >/dev/null
+  cmake --build "$at" --parallel "$cores" >"$folder/$name.log"
+  for kernel in $(echo "$kernels" | tr ',' ' '); do
+    if runs_here "$kernel"; then
+      export OPENBLAS_CORETYPE="$kernel"
+      run "$name-$kernel" "$name"
+    else
+      echo "| $name-$kernel | skipped: this processor lacks its instructions | |" | tee -a "$table"
+    fi
+  done
+done
+unset OPENBLAS_CORETYPE
+k=1
+while [ "$k" -le "$disturbances" ]; do
+  export FLEXMORPH_DISTURBANCE="$k"
+  run "${builds%%,*}-disturbed-$k" "${builds%%,*}"
+  k=$((k + 1))
+done
+[ "$passed" -gt 0 ] && [ "$failed" -eq 0 ]
