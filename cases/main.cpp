@@ -2,11 +2,11 @@
 #include <cstdio>
 
 #include "cases/accuracy/accuracy.h"
-#include "cases/study/compare.h"
 #include "cases/run/run.h"
-#include "cases/stability/stability.h"
-#include "cases/study/sweep.h"
 #include "cases/run/version.h"
+#include "cases/stability/stability.h"
+#include "cases/study/compare.h"
+#include "cases/study/sweep.h"
 #include "geometry/plain_numbers.h"
 #include "geometry/processor.h"
 

@@ -4,20 +4,14 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <ctime>
 
+#include "geometry/cpu_time.h"
 #include "optim/kkt.h"
 
 namespace flexmorph::optim {
 namespace {
 
 constexpr int kRestingRows = 3;
-
-double cpu_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 bool finite(const Response& r) {
   return std::isfinite(r.f) && r.df.allFinite() && r.g.allFinite() && r.dg.allFinite();

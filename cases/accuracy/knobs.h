@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "cases/study/orders.h"
 #include "cases/accuracy/values.h"
+#include "cases/study/orders.h"
 
 /// The knobs of accuracy: what of a case can be set finer or coarser, or in another way.
 namespace flexmorph::cases {

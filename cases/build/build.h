@@ -26,7 +26,8 @@ Vec2 undeformed_place(const Body& body, const Vec2& material);
 Pose start_pose(const Scene& scene, const Body& body);
 
 /// The scene of a case file, drives that follow from a trajectory included.
-/// @throws Error (input) located in the file, see io::Table; Error (numerical) where the path of the
+/// @throws Error (input) located in the file, see io::Table; Error (numerical) where the path of
+/// the
 ///         trajectory cannot be reached.
 Scene read_scene(const io::CaseFile& file);
 

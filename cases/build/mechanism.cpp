@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "cases/build/build.h"
-#include "cases/build/joints.h"
 #include "cases/build/heat.h"
+#include "cases/build/joints.h"
 #include "cases/build/twin.h"
 #include "fem/elements/ancf_beam.h"
 #include "fem/elements/ancf_plate.h"

@@ -33,7 +33,6 @@ flexmorph_find(VTK 9.1 COMPONENTS CommonCore CommonDataModel IOXML IOImage)
 flexmorph_find(tomlplusplus 3.3)
 flexmorph_find(CLI11 2.1)
 flexmorph_find(nlohmann_json 3.11)
-flexmorph_find(fmt 9)
 
 # The C++ header is a package of its own.
 find_package(NLopt 2.7 QUIET CONFIG)

@@ -3,11 +3,11 @@
 #include <sstream>
 
 #include "cases/build/build.h"
-#include "cases/run/check_cost.h"
-#include "cases/scene/heat.h"
-#include "cases/run/run.h"
-#include "cases/scene/read.h"
 #include "cases/build/twin.h"
+#include "cases/run/check_cost.h"
+#include "cases/run/run.h"
+#include "cases/scene/heat.h"
+#include "cases/scene/read.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {

@@ -3,12 +3,12 @@
 #include <cmath>
 
 #include "cases/run/expectations.h"
-#include "cases/scene/heat.h"
 #include "cases/run/plots/measured.h"
 #include "cases/run/plots/mechanism.h"
 #include "cases/run/plots/run.h"
 #include "cases/run/run_warnings.h"
 #include "cases/run/version.h"
+#include "cases/scene/heat.h"
 #include "fem/solve/linear_solver.h"
 #include "io/files.h"
 

@@ -9,12 +9,13 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "cases/build/twin.h"
 #include "cases/run/expectations.h"
 #include "cases/run/motion_run.h"
 #include "cases/run/path_run.h"
 #include "cases/run/report.h"
-#include "cases/build/twin.h"
 #include "cases/run/version.h"
+#include "geometry/cpu_time.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
@@ -287,7 +288,7 @@ int run_case(const RunOptions& options) {
     getrusage(RUSAGE_SELF, &usage);
     report.status = status;
     report.message = message;
-    report.seconds_cpu = mmc::cpu_seconds();
+    report.seconds_cpu = cpu_seconds();
     report.seconds_wall =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
     report.peak_memory_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "geometry/cpu_time.h"
 #include "io/exports.h"
 #include "io/files.h"
 #include "io/plots.h"
@@ -123,7 +124,7 @@ RunFolder::RunFolder(std::string path, const Scene& scene, const std::string& ca
 double RunFolder::take_output_seconds() { return std::exchange(output_seconds_, 0); }
 
 void RunFolder::add_iteration(const mmc::IterationReport& r) {
-  const double clock = mmc::cpu_seconds();
+  const double clock = cpu_seconds();
   ++rows_;
   const Output& wish = scene_.output;
   if (wish.vtk && wish.design_every > 0 &&
@@ -169,7 +170,7 @@ void RunFolder::add_iteration(const mmc::IterationReport& r) {
       min_feature = r.sharp->features->solid;
   }
   add_events(r);
-  output_seconds_ += mmc::cpu_seconds() - clock;
+  output_seconds_ += cpu_seconds() - clock;
   const mmc::LoadResponse::Seconds s = r.state.seconds();
   history_->row({r.problem.body,
                  r.cycle,

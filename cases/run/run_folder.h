@@ -55,11 +55,11 @@ struct PathRecord {
 /// Tip deflection: coordinate across the hub's axis of the middle of the free end [m].
 double tip_deflection(const fem::Model& model, const fem::Growth& growth, const fem::State& x);
 
-/// The folder of one run (cases/README.md, The run folder): every file is written here and nowhere
-/// else.
 /// Name of the file with the components of a body's result.
 std::string components_name(const Scene& scene, const std::string& body);
 
+/// The folder of one run (cases/README.md, The run folder): every file is written here and nowhere
+/// else.
 class RunFolder {
  public:
   /// Makes the folder and writes case.toml. A folder that holds another run (its run.json is there)

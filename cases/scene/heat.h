@@ -4,8 +4,8 @@
 
 #include "cases/scene/scene.h"
 
-/// [body.heat] as data. Built with FLEXMORPH_HEAT=OFF there is no such thing: heat_absent.cpp stands
-/// in place of heat.cpp then, and refuses it.
+/// [body.heat] as data. Built with FLEXMORPH_HEAT=OFF there is no such thing: heat_absent.cpp
+/// stands in place of heat.cpp then, and refuses it.
 namespace flexmorph::cases {
 
 /// [body.heat]; the body's other keys are read.

@@ -1,5 +1,4 @@
 #include "cases/scene/heat.h"
-
 #include "io/files.h"
 
 namespace flexmorph::cases {

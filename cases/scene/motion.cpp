@@ -211,8 +211,7 @@ std::string read_name(const Table& t, const std::string& noun, const Scene& scen
   return name;
 }
 
-void read_motion(const Table& root, const Vocabulary& words, const Follow& follow,
-                 Scene& scene) {
+void read_motion(const Table& root, const Vocabulary& words, const Follow& follow, Scene& scene) {
   if (root.has("static")) {
     for (const char* key :
          {"time", "drive", "constants", "esl", "design", "optimizer", "cycle", "verify"})

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "cases/study/study.h"
 #include "cases/stability/overrides.h"
+#include "cases/study/study.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {

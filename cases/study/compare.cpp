@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "cases/study/compare_report.h"
 #include "cases/run/run.h"
+#include "cases/study/compare_report.h"
 #include "io/tables.h"
 #include "optim/optimizer.h"
 

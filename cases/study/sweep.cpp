@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <optional>
 
-#include "cases/study/compare_report.h"
 #include "cases/run/run.h"
 #include "cases/scene/scene.h"
+#include "cases/study/compare_report.h"
 #include "cases/study/sweep_motion.h"
 #include "io/plots.h"
 #include "io/sheet.h"

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "geometry/cpu_time.h"
 #include "optim/mmc/mmc_problem.h"
 #include "optim/mmc/static_loads.h"
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <ctime>
 #include <utility>
 
+#include "geometry/cpu_time.h"
 #include "geometry/picture.h"
 
 namespace flexmorph::mmc {
@@ -20,12 +20,6 @@ constexpr double kLargestJump = 3;
 /// The bound of a worst case: log z per unit of its variable, and how far it may go.
 constexpr double kLogPerUnit = 10, kReachOfBound = 3;
 }  // namespace
-
-double cpu_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 MmcProblem::MmcProblem(const Grid& grid, const Design& design, const Ersatz& ersatz,
                        LoadResponse& loads, const TdfSettings& tdf, const Goal& goal,

@@ -97,7 +97,4 @@ class MmcProblem final : public optim::Problem {
   double lowest_ = std::numeric_limits<double>::infinity();  // compliance of acceptable designs
 };
 
-/// CPU seconds of this process.
-double cpu_seconds();
-
 }  // namespace flexmorph::mmc

@@ -4,19 +4,17 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
-#include <ctime>
 #include <optional>
 #include <span>
 #include <utility>
 
+#include "geometry/cpu_time.h"
 #include "optim/mmc/held_growth.h"
 #include "optim/mmc/static_loads.h"
 
 namespace flexmorph::mmc {
 
 namespace {
-
-double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 void refuse(const std::string& what) { throw Error::input("equivalent static loads: " + what); }
 

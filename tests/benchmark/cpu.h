@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstdio>
-#include <ctime>
 #include <fstream>
 #include <string>
 
 #include "fem/solve/linear_solver.h"
+#include "geometry/cpu_time.h"
 #include "geometry/processor.h"
 
 namespace flexmorph::benchmark {
@@ -19,13 +19,6 @@ inline void begin(char** argv) {
   for (std::string line; std::getline(cpuinfo, line);)
     if (line.starts_with("model name")) model = line.substr(line.find(':') + 2);
   std::printf("%s, OpenBLAS kernels %s, one thread\n", model.c_str(), fem::blas_kernel().c_str());
-}
-
-/// CPU time of the process [s].
-inline double cpu() {
-  timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
 }  // namespace flexmorph::benchmark

@@ -7,7 +7,6 @@
 // "integrators": instead, error against CPU time of both integrators on a planar pendulum.
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <string>
 
 #include "fem/dynamics/motion.h"
@@ -20,16 +19,14 @@ using namespace flexmorph;
 using testing::RotatingPlate;
 using testing::ShapeSet;
 
-double cpu() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
-
 const char* name(ShapeSet shapes) { return shapes == ShapeSet::h12 ? "h12" : "h16"; }
 
 void run(const RotatingPlate& p, const char* design) {
   testing::Scene scene = testing::make_scene(p);
-  const double start = cpu();
+  const double start = cpu_seconds();
   const fem::MotionResult r =
       fem::integrate(scene.model, scene.growths, {}, [](const fem::MotionStep&) {});
-  const double spent = cpu() - start;
+  const double spent = cpu_seconds() - start;
   std::printf("v %.1f %s %-8s %8.2f s  %5d steps %6d Newton iterations %5d factorizations\n",
               p.speed, name(p.shapes), design, spent, r.counts.steps, r.counts.newton,
               r.counts.factorizations);
@@ -39,10 +36,10 @@ void run(const RotatingPlate& p, const char* design) {
 template <class F>
 double microseconds(const F& f) {
   int n = 0;
-  const double start = cpu();
-  while (cpu() - start < 0.2)
+  const double start = cpu_seconds();
+  while (cpu_seconds() - start < 0.2)
     for (int k = 0; k < 20; ++k, ++n) f();
-  return 1e6 * (cpu() - start) / n;
+  return 1e6 * (cpu_seconds() - start) / n;
 }
 
 void evaluate(const RotatingPlate& p, const char* design) {
@@ -117,9 +114,9 @@ void compare_integrators() {
       {"energy_momentum, tol 1e-7", loose}};
   for (const auto& [name, settings] : rows)
     for (const double h : {4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4}) {
-      const double start = cpu();
+      const double start = cpu_seconds();
       const fem::State x = run(settings, h);
-      const double spent = cpu() - start;
+      const double spent = cpu_seconds() - start;
       std::printf(
           "%-26s h %.2e: %6.2f s, error q %.2e m, v %.2e m/s, energy %+.1e, %5d Newton %5d "
           "factors\n",

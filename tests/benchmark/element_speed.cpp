@@ -8,7 +8,6 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <random>
 #include <string>
 #include <vector>
@@ -33,18 +32,19 @@ const PlaneSection kSection{0.01, 1e5, 0.3, 7810};
 template <class F>
 double nanoseconds(const F& f) {
   const auto batch = [&](int n) {
-    const double start = cpu();
+    const double start = cpu_seconds();
     for (int k = 0; k < n; ++k) {
       f();
       asm volatile("" ::: "memory");
     }
-    return (cpu() - start) / n;
+    return (cpu_seconds() - start) / n;
   };
   int n = 1;
   while (batch(n) * n < 1e-4) n *= 2;
   double best = batch(n);
-  const double start = cpu();
-  for (int k = 0; k < 2000 && (k < 3 || cpu() - start < 0.4); ++k) best = std::min(best, batch(n));
+  const double start = cpu_seconds();
+  for (int k = 0; k < 2000 && (k < 3 || cpu_seconds() - start < 0.4); ++k)
+    best = std::min(best, batch(n));
   return 1e9 * best;
 }
 

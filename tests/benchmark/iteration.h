@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "geometry/cpu_time.h"
 #include "optim/mmc/mmc_problem.h"
 #include "optim/optimizer.h"
 
@@ -19,10 +20,10 @@ struct Iteration {
 inline Iteration measure_iterations(mmc::MmcProblem& problem, const optim::Settings& settings,
                                     int right_hand_sides) {
   std::vector<double> parts[6];
-  double mark = mmc::cpu_seconds();
+  double mark = cpu_seconds();
   int evaluations = 0;
   optim::make_optimizer(settings)->minimize(problem, [&](const optim::Iterate& iterate) {
-    const double now = mmc::cpu_seconds();
+    const double now = cpu_seconds();
     if (iterate.evaluations == evaluations + 1 && iterate.iteration > 2) {
       const mmc::LoadResponse::Seconds s = problem.seconds();
       const double seconds[] = {problem.seconds_tdf(), s.factor,        s.solve,
@@ -31,7 +32,7 @@ inline Iteration measure_iterations(mmc::MmcProblem& problem, const optim::Setti
     }
     problem.clear_seconds();
     evaluations = iterate.evaluations;
-    mark = mmc::cpu_seconds();
+    mark = cpu_seconds();
     return true;
   });
   const auto median = [&](int k) {

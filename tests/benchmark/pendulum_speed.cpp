@@ -21,7 +21,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <string>
 #include <vector>
 
@@ -41,12 +40,12 @@ template <class F>
 double seconds(const F& f) {
   f();
   int n = 0;
-  const double start = cpu();
+  const double start = cpu_seconds();
   do {
     f();
     ++n;
-  } while (cpu() - start < 0.02);
-  return (cpu() - start) / n;
+  } while (cpu_seconds() - start < 0.02);
+  return (cpu_seconds() - start) / n;
 }
 
 /// CPU time of one call of each phase [s].
@@ -141,19 +140,19 @@ Costs run(int mesh, ShapeSet shapes, double h, double end, double youngs_modulus
   fem::Model model = pendulum(mesh, shapes, youngs_modulus);
   const auto integrator = fem::make_integrator(model, {});
   fem::State x = model.reference();
-  double start = cpu();
+  double start = cpu_seconds();
   integrator->make_consistent(x);
   std::printf("%d x %d %s, %d unknowns, E %.3g, dt %.3g; start %.1f ms\n", mesh, mesh,
               shapes == ShapeSet::h12 ? "h12" : "h16", model.n_dofs(), youngs_modulus, h,
-              1e3 * (cpu() - start));
+              1e3 * (cpu_seconds() - start));
   const double energy = model.energies(x).total();
   double whole = 0, drift = 0, largest = 0, asymmetry = 0;
   std::vector<Phases> phases;
   const int steps = static_cast<int>(end / h + 0.5);
   for (int k = 1; k <= steps; ++k) {
-    start = cpu();
+    start = cpu_seconds();
     integrator->advance(x, k * h, [](const fem::State&) {});
-    whole += cpu() - start;
+    whole += cpu_seconds() - start;
     const bool look = k == steps || k % std::max(1, static_cast<int>(0.1 / h + 0.5)) == 0;
     if (!look && k % 10 != 0) continue;
     const fem::Energies e = model.energies(x);

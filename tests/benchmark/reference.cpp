@@ -7,21 +7,20 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <vector>
+
+#include "geometry/cpu_time.h"
 
 namespace flexmorph::benchmark {
 
 double milliseconds(const std::function<void()>& call, int repeats) {
   std::vector<double> times;
   for (int k = 0; k <= repeats; ++k) {
-    timespec start{}, end{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &start);
+    const double start = cpu_seconds();
     call();
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &end);
-    const double ms = 1e3 * static_cast<double>(end.tv_sec - start.tv_sec) +
-                      1e-6 * static_cast<double>(end.tv_nsec - start.tv_nsec);
-    if (k > 0) times.push_back(ms);  // the first call touches its memory for the first time
+    if (k > 0)
+      times.push_back(
+          1e3 * (cpu_seconds() - start));  // the first call touches its memory for the first time
   }
   std::nth_element(times.begin(), times.begin() + repeats / 2, times.end());
   return times[static_cast<std::size_t>(repeats / 2)];
