@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "cases/stability/child.h"
+#include "cases/study/processes.h"
 #include "cases/stability/suites.h"
 
 /// What became of a perturbed run: a verdict from its exit code, its message and its files.

@@ -174,8 +174,10 @@ class Check {
     }
     ChildLimits limits;
     limits.seconds = options_.timeout;
+    limits.memory = 4e9;
     size_t done = 0;
-    return run_children(children, options_.jobs, limits, [&](size_t i, const Ending& ending) {
+    const auto ended = [&](size_t i, const Ending& ending) {
+      if (ending.interrupted) return;  // says nothing about the row
       StabilityRow& row = rows_[of[i]->row];
       row.ending = ending;
       row.ran = true;
@@ -191,7 +193,8 @@ class Check {
                   row.case_name.c_str(), row.suite.c_str(), row.perturbation.parameter.c_str(),
                   ending.code, io::to_text(ending.seconds, 2).c_str());
       std::fflush(stdout);
-    });
+    };
+    return run_children(children, options_.jobs, limits, {.ended = ended});
   }
 
   void judge_row(const Job& job) {

@@ -283,8 +283,10 @@ TEST(Children, EndWithinTheirLimits) {
   limits.grace = 0.3;
   limits.memory = 2e9;
   std::vector<Ending> endings(children.size());
-  EXPECT_TRUE(
-      run_children(children, 2, limits, [&](size_t i, const Ending& e) { endings[i] = e; }));
+  size_t started = 0;
+  EXPECT_TRUE(run_children(children, 2, limits,
+                           {.started = [&](size_t i) { EXPECT_EQ(i, started++); },
+                            .ended = [&](size_t i, const Ending& e) { endings[i] = e; }}));
   EXPECT_EQ(endings[0].signal, SIGINT);
   EXPECT_TRUE(endings[0].over_time);
   EXPECT_GE(endings[0].seconds, 0.3);

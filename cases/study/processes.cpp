@@ -1,4 +1,4 @@
-#include "cases/stability/child.h"
+#include "cases/study/processes.h"
 
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -31,13 +31,13 @@ pid_t start(const Child& child, const ChildLimits& limits) {
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   const int out = open(child.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (out < 0) throw Error::input("stability: '" + child.log + "' cannot be written");
+  if (out < 0) throw Error::input("log '" + child.log + "' cannot be written");
   const auto bytes = static_cast<rlim_t>(limits.memory);
   const rlimit memory{bytes, bytes}, no_core{0, 0};
   const pid_t pid = fork();
-  if (pid < 0) throw Error::numerical("stability: a process cannot be started");
+  if (pid < 0) throw Error::numerical("a process cannot be started");
   if (pid == 0) {
-    setrlimit(RLIMIT_AS, &memory);
+    if (limits.memory > 0) setrlimit(RLIMIT_AS, &memory);
     setrlimit(RLIMIT_CORE, &no_core);
     dup2(out, STDOUT_FILENO);
     dup2(out, STDERR_FILENO);
@@ -62,9 +62,10 @@ struct Running {
   bool over_time = false, told = false;
 };
 
-Ending ending_of(int status, const rusage& usage, bool over_time) {
+Ending ending_of(int status, const rusage& usage, const Running& child) {
   Ending out;
-  out.over_time = over_time;
+  out.over_time = child.over_time;
+  out.interrupted = child.told;
   if (WIFEXITED(status)) out.code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) out.signal = WTERMSIG(status);
   const auto seconds = [](const timeval& t) {
@@ -81,8 +82,8 @@ void keep_limits(std::map<pid_t, Running>& running, const ChildLimits& limits) {
       if (since(child.asked) > limits.grace) kill(pid, SIGKILL);
       continue;
     }
-    const bool over =
-        cpu_seconds_of(pid) > limits.seconds || since(child.begin) > 10 * limits.seconds;
+    const bool over = limits.seconds > 0 && (cpu_seconds_of(pid) > limits.seconds ||
+                                             since(child.begin) > 10 * limits.seconds);
     if (!over && !interrupted) continue;
     (over ? child.over_time : child.told) = true;
     child.asked = Clock::now();
@@ -93,7 +94,7 @@ void keep_limits(std::map<pid_t, Running>& running, const ChildLimits& limits) {
 }  // namespace
 
 bool run_children(const std::vector<Child>& children, int jobs, const ChildLimits& limits,
-                  const std::function<void(size_t, const Ending&)>& ended) {
+                  const ChildObserver& observer) {
   interrupted = 0;
   struct sigaction action {};
   action.sa_handler = [](int) { interrupted = 1; };  // no SA_RESTART: waiting ends
@@ -104,7 +105,9 @@ bool run_children(const std::vector<Child>& children, int jobs, const ChildLimit
   while (!running.empty() || (next < children.size() && !interrupted)) {
     while (!interrupted && next < children.size() && running.size() < static_cast<size_t>(jobs)) {
       const pid_t pid = start(children[next], limits);
-      running[pid].place = next++;
+      running[pid].place = next;
+      if (observer.started) observer.started(next);
+      ++next;
     }
     keep_limits(running, limits);
     bool any = false;
@@ -118,7 +121,7 @@ bool run_children(const std::vector<Child>& children, int jobs, const ChildLimit
       const Running child = at->second;
       at = running.erase(at);
       any = true;
-      if (!child.told) ended(child.place, ending_of(status, usage, child.over_time));
+      observer.ended(child.place, ending_of(status, usage, child));
     }
     if (!any) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
