@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cases/run/quantities.h"
 #include "io/case_file.h"
 
 /// Many runs of one case with changes: each a process of its own with a run folder of its own.
