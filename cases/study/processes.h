@@ -20,8 +20,8 @@ struct Ending {
   int code = -1;             ///< exit code; -1 when a signal ended it
   int signal = 0;            ///< that ended it
   bool over_time = false;    ///< it was asked to end by its limits
-  bool interrupted = false;  ///< it was told of an interruption
   double seconds = 0;        ///< CPU time
+  bool interrupted = false;  ///< it was told of an interruption
 };
 
 struct Child {
