@@ -1,12 +1,12 @@
 // Orders and limits of sequences whose laws are known.
 
-#include "cases/study/orders.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <vector>
+
+#include "cases/study/orders.h"
 
 namespace flexmorph::cases {
 namespace {

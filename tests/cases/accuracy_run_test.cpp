@@ -5,8 +5,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "cases/run/run.h"
 #include "cases/build/build.h"
+#include "cases/run/run.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"
 
@@ -130,8 +130,9 @@ TEST(Accuracy, AnalysesADesignAsItStarts) {
       EXPECT_TRUE(value > 0.2 && value < 0.6) << value;
     }
   // A run of no iterations leaves the layout alone.
-  const Ended run = test::flexmorph(scratch, {"run", "short_beam", "-o", scratch / "start", "--set",
-                                              "optimizer.max_iterations=0", "--quiet"});
+  const Ended run =
+      test::flexmorph(scratch, {"run", "short_beam", "-o", scratch / "start", "--set",
+                                "optimizer.max_iterations=0", "--set", "expect=", "--quiet"});
   EXPECT_EQ(run.code, 0) << run.err;
   EXPECT_EQ(io::read_csv(scratch / "start/history.csv").rows.size(), 0U);
 }

@@ -119,13 +119,6 @@ struct Turn {
         acceleration(-7.2 * std::sin(6 * t)) {}
 };
 
-Ended run(const Scratch& scratch, const std::string& name, const std::string& folder,
-          const Words& changes = {}) {
-  Words words = {"run", name, "-o", folder};
-  for (const std::string& change : changes) words.insert(words.end(), {"--set", change});
-  return flexmorph(scratch, words);
-}
-
 size_t count(const std::string& text, const std::string& part) {
   size_t n = 0;
   for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;

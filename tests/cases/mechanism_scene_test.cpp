@@ -322,7 +322,9 @@ const std::vector<Edit> kDeadCentre = {{"b = \"crank\"\nangle", "b = \"rocker\"\
                                        {"pi/2 + 2*t", "1.911 - 0.5*t"}};
 /// Cosine rule for a distance of 0.65 m between the pins of crank and coupler's end.
 const double kDeadTime =
-    (1.911 - (std::numbers::pi - std::acos((0.55 * 0.55 + 0.25 - 0.65 * 0.65) / (2 * 0.55 * 0.5)))) / 0.5;
+    (1.911 -
+     (std::numbers::pi - std::acos((0.55 * 0.55 + 0.25 - 0.65 * 0.65) / (2 * 0.55 * 0.5)))) /
+    0.5;
 
 double time_in(const std::string& message) {
   const size_t at = message.find("t = ");

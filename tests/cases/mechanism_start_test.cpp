@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "cases/build/build.h"
-#include "cases/run/run_folder.h"
 #include "cases/build/twin.h"
+#include "cases/run/run_folder.h"
 #include "tests/cases/scenes.h"
 
 namespace flexmorph::cases {

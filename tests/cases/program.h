@@ -56,6 +56,15 @@ inline Ended flexmorph(const Scratch& scratch, const Words& arguments) {
   return end_of(scratch, start(scratch, arguments));
 }
 
+/// Runs a case with changes; what it expects of itself as it is does not count with them.
+inline Ended run(const Scratch& scratch, const std::string& name, const std::string& folder,
+                 Words changes = {}) {
+  Words words = {"run", name, "-o", folder};
+  if (!changes.empty()) changes.emplace_back("expect=");
+  for (const std::string& change : changes) words.insert(words.end(), {"--set", change});
+  return flexmorph(scratch, words);
+}
+
 /// Runs short_plate.toml with changes.
 inline Words short_run(const std::string& folder, const Words& changes = {}) {
   Words words = {"run", FLEXMORPH_SHORT_CASE, "-o", folder};

@@ -1,13 +1,13 @@
 // Scenes: both shipped cases load with the numbers of Sun et al. (2018), section 4.2; defaults are
 // those of the method; every bad input is refused with one message that says where and why.
-#include "cases/build/build.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <fstream>
 #include <iterator>
 #include <numbers>
+
+#include "cases/build/build.h"
 
 namespace flexmorph::cases {
 namespace {

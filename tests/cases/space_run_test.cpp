@@ -12,13 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Ended run(const Scratch& scratch, const std::string& name, const std::string& folder,
-          const Words& changes = {}) {
-  Words words = {"run", name, "-o", folder};
-  for (const std::string& change : changes) words.insert(words.end(), {"--set", change});
-  return flexmorph(scratch, words);
-}
-
 nlohmann::json run_json(const std::string& folder) {
   return nlohmann::json::parse(contents_of(folder + "/run.json"));
 }

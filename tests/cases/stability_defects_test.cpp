@@ -158,7 +158,7 @@ TEST(Starts, AreTheSameBitForBit) {
 
 std::string warnings_of(const Scratch& scratch, const std::string& name, const Words& changes) {
   const std::string folder = scratch / "run";
-  Words words = {"run", name, "-o", folder, "--quiet"};
+  Words words = {"run", name, "-o", folder, "--quiet", "--set", "expect="};
   for (const std::string& change : changes) words.insert(words.end(), {"--set", change});
   const Ended ended = test::flexmorph(scratch, words);
   EXPECT_EQ(ended.code, 0) << ended.err;
