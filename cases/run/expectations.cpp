@@ -111,7 +111,8 @@ void check_expectations(const Scene& scene) {
     for (const std::string& each : known) all += (all.empty() ? "" : ", ") + each;
     throw Error::input(wanted.place + ": expect.\"" + name +
                        "\": a run of this case has no such number; there are: " + all +
-                       "; of columns also their largest size, COLUMN.largest");
+                       "; of columns also their largest size, COLUMN.largest (--set expect= "
+                       "leaves them out)");
   }
 }
 
