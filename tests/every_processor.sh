@@ -73,7 +73,7 @@ moved() {
       return n
     }
     /^\[ RUN/ { test = $4 }
-    /^\[/ || / ms\)?$|CPU|seconds|\/tmp\// { next }
+    /^\[/ || / ms\)?$|CPU|seconds|\/tmp\/|vtk/ { next }
     {
       n = numbers($0, x)
       for (i = 1; i <= n; ++i) {
@@ -138,8 +138,12 @@ run() {
     failed=$((failed + 1))
     verdict="failed: $(echo "$bad" | paste -sd ' ')"
   fi
-  first=${first:-$log}
-  echo "| $1 | $verdict | $(moved "$first" "$log") |" | tee -a "$table"
+  if [ -z "$first" ]; then
+    first=$log
+    echo "| $1 | $verdict | (the others are compared with this one) |" | tee -a "$table"
+  else
+    echo "| $1 | $verdict | $(moved "$first" "$log") |" | tee -a "$table"
+  fi
 }
 
 echo "$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), $(date +%F)" >"$table"
