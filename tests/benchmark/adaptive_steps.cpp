@@ -149,9 +149,9 @@ Problem shipped_case(const std::string& name, const std::vector<std::string>& ch
             fem::point_position(body, s.x, Vec2(grid.line_m(grid.n_m()).value, 0)));
       }
     };
-    const double begin = benchmark::cpu_seconds();
+    const double begin = cpu_seconds();
     out.result = fem::integrate(mechanism.model, mechanism.growths, motion, see);
-    out.seconds = benchmark::cpu_seconds() - begin;
+    out.seconds = cpu_seconds() - begin;
     return out;
   };
 }
@@ -168,12 +168,12 @@ Course move(fem::Model& model, const Wish& wish, double end, fem::Placement plac
   motion.start = fem::Start::rigid;
   motion.placement = std::move(placement);
   Course out;
-  const double begin = benchmark::cpu_seconds();
+  const double begin = cpu_seconds();
   out.result = fem::integrate(model, {}, motion, [&](const fem::MotionStep& s) {
     const Vec2 p = s.x.q.segment<2>(s.model.body(body).first_dof);
     if (s.stop) out.points.emplace_back(p.x(), p.y(), 0);
   });
-  out.seconds = benchmark::cpu_seconds() - begin;
+  out.seconds = cpu_seconds() - begin;
   return out;
 }
 

@@ -21,7 +21,6 @@
 namespace {
 
 using namespace flexmorph;
-using benchmark::cpu;
 using namespace flexmorph::fem;
 using testing::ShapeSet;
 

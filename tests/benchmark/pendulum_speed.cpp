@@ -32,7 +32,6 @@
 namespace {
 
 using namespace flexmorph;
-using benchmark::cpu;
 using testing::ShapeSet;
 
 /// CPU time [s] of one call: the mean over 20 ms or more.
