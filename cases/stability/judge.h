@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "cases/study/processes.h"
 #include "cases/stability/suites.h"
+#include "cases/study/processes.h"
 
 /// What became of a perturbed run: a verdict from its exit code, its message and its files.
 namespace flexmorph::cases {

@@ -291,7 +291,8 @@ inline void add_pairs(W w, const V* left, const V* right, V* stiffness) {
 
 /// Adds weight (S ⊗ 1 + D(left)ᵀ W D(right)) to the nodal tangent (4 kKinds dim)², by columns.
 template <int kKinds, int kDim, Coupling coupling, bool kSymmetric = true, class V, class W>
-[[gnu::noinline]] void add_tangent(W w, const V* s, const V* left, const V* right, double weight, V* tangent) {
+[[gnu::noinline]] void add_tangent(W w, const V* s, const V* left, const V* right, double weight,
+                                   V* tangent) {
   using N = Numbering<kKinds>;
   constexpr auto& t = N::tables;
   constexpr int n = N::n, kSquare = kDim * kDim;

@@ -86,7 +86,8 @@ Deflections compare(double omega, double step) {
   std::vector<EslSet> sets;
   integrate(scene.model, scene.growths, settings, [&](const MotionStep& s) {
     if (s.stop)
-      sets.push_back(equivalent_static_load(s.model, s.x, scene.growths[0], grid, {&tip, 1}, {}, {}));
+      sets.push_back(
+          equivalent_static_load(s.model, s.x, scene.growths[0], grid, {&tip, 1}, {}, {}));
   });
   StaticSolver solver(grid, p.section);
   solver.factorize(VectorXd::Ones(grid.n_cells()));

@@ -155,7 +155,8 @@ TEST(LargeBending, StripRollsUpToACircle) {
   EXPECT_LT(std::hypot(tip.x(), tip.z()), 1e-3) << tip.transpose();
 }
 
-// In a very thin strip membrane forces are the last digits of the positions; Newton has to stop there.
+// In a very thin strip membrane forces are the last digits of the positions; Newton has to stop
+// there.
 TEST(LargeBending, AVeryThinStripRollsUpToACircle) {
   const SpacePlate p = strip(1e-4, "membrane_assumed", 16);
   Model model = p.model(make_edge_moment("free_end", 2 * std::numbers::pi * p.stiffness()));

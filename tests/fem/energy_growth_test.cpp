@@ -102,8 +102,8 @@ MotionSettings fall(double end) {
 
 // The plate crumples and what it then does is chaotic: the largest energy is below 100 J with some
 // kernels of OpenBLAS and 190 J with others. What holds whatever the bits: the motion stops at the
-// first step whose gain passes the limit, not at a failure of Newton's method; nothing else makes the
-// gain; and the message says how much of it there is and since when.
+// first step whose gain passes the limit, not at a failure of Newton's method; nothing else makes
+// the gain; and the message says how much of it there is and since when.
 TEST(EnergyGrowth, StopsAPlateWhoseStepsDoNotFollow) {
   Model model = pendulum();
   struct Seen {
