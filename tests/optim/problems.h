@@ -32,7 +32,9 @@ class Analytic : public Problem {
   int n_constraints() const override { return n_constraints_; }
   VectorXd lower() const override { return lower_; }
   VectorXd upper() const override { return upper_; }
-  VectorXd start() const override { return testing::disturbed(start_); }
+  VectorXd start() const override {
+    return testing::disturbed(start_).cwiseMax(lower_).cwiseMin(upper_);
+  }
 
   Response evaluate(const VectorXd& x) override {
     ++evaluations;

@@ -13,12 +13,11 @@
 namespace flexmorph::testing {
 
 /// A rigid body with mass, and weight where gravity is given; its unit axis is a joint behind it.
-inline void add_rigid(fem::Model& model, const std::string& name, fem::RigidSection section,
+inline void add_rigid(fem::Model& model, const std::string& name, const fem::RigidSection& section,
                       const VectorXd& gravity = {}) {
-  section.mass = disturbed(section.mass);
   std::vector<std::unique_ptr<fem::Term>> terms;
   terms.push_back(fem::make_rigid_inertia(section));
-  if (gravity.size() > 0) terms.push_back(fem::make_rigid_gravity(section, gravity));
+  if (gravity.size() > 0) terms.push_back(fem::make_rigid_gravity(section, disturbed(gravity)));
   model.add_body(name, std::make_unique<fem::RigidBody>(std::sqrt(section.inertia / section.mass)),
                  {}, std::move(terms));
   model.add_joint(fem::make_unit_axis("unit axis of " + name, name));
