@@ -33,7 +33,11 @@ class Analytic : public Problem {
   VectorXd lower() const override { return lower_; }
   VectorXd upper() const override { return upper_; }
   VectorXd start() const override {
-    return testing::disturbed(start_).cwiseMax(lower_).cwiseMin(upper_);
+    VectorXd x = testing::disturbed(start_);
+    if (x.size() != lower_.size() || x.size() != upper_.size()) return x;
+    for (Eigen::Index i = 0; i < x.size(); ++i)  // a disturbance leaves no bounds
+      if (x[i] < lower_[i] || x[i] > upper_[i]) x[i] = start_[i];
+    return x;
   }
 
   Response evaluate(const VectorXd& x) override {
