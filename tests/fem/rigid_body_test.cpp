@@ -40,9 +40,10 @@ struct Points {
 // Energies and momentum of four point masses, whatever q and q̇ (u of any length, too).
 TEST(RigidBody, IsTheSumOfItsPoints) {
   const Points points;
-  const Vec2 gravity(1.2, -9.81);
+  const VectorXd given = Vec2(1.2, -9.81);
   Model model;
-  testing::add_rigid(model, "body", points.section(), gravity);
+  testing::add_rigid(model, "body", points.section(), given);
+  const Vec2 gravity = testing::disturbed(given);  // as add_rigid() takes it
   model.prepare(0.0);
   State x = model.reference();
   x.q.setRandom();

@@ -153,7 +153,7 @@ TEST(Problems, GradientsAreRight) {
   for (Analytic& problem : problems) {
     SCOPED_TRACE(problem.name);
     const int n = problem.n_variables();
-    const VectorXd x = problem.start();
+    const VectorXd& x = problem.published_start();
     VectorXd direction(n);
     for (int j = 0; j < n; ++j) direction[j] = std::cos(1.0 + 2 * j);
     const Response r = problem.evaluate(x);

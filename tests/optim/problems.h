@@ -32,6 +32,8 @@ class Analytic : public Problem {
   int n_constraints() const override { return n_constraints_; }
   VectorXd lower() const override { return lower_; }
   VectorXd upper() const override { return upper_; }
+  /// Where no disturbance has been: there, remainders of linear functions vanish.
+  const VectorXd& published_start() const { return start_; }
   VectorXd start() const override {
     VectorXd x = testing::disturbed(start_);
     if (x.size() != lower_.size() || x.size() != upper_.size()) return x;

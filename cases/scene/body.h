@@ -1,0 +1,100 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cases/scene/drive.h"
+#include "fem/heat.h"
+
+/// [[body]], and the masses on it.
+namespace flexmorph::cases {
+
+/// Material that leaves the hub, and when node lines come and go (fem/README.md, Insertion and
+/// removal).
+struct Flow {
+  double speed = 0;  ///< rate at which material leaves the hub [m/s]; negative: enters it
+  Law length;        ///< or the drive of the length outside of the hub; `speed` is 0 then
+  std::function<fem::Motion(double)> motion;  ///< that drive; empty: constant speed
+  double longest = 0, shortest = 0;           ///< with that drive: over the run [m]
+  double max_length = 0;  ///< a longer boundary element is split in the middle [m]
+  double min_length = 0;  ///< a shorter one is merged with its neighbour [m]
+};
+
+/// An m-line of a body's mesh that is not where an even mesh has it, or is free to move through the
+/// material.
+struct BodyLine {
+  int index = 0;  ///< 0 is the root
+  bool free = false;
+  std::optional<double> at;  ///< material coordinate at the start [m]
+  /// Of a free root line: limits of the element next to it, as those of a Flow; none by default.
+  double max_length = std::numeric_limits<double>::infinity(), min_length = 0;
+  bool has_limits() const { return std::isfinite(max_length); }
+};
+
+/// Uniform heat of a body: what it is warmer than without stress.
+struct BodyHeat {
+  double expansion = 0;          ///< [1/K]
+  Law rise;                      ///< [K]: in the end, or at all times where a drive says it
+  std::string profile;           ///< of the rise in time; empty: constant, or a drive
+  double start = 0, settle = 0;  ///< the rise begins, and how long it takes [s]
+  fem::ThermalVolume volume = fem::ThermalVolume::grown;
+  bool force = false;  ///< the thermal force Q_tk acts
+};
+
+/// A plate or a beam. Material coordinates: X from the root to the free end; Y across,
+/// -width/2..width/2 in the plane and 0..width in space.
+struct Body {
+  std::string name;
+  std::string element;             ///< row of the table of elements
+  std::string shape;               ///< shape set: "h16", "h12"
+  std::string space;               ///< "plane" or "space": two or three components
+  std::vector<std::string> terms;  ///< rows of the table of terms
+  double length = 0;               ///< at the start [m]
+  /// Across the axis, and across the surface [m]. Of a beam (in the case: `height` and `width`): in
+  /// the plane of the motion, and across it.
+  double width = 0, thickness = 0;
+  double density = 0;                 ///< [kg/m^3]
+  double youngs_modulus = 0;          ///< [Pa]
+  double poisson_ratio = 0;           ///< [-]
+  int bending_points = 5;             ///< Gauss points of the bending per element and direction
+  std::array<int, 2> elements{1, 1};  ///< along the length at the start, across the width
+  std::optional<Flow> flow;           ///< absent: no material flows
+  std::vector<BodyLine> lines;        ///< by index
+  std::optional<Vec2> position;       ///< of the middle of the root at the start, where given [m]
+  double angle = 0;                   ///< of its axis, with `position` [rad]
+  double arc = 0;  ///< angle that the axis of an undeformed beam turns by, an arc of a circle [rad]
+  std::optional<BodyHeat> heat;  ///< absent: cold
+
+  bool is_beam() const { return element == "ancf_beam"; }
+  double length_at(double time) const;
+  fem::Motion length_motion(double time) const;
+  double longest(double end) const;   ///< in [0, end], the time of the run
+  double shortest(double end) const;  ///< likewise
+  bool in_space() const { return space == "space"; }
+  int dim() const { return in_space() ? 3 : 2; }
+  double low() const { return in_space() ? 0 : -0.5 * width; }  ///< where Y begins [m]
+  bool has(const std::string& term) const {
+    return std::find(terms.begin(), terms.end(), term) != terms.end();
+  }
+  bool has_free_lines() const {
+    return std::any_of(lines.begin(), lines.end(), [](const BodyLine& l) { return l.free; });
+  }
+  /// Do lines of nodes come and go?
+  bool mesh_changes() const { return flow || (!lines.empty() && lines.front().has_limits()); }
+  /// Material coordinates of the m-lines at the start, the first at `root` [m].
+  std::vector<double> start_lines(double root, int count) const;
+};
+
+struct PointMass {
+  std::string body;
+  std::string at;   ///< "free_end": the middle of that edge
+  double mass = 0;  ///< [kg]
+};
+
+}  // namespace flexmorph::cases

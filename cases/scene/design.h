@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/component.h"
+#include "geometry/grid.h"
+#include "geometry/tdf.h"
+#include "optim/mmc/mmc_problem.h"
+#include "optim/mmc/responses.h"
+
+/// [[design]], and what goes on around it.
+namespace flexmorph::cases {
+
+/// When the motion is turned into equivalent static loads, and what kind (fem/README.md, Equivalent
+/// static loads).
+struct Esl {
+  double every = 0;  ///< a load at every multiple of it up to the end [s]
+  mmc::ComplianceSettings settings;
+
+  int count(double end) const;  ///< number of loads up to `end`
+};
+
+/// The design of one body, on its design domain: the body at its longest.
+struct BodyDesign {
+  std::string body;
+  Grid grid;                            ///< X from the root (0) to the free end, Y across [m]
+  std::array<int, 2> components{1, 1};  ///< boxes of the initial layout, two components in each
+  mmc::Goal goal;                       ///< volumes are fractions, solid regions included
+  double min_thickness = 0;             ///< c_min: smallest half-thickness of a component [m]
+  double min_feature = 0;               ///< smallest solid feature of the union [m], 0: as it comes
+  double half_length = 0;               ///< of the initial components [m]
+  double half_thickness = 0;            ///< of the initial components [m]
+  /// Half-widths of the Heaviside band, coarse to fine [cells]; of tdf = "paper" [-].
+  std::vector<double> band;
+  TdfSettings tdf;                ///< in metres, with the band of the last, finest stage
+  double stiffness_void = 1e-4;   ///< stiffness factor of the void in dynamics [-]
+  double mass_void = 1e-3;        ///< mass factor of the void in dynamics [-]
+  std::vector<Component> start;   ///< empty: boxes of two crossing components
+  double jitter = 0;              ///< of the initial components, in parts of their sizes [-]
+  int seed = 1;                   ///< of the jitter
+  int drop_every = 25;            ///< iterations between looks for dead components, 0: none
+  bool refill = false;            ///< long components are split in place of dropped ones
+  bool shares_mass = false;       ///< with the other designs that do: see mmc::SharedProblem
+  std::vector<Box> solid, empty;  ///< a cell belongs to a region that holds its centre [m]
+
+  int n_components() const {
+    return start.empty() ? 2 * components[0] * components[1] : static_cast<int>(start.size());
+  }
+  /// Settings of one stage of the continuation.
+  TdfSettings stage(size_t index) const;
+};
+
+struct Cycle {
+  int max_cycles = 1;
+  double tolerance = 0.01;  ///< stop when the objective changes by less between cycles [-]
+};
+
+/// One more dynamic run of the final design on a finer mesh; the limits of flowing elements
+/// shrink with the elements.
+struct Verify {
+  std::optional<std::array<int, 2>> mesh;  ///< elements along the length at the start, and across
+  int refine = 1;                          ///< or so many times those of every body
+  double step = 0;                         ///< [s]
+
+  std::string words() const;  ///< "20 x 4 elements"
+};
+
+}  // namespace flexmorph::cases

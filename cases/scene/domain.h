@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "geometry/grid.h"
+
+/// [domain], [[support]], [[load]]: a plate at rest.
+namespace flexmorph::cases {
+
+/// Where a plate at rest is held or pulled.
+struct Place {
+  enum class Kind { edge, point, box };
+  Kind kind = Kind::point;
+  Box box;  ///< an edge is a box without width [m]
+};
+
+struct PlaneSupport {
+  Place place;
+  bool x = false, y = false;  ///< held directions
+};
+
+struct PlaneForce {
+  Place place;
+  Vec2 force{0, 0};  ///< in all, spread evenly over the place [N]
+};
+
+/// Forces that act at the same time.
+struct LoadCase {
+  std::string name;
+  double weight = 1;
+  std::vector<PlaneForce> forces;
+};
+
+/// A plate at rest: what a static scene has instead of bodies that move.
+struct Domain {
+  std::string name;
+  Box bounds;                 ///< of the design mesh [m]
+  std::vector<Vec2> polygon;  ///< the domain within; empty: all of it
+  double thickness = 1;       ///< [m]
+  double youngs_modulus = 1;  ///< [Pa]
+  double poisson_ratio = 0.3;
+  std::vector<PlaneSupport> supports;
+  std::vector<LoadCase> loads;
+};
+
+}  // namespace flexmorph::cases

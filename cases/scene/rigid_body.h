@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+
+#include "geometry/base.h"
+
+/// [[rigid_body]], and places on bodies.
+namespace flexmorph::cases {
+
+/// A place on a body, or on the ground.
+struct Anchor {
+  std::string body;   ///< empty: the ground
+  Vec2 point{0, 0};   ///< in the axes of a rigid body or the ground; material point of a plate [m]
+  double angle = 0;   ///< of its first axis in those axes [rad]
+  bool given = true;  ///< false: where the other anchor of the joint is at the start
+
+  bool on_ground() const { return body.empty(); }
+};
+
+/// A rigid body in the plane; its axes lie at `position`, turned by `angle`, at the start.
+struct RigidBody {
+  std::string name;
+  double mass = 0;                         ///< [kg]
+  double inertia = 0;                      ///< about the centre of mass [kg m^2]
+  Vec2 center{0, 0};                       ///< of mass, in the axes of the body [m]
+  Vec2 size{0, 0};                         ///< of the rectangle around it that is drawn [m]
+  Vec2 position{0, 0}, velocity{0, 0};     ///< [m], [m/s]; where joints leave them free
+  double angle = 0, angular_velocity = 0;  ///< [rad], [rad/s]
+};
+
+}  // namespace flexmorph::cases
