@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/grid.h"
+#include "geometry/component.h"
 
 /// [domain], [[support]], [[load]]: a plate at rest.
 namespace flexmorph::cases {
