@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "cases/scene/joints/row.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
@@ -102,9 +103,9 @@ std::optional<Theory> mesh_theory(const Scene& scene, Part part, const std::stri
                   "2 (1 + 1 - 1), Strang & Fix 1973"};
   if (any_beams(scene)) return {};
   if (std::any_of(scene.joints.begin(), scene.joints.end(),
-                  [](const Joint& j) { return j.type == "pin"; }) ||
+                  [](const Joint& j) { return j.row->holds_point; }) ||
       std::any_of(scene.loads.begin(), scene.loads.end(),
-                  [](const BodyLoad& l) { return l.type == "point"; }))
+                  [](const BodyLoad& l) { return l.row->at_point; }))
     return no_order("stresses are singular at pins and point loads");
   if (std::any_of(scene.bodies.begin(), scene.bodies.end(),
                   [](const Body& b) { return b.mesh_changes(); }))

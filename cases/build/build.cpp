@@ -33,13 +33,9 @@ std::vector<fem::AttachedJoint> attached_joints(const Scene& scene, const std::s
 
 std::vector<fem::AttachedForce> applied_forces(const Scene& scene, const std::string& name) {
   std::vector<fem::AttachedForce> out;
-  const Body& body = scene.body(name);
-  const Vec2 end(body.longest(scene.time.end), 0);
-  for (const BodyLoad& load : scene.loads) {
-    if (load.body != name) continue;
-    if (load.type == "point") out.push_back({load.point, false, load.force.head<2>(), 0});
-    if (load.type == "edge") out.push_back({end, true, body.width * load.force.head<2>(), 0});
-  }
+  for (const BodyLoad& load : scene.loads)
+    if (load.body == name)
+      if (const auto force = attached_force(load, scene)) out.push_back(*force);
   return out;
 }
 

@@ -10,9 +10,11 @@ namespace flexmorph::cases {
 /// rigid twin they have places on a rigid body.
 using FindPlace = std::function<fem::MarkerPlace(const Anchor&)>;
 
-/// A joint between bodies (revolute, slider, weld of two rigid bodies, drives).
-std::unique_ptr<fem::Joint> make_body_joint(const Scene& scene, const Joint& joint,
-                                            const FindPlace& place);
+/// The joint of the model; nothing where the model at hand does not need it, and of edges, which
+/// are not made one by one: see JointRow::make.
+/// @param rigid  is the model the rigid twin?
+std::unique_ptr<fem::Joint> make_joint(const Scene& scene, const Joint& joint,
+                                       const FindPlace& place, bool rigid);
 
 std::unique_ptr<fem::Link> make_link(const Spring& spring, const FindPlace& place);
 

@@ -6,6 +6,7 @@
 #include "cases/build/heat.h"
 #include "cases/build/joints.h"
 #include "cases/build/twin.h"
+#include "cases/scene/joints/row.h"
 #include "fem/elements/ancf_beam.h"
 #include "fem/elements/ancf_plate.h"
 #include "fem/elements/rigid_body.h"
@@ -106,14 +107,6 @@ const Hub& hub_of(const Scene& scene, const Joint& joint) {
 
 VectorXd gravity_of(const Scene& scene) { return scene.gravity ? *scene.gravity : VectorXd(); }
 
-std::unique_ptr<fem::Term> make_load(const BodyLoad& load) {
-  if (load.type == "point") return fem::make_point_force(load.point, load.force);
-  if (load.type == "edge") return fem::make_edge_load(load.edge, load.force);
-  if (load.type == "surface") return fem::make_surface_load(load.force);
-  if (load.type == "pressure") return fem::make_pressure(load.size);
-  return fem::make_edge_moment(load.edge, load.size);
-}
-
 void add_body(const Scene& scene, const Body& body, const std::array<int, 2>& count,
               fem::Model& model) {
   const VectorXd gravity = gravity_of(scene);
@@ -126,21 +119,14 @@ void add_body(const Scene& scene, const Body& body, const std::array<int, 2>& co
   for (const fem::AttachedMass& m : attached_masses(scene, body.name))
     terms.push_back(fem::make_point_mass(m.mass, m.material, gravity));
   for (const BodyLoad& load : scene.loads)
-    if (load.body == body.name) terms.push_back(make_load(load));
+    if (load.body == body.name) terms.push_back(load.row->make(load));
   model.add_body(body.name, elements_of(body, scene.time.end, count), section, std::move(terms));
-}
-
-/// Number of a free line among the free lines of its body.
-int scalar_of(const Body& body, int line) {
-  return static_cast<int>(
-      std::count_if(body.lines.begin(), body.lines.end(),
-                    [&](const BodyLine& l) { return l.free && l.index < line; }));
 }
 
 /// The rate at the start of a line that is driven through the material; 0 where it is not.
 double slide_of(const Scene& scene, const Joint& frame) {
   for (const Joint& j : scene.joints)
-    if (j.type == "line_drive" && j.body == frame.body && j.line == frame.line)
+    if (j.drives_line && j.body == frame.body && j.line == frame.line)
       return j.at.drive.empty() ? j.speed : scene.motion_of(j.at)(0).rate;
   return 0;
 }
@@ -172,35 +158,13 @@ void add_frame(const Scene& scene, const Joint& joint, double finer, Mechanism& 
   out.growths.push_back(growth);
 }
 
-void add_pin(const Scene& scene, const Joint& joint, fem::Model& model) {
-  const Vec3 at = start_pose(scene, scene.body(joint.body)).place(joint.point);
-  std::vector<fem::Motion> rest;
-  for (const int c : joint.components) rest.push_back({at[c], 0, 0});
-  model.add_joint(fem::make_pin(
-      joint.name, joint.body, joint.point, [rest](double) { return rest; }, joint.components));
-}
-
-void add_line_drive(const Scene& scene, const Joint& joint, fem::Model& model) {
-  const Body& body = scene.body(joint.body);
-  const double start = body.start_lines(0, body.elements[0])[static_cast<size_t>(joint.line)];
-  std::function<fem::Motion(double)> motion = [start, speed = joint.speed](double t) {
-    return fem::Motion{start + speed * t, speed, 0};
-  };
-  if (!joint.at.drive.empty()) motion = scene.motion_of(joint.at);
-  model.add_joint(
-      fem::make_line_drive(joint.name, joint.body, scalar_of(body, joint.line), std::move(motion)));
-}
-
 /// All held edges of a body in one joint, so that a corner of two of them is held once.
 void add_holds(const Scene& scene, const Body& body, fem::Model& model) {
   std::vector<fem::Held> all;
   for (const Joint& joint : scene.joints) {
     if (joint.body != body.name || !joint.holds_edges()) continue;
     for (const std::string& edge : joint.edges) {
-      const std::vector<fem::Held> held = joint.type == "clamp"
-                                              ? fem::clamped_edge(edge, joint.mode)
-                                          : joint.type == "support" ? fem::supported_edge(edge)
-                                                                    : fem::symmetry_edge(edge);
+      const std::vector<fem::Held> held = joint.row->held(joint, edge);
       all.insert(all.end(), held.begin(), held.end());
     }
   }
@@ -276,8 +240,8 @@ void place_alone(const Scene& scene, fem::MotionSettings& motion) {
 }  // namespace
 
 fem::FrameDrive hub_drive(const Scene& scene, const Joint& joint) {
-  return joint.type == "sleeve" ? at_rest(joint.position, joint.angle)
-                                : drive_of(scene, hub_of(scene, joint));
+  return joint.to.empty() ? at_rest(joint.position, joint.angle)
+                          : drive_of(scene, hub_of(scene, joint));
 }
 
 void add_rigid_body(const RigidBody& body, fem::Model& model, const VectorXd& gravity) {
@@ -319,7 +283,7 @@ Pose straight_pose(const Scene& scene, const Body& body) {
     if (joint.body != body.name || !joint.holds_frame() || joint.edge == "free_end") continue;
     const double root = body.longest(scene.time.end) - body.length;
     const double line = body.start_lines(root, body.elements[0])[static_cast<size_t>(joint.line)];
-    if (joint.type == "sleeve") return {joint.position, joint.angle, line};
+    if (joint.to.empty()) return {joint.position, joint.angle, line};
     if (joint.on_rigid_body())
       for (const RigidBody& b : scene.rigid_bodies)
         if (b.name == joint.b.body)
@@ -345,9 +309,7 @@ namespace {
 /// Does no load act that has no energy, and nothing that could bring energy in within a step and be
 /// at rest at both of its ends, as a step of temperature? What moves for longer shows as power.
 bool keeps_energy(const Scene& scene) {
-  const auto follows = [](const BodyLoad& l) {
-    return l.type == "pressure" || l.type == "edge_moment";
-  };
+  const auto follows = [](const BodyLoad& l) { return l.row->follows; };
   return !scene.has_heat() && scene.drives.empty() &&
          std::none_of(scene.loads.begin(), scene.loads.end(), follows);
 }
@@ -375,15 +337,13 @@ Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh) {
   };
   for (const Spring& spring : scene.springs) out.model.add_link(make_link(spring, place));
   for (const Joint& joint : scene.joints) {
-    if (joint.between_bodies()) {
-      out.model.add_joint(make_body_joint(scene, joint, place));
+    if (!joint.holds_frame()) {
+      if (auto made = make_joint(scene, joint, place, false)) out.model.add_joint(std::move(made));
       continue;
     }
     const Body& body = scene.body(joint.body);
     const double finer = static_cast<double>(body.elements[0]) / elements(body)[0];
-    if (joint.holds_frame()) add_frame(scene, joint, finer, out);
-    if (joint.type == "pin") add_pin(scene, joint, out.model);
-    if (joint.type == "line_drive") add_line_drive(scene, joint, out.model);
+    add_frame(scene, joint, finer, out);
   }
   for (const Body& body : scene.bodies) add_holds(scene, body, out.model);
   out.motion.end = scene.time.end;

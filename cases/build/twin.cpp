@@ -5,6 +5,7 @@
 
 #include "cases/build/build.h"
 #include "cases/build/joints.h"
+#include "cases/scene/joints/row.h"
 #include "fem/dynamics/integrator.h"
 #include "fem/elements/rigid_body.h"
 #include "fem/solve/assembly.h"
@@ -91,15 +92,8 @@ Twin::Twin(const Scene& scene, Driven driven) : scene_(scene), driven_(driven) {
   for (const Joint& joint : scene.joints) {
     if (joint.holds_frame()) {
       add_carried(joint);
-    } else if (joint.type == "pin") {
-      const Vec2 at = start_place(scene, {joint.body, joint.point});
-      std::vector<fem::Motion> rest;
-      for (const int c : joint.components) rest.push_back({at[c], 0, 0});
-      model_.add_joint(fem::make_point_drive(
-          joint.name, place({joint.body, joint.point}), [rest](double) { return rest; },
-          joint.components));
-    } else if (joint.between_bodies() && (joint.laws.empty() || !let_go(joint.laws[0]))) {
-      model_.add_joint(make_body_joint(scene, joint, place));
+    } else if (joint.laws.empty() || !let_go(joint.laws[0])) {
+      if (auto made = make_joint(scene, joint, place, true)) model_.add_joint(std::move(made));
     }
   }
   if (driven != Driven::by_trajectory) return;
@@ -220,15 +214,7 @@ fem::Motion Twin::motion_of(const std::string& drive, const fem::State& x) const
     if (joint.laws.empty() || joint.laws[0].drive != drive) continue;
     const fem::FrameMotion a = frame_at(completed(scene_, joint.a, joint.b)),
                            b = frame_at(completed(scene_, joint.b, joint.a));
-    if (joint.type == "angle_drive")
-      return {std::remainder(b.angle - a.angle, 2 * std::numbers::pi), b.angle_rate - a.angle_rate,
-              b.angle_acceleration - a.angle_acceleration};
-    if (joint.type == "distance") {
-      const Vec2 d = b.origin - a.origin, d_t = b.origin_rate - a.origin_rate,
-                 d_tt = b.origin_acceleration - a.origin_acceleration;
-      const double l = d.norm(), rate = d.dot(d_t) / l;
-      return {l, rate, (d_t.squaredNorm() + d.dot(d_tt) - rate * rate) / l};
-    }
+    if (joint.row->coordinate) return joint.row->coordinate(a, b);
   }
   throw Error::input("drive '" + drive +
                      "' follows from the trajectory, but drives no flow, angle or distance");

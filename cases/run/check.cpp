@@ -7,6 +7,7 @@
 #include "cases/run/check_cost.h"
 #include "cases/run/run.h"
 #include "cases/scene/heat.h"
+#include "cases/scene/joints/row.h"
 #include "cases/scene/read.h"
 #include "io/files.h"
 
@@ -68,10 +69,8 @@ std::string measure_words(const Measure& measure) {
 }
 
 std::string load_words(const BodyLoad& load) {
-  if (load.type == "pressure") return "pressure, follows the plate";
-  if (load.type == "edge_moment") return "moment at '" + load.edge + "', follows the plate";
-  if (load.type == "point") return "force at a point";
-  return load.type == "edge" ? "force along '" + load.edge + "'" : "force per area";
+  return std::string(load.row->words) + (load.edge.empty() ? "" : " '" + load.edge + "'") +
+         (load.row->follows ? ", follows the plate" : "");
 }
 
 void describe_body(const Body& body, const Mechanism& mechanism, std::ostringstream& out) {
@@ -280,12 +279,10 @@ std::string check_case(const RunOptions& options) {
   out << row("joints", std::to_string(scene.joints.size()) + ", " +
                            std::to_string(mechanism.model.n_constraints()) + " constraint rows" +
                            (scene.joints.empty() ? "" : ": ") +
-                           kinds_of(scene.joints, [](const Joint& j) { return j.type; }));
+                           kinds_of(scene.joints, [](const Joint& j) { return j.row->name; }));
   if (!scene.springs.empty())
     out << row("springs", std::to_string(scene.springs.size()) + ": " +
-                              kinds_of(scene.springs, [](const Spring& s) {
-                                return s.torsion ? "torsion" : "linear";
-                              }));
+                              kinds_of(scene.springs, [](const Spring& s) { return s.row->name; }));
   if (!scene.point_masses.empty())
     out << row("point masses", std::to_string(scene.point_masses.size()));
   for (const BodyLoad& load : scene.loads) out << row("load on " + load.body, load_words(load));

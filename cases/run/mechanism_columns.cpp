@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "cases/build/joints.h"
+#include "cases/scene/joints/row.h"
 #include "fem/dynamics/carrier.h"
 
 namespace flexmorph::cases {
@@ -33,7 +34,7 @@ MechanismColumns::MechanismColumns(const Scene& scene) : scene_(scene) {
     if (!joint.named) continue;
     const bool driven = std::any_of(joint.laws.begin(), joint.laws.end(),
                                     [](const Law& law) { return !law.drive.empty(); });
-    const Anchor about = joint.type == "point_drive" ? joint.a : completed(scene, joint.b, joint.a);
+    const Anchor about = joint.row->on_one_body ? joint.a : completed(scene, joint.b, joint.a);
     joints_.push_back({&joint, about, driven});
     name(joint.name, {"force_x", "force_y", "moment"});
     if (driven) name(joint.name, {"power"});

@@ -1,4 +1,3 @@
-#include "cases/scene/measure.h"
 #include "cases/scene/read.h"
 #include "io/files.h"
 
@@ -9,12 +8,11 @@ using io::between;
 using io::positive;
 using io::Table;
 
-void read_beam(const Table& t, const Vocabulary& words, const Scene& scene, bool has_density,
-               Body& body) {
+void read_beam(const Table& t, const Scene& scene, bool has_density, Body& body) {
   constexpr int kMostElements = 100'000;
   body.space = t.choice("space", "a space", std::vector<std::string>{"plane"}, "plane");
   if (scene.in_space()) t.fail("element", "beams live in the plane, the bodies before in space");
-  body.terms = t.choices("terms", "a term of a beam", words.beam_terms);
+  body.terms = t.choices("terms", "a term of a beam", terms_of_beams());
   if (!scene.statics && !body.has("inertia")) t.fail("terms", "a body that moves has \"inertia\"");
   if (body.has("gcm") == body.has("ecm"))
     t.fail("terms", "a beam has either \"gcm\" or \"ecm\" (which does not lock)");
@@ -35,21 +33,6 @@ void read_beam(const Table& t, const Vocabulary& words, const Scene& scene, bool
                       io::to_text(body.length / std::abs(body.arc), 4) + " m");
   if (t.has("flow")) t.fail("flow", "material flows through \"ale_ancf_plate\" only");
   if (t.has("line")) t.fail("the lines of a beam's elements stay where they are: no [[body.line]]");
-}
-
-void read_measures(const Table& root, Scene& scene) {
-  for (const Table& t : root.tables("measure")) {
-    Measure out;
-    out.body = t.choice("body", "a body", names_of(scene.bodies));
-    out.quantities = t.choices("quantities", "a measured quantity", measured_quantities());
-    const Body& body = scene.body(out.body);
-    for (const Measure& other : scene.measures)
-      if (other.body == out.body) t.fail("body", "'" + out.body + "' is measured already");
-    for (const std::string& quantity : out.quantities)
-      if (const std::string why = refusal_of_measure(scene, body, quantity); !why.empty())
-        t.fail("quantities", "\"" + quantity + "\": " + why);
-    scene.measures.push_back(std::move(out));
-  }
 }
 
 }  // namespace flexmorph::cases

@@ -156,11 +156,12 @@ void check_loads(const Table& t, const Scene& scene, const BodyDesign& design) {
     if (load.body != design.body) continue;
     const bool at_node =
         is_whole((load.point.x() - g.x0) / g.dx()) && is_whole((load.point.y() - g.y0) / g.dy());
-    if (load.type == "point" && !at_node)
+    if (load.row->at_point && !at_node)
       t.fail("body", "a force on a designed body acts at a node of its design mesh");
-    if (load.type != "point" && !(load.type == "edge" && load.edge == "free_end"))
+    if (!attached_force(load, scene))
       t.fail("body", "a designed body is loaded at points or along its \"free_end\", not by \"" +
-                         load.type + "\"" + (load.edge.empty() ? "" : " at \"" + load.edge + "\""));
+                         std::string(load.row->name) + "\"" +
+                         (load.edge.empty() ? "" : " at \"" + load.edge + "\""));
   }
 }
 
@@ -307,9 +308,8 @@ BodyDesign read_design(const Table& t, const Scene& scene) {
   for (const BodyDesign& other : scene.designs)
     if (other.body == design.body) t.fail("body", "this body has a [[design]] already");
   const Body& body = scene.body(design.body);
-  const bool welded = std::any_of(scene.joints.begin(), scene.joints.end(), [&](const Joint& j) {
-    return j.type == "weld" && j.body == body.name && j.edge == "root";
-  });
+  const bool welded = std::any_of(scene.joints.begin(), scene.joints.end(),
+                                  [&](const Joint& j) { return j.carries(body.name); });
   if (body.in_space() || body.has_free_lines())
     t.fail("body", "a designed body lives in the plane and has no free lines");
   if (!welded)
@@ -364,9 +364,9 @@ Esl read_esl(const Table& t, const Scene& scene) {
   return esl;
 }
 
-optim::Settings read_optimizer(const Table& t, const Vocabulary& words) {
+optim::Settings read_optimizer(const Table& t) {
   optim::Settings s;
-  s.name = t.choice("name", "an optimizer", words.optimizers, s.name);
+  s.name = t.choice("name", "an optimizer", optim::optimizer_names(), s.name);
   // 0: the design is analysed as it starts.
   s.max_iterations = t.integer("max_iterations", "a number of iterations", 0, 1'000'000, 300);
   s.max_evaluations = t.integer("max_solves", "a number of state solves", 0, 100'000'000, 0);
@@ -417,7 +417,7 @@ Verify read_verify(const Table& t, const Scene& scene) {
 
 }  // namespace
 
-void read_designs(const Table& root, const Vocabulary& words, Scene& scene) {
+void read_designs(const Table& root, Scene& scene) {
   std::vector<Table> sharing;
   for (const Table& t : root.tables("design")) {
     scene.designs.push_back(read_design(t, scene));
@@ -427,7 +427,7 @@ void read_designs(const Table& root, const Vocabulary& words, Scene& scene) {
     sharing[0].fail("coupling", "no other [[design]] has \"shared_mass\" to share with");
   if (scene.domain) {
     if (scene.designs.empty()) root.fail("design", "a static scene has a [[design]]");
-    if (root.has("optimizer")) scene.optimizer = read_optimizer(root.table("optimizer"), words);
+    if (root.has("optimizer")) scene.optimizer = read_optimizer(root.table("optimizer"));
     return;
   }
   if (scene.designs.empty()) {
@@ -437,7 +437,7 @@ void read_designs(const Table& root, const Vocabulary& words, Scene& scene) {
     return;
   }
   scene.esl = read_esl(root.table("esl"), scene);
-  if (root.has("optimizer")) scene.optimizer = read_optimizer(root.table("optimizer"), words);
+  if (root.has("optimizer")) scene.optimizer = read_optimizer(root.table("optimizer"));
   if (root.has("cycle")) {
     const Table t = root.table("cycle");
     scene.cycle.max_cycles = t.integer("max_cycles", "a number of cycles", 1, 1000, 1);

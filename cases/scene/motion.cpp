@@ -127,15 +127,14 @@ Flow read_flow(const Table& t, const Scene& scene) {
   return flow;
 }
 
-void read_plate(const Table& t, const Vocabulary& words, const Scene& scene, bool has_density,
-                Body& body) {
-  body.shape = t.choice("shape", "a shape set", words.shapes, "h16");
+void read_plate(const Table& t, const Scene& scene, bool has_density, Body& body) {
+  body.shape = t.choice("shape", "a shape set", plate_shapes(), "h16");
   body.space = t.choice("space", "a space", std::vector<std::string>{"plane", "space"}, "plane");
   if (!scene.bodies.empty() && scene.bodies.front().space != body.space)
     t.fail("space", "all bodies of a scene live in the plane, or all in space");
   if (scene.is_mechanism() && body.in_space())
     t.fail("space", "rigid bodies live in the plane: in their scenes plates do, too");
-  body.terms = t.choices("terms", "a term", body.in_space() ? words.space_terms : words.terms);
+  body.terms = t.choices("terms", "a term", terms_of_plates(body.in_space()));
   if (!scene.statics && !body.has("inertia")) t.fail("terms", "a body that moves has \"inertia\"");
   if (body.has("membrane") && body.has("membrane_assumed"))
     t.fail("terms", "\"membrane_assumed\" stands in place of \"membrane\"");
@@ -171,16 +170,16 @@ void read_plate(const Table& t, const Vocabulary& words, const Scene& scene, boo
   body.lines = read_lines(t, body);
 }
 
-Body read_body(const Table& t, const Vocabulary& words, const Scene& scene, bool has_gravity) {
+Body read_body(const Table& t, const Scene& scene, bool has_gravity) {
   Body body;
   body.name = read_name(t, "the name of a body", scene);
-  body.element = t.choice("element", "an element", words.elements);
+  body.element = t.choice("element", "an element", element_names());
   // Nothing at rest asks for the density but weight.
   const bool has_density = !scene.statics || has_gravity;
   if (body.is_beam())
-    read_beam(t, words, scene, has_density, body);
+    read_beam(t, scene, has_density, body);
   else
-    read_plate(t, words, scene, has_density, body);
+    read_plate(t, scene, has_density, body);
   if (t.has("position")) {
     const auto at = t.numbers("position", any_number("a position", "m"), 2);
     body.position = Vec2(at[0], at[1]);
@@ -200,18 +199,7 @@ PointMass read_point_mass(const Table& t, const Scene& scene) {
 
 }  // namespace
 
-std::string read_name(const Table& t, const std::string& noun, const Scene& scene) {
-  std::string name = read_word(t, noun);
-  if (name == "energy") t.fail("name", "'energy' names columns of motion.csv already");
-  if (name == "ground") t.fail("name", "'ground' is what does not move");
-  for (const std::vector<std::string>& taken :
-       {names_of(scene.hubs), names_of(scene.bodies), names_of(scene.rigid_bodies)})
-    for (const std::string& other : taken)
-      if (name == other) t.fail("name", "there is another '" + name + "'");
-  return name;
-}
-
-void read_motion(const Table& root, const Vocabulary& words, const Follow& follow, Scene& scene) {
+void read_motion(const Table& root, const Follow& follow, Scene& scene) {
   if (root.has("static")) {
     for (const char* key :
          {"time", "drive", "constants", "esl", "design", "optimizer", "cycle", "verify"})
@@ -227,8 +215,7 @@ void read_motion(const Table& root, const Vocabulary& words, const Follow& follo
   const std::vector<Table> bodies = root.tables("body");
   if (bodies.empty() && !scene.is_mechanism())
     root.fail("body", "a scene has one or more [[body]]");
-  for (const Table& t : bodies)
-    scene.bodies.push_back(read_body(t, words, scene, root.has("gravity")));
+  for (const Table& t : bodies) scene.bodies.push_back(read_body(t, scene, root.has("gravity")));
   if (root.has("gravity")) {
     const auto gravity =
         root.numbers("gravity", any_number("gravity", "m/s^2"), scene.in_space() ? 3 : 2);
@@ -241,14 +228,15 @@ void read_motion(const Table& root, const Vocabulary& words, const Follow& follo
         follow_length(bodies[i].table("flow"), scene, b);
   };
   follow_lengths(false);
-  if (root.has("trajectory")) read_trajectory(root, words, follow, scene);
+  if (root.has("trajectory")) read_trajectory(root, follow, scene);
   follow_lengths(true);
-  read_joints(root, words, scene);
+  read_joints(root, scene);
   read_springs(root, scene);
   check_mechanism_parts(root, scene);
   for (const Table& t : root.tables("point_mass"))
     scene.point_masses.push_back(read_point_mass(t, scene));
   read_loads(root, scene);
+  read_observed(root, scene);
   read_measures(root, scene);
   if (scene.statics) {
     read_growing(root, scene);

@@ -10,12 +10,10 @@ namespace flexmorph::cases {
 
 /// [time] or [static], gravity, [[hub]], [[body]], [[joint]], [[point_mass]], [[load]],
 /// [[observe]].
-void read_motion(const io::Table& root, const Vocabulary& words, const Follow& follow,
-                 Scene& scene);
+void read_motion(const io::Table& root, const Follow& follow, Scene& scene);
 
 /// The entries of [[joint]] without what must fit together with them.
-std::vector<Joint> read_joint_list(const io::Table& root, const Vocabulary& words,
-                                   const Scene& scene);
+std::vector<Joint> read_joint_list(const io::Table& root, const Scene& scene);
 /// [constants], [[drive]]; needs the time of the run.
 void read_drives(const io::Table& root, Scene& scene);
 
@@ -32,15 +30,14 @@ std::array<double, 2> range_of(const std::function<fem::Motion(double)>& motion,
 void follow_length(const io::Table& flow, const Scene& scene, Body& body);
 
 /// [[joint]] and what must fit together with them; needs hubs and bodies.
-void read_joints(const io::Table& root, const Vocabulary& words, Scene& scene);
+void read_joints(const io::Table& root, Scene& scene);
 
-/// [[load]] on bodies, [[observe]].
-void read_loads(const io::Table& root, Scene& scene);
+/// [[observe]].
+void read_observed(const io::Table& root, Scene& scene);
 
 /// The keys of a beam's [[body]] that follow `element`, but for its place.
 /// @param has_density  without it the density does not matter: nothing moves and nothing weighs
-void read_beam(const io::Table& t, const Vocabulary& words, const Scene& scene, bool has_density,
-               Body& body);
+void read_beam(const io::Table& t, const Scene& scene, bool has_density, Body& body);
 
 /// [[measure]].
 void read_measures(const io::Table& root, Scene& scene);
@@ -48,21 +45,11 @@ void read_measures(const io::Table& root, Scene& scene);
 /// [[rigid_body]].
 void read_rigid_bodies(const io::Table& root, Scene& scene);
 
-/// A joint between bodies that `joint.type` names; false where it names another one.
-bool read_body_joint(const io::Table& t, const Scene& scene, Joint& joint);
-
-/// The frame on the rigid body `joint.to` that an edge of a plate is welded to.
-void read_carrier(const io::Table& t, Joint& joint);
-
-/// [[spring]].
-void read_springs(const io::Table& root, Scene& scene);
-
 /// What a scene with rigid bodies asks of all its parts; needs joints and springs.
 void check_mechanism_parts(const io::Table& root, const Scene& scene);
 
 /// [trajectory]; lets `follow` fill the drives that follow from it (needs bodies and joints).
-void read_trajectory(const io::Table& root, const Vocabulary& words, const Follow& follow,
-                     Scene& scene);
+void read_trajectory(const io::Table& root, const Follow& follow, Scene& scene);
 
 /// The name of a body, unlike all others.
 std::string read_name(const io::Table& t, const std::string& noun, const Scene& scene);
@@ -83,7 +70,7 @@ std::string read_word(const io::Table& t, const std::string& noun);
 void read_static(const io::Table& root, Scene& scene);
 
 /// [[design]], [esl], [optimizer], [cycle], [verify]; needs what read_motion() read.
-void read_designs(const io::Table& root, const Vocabulary& words, Scene& scene);
+void read_designs(const io::Table& root, Scene& scene);
 
 /// Is the ratio a whole number, up to the rounding of decimal input?
 bool is_whole(double ratio);

@@ -101,6 +101,28 @@ const Body& Scene::body(const std::string& body_name) const {
   throw Error::input("there is no body '" + body_name + "' in this scene");
 }
 
+const std::vector<std::string>& element_names() {
+  static const std::vector<std::string> kNames{"ancf_plate", "ale_ancf_plate", "ancf_beam"};
+  return kNames;
+}
+
+const std::vector<std::string>& plate_shapes() {
+  static const std::vector<std::string> kNames{"h16", "h12"};
+  return kNames;
+}
+
+const std::vector<std::string>& terms_of_plates(bool in_space) {
+  static const std::vector<std::string> kPlane{"inertia", "membrane"};
+  static const std::vector<std::string> kSpace{"inertia", "membrane", "membrane_assumed",
+                                               "bending"};
+  return in_space ? kSpace : kPlane;
+}
+
+const std::vector<std::string>& terms_of_beams() {
+  static const std::vector<std::string> kNames{"inertia", "gcm", "ecm"};
+  return kNames;
+}
+
 std::string Verify::words() const {
   if (!mesh) return std::to_string(refine) + " times the elements in each direction";
   return std::to_string((*mesh)[0]) + " x " + std::to_string((*mesh)[1]) + " elements";
@@ -127,7 +149,7 @@ bool is_whole(double ratio) {
   return std::abs(ratio - std::round(ratio)) <= 1e-6 * std::max(1.0, std::abs(ratio));
 }
 
-Scene read_scene(const io::CaseFile& file, const Follow& follow, const Vocabulary& words) {
+Scene read_scene(const io::CaseFile& file, const Follow& follow) {
   const io::Table root = file.root();
   Scene scene;
   scene.name = std::filesystem::path(file.path()).stem().string();
@@ -135,8 +157,8 @@ Scene read_scene(const io::CaseFile& file, const Follow& follow, const Vocabular
   if (root.has("domain"))
     read_static(root, scene);
   else
-    read_motion(root, words, follow, scene);
-  read_designs(root, words, scene);
+    read_motion(root, follow, scene);
+  read_designs(root, scene);
   scene.output = read_output(root);
   if (root.has("accuracy")) scene.accuracy = read_accuracy(root.table("accuracy"));
   if (root.has("expect")) {

@@ -62,18 +62,11 @@ struct Scene {
   bool has_heat() const;
 };
 
-/// The rows of the tables a scene may name.
-struct Vocabulary {
-  std::vector<std::string> elements{"ancf_plate", "ale_ancf_plate", "ancf_beam"};
-  std::vector<std::string> shapes{"h16", "h12"};
-  std::vector<std::string> terms{"inertia", "membrane"};  ///< in the plane
-  std::vector<std::string> beam_terms{"inertia", "gcm", "ecm"};
-  std::vector<std::string> space_terms{"inertia", "membrane", "membrane_assumed", "bending"};
-  std::vector<std::string> joints{"weld",    "sleeve",      "pin",        "clamp",
-                                  "support", "symmetry",    "line_drive", "revolute",
-                                  "slider",  "angle_drive", "distance",   "point_drive"};
-  std::vector<std::string> optimizers = optim::optimizer_names();
-};
+/// What a body may name: rows of the tables of elements, shape sets and terms.
+const std::vector<std::string>& element_names();
+const std::vector<std::string>& plate_shapes();
+const std::vector<std::string>& terms_of_plates(bool in_space);
+const std::vector<std::string>& terms_of_beams();
 
 /// Fills the drives that follow from the trajectory of a scene read as far as its joints: a job for
 /// those who know mechanisms (build/trajectory.h); here it is only asked.
@@ -82,6 +75,6 @@ using Follow = std::function<void(Scene&)>;
 /// Reads and checks a case: types, ranges, names, and what must fit together. Keys nobody knows
 /// are errors.
 /// @throws Error (input) located in the file, see io::Table.
-Scene read_scene(const io::CaseFile& file, const Follow& follow, const Vocabulary& words = {});
+Scene read_scene(const io::CaseFile& file, const Follow& follow);
 
 }  // namespace flexmorph::cases

@@ -1,19 +1,46 @@
 #pragma once
 
+#include <memory>
+#include <span>
 #include <string>
 
 #include "cases/scene/rigid_body.h"
+#include "fem/link.h"
+#include "io/case_file.h"
 
 /// [[spring]].
 namespace flexmorph::cases {
 
-/// Spring and damper between two anchors: along the line between them, or between their axes.
+struct Scene;
+struct SpringRow;
+
+/// Spring and damper between two anchors, in the units of the row.
 struct Spring {
+  const SpringRow* row = nullptr;
   std::string name;
-  bool torsion = false;
   Anchor a, b;
-  double stiffness = 0, damping = 0;  ///< [N/m], [N s/m]; torsion: [N m/rad], [N m s/rad]
-  double rest = 0;                    ///< length [m] or angle [rad] without force
+  double stiffness = 0, damping = 0;
+  double rest = 0;  ///< length or angle without force
 };
+
+/// A row of the table of springs: all that the program knows of one kind (springs.cpp).
+struct SpringRow {
+  const char* name;      ///< as cases say it: type = "torsion"
+  const char* sentence;  ///< what it does
+  bool points, axes;     ///< does it look at points, at axes?
+  const char* stiffness_unit;
+  const char* damping_unit;
+  const char* rest_key;  ///< of its length or angle without force
+  io::Quantity rest;
+  std::unique_ptr<fem::Link> (*make)(const Spring& spring, const fem::MarkerPlace& a,
+                                     const fem::MarkerPlace& b);
+};
+
+/// All rows, in the order in which messages list them; the first one is meant where a case says
+/// none.
+std::span<const SpringRow* const> spring_rows();
+
+/// [[spring]].
+void read_springs(const io::Table& root, Scene& scene);
 
 }  // namespace flexmorph::cases

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "cases/scene/joints/row.h"
 #include "cases/stability/judge.h"
 
 namespace flexmorph::cases {
@@ -60,7 +61,7 @@ bool is_driven(const Scene& scene) {
   });
   return hubs || flows || scene.has_heat() || !scene.drives.empty() || !scene.loads.empty() ||
          std::any_of(scene.joints.begin(), scene.joints.end(),
-                     [](const Joint& j) { return j.type == "line_drive"; });
+                     [](const Joint& j) { return j.drives_line; });
 }
 
 }  // namespace
@@ -92,7 +93,7 @@ Bounds bounds_of(const Scene& scene) {
   if (scene.time.start == Start::hub_at_rest)
     offer(2 * std::numbers::pi / scene.time.spin_up, "the spin-up", out);
   for (const Joint& joint : scene.joints)
-    if (joint.type == "angle_drive")
+    if (joint.row->drives_angle)
       for (const Law& law : joint.laws)
         offer(largest_rate(scene, law), "the drive '" + law.drive + "'", out);
   out.undriven = !is_driven(scene);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cases/scene/joints/row.h"
 #include "cases/stability/judge.h"
 #include "cases/stability/overrides.h"
 #include "io/files.h"
@@ -109,7 +110,7 @@ Rows rest(const Scene& scene) {
       row.overrides.push_back(entry("body", i, "heat.rise", 0));
   }
   for (size_t i = 0; i < scene.joints.size(); ++i)
-    if (scene.joints[i].type == "line_drive" && scene.joints[i].at.drive.empty())
+    if (scene.joints[i].drives_line && scene.joints[i].at.drive.empty())
       row.overrides.push_back(entry("joint", i, "speed", 0));
   const double nothing = 1e-18 * stiff_energy(scene);
   row.invariances.push_back(
@@ -192,7 +193,7 @@ Rows joints(const Scene& scene) {
   }
   for (size_t i = 0; i < scene.joints.size(); ++i) {
     const Joint& joint = scene.joints[i];
-    const bool pin = joint.type == "pin";
+    const bool pin = joint.row->holds_point;
     if (!pin && !joint.holds_edges()) continue;
     out.push_back({"joint " + std::to_string(i + 1) + " holds nothing",
                    {entry_text("joint", i, pin ? "components" : "edges", "[]")}});

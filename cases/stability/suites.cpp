@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "cases/scene/joints/row.h"
 #include "cases/stability/overrides.h"
 #include "cases/study/study.h"
 #include "io/files.h"
@@ -111,7 +112,7 @@ Rows spin(const Scene& scene) {
         if (scene.hubs[i].turn.drive.empty())
           row.overrides.push_back(entry("hub", i, "angular_velocity", omega));
       for (const Joint& joint : scene.joints)
-        for (size_t i = 0; joint.type == "angle_drive" && i < scene.drives.size(); ++i) {
+        for (size_t i = 0; joint.row->drives_angle && i < scene.drives.size(); ++i) {
           const Drive& drive = scene.drives[i];
           if (drive.from_trajectory || joint.laws.empty() || drive.name != joint.laws[0].drive)
             continue;

@@ -6,8 +6,10 @@
 #include <fstream>
 #include <iterator>
 #include <numbers>
+#include <set>
 
 #include "cases/build/build.h"
+#include "cases/scene/joints/row.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -132,13 +134,23 @@ TEST(SceneReader, DefaultComponentsFillTheVolume) {
   EXPECT_NEAR(2 * 4 * d.half_length * d.half_thickness / box, 0.5, 1e-12);
 }
 
-TEST(SceneReader, LaterTablesMayAddWords) {
-  Vocabulary words;
-  words.terms.push_back("bending");
-  const io::CaseFile file(shipped("rotating_plate_v01"),
-                          Changes{"body.terms=[\"inertia\", \"membrane\", \"bending\"]"});
-  EXPECT_EQ(read_scene(file, {}, words).bodies[0].terms.size(), 3u);
-  EXPECT_THROW(read_scene(file), Error);
+/// Names of rows, each with a sentence.
+template <class Rows>
+std::set<std::string> described(const Rows& rows) {
+  std::set<std::string> names;
+  for (const auto* row : rows) {
+    EXPECT_TRUE(names.insert(row->name).second) << row->name << " twice";
+    EXPECT_TRUE(std::string(row->sentence).ends_with(".")) << row->name;
+  }
+  return names;
+}
+
+TEST(SceneReader, KnowsTheRowsOfItsTablesAndNoOthers) {
+  EXPECT_EQ(described(spring_rows()), (std::set<std::string>{"linear", "torsion"}));
+  EXPECT_EQ(described(load_rows()).size(), 5u);
+  const std::string message = complaint({"joint.type=hinge"});
+  for (const std::string& name : described(joint_rows()))
+    EXPECT_NE(message.find("'" + name + "'"), std::string::npos) << name;
 }
 
 struct Bad {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "cases/scene/joints/row.h"
 #include "io/plots.h"
 
 namespace flexmorph::cases {
@@ -22,7 +23,7 @@ struct UsedDrives {
     for (const Body& body : scene.bodies)
       if (body.flow) add(body.flow->length, lengths);
     for (const Joint& joint : scene.joints) {
-      for (const Law& law : joint.laws) add(law, joint.type == "angle_drive" ? angles : lengths);
+      for (const Law& law : joint.laws) add(law, joint.row->drives_angle ? angles : lengths);
       add(joint.at, lengths);
     }
     if (!scene.trajectory) return;
@@ -128,9 +129,8 @@ std::string joint_forces_plot(const Scene& scene, const MotionRecord& motion) {
       if (any) figure.panels.push_back(std::move(panel));
     };
     // What a joint cannot transmit is zero but for rounding: no panel.
-    if (joint.type != "angle_drive") add({{"force_x", "x"}, {"force_y", "y"}}, "force [N]");
-    if (joint.type == "angle_drive" || joint.type == "weld" || joint.type == "slider")
-      add({{"moment", ""}}, "moment [N m]");
+    if (joint.row->has_force) add({{"force_x", "x"}, {"force_y", "y"}}, "force [N]");
+    if (joint.row->has_moment) add({{"moment", ""}}, "moment [N m]");
     add({{"power", ""}}, "power [W]");
   }
   return figure.panels.empty() ? "" : io::plot_svg(figure);

@@ -1,0 +1,37 @@
+#include <cmath>
+#include <numbers>
+
+#include "cases/scene/joints/reading.h"
+#include "cases/scene/joints/row.h"
+
+namespace flexmorph::cases {
+namespace {
+
+void read(const io::Table& t, const Scene& scene, Joint& joint) {
+  read_anchors(t, scene, false, true, joint.a, joint.b);
+  joint.laws = {read_law(t, "angle", io::any_number("an angle", "rad"), scene)};
+  name_between(t, scene, joint);
+}
+
+std::unique_ptr<fem::Joint> make(const Joint& joint, const JointParts& parts) {
+  return fem::make_angle_drive(joint.name, parts.a, parts.b, parts.law(joint, 0));
+}
+
+fem::Motion angle(const fem::FrameMotion& a, const fem::FrameMotion& b) {
+  return {std::remainder(b.angle - a.angle, 2 * std::numbers::pi), b.angle_rate - a.angle_rate,
+          b.angle_acceleration - a.angle_acceleration};
+}
+
+}  // namespace
+
+extern const JointRow kAngleDrive;
+const JointRow kAngleDrive = {.name = "angle_drive",
+                              .sentence = "The first axis of b stands at an angle to that of a.",
+                              .read = read,
+                              .make = make,
+                              .coordinate = angle,
+                              .drives_angle = true,
+                              .has_force = false,
+                              .has_moment = true};
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,37 @@
+#include "cases/scene/joints/reading.h"
+#include "cases/scene/joints/row.h"
+
+/// Joints between places on two bodies without laws, see fem/body_joints.h.
+namespace flexmorph::cases {
+namespace {
+
+void read_revolute(const io::Table& t, const Scene& scene, Joint& joint) {
+  read_anchors(t, scene, true, false, joint.a, joint.b);
+  name_between(t, scene, joint);
+}
+
+void read_slider(const io::Table& t, const Scene& scene, Joint& joint) {
+  read_anchors(t, scene, true, true, joint.a, joint.b);
+  name_between(t, scene, joint);
+}
+
+}  // namespace
+
+extern const JointRow kRevolute, kSlider;
+
+const JointRow kRevolute = {.name = "revolute",
+                            .sentence = "Two points are one.",
+                            .read = read_revolute,
+                            .make = [](const Joint& j, const JointParts& parts) {
+                              return fem::make_revolute(j.name, parts.a, parts.b);
+                            }};
+
+const JointRow kSlider = {
+    .name = "slider",
+    .sentence = "Point b slides along the first axis of a; their axes are parallel.",
+    .read = read_slider,
+    .make = [](const Joint& j,
+               const JointParts& parts) { return fem::make_slider(j.name, parts.a, parts.b); },
+    .has_moment = true};
+
+}  // namespace flexmorph::cases

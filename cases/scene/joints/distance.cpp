@@ -1,0 +1,35 @@
+#include "cases/scene/joints/reading.h"
+#include "cases/scene/joints/row.h"
+
+namespace flexmorph::cases {
+namespace {
+
+void read(const io::Table& t, const Scene& scene, Joint& joint) {
+  read_anchors(t, scene, true, false, joint.a, joint.b);
+  joint.laws = {read_law(t, "distance", io::positive("a distance", "m"), scene)};
+  name_between(t, scene, joint);
+}
+
+std::unique_ptr<fem::Joint> make(const Joint& joint, const JointParts& parts) {
+  return fem::make_distance(joint.name, parts.a, parts.b, parts.law(joint, 0));
+}
+
+fem::Motion distance(const fem::FrameMotion& a, const fem::FrameMotion& b) {
+  const Vec2 d = b.origin - a.origin, d_t = b.origin_rate - a.origin_rate,
+             d_tt = b.origin_acceleration - a.origin_acceleration;
+  const double l = d.norm(), rate = d.dot(d_t) / l;
+  return {l, rate, (d_t.squaredNorm() + d.dot(d_tt) - rate * rate) / l};
+}
+
+}  // namespace
+
+extern const JointRow kDistance;
+const JointRow kDistance = {.name = "distance",
+                            .sentence =
+                                "Two points are a length apart: a massless rod, or one "
+                                "whose length is driven.",
+                            .read = read,
+                            .make = make,
+                            .coordinate = distance};
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,64 @@
+#include <cmath>
+
+#include "cases/scene/joints/reading.h"
+#include "cases/scene/joints/row.h"
+#include "io/files.h"
+
+namespace flexmorph::cases {
+namespace {
+
+using io::to_text;
+
+double start_of_line(const Body& body, const Joint& joint) {
+  return body.start_lines(0, body.elements[0])[static_cast<size_t>(joint.line)];
+}
+
+void read(const io::Table& t, const Scene& scene, Joint& joint) {
+  const Body& body = read_jointed_body(t, scene, joint);
+  joint.drives_line = true;
+  joint.line = t.integer("line", "a free m-line", 0, body.elements[0]);
+  joint.name = joint.body + ".line " + std::to_string(joint.line);
+  const bool free = std::any_of(body.lines.begin(), body.lines.end(),
+                                [&](const BodyLine& l) { return l.free && l.index == joint.line; });
+  if (!free) t.fail("line", "only a free line is driven: see [[body.line]]");
+  if (t.has("at")) {
+    if (t.has("speed")) t.fail("speed", "a line moves at a `speed`, or as the drive `at` says");
+    joint.at.drive = t.choice("at", "a drive", names_of(scene.drives));
+    const double start = scene.motion_of(joint.at)(0).value, line = start_of_line(body, joint);
+    if (std::abs(start - line) > 1e-9)
+      t.fail("at",
+             "this drive starts at " + to_text(start) + ", the line at " + to_text(line) + " [m]");
+  } else {
+    joint.speed = t.number("speed", io::any_number("the speed of a line", "m/s"), 0.0);
+  }
+  if (scene.statics && joint.speed != 0) t.fail("speed", "in a [static] analysis lines rest");
+  for (const Joint& other : scene.joints)
+    if (other.drives_line && other.body == joint.body && other.line == joint.line)
+      t.fail("line", "this line of '" + joint.body + "' is driven already");
+}
+
+std::unique_ptr<fem::Joint> make(const Joint& joint, const JointParts& parts) {
+  if (parts.rigid) return nullptr;
+  const Body& body = parts.scene.body(joint.body);
+  std::function<fem::Motion(double)> motion = [start = start_of_line(body, joint),
+                                               speed = joint.speed](double t) {
+    return fem::Motion{start + speed * t, speed, 0};
+  };
+  if (!joint.at.drive.empty()) motion = parts.scene.motion_of(joint.at);
+  const auto number = std::count_if(body.lines.begin(), body.lines.end(), [&](const BodyLine& l) {
+    return l.free && l.index < joint.line;  // among the free lines of its body
+  });
+  return fem::make_line_drive(joint.name, joint.body, static_cast<int>(number), std::move(motion));
+}
+
+}  // namespace
+
+extern const JointRow kLineDrive;
+const JointRow kLineDrive = {.name = "line_drive",
+                             .sentence =
+                                 "A free line moves through the material at a speed, or is "
+                                 "where a drive says.",
+                             .read = read,
+                             .make = make};
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,38 @@
+#include "cases/scene/joints/reading.h"
+#include "cases/scene/joints/row.h"
+
+namespace flexmorph::cases {
+namespace {
+
+void read(const io::Table& t, const Scene& scene, Joint& joint) {
+  static const std::vector<std::string> kAxes = {"x", "y", "z"};
+  const Body& body = read_jointed_body(t, scene, joint);
+  joint.point = read_point(t, body, scene.time.end);
+  const auto axes = std::span(kAxes).first(static_cast<size_t>(body.dim()));
+  if (t.has("components"))
+    for (const std::string& axis : t.choices("components", "a component", axes))
+      joint.components.push_back(axis[0] - 'x');
+  else
+    for (int c = 0; c < body.dim(); ++c) joint.components.push_back(c);
+}
+
+std::unique_ptr<fem::Joint> make(const Joint& joint, const JointParts& parts) {
+  const Vec3 at = parts.start(joint.point);
+  std::vector<fem::Motion> rest;
+  for (const int c : joint.components) rest.push_back({at[c], 0, 0});
+  const auto stay = [rest](double) { return rest; };
+  return parts.rigid
+             ? fem::make_point_drive(joint.name, parts.place(joint.point), stay, joint.components)
+             : fem::make_pin(joint.name, joint.body, joint.point, stay, joint.components);
+}
+
+}  // namespace
+
+extern const JointRow kPin;
+const JointRow kPin = {.name = "pin",
+                       .sentence = "A material point keeps some components of its position.",
+                       .read = read,
+                       .make = make,
+                       .holds_point = true};
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,39 @@
+#include "cases/scene/joints/reading.h"
+#include "cases/scene/joints/row.h"
+
+namespace flexmorph::cases {
+namespace {
+
+void read(const io::Table& t, const Scene& scene, Joint& joint) {
+  joint.a = read_anchor(t, "a", scene, true, false);
+  if (joint.a.on_ground()) t.fail("a", "the ground is not driven");
+  for (const auto& [key, component] : {std::pair{"x", 0}, std::pair{"y", 1}})
+    if (t.has(key)) {
+      joint.laws.push_back(read_law(t, key, io::any_number("a coordinate", "m"), scene));
+      joint.components.push_back(component);
+    }
+  if (joint.laws.empty()) t.fail("a driven point has `x`, `y` or both");
+  name_between(t, scene, joint);
+}
+
+std::unique_ptr<fem::Joint> make(const Joint& joint, const JointParts& parts) {
+  std::vector<std::function<fem::Motion(double)>> laws;
+  for (size_t i = 0; i < joint.laws.size(); ++i) laws.push_back(parts.law(joint, i));
+  const fem::PointDrive path = [laws](double t) {
+    std::vector<fem::Motion> out;
+    for (const auto& each : laws) out.push_back(each(t));
+    return out;
+  };
+  return fem::make_point_drive(joint.name, parts.a, path, joint.components);
+}
+
+}  // namespace
+
+extern const JointRow kPointDrive;
+const JointRow kPointDrive = {.name = "point_drive",
+                              .sentence = "Coordinates of a point follow drives.",
+                              .read = read,
+                              .make = make,
+                              .on_one_body = true};
+
+}  // namespace flexmorph::cases

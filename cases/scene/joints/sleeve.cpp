@@ -1,0 +1,28 @@
+#include "cases/scene/joints/reading.h"
+#include "cases/scene/joints/row.h"
+
+namespace flexmorph::cases {
+namespace {
+
+void read(const io::Table& t, const Scene& scene, Joint& joint) {
+  const Body& body = read_jointed_body(t, scene, joint);
+  read_framed_edge(t, body, {"root"}, joint);
+  if (body.is_beam()) t.fail("body", "material slides through the sleeves of plates only");
+  const double line = body.start_lines(0, body.elements[0])[static_cast<size_t>(joint.line)];
+  joint.position = read_pair(t, "position", "a position", "m", Vec2(line, 0));
+  joint.angle = t.number("angle", io::any_number("an angle", "rad"), 0.0);
+  joint.mode = read_mode(t, fem::WeldMode::direction);
+  if (body.flow) t.fail("body", "material flows out of a hub, see \"weld\", not out of a sleeve");
+  check_frame(t, scene, body, joint);
+}
+
+}  // namespace
+
+extern const JointRow kSleeve;
+const JointRow kSleeve = {.name = "sleeve",
+                          .sentence =
+                              "An edge or a free line in a frame at rest: material slides "
+                              "through the line.",
+                          .read = read};
+
+}  // namespace flexmorph::cases

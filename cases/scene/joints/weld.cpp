@@ -1,0 +1,63 @@
+#include "cases/scene/joints/reading.h"
+#include "cases/scene/joints/row.h"
+
+namespace flexmorph::cases {
+namespace {
+
+/// How the end of a beam is welded: its section keeps its direction and is free to grow (partial);
+/// it keeps direction and size (edge); the axis is not stretched, either (full).
+fem::WeldMode read_beam_mode(const io::Table& t) {
+  return t.choice<fem::WeldMode>("mode", "the weld of a beam",
+                                 {{"partial", fem::WeldMode::partial},
+                                  {"edge", fem::WeldMode::edge},
+                                  {"full", fem::WeldMode::full}},
+                                 fem::WeldMode::partial);
+}
+
+/// The frame on a rigid body that the edge is welded to.
+void read_carrier(const io::Table& t, Joint& joint) {
+  joint.b.body = joint.to;
+  joint.b.point = read_pair(t, "point", "a place", "m", Vec2(0, 0));
+  joint.b.angle = t.number("angle", io::any_number("an angle", "rad"), 0.0);
+}
+
+/// An edge in a hub or on a rigid body; which also says where the body begins.
+void read_welded_edge(const io::Table& t, const Scene& scene, Joint& joint) {
+  const Body& body = read_jointed_body(t, scene, joint);
+  const std::vector<std::string> rigid = names_of(scene.rigid_bodies);
+  std::vector<std::string> carriers = names_of(scene.hubs);
+  carriers.insert(carriers.end(), rigid.begin(), rigid.end());
+  joint.to = t.choice("to", rigid.empty() ? "a hub" : "a hub or rigid body", carriers);
+  const bool on_rigid = std::find(rigid.begin(), rigid.end(), joint.to) != rigid.end();
+  using Names = std::vector<std::string>;
+  read_framed_edge(t, body, on_rigid ? Names{"root", "free_end"} : Names{"root"}, joint);
+  if (on_rigid) read_carrier(t, joint);
+  joint.mode = body.is_beam() ? read_beam_mode(t) : read_mode(t, fem::WeldMode::edge);
+  check_frame(t, scene, body, joint);
+}
+
+void read(const io::Table& t, const Scene& scene, Joint& joint) {
+  if (t.has("body")) {
+    read_welded_edge(t, scene, joint);
+    return;
+  }
+  read_anchors(t, scene, true, true, joint.a, joint.b);
+  name_between(t, scene, joint);
+}
+
+std::unique_ptr<fem::Joint> make(const Joint& joint, const JointParts& parts) {
+  return fem::make_rigid_weld(joint.name, parts.a, parts.b);
+}
+
+}  // namespace
+
+extern const JointRow kWeld;
+const JointRow kWeld = {
+    .name = "weld",
+    .sentence =
+        "An edge sits in a hub or on a rigid body; or the axes of two rigid bodies are one.",
+    .read = read,
+    .make = make,
+    .has_moment = true};
+
+}  // namespace flexmorph::cases

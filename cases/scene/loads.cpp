@@ -1,0 +1,122 @@
+#include <array>
+
+#include "cases/scene/joints/reading.h"
+
+namespace flexmorph::cases {
+namespace {
+
+using io::any_number;
+using io::Table;
+
+using Attached = std::optional<fem::AttachedForce>;
+
+const LoadRow kPointForce = {
+    .name = "point",
+    .sentence = "A force at a material point.",
+    .words = "force at a point",
+    .at_point = true,
+    .at_edge = false,
+    .follows = false,
+    .key = "force",
+    .noun = "a force",
+    .unit = "N",
+    .make = [](const BodyLoad& l) { return fem::make_point_force(l.point, l.force); },
+    .attached = [](const BodyLoad& l, const Body&, double) -> Attached {
+      return fem::AttachedForce{l.point, false, l.force.head<2>(), 0};
+    }};
+
+const LoadRow kEdgeForce = {
+    .name = "edge",
+    .sentence = "A force per length along an edge.",
+    .words = "force along",
+    .at_point = false,
+    .at_edge = true,
+    .follows = false,
+    .key = "force",
+    .noun = "a force",
+    .unit = "N/m",
+    .make = [](const BodyLoad& l) { return fem::make_edge_load(l.edge, l.force); },
+    .attached = [](const BodyLoad& l, const Body& body, double longest) -> Attached {
+      if (l.edge != "free_end") return {};
+      return fem::AttachedForce{{longest, 0}, true, body.width * l.force.head<2>(), 0};
+    }};
+
+const LoadRow kSurfaceForce = {
+    .name = "surface",
+    .sentence = "A force per area.",
+    .words = "force per area",
+    .at_point = false,
+    .at_edge = false,
+    .follows = false,
+    .key = "force",
+    .noun = "a force",
+    .unit = "N/m^2",
+    .make = [](const BodyLoad& l) { return fem::make_surface_load(l.force); }};
+
+const LoadRow kPressure = {.name = "pressure",
+                           .sentence = "A pressure across the surface of a plate in space.",
+                           .words = "pressure",
+                           .at_point = false,
+                           .at_edge = false,
+                           .follows = true,
+                           .key = "pressure",
+                           .noun = "a pressure",
+                           .unit = "N/m^2",
+                           .make = [](const BodyLoad& l) { return fem::make_pressure(l.size); }};
+
+const LoadRow kEdgeMoment = {
+    .name = "edge_moment",
+    .sentence = "A moment per length of an edge of a plate in space, about the edge.",
+    .words = "moment at",
+    .at_point = false,
+    .at_edge = true,
+    .follows = true,
+    .key = "moment",
+    .noun = "a moment per length",
+    .unit = "N",
+    .make = [](const BodyLoad& l) { return fem::make_edge_moment(l.edge, l.size); }};
+
+BodyLoad read_load(const Table& t, const Scene& scene) {
+  std::vector<std::string> names;
+  for (const LoadRow* row : load_rows()) names.emplace_back(row->name);
+  BodyLoad load;
+  const std::string type = t.choice("type", "a load", names);
+  load.row = *std::find_if(load_rows().begin(), load_rows().end(),
+                           [&](const LoadRow* row) { return row->name == type; });
+  const LoadRow& row = *load.row;
+  load.body = t.choice("body", "a body", names_of(scene.bodies));
+  const Body& body = scene.body(load.body);
+  if (row.at_point) load.point = read_point(t, body, scene.time.end);
+  if (row.at_edge) load.edge = read_edge(t, "edge", body, edge_names());
+  if (body.is_beam() && !row.at_point) t.fail("type", "loads on a beam act at points");
+  if (row.follows && !body.in_space()) t.fail("type", "this load acts on a plate in space");
+  if (row.follows && scene.time.integrator == "energy_momentum")
+    t.fail("type", "a load that follows the plate needs integrator = \"generalized_alpha\"");
+  if (row.follows) {
+    load.size = t.number(row.key, any_number(row.noun, row.unit));
+  } else {
+    const auto force = t.numbers(row.key, any_number(row.noun, row.unit), body.dim());
+    load.force = Eigen::Map<const VectorXd>(force.data(), body.dim());
+  }
+  return load;
+}
+
+}  // namespace
+
+std::span<const LoadRow* const> load_rows() {
+  static const std::array kRows = {&kPointForce, &kEdgeForce, &kSurfaceForce, &kPressure,
+                                   &kEdgeMoment};
+  return kRows;
+}
+
+std::optional<fem::AttachedForce> attached_force(const BodyLoad& load, const Scene& scene) {
+  const Body& body = scene.body(load.body);
+  if (!load.row->attached) return {};
+  return load.row->attached(load, body, body.longest(scene.time.end));
+}
+
+void read_loads(const Table& root, Scene& scene) {
+  for (const Table& t : root.tables("load")) scene.loads.push_back(read_load(t, scene));
+}
+
+}  // namespace flexmorph::cases
