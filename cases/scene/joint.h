@@ -1,5 +1,6 @@
 #pragma once
 
+#include <any>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,7 @@ struct Joint {
   bool drives_line = false;
   double speed = 0;  ///< [m/s]
   Law at;            ///< the drive of a line, if any
+  std::any own;      ///< what only its row knows
 
   /// Is an edge of a plate in a hub, in a sleeve or on a rigid body?
   bool holds_frame() const { return !edge.empty(); }
