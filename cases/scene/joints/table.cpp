@@ -5,12 +5,12 @@
 namespace flexmorph::cases {
 
 extern const JointRow kWeld, kSleeve, kPin, kClamp, kSupport, kSymmetry, kLineDrive, kRevolute,
-    kSlider, kAngleDrive, kDistance, kPointDrive;
+    kSlider, kAngleDrive, kDistance, kPointDrive, kGear;
 
 std::span<const JointRow* const> joint_rows() {
-  static const std::array kRows = {&kWeld,    &kSleeve,     &kPin,       &kClamp,
-                                   &kSupport, &kSymmetry,   &kLineDrive, &kRevolute,
-                                   &kSlider,  &kAngleDrive, &kDistance,  &kPointDrive};
+  static const std::array kRows = {&kWeld,     &kSleeve,     &kPin,      &kClamp,  &kSupport,
+                                   &kSymmetry, &kLineDrive,  &kRevolute, &kSlider, &kAngleDrive,
+                                   &kDistance, &kPointDrive, &kGear};
   return kRows;
 }
 
