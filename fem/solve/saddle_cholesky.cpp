@@ -115,6 +115,9 @@ struct SaddleCholesky::Impl {
                                       static_cast<Eigen::Index>(solution->ncol));
   }
 
+  bool split(const SparseMatrix& a);
+  void view_matrix();
+
   static bool symmetric(const std::vector<Pair>& pairs, const SparseMatrix& a) {
     const double* x = a.valuePtr();
     const double allowed =
@@ -127,66 +130,24 @@ struct SaddleCholesky::Impl {
 SaddleCholesky::SaddleCholesky() : impl_(std::make_unique<Impl>()) {}
 SaddleCholesky::~SaddleCholesky() = default;
 
+namespace {
+
+/// Where the matrix keeps an entry, or -1.
+int place_of(const SparseMatrix& a, int row, int column) {
+  const int *first = a.innerIndexPtr() + a.outerIndexPtr()[column],
+            *last = a.innerIndexPtr() + a.outerIndexPtr()[column + 1],
+            *at = std::lower_bound(first, last, row);
+  return at != last && *at == row ? static_cast<int>(at - a.innerIndexPtr()) : -1;
+}
+
+}  // namespace
+
 bool SaddleCholesky::analyze(const SparseMatrix& a) {
   Impl& s = *impl_;
   s.release();
   s.refused = false;
-  const auto n = static_cast<int>(a.rows());
-  const auto place = [&](int row, int column) {
-    const int *first = a.innerIndexPtr() + a.outerIndexPtr()[column],
-              *last = a.innerIndexPtr() + a.outerIndexPtr()[column + 1],
-              *at = std::lower_bound(first, last, row);
-    return at != last && *at == row ? static_cast<int>(at - a.innerIndexPtr()) : -1;
-  };
-  std::vector<int> number(static_cast<size_t>(n));  // in A, or - 1 - the one in B
-  s.a_rows.clear();
-  s.b_rows.clear();
-  for (int k = 0; k < n; ++k) {
-    auto& list = place(k, k) >= 0 ? s.a_rows : s.b_rows;
-    const auto at = static_cast<int>(list.size());
-    number[static_cast<size_t>(k)] = &list == &s.a_rows ? at : -1 - at;
-    list.push_back(k);
-  }
-  if (s.b_rows.size() > kMostConstraints || s.a_rows.empty()) return false;
-
-  s.starts = {0};
-  s.rows.clear();
-  s.places.clear();
-  s.mirrors.clear();
-  s.a_pairs.clear();
-  s.b_pairs.clear();
-  s.b_entries.clear();
-  for (int column = 0; column < n; ++column) {
-    const int j = number[static_cast<size_t>(column)];
-    for (int p = a.outerIndexPtr()[column]; p < a.outerIndexPtr()[column + 1]; ++p) {
-      const int row = a.innerIndexPtr()[p], i = number[static_cast<size_t>(row)];
-      if (i < 0 && j < 0) return false;  // coupled constraints
-      if (row > column) {
-        const int other = place(column, row);
-        if (other < 0) return false;
-        (i >= 0 && j >= 0 ? s.a_pairs : s.b_pairs).push_back({p, other});
-      }
-      if (i >= 0 && j >= 0 && i >= j) {
-        s.rows.push_back(i);
-        s.places.push_back(p);
-        s.mirrors.push_back(place(column, row));
-      }
-      if (i < 0) s.b_entries.push_back({-1 - i, j, p});
-    }
-    if (j >= 0) s.starts.push_back(static_cast<int>(s.rows.size()));
-  }
-  s.values.resize(s.rows.size());
-  s.b_values.resize(s.b_entries.size());
-  s.matrix.nrow = s.matrix.ncol = s.a_rows.size();
-  s.matrix.nzmax = s.rows.size();
-  s.matrix.p = s.starts.data();
-  s.matrix.i = s.rows.data();
-  s.matrix.x = s.values.data();
-  s.matrix.stype = -1;
-  s.matrix.itype = CHOLMOD_INT;
-  s.matrix.xtype = CHOLMOD_REAL;
-  s.matrix.dtype = CHOLMOD_DOUBLE;
-  s.matrix.sorted = s.matrix.packed = 1;
+  if (!s.split(a)) return false;
+  s.view_matrix();
   s.factor = cholmod_analyze(&s.matrix, &s.common);
   if (s.factor == nullptr || s.common.status < CHOLMOD_OK || !s.factor->is_super) return false;
   const auto* row_starts = static_cast<const int*>(s.factor->pi);
@@ -197,6 +158,65 @@ bool SaddleCholesky::analyze(const SparseMatrix& a) {
   s.permuted.resize(static_cast<Eigen::Index>(s.a_rows.size()));
   s.right.resize(s.permuted.size());
   return true;
+}
+
+/// Which rows and entries belong to A and which to B; false where the matrix is no such saddle.
+bool SaddleCholesky::Impl::split(const SparseMatrix& a) {
+  const auto n = static_cast<int>(a.rows());
+  std::vector<int> number(static_cast<size_t>(n));  // in A, or - 1 - the one in B
+  a_rows.clear();
+  b_rows.clear();
+  for (int k = 0; k < n; ++k) {
+    auto& list = place_of(a, k, k) >= 0 ? a_rows : b_rows;
+    const auto at = static_cast<int>(list.size());
+    number[static_cast<size_t>(k)] = &list == &a_rows ? at : -1 - at;
+    list.push_back(k);
+  }
+  if (b_rows.size() > kMostConstraints || a_rows.empty()) return false;
+
+  starts = {0};
+  rows.clear();
+  places.clear();
+  mirrors.clear();
+  a_pairs.clear();
+  b_pairs.clear();
+  b_entries.clear();
+  for (int column = 0; column < n; ++column) {
+    const int j = number[static_cast<size_t>(column)];
+    for (int p = a.outerIndexPtr()[column]; p < a.outerIndexPtr()[column + 1]; ++p) {
+      const int row = a.innerIndexPtr()[p], i = number[static_cast<size_t>(row)];
+      if (i < 0 && j < 0) return false;  // coupled constraints
+      if (row > column) {
+        const int other = place_of(a, column, row);
+        if (other < 0) return false;
+        (i >= 0 && j >= 0 ? a_pairs : b_pairs).push_back({p, other});
+      }
+      if (i >= 0 && j >= 0 && i >= j) {
+        rows.push_back(i);
+        places.push_back(p);
+        mirrors.push_back(place_of(a, column, row));
+      }
+      if (i < 0) b_entries.push_back({-1 - i, j, p});
+    }
+    if (j >= 0) starts.push_back(static_cast<int>(rows.size()));
+  }
+  values.resize(rows.size());
+  b_values.resize(b_entries.size());
+  return true;
+}
+
+/// A as CHOLMOD takes it: its lower triangle in the vectors of split().
+void SaddleCholesky::Impl::view_matrix() {
+  matrix.nrow = matrix.ncol = a_rows.size();
+  matrix.nzmax = rows.size();
+  matrix.p = starts.data();
+  matrix.i = rows.data();
+  matrix.x = values.data();
+  matrix.stype = -1;
+  matrix.itype = CHOLMOD_INT;
+  matrix.xtype = CHOLMOD_REAL;
+  matrix.dtype = CHOLMOD_DOUBLE;
+  matrix.sorted = matrix.packed = 1;
 }
 
 bool SaddleCholesky::factorize(const SparseMatrix& a, double miss) {

@@ -25,16 +25,6 @@ struct LoadRange {
   int first, count;
 };
 
-LoadRange reaching(std::span<const int> active, int column);
-
-/// The same among the loads of one thread.
-LoadRange reaching(std::span<const int> active, int column, const LoadRange& mine) {
-  const LoadRange all = reaching(active, column);
-  const int first = std::max(all.first, mine.first);
-  const int end = std::min(all.first + all.count, mine.first + mine.count);
-  return {std::min(first, mine.first + mine.count), std::max(0, end - first)};
-}
-
 LoadRange reaching(std::span<const int> active, int column) {
   const int n = static_cast<int>(active.size());
   if (n == 0) return {0, 0};
@@ -47,6 +37,14 @@ LoadRange reaching(std::span<const int> active, int column) {
       std::partition_point(active.begin(), active.end(), [column](int a) { return a <= column; });
   const int first = static_cast<int>(begin - active.begin());
   return {first, n - first};
+}
+
+/// The same among the loads of one thread.
+LoadRange reaching(std::span<const int> active, int column, const LoadRange& mine) {
+  const LoadRange all = reaching(active, column);
+  const int first = std::max(all.first, mine.first);
+  const int end = std::min(all.first + all.count, mine.first + mine.count);
+  return {std::min(first, mine.first + mine.count), std::max(0, end - first)};
 }
 
 /// Fewer loads are not worth a thread: products with a few columns stream L for little work.
