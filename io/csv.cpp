@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <fstream>
 #include <limits>
@@ -9,8 +10,22 @@
 namespace flexmorph::io {
 namespace {
 
-/// Cells of one line; a quoted cell keeps its commas, "" in it is a quote.
-std::vector<std::string> cells_of(const std::string& line) {
+/// What separates the cells: of comma, semicolon and tabulator the one that the header has most of.
+char separator_of(const std::string& header) {
+  const std::array<char, 3> known = {',', ';', '\t'};
+  const auto count = [&](char c) { return std::count(header.begin(), header.end(), c); };
+  return *std::max_element(known.begin(), known.end(),
+                           [&](char a, char b) { return count(a) < count(b); });
+}
+
+/// Without the spaces around it.
+void trim(std::string& cell) {
+  cell.erase(0, std::min(cell.find_first_not_of(' '), cell.size()));
+  cell.erase(cell.find_last_not_of(' ') + 1);
+}
+
+/// Cells of one line; a quoted cell keeps its separators, "" in it is a quote.
+std::vector<std::string> cells_of(const std::string& line, char separator) {
   std::vector<std::string> cells(1);
   bool quoted = false;
   for (size_t i = 0; i < line.size(); ++i) {
@@ -20,12 +35,13 @@ std::vector<std::string> cells_of(const std::string& line) {
       ++i;
     } else if (c == '"') {
       quoted = !quoted;
-    } else if (c == ',' && !quoted) {
+    } else if (c == separator && !quoted) {
       cells.emplace_back();
     } else {
       cells.back() += c;
     }
   }
+  for (std::string& cell : cells) trim(cell);
   return cells;
 }
 
@@ -33,7 +49,11 @@ std::vector<std::string> cells_of(const std::string& line) {
 
 std::vector<std::string> CsvTable::texts(const std::string& column) const {
   const auto found = std::find(columns.begin(), columns.end(), column);
-  if (found == columns.end()) throw Error::input("table: there is no column '" + column + "'");
+  if (found == columns.end()) {
+    std::string known;
+    for (const std::string& name : columns) known += (known.empty() ? "'" : ", '") + name + "'";
+    throw Error::input("table: there is no column '" + column + "'; its columns are " + known);
+  }
   std::vector<std::string> out;
   for (const auto& row : rows) out.push_back(row[static_cast<size_t>(found - columns.begin())]);
   return out;
@@ -41,7 +61,8 @@ std::vector<std::string> CsvTable::texts(const std::string& column) const {
 
 std::vector<double> CsvTable::numbers(const std::string& column) const {
   std::vector<double> out;
-  for (const std::string& text : texts(column)) {
+  for (std::string& text : texts(column)) {
+    if (decimal_comma) std::replace(text.begin(), text.end(), ',', '.');
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     const bool whole = error == std::errc() && end == text.data() + text.size();
@@ -55,14 +76,19 @@ CsvTable read_csv(const std::string& path) {
   if (!file) throw Error::input(path + ": cannot be read");
   CsvTable out;
   std::string line;
+  char separator = ',';
   for (int number = 1; std::getline(file, line); ++number) {
     if (!line.empty() && line.back() == '\r') line.pop_back();
     if (number == 1) {
-      out.columns = cells_of(line);
+      if (line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);  // a byte-order mark
+      separator = separator_of(line);
+      // Spreadsheets separate by semicolons where the comma is the decimal point.
+      out.decimal_comma = separator != ',';
+      out.columns = cells_of(line, separator);
       continue;
     }
     if (line.empty() && file.peek() == std::ifstream::traits_type::eof()) break;
-    out.rows.push_back(cells_of(line));
+    out.rows.push_back(cells_of(line, separator));
     if (out.rows.back().size() != out.columns.size())
       throw Error::input(path + ":" + std::to_string(number) + ": " +
                          std::to_string(out.rows.back().size()) + " values; the header has " +

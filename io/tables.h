@@ -52,12 +52,15 @@ class CsvWriter {
 struct CsvTable {
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows;  ///< as long as the header each
+  bool decimal_comma = false;                  ///< a comma may stand for the point of a number
 
-  /// @throws Error (input) for a column that is not there.
+  /// @throws Error (input) for a column that is not there, naming those that are.
   std::vector<std::string> texts(const std::string& column) const;
   /// Numbers of a column; NaN where a cell is empty or no number.
   std::vector<double> numbers(const std::string& column) const;
 };
+/// Cells are separated by commas, or as the header has it by semicolons or tabulators, where
+/// numbers may have decimal commas; a byte-order mark and spaces around cells do not count.
 /// @throws Error (input) when the file cannot be read; file and line where a row has another length
 ///         than the header.
 CsvTable read_csv(const std::string& path);

@@ -99,7 +99,10 @@ std::function<fem::Motion(double)> read_csv_drive(const Table& t, double end, st
     try {
       return csv.numbers(wanted);
     } catch (const Error& error) {
-      t.fail(key, "'" + name + "' has no column '" + wanted + "'");
+      std::string known;
+      for (const std::string& each : csv.columns)
+        known += (known.empty() ? "'" : ", '") + each + "'";
+      t.fail(key, "'" + name + "' has no column '" + wanted + "'; its columns are " + known);
     }
   };
   io::CsvTable csv;

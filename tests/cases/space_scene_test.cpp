@@ -242,8 +242,7 @@ const Bad kBad[] = {
     {"unknown_joint",
      kPendulum,
      {"joint.0.type=hinge"},
-     "a joint is one of 'weld', 'sleeve', 'pin', 'clamp', 'support', 'symmetry', 'line_drive', "
-     "'revolute', 'slider', 'angle_drive', 'distance', 'point_drive'"},
+     "'slider', 'angle_drive', 'distance', 'point_drive', 'gear'"},
     {"pin_outside",
      kPendulum,
      {"joint.0.point=[0.4, 0]"},

@@ -64,6 +64,25 @@ TEST(Csv, EmptyCellsQuotesAndNonFiniteNumbers) {
   EXPECT_THROW(table.row({1, 2}), Error);
 }
 
+// What a spreadsheet saves where the comma is the decimal point.
+TEST(Csv, ReadsSemicolonsDecimalCommasAndByteOrderMarks) {
+  const Scratch scratch;
+  for (const char* text :
+       {"\xEF\xBB\xBFtime;angle\r\n0;1,5\r\n0,25;-2e-3\r\n", "time\tangle\n0\t1,5\n0.25\t-2e-3\n",
+        "time, angle\n0 , 1.5\n0.25, -2e-3"}) {
+    const CsvTable table = read_csv(scratch.write("t.csv", text));
+    EXPECT_EQ(table.columns, (std::vector<std::string>{"time", "angle"})) << text;
+    EXPECT_EQ(table.numbers("time"), (std::vector<double>{0, 0.25})) << text;
+    EXPECT_EQ(table.numbers("angle"), (std::vector<double>{1.5, -2e-3})) << text;
+  }
+  try {
+    read_csv(scratch.write("t.csv", "Time;Angle\n0;1\n")).numbers("time");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_TRUE(std::string(error.what()).ends_with("its columns are 'Time', 'Angle'"));
+  }
+}
+
 TEST(Csv, UnwritablePlaceIsAnInputError) {
   const Scratch scratch;
   scratch.write("file", "");
