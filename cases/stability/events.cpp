@@ -96,7 +96,8 @@ Rows rest(const Scene& scene) {
       row.overrides.push_back(entry("hub", i, "angular_velocity", 0));
   for (size_t i = 0; i < scene.drives.size(); ++i) {
     if (scene.drives[i].from_trajectory) continue;
-    row.overrides.push_back(entry_text("drive", i, "csv", ""));
+    for (const char* key : {"csv", "column", "time", "table"})
+      row.overrides.push_back(entry_text("drive", i, key, ""));
     row.overrides.push_back(
         entry_text("drive", i, "formula", "\"" + to_text(scene.drives[i].motion(0).value) + "\""));
   }

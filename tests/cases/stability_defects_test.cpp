@@ -113,6 +113,42 @@ TEST(Tables, AreThereBeforeTheEnd) {
   EXPECT_EQ(rows.texts("suite")[0], "base");
 }
 
+// The scene at rest took the drive's file away and left the column behind: "unknown key", WRONG.
+TEST(Rest, OfDrivesThatComeFromTables) {
+  const Scratch scratch;
+  scratch.write("swing.csv", "t,angle\n0,0\n0.1,0.02\n0.2,0.05\n0.3,0.05\n0.4,0.02\n0.5,0\n");
+  const auto arm = [&](const std::string& drive) {
+    return scratch.write("arm.toml", R"toml(
+time = { end = 0.02, step = 1e-3, start = "rigid" }
+[[rigid_body]]
+name = "arm"
+mass = 1.0
+size = [0.2, 0.1]
+[[joint]]
+type = "revolute"
+b = "arm"
+[[joint]]
+type = "angle_drive"
+b = "arm"
+angle = "swing"
+[[drive]]
+name = "swing"
+)toml" + drive);
+  };
+  for (const char* drive :
+       {"csv = \"swing.csv\"\ntime = \"t\"\ncolumn = \"angle\"\n",
+        "table = [[0, 0], [0.1, 0.02], [0.2, 0.05], [0.3, 0.05], [0.4, 0.02], [0.5, 0.0]]\n"}) {
+    const std::string folder = scratch / "out";
+    const Ended ended = test::flexmorph(
+        scratch, {"stability", arm(drive), "-o", folder, "--suites", "rest", "--quiet"});
+    EXPECT_EQ(ended.code, 0) << ended.out << ended.err;
+    const io::CsvTable rows = io::read_csv(folder + "/stability.csv");
+    EXPECT_EQ(rows.texts("suite").back(), "rest");
+    EXPECT_EQ(rows.texts("verdict").back(), "stable");
+    std::filesystem::remove_all(folder);
+  }
+}
+
 // The rate of the start's shape was a difference over 2e-4 s: beyond the end of this motion, where
 // its drives are not defined ("material lines 0 and 1 cross").
 TEST(Starts, OfMotionsShorterThanADifference) {
