@@ -238,7 +238,7 @@ class Story {
     for (Ladder& ladder : study_.ladders) {
       Track& track = tracks.emplace_back();
       // A design takes its time with the loads, not with the motion they come from.
-      track.growth = ladder.knob->growth * (of_motion(ladder) ? kMotionShare : 1);
+      track.cost_exponent = ladder.knob->cost_exponent * (of_motion(ladder) ? kMotionShare : 1);
       track.weight = ladder.leads() ? 1 : 4;
       track.first_guess = study_.own.at(ladder.part).seconds_cpu;
       for (Rung& rung : ladder.rungs) {

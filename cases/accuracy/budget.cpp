@@ -31,15 +31,16 @@ double Track::predicted(size_t level) const {
   std::vector<size_t> known;
   for (size_t i = 0; i < h.size(); ++i)
     if (seconds[i]) known.push_back(i);
-  if (known.empty()) return first_guess * std::pow(h[level], -growth);
+  if (known.empty()) return first_guess * std::pow(h[level], -cost_exponent);
   const auto distance = [&](size_t i) { return std::abs(std::log(h[i] / h[level])); };
   std::stable_sort(known.begin(), known.end(),
                    [&](size_t a, size_t b) { return distance(a) < distance(b); });
-  double exponent = growth;
-  if (known.size() > 1 && h[known[0]] != h[known[1]] && growth > 0) {
+  double exponent = cost_exponent;
+  if (known.size() > 1 && h[known[0]] != h[known[1]] && cost_exponent > 0) {
     const double measured =
         std::log(*seconds[known[1]] / *seconds[known[0]]) / std::log(h[known[0]] / h[known[1]]);
-    if (std::isfinite(measured)) exponent = std::clamp(measured, 0.5 * growth, 2 * growth);
+    if (std::isfinite(measured))
+      exponent = std::clamp(measured, 0.5 * cost_exponent, 2 * cost_exponent);
   }
   return *seconds[known[0]] * std::pow(h[known[0]] / h[level], exponent);
 }

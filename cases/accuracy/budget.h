@@ -28,12 +28,12 @@ struct Track {
   std::vector<double> h;                       ///< coarse to fine; relative, the case itself is 1
   std::vector<std::optional<double>> seconds;  ///< measured [s]
   std::vector<bool> closed;                    ///< not to be measured: refused, failed, or done
-  double growth = 1;                           ///< time ~ h^-growth, until levels say otherwise
-  double weight = 1;                           ///< of its seconds, where ladders compete
-  double first_guess = 0;                      ///< at h = 1, where nothing was measured yet [s]
+  double cost_exponent = 1;  ///< time ~ h^-cost_exponent, until levels say otherwise
+  double weight = 1;         ///< of its seconds, where ladders compete
+  double first_guess = 0;    ///< at h = 1, where nothing was measured yet [s]
 
   /// Seconds that a level will take: the power law through its two nearest measured ones, its
-  /// exponent within a factor 2 of `growth`.
+  /// exponent within a factor 2 of `cost_exponent`.
   double predicted(size_t level) const;
   /// The coarsest level that is open.
   std::optional<size_t> next() const;

@@ -22,8 +22,8 @@ struct Knob {
   std::string name;
   std::string group;  ///< knobs of a group share a limit: that of the one named like the group
   Approach approach = Approach::power;
-  double growth = 0;      ///< time ~ h^-growth, a first guess
-  bool is_ladder = true;  ///< do the levels of the knob have a limit of their own?
+  double cost_exponent = 0;  ///< time ~ h^-cost_exponent, a first guess
+  bool is_ladder = true;     ///< do the levels of the knob have a limit of their own?
   /// Why a scene does not have it in this part; empty: it has it.
   std::string (*absent)(const Scene& scene, Part part);
   /// Levels of the scene, coarse to fine; one is the scene's own where it is a level at all. Some

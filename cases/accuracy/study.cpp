@@ -42,7 +42,7 @@ void find_errors(const AccuracyStudy& study, Ladder& ladder, size_t q) {
 /// CPU seconds of levels that were cut, as Track::predicted().
 void predict_costs(Ladder& ladder) {
   Track track;
-  track.growth = ladder.knob->growth;
+  track.cost_exponent = ladder.knob->cost_exponent;
   for (const Rung& rung : ladder.rungs) {
     track.h.push_back(rung.level.h);
     track.seconds.push_back(rung.measured() ? std::optional(rung.seconds_cpu) : std::nullopt);

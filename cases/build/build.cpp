@@ -59,15 +59,10 @@ void shake(std::vector<Component>& components, double jitter, int seed) {
   }
 }
 
-fem::PlaneSection section_of_design(const Scene& scene, const BodyDesign& d) {
-  if (!scene.domain) return section_of(scene.body(d.body));
-  const Domain& domain = *scene.domain;
-  return {domain.thickness, domain.youngs_modulus, domain.poisson_ratio, 0};
-}
-
 }  // namespace
 
 std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
+  using Cells = std::vector<std::vector<int>>;
   std::vector<mmc::BodyProblem> out;
   for (const BodyDesign& d : scene.designs) {
     const Grid& g = d.grid;
@@ -82,29 +77,25 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
     shake(layout, d.jitter, d.seed);
     std::vector<TdfSettings> stages;
     for (size_t i = 0; i < d.band.size(); ++i) stages.push_back(d.stage(i));
-    out.push_back({d.body,
-                   g,
-                   section_of_design(scene, d),
-                   mmc::Design(g, layout, scale),
-                   d.solid,
-                   d.empty,
-                   stages,
-                   d.goal,
-                   d.stiffness_void,
-                   d.mass_void,
-                   scene.esl ? scene.esl->settings : mmc::ComplianceSettings{},
-                   {},
-                   {},
-                   {},
-                   d.drop_every,
-                   d.refill,
-                   d.min_feature,
-                   d.shares_mass});
-    if (!scene.domain) continue;
-    out.back().domain = scene.domain->polygon;
-    if (!scene.domain->polygon.empty())
-      out.back().outside = cells_outside(g, scene.domain->polygon);
-    out.back().places = static_places(scene, g, out.back().outside);
+    const mmc::Plate plate = plate_of(scene, d);
+    out.push_back({.body = d.body,
+                   .grid = g,
+                   .section = plate.section,
+                   .design = mmc::Design(g, layout, scale),
+                   .solid = d.solid,
+                   .empty = d.empty,
+                   .stages = stages,
+                   .goal = d.goal,
+                   .stiffness_void = d.stiffness_void,
+                   .mass_void = d.mass_void,
+                   .compliance = scene.esl ? scene.esl->settings : mmc::ComplianceSettings{},
+                   .domain = scene.domain ? scene.domain->polygon : std::vector<Vec2>{},
+                   .outside = plate.outside,
+                   .places = scene.domain ? static_places(scene, g, plate.outside) : Cells{},
+                   .drop_every = d.drop_every,
+                   .refill = d.refill,
+                   .min_feature = d.min_feature,
+                   .shares_mass = d.shares_mass});
   }
   return out;
 }

@@ -114,8 +114,12 @@ std::unique_ptr<mmc::LoadResponse> build_static_loads(const Scene& scene,
         out.forces.push_back({place.nodes[k], place.shares[k] * f.force});
     }
   }
+  // Rows with a value per load solve every load as it is.
+  const std::vector<const mmc::ResponseRow*> rows = mmc::rows_of(problem.goal);
+  const bool compress = std::none_of(rows.begin(), rows.end(),
+                                     [](const mmc::ResponseRow* row) { return row->per_load; });
   return std::make_unique<mmc::FixedLoads>(grid, problem.section, problem.outside, held, loads,
-                                           problem.goal.over == mmc::Goal::Over::sum);
+                                           compress);
 }
 
 }  // namespace flexmorph::cases

@@ -6,6 +6,7 @@
 #include "cases/build/twin.h"
 #include "cases/run/check_cost.h"
 #include "cases/run/run.h"
+#include "cases/scene/goal.h"
 #include "cases/scene/heat.h"
 #include "cases/scene/joints/row.h"
 #include "cases/scene/read.h"
@@ -178,8 +179,7 @@ void describe_design(const Scene& scene, const BodyDesign& d, std::ostringstream
                                         " variables, " + std::to_string(g.nx) + " x " +
                                         std::to_string(g.ny) + " cells, " + std::to_string(n) +
                                         " static unknowns");
-  out << row("", std::to_string(loads) + " loads, volume at most " +
-                     io::to_text(d.goal.max_volume) +
+  out << row("", std::to_string(loads) + " loads, " + limit_words(d.goal) +
                      (d.shares_mass ? " on average, mass is shared, " : ", ") + thickness_words(d));
   out << row("", "factor about " + io::to_text(8e-6 * factor, 3) + " MB, loads and displacements " +
                      io::to_text(8e-6 * 3.0 * n * loads, 3) + " MB; an iteration about " +
@@ -199,14 +199,9 @@ void describe_static(const Scene& scene, std::ostringstream& out) {
   out << row("supports", std::to_string(domain.supports.size()));
   out << row("loads", std::to_string(loads->n_loads()) + ", solved as " +
                           std::to_string(loads->n_right_hand_sides()));
-  const bool volume = d.goal.minimize == mmc::Goal::Minimize::volume;
-  const std::string over = d.goal.over == mmc::Goal::Over::worst ? "largest" : "summed";
   out << row("design", std::to_string(components) + " components, " +
                            std::to_string(components * Component::kParameters) + " variables; " +
-                           (volume ? "volume under a " + over + " compliance of " +
-                                         io::to_text(d.goal.max_compliance) + " J"
-                                   : over + " compliance under a volume of " +
-                                         io::to_text(d.goal.max_volume)));
+                           goal_words(d.goal));
   out << row("", thickness_words(d));
   out << row("optimizer", scene.optimizer.name + ", at most " +
                               std::to_string(scene.optimizer.max_iterations) + " iterations");

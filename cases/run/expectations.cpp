@@ -26,6 +26,11 @@ const std::vector<std::pair<std::string, std::function<double(const mmc::BodyOut
 };
 const std::string kAmplitude = "amplitude";
 
+/// Figures of what else its goal speaks of.
+std::vector<std::pair<const mmc::Figures*, std::string>> further_of(const mmc::BodyOutcome& o) {
+  return {{&o.further, ""}, {&o.sharp.further, "sharp_"}};
+}
+
 /// A column of motion.csv or path.csv; null where there is none.
 const std::vector<double>* column_of(const MotionRecord& motion, const std::string& name) {
   if (name == "energy.kinetic") return &motion.kinetic;
@@ -58,6 +63,10 @@ std::optional<double> find(const RunReport& report, const std::string& name) {
   if (!report.outcomes.empty())
     for (const auto& [figure, value] : kFigures)
       if (figure == name) return value(report.outcomes.front());
+  if (!report.outcomes.empty())
+    for (const auto& [figures, prefix] : further_of(report.outcomes.front()))
+      for (const auto& [figure, value] : *figures)
+        if (prefix + figure == name) return value;
   if (report.motion) {
     if (name == kAmplitude && !report.motion->amplitude.empty()) return report.motion->amplitude[0];
     if (const auto found = value_of(*report.motion, name)) return found;
@@ -98,6 +107,8 @@ void check_expectations(const Scene& scene) {
   for (const Part part : parts_of(scene)) {
     if (part == Part::design) {
       for (const auto& [figure, value] : kFigures) known.push_back(figure);
+      for (const mmc::ResponseRow* row : mmc::further_rows(scene.designs.front().goal))
+        for (const char* prefix : {"", "sharp_"}) known.push_back(prefix + mmc::key_of(*row));
       if (!scene.domain) known.push_back(kAmplitude);
     } else {
       for (const std::string& column : candidates(scene, part)) known.push_back(column);

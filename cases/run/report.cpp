@@ -8,6 +8,7 @@
 #include "cases/run/plots/run.h"
 #include "cases/run/run_warnings.h"
 #include "cases/run/version.h"
+#include "cases/scene/goal.h"
 #include "cases/scene/heat.h"
 #include "fem/solve/linear_solver.h"
 #include "io/files.h"
@@ -39,6 +40,8 @@ io::Json body_results(const RunReport& report, size_t i) {
   out.set("body", o.body);
   out.set("compliance", o.compliance).set("volume", o.volume);
   out.set("sharp_compliance", o.sharp.compliance).set("sharp_volume", o.sharp.volume);
+  for (const auto& [name, value] : o.further)
+    out.set(name, value).set("sharp_" + name, o.sharp.further.at(name));
   out.set("uniform_compliance", o.uniform_compliance);
   out.set("connected", o.sharp.connectivity.connected).set("islands", o.sharp.connectivity.islands);
   const auto width = [&](double Features::*which) {
@@ -199,7 +202,7 @@ std::optional<io::Json> shared_mass(const RunReport& report) {
     const mmc::BodyProblem& p = report.problems[i];
     if (!p.shares_mass) continue;
     used += mmc::full_mass_of(p) * report.outcomes[i].volume;
-    allowed += mmc::full_mass_of(p) * p.goal.max_volume;
+    allowed += mmc::full_mass_of(p) * mmc::allowed_volume(p.goal).value_or(1);
   }
   if (allowed == 0) return {};
   io::Json out = io::Json::object();
@@ -237,7 +240,7 @@ std::string run_json(const Scene& scene, const RunReport& report) {
   return out.text();
 }
 
-io::ReportSection results_section(const RunReport& report) {
+io::ReportSection results_section(const Scene& scene, const RunReport& report) {
   io::ReportSection out;
   out.heading = "Results";
   out.rows.push_back({"body", "compliance [J]", "volume", "sharp compliance [J]", "sharp volume",
@@ -250,6 +253,15 @@ io::ReportSection results_section(const RunReport& report) {
                         io::to_text(o.sharp.compliance / o.uniform_compliance, 4),
                         o.sharp.connectivity.connected ? "yes" : "no", io::to_text(o.iterations),
                         io::to_text(o.evaluations), o.stop});
+  for (const mmc::ResponseRow* row : further_rows(scene)) {
+    const std::string name = mmc::key_of(*row);
+    const std::string words = std::string(row->words).append(" [").append(row->unit).append("]");
+    out.rows[0].insert(out.rows[0].end(), {words, "sharp " + words});
+    for (size_t i = 0; i < report.outcomes.size(); ++i)
+      for (const mmc::Figures* figures :
+           {&report.outcomes[i].further, &report.outcomes[i].sharp.further})
+        out.rows[i + 1].push_back(figures->contains(name) ? io::to_text(figures->at(name), 6) : "");
+  }
   return out;
 }
 
@@ -320,7 +332,7 @@ void write_report(const Scene& scene, const RunReport& report, RunFolder& folder
   if (!scene.expect.empty() && report.status == "done")
     sections.push_back(expect_section(scene, report));
   if (scene.has_heat()) sections.push_back(heat_section(scene));
-  if (!report.outcomes.empty()) sections.push_back(results_section(report));
+  if (!report.outcomes.empty()) sections.push_back(results_section(scene, report));
   if (!report.verdicts.empty()) sections.push_back(cycles_section(report));
   const auto add = [&](const std::string& name, const std::string& heading, std::string svg) {
     if (!scene.output.plots || svg.empty()) return;

@@ -42,11 +42,13 @@ class Progress {
       say(r.problem.body + " iteration " + std::to_string(r.iteration) + ": component " +
           std::to_string(e.component + 1) + " " + to_string(e.kind) + ", " +
           std::to_string(e.n_components) + " components");
+    char compliance[32] = "";  // goals without one have none
+    if (std::isfinite(r.state.compliance()))
+      std::snprintf(compliance, sizeof compliance, "compliance %.5g, ", r.state.compliance());
     char text[160];
-    std::snprintf(text, sizeof text,
-                  "%s cycle %d iteration %d: compliance %.5g, volume %.4f, kkt %.1e",
-                  r.problem.body.c_str(), r.cycle, r.iteration, r.state.compliance(),
-                  r.state.volume(), r.iterate.kkt);
+    std::snprintf(text, sizeof text, "%s cycle %d iteration %d: %svolume %.4f, kkt %.1e",
+                  r.problem.body.c_str(), r.cycle, r.iteration, compliance, r.state.volume(),
+                  r.iterate.kkt);
     if (terminal_) {
       std::printf("\r%-100s", text);
       open_ = true;
@@ -73,7 +75,8 @@ std::string summary(const mmc::BodyOutcome& o) {
 std::vector<fem::Factors> uniform_factors(const std::vector<mmc::BodyProblem>& problems) {
   std::vector<fem::Factors> out;
   for (const mmc::BodyProblem& p : problems) {
-    const VectorXd even = VectorXd::Constant(p.grid.n_cells(), p.goal.max_volume);
+    const double volume = mmc::allowed_volume(p.goal).value_or(0.5);
+    const VectorXd even = VectorXd::Constant(p.grid.n_cells(), volume);
     out.push_back({p.grid, even, even});
   }
   return out;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "cases/scene/goal.h"
 #include "geometry/cpu_time.h"
 #include "io/exports.h"
 #include "io/files.h"
@@ -13,27 +14,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> kHistoryColumns = {"body",
-                                                  "cycle",
-                                                  "iteration",
-                                                  "evaluations",
-                                                  "objective",
-                                                  "compliance",
-                                                  "volume",
-                                                  "violation",
-                                                  "kkt",
-                                                  "change",
-                                                  "band",
-                                                  "sharp_compliance",
-                                                  "sharp_volume",
-                                                  "connected",
-                                                  "min_feature",
-                                                  "seconds_tdf",
-                                                  "seconds_factor",
-                                                  "seconds_solve",
-                                                  "seconds_sensitivity",
-                                                  "seconds_optimizer",
-                                                  "seconds_output"};
+const std::vector<std::string> kHistoryColumns = {
+    "body",         "cycle",     "iteration",  "evaluations", "objective", "compliance",
+    "volume",       "violation", "kkt",        "change",      "band",      "sharp_compliance",
+    "sharp_volume", "connected", "min_feature"};
+/// Between these and what follows are the responses of further_rows().
+const std::vector<std::string> kHistorySeconds = {"seconds_tdf",       "seconds_factor",
+                                                  "seconds_solve",     "seconds_sensitivity",
+                                                  "seconds_optimizer", "seconds_output"};
 
 std::string numbered(const std::string& stem, int number, const std::string& ending) {
   std::string digits = io::to_text(number);
@@ -117,8 +105,11 @@ RunFolder::RunFolder(std::string path, const Scene& scene, const std::string& ca
     throw Error::input("output folder '" + path_ + "': " + error.code().message());
   }
   io::write_file(path_ + "/case.toml", case_text);
-  if (!scene.designs.empty())
-    history_ = std::make_unique<io::CsvWriter>(path_ + "/history.csv", kHistoryColumns);
+  if (scene.designs.empty()) return;
+  std::vector<std::string> columns = kHistoryColumns;
+  for (const mmc::ResponseRow* row : further_rows(scene)) columns.push_back(mmc::key_of(*row));
+  columns.insert(columns.end(), kHistorySeconds.begin(), kHistorySeconds.end());
+  history_ = std::make_unique<io::CsvWriter>(path_ + "/history.csv", columns);
 }
 
 double RunFolder::take_output_seconds() { return std::exchange(output_seconds_, 0); }
@@ -134,6 +125,7 @@ void RunFolder::add_iteration(const mmc::IterationReport& r) {
     // Σ w ½ uᵀ K_cell u: the derivative by the stiffness factor holds it. The energies of loads and
     // of held growth are added; what they do on each other sums to zero over the cells.
     VectorXd by_stiffness = -r.value.d_stiffness;
+    if (by_stiffness.size() == 0) by_stiffness.setZero(factors.stiffness.size());  // not solved
     if (r.value.d_held.size() > 0) by_stiffness += 2 * r.value.d_held;
     const VectorXd energy = 0.5 * by_stiffness.cwiseProduct(factors.stiffness);
     const VectorXd displacement =
@@ -172,27 +164,29 @@ void RunFolder::add_iteration(const mmc::IterationReport& r) {
   add_events(r);
   output_seconds_ += cpu_seconds() - clock;
   const mmc::LoadResponse::Seconds s = r.state.seconds();
-  history_->row({r.problem.body,
-                 r.cycle,
-                 r.iteration,
-                 r.evaluations,
-                 r.iterate.response->f,
-                 r.state.compliance(),
-                 r.state.volume(),
-                 r.iterate.violation,
-                 r.iterate.kkt,
-                 r.iterate.change,
-                 r.state.band() / r.problem.grid.dx(),
-                 sharp_c,
-                 sharp_v,
-                 connected,
-                 min_feature,
-                 r.state.seconds_tdf(),
-                 s.factor,
-                 s.solve,
-                 s.sensitivity,
-                 r.iterate.seconds,
-                 take_output_seconds()});
+  const auto number = [](double v) { return std::isfinite(v) ? io::Cell(v) : io::Cell(); };
+  std::vector<io::Cell> row = {r.problem.body,
+                               r.cycle,
+                               r.iteration,
+                               r.evaluations,
+                               r.iterate.response->f,
+                               number(r.state.compliance()),
+                               r.state.volume(),
+                               r.iterate.violation,
+                               r.iterate.kkt,
+                               r.iterate.change,
+                               r.state.band() / r.problem.grid.dx(),
+                               sharp_c,
+                               sharp_v,
+                               connected,
+                               min_feature};
+  for (const mmc::ResponseRow* further : further_rows(scene_)) {
+    const std::optional<VectorXd> values = r.state.values(*further);
+    row.push_back(values ? io::Cell(values->maxCoeff()) : io::Cell());
+  }
+  row.insert(row.end(), {r.state.seconds_tdf(), s.factor, s.solve, s.sensitivity, r.iterate.seconds,
+                         take_output_seconds()});
+  history_->row(row);
 }
 
 RunFolder::History& RunFolder::history_of(const std::string& body) {

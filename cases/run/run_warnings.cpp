@@ -16,11 +16,29 @@ constexpr double kLargestDefect = 0.1;  // of the balance of energy before a mot
 // analysed it is about 2; 10 is no design any more but heavy, soft edges.
 constexpr double kHangingMass = 10;
 
+/// What a row of the goal came to.
+double found_of(const mmc::ResponseRow& row, const mmc::BodyProblem& p, const mmc::BodyOutcome& o) {
+  if (&row == &mmc::kVolume) return o.volume;
+  if (&row == &mmc::compliance_row(p.goal)) return o.compliance;
+  return o.further.at(mmc::key_of(row));
+}
+
 /// Has the optimizer left a design that is not feasible? (One that is analysed as it starts was not
-/// asked.)
-bool is_too_heavy(const mmc::BodyProblem& p, const mmc::BodyOutcome& o) {
-  return o.iterations > 0 && !p.shares_mass && p.goal.minimize == mmc::Goal::Minimize::compliance &&
-         o.volume > p.goal.max_volume + 1e-3;
+/// asked; what bodies share is no limit of one.)
+void add_limits(const mmc::BodyProblem& p, const mmc::BodyOutcome& o, Words& out) {
+  if (o.iterations == 0) return;
+  for (const mmc::Limit& limit : p.goal.limits) {
+    if (p.shares_mass && limit.volume && !limit.at_least) continue;
+    const double found = found_of(*limit.row, p, o);
+    const double scale = limit.row->full ? limit.row->full(mmc::plate_of(p)) : limit.value;
+    const double beyond = limit.at_least ? limit.value - found : found - limit.value;
+    if (!(beyond > 1e-3 * scale)) continue;
+    out.push_back("body '" + o.body + "': the " + std::string(limit.row->words) + " " +
+                  io::to_text(found, 4) + " is " +
+                  (limit.at_least ? "below what is wanted, " : "above what is allowed, ") +
+                  io::to_text(limit.value, 4) + ": no design that was found " +
+                  (limit.row->even && !limit.at_least ? "is as light" : "keeps to it"));
+  }
 }
 
 /// Is the balance of energy so bad that nobody should trust the motion?
@@ -58,10 +76,7 @@ void add_designs(const RunReport& report, Words& out) {
   }
   for (const mmc::BodyProblem& p : report.problems)
     for (const mmc::BodyOutcome& o : report.outcomes)
-      if (o.body == p.body && is_too_heavy(p, o))
-        out.push_back("body '" + o.body + "': the volume " + io::to_text(o.volume, 4) +
-                      " is above what is allowed, " + io::to_text(p.goal.max_volume, 4) +
-                      ": no design that was found is as light");
+      if (o.body == p.body) add_limits(p, o, out);
 }
 
 void add_motion(const Scene& scene, const MotionRecord& motion, Words& out) {

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "cases/scene/goal.h"
 #include "cases/scene/read.h"
 #include "io/exports.h"
 #include "io/files.h"
@@ -121,8 +122,11 @@ void read_regions(const Table& t, const Body& body, const Scene& scene, BodyDesi
         region.fail("a region cannot be solid and void at once");
   }
   const double filled = cells_in(grid, design.solid) / double(grid.n_cells());
-  if (design.goal.minimize == mmc::Goal::Minimize::compliance && filled >= design.goal.max_volume)
-    t.fail("max_volume", "the solid regions alone fill " + to_text(filled, 3) + " of the domain");
+  if (const auto allowed = mmc::allowed_volume(design.goal); allowed && filled >= *allowed) {
+    const std::string words = "the solid regions alone fill " + to_text(filled, 3);
+    if (t.has("max_volume")) t.fail("max_volume", words + " of the domain");
+    t.fail(words + " of the domain, and " + to_text(*allowed, 3) + " is allowed");
+  }
 
   // Without material under it the mass would end up in the void (optim/README.md, Passive regions).
   const Vec2 end(grid.x0 + grid.width, grid.y0 + 0.5 * grid.height);
@@ -192,7 +196,8 @@ void read_components(const Table& t, const Body& body, BodyDesign& design) {
   const double diagonal = std::hypot(wide, high);
   design.half_length = t.number("half_length", positive("a half-length", "m"), 0.5 * diagonal);
   // Two bars along the diagonals fill about the allowed volume.
-  const double filling = 0.25 * design.goal.max_volume * wide * high / diagonal;
+  const double volume = mmc::allowed_volume(design.goal).value_or(0.5);
+  const double filling = 0.25 * volume * wide * high / diagonal;
   half_width.lower = design.min_thickness;
   half_width.lower_open = false;
   half_width.noun = "a half-thickness";
@@ -245,39 +250,11 @@ void read_tdf(const Table& t, BodyDesign& design) {
   design.mass_void = t.number("mass_void", fraction("a mass factor"), 1e-3);
 }
 
-/// What is minimized, and under what.
-mmc::Goal read_goal(const Table& t) {
-  using mmc::Goal;
-  Goal goal;
-  goal.minimize = t.choice<Goal::Minimize>(
-      "minimize", "an objective",
-      {{"compliance", Goal::Minimize::compliance}, {"volume", Goal::Minimize::volume}},
-      Goal::Minimize::compliance);
-  goal.over = t.choice<Goal::Over>("loads", "a way to put loads together",
-                                   {{"sum", Goal::Over::sum}, {"worst", Goal::Over::worst}},
-                                   Goal::Over::sum);
-  if (goal.minimize == Goal::Minimize::compliance) {
-    goal.max_volume = t.number("max_volume", fraction("a volume fraction"));
-    if (t.has("max_compliance"))
-      t.fail("max_compliance", "only minimize = \"volume\" has a largest compliance");
-  } else {
-    goal.max_compliance = t.number("max_compliance", positive("a compliance", "J"));
-    if (t.has("max_volume"))
-      t.fail("max_volume", "only minimize = \"compliance\" has a largest volume");
-  }
-  return goal;
-}
-
 /// Is the design solved with those of other bodies, under one budget of mass?
 void read_coupling(const Table& t, BodyDesign& design) {
   design.shares_mass =
       t.choice<bool>("coupling", "a coupling", {{"none", false}, {"shared_mass", true}}, false);
-  if (!design.shares_mass) return;
-  if (design.goal.minimize != mmc::Goal::Minimize::compliance)
-    t.fail("coupling",
-           "only with minimize = \"compliance\": what is shared is what max_volume allows");
-  if (design.goal.over != mmc::Goal::Over::sum)
-    t.fail("coupling", "only with loads = \"sum\": compliances of all bodies are added");
+  if (design.shares_mass) check_sharing(t, design.goal);
 }
 
 /// The design of a plate at rest: its grid lies where the domain does.
@@ -290,7 +267,7 @@ BodyDesign read_static_design(const Table& t, const Scene& scene) {
   design.grid = read_grid(t, body, 0);
   design.grid.x0 = domain.bounds.lower.x();
   design.grid.y0 = domain.bounds.lower.y();
-  design.goal = read_goal(t);
+  design.goal = read_goal(t, plate_of(scene, design));
   read_coupling(t, design);
   read_components(t, body, design);
   read_tdf(t, design);
@@ -318,7 +295,7 @@ BodyDesign read_design(const Table& t, const Scene& scene) {
     t.fail("body", "a designed body has the term \"membrane\"");
 
   design.grid = read_grid(t, body, scene.time.end);
-  design.goal = read_goal(t);
+  design.goal = read_goal(t, plate_of(scene, design));
   read_coupling(t, design);
   read_components(t, body, design);
   read_tdf(t, design);

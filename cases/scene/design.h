@@ -8,8 +8,8 @@
 #include "geometry/component.h"
 #include "geometry/grid.h"
 #include "geometry/tdf.h"
-#include "optim/mmc/mmc_problem.h"
-#include "optim/mmc/responses.h"
+#include "optim/mmc/compliance.h"
+#include "optim/mmc/goal.h"
 
 /// [[design]], and what goes on around it.
 namespace flexmorph::cases {
@@ -52,6 +52,12 @@ struct BodyDesign {
   /// Settings of one stage of the continuation.
   TdfSettings stage(size_t index) const;
 };
+
+struct Scene;
+
+/// The plate that is designed; that of a static scene weighs nothing unless its domain has a
+/// density.
+mmc::Plate plate_of(const Scene& scene, const BodyDesign& design);
 
 struct Cycle {
   int max_cycles = 1;

@@ -40,6 +40,7 @@ struct Domain {
   double thickness = 1;       ///< [m]
   double youngs_modulus = 1;  ///< [Pa]
   double poisson_ratio = 0.3;
+  double density = 0;  ///< [kg/m^3], 0: it has none, and no mass
   std::vector<PlaneSupport> supports;
   std::vector<LoadCase> loads;
 };

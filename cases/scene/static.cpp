@@ -9,6 +9,7 @@ namespace {
 
 using io::any_number;
 using io::between;
+using io::not_negative;
 using io::positive;
 using io::Table;
 using io::to_text;
@@ -107,6 +108,7 @@ void read_static(const Table& root, Scene& scene) {
   domain.thickness = t.number("thickness", positive("a thickness", "m"), 1.0);
   domain.youngs_modulus = t.number("youngs_modulus", positive("Young's modulus", "Pa"), 1.0);
   domain.poisson_ratio = t.number("poisson_ratio", between("Poisson's ratio", "", 0, 0.5), 0.3);
+  domain.density = t.number("density", not_negative("a density", "kg/m^3"), 0.0);
   for (const Table& s : root.tables("support")) domain.supports.push_back(read_support(s, domain));
   if (domain.supports.empty()) root.fail("support", "a plate at rest has one or more [[support]]");
   for (const Table& l : root.tables("load")) domain.loads.push_back(read_load(l, domain));

@@ -150,8 +150,7 @@ Rows steps_of(const Scene& scene) {
 
 Rows volume(const Scene& scene) {
   Rows out;
-  if (!scene.domain || scene.designs.front().goal.minimize != mmc::Goal::Minimize::compliance)
-    return out;
+  if (!scene.domain || !scene.designs.front().goal.objective->needs_state()) return out;
   for (const double most : {1e-6, 0.01, 0.999999, 1.0}) {
     Perturbation& row = out.emplace_back();
     row.part = Part::design;

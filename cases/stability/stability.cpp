@@ -127,9 +127,8 @@ class Check {
         job.key += file.text();
         const Scene scene = read_scene(file);
         job.bounds = bounds_of(scene);
-        for (const BodyDesign& d : scene.designs)
-          if (d.goal.minimize == mmc::Goal::Minimize::compliance && scene.designs.size() == 1)
-            job.largest_volume = d.goal.max_volume;
+        if (scene.designs.size() == 1)
+          job.largest_volume = mmc::allowed_volume(scene.designs.front().goal).value_or(1);
         // A design that is analysed as it starts has not been asked for a volume yet.
         if (scene.optimizer.max_iterations == 0) job.largest_volume = 1;
       } catch (const Error&) {  // the run will say so

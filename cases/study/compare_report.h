@@ -20,7 +20,7 @@ struct Comparison {
 };
 
 /// What designs are ranked by: sharp compliance x sharp volume / volume allowed, because volumes
-/// differ a little [J]; the sharp volume where that is minimized [-].
+/// differ a little [J]; where another response is minimized, that of the sharp design.
 double figure_of(const BodyResult& result, const mmc::Goal& goal);
 
 /// How far the final design is beyond what is allowed, relative; 0 when it is feasible.

@@ -8,6 +8,7 @@
 
 #include "cases/run/quantities.h"
 #include "io/case_file.h"
+#include "optim/mmc/body_problem.h"
 
 /// Many runs of one case with changes: each a process of its own with a run folder of its own.
 namespace flexmorph::cases {
@@ -31,6 +32,7 @@ struct Variant {
 struct BodyResult {
   std::string body, stop;
   double compliance = 0, volume = 0, sharp_compliance = 0, sharp_volume = 0, uniform_compliance = 0;
+  mmc::Figures further;  ///< other responses, and likewise with sharp_ before their names
   double kkt = 0;
   bool connected = false;
   std::optional<double> min_feature;

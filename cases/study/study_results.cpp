@@ -25,6 +25,9 @@ BodyResult read_body(const nlohmann::json& r) {
   out.sharp_compliance = number(r, "sharp_compliance");
   out.sharp_volume = number(r, "sharp_volume");
   out.uniform_compliance = number(r, "uniform_compliance");
+  for (const mmc::ResponseRow* row : mmc::responses())
+    for (const std::string& key : {mmc::key_of(*row), "sharp_" + mmc::key_of(*row)})
+      if (r.contains(key)) out.further[key] = number(r, key.c_str());
   out.kkt = number(r, "kkt");
   out.connected = r.value("connected", false);
   if (r.contains("min_feature") && r["min_feature"].is_number())

@@ -251,10 +251,11 @@ void write_all(const Sweep& sweep, std::span<const VariantResult> runs,
   const std::string stem = directory + "/sweep";
   if (sweep.goals.empty()) return write_motions(sweep, runs, stem);
   write_csv(sweep, runs, stem + ".csv");
-  io::write_file(stem + ".md",
-                 "# " + sweep.case_name + "\n\n" + io::markdown_table(table_of(sweep, runs)) +
-                     "\nFigure: sharp compliance x sharp volume / volume allowed (the sharp volume "
-                     "where that is minimized).\n");
+  io::write_file(
+      stem + ".md",
+      "# " + sweep.case_name + "\n\n" + io::markdown_table(table_of(sweep, runs)) +
+          "\nFigure: sharp compliance x sharp volume / volume allowed (what is minimized, "
+          "of the sharp design, where that is no compliance).\n");
   io::write_file(stem + ".svg", sheet_of(sweep, runs));
 }
 

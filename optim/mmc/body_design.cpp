@@ -18,6 +18,7 @@ constexpr int kPolishes = 2, kPolishShare = 6;
 struct Part {
   BodyProblem& problem;
   LoadResponse& loads;
+  Plate plate;
   Ersatz ersatz;
   const TdfSettings* tdf = nullptr;  // of the stage
   std::optional<Turnover> turnover;  // of the stage
@@ -27,11 +28,12 @@ struct Part {
   explicit Part(const LoadedBody& body)
       : problem(body.problem),
         loads(body.loads),
+        plate(plate_of(problem)),
         ersatz(ersatz_of(problem)),
         next(problem.design) {}
 
   MmcProblem state() const {
-    return {problem.grid, problem.design, ersatz, loads, *tdf, problem.goal, problem.places};
+    return {{plate, problem.design, ersatz, loads}, *tdf, problem.goal, problem.places};
   }
 };
 
@@ -44,7 +46,7 @@ class Whole {
     if (parts.size() == 1) return;
     std::vector<SharedProblem::Part> all;
     for (size_t k = 0; k < parts.size(); ++k)
-      all.push_back({&states[k], full_mass_of(parts[k].problem)});
+      all.push_back({&states[k], parts[k].plate.full_mass()});
     shared_.emplace(std::move(all));
   }
   Whole(const Whole&) = delete;
@@ -183,8 +185,13 @@ class Designer {
   static void measure(Part& p) {
     MmcProblem state = p.state();
     state.evaluate(state.start());
-    p.outcome.compliance = state.compliance();
+    // A goal without a compliance has never asked for one.
+    p.outcome.compliance = std::isfinite(state.compliance())
+                               ? state.compliance()
+                               : judged_compliance(p.problem, p.loads, state.factors());
     p.outcome.volume = state.volume();
+    for (const ResponseRow* row : further_rows(p.problem.goal))
+      p.outcome.further[key_of(*row)] = state.values(*row)->maxCoeff();
   }
 
   /// The sharp design by its cells alone: outlines cost more than an analysis does.
@@ -192,7 +199,10 @@ class Designer {
     SharpDesign out;
     out.fractions = fractions_of(p.problem, p.problem.design.components());
     out.volume = out.fractions.sum() / p.ersatz.n_domain_cells();
-    out.compliance = judged_compliance(p.problem, p.loads, p.ersatz.sharp(out.fractions));
+    const CellFactors sharp = p.ersatz.sharp(out.fractions);
+    const std::vector<Component> components = p.problem.design.components();
+    out.compliance = judged_compliance(p.problem, p.loads, sharp);
+    out.further = further_values(p.problem, components, p.loads, sharp);
     out.connectivity = connectivity(p.problem.grid, out.fractions, p.problem.places);
     return out;
   }
@@ -215,8 +225,8 @@ class Designer {
     // What the budget leaves goes to the bodies as they have shared it so far.
     double used = 0, allowed = 0;
     for (const Part& p : parts_) {
-      used += full_mass_of(p.problem) * p.outcome.volume;
-      allowed += full_mass_of(p.problem) * p.problem.goal.max_volume;
+      used += p.plate.full_mass() * p.outcome.volume;
+      allowed += p.plate.full_mass() * allowed_volume(p.problem.goal).value_or(1);
     }
     Cleaned out;
     for (Part& p : parts_) {
@@ -321,8 +331,7 @@ class Designer {
     out.worst_compliance = each.maxCoeff();
     if (settings_.condition) out.condition = p.loads.condition();
     // The paper's comparison: the volume that was allowed (or came out), spread evenly.
-    const bool given = p.problem.goal.minimize == Goal::Minimize::compliance;
-    const double volume = given ? p.problem.goal.max_volume : out.sharp.volume;
+    const double volume = allowed_volume(p.problem.goal).value_or(out.sharp.volume);
     const VectorXd even = VectorXd::Constant(p.problem.grid.n_cells(), volume);
     out.uniform_compliance = judged_compliance(p.problem, p.loads, {even, even});
     out.factorizations = p.loads.factorizations();

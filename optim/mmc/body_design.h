@@ -34,6 +34,7 @@ struct IterationReport {
 struct BodyOutcome {
   std::string body;
   double compliance = 0, volume = 0;  ///< blurred, at the last stage's band
+  Figures further;                    ///< likewise
   SharpDesign sharp;
   double worst_compliance = 0;    ///< largest of the loads, of the sharp design
   double uniform_compliance = 0;  ///< same loads, uniform material of the same volume

@@ -15,18 +15,28 @@ std::vector<Vec2> corners_of(const Box& b) {
 
 double judged_compliance(const BodyProblem& problem, LoadResponse& loads,
                          const CellFactors& factors) {
-  if (problem.goal.over == Goal::Over::worst)
+  if (compliance_row(problem.goal).per_load)
     return loads.individual(factors.stiffness, factors.mass).maxCoeff();
   LoadResponse::Value value;
   loads.evaluate(factors.stiffness, factors.mass, value);
   return value.f;
 }
 
-double full_mass_of(const BodyProblem& p) {
-  const auto none = std::count(p.outside.begin(), p.outside.end(), 1);
-  const double area = p.grid.dx() * p.grid.dy() * static_cast<double>(p.grid.n_cells() - none);
-  return p.section.density * p.section.thickness * area;
+Figures further_values(const BodyProblem& problem, std::span<const Component> components,
+                       LoadResponse& loads, const CellFactors& factors) {
+  DesignState state(loads);
+  Figures out;
+  for (const ResponseRow* row : further_rows(problem.goal)) {
+    Values values;
+    row->make(plate_of(problem))->evaluate({factors, components, state}, values);
+    out[key_of(*row)] = values.f.maxCoeff();
+  }
+  return out;
 }
+
+Plate plate_of(const BodyProblem& p) { return {p.grid, p.section, p.outside}; }
+
+double full_mass_of(const BodyProblem& p) { return plate_of(p).full_mass(); }
 
 Ersatz ersatz_of(const BodyProblem& p) {
   return {p.grid, p.stages.back().alpha, p.solid, p.empty, p.outside};
@@ -129,7 +139,9 @@ SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> 
   out.fractions = fractions_of(problem, components);
   const Ersatz ersatz = ersatz_of(problem);
   out.volume = out.fractions.sum() / ersatz.n_domain_cells();
-  out.compliance = judged_compliance(problem, loads, ersatz.sharp(out.fractions));
+  const CellFactors sharp = ersatz.sharp(out.fractions);
+  out.compliance = judged_compliance(problem, loads, sharp);
+  out.further = further_values(problem, components, loads, sharp);
   try {
     const std::vector<Region> regions =
         regions_of(problem, components, kOutlineTolerance * problem.grid.dx());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -9,8 +10,8 @@
 #include "geometry/feature.h"
 #include "geometry/outline.h"
 #include "geometry/picture.h"
+#include "optim/mmc/compliance.h"
 #include "optim/mmc/mmc_problem.h"
-#include "optim/mmc/responses.h"
 
 namespace flexmorph::mmc {
 
@@ -20,21 +21,23 @@ struct BodyProblem {
   Grid grid;  ///< design mesh over the body at its longest
   fem::PlaneSection section;
   Design design;
-  std::vector<Box> solid, empty;    ///< passive regions
-  std::vector<TdfSettings> stages;  ///< continuation of the band, coarse to fine
-  Goal goal;
+  std::vector<Box> solid = {}, empty = {};  ///< passive regions
+  std::vector<TdfSettings> stages;          ///< continuation of the band, coarse to fine
+  Goal goal = {};
   double stiffness_void = 1e-4, mass_void = 1e-3;  ///< in dynamics
-  ComplianceSettings compliance;
-  std::vector<Vec2> domain;              ///< polygon; empty: the whole grid
-  std::vector<signed char> outside;      ///< cells_outside() of it; empty: none
-  std::vector<std::vector<int>> places;  ///< cells of loaded and held places; empty: both ends
-  int drop_every = 25;                   ///< iterations between looks for dead components; 0: none
-  bool refill = false;                   ///< long components are split in place of dropped ones
-  double min_feature = 0;                ///< smallest solid feature of the result [m]; 0: any
-  /// Its mass comes from one budget for all bodies that say so: goal.max_volume of each together.
+  ComplianceSettings compliance = {};
+  std::vector<Vec2> domain = {};              ///< polygon; empty: the whole grid
+  std::vector<signed char> outside = {};      ///< cells_outside() of it; empty: none
+  std::vector<std::vector<int>> places = {};  ///< cells of loaded and held places; empty: both ends
+  int drop_every = 25;     ///< iterations between looks for dead components; 0: none
+  bool refill = false;     ///< long components are split in place of dropped ones
+  double min_feature = 0;  ///< smallest solid feature of the result [m]; 0: any
+  /// Its mass comes from one budget for all bodies that say so: what each is allowed, together.
   bool shares_mass = false;
 };
 
+/// What is designed, without its design.
+Plate plate_of(const BodyProblem& problem);
 /// ρ c A: the mass of the body when its whole domain is full [kg].
 double full_mass_of(const BodyProblem& problem);
 
@@ -64,15 +67,21 @@ Features features_of(const BodyProblem& problem, std::span<const Region> regions
 /// share a vertex only stay apart.
 Connectivity connectivity_of(const BodyProblem& problem, std::span<const Region> regions);
 
-/// The compliance a goal speaks of: the weighted sum, or the largest.
+/// The compliance that stands for a design: that of compliance_row().
 double judged_compliance(const BodyProblem& problem, LoadResponse& loads,
                          const CellFactors& factors);
+
+/// Largest values of further_rows() of a goal, by key_of().
+using Figures = std::map<std::string, double>;
+Figures further_values(const BodyProblem& problem, std::span<const Component> components,
+                       LoadResponse& loads, const CellFactors& factors);
 
 /// A design without blur: what its outlines enclose.
 struct SharpDesign {
   VectorXd fractions;     ///< of true material per cell (n_cells)
   double compliance = 0;  ///< of the same loads: weighted sum, or the largest
   double volume = 0;
+  Figures further;
   Connectivity connectivity;
   std::optional<Features>
       features;  ///< see features_of(); absent when the outlines cannot be united

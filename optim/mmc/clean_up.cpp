@@ -256,8 +256,7 @@ double half_thickness_for(double min_feature) { return 0.5 * kRoom * min_feature
 
 CleanUp clean_up(BodyProblem& problem, LoadResponse& loads, double wanted,
                  std::optional<double> max_volume) {
-  const bool limited = problem.goal.minimize == Goal::Minimize::compliance;
-  const double by_goal = limited ? problem.goal.max_volume : kInfinity;
+  const double by_goal = allowed_volume(problem.goal).value_or(kInfinity);
   return Cleaner(problem, loads, wanted, max_volume.value_or(by_goal)).go();
 }
 

@@ -122,17 +122,17 @@ void FixedLoads::warm_up(const fem::PlaneSection& section, std::span<const signe
   if (!holds) return;
   std::vector<int> lines(loads.size());
   for (std::size_t l = 0; l < loads.size(); ++l) lines[l] = is_hot(loads[l]) ? 0 : -1;
-  held_.emplace(HeldGrowth::Plate{g,
-                                  section,
-                                  std::move(rows),
-                                  solver_.n_unknowns(),
-                                  std::move(prescribed),
-                                  {0},
-                                  {outside.begin(), outside.end()}},
+  held_.emplace(HeldExpansion::Plate{g,
+                                     section,
+                                     std::move(rows),
+                                     solver_.n_unknowns(),
+                                     std::move(prescribed),
+                                     {0},
+                                     {outside.begin(), outside.end()}},
                 std::move(lines), stretch_, solved_weights_);
 }
 
-HeldGrowth& FixedLoads::held_at(const VectorXd& stiffness) {
+HeldExpansion& FixedLoads::held_at(const VectorXd& stiffness) {
   held_->update(stiffness, [this](MatrixXd& x) { solver_.solve(x); });
   return *held_;
 }

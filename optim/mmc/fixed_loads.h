@@ -7,7 +7,7 @@
 
 #include "fem/esl_set.h"
 #include "fem/solve/plate_solver.h"
-#include "optim/mmc/held_growth.h"
+#include "optim/mmc/held_expansion.h"
 #include "optim/mmc/load_response.h"
 
 namespace flexmorph::mmc {
@@ -27,7 +27,7 @@ struct LoadCase {
 /// A hot plate is held where it was while cold, u = 0: supports prescribe the elastic displacement
 /// w_c = -a (X - X₀, Y - Y₀) of the held components, X₀ any point. A rigid motion ρ takes off what
 /// it can of that (least squares, small rotation), so that supports that let the plate grow cost
-/// nothing, and what is left makes thermal stress (HeldGrowth).
+/// nothing, and what is left makes thermal stress (HeldExpansion).
 class FixedLoads final : public LoadResponse {
  public:
   /// @param outside   cells outside of the domain, see PlateSolver
@@ -56,16 +56,16 @@ class FixedLoads final : public LoadResponse {
   void factorize(const VectorXd& stiffness);
   void warm_up(const fem::PlaneSection& section, std::span<const signed char> outside,
                std::span<const fem::HeldUnknown> held, std::span<const LoadCase> loads);
-  HeldGrowth& held_at(const VectorXd& stiffness);
+  HeldExpansion& held_at(const VectorXd& stiffness);
 
   fem::PlateSolver solver_;
   MatrixXd loads_;   // F (n_loads x n_unknowns)
   MatrixXd solved_;  // what evaluate() solves: loads, or the leading combinations of sqrt(w) F
   VectorXd solved_weights_, factored_, energies_;
   MatrixXd u_;
-  std::optional<HeldGrowth> held_;  // where supports hold back the growth of a hot plate
-  VectorXd stretch_;                // a of each load; empty when all are cold
-  VectorXd growth_;                 // e + ρ of one unit (2 n_nodes) [m]
+  std::optional<HeldExpansion> held_;  // where supports hold back the growth of a hot plate
+  VectorXd stretch_;                   // a of each load; empty when all are cold
+  VectorXd growth_;                    // e + ρ of one unit (2 n_nodes) [m]
   int factorizations_ = 0;
   Seconds seconds_;
 };

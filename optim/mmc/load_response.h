@@ -7,7 +7,7 @@ namespace flexmorph::mmc {
 /// What a design problem asks of the statics of one plate under many loads: compliances
 /// C_l = F_l . u_l with K(b) u_l = F_l, and their derivatives by the factors of every design cell.
 /// Of a hot plate C_l is u_lᵀ K u_l of the elastic displacements, twice the elastic energy: heat
-/// counts as far as supports hold its growth back (HeldGrowth).
+/// counts as far as supports hold its growth back (HeldExpansion).
 ///
 /// Factors are per cell: stiffness (n_cells, 0..1), mass (n_cells, 0..1, 0 in the void).
 class LoadResponse {

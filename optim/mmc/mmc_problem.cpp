@@ -17,33 +17,38 @@ constexpr double kWeakestLink = 0.1;
 /// A design without such links that is still less compliant than this many times the best one
 /// carries its loads all the same: refusing it would leave the optimizer at a wall.
 constexpr double kLargestJump = 3;
-/// The bound of a worst case: log z per unit of its variable, and how far it may go.
+/// The bound of an objective with many values: log z per unit of its variable, and how far it may
+/// go.
 constexpr double kLogPerUnit = 10, kReachOfBound = 3;
 }  // namespace
 
-MmcProblem::MmcProblem(const Grid& grid, const Design& design, const Ersatz& ersatz,
-                       LoadResponse& loads, const TdfSettings& tdf, const Goal& goal,
+MmcProblem::MmcProblem(const DesignedPlate& plate, const TdfSettings& tdf, Goal goal,
                        std::vector<std::vector<int>> places)
-    : grid_(grid),
-      design_(design),
-      ersatz_(ersatz),
-      loads_(loads),
-      tdf_(grid, tdf),
-      goal_(goal),
+    : plate_(plate.plate),
+      design_(plate.design),
+      ersatz_(plate.ersatz),
+      state_(plate.loads),
+      tdf_(plate_.grid, tdf),
+      goal_(std::move(goal)),
       places_(std::move(places)),
-      start_(design.x()),
-      zero_(VectorXd::Zero(grid.n_cells())),
-      share_(VectorXd::Constant(grid.n_cells(), 1.0 / ersatz.n_domain_cells())) {
+      start_(design_.x()),
+      zero_(VectorXd::Zero(plate_.grid.n_cells())) {
+  for (const ResponseRow* row : rows_of(goal_))
+    entries_.push_back({row, row->make(plate_), {}, {}, {}});
   if (!bounded()) return;
   solve(start_);
   start_.conservativeResize(start_.size() + 1);
-  start_[start_.size() - 1] = std::log(value_.f) / kLogPerUnit;
+  start_[start_.size() - 1] = std::log(entries_.front().values.f.maxCoeff()) / kLogPerUnit;
+}
+
+int MmcProblem::row_of(size_t limit) const {
+  int row = 0;
+  for (size_t k = 0; k < limit; ++k) row += count(*goal_.limits[k].row);
+  return row;
 }
 
 int MmcProblem::n_constraints() const {
-  const int n_compliances = goal_.over == Goal::Over::worst ? loads_.n_loads() : 1;
-  if (goal_.minimize == Goal::Minimize::volume) return n_compliances;
-  return bounded() ? 1 + n_compliances : 1;
+  return row_of(goal_.limits.size()) + (bounded() ? count(*goal_.objective) : 0);
 }
 
 VectorXd MmcProblem::lower() const {
@@ -60,7 +65,20 @@ VectorXd MmcProblem::upper() const {
   return out;
 }
 
-/// Fills what the last design was seen to be: factors, volume, compliances.
+const MmcProblem::Entry& MmcProblem::entry(const ResponseRow& row) const {
+  const auto found =
+      std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.row == &row; });
+  assert(found != entries_.end());
+  return *found;
+}
+
+std::optional<VectorXd> MmcProblem::values(const ResponseRow& row) const {
+  for (const Entry& e : entries_)
+    if (e.row == &row) return e.values.f;
+  return {};
+}
+
+/// Fills what the last design was seen to be: factors, volume, values of all rows.
 void MmcProblem::solve(const VectorXd& x) {
   const double clock = cpu_seconds();
   x_ = x;
@@ -70,97 +88,109 @@ void MmcProblem::solve(const VectorXd& x) {
   volume_ = factors_.mass.sum() / ersatz_.n_domain_cells();
   seconds_tdf_ += cpu_seconds() - clock;
 
-  if (goal_.over == Goal::Over::sum) {
-    loads_.evaluate(factors_.stiffness, factors_.mass, value_);
-  } else {
-    loads_.evaluate_each(factors_.stiffness, factors_.mass, each_);
-    Eigen::Index worst = 0;
-    value_.f = each_.f.maxCoeff(&worst);
-    value_.d_stiffness = each_.d_stiffness.row(worst);
-    if (each_.d_mass.size() > 0)
-      value_.d_mass = each_.d_mass.row(worst);
-    else
-      value_.d_mass = zero_;
-  }
-  const LoadResponse::Seconds last = loads_.seconds();
-  seconds_.factor += last.factor;
-  seconds_.solve += last.solve;
-  seconds_.sensitivity += last.sensitivity;
-  if (!(value_.f > 0) || !std::isfinite(value_.f))
-    throw Error::numerical("design problem: the compliance is " + std::to_string(value_.f));
+  state_.begin();
+  const Seen seen{factors_, components_, state_};
+  for (Entry& e : entries_) e.response->evaluate(seen, e.values);
 }
 
-/// Derivatives by cell factors -> by the variables of the design, divided by `divisor`.
-VectorXd MmcProblem::gradient(const VectorXd& d_stiffness, const VectorXd& d_mass, double divisor) {
-  VectorXd out;
-  ersatz_.pull_back(tdf_.eroded(), d_stiffness, d_mass, d_h_, d_eroded_);
-  tdf_.pull_back(d_h_, d_eroded_, out);
+/// Derivatives by cell factors and by components -> by components, of many values by the variables
+/// of the design.
+void MmcProblem::pull_back(Entry& e) {
+  const Values& v = e.values;
+  if (e.row->per_load) {
+    ersatz_.pull_back(tdf_.eroded(), v.d_stiffness, v.d_mass, many_by_h_, many_by_eroded_);
+    tdf_.pull_back(many_by_h_, many_by_eroded_, e.slopes);
+    if (v.d_parameters.size() > 0) e.slopes += v.d_parameters;
+    design_.scale_gradients(e.slopes);
+    return;
+  }
+  const auto or_zero = [&](const MatrixXd& d, VectorXd& copy) -> const VectorXd& {
+    if (d.size() == 0) return zero_;
+    return copy = d.row(0);
+  };
+  ersatz_.pull_back(tdf_.eroded(), or_zero(v.d_stiffness, d_stiffness_), or_zero(v.d_mass, d_mass_),
+                    d_h_, d_eroded_);
+  tdf_.pull_back(d_h_, d_eroded_, e.slope);
+  if (v.d_parameters.size() > 0) e.slope += v.d_parameters.row(0).transpose();
+}
+
+/// Of the only value of a row, divided by `divisor`, by the variables of the design.
+VectorXd MmcProblem::gradient(const Entry& e, double divisor) const {
+  VectorXd out = e.slope;
   out /= divisor;
   design_.scale_gradient(out);
   return out;
 }
 
-/// log C_l - bound <= 0 of the sum or of every load.
-void MmcProblem::fill_compliance_rows(optim::Response& out, int first_row, double bound) {
+/// log f_l - bound <= 0 of a row with many values.
+void MmcProblem::add_each(const Entry& e, double bound, int first_row, optim::Response& out) const {
+  const Eigen::Index n = design_.n_variables(), m = e.values.f.size();
+  for (Eigen::Index l = 0; l < m; ++l) out.g[first_row + l] = std::log(e.values.f[l]) - bound;
+  out.dg.block(first_row, 0, m, n) = e.values.f.cwiseInverse().asDiagonal() * e.slopes;
+}
+
+void MmcProblem::add_limit(const Limit& limit, int first_row, optim::Response& out) const {
+  const Entry& e = entry(*limit.row);
   const Eigen::Index n = design_.n_variables();
-  if (goal_.over == Goal::Over::sum) {
-    out.g[first_row] = std::log(value_.f) - bound;
-    out.dg.row(first_row).head(n) = gradient(value_.d_stiffness, value_.d_mass, value_.f);
-    return;
+  if (limit.row->per_load) {
+    add_each(e, std::log(limit.value), first_row, out);
+  } else if (const double f = e.values.f[0]; limit.row->full) {
+    out.g[first_row] = f / limit.value - 1;
+    out.dg.row(first_row).head(n) = gradient(e, limit.value);
+  } else {
+    out.g[first_row] = std::log(f) - std::log(limit.value);
+    out.dg.row(first_row).head(n) = gradient(e, f);
   }
-  for (Eigen::Index l = 0; l < each_.f.size(); ++l) {
-    if (!(each_.f[l] > 0))
-      throw Error::numerical("design problem: the compliance of load " + std::to_string(l + 1) +
-                             " is " + std::to_string(each_.f[l]));
-    out.g[first_row + l] = std::log(each_.f[l]) - bound;
+  if (!limit.at_least) return;
+  out.g.segment(first_row, count(*limit.row)) *= -1;
+  out.dg.middleRows(first_row, count(*limit.row)) *= -1;
+}
+
+void MmcProblem::add_objective(optim::Response& out) const {
+  const Entry& e = entries_.front();
+  if (bounded()) {
+    const Eigen::Index n = design_.n_variables();
+    const int first_row = row_of(goal_.limits.size());
+    out.f = kLogPerUnit * x_[n];
+    out.df[n] = kLogPerUnit;
+    add_each(e, out.f, first_row, out);
+    out.dg.col(n).tail(e.values.f.size()).setConstant(-kLogPerUnit);
+  } else if (const double f = e.values.f[0]; e.row->full) {
+    const double full = e.row->full(plate_);
+    out.f = f / full;
+    out.df = gradient(e, full);
+  } else {
+    out.f = std::log(f);
+    out.df = gradient(e, f);
   }
-  ersatz_.pull_back(tdf_.eroded(), each_.d_stiffness, each_.d_mass, each_by_h_, each_by_eroded_);
-  tdf_.pull_back(each_by_h_, each_by_eroded_, each_by_parameters_);
-  design_.scale_gradients(each_by_parameters_);
-  out.dg.block(first_row, 0, each_.f.size(), n) =
-      each_.f.cwiseInverse().asDiagonal() * each_by_parameters_;
 }
 
 optim::Response MmcProblem::evaluate(const VectorXd& x) {
   solve(x);
   const double clock = cpu_seconds();
-  const Eigen::Index n = design_.n_variables();
+  for (Entry& e : entries_) pull_back(e);
   optim::Response out;
   out.df.setZero(n_variables());
   out.g.setZero(n_constraints());
   out.dg.setZero(n_constraints(), n_variables());
-  if (goal_.minimize == Goal::Minimize::volume) {
-    out.f = volume_;
-    out.df = gradient(zero_, share_, 1);
-    fill_compliance_rows(out, 0, std::log(goal_.max_compliance));
-  } else {
-    out.g[0] = volume_ / goal_.max_volume - 1;
-    out.dg.row(0).head(n) = gradient(zero_, share_, goal_.max_volume);
-    if (bounded()) {
-      out.f = kLogPerUnit * x[n];
-      out.df[n] = kLogPerUnit;
-      fill_compliance_rows(out, 1, out.f);
-      out.dg.col(n).tail(loads_.n_loads()).setConstant(-kLogPerUnit);
-    } else {
-      out.f = std::log(value_.f);
-      out.df = gradient(value_.d_stiffness, value_.d_mass, value_.f);
-    }
-  }
+  for (size_t k = 0; k < goal_.limits.size(); ++k) add_limit(goal_.limits[k], row_of(k), out);
+  add_objective(out);
   seconds_tdf_ += cpu_seconds() - clock;
   return out;
 }
 
 void MmcProblem::clear_seconds() {
   seconds_tdf_ = 0;
-  seconds_ = {};
+  state_.clear_seconds();
 }
 
 bool MmcProblem::acceptable([[maybe_unused]] const VectorXd& x) {
   assert(x == x_);
   // connectivity() joins cells of half density or more; a link may be weaker on the way.
-  const bool holds = connectivity(grid_, 0.5 / kWeakestLink * factors_.mass, places_).connected ||
-                     value_.f < kLargestJump * lowest_;
-  if (holds) lowest_ = std::min(lowest_, value_.f);
+  const bool holds =
+      connectivity(plate_.grid, 0.5 / kWeakestLink * factors_.mass, places_).connected ||
+      compliance() < kLargestJump * lowest_;
+  if (holds) lowest_ = std::min(lowest_, compliance());
   return holds;
 }
 

@@ -1,51 +1,53 @@
 #pragma once
 
 #include <limits>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "geometry/tdf.h"
 #include "optim/mmc/design.h"
 #include "optim/mmc/ersatz.h"
+#include "optim/mmc/goal.h"
 #include "optim/mmc/load_response.h"
 #include "optim/problem.h"
 
 namespace flexmorph::mmc {
 
-/// What a design is to be good at.
-struct Goal {
-  enum class Minimize { compliance, volume };
-  enum class Over {
-    sum,   ///< Σ w_l C_l
-    worst  ///< max C_l, by the bound formulation: one more variable bounds them all
-  };
-  Minimize minimize = Minimize::compliance;
-  Over over = Over::sum;
-  double max_volume = 0.5;    ///< fraction of the domain; what compliance is minimized under
-  double max_compliance = 0;  ///< [J]; what volume is minimized under
+/// What a design problem is about: `design`, `ersatz` and `loads` live longer than the problem.
+struct DesignedPlate {
+  const Plate& plate;
+  const Design& design;
+  const Ersatz& ersatz;
+  LoadResponse& loads;
 };
 
-/// The design problem of one plate under given loads, P (34) in the variables of a Design:
+/// The design problem of one plate under given loads, P (34) in the variables of a Design: a row of
+/// the table of responses is minimized, others are limited.
 ///
-///   compliance, sum     min log f            s.t.  V/V_max - 1 <= 0
-///   compliance, worst   min log z            s.t.  V/V_max - 1 <= 0,  log C_l - log z <= 0
-///   volume, sum         min V                s.t.  log f   - log C_max <= 0
-///   volume, worst       min V                s.t.  log C_l - log C_max <= 0
+///   min log f        or f / f_full     f the objective, f_full its value in the full plate
+///   s.t.  log g - log g_max <= 0       or g / g_max - 1 <= 0        for every limit
 ///
-/// f is the weighted compliance of all loads, V the mean of the mass factors over the domain. The
-/// logarithm, because f spans decades in the first iterations. One state solve serves values and
-/// gradients. In a worst case the last variable is log z / 10: a move limit of 0.05 is a factor of
-/// 1.6 in compliance.
+/// (`at_least`: the same with the other sign.) The logarithm is that of rows whose values span
+/// decades in the first iterations: compliances. A row with a value per load has a constraint for
+/// each of them; as the objective it is bounded by one more variable, log z / 10:
+///
+///   min log z        s.t.  ...,  log f_l - log z <= 0
+///
+/// so that a move limit of 0.05 is a factor of 1.6. One state solve serves values and gradients of
+/// all rows that ask for the state; where none does, none is solved.
 class MmcProblem final : public optim::Problem {
  public:
   /// @param places  cells of every loaded and every held place, see connectivity()
-  MmcProblem(const Grid& grid, const Design& design, const Ersatz& ersatz, LoadResponse& loads,
-             const TdfSettings& tdf, const Goal& goal, std::vector<std::vector<int>> places = {});
+  MmcProblem(const DesignedPlate& plate, const TdfSettings& tdf, Goal goal,
+             std::vector<std::vector<int>> places = {});
 
   int n_variables() const override { return design_.n_variables() + (bounded() ? 1 : 0); }
+  /// Those of the limits in their order, then those of the bound.
   int n_constraints() const override;
   VectorXd lower() const override;
   VectorXd upper() const override;
-  /// In a worst case this solves the state: the bound starts at the largest compliance.
+  /// Where the objective is bounded this solves the state: the bound starts at the largest value.
   VectorXd start() const override { return start_; }
   optim::Response evaluate(const VectorXd& x) override;
   /// Does one piece of material, blurred links included, join all places, or does the design carry
@@ -53,46 +55,60 @@ class MmcProblem final : public optim::Problem {
   bool acceptable(const VectorXd& x) override;
 
   const Goal& goal() const { return goal_; }
+  /// First constraint of a limit.
+  int row_of(size_t limit) const;
 
   // What the last evaluate() saw.
   const VectorXd& x() const { return x_; }
   VectorXd design_part(const VectorXd& x) const { return x.head(design_.n_variables()); }
-  const LoadResponse::Value& value() const { return value_; }
-  double compliance() const { return value_.f; }  ///< weighted sum, or the largest
+  /// Of compliance_row(), the weighted sum or the largest; NaN where no row asks for the state.
+  const LoadResponse::Value& value() const { return state_.value(); }
+  double compliance() const { return value().f; }
   double volume() const { return volume_; }
-  const VectorXd& load_compliances() const { return each_.f; }  ///< of a worst case (n_loads)
+  /// Values of a row of the goal (1, or n_loads); nothing for other rows.
+  std::optional<VectorXd> values(const ResponseRow& row) const;
   const std::vector<Component>& components() const { return components_; }
   const CellFactors& factors() const { return factors_; }
   const VectorXd& phi() const { return tdf_.phi(); }
   double band() const { return tdf_.settings().band; }
   // CPU seconds of all evaluations since clear_seconds().
   double seconds_tdf() const { return seconds_tdf_; }  ///< TDF and chain rule
-  LoadResponse::Seconds seconds() const { return seconds_; }
+  LoadResponse::Seconds seconds() const { return state_.seconds(); }
   void clear_seconds();
 
  private:
-  bool bounded() const {
-    return goal_.over == Goal::Over::worst && goal_.minimize == Goal::Minimize::compliance;
-  }
-  void solve(const VectorXd& x);
-  VectorXd gradient(const VectorXd& d_stiffness, const VectorXd& d_mass, double divisor);
-  void fill_compliance_rows(optim::Response& out, int first_row, double bound);
+  /// A row of the goal at the last design.
+  struct Entry {
+    const ResponseRow* row;
+    std::unique_ptr<Response> response;
+    Values values;
+    VectorXd slope;   // of its only value by the parameters of components, or
+    MatrixXd slopes;  // of many by the variables of the design (m x n)
+  };
 
-  Grid grid_;
+  bool bounded() const { return goal_.objective->per_load; }
+  int count(const ResponseRow& row) const { return row.per_load ? state_.n_loads() : 1; }
+  const Entry& entry(const ResponseRow& row) const;
+  void solve(const VectorXd& x);
+  void pull_back(Entry& entry);
+  VectorXd gradient(const Entry& entry, double divisor) const;
+  void add_each(const Entry& entry, double bound, int first_row, optim::Response& out) const;
+  void add_limit(const Limit& limit, int first_row, optim::Response& out) const;
+  void add_objective(optim::Response& out) const;
+
+  Plate plate_;
   const Design& design_;
   const Ersatz& ersatz_;
-  LoadResponse& loads_;
+  DesignState state_;
   UnionTdf tdf_;
   Goal goal_;
+  std::vector<Entry> entries_;  // the objective first
   std::vector<std::vector<int>> places_;
   VectorXd start_;
   std::vector<Component> components_;
   CellFactors factors_;
-  LoadResponse::Value value_;
-  LoadResponse::Each each_;
-  LoadResponse::Seconds seconds_;
-  VectorXd x_, d_h_, d_eroded_, zero_, share_;
-  MatrixXd each_by_h_, each_by_eroded_, each_by_parameters_;
+  VectorXd x_, d_stiffness_, d_mass_, d_h_, d_eroded_, zero_;
+  MatrixXd many_by_h_, many_by_eroded_;
   double volume_ = 0, seconds_tdf_ = 0;
   double lowest_ = std::numeric_limits<double>::infinity();  // compliance of acceptable designs
 };

@@ -1,22 +1,35 @@
 #include "optim/mmc/shared_problem.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 namespace flexmorph::mmc {
 
+size_t shared_limit(const Goal& goal) {
+  const auto counts = [](const Limit& limit) { return limit.volume && !limit.at_least; };
+  const auto found = std::find_if(goal.limits.begin(), goal.limits.end(), counts);
+  if (std::count_if(goal.limits.begin(), goal.limits.end(), counts) != 1)
+    throw Error::input("shared mass: every body has one limit of its volume or mass to share");
+  return static_cast<size_t>(found - goal.limits.begin());
+}
+
 SharedProblem::SharedProblem(std::vector<Part> parts) : parts_(std::move(parts)), first_{0} {
   if (parts_.empty()) throw Error::input("shared mass: there are no bodies to share it");
   shares_.resize(static_cast<Eigen::Index>(parts_.size()));
   for (size_t b = 0; b < parts_.size(); ++b) {
-    const Goal& goal = parts_[b].problem->goal();
-    if (goal.minimize != Goal::Minimize::compliance || goal.over != Goal::Over::sum)
+    const MmcProblem& part = *parts_[b].problem;
+    const Goal& goal = part.goal();
+    if (goal.objective != &kComplianceSum)
       throw Error::input("shared mass: every body minimizes the sum of its compliances");
     if (!(parts_[b].full_mass > 0) || !std::isfinite(parts_[b].full_mass))
       throw Error::input("shared mass: the mass of full body " + std::to_string(b + 1) + " is " +
                          std::to_string(parts_[b].full_mass) + " kg; it is positive");
-    shares_[static_cast<Eigen::Index>(b)] = parts_[b].full_mass * goal.max_volume;
-    first_.push_back(first_.back() + parts_[b].problem->n_variables());
+    const size_t limit = shared_limit(goal);
+    shares_[static_cast<Eigen::Index>(b)] = parts_[b].full_mass * *goal.limits[limit].volume;
+    budget_.push_back(part.row_of(limit));
+    n_constraints_ += part.n_constraints() - 1;
+    first_.push_back(first_.back() + part.n_variables());
   }
   shares_ /= shares_.sum();
 }
@@ -42,9 +55,10 @@ VectorXd SharedProblem::start() const {
 optim::Response SharedProblem::evaluate(const VectorXd& x) {
   optim::Response out;
   out.df.resize(n_variables());
-  out.g.setZero(1);
-  out.dg.resize(1, n_variables());
+  out.g.setZero(n_constraints());
+  out.dg.setZero(n_constraints(), n_variables());
   double sum = 0;
+  int row = 1;
   for (size_t b = 0; b < parts_.size(); ++b) {
     MmcProblem& part = *parts_[b].problem;
     const optim::Response own = part.evaluate(part_of(x, b));
@@ -52,8 +66,15 @@ optim::Response SharedProblem::evaluate(const VectorXd& x) {
     const double share = shares_[static_cast<Eigen::Index>(b)];
     sum += part.compliance();
     out.df.segment(first, n) = part.compliance() * own.df;
-    out.g += share * own.g;
-    out.dg.middleCols(first, n) = share * own.dg;
+    for (int k = 0; k < part.n_constraints(); ++k) {
+      if (k == budget_[b]) {
+        out.g[0] += share * own.g[k];
+        out.dg.row(0).segment(first, n) = share * own.dg.row(k);
+      } else {
+        out.g[row] = own.g[k];
+        out.dg.row(row++).segment(first, n) = own.dg.row(k);
+      }
+    }
   }
   out.f = std::log(sum);
   out.df /= sum;

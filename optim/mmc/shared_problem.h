@@ -14,6 +14,9 @@ namespace flexmorph::mmc {
 /// V_b  its volume fraction, V_max,b what it would be allowed by itself [-]
 /// m_b  its mass when its domain is full, ρ c A [kg]
 ///
+/// and to all other limits of the bodies, each that of its own. The budget is made of the one limit
+/// of each body that is a volume (Limit::volume): of volume or of mass.
+///
 /// The variables are those of all bodies, one body after the other, each with its own scales and
 /// bounds. A body sees the others through the two sums only: values and gradients are made of the
 /// bodies' own, df = Σ (C_b / Σ C) df_b and g = Σ s_b g_b with the shares s_b of the budget.
@@ -23,11 +26,13 @@ class SharedProblem final : public optim::Problem {
     MmcProblem* problem = nullptr;  ///< lives longer; minimizes the sum of its compliances
     double full_mass = 0;           ///< m_b [kg]
   };
-  /// @throws Error (input) for no parts, masses that are not positive, and other goals.
+  /// @throws Error (input) for no parts, masses that are not positive, other objectives, and not
+  ///         just one limit of volume.
   explicit SharedProblem(std::vector<Part> parts);
 
   int n_variables() const override { return first_.back(); }
-  int n_constraints() const override { return 1; }
+  /// The budget, then the other limits of the bodies, one body after the other.
+  int n_constraints() const override { return n_constraints_; }
   VectorXd lower() const override;
   VectorXd upper() const override;
   VectorXd start() const override;
@@ -46,8 +51,14 @@ class SharedProblem final : public optim::Problem {
   VectorXd joined(Of&& of) const;
 
   std::vector<Part> parts_;
-  std::vector<int> first_;  // variables of each body, and the end
-  VectorXd shares_;         // s_b of the budget
+  std::vector<int> first_;   // variables of each body, and the end
+  std::vector<int> budget_;  // its constraint in each body
+  int n_constraints_ = 1;
+  VectorXd shares_;  // s_b of the budget
 };
+
+/// The limit of a goal that a budget is made of.
+/// @throws Error (input) when there is not just one.
+size_t shared_limit(const Goal& goal);
 
 }  // namespace flexmorph::mmc

@@ -45,7 +45,8 @@ Iteration measure(const cases::Scene& scene, const mmc::BodyProblem& problem,
   const mmc::CellFactors first = ersatz.sharp(area_fractions(
       problem.grid, start, problem.stages.back().min_half_thickness, problem.solid, problem.empty));
   mmc::Compliance compliance(loads, problem.section, settings, first.stiffness, first.mass);
-  mmc::MmcProblem state(problem.grid, problem.design, ersatz, compliance, problem.stages.front(),
+  const mmc::Plate plate = mmc::plate_of(problem);
+  mmc::MmcProblem state({plate, problem.design, ersatz, compliance}, problem.stages.front(),
                         problem.goal);
   optim::Settings optimizer = scene.optimizer;
   optimizer.max_iterations = kIterations;

@@ -103,9 +103,9 @@ Iteration measure(const Plate& plate, const std::vector<mmc::LoadCase>& loads, b
   const mmc::Ersatz ersatz(g, tdf.alpha, {}, {});
   const mmc::Design design = initial_design(plate, cell);
   mmc::FixedLoads statics(g, kUnit, {}, clamped_left(g), loads, compress);
-  mmc::Goal goal;
-  goal.max_volume = 0.4;
-  mmc::MmcProblem problem(g, design, ersatz, statics, tdf, goal);
+  const mmc::Plate whole{g, kUnit, {}};
+  const mmc::Goal goal{.limits = {{mmc::kVolume, 0.4, false, whole}}};
+  mmc::MmcProblem problem({whole, design, ersatz, statics}, tdf, goal);
   optim::Settings settings;
   settings.max_iterations = iterations;
   const Iteration out = measure_iterations(problem, settings, statics.n_right_hand_sides());

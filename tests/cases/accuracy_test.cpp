@@ -36,12 +36,12 @@ struct Runs {
   std::vector<Track> tracks;
   std::vector<std::pair<size_t, size_t>> ran, cut;
 
-  void add(const std::vector<double>& h, double growth) {
+  void add(const std::vector<double>& h, double cost_exponent) {
     Track t;
     t.h = h;
     t.seconds.resize(h.size());
     t.closed.resize(h.size());
-    t.growth = growth;
+    t.cost_exponent = cost_exponent;
     t.first_guess = 1;
     tracks.push_back(t);
   }

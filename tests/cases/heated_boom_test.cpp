@@ -172,7 +172,9 @@ TEST(HeatedBoom, GradientOfTheDesignProblem) {
   const VectorXd full = VectorXd::Ones(loads.grid.n_cells());
   mmc::Compliance compliance(loads, p.section, p.compliance, full, full);
   const mmc::Ersatz ersatz = mmc::ersatz_of(p);
-  mmc::MmcProblem problem(p.grid, p.design, ersatz, compliance, p.stages.front(), p.goal, p.places);
+  const mmc::Plate plate = mmc::plate_of(p);
+  mmc::MmcProblem problem({plate, p.design, ersatz, compliance}, p.stages.front(), p.goal,
+                          p.places);
   const VectorXd x = problem.start();
   const optim::Response at = problem.evaluate(x);
   for (const int component : {0, 7, 19}) {

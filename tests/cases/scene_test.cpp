@@ -76,7 +76,7 @@ TEST_P(ShippedCase, HasTheDataOfThePaper) {
   EXPECT_EQ(d.grid.ny, 40);
   EXPECT_EQ(d.grid.y0, -0.05);
   EXPECT_EQ(2 * d.components[0] * d.components[1], slow ? 96 : 160);
-  EXPECT_EQ(d.goal.max_volume, 0.5);
+  EXPECT_EQ(mmc::allowed_volume(d.goal), 0.5);
   EXPECT_EQ(d.min_thickness, 0.005);
   EXPECT_DOUBLE_EQ(d.tdf.band, d.band.back() * 0.0025);
   EXPECT_DOUBLE_EQ(d.tdf.sharpness, 1500);

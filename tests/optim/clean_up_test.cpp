@@ -34,12 +34,7 @@ BodyProblem problem_of(const std::vector<Component>& components, double max_volu
   scale.half_length = 0.02;  // the shortest is 12 mm
   TdfSettings tdf = tdf_settings();
   tdf.erosion = 0;
-  Goal goal;
-  goal.max_volume = max_volume;
-  return {"plate", kGrid, kSection, Design(kGrid, {}, scale).with(components),
-          strip(), {},    {tdf},    goal,
-          1e-4,    1e-3,  {},       {},
-          {},      {}};
+  return body_of(Design(kGrid, {}, scale).with(components), {tdf}, least_compliance(max_volume));
 }
 
 Features measured(const BodyProblem& p) {
@@ -57,7 +52,8 @@ void expect_thick(BodyProblem& problem, double cost_at_most) {
   EXPECT_NEAR(done.before, before, 0.02 * kGrid.dx() + 1e-9);
   const SharpDesign sharp = sharp_design(problem, problem.design.components(), loads);
   EXPECT_TRUE(sharp.connectivity.connected);
-  EXPECT_LE(sharp.volume, problem.goal.max_volume + 0.01);  // the blurred volume is what counts
+  EXPECT_LE(sharp.volume,
+            *allowed_volume(problem.goal) + 0.01);  // the blurred volume is what counts
   EXPECT_NEAR(sharp.compliance, done.compliance_after, 1e-9 * sharp.compliance);
   EXPECT_LE(done.compliance_after, (1 + cost_at_most) * done.compliance_before);
 }
@@ -124,27 +120,11 @@ TEST(CleanUp, IsTheSameBitForBitWhereverTheHeapPutsThings) {
 }
 
 TEST(BodyDesign, OfAWantedFeatureIsThatThick) {
-  BodyProblem problem{"plate",
-                      kGrid,
-                      kSection,
-                      Design(kGrid, random_layout(2),
-                             {.half_length = 0.05,
-                              .min_thickness = half_thickness_for(kWanted),
-                              .max_thickness = 0.03}),
-                      strip(),
-                      {},
-                      {tdf_settings()},
-                      {},
-                      1e-4,
-                      1e-3,
-                      {},
-                      {},
-                      {},
-                      {},
-                      25,
-                      false,
-                      kWanted};
-  problem.goal.max_volume = 0.75;
+  const DesignScale thick{
+      .half_length = 0.05, .min_thickness = half_thickness_for(kWanted), .max_thickness = 0.03};
+  BodyProblem problem =
+      body_of(Design(kGrid, random_layout(2), thick), {tdf_settings()}, least_compliance(0.75));
+  problem.min_feature = kWanted;
   problem.stages[0].min_half_thickness = half_thickness_for(kWanted);
   FixedLoads loads = tip_load();
   DesignSettings settings;

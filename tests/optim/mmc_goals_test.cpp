@@ -154,12 +154,10 @@ struct Asked {
 class EveryGoal : public ::testing::TestWithParam<Asked> {};
 INSTANTIATE_TEST_SUITE_P(
     Table, EveryGoal,
-    ::testing::Values(
-        Asked{"compliance_sum", {}}, Asked{"compliance_worst", {.over = Goal::Over::worst}},
-        Asked{"volume_sum", {.minimize = Goal::Minimize::volume, .max_compliance = 2}},
-        Asked{
-            "volume_worst",
-            {.minimize = Goal::Minimize::volume, .over = Goal::Over::worst, .max_compliance = 2}}),
+    ::testing::Values(Asked{"compliance_sum", least_compliance()},
+                      Asked{"compliance_worst", least_compliance(0.5, kComplianceWorst)},
+                      Asked{"volume_sum", least_volume(2)},
+                      Asked{"volume_worst", least_volume(2, kComplianceWorst)}),
     [](const auto& test) { return std::string(test.param.name); });
 
 // Every row of the response against central differences along a random direction of a hundredth of
@@ -167,8 +165,8 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_P(EveryGoal, GradientsAgreeWithDifferences) {
   const Design design(kGrid, random_layout(3), kScale);
   const Ersatz ersatz(kGrid, tdf_settings().alpha, strip(), {});
-  FixedLoads statics = plate(5, GetParam().goal.over == Goal::Over::sum);
-  MmcProblem problem(kGrid, design, ersatz, statics, tdf_settings(), GetParam().goal);
+  FixedLoads statics = plate(5, !compliance_row(GetParam().goal).per_load);
+  MmcProblem problem({kPlate, design, ersatz, statics}, tdf_settings(), GetParam().goal);
   const VectorXd x = problem.start();
   ASSERT_EQ(x.size(), problem.n_variables());
   ASSERT_EQ(problem.lower().size(), x.size());
@@ -192,9 +190,10 @@ TEST(WorstCase, BoundsEveryLoadAndStartsAtTheLargest) {
   const Design design(kGrid, layout(), kScale);
   const Ersatz ersatz(kGrid, tdf_settings().alpha, strip(), {});
   FixedLoads statics = plate(5, false);
-  MmcProblem problem(kGrid, design, ersatz, statics, tdf_settings(), {.over = Goal::Over::worst});
+  MmcProblem problem({kPlate, design, ersatz, statics}, tdf_settings(),
+                     least_compliance(0.5, kComplianceWorst));
   const optim::Response r = problem.evaluate(problem.start());
-  const VectorXd C = problem.load_compliances();
+  const VectorXd C = *problem.values(kComplianceWorst);
   EXPECT_NEAR(r.f, std::log(C.maxCoeff()), 1e-12);
   EXPECT_EQ(problem.compliance(), C.maxCoeff());
   EXPECT_NEAR(r.g.tail(5).maxCoeff(), 0, 1e-12);
@@ -211,24 +210,22 @@ struct Designed {
 Designed designed(const Goal& goal, int n_loads, int iterations) {
   TdfSettings tdf = tdf_settings();
   tdf.erosion = 0;
-  BodyProblem problem{"plate", kGrid, kSection, Design(kGrid, layout(), kScale),
-                      strip(), {},    {tdf},    goal,
-                      1e-4,    1e-3,  {},       {},
-                      {},      {}};
-  FixedLoads statics = plate(n_loads, goal.over == Goal::Over::sum);
+  BodyProblem problem = body_of(Design(kGrid, layout(), kScale), {tdf}, goal);
+  FixedLoads statics = plate(n_loads, !compliance_row(goal).per_load);
   DesignSettings settings;
   settings.optimizer.max_iterations = iterations;
   bool going = true;
   const BodyOutcome outcome = design_body(problem, statics, 1, settings, {}, going);
   const Ersatz ersatz = ersatz_of(problem);
-  MmcProblem all(kGrid, problem.design, ersatz, statics, tdf, {.over = Goal::Over::worst});
+  MmcProblem all({kPlate, problem.design, ersatz, statics}, tdf,
+                 least_compliance(0.5, kComplianceWorst));
   return {outcome, std::exp(all.evaluate(all.start()).f)};
 }
 
 // A worst case evens out what a sum leaves uneven: its largest compliance is lower.
 TEST(WorstCase, HasALowerWorstLoadThanTheSum) {
-  const Designed sum = designed({}, 5, 150);
-  const Designed worst = designed({.over = Goal::Over::worst}, 5, 150);
+  const Designed sum = designed(least_compliance(), 5, 150);
+  const Designed worst = designed(least_compliance(0.5, kComplianceWorst), 5, 150);
   EXPECT_LE(sum.outcome.volume, 0.5 * (1 + 1e-4));
   EXPECT_LE(worst.outcome.volume, 0.5 * (1 + 1e-4));
   EXPECT_LT(worst.worst, sum.worst);
@@ -237,10 +234,8 @@ TEST(WorstCase, HasALowerWorstLoadThanTheSum) {
 
 // Volume under the compliance a design of 50 % has reached: about 50 % again.
 TEST(VolumeUnderCompliance, IsTheInverseOfComplianceUnderVolume) {
-  const BodyOutcome stiff = designed({}, 3, 100).outcome;
-  const BodyOutcome light =
-      designed({.minimize = Goal::Minimize::volume, .max_compliance = stiff.compliance}, 3, 150)
-          .outcome;
+  const BodyOutcome stiff = designed(least_compliance(), 3, 100).outcome;
+  const BodyOutcome light = designed(least_volume(stiff.compliance), 3, 150).outcome;
   EXPECT_LE(light.compliance, stiff.compliance * (1 + 1e-3));
   EXPECT_NEAR(light.volume, 0.5, 0.03);
 }

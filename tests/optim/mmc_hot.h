@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
+#include "optim/mmc/compliance.h"
 #include "optim/mmc/fixed_loads.h"
-#include "optim/mmc/responses.h"
 #include "tests/optim/mmc_small.h"
 
 /// Hot plates for tests.

@@ -21,20 +21,7 @@ TdfSettings whole(double band) {
 std::vector<BodyProblem> one_body(std::vector<double> bands = {2, 1}) {
   std::vector<TdfSettings> stages;
   for (const double band : bands) stages.push_back(whole(band));
-  return {{"plate",
-           kGrid,
-           kSection,
-           Design(kGrid, layout(), kScale),
-           strip(),
-           {},
-           stages,
-           {},
-           1e-4,
-           1e-3,
-           {},
-           {},
-           {},
-           {}}};
+  return {body_of(Design(kGrid, layout(), kScale), stages)};
 }
 
 LoopSettings quick(int iterations) {
@@ -91,7 +78,7 @@ TEST(EslLoop, MakesAFeasibleStifferDesign) {
   // And the outcome is that of the design left behind, computed afresh.
   const Ersatz ersatz(kGrid, 1e-3, problems[0].solid, {});
   Compliance compliance(loads, kSection, {}, {}, {});
-  MmcProblem again(kGrid, problems[0].design, ersatz, compliance, whole(1), Goal{});
+  MmcProblem again({kPlate, problems[0].design, ersatz, compliance}, whole(1), least_compliance());
   again.evaluate(problems[0].design.x());
   EXPECT_NEAR(again.compliance(), o.compliance, 1e-12 * o.compliance);
   EXPECT_NEAR(again.volume(), o.volume, 1e-14);
@@ -131,8 +118,8 @@ TEST(EslLoop, RowsDescribeTheirIterates) {
       EXPECT_EQ(&r.value, &r.state.value());
       EXPECT_NEAR(r.iterate.violation, std::max(0.0, r.state.volume() / 0.5 - 1), 1e-12);
       const Design design(kGrid, r.state.components(), kScale);
-      MmcProblem again(kGrid, design, ersatz, compliance, whole(r.state.band() / kGrid.dx()),
-                       Goal{});
+      MmcProblem again({kPlate, design, ersatz, compliance}, whole(r.state.band() / kGrid.dx()),
+                       least_compliance());
       again.evaluate(design.x());
       EXPECT_NEAR(again.compliance(), r.state.compliance(), 1e-9 * again.compliance()) << name;
       EXPECT_EQ(r.sharp != nullptr, rows % 7 == 0);

@@ -20,7 +20,7 @@ struct Choice {
 };
 void PrintTo(const Choice& choice, std::ostream* out) { *out << choice.name; }
 
-// `inertia` with `far_end` is refused: see mmc_responses_test.
+// `inertia` with `far_end` is refused: see mmc_compliance_test.
 const Choice kChoices[] = {
     {"inertia_moving_root", LoadDefinition::inertia, Support::moving_root},
     {"frozen_moving_root", LoadDefinition::frozen, Support::moving_root},
@@ -41,8 +41,8 @@ struct Whole {
         ersatz(kGrid, tdf_settings().alpha, strip(), {}),
         compliance(turning_plate(4), kSection, settings, VectorXd::Constant(kGrid.n_cells(), 0.5),
                    VectorXd::Constant(kGrid.n_cells(), 0.5)),
-        problem(kGrid, design, ersatz, compliance, tdf_settings(), Goal{.max_volume = max_volume}) {
-  }
+        problem({kPlate, design, ersatz, compliance}, tdf_settings(),
+                least_compliance(max_volume)) {}
 
   /// x by which a vector of one cell (positions, lengths, thicknesses; angles turn an end of a
   /// component by one cell) changes the variables.

@@ -1,392 +1,220 @@
-// Compliance of many equivalent static loads: the motion's own deformation comes back at the
-// unchanged design, every derivative passes Taylor's test, and compressed loads give the same
-// objective and gradient as all of them.
+// Every row of the table of responses, as an objective and as a limit: derivatives against
+// differences and by the Taylor test, values against what they are made of. What a goal says of
+// itself, and how often it has the state solved.
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
-#include <random>
-#include <string>
-#include <vector>
+#include <functional>
 
-#include "optim/mmc/responses.h"
+#include "optim/gradient_check.h"
+#include "optim/mmc/goal.h"
+#include "tests/optim/mmc_small.h"
 
-namespace flexmorph::mmc {
+namespace flexmorph::mmc::test {
 namespace {
 
-const fem::PlaneSection kSection{0.01, 1e8, 0.3, 2700};
-
-/// Factors as smooth functions of one parameter s: stiffness from 1e-3 to 1, mass likewise.
-struct SmoothDesign {
-  VectorXd phase, speed;
-
-  SmoothDesign(const Grid& g, unsigned seed) : phase(g.n_cells()), speed(g.n_cells()) {
-    std::mt19937 engine(seed);
-    std::uniform_real_distribution<double> uniform(0, 1);
-    for (int c = 0; c < g.n_cells(); ++c) {
-      phase(c) = 2 * std::numbers::pi * uniform(engine);
-      speed(c) = 0.5 + uniform(engine);
+/// Length of all axes [m]: known by the components alone.
+class Axes final : public Response {
+ public:
+  void evaluate(const Seen& at, Values& out) override {
+    const auto n = static_cast<Eigen::Index>(at.components.size());
+    out.f = VectorXd::Zero(1);
+    out.d_parameters = MatrixXd::Zero(1, n * Component::kParameters);
+    for (Eigen::Index c = 0; c < n; ++c) {
+      out.f[0] += 2 * at.components[static_cast<size_t>(c)].half_length;
+      out.d_parameters(0, c * Component::kParameters + 2) = 2;
     }
   }
-  // log10 of the stiffness swings between -3 and 0; the mass between 0.02 and 1.
-  VectorXd stiffness(double s) const {
-    return (1.5 * std::numbers::ln10 * ((phase + s * speed).array().sin() - 1)).exp();
-  }
-  VectorXd d_stiffness(double s) const {
-    return stiffness(s).array() * 1.5 * std::numbers::ln10 * speed.array() *
-           (phase + s * speed).array().cos();
-  }
-  VectorXd mass(double s) const { return 0.51 + 0.49 * (phase + s * speed).array().sin(); }
-  VectorXd d_mass(double s) const {
-    return 0.49 * speed.array() * (phase + s * speed).array().cos();
-  }
+};
+const ResponseRow kAxes{.name = "axes",
+                        .words = "length of all axes",
+                        .unit = "m",
+                        .full = [](const Plate& plate) { return 10 * plate.grid.width; },
+                        .make = make_response<Axes>};
+
+/// A turning plate, whose loads follow its mass, with a goal.
+struct Whole {
+  Design design;
+  Ersatz ersatz;
+  Compliance loads;
+  MmcProblem problem;
+
+  explicit Whole(const Goal& goal, unsigned seed = 3)
+      : design(kGrid, random_layout(seed), kScale),
+        ersatz(kGrid, tdf_settings().alpha, strip(), {}),
+        loads(turning_plate(4), kSection, {}, {}, {}),
+        problem({kPlate, design, ersatz, loads}, tdf_settings(), goal) {}
 };
 
-/// The motion of a plate that grows out of a hub turning with omega at speed v, with bending and
-/// axial vibration on top: n times, the root moving from column `last` to `first` in steps of
-/// `step` columns. Deformation is smooth and vanishes on the root line; it is not the static answer
-/// to the accelerations.
-fem::EslSets growing_plate(const Grid& g, int n, int last, int first, int step = 1) {
-  const double omega = 2 * std::numbers::pi, v = 0.5, pi = std::numbers::pi;
-  fem::EslSets loads{g, {}};
-  for (int k = 0; k < n; ++k) {
-    const double t = n > 1 ? static_cast<double>(k) / (n - 1) : 1.0;
-    fem::EslSet set;
-    set.time = t;
-    set.weight = (1 + 0.3 * std::sin(5 * t)) / n;
-    set.root_column = last - step * static_cast<int>(std::lround((last - first) * t / step));
-    const double root = g.x0 + set.root_column * g.dx();
-    set.deformation.setZero(2 * g.n_nodes());
-    set.acceleration.resize(2 * g.n_nodes());
-    for (int i = 0; i <= g.nx; ++i) {
-      for (int j = 0; j <= g.ny; ++j) {
-        const Vec2 X = g.node_position(i, j);
-        const double x = X.x() - root, y = X.y() - g.y0 - g.height / 2, z = X.x() / g.width;
-        const double bend = 40 * std::cos(19 * t) * z * z + 15 * std::sin(61 * t) * z * z * z;
-        const double axial = 8 * std::sin(140 * t) * std::sin(pi * z / 2);
-        set.acceleration.segment<2>(2 * g.node(i, j)) =
-            Vec2{-omega * omega * x + axial, 2 * omega * v - omega * omega * y + bend};
-        if (i <= set.root_column) continue;
-        const double s = x / g.width;
-        set.deformation.segment<2>(2 * g.node(i, j)) =
-            1e-3 * Vec2{s * (1 + std::sin(3 * t + 9 * s + 20 * y)),
-                        s * s * (2 + std::cos(4 * t + 7 * s)) + s * y};
-      }
-    }
-    const int tip = g.node(g.nx, g.ny / 2);
-    set.forces.push_back({tip, -0.5 * set.acceleration.segment<2>(2 * tip)});
-    loads.sets.push_back(std::move(set));
+double value_of(const ResponseRow& row) {
+  Whole whole({&kVolume, {Limit(row, 1, false, kPlate)}});
+  whole.problem.evaluate(whole.problem.start());
+  return whole.problem.values(row)->maxCoeff();
+}
+
+/// Every value of f and g by itself.
+using Each = std::function<double(const VectorXd&)>;
+template <class Use>
+void each_value(MmcProblem& problem, const optim::Response& at, const Use& use) {
+  const bool linear = problem.goal().objective->per_load;  // f is its bound
+  for (Eigen::Index row = linear ? 0 : -1; row < at.g.size(); ++row) {
+    const Each f = [&problem, row](const VectorXd& x) {
+      const optim::Response r = problem.evaluate(x);
+      return row < 0 ? r.f : r.g[row];
+    };
+    use(f, row < 0 ? at.df : VectorXd(at.dg.row(row)), "row " + std::to_string(row));
   }
-  return loads;
 }
 
-const Grid kGrid{0, -0.05, 0.6, 0.1, 36, 6};
-
-struct Choice {
-  LoadDefinition loads;
-  Support support;
-  std::string name;
-};
-
-std::vector<Choice> choices() {
-  return {{LoadDefinition::inertia, Support::moving_root, "inertia_moving_root"},
-          {LoadDefinition::frozen, Support::moving_root, "frozen_moving_root"},
-          {LoadDefinition::frozen, Support::far_end, "frozen_far_end"},
-          {LoadDefinition::stiffness, Support::moving_root, "stiffness_moving_root"},
-          {LoadDefinition::stiffness, Support::far_end, "stiffness_far_end"}};
+std::vector<const ResponseRow*> all_rows() {
+  std::vector<const ResponseRow*> rows(responses().begin(), responses().end());
+  rows.push_back(&kAxes);
+  return rows;
 }
 
-class EveryLoadDefinition : public ::testing::TestWithParam<Choice> {
+class EveryResponse : public ::testing::TestWithParam<const ResponseRow*> {
  protected:
-  ComplianceSettings settings(bool compress) const {
-    return {GetParam().loads, GetParam().support, compress, 1e-10};
+  /// As the objective, and with both bounds under an objective without a state: neither value nor
+  /// derivative depends on what the bounds are to be.
+  static std::vector<Goal> goals() {
+    const ResponseRow& row = *GetParam();
+    const Limit other(row.needs_state() ? kVolume : kComplianceSum, 0.5, false, kPlate);
+    const ResponseRow* objective = &row == &kVolume ? &kMass : &kVolume;
+    return {{&row, {other}},
+            {objective, {Limit(row, 0.7, false, kPlate), Limit(row, 0.3, true, kPlate)}}};
   }
 };
+INSTANTIATE_TEST_SUITE_P(Table, EveryResponse, ::testing::ValuesIn(all_rows()),
+                         [](const auto& test) { return key_of(*test.param); });
 
-INSTANTIATE_TEST_SUITE_P(Table, EveryLoadDefinition, ::testing::ValuesIn(choices()),
-                         [](const auto& choice) { return choice.param.name; });
-
-// f(s + h) - f(s) - h f'(s) = O(h^2) over three decades. The steps stay above the
-// level where round-off of f (1e-12, conditioning of a plate with 1e-3 in its cells) is felt.
-TEST_P(EveryLoadDefinition, TaylorRemainderIsOfSecondOrder) {
-  const fem::EslSets loads = growing_plate(kGrid, 6, 12, 2);
-  for (bool compress : {false, true}) {
-    for (unsigned seed : {1u, 2u, 3u}) {
-      const SmoothDesign start(kGrid, seed + 10), design(kGrid, seed);
-      Compliance compliance(loads, kSection, settings(compress), start.stiffness(0), start.mass(0));
-      Compliance::Value at;
-      compliance.evaluate(design.stiffness(0), design.mass(0), at);
-      const double f = at.f;
-      const double slope =
-          at.d_stiffness.dot(design.d_stiffness(0)) + at.d_mass.dot(design.d_mass(0));
-      std::vector<double> log_h, log_r;
-      for (double h = 1e-2; h > 0.9e-5; h /= std::sqrt(10.0)) {
-        compliance.evaluate(design.stiffness(h), design.mass(h), at);
-        log_h.push_back(std::log(h));
-        log_r.push_back(std::log(std::abs(at.f - f - h * slope)));
-      }
-      const double order = (log_r.front() - log_r.back()) / (log_h.front() - log_h.back());
-      EXPECT_NEAR(order, 2.0, 0.05) << "seed " << seed << (compress ? " compressed" : "");
-    }
+// See mmc_problem_test for the steps.
+TEST_P(EveryResponse, PassesTheTaylorTest) {
+  for (const Goal& goal : goals()) {
+    Whole whole(goal);
+    const VectorXd x = whole.problem.start();
+    const optim::Response at = whole.problem.evaluate(x);
+    ASSERT_EQ(at.g.size(), whole.problem.n_constraints());
+    const VectorXd unit = cells_of(whole.design);
+    each_value(whole.problem, at, [&](const Each& f, const VectorXd& df, const std::string& what) {
+      const VectorXd along = bent_direction(f, x, unit, 5);
+      // What is linear in the variables has nothing left but round-off.
+      const auto taylor = optim::taylor_test(f, df, x, along, 1e-3, 3, 1e-15);
+      if (GetParam() == &kAxes && !(taylor.order < 10)) return;
+      EXPECT_NEAR(taylor.order, 2, 0.05) << what << "\n" << taylor.table();
+    });
   }
 }
 
-/// Factors between `smallest` and 1, cell by cell.
-VectorXd random_factors(const Grid& g, double smallest, unsigned seed) {
-  std::mt19937 engine(seed);
-  std::uniform_real_distribution<double> uniform(std::log(smallest), 0);
-  VectorXd factor(g.n_cells());
-  for (double& f : factor) f = std::exp(uniform(engine));
-  return factor;
-}
-
-/// Strain energy of a displacement in the cells inside the hub, and in all cells.
-std::pair<double, double> energy_inside(const fem::StaticSolver& solver, const VectorXd& factor,
-                                        const VectorXd& at_nodes, int root_column) {
-  const Grid& g = solver.grid();
-  MatrixXd u(1, solver.n_unknowns());
-  for (int i = 0; i <= g.nx; ++i) {
-    for (int j = 0; j <= g.ny; ++j) {
-      if (solver.row(i, j) >= 0) {
-        u.block<1, 2>(0, solver.row(i, j)) = at_nodes.segment<2>(2 * g.node(i, j)).transpose();
-      }
-    }
-  }
-  VectorXd energies;
-  solver.cell_energies(u, VectorXd::Ones(1), energies);
-  energies.array() *= factor.array();
-  return {energies.head(g.cell(root_column, 0)).sum(), energies.sum()};
-}
-
-// Static analysis at the design of the motion returns the motion's deformation.
-TEST(Recovery, StiffnessLoadsReturnTheDeformation) {
-  const fem::EslSets loads = growing_plate(kGrid, 4, 12, 2);
-  for (double smallest : {1e-3, 1e-6}) {
-    const VectorXd factor = random_factors(kGrid, smallest, 5);
-    for (Support support : {Support::moving_root, Support::far_end}) {
-      Compliance compliance(loads, kSection, {LoadDefinition::stiffness, support, true, 1e-10},
-                            factor, factor);
-      const fem::StaticSolver solver(kGrid, kSection);
-      for (int l = 0; l < 4; ++l) {
-        const fem::EslSet& set = loads.sets[static_cast<std::size_t>(l)];
-        const VectorXd u = compliance.displacement(factor, factor, l);
-        EXPECT_LT((u - set.deformation).norm(), 1e-9 * set.deformation.norm());
-        const auto [inside, all] = energy_inside(solver, factor, u, set.root_column);
-        EXPECT_LT(inside, 1e-12 * all);
-      }
-    }
+TEST_P(EveryResponse, AgreesWithDifferences) {
+  for (const Goal& goal : goals()) {
+    Whole whole(goal, 8);
+    const VectorXd x = whole.problem.start();
+    const optim::Response at = whole.problem.evaluate(x);
+    std::mt19937 engine(7);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    VectorXd along(x.size());
+    for (double& each : along) each = 1e-5 * uniform(engine);
+    each_value(whole.problem, at, [&](const Each& f, const VectorXd& df, const std::string& what) {
+      const double slope = df.dot(along), found = (f(x + along) - f(x - along)) / 2;
+      EXPECT_NEAR(slope, found, 1e-4 * std::abs(slope) + 1e-11) << what;
+    });
   }
 }
 
-// With the reactions on the root line among the loads, the plate held at its far end does what the
-// plate held at its root does, and its part inside the hub carries nothing.
-TEST(Recovery, FrozenLoadsAgreeBetweenSupports) {
-  const fem::EslSets loads = growing_plate(kGrid, 4, 12, 2);
-  const VectorXd stiffness = random_factors(kGrid, 1e-6, 6), mass = random_factors(kGrid, 1e-2, 7);
-  Compliance at_root(loads, kSection, {LoadDefinition::frozen, Support::moving_root, true, 1e-10},
-                     stiffness, mass);
-  Compliance far_end(loads, kSection, {LoadDefinition::frozen, Support::far_end, true, 1e-10},
-                     stiffness, mass);
-  const fem::StaticSolver solver(kGrid, kSection);
-  for (int l = 0; l < 4; ++l) {
-    const VectorXd expected = at_root.displacement(stiffness, mass, l);
-    const VectorXd u = far_end.displacement(stiffness, mass, l);
-    EXPECT_LT((u - expected).norm(), 1e-9 * expected.norm());
-    const int root = loads.sets[static_cast<std::size_t>(l)].root_column;
-    const auto [inside, all] = energy_inside(solver, stiffness, u, root);
-    EXPECT_LT(inside, 1e-12 * all);
-  }
+// A bound that the design meets exactly leaves 0 of its constraint; below it, minus a part of it,
+// or the logarithm of the part.
+TEST_P(EveryResponse, IsMeasuredInPartsOfItsLimit) {
+  const ResponseRow& row = *GetParam();
+  const double value = value_of(row);
+  EXPECT_GT(value, 0);
+  const ResponseRow* objective = &row == &kVolume ? &kMass : &kVolume;
+  Whole whole({objective,
+               {Limit(row, value, false, kPlate), Limit(row, 2 * value, false, kPlate),
+                Limit(row, 2 * value, true, kPlate)}});
+  const optim::Response at = whole.problem.evaluate(whole.problem.start());
+  const Eigen::Index m = at.g.size() / 3;
+  EXPECT_EQ(m, row.per_load ? 4 : 1);
+  const double half = row.full ? 0.5 - 1 : std::log(0.5);
+  EXPECT_NEAR(at.g.head(m).maxCoeff(), 0, 1e-14);
+  EXPECT_NEAR(at.g.segment(m, m).maxCoeff(), half, 1e-14);
+  EXPECT_NEAR(at.g.tail(m).minCoeff(), -half, 1e-14);
+  EXPECT_NEAR(whole.problem.goal().limits[2].excess(value), 0.5, 1e-14);
 }
 
-// Frozen loads at their own design are inertia loads there; a design that follows differs.
-TEST(Compliance, FrozenEqualsInertiaAtTheStart) {
-  const fem::EslSets loads = growing_plate(kGrid, 5, 12, 2);
-  const SmoothDesign design(kGrid, 4);
-  const VectorXd k = design.stiffness(0), m = design.mass(0);
-  Compliance inertia(loads, kSection, {}, k, m);
-  Compliance frozen(loads, kSection, {LoadDefinition::frozen, Support::moving_root, true, 1e-10}, k,
-                    m);
-  Compliance::Value a, b;
-  inertia.evaluate(k, m, a);
-  frozen.evaluate(k, m, b);
-  EXPECT_NEAR(a.f, b.f, 1e-11 * b.f);
-  EXPECT_EQ(b.d_mass.cwiseAbs().maxCoeff(), 0);
-  EXPECT_GT(a.d_mass.cwiseAbs().maxCoeff(), 0);
+TEST(Responses, AreMadeOfWhatTheyMeasure) {
+  const Goal all{&kComplianceSum,
+                 {Limit(kVolume, 0.5, false, kPlate), Limit(kMass, 1, false, kPlate),
+                  Limit(kComplianceWorst, 1, false, kPlate), Limit(kAxes, 1, false, kPlate)}};
+  Whole whole(all);
+  const optim::Response r = whole.problem.evaluate(whole.problem.start());
+  const CellFactors& b = whole.problem.factors();
+  Compliance again(turning_plate(4), kSection, {}, {}, {});
+  LoadResponse::Value value;
+  again.evaluate(b.stiffness, b.mass, value);
+  LoadResponse::Each each;
+  again.evaluate_each(b.stiffness, b.mass, each);
+  EXPECT_EQ((*whole.problem.values(kComplianceSum))[0], value.f);
+  EXPECT_EQ(*whole.problem.values(kComplianceWorst), each.f);
+  EXPECT_EQ((*whole.problem.values(kVolume))[0], b.mass.mean());
+  EXPECT_NEAR((*whole.problem.values(kMass))[0], 2700 * 0.01 * 0.06 * b.mass.mean(), 1e-14);
+  double length = 0;
+  for (const Component& c : whole.design.components()) length += 2 * c.half_length;
+  EXPECT_NEAR((*whole.problem.values(kAxes))[0], length, 1e-12);
+  EXPECT_EQ(r.f, std::log(value.f));
+  EXPECT_EQ(whole.problem.compliance(), value.f);  // what is minimized stands for the design
+  EXPECT_EQ(r.g.size(), 1 + 1 + 4 + 1);
+  EXPECT_EQ(whole.problem.row_of(3), 6);
 }
 
-// One cell column, uniform acceleration along x and rigid cells across: the load of a rod.
-TEST(Compliance, ARodUnderItsOwnWeightHasTheCompliance) {
-  const Grid g{0, 0, 1.0, 0.01, 200, 1};
-  fem::PlaneSection section = kSection;
-  section.poisson_ratio = 0;
-  fem::EslSets loads{g, {{}}};
-  loads.sets[0].acceleration = VectorXd::Zero(2 * g.n_nodes());
-  for (int n = 0; n < g.n_nodes(); ++n) loads.sets[0].acceleration(2 * n) = -9.81;
-  loads.sets[0].root_column = 80;  // 0.6 m are outside
-  Compliance compliance(loads, section, {}, {}, {});
-  const VectorXd ones = VectorXd::Ones(g.n_cells());
-  Compliance::Value value;
-  compliance.evaluate(ones, ones, value);
-  // f = q^2 L^3 / (3 E A) for q per length; linear elements: 1 - 1/(4 n^2) of it
-  const double A = 1e-4, q = 9.81 * 2700 * A, L = 0.6;
-  EXPECT_NEAR(value.f, q * q * L * L * L / (3 * 1e8 * A), 1e-4 * value.f);
-  EXPECT_NEAR(compliance.individual(ones, ones)(0), value.f, 1e-11 * value.f);
-  EXPECT_EQ(value.d_stiffness.head(80).cwiseAbs().maxCoeff(), 0);
-  EXPECT_NEAR(value.d_stiffness.sum(), -value.f, 1e-11 * value.f);  // f ~ 1 / k
-  EXPECT_NEAR(value.d_mass.sum(), 2 * value.f, 1e-11 * value.f);    // f ~ m^2
+TEST(Responses, ShareOneFactorization) {
+  Whole whole({&kComplianceWorst,
+               {Limit(kVolume, 0.5, false, kPlate), Limit(kComplianceSum, 1, false, kPlate)}});
+  const VectorXd x = whole.problem.start();
+  const int before = whole.loads.factorizations();
+  whole.problem.evaluate(x + 1e-3 * VectorXd::Ones(x.size()));
+  EXPECT_EQ(whole.loads.factorizations(), before + 1);
 }
 
-// Objective and gradient with and without compression, for all definitions.
-TEST_P(EveryLoadDefinition, CompressionChangesNothing) {
-  const fem::EslSets loads = growing_plate(kGrid, 40, 20, 1);
-  const SmoothDesign start(kGrid, 20);
-  Compliance all(loads, kSection, settings(false), start.stiffness(0), start.mass(0));
-  Compliance few(loads, kSection, settings(true), start.stiffness(0), start.mass(0));
-  EXPECT_EQ(all.n_right_hand_sides(), 40);
-  if (GetParam().loads == LoadDefinition::inertia) {
-    // x, y of the rotation, Coriolis and root speed, three modes, and the tip's own slots
-    EXPECT_LE(few.n_right_hand_sides(), 8);
-  }
-  for (unsigned seed : {1u, 2u}) {
-    const SmoothDesign design(kGrid, seed);
-    // Solid and void as in a final design: the mass of the void is none.
-    VectorXd k = design.stiffness(0), m = design.mass(0);
-    if (seed == 2u) {
-      for (int c = 0; c < kGrid.n_cells(); ++c) {
-        const bool solid = m(c) > 0.5 || c % kGrid.ny == 2;
-        k(c) = solid ? 1 : 1e-6;
-        m(c) = solid ? 1 : 0;
-      }
-    }
-    Compliance::Value a, b;
-    all.evaluate(k, m, a);
-    few.evaluate(k, m, b);
-    EXPECT_NEAR(a.f, b.f, 1e-8 * a.f);
-    EXPECT_LT((a.d_stiffness - b.d_stiffness).norm(), 1e-8 * a.d_stiffness.norm());
-    EXPECT_LE((a.d_mass - b.d_mass).norm(), 1e-8 * a.d_mass.norm());
-    const VectorXd individual = few.individual(k, m);
-    double sum = 0;
-    for (int l = 0; l < 40; ++l) {
-      sum += loads.sets[static_cast<std::size_t>(l)].weight * individual(l);
-    }
-    EXPECT_NEAR(sum, a.f, 1e-8 * a.f);
-  }
+TEST(Responses, WithoutAStateNoneIsSolved) {
+  Whole whole({&kMass, {Limit(kAxes, 1, true, kPlate)}});
+  const int before = whole.loads.factorizations();
+  const VectorXd x = whole.problem.start();
+  whole.problem.evaluate(x);
+  EXPECT_EQ(whole.loads.factorizations(), before);
+  EXPECT_TRUE(std::isnan(whole.problem.compliance()));
+  // In one piece or not is all that is known of such a design.
+  EXPECT_TRUE(whole.problem.acceptable(x));
 }
 
-// The far end is one support for all, but every place of the root line brings reactions of its own:
-// few places, few right-hand sides.
-TEST(Compression, FarEndWithFewRootColumns) {
-  const fem::EslSets loads = growing_plate(kGrid, 40, 20, 0, 10);
-  const SmoothDesign start(kGrid, 20), design(kGrid, 1);
-  for (LoadDefinition definition : {LoadDefinition::frozen, LoadDefinition::stiffness}) {
-    Compliance all(loads, kSection, {definition, Support::far_end, false, 0}, start.stiffness(0),
-                   start.mass(0));
-    Compliance few(loads, kSection, {definition, Support::far_end, true, 1e-10}, start.stiffness(0),
-                   start.mass(0));
-    EXPECT_LT(few.n_right_hand_sides(), 25);
-    Compliance::Value a, b;
-    all.evaluate(design.stiffness(0), design.mass(0), a);
-    few.evaluate(design.stiffness(0), design.mass(0), b);
-    EXPECT_NEAR(a.f, b.f, 1e-8 * a.f);
-    EXPECT_LT((a.d_stiffness - b.d_stiffness).norm(), 1e-8 * a.d_stiffness.norm());
-  }
+TEST(Goal, KnowsWhatItAllowsAndWhatHoldsItBack) {
+  const double mass = 0.3 * kPlate.full_mass();
+  Goal goal = least_compliance(0.4);
+  EXPECT_EQ(allowed_volume(goal), 0.4);
+  goal.limits.emplace_back(kMass, mass, false, kPlate);
+  EXPECT_NEAR(*allowed_volume(goal), 0.3, 1e-15);
+  EXPECT_TRUE(is_held_back(goal));
+  EXPECT_FALSE(allowed_volume(least_volume(1)).has_value());
+  EXPECT_TRUE(is_held_back(least_volume(1)));
+  EXPECT_TRUE(is_held_back({&kMass, {Limit(kVolume, 0.2, true, kPlate)}}));
+  EXPECT_FALSE(is_held_back({&kMass, {Limit(kVolume, 0.2, false, kPlate)}}));
+  EXPECT_FALSE(is_held_back({&kComplianceSum, {Limit(kVolume, 0.2, true, kPlate)}}));
+  EXPECT_FALSE(is_held_back({&kComplianceSum, {Limit(kComplianceWorst, 2, false, kPlate)}}));
+
+  EXPECT_EQ(&compliance_row({&kMass, {Limit(kComplianceWorst, 2, false, kPlate)}}),
+            &kComplianceWorst);
+  EXPECT_EQ(&compliance_row({&kMass, {Limit(kVolume, 0.2, true, kPlate)}}), &kComplianceSum);
+  EXPECT_EQ(further_rows(goal), (std::vector<const ResponseRow*>{&kMass}));
 }
 
-// A root that does not move is one support too; loads may have no weight, and come in any order.
-TEST(Compression, OneRootColumnNeedsFewSolves) {
-  fem::EslSets loads = growing_plate(kGrid, 30, 4, 4);
-  loads.sets[7].weight = 0;
-  const SmoothDesign design(kGrid, 1);
-  Compliance all(loads, kSection, {LoadDefinition::inertia, Support::moving_root, false, 0}, {},
-                 {});
-  Compliance few(loads, kSection, {}, {}, {});
-  EXPECT_LE(few.n_right_hand_sides(), 8);
-  Compliance::Value a, b;
-  all.evaluate(design.stiffness(0), design.mass(0), a);
-  few.evaluate(design.stiffness(0), design.mass(0), b);
-  EXPECT_NEAR(a.f, b.f, 1e-8 * a.f);
-  EXPECT_LT((a.d_mass - b.d_mass).norm(), 1e-8 * a.d_mass.norm());
-}
-
-// More loads than unknowns: a strip of two cells.
-TEST(Compression, ATinyPlate) {
-  const Grid g{0, 0, 0.2, 0.1, 2, 1};
-  const fem::EslSets loads = growing_plate(g, 12, 1, 0);
-  const VectorXd ones = VectorXd::Ones(2);
-  for (Support support : {Support::moving_root, Support::far_end}) {
-    Compliance::Value a, b;
-    Compliance(loads, kSection, {LoadDefinition::frozen, support, false, 0}, ones, ones)
-        .evaluate(ones, ones, a);
-    Compliance few(loads, kSection, {LoadDefinition::frozen, support, true, 1e-10}, ones, ones);
-    few.evaluate(ones, ones, b);
-    EXPECT_NEAR(a.f, b.f, 1e-8 * a.f);
-    if (support == Support::far_end) {
-      EXPECT_LE(few.n_right_hand_sides(), 8);
-    }
-  }
-}
-
-TEST(Compression, OrderAndZeroWeightsDoNotMatter) {
-  fem::EslSets loads = growing_plate(kGrid, 30, 20, 1);
-  loads.sets[7].weight = 0;
-  const SmoothDesign design(kGrid, 1);
-  Compliance::Value sorted, shuffled;
-  Compliance(loads, kSection, {}, {}, {}).evaluate(design.stiffness(0), design.mass(0), sorted);
-  std::shuffle(loads.sets.begin(), loads.sets.end(), std::mt19937(3));
-  Compliance few(loads, kSection, {}, {}, {});
-  few.evaluate(design.stiffness(0), design.mass(0), shuffled);
-  EXPECT_LT(few.n_right_hand_sides(), 10);
-  EXPECT_NEAR(sorted.f, shuffled.f, 1e-9 * sorted.f);
-  EXPECT_LT((sorted.d_stiffness - shuffled.d_stiffness).norm(), 1e-9 * sorted.d_stiffness.norm());
-  EXPECT_LT((sorted.d_mass - shuffled.d_mass).norm(), 1e-9 * sorted.d_mass.norm());
-}
-
-TEST(Compliance, RefusesWithTheReason) {
-  const fem::EslSets good = growing_plate(kGrid, 3, 6, 2);
-  const VectorXd ones = VectorXd::Ones(kGrid.n_cells());
-  const auto message = [&](const fem::EslSets& loads, const ComplianceSettings& settings,
-                           const VectorXd& k0) {
-    try {
-      Compliance(loads, kSection, settings, k0, ones);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), Error::Kind::input);
-      return std::string(error.what());
-    }
-    return std::string();
-  };
-  const ComplianceSettings far_inertia{LoadDefinition::inertia, Support::far_end, true, 1e-10};
-  EXPECT_NE(message(good, far_inertia, ones).find("reaction"), std::string::npos);
-  EXPECT_NE(message({kGrid, {}}, {}, ones).find("none"), std::string::npos);
-  EXPECT_EQ(message(good, {}, ones), "");
-  fem::EslSets bad = good;
-  bad.sets[1].root_column = kGrid.nx;
-  EXPECT_NE(message(bad, {}, ones).find("load 1"), std::string::npos);
-  bad = good;
-  bad.sets[2].acceleration(5) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_NE(message(bad, {}, ones).find("load 2"), std::string::npos);
-  bad = good;
-  bad.sets[0].forces.push_back({kGrid.n_nodes(), {1, 0}});
-  EXPECT_NE(message(bad, {}, ones).find("load 0"), std::string::npos);
-  bad = good;
-  for (fem::EslSet& set : bad.sets) set.weight = 0;
-  EXPECT_NE(message(bad, {}, ones).find("weights"), std::string::npos);
-  const ComplianceSettings frozen{LoadDefinition::frozen, Support::far_end, true, 1e-10};
-  EXPECT_NE(message(good, frozen, VectorXd::Ones(3)).find("factors"), std::string::npos);
-
-  Compliance compliance(good, kSection, {}, ones, ones);
-  Compliance::Value value;
-  EXPECT_THROW(compliance.evaluate(-ones, ones, value), Error);
-  VectorXd nan = ones;
-  nan(3 * kGrid.nx) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(compliance.evaluate(nan, ones, value), Error);
-  EXPECT_THROW(compliance.evaluate(ones, nan, value), Error);
-  EXPECT_THROW(compliance.displacement(ones, ones, 3), Error);
-  compliance.evaluate(ones, ones, value);
-  EXPECT_GT(value.f, 0);
+TEST(Table, HasRowsByTheirNamesAndLoads) {
+  EXPECT_EQ(find_response("compliance", "sum"), &kComplianceSum);
+  EXPECT_EQ(find_response("compliance", "worst"), &kComplianceWorst);
+  EXPECT_EQ(find_response("volume", "worst"), &kVolume);
+  EXPECT_EQ(find_response("beauty", "sum"), nullptr);
+  for (const ResponseRow* row : responses())
+    EXPECT_EQ(find_response(row->name, row->loads), row) << key_of(*row);
 }
 
 }  // namespace
-}  // namespace flexmorph::mmc
+}  // namespace flexmorph::mmc::test

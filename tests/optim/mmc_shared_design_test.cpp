@@ -19,10 +19,8 @@ BodyProblem body(const std::string& name, std::vector<double> bands = {1.5}) {
     stages.push_back(tdf_settings(band));
     stages.back().erosion = 0;
   }
-  BodyProblem out{name,    kGrid, kSection, Design(kGrid, layout(), kScale),
-                  strip(), {},    stages,   {},
-                  1e-4,    1e-3,  {},       {},
-                  {},      {}};
+  BodyProblem out = body_of(Design(kGrid, layout(), kScale), stages);
+  out.body = name;
   out.shares_mass = true;
   return out;
 }
@@ -105,7 +103,7 @@ TEST(DesignBodies, RowsDescribeTheirBodies) {
   for (const char* name : {"mma", "nlopt_ccsaq"}) {
     BodyProblem a = body("a", {2, 1}), b = body("b", {3, 2, 1.5, 1});
     b.section = kOther;
-    b.goal.max_volume = 0.3;
+    b.goal = least_compliance(0.3);
     FixedLoads loads_a = tip_load(kSection, 2), loads_b = tip_load(kOther, 1);
     FixedLoads again_a = tip_load(kSection, 2), again_b = tip_load(kOther, 1);
     const Ersatz ersatz = ersatz_of(a);
@@ -125,7 +123,8 @@ TEST(DesignBodies, RowsDescribeTheirBodies) {
       const Design design(kGrid, r.state.components(), kScale);
       TdfSettings tdf = tdf_settings(r.state.band() / kGrid.dx());
       tdf.erosion = 0;
-      MmcProblem again(kGrid, design, ersatz, first ? again_a : again_b, tdf, Goal{});
+      const Plate& plate = first ? kPlate : kOtherPlate;
+      MmcProblem again({plate, design, ersatz, first ? again_a : again_b}, tdf, least_compliance());
       again.evaluate(design.x());
       EXPECT_NEAR(again.compliance(), r.state.compliance(), 1e-9 * again.compliance());
       EXPECT_EQ(&r.value, &r.state.value());

@@ -29,8 +29,8 @@ struct Pair {
         ersatz(kGrid, tdf_settings().alpha, strip(), {}),
         compliance_a(turning_plate(3), kSection, {}, {}, {}),
         compliance_b(tip_load(kOther, force_b, 2)),
-        a(kGrid, design_a, ersatz, compliance_a, tdf_settings(), Goal{.max_volume = 0.4}),
-        b(kGrid, design_b, ersatz, compliance_b, tdf_settings(1), Goal{.max_volume = 0.6}),
+        a({kPlate, design_a, ersatz, compliance_a}, tdf_settings(), least_compliance(0.4)),
+        b({kOtherPlate, design_b, ersatz, compliance_b}, tdf_settings(1), least_compliance(0.6)),
         shared({{&a, mass_of(kSection)}, {&b, mass_of(kOther)}}) {}
 
   static double mass_of(const fem::PlaneSection& s) {
@@ -141,12 +141,15 @@ TEST(SharedProblem, RefusesWhatCannotBeShared) {
   Pair pair(layout(), layout());
   EXPECT_THROW(SharedProblem({}), Error);
   EXPECT_THROW(SharedProblem({{&pair.a, 1}, {&pair.b, 0}}), Error);
-  MmcProblem worst(kGrid, pair.design_b, pair.ersatz, pair.compliance_b, tdf_settings(),
-                   Goal{.over = Goal::Over::worst});
+  const DesignedPlate plate{kOtherPlate, pair.design_b, pair.ersatz, pair.compliance_b};
+  MmcProblem worst(plate, tdf_settings(), least_compliance(0.5, kComplianceWorst));
   EXPECT_THROW(SharedProblem({{&pair.a, 1}, {&worst, 1}}), Error);
-  MmcProblem light(kGrid, pair.design_b, pair.ersatz, pair.compliance_b, tdf_settings(),
-                   Goal{.minimize = Goal::Minimize::volume, .max_compliance = 1});
+  MmcProblem light(plate, tdf_settings(), least_volume(1));
   EXPECT_THROW(SharedProblem({{&pair.a, 1}, {&light, 1}}), Error);
+  Goal twice = least_compliance();
+  twice.limits.emplace_back(kMass, 0.5, false, kOtherPlate);
+  MmcProblem limited_twice(plate, tdf_settings(), twice);
+  EXPECT_THROW(SharedProblem({{&pair.a, 1}, {&limited_twice, 1}}), Error);
 }
 
 }  // namespace

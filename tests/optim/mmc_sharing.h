@@ -18,5 +18,6 @@ inline FixedLoads tip_load(const fem::PlaneSection& section, double force, doubl
 
 /// Thicker and lighter than the small plate.
 inline const fem::PlaneSection kOther{0.02, 1e8, 0.3, 900};
+inline const Plate kOtherPlate{kGrid, kOther, {}};
 
 }  // namespace flexmorph::mmc::test

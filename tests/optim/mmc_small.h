@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <random>
 #include <vector>
@@ -14,6 +15,17 @@ namespace flexmorph::mmc::test {
 inline const Grid kGrid{.x0 = 0, .y0 = -0.05, .width = 0.6, .height = 0.1, .nx = 60, .ny = 10};
 inline const fem::PlaneSection kSection{0.01, 1e8, 0.3, 2700};
 inline const DesignScale kScale{.half_length = 0.05, .min_thickness = 0.006, .max_thickness = 0.03};
+
+inline const Plate kPlate{kGrid, kSection, {}};
+
+/// The stiffest plate of a volume, by the sum of its loads or by the worst.
+inline Goal least_compliance(double max_volume = 0.5, const ResponseRow& row = kComplianceSum) {
+  return {&row, {Limit(kVolume, max_volume, false, kPlate)}};
+}
+/// The lightest plate that is stiff enough.
+inline Goal least_volume(double max_compliance, const ResponseRow& row = kComplianceSum) {
+  return {&kVolume, {Limit(row, max_compliance, false, kPlate)}};
+}
 
 inline TdfSettings tdf_settings(double band_in_cells = 1.5) {
   TdfSettings s;
@@ -46,6 +58,46 @@ inline std::vector<Component> random_layout(unsigned seed, double amount = 1) {
     for (double* thickness : {&c.c1, &c.c2, &c.c3}) *thickness += 0.003 * uniform(engine);
   }
   return all;
+}
+
+/// The small plate with a solid strip.
+inline BodyProblem body_of(const Design& design, const std::vector<TdfSettings>& stages,
+                           const Goal& goal = least_compliance()) {
+  return {.body = "plate",
+          .grid = kGrid,
+          .section = kSection,
+          .design = design,
+          .solid = strip(),
+          .stages = stages,
+          .goal = goal};
+}
+
+/// By how much variables change where all moves by one cell (angles: an end of a component does).
+inline VectorXd cells_of(const Design& design) {
+  VectorXd scale = VectorXd::Ones(design.n_variables()), out(design.n_variables());
+  design.scale_gradient(scale);
+  for (Eigen::Index i = 0; i < out.size(); ++i)
+    out[i] = kGrid.dx() / scale[i] / (i % Component::kParameters == 3 ? kScale.half_length : 1.0);
+  return out;
+}
+
+/// A random direction of at most `unit`, along which f bends most out of a few: the curvatures of
+/// many nodes nearly cancel along some, and what is left of order two drowns in order three.
+/// Variables beyond `unit`, the bound of a worst case, stay.
+inline VectorXd bent_direction(const std::function<double(const VectorXd&)>& f, const VectorXd& x,
+                               const VectorXd& unit, unsigned seed) {
+  std::mt19937 engine(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  VectorXd best;
+  double most = -1;
+  for (int k = 0; k < 4; ++k) {
+    VectorXd d(x.size());
+    for (Eigen::Index i = 0; i < d.size(); ++i)
+      d[i] = i < unit.size() ? unit[i] * uniform(engine) : 0;
+    const double bend = std::abs(f(x + 1e-3 * d) + f(x - 1e-3 * d) - 2 * f(x));
+    if (bend > most) most = bend, best = d;
+  }
+  return best;
 }
 
 /// Loads of a plate that turns, grows out of its hub by n - 1 cells and swings: accelerations of

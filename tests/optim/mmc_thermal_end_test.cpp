@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "optim/gradient_check.h"
-#include "optim/mmc/held_growth.h"
+#include "optim/mmc/held_expansion.h"
 #include "tests/optim/mmc_hot.h"
 #include "tests/support/errors.h"
 

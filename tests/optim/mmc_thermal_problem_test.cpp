@@ -242,46 +242,22 @@ struct Whole {
   FixedLoads resting;
   MmcProblem of_turning, of_resting;
 
-  explicit Whole(Goal::Over over = Goal::Over::sum)
+  explicit Whole(const ResponseRow& row = kComplianceSum)
       : design(kGrid, random_layout(7), kScale),
         ersatz(kGrid, tdf_settings().alpha, strip(), {}),
         turning(hot_plate(4, kStretch), kSection, {}, {}, {}),
         resting(both_ends_held()),
-        of_turning(kGrid, design, ersatz, turning, tdf_settings(), Goal{.over = over}),
-        of_resting(kGrid, design, ersatz, resting, tdf_settings(), Goal{.over = over}) {}
+        of_turning({kPlate, design, ersatz, turning}, tdf_settings(), least_compliance(0.5, row)),
+        of_resting({kPlate, design, ersatz, resting}, tdf_settings(), least_compliance(0.5, row)) {}
 
-  /// Variables per cell of movement, see mmc_problem_test.
-  VectorXd unit() const {
-    VectorXd scale = VectorXd::Ones(design.n_variables()), out(design.n_variables());
-    design.scale_gradient(scale);
-    for (Eigen::Index i = 0; i < out.size(); ++i)
-      out[i] = kGrid.dx() / scale[i] / (i % Component::kParameters == 3 ? kScale.half_length : 1.0);
-    return out;
-  }
+  VectorXd unit() const { return cells_of(design); }
 };
 
-/// Of a few random directions that in which f bends most, see mmc_problem_test.
-VectorXd bent_direction(const std::function<double(const VectorXd&)>& f, const VectorXd& x,
-                        const VectorXd& unit, unsigned seed) {
-  std::mt19937 engine(seed);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  VectorXd best;
-  double most = -1;
-  for (int k = 0; k < 4; ++k) {
-    VectorXd d(x.size());
-    for (Eigen::Index i = 0; i < d.size(); ++i)
-      d[i] = i < unit.size() ? unit[i] * uniform(engine) : 0;
-    const double bend = std::abs(f(x + 1e-3 * d) + f(x - 1e-3 * d) - 2 * f(x));
-    if (bend > most) most = bend, best = d;
-  }
-  return best;
-}
-
 TEST(HotProblem, GradientsPassTheTaylorTest) {
-  for (const Goal::Over over : {Goal::Over::sum, Goal::Over::worst}) {
-    Whole whole(over);
+  for (const ResponseRow* of : {&kComplianceSum, &kComplianceWorst}) {
+    Whole whole(*of);
     for (MmcProblem* problem : {&whole.of_turning, &whole.of_resting}) {
-      const bool sum = over == Goal::Over::sum;
+      const bool sum = of == &kComplianceSum;
       const VectorXd x = problem->start();
       const optim::Response at = problem->evaluate(x);
       for (Eigen::Index row = sum ? -1 : 1; row < (sum ? 0 : at.g.size()); ++row) {

@@ -92,22 +92,8 @@ TEST(BodyDesign, GoesOnWithoutADeadComponent) {
   start.push_back(bar(0.3, 0.05, 0.01, 0.3));
   // Centres may lie outside of the grid here.
   const Grid wide{.x0 = 0, .y0 = -1, .width = 0.6, .height = 2, .nx = 60, .ny = 200};
-  BodyProblem problem{"plate",
-                      kGrid,
-                      kSection,
-                      Design(wide, start, kScale),
-                      strip(),
-                      {},
-                      {tdf_settings()},
-                      {},
-                      1e-4,
-                      1e-3,
-                      {},
-                      {},
-                      {},
-                      {},
-                      5,
-                      false};
+  BodyProblem problem = body_of(Design(wide, start, kScale), {tdf_settings()});
+  problem.drop_every = 5;
   std::vector<fem::HeldUnknown> held;
   for (int j = 0; j <= kGrid.ny; ++j)
     for (int c = 0; c < 2; ++c) held.push_back({kGrid.node(0, j), c});

@@ -1,4 +1,4 @@
-#include "optim/mmc/responses.h"
+#include "optim/mmc/compliance.h"
 
 #include <algorithm>
 #include <cassert>
@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "geometry/cpu_time.h"
-#include "optim/mmc/held_growth.h"
+#include "optim/mmc/held_expansion.h"
 #include "optim/mmc/static_loads.h"
 
 namespace flexmorph::mmc {
@@ -110,8 +110,8 @@ struct Compliance::Impl {
   VectorXd factored;       // stiffness factors the solver holds
   MatrixXd F, work, U, Z;  // reused by every evaluation
   VectorXd energies, products;
-  std::optional<HeldGrowth> held;  // where edges cannot grow with a hot plate
-  VectorXd stretch;                // a of each load; empty when all are cold
+  std::optional<HeldExpansion> held;  // where edges cannot grow with a hot plate
+  VectorXd stretch;                   // a of each load; empty when all are cold
   Seconds seconds;
   int factorizations = 0;
 
@@ -127,7 +127,7 @@ struct Compliance::Impl {
     solver.factorize(stiffness);
     factored = stiffness;
   }
-  HeldGrowth& held_at(const VectorXd& stiffness) {
+  HeldExpansion& held_at(const VectorXd& stiffness) {
     held->update(stiffness, solver);
     return *held;
   }

@@ -36,9 +36,9 @@ struct ComplianceSettings {
 /// Hot plates (EslSet::thermal_stretch = a): u is the elastic displacement, counted from the plate
 /// grown freely about its root, and f = Σ w_i u_iᵀ K u_i. Root lines that cannot grow with the
 /// plate prescribe u = -g (0, Y) there, g = EslSet::held_stretch, and their thermal stress counts:
-/// see HeldGrowth. With support `far_end` that is the clamp at the far end. Where a load is held at
-/// the other end too (EslSet::held_end_stretch), springs keep that edge straight and as wide as it
-/// is under all loads; their energy, next to nothing, belongs to f.
+/// see HeldExpansion. With support `far_end` that is the clamp at the far end. Where a load is held
+/// at the other end too (EslSet::held_end_stretch), springs keep that edge straight and as wide as
+/// it is under all loads; their energy, next to nothing, belongs to f.
 ///
 /// Source: P (33)-(35); optim/README.md, Responses.
 class Compliance final : public LoadResponse {

@@ -42,7 +42,7 @@ namespace flexmorph::mmc {
 ///
 /// Loads that hold the same lines in the same ratio share τ: however many there are, that is one
 /// right-hand side.
-class HeldGrowth {
+class HeldExpansion {
  public:
   /// The plate and its held lines (n of them).
   struct Plate {
@@ -59,7 +59,8 @@ class HeldGrowth {
   /// @param lines    held line of each load; -1 for loads with g = 0
   /// @param growth   g of each load [-]
   /// @param weights  w of each load
-  HeldGrowth(Plate plate, std::vector<int> lines, const VectorXd& growth, const VectorXd& weights);
+  HeldExpansion(Plate plate, std::vector<int> lines, const VectorXd& growth,
+                const VectorXd& weights);
 
   /// K X = F in place (n x n_unknowns), rows are held lines; entries of F that a line holds are
   /// without meaning.
@@ -109,8 +110,8 @@ double edge_stiffness(const fem::EslSets& sets, const fem::PlaneSection& section
 /// The edges that hold back the growth of a hot plate: EslSet::held_stretch = g, τ_c = -(0, Y) on
 /// the root column of each load, and EslSet::held_end_stretch = g_e at the far end. Nothing where
 /// no load has any.
-std::optional<HeldGrowth> held_edges(const fem::EslSets& sets, const fem::PlaneSection& section,
-                                     const fem::StaticSolver& solver, std::span<const int> columns,
-                                     const VectorXd& weights);
+std::optional<HeldExpansion> held_edges(const fem::EslSets& sets, const fem::PlaneSection& section,
+                                        const fem::StaticSolver& solver,
+                                        std::span<const int> columns, const VectorXd& weights);
 
 }  // namespace flexmorph::mmc

@@ -1,4 +1,4 @@
-#include "optim/mmc/held_growth.h"
+#include "optim/mmc/held_expansion.h"
 
 #include <algorithm>
 #include <array>
@@ -24,8 +24,8 @@ std::array<int, 8> entries_of(const Grid& g, int i, int j) {
 
 }  // namespace
 
-HeldGrowth::HeldGrowth(Plate plate, std::vector<int> lines, const VectorXd& growth,
-                       const VectorXd& weights)
+HeldExpansion::HeldExpansion(Plate plate, std::vector<int> lines, const VectorXd& growth,
+                             const VectorXd& weights)
     : plate_(std::move(plate)), lines_(std::move(lines)), growth_(growth) {
   assert(std::is_sorted(plate_.first_columns.begin(), plate_.first_columns.end()));
   line_weights_.setZero(n_lines());
@@ -45,7 +45,7 @@ HeldGrowth::HeldGrowth(Plate plate, std::vector<int> lines, const VectorXd& grow
 }
 
 /// -K_fc τ_c - κ Bᵀd. Cells behind a line reach only nodes that it holds.
-void HeldGrowth::forces(const VectorXd& stiffness) {
+void HeldExpansion::forces(const VectorXd& stiffness) {
   const Grid& g = plate_.grid;
   const auto K = fem::q4_stiffness(plate_.section, g.dx(), g.dy());
   forces_.setZero(n_lines(), plate_.n_unknowns);
@@ -71,7 +71,7 @@ void HeldGrowth::forces(const VectorXd& stiffness) {
 }
 
 /// τ . K_cell τ of full material; nothing behind a line.
-void HeldGrowth::line_energies() {
+void HeldExpansion::line_energies() {
   const Grid& g = plate_.grid;
   const fem::Q4Energy energy(plate_.section, g.dx(), g.dy());
   const VectorXd ones = VectorXd::Ones(n_lines());
@@ -93,7 +93,7 @@ void HeldGrowth::line_energies() {
 }
 
 /// κ |B τ + d|²
-void HeldGrowth::add_edge_energies() {
+void HeldExpansion::add_edge_energies() {
   const Grid& g = plate_.grid;
   const int first = 2 * g.node(g.nx, 0), last = 2 * g.node(g.nx, g.ny);
   const auto difference = [&](int entry) { return tau_.col(entry + 2) - tau_.col(entry); };
@@ -104,7 +104,7 @@ void HeldGrowth::add_edge_energies() {
                                              (difference(entry + 1) + d).cwiseAbs2());
 }
 
-void HeldGrowth::update(const VectorXd& stiffness, const fem::StaticSolver& solver) {
+void HeldExpansion::update(const VectorXd& stiffness, const fem::StaticSolver& solver) {
   update(stiffness, [&](MatrixXd& x) {
     if (holds_end())
       solver.solve(x, plate_.first_columns);
@@ -113,7 +113,7 @@ void HeldGrowth::update(const VectorXd& stiffness, const fem::StaticSolver& solv
   });
 }
 
-void HeldGrowth::update(const VectorXd& stiffness, const Solve& solve) {
+void HeldExpansion::update(const VectorXd& stiffness, const Solve& solve) {
   if (stiffness_.size() == stiffness.size() && stiffness_ == stiffness) return;
   stiffness_.resize(0);
   forces(stiffness);
@@ -131,13 +131,13 @@ void HeldGrowth::update(const VectorXd& stiffness, const Solve& solve) {
   stiffness_ = stiffness;
 }
 
-void HeldGrowth::add_to(LoadResponse::Value& value) const {
+void HeldExpansion::add_to(LoadResponse::Value& value) const {
   value.f += line_weights_.dot(compliances_);
   value.d_held.noalias() = energies_.transpose() * line_weights_;
   value.d_stiffness += value.d_held;
 }
 
-void HeldGrowth::add_to(LoadResponse::Each& each) const {
+void HeldExpansion::add_to(LoadResponse::Each& each) const {
   add_to(each.f);
   for (std::size_t l = 0; l < lines_.size(); ++l) {
     const auto at = static_cast<Eigen::Index>(l);
@@ -146,20 +146,20 @@ void HeldGrowth::add_to(LoadResponse::Each& each) const {
   }
 }
 
-void HeldGrowth::add_to(VectorXd& compliances) const {
+void HeldExpansion::add_to(VectorXd& compliances) const {
   for (std::size_t l = 0; l < lines_.size(); ++l) {
     const auto at = static_cast<Eigen::Index>(l);
     if (lines_[l] >= 0) compliances(at) += growth_(at) * growth_(at) * compliances_(lines_[l]);
   }
 }
 
-VectorXd HeldGrowth::displacement(int load) const {
+VectorXd HeldExpansion::displacement(int load) const {
   const int line = lines_[static_cast<std::size_t>(load)];
   if (line < 0) return VectorXd::Zero(tau_.cols());
   return growth_(load) * tau_.row(line).transpose();
 }
 
-void HeldGrowth::take_from(MatrixXd& u) const {
+void HeldExpansion::take_from(MatrixXd& u) const {
   for (std::size_t l = 0; l < lines_.size(); ++l) {
     if (lines_[l] < 0) continue;
     const auto load = static_cast<Eigen::Index>(l);
@@ -201,10 +201,10 @@ struct EdgesOfLoad {
 };
 
 /// @param lines  distinct edges, by column
-HeldGrowth::Plate plate_of(const Grid& g, const fem::PlaneSection& section,
-                           const fem::StaticSolver& solver, std::span<const Edges> lines,
-                           double edge_stiffness) {
-  HeldGrowth::Plate plate;
+HeldExpansion::Plate plate_of(const Grid& g, const fem::PlaneSection& section,
+                              const fem::StaticSolver& solver, std::span<const Edges> lines,
+                              double edge_stiffness) {
+  HeldExpansion::Plate plate;
   plate.grid = g;
   plate.section = section;
   plate.n_unknowns = solver.n_unknowns();
@@ -233,9 +233,9 @@ HeldGrowth::Plate plate_of(const Grid& g, const fem::PlaneSection& section,
 
 }  // namespace
 
-std::optional<HeldGrowth> held_edges(const fem::EslSets& sets, const fem::PlaneSection& section,
-                                     const fem::StaticSolver& solver, std::span<const int> columns,
-                                     const VectorXd& weights) {
+std::optional<HeldExpansion> held_edges(const fem::EslSets& sets, const fem::PlaneSection& section,
+                                        const fem::StaticSolver& solver,
+                                        std::span<const int> columns, const VectorXd& weights) {
   std::vector<EdgesOfLoad> loads;
   std::vector<Edges> lines;
   VectorXd growth(weights.size());
@@ -253,8 +253,8 @@ std::optional<HeldGrowth> held_edges(const fem::EslSets& sets, const fem::PlaneS
     if (loads[l].growth != 0)
       line_of[l] = static_cast<int>(std::lower_bound(lines.begin(), lines.end(), loads[l].edges) -
                                     lines.begin());
-  return HeldGrowth(plate_of(sets.grid, section, solver, lines, edge_stiffness(sets, section)),
-                    std::move(line_of), growth, weights);
+  return HeldExpansion(plate_of(sets.grid, section, solver, lines, edge_stiffness(sets, section)),
+                       std::move(line_of), growth, weights);
 }
 
 }  // namespace flexmorph::mmc

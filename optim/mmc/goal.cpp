@@ -1,0 +1,42 @@
+#include "optim/mmc/goal.h"
+
+#include <algorithm>
+
+namespace flexmorph::mmc {
+
+std::vector<const ResponseRow*> rows_of(const Goal& goal) {
+  std::vector<const ResponseRow*> out = {goal.objective};
+  for (const Limit& limit : goal.limits)
+    if (std::find(out.begin(), out.end(), limit.row) == out.end()) out.push_back(limit.row);
+  return out;
+}
+
+const ResponseRow& compliance_row(const Goal& goal) {
+  for (const ResponseRow* row : rows_of(goal))
+    if (row->needs_state()) return *row;
+  return kComplianceSum;
+}
+
+std::vector<const ResponseRow*> further_rows(const Goal& goal) {
+  std::vector<const ResponseRow*> out = rows_of(goal);
+  std::erase_if(
+      out, [&](const ResponseRow* row) { return row == &kVolume || row == &compliance_row(goal); });
+  return out;
+}
+
+std::optional<double> allowed_volume(const Goal& goal) {
+  std::optional<double> least;
+  for (const Limit& limit : goal.limits)
+    if (limit.volume && !limit.at_least) least = std::min(*limit.volume, least.value_or(1e300));
+  return least;
+}
+
+bool is_held_back(const Goal& goal) {
+  // More material is less compliance and more of everything else.
+  const bool wants_more = goal.objective->needs_state();
+  return std::any_of(goal.limits.begin(), goal.limits.end(), [&](const Limit& limit) {
+    return wants_more == (limit.row->needs_state() == limit.at_least);
+  });
+}
+
+}  // namespace flexmorph::mmc

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "optim/mmc/responses/rows.h"
+
+namespace flexmorph::mmc {
+
+/// A bound on a response; of one with a value per load, on each of them.
+struct Limit {
+  const ResponseRow* row = nullptr;
+  double value = 0;  ///< in the unit of the row
+  bool at_least = false;
+  /// The volume fraction it stands for, where every piece of material counts alike.
+  std::optional<double> volume;
+
+  Limit(const ResponseRow& response, double bound, bool from_below, const Plate& plate)
+      : row(&response), value(bound), at_least(from_below) {
+    if (response.even) volume = bound / response.full(plate);
+  }
+  /// How far a value of the response is beyond the bound, as a part of it: <= 0 when it is allowed.
+  double excess(double found) const { return at_least ? 1 - found / value : found / value - 1; }
+};
+
+/// What a design is to be good at, and what it must keep to: rows of the table of responses.
+struct Goal {
+  const ResponseRow* objective = &kComplianceSum;
+  std::vector<Limit> limits;
+};
+
+/// The rows of a goal in the order they are evaluated, each once.
+std::vector<const ResponseRow*> rows_of(const Goal& goal);
+
+/// The row whose compliance stands for the design in tables: the first one that needs a state, or
+/// the sum.
+const ResponseRow& compliance_row(const Goal& goal);
+
+/// Rows that tables have no columns for: all but the volume and compliance_row().
+std::vector<const ResponseRow*> further_rows(const Goal& goal);
+
+/// The largest volume fraction that the limits leave; nothing when none speaks of it.
+std::optional<double> allowed_volume(const Goal& goal);
+
+/// Is there a limit that keeps the objective from being best in a full plate, or an empty one?
+bool is_held_back(const Goal& goal);
+
+}  // namespace flexmorph::mmc

@@ -1,0 +1,156 @@
+// What a design is to be good at, as cases say it: objectives, constraints and their shorthands
+// become rows of the table of responses; what cannot be meant is refused, and located.
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "cases/scene/goal.h"
+#include "tests/cases/scenes.h"
+#include "tests/io/scratch.h"
+
+namespace flexmorph::cases {
+namespace {
+
+/// short_beam with a density (2000 kg when it is full) and without a limit of its volume.
+mmc::Goal goal_of(Changes changes) {
+  changes.insert(changes.begin(), {"domain.density=1000.0", "design.max_volume="});
+  return read("short_beam", changes).designs[0].goal;
+}
+
+std::string complaint(const Changes& changes) {
+  try {
+    goal_of(changes);
+  } catch (const Error& e) {
+    EXPECT_EQ(e.kind(), Error::Kind::input);
+    return e.what();
+  }
+  return "";
+}
+
+TEST(Goal, ShorthandsAreRows) {
+  const mmc::Goal stiff = read("short_beam").designs[0].goal;
+  EXPECT_EQ(stiff.objective, &mmc::kComplianceSum);
+  ASSERT_EQ(stiff.limits.size(), 1u);
+  EXPECT_EQ(stiff.limits[0].row, &mmc::kVolume);
+  EXPECT_EQ(stiff.limits[0].value, 0.4);
+  EXPECT_FALSE(stiff.limits[0].at_least);
+  EXPECT_EQ(goal_words(stiff), "summed compliance under a volume of 0.4");
+
+  const mmc::Goal light =
+      goal_of({"design.minimize=volume", "design.loads=worst", "design.max_compliance=80.0"});
+  EXPECT_EQ(light.objective, &mmc::kVolume);
+  ASSERT_EQ(light.limits.size(), 1u);
+  EXPECT_EQ(light.limits[0].row, &mmc::kComplianceWorst);
+  EXPECT_EQ(light.limits[0].value, 80);
+  EXPECT_EQ(goal_words(light), "volume under a largest compliance of 80 J");
+}
+
+TEST(Goal, HasAnyNumberOfConstraints) {
+  const mmc::Goal goal = goal_of(
+      {"design.loads=worst",
+       "design.constraint=[{response='mass', at_most=500.0, at_least=100.0}, "
+       "{response='compliance', loads='sum', at_most=90.0}, {response='volume', at_most=0.5}]"});
+  EXPECT_EQ(goal.objective, &mmc::kComplianceWorst);
+  ASSERT_EQ(goal.limits.size(), 4u);
+  EXPECT_EQ(goal.limits[0].row, &mmc::kMass);
+  EXPECT_EQ(goal.limits[1].row, &mmc::kMass);
+  EXPECT_EQ(goal.limits[1].value, 100);
+  EXPECT_TRUE(goal.limits[1].at_least);
+  EXPECT_EQ(goal.limits[2].row, &mmc::kComplianceSum);
+  EXPECT_EQ(mmc::allowed_volume(goal), 0.25);  // a mass is a volume
+  EXPECT_EQ(limit_words(goal),
+            "mass at most 500 kg, mass at least 100 kg, summed compliance at most 90 J, volume at "
+            "most 0.5");
+  EXPECT_EQ(goal_words(goal),
+            "largest compliance under a mass of 500 kg and a summed compliance of 90 J and a "
+            "volume of 0.5 with a mass of at least 100 kg");
+}
+
+// Where the start of the layout is thick enough for it: a quarter of two crossing bars.
+TEST(Goal, LimitOfMassMakesTheStart) {
+  const Scene by_volume = read("short_beam", {"design.max_volume=0.25"});
+  const Scene by_mass = read(
+      "short_beam", {"domain.density=1000.0",
+                     "design.max_volume=", "design.constraint=[{response='mass', at_most=500.0}]"});
+  EXPECT_EQ(by_mass.designs[0].half_thickness, by_volume.designs[0].half_thickness);
+}
+
+struct Refused {
+  const char* name;
+  Changes changes;
+  const char* said;
+};
+void PrintTo(const Refused& bad, std::ostream* out) { *out << bad.name; }
+class GoalRefuses : public ::testing::TestWithParam<Refused> {};
+TEST_P(GoalRefuses, AndSaysWhy) {
+  const std::string said = complaint(GetParam().changes);
+  EXPECT_NE(said.find(GetParam().said), std::string::npos) << "said: " << said;
+}
+INSTANTIATE_TEST_SUITE_P(
+    Table, GoalRefuses,
+    ::testing::Values(
+        Refused{"no_density",
+                {"domain.density=", "design.constraint=[{response='mass', at_most=1.0}]"},
+                "a plate without a density has none: domain.density [kg/m^3]"},
+        Refused{"unknown",
+                {"design.constraint=[{response='beauty', at_least=1.0}]"},
+                "a response is one of 'compliance', 'volume', 'mass'"},
+        Refused{"unnamed", {"design.constraint=[{at_most=0.5}]"}, "a constraint is one on a"},
+        Refused{"no_bound",
+                {"design.constraint=[{response='volume'}]"},
+                "a constraint has `at_most`, `at_least` or both"},
+        Refused{"loads",
+                {"design.constraint=[{response='volume', loads='sum', at_most=0.5}]"},
+                "only \"compliance\" puts loads together"},
+        Refused{"minimized",
+                {"design.constraint=[{response='compliance', at_most=80.0}]"},
+                "what is minimized has no limit"},
+        Refused{"twice",
+                {"design.max_volume=0.5", "design.constraint=[{response='volume', at_most=0.4}]"},
+                "the volume has a limit already"},
+        Refused{"lower_compliance",
+                {"design.constraint=[{response='compliance', loads='worst', at_least=80.0}]"},
+                "only \"volume\", \"mass\""},
+        Refused{"crossed",
+                {"design.constraint=[{response='volume', at_most=0.3, at_least=0.4}]"},
+                "no more than `at_most`"},
+        Refused{"too_much",
+                {"design.constraint=[{response='mass', at_most=2001.0}]"},
+                "a mass lies between 0 and 2000 (0 excluded) [kg]"},
+        Refused{"full",
+                {"design.constraint=[{response='volume', at_least=0.4}]"},
+                "a full plate is the stiffest"},
+        Refused{"empty",
+                {"design.minimize=mass", "design.constraint=[{response='volume', at_most=0.4}]"},
+                "nothing at all has the least mass"},
+        Refused{"wrong_shorthand",
+                {"design.minimize=mass", "design.max_volume=0.4", "design.max_compliance=80.0"},
+                "only minimize = \"compliance\" has a largest volume"},
+        Refused{"missing", {"design.minimize=mass"}, "max_compliance"}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+TEST(Goal, ErrorsOfConstraintsAreLocated) {
+  const Scratch scratch;
+  const auto path = std::filesystem::path(FLEXMORPH_CASES) / "short_beam.toml";
+  std::ifstream in(path);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  text.insert(text.find("[optimizer]"),
+              "[[design.constraint]]\nresponse = \"volume\"\nat_least = -0.1\n\n");
+  const auto line =
+      std::count(text.begin(), text.begin() + static_cast<long>(text.find("-0.1")), '\n') + 1;
+  std::ofstream(scratch / "constrained.toml") << text;
+  try {
+    read_scene(io::CaseFile(scratch / "constrained.toml"));
+    ADD_FAILURE() << "is no bound";
+  } catch (const Error& e) {
+    EXPECT_EQ(
+        std::string(e.what()).rfind(
+            (scratch / "constrained.toml") + ":" + std::to_string(line) + ": design.constraint", 0),
+        0u)
+        << e.what();
+  }
+}
+
+}  // namespace
+}  // namespace flexmorph::cases
