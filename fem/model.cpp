@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "fem/strain_term.h"
+
 namespace flexmorph::fem {
 
 Body& Model::add_body(std::string name, std::unique_ptr<Element> element,
@@ -84,7 +86,8 @@ void Model::prepare(double t) {
   for (Body& b : bodies_) {
     b.element->move_to(t);
     if (b.heat)
-      for (const auto& term : b.terms) term->heat_to(t);
+      for (const auto& term : b.terms)
+        if (auto* hot = dynamic_cast<StrainTerm*>(term.get())) hot->heat_to(t);
     try {
       for (const auto& term : b.terms) term->prepare(*b.element, b.factors, !fresh_);
     } catch (const Error& error) {
@@ -170,8 +173,10 @@ void Model::add_constraint_force(const Constraints& c, const VectorXd& lambda,
 
 void Model::scale_loads(double factor) {
   for (Body& b : bodies_)
-    for (const auto& term : b.terms)
-      if (term->is_elastic() ? scales_temperatures_ : scales_loads_) term->scale_load(factor);
+    for (const auto& term : b.terms) {
+      const bool strained = dynamic_cast<const StrainTerm*>(term.get()) != nullptr;
+      if (strained ? scales_temperatures_ : scales_loads_) term->scale_load(factor);
+    }
   if (!scales_loads_) return;
   for (const auto& link : links_) link->scale_load(factor);
 }
@@ -228,9 +233,10 @@ Energies Model::energies(const State& x) const {
     for (int e = 0; e < b.element->n_elements(); ++e) {
       gather(b, e, x, local);
       for (const auto& term : b.terms) {
-        out.kinetic += term->kinetic_energy(e, local);
-        out.strain += term->strain_energy(e, local);
-        out.potential += term->potential_energy(e, local);
+        const Energies of_term = term->energies(e, local);
+        out.kinetic += of_term.kinetic;
+        out.strain += of_term.strain;
+        out.potential += of_term.potential;
       }
     }
   for (const auto& link : links_) {
@@ -264,9 +270,22 @@ double Model::heat_power(const State& x) const {
     if (!b.heat) continue;
     for (int e = 0; e < b.element->n_elements(); ++e) {
       gather(b, e, x, local);
-      for (const auto& term : b.terms) out += term->heat_power(e, local);
+      for (const auto& term : b.terms)
+        if (const auto* hot = dynamic_cast<const StrainTerm*>(term.get()))
+          out += hot->heat_power(e, local);
     }
   }
+  return out;
+}
+
+double Model::dissipation(const State& x) const {
+  double out = 0;
+  Local local;
+  for (const Body& b : bodies_)
+    for (int e = 0; e < b.element->n_elements(); ++e) {
+      gather(b, e, x, local);
+      for (const auto& term : b.terms) out += term->dissipation(e, local);
+    }
   return out;
 }
 

@@ -10,6 +10,7 @@
 #include "fem/heat.h"
 #include "fem/joint.h"
 #include "fem/link.h"
+#include "fem/section.h"
 #include "fem/term.h"
 
 namespace flexmorph::fem {
@@ -27,12 +28,6 @@ struct Body {
   /// Vector unknowns, entry by entry, then scalar ones.
   int n_dofs() const { return element->dim() * element->n_vectors() + element->n_scalars(); }
   int first_scalar() const { return first_dof + element->dim() * element->n_vectors(); }
-};
-
-/// Energies of a state [J].
-struct Energies {
-  double kinetic = 0, strain = 0, potential = 0;
-  double total() const { return kinetic + strain + potential; }
 };
 
 /// Force [N] and moment about a point [N m]; in the plane only the z entry of the moment and no z
@@ -150,8 +145,11 @@ class Model {
   double link_power(const State& x) const;
   /// Power of all terms at fixed unknowns, see Term::flow_power() [W].
   double flow_power(const State& x) const;
-  /// Power that the temperature of hot bodies gives to their energy, see Term::heat_power() [W].
+  /// Power that the temperature of hot bodies gives to their energy, see StrainTerm::heat_power()
+  /// [W].
   double heat_power(const State& x) const;
+  /// Power that all terms turn into heat, see Term::dissipation() [W].
+  double dissipation(const State& x) const;
   /// Smallest area ratio |r_m x r_n| over all elements (sampled at 3 x 3 points): a collapse of the
   /// St. Venant-Kirchhoff material shows here before Newton fails.
   double smallest_area_ratio(const State& x) const;

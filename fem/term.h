@@ -2,7 +2,6 @@
 
 #include "fem/batch.h"
 #include "fem/element.h"
-#include "fem/section.h"
 
 namespace flexmorph::fem {
 
@@ -33,6 +32,12 @@ inline constexpr int kMaxFree = kMaxShapes * kMaxDim + 4;
 using FreeForce = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxFree, 1>;
 using FreeTangent =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMaxFree, kMaxFree>;
+
+/// Energies of a state, or of a term in one element [J].
+struct Energies {
+  double kinetic = 0, strain = 0, potential = 0;
+  double total() const { return kinetic + strain + potential; }
+};
 
 /// Energy per reference area of full material at points of a material line [J/m²], sorted by the
 /// factor of the design that multiplies it (one entry per point each).
@@ -104,9 +109,13 @@ class Term {
                                 FreeTangent& tangent) const;
 
   /// Energies of one element [J]; zero where a term has none.
-  virtual double kinetic_energy(int, const Local&) const { return 0; }
-  virtual double strain_energy(int, const Local&) const { return 0; }
-  virtual double potential_energy(int, const Local&) const { return 0; }
+  virtual Energies energies(int, const Local&) const { return {}; }
+  double kinetic_energy(int e, const Local& x) const { return energies(e, x).kinetic; }
+  double strain_energy(int e, const Local& x) const { return energies(e, x).strain; }
+  double potential_energy(int e, const Local& x) const { return energies(e, x).potential; }
+
+  /// Power of one element that the term turns into heat, which nobody keeps [W]; not negative.
+  virtual double dissipation(int, const Local&) const { return 0; }
 
   /// Linear momentum of one element [kg m/s], of dim entries; zero where the term has none.
   virtual Vec3 momentum(int, const Local&) const { return Vec3::Zero(); }
@@ -115,14 +124,6 @@ class Term {
   /// force per area times ∂r/∂t at fixed unknowns and fixed material point, integrated [W].
   /// Only called for elements whose lines move.
   virtual double flow_power(int, const Local&) const { return 0; }
-
-  /// Is its energy that of strains, a function of q (and of free lines) alone that does not change
-  /// when the body moves as a rigid one? Heat acts on such terms (thermal/heated.h).
-  virtual bool is_elastic() const { return false; }
-  /// Puts a term of a hot body (Body::heat) where its temperature is at time t.
-  virtual void heat_to(double /*t*/) {}
-  /// Rate of the term's energy at fixed unknowns and fixed lines, by the temperature [W].
-  virtual double heat_power(int, const Local&) const { return 0; }
 
   /// Adds the energies per area that cross an m-line through which material enters or leaves. With
   /// flow_power() they are the rate of the element's energy at fixed unknowns.
@@ -133,41 +134,5 @@ class Term {
   virtual void add_line_energy(std::span<const ShapeTable> /*line*/, const Local& /*x*/,
                                LineEnergy& /*out*/) const {}
 };
-
-/// What a body is made of.
-std::unique_ptr<Term> make_inertia(const PlaneSection& section);
-std::unique_ptr<Term> make_membrane(const PlaneSection& section);
-/// The membrane with assumed strains: does not lock in thin bending (terms/membrane_invariant.h).
-std::unique_ptr<Term> make_assumed_membrane(const PlaneSection& section);
-/// Fully parameterized beam in the plane (elements/ancf_beam.h), section.thickness: its width
-/// across the plane. General continuum mechanics, plane stress; and enhanced continuum mechanics,
-/// which does not lock by Poisson's effect (terms/beam.cpp).
-std::unique_ptr<Term> make_beam_gcm(const PlaneSection& section);
-std::unique_ptr<Term> make_beam_ecm(const PlaneSection& section);
-/// Bending of a thin plate in space, n x n Gauss points per element (5: force to 5e-4 at strong
-/// deformation; 7: 4e-7). @throws Error (input) at prepare() for a body in the plane.
-std::unique_ptr<Term> make_bending(const PlaneSection& section, int n_points = 5);
-/// Weight of the body's own mass; gravity (dim) [m/s^2].
-std::unique_ptr<Term> make_gravity(const PlaneSection& section, const VectorXd& gravity);
-/// A mass [kg] at a material point, with its weight when gravity is not empty.
-std::unique_ptr<Term> make_point_mass(double mass, const Vec2& material, const VectorXd& gravity);
-
-/// Loads that keep their size and direction, per reference length and area; components as the body
-/// has dimensions. All loads are scaled by Model::scale_loads().
-/// @throws Error (input) at prepare() for other components, a point outside the body, an unknown
-/// edge; point and edge loads also in elements whose lines move.
-std::unique_ptr<Term> make_point_force(const Vec2& material, const VectorXd& force);  // [N]
-std::unique_ptr<Term> make_edge_load(const std::string& edge, const VectorXd& load);  // [N/m]
-std::unique_ptr<Term> make_surface_load(const VectorXd& load);                        // [N/m²]
-/// Loads that follow the surface of a plate in space: a pressure [N/m²] along r_m × r_n, and a
-/// moment per length [N] of an edge about the edge, positive where it bends with κ > 0.
-/// @throws Error (input) at prepare() for a body in the plane or with material lines that move.
-std::unique_ptr<Term> make_pressure(double pressure);
-std::unique_ptr<Term> make_edge_moment(const std::string& edge, double moment);
-
-/// Builds a term of the table by name ("inertia", "membrane", "membrane_assumed", "bending", "gcm",
-/// "ecm").
-/// @throws Error (input) naming the known terms.
-std::unique_ptr<Term> make_term(const std::string& name, const PlaneSection& section);
 
 }  // namespace flexmorph::fem

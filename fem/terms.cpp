@@ -1,25 +1,146 @@
-#include <map>
+#include "fem/terms.h"
 
-#include "fem/term.h"
+#include <algorithm>
 
 namespace flexmorph::fem {
 
-std::unique_ptr<Term> make_term(const std::string& name, const PlaneSection& section) {
-  using Maker = std::unique_ptr<Term> (*)(const PlaneSection&);
-  static const std::map<std::string, Maker> kTerms = {
-      {"bending", [](const PlaneSection& s) { return make_bending(s); }},
-      {"ecm", make_beam_ecm},
-      {"gcm", make_beam_gcm},
-      {"inertia", make_inertia},
-      {"membrane", make_membrane},
-      {"membrane_assumed", make_assumed_membrane}};
-  const auto row = kTerms.find(name);
-  if (row == kTerms.end()) {
-    std::string known;
-    for (const auto& [term, maker] : kTerms) known += (known.empty() ? "" : ", ") + term;
-    throw Error::input("term '" + name + "' is unknown; known are: " + known);
+const TermRow& bending_row();
+const TermRow& ecm_row();
+const TermRow& gcm_row();
+const TermRow& inertia_row();
+const TermRow& membrane_row();
+const TermRow& membrane_assumed_row();
+
+const std::vector<const TermRow*>& term_rows() {
+  static const std::vector<const TermRow*> kRows = {&inertia_row(),  &bending_row(),
+                                                    &membrane_row(), &membrane_assumed_row(),
+                                                    &gcm_row(),      &ecm_row()};
+  return kRows;
+}
+
+namespace {
+
+std::string quoted(const std::string& name) { return '"' + name + '"'; }
+
+/// "a", "a or b", "a, b or c".
+std::string listed(const std::vector<std::string>& names, const std::string& last) {
+  std::string out;
+  for (size_t i = 0; i < names.size(); ++i)
+    out += (i == 0 ? "" : i + 1 == names.size() ? " " + last + " " : ", ") + quoted(names[i]);
+  return out;
+}
+
+std::vector<std::string> of_role(const std::string& role, TermPlace place) {
+  std::vector<std::string> out;
+  for (const TermRow* row : term_rows())
+    if (row->role == role && row->may_stand_in(place)) out.push_back(row->name);
+  return out;
+}
+
+/// Roles that a body in this place has, in the order of the table.
+std::vector<std::string> required_roles(TermPlace place) {
+  std::vector<std::string> out;
+  for (const TermRow* row : term_rows())
+    if (std::find(row->required_in.begin(), row->required_in.end(), place) !=
+            row->required_in.end() &&
+        std::find(out.begin(), out.end(), row->role) == out.end())
+      out.push_back(row->role);
+  return out;
+}
+
+const char* noun_of(TermPlace place) {
+  switch (place) {
+    case TermPlace::plane:
+      return "a plate in the plane";
+    case TermPlace::space:
+      return "a plate in space";
+    case TermPlace::beam:
+      return "a beam";
   }
-  return row->second(section);
+  return "";
+}
+
+}  // namespace
+
+bool TermRow::may_stand_in(TermPlace place) const {
+  return std::find(places.begin(), places.end(), place) != places.end();
+}
+
+bool TermRow::reads(const std::string& key) const {
+  return std::any_of(keys.begin(), keys.end(), [&](const TermKey& k) { return k.name == key; });
+}
+
+std::vector<std::string> term_names(TermPlace place) {
+  std::vector<std::string> out;
+  for (const TermRow* row : term_rows())
+    if (row->may_stand_in(place)) out.push_back(row->name);
+  return out;
+}
+
+const TermRow& term_row(const std::string& name) {
+  std::string known;
+  for (const TermRow* row : term_rows()) {
+    if (row->name == name) return *row;
+    known += (known.empty() ? "" : ", ") + row->name;
+  }
+  throw Error::input("term '" + name + "' is unknown; known are: " + known);
+}
+
+std::vector<std::string> alternatives(const TermRow& row, TermPlace place) {
+  std::vector<std::string> out = of_role(row.role, place);
+  std::erase(out, row.name);
+  return out;
+}
+
+std::string refusal_of_terms(TermPlace place, std::span<const std::string> names, bool moves) {
+  std::vector<const TermRow*> rows;
+  for (const std::string& name : names) {
+    const TermRow& row = term_row(name);
+    if (!row.may_stand_in(place)) return quoted(name) + " is no term of " + noun_of(place);
+    for (const TermRow* other : rows)
+      if (other->role == row.role)
+        return quoted(row.name) + " stands in place of " + quoted(other->name);
+    rows.push_back(&row);
+  }
+  const auto has = [&](const std::string& role) {
+    return std::any_of(rows.begin(), rows.end(),
+                       [&](const TermRow* row) { return row->role == role; });
+  };
+  const bool elastic =
+      std::any_of(rows.begin(), rows.end(), [](const TermRow* row) { return row->elastic; });
+  for (const TermRow* row : rows)
+    if (row->acts_on_elastic && !elastic)
+      return quoted(row->name) + " acts on elastic terms, and the body has none";
+  for (const TermRow* row : term_rows())
+    if (moves && row->moves && row->may_stand_in(place) && !has(row->role))
+      return "a body that moves has " + listed(of_role(row->role, place), "or");
+  const std::vector<std::string> required = required_roles(place);
+  if (std::all_of(required.begin(), required.end(), has)) return "";
+  std::string all;
+  for (const std::string& role : required)
+    all += (all.empty() ? "" : " and ") + listed(of_role(role, place), "or");
+  return std::string(noun_of(place)) + " has " + all;
+}
+
+double number_of(const TermRow& row, const std::string& key, const TermData& data) {
+  if (const auto said = data.numbers.find(key); said != data.numbers.end()) return said->second;
+  for (const TermKey& k : row.keys)
+    if (k.name == key && k.fallback) return *k.fallback;
+  throw Error::input("term '" + row.name + "' needs the number '" + key + "'");
+}
+
+std::vector<std::unique_ptr<Term>> make_terms(std::span<const std::string> names,
+                                              const PlaneSection& section,
+                                              const std::map<std::string, double>& numbers) {
+  TermData data{section, numbers, {}};
+  for (const std::string& name : names) data.terms.push_back(&term_row(name));
+  std::vector<std::unique_ptr<Term>> out;
+  for (const TermRow* row : data.terms) out.push_back(row->make(data));
+  return out;
+}
+
+std::unique_ptr<Term> make_term(const std::string& name, const PlaneSection& section) {
+  return std::move(make_terms(std::span(&name, 1), section, {}).front());
 }
 
 }  // namespace flexmorph::fem

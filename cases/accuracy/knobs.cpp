@@ -13,6 +13,8 @@ namespace {
 using io::to_text;
 using Overrides = std::vector<std::string>;
 
+const std::string kPoints = "bending_points";
+
 bool any_lines(const Scene& scene) {
   return std::any_of(scene.bodies.begin(), scene.bodies.end(),
                      [](const Body& b) { return !b.lines.empty(); });
@@ -20,7 +22,7 @@ bool any_lines(const Scene& scene) {
 
 bool bends(const Scene& scene) {
   return !scene.bodies.empty() && std::all_of(scene.bodies.begin(), scene.bodies.end(),
-                                              [](const Body& b) { return b.has("bending"); });
+                                              [](const Body& b) { return b.number(kPoints) > 0; });
 }
 
 /// Is there a motion behind this part?
@@ -152,10 +154,13 @@ std::vector<Level> model_levels(const Scene& scene, const io::CaseFile& file) {
   for (Level& level : out) {
     std::string models;
     for (const Body& b : scene.bodies) {
-      const std::string other = b.has("gcm") ? "ecm" : "gcm";
-      models += (models.empty() ? "" : ", ") + other;
-      level.overrides.push_back(key(b.name, "terms") + (b.has("inertia") ? "['inertia', '" : "['") +
-                                other + "']");
+      std::string terms;
+      for (const std::string& term : b.terms) {
+        const auto others = fem::alternatives(fem::term_row(term), b.place());
+        if (!others.empty()) models += (models.empty() ? "" : ", ") + others.front();
+        terms += (terms.empty() ? "'" : ", '") + (others.empty() ? term : others.front()) + "'";
+      }
+      level.overrides.push_back(key(b.name, "terms") + "[" + terms + "]");
     }
     level.name = models + " " + level.name;
   }
@@ -292,7 +297,7 @@ std::string no_bending(const Scene& scene, Part part) {
 }
 
 std::vector<Level> quadrature_levels(const Scene& scene, const io::CaseFile&) {
-  const int own = scene.bodies.front().bending_points;
+  const int own = static_cast<int>(scene.bodies.front().number(kPoints));
   std::vector<Level> out;
   for (int points = std::min(3, own); points <= std::max(9, own); ++points) {
     Level& level = out.emplace_back();
@@ -300,7 +305,7 @@ std::vector<Level> quadrature_levels(const Scene& scene, const io::CaseFile&) {
     level.name = to_text(points) + " x " + to_text(points);
     if (points == own) continue;
     for (const Body& b : scene.bodies)
-      level.overrides.push_back(key(b.name, "bending_points") + to_text(points));
+      level.overrides.push_back(key(b.name, kPoints) + to_text(points));
   }
   return out;
 }

@@ -10,7 +10,9 @@
 #include "fem/elements/ancf_beam.h"
 #include "fem/elements/ancf_plate.h"
 #include "fem/elements/rigid_body.h"
+#include "fem/loads.h"
 #include "fem/rigid.h"
+#include "fem/terms.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
@@ -111,10 +113,8 @@ void add_body(const Scene& scene, const Body& body, const std::array<int, 2>& co
               fem::Model& model) {
   const VectorXd gravity = gravity_of(scene);
   const fem::PlaneSection section = section_of(body);
-  std::vector<std::unique_ptr<fem::Term>> terms;
-  for (const std::string& name : body.terms)
-    terms.push_back(name == "bending" ? fem::make_bending(section, body.bending_points)
-                                      : fem::make_term(name, section));
+  std::vector<std::unique_ptr<fem::Term>> terms =
+      fem::make_terms(body.terms, section, body.numbers);
   if (gravity.size() > 0) terms.push_back(fem::make_gravity(section, gravity));
   for (const fem::AttachedMass& m : attached_masses(scene, body.name))
     terms.push_back(fem::make_point_mass(m.mass, m.material, gravity));

@@ -20,10 +20,12 @@ constexpr double kFreePoint = 1e4;
 // Of a rigid body, a joint row or a spring.
 constexpr double kRigid = 1e3;
 
-double points_of(const Body& body) {
-  const double membrane = 49, bending = body.bending_points * body.bending_points;
-  return membrane + (body.has("bending") ? bending : 0);
+/// Gauss points of the bending; 0 where none is.
+double bending_points(const Body& body) {
+  const double n = body.number("bending_points");
+  return n * n;
 }
+double points_of(const Body& body) { return 49 + bending_points(body); }
 
 }  // namespace
 
@@ -34,18 +36,14 @@ double force_operations(const Body& body, const fem::Element& element) {
   const double pairs = 0.5 * n * (n + 1);
   double out = 2 * n * n * d * (body.flow ? 3 : 1);  // inertia
   out += 0.5 * pairs * pairs + 2 * pairs * d + 2 * n * n * d;
-  if (body.has("bending"))
-    out += body.bending_points * body.bending_points * (2 * n * d * (5 + 3) + 150);
-  return out;
+  return out + bending_points(body) * (2 * n * d * (5 + 3) + 150);
 }
 
 double tangent_operations(const Body& body, const fem::Element& element) {
   const double n = element.n_shapes(), d = element.dim();
   if (body.is_beam()) return 15 * 4 * n * d * n * d;
   const double pairs = 0.5 * n * (n + 1);
-  double out = n * d * (n * pairs + n * n * d);
-  if (body.has("bending")) out += 2 * body.bending_points * body.bending_points * n * d * n * d;
-  return out;
+  return n * d * (n * pairs + n * n * d) + 2 * bending_points(body) * n * d * n * d;
 }
 
 StepOperations step_operations(const Scene& scene, const Mechanism& mechanism) {

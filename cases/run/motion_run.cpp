@@ -4,6 +4,7 @@
 
 #include "cases/run/measures.h"
 #include "cases/run/mechanism_columns.h"
+#include "cases/run/quantities.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
@@ -18,6 +19,13 @@ size_t design_of(const Scene& scene, const std::string& body) {
   while (i < scene.designs.size() && scene.designs[i].body != body) ++i;
   return i;
 }
+
+/// What the columns of terms say of a step.
+struct WrittenBy {
+  const char* column;
+  double fem::MotionStep::*value;
+};
+constexpr WrittenBy kWritten[] = {{"energy.dissipated", &fem::MotionStep::dissipated}};
 
 /// Fills the record and the loads as the motion goes on.
 class Recorder {
@@ -53,6 +61,8 @@ class Recorder {
     if (scene.is_mechanism() && wishes.balance)
       r.powers = {{"power.drive", {}}, {"power.feed", {}}, {"power.inflow", {}}};
     if (!r.powers.empty() && scene.has_heat()) r.powers.push_back({"power.heat", {}});
+    if (wishes.balance)
+      for (const std::string& name : columns_of_terms(scene)) r.written.push_back({name, {}});
     if (!scene.measures.empty())
       undeformed_ = fem::start_state(mechanism.model, mechanism.growths, 0, fem::Start::rigid,
                                      mechanism.motion.placement);
@@ -78,6 +88,9 @@ class Recorder {
     observe(step);
     if (!scene_.measures.empty()) measure(step);
     columns_.add(step.model, step.x);
+    for (Column& column : r.written)
+      for (const WrittenBy& known : kWritten)
+        if (column.name == known.column) column.values.push_back(step.*known.value);
     if (!r.powers.empty()) {
       r.powers[0].values.push_back(step.powers.drive);
       r.powers[1].values.push_back(step.powers.feed);

@@ -36,10 +36,20 @@ std::vector<std::string> motion_columns(const Scene& scene) {
   for (const Column& column : MechanismColumns(scene).take()) out.push_back(column.name);
   for (const char* name : {"kinetic", "strain", "potential", "defect"})
     out.push_back(std::string("energy.") + name);
+  for (const std::string& name : columns_of_terms(scene)) out.push_back(name);
   return out;
 }
 
 }  // namespace
+
+std::vector<std::string> columns_of_terms(const Scene& scene) {
+  std::vector<std::string> out;
+  for (const Body& body : scene.bodies)
+    for (const std::string& term : body.terms)
+      for (const std::string& column : fem::term_row(term).columns)
+        if (std::find(out.begin(), out.end(), column) == out.end()) out.push_back(column);
+  return out;
+}
 
 std::string to_string(Part part) { return part == Part::motion ? "motion" : "design"; }
 

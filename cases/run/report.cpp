@@ -135,6 +135,7 @@ io::Json motion_results(const Scene& scene, const RunReport& report) {
         .set("smallest_step", r.smallest_step)
         .set("largest_step", r.largest_step);
   out.set("energy_defect", r.energy_defect);
+  if (!motion.written.empty()) out.set("balance", last_values(motion.written));
   out.set("constraint_drift", r.constraint_drift);
   out.set("velocity_drift", r.velocity_drift).set("smallest_area_ratio", r.smallest_area_ratio);
   set_condition(out, r.condition);

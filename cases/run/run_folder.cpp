@@ -71,7 +71,7 @@ void empty_folder(const std::string& path) {
 }  // namespace
 
 const std::vector<double>* MotionRecord::column(const std::string& name) const {
-  for (const auto* columns : {&observed, &measured, &mechanism})
+  for (const auto* columns : {&observed, &measured, &mechanism, &written})
     for (const Column& column : *columns)
       if (column.name == name) return &column.values;
   return nullptr;
@@ -247,11 +247,13 @@ void RunFolder::write_motion(const std::string& name, const Scene& scene,
   for (const char* quantity :
        {"energy.kinetic", "energy.strain", "energy.potential", "energy.defect"})
     columns.emplace_back(quantity);
+  for (const Column& column : motion.written) columns.push_back(column.name);
   for (const Column& column : motion.powers) columns.push_back(column.name);
   io::CsvWriter csv(path_ + "/" + name, columns);
   // What failed while a row was being filled left it unfinished: it is not written.
   size_t rows = motion.time.size();
-  for (const auto* group : {&motion.observed, &motion.measured, &motion.mechanism, &motion.powers})
+  for (const auto* group :
+       {&motion.observed, &motion.measured, &motion.mechanism, &motion.written, &motion.powers})
     for (const Column& column : *group) rows = std::min(rows, column.values.size());
   for (size_t i = 0; i < rows; ++i) {
     std::vector<io::Cell> row = {motion.time[i]};
@@ -265,6 +267,7 @@ void RunFolder::write_motion(const std::string& name, const Scene& scene,
     row.emplace_back(motion.strain[i]);
     row.emplace_back(motion.potential[i]);
     row.emplace_back(motion.defect[i]);
+    for (const Column& column : motion.written) row.emplace_back(column.values[i]);
     for (const Column& column : motion.powers) row.emplace_back(column.values[i]);
     csv.row(row);
   }

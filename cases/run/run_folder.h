@@ -32,11 +32,13 @@ struct MotionRecord {
   std::vector<Column> observed;         ///< positions of points, and free lines' coordinates [m]
   std::vector<Column> measured;         ///< see BodyMeasures
   std::vector<Column> mechanism;        ///< see MechanismColumns
+  std::vector<Column> written;          ///< by terms (fem::TermRow::columns) [J]
   std::vector<Column> powers;           ///< that enter a mechanism, where the balance is kept [W]
   std::vector<io::PlaneFrame> moments;  ///< pictures of a mechanism
   fem::MotionResult result;
 
-  /// The values of a column of `observed`, `measured` or `mechanism`; null where there is none.
+  /// The values of a column of `observed`, `measured`, `mechanism` or `written`; null where there
+  /// is none.
   const std::vector<double>* column(const std::string& name) const;
 };
 

@@ -12,10 +12,7 @@ void read_beam(const Table& t, const Scene& scene, bool has_density, Body& body)
   constexpr int kMostElements = 100'000;
   body.space = t.choice("space", "a space", std::vector<std::string>{"plane"}, "plane");
   if (scene.in_space()) t.fail("element", "beams live in the plane, the bodies before in space");
-  body.terms = t.choices("terms", "a term of a beam", terms_of_beams());
-  if (!scene.statics && !body.has("inertia")) t.fail("terms", "a body that moves has \"inertia\"");
-  if (body.has("gcm") == body.has("ecm"))
-    t.fail("terms", "a beam has either \"gcm\" or \"ecm\" (which does not lock)");
+  read_terms(t, scene, body);
   body.length = t.number("length", positive("a length", "m"));
   body.width = t.number("height", positive("a height, in the plane of the motion,", "m"));
   body.thickness = t.number("width", positive("a width, across the plane of the motion,", "m"));

@@ -5,12 +5,14 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "cases/scene/drive.h"
 #include "fem/heat.h"
+#include "fem/terms.h"
 
 /// [[body]], and the masses on it.
 namespace flexmorph::cases {
@@ -59,15 +61,15 @@ struct Body {
   /// Across the axis, and across the surface [m]. Of a beam (in the case: `height` and `width`): in
   /// the plane of the motion, and across it.
   double width = 0, thickness = 0;
-  double density = 0;                 ///< [kg/m^3]
-  double youngs_modulus = 0;          ///< [Pa]
-  double poisson_ratio = 0;           ///< [-]
-  int bending_points = 5;             ///< Gauss points of the bending per element and direction
-  std::array<int, 2> elements{1, 1};  ///< along the length at the start, across the width
-  std::optional<Flow> flow;           ///< absent: no material flows
-  std::vector<BodyLine> lines;        ///< by index
-  std::optional<Vec2> position;       ///< of the middle of the root at the start, where given [m]
-  double angle = 0;                   ///< of its axis, with `position` [rad]
+  double density = 0;                     ///< [kg/m^3]
+  double youngs_modulus = 0;              ///< [Pa]
+  double poisson_ratio = 0;               ///< [-]
+  std::map<std::string, double> numbers;  ///< that its terms read, by key
+  std::array<int, 2> elements{1, 1};      ///< along the length at the start, across the width
+  std::optional<Flow> flow;               ///< absent: no material flows
+  std::vector<BodyLine> lines;            ///< by index
+  std::optional<Vec2> position;  ///< of the middle of the root at the start, where given [m]
+  double angle = 0;              ///< of its axis, with `position` [rad]
   double arc = 0;  ///< angle that the axis of an undeformed beam turns by, an arc of a circle [rad]
   std::optional<BodyHeat> heat;  ///< absent: cold
 
@@ -79,8 +81,21 @@ struct Body {
   bool in_space() const { return space == "space"; }
   int dim() const { return in_space() ? 3 : 2; }
   double low() const { return in_space() ? 0 : -0.5 * width; }  ///< where Y begins [m]
-  bool has(const std::string& term) const {
-    return std::find(terms.begin(), terms.end(), term) != terms.end();
+  fem::TermPlace place() const {
+    return is_beam()    ? fem::TermPlace::beam
+           : in_space() ? fem::TermPlace::space
+                        : fem::TermPlace::plane;
+  }
+  /// Has it a term of which that is so?
+  template <class Condition>
+  bool has_term(const Condition& condition) const {
+    return std::any_of(terms.begin(), terms.end(),
+                       [&](const std::string& name) { return condition(fem::term_row(name)); });
+  }
+  /// A number that a term reads; 0 where none of its terms does.
+  double number(const std::string& key) const {
+    const auto found = numbers.find(key);
+    return found == numbers.end() ? 0 : found->second;
   }
   bool has_free_lines() const {
     return std::any_of(lines.begin(), lines.end(), [](const BodyLine& l) { return l.free; });

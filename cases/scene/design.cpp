@@ -291,7 +291,7 @@ BodyDesign read_design(const Table& t, const Scene& scene) {
     t.fail("body", "a designed body lives in the plane and has no free lines");
   if (!welded)
     t.fail("body", "a designed body is welded to a hub or a rigid body at its root: see [[joint]]");
-  if (std::find(body.terms.begin(), body.terms.end(), "membrane") == body.terms.end())
+  if (!body.has_term([](const fem::TermRow& row) { return row.designable; }))
     t.fail("body", "a designed body has the term \"membrane\"");
 
   design.grid = read_grid(t, body, scene.time.end);

@@ -57,9 +57,8 @@ BodyHeat read_heat(const Table& t, const Scene& scene, const Body& body) {
                                              fem::ThermalVolume::grown);
   read_course(t, scene, heat);
   read_force(t, scene, body, heat);
-  const bool elastic = std::any_of(body.terms.begin(), body.terms.end(),
-                                   [](const std::string& term) { return term != "inertia"; });
-  if (!elastic) t.fail("a hot body has an elastic term");
+  if (!body.has_term([](const fem::TermRow& row) { return row.elastic != nullptr; }))
+    t.fail("a hot body has an elastic term");
   const std::array<double, 2> range =
       heat.rise.drive.empty()
           ? std::array{std::min(0.0, heat.rise.value), std::max(0.0, heat.rise.value)}

@@ -134,13 +134,7 @@ void read_plate(const Table& t, const Scene& scene, bool has_density, Body& body
     t.fail("space", "all bodies of a scene live in the plane, or all in space");
   if (scene.is_mechanism() && body.in_space())
     t.fail("space", "rigid bodies live in the plane: in their scenes plates do, too");
-  body.terms = t.choices("terms", "a term", terms_of_plates(body.in_space()));
-  if (!scene.statics && !body.has("inertia")) t.fail("terms", "a body that moves has \"inertia\"");
-  if (body.has("membrane") && body.has("membrane_assumed"))
-    t.fail("terms", "\"membrane_assumed\" stands in place of \"membrane\"");
-  if (body.in_space() &&
-      !(body.has("bending") && (body.has("membrane") || body.has("membrane_assumed"))))
-    t.fail("terms", "a plate in space has \"bending\" and \"membrane\" or \"membrane_assumed\"");
+  read_terms(t, scene, body);
   // A drive of the length says how it starts, too.
   const bool driven = t.has("flow") && t.table("flow").has("length");
   body.length = t.number("length", positive("a length", "m"),
@@ -151,9 +145,6 @@ void read_plate(const Table& t, const Scene& scene, bool has_density, Body& body
                           has_density ? std::nullopt : std::optional<double>(1));
   body.youngs_modulus = t.number("youngs_modulus", positive("Young's modulus", "Pa"));
   body.poisson_ratio = t.number("poisson_ratio", between("Poisson's ratio", "", 0, 0.5));
-  if (body.has("bending"))
-    body.bending_points =
-        t.integer("bending_points", "a number of Gauss points in each direction", 3, 16, 5);
   const std::vector<int> elements =
       t.integers("elements", "a number of elements", 1, kMostElements, 2);
   body.elements = {elements[0], elements[1]};
@@ -168,6 +159,9 @@ void read_plate(const Table& t, const Scene& scene, bool has_density, Body& body
   }
   if (flows && scene.statics) t.fail("element", "in a [static] analysis no material flows");
   body.lines = read_lines(t, body);
+  for (const std::string& term : body.terms)
+    if (body.has_free_lines() && !fem::term_row(term).free_lines)
+      t.fail("terms", "\"" + term + "\" does not know free material lines ([[body.line]])");
 }
 
 Body read_body(const Table& t, const Scene& scene, bool has_gravity) {
@@ -198,6 +192,26 @@ PointMass read_point_mass(const Table& t, const Scene& scene) {
 }
 
 }  // namespace
+
+void read_terms(const Table& t, const Scene& scene, Body& body) {
+  body.terms = t.choices("terms", body.is_beam() ? "a term of a beam" : "a term",
+                         fem::term_names(body.place()));
+  if (const std::string why = fem::refusal_of_terms(body.place(), body.terms, !scene.statics);
+      !why.empty())
+    t.fail("terms", why);
+  for (const std::string& term : body.terms)
+    for (const fem::TermKey& key : fem::term_row(term).keys) {
+      if (key.whole) {
+        std::optional<int> fallback;
+        if (key.fallback) fallback = static_cast<int>(*key.fallback);
+        body.numbers[key.name] = t.integer(key.name, key.noun, static_cast<int>(key.low),
+                                           static_cast<int>(key.high), fallback);
+        continue;
+      }
+      const io::Quantity quantity{key.noun, key.unit, key.low, key.high, key.low_open};
+      body.numbers[key.name] = t.number(key.name, quantity, key.fallback);
+    }
+}
 
 void read_motion(const Table& root, const Follow& follow, Scene& scene) {
   if (root.has("static")) {

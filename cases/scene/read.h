@@ -39,6 +39,9 @@ void read_observed(const io::Table& root, Scene& scene);
 /// @param has_density  without it the density does not matter: nothing moves and nothing weighs
 void read_beam(const io::Table& t, const Scene& scene, bool has_density, Body& body);
 
+/// The list of terms of a [[body]], whose element and space are read, and the numbers they read.
+void read_terms(const io::Table& t, const Scene& scene, Body& body);
+
 /// [[measure]].
 void read_measures(const io::Table& root, Scene& scene);
 

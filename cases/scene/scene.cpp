@@ -111,18 +111,6 @@ const std::vector<std::string>& plate_shapes() {
   return kNames;
 }
 
-const std::vector<std::string>& terms_of_plates(bool in_space) {
-  static const std::vector<std::string> kPlane{"inertia", "membrane"};
-  static const std::vector<std::string> kSpace{"inertia", "membrane", "membrane_assumed",
-                                               "bending"};
-  return in_space ? kSpace : kPlane;
-}
-
-const std::vector<std::string>& terms_of_beams() {
-  static const std::vector<std::string> kNames{"inertia", "gcm", "ecm"};
-  return kNames;
-}
-
 std::string Verify::words() const {
   if (!mesh) return std::to_string(refine) + " times the elements in each direction";
   return std::to_string((*mesh)[0]) + " x " + std::to_string((*mesh)[1]) + " elements";

@@ -151,6 +151,7 @@ Powers powers(const Model& model, const State& x) {
   out.feed = model.flow_power(x);
   out.links = model.link_power(x);
   out.heat = model.heat_power(x);
+  out.loss = model.dissipation(x);
   for (const Body& body : model.bodies()) {
     const auto* plate = dynamic_cast<const LineGrid*>(body.element.get());
     if (!plate) continue;

@@ -15,7 +15,8 @@ struct Powers {
   double inflow = 0;  ///< kinetic, strain and potential energy that entering material brings along
   double links = 0;   ///< of dampers, motors and shifted places of links, Model::link_power()
   double heat = 0;    ///< of the temperature of hot bodies, Model::heat_power()
-  double total() const { return drive + feed + inflow + links + heat; }
+  double loss = 0;    ///< of terms that dissipate, Model::dissipation(): it leaves the model
+  double total() const { return drive + feed + inflow + links + heat - loss; }
 };
 
 /// The energy balance of a model with material flow,
@@ -39,10 +40,11 @@ class EnergyBalance {
  public:
   void begin(double t, const Energies& e, const Powers& p) {
     start_ = e.total();
-    work_ = 0;
+    work_ = dissipated_ = 0;
     largest_ = std::abs(e.total());
     t_ = t;
     power_ = p.total();
+    loss_ = p.loss;
     known_ = true;
   }
   /// After a change of the mesh: what accelerations and multipliers were carried over do not belong
@@ -53,8 +55,10 @@ class EnergyBalance {
   /// After a step: trapezoidal rule.
   void add(double t, const Energies& e, const Powers& p) {
     work_ += 0.5 * (t - t_) * ((known_ ? power_ : p.total()) + p.total());
+    dissipated_ += 0.5 * (t - t_) * ((known_ ? loss_ : p.loss) + p.loss);
     t_ = t;
     power_ = p.total();
+    loss_ = p.loss;
     known_ = true;
     defect_ = e.total() - start_ - work_;
     largest_ = std::max({largest_, std::abs(e.total()), e.kinetic, e.strain});
@@ -65,13 +69,15 @@ class EnergyBalance {
     restart();
     add(t, e, p);
   }
-  double work() const { return work_; }      ///< [J]
-  double defect() const { return defect_; }  ///< energy - start - work [J]
+  double work() const { return work_; }              ///< of all powers [J]
+  double dissipated() const { return dissipated_; }  ///< of the loss [J]
+  double defect() const { return defect_; }          ///< energy - start - work [J]
   double relative() const { return worst_ / std::max(largest_, 1e-300); }  ///< largest so far
 
  private:
   bool known_ = false;  // is the power at t_?
-  double t_ = 0, power_ = 0, start_ = 0, work_ = 0, defect_ = 0, largest_ = 0, worst_ = 0;
+  double t_ = 0, power_ = 0, loss_ = 0, start_ = 0, work_ = 0, dissipated_ = 0;
+  double defect_ = 0, largest_ = 0, worst_ = 0;
 };
 
 }  // namespace flexmorph::fem

@@ -76,7 +76,8 @@ class Run {
   }
 
   void see(const State& x, const Energies& e, bool stop) {
-    observe_({model_, x, e, powers_, balance_.work(), balance_.defect(), stop});
+    observe_(
+        {model_, x, e, powers_, balance_.work(), balance_.dissipated(), balance_.defect(), stop});
   }
 
   /// Times that steps must land on, in order, and whether they are stops.

@@ -54,10 +54,11 @@ struct MotionStep {
   const Model& model;
   const State& x;
   Energies energies;
-  Powers powers;      ///< zero when no balance is kept
-  double work = 0;    ///< of all powers since the start [J]
-  double defect = 0;  ///< energy - energy at the start - work [J]
-  bool stop = false;  ///< is x.t one of the settings' stops (or the end)?
+  Powers powers;          ///< zero when no balance is kept
+  double work = 0;        ///< of all powers since the start [J]
+  double dissipated = 0;  ///< of terms that dissipate, a part of it [J]
+  double defect = 0;      ///< energy - energy at the start - work [J]
+  bool stop = false;      ///< is x.t one of the settings' stops (or the end)?
 };
 using MotionObserver = std::function<void(const MotionStep&)>;
 

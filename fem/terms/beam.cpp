@@ -1,7 +1,9 @@
 #include <array>
 #include <cmath>
 
-#include "fem/term.h"
+#include "fem/terms.h"
+#include "fem/terms/density_term.h"
+#include "fem/terms/sampling.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -141,21 +143,32 @@ void add_tangent_of(const V* w, const V* s, const V* left, const V* right, doubl
 ///
 /// Source: T 9; Gerstmayr, Matikainen & Mikkola (2008), Multibody Syst. Dyn. 20, 359-384, 3.2;
 /// Nachbagauer et al. (2011), Multibody Syst. Dyn. 26, 245-263.
-class Beam final : public Term {
+class Beam final : public ElasticTerm {
  public:
   Beam(const PlaneSection& section, Mechanics mechanics)
-      : width_(section.thickness), elasticity_(section.elasticity()), mechanics_(mechanics) {
-    const double E = section.youngs_modulus, nu = section.poisson_ratio;
-    volume_ = mechanics == Mechanics::general
-                  ? elasticity_
-                  : Eigen::Matrix3d(Vec3(E, E, E / (2 * (1 + nu))).asDiagonal());
+      : ElasticTerm(mechanics == Mechanics::general ? "gcm" : "ecm", parts_of(section, mechanics)),
+        width_(section.thickness),
+        elasticity_(section.elasticity()),
+        mechanics_(mechanics) {
+    volume_ = mechanics == Mechanics::general ? elasticity_ : uncoupled(section);
     coupling_ = elasticity_ - volume_;
+  }
+
+  static std::vector<ElasticPart> parts_of(const PlaneSection& s, Mechanics mechanics) {
+    const auto density = [&](const Eigen::Matrix3d& D) {
+      return std::make_shared<LinearDensity>(green_lagrange(), s.thickness * D);
+    };
+    if (mechanics == Mechanics::general)  // isotropic: any axes do
+      return {{density(s.elasticity()), sample_points(8, Tabulate::gradient)}};
+    return {{density(uncoupled(s)), sample_sections(false)},
+            {density(s.elasticity() - uncoupled(s)), sample_sections(true)}};
   }
 
   void prepare(const Element& element, const Factors& factors, bool all) override {
     if (element.dim() != kDim || element.n_shapes() != kShapes)
       throw Error::input("term '" + name() +
                          "' is that of a beam in the plane (r, r_x, r_y at each of two nodes)");
+    prepare_parts(element, factors);
     if (!all) return;  // lines of a beam do not move
     const int n = element.n_elements();
     batches_.assign(static_cast<size_t>((n + kLanes - 1) / kLanes), {});
@@ -223,18 +236,21 @@ class Beam final : public Term {
     add_tangent_of(d.w.data(), s, p, end, w.q, ByRows{tangent.data()});
   }
 
-  double strain_energy(int e, const Local& x) const override {
+ private:
+  /// D⁰.
+  static Eigen::Matrix3d uncoupled(const PlaneSection& s) {
+    const double E = s.youngs_modulus, nu = s.poisson_ratio;
+    return Vec3(E, E, E / (2 * (1 + nu))).asDiagonal();
+  }
+
+  double energy_at(int e, const LocalRows& q) const override {
     const Data& d = elements_[static_cast<size_t>(e)];
     double p[kVectors * kDim], g[kPairs], s[kPairs], energy = 0;
-    evaluate(d, x.q.data(), p, g, s);
+    evaluate(d, q.data(), p, g, s);
     for (size_t k = 0; k < kPairs; ++k) energy += 0.5 * s[k] * (g[k] - d.reference[k]);
     return energy;
   }
 
-  std::string name() const override { return mechanics_ == Mechanics::general ? "gcm" : "ecm"; }
-  bool is_elastic() const override { return true; }
-
- private:
   template <class V>
   struct DataOf {
     std::array<V, kPairs*(kPairs + 1) / 2> w{};  // lower triangle of W
@@ -337,6 +353,36 @@ std::unique_ptr<Term> make_beam_gcm(const PlaneSection& section) {
 
 std::unique_ptr<Term> make_beam_ecm(const PlaneSection& section) {
   return std::make_unique<Beam>(section, Mechanics::enhanced);
+}
+
+const TermRow& gcm_row() {
+  static const TermRow kRow{
+      .name = "gcm",
+      .sentence = "Elastic forces of a beam by general continuum mechanics.",
+      .role = "beam",
+      .places = {TermPlace::beam},
+      .required_in = {TermPlace::beam},
+      .keys = {},
+      .columns = {},
+      .elastic =
+          [](const TermData& data) { return Beam::parts_of(data.section, Mechanics::general); },
+      .make = [](const TermData& data) { return make_beam_gcm(data.section); }};
+  return kRow;
+}
+
+const TermRow& ecm_row() {
+  static const TermRow kRow{
+      .name = "ecm",
+      .sentence = "Elastic forces of a beam by enhanced continuum mechanics, which does not lock.",
+      .role = "beam",
+      .places = {TermPlace::beam},
+      .required_in = {TermPlace::beam},
+      .keys = {},
+      .columns = {},
+      .elastic =
+          [](const TermData& data) { return Beam::parts_of(data.section, Mechanics::enhanced); },
+      .make = [](const TermData& data) { return make_beam_ecm(data.section); }};
+  return kRow;
 }
 
 }  // namespace flexmorph::fem

@@ -2,23 +2,26 @@
 #include <array>
 #include <memory>
 
-#include "fem/gram_gradient.h"
-#include "fem/term.h"
+#include "fem/terms.h"
 #include "fem/terms/bending_kernels.h"
-#include "fem/terms/strain_flow.h"
+#include "fem/terms/density_term.h"
+#include "fem/terms/sampling.h"
 
 namespace flexmorph::fem {
 namespace {
 
 using Mat3 = Eigen::Matrix3d;
 
-class BendingDensity final : public EnergyDensity {
+/// D = c³/12 C [N m].
+Mat3 stiffness_of(const PlaneSection& s) {
+  return s.thickness * s.thickness * s.thickness / 12 * s.elasticity();
+}
+
+/// W = ½ κᵀ D κ in closed form.
+class BendingDensity final : public LinearDensity {
  public:
-  explicit BendingDensity(const Mat3& stiffness) : stiffness_(stiffness) {}
-  std::span<const Measure> measures() const override {
-    static constexpr Measure kList[] = {{1, 0}, {0, 1}, {2, 0}, {0, 2}, {1, 1}};
-    return kList;
-  }
+  explicit BendingDensity(const Mat3& stiffness)
+      : LinearDensity(plate_curvature(), stiffness), stiffness_(stiffness) {}
   double energy(const Measures& z, Measures* gradient, MeasureHessian* hessian) const override {
     using namespace bending;
     Vec<double> y[kVectors];
@@ -55,23 +58,26 @@ class BendingDensity final : public EnergyDensity {
 /// functions are shared by neighbours of equal size and material.
 ///
 /// Source: P (7); fem/README.md, Bending.
-class Bending final : public Term {
+class Bending final : public ElasticTerm {
  public:
   Bending(const PlaneSection& s, int n_points)
-      : stiffness_(s.thickness * s.thickness * s.thickness / 12 * s.elasticity()),
-        degree_(2 * n_points - 2),
-        density_(stiffness_) {}
+      : ElasticTerm("bending", parts_of(s, n_points)),
+        stiffness_(stiffness_of(s)),
+        degree_(degree_of(n_points)) {}
+
+  static int degree_of(int n_points) { return 2 * n_points - 2; }
+  static std::vector<ElasticPart> parts_of(const PlaneSection& s, int n_points) {
+    return {{std::make_shared<BendingDensity>(stiffness_of(s)),
+             sample_points(degree_of(n_points), Tabulate::curvature)}};
+  }
 
   void prepare(const Element& element, const Factors& factors, bool all) override {
     if (element.dim() != 3) throw Error::input("term 'bending' needs a body in space");
-    element_ = &element;
-    factors_ = &factors;
-    gradient_.prepare(element);
-    free_.prepare(element, degree_, Tabulate::curvature, factors);
+    prepare_parts(element, factors);
     tables_.resize(static_cast<size_t>(element.n_elements()));
     int tabulated = -1;  // element of the last table
     for (int e = 0; e < element.n_elements(); ++e) {
-      if ((!all && !element.moving(e)) || free_.has(e)) continue;
+      if ((!all && !element.moving(e)) || is_free(e)) continue;
       std::shared_ptr<Table> table = tabulate(element, e, factors);
       const bool same = tabulated >= 0 && tabulated == e - 1 &&
                         equal(*table, *tables_[static_cast<size_t>(e - 1)]);
@@ -111,46 +117,17 @@ class Bending final : public Term {
     });
   }
 
-  void add_free_force(int e, const Local& x, FreeForce& force) const override {
-    FreeElastic(density_, free_.of(e)).add_force(x.q, force);
-  }
-  void add_free_tangent(int e, const Local& x, const Weights& w,
-                        FreeTangent& tangent) const override {
-    if (w.q != 0) FreeElastic(density_, free_.of(e)).add_tangent(x.q, w.q, tangent);
-  }
+ private:
+  using Table = bending::Table<double>;
 
-  void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override {
-    gradient_.add_force(*this, e, x, force);
-  }
-  void add_mean_tangent(int e, const LocalStep& x, const Weights& w,
-                        LocalTangent& tangent) const override {
-    gradient_.add_tangent(*this, e, x, w, tangent);
-  }
-  std::string name() const override { return "bending"; }
-  bool is_elastic() const override { return true; }
-
-  double strain_energy(int e, const Local& x) const override {
-    if (free_.has(e)) return FreeElastic(density_, free_.of(e)).energy(x.q);
+  double energy_at(int e, const LocalRows& q) const override {
     double out = 0;
     dispatch([&]<bool kMixed>() {
-      out = bending::energy<kMixed>(*tables_[static_cast<size_t>(e)], places_, stiffness_,
-                                    x.q.data());
+      out =
+          bending::energy<kMixed>(*tables_[static_cast<size_t>(e)], places_, stiffness_, q.data());
     });
     return out;
   }
-
-  double flow_power(int e, const Local& x) const override {
-    ShapeTable t;
-    element_->tabulate(e, degree_, Tabulate::curvature_rates, *factors_, FactorKind::stiffness, t);
-    return fem::flow_power(density_, t, x.q);
-  }
-  void add_line_energy(std::span<const ShapeTable> line, const Local& x,
-                       LineEnergy& out) const override {
-    fem::add_line_energy(density_, line, x.q, out.stiffness);
-  }
-
- private:
-  using Table = bending::Table<double>;
 
   /// Tables of eight elements: one for all, or their own side by side.
   struct BatchTables {
@@ -255,11 +232,6 @@ class Bending final : public Term {
 
   Mat3 stiffness_;  // D [N m]
   int degree_;
-  BendingDensity density_;
-  FreeTables free_;
-  const Element* element_ = nullptr;  // of the last prepare()
-  const Factors* factors_ = nullptr;
-  GramGradient gradient_;
   bending::Places places_{};
   bool mixed_ = false;
   std::vector<std::shared_ptr<const Table>> tables_;
@@ -271,6 +243,30 @@ class Bending final : public Term {
 
 std::unique_ptr<Term> make_bending(const PlaneSection& section, int n_points) {
   return std::make_unique<Bending>(section, n_points);
+}
+
+const TermRow& bending_row() {
+  static const auto points = [](const TermData& data) {
+    return static_cast<int>(number_of(bending_row(), "bending_points", data));
+  };
+  static const TermRow kRow{
+      .name = "bending",
+      .sentence = "Bending of a thin plate.",
+      .role = "bending",
+      .places = {TermPlace::space},
+      .required_in = {TermPlace::space},
+      .keys = {{.name = "bending_points",
+                .noun = "a number of Gauss points in each direction",
+                .unit = "-",
+                .low = 3,
+                .high = 16,
+                .whole = true,
+                .fallback = 5,
+                .sentence = "Gauss points of the bending per element and direction."}},
+      .columns = {},
+      .elastic = [](const TermData& data) { return Bending::parts_of(data.section, points(data)); },
+      .make = [](const TermData& data) { return make_bending(data.section, points(data)); }};
+  return kRow;
 }
 
 }  // namespace flexmorph::fem

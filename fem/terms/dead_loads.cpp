@@ -1,4 +1,4 @@
-#include "fem/term.h"
+#include "fem/loads.h"
 #include "fem/terms/free_work.h"
 
 namespace flexmorph::fem {
@@ -28,9 +28,9 @@ class DeadLoad : public Term {
   }
   void add_mean_tangent(int, const LocalStep&, const Weights&, LocalTangent&) const override {}
   std::string name() const override { return "dead load"; }
-  double potential_energy(int e, const Local& x) const override {
+  Energies energies(int e, const Local& x) const override {
     const VectorXd& share = share_[static_cast<size_t>(e)];
-    return share.size() > 0 ? -factor_ * share.dot(x.q * load_) : 0;
+    return {.potential = share.size() > 0 ? -factor_ * share.dot(x.q * load_) : 0};
   }
   void scale_load(double factor) override { factor_ = factor; }
 

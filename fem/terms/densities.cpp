@@ -11,11 +11,6 @@ const MatrixXd& table_of(const ShapeTable& t, const Measure& m) {
   throw Error::numerical("density: no table of this measure");
 }
 
-std::span<const Measure> MembraneDensity::measures() const {
-  static constexpr Measure kList[] = {{1, 0}, {0, 1}};
-  return kList;
-}
-
 double MembraneDensity::energy(const Measures& z, Measures* gradient,
                                MeasureHessian* hessian) const {
   const auto d = z.cols();

@@ -6,10 +6,11 @@
 namespace flexmorph::fem {
 
 /// W = h/2 εᵀ C ε of a St. Venant-Kirchhoff membrane, P (6)-(8); measures r_m, r_n.
-class MembraneDensity final : public EnergyDensity {
+class MembraneDensity final : public LinearDensity {
  public:
-  explicit MembraneDensity(const PlaneSection& s) : elasticity_(s.thickness * s.elasticity()) {}
-  std::span<const Measure> measures() const override;
+  explicit MembraneDensity(const PlaneSection& s)
+      : LinearDensity(green_lagrange(), s.thickness * s.elasticity()),
+        elasticity_(s.thickness * s.elasticity()) {}
   double energy(const Measures& z, Measures* gradient, MeasureHessian* hessian) const override;
 
  private:

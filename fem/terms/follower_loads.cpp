@@ -1,7 +1,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "fem/term.h"
+#include "fem/loads.h"
 
 namespace flexmorph::fem {
 namespace {

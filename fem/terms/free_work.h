@@ -3,34 +3,15 @@
 #include <span>
 
 #include "fem/free_lines.h"
+#include "fem/strain.h"
 #include "fem/term.h"
 
 /// Virtual work in elements whose material lines are unknowns, at quadrature points: the same for
 /// every elastic energy and for everything that has mass.
 namespace flexmorph::fem {
 
-/// A derivative ∂^(m + n) r / ∂m^m ∂n^n of the position.
-struct Measure {
-  int m_order, n_order;
-};
-inline constexpr int kMaxMeasures = 5;
-using Measures = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor,
-                               kMaxMeasures, kMaxDim>;  ///< a row per measure
-using MeasureHessian =
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxMeasures * kMaxDim,
-                  kMaxMeasures * kMaxDim>;  ///< entry dim i + c of measure i, direction c
-
 /// The shape functions that give a measure. @throws Error (numerical) where there are none.
 const MatrixXd& table_of(const ShapeTable& t, const Measure& m);
-
-/// Elastic energy per reference area as a function of derivatives of the position.
-class EnergyDensity {
- public:
-  virtual ~EnergyDensity() = default;
-  virtual std::span<const Measure> measures() const = 0;
-  /// W(z) [J/m²]; gradient and hessian by z where asked for.
-  virtual double energy(const Measures& z, Measures* gradient, MeasureHessian* hessian) const = 0;
-};
 
 /// Elastic energy U(q, p) = ∫ W dA of an element and its exact derivatives.
 ///

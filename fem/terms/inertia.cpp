@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "fem/term.h"
+#include "fem/terms.h"
 #include "fem/terms/free_work.h"
 
 namespace flexmorph::fem {
@@ -94,14 +94,14 @@ class Inertia final : public Term {
   std::string name() const override { return "inertia"; }
 
   /// T = ½ ∫ ρh |ṙ|² dA,  ṙ = Qᵈᵀ N + Qᵀ Ṅ.
-  double kinetic_energy(int e, const Local& x) const override {
-    if (free_.has(e)) return of_free_.kinetic_energy(free_.of(e), x);
+  Energies energies(int e, const Local& x) const override {
+    if (free_.has(e)) return {.kinetic = of_free_.kinetic_energy(free_.of(e), x)};
     const Matrices& m = matrices_[static_cast<size_t>(e)];
     double twice = x.v.cwiseProduct(m.mass * x.v).sum();
     if (m.flows)
       twice +=
           x.v.cwiseProduct(m.convection * x.q).sum() + x.q.cwiseProduct(m.rate_product * x.q).sum();
-    return 0.5 * twice;
+    return {.kinetic = 0.5 * twice};
   }
 
   /// ∫ ρh ṙ dA.
@@ -207,6 +207,20 @@ class Inertia final : public Term {
 
 std::unique_ptr<Term> make_inertia(const PlaneSection& section) {
   return std::make_unique<Inertia>(section);
+}
+
+const TermRow& inertia_row() {
+  static const TermRow kRow{
+      .name = "inertia",
+      .sentence = "Inertia of a body through whose mesh material may flow.",
+      .role = "inertia",
+      .places = {TermPlace::plane, TermPlace::space, TermPlace::beam},
+      .required_in = {},
+      .moves = true,
+      .keys = {},
+      .columns = {},
+      .make = [](const TermData& data) { return make_inertia(data.section); }};
+  return kRow;
 }
 
 }  // namespace flexmorph::fem

@@ -1,4 +1,5 @@
-#include "fem/term.h"
+#include "fem/loads.h"
+
 #include "fem/terms/free_work.h"
 
 namespace flexmorph::fem {
@@ -53,9 +54,9 @@ class Gravity final : public Term {
   }
   void add_mean_tangent(int, const LocalStep&, const Weights&, LocalTangent&) const override {}
   std::string name() const override { return "gravity"; }
-  double potential_energy(int e, const Local& x) const override {
-    if (free_.has(e)) return of_free_.potential_energy(free_.of(e), x);
-    return -factor_ * mass_[static_cast<size_t>(e)].dot(x.q * gravity_);
+  Energies energies(int e, const Local& x) const override {
+    if (free_.has(e)) return {.potential = of_free_.potential_energy(free_.of(e), x)};
+    return {.potential = -factor_ * mass_[static_cast<size_t>(e)].dot(x.q * gravity_)};
   }
   double flow_power(int e, const Local& x) const override {
     return -factor_ * rate_[static_cast<size_t>(e)].dot(x.q * gravity_);
@@ -130,15 +131,14 @@ class PointMass final : public Term {
     add_tangent(e, x, w, rows);
     tangent.topLeftCorner(x.q.size(), x.q.size()) += rows;
   }
-  double kinetic_energy(int e, const Local& x) const override {
-    if (e != element_) return 0;
+  Energies energies(int e, const Local& x) const override {
+    Energies out;
+    if (e != element_) return out;
     Eigen::RowVectorXd velocity = table_.N * x.v;
     if (flows_) velocity += table_.N_t * x.q;
-    return 0.5 * mass_ * velocity.squaredNorm();
-  }
-  double potential_energy(int e, const Local& x) const override {
-    if (e != element_ || gravity_.size() == 0) return 0;
-    return -factor_ * mass_ * (table_.N * x.q * gravity_)(0);
+    out.kinetic = 0.5 * mass_ * velocity.squaredNorm();
+    if (gravity_.size() > 0) out.potential = -factor_ * mass_ * (table_.N * x.q * gravity_)(0);
+    return out;
   }
   double flow_power(int e, const Local& x) const override {
     if (e != element_ || !flows_) return 0;

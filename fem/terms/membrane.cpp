@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <memory>
 
-#include "fem/term.h"
+#include "fem/terms.h"
 #include "fem/terms/densities.h"
+#include "fem/terms/density_term.h"
 #include "fem/terms/gram.h"
 #include "fem/terms/membrane_invariant.h"
+#include "fem/terms/sampling.h"
 #include "fem/terms/strain_flow.h"
 
 namespace flexmorph::fem {
@@ -30,18 +32,25 @@ using gram::Coupling;
 /// Elements of a mesh are evaluated eight at a time, see Batch.
 ///
 /// Replaces P (11)-(15) and the tensors of the appendix; fem/README.md, Gram form.
-class Membrane final : public Term {
+class Membrane final : public ElasticTerm {
  public:
   Membrane(const PlaneSection& s, Strains strains)
-      : elasticity_(s.thickness * s.elasticity()), strains_(strains), density_(s) {}
+      : ElasticTerm(strains == Strains::assumed ? "membrane_assumed" : "membrane",
+                    parts_of(s, strains)),
+        elasticity_(s.thickness * s.elasticity()),
+        strains_(strains) {}
+
+  static std::vector<ElasticPart> parts_of(const PlaneSection& s, Strains strains) {
+    return {{std::make_shared<MembraneDensity>(s), strains == Strains::assumed
+                                                       ? sample_assumed()
+                                                       : sample_points(12, Tabulate::gradient)}};
+  }
 
   void prepare(const Element& element, const Factors& factors, bool all) override {
     element_ = &element;
     factors_ = &factors;
     tabulated_ = -1;
-    if (element.n_scalars() > 0 && strains_ == Strains::assumed)
-      throw Error::input("term 'membrane_assumed' does not know free material lines");
-    free_.prepare(element, 12, Tabulate::gradient, factors);
+    prepare_parts(element, factors);
     if (all) {
       dim_ = element.dim();
       coupling_ = factors.uniform() ? Coupling::classes : Coupling::all;
@@ -117,36 +126,10 @@ class Membrane final : public Term {
         });
     tangent += by_columns.transpose();
   }
-  std::string name() const override { return "membrane"; }
-  bool is_elastic() const override { return true; }
-
-  void add_free_force(int e, const Local& x, FreeForce& force) const override {
-    FreeElastic(density_, free_.of(e)).add_force(x.q, force);
-  }
-  void add_free_tangent(int e, const Local& x, const Weights& w,
-                        FreeTangent& tangent) const override {
-    if (w.q != 0) FreeElastic(density_, free_.of(e)).add_tangent(x.q, w.q, tangent);
-  }
-
-  double strain_energy(int e, const Local& x) const override {
-    if (free_.has(e)) return FreeElastic(density_, free_.of(e)).energy(x.q);
-    double energy = 0;
-    const BatchData& batch = batches_[static_cast<size_t>(e / kLanes)];
-    evaluate(e, x, [&]<int kKinds, int kDim, Coupling>(const double* s, const double* p, auto) {
-      double g[kMaxPairs];
-      gram::products<kKinds, kDim>(p, g);
-      for (size_t k = 0; k < batch.reference.size(); ++k)
-        energy += 0.5 * s[k] * (g[k] - batch.reference[k][e % kLanes]);
-    });
-    return energy;
-  }
-
   double flow_power(int e, const Local& x) const override {
     if (strains_ == Strains::assumed)
       return assumed_flow_power(*element_, e, *factors_, elasticity_, x.q);
-    ShapeTable t;
-    element_->tabulate(e, 12, Tabulate::gradient_rates, *factors_, FactorKind::stiffness, t);
-    return fem::flow_power(density_, t, x.q);
+    return ElasticTerm::flow_power(e, x);
   }
 
   void add_line_energy(std::span<const ShapeTable> line, const Local& x,
@@ -154,7 +137,7 @@ class Membrane final : public Term {
     if (strains_ == Strains::assumed)
       add_assumed_line_energy(line, elasticity_, x.q, out.stiffness);
     else
-      fem::add_line_energy(density_, line, x.q, out.stiffness);
+      ElasticTerm::add_line_energy(line, x, out);
   }
 
  private:
@@ -167,6 +150,19 @@ class Membrane final : public Term {
     std::vector<Lanes> different;  // packed; where they do not
     std::vector<Lanes> reference;  // g°
   };
+
+  double energy_at(int e, const LocalRows& q) const override {
+    double energy = 0;
+    const BatchData& batch = batches_[static_cast<size_t>(e / kLanes)];
+    evaluate(e, {q, {}, {}},
+             [&]<int kKinds, int kDim, Coupling>(const double* s, const double* p, auto) {
+               double g[kMaxPairs];
+               gram::products<kKinds, kDim>(p, g);
+               for (size_t k = 0; k < batch.reference.size(); ++k)
+                 energy += 0.5 * s[k] * (g[k] - batch.reference[k][e % kLanes]);
+             });
+    return energy;
+  }
 
   /// Tables of gram.h that integrate() needs, and the functions of one coordinate in every vector.
   template <int kKinds>
@@ -273,15 +269,15 @@ class Membrane final : public Term {
     const int count = std::min(kLanes, element.n_elements() - first);
     int n_moving = 0, n_free = 0;  // elements with free lines are left to FreeElastic
     for (int lane = 0; lane < count; ++lane) {
-      const bool is_free = free_.has(first + lane);
-      n_free += is_free;
-      n_moving += !is_free && element.moving(first + lane);
+      const bool free = is_free(first + lane);
+      n_free += free;
+      n_moving += !free && element.moving(first + lane);
     }
     if (n_free == count || (!all && n_moving == 0)) return;
     std::array<Packed, kLanes> w;
     out.reference.resize(pairs_.i.size());
     for (int lane = 0; lane < count; ++lane)
-      if ((all || element.moving(first + lane)) && !free_.has(first + lane)) {
+      if ((all || element.moving(first + lane)) && !is_free(first + lane)) {
         w[static_cast<size_t>(lane)] = integrate(element, first + lane, factors);
         set_reference(element, first + lane, reference, out);
       }
@@ -360,8 +356,6 @@ class Membrane final : public Term {
 
   Eigen::Matrix3d elasticity_;  // h C [N/m]
   Strains strains_;
-  MembraneDensity density_;
-  FreeTables free_;
   const Element* element_ = nullptr;  // of the last prepare()
   const Factors* factors_ = nullptr;
   int dim_ = 0, kinds_ = 0;
@@ -383,6 +377,40 @@ std::unique_ptr<Term> make_membrane(const PlaneSection& section) {
 
 std::unique_ptr<Term> make_assumed_membrane(const PlaneSection& section) {
   return std::make_unique<Membrane>(section, Strains::assumed);
+}
+
+const TermRow& membrane_row() {
+  static const TermRow kRow{
+      .name = "membrane",
+      .sentence = "Membrane forces, strains as the displacements have them.",
+      .role = "membrane",
+      .places = {TermPlace::plane, TermPlace::space},
+      .required_in = {TermPlace::space},
+      .designable = true,
+      .keys = {},
+      .columns = {},
+      .elastic =
+          [](const TermData& data) {
+            return Membrane::parts_of(data.section, Strains::displacement);
+          },
+      .make = [](const TermData& data) { return make_membrane(data.section); }};
+  return kRow;
+}
+
+const TermRow& membrane_assumed_row() {
+  static const TermRow kRow{
+      .name = "membrane_assumed",
+      .sentence = "Membrane forces with assumed strains, which do not lock where plates are thin.",
+      .role = "membrane",
+      .places = {TermPlace::space},
+      .required_in = {TermPlace::space},
+      .free_lines = false,
+      .keys = {},
+      .columns = {},
+      .elastic =
+          [](const TermData& data) { return Membrane::parts_of(data.section, Strains::assumed); },
+      .make = [](const TermData& data) { return make_assumed_membrane(data.section); }};
+  return kRow;
 }
 
 }  // namespace flexmorph::fem

@@ -57,8 +57,8 @@ class RigidInertia final : public Term {
                         LocalTangent& tangent) const override {
     add_tangent(e, x.mean, w, tangent);
   }
-  double kinetic_energy(int, const Local& x) const override {
-    return 0.5 * column(x.v).dot(mass_ * column(x.v));
+  Energies energies(int, const Local& x) const override {
+    return {.kinetic = 0.5 * column(x.v).dot(mass_ * column(x.v))};
   }
   Vec3 momentum(int, const Local& x) const override {
     Vec3 out = Vec3::Zero();
@@ -94,8 +94,8 @@ class RigidGravity final : public Term {
     add_force(e, x.mean, force);
   }
   void add_mean_tangent(int, const LocalStep&, const Weights&, LocalTangent&) const override {}
-  double potential_energy(int, const Local& x) const override {
-    return -factor_ * weight_.dot(Eigen::Map<const Eigen::Vector4d>(x.q.data()));
+  Energies energies(int, const Local& x) const override {
+    return {.potential = -factor_ * weight_.dot(Eigen::Map<const Eigen::Vector4d>(x.q.data()))};
   }
   void scale_load(double factor) override { factor_ = factor; }
   std::string name() const override { return "rigid gravity"; }

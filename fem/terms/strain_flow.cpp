@@ -18,8 +18,8 @@ const MatrixXd& rates_of(const ShapeTable& t, const Measure& m) {
 
 /// Measures at point g, or their rates.
 template <class TableOf>
-void measure(std::span<const Measure> list, const TableOf& table_of_measure, Eigen::Index g,
-             const LocalRows& q, Measures& out) {
+void measure_at(std::span<const Measure> list, const TableOf& table_of_measure, Eigen::Index g,
+                const LocalRows& q, Measures& out) {
   out.setZero(static_cast<Eigen::Index>(list.size()), q.cols());
   for (size_t i = 0; i < list.size(); ++i) {
     const MatrixXd& table = table_of_measure(list[i]);
@@ -35,9 +35,9 @@ double flow_power(const EnergyDensity& density, const ShapeTable& t, const Local
   Measures z, rate, stress;
   double out = 0;
   for (Eigen::Index g = 0; g < t.weight.size(); ++g) {
-    measure(
+    measure_at(
         list, [&](const Measure& m) -> const MatrixXd& { return table_of(t, m); }, g, q, z);
-    measure(
+    measure_at(
         list, [&](const Measure& m) -> const MatrixXd& { return rates_of(t, m); }, g, q, rate);
     density.energy(z, &stress, nullptr);
     out += t.weight[g] * stress.cwiseProduct(rate).sum();
@@ -49,40 +49,47 @@ void add_line_energy(const EnergyDensity& density, std::span<const ShapeTable> l
                      const LocalRows& q, VectorXd& out) {
   Measures z;
   for (size_t g = 0; g < line.size(); ++g) {
-    measure(
+    measure_at(
         density.measures(),
         [&](const Measure& m) -> const MatrixXd& { return table_of(line[g], m); }, 0, q, z);
     out[static_cast<Eigen::Index>(g)] += density.energy(z, nullptr, nullptr);
   }
 }
 
-namespace {
-
-/// ∂ε/∂t of interpolated strains along one direction: A and K above.
-struct Interpolation {
-  MatrixXd A, K;
-
-  Interpolation(int n, const Motion& start, const Motion& end) : A(parabola_through_samples(n)) {
-    const GaussRule& rule = gauss(n);
-    MatrixXd D(n, n);
-    for (int i = 0; i < n; ++i) {
-      D(i, i) = 0;
-      for (int j = 0; j < n; ++j) {
-        const auto a = static_cast<size_t>(i), b = static_cast<size_t>(j);
-        if (j == i) continue;
-        D(i, j) = rule.barycentric[b] / rule.barycentric[a] / (rule.points[a] - rule.points[b]);
-        D(i, i) -= D(i, j);
-      }
-    }
-    // ṡ of a material point.
-    const Eigen::Map<const VectorXd> s(rule.points.data(), n);
-    const VectorXd flow =
-        -(start.rate + (end.rate - start.rate) * s.array()).matrix() / (end.value - start.value);
-    K = flow.asDiagonal() * D * A - A * flow.asDiagonal() * D;
+MatrixXd strains_on_line(const StrainMeasure& measure, std::span<const ShapeTable> line,
+                         const LocalRows& q) {
+  MatrixXd out(line.size(), measure.size());
+  Measures z;
+  StrainVector e;
+  for (size_t g = 0; g < line.size(); ++g) {
+    measure_at(
+        measure.measures(),
+        [&](const Measure& m) -> const MatrixXd& { return table_of(line[g], m); }, 0, q, z);
+    measure.strain(z, e, nullptr);
+    out.row(static_cast<Eigen::Index>(g)) = e.transpose();
   }
-};
+  return out;
+}
 
-}  // namespace
+ParabolaFlow::ParabolaFlow(int n, const Motion& start, const Motion& end)
+    : A(parabola_through_samples(n)) {
+  const GaussRule& rule = gauss(n);
+  MatrixXd D(n, n);
+  for (int i = 0; i < n; ++i) {
+    D(i, i) = 0;
+    for (int j = 0; j < n; ++j) {
+      const auto a = static_cast<size_t>(i), b = static_cast<size_t>(j);
+      if (j == i) continue;
+      D(i, j) = rule.barycentric[b] / rule.barycentric[a] / (rule.points[a] - rule.points[b]);
+      D(i, i) -= D(i, j);
+    }
+  }
+  // ṡ of a material point.
+  const Eigen::Map<const VectorXd> s(rule.points.data(), n);
+  const VectorXd flow =
+      -(start.rate + (end.rate - start.rate) * s.array()).matrix() / (end.value - start.value);
+  K = flow.asDiagonal() * D * A - A * flow.asDiagonal() * D;
+}
 
 double assumed_flow_power(const Element& element, int e, const Factors& factors,
                           const Eigen::Matrix3d& elasticity, const LocalRows& q) {
@@ -91,7 +98,7 @@ double assumed_flow_power(const Element& element, int e, const Factors& factors,
   element.tabulate(e, 12, Tabulate::gradient_rates, factors, FactorKind::stiffness, t);
   element.tabulate_free(e, 0, Tabulate::gradient, sides);
   const auto n = static_cast<int>(std::lround(std::sqrt(static_cast<double>(t.weight.size()))));
-  const Interpolation m(n, sides.side[kM1], sides.side[kM2]),
+  const ParabolaFlow m(n, sides.side[kM1], sides.side[kM2]),
       across(n, sides.side[kN1], sides.side[kN2]);
 
   // Strains of the displacements and their rates at the points, points along m in a column.

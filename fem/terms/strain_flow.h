@@ -19,15 +19,25 @@ double flow_power(const EnergyDensity& density, const ShapeTable& t, const Local
 void add_line_energy(const EnergyDensity& density, std::span<const ShapeTable> line,
                      const LocalRows& q, VectorXd& out);
 
-/// The same for membrane strains that are sampled and interpolated (membrane_invariant.h).
-///
-/// Their samples lie at fixed local coordinates. A strain ε(s) along one direction, interpolated by
-/// ε̄ = A ε from its values at Gauss points, has at a fixed material point, which moves by ṡ(s),
+/// Strains at the points of a line (n x size of the strain).
+MatrixXd strains_on_line(const StrainMeasure& measure, std::span<const ShapeTable> line,
+                         const LocalRows& q);
+
+/// Membrane strains that are sampled and interpolated (membrane_invariant.h) have their samples at
+/// fixed local coordinates. A strain ε(s) along one direction, interpolated by ε̄ = A ε from its
+/// values at n Gauss points, has at a fixed material point, which moves by ṡ(s),
 ///
 ///   ∂ε̄/∂t = A (∂ε/∂t - ṡ ε') + ṡ (A ε)' = A ∂ε/∂t + K ε,   K = C D A - A C D
 ///
 /// D the derivative of values at the points, C = diag(ṡ).
-///
+struct ParabolaFlow {
+  MatrixXd A, K;  ///< (n x n)
+  /// @param start, end  the lines that the element lies between in that direction
+  ParabolaFlow(int n, const Motion& start, const Motion& end);
+};
+
+/// The flow power of assumed membrane strains, and their energy on a line: closed forms of what
+/// ElasticTerm computes (density_term.h).
 /// @param elasticity  h C [N/m]
 double assumed_flow_power(const Element& element, int e, const Factors& factors,
                           const Eigen::Matrix3d& elasticity, const LocalRows& q);

@@ -7,64 +7,64 @@
 namespace flexmorph::fem {
 namespace {
 
-class Heated final : public Term {
+class Heated final : public StrainTerm {
  public:
-  Heated(std::unique_ptr<Term> elastic, const Heat& heat)
-      : elastic_(std::move(elastic)), heat_(heat), power_(heat.volume_exponent()) {}
+  Heated(std::unique_ptr<StrainTerm> cold, const Heat& heat)
+      : cold_(std::move(cold)), heat_(heat), power_(heat.volume_exponent()) {}
 
   void prepare(const Element& element, const Factors& factors, bool all) override {
     element_ = &element;
-    elastic_->prepare(element, factors, all);
+    cold_->prepare(element, factors, all);
   }
 
   void heat_to(double t) override {
-    elastic_->heat_to(t);
+    cold_->heat_to(t);
     rise_ = heat_.stretch(t);
     rise_.value -= 1;
     t_ = t;
     update();
   }
   void scale_load(double factor) override {
-    elastic_->scale_load(factor);
+    cold_->scale_load(factor);
     factor_ = factor;
     update();
   }
 
   void add_force(int e, const Local& x, LocalRows& force) const override {
     LocalRows f = LocalRows::Zero(force.rows(), force.cols());
-    elastic_->add_force(e, shrunk(x), f);
+    cold_->add_force(e, shrunk(x), f);
     force += force_scale_ * f;
   }
   void add_tangent(int e, const Local& x, const Weights& w, LocalTangent& tangent) const override {
-    elastic_->add_tangent(e, shrunk(x), scaled(w), tangent);
+    cold_->add_tangent(e, shrunk(x), scaled(w), tangent);
   }
 
   void add_forces(const Batch& x, Lanes* force) const override {
-    Lanes unknowns[kMaxLocal], f[kMaxLocal];
+    Lanes unknowns[kMaxLocal], rates[kMaxLocal], f[kMaxLocal];
     const int n = x.n_local();
-    const Batch cold = shrunk(x, unknowns);
+    const Batch cold = shrunk(x, unknowns, rates);
     std::fill(f, f + n, Lanes{});
-    elastic_->add_forces(cold, f);
+    cold_->add_forces(cold, f);
     for (int k = 0; k < n; ++k) force[k] += force_scale_ * f[k];
   }
   void add_tangents(const Batch& x, const Weights& w, Lanes* tangent) const override {
-    Lanes unknowns[kMaxLocal];
-    elastic_->add_tangents(shrunk(x, unknowns), scaled(w), tangent);
+    Lanes unknowns[kMaxLocal], rates[kMaxLocal];
+    cold_->add_tangents(shrunk(x, unknowns, rates), scaled(w), tangent);
   }
 
   void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override {
     LocalRows f = LocalRows::Zero(force.rows(), force.cols());
-    elastic_->add_mean_force(e, shrunk(x), f);
+    cold_->add_mean_force(e, shrunk(x), f);
     force += force_scale_ * f;
   }
   void add_mean_tangent(int e, const LocalStep& x, const Weights& w,
                         LocalTangent& tangent) const override {
-    elastic_->add_mean_tangent(e, shrunk(x), scaled(w), tangent);
+    cold_->add_mean_tangent(e, shrunk(x), scaled(w), tangent);
   }
 
   void add_free_force(int e, const Local& x, FreeForce& force) const override {
     FreeForce f = FreeForce::Zero(force.size());
-    elastic_->add_free_force(e, shrunk(x), f);
+    cold_->add_free_force(e, shrunk(x), f);
     const Eigen::Index n = x.q.size();
     force.head(n) += force_scale_ * f.head(n);
     force.tail(force.size() - n) += energy_scale_ * f.tail(force.size() - n);
@@ -72,7 +72,7 @@ class Heated final : public Term {
   void add_free_tangent(int e, const Local& x, const Weights& w,
                         FreeTangent& tangent) const override {
     FreeTangent k = FreeTangent::Zero(tangent.rows(), tangent.cols());
-    elastic_->add_free_tangent(e, shrunk(x), w, k);
+    cold_->add_free_tangent(e, shrunk(x), w, k);
     const Eigen::Index n = x.q.size(), m = tangent.rows() - n;
     tangent.topLeftCorner(n, n) += tangent_scale_ * k.topLeftCorner(n, n);
     tangent.topRightCorner(n, m) += force_scale_ * k.topRightCorner(n, m);
@@ -80,17 +80,20 @@ class Heated final : public Term {
     tangent.bottomRightCorner(m, m) += energy_scale_ * k.bottomRightCorner(m, m);
   }
 
-  double strain_energy(int e, const Local& x) const override {
-    return energy_scale_ * elastic_->strain_energy(e, shrunk(x));
+  Energies energies(int e, const Local& x) const override {
+    return {.strain = energy_scale_ * cold_->strain_energy(e, shrunk(x))};
+  }
+  double dissipation(int e, const Local& x) const override {
+    return energy_scale_ * cold_->dissipation(e, shrunk(x));
   }
   double flow_power(int e, const Local& x) const override {
-    return energy_scale_ * elastic_->flow_power(e, shrunk(x));
+    return energy_scale_ * cold_->flow_power(e, shrunk(x));
   }
   void add_line_energy(std::span<const ShapeTable> line, const Local& x,
                        LineEnergy& out) const override {
     LineEnergy cold;
     cold.set_zero(out.stiffness.size());
-    elastic_->add_line_energy(line, shrunk(x), cold);
+    cold_->add_line_energy(line, shrunk(x), cold);
     out.stiffness += energy_scale_ * cold.stiffness;
     out.mass += energy_scale_ * cold.mass;
     out.none += energy_scale_ * cold.none;
@@ -101,8 +104,7 @@ class Heated final : public Term {
     return rate_ / s_ * (power_ * strain_energy(e, x) - work_of_growth(e, x));
   }
 
-  bool is_elastic() const override { return true; }
-  std::string name() const override { return elastic_->name(); }
+  std::string name() const override { return cold_->name(); }
 
  private:
   static constexpr int kMaxLocal = kMaxShapes * kMaxDim;
@@ -121,20 +123,30 @@ class Heated final : public Term {
     tangent_scale_ = force_scale_ / s_;
   }
 
-  Weights scaled(const Weights& w) const { return {tangent_scale_ * w.q, 0, 0}; }
+  /// Derivatives of (x, ẋ) by the unknown, times those of the force by its arguments.
+  Weights scaled(const Weights& w) const {
+    return {tangent_scale_ * w.q, tangent_scale_ * (w.v - rate_ / s_ * w.q), 0};
+  }
 
-  /// Elastic terms see q alone.
   LocalRows shrunk(const LocalRows& q) const { return q * (1 / s_); }
-  Local shrunk(const Local& x) const { return {shrunk(x.q), x.v, x.a}; }
+  Local shrunk(const Local& x) const {
+    Local out{shrunk(x.q), x.v, x.a};
+    if (x.v.size() > 0) out.v = (x.v - rate_ / s_ * x.q) * (1 / s_);
+    return out;
+  }
   LocalStep shrunk(const LocalStep& x) const {
     return {shrunk(x.start), shrunk(x.end), shrunk(x.mean)};
   }
-  /// The batch over s, kept in `room` (kMaxLocal).
-  Batch shrunk(const Batch& x, Lanes* room) const {
-    const double scale = 1 / s_;
-    for (int k = 0; k < x.n_local(); ++k) room[k] = scale * x.q[k];
+  /// The same of a batch, kept in `unknowns` and `rates` (kMaxLocal each).
+  Batch shrunk(const Batch& x, Lanes* unknowns, Lanes* rates) const {
+    const double scale = 1 / s_, growth = rate_ / s_;
+    for (int k = 0; k < x.n_local(); ++k) {
+      unknowns[k] = scale * x.q[k];
+      rates[k] = scale * (x.v[k] - growth * x.q[k]);
+    }
     Batch out = x;
-    out.q = room;
+    out.q = unknowns;
+    out.v = rates;
     return out;
   }
 
@@ -163,7 +175,7 @@ class Heated final : public Term {
     return out;
   }
 
-  std::unique_ptr<Term> elastic_;
+  std::unique_ptr<StrainTerm> cold_;
   Heat heat_;
   int power_;
   const Element* element_ = nullptr;  // of the last prepare()
@@ -175,24 +187,28 @@ class Heated final : public Term {
 
 }  // namespace
 
-std::unique_ptr<Term> make_heated(std::unique_ptr<Term> elastic, const Heat& heat) {
-  if (!elastic->is_elastic())
-    throw Error::input("heat acts on elastic terms, the term '" + elastic->name() + "' is none");
+std::unique_ptr<StrainTerm> make_heated(std::unique_ptr<Term> cold, const Heat& heat) {
+  auto* strained = dynamic_cast<StrainTerm*>(cold.get());
+  if (!strained)
+    throw Error::input("heat acts on elastic terms, the term '" + cold->name() + "' is none");
   if (!heat.temperature) throw Error::input("heat without a temperature");
   if (!std::isfinite(heat.expansion))
     throw Error::input("the coefficient of thermal expansion is not a finite number");
-  return std::make_unique<Heated>(std::move(elastic), heat);
+  cold.release();
+  return std::make_unique<Heated>(std::unique_ptr<StrainTerm>(strained), heat);
 }
 
 void heat(Body& body, const Heat& heat) {
   const std::string who = "body '" + body.name + "': ";
   if (body.element->is_rigid()) throw Error::input(who + "a rigid body cannot be heated");
   if (body.heat) throw Error::input(who + "is heated already");
-  const auto is_elastic = [](const std::unique_ptr<Term>& t) { return t->is_elastic(); };
-  if (std::none_of(body.terms.begin(), body.terms.end(), is_elastic))
+  const auto is_strained = [](const std::unique_ptr<Term>& t) {
+    return dynamic_cast<const StrainTerm*>(t.get()) != nullptr;
+  };
+  if (std::none_of(body.terms.begin(), body.terms.end(), is_strained))
     throw Error::input(who + "has no elastic term that heat could act on");
   for (auto& term : body.terms)
-    if (is_elastic(term)) term = make_heated(std::move(term), heat);
+    if (is_strained(term)) term = make_heated(std::move(term), heat);
   body.heat = heat;
 }
 

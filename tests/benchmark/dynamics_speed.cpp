@@ -10,6 +10,8 @@
 #include <string>
 
 #include "fem/dynamics/motion.h"
+#include "fem/loads.h"
+#include "fem/terms.h"
 #include "tests/benchmark/cpu.h"
 #include "tests/support/models.h"
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "fem/elements/ancf_plate.h"
-#include "fem/term.h"
+#include "fem/terms.h"
 #include "fem/terms/gram.h"
 #include "tests/benchmark/cpu.h"
 #include "tests/support/models.h"

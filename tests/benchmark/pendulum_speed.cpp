@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "fem/dynamics/integrator.h"
+#include "fem/loads.h"
 #include "fem/solve/linear_solver.h"
 #include "tests/benchmark/cpu.h"
 #include "tests/support/space_plates.h"

@@ -151,6 +151,12 @@ TEST(SceneReader, KnowsTheRowsOfItsTablesAndNoOthers) {
   const std::string message = complaint({"joint.type=hinge"});
   for (const std::string& name : described(joint_rows()))
     EXPECT_NE(message.find("'" + name + "'"), std::string::npos) << name;
+  const std::string terms = complaint({"body.terms=[\"hinge\"]"});
+  const auto known = described(fem::term_rows());
+  for (const std::string& name : fem::term_names(fem::TermPlace::plane)) {
+    EXPECT_NE(terms.find("'" + name + "'"), std::string::npos) << name;
+    EXPECT_TRUE(known.contains(name));
+  }
 }
 
 struct Bad {

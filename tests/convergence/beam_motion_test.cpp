@@ -9,7 +9,9 @@
 #include "fem/body_joints.h"
 #include "fem/dynamics/integrator.h"
 #include "fem/elements/ancf_beam.h"
+#include "fem/loads.h"
 #include "fem/model.h"
+#include "fem/terms.h"
 #include "tests/support/rates.h"
 
 namespace flexmorph::fem {

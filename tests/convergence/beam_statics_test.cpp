@@ -9,6 +9,7 @@
 #include "fem/body_joints.h"
 #include "fem/elements/ancf_beam.h"
 #include "fem/solve/statics.h"
+#include "fem/terms.h"
 #include "tests/support/rates.h"
 #include "tests/support/reissner_statics.h"
 

@@ -10,6 +10,8 @@
 
 #include "fem/dynamics/generalized_alpha.h"
 #include "fem/dynamics/motion.h"
+#include "fem/loads.h"
+#include "fem/terms.h"
 #include "tests/support/models.h"
 #include "tests/support/particle_pendulum.h"
 #include "tests/support/rates.h"

@@ -8,6 +8,8 @@
 
 #include "fem/dynamics/generalized_alpha.h"
 #include "fem/dynamics/motion.h"
+#include "fem/loads.h"
+#include "fem/terms.h"
 #include "tests/support/rates.h"
 #include "tests/support/space_plates.h"
 

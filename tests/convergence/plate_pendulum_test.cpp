@@ -8,13 +8,15 @@
 
 #include "fem/dynamics/energy_momentum.h"
 #include "fem/dynamics/generalized_alpha.h"
+#include "fem/loads.h"
+#include "fem/terms.h"
 #include "tests/support/space_plates.h"
 
 namespace flexmorph::fem {
 namespace {
 
-using testing::SpacePlate;
 using testing::ShapeSet;
+using testing::SpacePlate;
 using testing::vector;
 
 struct Fall {
@@ -107,10 +109,10 @@ TEST_P(Pendulum, LinesThatStandStillChangeNothing) {
   std::vector<std::unique_ptr<Term>> terms;
   for (const std::string& name : p.terms) terms.push_back(make_term(name, p.section));
   terms.push_back(make_gravity(p.section, vector(0, 0, -9.81)));
-  driven.add_body("plate",
-                  std::make_unique<testing::AncfPlate>(3, GetParam(), lines,
-                                                       testing::even_lines(0, 0.3, 3)),
-                  p.section, std::move(terms));
+  driven.add_body(
+      "plate",
+      std::make_unique<testing::AncfPlate>(3, GetParam(), lines, testing::even_lines(0, 0.3, 3)),
+      p.section, std::move(terms));
   const VectorXd a = plain.reference().q;
   State x = plain.reference();
   const testing::SmoothMotion motion(a, 0.05 * plain.scales().cwiseInverse(), 3);
@@ -140,8 +142,8 @@ TEST(PendulumByEnergyMomentum, KeepsItsEnergy) {
     drift = std::max(drift, std::abs(model.energies(x).total() - start));
     strain = std::max(strain, model.energies(x).strain);
   }
-  std::printf("strain energy to %.2f J, drift %.1e J, Newton %d, factorizations %d\n", strain, drift,
-              integrator.counts().newton, integrator.counts().factorizations);
+  std::printf("strain energy to %.2f J, drift %.1e J, Newton %d, factorizations %d\n", strain,
+              drift, integrator.counts().newton, integrator.counts().factorizations);
   EXPECT_LT(drift, 1e-11 * strain);
 }
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "fem/loads.h"
 #include "tests/support/elastica.h"
 #include "tests/support/rates.h"
 #include "tests/support/space_plates.h"

@@ -7,6 +7,8 @@
 #include <cstdio>
 
 #include "fem/dynamics/motion.h"
+#include "fem/loads.h"
+#include "fem/terms.h"
 #include "tests/support/rates.h"
 #include "tests/support/space_plates.h"
 

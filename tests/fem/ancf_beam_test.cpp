@@ -10,7 +10,8 @@
 #include <numbers>
 #include <random>
 
-#include "fem/term.h"
+#include "fem/loads.h"
+#include "fem/terms.h"
 #include "tests/support/crooked_beam.h"
 #include "tests/support/differences.h"
 #include "tests/support/errors.h"

@@ -3,7 +3,7 @@
 // and that its force and tangent belong to that energy, in the plane and in space.
 #include <gtest/gtest.h>
 
-#include "fem/term.h"
+#include "fem/terms.h"
 #include "tests/support/differences.h"
 #include "tests/support/models.h"
 

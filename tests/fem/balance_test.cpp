@@ -11,6 +11,8 @@
 
 #include <cmath>
 
+#include "fem/loads.h"
+#include "fem/terms.h"
 #include "tests/support/energy_rate.h"
 #include "tests/support/models.h"
 #include "tests/support/space_plates.h"

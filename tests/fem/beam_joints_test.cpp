@@ -11,6 +11,8 @@
 #include "fem/dynamics/start.h"
 #include "fem/elements/ancf_beam.h"
 #include "fem/link.h"
+#include "fem/loads.h"
+#include "fem/terms.h"
 #include "tests/support/errors.h"
 #include "tests/support/rigid_models.h"
 

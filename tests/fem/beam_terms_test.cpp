@@ -10,7 +10,7 @@
 #include <random>
 
 #include "fem/elements/ancf_beam.h"
-#include "fem/term.h"
+#include "fem/terms.h"
 #include "tests/support/crooked_beam.h"
 #include "tests/support/differences.h"
 #include "tests/support/errors.h"

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "fem/terms.h"
 #include "tests/support/differences.h"
 #include "tests/support/space_plates.h"
 

@@ -11,6 +11,7 @@
 #include <random>
 
 #include "fem/solve/assembly.h"
+#include "fem/terms.h"
 #include "tests/support/errors.h"
 #include "tests/support/models.h"
 #include "tests/support/point_mechanisms.h"

@@ -11,6 +11,7 @@
 
 #include "fem/dynamics/generalized_alpha.h"
 #include "fem/dynamics/motion.h"
+#include "fem/loads.h"
 #include "tests/support/errors.h"
 #include "tests/support/rigid_models.h"
 #include "tests/support/space_plates.h"

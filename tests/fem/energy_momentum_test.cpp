@@ -8,6 +8,8 @@
 
 #include "fem/dynamics/integrator.h"
 #include "fem/gram_gradient.h"
+#include "fem/loads.h"
+#include "fem/terms.h"
 #include "tests/support/differences.h"
 #include "tests/support/models.h"
 
@@ -54,7 +56,7 @@ class Stretch final : public Term {
                                   },
                                   1e-4);
   }
-  double strain_energy(int e, const Local& x) const override {
+  Energies energies(int e, const Local& x) const override {
     const ShapeTable& t = tables_[static_cast<size_t>(e)];
     double sum = 0;
     for (Eigen::Index p = 0; p < t.weight.size(); ++p) {
@@ -62,7 +64,7 @@ class Stretch final : public Term {
       sum += 0.5 * kStiffness * t.weight[p] *
              (std::pow(m.norm() - 1, 2) + std::pow(n.norm() - 1, 2) + std::pow(m.dot(n), 2));
     }
-    return sum;
+    return {.strain = sum};
   }
   void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override {
     gradient_.add_force(*this, e, x, force);

@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "fem/terms.h"
 #include "tests/support/differences.h"
 #include "tests/support/models.h"
 

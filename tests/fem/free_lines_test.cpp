@@ -3,7 +3,9 @@
 // element, and every Jacobian (q, v, a) agrees with differences, limits of integration included.
 #include <gtest/gtest.h>
 
+#include "fem/loads.h"
 #include "fem/model.h"
+#include "fem/terms.h"
 #include "fem/terms/densities.h"
 #include "tests/support/differences.h"
 #include "tests/support/models.h"

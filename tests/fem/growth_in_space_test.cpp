@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "fem/dynamics/motion.h"
+#include "fem/terms.h"
 #include "tests/support/space_plates.h"
 
 namespace flexmorph::fem {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "fem/terms.h"
 #include "tests/support/models.h"
 
 namespace flexmorph::fem {

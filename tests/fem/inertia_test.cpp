@@ -5,7 +5,8 @@
 
 #include <cmath>
 
-#include "fem/term.h"
+#include "fem/loads.h"
+#include "fem/terms.h"
 #include "tests/support/differences.h"
 #include "tests/support/models.h"
 

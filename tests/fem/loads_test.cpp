@@ -1,6 +1,8 @@
 // Shows that loads are what they say: resultants and moments of the generalized force against the
 // statics of the load on the deformed shape, tangents against differences, the work of dead loads
 // as a potential, and the load factor.
+#include "fem/loads.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "fem/term.h"
+#include "fem/terms.h"
 #include "tests/support/differences.h"
 #include "tests/support/models.h"
 
@@ -254,9 +254,8 @@ TEST(MembraneTerm, TableNamesWhatItKnows) {
     make_term("torsion", kSection);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_NE(
-        std::string(error.what()).find("bending, ecm, gcm, inertia, membrane, membrane_assumed"),
-        std::string::npos);
+    for (const TermRow* row : term_rows())
+      EXPECT_NE(std::string(error.what()).find(row->name), std::string::npos) << row->name;
   }
 }
 

@@ -11,6 +11,8 @@
 
 #include "fem/dynamics/generalized_alpha.h"
 #include "fem/dynamics/motion.h"
+#include "fem/loads.h"
+#include "fem/terms.h"
 #include "tests/support/differences.h"
 #include "tests/support/errors.h"
 #include "tests/support/models.h"

@@ -8,6 +8,8 @@
 
 #include <cmath>
 
+#include "fem/loads.h"
+#include "fem/terms.h"
 #include "tests/support/differences.h"
 #include "tests/support/models.h"
 

@@ -10,7 +10,9 @@
 
 #include "fem/dynamics/generalized_alpha.h"
 #include "fem/dynamics/motion.h"
+#include "fem/loads.h"
 #include "fem/solve/statics.h"
+#include "fem/terms.h"
 #include "tests/support/differences.h"
 #include "tests/support/models.h"
 #include "tests/support/rigid_models.h"

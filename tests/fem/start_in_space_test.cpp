@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "fem/dynamics/motion.h"
+#include "fem/loads.h"
+#include "fem/terms.h"
 #include "tests/support/space_plates.h"
 
 namespace flexmorph::fem {

@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "fem/loads.h"
+#include "fem/terms.h"
 #include "tests/support/models.h"
 
 namespace flexmorph::fem {

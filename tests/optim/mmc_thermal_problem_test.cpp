@@ -11,6 +11,7 @@
 
 #include "fem/dynamics/esl.h"
 #include "fem/elements/ancf_plate.h"
+#include "fem/terms.h"
 #include "optim/gradient_check.h"
 #include "optim/mmc/shared_problem.h"
 #include "tests/optim/mmc_hot.h"

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <random>
 
+#include "fem/loads.h"
+#include "fem/terms.h"
 #include "tests/support/disturbance.h"
 
 namespace flexmorph::testing {

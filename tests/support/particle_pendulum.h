@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "fem/loads.h"
 #include "fem/model.h"
 #include "tests/support/disturbance.h"
 

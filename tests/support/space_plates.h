@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "fem/solve/statics.h"
+#include "fem/terms.h"
 #include "tests/support/disturbance.h"
 #include "tests/support/models.h"
 

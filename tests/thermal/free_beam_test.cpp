@@ -9,6 +9,7 @@
 #include <iostream>
 
 #include "fem/dynamics/generalized_alpha.h"
+#include "fem/terms.h"
 #include "tests/support/errors.h"
 #include "tests/support/rates.h"
 #include "tests/thermal/hot_models.h"

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "fem/terms.h"
 #include "tests/support/differences.h"
 #include "tests/support/errors.h"
 #include "tests/thermal/hot_models.h"

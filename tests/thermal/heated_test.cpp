@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "fem/terms.h"
 #include "tests/support/differences.h"
 #include "tests/thermal/hot_models.h"
 
@@ -136,7 +137,7 @@ double hot_energy(const Case& c, const Element& element, int e, const LocalRows&
 class HeatedTerm : public ::testing::TestWithParam<Case> {
  protected:
   std::unique_ptr<Element> element = element_of(GetParam());
-  std::unique_ptr<Term> term =
+  std::unique_ptr<StrainTerm> term =
       make_heated(make_term(GetParam().term, kSection), heat_for(GetParam().volume));
 
   void SetUp() override { term->prepare(*element, {}, true); }

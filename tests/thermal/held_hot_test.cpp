@@ -8,6 +8,7 @@
 #include <iostream>
 
 #include "fem/solve/statics.h"
+#include "fem/terms.h"
 #include "tests/thermal/hot_models.h"
 
 namespace flexmorph::fem {

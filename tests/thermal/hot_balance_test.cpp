@@ -9,6 +9,7 @@
 
 #include "fem/dynamics/balance.h"
 #include "fem/dynamics/integrator.h"
+#include "fem/terms.h"
 #include "tests/support/energy_rate.h"
 #include "tests/support/rates.h"
 #include "tests/thermal/hot_models.h"

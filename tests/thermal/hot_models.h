@@ -5,6 +5,7 @@
 #include "fem/elements/ancf_beam.h"
 #include "fem/elements/ancf_plate.h"
 #include "fem/model.h"
+#include "fem/terms.h"
 #include "fem/thermal/heated.h"
 #include "fem/thermal/temperature.h"
 #include "fem/thermal/thermal_displacement.h"
@@ -98,6 +99,39 @@ inline double angular_momentum(const fem::Model& model, const fem::State& x) {
              (r(p, 0) * r_t(p, 1) - r(p, 1) * r_t(p, 0));
   }
   return out;
+}
+
+/// s, down and up with a rate.
+inline fem::Heat moving_heat() {
+  return heat_of([](double t) {
+    return fem::Motion{0.05 * std::sin(3 * t), 0.15 * std::cos(3 * t), -0.45 * std::sin(3 * t)};
+  });
+}
+
+/// A small body of three elements.
+inline std::unique_ptr<fem::Element> element_in(fem::TermPlace place) {
+  if (place == fem::TermPlace::beam) return std::make_unique<fem::AncfBeam>(0.6, 0.1, 3);
+  return std::make_unique<fem::AncfPlate>(place == fem::TermPlace::plane ? 2 : 3, ShapeSet::h16,
+                                          even_lines(0.1, 0.5, 3), even_lines(-0.02, 0.05, 1));
+}
+
+/// A smooth state of all unknowns of an element away from the reference.
+inline fem::Local state_of(const fem::Element& element, int e) {
+  MatrixXd q = element.reference(), v = q;
+  for (int k = 0; k < element.n_vectors(); ++k)
+    for (int c = 0; c < element.dim(); ++c) {
+      const double scale = element.scale(1) / element.scale(k);
+      q(k, c) += 0.1 * scale * std::sin(3.0 * k + c);
+      v(k, c) = scale * std::cos(2.0 * k + 3 * c);
+    }
+  const auto rows = [&](const MatrixXd& all) { return rows_of_element(element, all, e); };
+  return {rows(q), rows(v), rows(0 * q)};
+}
+
+inline VectorXd force_of(const fem::Term& term, int e, const fem::Local& x) {
+  fem::LocalRows f = fem::LocalRows::Zero(x.q.rows(), x.q.cols());
+  term.add_force(e, x, f);
+  return Eigen::Map<const VectorXd>(f.data(), f.size());
 }
 
 }  // namespace flexmorph::testing

@@ -94,7 +94,7 @@ std::string path_plot(const PathRecord& path) {
 std::string energy_plot(const Scene& scene, const MotionRecord& motion) {
   io::Figure figure;
   figure.title = "Energies";
-  const auto panel = [&](const char* label, const std::vector<double>& y) {
+  const auto panel = [&](const std::string& label, const std::vector<double>& y) {
     io::Panel out;
     out.x.label = "time [s]";
     out.y.label = label;
@@ -104,6 +104,7 @@ std::string energy_plot(const Scene& scene, const MotionRecord& motion) {
   panel("kinetic [J]", motion.kinetic);
   panel("strain [J]", motion.strain);
   if (scene.in_space() || scene.gravity) panel("potential [J]", motion.potential);
+  for (const Column& column : motion.written) panel(column.name + " [J]", column.values);
   panel("defect of the balance [J]", motion.defect);
   return io::plot_svg(figure);
 }

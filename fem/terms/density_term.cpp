@@ -1,0 +1,308 @@
+#include "fem/terms/density_term.h"
+
+#include "fem/terms/strain_field.h"
+#include "fem/terms/strain_flow.h"
+
+namespace flexmorph::fem {
+namespace {
+
+/// Too large for the stack of a thread.
+StrainField& field() {
+  static thread_local StrainField room;
+  return room;
+}
+
+/// ∫ s · ∂e/∂t dA at fixed unknowns, stresses times the weights of their points.
+double power_of_flow(StrainField& at, const MatrixXd& stress, const LocalRows& q) {
+  at.set_rate(q, LocalRows::Zero(q.rows(), q.cols()));
+  return stress.cwiseProduct(at.rate()).sum();
+}
+
+}  // namespace
+
+void ElasticTerm::prepare_parts(const Element& element, const Factors& factors) {
+  element_ = &element;
+  factors_ = &factors;
+  gradient_.prepare(element);
+  free_.clear();
+  if (element.n_scalars() == 0) return;
+  free_.resize(parts_.size());
+  for (size_t i = 0; i < parts_.size(); ++i) {
+    const StrainSampling& sampling = *parts_[i].sampling;
+    if (!sampling.is_pointwise())
+      throw Error::input("term '" + name_ + "' does not know free material lines");
+    free_[i].prepare(element, sampling.degree(), sampling.what(), factors);
+  }
+}
+
+void ElasticTerm::add_free_force(int e, const Local& x, FreeForce& force) const {
+  for (size_t i = 0; i < free_.size(); ++i)
+    FreeElastic(*parts_[i].density, free_[i].of(e)).add_force(x.q, force);
+}
+
+void ElasticTerm::add_free_tangent(int e, const Local& x, const Weights& w,
+                                   FreeTangent& tangent) const {
+  if (w.q == 0) return;
+  for (size_t i = 0; i < free_.size(); ++i)
+    FreeElastic(*parts_[i].density, free_[i].of(e)).add_tangent(x.q, w.q, tangent);
+}
+
+void ElasticTerm::add_mean_force(int e, const LocalStep& x, LocalRows& force) const {
+  gradient_.add_force(*this, e, x, force);
+}
+
+void ElasticTerm::add_mean_tangent(int e, const LocalStep& x, const Weights& w,
+                                   LocalTangent& tangent) const {
+  gradient_.add_tangent(*this, e, x, w, tangent);
+}
+
+Energies ElasticTerm::energies(int e, const Local& x) const {
+  Energies out;
+  if (!is_free(e)) {
+    out.strain = energy_at(e, x.q);
+    return out;
+  }
+  for (size_t i = 0; i < free_.size(); ++i)
+    out.strain += FreeElastic(*parts_[i].density, free_[i].of(e)).energy(x.q);
+  return out;
+}
+
+double ElasticTerm::flow_power(int e, const Local& x) const {
+  double out = 0;
+  StrainTable table;
+  for (const ElasticPart& part : parts_) {
+    if (part.sampling->is_pointwise()) {
+      ShapeTable t;
+      const bool bends = part.sampling->what() == Tabulate::curvature;
+      element_->tabulate(e, part.sampling->degree(),
+                         bends ? Tabulate::curvature_rates : Tabulate::gradient_rates, *factors_,
+                         FactorKind::stiffness, t);
+      out += fem::flow_power(*part.density, t, x.q);
+      continue;
+    }
+    part.sampling->tabulate({*element_, *factors_, element_->reference()}, e, table);
+    StrainField& at = field();
+    at.set(part.density->strain(), table, x.q);
+    MatrixXd stress(at.strain().rows(), at.strain().cols());
+    StrainVector s;
+    for (Eigen::Index p = 0; p < stress.cols(); ++p) {
+      part.density->of_strain(at.strain().col(p), &s, nullptr);
+      stress.col(p) = table.weight[p] * s;
+    }
+    out += power_of_flow(at, stress, x.q);
+  }
+  return out;
+}
+
+void ElasticTerm::add_line_energy(std::span<const ShapeTable> line, const Local& x,
+                                  LineEnergy& out) const {
+  for (const ElasticPart& part : parts_) {
+    if (part.sampling->is_pointwise()) {
+      fem::add_line_energy(*part.density, line, x.q, out.stiffness);
+      continue;
+    }
+    MatrixXd strains = strains_on_line(part.density->strain(), line, x.q);
+    part.sampling->along_line(strains);
+    for (Eigen::Index g = 0; g < strains.rows(); ++g)
+      out.stiffness[g] += part.density->of_strain(strains.row(g).transpose(), nullptr, nullptr);
+  }
+}
+
+void StrainTables::prepare(const Element& element, const Factors& factors, bool all,
+                           std::span<const std::shared_ptr<const StrainSampling>> samplings) {
+  tables_.resize(samplings.size());
+  const StrainSource from{element, factors, element.reference()};
+  for (size_t i = 0; i < samplings.size(); ++i) {
+    tables_[i].resize(static_cast<size_t>(element.n_elements()));
+    for (int e = 0; e < element.n_elements(); ++e)
+      if ((all || element.moving(e)) && element.free_sides(e).empty())
+        samplings[i]->tabulate(from, e, tables_[i][static_cast<size_t>(e)]);
+  }
+}
+
+namespace {
+
+template <class Density>
+std::vector<std::shared_ptr<const StrainSampling>> samplings_of(
+    const std::vector<Sampled<Density>>& parts) {
+  std::vector<std::shared_ptr<const StrainSampling>> out;
+  for (const auto& part : parts) out.push_back(part.sampling);
+  return out;
+}
+
+class Elastic final : public ElasticTerm {
+ public:
+  Elastic(std::string name, std::vector<ElasticPart> parts)
+      : ElasticTerm(std::move(name), std::move(parts)) {}
+
+  void prepare(const Element& element, const Factors& factors, bool all) override {
+    prepare_parts(element, factors);
+    tables_.prepare(element, factors, all, samplings_of(parts()));
+  }
+
+  void add_force(int e, const Local& x, LocalRows& force) const override {
+    for (size_t i = 0; i < parts().size(); ++i) {
+      const Stressed at(parts()[i], tables_.of(i, e), x.q, false);
+      field().add_force(at.stress, force);
+    }
+  }
+
+  void add_tangent(int e, const Local& x, const Weights& w, LocalTangent& tangent) const override {
+    if (w.q == 0) return;
+    for (size_t i = 0; i < parts().size(); ++i) {
+      const Stressed at(parts()[i], tables_.of(i, e), x.q, true);
+      StrainField& strains = field();
+      const MatrixXd& B = strains.variation();
+      const Eigen::Index n = at.stress.cols();
+      MatrixXd DB = MatrixXd::Zero(B.rows(), B.cols());
+      for (Eigen::Index r = 0; r < at.stress.rows(); ++r)
+        for (Eigen::Index c = 0; c < at.stress.rows(); ++c)
+          for (Eigen::Index p = 0; p < n; ++p)
+            if (const double d = at.stiffness[static_cast<size_t>(p)](r, c); d != 0)
+              DB.row(n * r + p) += w.q * d * B.row(n * c + p);
+      tangent.noalias() += B.transpose() * DB;
+      strains.add_second(at.stress, w.q, tangent);
+    }
+  }
+
+ private:
+  /// Stresses at all points, times weights; the strains are left in field().
+  struct Stressed {
+    Stressed(const ElasticPart& part, const StrainTable& table, const LocalRows& q, bool derive) {
+      field().set(part.density->strain(), table, q);
+      const MatrixXd& e = field().strain();
+      stress.resize(e.rows(), e.cols());
+      if (derive) stiffness.resize(static_cast<size_t>(e.cols()));
+      StrainVector s;
+      for (Eigen::Index p = 0; p < e.cols(); ++p) {
+        StrainSquare* by_strain = derive ? &stiffness[static_cast<size_t>(p)] : nullptr;
+        energy += table.weight[p] * part.density->of_strain(e.col(p), &s, by_strain);
+        stress.col(p) = table.weight[p] * s;
+        if (derive) *by_strain *= table.weight[p];
+      }
+    }
+    double energy = 0;
+    MatrixXd stress;
+    std::vector<StrainSquare> stiffness;
+  };
+
+  double energy_at(int e, const LocalRows& q) const override {
+    double out = 0;
+    for (size_t i = 0; i < parts().size(); ++i)
+      out += Stressed(parts()[i], tables_.of(i, e), q, false).energy;
+    return out;
+  }
+
+  StrainTables tables_;
+};
+
+class Dissipative final : public StrainTerm {
+ public:
+  Dissipative(std::string name, std::vector<DissipativePart> parts)
+      : name_(std::move(name)), parts_(std::move(parts)) {}
+  std::string name() const override { return name_; }
+
+  void prepare(const Element& element, const Factors& factors, bool all) override {
+    if (element.n_scalars() > 0)
+      throw Error::input("term '" + name_ + "' does not know free material lines");
+    tables_.prepare(element, factors, all, samplings_of(parts_));
+  }
+
+  void add_force(int e, const Local& x, LocalRows& force) const override {
+    for (size_t i = 0; i < parts_.size(); ++i) {
+      const Stressed at(parts_[i], tables_.of(i, e), x, false);
+      field().add_force(at.stress, force);
+    }
+  }
+
+  void add_tangent(int e, const Local& x, const Weights& w, LocalTangent& tangent) const override {
+    if (w.q == 0 && w.v == 0) return;
+    for (size_t i = 0; i < parts_.size(); ++i) {
+      const Stressed at(parts_[i], tables_.of(i, e), x, true);
+      StrainField& strains = field();
+      const MatrixXd &B = strains.variation(), &R = strains.rate_variation(w);
+      const Eigen::Index n = at.stress.cols();
+      MatrixXd change = MatrixXd::Zero(B.rows(), B.cols());  // of the stress
+      for (Eigen::Index r = 0; r < at.stress.rows(); ++r)
+        for (Eigen::Index c = 0; c < at.stress.rows(); ++c)
+          for (Eigen::Index p = 0; p < n; ++p) {
+            const auto at_p = static_cast<size_t>(p);
+            if (const double d = at.by_strain[at_p](r, c); d != 0)
+              change.row(n * r + p) += w.q * d * B.row(n * c + p);
+            if (const double d = at.by_rate[at_p](r, c); d != 0)
+              change.row(n * r + p) += d * R.row(n * c + p);
+          }
+      tangent.noalias() += B.transpose() * change;
+      if (w.q != 0) strains.add_second(at.stress, w.q, tangent);
+    }
+  }
+
+  void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override {
+    add_force(e, x.mean, force);
+  }
+  void add_mean_tangent(int e, const LocalStep& x, const Weights& w,
+                        LocalTangent& tangent) const override {
+    add_tangent(e, x.mean, w, tangent);
+  }
+
+  double dissipation(int e, const Local& x) const override {
+    double out = 0;
+    for (size_t i = 0; i < parts_.size(); ++i)
+      out += Stressed(parts_[i], tables_.of(i, e), x, false).power;
+    return out;
+  }
+
+  double flow_power(int e, const Local& x) const override {
+    double out = 0;
+    for (size_t i = 0; i < parts_.size(); ++i) {
+      const Stressed at(parts_[i], tables_.of(i, e), x, false);
+      out += power_of_flow(field(), at.stress, x.q);
+    }
+    return out;
+  }
+
+ private:
+  /// Stresses at all points, times weights; strains and rates are left in field().
+  struct Stressed {
+    Stressed(const DissipativePart& part, const StrainTable& table, const Local& x, bool derive) {
+      StrainField& strains = field();
+      strains.set(part.density->strain(), table, x.q);
+      strains.set_rate(x.q, x.v);
+      const MatrixXd &e = strains.strain(), &rate = strains.rate();
+      stress.resize(e.rows(), e.cols());
+      if (derive) by_strain.resize(static_cast<size_t>(e.cols()));
+      if (derive) by_rate.resize(static_cast<size_t>(e.cols()));
+      StrainVector s;
+      for (Eigen::Index p = 0; p < e.cols(); ++p) {
+        StrainSquare *of_strain = derive ? &by_strain[static_cast<size_t>(p)] : nullptr,
+                     *of_rate = derive ? &by_rate[static_cast<size_t>(p)] : nullptr;
+        part.density->stress(e.col(p), rate.col(p), s, of_strain, of_rate);
+        stress.col(p) = table.weight[p] * s;
+        power += stress.col(p).dot(rate.col(p));
+        if (!derive) continue;
+        *of_strain *= table.weight[p];
+        *of_rate *= table.weight[p];
+      }
+    }
+    double power = 0;
+    MatrixXd stress;
+    std::vector<StrainSquare> by_strain, by_rate;
+  };
+
+  std::string name_;
+  std::vector<DissipativePart> parts_;
+  StrainTables tables_;
+};
+
+}  // namespace
+
+std::unique_ptr<StrainTerm> make_elastic_term(std::string name, std::vector<ElasticPart> parts) {
+  return std::make_unique<Elastic>(std::move(name), std::move(parts));
+}
+
+std::unique_ptr<StrainTerm> make_dissipative_term(std::string name,
+                                                  std::vector<DissipativePart> parts) {
+  return std::make_unique<Dissipative>(std::move(name), std::move(parts));
+}
+
+}  // namespace flexmorph::fem
