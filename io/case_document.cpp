@@ -92,18 +92,6 @@ void collect_unknown(const CaseNode& node, const std::string& path,
 
 std::string written_key(const std::string& key) { return is_bare_key(key) ? key : in_quotes(key); }
 
-/// A value in one line.
-std::string written(const CaseNode& node) {
-  if (node.kind != CaseNode::Kind::table && node.kind != CaseNode::Kind::list) return node.shown;
-  const bool is_table = node.kind == CaseNode::Kind::table;
-  std::string text = is_table ? "{ " : "[";
-  for (size_t i = 0; i < node.entries.size(); ++i) {
-    const CaseNode& child = node.entries[i];
-    text += (i ? ", " : "") + (is_table ? written_key(child.key) + " = " : "") + written(child);
-  }
-  return text + (is_table ? " }" : "]");
-}
-
 bool is_list_of_tables(const CaseNode& node) {
   return node.kind == CaseNode::Kind::list && !node.entries.empty() &&
          std::all_of(node.entries.begin(), node.entries.end(), [](const CaseNode& entry) {
@@ -111,27 +99,73 @@ bool is_list_of_tables(const CaseNode& node) {
          });
 }
 
-/// A table: its values first, then the tables in it.
-void write_table(const CaseNode& table, const std::string& path, std::string& out) {
-  const auto is_section = [](const CaseNode& node) {
-    return is_list_of_tables(node) || (node.kind == CaseNode::Kind::table && !node.is_inline);
-  };
-  for (const CaseNode& child : table.entries)
-    if (!is_section(child)) out += written_key(child.key) + " = " + written(child) + "\n";
-  for (const CaseNode& child : table.entries) {
-    if (!is_section(child)) continue;
+/// Writes a document, with what readers noted or without.
+struct Writer {
+  bool explains;
+  std::string out = {};
+
+  /// A value in one line.
+  std::string written(const CaseNode& node) const {
+    if (node.kind != CaseNode::Kind::table && node.kind != CaseNode::Kind::list) return node.shown;
+    const bool is_table = node.kind == CaseNode::Kind::table;
+    std::string text;
+    for (const CaseNode& child : node.entries)
+      text += (text.empty() ? "" : ", ") + (is_table ? written_key(child.key) + " = " : "") +
+              written(child);
+    for (const CaseNote& note : taken(node))
+      text += (text.empty() ? "" : ", ") + note.key + " = " + note.value;
+    return is_table ? "{ " + text + " }" : "[" + text + "]";
+  }
+
+  /// Values that readers took for keys which are not in the file.
+  std::vector<CaseNote> taken(const CaseNode& table) const {
+    std::vector<CaseNote> notes;
+    for (const CaseNote& note : table.notes)
+      if (explains && !note.value.empty()) notes.push_back(note);
+    return notes;
+  }
+
+  void write_line(const std::string& text, const CaseNode& table, const std::string& key) {
+    constexpr size_t kComments = 32;  // the column where they begin
+    out += text;
+    for (const CaseNote& note : table.notes)
+      if (explains && note.key == key && !note.sentence.empty())
+        out += std::string(text.size() + 2 > kComments ? 2 : kComments - text.size(), ' ') + "# " +
+               note.sentence;
+    out += "\n";
+  }
+
+  void write_section(const CaseNode& child, const CaseNode& parent, const std::string& path) {
     const std::string full = (path.empty() ? "" : path + ".") + written_key(child.key);
     if (child.kind == CaseNode::Kind::table) {
-      out += "\n[" + full + "]\n";
-      write_table(child, full, out);
-      continue;
+      out += "\n";
+      write_line("[" + full + "]", parent, child.key);
+      write_table(child, full);
+      return;
     }
     for (const CaseNode& entry : child.entries) {
-      out += "\n[[" + full + "]]\n";
-      write_table(entry, full, out);
+      out += "\n";
+      write_line("[[" + full + "]]", parent, child.key);
+      write_table(entry, full);
     }
   }
-}
+
+  /// A table: its values first, then the tables in it.
+  void write_table(const CaseNode& table, const std::string& path) {
+    const auto is_section = [](const CaseNode& node) {
+      return is_list_of_tables(node) || (node.kind == CaseNode::Kind::table && !node.is_inline);
+    };
+    for (const CaseNode& child : table.entries)
+      if (!is_section(child))
+        write_line(written_key(child.key) + " = " + written(child), table, child.key);
+    for (const CaseNote& note : taken(table))
+      write_line(note.key + " = " + note.value, table, note.key);
+    for (const CaseNode& child : table.entries)
+      if (is_section(child)) write_section(child, table, path);
+    for (const CaseNode& child : table.assumed)
+      if (explains) write_section(child, table, path);
+  }
+};
 
 }  // namespace
 
@@ -143,6 +177,14 @@ const CaseNode* CaseNode::find(const std::string& wanted) const {
 
 CaseNode* CaseNode::find(const std::string& wanted) {
   return const_cast<CaseNode*>(std::as_const(*this).find(wanted));
+}
+
+void CaseNode::note(const std::string& about, const std::string& sentence,
+                    const std::string& value) const {
+  const auto old = std::find_if(notes.begin(), notes.end(),
+                                [&](const CaseNote& each) { return each.key == about; });
+  CaseNote& place = old == notes.end() ? notes.emplace_back() : *old;
+  place = {about, sentence, value};
 }
 
 bool is_bare_key(const std::string& word) {
@@ -252,8 +294,15 @@ std::string CaseDocument::effective_text() const {
   std::string out = "# " + std::filesystem::path(path).filename().string() + ", changed by";
   for (const std::string& change : changes) out += "\n#   " + (kOption + change);
   out += "\n\n";
-  write_table(root, "", out);
-  return out;
+  Writer writer{.explains = false};
+  writer.write_table(root, "");
+  return out + writer.out;
+}
+
+std::string CaseDocument::explained_text() const {
+  Writer writer{.explains = true};
+  writer.write_table(root, "");
+  return "# The case with all values that it was read with.\n\n" + writer.out;
 }
 
 }  // namespace flexmorph::io

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <list>
 #include <set>
 #include <span>
 #include <string>
@@ -8,6 +9,12 @@
 #include <vector>
 
 namespace flexmorph::io {
+
+/// What a reader found out about a key of a table.
+struct CaseNote {
+  std::string key, sentence;
+  std::string value;  ///< as TOML, of a key that is not in the file; empty: it is, or has none
+};
 
 /// One value of a case file, with the place it came from.
 struct CaseNode {
@@ -27,9 +34,13 @@ struct CaseNode {
   bool is_option = false;               ///< the very value of a --set option
   mutable std::set<std::string> asked;  ///< keys of a table that somebody asked for
   mutable bool visited = false;         ///< did anybody look into this table?
+  mutable std::vector<CaseNote> notes;  ///< in the order in which keys were read
+  mutable std::list<CaseNode> assumed;  ///< tables that are not in the file, but were read as empty
 
   const CaseNode* find(const std::string& wanted) const;
   CaseNode* find(const std::string& wanted);
+  /// Keeps a note, in place of an older one of the same key.
+  void note(const std::string& about, const std::string& sentence, const std::string& value) const;
 };
 
 /// A case file as a tree.
@@ -41,6 +52,8 @@ struct CaseDocument {
 
   void refuse_unknown_keys() const;  ///< @throws Error (input)
   std::string effective_text() const;
+  /// The effective case with the values that readers took for missing keys, a sentence to each.
+  std::string explained_text() const;
 
   std::string path, text;
   std::vector<std::string> changes;

@@ -1,63 +1,21 @@
 #include "io/case_file.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <set>
+#include <stdexcept>
 
 #include "io/case_document.h"
 #include "io/files.h"
 
 namespace flexmorph::io {
 
-bool Quantity::holds(double value) const {
-  return std::isfinite(value) && (lower_open ? value > lower : value >= lower) &&
-         (upper_open ? value < upper : value <= upper);
-}
-
-std::string Quantity::allowed() const {
-  const bool has_lower = std::isfinite(lower), has_upper = std::isfinite(upper);
-  std::string text = noun;
-  if (has_lower && has_upper) {
-    text += " lies between " + to_text(lower) + " and " + to_text(upper);
-    if (lower_open || upper_open) {
-      text += std::string(" (") + (lower_open ? to_text(lower) : "") +
-              (lower_open && upper_open ? " and " : "") + (upper_open ? to_text(upper) : "") +
-              " excluded)";
-    }
-  } else if (has_lower && lower == 0) {
-    text += lower_open ? " is positive" : " is not negative";
-  } else if (has_lower) {
-    text += (lower_open ? " is above " : " is at least ") + to_text(lower);
-  } else if (has_upper) {
-    text += (upper_open ? " is below " : " is at most ") + to_text(upper);
-  } else {
-    text += " is a finite number";
-  }
-  return unit.empty() ? text : text + " [" + unit + "]";
-}
-
-Quantity any_number(std::string noun, std::string unit) {
-  return {.noun = std::move(noun), .unit = std::move(unit)};
-}
-
-Quantity positive(std::string noun, std::string unit) {
-  return {.noun = std::move(noun), .unit = std::move(unit), .lower = 0, .lower_open = true};
-}
-
-Quantity not_negative(std::string noun, std::string unit) {
-  return {.noun = std::move(noun), .unit = std::move(unit), .lower = 0};
-}
-
-Quantity between(std::string noun, std::string unit, double lower, double upper) {
-  return {.noun = std::move(noun), .unit = std::move(unit), .lower = lower, .upper = upper};
-}
-
 /// Where a Table stands: shared by its copies, keeps the document alive.
 struct Table::Place {
   std::shared_ptr<CaseDocument> document;
   const CaseNode* table;
   std::string path;
+  std::string kind;  ///< the path without names and indices, as keys are declared for it
 
   std::string full(const std::string& key) const { return path.empty() ? key : path + "." + key; }
 
@@ -111,6 +69,15 @@ struct Table::Place {
 namespace {
 
 using Kind = CaseNode::Kind;
+
+/// The value that a key is declared with, if any.
+template <class T>
+std::optional<T> fallback_of(const Key& key) {
+  if (!key.fallback) return {};
+  if constexpr (std::is_same_v<T, double>)
+    if (const int* whole = std::get_if<int>(&*key.fallback)) return *whole;
+  return std::get<T>(*key.fallback);
+}
 
 std::optional<double> read_number(const CaseNode& node, const Quantity& quantity) {
   if (node.kind != Kind::number && node.kind != Kind::integer) return {};
@@ -258,29 +225,174 @@ std::vector<std::string> Table::strings(const std::string& key, const std::strin
       });
 }
 
-Table Table::table(const std::string& key) const {
+Table Table::table(const std::string& key) const { return open_table(key, key); }
+
+std::vector<Table> Table::tables(const std::string& key) const { return open_tables(key, key); }
+
+Table Table::open_table(const std::string& key, const std::string& kind) const {
   const CaseNode* node = place_->find(key);
   const std::string full = place_->full(key);
   if (!node || node->kind != Kind::table) fail(key, "[" + full + "] is a table");
-  node->visited = true;
-  return Table(std::make_shared<Place>(Place{place_->document, node, full}));
+  return opened(*node, full, kind);
 }
 
-std::vector<Table> Table::tables(const std::string& key) const {
+Table Table::opened(const CaseNode& node, const std::string& path, const std::string& kind) const {
+  node.visited = true;
+  const std::string& above = place_->kind;
+  return Table(std::make_shared<Place>(
+      Place{place_->document, &node, path, above.empty() ? kind : above + "." + kind}));
+}
+
+std::vector<Table> Table::open_tables(const std::string& key, const std::string& kind) const {
   const CaseNode* node = place_->find(key);
   std::vector<Table> entries;
   if (!node) return entries;
   const std::string full = place_->full(key);
   const std::string allowed = "a list of tables, each under its own [[" + full + "]]";
-  if (node->kind != Kind::list) fail(key, allowed);
+  if (node->kind != CaseNode::Kind::list) fail(key, allowed);
   for (size_t i = 0; i < node->entries.size(); ++i) {
     const CaseNode* entry = &node->entries[i];
-    if (entry->kind != Kind::table) fail(key, allowed);
-    entry->visited = true;
-    const std::string path = entry_path(*node, i, full);
-    entries.push_back(Table(std::make_shared<Place>(Place{place_->document, entry, path})));
+    if (entry->kind != CaseNode::Kind::table) fail(key, allowed);
+    entries.push_back(opened(*entry, entry_path(*node, i, full), kind));
   }
   return entries;
+}
+
+/// The form to read by. @throws std::logic_error for a key of another table, or of another form.
+const Form& Table::use(const Key& key, Form::Kind kind, bool is_list) const {
+  if (std::find(key.tables.begin(), key.tables.end(), place_->kind) == key.tables.end())
+    throw std::logic_error("key '" + key.name + "' is read in [" + place_->kind +
+                           "], which it is not declared for");
+  return key.form(kind, is_list);
+}
+
+void Table::settle(const Key& key, const Value& value) const {
+  const bool is_missing = place_->find(key.name) == nullptr;
+  place_->table->note(key.name, key.sentence, is_missing ? toml_text(value) : "");
+}
+
+void Table::fail(const Key& key, const std::string& allowed) const { fail(key.name, allowed); }
+
+bool Table::has(const Key& key) const { return has(key.name); }
+
+bool Table::is_string(const Key& key) const { return is_string(key.name); }
+
+bool Table::is_list_of_strings(const Key& key) const { return is_list_of_strings(key.name); }
+
+double Table::number(const Key& key, std::optional<double> computed) const {
+  const Form& form = use(key, Form::Kind::number);
+  if (!computed) computed = fallback_of<double>(key);
+  const double value = number(key.name, form.quantity, computed);
+  settle(key, value);
+  return value;
+}
+
+int Table::integer(const Key& key, std::optional<int> computed) const {
+  const Form& form = use(key, Form::Kind::integer);
+  if (!computed) computed = fallback_of<int>(key);
+  const int value = integer(key.name, form.quantity.noun, form.lower, form.upper, computed);
+  settle(key, value);
+  return value;
+}
+
+bool Table::boolean(const Key& key, std::optional<bool> computed) const {
+  use(key, Form::Kind::boolean);
+  if (!computed) computed = fallback_of<bool>(key);
+  const bool value = boolean(key.name, computed);
+  settle(key, value);
+  return value;
+}
+
+std::string Table::string(const Key& key, std::optional<std::string> computed) const {
+  const Form& form = use(key, Form::Kind::text);
+  if (!computed) computed = fallback_of<std::string>(key);
+  const std::string value = string(key.name, form.quantity.noun, computed);
+  settle(key, value);
+  return value;
+}
+
+std::string Table::choice(const Key& key) const {
+  return choice(key, key.form(Form::Kind::word).words());
+}
+
+std::string Table::choice(const Key& key, std::span<const std::string> allowed,
+                          std::optional<std::string> computed) const {
+  const Form& form = use(key, Form::Kind::word);
+  if (!computed) computed = fallback_of<std::string>(key);
+  const std::string value = choice(key.name, form.quantity.noun, allowed, computed);
+  settle(key, value);
+  return value;
+}
+
+std::vector<double> Table::numbers(const Key& key,
+                                   const std::optional<std::vector<double>>& computed) const {
+  const Form& form = use(key, Form::Kind::number, true);
+  const std::vector<double> value =
+      numbers(key.name, form.quantity, form.count(),
+              computed ? computed : fallback_of<std::vector<double>>(key));
+  settle(key, value);
+  return value;
+}
+
+std::vector<int> Table::integers(const Key& key,
+                                 const std::optional<std::vector<int>>& computed) const {
+  const Form& form = use(key, Form::Kind::integer, true);
+  const std::vector<int> value =
+      integers(key.name, form.quantity.noun, form.lower, form.upper, form.count(),
+               computed ? computed : fallback_of<std::vector<int>>(key));
+  settle(key, value);
+  return value;
+}
+
+std::vector<std::vector<double>> Table::rows(const Key& key) const {
+  const Form& form = use(key, Form::Kind::number, true);
+  place_->table->note(key.name, key.sentence, "");
+  return rows(key.name, form.quantity, form.columns);
+}
+
+std::vector<std::string> Table::choices(const Key& key) const {
+  return choices(key, key.form(Form::Kind::word, true).words());
+}
+
+std::vector<std::string> Table::choices(const Key& key,
+                                        std::span<const std::string> allowed) const {
+  const Form& form = use(key, Form::Kind::word, true);
+  place_->table->note(key.name, key.sentence, "");
+  return choices(key.name, form.quantity.noun, allowed);
+}
+
+std::vector<std::string> Table::strings(const Key& key) const {
+  const Form& form = use(key, Form::Kind::text, true);
+  place_->table->note(key.name, key.sentence, "");
+  return strings(key.name, form.quantity.noun);
+}
+
+Table Table::table(const Key& key) const {
+  use(key, Form::Kind::table);
+  Table out = open_table(key.name, key.is_named ? "*" : key.name);
+  place_->table->note(key.name, key.sentence, "");
+  return out;
+}
+
+Table Table::table_or_empty(const Key& key) const {
+  if (has(key)) return table(key);
+  use(key, Form::Kind::table);
+  const CaseNode& parent = *place_->table;
+  parent.note(key.name, key.sentence, "");
+  auto node = std::find_if(parent.assumed.begin(), parent.assumed.end(),
+                           [&](const CaseNode& each) { return each.key == key.name; });
+  if (node == parent.assumed.end()) {
+    node = parent.assumed.emplace(parent.assumed.end());
+    node->key = key.name;
+    node->place = parent.place;
+  }
+  return opened(*node, place_->full(key.name), key.name);
+}
+
+std::vector<Table> Table::tables(const Key& key) const {
+  use(key, Form::Kind::tables);
+  place_->table->note(key.name, key.sentence, "");
+  return open_tables(key.name, key.name);
 }
 
 std::string Table::beside(const std::string& name) const {
@@ -301,7 +413,7 @@ CaseFile::CaseFile(const std::string& path, std::span<const std::string> overrid
   for (const std::string& change : overrides) document->apply(change);
   const CaseNode* root = &document->root;
   root->visited = true;
-  root_ = std::make_shared<Table::Place>(Table::Place{std::move(document), root, ""});
+  root_ = std::make_shared<Table::Place>(Table::Place{std::move(document), root, "", ""});
 }
 
 const std::string& CaseFile::path() const { return root_->document->path; }
@@ -311,5 +423,7 @@ Table CaseFile::root() const { return Table(root_); }
 void CaseFile::finish() const { root_->document->refuse_unknown_keys(); }
 
 std::string CaseFile::text() const { return root_->document->effective_text(); }
+
+std::string CaseFile::explained() const { return root_->document->explained_text(); }
 
 }  // namespace flexmorph::io

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <initializer_list>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -10,24 +9,11 @@
 #include <vector>
 
 #include "geometry/base.h"
+#include "io/key.h"
 
 namespace flexmorph::io {
 
-/// What a number in a case file may be; allowed() is the end of the message when it is not.
-struct Quantity {
-  std::string noun = {};  ///< "a thickness"
-  std::string unit = {};  ///< "m"; empty for a pure number
-  double lower = -std::numeric_limits<double>::infinity();
-  double upper = std::numeric_limits<double>::infinity();
-  bool lower_open = false, upper_open = false;  ///< is the limit itself excluded?
-
-  bool holds(double value) const;  ///< finite and within the limits
-  std::string allowed() const;     ///< "a thickness is positive [m]"
-};
-Quantity any_number(std::string noun, std::string unit = "");
-Quantity positive(std::string noun, std::string unit = "");
-Quantity not_negative(std::string noun, std::string unit = "");
-Quantity between(std::string noun, std::string unit, double lower, double upper);
+struct CaseNode;
 
 /// One table of a case file, and what was asked of it.
 ///
@@ -35,16 +21,64 @@ Quantity between(std::string noun, std::string unit, double lower, double upper)
 ///
 ///   cases/four_bar.toml:14: body.thickness = -0.002: a thickness is positive [m]
 ///
-/// A `fallback` makes a key optional; without it a missing key is an error. Asking for a key makes
-/// it known: CaseFile::finish() refuses all others. Copies are cheap and keep the file alive.
+/// A missing key has the value that its declaration or the reader (`computed`) says; without either
+/// it is an error. Asking for a key makes it known: CaseFile::finish() refuses all others. Reading
+/// a key that is declared for another table, or as something else, is a std::logic_error. Copies
+/// are cheap and keep the file alive.
 class Table {
  public:
-  const std::string& path() const;               ///< "body.flow"; empty for the file itself
-  std::string place() const;                     ///< "cases/four_bar.toml:14"
+  const std::string& path() const;        ///< "body.flow"; empty for the file itself
+  std::string place() const;              ///< "cases/four_bar.toml:14"
+  std::vector<std::string> keys() const;  ///< in the order of the file (makes none known)
+  bool has(const Key& key) const;         ///< is it in the file? (makes it known)
+  bool is_string(const Key& key) const;   ///< is its value a string?
+  bool is_list_of_strings(const Key& key) const;
+
+  /// Whole numbers are numbers; inf and nan are refused.
+  double number(const Key& key, std::optional<double> computed = {}) const;
+  int integer(const Key& key, std::optional<int> computed = {}) const;
+  bool boolean(const Key& key, std::optional<bool> computed = {}) const;
+  std::string string(const Key& key, std::optional<std::string> computed = {}) const;
+  /// One of the words it is declared with.
+  std::string choice(const Key& key) const;
+  /// One of the names in `allowed`, which the case gives.
+  std::string choice(const Key& key, std::span<const std::string> allowed,
+                     std::optional<std::string> computed = {}) const;
+  template <class T>
+  T choice(const Choice<T>& choice, std::optional<T> computed = {}) const {
+    std::optional<std::string> word;
+    if (computed) word = choice.word_of(*computed);
+    const Key& key = choice;
+    return choice.value_of(this->choice(key, key.form(Form::Kind::word).words(), word));
+  }
+
+  /// Lists of as many entries as the key is declared with.
+  std::vector<double> numbers(const Key& key,
+                              const std::optional<std::vector<double>>& computed = {}) const;
+  std::vector<int> integers(const Key& key,
+                            const std::optional<std::vector<int>>& computed = {}) const;
+  std::vector<std::vector<double>> rows(const Key& key) const;
+  /// One or more of the words it is declared with, or of the names in `allowed`, none twice.
+  std::vector<std::string> choices(const Key& key) const;
+  std::vector<std::string> choices(const Key& key, std::span<const std::string> allowed) const;
+  std::vector<std::string> strings(const Key& key) const;
+
+  /// @throws Error (input) when it is missing or not a table.
+  Table table(const Key& key) const;
+  /// An empty one when it is missing.
+  Table table_or_empty(const Key& key) const;
+  /// Entries of [[key]]; none when it is missing.
+  std::vector<Table> tables(const Key& key) const;
+
+  /// What a missing key came to in the end, where that is known only later: for the explained case.
+  void settle(const Key& key, const Value& value) const;
+
+  /// @throws Error (input): "<file:line>: <path.key> = <value>: <allowed>".
+  [[noreturn]] void fail(const Key& key, const std::string& allowed) const;
+
   bool has(const std::string& key) const;        ///< does the key exist? (makes it known)
   bool is_string(const std::string& key) const;  ///< is its value a string?
   bool is_list_of_strings(const std::string& key) const;
-  std::vector<std::string> keys() const;  ///< in the order of the file (makes none known)
 
   /// Whole numbers are numbers; inf and nan are refused.
   double number(const std::string& key, const Quantity& quantity,
@@ -104,6 +138,10 @@ class Table {
   friend class CaseFile;
   struct Place;
   explicit Table(std::shared_ptr<const Place> place) : place_(std::move(place)) {}
+  const Form& use(const Key& key, Form::Kind kind, bool is_list = false) const;
+  Table opened(const CaseNode& node, const std::string& path, const std::string& kind) const;
+  Table open_table(const std::string& key, const std::string& kind) const;
+  std::vector<Table> open_tables(const std::string& key, const std::string& kind) const;
   std::shared_ptr<const Place> place_;
 };
 
@@ -126,6 +164,8 @@ class CaseFile {
 
   /// The effective case: the file's own text, or the rewritten document when overrides changed it.
   std::string text() const;
+  /// The case as it was read: with the values taken for missing keys, and a sentence to each key.
+  std::string explained() const;
 
  private:
   std::shared_ptr<const Table::Place> root_;

@@ -1,0 +1,176 @@
+// Keys are declared once: readers, messages and the explained case are made from the declaration.
+#include "io/key.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "io/case_file.h"
+#include "tests/io/scratch.h"
+
+namespace flexmorph::io {
+namespace {
+
+enum class Mood { calm, wild };
+
+const Key& kTitle = key("", "title").text("a title").otherwise("none").says("What it is.");
+const Key& kTime = key("", "time").table().says("When.");
+const Key& kEnd = key("time", "end").number(positive("an end", "s")).says("The last moment.");
+const Key& kStep = key("time", "step")
+                       .number(positive("a step", "s"))
+                       .otherwise(0.25)
+                       .says("From one to the next.");
+const Key& kSpin = key("time", "spin")
+                       .number(positive("a spin", "s"))
+                       .otherwise_as("a tenth of `end`")
+                       .says("It.");
+const Choice<Mood> kMood(key("time", "mood").otherwise("calm").says("How."), "a mood",
+                         {{"calm", Mood::calm}, {"wild", Mood::wild}});
+const Key& kBody = key("", "body").tables_of().says("Things.");
+const Key& kSize = shared_key({"body", "time"}, "size")
+                       .integers("a size", 1, 9, 2, 2)
+                       .otherwise(std::vector<int>{1, 2})
+                       .says("Along and across.");
+const Key& kAngle =
+    key("body", "angle").number(any_number("an angle")).name_of("a drive").says("Or a drive.");
+const Key& kOutput = key("", "output").table().otherwise_as("all defaults").says("What is kept.");
+const Key& kEvery = key("output", "every").integer("a count", 0, 9).otherwise(3).says("How often.");
+const Key& kConstants = key("", "constants").table().otherwise_as("none").says("Numbers.");
+const Key& kConstant = key("constants", "*").number(any_number("a constant")).says("Any name.");
+
+constexpr const char* kText = R"(# a comment
+[time]
+end = 1
+
+[[body]]
+angle = "turn"
+size = [3, 4]
+
+[[body]]
+angle = 0.5
+
+[constants]
+speed = 2
+)";
+
+class Keys : public ::testing::Test {
+ protected:
+  CaseFile file(const std::vector<std::string>& changes = {}, const std::string& text = kText) {
+    return CaseFile(scratch_.write("case.toml", text), changes);
+  }
+  /// Reads everything, as a reader of cases would.
+  static void read(const Table& root) {
+    root.string(kTitle);
+    const Table time = root.table(kTime);
+    time.number(kStep);
+    time.number(kSpin.within(0, time.number(kEnd)), 0.1 * time.number(kEnd));
+    time.choice(kMood);
+    for (const Table& t : root.tables(kBody)) {
+      t.integers(kSize);
+      if (!t.is_string(kAngle)) t.number(kAngle);
+    }
+    root.table_or_empty(kOutput).integer(kEvery);
+    const Table constants = root.table(kConstants);
+    for (const std::string& name : constants.keys()) constants.number(kConstant.named(name));
+  }
+  std::string error(const std::function<void(const Table&)>& read,
+                    const std::vector<std::string>& changes = {}) {
+    try {
+      read(file(changes).root());
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "";
+  }
+  Scratch scratch_;
+};
+
+TEST_F(Keys, ReadersTakeTheFileThenTheReaderThenTheDeclaration) {
+  const CaseFile read = file();
+  const Table time = read.root().table(kTime);
+  EXPECT_EQ(time.number(kEnd), 1);
+  EXPECT_EQ(time.number(kStep), 0.25);
+  EXPECT_EQ(time.number(kStep, 0.5), 0.5);
+  EXPECT_EQ(time.choice(kMood), Mood::calm);
+  EXPECT_EQ(time.choice(kMood, std::optional(Mood::wild)), Mood::wild);
+  EXPECT_EQ(time.integers(kSize), (std::vector<int>{1, 2}));
+  const std::vector<Table> bodies = read.root().tables(kBody);
+  EXPECT_EQ(bodies[0].integers(kSize), (std::vector<int>{3, 4}));
+  EXPECT_EQ(bodies[0].choice(kAngle, Words{"turn"}), "turn");
+  EXPECT_EQ(bodies[1].number(kAngle), 0.5);
+  EXPECT_EQ(read.root().table_or_empty(kOutput).integer(kEvery), 3);
+  EXPECT_EQ(read.root().table(kConstants).number(kConstant.named("speed")), 2);
+}
+
+TEST_F(Keys, MessagesAreThoseOfTheDeclaration) {
+  const auto time = [](const Key& key) {
+    return [key](const Table& root) { root.table(kTime).number(key); };
+  };
+  EXPECT_EQ(error(time(kStep), {"time.step=-1"}), "--set time.step=-1: a step is positive [s]");
+  EXPECT_TRUE(
+      ends(error(time(kEnd), {"time.end="}), "time.end is missing: an end is positive [s]"));
+  EXPECT_EQ(error(time(kEnd.within(0, 0.5)), {"time.end=1"}),
+            "--set time.end=1: an end lies between 0 and 0.5 (0 excluded) [s]");
+  EXPECT_EQ(error(time(kEnd.called("it").measured_in("min")), {"time.end=0"}),
+            "--set time.end=0: it is positive [min]");
+  EXPECT_EQ(error([](const Table& root) { root.table(kTime).choice(kMood); }, {"time.mood=wlid"}),
+            "--set time.mood=wlid: a mood is one of 'calm', 'wild', did you mean 'wild'?");
+  EXPECT_EQ(error([](const Table& root) { root.table(kTime).integers(kSize.counted(3)); },
+                  {"time.size=[1,2]"}),
+            "--set time.size=[1,2]: a list of 3: a size is a whole number between 1 and 9");
+}
+
+TEST_F(Keys, AKeyIsReadWhereAndAsWhatItIsDeclared) {
+  const CaseFile read = file();
+  EXPECT_THROW(read.root().number(kEnd), std::logic_error);                // of [time]
+  EXPECT_THROW(read.root().table(kTime).integer(kEnd), std::logic_error);  // a number
+  EXPECT_THROW(read.root().table(kTime).numbers(kEnd), std::logic_error);
+}
+
+TEST_F(Keys, TheBookKnowsThem) {
+  const auto declared = [](const std::string& table, const std::string& name) {
+    return std::count_if(all_keys().begin(), all_keys().end(), [&](const Key& each) {
+      return each.name == name &&
+             std::find(each.tables.begin(), each.tables.end(), table) != each.tables.end();
+    });
+  };
+  EXPECT_EQ(declared("time", "end"), 1);
+  EXPECT_EQ(declared("body", "size"), 1);
+  EXPECT_EQ(declared("time", "size"), 1);
+  EXPECT_EQ(declared("time", "angle"), 0);
+  EXPECT_TRUE(kEnd.is_needed());
+  EXPECT_FALSE(kSpin.is_needed());
+  EXPECT_FALSE(kStep.is_needed());
+  EXPECT_NE(std::string(kEnd.place.file_name()).find("key_test.cpp"), std::string::npos);
+}
+
+TEST_F(Keys, TheExplainedCaseHasAllValuesAndReadsBack) {
+  const CaseFile first = file();
+  read(first.root());
+  const std::string text = first.explained();
+  for (const char* line :
+       {"title = \"none\"                  # What it is.\n", "spin = 0.1 ", "step = 0.25 ",
+        "mood = \"calm\" ", "\n[output]                        # What is kept.\nevery = 3 ",
+        "size = [1, 2] ", "size = [3, 4] ", "speed = 2                       # Any name.\n"})
+    EXPECT_TRUE(contains(text, line)) << text;
+  const CaseFile again = file({}, text);
+  read(again.root());
+  again.finish();
+  EXPECT_EQ(again.explained(), text);
+  // A value that only the whole case decides.
+  again.root().table(kTime).settle(kStep, 0.125);
+  EXPECT_EQ(again.explained(), text) << "it is in the file by now";
+  first.root().table(kTime).settle(kStep, 0.125);
+  EXPECT_TRUE(contains(first.explained(), "step = 0.125 "));
+}
+
+TEST_F(Keys, ValuesAsTomlSaysThem) {
+  EXPECT_EQ(toml_text(true), "true");
+  EXPECT_EQ(toml_text(0.1), "0.1");
+  EXPECT_EQ(toml_text(std::string("a \"b\"")), "\"a \\\"b\\\"\"");
+  EXPECT_EQ(toml_text(std::vector<double>{0, 1e-9}), "[0, 1e-09]");
+  EXPECT_EQ(toml_text(std::vector<int>{}), "[]");
+}
+
+}  // namespace
+}  // namespace flexmorph::io
