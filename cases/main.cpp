@@ -1,7 +1,12 @@
+#include <sys/ioctl.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
 #include "cases/accuracy/accuracy.h"
+#include "cases/keys/book.h"
+#include "cases/keys/completion.h"
 #include "cases/run/run.h"
 #include "cases/run/version.h"
 #include "cases/stability/stability.h"
@@ -9,6 +14,8 @@
 #include "cases/study/sweep.h"
 #include "geometry/plain_numbers.h"
 #include "geometry/processor.h"
+#include "io/case_parser.h"
+#include "io/files.h"
 
 namespace {
 
@@ -94,6 +101,57 @@ CLI::App* add_stability(CLI::App& app, StabilityOptions& options) {
   return command;
 }
 
+struct KeysOptions {
+  std::string table;
+  bool schema = false, markdown = false;
+  std::string renewed;  ///< file whose reference is renewed; empty: the reference is printed
+};
+
+CLI::App* add_keys(CLI::App& app, KeysOptions& options) {
+  CLI::App* command = app.add_subcommand("keys", "the keys of case files");
+  command->add_option("table", options.table, "only this one: time, body.flow, top");
+  command->add_flag("--schema", options.schema, "as a JSON schema, for editors");
+  command->add_flag("--markdown", options.markdown, "as the reference of cases/README.md");
+  command->add_option("--renew", options.renewed, "writes the reference anew in this file");
+  return command;
+}
+
+/// Columns of the screen; 100 where it is none.
+size_t screen_width() {
+  winsize size{};
+  const bool known = isatty(STDOUT_FILENO) && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0;
+  return known && size.ws_col > 0 ? size.ws_col : 100;
+}
+
+void print_keys(const KeysOptions& options) {
+  if (!options.renewed.empty())
+    return flexmorph::io::write_file(options.renewed,
+                                     with_reference(flexmorph::io::read_text(options.renewed)));
+  const std::string text = options.schema     ? keys_as_schema()
+                           : options.markdown ? keys_as_markdown()
+                                              : keys_for_terminal(options.table, screen_width());
+  std::fputs(text.c_str(), stdout);
+}
+
+/// What completion knows of the commands.
+std::vector<CommandWords> command_words(const CLI::App& app) {
+  std::vector<CommandWords> out;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    CommandWords& words = out.emplace_back();
+    words.name = command->get_name();
+    for (const CLI::Option* option : command->get_options()) {
+      if (option->get_positional()) words.positional = option->get_name(true);
+      std::vector<std::string> names;
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+      for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+      words.options.insert(words.options.end(), names.begin(), names.end());
+      if (option->get_expected_max() > 0)
+        words.valued.insert(words.valued.end(), names.begin(), names.end());
+    }
+  }
+  return out;
+}
+
 int parse_and_run(int argc, char** argv) {
   CLI::App app("Topology optimization of flexible mechanisms", "flexmorph");
   app.set_version_flag("--version", std::string("flexmorph ") + kVersion);
@@ -106,10 +164,12 @@ int parse_and_run(int argc, char** argv) {
       ->check(CLI::Range(1, 256));
   run->add_flag("--condition", options.condition,
                 "estimates the condition of the last matrices, for run.json");
+  run->add_flag("--explain", options.explain, "keeps the case with all its defaults");
   run->add_flag("--quiet", options.quiet, "no progress");
   CLI::App* check =
       app.add_subcommand("check", "validates a case; says what it contains and costs");
   add_case(*check, options.case_name, options.overrides);
+  check->add_flag("--explain", options.explain, "prints the case with all its defaults instead");
   CompareOptions compare_options;
   CLI::App* compare = add_compare(app, compare_options);
   SweepOptions sweep_options;
@@ -119,6 +179,13 @@ int parse_and_run(int argc, char** argv) {
   StabilityOptions stability_options;
   CLI::App* stability = add_stability(app, stability_options);
   CLI::App* cases = app.add_subcommand("cases", "lists the shipped cases");
+  KeysOptions keys_options;
+  CLI::App* keys = add_keys(app, keys_options);
+  std::string shell;
+  CLI::App* completion = app.add_subcommand("completion", "a script that completes commands");
+  completion->add_option("shell", shell, "bash or zsh")
+      ->required()
+      ->check(CLI::IsMember({"bash", "zsh"}));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -130,6 +197,8 @@ int parse_and_run(int argc, char** argv) {
   if (*sweep) return sweep_case(sweep_options);
   if (*accuracy) return accuracy_case(accuracy_options);
   if (*stability) return check_stability(stability_options);
+  if (*keys) print_keys(keys_options);
+  if (*completion) std::fputs(completion_script(shell, command_words(app)).c_str(), stdout);
   if (*check) std::fputs(check_case(options).c_str(), stdout);
   if (*cases)
     for (const std::string& name : shipped_cases()) std::printf("%s\n", name.c_str());

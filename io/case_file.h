@@ -1,6 +1,5 @@
 #pragma once
 
-#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <span>
@@ -40,7 +39,7 @@ class Table {
   bool boolean(const Key& key, std::optional<bool> computed = {}) const;
   std::string string(const Key& key, std::optional<std::string> computed = {}) const;
   /// One of the words it is declared with.
-  std::string choice(const Key& key) const;
+  std::string choice(const Key& key, std::optional<std::string> computed = {}) const;
   /// One of the names in `allowed`, which the case gives.
   std::string choice(const Key& key, std::span<const std::string> allowed,
                      std::optional<std::string> computed = {}) const;
@@ -75,73 +74,19 @@ class Table {
 
   /// @throws Error (input): "<file:line>: <path.key> = <value>: <allowed>".
   [[noreturn]] void fail(const Key& key, const std::string& allowed) const;
-
-  bool has(const std::string& key) const;        ///< does the key exist? (makes it known)
-  bool is_string(const std::string& key) const;  ///< is its value a string?
-  bool is_list_of_strings(const std::string& key) const;
-
-  /// Whole numbers are numbers; inf and nan are refused.
-  double number(const std::string& key, const Quantity& quantity,
-                std::optional<double> fallback = {}) const;
-  int integer(const std::string& key, const std::string& noun, int lower, int upper,
-              std::optional<int> fallback = {}) const;
-  bool boolean(const std::string& key, std::optional<bool> fallback = {}) const;
-  std::string string(const std::string& key, const std::string& noun,
-                     std::optional<std::string> fallback = {}) const;
-  /// One of the strings in `allowed`.
-  std::string choice(const std::string& key, const std::string& noun,
-                     std::span<const std::string> allowed,
-                     std::optional<std::string> fallback = {}) const;
-  /// One of the named values, for enumerations.
-  template <class T>
-  T choice(const std::string& key, const std::string& noun,
-           std::initializer_list<std::pair<const char*, T>> named,
-           std::optional<T> fallback = {}) const {
-    if (fallback && !has(key)) return *fallback;
-    std::vector<std::string> allowed;
-    for (const auto& [name, value] : named) allowed.emplace_back(name);
-    const std::string chosen = choice(key, noun, allowed);
-    for (const auto& [name, value] : named)
-      if (chosen == name) return value;
-    fail(key, noun + " is unknown");
-  }
-
-  /// A list; `count` entries, or one or more if it is 0.
-  std::vector<double> numbers(const std::string& key, const Quantity& each, int count = 0,
-                              const std::optional<std::vector<double>>& fallback = {}) const;
-  std::vector<int> integers(const std::string& key, const std::string& noun, int lower, int upper,
-                            int count = 0,
-                            const std::optional<std::vector<int>>& fallback = {}) const;
-  /// A list of one or more lists of `columns` numbers each: [[0, 1], [2, 3]].
-  std::vector<std::vector<double>> rows(const std::string& key, const Quantity& each,
-                                        int columns) const;
-  /// A list of one or more of the strings in `allowed`, none twice.
-  std::vector<std::string> choices(const std::string& key, const std::string& noun,
-                                   std::span<const std::string> allowed) const;
-  /// A list of one or more strings.
-  std::vector<std::string> strings(const std::string& key, const std::string& noun) const;
-
-  /// @throws Error (input) when it is missing or not a table.
-  Table table(const std::string& key) const;
-  /// Entries of [[key]]; none when it is missing.
-  std::vector<Table> tables(const std::string& key) const;
+  /// The same about the table as a whole: "<file:line>: <path>: <allowed>".
+  [[noreturn]] void fail(const std::string& allowed) const;
 
   /// Path of a file that the case names: relative names start at the folder of the case file.
   std::string beside(const std::string& name) const;
-
-  /// @throws Error (input): "<file:line>: <path.key> = <value>: <allowed>".
-  [[noreturn]] void fail(const std::string& key, const std::string& allowed) const;
-  /// The same about the table as a whole: "<file:line>: <path>: <allowed>".
-  [[noreturn]] void fail(const std::string& allowed) const;
+  /// The same from the root of the file system.
+  std::string absolute(const std::string& name) const;
 
  private:
   friend class CaseFile;
   struct Place;
   explicit Table(std::shared_ptr<const Place> place) : place_(std::move(place)) {}
-  const Form& use(const Key& key, Form::Kind kind, bool is_list = false) const;
   Table opened(const CaseNode& node, const std::string& path, const std::string& kind) const;
-  Table open_table(const std::string& key, const std::string& kind) const;
-  std::vector<Table> open_tables(const std::string& key, const std::string& kind) const;
   std::shared_ptr<const Place> place_;
 };
 

@@ -27,6 +27,14 @@ std::function<Words()> always(Words words) {
   return [words = std::move(words)] { return words; };
 }
 
+std::function<Words()> first_of(std::function<Glossary()> rows) {
+  return [rows = std::move(rows)] {
+    Words words;
+    for (const auto& [word, sentence] : rows()) words.push_back(word);
+    return words;
+  };
+}
+
 Quantity only(std::string noun) { return {.noun = std::move(noun)}; }
 
 }  // namespace
@@ -72,6 +80,11 @@ Key& Key::word(std::string noun, std::function<Words()> allowed) {
       {.kind = Kind::word, .quantity = only(std::move(noun)), .allowed = std::move(allowed)});
 }
 
+Key& Key::word(std::string noun, std::function<Glossary()> rows) {
+  meanings = rows;
+  return word(std::move(noun), first_of(std::move(rows)));
+}
+
 Key& Key::name_of(std::string noun) {
   return add({.kind = Kind::word, .quantity = only(std::move(noun))});
 }
@@ -107,6 +120,11 @@ Key& Key::words(std::string noun, std::function<Words()> allowed) {
               .quantity = only(std::move(noun)),
               .allowed = std::move(allowed),
               .is_list = true});
+}
+
+Key& Key::words(std::string noun, std::function<Glossary()> rows) {
+  meanings = rows;
+  return words(std::move(noun), first_of(std::move(rows)));
 }
 
 Key& Key::names_of(std::string noun, int least, int most) {

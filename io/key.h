@@ -24,6 +24,8 @@
 namespace flexmorph::io {
 
 using Words = std::vector<std::string>;
+/// Words, and a sentence to each.
+using Glossary = std::vector<std::pair<std::string, std::string>>;
 
 /// One way to write the value of a key.
 struct Form {
@@ -57,8 +59,9 @@ class Key {
   std::string absence;            ///< or in words: "the longest length", "nothing is limited"
   std::string condition;          ///< when it may be there: `type = "weld"`; empty: always
   std::string sentence;
-  std::source_location place;  ///< of the declaration
-  bool is_named = false;       ///< its name is free, and this is one of them
+  std::function<Glossary()> meanings;  ///< of its words, where they need one; may be empty
+  std::source_location place;          ///< of the declaration
+  bool is_named = false;               ///< its name is free, and this is one of them
 
   Key& number(Quantity quantity);
   Key& integer(std::string noun, int lower, int upper);
@@ -66,6 +69,7 @@ class Key {
   Key& text(std::string noun);
   Key& word(std::string noun, Words allowed);
   Key& word(std::string noun, std::function<Words()> allowed);
+  Key& word(std::string noun, std::function<Glossary()> allowed);  ///< rows of a table
   Key& name_of(std::string noun);  ///< of something that the case gives a name
 
   /// Lists of `least` to `most` entries; of one or more without them.
@@ -74,6 +78,7 @@ class Key {
   Key& texts(std::string noun);
   Key& words(std::string noun, Words allowed);
   Key& words(std::string noun, std::function<Words()> allowed);
+  Key& words(std::string noun, std::function<Glossary()> allowed);
   Key& names_of(std::string noun, int least = 1, int most = 0);
   Key& rows(Quantity each, int columns);
 

@@ -26,7 +26,7 @@ set(may_optim geometry)
 set(may_optim/mmc geometry ${fem} optim)
 # The door, main.cpp, and its wings, each on top of those before it.
 set(below geometry io ${fem} optim optim/mmc)
-foreach(wing scene build run study)
+foreach(wing scene keys build run study)
   set(may_cases/${wing} ${below})
   list(APPEND below cases/${wing})
 endforeach()
@@ -38,7 +38,7 @@ set(may_tests ${below} cases)
 
 # Wrapped library (how its headers begin) -> the folder whose .cpp files may include it.
 set(libraries CGAL Boost SuiteSparse VTK NLopt Ipopt toml++ CLI11 GiNaC
-              SUNDIALS)
+              SUNDIALS valijson)
 set(headers_CGAL "CGAL/")
 set(headers_Boost "boost/")
 set(headers_SuiteSparse "cholmod|umfpack|klu|amd|colamd|SuiteSparse|Eigen/(Cholmod|UmfPack|KLU)")
@@ -49,6 +49,7 @@ set(headers_toml++ "toml")
 set(headers_CLI11 "CLI/")
 set(headers_GiNaC "(ginac|cln)/")
 set(headers_SUNDIALS "(ida|sundials|nvector|sunlinsol|sunmatrix)/")
+set(headers_valijson "valijson/")
 set(folder_CGAL geometry)
 set(folder_Boost "geometry|fem/dynamics")
 set(folder_SuiteSparse fem)
@@ -59,6 +60,7 @@ set(folder_toml++ io)
 set(folder_CLI11 cases)
 set(folder_GiNaC io)
 set(folder_SUNDIALS tests)
+set(folder_valijson tests)
 
 # The room a file lies in.
 function(room_of path room)

@@ -323,24 +323,7 @@ class Story {
   void write_case(Recommendation& r, const std::string& name) const {
     StudyOptions study = options_.study;
     std::vector<std::string> overrides = r.overrides;
-    const auto keep = [&](const io::Table& t, const std::string& key, const std::string& full) {
-      if (t.is_string(key))
-        overrides.push_back(full + "='" + fs::absolute(t.beside(t.string(key, "a file"))).string() +
-                            "'");
-    };
-    const std::vector<io::Table> drives = file_.root().tables("drive");
-    for (size_t i = 0; i < drives.size(); ++i)
-      keep(drives[i], "csv", "drive." + std::to_string(i) + ".csv");
-    const io::Table accuracy = file_.root().table("accuracy");
-    if (accuracy.has("reference"))
-      keep(accuracy.table("reference"), "file", "accuracy.reference.file");
-    if (!accuracy.is_string("quantity") && !accuracy.is_list_of_strings("quantity")) {
-      const std::vector<io::Table> each = accuracy.tables("quantity");
-      for (size_t i = 0; i < each.size(); ++i)
-        if (each[i].has("reference"))
-          keep(each[i].table("reference"), "file",
-               "accuracy.quantity." + std::to_string(i) + ".reference.file");
-    }
+    for (std::string& each : overrides_of_files(file_)) overrides.push_back(std::move(each));
     // A finer run of the final design is finer than the elements of the case, not than these.
     const auto is_mesh = [](const std::string& each) {
       return each.find(".elements=") != std::string::npos;

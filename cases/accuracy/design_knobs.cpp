@@ -4,6 +4,8 @@
 #include <numeric>
 
 #include "cases/accuracy/knobs.h"
+#include "cases/scene/design_keys.h"
+#include "cases/scene/tables.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
@@ -62,16 +64,17 @@ void refine_design(const BodyDesign& d, const io::Table& t, size_t index, int ow
                    Overrides& out) {
   const double finer = static_cast<double>(size) / own;
   const int nx = d.grid.nx / own * size, ny = d.grid.ny / own * size;
-  if (t.has("cells"))
+  if (t.has(design_keys::kCells))
     out.push_back(design_key(index, "cells") + pair(nx, ny));
   else
     out.push_back(design_key(index, "cell") + to_text(d.grid.width / nx));
   out.push_back(design_key(index, "min_thickness") + to_text(d.min_thickness));
-  const std::vector<io::Table> solid = t.tables("solid"), empty = t.tables("void");
+  const std::vector<io::Table> solid = t.tables(design_keys::kSolid),
+                               empty = t.tables(design_keys::kVoid);
   const auto strips = [&](const std::vector<io::Table>& regions, const std::string& name) {
     for (size_t k = 0; k < regions.size(); ++k) {
-      if (!regions[k].has("strip")) continue;
-      const int cells = regions[k].integer("cells", "the width of a strip", 1, d.grid.nx, 2);
+      if (!regions[k].has(design_keys::kStrip)) continue;
+      const int cells = regions[k].integer(design_keys::kStripCells);
       // Not a whole number: no level, for the strip would be another.
       out.push_back(design_key(index, name + "." + std::to_string(k) + ".cells") +
                     to_text(cells * finer));
@@ -84,7 +87,7 @@ void refine_design(const BodyDesign& d, const io::Table& t, size_t index, int ow
 std::vector<Level> cell_levels(const Scene& scene, const io::CaseFile& file) {
   int own = 0;
   for (const BodyDesign& d : scene.designs) own = std::gcd(own, std::gcd(d.grid.nx, d.grid.ny));
-  const std::vector<io::Table> tables = file.root().tables("design");
+  const std::vector<io::Table> tables = file.root().tables(tables::kDesign);
   std::vector<Level> out;
   for (const int quarters : {1, 2, 3, 4, 6, 8, 10, 12, 16, 24, 32}) {
     if (own * quarters % 4 != 0) continue;

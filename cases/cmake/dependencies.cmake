@@ -75,10 +75,12 @@ if(SUITESPARSE_FOUND)
 endif()
 flexmorph_library(SUITESPARSE 5.12 SUITESPARSE_FOUND)
 
-# Of the tests. SUNDIALS judges our integrators; its own package file would ask for PETSc and MPI,
+# Of the tests. valijson, headers alone, judges cases by their schema; SUNDIALS judges our integrators; its own package file would ask for PETSc and MPI,
 # which the serial libraries do not need.
 if(FLEXMORPH_TESTS)
   flexmorph_find(GTest 1.12)
+  find_path(VALIJSON_INCLUDE_DIR valijson/validator.hpp)
+  flexmorph_library(valijson 1.0 VALIJSON_INCLUDE_DIR)
   find_path(SUNDIALS_INCLUDE_DIR ida/ida.h)
   set(SUNDIALS_FOUND TRUE)
   add_library(SUNDIALS::ida INTERFACE IMPORTED)

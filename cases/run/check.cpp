@@ -7,7 +7,7 @@
 #include "cases/run/check_cost.h"
 #include "cases/run/run.h"
 #include "cases/scene/goal.h"
-#include "cases/scene/heat.h"
+#include "cases/scene/heat/heat.h"
 #include "cases/scene/joints/row.h"
 #include "cases/scene/read.h"
 #include "io/files.h"
@@ -256,6 +256,7 @@ std::string check_case(const RunOptions& options) {
   const io::CaseFile file(find_case(options.case_name), options.overrides);
   const Scene scene = read_scene(file);
   build_scene(scene);
+  if (options.explain) return file.explained();
   std::ostringstream out;
   out << scene.name << ": " << scene.title << "\n\nactive\n";
   if (scene.domain) {

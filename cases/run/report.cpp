@@ -9,7 +9,7 @@
 #include "cases/run/run_warnings.h"
 #include "cases/run/version.h"
 #include "cases/scene/goal.h"
-#include "cases/scene/heat.h"
+#include "cases/scene/heat/heat.h"
 #include "fem/solve/linear_solver.h"
 #include "io/files.h"
 

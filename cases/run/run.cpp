@@ -278,7 +278,7 @@ int run_case(const RunOptions& options) {
   std::string directory = options.directory;
   if (directory.empty()) directory = scene.output.directory;
   if (directory.empty()) directory = "runs/" + scene.name;
-  RunFolder folder(directory, scene, file.text());
+  RunFolder folder(directory, scene, options.explain ? file.explained() : file.text());
 
   std::signal(SIGINT, [](int) { interrupted = 1; });
   std::signal(SIGTERM, [](int) { interrupted = 1; });

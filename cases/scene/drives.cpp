@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cases/scene/body_keys.h"
 #include "cases/scene/read.h"
+#include "cases/scene/tables.h"
 #include "io/files.h"
 #include "io/formula.h"
 #include "io/smooth_table.h"
@@ -12,19 +14,54 @@ namespace {
 
 using io::any_number;
 using io::Jet;
+using io::Key;
 using io::Table;
 using io::to_text;
 
 using Constants = std::map<std::string, double>;
 
+const Key& kConstant = io::key("constants", "*")
+                           .number(any_number("a constant"))
+                           .says("A number that formulas know by this name.");
+const Key& kName = io::key("drive", "name")
+                       .text("the name of a drive")
+                       .says("What hubs, joints, flows and temperatures call it.");
+const Key& kFormula =
+    io::key("drive", "formula")
+        .text("a formula of the time t")
+        .otherwise_as("another one of the four is given")
+        .says("Of the time `t`: + - * / ^, pi, sin ... atan2, exp, log, sqrt, abs.");
+const Key& kTable =
+    io::key("drive", "table")
+        .rows(any_number("a time or a value"), 2)
+        .otherwise_as("another one of the four is given")
+        .says("Times and values, from 0 to `time.end`; a smooth curve through them.");
+const Key& kCsv = io::key("drive", "csv")
+                      .text("a file")
+                      .otherwise_as("another one of the four is given")
+                      .says("A table beside the case.");
+const Key& kTimeColumn = io::key("drive", "time")
+                             .text("a column")
+                             .otherwise("time")
+                             .when("`csv` is given")
+                             .says("Its column of times.");
+const Key& kColumn = io::key("drive", "column")
+                         .text("a column")
+                         .when("`csv` is given")
+                         .says("Its column of values.");
+const Key& kFrom = io::key("drive", "from")
+                       .word("a drive follows from", {"trajectory"})
+                       .otherwise_as("another one of the four is given")
+                       .says("What the rigid mechanism needs to follow the [trajectory].");
+
 Constants read_constants(const Table& root) {
   Constants out;
-  if (!root.has("constants")) return out;
-  const Table t = root.table("constants");
+  if (!root.has(tables::kConstants)) return out;
+  const Table t = root.table(tables::kConstants);
   for (const std::string& key : t.keys()) {
     const std::string why = io::Formula::refusal_of_name(key);
-    if (!why.empty()) t.fail(key, why);
-    out[key] = t.number(key, any_number("a constant"));
+    if (!why.empty()) t.fail(kConstant.named(key), why);
+    out[key] = t.number(kConstant.named(key));
   }
   return out;
 }
@@ -42,7 +79,7 @@ std::function<fem::Motion(double)> over_run(Function function, double end) {
 }
 
 /// What a reader of formulas or tables says, without the text that the place in the file shows.
-[[noreturn]] void pass_on(const Table& t, const std::string& key, const Error& error,
+[[noreturn]] void pass_on(const Table& t, const Key& key, const Error& error,
                           const std::string& text = "") {
   std::string words = error.what();
   const std::string start = "formula '" + text + "': ";
@@ -52,17 +89,17 @@ std::function<fem::Motion(double)> over_run(Function function, double end) {
 
 std::function<fem::Motion(double)> read_formula(const Table& t, const Constants& constants,
                                                 double end, std::string& words) {
-  words = t.string("formula", "a formula of the time t");
+  words = t.string(kFormula);
   try {
     io::Formula formula(words, constants);
     formula.check(end);
     return over_run(std::move(formula), end);
   } catch (const Error& error) {
-    pass_on(t, "formula", error, words);
+    pass_on(t, kFormula, error, words);
   }
 }
 
-std::function<fem::Motion(double)> tabulated(const Table& t, const std::string& key,
+std::function<fem::Motion(double)> tabulated(const Table& t, const Key& key,
                                              const std::vector<double>& times,
                                              const std::vector<double>& values, double end) {
   const auto make = [&] {
@@ -82,20 +119,19 @@ std::function<fem::Motion(double)> tabulated(const Table& t, const std::string& 
 
 std::function<fem::Motion(double)> read_table(const Table& t, double end, std::string& words) {
   std::vector<double> times, values;
-  for (const std::vector<double>& row : t.rows("table", any_number("a time or a value"), 2)) {
+  for (const std::vector<double>& row : t.rows(kTable)) {
     times.push_back(row[0]);
     values.push_back(row[1]);
   }
   words = "table of " + to_text(static_cast<int>(times.size())) + " points";
-  return tabulated(t, "table", times, values, end);
+  return tabulated(t, kTable, times, values, end);
 }
 
 std::function<fem::Motion(double)> read_csv_drive(const Table& t, double end, std::string& words) {
-  const std::string name = t.string("csv", "a file");
-  const std::string time_column = t.string("time", "a column", "time");
-  const std::string column = t.string("column", "a column");
-  const auto numbers = [&](const io::CsvTable& csv, const std::string& key,
-                           const std::string& wanted) {
+  const std::string name = t.string(kCsv);
+  const std::string time_column = t.string(kTimeColumn);
+  const std::string column = t.string(kColumn);
+  const auto numbers = [&](const io::CsvTable& csv, const Key& key, const std::string& wanted) {
     try {
       return csv.numbers(wanted);
     } catch (const Error& error) {
@@ -109,34 +145,35 @@ std::function<fem::Motion(double)> read_csv_drive(const Table& t, double end, st
   try {
     csv = io::read_csv(t.beside(name));
   } catch (const Error& error) {
-    pass_on(t, "csv", error);
+    pass_on(t, kCsv, error);
   }
-  const std::vector<double> times = numbers(csv, t.has("time") ? "time" : "csv", time_column);
-  const std::vector<double> values = numbers(csv, "column", column);
+  const std::vector<double> times =
+      numbers(csv, t.has(kTimeColumn) ? kTimeColumn : kCsv, time_column);
+  const std::vector<double> values = numbers(csv, kColumn, column);
   words = "'" + name + "', column '" + column + "', " + to_text(static_cast<int>(times.size())) +
           " points";
-  return tabulated(t, "csv", times, values, end);
+  return tabulated(t, kCsv, times, values, end);
 }
 
 Drive read_drive(const Table& t, const Constants& constants, const Scene& scene,
                  bool has_trajectory) {
   Drive drive;
-  drive.name = read_word(t, "the name of a drive");
+  drive.name = read_word(t, kName);
   for (const Drive& other : scene.drives)
-    if (other.name == drive.name) t.fail("name", "there is another drive '" + drive.name + "'");
-  if (t.has("formula") + t.has("table") + t.has("csv") + t.has("from") != 1)
+    if (other.name == drive.name) t.fail(kName, "there is another drive '" + drive.name + "'");
+  if (t.has(kFormula) + t.has(kTable) + t.has(kCsv) + t.has(kFrom) != 1)
     t.fail("a drive has one of `formula`, `table`, `csv` and `from`");
-  if (t.has("from")) {
-    t.choice("from", "a drive follows from", std::vector<std::string>{"trajectory"});
-    if (!has_trajectory) t.fail("from", "the [trajectory] to follow is missing");
+  if (t.has(kFrom)) {
+    t.choice(kFrom);
+    if (!has_trajectory) t.fail(kFrom, "the [trajectory] to follow is missing");
     drive.from_trajectory = true;
     drive.words = "from the trajectory";
     return drive;
   }
   const double end = scene.time.end;
-  drive.motion = t.has("formula") ? read_formula(t, constants, end, drive.words)
-                 : t.has("table") ? read_table(t, end, drive.words)
-                                  : read_csv_drive(t, end, drive.words);
+  drive.motion = t.has(kFormula) ? read_formula(t, constants, end, drive.words)
+                 : t.has(kTable) ? read_table(t, end, drive.words)
+                                 : read_csv_drive(t, end, drive.words);
   return drive;
 }
 
@@ -157,9 +194,10 @@ void check_limits(const Table& t, const Body& body, double end) {
   const double element = body.length / body.elements[0];
   const double shortest = body.shortest(end);
   if (element > flow.max_length * (1 + 1e-9))
-    t.fail("max_length", "the elements are " + to_text(element, 4) +
-                             " m long at the start: more elements, or a larger max_length [m]");
-  const std::string min_key = t.has("min_length") ? "min_length" : "max_length";
+    t.fail(flow_keys::kMaxLength,
+           "the elements are " + to_text(element, 4) +
+               " m long at the start: more elements, or a larger max_length [m]");
+  const Key& min_key = t.has(flow_keys::kMinLength) ? flow_keys::kMinLength : flow_keys::kMaxLength;
   if (element < flow.min_length * (1 - 1e-9))
     t.fail(min_key, "the elements are " + to_text(element, 4) +
                         " m long at the start, shorter than min_length = " +
@@ -172,23 +210,32 @@ void check_limits(const Table& t, const Body& body, double end) {
     t.fail(min_key, "min_length + the neighbour's " + to_text(neighbour, 4) +
                         " m stays below 0.9 max_length, or elements are split and merged in turn");
   if (shortest < flow.min_length)
-    t.fail(flow.motion ? "length" : "speed", "the body keeps at least min_length, but " +
-                                                 to_text(shortest, 4) + " m are left at " +
-                                                 (flow.motion ? "its shortest" : "time.end"));
+    t.fail(flow.motion ? flow_keys::kLength : flow_keys::kSpeed,
+           "the body keeps at least min_length, but " + to_text(shortest, 4) + " m are left at " +
+               (flow.motion ? "its shortest" : "time.end"));
 }
 
 }  // namespace
 
-Law read_law(const Table& t, const std::string& key, const io::Quantity& quantity,
-             const Scene& scene, std::optional<double> fallback) {
-  if (t.is_string(key)) return {t.choice(key, "a drive", names_of(scene.drives)), 0};
-  return {{}, t.number(key, quantity, fallback)};
+std::vector<std::string> overrides_of_drive_files(const Table& root) {
+  std::vector<std::string> out;
+  const std::vector<Table> drives = root.tables(tables::kDrive);
+  for (size_t i = 0; i < drives.size(); ++i)
+    if (drives[i].is_string(kCsv))
+      out.push_back("drive." + std::to_string(i) + ".csv='" +
+                    drives[i].absolute(drives[i].string(kCsv)) + "'");
+  return out;
+}
+
+Law read_law(const Table& t, const Key& key, const Scene& scene, std::optional<double> computed) {
+  if (t.is_string(key)) return {t.choice(key.called("a drive"), names_of(scene.drives)), 0};
+  return {{}, t.number(key, computed)};
 }
 
 void read_drives(const Table& root, Scene& scene) {
   const Constants constants = read_constants(root);
-  for (const Table& t : root.tables("drive"))
-    scene.drives.push_back(read_drive(t, constants, scene, root.has("trajectory")));
+  for (const Table& t : root.tables(tables::kDrive))
+    scene.drives.push_back(read_drive(t, constants, scene, root.has(tables::kTrajectory)));
 }
 
 std::array<double, 2> range_of(const std::function<fem::Motion(double)>& motion, double end) {
@@ -206,15 +253,17 @@ std::array<double, 2> range_of(const std::function<fem::Motion(double)>& motion,
   return out;
 }
 
-void follow_length(const Table& t, const Scene& scene, Body& body) {
+void follow_length(const Table& body_table, const Scene& scene, Body& body) {
+  const Table t = body_table.table(body_keys::kFlow);
   Flow& flow = *body.flow;
   if (!flow.length.drive.empty()) {
     flow.motion = scene.motion_of(flow.length);
     const double start = flow.motion(0).value;
     if (body.length == 0) body.length = start;
+    body_table.settle(body_keys::kLength, body.length);
     if (std::abs(start - body.length) > 1e-9)
-      t.fail("length", "this drive starts at " + to_text(start) + ", '" + body.name +
-                           "' at length = " + to_text(body.length) + " [m]");
+      t.fail(flow_keys::kLength, "this drive starts at " + to_text(start) + ", '" + body.name +
+                                     "' at length = " + to_text(body.length) + " [m]");
     const std::array<double, 2> range = range_of(flow.motion, scene.time.end);
     flow.shortest = range[0];
     flow.longest = range[1];

@@ -2,14 +2,25 @@
 
 #include <algorithm>
 
+#include "cases/scene/design_keys.h"
 #include "cases/scene/scene.h"
 #include "geometry/picture.h"
 #include "io/files.h"
 #include "optim/mmc/shared_problem.h"
 
 namespace flexmorph::cases {
+
+const io::Key& design_keys::kMaxVolume =
+    io::key("design", "max_volume")
+        .number({.noun = "a volume fraction", .lower = 0, .upper = 1, .lower_open = true})
+        .otherwise_as("a [[design.constraint]] is given")
+        .when("compliance is minimized")
+        .says("Part of the domain that may be material, solid regions included.");
+
 namespace {
 
+using design_keys::kMaxVolume;
+using io::Key;
 using io::Table;
 using io::to_text;
 using mmc::ResponseRow;
@@ -33,9 +44,46 @@ std::string names_of_rows(bool with_loads) {
   return out;
 }
 
-const ResponseRow& read_row(const Table& t, const std::string& key, const std::string& noun,
-                            const std::string& loads, const mmc::Plate& plate) {
-  const std::string name = t.choice(key, noun, all_of(&ResponseRow::name), "compliance");
+std::vector<std::string> row_names() { return all_of(&ResponseRow::name); }
+std::vector<std::string> ways_of_loads() { return all_of(&ResponseRow::loads); }
+
+const Key& kMinimize = io::key("design", "minimize")
+                           .word("an objective", row_names)
+                           .otherwise("compliance")
+                           .says("What the design shall have little of.");
+const Key& kLoads = io::key("design", "loads")
+                        .word("a way to put loads together", ways_of_loads)
+                        .otherwise("sum")
+                        .says("All loads count by their weights, or the largest compliance alone.");
+const Key& kMaxCompliance = io::key("design", "max_compliance")
+                                .number(io::positive("a compliance", "J"))
+                                .otherwise_as("a [[design.constraint]] is given")
+                                .when("something else than compliance is minimized")
+                                .says("What the compliance may be.");
+const Key& kConstraint = io::key("design", "constraint")
+                             .tables_of()
+                             .otherwise_as("none")
+                             .says("One more limit, or one in place of the largest volume.");
+const Key& kResponse =
+    io::key("design.constraint", "response").word("a response", row_names).says("What is limited.");
+const Key& kItsLoads = io::key("design.constraint", "loads")
+                           .word("a way to put loads together", ways_of_loads)
+                           .otherwise_as("as `design.loads` says")
+                           .when("`response = \"compliance\"`")
+                           .says("How loads count for this limit.");
+const Key& kAtMost = io::key("design.constraint", "at_most")
+                         .number(io::positive("a response"))
+                         .otherwise_as("no upper limit")
+                         .says("In the unit of the response, at most what a full plate has.");
+const Key& kAtLeast = io::key("design.constraint", "at_least")
+                          .number(io::positive("a response"))
+                          .otherwise_as("no lower limit")
+                          .when("volume, mass")
+                          .says("Likewise.");
+
+const ResponseRow& read_row(const Table& t, const Key& key, const std::string& loads,
+                            const mmc::Plate& plate) {
+  const std::string name = t.choice(key);
   const ResponseRow& row = *mmc::find_response(name, loads);
   if (row.full && !(row.full(plate) > 0))
     t.fail(key, "a plate without a density has none: domain.density [kg/m^3]");
@@ -43,15 +91,11 @@ const ResponseRow& read_row(const Table& t, const std::string& key, const std::s
 }
 
 /// A bound on a response: what a full plate has is the most there can be.
-void read_limit(const Table& t, const std::string& key, const std::string& noun,
-                const ResponseRow& row, const mmc::Plate& plate, mmc::Goal& goal) {
-  const std::string unit(row.unit);
-  io::Quantity quantity = io::positive(noun, unit);
-  if (row.full) {
-    quantity = io::between(noun, unit, 0, row.full(plate));
-    quantity.lower_open = true;
-  }
-  goal.limits.emplace_back(row, t.number(key, quantity), key == "at_least", plate);
+void read_limit(const Table& t, const Key& key, const ResponseRow& row, const mmc::Plate& plate,
+                mmc::Goal& goal) {
+  Key of_row = key.measured_in(std::string(row.unit));
+  if (row.full) of_row = of_row.within(0, row.full(plate));
+  goal.limits.emplace_back(row, t.number(of_row), key.name == kAtLeast.name, plate);
 }
 
 std::string noun_of(const ResponseRow& row) { return std::string("a ").append(row.words); }
@@ -59,40 +103,37 @@ std::string noun_of(const ResponseRow& row) { return std::string("a ").append(ro
 /// One [[design.constraint]].
 void read_constraint(const Table& t, const std::string& design_loads, const mmc::Plate& plate,
                      mmc::Goal& goal) {
-  const std::string loads =
-      t.choice("loads", "a way to put loads together", all_of(&ResponseRow::loads), design_loads);
-  if (!t.has("response")) t.fail("response", "a constraint is one on a `response`");
-  const ResponseRow& row = read_row(t, "response", "a response", loads, plate);
-  if (t.has("loads") && !row.needs_state())
-    t.fail("loads", "only " + names_of_rows(true) + " puts loads together");
-  if (&row == goal.objective) t.fail("response", "what is minimized has no limit");
+  const std::string loads = t.has(kItsLoads) ? t.choice(kItsLoads) : design_loads;
+  if (!t.has(kResponse)) t.fail(kResponse, "a constraint is one on a `response`");
+  const ResponseRow& row = read_row(t, kResponse, loads, plate);
+  if (t.has(kItsLoads) && !row.needs_state())
+    t.fail(kItsLoads, "only " + names_of_rows(true) + " puts loads together");
+  if (&row == goal.objective) t.fail(kResponse, "what is minimized has no limit");
   if (const auto rows = mmc::rows_of(goal); std::find(rows.begin(), rows.end(), &row) != rows.end())
-    t.fail("response", "the " + std::string(row.words) + " has a limit already");
-  if (!t.has("at_most") && !t.has("at_least"))
-    t.fail("a constraint has `at_most`, `at_least` or both");
-  if (t.has("at_least") && row.needs_state())
-    t.fail("at_least", "only " + names_of_rows(false) + " has a lower limit");
-  for (const char* key : {"at_most", "at_least"})
-    if (t.has(key)) read_limit(t, key, noun_of(row), row, plate, goal);
-  if (t.has("at_most") && t.has("at_least") &&
+    t.fail(kResponse, "the " + std::string(row.words) + " has a limit already");
+  if (!t.has(kAtMost) && !t.has(kAtLeast)) t.fail("a constraint has `at_most`, `at_least` or both");
+  if (t.has(kAtLeast) && row.needs_state())
+    t.fail(kAtLeast, "only " + names_of_rows(false) + " has a lower limit");
+  for (const Key* key : {&kAtMost, &kAtLeast})
+    if (t.has(*key)) read_limit(t, key->called(noun_of(row)), row, plate, goal);
+  if (t.has(kAtMost) && t.has(kAtLeast) &&
       goal.limits.back().value > goal.limits[goal.limits.size() - 2].value)
-    t.fail("at_least", "no more than `at_most`");
+    t.fail(kAtLeast, "no more than `at_most`");
 }
 
 /// max_volume and max_compliance: one of them, unless there are constraints.
 void read_shorthand(const Table& t, const std::string& loads, const mmc::Plate& plate,
                     mmc::Goal& goal) {
-  const bool wanted = t.tables("constraint").empty();
+  const bool wanted = t.tables(kConstraint).empty();
   const bool stiffest = goal.objective->needs_state();
-  const char* const refused = stiffest ? "max_compliance" : "max_volume";
+  const Key& refused = stiffest ? kMaxCompliance : kMaxVolume;
   if (t.has(refused))
     t.fail(refused, "only minimize = " + names_of_rows(!stiffest) + " has a largest " +
                         (stiffest ? "compliance" : "volume"));
-  if (stiffest && (wanted || t.has("max_volume")))
-    read_limit(t, "max_volume", "a volume fraction", mmc::kVolume, plate, goal);
-  if (!stiffest && (wanted || t.has("max_compliance")))
-    read_limit(t, "max_compliance", "a compliance", *mmc::find_response("compliance", loads), plate,
-               goal);
+  if (stiffest && (wanted || t.has(kMaxVolume)))
+    read_limit(t, kMaxVolume, mmc::kVolume, plate, goal);
+  if (!stiffest && (wanted || t.has(kMaxCompliance)))
+    read_limit(t, kMaxCompliance, *mmc::find_response("compliance", loads), plate, goal);
 }
 
 std::string with_unit(const mmc::Limit& limit) {
@@ -113,12 +154,11 @@ mmc::Plate plate_of(const Scene& scene, const BodyDesign& design) {
 }
 
 mmc::Goal read_goal(const Table& t, const mmc::Plate& plate) {
-  const std::string loads = t.choice("loads", "a way to put loads together",
-                                     all_of(&ResponseRow::loads), std::string("sum"));
+  const std::string loads = t.choice(kLoads);
   mmc::Goal goal;
-  goal.objective = &read_row(t, "minimize", "an objective", loads, plate);
+  goal.objective = &read_row(t, kMinimize, loads, plate);
   read_shorthand(t, loads, plate, goal);
-  for (const Table& constraint : t.tables("constraint"))
+  for (const Table& constraint : t.tables(kConstraint))
     read_constraint(constraint, loads, plate, goal);
   if (!mmc::is_held_back(goal))
     t.fail(goal.objective->needs_state()
@@ -132,14 +172,15 @@ mmc::Goal read_goal(const Table& t, const mmc::Plate& plate) {
 
 void check_sharing(const Table& t, const mmc::Goal& goal) {
   if (!goal.objective->needs_state())
-    t.fail("coupling",
+    t.fail(design_keys::kCoupling,
            "only with minimize = \"compliance\": what is shared is what max_volume allows");
   if (goal.objective->per_load)
-    t.fail("coupling", "only with loads = \"sum\": compliances of all bodies are added");
+    t.fail(design_keys::kCoupling,
+           "only with loads = \"sum\": compliances of all bodies are added");
   try {
     mmc::shared_limit(goal);
   } catch (const Error& error) {
-    t.fail("coupling", error.what());
+    t.fail(design_keys::kCoupling, error.what());
   }
 }
 

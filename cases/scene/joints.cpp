@@ -2,22 +2,17 @@
 
 #include "cases/scene/joints/reading.h"
 #include "cases/scene/joints/row.h"
+#include "cases/scene/tables.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
 namespace {
 
-using io::any_number;
-using io::positive;
 using io::Table;
 using io::to_text;
 
-using Words = std::vector<std::string>;
-
 Joint read_joint(const Table& t, const Scene& scene) {
-  std::vector<std::string> names;
-  for (const JointRow* row : joint_rows()) names.emplace_back(row->name);
-  const std::string type = t.choice("type", "a joint", names);
+  const std::string type = t.choice(joint_keys::kType);
   Joint joint;
   joint.row = *std::find_if(joint_rows().begin(), joint_rows().end(),
                             [&](const JointRow* row) { return row->name == type; });
@@ -29,7 +24,7 @@ Joint read_joint(const Table& t, const Scene& scene) {
 void check_held(const Table& t, const Joint& joint, const Scene& scene) {
   for (const Joint& other : scene.joints)
     if (joint.holds_edges() && other.body == joint.body && other.holds_frame())
-      t.fail("type", "'" + joint.body + "' sits in a hub or sleeve: hold it there");
+      t.fail(joint_keys::kType, "'" + joint.body + "' sits in a hub or sleeve: hold it there");
 }
 
 /// A line that nothing moves through the material would be an unknown without an equation.
@@ -48,14 +43,26 @@ void check_lines(const Table& t, const Body& body, const Scene& scene) {
 
 }  // namespace
 
+const io::Key& joint_keys::kType = io::key("joint", "type")
+                                       .word("a joint",
+                                             [] {
+                                               io::Glossary rows;
+                                               for (const JointRow* row : joint_rows())
+                                                 rows.emplace_back(row->name, row->sentence);
+                                               return rows;
+                                             })
+                                       .says("Its kind.");
+
 std::vector<Joint> read_joint_list(const Table& root, const Scene& scene) {
   Scene growing = scene;  // a joint must fit together with those before it
-  for (const Table& t : root.tables("joint")) growing.joints.push_back(read_joint(t, growing));
+  for (const Table& t : root.tables(tables::kJoint))
+    growing.joints.push_back(read_joint(t, growing));
   return growing.joints;
 }
 
 void read_joints(const Table& root, Scene& scene) {
-  const std::vector<Table> joints = root.tables("joint"), bodies = root.tables("body");
+  const std::vector<Table> joints = root.tables(tables::kJoint),
+                           bodies = root.tables(tables::kBody);
   scene.joints = read_joint_list(root, scene);
   for (size_t i = 0; i < joints.size(); ++i) check_held(joints[i], scene.joints[i], scene);
   for (size_t i = 0; i < bodies.size(); ++i) {

@@ -32,10 +32,8 @@ struct LoadRow {
   const char* sentence;  ///< what it does
   const char* words;     ///< of summaries: "force along"; its edge follows
   bool at_point, at_edge;
-  bool follows;      ///< turns with the plate and has no energy; in space, by generalized-alpha
-  const char* key;   ///< of its size
-  const char* noun;  ///< of that
-  const char* unit;  ///< of that: per point, length or area
+  bool follows;        ///< turns with the plate and has no energy; in space, by generalized-alpha
+  const io::Key& key;  ///< of its size, per point, length or area
   std::unique_ptr<fem::Term> (*make)(const BodyLoad& load);
   /// What equivalent static loads make of it: a force at a point, or along the free end; nothing
   /// where they know no such load. @param longest  length of the body's design domain [m]

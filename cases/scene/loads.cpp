@@ -1,6 +1,7 @@
 #include <array>
 
 #include "cases/scene/joints/reading.h"
+#include "cases/scene/tables.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -10,6 +11,22 @@ using io::Table;
 
 using Attached = std::optional<fem::AttachedForce>;
 
+constexpr const char* kOnBodies = "on bodies";
+
+const io::Key& force_key(const char* unit, const char* condition) {
+  return io::key("load", "force")
+      .numbers(any_number("a force", unit), 2, 3)
+      .when(condition)
+      .says("Constant in the world; three entries in space.");
+}
+
+const io::Key& size_key(const char* name, io::Quantity quantity) {
+  return io::key("load", name)
+      .number(std::move(quantity))
+      .when(name)
+      .says("Turns with the plate, in space.");
+}
+
 const LoadRow kPointForce = {
     .name = "point",
     .sentence = "A force at a material point.",
@@ -17,9 +34,7 @@ const LoadRow kPointForce = {
     .at_point = true,
     .at_edge = false,
     .follows = false,
-    .key = "force",
-    .noun = "a force",
-    .unit = "N",
+    .key = force_key("N", "point"),
     .make = [](const BodyLoad& l) { return fem::make_point_force(l.point, l.force); },
     .attached = [](const BodyLoad& l, const Body&, double) -> Attached {
       return fem::AttachedForce{l.point, false, l.force.head<2>(), 0};
@@ -32,9 +47,7 @@ const LoadRow kEdgeForce = {
     .at_point = false,
     .at_edge = true,
     .follows = false,
-    .key = "force",
-    .noun = "a force",
-    .unit = "N/m",
+    .key = force_key("N/m", "edge"),
     .make = [](const BodyLoad& l) { return fem::make_edge_load(l.edge, l.force); },
     .attached = [](const BodyLoad& l, const Body& body, double longest) -> Attached {
       if (l.edge != "free_end") return {};
@@ -48,9 +61,7 @@ const LoadRow kSurfaceForce = {
     .at_point = false,
     .at_edge = false,
     .follows = false,
-    .key = "force",
-    .noun = "a force",
-    .unit = "N/m^2",
+    .key = force_key("N/m^2", "surface"),
     .make = [](const BodyLoad& l) { return fem::make_surface_load(l.force); }};
 
 const LoadRow kPressure = {.name = "pressure",
@@ -59,9 +70,7 @@ const LoadRow kPressure = {.name = "pressure",
                            .at_point = false,
                            .at_edge = false,
                            .follows = true,
-                           .key = "pressure",
-                           .noun = "a pressure",
-                           .unit = "N/m^2",
+                           .key = size_key("pressure", any_number("a pressure", "N/m^2")),
                            .make = [](const BodyLoad& l) { return fem::make_pressure(l.size); }};
 
 const LoadRow kEdgeMoment = {
@@ -71,31 +80,48 @@ const LoadRow kEdgeMoment = {
     .at_point = false,
     .at_edge = true,
     .follows = true,
-    .key = "moment",
-    .noun = "a moment per length",
-    .unit = "N",
+    .key = size_key("moment", any_number("a moment per length", "N")),
     .make = [](const BodyLoad& l) { return fem::make_edge_moment(l.edge, l.size); }};
 
+const io::Key& kType = io::key("load", "type")
+                           .word("a load",
+                                 [] {
+                                   io::Glossary rows;
+                                   for (const LoadRow* row : load_rows())
+                                     rows.emplace_back(row->name, row->sentence);
+                                   return rows;
+                                 })
+                           .when(kOnBodies)
+                           .says("Its kind.");
+const io::Key& kBody =
+    io::key("load", "body").name_of("a body").when(kOnBodies).says("The loaded body.");
+const io::Key& kPoint = io::key("load", "point")
+                            .numbers(any_number("a material coordinate", "m"), 2, 2)
+                            .when("point")
+                            .says("The material point that it acts at.");
+const io::Key& kEdge = io::key("load", "edge")
+                           .text("an edge")
+                           .when("edge, edge_moment")
+                           .says("An edge, or an m-line of a mesh that stays: `line 3`.");
+
 BodyLoad read_load(const Table& t, const Scene& scene) {
-  std::vector<std::string> names;
-  for (const LoadRow* row : load_rows()) names.emplace_back(row->name);
   BodyLoad load;
-  const std::string type = t.choice("type", "a load", names);
+  const std::string type = t.choice(kType);
   load.row = *std::find_if(load_rows().begin(), load_rows().end(),
                            [&](const LoadRow* row) { return row->name == type; });
   const LoadRow& row = *load.row;
-  load.body = t.choice("body", "a body", names_of(scene.bodies));
+  load.body = t.choice(kBody, names_of(scene.bodies));
   const Body& body = scene.body(load.body);
-  if (row.at_point) load.point = read_point(t, body, scene.time.end);
-  if (row.at_edge) load.edge = read_edge(t, "edge", body, edge_names());
-  if (body.is_beam() && !row.at_point) t.fail("type", "loads on a beam act at points");
-  if (row.follows && !body.in_space()) t.fail("type", "this load acts on a plate in space");
+  if (row.at_point) load.point = read_point(t, kPoint, body, scene.time.end);
+  if (row.at_edge) load.edge = read_edge(t, kEdge, body, edge_names());
+  if (body.is_beam() && !row.at_point) t.fail(kType, "loads on a beam act at points");
+  if (row.follows && !body.in_space()) t.fail(kType, "this load acts on a plate in space");
   if (row.follows && scene.time.integrator == "energy_momentum")
-    t.fail("type", "a load that follows the plate needs integrator = \"generalized_alpha\"");
+    t.fail(kType, "a load that follows the plate needs integrator = \"generalized_alpha\"");
   if (row.follows) {
-    load.size = t.number(row.key, any_number(row.noun, row.unit));
+    load.size = t.number(row.key);
   } else {
-    const auto force = t.numbers(row.key, any_number(row.noun, row.unit), body.dim());
+    const auto force = t.numbers(row.key.counted(body.dim()));
     load.force = Eigen::Map<const VectorXd>(force.data(), body.dim());
   }
   return load;
@@ -116,7 +142,7 @@ std::optional<fem::AttachedForce> attached_force(const BodyLoad& load, const Sce
 }
 
 void read_loads(const Table& root, Scene& scene) {
-  for (const Table& t : root.tables("load")) scene.loads.push_back(read_load(t, scene));
+  for (const Table& t : root.tables(tables::kLoad)) scene.loads.push_back(read_load(t, scene));
 }
 
 }  // namespace flexmorph::cases

@@ -1,71 +1,116 @@
 #include <cmath>
 
+#include "cases/scene/body_keys.h"
 #include "cases/scene/joints/reading.h"
+#include "cases/scene/tables.h"
 
 namespace flexmorph::cases {
 namespace {
 
 using io::any_number;
+using io::Key;
 using io::positive;
 using io::Table;
+
+const Key& kName = io::key("rigid_body", "name")
+                       .text("the name of a rigid body")
+                       .says("What joints and columns of tables call it.");
+const Key& kMass = io::key("rigid_body", "mass").number(positive("a mass", "kg")).says("Its mass.");
+const Key& kCenter = io::key("rigid_body", "center")
+                         .numbers(any_number("a place", "m"), 2, 2)
+                         .otherwise(std::vector<double>{0, 0})
+                         .says("The centre of mass, in the axes of the body.");
+const Key& kSize = io::key("rigid_body", "size")
+                       .numbers(positive("a size", "m"), 2, 2)
+                       .otherwise_as("nothing is drawn; `inertia` is given")
+                       .says("Of the rectangle around the centre of mass that is drawn.");
+const Key& kInertia = io::key("rigid_body", "inertia")
+                          .number(positive("an inertia", "kg m^2"))
+                          .otherwise_as("that of an even rectangle of this `size`")
+                          .says("About the centre of mass.");
+const Key& kPosition = io::key("rigid_body", "position")
+                           .numbers(any_number("a position", "m"), 2, 2)
+                           .otherwise(std::vector<double>{0, 0})
+                           .says("Of its axes at the start; a guess where joints say more.");
+const Key& kVelocity = io::key("rigid_body", "velocity")
+                           .numbers(any_number("a velocity", "m/s"), 2, 2)
+                           .otherwise(std::vector<double>{0, 0})
+                           .says("At the start, where joints and drives leave it free.");
+const Key& kAngle = io::key("rigid_body", "angle")
+                        .number(any_number("an angle", "rad"))
+                        .otherwise(0.0)
+                        .says("Of its axes at the start; a guess where joints say more.");
+const Key& kAngularVelocity = io::key("rigid_body", "angular_velocity")
+                                  .number(any_number("an angular velocity", "rad/s"))
+                                  .otherwise(0.0)
+                                  .says("At the start, where joints and drives leave it free.");
+
+const Key& kFollower =
+    io::key("trajectory", "body").name_of("a rigid body").says("What follows the path.");
+const Key& coordinate(const char* name) {
+  return io::key("trajectory", name)
+      .number(any_number("a coordinate", "m"))
+      .name_of("a drive")
+      .says("Of its point.");
+}
+const Key &kPathX = coordinate("x"), &kPathY = coordinate("y");
+const Key& kPathAngle = io::key("trajectory", "angle")
+                            .number(any_number("an angle", "rad"))
+                            .name_of("a drive")
+                            .otherwise(0.0)
+                            .says("Of its first axis.");
 
 /// Mass, and the inertia that is given or that of a box of even material.
 RigidBody read_rigid_body(const Table& t, const Scene& scene) {
   RigidBody body;
-  body.name = read_name(t, "the name of a rigid body", scene);
-  body.mass = t.number("mass", positive("a mass", "kg"));
-  body.center = read_pair(t, "center", "a place", "m", Vec2(0, 0));
-  if (t.has("size")) {
-    const std::vector<double> size = t.numbers("size", positive("a size", "m"), 2);
-    body.size = {size[0], size[1]};
-  }
-  if (!t.has("size") && !t.has("inertia"))
+  body.name = read_name(t, kName, scene);
+  body.mass = t.number(kMass);
+  body.center = read_pair(t, kCenter);
+  if (t.has(kSize)) body.size = read_pair(t, kSize);
+  if (!t.has(kSize) && !t.has(kInertia))
     t.fail("a rigid body has an `inertia` [kg m^2], or a `size` [m] that it follows from");
-  body.inertia = t.number(
-      "inertia", positive("an inertia", "kg m^2"),
-      t.has("size") ? std::optional(body.mass * body.size.squaredNorm() / 12) : std::nullopt);
-  body.position = read_pair(t, "position", "a position", "m", Vec2(0, 0));
-  body.velocity = read_pair(t, "velocity", "a velocity", "m/s", Vec2(0, 0));
-  body.angle = t.number("angle", any_number("an angle", "rad"), 0.0);
-  body.angular_velocity =
-      t.number("angular_velocity", any_number("an angular velocity", "rad/s"), 0.0);
+  body.inertia =
+      t.number(kInertia, t.has(kSize) ? std::optional(body.mass * body.size.squaredNorm() / 12)
+                                      : std::nullopt);
+  body.position = read_pair(t, kPosition);
+  body.velocity = read_pair(t, kVelocity);
+  body.angle = t.number(kAngle);
+  body.angular_velocity = t.number(kAngularVelocity);
   return body;
 }
 
 }  // namespace
 
 void read_rigid_bodies(const Table& root, Scene& scene) {
-  for (const Table& t : root.tables("rigid_body"))
+  for (const Table& t : root.tables(tables::kRigidBody))
     scene.rigid_bodies.push_back(read_rigid_body(t, scene));
 }
 
 void check_mechanism_parts(const Table& root, const Scene& scene) {
   if (!scene.is_mechanism()) return;
-  const auto check = [&](const Table& t, const std::string& name) {
+  const auto check = [&](const Table& t, const Key& key, const std::string& name) {
     const auto here = [&](const Anchor& anchor) { return anchor.body == name; };
     const bool held =
         std::any_of(scene.joints.begin(), scene.joints.end(),
                     [&](const Joint& j) { return j.body == name || here(j.a) || here(j.b); }) ||
         std::any_of(scene.springs.begin(), scene.springs.end(),
                     [&](const Spring& s) { return here(s.a) || here(s.b); });
-    if (!held) t.fail("name", "nothing holds '" + name + "': a [[joint]] or [[spring]] is missing");
+    if (!held) t.fail(key, "nothing holds '" + name + "': a [[joint]] or [[spring]] is missing");
   };
-  const std::vector<Table> rigid = root.tables("rigid_body"), bodies = root.tables("body");
-  for (size_t i = 0; i < rigid.size(); ++i) check(rigid[i], scene.rigid_bodies[i].name);
-  for (size_t i = 0; i < bodies.size(); ++i) check(bodies[i], scene.bodies[i].name);
-  if (scene.time.start == Start::hub_at_rest)
-    root.table("time").fail("start",
-                            "\"hub_at_rest\" spins up hubs; the drives of a scene with rigid "
-                            "bodies say themselves how they start");
+  const std::vector<Table> rigid = root.tables(tables::kRigidBody),
+                           bodies = root.tables(tables::kBody);
+  for (size_t i = 0; i < rigid.size(); ++i) check(rigid[i], kName, scene.rigid_bodies[i].name);
+  for (size_t i = 0; i < bodies.size(); ++i)
+    check(bodies[i], body_keys::kBodyName, scene.bodies[i].name);
 }
 
 void read_trajectory(const Table& root, const Follow& follow, Scene& scene) {
-  const Table t = root.table("trajectory");
+  const Table t = root.table(tables::kTrajectory);
   Trajectory path;
-  path.body = t.choice("body", "a rigid body", names_of(scene.rigid_bodies));
-  path.x = read_law(t, "x", any_number("a coordinate", "m"), scene);
-  path.y = read_law(t, "y", any_number("a coordinate", "m"), scene);
-  path.angle = read_law(t, "angle", any_number("an angle", "rad"), scene, 0.0);
+  path.body = t.choice(kFollower, names_of(scene.rigid_bodies));
+  path.x = read_law(t, kPathX, scene);
+  path.y = read_law(t, kPathY, scene);
+  path.angle = read_law(t, kPathAngle, scene);
   for (const Law* law : {&path.x, &path.y, &path.angle})
     if (scene.follows_trajectory(*law)) t.fail("the path itself cannot follow from the trajectory");
   scene.trajectory = path;

@@ -1,74 +1,129 @@
 #include <cmath>
 
-#include "cases/scene/heat.h"
+#include "cases/scene/body_keys.h"
+#include "cases/scene/heat/heat.h"
 #include "cases/scene/read.h"
+#include "cases/scene/tables.h"
 #include "fem/dynamics/step_control.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
 namespace {
 
+using namespace body_keys;
 using io::any_number;
 using io::between;
-using io::not_negative;
+using io::Key;
 using io::positive;
 using io::Table;
 using io::to_text;
 
 constexpr int kMostElements = 100'000;
 
+const io::Key& kEnd =
+    io::key("time", "end").number(positive("an end time", "s")).says("When the run ends, from 0.");
+const io::Key& kIntegrator =
+    io::key("time", "integrator")
+        .word("an integrator", {"generalized_alpha", "energy_momentum", "minimal_coordinates"})
+        .otherwise("generalized_alpha")
+        .says("Steps through time; `minimal_coordinates`, for rigid and soft scenes, is explicit.");
+const io::Key& kStep = io::key("time", "step")
+                           .number(positive("a time step", "s"))
+                           .word("a time step in words", {"adaptive"})
+                           .otherwise_as("0.001, or `end` if that is less")
+                           .says("The time step; `adaptive` steps follow an estimate of errors.");
+const io::Key& kTolerance =
+    io::key("time", "tolerance")
+        .number({.noun = "a tolerance", .lower = 0, .upper = 0.1, .lower_open = true})
+        .otherwise(fem::AdaptiveStep{}.tolerance)
+        .when("`step = \"adaptive\"`")
+        .says("About the error per radian of a motion, in parts of the model's size.");
+const io::Key& kExplicitTolerance = io::key("time", "tolerance")
+                                        .number(between("a tolerance", "", 1e-13, 0.1))
+                                        .otherwise(TimeSpan().explicit_tolerance)
+                                        .when("`integrator = \"minimal_coordinates\"`")
+                                        .says("Of the local errors of its steps.");
+const io::Key& kLargestStep = io::key("time", "largest_step")
+                                  .number(positive("a time step", "s"))
+                                  .otherwise_as("a fiftieth of `end`")
+                                  .when("`step = \"adaptive\"`")
+                                  .says("No step is longer.");
+const io::Key& kRhoInf =
+    io::key("time", "rho_inf")
+        .number(between("a spectral radius", "", 0, 1))
+        .otherwise(0.8)
+        .says("Spectral radius of generalized-alpha at infinite frequency: 1 damps nothing.");
+const io::Choice<Start> kStart(
+    io::key("time", "start")
+        .otherwise_as("`prestretched`; `rigid` without a hub or with free lines")
+        .says("How a driven scene starts: in equilibrium as it turns, unstrained, or at rest."),
+    "a start",
+    {{"prestretched", Start::prestretched},
+     {"rigid", Start::rigid},
+     {"hub_at_rest", Start::hub_at_rest}});
+const io::Key& kSpinUp = io::key("time", "spin_up")
+                             .number(positive("a spin-up", "s"))
+                             .otherwise_as("a fifth of `end`")
+                             .when("`start = \"hub_at_rest\"`")
+                             .says("How long hubs take to their angular velocity.");
+
 /// A number, or "adaptive" with what belongs to it; the integrator is read.
 void read_step(const Table& t, TimeSpan& time) {
   time.step = std::min(1e-3, time.end);
-  if (t.is_string("step")) {
-    t.choice("step", "a time step in words", std::vector<std::string>{"adaptive"});
+  if (t.is_string(kStep)) {
+    t.choice(kStep);
     if (time.integrator != "generalized_alpha")
-      t.fail("step", "only \"generalized_alpha\" knows its local error, which \"adaptive\" needs");
-    auto span = between("a tolerance", "", 0, 0.1);
-    span.lower_open = true;
-    time.tolerance = t.number("tolerance", span, fem::AdaptiveStep{}.tolerance);
-    if (!t.has("largest_step")) return;
-    time.largest_step = t.number("largest_step", positive("a time step", "s"));
+      t.fail(kStep, "only \"generalized_alpha\" knows its local error, which \"adaptive\" needs");
+    time.tolerance = t.number(kTolerance);
+    if (!t.has(kLargestStep)) return;
+    time.largest_step = t.number(kLargestStep);
     if (time.largest_step > time.end)
-      t.fail("largest_step", "a time step is no longer than time.end [s]");
+      t.fail(kLargestStep, "a time step is no longer than time.end [s]");
     return;
   }
-  if (t.has("largest_step")) t.fail("largest_step", "only step = \"adaptive\" has one");
+  if (t.has(kLargestStep)) t.fail(kLargestStep, "only step = \"adaptive\" has one");
   if (time.integrator == "minimal_coordinates")
-    time.explicit_tolerance =
-        t.number("tolerance", between("a tolerance", "", 1e-13, 0.1), time.explicit_tolerance);
-  else if (t.has("tolerance"))
-    t.fail("tolerance", "only step = \"adaptive\" and \"minimal_coordinates\" have one");
-  time.step = t.number("step", positive("a time step", "s"), time.step);
-  if (time.step > time.end) t.fail("step", "a time step is no longer than time.end [s]");
+    time.explicit_tolerance = t.number(kExplicitTolerance);
+  else if (t.has(kTolerance))
+    t.fail(kTolerance, "only step = \"adaptive\" and \"minimal_coordinates\" have one");
+  time.step = t.number(kStep, time.step);
+  if (time.step > time.end) t.fail(kStep, "a time step is no longer than time.end [s]");
 }
 
 TimeSpan read_time(const Table& t) {
   TimeSpan time;
-  time.end = t.number("end", positive("an end time", "s"));
-  time.integrator = t.choice(
-      "integrator", "an integrator",
-      std::vector<std::string>{"generalized_alpha", "energy_momentum", "minimal_coordinates"},
-      time.integrator);
+  time.end = t.number(kEnd);
+  time.integrator = t.choice(kIntegrator);
   read_step(t, time);
-  time.rho_inf = t.number("rho_inf", between("a spectral radius", "", 0, 1), 0.8);
-  time.start = t.choice<Start>("start", "a start",
-                               {{"prestretched", Start::prestretched},
-                                {"rigid", Start::rigid},
-                                {"hub_at_rest", Start::hub_at_rest}},
-                               Start::prestretched);
-  if (time.start == Start::hub_at_rest) {
-    auto span = between("a spin-up", "s", 0, time.end);
-    span.lower_open = true;
-    time.spin_up = t.number("spin_up", span, 0.2 * time.end);
-  } else if (t.has("spin_up")) {
-    t.fail("spin_up", "only start = \"hub_at_rest\" spins up");
-  }
+  time.rho_inf = t.number(kRhoInf);
+  time.start = t.choice(kStart, std::optional(Start::prestretched));
+  if (time.start == Start::hub_at_rest)
+    time.spin_up = t.number(kSpinUp.within(0, time.end), 0.2 * time.end);
+  else if (t.has(kSpinUp))
+    t.fail(kSpinUp, "only start = \"hub_at_rest\" spins up");
   return time;
 }
 
+const io::Key& kHubName =
+    io::key("hub", "name").text("the name of a hub").says("What joints call it.");
+const io::Key& kHubPosition =
+    io::key("hub", "position")
+        .numbers(any_number("a position", "m"), 2, 2)
+        .names_of("a drive", 2, 2)
+        .otherwise(std::vector<double>{0, 0})
+        .says("Where it is: x and y, or the names of the drives of both.");
+const io::Key& kHubAngle = io::key("hub", "angle")
+                               .number(any_number("an angle", "rad"))
+                               .name_of("a drive")
+                               .otherwise(0.0)
+                               .says("Its angle at the start, or the drive of its angle.");
+const io::Key& kAngularVelocity = io::key("hub", "angular_velocity")
+                                      .number(any_number("an angular velocity", "rad/s"))
+                                      .otherwise_as("`angle` is a drive, or the analysis [static]")
+                                      .says("How fast it turns.");
+
 /// A drive says itself how it starts.
-void refuse_spin_up(const Table& t, const std::string& key, const Scene& scene) {
+void refuse_spin_up(const Table& t, const Key& key, const Scene& scene) {
   if (scene.time.start == Start::hub_at_rest)
     t.fail(key,
            "time.start = \"hub_at_rest\" spins up hubs that turn at a constant rate, not "
@@ -77,177 +132,194 @@ void refuse_spin_up(const Table& t, const std::string& key, const Scene& scene) 
 
 /// Two numbers, or the names of two drives.
 void read_position(const Table& t, const Scene& scene, Hub& hub) {
-  if (t.is_list_of_strings("position")) {
-    refuse_spin_up(t, "position", scene);
-    const std::vector<std::string> names = t.choices("position", "a drive", names_of(scene.drives));
-    if (names.size() != 2) t.fail("position", "two drives, of x and of y");
+  if (t.is_list_of_strings(kHubPosition)) {
+    refuse_spin_up(t, kHubPosition, scene);
+    const std::vector<std::string> names = t.choices(kHubPosition, names_of(scene.drives));
+    if (names.size() != 2) t.fail(kHubPosition, "two drives, of x and of y");
     for (size_t c = 0; c < 2; ++c) {
       hub.path[c].drive = names[c];
       hub.position[static_cast<int>(c)] = scene.motion_of(hub.path[c])(0).value;
     }
     return;
   }
-  const std::vector<double> position =
-      t.numbers("position", any_number("a position", "m"), 2, std::vector<double>{0, 0});
+  const std::vector<double> position = t.numbers(kHubPosition);
   hub.position = {position[0], position[1]};
 }
 
 Hub read_hub(const Table& t, const Scene& scene) {
   Hub hub;
-  hub.name = read_name(t, "the name of a hub", scene);
+  hub.name = read_name(t, kHubName, scene);
   read_position(t, scene, hub);
-  if (t.is_string("angle")) {
-    refuse_spin_up(t, "angle", scene);
-    hub.turn = read_law(t, "angle", any_number("an angle", "rad"), scene);
+  if (t.is_string(kHubAngle)) {
+    refuse_spin_up(t, kHubAngle, scene);
+    hub.turn = read_law(t, kHubAngle, scene);
     hub.angle = scene.motion_of(hub.turn)(0).value;
-    if (t.has("angular_velocity"))
-      t.fail("angular_velocity", "the drive of `angle` says how the hub turns");
+    if (t.has(kAngularVelocity))
+      t.fail(kAngularVelocity, "the drive of `angle` says how the hub turns");
     return hub;
   }
-  hub.angle = t.number("angle", any_number("an angle", "rad"), 0.0);
+  hub.angle = t.number(kHubAngle);
   const std::optional<double> rest = scene.statics ? std::optional<double>(0) : std::nullopt;
-  hub.angular_velocity =
-      t.number("angular_velocity", any_number("an angular velocity", "rad/s"), rest);
+  hub.angular_velocity = t.number(kAngularVelocity, rest);
   if (scene.statics && hub.angular_velocity != 0)
-    t.fail("angular_velocity", "in a [static] analysis hubs rest");
+    t.fail(kAngularVelocity, "in a [static] analysis hubs rest");
   return hub;
 }
 
+const io::Key& kShape =
+    io::key("body", "shape")
+        .word("a shape set", plate_shapes)
+        .otherwise("h16")
+        .when("plates")
+        .says("Shape functions; `h12` leaves out the mixed slopes, and is too stiff in twist.");
+const io::Key& kSpace = io::key("body", "space")
+                            .word("a space", {"plane", "space"})
+                            .otherwise("plane")
+                            .says("Positions have two components, or three; beams: `plane`.");
+const io::Key& kWidth = io::key("body", "width")
+                            .number(positive("a width", "m"))
+                            .when("plates")
+                            .says("Across the length, in its surface.");
+const io::Key& kElements = io::key("body", "elements")
+                               .integers("a number of elements", 1, kMostElements, 2, 2)
+                               .when("plates")
+                               .says("Elements along the length at the start, and across.");
+const io::Key& kBodyPosition =
+    io::key("body", "position")
+        .numbers(any_number("a position", "m"), 2, 2)
+        .otherwise_as("as its joints say")
+        .says("Of the middle of its root at the start; a guess where joints say more.");
+const io::Key& kBodyAngle = io::key("body", "angle")
+                                .number(any_number("an angle", "rad"))
+                                .otherwise(0.0)
+                                .when("`position` is given")
+                                .says("Of its axis at the start, likewise.");
+const io::Key& kHeat =
+    io::key("body", "heat").table().otherwise_as("the body is cold").says("Its temperature.");
+
 Flow read_flow(const Table& t, const Scene& scene) {
   Flow flow;
-  if (t.has("length")) {
-    if (t.has("speed"))
-      t.fail("speed", "material flows at a `speed`, or as the drive `length` says");
-    flow.length.drive = t.choice("length", "a drive", names_of(scene.drives));
+  if (t.has(flow_keys::kLength)) {
+    if (t.has(flow_keys::kSpeed))
+      t.fail(flow_keys::kSpeed, "material flows at a `speed`, or as the drive `length` says");
+    flow.length.drive = t.choice(flow_keys::kLength, names_of(scene.drives));
   } else {
-    flow.speed = t.number("speed", any_number("the speed of the material", "m/s"));
+    flow.speed = t.number(flow_keys::kSpeed);
   }
-  flow.max_length = t.number("max_length", positive("a length", "m"));
-  flow.min_length = t.number("min_length", positive("a length", "m"), 0.3 * flow.max_length);
+  flow.max_length = t.number(flow_keys::kMaxLength);
+  flow.min_length = t.number(flow_keys::kMinLength, 0.3 * flow.max_length);
   return flow;
 }
 
 void read_plate(const Table& t, const Scene& scene, bool has_density, Body& body) {
-  body.shape = t.choice("shape", "a shape set", plate_shapes(), "h16");
-  body.space = t.choice("space", "a space", std::vector<std::string>{"plane", "space"}, "plane");
+  body.shape = t.choice(kShape);
+  body.space = t.choice(kSpace);
   if (!scene.bodies.empty() && scene.bodies.front().space != body.space)
-    t.fail("space", "all bodies of a scene live in the plane, or all in space");
+    t.fail(kSpace, "all bodies of a scene live in the plane, or all in space");
   if (scene.is_mechanism() && body.in_space())
-    t.fail("space", "rigid bodies live in the plane: in their scenes plates do, too");
+    t.fail(kSpace, "rigid bodies live in the plane: in their scenes plates do, too");
   read_terms(t, scene, body);
   // A drive of the length says how it starts, too.
-  const bool driven = t.has("flow") && t.table("flow").has("length");
-  body.length = t.number("length", positive("a length", "m"),
-                         driven ? std::optional<double>(0) : std::nullopt);
-  body.width = t.number("width", positive("a width", "m"));
-  body.thickness = t.number("thickness", positive("a thickness", "m"));
-  body.density = t.number("density", positive("a density", "kg/m^3"),
-                          has_density ? std::nullopt : std::optional<double>(1));
-  body.youngs_modulus = t.number("youngs_modulus", positive("Young's modulus", "Pa"));
-  body.poisson_ratio = t.number("poisson_ratio", between("Poisson's ratio", "", 0, 0.5));
-  const std::vector<int> elements =
-      t.integers("elements", "a number of elements", 1, kMostElements, 2);
+  const bool driven = t.has(kFlow) && t.table(kFlow).has(flow_keys::kLength);
+  body.length = t.number(kLength, driven ? std::optional<double>(0) : std::nullopt);
+  body.width = t.number(kWidth);
+  body.thickness = t.number(kThickness);
+  read_material(t, has_density, body);
+  const std::vector<int> elements = t.integers(kElements);
   body.elements = {elements[0], elements[1]};
   if (1.0 * elements[0] * elements[1] > kMostElements)
-    t.fail("elements", "at most " + to_text(kMostElements) + " elements");
+    t.fail(kElements, "at most " + to_text(kMostElements) + " elements");
 
   const bool flows = body.element == "ale_ancf_plate";
   if (flows) {
-    body.flow = read_flow(t.table("flow"), scene);
-  } else if (t.has("flow")) {
-    t.fail("flow", "material flows through \"ale_ancf_plate\" only");
+    body.flow = read_flow(t.table(kFlow), scene);
+  } else if (t.has(kFlow)) {
+    t.fail(kFlow, "material flows through \"ale_ancf_plate\" only");
   }
-  if (flows && scene.statics) t.fail("element", "in a [static] analysis no material flows");
+  if (flows && scene.statics) t.fail(kElement, "in a [static] analysis no material flows");
   body.lines = read_lines(t, body);
   for (const std::string& term : body.terms)
     if (body.has_free_lines() && !fem::term_row(term).free_lines)
-      t.fail("terms", "\"" + term + "\" does not know free material lines ([[body.line]])");
+      t.fail(kTerms, "\"" + term + "\" does not know free material lines ([[body.line]])");
 }
 
 Body read_body(const Table& t, const Scene& scene, bool has_gravity) {
   Body body;
-  body.name = read_name(t, "the name of a body", scene);
-  body.element = t.choice("element", "an element", element_names());
+  body.name = read_name(t, kBodyName, scene);
+  body.element = t.choice(kElement);
   // Nothing at rest asks for the density but weight.
   const bool has_density = !scene.statics || has_gravity;
   if (body.is_beam())
     read_beam(t, scene, has_density, body);
   else
     read_plate(t, scene, has_density, body);
-  if (t.has("position")) {
-    const auto at = t.numbers("position", any_number("a position", "m"), 2);
+  if (t.has(kBodyPosition)) {
+    const auto at = t.numbers(kBodyPosition);
     body.position = Vec2(at[0], at[1]);
-    body.angle = t.number("angle", any_number("an angle", "rad"), 0.0);
+    body.angle = t.number(kBodyAngle);
   }
-  if (t.has("heat")) body.heat = read_heat(t.table("heat"), scene, body);
+  if (t.has(kHeat)) body.heat = read_heat(t.table(kHeat), scene, body);
   return body;
 }
 
+const io::Key& kMassBody = io::key("point_mass", "body").name_of("a body").says("What carries it.");
+const io::Key& kMassAt = io::key("point_mass", "at")
+                             .word("the place of a point mass", {"free_end"})
+                             .says("Where: the middle of the free end.");
+const io::Key& kMass =
+    io::key("point_mass", "mass").number(positive("a mass", "kg")).says("Its mass.");
+
 PointMass read_point_mass(const Table& t, const Scene& scene) {
   PointMass mass;
-  mass.body = t.choice("body", "a body", names_of(scene.bodies));
-  mass.at = t.choice("at", "the place of a point mass", std::vector<std::string>{"free_end"});
-  mass.mass = t.number("mass", positive("a mass", "kg"));
+  mass.body = t.choice(kMassBody, names_of(scene.bodies));
+  mass.at = t.choice(kMassAt);
+  mass.mass = t.number(kMass);
   return mass;
 }
 
 }  // namespace
 
-void read_terms(const Table& t, const Scene& scene, Body& body) {
-  body.terms = t.choices("terms", body.is_beam() ? "a term of a beam" : "a term",
-                         fem::term_names(body.place()));
-  if (const std::string why = fem::refusal_of_terms(body.place(), body.terms, !scene.statics);
-      !why.empty())
-    t.fail("terms", why);
-  for (const std::string& term : body.terms)
-    for (const fem::TermKey& key : fem::term_row(term).keys) {
-      if (key.whole) {
-        std::optional<int> fallback;
-        if (key.fallback) fallback = static_cast<int>(*key.fallback);
-        body.numbers[key.name] = t.integer(key.name, key.noun, static_cast<int>(key.low),
-                                           static_cast<int>(key.high), fallback);
-        continue;
-      }
-      const io::Quantity quantity{key.noun, key.unit, key.low, key.high, key.low_open};
-      body.numbers[key.name] = t.number(key.name, quantity, key.fallback);
-    }
-}
-
 void read_motion(const Table& root, const Follow& follow, Scene& scene) {
-  if (root.has("static")) {
-    for (const char* key :
-         {"time", "drive", "constants", "esl", "design", "optimizer", "cycle", "verify"})
-      if (root.has(key))
-        root.fail(key, "a scene with a [static] analysis has no '" + std::string(key) + "'");
-    scene.statics = read_analysis(root.table("static"));
+  if (root.has(tables::kStatic)) {
+    for (const Key* key :
+         {&tables::kTime, &tables::kDrive, &tables::kConstants, &tables::kEsl, &tables::kDesign,
+          &tables::kOptimizer, &tables::kCycle, &tables::kVerify})
+      if (root.has(*key))
+        root.fail(*key, "a scene with a [static] analysis has no '" + key->name + "'");
+    scene.statics = read_analysis(root.table(tables::kStatic));
   } else {
-    scene.time = read_time(root.table("time"));
+    scene.time = read_time(root.table(tables::kTime));
   }
   read_drives(root, scene);
-  for (const Table& t : root.tables("hub")) scene.hubs.push_back(read_hub(t, scene));
+  for (const Table& t : root.tables(tables::kHub)) scene.hubs.push_back(read_hub(t, scene));
   read_rigid_bodies(root, scene);
-  const std::vector<Table> bodies = root.tables("body");
+  const std::vector<Table> bodies = root.tables(tables::kBody);
   if (bodies.empty() && !scene.is_mechanism())
-    root.fail("body", "a scene has one or more [[body]]");
-  for (const Table& t : bodies) scene.bodies.push_back(read_body(t, scene, root.has("gravity")));
-  if (root.has("gravity")) {
-    const auto gravity =
-        root.numbers("gravity", any_number("gravity", "m/s^2"), scene.in_space() ? 3 : 2);
+    root.fail(tables::kBody, "a scene has one or more [[body]]");
+  for (const Table& t : bodies)
+    scene.bodies.push_back(read_body(t, scene, root.has(tables::kGravity)));
+  if (root.has(tables::kGravity)) {
+    const auto gravity = root.numbers(tables::kGravity.counted(scene.in_space() ? 3 : 2));
     scene.gravity = Eigen::Map<const VectorXd>(gravity.data(), scene.in_space() ? 3 : 2);
   }
   const auto follow_lengths = [&](bool trajectory) {
     for (size_t i = 0; i < bodies.size(); ++i)
       if (Body& b = scene.bodies[i];
           b.flow && scene.follows_trajectory(b.flow->length) == trajectory)
-        follow_length(bodies[i].table("flow"), scene, b);
+        follow_length(bodies[i], scene, b);
   };
   follow_lengths(false);
-  if (root.has("trajectory")) read_trajectory(root, follow, scene);
+  if (root.has(tables::kTrajectory)) read_trajectory(root, follow, scene);
   follow_lengths(true);
   read_joints(root, scene);
   read_springs(root, scene);
   check_mechanism_parts(root, scene);
-  for (const Table& t : root.tables("point_mass"))
+  if (scene.is_mechanism() && scene.time.start == Start::hub_at_rest)
+    root.table(tables::kTime)
+        .fail(kStart,
+              "\"hub_at_rest\" spins up hubs; the drives of a scene with rigid bodies say "
+              "themselves how they start");
+  for (const Table& t : root.tables(tables::kPointMass))
     scene.point_masses.push_back(read_point_mass(t, scene));
   read_loads(root, scene);
   read_observed(root, scene);
@@ -257,15 +329,18 @@ void read_motion(const Table& root, const Follow& follow, Scene& scene) {
     return;
   }
 
-  const Table time = root.table("time");
+  const Table time = root.table(tables::kTime);
   if (scene.time.integrator != "generalized_alpha" && scene.has_free_lines())
-    time.fail("integrator", "free material lines ([[body.line]]) need \"generalized_alpha\": \"" +
-                                scene.time.integrator + "\" does not know them");
+    time.fail(kIntegrator, "free material lines ([[body.line]]) need \"generalized_alpha\": \"" +
+                               scene.time.integrator + "\" does not know them");
   // Without a hub there is nothing to be stretched by, and a free line starts where it is put.
   if (!scene.is_mechanism() && (scene.hubs.empty() || scene.has_free_lines())) {
-    if (time.has("start") && scene.time.start == Start::prestretched)
-      time.fail("start", "\"prestretched\" is for bodies in hubs whose lines are not free");
-    if (scene.time.start == Start::prestretched) scene.time.start = Start::rigid;
+    if (time.has(kStart) && scene.time.start == Start::prestretched)
+      time.fail(kStart, "\"prestretched\" is for bodies in hubs whose lines are not free");
+    if (scene.time.start == Start::prestretched) {
+      scene.time.start = Start::rigid;
+      time.settle(kStart, "rigid");
+    }
   }
 }
 

@@ -17,17 +17,21 @@ std::vector<Joint> read_joint_list(const io::Table& root, const Scene& scene);
 /// [constants], [[drive]]; needs the time of the run.
 void read_drives(const io::Table& root, Scene& scene);
 
+/// See overrides_of_files(). @param t  [accuracy]
+std::vector<std::string> overrides_of_drive_files(const io::Table& root);
+std::vector<std::string> overrides_of_reference_files(const io::Table& t);
+
 /// A number, or the name of a drive in its place.
-Law read_law(const io::Table& t, const std::string& key, const io::Quantity& quantity,
-             const Scene& scene, std::optional<double> fallback = {});
+Law read_law(const io::Table& t, const io::Key& key, const Scene& scene,
+             std::optional<double> computed = {});
 
 /// Smallest and largest value in [0, end]: extremes are looked for between 1000 samples, where the
 /// rate changes its sign.
 std::array<double, 2> range_of(const std::function<fem::Motion(double)>& motion, double end);
 
 /// Resolves the drive of body.flow and checks the limits of the boundary element against all
-/// lengths of the run. @param flow  the table [body.flow]
-void follow_length(const io::Table& flow, const Scene& scene, Body& body);
+/// lengths of the run. @param t  its [[body]]
+void follow_length(const io::Table& t, const Scene& scene, Body& body);
 
 /// [[joint]] and what must fit together with them; needs hubs and bodies.
 void read_joints(const io::Table& root, Scene& scene);
@@ -55,7 +59,7 @@ void check_mechanism_parts(const io::Table& root, const Scene& scene);
 void read_trajectory(const io::Table& root, const Follow& follow, Scene& scene);
 
 /// The name of a body, unlike all others.
-std::string read_name(const io::Table& t, const std::string& noun, const Scene& scene);
+std::string read_name(const io::Table& t, const io::Key& key, const Scene& scene);
 
 /// [static].
 StaticAnalysis read_analysis(const io::Table& t);
@@ -67,10 +71,16 @@ std::vector<BodyLine> read_lines(const io::Table& body_table, const Body& body);
 
 /// A name that becomes part of column names and file names, so: a letter, then letters, digits,
 /// underscores.
-std::string read_word(const io::Table& t, const std::string& noun);
+std::string read_word(const io::Table& t, const io::Key& key);
 
 /// [domain], [[support]], [[load]]: a plate at rest.
 void read_static(const io::Table& root, Scene& scene);
+
+/// [[design]]; needs what read_motion() read, or read_static().
+BodyDesign read_design(const io::Table& t, const Scene& scene);
+/// [[design.solid]], [[design.void]]; needs the grid.
+/// @param t  the [[design]]
+void read_regions(const io::Table& t, const Body& body, const Scene& scene, BodyDesign& design);
 
 /// [[design]], [esl], [optimizer], [cycle], [verify]; needs what read_motion() read.
 void read_designs(const io::Table& root, Scene& scene);

@@ -2,50 +2,68 @@
 
 #include "cases/scene/joints/reading.h"
 #include "cases/scene/measure.h"
+#include "cases/scene/tables.h"
 
 /// [[observe]] and [[measure]].
 namespace flexmorph::cases {
 namespace {
 
 using io::Table;
-using Words = std::vector<std::string>;
+const io::Key& kName = io::key("observe", "name")
+                           .text("the name of an observed point")
+                           .says("Its columns are `BODY.NAME_x` and so on.");
+const io::Key& kBody = io::key("observe", "body").name_of("a body").says("Whose point it is.");
+const io::Key& kPoint = io::key("observe", "point")
+                            .numbers(io::any_number("a material coordinate", "m"), 2, 2)
+                            .otherwise_as("`at` is given")
+                            .says("The material point.");
+const io::Key& kAt = io::key("observe", "at")
+                         .word("a place", {"free_end"})
+                         .otherwise_as("`point` is given")
+                         .says("Or the middle of the free end.");
+
+const io::Key& kMeasured = io::key("measure", "body").name_of("a body").says("The measured body.");
+const io::Key& kQuantities = io::key("measure", "quantities")
+                                 .words("a measured quantity", measured_quantities)
+                                 .says("What is written of it, as columns `BODY.QUANTITY`.");
 
 Observe read_observe(const Table& t, const Scene& scene) {
   Observe out;
-  out.name = read_word(t, "the name of an observed point");
-  out.body = t.choice("body", "a body", names_of(scene.bodies));
+  out.name = read_word(t, kName);
+  out.body = t.choice(kBody, names_of(scene.bodies));
   const Body& body = scene.body(out.body);
-  if (t.has("point") == t.has("at"))
+  if (t.has(kPoint) == t.has(kAt))
     t.fail("an observed point has either a `point` or `at` = \"free_end\"");
-  if (t.has("point")) {
-    out.point = read_point(t, body, scene.time.end);
+  if (t.has(kPoint)) {
+    out.point = read_point(t, kPoint, body, scene.time.end);
   } else {
-    t.choice("at", "a place", Words{"free_end"});
+    t.choice(kAt);
     out.point = {body.longest(scene.time.end), body.low() + 0.5 * body.width};
   }
   for (const Observe& other : scene.observed)
     if (other.name == out.name && other.body == out.body)
-      t.fail("name", "there is another '" + out.name + "' of '" + out.body + "'");
+      t.fail(kName, "there is another '" + out.name + "' of '" + out.body + "'");
   return out;
 }
 
 }  // namespace
 
 void read_observed(const Table& root, Scene& scene) {
-  for (const Table& t : root.tables("observe")) scene.observed.push_back(read_observe(t, scene));
+  for (const Table& t : root.tables(tables::kObserve))
+    scene.observed.push_back(read_observe(t, scene));
 }
 
 void read_measures(const Table& root, Scene& scene) {
-  for (const Table& t : root.tables("measure")) {
+  for (const Table& t : root.tables(tables::kMeasure)) {
     Measure out;
-    out.body = t.choice("body", "a body", names_of(scene.bodies));
-    out.quantities = t.choices("quantities", "a measured quantity", measured_quantities());
+    out.body = t.choice(kMeasured, names_of(scene.bodies));
+    out.quantities = t.choices(kQuantities);
     const Body& body = scene.body(out.body);
     for (const Measure& other : scene.measures)
-      if (other.body == out.body) t.fail("body", "'" + out.body + "' is measured already");
+      if (other.body == out.body) t.fail(kMeasured, "'" + out.body + "' is measured already");
     for (const std::string& quantity : out.quantities)
       if (const std::string why = refusal_of_measure(scene, body, quantity); !why.empty())
-        t.fail("quantities", "\"" + quantity + "\": " + why);
+        t.fail(kQuantities, "\"" + quantity + "\": " + why);
     scene.measures.push_back(std::move(out));
   }
 }

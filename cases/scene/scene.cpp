@@ -4,41 +4,91 @@
 #include <filesystem>
 
 #include "cases/scene/read.h"
+#include "cases/scene/tables.h"
 
 namespace flexmorph::cases {
 namespace {
 
-Output read_output(const io::Table& root) {
+constexpr int kMost = 1'000'000'000;
+
+const io::Key& kTitle =
+    io::key("", "title").text("a title").otherwise_as("name of the file").says("What the case is.");
+
+const io::Key& kDirectory = io::key("output", "directory")
+                                .text("a folder")
+                                .otherwise("")
+                                .says("The run folder; empty: `runs/` and the name of the case.");
+const io::Key& kDesignEvery = io::key("output", "design_every")
+                                  .integer("a number of iterations", 0, kMost)
+                                  .otherwise(1)
+                                  .says("Iterations between files of the design; 0: none.");
+const io::Key& kMotionEvery = io::key("output", "motion_every")
+                                  .number(io::not_negative("a time", "s"))
+                                  .otherwise(0.01)
+                                  .says("Time between files of the motion; 0: none.");
+const io::Key& kSharpEvery =
+    io::key("output", "sharp_every")
+        .integer("a number of iterations", 0, kMost)
+        .otherwise(25)
+        .says("Iterations between judgements of the sharp design; 0: at the end only.");
+const io::Key& kVtk =
+    io::key("output", "vtk").boolean().otherwise(true).says("Writes files for ParaView.");
+const io::Key& kPlots =
+    io::key("output", "plots").boolean().otherwise(true).says("Draws plots for the report.");
+
+const io::Key& kExpected =
+    io::key("expect", "*")
+        .table()
+        .says(
+            "A column of a table at the end, with `.largest` its largest size, or "
+            "a figure of the design.");
+const io::Key& kValue = io::key("expect.*", "value")
+                            .number(io::any_number("an expected value"))
+                            .otherwise_as("bounds only")
+                            .says("The expected value, with one tolerance.");
+const io::Key& kRelative = io::key("expect.*", "relative")
+                               .number(io::not_negative("a tolerance"))
+                               .otherwise_as("`absolute` is given")
+                               .says("The tolerance, in parts of the value.");
+const io::Key& kAbsolute = io::key("expect.*", "absolute")
+                               .number(io::not_negative("a tolerance"))
+                               .otherwise_as("`relative` is given")
+                               .says("The tolerance, in units of the value.");
+const io::Key& kAtLeast = io::key("expect.*", "at_least")
+                              .number(io::any_number("a bound"))
+                              .otherwise_as("no bound")
+                              .says("A lower bound.");
+const io::Key& kAtMost = io::key("expect.*", "at_most")
+                             .number(io::any_number("a bound"))
+                             .otherwise_as("no bound")
+                             .says("An upper bound.");
+
+Output read_output(const io::Table& t) {
   Output output;
-  output.motion_every = 0.01;
-  if (!root.has("output")) return output;
-  constexpr int kMost = 1'000'000'000;
-  const io::Table t = root.table("output");
-  output.directory = t.string("directory", "a folder", "");
-  output.design_every = t.integer("design_every", "a number of iterations", 0, kMost, 1);
-  output.motion_every = t.number("motion_every", io::not_negative("a time", "s"), 0.01);
-  output.sharp_every = t.integer("sharp_every", "a number of iterations", 0, kMost, 25);
-  output.vtk = t.boolean("vtk", true);
-  output.plots = t.boolean("plots", true);
+  output.directory = t.string(kDirectory);
+  output.design_every = t.integer(kDesignEvery);
+  output.motion_every = t.number(kMotionEvery);
+  output.sharp_every = t.integer(kSharpEvery);
+  output.vtk = t.boolean(kVtk);
+  output.plots = t.boolean(kPlots);
   return output;
 }
 
 Expectation read_expectation(const io::Table& t) {
   Expectation expected;
   expected.place = t.place();
-  const auto bound = [&](const char* key) -> std::optional<double> {
+  const auto bound = [&](const io::Key& key) -> std::optional<double> {
     if (!t.has(key)) return {};
-    return t.number(key, io::any_number("a bound"));
+    return t.number(key);
   };
-  expected.at_least = bound("at_least");
-  expected.at_most = bound("at_most");
-  if (t.has("value")) {
-    expected.value = t.number("value", io::any_number("an expected value"));
-    if (t.has("relative") == t.has("absolute"))
+  expected.at_least = bound(kAtLeast);
+  expected.at_most = bound(kAtMost);
+  if (t.has(kValue)) {
+    expected.value = t.number(kValue);
+    if (t.has(kRelative) == t.has(kAbsolute))
       t.fail("a value comes with one tolerance, `relative` or `absolute`");
-    expected.tolerance = t.has("relative") ? t.number("relative", io::not_negative("a tolerance")) *
-                                                 std::abs(*expected.value)
-                                           : t.number("absolute", io::not_negative("a tolerance"));
+    expected.tolerance =
+        t.has(kRelative) ? t.number(kRelative) * std::abs(*expected.value) : t.number(kAbsolute);
   }
   if (!expected.value && !expected.at_least && !expected.at_most)
     t.fail("an expectation has a `value` with a tolerance, `at_least` or `at_most`");
@@ -137,22 +187,31 @@ bool is_whole(double ratio) {
   return std::abs(ratio - std::round(ratio)) <= 1e-6 * std::max(1.0, std::abs(ratio));
 }
 
+std::vector<std::string> overrides_of_files(const io::CaseFile& file) {
+  const io::Table root = file.root();
+  std::vector<std::string> out = overrides_of_drive_files(root);
+  if (!root.has(tables::kAccuracy)) return out;
+  for (std::string& each : overrides_of_reference_files(root.table(tables::kAccuracy)))
+    out.push_back(std::move(each));
+  return out;
+}
+
 Scene read_scene(const io::CaseFile& file, const Follow& follow) {
   const io::Table root = file.root();
   Scene scene;
   scene.name = std::filesystem::path(file.path()).stem().string();
-  scene.title = root.string("title", "a title", scene.name);
-  if (root.has("domain"))
+  scene.title = root.string(kTitle, scene.name);
+  if (root.has(tables::kDomain))
     read_static(root, scene);
   else
     read_motion(root, follow, scene);
   read_designs(root, scene);
-  scene.output = read_output(root);
-  if (root.has("accuracy")) scene.accuracy = read_accuracy(root.table("accuracy"));
-  if (root.has("expect")) {
-    const io::Table expect = root.table("expect");
+  scene.output = read_output(root.table_or_empty(tables::kOutput));
+  if (root.has(tables::kAccuracy)) scene.accuracy = read_accuracy(root.table(tables::kAccuracy));
+  if (root.has(tables::kExpect)) {
+    const io::Table expect = root.table(tables::kExpect);
     for (const std::string& key : expect.keys())
-      scene.expect[key] = read_expectation(expect.table(key));
+      scene.expect[key] = read_expectation(expect.table(kExpected.named(key)));
   }
   file.finish();
   return scene;

@@ -70,6 +70,9 @@ const std::vector<std::string>& plate_shapes();
 /// those who know mechanisms (build/trajectory.h); here it is only asked.
 using Follow = std::function<void(Scene&)>;
 
+/// Changes of the command line by which the case finds its files from any folder.
+std::vector<std::string> overrides_of_files(const io::CaseFile& file);
+
 /// Reads and checks a case: types, ranges, names, and what must fit together. Keys nobody knows
 /// are errors.
 /// @throws Error (input) located in the file, see io::Table.

@@ -28,10 +28,8 @@ struct SpringRow {
   const char* name;      ///< as cases say it: type = "torsion"
   const char* sentence;  ///< what it does
   bool points, axes;     ///< does it look at points, at axes?
-  const char* stiffness_unit;
-  const char* damping_unit;
-  const char* rest_key;  ///< of its length or angle without force
-  io::Quantity rest;
+  const io::Key &stiffness, &damping;
+  const io::Key& rest;  ///< length or angle without force
   std::unique_ptr<fem::Link> (*make)(const Spring& spring, const fem::MarkerPlace& a,
                                      const fem::MarkerPlace& b);
 };

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "cases/scene/read.h"
+#include "cases/scene/tables.h"
 #include "geometry/outline.h"
 #include "io/files.h"
 
@@ -9,10 +10,75 @@ namespace {
 
 using io::any_number;
 using io::between;
-using io::not_negative;
+using io::Key;
 using io::positive;
 using io::Table;
 using io::to_text;
+
+constexpr const char* kAtRest = "on a [domain]";
+
+const Key& kName = io::key("domain", "name")
+                       .text("the name of a domain")
+                       .otherwise("plate")
+                       .says("What files call it.");
+const Key& kSize = io::key("domain", "size")
+                       .numbers(positive("a length, a height", "m"), 2, 2)
+                       .otherwise_as("`polygon` is given")
+                       .says("Length and height of a rectangle that begins at the origin.");
+const Key& kPolygon = io::key("domain", "polygon")
+                          .numbers(any_number("x0, y0, x1, y1, ... of a polygon", "m"), 6)
+                          .otherwise_as("`size` is given")
+                          .says("Or its corners: x0, y0, x1, y1, ...");
+const Key& kThickness = io::key("domain", "thickness")
+                            .number(positive("a thickness", "m"))
+                            .otherwise(1.0)
+                            .says("Of the plate.");
+const Key& kYoungsModulus = io::key("domain", "youngs_modulus")
+                                .number(positive("Young's modulus", "Pa"))
+                                .otherwise(1.0)
+                                .says("Young's modulus.");
+const Key& kPoissonRatio = io::key("domain", "poisson_ratio")
+                               .number(between("Poisson's ratio", "", 0, 0.5))
+                               .otherwise(0.3)
+                               .says("Poisson's ratio.");
+
+const Key& kDensity = io::key("domain", "density")
+                          .number(io::not_negative("a density", "kg/m^3"))
+                          .otherwise(0.0)
+                          .says("Of the material; 0: it has no mass to be limited.");
+
+const Key& kEdge = io::shared_key({"support", "load.force"}, "edge")
+                       .word("an edge", {"left", "right", "bottom", "top"})
+                       .otherwise_as("`point` or `box` is given")
+                       .says("Where: an edge of the domain's bounding box.");
+const Key& kPoint = io::shared_key({"support", "load.force"}, "point")
+                        .numbers(any_number("coordinates", "m"), 2, 2)
+                        .otherwise_as("`edge` or `box` is given")
+                        .says("Or a point.");
+const Key& kBox = io::shared_key({"support", "load.force"}, "box")
+                      .numbers(any_number("coordinates", "m"), 4, 4)
+                      .otherwise_as("`edge` or `point` is given")
+                      .says("Or the nodes in a box: x0, y0, x1, y1.");
+const Key& kFix = io::key("support", "fix")
+                      .words("a direction", {"x", "y"})
+                      .says("The directions that are held.");
+const Key& kLoadName = io::key("load", "name")
+                           .text("the name of a load")
+                           .otherwise_as("`load_` and its number")
+                           .when(kAtRest)
+                           .says("What tables call it.");
+const Key& kWeight = io::key("load", "weight")
+                         .number(positive("a weight"))
+                         .otherwise(1.0)
+                         .when(kAtRest)
+                         .says("Of its compliance in the sum.");
+const Key& kForces = io::key("load", "force")
+                         .tables_of()
+                         .when(kAtRest)
+                         .says("The forces that act at the same time.");
+const Key& kForce = io::key("load.force", "force")
+                        .numbers(any_number("a force", "N"), 2, 2)
+                        .says("In all, spread evenly over the place.");
 
 Box bounds_of(const std::vector<Vec2>& polygon) {
   Box box{polygon.front(), polygon.front()};
@@ -24,44 +90,42 @@ Box bounds_of(const std::vector<Vec2>& polygon) {
 }
 
 void read_shape(const Table& t, Domain& domain) {
-  if (t.has("size") == t.has("polygon"))
+  if (t.has(kSize) == t.has(kPolygon))
     t.fail("a domain has either a `size` (length, height) or a `polygon`");
-  if (t.has("size")) {
-    const std::vector<double> size = t.numbers("size", positive("a length, a height", "m"), 2);
+  if (t.has(kSize)) {
+    const std::vector<double> size = t.numbers(kSize);
     domain.bounds = {{0, 0}, {size[0], size[1]}};
     return;
   }
-  const std::vector<double> flat =
-      t.numbers("polygon", any_number("x0, y0, x1, y1, ... of a polygon", "m"), 0);
+  const std::vector<double> flat = t.numbers(kPolygon);
   if (flat.size() < 6 || flat.size() % 2 != 0)
-    t.fail("polygon", "three corners or more: x0, y0, x1, y1, x2, y2, ... [m]");
+    t.fail(kPolygon, "three corners or more: x0, y0, x1, y1, x2, y2, ... [m]");
   for (size_t k = 0; k < flat.size(); k += 2) domain.polygon.emplace_back(flat[k], flat[k + 1]);
   domain.bounds = bounds_of(domain.polygon);
   if ((domain.bounds.upper - domain.bounds.lower).minCoeff() <= 0)
-    t.fail("polygon", "a polygon has an area");
+    t.fail(kPolygon, "a polygon has an area");
   try {
     unite(std::vector<std::vector<Vec2>>{domain.polygon}, domain.bounds);
   } catch (const Error&) {
-    t.fail("polygon", "a polygon does not cross itself");
+    t.fail(kPolygon, "a polygon does not cross itself");
   }
 }
 
 /// Where something holds or pulls: an edge of the domain's bounding box, a point or a box.
 Place read_place(const Table& t, const Domain& domain) {
-  const int given = (t.has("edge") ? 1 : 0) + (t.has("point") ? 1 : 0) + (t.has("box") ? 1 : 0);
+  const int given = t.has(kEdge) + t.has(kPoint) + t.has(kBox);
   if (given != 1) t.fail("a place is one of `edge`, `point`, `box`");
   const Box& b = domain.bounds;
-  if (t.has("edge")) {
-    const int side =
-        t.choice<int>("edge", "an edge", {{"left", 0}, {"right", 1}, {"bottom", 2}, {"top", 3}});
-    if (side == 0) return {Place::Kind::edge, {b.lower, {b.lower.x(), b.upper.y()}}};
-    if (side == 1) return {Place::Kind::edge, {{b.upper.x(), b.lower.y()}, b.upper}};
-    if (side == 2) return {Place::Kind::edge, {b.lower, {b.upper.x(), b.lower.y()}}};
+  if (t.has(kEdge)) {
+    const std::string side = t.choice(kEdge);
+    if (side == "left") return {Place::Kind::edge, {b.lower, {b.lower.x(), b.upper.y()}}};
+    if (side == "right") return {Place::Kind::edge, {{b.upper.x(), b.lower.y()}, b.upper}};
+    if (side == "bottom") return {Place::Kind::edge, {b.lower, {b.upper.x(), b.lower.y()}}};
     return {Place::Kind::edge, {{b.lower.x(), b.upper.y()}, b.upper}};
   }
-  const bool is_point = t.has("point");
-  const char* key = is_point ? "point" : "box";
-  const std::vector<double> v = t.numbers(key, any_number("coordinates", "m"), is_point ? 2 : 4);
+  const bool is_point = t.has(kPoint);
+  const Key& key = is_point ? kPoint : kBox;
+  const std::vector<double> v = t.numbers(key);
   const Box box = is_point ? Box{{v[0], v[1]}, {v[0], v[1]}} : Box{{v[0], v[1]}, {v[2], v[3]}};
   if (!is_point && (v[0] > v[2] || v[1] > v[3])) t.fail(key, "x0 <= x1 and y0 <= y1 [m]");
   if ((box.upper - b.lower).minCoeff() < 0 || (b.upper - box.lower).minCoeff() < 0)
@@ -74,21 +138,18 @@ Place read_place(const Table& t, const Domain& domain) {
 PlaneSupport read_support(const Table& t, const Domain& domain) {
   PlaneSupport support;
   support.place = read_place(t, domain);
-  for (const std::string& axis :
-       t.choices("fix", "a direction", std::vector<std::string>{"x", "y"}))
-    (axis == "x" ? support.x : support.y) = true;
+  for (const std::string& axis : t.choices(kFix)) (axis == "x" ? support.x : support.y) = true;
   return support;
 }
 
 LoadCase read_load(const Table& t, const Domain& domain) {
   LoadCase load;
-  load.name =
-      t.string("name", "the name of a load", "load_" + std::to_string(domain.loads.size() + 1));
-  load.weight = t.number("weight", positive("a weight"), 1.0);
-  for (const Table& f : t.tables("force")) {
-    const std::vector<double> force = f.numbers("force", any_number("a force", "N"), 2);
+  load.name = t.string(kLoadName, "load_" + std::to_string(domain.loads.size() + 1));
+  load.weight = t.number(kWeight);
+  for (const Table& f : t.tables(kForces)) {
+    const std::vector<double> force = f.numbers(kForce);
     load.forces.push_back({read_place(f, domain), Vec2(force[0], force[1])});
-    if (load.forces.back().force.norm() == 0) f.fail("force", "a force is not zero [N]");
+    if (load.forces.back().force.norm() == 0) f.fail(kForce, "a force is not zero [N]");
   }
   if (load.forces.empty()) t.fail("a load has one or more [[load.force]]");
   return load;
@@ -97,22 +158,25 @@ LoadCase read_load(const Table& t, const Domain& domain) {
 }  // namespace
 
 void read_static(const Table& root, Scene& scene) {
-  for (const char* key :
-       {"time", "body", "hub", "joint", "point_mass", "esl", "cycle", "verify", "gravity"})
-    if (root.has(key))
-      root.fail(key, "a scene with a [domain] rests: it has no '" + std::string(key) + "'");
-  const Table t = root.table("domain");
+  for (const Key* key :
+       {&tables::kTime, &tables::kBody, &tables::kHub, &tables::kJoint, &tables::kPointMass,
+        &tables::kEsl, &tables::kCycle, &tables::kVerify, &tables::kGravity})
+    if (root.has(*key))
+      root.fail(*key, "a scene with a [domain] rests: it has no '" + key->name + "'");
+  const Table t = root.table(tables::kDomain);
   Domain domain;
-  domain.name = t.string("name", "the name of a domain", "plate");
+  domain.name = t.string(kName);
   read_shape(t, domain);
-  domain.thickness = t.number("thickness", positive("a thickness", "m"), 1.0);
-  domain.youngs_modulus = t.number("youngs_modulus", positive("Young's modulus", "Pa"), 1.0);
-  domain.poisson_ratio = t.number("poisson_ratio", between("Poisson's ratio", "", 0, 0.5), 0.3);
-  domain.density = t.number("density", not_negative("a density", "kg/m^3"), 0.0);
-  for (const Table& s : root.tables("support")) domain.supports.push_back(read_support(s, domain));
-  if (domain.supports.empty()) root.fail("support", "a plate at rest has one or more [[support]]");
-  for (const Table& l : root.tables("load")) domain.loads.push_back(read_load(l, domain));
-  if (domain.loads.empty()) root.fail("load", "a plate at rest has one or more [[load]]");
+  domain.thickness = t.number(kThickness);
+  domain.youngs_modulus = t.number(kYoungsModulus);
+  domain.poisson_ratio = t.number(kPoissonRatio);
+  domain.density = t.number(kDensity);
+  for (const Table& s : root.tables(tables::kSupport))
+    domain.supports.push_back(read_support(s, domain));
+  if (domain.supports.empty())
+    root.fail(tables::kSupport, "a plate at rest has one or more [[support]]");
+  for (const Table& l : root.tables(tables::kLoad)) domain.loads.push_back(read_load(l, domain));
+  if (domain.loads.empty()) root.fail(tables::kLoad, "a plate at rest has one or more [[load]]");
   scene.domain = std::move(domain);
 }
 

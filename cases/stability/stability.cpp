@@ -144,14 +144,7 @@ class Check {
 
   /// A case for another folder: files it names are found from there, too.
   static std::string whole_text(const std::string& path) {
-    const io::CaseFile file(path);
-    std::vector<std::string> overrides;
-    const std::vector<io::Table> drives = file.root().tables("drive");
-    for (size_t i = 0; i < drives.size(); ++i)
-      if (drives[i].is_string("csv"))
-        overrides.push_back(
-            "drive." + std::to_string(i) + ".csv='" +
-            fs::absolute(drives[i].beside(drives[i].string("csv", "a file"))).string() + "'");
+    const std::vector<std::string> overrides = overrides_of_files(io::CaseFile(path));
     return io::CaseFile(path, overrides).text();
   }
 

@@ -54,25 +54,46 @@ class CaseFiles : public ::testing::Test {
   Scratch scratch_;
 };
 
-Table plate(const Table& root) { return root.tables("body").at(0); }
-Table arm(const Table& root) { return root.tables("body").at(1); }
+// Keys as the tests need them, not in the book.
+Key quick(const std::string& table, const std::string& name) {
+  Key out;
+  out.tables = {table};
+  out.name = name;
+  return out;
+}
+Key a_number(const std::string& table, const std::string& name, const Quantity& quantity) {
+  return quick(table, name).number(quantity);
+}
+Key a_text(const std::string& name, const std::string& noun) { return quick("", name).text(noun); }
+Key a_table(const std::string& name) { return quick("", name).table(); }
+
+const Key kTitle = a_text("title", "a title");
+const Key kTime = a_table("time"), kEsl = a_table("esl"), kVerify = a_table("verify");
+const Key kBody = quick("", "body").tables_of();
+const Key kThickness = a_number("body", "thickness", positive("a thickness", "m"));
+const Key kFlow = quick("body", "flow").table();
+const Key kSpeed = a_number("body.flow", "speed", any_number("a speed"));
+const Key kCounts = quick("body", "elements").integers("a count", 1, 100, 2, 2);
+const Key kAnyCounts = quick("body", "elements").numbers(positive("a count"));
+
+Table plate(const Table& root) { return root.tables(kBody).at(0); }
+Table arm(const Table& root) { return root.tables(kBody).at(1); }
 void touch_all(const Table& table) {
-  for (const std::string& key : table.keys()) table.has(key);
+  for (const std::string& key : table.keys()) table.has(quick("", key));
 }
 
 TEST_F(CaseFiles, ValuesArriveAsWritten) {
   const CaseFile file(scratch_.write("plate.toml", kText));
-  const Table time = file.root().table("time");
-  EXPECT_EQ(time.number("end", positive("an end", "s")), 1.0);  // a whole number is a number
-  EXPECT_EQ(time.number("step", positive("a step", "s")), 1e-3);
-  EXPECT_EQ(time.number("rho_inf", any_number("it"), 0.8), 0.8);
-  EXPECT_EQ(file.root().string("title", "a title"), "a plate");
-  EXPECT_EQ(plate(file.root()).integers("elements", "a count", 1, 100, 2),
-            (std::vector<int>{10, 2}));
-  EXPECT_EQ(plate(file.root()).numbers("elements", positive("a count")),
-            (std::vector<double>{10, 2}));
-  EXPECT_EQ(plate(file.root()).table("flow").path(), "body.plate.flow");
-  EXPECT_TRUE(file.root().tables("joint").empty());
+  const Table time = file.root().table(kTime);
+  EXPECT_EQ(time.number(a_number("time", "end", positive("an end", "s"))),
+            1.0);  // a whole number is a number
+  EXPECT_EQ(time.number(a_number("time", "step", positive("a step", "s"))), 1e-3);
+  EXPECT_EQ(time.number(a_number("time", "rho_inf", any_number("it")), 0.8), 0.8);
+  EXPECT_EQ(file.root().string(kTitle), "a plate");
+  EXPECT_EQ(plate(file.root()).integers(kCounts), (std::vector<int>{10, 2}));
+  EXPECT_EQ(plate(file.root()).numbers(kAnyCounts), (std::vector<double>{10, 2}));
+  EXPECT_EQ(plate(file.root()).table(kFlow).path(), "body.plate.flow");
+  EXPECT_TRUE(file.root().tables(quick("", "joint").tables_of()).empty());
   EXPECT_EQ(file.text(), kText);
 }
 
@@ -81,17 +102,22 @@ TEST_F(CaseFiles, ListsOfLists) {
       "table = [[0, 1.5],\n         [1, -2]]\nnames = [\"a\", \"b\"]\nmixed = [1, \"b\"]\n";
   const CaseFile file(scratch_.write("plate.toml", text));
   const Table root = file.root();
-  EXPECT_EQ(root.rows("table", any_number("it"), 2),
+  EXPECT_EQ(root.rows(quick("", "table").rows(any_number("it"), 2)),
             (std::vector<std::vector<double>>{{0, 1.5}, {1, -2}}));
-  EXPECT_TRUE(root.is_list_of_strings("names"));
-  for (const char* key : {"table", "mixed", "none"}) EXPECT_FALSE(root.is_list_of_strings(key));
+  EXPECT_TRUE(root.is_list_of_strings(quick("", "names")));
+  for (const char* key : {"table", "mixed", "none"})
+    EXPECT_FALSE(root.is_list_of_strings(quick("", key)));
   const std::string place = "plate.toml:1: table = [[0, 1.5], [1, -2]]: a list: lists of ";
-  EXPECT_EQ(error([](const Table& t) { t.rows("table", any_number("it"), 3); }, {}, text),
-            place + "3 numbers; it is a finite number");
-  EXPECT_EQ(error([](const Table& t) { t.rows("table", not_negative("it", "m"), 2); }, {}, text),
-            place + "2 numbers; it is not negative [m]");
-  EXPECT_EQ(error([](const Table& t) { t.rows("mixed", any_number("it"), 1); }, {}, text),
-            "plate.toml:4: mixed = [1, \"b\"]: a list: lists of 1 numbers; it is a finite number");
+  EXPECT_EQ(
+      error([](const Table& t) { t.rows(quick("", "table").rows(any_number("it"), 3)); }, {}, text),
+      place + "3 numbers; it is a finite number");
+  EXPECT_EQ(
+      error([](const Table& t) { t.rows(quick("", "table").rows(not_negative("it", "m"), 2)); }, {},
+            text),
+      place + "2 numbers; it is not negative [m]");
+  EXPECT_EQ(
+      error([](const Table& t) { t.rows(quick("", "mixed").rows(any_number("it"), 1)); }, {}, text),
+      "plate.toml:4: mixed = [1, \"b\"]: a list: lists of 1 numbers; it is a finite number");
 }
 
 TEST_F(CaseFiles, FilesLieBesideTheCase) {
@@ -102,7 +128,7 @@ TEST_F(CaseFiles, FilesLieBesideTheCase) {
 
 TEST_F(CaseFiles, RangeIsSaidWithUnit) {
   const auto thickness = [](const Quantity& q) {
-    return [q](const Table& root) { plate(root).number("thickness", q); };
+    return [q](const Table& root) { plate(root).number(a_number("body", "thickness", q)); };
   };
   const std::string start = "plate.toml:9: body.plate.thickness = -0.002: ";
   EXPECT_EQ(error(thickness(positive("a thickness", "m"))), start + "a thickness is positive [m]");
@@ -113,74 +139,86 @@ TEST_F(CaseFiles, RangeIsSaidWithUnit) {
 }
 
 TEST_F(CaseFiles, WrongTypesAreSaid) {
-  EXPECT_EQ(
-      error([](const Table& root) { arm(root).number("thickness", positive("a size", "m")); }),
-      "plate.toml:16: body.arm.thickness = \"thin\": a size is positive [m]; a number stands "
-      "without quotes");
-  EXPECT_EQ(error([](const Table& root) { arm(root).boolean("flag"); }),
+  EXPECT_EQ(error([](const Table& root) { arm(root).number(kThickness.called("a size")); }),
+            "plate.toml:16: body.arm.thickness = \"thin\": a size is positive [m]; a number stands "
+            "without quotes");
+  EXPECT_EQ(error([](const Table& root) { arm(root).boolean(quick("body", "flag").boolean()); }),
             "plate.toml:17: body.arm.flag = 1: true or false");
-  EXPECT_EQ(error([](const Table& root) { root.table("time").integer("step", "a count", 1, 9); }),
+  EXPECT_EQ(error([](const Table& root) {
+              root.table(kTime).integer(quick("time", "step").integer("a count", 1, 9));
+            }),
             "plate.toml:5: time.step = 1e-3: a count is a whole number between 1 and 9");
-  EXPECT_EQ(error([](const Table& root) { root.table("title"); }),
+  EXPECT_EQ(error([](const Table& root) { root.table(a_table("title")); }),
             "plate.toml:1: title = \"a plate\": [title] is a table");
-  EXPECT_EQ(error([](const Table& root) { root.tables("time"); }),
+  EXPECT_EQ(error([](const Table& root) { root.tables(quick("", "time").tables_of()); }),
             "plate.toml:3: [time]: a list of tables, each under its own [[time]]");
-  EXPECT_EQ(
-      error([](const Table& root) { plate(root).numbers("elements", positive("a count"), 3); }),
-      "plate.toml:10: body.plate.elements = [10, 2]: a list of 3: a count is positive");
-  EXPECT_TRUE(starts(error([](const Table& root) { arm(root).string("when", "a date"); }),
-                     "plate.toml:18: body.arm.when = 2020-01-01: "));
+  EXPECT_EQ(error([](const Table& root) { plate(root).numbers(kAnyCounts.counted(3)); }),
+            "plate.toml:10: body.plate.elements = [10, 2]: a list of 3: a count is positive");
+  EXPECT_TRUE(starts(
+      error([](const Table& root) { arm(root).string(quick("body", "when").text("a date")); }),
+      "plate.toml:18: body.arm.when = 2020-01-01: "));
 }
 
 TEST_F(CaseFiles, NotANumberAndInfinityAreRefused) {
   for (const char* value : {"nan", "inf", "-inf", "+inf"}) {
     const std::string option = std::string("time.end=") + value;
-    EXPECT_EQ(error([](const Table& root) { root.table("time").number("end", any_number("it")); },
-                    {option}),
+    EXPECT_EQ(error(
+                  [](const Table& root) {
+                    root.table(kTime).number(a_number("time", "end", any_number("it")));
+                  },
+                  {option}),
               "--set " + option + ": it is a finite number");
   }
 }
 
 TEST_F(CaseFiles, ChoicesListWhatIsAllowed) {
   const std::vector<std::string> terms = {"inertia", "membrane"};
-  EXPECT_EQ(error([&](const Table& root) { root.choice("title", "a title", terms); }),
-            "plate.toml:1: title = \"a plate\": a title is one of 'inertia', 'membrane'");
   EXPECT_EQ(
-      error([&](const Table& root) { root.choice("title", "a term", terms); }, {"title=inertai"}),
+      error([&](const Table& root) { root.choice(quick("", "title").name_of("a title"), terms); }),
+      "plate.toml:1: title = \"a plate\": a title is one of 'inertia', 'membrane'");
+  EXPECT_EQ(
+      error([&](const Table& root) { root.choice(quick("", "title").name_of("a term"), terms); },
+            {"title=inertai"}),
       "--set title=inertai: a term is one of 'inertia', 'membrane', did you mean 'inertia'?");
   EXPECT_EQ(
-      error([&](const Table& root) { plate(root).choices("terms", "a term", terms); }),
+      error([&](const Table& root) {
+        plate(root).choices(quick("body", "terms").names_of("a term"), terms);
+      }),
       "plate.toml:11: body.plate.terms = [\"inertia\", \"inertia\"]: a list: a term is one of "
       "'inertia', 'membrane', none twice");
 }
 
 TEST_F(CaseFiles, MissingKeysAreNamed) {
-  EXPECT_EQ(error([](const Table& root) { plate(root).number("width", positive("a width", "m")); }),
+  EXPECT_EQ(error([](const Table& root) {
+              plate(root).number(a_number("body", "width", positive("a width", "m")));
+            }),
             "plate.toml:7: body.plate.width is missing: a width is positive [m]");
-  EXPECT_EQ(error([](const Table& root) { root.table("esl"); }),
+  EXPECT_EQ(error([](const Table& root) { root.table(kEsl); }),
             "plate.toml: esl is missing: [esl] is a table");
   // A misspelt key is the better explanation.
-  EXPECT_EQ(error([](const Table& root) { root.table("time").number("steps", positive("it")); }),
+  EXPECT_EQ(error([](const Table& root) {
+              root.table(kTime).number(a_number("time", "steps", positive("it")));
+            }),
             "plate.toml:5: time.step = 1e-3: unknown key, did you mean 'steps'?");
 }
 
 TEST_F(CaseFiles, UnknownKeysAreErrors) {
   EXPECT_EQ(error([](const Table& root) {
               touch_all(root);
-              root.table("time").number("end", positive("it"));
-              root.table("time").has("stepp");
+              root.table(kTime).number(a_number("time", "end", positive("it")));
+              root.table(kTime).has(quick("time", "stepp"));
             }),
             "plate.toml:5: time.step = 1e-3: unknown key, did you mean 'stepp'?");
   EXPECT_EQ(error([](const Table& root) {
-              root.has("title");
-              root.has("body");
+              root.has(kTitle);
+              root.has(kBody);
             }),
             "plate.toml:3: [time]: unknown key; known here: body title");
   EXPECT_EQ(error(touch_all), "");
   EXPECT_EQ(error(touch_all, {"foo=1"}), "");
   EXPECT_EQ(error(
                 [](const Table& root) {
-                  for (auto k : {"title", "time", "body"}) root.has(k);
+                  for (auto k : {"title", "time", "body"}) root.has(quick("", k));
                 },
                 {"bdoy.x=1"}),
             "--set bdoy.x=1: [bdoy]: unknown key, did you mean 'body'?");
@@ -208,7 +246,7 @@ TEST_F(CaseFiles, FilesThatAreNone) {
 TEST_F(CaseFiles, OverridesReachEveryPlace) {
   const auto number = [&](const Overrides& changes, auto find) {
     const CaseFile file(scratch_.write("plate.toml", kText), changes);
-    return find(file.root()).number("thickness", positive("a thickness", "m"));
+    return find(file.root()).number(kThickness);
   };
   EXPECT_EQ(number({"body.plate.thickness=7e-4"}, plate), 7e-4);
   EXPECT_EQ(number({"body.1.thickness=2"}, arm), 2);
@@ -217,13 +255,14 @@ TEST_F(CaseFiles, OverridesReachEveryPlace) {
   const CaseFile file(
       scratch_.write("one.toml", "[[body]]\nname = 'plate'\n"),
       Overrides{"body.flow.speed=0.5", "esl.definition=frozen", "gravity=[0, -9.81]"});
-  EXPECT_EQ(plate(file.root()).table("flow").number("speed", any_number("a speed")), 0.5);
-  EXPECT_EQ(file.root().table("esl").string("definition", "it"), "frozen");
-  EXPECT_EQ(file.root().numbers("gravity", any_number("it"), 2), (std::vector<double>{0, -9.81}));
+  EXPECT_EQ(plate(file.root()).table(kFlow).number(kSpeed), 0.5);
+  EXPECT_EQ(file.root().table(kEsl).string(quick("esl", "definition").text("it")), "frozen");
+  EXPECT_EQ(file.root().numbers(quick("", "gravity").numbers(any_number("it"), 2, 2)),
+            (std::vector<double>{0, -9.81}));
 }
 
 TEST_F(CaseFiles, OverridesAreLocatedByTheirOption) {
-  EXPECT_EQ(error([](const Table& root) { plate(root).number("thickness", positive("it", "m")); },
+  EXPECT_EQ(error([](const Table& root) { plate(root).number(kThickness.called("it")); },
                   {"body.plate.thickness=-1"}),
             "--set body.plate.thickness=-1: it is positive [m]");
   EXPECT_EQ(error(touch_all, {"body.thickness=1"}),
@@ -234,21 +273,24 @@ TEST_F(CaseFiles, OverridesAreLocatedByTheirOption) {
             "--set time.end.x=1: time.end has no keys of its own");
   EXPECT_TRUE(contains(error(touch_all, {"a..b=1"}), "KEY is a dotted path"));
   EXPECT_TRUE(starts(error(touch_all, {"a=1 2"}), "--set a=1 2: VALUE is not TOML"));
-  EXPECT_EQ(error([](const Table& root) { root.table("verify").integer("mesh", "it", 1, 2); },
-                  {"verify.step=1"}),
+  EXPECT_EQ(error(
+                [](const Table& root) {
+                  root.table(kVerify).integer(quick("verify", "mesh").integer("it", 1, 2));
+                },
+                {"verify.step=1"}),
             "--set verify.step=1: verify.mesh is missing: it is a whole number between 1 and 2");
 }
 
 TEST_F(CaseFiles, OverridesWithoutAValueTakeKeysAway) {
   const CaseFile file(scratch_.write("plate.toml", kText),
                       Overrides{"verify=", "body.arm.thickness=", "nowhere.at.all="});
-  EXPECT_FALSE(file.root().has("verify"));
-  EXPECT_FALSE(arm(file.root()).has("thickness"));
-  EXPECT_EQ(plate(file.root()).number("thickness", any_number("it")), -0.002);
-  EXPECT_FALSE(file.root().has("nowhere"));
+  EXPECT_FALSE(file.root().has(kVerify));
+  EXPECT_FALSE(arm(file.root()).has(kThickness));
+  EXPECT_EQ(plate(file.root()).number(a_number("body", "thickness", any_number("it"))), -0.002);
+  EXPECT_FALSE(file.root().has(a_table("nowhere")));
   const CaseFile again(scratch_.write("again.toml", file.text()));
-  EXPECT_FALSE(again.root().has("verify"));
-  EXPECT_TRUE(again.root().has("time"));
+  EXPECT_FALSE(again.root().has(kVerify));
+  EXPECT_TRUE(again.root().has(kTime));
 }
 
 // The effective case is a case again, with the changes in it and every other value unchanged.
@@ -258,11 +300,11 @@ TEST_F(CaseFiles, EffectiveTextReadsBack) {
       Overrides{"body.arm.thickness=0.1", "verify.step=1e-4", "title=\"a \\\"new\\\" one\""});
   const CaseFile again(scratch_.write("again.toml", changed.text()));
   const Table root = again.root();
-  EXPECT_EQ(root.string("title", "it"), "a \"new\" one");
-  EXPECT_EQ(arm(root).number("thickness", any_number("it")), 0.1);
-  EXPECT_EQ(plate(root).number("thickness", any_number("it")), -0.002);
-  EXPECT_EQ(plate(root).table("flow").number("speed", any_number("it")), 0.1);
-  EXPECT_EQ(root.table("verify").number("step", any_number("it")), 1e-4);
+  EXPECT_EQ(root.string(kTitle), "a \"new\" one");
+  EXPECT_EQ(arm(root).number(kThickness), 0.1);
+  EXPECT_EQ(plate(root).number(a_number("body", "thickness", any_number("it"))), -0.002);
+  EXPECT_EQ(plate(root).table(kFlow).number(kSpeed), 0.1);
+  EXPECT_EQ(root.table(kVerify).number(a_number("verify", "step", any_number("it"))), 1e-4);
   EXPECT_EQ(again.text(), changed.text());
   EXPECT_EQ(root.keys(), (std::vector<std::string>{"title", "time", "body", "verify"}));
 }
@@ -270,12 +312,13 @@ TEST_F(CaseFiles, EffectiveTextReadsBack) {
 TEST_F(CaseFiles, NumbersDoNotDependOnTheLocale) {
   const CommaLocale comma;
   const CaseFile file(scratch_.write("plate.toml", "a = 1234.5\nb = 10000\n"), Overrides{"c=0.25"});
-  EXPECT_EQ(file.root().number("a", any_number("it")), 1234.5);
-  EXPECT_EQ(file.root().number("c", any_number("it")), 0.25);
+  EXPECT_EQ(file.root().number(a_number("", "a", any_number("it"))), 1234.5);
+  EXPECT_EQ(file.root().number(a_number("", "c", any_number("it"))), 0.25);
   EXPECT_TRUE(contains(file.text(), "a = 1234.5\nb = 10000\nc = 0.25\n"));
-  EXPECT_TRUE(ends(
-      error([](const Table& root) { root.integer("a", "it", 1, 20000); }, {}, "\n\na = 1234.5\n"),
-      "whole number between 1 and 20000"));
+  EXPECT_TRUE(
+      ends(error([](const Table& root) { root.integer(quick("", "a").integer("it", 1, 20000)); },
+                 {}, "\n\na = 1234.5\n"),
+           "whole number between 1 and 20000"));
 }
 
 }  // namespace

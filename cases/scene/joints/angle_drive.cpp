@@ -7,9 +7,15 @@
 namespace flexmorph::cases {
 namespace {
 
+const io::Key& kAngle = io::key("joint", "angle")
+                            .number(io::any_number("an angle", "rad"))
+                            .name_of("a drive")
+                            .when("angle_drive")
+                            .says("From the first axis of `a` to that of `b`; a number holds it.");
+
 void read(const io::Table& t, const Scene& scene, Joint& joint) {
   read_anchors(t, scene, false, true, joint.a, joint.b);
-  joint.laws = {read_law(t, "angle", io::any_number("an angle", "rad"), scene)};
+  joint.laws = {read_law(t, kAngle, scene)};
   name_between(t, scene, joint);
 }
 

@@ -4,9 +4,15 @@
 namespace flexmorph::cases {
 namespace {
 
+const io::Key& kDistanceKey = io::key("joint", "distance")
+                                  .number(io::positive("a distance", "m"))
+                                  .name_of("a drive")
+                                  .when("distance")
+                                  .says("Between the points; a number is a massless rod.");
+
 void read(const io::Table& t, const Scene& scene, Joint& joint) {
   read_anchors(t, scene, true, false, joint.a, joint.b);
-  joint.laws = {read_law(t, "distance", io::positive("a distance", "m"), scene)};
+  joint.laws = {read_law(t, kDistanceKey, scene)};
   name_between(t, scene, joint);
 }
 

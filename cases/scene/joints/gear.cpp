@@ -67,12 +67,22 @@ class Gear final : public fem::PairJoint {
   double p_, q_, start_;
 };
 
+const io::Key& kTeeth = io::key("joint", "teeth")
+                            .integers("a number of teeth", 1, 10'000, 2, 2)
+                            .when("gear")
+                            .says("Of the wheels of `a` and of `b`.");
+const io::Key& kInner = io::key("joint", "inner")
+                            .boolean()
+                            .otherwise(false)
+                            .when("gear")
+                            .says("One wheel has its teeth inside: both turn the same way.");
+
 void read(const io::Table& t, const Scene& scene, Joint& joint) {
   read_anchors(t, scene, false, true, joint.a, joint.b);
   if (joint.a.on_ground() || joint.b.on_ground())
     t.fail("a gear has two rigid bodies, `a` and `b`; their axles are joints of their own");
-  const std::vector<int> teeth = t.integers("teeth", "a number of teeth", 1, 10'000, 2);
-  joint.own = Wheels{teeth[0], teeth[1], t.boolean("inner", false)};
+  const std::vector<int> teeth = t.integers(kTeeth);
+  joint.own = Wheels{teeth[0], teeth[1], t.boolean(kInner)};
   name_between(t, scene, joint);
 }
 

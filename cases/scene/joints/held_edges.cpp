@@ -5,16 +5,23 @@
 namespace flexmorph::cases {
 namespace {
 
+const io::Key& kEdges = io::key("joint", "edges")
+                            .words("an edge", edge_names)
+                            .when("clamp, support, symmetry")
+                            .says("Edges of a plate in space.");
+
 void read(const io::Table& t, const Scene& scene, Joint& joint) {
   const Body& body = read_jointed_body(t, scene, joint);
-  if (!body.in_space()) t.fail("type", "edges are held in space; bodies in the plane have hubs");
-  joint.edges = t.choices("edges", "an edge", edge_names());
+  if (!body.in_space())
+    t.fail(joint_keys::kType, "edges are held in space; bodies in the plane have hubs");
+  joint.edges = t.choices(kEdges);
 }
 
 void check(const io::Table& t, const Scene& scene, const Joint& joint) {
   const Body& body = scene.body(joint.body);
-  if (body.flow) t.fail("body", "material flows out of a hub: its edges are not held");
-  if (body.mesh_changes()) t.fail("body", "its lines of nodes come and go: edges are not held");
+  if (body.flow) t.fail(joint_keys::kBody, "material flows out of a hub: its edges are not held");
+  if (body.mesh_changes())
+    t.fail(joint_keys::kBody, "its lines of nodes come and go: edges are not held");
 }
 
 void read_held(const io::Table& t, const Scene& scene, Joint& joint) {

@@ -9,6 +9,21 @@ namespace {
 
 using io::to_text;
 
+const io::Key& kLine = io::key("joint", "line")
+                           .integer("a free m-line", 0, std::numeric_limits<int>::max())
+                           .when("line_drive")
+                           .says("The number of the free line.");
+const io::Key& kAt = io::key("joint", "at")
+                         .name_of("a drive")
+                         .otherwise_as("it moves at `speed`")
+                         .when("line_drive")
+                         .says("The drive of the material coordinate where the line stands.");
+const io::Key& kSpeed = io::key("joint", "speed")
+                            .number(io::any_number("the speed of a line", "m/s"))
+                            .otherwise(0.0)
+                            .when("line_drive")
+                            .says("How fast it moves through the material; 0 holds it.");
+
 double start_of_line(const Body& body, const Joint& joint) {
   return body.start_lines(0, body.elements[0])[static_cast<size_t>(joint.line)];
 }
@@ -16,25 +31,25 @@ double start_of_line(const Body& body, const Joint& joint) {
 void read(const io::Table& t, const Scene& scene, Joint& joint) {
   const Body& body = read_jointed_body(t, scene, joint);
   joint.drives_line = true;
-  joint.line = t.integer("line", "a free m-line", 0, body.elements[0]);
+  joint.line = t.integer(kLine.within(0, body.elements[0]));
   joint.name = joint.body + ".line " + std::to_string(joint.line);
   const bool free = std::any_of(body.lines.begin(), body.lines.end(),
                                 [&](const BodyLine& l) { return l.free && l.index == joint.line; });
-  if (!free) t.fail("line", "only a free line is driven: see [[body.line]]");
-  if (t.has("at")) {
-    if (t.has("speed")) t.fail("speed", "a line moves at a `speed`, or as the drive `at` says");
-    joint.at.drive = t.choice("at", "a drive", names_of(scene.drives));
+  if (!free) t.fail(kLine, "only a free line is driven: see [[body.line]]");
+  if (t.has(kAt)) {
+    if (t.has(kSpeed)) t.fail(kSpeed, "a line moves at a `speed`, or as the drive `at` says");
+    joint.at.drive = t.choice(kAt, names_of(scene.drives));
     const double start = scene.motion_of(joint.at)(0).value, line = start_of_line(body, joint);
     if (std::abs(start - line) > 1e-9)
-      t.fail("at",
+      t.fail(kAt,
              "this drive starts at " + to_text(start) + ", the line at " + to_text(line) + " [m]");
   } else {
-    joint.speed = t.number("speed", io::any_number("the speed of a line", "m/s"), 0.0);
+    joint.speed = t.number(kSpeed);
   }
-  if (scene.statics && joint.speed != 0) t.fail("speed", "in a [static] analysis lines rest");
+  if (scene.statics && joint.speed != 0) t.fail(kSpeed, "in a [static] analysis lines rest");
   for (const Joint& other : scene.joints)
     if (other.drives_line && other.body == joint.body && other.line == joint.line)
-      t.fail("line", "this line of '" + joint.body + "' is driven already");
+      t.fail(kLine, "this line of '" + joint.body + "' is driven already");
 }
 
 std::unique_ptr<fem::Joint> make(const Joint& joint, const JointParts& parts) {

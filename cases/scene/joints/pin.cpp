@@ -4,13 +4,23 @@
 namespace flexmorph::cases {
 namespace {
 
+const io::Key& kPoint = io::key("joint", "point")
+                            .numbers(io::any_number("a material coordinate", "m"), 2, 2)
+                            .when("pin")
+                            .says("The material point.");
+const io::Key& kComponents = io::key("joint", "components")
+                                 .words("a component", {"x", "y", "z"})
+                                 .otherwise_as("all of them")
+                                 .when("pin")
+                                 .says("The components of its position that it keeps.");
+
 void read(const io::Table& t, const Scene& scene, Joint& joint) {
-  static const std::vector<std::string> kAxes = {"x", "y", "z"};
+  const std::vector<std::string> all = {"x", "y", "z"};
   const Body& body = read_jointed_body(t, scene, joint);
-  joint.point = read_point(t, body, scene.time.end);
-  const auto axes = std::span(kAxes).first(static_cast<size_t>(body.dim()));
-  if (t.has("components"))
-    for (const std::string& axis : t.choices("components", "a component", axes))
+  joint.point = read_point(t, kPoint, body, scene.time.end);
+  const auto axes = std::span(all).first(static_cast<size_t>(body.dim()));
+  if (t.has(kComponents))
+    for (const std::string& axis : t.choices(kComponents, axes))
       joint.components.push_back(axis[0] - 'x');
   else
     for (int c = 0; c < body.dim(); ++c) joint.components.push_back(c);

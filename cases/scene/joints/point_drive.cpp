@@ -4,12 +4,23 @@
 namespace flexmorph::cases {
 namespace {
 
+const io::Key& coordinate(const char* name) {
+  return io::key("joint", name)
+      .number(io::any_number("a coordinate", "m"))
+      .name_of("a drive")
+      .otherwise_as("it is free")
+      .when("point_drive")
+      .says("Of `point_a`; a number holds it.");
+}
+
+const io::Key &kX = coordinate("x"), &kY = coordinate("y");
+
 void read(const io::Table& t, const Scene& scene, Joint& joint) {
-  joint.a = read_anchor(t, "a", scene, true, false);
-  if (joint.a.on_ground()) t.fail("a", "the ground is not driven");
-  for (const auto& [key, component] : {std::pair{"x", 0}, std::pair{"y", 1}})
-    if (t.has(key)) {
-      joint.laws.push_back(read_law(t, key, io::any_number("a coordinate", "m"), scene));
+  joint.a = read_anchor(t, kAnchorA, scene, true, false);
+  if (joint.a.on_ground()) t.fail(kAnchorA.body, "the ground is not driven");
+  for (const auto& [key, component] : {std::pair{&kX, 0}, std::pair{&kY, 1}})
+    if (t.has(*key)) {
+      joint.laws.push_back(read_law(t, *key, scene));
       joint.components.push_back(component);
     }
   if (joint.laws.empty()) t.fail("a driven point has `x`, `y` or both");

@@ -8,18 +8,84 @@
 namespace flexmorph::cases {
 
 using io::any_number;
+using io::Key;
 using io::Table;
 using io::to_text;
 
-Vec2 read_pair(const Table& t, const std::string& key, const std::string& noun,
-               const std::string& unit, const std::optional<Vec2>& fallback) {
+namespace {
+
+const Key& body_key(const char* name, const char* sentence) {
+  return io::shared_key({"joint", "spring"}, name)
+      .name_of("a body")
+      .otherwise("ground")
+      .when("between bodies")
+      .says(sentence);
+}
+
+const Key& point_key(const char* name) {
+  return io::shared_key({"joint", "spring"}, name)
+      .numbers(any_number("a place", "m"), 2, 2)
+      .otherwise_as("[0, 0] of a rigid body; of the ground: where the other point is at the start")
+      .when("it looks at points")
+      .says("In the axes of the rigid body, a material point of a plate, or on the ground.");
+}
+
+const Key& angle_key(const char* name) {
+  return io::shared_key({"joint", "spring"}, name)
+      .number(any_number("an angle", "rad"))
+      .otherwise(0.0)
+      .when("it looks at axes")
+      .says("Of its first axis, in the axes of the body.");
+}
+
+}  // namespace
+
+const AnchorKeys kAnchorA{body_key("a", "One body; what is left out is the ground."),
+                          point_key("point_a"), angle_key("angle_a")};
+const AnchorKeys kAnchorB{body_key("b", "The other one."), point_key("point_b"),
+                          angle_key("angle_b")};
+
+namespace {
+
+const Key& kName = io::key("joint", "name")
+                       .text("the name of a joint")
+                       .otherwise_as("nothing of it is written")
+                       .when("between bodies")
+                       .says("Forces of joints with names are columns of motion.csv.");
+
+const io::Choice<fem::WeldMode> kMode(
+    io::key("joint", "mode")
+        .otherwise_as("`edge`; of a sleeve `direction`")
+        .when("plates: weld, sleeve, clamp")
+        .says("What the edge keeps: its points, the direction that leaves it, or all slopes."),
+    "a weld",
+    {{"edge", fem::WeldMode::edge},
+     {"direction", fem::WeldMode::direction},
+     {"full", fem::WeldMode::full}});
+
+}  // namespace
+
+namespace joint_keys {
+
+const Key& kBody = io::key("joint", "body")
+                       .name_of("a body")
+                       .when("of one plate or beam")
+                       .says("The plate or beam that it holds.");
+const Key& kEdge = io::key("joint", "edge")
+                       .text("an edge")
+                       .when("weld of a body, sleeve")
+                       .says("`root`, `free_end` on rigid bodies, or an m-line: `line 3`.");
+
+}  // namespace joint_keys
+
+Vec2 read_pair(const Table& t, const Key& key, const std::optional<Vec2>& computed) {
   std::optional<std::vector<double>> both;
-  if (fallback) both = {fallback->x(), fallback->y()};
-  const std::vector<double> v = t.numbers(key, any_number(noun, unit), 2, both);
+  if (computed) both = {computed->x(), computed->y()};
+  const std::vector<double> v = t.numbers(key, both);
   return {v[0], v[1]};
 }
 
-Anchor read_anchor(const Table& t, const std::string& which, const Scene& scene, bool with_point,
+Anchor read_anchor(const Table& t, const AnchorKeys& keys, const Scene& scene, bool with_point,
                    bool with_axis) {
   static const std::string kGround = "ground";
   std::vector<std::string> known = names_of(scene.rigid_bodies);
@@ -27,45 +93,44 @@ Anchor read_anchor(const Table& t, const std::string& which, const Scene& scene,
     for (const Body& b : scene.bodies) known.push_back(b.name);
   known.push_back(kGround);
   Anchor anchor;
-  anchor.body = t.choice(which, "a body", known, kGround);
+  anchor.body = t.choice(keys.body, known);
   if (anchor.body == kGround) anchor.body.clear();
-  const std::string point = "point_" + which, angle = "angle_" + which;
   if (with_point) {
     const bool on_plate = std::any_of(scene.bodies.begin(), scene.bodies.end(),
                                       [&](const Body& b) { return b.name == anchor.body; });
-    anchor.given = t.has(point) || !anchor.on_ground();
+    anchor.given = t.has(keys.point) || !anchor.on_ground();
     if (on_plate)
-      anchor.point = read_pair(t, point, "a material point", "m");
-    else
-      anchor.point = read_pair(t, point, "a place", "m", Vec2(0, 0));
-  } else if (t.has(point)) {
-    t.fail(point, "this joint does not look at points");
+      anchor.point = read_pair(t, keys.point.called("a material point"));
+    else if (anchor.given)
+      anchor.point = read_pair(t, keys.point, Vec2(0, 0));
+  } else if (t.has(keys.point)) {
+    t.fail(keys.point, "this joint does not look at points");
   }
   if (with_axis)
-    anchor.angle = t.number(angle, any_number("an angle", "rad"), 0.0);
-  else if (t.has(angle))
-    t.fail(angle, "this joint does not look at axes");
+    anchor.angle = t.number(keys.angle);
+  else if (t.has(keys.angle))
+    t.fail(keys.angle, "this joint does not look at axes");
   return anchor;
 }
 
 void read_anchors(const Table& t, const Scene& scene, bool points, bool axes, Anchor& a,
                   Anchor& b) {
-  a = read_anchor(t, "a", scene, points, axes);
-  b = read_anchor(t, "b", scene, points, axes);
+  a = read_anchor(t, kAnchorA, scene, points, axes);
+  b = read_anchor(t, kAnchorB, scene, points, axes);
   if (a.on_ground() && b.on_ground())
     t.fail("a body is missing: `a`, `b` or both name one; what is left out is the ground");
-  if (a.body == b.body && !a.on_ground()) t.fail("b", "a joint is between two bodies");
+  if (a.body == b.body && !a.on_ground()) t.fail(kAnchorB.body, "a joint is between two bodies");
 }
 
 void name_between(const Table& t, const Scene& scene, Joint& joint) {
   const auto body = [](const Anchor& a) { return a.on_ground() ? "ground" : a.body; };
   std::string name =
       std::string(joint.row->name) + " of " + body(joint.a) + " and " + body(joint.b);
-  joint.named = t.has("name");
-  if (joint.named) name = read_word(t, "the name of a joint");
+  joint.named = t.has(kName);
+  if (joint.named) name = read_word(t, kName);
   for (const Joint& other : scene.joints)
     if (!other.name.empty() && other.name == name) {
-      if (joint.named) t.fail("name", "there is another joint '" + name + "'");
+      if (joint.named) t.fail(kName, "there is another joint '" + name + "'");
       name += ", " + std::to_string(scene.joints.size() + 1);
       break;
     }
@@ -73,7 +138,7 @@ void name_between(const Table& t, const Scene& scene, Joint& joint) {
 }
 
 const Body& read_jointed_body(const Table& t, const Scene& scene, Joint& joint) {
-  joint.body = t.choice("body", "a body", names_of(scene.bodies));
+  joint.body = t.choice(joint_keys::kBody, names_of(scene.bodies));
   joint.name = joint.body + "." + joint.row->name;
   return scene.body(joint.body);
 }
@@ -89,9 +154,9 @@ int line_of(const std::string& edge, const Body& body) {
   return -1;
 }
 
-std::string read_edge(const Table& t, const std::string& key, const Body& body,
+std::string read_edge(const Table& t, const Key& key, const Body& body,
                       const std::vector<std::string>& names) {
-  const std::string edge = t.string(key, "an edge");
+  const std::string edge = t.string(key);
   if (std::find(names.begin(), names.end(), edge) != names.end()) return edge;
   if (!body.mesh_changes() && line_of(edge, body) >= 0) return edge;
   std::string known;
@@ -101,32 +166,29 @@ std::string read_edge(const Table& t, const std::string& key, const Body& body,
                   : "an edge is " + known + "'line 0' to 'line " + to_text(body.elements[0]) + "'");
 }
 
-Vec2 read_point(const Table& t, const Body& body, double end) {
-  const auto v = t.numbers("point", any_number("a material coordinate", "m"), 2);
+Vec2 read_point(const Table& t, const Key& key, const Body& body, double end) {
+  const auto v = t.numbers(key);
   const double longest = body.longest(end), first = longest - body.shortest(end);
   const double slack = 1e-9 * longest;
   if (v[0] < first - slack || v[0] > longest + slack || v[1] < body.low() - slack ||
       v[1] > body.low() + body.width + slack)
-    t.fail("point", "a material point of '" + body.name + "' lies in [" + to_text(first, 6) + ", " +
-                        to_text(longest, 6) + "] x [" + to_text(body.low(), 6) + ", " +
-                        to_text(body.low() + body.width, 6) + "] [m]");
+    t.fail(key, "a material point of '" + body.name + "' lies in [" + to_text(first, 6) + ", " +
+                    to_text(longest, 6) + "] x [" + to_text(body.low(), 6) + ", " +
+                    to_text(body.low() + body.width, 6) + "] [m]");
   return {v[0], v[1]};
 }
 
 fem::WeldMode read_mode(const Table& t, fem::WeldMode fallback) {
-  return t.choice<fem::WeldMode>("mode", "a weld",
-                                 {{"edge", fem::WeldMode::edge},
-                                  {"direction", fem::WeldMode::direction},
-                                  {"full", fem::WeldMode::full}},
-                                 fallback);
+  return t.choice(kMode, std::optional(fallback));
 }
 
 void read_framed_edge(const Table& t, const Body& body, const std::vector<std::string>& names,
                       Joint& joint) {
-  joint.edge = read_edge(t, "edge", body, names);
+  joint.edge = read_edge(t, joint_keys::kEdge, body, names);
   joint.line = std::max(0, line_of(joint.edge, body));
   joint.name = joint.body + "." + joint.edge;
-  if (body.is_beam() && joint.line != 0) t.fail("edge", "a beam is welded at one of its ends");
+  if (body.is_beam() && joint.line != 0)
+    t.fail(joint_keys::kEdge, "a beam is welded at one of its ends");
 }
 
 void check_frame(const Table& t, const Scene& scene, const Body& body, const Joint& joint) {
@@ -134,13 +196,14 @@ void check_frame(const Table& t, const Scene& scene, const Body& body, const Joi
     return l.free && joint.edge != "free_end" && l.index == joint.line;
   });
   if (free && scene.is_mechanism() && !joint.on_rigid_body())
-    t.fail("edge", "in a scene with rigid bodies a free line slides in one of them, not in a hub");
+    t.fail(joint_keys::kEdge,
+           "in a scene with rigid bodies a free line slides in one of them, not in a hub");
   for (const Joint& other : scene.joints) {
     if (other.body != joint.body || !other.holds_frame()) continue;
     if (other.edge == joint.edge)
-      t.fail("edge", "this edge of '" + joint.body + "' is welded already");
+      t.fail(joint_keys::kEdge, "this edge of '" + joint.body + "' is welded already");
     if (joint.edge != "free_end" && other.edge != "free_end")
-      t.fail("edge", "'" + joint.body + "' sits in a hub or sleeve already");
+      t.fail(joint_keys::kEdge, "'" + joint.body + "' sits in a hub or sleeve already");
   }
 }
 

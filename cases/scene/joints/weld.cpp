@@ -6,19 +6,35 @@ namespace {
 
 /// How the end of a beam is welded: its section keeps its direction and is free to grow (partial);
 /// it keeps direction and size (edge); the axis is not stretched, either (full).
-fem::WeldMode read_beam_mode(const io::Table& t) {
-  return t.choice<fem::WeldMode>("mode", "the weld of a beam",
-                                 {{"partial", fem::WeldMode::partial},
-                                  {"edge", fem::WeldMode::edge},
-                                  {"full", fem::WeldMode::full}},
-                                 fem::WeldMode::partial);
-}
+const io::Choice<fem::WeldMode> kBeamMode(
+    io::key("joint", "mode")
+        .otherwise("partial")
+        .when("weld of a beam")
+        .says("Its section may grow, keeps its size, or the axis is not stretched, either."),
+    "the weld of a beam",
+    {{"partial", fem::WeldMode::partial},
+     {"edge", fem::WeldMode::edge},
+     {"full", fem::WeldMode::full}});
+const io::Key& kTo = io::key("joint", "to")
+                         .name_of("a hub or rigid body")
+                         .when("weld of a body")
+                         .says("What the edge is welded to.");
+const io::Key& kPoint = io::key("joint", "point")
+                            .numbers(io::any_number("a place", "m"), 2, 2)
+                            .otherwise(std::vector<double>{0, 0})
+                            .when("weld of a body to a rigid one")
+                            .says("Where the middle of the edge is, in the axes of that body.");
+const io::Key& kAngle = io::key("joint", "angle")
+                            .number(io::any_number("an angle", "rad"))
+                            .otherwise(0.0)
+                            .when("weld of a body to a rigid one")
+                            .says("Of the edge's normal, in the axes of that body.");
 
 /// The frame on a rigid body that the edge is welded to.
 void read_carrier(const io::Table& t, Joint& joint) {
   joint.b.body = joint.to;
-  joint.b.point = read_pair(t, "point", "a place", "m", Vec2(0, 0));
-  joint.b.angle = t.number("angle", io::any_number("an angle", "rad"), 0.0);
+  joint.b.point = read_pair(t, kPoint);
+  joint.b.angle = t.number(kAngle);
 }
 
 /// An edge in a hub or on a rigid body; which also says where the body begins.
@@ -27,17 +43,17 @@ void read_welded_edge(const io::Table& t, const Scene& scene, Joint& joint) {
   const std::vector<std::string> rigid = names_of(scene.rigid_bodies);
   std::vector<std::string> carriers = names_of(scene.hubs);
   carriers.insert(carriers.end(), rigid.begin(), rigid.end());
-  joint.to = t.choice("to", rigid.empty() ? "a hub" : "a hub or rigid body", carriers);
+  joint.to = t.choice(rigid.empty() ? kTo.called("a hub") : kTo, carriers);
   const bool on_rigid = std::find(rigid.begin(), rigid.end(), joint.to) != rigid.end();
   using Names = std::vector<std::string>;
   read_framed_edge(t, body, on_rigid ? Names{"root", "free_end"} : Names{"root"}, joint);
   if (on_rigid) read_carrier(t, joint);
-  joint.mode = body.is_beam() ? read_beam_mode(t) : read_mode(t, fem::WeldMode::edge);
+  joint.mode = body.is_beam() ? t.choice(kBeamMode) : read_mode(t, fem::WeldMode::edge);
   check_frame(t, scene, body, joint);
 }
 
 void read(const io::Table& t, const Scene& scene, Joint& joint) {
-  if (t.has("body")) {
+  if (t.has(joint_keys::kBody)) {
     read_welded_edge(t, scene, joint);
     return;
   }

@@ -1,4 +1,4 @@
-#include "cases/scene/heat.h"
+#include "cases/scene/heat/heat.h"
 
 namespace flexmorph::cases {
 

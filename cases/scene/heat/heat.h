@@ -4,7 +4,7 @@
 
 #include "cases/scene/scene.h"
 
-/// [body.heat] as data. Built with FLEXMORPH_HEAT=OFF there is no such thing: heat_absent.cpp
+/// [body.heat] as data. Built with FLEXMORPH_HEAT=OFF there is no such thing: absent.cpp
 /// stands in place of heat.cpp then, and refuses it.
 namespace flexmorph::cases {
 

@@ -1,0 +1,201 @@
+#include "cases/keys/book.h"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <tuple>
+
+#include "cases/scene/body_keys.h"
+#include "cases/scene/tables.h"
+#include "geometry/base.h"
+#include "io/case_document.h"
+#include "io/files.h"
+
+namespace flexmorph::cases {
+namespace {
+
+using Kind = io::Form::Kind;
+
+constexpr const char* kTop = "top";
+
+bool has(const io::Key& key, const std::string& table) {
+  return std::find(key.tables.begin(), key.tables.end(), table) != key.tables.end();
+}
+
+bool is_table(const io::Key& key) {
+  return std::any_of(key.forms.begin(), key.forms.end(), [](const io::Form& form) {
+    return form.kind == Kind::table || form.kind == Kind::tables;
+  });
+}
+
+std::vector<const io::Key*> keys_of(const std::string& table) {
+  std::vector<const io::Key*> out;
+  for (const io::Key& key : io::all_keys())
+    if (has(key, table)) out.push_back(&key);
+  std::stable_sort(out.begin(), out.end(), [](const io::Key* a, const io::Key* b) {
+    const std::string first = a->place.file_name(), second = b->place.file_name();
+    return std::make_tuple(first, a->place.line(), a->place.column()) <
+           std::make_tuple(second, b->place.line(), b->place.column());
+  });
+  return out;
+}
+
+const io::Key* own_key(const std::string& path) {
+  if (path.empty()) return nullptr;
+  const size_t dot = path.rfind('.');
+  const std::string above = dot == std::string::npos ? "" : path.substr(0, dot);
+  const std::string name = dot == std::string::npos ? path : path.substr(dot + 1);
+  for (const io::Key& key : io::all_keys())
+    if (key.name == name && has(key, above) && is_table(key)) return &key;
+  return nullptr;
+}
+
+std::vector<KeyTable> made_book() {
+  declare_term_keys();
+  std::vector<KeyTable> book;
+  for (const std::string& path : tables::order()) {
+    KeyTable table{{path}, keys_of(path), own_key(path)};
+    if (table.keys.empty() || (!table.own && !path.empty()))
+      throw std::logic_error("no reader of [" + path + "] is part of this program");
+    if (!book.empty() && book.back().keys == table.keys)
+      book.back().paths.push_back(path);
+    else
+      book.push_back(std::move(table));
+  }
+  return book;
+}
+
+/// "> 0", ">= 0 and <= 1", or nothing.
+std::string limits_words(const io::Quantity& q) {
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  std::string text;
+  if (q.lower > -kAny) text = (q.lower_open ? "> " : ">= ") + io::to_text(q.lower);
+  if (q.upper < kAny)
+    text += (text.empty() ? "" : " and ") + std::string(q.upper_open ? "< " : "<= ") +
+            io::to_text(q.upper);
+  return text;
+}
+
+io::Quantity limits_of(const io::Form& form) {
+  if (form.kind != Kind::integer) return form.quantity;
+  io::Quantity q{.lower = static_cast<double>(form.lower)};
+  if (form.upper < std::numeric_limits<int>::max()) q.upper = form.upper;
+  return q;
+}
+
+std::string one_word(const io::Form& form) {
+  std::string text;
+  for (const std::string& word : form.words()) text += (text.empty() ? "\"" : ", \"") + word + "\"";
+  return text;
+}
+
+/// "number", in lists "numbers".
+std::string value_words(const io::Form& form) {
+  const std::string many = form.is_list ? "s" : "";
+  switch (form.kind) {
+    case Kind::number:
+      return "number" + many;
+    case Kind::integer:
+      return "whole number" + many;
+    case Kind::boolean:
+      return "true or false";
+    case Kind::text:
+      return "text" + many;
+    case Kind::table:
+      return "table";
+    case Kind::tables:
+      return "list of tables";
+    case Kind::word:
+      break;
+  }
+  const std::string words = one_word(form);
+  if (words.empty()) return "name" + many + " of " + form.quantity.noun;
+  return form.is_list ? "some of " + words : words;
+}
+
+std::string form_words(const io::Form& form) {
+  std::string text = value_words(form);
+  if (form.columns > 0) {
+    text = "rows of " + io::to_text(form.columns) + " " + text;
+  } else if (form.is_list && form.most > 0) {
+    text = io::to_text(form.least) +
+           (form.most > form.least ? " or " + io::to_text(form.most) : "") + " " + text;
+  } else if (form.is_list && !form.allowed) {
+    text = "list of " + text;
+  }
+  const std::string limits = limits_words(limits_of(form));
+  if (!limits.empty()) text += " " + limits;
+  return form.quantity.unit.empty() ? text : text + " [" + form.quantity.unit + "]";
+}
+
+}  // namespace
+
+std::string KeyTable::title() const {
+  std::string text;
+  for (const std::string& path : paths) {
+    std::string shown = path;
+    if (const size_t star = shown.find('*'); star != std::string::npos)
+      shown.replace(star, 1, "NAME");
+    const bool many = own && std::any_of(own->forms.begin(), own->forms.end(),
+                                         [](const io::Form& f) { return f.kind == Kind::tables; });
+    if (path.empty())
+      shown = "top of the file";
+    else
+      shown = many ? "[[" + shown + "]]" : "[" + shown + "]";
+    text += (text.empty() ? "" : ", ") + shown;
+  }
+  return text;
+}
+
+const std::vector<KeyTable>& key_book() {
+  static const std::vector<KeyTable> kBook = made_book();
+  return kBook;
+}
+
+std::vector<std::string> key_table_names() {
+  std::vector<std::string> out;
+  for (const std::string& path : tables::order()) out.push_back(path.empty() ? kTop : path);
+  return out;
+}
+
+const KeyTable& table_of_keys(const std::string& path) {
+  const std::string wanted = path == kTop ? "" : path;
+  for (const KeyTable& table : key_book())
+    if (std::find(table.paths.begin(), table.paths.end(), wanted) != table.paths.end())
+      return table;
+  const std::vector<std::string> known = key_table_names();
+  const std::string close = io::nearest(path, known);
+  std::string all;
+  for (const std::string& each : known) all += (all.empty() ? "" : ", ") + each;
+  throw Error::input(
+      "there is no table '" + path + "'" +
+      (close.empty() ? "; the tables are " + all : ", did you mean '" + close + "'?"));
+}
+
+std::string type_words(const io::Key& key) {
+  std::string text;
+  for (const io::Form& form : key.forms) text += (text.empty() ? "" : ", or ") + form_words(form);
+  return text;
+}
+
+std::string default_words(const io::Key& key) {
+  if (key.fallback) return io::toml_text(*key.fallback);
+  return key.absence.empty() ? "required" : key.absence;
+}
+
+std::string sentence_of(const io::Key& key) {
+  return key.condition.empty() ? key.sentence : "(" + key.condition + ") " + key.sentence;
+}
+
+std::vector<std::array<std::string, 3>> meanings_of(const KeyTable& table) {
+  std::vector<std::array<std::string, 3>> out;
+  for (const io::Key* key : table.keys)
+    if (key->meanings)
+      for (const auto& [word, sentence] : key->meanings())
+        out.push_back({key->name, word, sentence});
+  return out;
+}
+
+std::string shown_name(const io::Key& key) { return key.name == "*" ? "NAME" : key.name; }
+
+}  // namespace flexmorph::cases

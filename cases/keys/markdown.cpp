@@ -1,0 +1,46 @@
+#include "cases/keys/book.h"
+#include "geometry/base.h"
+
+/// The book of keys as a part of cases/README.md.
+namespace flexmorph::cases {
+namespace {
+
+constexpr const char* kBegin =
+    "<!-- keys: made by `flexmorph keys --renew cases/README.md` from here on -->\n";
+constexpr const char* kEnd = "<!-- keys: to here -->\n";
+
+/// In a cell of a table.
+std::string cell(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += c == '|' ? std::string("\\|") : std::string(1, c);
+  return out;
+}
+
+}  // namespace
+
+std::string keys_as_markdown() {
+  std::string out;
+  for (const KeyTable& table : key_book()) {
+    out += (out.empty() ? "#### " : "\n#### ") + table.title() + "\n\n";
+    if (table.own) out += table.own->sentence + "\n\n";
+    out += "| key | is | otherwise | says |\n| --- | --- | --- | --- |\n";
+    for (const io::Key* key : table.keys)
+      out += "| `" + shown_name(*key) + "` | " + cell(type_words(*key)) + " | " +
+             cell(default_words(*key)) + " | " + cell(sentence_of(*key)) + " |\n";
+    const auto meanings = meanings_of(table);
+    if (!meanings.empty()) out += "\n";
+    for (const auto& [key, word, sentence] : meanings)
+      out += "- `" + key + " = \"" + word + "\"`: " + sentence + "\n";
+  }
+  return out;
+}
+
+std::string with_reference(const std::string& text) {
+  const size_t begin = text.find(kBegin), end = text.find(kEnd);
+  if (begin == std::string::npos || end == std::string::npos || end < begin)
+    throw Error::input(std::string("a file with the lines\n") + kBegin + kEnd +
+                       "has its key reference between them; this one has not");
+  return text.substr(0, begin) + kBegin + "\n" + keys_as_markdown() + "\n" + text.substr(end);
+}
+
+}  // namespace flexmorph::cases

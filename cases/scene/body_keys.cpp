@@ -1,0 +1,80 @@
+#include "cases/scene/body_keys.h"
+
+#include "cases/scene/scene.h"
+
+namespace flexmorph::cases {
+namespace {
+
+using io::positive;
+
+const io::Key& kDensity = io::key("body", "density")
+                              .number(positive("a density", "kg/m^3"))
+                              .otherwise_as("[static] without gravity: it does not matter")
+                              .says("Of the material.");
+const io::Key& kYoungsModulus = io::key("body", "youngs_modulus")
+                                    .number(positive("Young's modulus", "Pa"))
+                                    .says("Young's modulus.");
+const io::Key& kPoissonRatio = io::key("body", "poisson_ratio")
+                                   .number(io::between("Poisson's ratio", "", 0, 0.5))
+                                   .says("Poisson's ratio.");
+
+}  // namespace
+
+namespace body_keys {
+
+const io::Key& kBodyName = io::key("body", "name")
+                               .text("the name of a body")
+                               .says("What joints, loads and columns of tables call it.");
+const io::Key& kElement =
+    io::key("body", "element")
+        .word("an element", element_names)
+        .says("A plate, a plate out of which material flows (`ale_ancf_plate`), or a beam.");
+const io::Key& kLength = io::key("body", "length")
+                             .number(positive("a length", "m"))
+                             .otherwise_as("where `body.flow.length` is a drive: as that starts")
+                             .says("From the root to the free end, at the start.");
+const io::Key& kThickness = io::key("body", "thickness")
+                                .number(positive("a thickness", "m"))
+                                .when("plates")
+                                .says("Across its surface.");
+const io::Key& kLine =
+    io::key("body", "line")
+        .tables_of()
+        .otherwise_as("an even mesh that stays")
+        .when("plates")
+        .says("An m-line of the mesh that stands elsewhere, or is free to move.");
+const io::Key& kFlow = io::key("body", "flow")
+                           .table()
+                           .when("`element = \"ale_ancf_plate\"`")
+                           .says("How material leaves the body that carries the root.");
+
+}  // namespace body_keys
+
+namespace flow_keys {
+
+const io::Key& kSpeed = io::key("body.flow", "speed")
+                            .number(io::any_number("the speed of the material", "m/s"))
+                            .otherwise_as("`length` is given")
+                            .says("Material leaves the hub at this speed; negative: it enters.");
+const io::Key& kLength = io::key("body.flow", "length")
+                             .name_of("a drive")
+                             .otherwise_as("`speed` is given")
+                             .says("The drive of the length outside of the hub.");
+const io::Key& kMaxLength = io::key("body.flow", "max_length")
+                                .number(positive("a length", "m"))
+                                .says("A longer element at the root is split in the middle.");
+const io::Key& kMinLength =
+    io::key("body.flow", "min_length")
+        .number(positive("a length", "m"))
+        .otherwise_as("0.3 `max_length`")
+        .says("A shorter element at the root is merged with its neighbour.");
+
+}  // namespace flow_keys
+
+void read_material(const io::Table& t, bool has_density, Body& body) {
+  body.density = t.number(kDensity, has_density ? std::nullopt : std::optional<double>(1));
+  body.youngs_modulus = t.number(kYoungsModulus);
+  body.poisson_ratio = t.number(kPoissonRatio);
+}
+
+}  // namespace flexmorph::cases

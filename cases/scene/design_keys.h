@@ -1,0 +1,10 @@
+#pragma once
+
+#include "io/key.h"
+
+/// Keys of [[design]] that others ask for, too.
+namespace flexmorph::cases::design_keys {
+
+extern const io::Key &kCells, &kSolid, &kVoid, &kStrip, &kStripCells, &kMaxVolume, &kCoupling;
+
+}  // namespace flexmorph::cases::design_keys

@@ -1,0 +1,62 @@
+#include "cases/scene/heat/heat.h"
+
+#include "cases/scene/heat/keys.h"
+#include "cases/scene/read.h"
+
+namespace flexmorph::cases {
+namespace {
+
+using namespace heat_keys;
+using io::Key;
+using io::Table;
+
+/// How the temperature goes with time.
+void read_course(const Table& t, const Scene& scene, BodyHeat& heat) {
+  const bool driven = !heat.rise.drive.empty();
+  if (scene.statics || driven) {
+    for (const Key* key : {&kProfile, &kStart, &kSettle})
+      if (t.has(*key))
+        t.fail(*key, driven ? "the drive of `rise` says how the temperature goes"
+                            : "in a [static] analysis a temperature is constant, or grows with the "
+                              "load factor: static.grows");
+    return;
+  }
+  heat.profile = t.choice(kProfile);
+  heat.start = t.number(kStart);
+  heat.settle = t.number(kSettle, heat.profile == "step" ? std::optional<double>(1) : std::nullopt);
+}
+
+void read_force(const Table& t, const Scene& scene, const Body& body, BodyHeat& heat) {
+  const std::string why = scene.statics           ? "nothing is in motion in a [static] analysis"
+                          : body.in_space()       ? "the thermal force is for bodies in the plane"
+                          : body.flow             ? "no thermal force where material flows"
+                          : body.has_free_lines() ? "no thermal force with free material lines"
+                                                  : "";
+  heat.force = t.boolean(kForce, why.empty() && body.is_beam());
+  if (heat.force && !why.empty()) t.fail(kForce, why);
+}
+
+}  // namespace
+
+BodyHeat read_heat(const Table& t, const Scene& scene, const Body& body) {
+  BodyHeat heat;
+  heat.expansion = t.number(kExpansion);
+  heat.rise = read_law(t, kRise, scene);
+  if (scene.follows_trajectory(heat.rise))
+    t.fail(kRise, "a temperature cannot follow from a trajectory");
+  heat.volume = t.choice(kVolume);
+  read_course(t, scene, heat);
+  read_force(t, scene, body, heat);
+  if (!body.has_term([](const fem::TermRow& row) { return row.elastic != nullptr; }))
+    t.fail("a hot body has an elastic term");
+  const std::array<double, 2> range =
+      heat.rise.drive.empty()
+          ? std::array{std::min(0.0, heat.rise.value), std::max(0.0, heat.rise.value)}
+          : range_of(scene.motion_of(heat.rise), scene.time.end);
+  for (const double rise : range)
+    if (1 + heat.expansion * rise <= 0)
+      t.fail(kRise, "1 + expansion * rise, the stretch of the free body, is positive");
+  return heat;
+}
+
+}  // namespace flexmorph::cases

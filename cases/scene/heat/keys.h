@@ -1,0 +1,12 @@
+#pragma once
+
+#include "fem/heat.h"
+#include "io/key.h"
+
+/// Keys of [body.heat], also where heat was left out of the program.
+namespace flexmorph::cases::heat_keys {
+
+extern const io::Key &kExpansion, &kRise, &kProfile, &kStart, &kSettle, &kForce;
+extern const io::Choice<fem::ThermalVolume> kVolume;
+
+}  // namespace flexmorph::cases::heat_keys

@@ -1,0 +1,210 @@
+#include <cmath>
+
+#include "cases/scene/design_keys.h"
+#include "cases/scene/read.h"
+#include "cases/scene/tables.h"
+#include "io/files.h"
+
+/// What goes on around designs: [esl], [optimizer], [cycle], [verify].
+namespace flexmorph::cases {
+namespace {
+
+using io::Key;
+using io::not_negative;
+using io::positive;
+using io::Table;
+using io::to_text;
+using mmc::LoadDefinition;
+using mmc::Support;
+
+constexpr int kMostLoads = 10'000;
+
+const Key& kEvery = io::key("esl", "every")
+                        .number(positive("the time between loads", "s"))
+                        .says("Time between loads; the root moves by whole cells meanwhile.");
+const io::Choice<LoadDefinition> kDefinition(
+    io::key("esl", "definition")
+        .otherwise("inertia")
+        .says("Inertia follows the design, or stays (`frozen`); or forces from the stiffness."),
+    "a definition of the loads",
+    {{"inertia", LoadDefinition::inertia},
+     {"frozen", LoadDefinition::frozen},
+     {"stiffness", LoadDefinition::stiffness}});
+const io::Choice<Support> kSupport(
+    io::key("esl", "support").otherwise("moving_root").says("Where the loaded plate is held."),
+    "a support", {{"moving_root", Support::moving_root}, {"far_end", Support::far_end}});
+const Key& kCompress = io::key("esl", "compress")
+                           .boolean()
+                           .otherwise(true)
+                           .says("Solves for a basis of the loads where that is cheaper.");
+
+const optim::Settings kSettings;
+
+const Key& kName = io::key("optimizer", "name")
+                       .word("an optimizer", optim::optimizer_names)
+                       .otherwise(kSettings.name)
+                       .says("Who solves the design problem.");
+const Key& kMaxIterations = io::key("optimizer", "max_iterations")
+                                .integer("a number of iterations", 0, 1'000'000)
+                                .otherwise(kSettings.max_iterations)
+                                .says("Iterations of every stage; 0 analyses the start.");
+const Key& kMaxSolves = io::key("optimizer", "max_solves")
+                            .integer("a number of state solves", 0, 100'000'000)
+                            .otherwise(kSettings.max_evaluations)
+                            .says("State solves allowed; 0: no limit.");
+const Key& kMoveLimit =
+    io::key("optimizer", "move_limit")
+        .number({.noun = "a move limit", .lower = 0, .upper = 1, .lower_open = true})
+        .otherwise(kSettings.move_limit)
+        .says("Largest change of a variable per iteration, in parts of its range.");
+const Key& kKktTolerance = io::key("optimizer", "kkt_tolerance")
+                               .number(not_negative("a tolerance"))
+                               .otherwise(kSettings.kkt_tolerance)
+                               .says("It stops when the KKT residual is below this ...");
+const Key& kFeasibility = io::key("optimizer", "feasibility")
+                              .number(positive("a tolerance"))
+                              .otherwise(kSettings.feasibility)
+                              .says("... and the violation of constraints below this.");
+const Key& kChangeTolerance = io::key("optimizer", "change_tolerance")
+                                  .number(not_negative("a tolerance"))
+                                  .otherwise(kSettings.change_tolerance)
+                                  .says("Or after 3 iterations with less change; 0: never.");
+const Key& kOptions = io::key("optimizer", "options")
+                          .table()
+                          .otherwise_as("none")
+                          .says("Settings of this one optimizer.");
+const Key& kOption = io::key("optimizer.options", "*")
+                         .number(io::any_number("an option"))
+                         .says("Its names and ranges are in the file of the optimizer.");
+
+const Key& kMaxCycles = io::key("cycle", "max_cycles")
+                            .integer("a number of cycles", 1, 1000)
+                            .otherwise(Cycle().max_cycles)
+                            .says("Motions with the designs of the one before.");
+const Key& kTolerance = io::key("cycle", "tolerance")
+                            .number(not_negative("a tolerance"))
+                            .otherwise(Cycle().tolerance)
+                            .says("It stops when sharp compliances change by less than this part.");
+
+const Key& kRefine = io::key("verify", "refine")
+                         .integer("a number of parts of an element", 2, 100)
+                         .otherwise_as("`mesh` is given")
+                         .says("So many times the elements in each direction.");
+const Key& kMesh = io::key("verify", "mesh")
+                       .integers("a number of elements", 1, 10'000, 2, 2)
+                       .otherwise_as("`refine` is given")
+                       .says("Or so many elements along the length at the start, and across.");
+const Key& kStep = io::key("verify", "step")
+                       .number(positive("a time step", "s"))
+                       .otherwise_as("`time.step`")
+                       .says("The time step on the finer mesh.");
+
+Esl read_esl(const Table& t, const Scene& scene) {
+  Esl esl;
+  const double end = scene.time.end;
+  esl.every = t.number(kEvery);
+  if (esl.every > end * (1 + 1e-9)) t.fail(kEvery, "the first load is no later than time.end [s]");
+  if (end / esl.every > kMostLoads + 0.5)
+    t.fail(kEvery, "at most " + to_text(kMostLoads) + " loads");
+  mmc::ComplianceSettings& s = esl.settings;
+  s.loads = t.choice(kDefinition);
+  s.support = t.choice(kSupport);
+  if (s.loads == LoadDefinition::inertia && s.support == Support::far_end)
+    t.fail(kSupport,
+           "\"inertia\" loads need \"moving_root\": at the far end the reactions of the root would "
+           "have to follow the design");
+  s.compress = t.boolean(kCompress);
+
+  // A root that drives move at will is taken to be on the nearest mesh line.
+  for (const BodyDesign& design : scene.designs) {
+    const Body& body = scene.body(design.body);
+    if (!body.flow || body.flow->speed == 0) continue;
+    const double cells = std::abs(body.flow->speed) * esl.every / design.grid.dx();
+    if (!is_whole(cells) || cells < 0.5)
+      t.fail(kEvery, "the root of '" + body.name + "' moves by " + to_text(cells, 4) +
+                         " cells between loads; a whole number is needed, so a multiple of " +
+                         to_text(design.grid.dx() / std::abs(body.flow->speed), 6) + " [s]");
+  }
+  return esl;
+}
+
+optim::Settings read_optimizer(const Table& t) {
+  optim::Settings s;
+  s.name = t.choice(kName);
+  s.max_iterations = t.integer(kMaxIterations);
+  s.max_evaluations = t.integer(kMaxSolves);
+  s.move_limit = t.number(kMoveLimit);
+  s.kkt_tolerance = t.number(kKktTolerance);
+  s.feasibility = t.number(kFeasibility);
+  s.change_tolerance = t.number(kChangeTolerance);
+  if (t.has(kOptions)) {
+    const Table options = t.table(kOptions);
+    for (const std::string& key : options.keys())
+      s.options[key] = options.number(kOption.named(key));
+  }
+  // Ipopt's first steps are far longer than a component; in a moving box they are not.
+  if (s.name == "ipopt") s.options.try_emplace("box", 0.1);
+  try {
+    optim::Settings checked = s;
+    checked.max_iterations = std::max(1, s.max_iterations);
+    optim::make_optimizer(checked);  // only it knows its options and their ranges
+  } catch (const Error& error) {
+    const std::string what = error.what();
+    for (const auto& [key, value] : s.options)
+      if (what.find("option '" + key + "'") != std::string::npos)
+        t.table(kOptions).fail(kOption.named(key), what);
+    t.fail(what);
+  }
+  return s;
+}
+
+Verify read_verify(const Table& t, const Scene& scene) {
+  Verify verify;
+  if (t.has(kRefine)) verify.refine = t.integer(kRefine);
+  if (t.has(kRefine) && t.has(kMesh)) t.fail(kRefine, "a finer run has a `mesh` or `refine`");
+  std::vector<int> mesh;
+  if (!t.has(kRefine)) {
+    mesh = t.integers(kMesh);
+    verify.mesh = {mesh[0], mesh[1]};
+  }
+  for (const BodyDesign& design : scene.designs) {
+    const Body& body = scene.body(design.body);
+    if (verify.mesh && (mesh[0] < body.elements[0] || mesh[1] < body.elements[1]))
+      t.fail(kMesh, "a finer mesh than the elements of '" + body.name + "'");
+  }
+  verify.step = t.number(kStep, scene.time.step);
+  if (verify.step > scene.time.end) t.fail(kStep, "a time step is no longer than time.end [s]");
+  return verify;
+}
+
+}  // namespace
+
+void read_designs(const Table& root, Scene& scene) {
+  std::vector<Table> sharing;
+  for (const Table& t : root.tables(tables::kDesign)) {
+    scene.designs.push_back(read_design(t, scene));
+    if (scene.designs.back().shares_mass) sharing.push_back(t);
+  }
+  if (sharing.size() == 1)
+    sharing[0].fail(design_keys::kCoupling,
+                    "no other [[design]] has \"shared_mass\" to share with");
+  if (scene.domain) {
+    if (scene.designs.empty()) root.fail(tables::kDesign, "a static scene has a [[design]]");
+    scene.optimizer = read_optimizer(root.table_or_empty(tables::kOptimizer));
+    return;
+  }
+  if (scene.designs.empty()) {
+    for (const Key* key : {&tables::kOptimizer, &tables::kCycle, &tables::kVerify})
+      if (root.has(*key)) root.table(*key).fail("without a [[design]] this does nothing");
+    if (root.has(tables::kEsl)) scene.esl = read_esl(root.table(tables::kEsl), scene);
+    return;
+  }
+  scene.esl = read_esl(root.table(tables::kEsl), scene);
+  scene.optimizer = read_optimizer(root.table_or_empty(tables::kOptimizer));
+  const Table cycle = root.table_or_empty(tables::kCycle);
+  scene.cycle.max_cycles = cycle.integer(kMaxCycles);
+  scene.cycle.tolerance = cycle.number(kTolerance);
+  if (root.has(tables::kVerify)) scene.verify = read_verify(root.table(tables::kVerify), scene);
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,67 @@
+#include <map>
+
+#include "cases/scene/body_keys.h"
+#include "cases/scene/read.h"
+
+/// The terms of a body, and the numbers that they take from it.
+namespace flexmorph::cases {
+namespace {
+
+using io::Key;
+
+/// The number that a term reads, as a key of [[body]].
+const Key& declared(const fem::TermKey& key, const std::string& term) {
+  Key& out = io::key("body", key.name).when("the term `" + term + "`").says(key.sentence);
+  if (key.whole) {
+    out.integer(key.noun, static_cast<int>(key.low), static_cast<int>(key.high));
+    if (key.fallback) out.otherwise(static_cast<int>(*key.fallback));
+    return out;
+  }
+  out.number({key.noun, key.unit, key.low, key.high, key.low_open});
+  if (key.fallback) out.otherwise(*key.fallback);
+  return out;
+}
+
+using TermKeys = std::map<std::string, std::map<std::string, const Key*>>;
+
+/// By term and name.
+const TermKeys& term_keys() {
+  static const TermKeys kKeys = [] {
+    TermKeys keys;
+    for (const fem::TermRow* row : fem::term_rows())
+      for (const fem::TermKey& key : row->keys)
+        keys[row->name][key.name] = &declared(key, row->name);
+    return keys;
+  }();
+  return kKeys;
+}
+
+io::Glossary all_terms() {
+  io::Glossary rows;
+  for (const fem::TermRow* row : fem::term_rows()) rows.emplace_back(row->name, row->sentence);
+  return rows;
+}
+
+}  // namespace
+
+const Key& body_keys::kTerms = io::key("body", "terms")
+                                   .words("a term", all_terms)
+                                   .says("What acts in it: what is not listed is not there.");
+
+void declare_term_keys() { term_keys(); }
+
+void read_terms(const io::Table& t, const Scene& scene, Body& body) {
+  const Key& key = body_keys::kTerms;
+  body.terms = t.choices(body.is_beam() ? key.called("a term of a beam") : key,
+                         fem::term_names(body.place()));
+  if (const std::string why = fem::refusal_of_terms(body.place(), body.terms, !scene.statics);
+      !why.empty())
+    t.fail(key, why);
+  for (const std::string& term : body.terms)
+    for (const fem::TermKey& each : fem::term_row(term).keys) {
+      const Key& number = *term_keys().at(term).at(each.name);
+      body.numbers[each.name] = each.whole ? t.integer(number) : t.number(number);
+    }
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,260 @@
+// The book of keys: every key is described, and the forms made from it (terminal, reference,
+// schema, completion, the explained case) say what the readers do.
+
+#include <gtest/gtest.h>
+#include <toml++/toml.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validation_results.hpp>
+#include <valijson/validator.hpp>
+
+#include "cases/build/build.h"
+#include "cases/keys/book.h"
+#include "cases/run/run.h"
+#include "io/case_parser.h"
+#include "tests/cases/program.h"
+
+namespace flexmorph::test {
+namespace {
+
+namespace fs = std::filesystem;
+using cases::key_book;
+using cases::KeyTable;
+
+#ifdef FLEXMORPH_HEAT
+constexpr bool kHasHeat = true;
+#else
+constexpr bool kHasHeat = false;
+#endif
+
+/// Shipped cases that this program takes: not all of them without heat.
+std::vector<std::string> readable_cases() {
+  std::vector<std::string> out;
+  for (const std::string& name : cases::shipped_cases())
+    if (kHasHeat || !contains(io::read_text(cases::find_case(name)), "[body.heat]"))
+      out.push_back(name);
+  return out;
+}
+
+TEST(Keys, EveryKeyIsDescribed) {
+  for (const KeyTable& table : key_book())
+    for (const io::Key* key : table.keys) {
+      const std::string what = table.title() + " " + key->name;
+      EXPECT_FALSE(key->forms.empty()) << what;
+      EXPECT_TRUE(ends(key->sentence, ".") || ends(key->sentence, "...")) << what;
+      EXPECT_LE(key->sentence.size(), 100u) << what;
+      EXPECT_FALSE(key->fallback && !key->absence.empty()) << what << " has two defaults";
+      EXPECT_FALSE(cases::type_words(*key).empty()) << what;
+      // A default is one of the values that the key may have.
+      if (!key->fallback) continue;
+      if (const auto* x = std::get_if<double>(&*key->fallback)) {
+        EXPECT_TRUE(key->form(io::Form::Kind::number).quantity.holds(*x)) << what;
+      }
+      if (const auto* word = std::get_if<std::string>(&*key->fallback))
+        for (const io::Form& form : key->forms) {
+          const io::Words words = form.words();
+          EXPECT_TRUE(words.empty() || std::count(words.begin(), words.end(), *word)) << what;
+        }
+    }
+}
+
+TEST(Keys, EveryDeclaredTableIsInTheBook) {
+  for (const io::Key& key : io::all_keys())
+    for (const std::string& table : key.tables)
+      EXPECT_NO_THROW(cases::table_of_keys(table)) << key.name;
+}
+
+TEST(Keys, AKeyIsDeclaredOnceForEveryCondition) {
+  for (const KeyTable& table : key_book())
+    for (const io::Key* key : table.keys)
+      for (const io::Key* other : table.keys) {
+        if (key == other || key->name != other->name) continue;
+        EXPECT_NE(key->condition, other->condition) << table.title() << " " << key->name;
+      }
+}
+
+TEST(Keys, TheReferenceIsFresh) {
+  const std::string text = contents_of(FLEXMORPH_CASES "/README.md");
+  EXPECT_TRUE(text == cases::with_reference(text))
+      << "the keys have changed: build/cases/flexmorph keys --renew cases/README.md";
+}
+
+class Schema : public ::testing::Test {
+ protected:
+  Schema() {
+    const nlohmann::json json = nlohmann::json::parse(cases::keys_as_schema());
+    valijson::SchemaParser(valijson::SchemaParser::kDraft7)
+        .populateSchema(valijson::adapters::NlohmannJsonAdapter(json), schema_);
+  }
+  /// What is wrong with a case; empty if nothing is.
+  std::string judge(const std::string& toml_text) const {
+    std::ostringstream text;
+    text << toml::json_formatter(toml::parse(toml_text));
+    const nlohmann::json json = nlohmann::json::parse(text.str());
+    valijson::Validator validator;
+    valijson::ValidationResults results;
+    const valijson::adapters::NlohmannJsonAdapter target(json);
+    if (validator.validate(schema_, target, &results)) return "";
+    std::string out;
+    for (const auto& error : results) {
+      for (const std::string& part : error.context) out += part;
+      out += ": " + error.description + "\n";
+    }
+    return out;
+  }
+  valijson::Schema schema_;
+};
+
+TEST_F(Schema, TakesAllShippedCases) {
+  for (const std::string& name : cases::shipped_cases())
+    EXPECT_EQ(judge(io::read_text(cases::find_case(name))), "") << name;
+}
+
+TEST_F(Schema, RefusesBrokenCases) {
+  const std::string whole = io::read_text(FLEXMORPH_SHORT_CASE);
+  ASSERT_EQ(judge(whole), "");
+  struct Break {
+    const char *from, *to;
+  };
+  for (const Break& each :
+       {Break{"step = 1e-3", "step = -1e-3"},          // below its range
+        Break{"step = 1e-3", "step = \"adaptativ\""},  // no such word
+        Break{"step = 1e-3", "stepp = 1e-3"},          // no such key
+        Break{"end = 0.12", ""},                       // required
+        Break{"end = 0.12", "end = \"0.12\""},         // a text
+        Break{"element = \"ale_ancf_plate\"", "element = \"plate\""},
+        Break{"poisson_ratio = 0.3", "poisson_ratio = 0.7"},
+        Break{"elements = [10, 2]", "elements = [10, 2, 2]"},
+        Break{"elements = [10, 2]", "elements = [10, 0.5]"},
+        Break{"terms = [\"inertia\", \"membrane\"]", "terms = []"},
+        Break{"terms = [\"inertia\", \"membrane\"]", "terms = [\"inertia\", \"inertia\"]"},
+        Break{"[[hub]]", "[hub]"},  // no list
+        Break{"[time]", "[tyme]"}}) {
+    std::string broken = whole;
+    const size_t at = broken.find(each.from);
+    ASSERT_NE(at, std::string::npos) << each.from;
+    broken.replace(at, std::string(each.from).size(), each.to);
+    EXPECT_NE(judge(broken), "") << each.to;
+  }
+}
+
+TEST(ExplainedCases, ReadBackAsTheSameText) {
+  const Scratch scratch;
+  // Files that cases name are found from here, too.
+  for (const auto& entry : fs::directory_iterator(FLEXMORPH_CASES))
+    if (entry.path().extension() == ".csv")
+      fs::copy_file(entry.path(), scratch / entry.path().filename().string());
+  for (const std::string& name : readable_cases()) {
+    const io::CaseFile file(cases::find_case(name));
+    cases::read_scene(file);
+    const std::string text = file.explained();
+    const io::CaseFile again(scratch.write(name + ".toml", text));
+    ASSERT_NO_THROW(cases::read_scene(again)) << name;
+    EXPECT_EQ(again.explained(), text) << name;
+    EXPECT_TRUE(contains(text, "\nrho_inf = ") || contains(text, "[domain]") ||
+                contains(text, "[static]"))
+        << name;
+  }
+}
+
+TEST(ExplainedCases, RunAsTheCaseItself) {
+  const Scratch scratch;
+  const Words changes = {"time.end=0.02", "optimizer.max_iterations=2"};
+  const std::string plain = scratch / "plain", explained = scratch / "explained",
+                    again = scratch / "again";
+  ASSERT_EQ(flexmorph(scratch, short_run(plain, changes)).code, 0);
+  Words words = short_run(explained, changes);
+  words.emplace_back("--explain");
+  ASSERT_EQ(flexmorph(scratch, words).code, 0);
+  const std::string kept = explained + "/case.toml";
+  EXPECT_TRUE(contains(contents_of(kept), "kkt_tolerance = 1e-04 "));
+  ASSERT_EQ(flexmorph(scratch, {"run", kept, "-o", again}).code, 0);
+  for (const char* file : {"motion.csv", "components.csv", "case.toml"})
+    EXPECT_EQ(contents_of(again + "/" + file), contents_of(explained + "/" + file)) << file;
+  for (const char* file : {"motion.csv", "components.csv"})
+    EXPECT_EQ(contents_of(again + "/" + file), contents_of(plain + "/" + file)) << file;
+  EXPECT_EQ(flexmorph(scratch, {"check", kept, "--explain"}).out, contents_of(kept));
+}
+
+TEST(KeysCommand, ShowsATableOrAllOfThem) {
+  const Scratch scratch;
+  const Ended one = flexmorph(scratch, {"keys", "time"});
+  EXPECT_EQ(one.code, 0);
+  EXPECT_TRUE(starts(one.out, "[time]: How long the motion lasts"));
+  for (const char* part : {"  end ", "number > 0 [s]", "required", "0.8", "\"adaptive\""})
+    EXPECT_TRUE(contains(one.out, part)) << one.out;
+  for (const std::string& line : lines_of(one.out)) EXPECT_LE(line.size(), 100u) << line;
+  const Ended all = flexmorph(scratch, {"keys"});
+  EXPECT_TRUE(contains(all.out, one.out));
+  EXPECT_TRUE(contains(all.out, "\n[[design.solid]], [[design.void]]: "));
+  EXPECT_EQ(flexmorph(scratch, {"keys", "--schema"}).out, cases::keys_as_schema());
+  EXPECT_EQ(flexmorph(scratch, {"keys", "--markdown"}).out, cases::keys_as_markdown());
+}
+
+TEST(KeysCommand, NamesTheTableThatWasMeant) {
+  const Scratch scratch;
+  const Ended ended = flexmorph(scratch, {"keys", "optimiser"});
+  EXPECT_EQ(ended.code, 2);
+  EXPECT_TRUE(contains(ended.err, "there is no table 'optimiser', did you mean 'optimizer'?"));
+  EXPECT_EQ(flexmorph(scratch, {"keys", "--renew", FLEXMORPH_SHORT_CASE}).code, 2);
+}
+
+class Completion : public ::testing::Test {
+ protected:
+  /// What bash offers at the end of this line, with what is left of the words after "=".
+  Words offers(const std::string& line) {
+    const std::string out = scratch_ / "offers";
+    scratch_.write("ask.sh", "source <(" FLEXMORPH_PROGRAM
+                             " completion bash)\n"
+                             "flexmorph() { " FLEXMORPH_PROGRAM
+                             " \"$@\"; }\n"
+                             "COMP_LINE='" +
+                                 line +
+                                 "'\nCOMP_POINT=${#COMP_LINE}\n"
+                                 "COMP_WORDS=($COMP_LINE)\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n"
+                                 "_flexmorph\nprintf '%s\\n' \"${COMPREPLY[@]}\" > '" +
+                                 out + "'\n");
+    const std::string command = "bash '" + (scratch_ / "ask.sh") + "'";
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    return lines_of(contents_of(out));
+  }
+  Scratch scratch_;
+};
+
+bool among(const Words& words, const std::string& wanted) {
+  return std::count(words.begin(), words.end(), wanted) == 1;
+}
+
+TEST_F(Completion, OffersWhatMayFollow) {
+  const Words commands = offers("flexmorph ");
+  for (const char* each : {"run", "check", "keys", "completion", "stability"})
+    EXPECT_TRUE(among(commands, each)) << each;
+  EXPECT_EQ(offers("flexmorph comp"), (Words{"compare", "completion"}));
+  EXPECT_EQ(offers("flexmorph run four"), Words{"four_bar"});
+  EXPECT_EQ(offers("flexmorph run four_bar --exp"), Words{"--explain"});
+  EXPECT_EQ(offers("flexmorph keys body.f"), Words{"body.flow"});
+  EXPECT_EQ(offers("flexmorph completion z"), Words{"zsh"});
+}
+
+TEST_F(Completion, OffersKeysAndTheirWords) {
+  EXPECT_EQ(offers("flexmorph run four_bar --set optimizer.max"),
+            (Words{"optimizer.max_iterations=", "optimizer.max_solves="}));
+  // Readline breaks words at "=", and replaces what follows it.
+  EXPECT_EQ(offers("flexmorph run four_bar --set optimizer.name=ip"), Words{"ipopt"});
+  EXPECT_EQ(offers("flexmorph check x.toml --set output.vtk="), (Words{"true", "false"}));
+  EXPECT_EQ(offers("flexmorph sweep four_bar --vary time.start=hub"), Words{"hub_at_rest"});
+}
+
+TEST_F(Completion, AnotherShellIsBadInput) {
+  EXPECT_EQ(flexmorph(scratch_, {"completion", "fish"}).code, 2);
+  EXPECT_TRUE(contains(flexmorph(scratch_, {"completion", "zsh"}).out, "compdef _flexmorph"));
+}
+
+}  // namespace
+}  // namespace flexmorph::test
