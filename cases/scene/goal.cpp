@@ -1,6 +1,7 @@
 #include "cases/scene/goal.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "cases/scene/scene.h"
 #include "geometry/picture.h"
@@ -42,13 +43,19 @@ const ResponseRow& read_row(const Table& t, const std::string& key, const std::s
   return row;
 }
 
+/// To twelve digits: a full plate of 2 kg may be asked for.
+double without_round_off(double value) {
+  const double scale = std::pow(10, 12 - std::ceil(std::log10(value)));
+  return std::round(value * scale) / scale;
+}
+
 /// A bound on a response: what a full plate has is the most there can be.
 void read_limit(const Table& t, const std::string& key, const std::string& noun,
                 const ResponseRow& row, const mmc::Plate& plate, mmc::Goal& goal) {
   const std::string unit(row.unit);
   io::Quantity quantity = io::positive(noun, unit);
   if (row.full) {
-    quantity = io::between(noun, unit, 0, row.full(plate));
+    quantity = io::between(noun, unit, 0, without_round_off(row.full(plate)));
     quantity.lower_open = true;
   }
   goal.limits.emplace_back(row, t.number(key, quantity), key == "at_least", plate);
@@ -85,14 +92,14 @@ void read_shorthand(const Table& t, const std::string& loads, const mmc::Plate& 
   const bool wanted = t.tables("constraint").empty();
   const bool stiffest = goal.objective->needs_state();
   const char* const refused = stiffest ? "max_compliance" : "max_volume";
-  if (t.has(refused))
-    t.fail(refused, "only minimize = " + names_of_rows(!stiffest) + " has a largest " +
-                        (stiffest ? "compliance" : "volume"));
   if (stiffest && (wanted || t.has("max_volume")))
     read_limit(t, "max_volume", "a volume fraction", mmc::kVolume, plate, goal);
   if (!stiffest && (wanted || t.has("max_compliance")))
     read_limit(t, "max_compliance", "a compliance", *mmc::find_response("compliance", loads), plate,
                goal);
+  if (t.has(refused))
+    t.fail(refused, "only minimize = " + names_of_rows(!stiffest) + " has a largest " +
+                        (stiffest ? "compliance" : "volume"));
 }
 
 std::string with_unit(const mmc::Limit& limit) {
