@@ -5,9 +5,7 @@
 
 #include "cases/scene/goal.h"
 #include "geometry/cpu_time.h"
-#include "io/exports.h"
 #include "io/files.h"
-#include "io/plots.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -114,55 +112,65 @@ RunFolder::RunFolder(std::string path, const Scene& scene, const std::string& ca
 
 double RunFolder::take_output_seconds() { return std::exchange(output_seconds_, 0); }
 
+/// VTK files of a design on its way.
+void RunFolder::write_design_frame(const mmc::IterationReport& r) {
+  const std::string stem = scene_.designs.size() > 1 ? r.problem.body + "_" : "";
+  const mmc::CellFactors& factors = r.state.factors();
+  // Σ w ½ uᵀ K_cell u: the derivative by the stiffness factor holds it. The energies of loads and
+  // of held growth are added; what they do on each other sums to zero over the cells.
+  VectorXd by_stiffness = -r.value.d_stiffness;
+  if (by_stiffness.size() == 0) by_stiffness.setZero(factors.stiffness.size());  // not solved
+  if (r.value.d_held.size() > 0) by_stiffness += 2 * r.value.d_held;
+  const VectorXd energy = 0.5 * by_stiffness.cwiseProduct(factors.stiffness);
+  const VectorXd displacement =
+      r.loads.displacement(factors.stiffness, factors.mass, r.loads.n_loads() - 1);
+  const auto view = [](const VectorXd& v) {
+    return std::span<const double>(v.data(), static_cast<size_t>(v.size()));
+  };
+  const io::Field cells[] = {{"density", view(factors.mass)},
+                             {"stiffness_factor", view(factors.stiffness)},
+                             {"strain_energy", view(energy)}};
+  const io::Field points[] = {{"tdf", view(r.state.phi())},
+                              {"displacement", view(displacement), 2}};
+  const std::string image = numbered("iteration_" + stem, rows_, ".vti");
+  io::write_image_data(path_ + "/design/" + image, r.problem.grid, cells, points);
+  iterations_.add(rows_, image);
+  const std::string lines = numbered("components_" + stem, rows_, ".vtp");
+  io::write_components(path_ + "/design/" + lines, r.state.components(),
+                       r.problem.stages.back().min_half_thickness);
+  components_.add(rows_, lines);
+}
+
 void RunFolder::add_iteration(const mmc::IterationReport& r) {
   const double clock = cpu_seconds();
   ++rows_;
   const Output& wish = scene_.output;
   if (wish.vtk && wish.design_every > 0 &&
-      (r.iteration == 1 || r.iteration % wish.design_every == 0)) {
-    const std::string stem = scene_.designs.size() > 1 ? r.problem.body + "_" : "";
-    const mmc::CellFactors& factors = r.state.factors();
-    // Σ w ½ uᵀ K_cell u: the derivative by the stiffness factor holds it. The energies of loads and
-    // of held growth are added; what they do on each other sums to zero over the cells.
-    VectorXd by_stiffness = -r.value.d_stiffness;
-    if (by_stiffness.size() == 0) by_stiffness.setZero(factors.stiffness.size());  // not solved
-    if (r.value.d_held.size() > 0) by_stiffness += 2 * r.value.d_held;
-    const VectorXd energy = 0.5 * by_stiffness.cwiseProduct(factors.stiffness);
-    const VectorXd displacement =
-        r.loads.displacement(factors.stiffness, factors.mass, r.loads.n_loads() - 1);
-    const auto view = [](const VectorXd& v) {
-      return std::span<const double>(v.data(), static_cast<size_t>(v.size()));
-    };
-    const io::Field cells[] = {{"density", view(factors.mass)},
-                               {"stiffness_factor", view(factors.stiffness)},
-                               {"strain_energy", view(energy)}};
-    const io::Field points[] = {{"tdf", view(r.state.phi())},
-                                {"displacement", view(displacement), 2}};
-    const std::string image = numbered("iteration_" + stem, rows_, ".vti");
-    io::write_image_data(path_ + "/design/" + image, r.problem.grid, cells, points);
-    iterations_.add(rows_, image);
-    const std::string lines = numbered("components_" + stem, rows_, ".vtp");
-    io::write_components(path_ + "/design/" + lines, r.state.components(),
-                         r.problem.stages.back().min_half_thickness);
-    components_.add(rows_, lines);
-  }
+      (r.iteration == 1 || r.iteration % wish.design_every == 0))
+    write_design_frame(r);
   History& h = history_of(r.problem.body);
   h.row.push_back(static_cast<double>(h.row.size() + 1));
   h.compliance.push_back(r.state.compliance());
   h.volume.push_back(r.state.volume());
   h.kkt.push_back(r.iterate.kkt);
-  io::Cell sharp_c, sharp_v, connected, min_feature;
   if (r.sharp) {
     h.sharp_row.push_back(h.row.back());
     h.sharp_compliance.push_back(r.sharp->compliance);
+  }
+  add_events(r);
+  output_seconds_ += cpu_seconds() - clock;
+  write_history_row(r);
+}
+
+void RunFolder::write_history_row(const mmc::IterationReport& r) {
+  io::Cell sharp_c, sharp_v, connected, min_feature;
+  if (r.sharp) {
     sharp_c = r.sharp->compliance;
     sharp_v = r.sharp->volume;
     connected = r.sharp->connectivity.connected;
     if (r.sharp->features && std::isfinite(r.sharp->features->solid))
       min_feature = r.sharp->features->solid;
   }
-  add_events(r);
-  output_seconds_ += cpu_seconds() - clock;
   const mmc::LoadResponse::Seconds s = r.state.seconds();
   const auto number = [](double v) { return std::isfinite(v) ? io::Cell(v) : io::Cell(); };
   std::vector<io::Cell> row = {r.problem.body,
@@ -206,34 +214,6 @@ void RunFolder::add_events(const mmc::IterationReport& r) {
   for (const mmc::ComponentEvent& e : r.events)
     events_->row(
         {r.problem.body, r.cycle, r.iteration, to_string(e.kind), e.component + 1, e.n_components});
-}
-
-void RunFolder::write_loads(const std::string& body, const fem::EslSets& loads,
-                            const mmc::BodyOutcome* outcome) {
-  const std::vector<std::string> columns = {"time",          "root_column",  "weight",
-                                            "strain_energy", "energy_ratio", "compliance",
-                                            "force_x",       "force_y"};
-  io::CsvWriter csv(path_ + "/loads/" + body + ".csv", columns);
-  for (size_t i = 0; i < loads.sets.size(); ++i) {
-    const fem::EslSet& s = loads.sets[i];
-    Vec2 force(0, 0);
-    for (const fem::NodalForce& f : s.forces) force += f.force;
-    io::Cell ratio, compliance;
-    if (outcome) {
-      ratio = outcome->energy_ratios[i];
-      compliance = outcome->load_compliances[i];
-    }
-    csv.row({s.time, s.root_column, s.weight, s.strain_energy, ratio, compliance, force.x(),
-             force.y()});
-  }
-}
-
-void RunFolder::write_static_loads(const Domain& domain, const mmc::BodyOutcome& outcome) {
-  const std::vector<std::string> columns = {"load", "weight", "compliance", "active"};
-  io::CsvWriter csv(path_ + "/loads/" + domain.name + ".csv", columns);
-  for (size_t l = 0; l < domain.loads.size(); ++l)
-    csv.row({domain.loads[l].name, domain.loads[l].weight, outcome.load_compliances[l],
-             outcome.load_compliances[l] >= 0.99 * outcome.worst_compliance});
 }
 
 void RunFolder::write_motion(const std::string& name, const Scene& scene,
@@ -331,69 +311,6 @@ std::vector<io::SurfaceFrame> RunFolder::shapes(size_t most) const {
   std::vector<io::SurfaceFrame> out;
   for (size_t k = 0; k < most; ++k) out.push_back(shapes_[k * (shapes_.size() - 1) / (most - 1)]);
   return out;
-}
-
-namespace {
-
-/// The union of a design's components in its domain, to a tolerance in cells.
-struct Outlines {
-  std::vector<Region> regions;
-  Box frame;
-
-  explicit Outlines(const mmc::BodyProblem& problem, double tolerance = mmc::kOutlineTolerance)
-      : regions(
-            mmc::regions_of(problem, problem.design.components(), tolerance * problem.grid.dx())) {
-    const Grid& g = problem.grid;
-    frame = {{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}};
-  }
-  std::string svg() const { return io::outline_svg(regions, frame); }
-  std::string picture() const { return io::outline_svg(regions, frame, 5); }
-};
-
-}  // namespace
-
-std::string components_name(const Scene& scene, const std::string& body) {
-  return scene.designs.size() > 1 ? "components_" + body + ".csv" : "components.csv";
-}
-
-RunFolder::DesignPictures& RunFolder::pictures_of(const std::string& body) {
-  for (DesignPictures& p : pictures_)
-    if (p.body == body) return p;
-  pictures_.emplace_back().body = body;
-  return pictures_.back();
-}
-
-void RunFolder::write_start(const mmc::BodyProblem& problem) {
-  if (!scene_.output.plots) return;
-  std::string& svg = pictures_of(problem.body).start;
-  svg = Outlines(problem, 0.05).picture();
-  io::write_file(path_ + "/plots/start_" + problem.body + ".svg", svg);
-}
-
-void RunFolder::write_design(const mmc::BodyProblem& problem, const mmc::BodyOutcome& outcome) {
-  const std::string stem = scene_.designs.size() > 1 ? "_" + problem.body : "";
-  const std::vector<Component> components = problem.design.components();
-  io::write_components_csv(path_ + "/" + components_name(scene_, problem.body), components);
-  const Outlines outlines(problem);
-  io::write_file(path_ + "/design" + stem + ".svg", outlines.svg());
-  io::write_dxf(path_ + "/design" + stem + ".dxf", outlines.regions);
-  io::write_stl(path_ + "/design" + stem + ".stl", outlines.regions, problem.section.thickness);
-  if (!scene_.output.plots) return;
-  pictures_of(problem.body).result = outlines.picture();
-  const auto& sharp = outcome.sharp.fractions;
-  io::write_png(path_ + "/plots/design" + stem + ".png", problem.grid,
-                {sharp.data(), static_cast<size_t>(sharp.size())});
-}
-
-void RunFolder::write_cycles(std::span<const mmc::CycleVerdict> cycles) {
-  const std::vector<std::string> columns = {
-      "cycle", "body", "compliance", "sharp_compliance", "design_change", "strain_energy_integral",
-      "best"};
-  io::CsvWriter csv(path_ + "/cycles.csv", columns);
-  for (const mmc::CycleVerdict& c : cycles)
-    for (const mmc::BodyVerdict& b : c.bodies)
-      csv.row({c.cycle, b.body, b.compliance, b.sharp_compliance, b.design_change,
-               c.strain_energy_integral, c.best});
 }
 
 void RunFolder::write_text(const std::string& name, const std::string& text) {

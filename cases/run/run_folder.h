@@ -128,6 +128,8 @@ class RunFolder {
   void write_part(const std::string& body, const io::QuadMesh& mesh, std::vector<io::Field> cells,
                   std::span<const io::Field> points, double time, int part);
   void add_events(const mmc::IterationReport& report);
+  void write_design_frame(const mmc::IterationReport& report);
+  void write_history_row(const mmc::IterationReport& report);
 
   std::string path_;
   const Scene& scene_;

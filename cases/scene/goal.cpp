@@ -1,6 +1,7 @@
 #include "cases/scene/goal.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "cases/scene/design_keys.h"
 #include "cases/scene/scene.h"
@@ -78,7 +79,7 @@ const Key& kAtMost = io::key("design.constraint", "at_most")
 const Key& kAtLeast = io::key("design.constraint", "at_least")
                           .number(io::positive("a response"))
                           .otherwise_as("no lower limit")
-                          .when("volume, mass")
+                          .when("the response has no loads")
                           .says("Likewise.");
 
 const ResponseRow& read_row(const Table& t, const Key& key, const std::string& loads,
@@ -90,11 +91,17 @@ const ResponseRow& read_row(const Table& t, const Key& key, const std::string& l
   return row;
 }
 
+/// To twelve digits: a full plate of 2 kg may be asked for.
+double without_round_off(double value) {
+  const double scale = std::pow(10, 12 - std::ceil(std::log10(value)));
+  return std::round(value * scale) / scale;
+}
+
 /// A bound on a response: what a full plate has is the most there can be.
 void read_limit(const Table& t, const Key& key, const ResponseRow& row, const mmc::Plate& plate,
                 mmc::Goal& goal) {
   Key of_row = key.measured_in(std::string(row.unit));
-  if (row.full) of_row = of_row.within(0, row.full(plate));
+  if (row.full) of_row = of_row.within(0, without_round_off(row.full(plate)));
   goal.limits.emplace_back(row, t.number(of_row), key.name == kAtLeast.name, plate);
 }
 
@@ -127,13 +134,13 @@ void read_shorthand(const Table& t, const std::string& loads, const mmc::Plate& 
   const bool wanted = t.tables(kConstraint).empty();
   const bool stiffest = goal.objective->needs_state();
   const Key& refused = stiffest ? kMaxCompliance : kMaxVolume;
-  if (t.has(refused))
-    t.fail(refused, "only minimize = " + names_of_rows(!stiffest) + " has a largest " +
-                        (stiffest ? "compliance" : "volume"));
   if (stiffest && (wanted || t.has(kMaxVolume)))
     read_limit(t, kMaxVolume, mmc::kVolume, plate, goal);
   if (!stiffest && (wanted || t.has(kMaxCompliance)))
     read_limit(t, kMaxCompliance, *mmc::find_response("compliance", loads), plate, goal);
+  if (t.has(refused))
+    t.fail(refused, "only minimize = " + names_of_rows(!stiffest) + " has a largest " +
+                        (stiffest ? "compliance" : "volume"));
 }
 
 std::string with_unit(const mmc::Limit& limit) {

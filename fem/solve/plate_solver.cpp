@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "fem/solve/grid_order.h"
 #include "fem/solve/q4_cell.h"
-#include "fem/solve/supernodal_factor.h"
+#include "fem/solve/q4_matrix.h"
 
 namespace flexmorph::fem {
 
@@ -27,28 +28,13 @@ std::array<int, 4> corners_of(const Grid& g, int i, int j) {
 struct PlateSolver::Impl {
   Grid grid;
   PlaneSection section;
-  Eigen::Matrix<double, 8, 8> cell_stiffness;
   std::vector<char> inside;  // by cell
-  std::vector<int> rows;     // 2 node + component -> unknown, -1: none
-  int n = 0;
-  std::unique_ptr<SupernodalFactor> factor;
-  std::vector<int> scatter;  // by cell of the domain and pair of unknowns (36), -1: held
-  std::vector<int> unknown_of_column;
+  std::optional<Q4Matrix> matrix;
   mutable std::vector<int> active;
   mutable VectorXd held_values;
   mutable MatrixXd energy_of_load;  // a column per thread, or the weights of all
 
   void number(std::span<const HeldUnknown> held);
-  void unknowns_around(int node, int first, std::vector<int>& out) const;
-  void build_pattern();
-  std::array<int, 8> rows_of_cell(int i, int j) const {
-    std::array<int, 8> out{};
-    const auto corners = corners_of(grid, i, j);
-    for (std::size_t a = 0; a < 4; ++a)
-      for (std::size_t c = 0; c < 2; ++c)
-        out[2 * a + c] = rows[2 * static_cast<std::size_t>(corners[a]) + c];
-    return out;
-  }
   template <class Use>
   void each_cell(Use use) const {
     for (int i = 0; i < grid.nx; ++i)
@@ -80,54 +66,17 @@ void PlateSolver::Impl::number(std::span<const HeldUnknown> held) {
                          std::to_string(h.component) + " is not of this grid");
     exists[2 * static_cast<std::size_t>(h.node) + static_cast<std::size_t>(h.component)] = 0;
   }
-  rows.assign(2 * n_nodes, -1);
+  int n = 0;
+  std::vector<int> rows(2 * n_nodes, -1), cells;
   for (const int node : dissection_order(grid))  // both displacements of a node stay together
     for (std::size_t c = 0; c < 2; ++c) {
       const std::size_t k = 2 * static_cast<std::size_t>(node) + c;
       if (exists[k] == 0) continue;
       rows[k] = n++;
-      unknown_of_column.push_back(static_cast<int>(k));
     }
   if (n == 0) throw Error::input("plate solver: every displacement is held");
-}
-
-/// Unknowns of the cells of the domain around a node, from `first` on, ascending.
-void PlateSolver::Impl::unknowns_around(int node, int first, std::vector<int>& out) const {
-  const int i = node / (grid.ny + 1), j = node % (grid.ny + 1);
-  out.clear();
-  for (int ci = std::max(0, i - 1); ci <= std::min(grid.nx - 1, i); ++ci)
-    for (int cj = std::max(0, j - 1); cj <= std::min(grid.ny - 1, j); ++cj)
-      if (inside[static_cast<std::size_t>(grid.cell(ci, cj))])
-        for (const int row : rows_of_cell(ci, cj))
-          if (row >= first) out.push_back(row);
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-}
-
-void PlateSolver::Impl::build_pattern() {
-  std::vector<int> starts = {0}, pattern, column;
-  starts.reserve(static_cast<std::size_t>(n) + 1);
-  pattern.reserve(static_cast<std::size_t>(n) * 10);  // 9 nodes, half of them behind
-  for (int c = 0; c < n; ++c) {
-    unknowns_around(unknown_of_column[static_cast<std::size_t>(c)] / 2, c, column);
-    pattern.insert(pattern.end(), column.begin(), column.end());
-    starts.push_back(static_cast<int>(pattern.size()));
-  }
-  const auto entry = [&](int r, int c) {
-    const auto begin = pattern.begin() + starts[static_cast<std::size_t>(c)];
-    const auto end = pattern.begin() + starts[static_cast<std::size_t>(c) + 1];
-    return static_cast<int>(std::lower_bound(begin, end, r) - pattern.begin());
-  };
-  scatter.reserve(36 * static_cast<std::size_t>(grid.n_cells()));
-  each_cell([&](int i, int j) {
-    const auto cell = rows_of_cell(i, j);
-    for (std::size_t a = 0; a < 8; ++a)
-      for (std::size_t b = 0; b <= a; ++b) {
-        const int c = std::min(cell[a], cell[b]), r = std::max(cell[a], cell[b]);
-        scatter.push_back(c < 0 ? -1 : entry(r, c));
-      }
-  });
-  factor = std::make_unique<SupernodalFactor>(std::move(starts), std::move(pattern));
+  each_cell([&](int i, int j) { cells.push_back(grid.cell(i, j)); });
+  matrix.emplace(grid, section, std::move(cells), std::move(rows));
 }
 
 PlateSolver::PlateSolver(const Grid& grid, const PlaneSection& section,
@@ -136,42 +85,29 @@ PlateSolver::PlateSolver(const Grid& grid, const PlaneSection& section,
   Impl& m = *impl_;
   m.grid = grid;
   m.section = section;
-  m.cell_stiffness = q4_stiffness(section, grid.dx(), grid.dy());
   m.inside.assign(static_cast<std::size_t>(grid.n_cells()), 1);
   for (std::size_t c = 0; c < outside.size(); ++c) m.inside[c] = outside[c] == 0 ? 1 : 0;
   m.number(held);
-  m.build_pattern();
 }
 
 PlateSolver::~PlateSolver() = default;
 PlateSolver::PlateSolver(PlateSolver&&) noexcept = default;
 
 const Grid& PlateSolver::grid() const { return impl_->grid; }
-int PlateSolver::n_unknowns() const { return impl_->n; }
-int PlateSolver::row(int node, int component) const {
-  return impl_->rows[2 * static_cast<std::size_t>(node) + static_cast<std::size_t>(component)];
-}
+int PlateSolver::n_unknowns() const { return impl_->matrix->size(); }
+int PlateSolver::row(int node, int component) const { return impl_->matrix->row(node, component); }
 
-double PlateSolver::condition() const { return impl_->factor->condition(); }
+double PlateSolver::condition() const { return impl_->matrix->factor().condition(); }
 
 void PlateSolver::factorize(const VectorXd& stiffness_factor) {
   Impl& m = *impl_;
   if (stiffness_factor.size() != m.grid.n_cells() || !stiffness_factor.allFinite())
     throw Error::numerical("plate solver: the stiffness factors of " +
                            std::to_string(m.grid.n_cells()) + " cells are not all finite numbers");
-  const std::span<double> values = m.factor->values();
-  std::fill(values.begin(), values.end(), 0.0);
-  const int* entry = m.scatter.data();
-  m.each_cell([&](int i, int j) {
-    const double factor = stiffness_factor(m.grid.cell(i, j));
-    for (int a = 0; a < 8; ++a)
-      for (int b = 0; b <= a; ++b, ++entry)
-        if (*entry >= 0)
-          values[static_cast<std::size_t>(*entry)] += factor * m.cell_stiffness(a, b);
-  });
-  const int column = m.factor->factorize();
+  m.matrix->assemble(stiffness_factor);
+  const int column = m.matrix->factor().factorize();
   if (column < 0) return;
-  const int unknown = m.unknown_of_column[static_cast<std::size_t>(column)], node = unknown / 2;
+  const int unknown = m.matrix->displacement_of(column), node = unknown / 2;
   throw Error::numerical(
       "plate solver: the stiffness is not positive definite at the " +
       std::string(unknown % 2 == 0 ? "x" : "y") + "-displacement of node column " +
@@ -181,17 +117,17 @@ void PlateSolver::factorize(const VectorXd& stiffness_factor) {
 
 void PlateSolver::solve(MatrixXd& loads) const {
   forward(loads);
-  impl_->factor->backward(loads, impl_->active);
+  impl_->matrix->factor().backward(loads, impl_->active);
 }
 
 void PlateSolver::forward(MatrixXd& loads) const {
   const Impl& m = *impl_;
-  m.active.assign(static_cast<std::size_t>(loads.rows()), m.n);
-  m.factor->forward(loads, m.active);
+  m.active.assign(static_cast<std::size_t>(loads.rows()), m.matrix->size());
+  m.matrix->factor().forward(loads, m.active);
 }
 
 Q4Energy::Corners PlateSolver::Impl::corner_values(const MatrixXd& u, int i, int j) const {
-  const auto cell = rows_of_cell(i, j);
+  const auto cell = matrix->rows_of_cell(i, j);
   const auto value = [&](int row) {
     return row < 0 ? held_values.data() : u.data() + static_cast<std::ptrdiff_t>(row) * u.rows();
   };

@@ -4,14 +4,14 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 
-#include "fem/solve/supernodal_factor.h"
+#include "fem/solve/q4_matrix.h"
 
 namespace flexmorph::fem {
 
@@ -33,13 +33,10 @@ std::pair<Eigen::Index, Eigen::Index> moving_loads(std::span<const int> root_col
 struct StaticSolver::Impl {
   Grid grid;
   int first_root = 0;
-  Eigen::Matrix<double, 8, 8> cell_stiffness;
   PlaneSection section;
-  std::unique_ptr<SupernodalFactor> factor;
-  std::vector<int> scatter;  // by cell and pair of unknowns (36): entry of the pattern, -1: held
-  VectorXd stiffness;        // factors of the last factorize()
+  std::optional<Q4Matrix> matrix;
+  VectorXd stiffness;  // factors of the last factorize()
   double edge_stiffness = 0;
-  int edge_ends = -1;  // entry of the pattern: x of the edge's two ends
 
   // Work space.
   mutable std::vector<int> active, order, all_active;
@@ -53,17 +50,7 @@ struct StaticSolver::Impl {
     return i <= first_root ? -1 : 2 * ((grid.nx - i) * (grid.ny + 1) + j);
   }
 
-  std::array<int, 8> rows_of_cell(int i, int j) const {
-    std::array<int, 8> rows{};
-    for (std::size_t a = 0; a < 4; ++a) {
-      const int r = row(i + kCornerI[a], j + kCornerJ[a]);
-      rows[2 * a] = r;
-      rows[2 * a + 1] = r < 0 ? -1 : r + 1;
-    }
-    return rows;
-  }
-
-  void build_pattern();
+  void number();
   void add_edge(std::span<double> values) const;
   void check_roots(std::span<const int> root_columns, Eigen::Index n_loads) const;
   bool arrange(std::span<const int> root_columns) const;
@@ -71,55 +58,26 @@ struct StaticSolver::Impl {
   void from_order(MatrixXd& x) const;
 };
 
-void StaticSolver::Impl::build_pattern() {
-  std::vector<int> starts = {0}, rows;
-  rows.reserve(static_cast<std::size_t>(n_unknowns()) * 10);
-  // Below the diagonal: the rest of the node and of its column, and the next column towards the
-  // root, as far as they share a cell with the node.
-  for (int i = grid.nx; i > first_root; --i) {
+/// Column by column from the free end to the root.
+void StaticSolver::Impl::number() {
+  std::vector<int> rows, cells;
+  for (int i = 0; i <= grid.nx; ++i)
     for (int j = 0; j <= grid.ny; ++j) {
-      for (int c = 0; c < 2; ++c) {
-        for (int r = row(i, j) + c; r <= row(i, std::min(j + 1, grid.ny)) + 1; ++r) {
-          rows.push_back(r);
-        }
-        const int end = row(i, grid.ny);
-        if (edge_stiffness > 0 && i == grid.nx && j + c == 0 && end > rows.back())
-          rows.push_back(end);
-        if (i - 1 > first_root) {
-          const int last = row(i - 1, std::min(j + 1, grid.ny)) + 1;
-          for (int r = row(i - 1, std::max(j - 1, 0)); r <= last; ++r) rows.push_back(r);
-        }
-        starts.push_back(static_cast<int>(rows.size()));
-      }
+      rows.push_back(row(i, j));
+      rows.push_back(i <= first_root ? -1 : row(i, j) + 1);
     }
-  }
-  const auto entry = [&](int r, int c) {
-    const auto begin = rows.begin() + starts[static_cast<std::size_t>(c)];
-    const auto end = rows.begin() + starts[static_cast<std::size_t>(c) + 1];
-    return static_cast<int>(std::lower_bound(begin, end, r) - rows.begin());
-  };
-  scatter.reserve(static_cast<std::size_t>(grid.nx - first_root) * grid.ny * 36);
-  for (int i = first_root; i < grid.nx; ++i) {
-    for (int j = 0; j < grid.ny; ++j) {
-      const auto cell = rows_of_cell(i, j);
-      for (std::size_t a = 0; a < 8; ++a) {
-        for (std::size_t b = 0; b <= a; ++b) {
-          const int r = std::max(cell[a], cell[b]), c = std::min(cell[a], cell[b]);
-          scatter.push_back(c < 0 ? -1 : entry(r, c));
-        }
-      }
-    }
-  }
-  if (edge_stiffness > 0) edge_ends = entry(row(grid.nx, grid.ny), row(grid.nx, 0));
-  factor = std::make_unique<SupernodalFactor>(std::move(starts), std::move(rows));
+  for (int cell = grid.cell(first_root, 0); cell < grid.n_cells(); ++cell) cells.push_back(cell);
+  std::optional<std::pair<int, int>> ends;  // of the edge, in x
+  if (edge_stiffness > 0) ends = {row(grid.nx, grid.ny), row(grid.nx, 0)};
+  matrix.emplace(grid, section, std::move(cells), std::move(rows), ends);
 }
 
 /// Neighbours on the edge are corners 1 and 2 of a cell: unknowns 2 and 4 (x), 3 and 5 (y) of it.
 /// Σ (δ_j - Σ δ / ny)² = Σ δ_j² - (u_ny - u_0)² / ny couples its ends.
 void StaticSolver::Impl::add_edge(std::span<double> values) const {
   const auto value = [&](int j, std::size_t a, std::size_t b) -> double& {
-    const std::size_t cell = scatter.size() - 36 * static_cast<std::size_t>(grid.ny - j);
-    return values[static_cast<std::size_t>(scatter[cell + a * (a + 1) / 2 + b])];
+    const int place = grid.cell(grid.nx - 1, j) - grid.cell(first_root, 0);
+    return values[static_cast<std::size_t>(matrix->entry(static_cast<std::size_t>(place), a, b))];
   };
   for (int j = 0; j < grid.ny; ++j)
     for (const std::size_t c : {2u, 3u}) {
@@ -130,7 +88,7 @@ void StaticSolver::Impl::add_edge(std::span<double> values) const {
   const double mean = edge_stiffness / grid.ny;
   value(0, 2, 2) -= mean;
   value(grid.ny - 1, 4, 4) -= mean;
-  values[static_cast<std::size_t>(edge_ends)] += mean;
+  values[static_cast<std::size_t>(matrix->further_entry())] += mean;
 }
 
 void StaticSolver::Impl::check_roots(std::span<const int> root_columns,
@@ -199,9 +157,8 @@ StaticSolver::StaticSolver(const Grid& grid, const PlaneSection& section, int fi
   impl_->edge_stiffness = edge_stiffness;
   impl_->grid = grid;
   impl_->first_root = first_root;
-  impl_->cell_stiffness = q4_stiffness(section, grid.dx(), grid.dy());
   impl_->section = section;
-  impl_->build_pattern();
+  impl_->number();
 }
 
 StaticSolver::~StaticSolver() = default;
@@ -211,7 +168,7 @@ const Grid& StaticSolver::grid() const { return impl_->grid; }
 int StaticSolver::n_unknowns() const { return impl_->n_unknowns(); }
 int StaticSolver::row(int i, int j) const { return impl_->row(i, j); }
 
-double StaticSolver::condition() const { return impl_->factor->condition(); }
+double StaticSolver::condition() const { return impl_->matrix->factor().condition(); }
 
 void StaticSolver::factorize(const VectorXd& stiffness_factor) {
   Impl& m = *impl_;
@@ -220,20 +177,9 @@ void StaticSolver::factorize(const VectorXd& stiffness_factor) {
                            std::to_string(m.grid.n_cells()) + " cells are not all finite numbers");
   }
   m.stiffness = stiffness_factor;
-  const std::span<double> values = m.factor->values();
-  std::fill(values.begin(), values.end(), 0.0);
-  const int* entry = m.scatter.data();
-  for (int cell = m.grid.cell(m.first_root, 0); cell < m.grid.n_cells(); ++cell) {
-    const double factor = stiffness_factor(cell);
-    for (int a = 0; a < 8; ++a) {
-      for (int b = 0; b <= a; ++b, ++entry) {
-        if (*entry >= 0)
-          values[static_cast<std::size_t>(*entry)] += factor * m.cell_stiffness(a, b);
-      }
-    }
-  }
+  const std::span<double> values = m.matrix->assemble(stiffness_factor);
   if (m.edge_stiffness > 0) m.add_edge(values);
-  const int column = m.factor->factorize();
+  const int column = m.matrix->factor().factorize();
   if (column < 0) return;
   const int node = column / 2, i = m.grid.nx - node / (m.grid.ny + 1);
   throw Error::numerical("static solver: the stiffness is not positive definite at unknown " +
@@ -248,8 +194,8 @@ void StaticSolver::solve(MatrixXd& loads, std::span<const int> root_columns) con
   m.check_roots(root_columns, loads.rows());
   const bool reorder = m.arrange(root_columns);
   if (reorder) m.to_order(loads);
-  m.factor->forward(loads, m.active);
-  m.factor->backward(loads, m.active);
+  m.matrix->factor().forward(loads, m.active);
+  m.matrix->factor().backward(loads, m.active);
   if (reorder) m.from_order(loads);
 }
 
@@ -258,8 +204,8 @@ void StaticSolver::solve_at_clamp(MatrixXd& loads, std::span<const int> root_col
   m.check_roots(root_columns, loads.rows());
   const bool reorder = m.arrange(root_columns);
   if (reorder) m.to_order(loads);
-  m.factor->forward(loads, m.active, m.block_size());
-  m.factor->backward(loads, m.active);
+  m.matrix->factor().forward(loads, m.active, m.block_size());
+  m.matrix->factor().backward(loads, m.active);
   if (reorder) m.from_order(loads);
 }
 
@@ -273,25 +219,27 @@ void StaticSolver::solve_mixed(const MatrixXd& mix, MatrixXd& basis,
   const int r = static_cast<int>(mix.cols()), ld = static_cast<int>(mix.rows());
   m.all_active.assign(static_cast<std::size_t>(r),
                       *std::max_element(m.active.begin(), m.active.end()));
-  m.factor->forward(basis, m.all_active);
+  m.matrix->factor().forward(basis, m.all_active);
   const MatrixXd* weights = &mix;
   if (reorder) {
     m.sorted_mix = mix;
     m.to_order(m.sorted_mix);
     weights = &m.sorted_mix;
   }
-  m.factor->backward(displacements, m.active, [&](int first, int last, int load, int count) {
-    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, count, last - first, r, 1,
-                weights->data() + load, ld, basis.data() + static_cast<std::ptrdiff_t>(first) * r,
-                r, 0, &displacements(load, first), ld);
-  });
+  m.matrix->factor().backward(displacements, m.active,
+                              [&](int first, int last, int load, int count) {
+                                cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, count,
+                                            last - first, r, 1, weights->data() + load, ld,
+                                            basis.data() + static_cast<std::ptrdiff_t>(first) * r,
+                                            r, 0, &displacements(load, first), ld);
+                              });
   if (reorder) m.from_order(displacements);
 }
 
 void StaticSolver::forward(MatrixXd& loads) const {
   const Impl& m = *impl_;
   m.all_active.assign(static_cast<std::size_t>(loads.rows()), m.n_unknowns());
-  m.factor->forward(loads, m.all_active);
+  m.matrix->factor().forward(loads, m.all_active);
 }
 
 void StaticSolver::cell_energies(const MatrixXd& displacements, const VectorXd& weights,
@@ -344,13 +292,14 @@ void StaticSolver::apply(const MatrixXd& displacements, MatrixXd& forces) const 
   forces.setZero(displacements.rows(), m.n_unknowns());
   for (int i = m.first_root; i < m.grid.nx; ++i) {
     for (int j = 0; j < m.grid.ny; ++j) {
-      const auto rows = m.rows_of_cell(i, j);
+      const auto rows = m.matrix->rows_of_cell(i, j);
       const double factor = m.stiffness(m.grid.cell(i, j));
       for (std::size_t a = 0; a < 8; ++a) {
         if (rows[a] < 0) continue;
         for (std::size_t b = 0; b < 8; ++b) {
           if (rows[b] < 0) continue;
-          const double k = factor * m.cell_stiffness(static_cast<int>(a), static_cast<int>(b));
+          const double k =
+              factor * m.matrix->cell_stiffness()(static_cast<int>(a), static_cast<int>(b));
           forces.col(rows[a]) += k * displacements.col(rows[b]);
         }
       }

@@ -1,0 +1,99 @@
+#include "cases/run/run_folder.h"
+#include "io/exports.h"
+#include "io/files.h"
+#include "io/plots.h"
+
+/// Tables and pictures of designs and their loads.
+namespace flexmorph::cases {
+namespace {
+
+/// The union of a design's components in its domain, to a tolerance in cells.
+struct Outlines {
+  std::vector<Region> regions;
+  Box frame;
+
+  explicit Outlines(const mmc::BodyProblem& problem, double tolerance = mmc::kOutlineTolerance)
+      : regions(
+            mmc::regions_of(problem, problem.design.components(), tolerance * problem.grid.dx())) {
+    const Grid& g = problem.grid;
+    frame = {{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}};
+  }
+  std::string svg() const { return io::outline_svg(regions, frame); }
+  std::string picture() const { return io::outline_svg(regions, frame, 5); }
+};
+
+}  // namespace
+
+std::string components_name(const Scene& scene, const std::string& body) {
+  return scene.designs.size() > 1 ? "components_" + body + ".csv" : "components.csv";
+}
+
+void RunFolder::write_loads(const std::string& body, const fem::EslSets& loads,
+                            const mmc::BodyOutcome* outcome) {
+  const std::vector<std::string> columns = {"time",          "root_column",  "weight",
+                                            "strain_energy", "energy_ratio", "compliance",
+                                            "force_x",       "force_y"};
+  io::CsvWriter csv(path_ + "/loads/" + body + ".csv", columns);
+  for (size_t i = 0; i < loads.sets.size(); ++i) {
+    const fem::EslSet& s = loads.sets[i];
+    Vec2 force(0, 0);
+    for (const fem::NodalForce& f : s.forces) force += f.force;
+    io::Cell ratio, compliance;
+    if (outcome) {
+      ratio = outcome->energy_ratios[i];
+      compliance = outcome->load_compliances[i];
+    }
+    csv.row({s.time, s.root_column, s.weight, s.strain_energy, ratio, compliance, force.x(),
+             force.y()});
+  }
+}
+
+void RunFolder::write_static_loads(const Domain& domain, const mmc::BodyOutcome& outcome) {
+  const std::vector<std::string> columns = {"load", "weight", "compliance", "active"};
+  io::CsvWriter csv(path_ + "/loads/" + domain.name + ".csv", columns);
+  for (size_t l = 0; l < domain.loads.size(); ++l)
+    csv.row({domain.loads[l].name, domain.loads[l].weight, outcome.load_compliances[l],
+             outcome.load_compliances[l] >= 0.99 * outcome.worst_compliance});
+}
+
+RunFolder::DesignPictures& RunFolder::pictures_of(const std::string& body) {
+  for (DesignPictures& p : pictures_)
+    if (p.body == body) return p;
+  pictures_.emplace_back().body = body;
+  return pictures_.back();
+}
+
+void RunFolder::write_start(const mmc::BodyProblem& problem) {
+  if (!scene_.output.plots) return;
+  std::string& svg = pictures_of(problem.body).start;
+  svg = Outlines(problem, 0.05).picture();
+  io::write_file(path_ + "/plots/start_" + problem.body + ".svg", svg);
+}
+
+void RunFolder::write_design(const mmc::BodyProblem& problem, const mmc::BodyOutcome& outcome) {
+  const std::string stem = scene_.designs.size() > 1 ? "_" + problem.body : "";
+  const std::vector<Component> components = problem.design.components();
+  io::write_components_csv(path_ + "/" + components_name(scene_, problem.body), components);
+  const Outlines outlines(problem);
+  io::write_file(path_ + "/design" + stem + ".svg", outlines.svg());
+  io::write_dxf(path_ + "/design" + stem + ".dxf", outlines.regions);
+  io::write_stl(path_ + "/design" + stem + ".stl", outlines.regions, problem.section.thickness);
+  if (!scene_.output.plots) return;
+  pictures_of(problem.body).result = outlines.picture();
+  const auto& sharp = outcome.sharp.fractions;
+  io::write_png(path_ + "/plots/design" + stem + ".png", problem.grid,
+                {sharp.data(), static_cast<size_t>(sharp.size())});
+}
+
+void RunFolder::write_cycles(std::span<const mmc::CycleVerdict> cycles) {
+  const std::vector<std::string> columns = {
+      "cycle", "body", "compliance", "sharp_compliance", "design_change", "strain_energy_integral",
+      "best"};
+  io::CsvWriter csv(path_ + "/cycles.csv", columns);
+  for (const mmc::CycleVerdict& c : cycles)
+    for (const mmc::BodyVerdict& b : c.bodies)
+      csv.row({c.cycle, b.body, b.compliance, b.sharp_compliance, b.design_change,
+               c.strain_energy_integral, c.best});
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "fem/section.h"
+#include "fem/solve/supernodal_factor.h"
+#include "geometry/grid.h"
+
+namespace flexmorph::fem {
+
+/// Stiffness of bilinear plane-stress cells of a grid with its Cholesky factor, between unknowns in
+/// any order: what StaticSolver and PlateSolver have in common. Which order is best differs between
+/// them by a factor (fem/README.md, Static solver).
+class Q4Matrix {
+ public:
+  /// @param cells  those that have stiffness, ascending
+  /// @param rows   unknown of every displacement, x of node k at 2 k and y at 2 k + 1: -1 when it
+  ///        is held or there is none; every number from 0 on is there once
+  /// @param further  one more entry of the pattern, row and column (row > column)
+  Q4Matrix(const Grid& grid, const PlaneSection& section, std::vector<int> cells,
+           std::vector<int> rows, std::optional<std::pair<int, int>> further = {});
+
+  int size() const { return static_cast<int>(displacement_of_.size()); }
+  /// Unknown of a displacement, or -1.
+  int row(int node, int component) const {
+    return rows_[2 * static_cast<std::size_t>(node) + static_cast<std::size_t>(component)];
+  }
+  int displacement_of(int unknown) const {  ///< 2 node + component
+    return displacement_of_[static_cast<std::size_t>(unknown)];
+  }
+  /// Unknowns of the corners of cell (i, j), x and y interleaved.
+  std::array<int, 8> rows_of_cell(int i, int j) const;
+  const Eigen::Matrix<double, 8, 8>& cell_stiffness() const { return cell_stiffness_; }
+
+  /// Entry of the pattern for unknowns a >= b of a cell, by its place in `cells`; -1: held.
+  int entry(std::size_t place, std::size_t a, std::size_t b) const {
+    return scatter_[36 * place + a * (a + 1) / 2 + b];
+  }
+  int further_entry() const { return further_entry_; }
+
+  /// K(stiffness factors (n_cells)) in the order of the pattern; factor().factorize() takes it.
+  std::span<double> assemble(const VectorXd& stiffness_factor);
+  SupernodalFactor& factor() { return factor_; }
+  const SupernodalFactor& factor() const { return factor_; }
+
+ private:
+  void unknowns_around(int node, int first, std::span<const char> inside,
+                       std::vector<int>& out) const;
+  SupernodalFactor pattern(std::optional<std::pair<int, int>> further);
+
+  Grid grid_;
+  Eigen::Matrix<double, 8, 8> cell_stiffness_;
+  std::vector<int> cells_, rows_, displacement_of_;
+  std::vector<int> scatter_;  // by cell and pair of unknowns (36)
+  int further_entry_ = -1;
+  SupernodalFactor factor_;
+};
+
+}  // namespace flexmorph::fem
