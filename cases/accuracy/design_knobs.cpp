@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "cases/accuracy/knobs.h"
-#include "cases/scene/design_keys.h"
+#include "cases/scene/design/keys.h"
 #include "cases/scene/tables.h"
 #include "io/files.h"
 

@@ -6,7 +6,7 @@
 #include "cases/build/twin.h"
 #include "cases/run/check_cost.h"
 #include "cases/run/run.h"
-#include "cases/scene/goal.h"
+#include "cases/scene/design/goal.h"
 #include "cases/scene/heat/heat.h"
 #include "cases/scene/joints/row.h"
 #include "cases/scene/read.h"

@@ -8,7 +8,7 @@
 #include "cases/run/plots/run.h"
 #include "cases/run/run_warnings.h"
 #include "cases/run/version.h"
-#include "cases/scene/goal.h"
+#include "cases/scene/design/goal.h"
 #include "cases/scene/heat/heat.h"
 #include "fem/solve/linear_solver.h"
 #include "io/files.h"

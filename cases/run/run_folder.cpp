@@ -3,7 +3,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "cases/scene/goal.h"
+#include "cases/scene/design/goal.h"
 #include "geometry/cpu_time.h"
 #include "io/files.h"
 

@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-#include "cases/scene/goal.h"
+#include "cases/scene/design/goal.h"
 #include "tests/cases/scenes.h"
 #include "tests/io/scratch.h"
 

@@ -1,4 +1,4 @@
-#include "cases/scene/design_keys.h"
+#include "cases/scene/design/keys.h"
 #include "cases/scene/read.h"
 #include "io/files.h"
 

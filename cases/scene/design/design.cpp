@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include "cases/scene/design_keys.h"
-#include "cases/scene/goal.h"
+#include "cases/scene/design/keys.h"
+#include "cases/scene/design/goal.h"
 #include "cases/scene/read.h"
 #include "io/exports.h"
 #include "io/files.h"

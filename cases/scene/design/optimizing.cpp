@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "cases/scene/design_keys.h"
+#include "cases/scene/design/keys.h"
 #include "cases/scene/read.h"
 #include "cases/scene/tables.h"
 #include "io/files.h"

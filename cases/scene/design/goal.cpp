@@ -1,9 +1,9 @@
-#include "cases/scene/goal.h"
+#include "cases/scene/design/goal.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "cases/scene/design_keys.h"
+#include "cases/scene/design/keys.h"
 #include "cases/scene/scene.h"
 #include "geometry/picture.h"
 #include "io/files.h"
