@@ -187,6 +187,26 @@ TEST(Responses, WithoutAStateNoneIsSolved) {
   EXPECT_TRUE(whole.problem.acceptable(x));
 }
 
+// A full rectangle about the middle of its left edge: m (w² / 3 + h² / 12).
+TEST(Inertia, OfAFullPlateIsThatOfARectangle) {
+  const ResponseRow& row = *find_response("inertia", "");
+  Plate plate = kPlate;
+  const double mass = 2700 * 0.01 * 0.6 * 0.1;
+  const double whole = mass * (0.6 * 0.6 / 3 + 0.1 * 0.1 / 12);
+  EXPECT_NEAR(row.full(plate), whole, 1e-14);
+  Compliance loads(turning_plate(1), kSection, {}, {}, {});
+  DesignState state(loads);
+  const VectorXd full = VectorXd::Ones(kGrid.n_cells());
+  Values found;
+  row.make(plate)->evaluate({{full, full}, {}, state}, found);
+  EXPECT_NEAR(found.f[0], whole, 1e-14);
+  // The half next to the root: half of the mass, half as long.
+  plate.outside.assign(static_cast<size_t>(kGrid.n_cells()), 0);
+  for (int cell = kGrid.cell(kGrid.nx / 2, 0); cell < kGrid.n_cells(); ++cell)
+    plate.outside[static_cast<size_t>(cell)] = 1;
+  EXPECT_NEAR(row.full(plate), 0.5 * mass * (0.3 * 0.3 / 3 + 0.1 * 0.1 / 12), 1e-14);
+}
+
 TEST(Goal, KnowsWhatItAllowsAndWhatHoldsItBack) {
   const double mass = 0.3 * kPlate.full_mass();
   Goal goal = least_compliance(0.4);

@@ -5,8 +5,10 @@
 
 namespace flexmorph::mmc {
 
+extern const ResponseRow kInertia;
+
 std::span<const ResponseRow* const> responses() {
-  static const std::array kRows = {&kComplianceSum, &kComplianceWorst, &kVolume, &kMass};
+  static const std::array kRows = {&kComplianceSum, &kComplianceWorst, &kVolume, &kMass, &kInertia};
   return kRows;
 }
 
