@@ -64,8 +64,14 @@ void write_table(const KeyTable& table, size_t width, std::string& out) {
   widths[2] = 2 * rest / 10;
   widths[3] = rest - widths[1] - widths[2];
   for (const Cells& cells : rows) write_row(cells, widths, out);
-  for (const auto& [key, word, sentence] : meanings_of(table))
-    out += "  " + key + " = \"" + word + "\": " + sentence + "\n";
+  for (const auto& [key, word, sentence] : meanings_of(table)) {
+    std::string indent = "  ";
+    for (const std::string& line :
+         wrapped(key + " = \"" + word + "\": " + sentence, taken + rest - 4)) {
+      out += indent + line + "\n";
+      indent = "    ";
+    }
+  }
 }
 
 }  // namespace
