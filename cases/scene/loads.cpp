@@ -1,3 +1,5 @@
+#include "fem/loads.h"
+
 #include <array>
 
 #include "cases/scene/joints/reading.h"
