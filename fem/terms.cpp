@@ -5,6 +5,7 @@
 namespace flexmorph::fem {
 
 const TermRow& bending_row();
+const TermRow& damping_row();
 const TermRow& ecm_row();
 const TermRow& gcm_row();
 const TermRow& inertia_row();
@@ -19,6 +20,7 @@ const std::vector<const TermRow*>& term_rows() {
       &membrane_assumed_row(),  //
       &gcm_row(),               //
       &ecm_row(),               //
+      &damping_row(),           //
   };
   return kRows;
 }
