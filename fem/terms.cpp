@@ -5,6 +5,7 @@
 namespace flexmorph::fem {
 
 const TermRow& bending_row();
+const TermRow& damping_row();
 const TermRow& ecm_row();
 const TermRow& gcm_row();
 const TermRow& inertia_row();
@@ -12,9 +13,15 @@ const TermRow& membrane_row();
 const TermRow& membrane_assumed_row();
 
 const std::vector<const TermRow*>& term_rows() {
-  static const std::vector<const TermRow*> kRows = {&inertia_row(),  &bending_row(),
-                                                    &membrane_row(), &membrane_assumed_row(),
-                                                    &gcm_row(),      &ecm_row()};
+  static const std::vector<const TermRow*> kRows = {
+      &inertia_row(),           //
+      &bending_row(),           //
+      &membrane_row(),          //
+      &membrane_assumed_row(),  //
+      &gcm_row(),               //
+      &ecm_row(),               //
+      &damping_row(),           //
+  };
   return kRows;
 }
 
@@ -141,6 +148,14 @@ std::vector<std::unique_ptr<Term>> make_terms(std::span<const std::string> names
 
 std::unique_ptr<Term> make_term(const std::string& name, const PlaneSection& section) {
   return std::move(make_terms(std::span(&name, 1), section, {}).front());
+}
+
+std::unique_ptr<Term> make_membrane(const PlaneSection& section) {
+  return make_term("membrane", section);
+}
+
+std::unique_ptr<Term> make_assumed_membrane(const PlaneSection& section) {
+  return make_term("membrane_assumed", section);
 }
 
 }  // namespace flexmorph::fem

@@ -171,16 +171,45 @@ void stretch_in_hubs(Model& model, std::span<const Growth> growths, double delta
   }
 }
 
+/// Velocities of the bodies of a rigid state when they are strained to q and turn as they are.
+VectorXd turning(const Model& model, const State& rigid, const VectorXd& q) {
+  VectorXd v = rigid.v;
+  for (const Body& body : model.bodies()) {
+    const int dim = body.element->dim(), n = body.element->n_vectors();
+    int axis = 0;  // a vector that turns with the body
+    while (axis + 1 < n && body.element->is_position(axis)) ++axis;
+    const int turned = body.first_dof + dim * axis;
+    const Vec2 u = rigid.q.segment<2>(turned), rate = rigid.v.segment<2>(turned);
+    const double spin = (kQuarter * u).dot(rate) / u.squaredNorm();
+    for (int k = 0; k < n; ++k) {
+      const int at = body.first_dof + dim * k;
+      v.segment<2>(at) += spin * kQuarter * (q - rigid.q).segment<2>(at);
+    }
+  }
+  return v;
+}
+
 /// Static equilibrium under the inertia forces of the rigid motion; its rate from equilibria a
-/// little later (what drives a mechanism need not be defined before its start).
+/// little later (what drives a mechanism need not be defined before its start). A strained body
+/// turns as a rigid one, so that its material does not damp that: with the velocities of the
+/// undeformed body it would.
 void stretch_mechanism(Model& model, std::span<const Growth> growths, const Placement& placement,
                        double delta, State& x) {
+  constexpr int kPasses = 50;
   const auto strain = [&](double t) {
     move_lines(model, t);
     State s = rigid_state(model, growths, placement, t);
-    const VectorXd rigid = s.q;
+    const State rigid = s;
     solve_carried_equilibrium(model, s);
-    return VectorXd(s.q - rigid);
+    VectorXd last = rigid.q;
+    for (int pass = 0; pass < kPasses && model.dissipation(s) > 0 &&
+                       (s.q - last).norm() > 1e-10 * (s.q - rigid.q).norm();
+         ++pass) {
+      last = s.q;
+      s.v = turning(model, rigid, s.q);
+      solve_carried_equilibrium(model, s);
+    }
+    return VectorXd(s.q - rigid.q);
   };
   const double t = x.t;
   const VectorXd later = strain(t + delta), last = strain(t + 2 * delta), now = strain(t);

@@ -142,7 +142,7 @@ class Elastic final : public ElasticTerm {
 
   void add_force(int e, const Local& x, LocalRows& force) const override {
     for (size_t i = 0; i < parts().size(); ++i) {
-      const Stressed at(parts()[i], tables_.of(i, e), x.q, false);
+      const Stressed& at = stressed(i, e, x.q, false);
       field().add_force(at.stress, force);
     }
   }
@@ -150,46 +150,52 @@ class Elastic final : public ElasticTerm {
   void add_tangent(int e, const Local& x, const Weights& w, LocalTangent& tangent) const override {
     if (w.q == 0) return;
     for (size_t i = 0; i < parts().size(); ++i) {
-      const Stressed at(parts()[i], tables_.of(i, e), x.q, true);
+      Stressed& at = stressed(i, e, x.q, true);
       StrainField& strains = field();
       const MatrixXd& B = strains.variation();
       const Eigen::Index n = at.stress.cols();
-      MatrixXd DB = MatrixXd::Zero(B.rows(), B.cols());
+      at.change.setZero(B.rows(), B.cols());
       for (Eigen::Index r = 0; r < at.stress.rows(); ++r)
         for (Eigen::Index c = 0; c < at.stress.rows(); ++c)
           for (Eigen::Index p = 0; p < n; ++p)
             if (const double d = at.stiffness[static_cast<size_t>(p)](r, c); d != 0)
-              DB.row(n * r + p) += w.q * d * B.row(n * c + p);
-      tangent.noalias() += B.transpose() * DB;
+              at.change.row(n * r + p) += w.q * d * B.row(n * c + p);
+      tangent.noalias() += B.transpose() * at.change;
       strains.add_second(at.stress, w.q, tangent);
     }
   }
 
  private:
-  /// Stresses at all points, times weights; the strains are left in field().
+  /// Stresses at all points, times weights.
   struct Stressed {
-    Stressed(const ElasticPart& part, const StrainTable& table, const LocalRows& q, bool derive) {
-      field().set(part.density->strain(), table, q);
-      const MatrixXd& e = field().strain();
-      stress.resize(e.rows(), e.cols());
-      if (derive) stiffness.resize(static_cast<size_t>(e.cols()));
-      StrainVector s;
-      for (Eigen::Index p = 0; p < e.cols(); ++p) {
-        StrainSquare* by_strain = derive ? &stiffness[static_cast<size_t>(p)] : nullptr;
-        energy += table.weight[p] * part.density->of_strain(e.col(p), &s, by_strain);
-        stress.col(p) = table.weight[p] * s;
-        if (derive) *by_strain *= table.weight[p];
-      }
-    }
     double energy = 0;
-    MatrixXd stress;
+    MatrixXd stress, change;  // what the tangent makes of it
     std::vector<StrainSquare> stiffness;
   };
 
+  /// Of an element and a part; the strains are left in field(). One per thread.
+  Stressed& stressed(size_t part, int e, const LocalRows& q, bool derive) const {
+    static thread_local Stressed out;
+    const StrainDensity& density = *parts()[part].density;
+    const StrainTable& table = tables_.of(part, e);
+    field().set(density.strain(), table, q);
+    const MatrixXd& strain = field().strain();
+    out.energy = 0;
+    out.stress.resize(strain.rows(), strain.cols());
+    out.stiffness.resize(static_cast<size_t>(strain.cols()));
+    StrainVector s;
+    for (Eigen::Index p = 0; p < strain.cols(); ++p) {
+      StrainSquare* by_strain = derive ? &out.stiffness[static_cast<size_t>(p)] : nullptr;
+      out.energy += table.weight[p] * density.of_strain(strain.col(p), &s, by_strain);
+      out.stress.col(p) = table.weight[p] * s;
+      if (derive) *by_strain *= table.weight[p];
+    }
+    return out;
+  }
+
   double energy_at(int e, const LocalRows& q) const override {
     double out = 0;
-    for (size_t i = 0; i < parts().size(); ++i)
-      out += Stressed(parts()[i], tables_.of(i, e), q, false).energy;
+    for (size_t i = 0; i < parts().size(); ++i) out += stressed(i, e, q, false).energy;
     return out;
   }
 
@@ -210,7 +216,7 @@ class Dissipative final : public StrainTerm {
 
   void add_force(int e, const Local& x, LocalRows& force) const override {
     for (size_t i = 0; i < parts_.size(); ++i) {
-      const Stressed at(parts_[i], tables_.of(i, e), x, false);
+      const Stressed& at = stressed(i, e, x, false);
       field().add_force(at.stress, force);
     }
   }
@@ -218,21 +224,21 @@ class Dissipative final : public StrainTerm {
   void add_tangent(int e, const Local& x, const Weights& w, LocalTangent& tangent) const override {
     if (w.q == 0 && w.v == 0) return;
     for (size_t i = 0; i < parts_.size(); ++i) {
-      const Stressed at(parts_[i], tables_.of(i, e), x, true);
+      Stressed& at = stressed(i, e, x, true);
       StrainField& strains = field();
       const MatrixXd &B = strains.variation(), &R = strains.rate_variation(w);
       const Eigen::Index n = at.stress.cols();
-      MatrixXd change = MatrixXd::Zero(B.rows(), B.cols());  // of the stress
+      at.change.setZero(B.rows(), B.cols());
       for (Eigen::Index r = 0; r < at.stress.rows(); ++r)
         for (Eigen::Index c = 0; c < at.stress.rows(); ++c)
           for (Eigen::Index p = 0; p < n; ++p) {
             const auto at_p = static_cast<size_t>(p);
             if (const double d = at.by_strain[at_p](r, c); d != 0)
-              change.row(n * r + p) += w.q * d * B.row(n * c + p);
+              at.change.row(n * r + p) += w.q * d * B.row(n * c + p);
             if (const double d = at.by_rate[at_p](r, c); d != 0)
-              change.row(n * r + p) += d * R.row(n * c + p);
+              at.change.row(n * r + p) += d * R.row(n * c + p);
           }
-      tangent.noalias() += B.transpose() * change;
+      tangent.noalias() += B.transpose() * at.change;
       if (w.q != 0) strains.add_second(at.stress, w.q, tangent);
     }
   }
@@ -247,47 +253,54 @@ class Dissipative final : public StrainTerm {
 
   double dissipation(int e, const Local& x) const override {
     double out = 0;
-    for (size_t i = 0; i < parts_.size(); ++i)
-      out += Stressed(parts_[i], tables_.of(i, e), x, false).power;
+    for (size_t i = 0; i < parts_.size(); ++i) out += stressed(i, e, x, false).power;
     return out;
   }
 
   double flow_power(int e, const Local& x) const override {
     double out = 0;
     for (size_t i = 0; i < parts_.size(); ++i) {
-      const Stressed at(parts_[i], tables_.of(i, e), x, false);
+      const Stressed& at = stressed(i, e, x, false);
       out += power_of_flow(field(), at.stress, x.q);
     }
     return out;
   }
 
  private:
-  /// Stresses at all points, times weights; strains and rates are left in field().
+  /// Stresses at all points, times weights.
   struct Stressed {
-    Stressed(const DissipativePart& part, const StrainTable& table, const Local& x, bool derive) {
-      StrainField& strains = field();
-      strains.set(part.density->strain(), table, x.q);
-      strains.set_rate(x.q, x.v);
-      const MatrixXd &e = strains.strain(), &rate = strains.rate();
-      stress.resize(e.rows(), e.cols());
-      if (derive) by_strain.resize(static_cast<size_t>(e.cols()));
-      if (derive) by_rate.resize(static_cast<size_t>(e.cols()));
-      StrainVector s;
-      for (Eigen::Index p = 0; p < e.cols(); ++p) {
-        StrainSquare *of_strain = derive ? &by_strain[static_cast<size_t>(p)] : nullptr,
-                     *of_rate = derive ? &by_rate[static_cast<size_t>(p)] : nullptr;
-        part.density->stress(e.col(p), rate.col(p), s, of_strain, of_rate);
-        stress.col(p) = table.weight[p] * s;
-        power += stress.col(p).dot(rate.col(p));
-        if (!derive) continue;
-        *of_strain *= table.weight[p];
-        *of_rate *= table.weight[p];
-      }
-    }
     double power = 0;
-    MatrixXd stress;
+    MatrixXd stress, change;  // what the tangent makes of it
     std::vector<StrainSquare> by_strain, by_rate;
   };
+
+  /// Of an element and a part; strains and rates are left in field(). One per thread.
+  Stressed& stressed(size_t part, int e, const Local& x, bool derive) const {
+    static thread_local Stressed out;
+    const DissipationDensity& density = *parts_[part].density;
+    const StrainTable& table = tables_.of(part, e);
+    StrainField& strains = field();
+    strains.set(density.strain(), table, x.q);
+    strains.set_rate(x.q, x.v);
+    const MatrixXd &strain = strains.strain(), &rate = strains.rate();
+    out.power = 0;
+    out.stress.resize(strain.rows(), strain.cols());
+    out.by_strain.resize(static_cast<size_t>(strain.cols()));
+    out.by_rate.resize(static_cast<size_t>(strain.cols()));
+    StrainVector s;
+    for (Eigen::Index p = 0; p < strain.cols(); ++p) {
+      StrainSquare &by_strain = out.by_strain[static_cast<size_t>(p)],
+                   &by_rate = out.by_rate[static_cast<size_t>(p)];
+      density.stress(strain.col(p), rate.col(p), s, derive ? &by_strain : nullptr,
+                     derive ? &by_rate : nullptr);
+      out.stress.col(p) = table.weight[p] * s;
+      out.power += out.stress.col(p).dot(rate.col(p));
+      if (!derive) continue;
+      by_strain *= table.weight[p];
+      by_rate *= table.weight[p];
+    }
+    return out;
+  }
 
   std::string name_;
   std::vector<DissipativePart> parts_;

@@ -37,6 +37,8 @@ class ElasticTerm : public StrainTerm {
   virtual double energy_at(int e, const LocalRows& q) const = 0;
 
   const std::vector<ElasticPart>& parts() const { return parts_; }
+  const Element& element() const { return *element_; }  ///< of the last prepare_parts()
+  const Factors& factors() const { return *factors_; }
   bool is_free(int e) const { return !free_.empty() && free_.front().has(e); }
 
  private:
@@ -44,7 +46,7 @@ class ElasticTerm : public StrainTerm {
   std::vector<ElasticPart> parts_;
   std::vector<FreeTables> free_;  // of every part
   GramGradient gradient_;
-  const Element* element_ = nullptr;  // of the last prepare()
+  const Element* element_ = nullptr;
   const Factors* factors_ = nullptr;
 };
 

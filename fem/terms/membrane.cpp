@@ -47,8 +47,6 @@ class Membrane final : public ElasticTerm {
   }
 
   void prepare(const Element& element, const Factors& factors, bool all) override {
-    element_ = &element;
-    factors_ = &factors;
     tabulated_ = -1;
     prepare_parts(element, factors);
     if (all) {
@@ -127,9 +125,9 @@ class Membrane final : public ElasticTerm {
     tangent += by_columns.transpose();
   }
   double flow_power(int e, const Local& x) const override {
-    if (strains_ == Strains::assumed)
-      return assumed_flow_power(*element_, e, *factors_, elasticity_, x.q);
-    return ElasticTerm::flow_power(e, x);
+    return strains_ == Strains::assumed
+               ? assumed_flow_power(element(), e, factors(), elasticity_, x.q)
+               : ElasticTerm::flow_power(e, x);
   }
 
   void add_line_energy(std::span<const ShapeTable> line, const Local& x,
@@ -183,7 +181,6 @@ class Membrane final : public ElasticTerm {
       }
   }
 
-  /// Calls f<kKinds, kDim>().
   template <class F>
   void dispatch(const F& f) const {
     if (kinds_ == 3)
@@ -356,60 +353,46 @@ class Membrane final : public ElasticTerm {
 
   Eigen::Matrix3d elasticity_;  // h C [N/m]
   Strains strains_;
-  const Element* element_ = nullptr;  // of the last prepare()
-  const Factors* factors_ = nullptr;
   int dim_ = 0, kinds_ = 0;
   Coupling coupling_ = Coupling::classes;
   PairNumbers pairs_;                         // of gram::Numbering
   std::vector<int> function_m_, function_n_;  // even or odd function of every vector
   std::vector<BatchData> batches_;
   ProductTable table_, previous_;
-  int tabulated_ = -1;  // element of table_
-  Packed last_;         // its W
-  Packed squares_, squares_of_;
+  int tabulated_ = -1;                  // element of table_
+  Packed last_, squares_, squares_of_;  // W of table_; the squares of which W
 };
+
+template <Strains kStrains>
+TermRow row(const char* name, const char* sentence, std::vector<TermPlace> places) {
+  return {.name = name,
+          .sentence = sentence,
+          .role = "membrane",
+          .places = std::move(places),
+          .required_in = {TermPlace::space},
+          .designable = kStrains == Strains::displacement,
+          .free_lines = kStrains == Strains::displacement,
+          .keys = {},
+          .columns = {},
+          .elastic = [](const TermData& d) { return Membrane::parts_of(d.section, kStrains); },
+          .make = [](const TermData& d) -> std::unique_ptr<Term> {
+            return std::make_unique<Membrane>(d.section, kStrains);
+          }};
+}
 
 }  // namespace
 
-std::unique_ptr<Term> make_membrane(const PlaneSection& section) {
-  return std::make_unique<Membrane>(section, Strains::displacement);
-}
-
-std::unique_ptr<Term> make_assumed_membrane(const PlaneSection& section) {
-  return std::make_unique<Membrane>(section, Strains::assumed);
-}
-
 const TermRow& membrane_row() {
-  static const TermRow kRow{
-      .name = "membrane",
-      .sentence = "Membrane forces, strains as the displacements have them.",
-      .role = "membrane",
-      .places = {TermPlace::plane, TermPlace::space},
-      .required_in = {TermPlace::space},
-      .designable = true,
-      .keys = {},
-      .columns = {},
-      .elastic =
-          [](const TermData& data) {
-            return Membrane::parts_of(data.section, Strains::displacement);
-          },
-      .make = [](const TermData& data) { return make_membrane(data.section); }};
+  static const TermRow kRow = row<Strains::displacement>(
+      "membrane", "Membrane forces, strains as the displacements have them.",
+      {TermPlace::plane, TermPlace::space});
   return kRow;
 }
 
 const TermRow& membrane_assumed_row() {
-  static const TermRow kRow{
-      .name = "membrane_assumed",
-      .sentence = "Membrane forces with assumed strains, which do not lock where plates are thin.",
-      .role = "membrane",
-      .places = {TermPlace::space},
-      .required_in = {TermPlace::space},
-      .free_lines = false,
-      .keys = {},
-      .columns = {},
-      .elastic =
-          [](const TermData& data) { return Membrane::parts_of(data.section, Strains::assumed); },
-      .make = [](const TermData& data) { return make_assumed_membrane(data.section); }};
+  static const TermRow kRow = row<Strains::assumed>(
+      "membrane_assumed", "Membrane forces with assumed strains: thin plates do not lock.",
+      {TermPlace::space});
   return kRow;
 }
 

@@ -132,20 +132,19 @@ void StrainField::add_second(const MatrixXd& stress, double scale, LocalTangent&
   const MatrixXd& s = unmixed(stress);
   MeasureHessian sum, second;
   const auto n_z = static_cast<Eigen::Index>(table_->measure.size()) * dim_;
-  MatrixXd by_unknowns(n_z, n_shapes_ * dim_);
   for (Eigen::Index p = 0; p < n_points(); ++p) {
     sum.setZero(n_z, n_z);
     for (Eigen::Index i = 0; i < measure_->size(); ++i) {
       measure_->second_variation(static_cast<int>(i), z_[static_cast<size_t>(p)], second);
       sum += scale * s(i, p) * second;
     }
-    by_unknowns.setZero();
+    by_unknowns_.setZero(n_z, n_shapes_ * dim_);
     for (size_t i = 0; i < table_->measure.size(); ++i)
       for (Eigen::Index k = 0; k < n_shapes_; ++k)
         for (Eigen::Index c = 0; c < dim_; ++c)
-          by_unknowns(dim_ * static_cast<Eigen::Index>(i) + c, dim_ * k + c) =
+          by_unknowns_(dim_ * static_cast<Eigen::Index>(i) + c, dim_ * k + c) =
               table_->measure[i](p, k);
-    tangent.noalias() += by_unknowns.transpose() * (sum * by_unknowns);
+    tangent.noalias() += by_unknowns_.transpose() * (sum * by_unknowns_);
   }
 }
 

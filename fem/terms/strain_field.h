@@ -49,6 +49,9 @@ class StrainField {
   MatrixXd own_, own_rate_;                   // strains of the measures, before mixing
   MatrixXd strain_, rate_, stress_, mixed_;
   MatrixXd own_variation_, variation_, own_rate_variation_, rate_variation_;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxMeasures * kMaxDim,
+                kMaxShapes * kMaxDim>
+      by_unknowns_;  // ∂z/∂q of a point
 };
 
 }  // namespace flexmorph::fem
