@@ -160,7 +160,7 @@ int parse_and_run(int argc, char** argv) {
   CLI::App* run = app.add_subcommand("run", "runs a case and writes its run folder");
   add_case(*run, options.case_name, options.overrides);
   run->add_option("-o,--output", options.directory, "run folder (default runs/<name>)");
-  run->add_option("--threads", options.threads, "threads for loads and cells")
+  run->add_option("--threads", options.threads, "threads for loads, cells, and motions side by side")
       ->check(CLI::Range(1, 256));
   run->add_flag("--condition", options.condition,
                 "estimates the condition of the last matrices, for run.json");

@@ -12,7 +12,6 @@ using SparseMatrix = Eigen::SparseMatrix<double>;
 struct State {
   double t = 0;      ///< [s]
   VectorXd q, v, a;  ///< unknowns, their rates and accelerations (n)
-  VectorXd alpha;    ///< algorithmic acceleration of generalized-alpha (n)
   VectorXd lambda;   ///< Lagrange multipliers (m)
 };
 

@@ -81,6 +81,9 @@ class Element {
  public:
   virtual ~Element() = default;
 
+  /// A copy that shares nothing with this one.
+  virtual std::unique_ptr<Element> clone() const = 0;
+
   virtual int dim() const = 0;
   virtual int n_shapes() const = 0;  ///< shape functions of one element, <= kMaxShapes
   virtual int n_elements() const = 0;

@@ -37,6 +37,8 @@ struct BodyView {
 class Joint {
  public:
   virtual ~Joint() = default;
+  /// A copy that shares nothing with this one; to be bound before it is evaluated.
+  virtual std::unique_ptr<Joint> clone() const = 0;
   virtual std::string name() const = 0;
   virtual int size() const = 0;  ///< rows
   /// Is it part of a body (its unit axis) rather than of the mechanism? Messages about joints that

@@ -20,6 +20,8 @@ struct MaterialLine {
 /// value, derivative by m, by n and, when per_node() is 4, the mixed one.
 class LineGrid : public Element {
  public:
+  std::unique_ptr<Element> clone() const final { return copy(); }
+
   virtual int per_node() const = 0;
   virtual const std::vector<MaterialLine>& lines_m() const = 0;
   virtual const Motion& line_m(int i) const = 0;  ///< at the time of the last move_to()

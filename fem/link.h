@@ -11,6 +11,8 @@ namespace flexmorph::fem {
 class Link {
  public:
   virtual ~Link() = default;
+  /// A copy that shares nothing with this one; to be bound before it is evaluated.
+  virtual std::unique_ptr<Link> clone() const = 0;
   virtual std::string name() const = 0;
 
   /// Looks up the unknowns it acts on, by the names of bodies; called again after every change of a

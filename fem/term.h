@@ -62,6 +62,8 @@ struct LineEnergy {
 class Term {
  public:
   virtual ~Term() = default;
+  /// A copy that shares nothing that changes with this one; to be prepared before it is evaluated.
+  virtual std::unique_ptr<Term> clone() const = 0;
 
   /// Refreshes what depends on mesh, material and time: of all elements, or only of those whose
   /// shape moves.

@@ -64,7 +64,7 @@ set(folder_valijson tests)
 
 # The room a file lies in.
 function(room_of path room)
-  if(path MATCHES "^fem/model[^/]*$")
+  if(path MATCHES "^fem/(model|workspace)[^/]*$")
     set(${room} fem/model PARENT_SCOPE)
   elseif(path MATCHES "^(fem/[^/]+|optim/mmc|cases/[^/]+)/")
     set(${room} ${CMAKE_MATCH_1} PARENT_SCOPE)

@@ -33,7 +33,7 @@ Scene read_scene(const io::CaseFile& file);
 
 /// A scene ready to be moved: what it lists is in here, nothing else.
 struct Mechanism {
-  fem::Model model;
+  fem::Workspace model;              ///< with the room of one motion
   std::vector<fem::Growth> growths;  ///< one per plate that sits in a hub or sleeve
   fem::MotionSettings motion;
 };

@@ -62,7 +62,7 @@ Error refusal(const Scene& scene, const fem::Diagnosis& diagnosis) {
 
 /// Assembles; says which joints are to blame where there is no position or velocity because they
 /// hold more than there is, wherever the bodies are.
-void assemble_start(const Scene& scene, fem::Model& model, fem::State& x) {
+void assemble_start(const Scene& scene, fem::Workspace& model, fem::State& x) {
   const fem::State guess = x;
   try {
     fem::assemble(model, x);
@@ -221,7 +221,6 @@ fem::Motion Twin::motion_of(const std::string& drive, const fem::State& x) const
 }
 
 TwinMotion::TwinMotion(const Scene& scene) : twin_(scene), start_(twin_.guess()) {
-  twin_.model().prepare(start_);
   assemble_start(scene, twin_.model(), start_);
   const fem::Diagnosis diagnosis = fem::diagnose(twin_.model(), start_);
   if (!diagnosis.is_independent()) throw refusal(scene, diagnosis);
@@ -232,7 +231,6 @@ TwinMotion::TwinMotion(const Scene& scene) : twin_(scene), start_(twin_.guess())
 int undriven_freedoms(const Scene& scene) {
   Twin twin(scene, Twin::Driven::free);
   fem::State x = twin.guess();
-  twin.model().prepare(x);
   fem::assemble(twin.model(), x);
   return fem::degrees_of_freedom(twin.model(), x);
 }
@@ -245,7 +243,6 @@ double TwinMotion::start_speed() const {
 
 double TwinMotion::start_acceleration() {
   fem::State x = start_;
-  twin_.model().prepare(x);
   fem::make_integrator(twin_.model(), {})->make_consistent(x);
   return twin_.model().scales().cwiseProduct(x.a).lpNorm<Eigen::Infinity>();
 }
@@ -283,7 +280,6 @@ void follow_trajectory(Scene& scene) {
   if (drives.empty()) throw Error::input("no [[drive]] has from = \"trajectory\"");
   Twin twin(scene, Twin::Driven::by_trajectory);
   fem::State start = twin.guess();
-  twin.model().prepare(start);
   assemble_start(scene, twin.model(), start);
   fem::Kinematics kinematics(twin.model(), start);
   std::vector<std::vector<fem::Motion>> samples(drives.size());

@@ -24,7 +24,7 @@ class Twin {
   /// @throws Error (input) for joints that do not fit the bodies.
   explicit Twin(const Scene& scene, Driven driven = Driven::by_drives);
 
-  fem::Model& model() { return model_; }
+  fem::Workspace& model() { return model_; }
   const fem::Model& model() const { return model_; }
   const Scene& scene() const { return scene_; }
 
@@ -45,7 +45,7 @@ class Twin {
 
   const Scene& scene_;
   Driven driven_;
-  fem::Model model_;
+  fem::Workspace model_;
 };
 
 /// Motion of a scene's twin in time.

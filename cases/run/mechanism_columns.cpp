@@ -41,7 +41,7 @@ MechanismColumns::MechanismColumns(const Scene& scene) : scene_(scene) {
   }
 }
 
-void MechanismColumns::add(const fem::Model& model, const fem::State& x) {
+void MechanismColumns::add(fem::Workspace& model, const fem::State& x) {
   next_ = 0;
   for (size_t i = 0; i < frames_.size(); ++i) {
     const double before = frames_[i].angle;
@@ -67,7 +67,7 @@ void MechanismColumns::add_trajectory(double t) {
   put(frame.angle - angle - *turns_);
 }
 
-void MechanismColumns::add_joint(const Watched& watched, const fem::Model& model,
+void MechanismColumns::add_joint(const Watched& watched, fem::Workspace& model,
                                  const fem::State& x) {
   const auto& all = model.joints();
   const auto found = std::find_if(all.begin(), all.end(), [&](const auto& joint) {

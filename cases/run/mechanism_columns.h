@@ -22,8 +22,8 @@ class MechanismColumns {
  public:
   explicit MechanismColumns(const Scene& scene);
 
-  /// The next row. @param x  the model is prepared for it, λ belongs to it
-  void add(const fem::Model& model, const fem::State& x);
+  /// The next row. @param x  λ belongs to it
+  void add(fem::Workspace& model, const fem::State& x);
   std::vector<Column> take() { return std::move(columns_); }
 
  private:
@@ -35,7 +35,7 @@ class MechanismColumns {
   };
 
   void add_trajectory(double t);
-  void add_joint(const Watched& watched, const fem::Model& model, const fem::State& x);
+  void add_joint(const Watched& watched, fem::Workspace& model, const fem::State& x);
   void put(double value) { columns_[next_++].values.push_back(value + 0.0); }  // no "-0"
 
   const Scene& scene_;

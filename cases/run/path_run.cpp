@@ -18,9 +18,8 @@ fem::StaticSettings settings_of(const StaticAnalysis& analysis) {
 }
 
 /// Of loads and temperatures, what does not grow along the path is put on before, step by step.
-void put_on(const Scene& scene, fem::Model& model, fem::State& x) {
+void put_on(const Scene& scene, fem::Workspace& model, fem::State& x) {
   const StaticAnalysis& analysis = *scene.statics;
-  model.prepare(x);
   model.scale_loads(0);
   const bool loads = !analysis.loads_grow && (!scene.loads.empty() || scene.gravity),
              temperatures = !analysis.temperatures_grow;
@@ -39,10 +38,9 @@ void put_on(const Scene& scene, fem::Model& model, fem::State& x) {
 PathRecord run_path(const Scene& scene, RunFolder& folder, const std::function<bool()>& go_on,
                     bool condition) {
   Mechanism mechanism = build_mechanism(scene);
-  fem::Model& model = mechanism.model;
+  fem::Workspace& model = mechanism.model;
   fem::State x =
       fem::start_state(model, mechanism.growths, 0, fem::Start::rigid, mechanism.motion.placement);
-  model.prepare(x);
   BodyMeasures measures(scene, model, x);
   PathRecord out;
   static const char* const kAxes[] = {"_ux", "_uy", "_uz"};
@@ -56,7 +54,6 @@ PathRecord run_path(const Scene& scene, RunFolder& folder, const std::function<b
                                     : start_pose(scene, body).place(o.point));
   }
   const auto observe = [&](const fem::StaticStep& step) {
-    model.prepare(step.x);
     const fem::Energies energies = model.energies(step.x);
     out.factor.push_back(step.factor);
     out.iterations.push_back(step.iterations);

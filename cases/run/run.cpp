@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -15,15 +16,16 @@
 #include "cases/run/path_run.h"
 #include "cases/run/report.h"
 #include "cases/run/version.h"
+#include "fem/dynamics/side_by_side.h"
 #include "geometry/cpu_time.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
 namespace {
 
-volatile std::sig_atomic_t interrupted = 0;
+std::atomic<bool> interrupted = false;  // set by a signal, read by every motion
 
-bool go_on() { return interrupted == 0; }
+bool go_on() { return !interrupted; }
 
 /// A line that rewrites itself on a terminal, plain lines now and then elsewhere.
 class Progress {
@@ -92,31 +94,60 @@ std::vector<fem::Factors> final_factors(const std::vector<mmc::BodyProblem>& pro
 /// Pictures of a mechanism in its motion.
 int moments_of(const Scene& scene) { return scene.is_mechanism() && scene.output.plots ? 4 : 0; }
 
+/// Motions that do not need each other, at the same time where there are threads for it.
+class Motions {
+ public:
+  Motions(const Scene& scene, RunFolder& folder, int threads)
+      : scene_(scene), folder_(folder), threads_(threads) {}
+
+  /// @param out  what becomes of it
+  void add(std::string name, double cost, MotionWishes wishes, std::optional<MotionRecord>& out) {
+    jobs_.push_back({std::move(name), cost,
+                     [this, wishes = std::move(wishes), &out](const std::function<bool()>& others) {
+                       MotionWishes mine = wishes;
+                       mine.go_on = [&others] { return go_on() && others(); };
+                       out = run_motion(scene_, mine, folder_).record;
+                     }});
+  }
+  /// @throws as fem::side_by_side(); Interrupted
+  void run() const { fem::side_by_side(threads_, jobs_); }
+
+ private:
+  const Scene& scene_;
+  RunFolder& folder_;
+  int threads_;
+  std::vector<fem::Job> jobs_;
+};
+
 /// The judge of a design is the motion with it; beside it the same volume spread evenly.
 void judge_by_motion(const Scene& scene, bool condition, RunFolder& folder, Progress& progress,
                      RunReport& report) {
+  Motions motions(scene, folder, report.threads);
+  const std::vector<fem::Factors> designed = final_factors(report.problems),
+                                  uniform = uniform_factors(report.problems);
   MotionWishes wishes;
   wishes.condition = condition;
-  wishes.factors = final_factors(report.problems);
+  wishes.factors = designed;
   wishes.frames_every = scene.output.vtk ? scene.output.motion_every : 0;
   wishes.moments = moments_of(scene);
-  wishes.go_on = go_on;
-  report.motion = run_motion(scene, wishes, folder).record;
-  wishes.frames_every = 0;
-  wishes.moments = 0;
-  wishes.condition = false;
-  wishes.factors = uniform_factors(report.problems);
+  motions.add("motion with the design", 1, wishes, report.motion);
+  wishes = {};
+  wishes.factors = uniform;
   wishes.table = "motion_uniform.csv";
-  report.uniform_motion = run_motion(scene, wishes, folder).record;
-  if (!scene.verify) return;
-  progress.say("verification on " + scene.verify->words());
-  wishes.mesh = {scene.verify->mesh, scene.verify->refine, scene.verify->step};
-  wishes.balance = false;
-  wishes.table = "motion_verified_uniform.csv";
-  report.verified_uniform = run_motion(scene, wishes, folder).record;
-  wishes.factors = final_factors(report.problems);
-  wishes.table = "motion_verified.csv";
-  report.verified = run_motion(scene, wishes, folder).record;
+  motions.add("motion with uniform material", 1, wishes, report.uniform_motion);
+  if (scene.verify) {
+    progress.say("verification on " + scene.verify->words());
+    // A finer mesh, and in all likelihood shorter steps.
+    constexpr double kFiner = 4;
+    wishes.mesh = {scene.verify->mesh, scene.verify->refine, scene.verify->step};
+    wishes.balance = false;
+    wishes.table = "motion_verified_uniform.csv";
+    motions.add("verification with uniform material", kFiner, wishes, report.verified_uniform);
+    wishes.factors = designed;
+    wishes.table = "motion_verified.csv";
+    motions.add("verification with the design", kFiner, wishes, report.verified);
+  }
+  motions.run();
 }
 
 /// The story of a run with designs; fills the report as far as it gets.
@@ -242,7 +273,6 @@ void build_scene(const Scene& scene) {
                                             fem::Start::rigid, mechanism.motion.placement)));
     const fem::State x = mechanism.model.reference();
     VectorXd force;
-    mechanism.model.prepare(x);
     mechanism.model.force(x, force);
     if (scene.time.integrator == "energy_momentum") mechanism.model.mean_force(x, x.q, x.q, force);
   }
@@ -278,10 +308,11 @@ int run_case(const RunOptions& options) {
   std::string directory = options.directory;
   if (directory.empty()) directory = scene.output.directory;
   if (directory.empty()) directory = "runs/" + scene.name;
-  RunFolder folder(directory, scene, options.explain ? file.explained() : file.text());
+  RunFolder folder(directory, scene, options.explain ? file.explained() : file.text(),
+                   options.threads > 1);
 
-  std::signal(SIGINT, [](int) { interrupted = 1; });
-  std::signal(SIGTERM, [](int) { interrupted = 1; });
+  std::signal(SIGINT, [](int) { interrupted = true; });
+  std::signal(SIGTERM, [](int) { interrupted = true; });
   Progress progress(options.quiet);
   progress.say(scene.title + " -> " + directory);
   RunReport report;
@@ -300,6 +331,7 @@ int run_case(const RunOptions& options) {
   close("running", "");
   try {
     run_scene(scene, options.condition, folder, progress, report);
+    folder.finish();
   } catch (const Interrupted&) {
     close("interrupted", "");
     progress.say("interrupted: what was computed is in " + directory);

@@ -90,12 +90,14 @@ double tip_deflection(const fem::Model& model, const fem::Growth& growth, const 
   return Vec2(-std::sin(hub.angle), std::cos(hub.angle)).dot(tip - hub.origin);
 }
 
-RunFolder::RunFolder(std::string path, const Scene& scene, const std::string& case_text)
+RunFolder::RunFolder(std::string path, const Scene& scene, const std::string& case_text,
+                     bool beside)
     : path_(std::move(path)),
       scene_(scene),
       iterations_(path_ + "/design/iterations.pvd"),
       components_(path_ + "/design/components.pvd"),
-      motion_(path_ + "/motion/motion.pvd") {
+      motion_(path_ + "/motion/motion.pvd"),
+      writer_(beside) {
   try {
     fs::create_directories(path_);
     empty_folder(path_);
@@ -110,10 +112,11 @@ RunFolder::RunFolder(std::string path, const Scene& scene, const std::string& ca
   history_ = std::make_unique<io::CsvWriter>(path_ + "/history.csv", columns);
 }
 
-double RunFolder::take_output_seconds() { return std::exchange(output_seconds_, 0); }
+double RunFolder::take_output_seconds() { return output_seconds_.exchange(0); }
 
 /// VTK files of a design on its way.
 void RunFolder::write_design_frame(const mmc::IterationReport& r) {
+  const double start = thread_seconds();
   const std::string stem = scene_.designs.size() > 1 ? r.problem.body + "_" : "";
   const mmc::CellFactors& factors = r.state.factors();
   // Σ w ½ uᵀ K_cell u: the derivative by the stiffness factor holds it. The energies of loads and
@@ -121,28 +124,33 @@ void RunFolder::write_design_frame(const mmc::IterationReport& r) {
   VectorXd by_stiffness = -r.value.d_stiffness;
   if (by_stiffness.size() == 0) by_stiffness.setZero(factors.stiffness.size());  // not solved
   if (r.value.d_held.size() > 0) by_stiffness += 2 * r.value.d_held;
-  const VectorXd energy = 0.5 * by_stiffness.cwiseProduct(factors.stiffness);
-  const VectorXd displacement =
-      r.loads.displacement(factors.stiffness, factors.mass, r.loads.n_loads() - 1);
-  const auto view = [](const VectorXd& v) {
-    return std::span<const double>(v.data(), static_cast<size_t>(v.size()));
-  };
-  const io::Field cells[] = {{"density", view(factors.mass)},
-                             {"stiffness_factor", view(factors.stiffness)},
-                             {"strain_energy", view(energy)}};
-  const io::Field points[] = {{"tdf", view(r.state.phi())},
-                              {"displacement", view(displacement), 2}};
-  const std::string image = numbered("iteration_" + stem, rows_, ".vti");
-  io::write_image_data(path_ + "/design/" + image, r.problem.grid, cells, points);
-  iterations_.add(rows_, image);
-  const std::string lines = numbered("components_" + stem, rows_, ".vtp");
-  io::write_components(path_ + "/design/" + lines, r.state.components(),
-                       r.problem.stages.back().min_half_thickness);
-  components_.add(rows_, lines);
+  VectorXd shown = r.loads.displacement(factors.stiffness, factors.mass, r.loads.n_loads() - 1);
+  output_seconds_ += thread_seconds() - start;
+  // Whatever is shown is copied: it is written while the next iteration goes on.
+  writer_.then([this, image = numbered("iteration_" + stem, rows_, ".vti"),
+                lines = numbered("components_" + stem, rows_, ".vtp"), row = rows_,
+                grid = r.problem.grid, mass = factors.mass, stiffness = factors.stiffness,
+                energy = VectorXd(0.5 * by_stiffness.cwiseProduct(factors.stiffness)),
+                phi = VectorXd(r.state.phi()), displacement = std::move(shown),
+                components = r.state.components(),
+                min_half_thickness = r.problem.stages.back().min_half_thickness] {
+    const double clock = thread_seconds();
+    const auto view = [](const VectorXd& v) {
+      return std::span<const double>(v.data(), static_cast<size_t>(v.size()));
+    };
+    const io::Field cells[] = {{"density", view(mass)},
+                               {"stiffness_factor", view(stiffness)},
+                               {"strain_energy", view(energy)}};
+    const io::Field points[] = {{"tdf", view(phi)}, {"displacement", view(displacement), 2}};
+    io::write_image_data(path_ + "/design/" + image, grid, cells, points);
+    iterations_.add(row, image);
+    io::write_components(path_ + "/design/" + lines, components, min_half_thickness);
+    components_.add(row, lines);
+    output_seconds_ += thread_seconds() - clock;
+  });
 }
 
 void RunFolder::add_iteration(const mmc::IterationReport& r) {
-  const double clock = cpu_seconds();
   ++rows_;
   const Output& wish = scene_.output;
   if (wish.vtk && wish.design_every > 0 &&
@@ -158,7 +166,6 @@ void RunFolder::add_iteration(const mmc::IterationReport& r) {
     h.sharp_compliance.push_back(r.sharp->compliance);
   }
   add_events(r);
-  output_seconds_ += cpu_seconds() - clock;
   write_history_row(r);
 }
 
@@ -217,7 +224,7 @@ void RunFolder::add_events(const mmc::IterationReport& r) {
 }
 
 void RunFolder::write_motion(const std::string& name, const Scene& scene,
-                             const MotionRecord& motion) {
+                             const MotionRecord& motion) const {
   std::vector<std::string> columns = {"time"};
   for (const std::string& body : motion.bodies) columns.push_back(body + ".tip_deflection");
   for (const std::string& body : motion.growing) columns.push_back(body + ".length");
@@ -270,14 +277,40 @@ void RunFolder::write_path(const PathRecord& path) {
   }
 }
 
+namespace {
+
+/// A field with values of its own.
+struct OwnField {
+  std::string name;
+  std::vector<double> values;
+  int components;
+};
+
+std::vector<OwnField> copies_of(std::span<const io::Field> fields) {
+  std::vector<OwnField> out;
+  for (const io::Field& f : fields)
+    out.push_back({f.name, {f.values.begin(), f.values.end()}, f.components});
+  return out;
+}
+
+std::vector<io::Field> views_of(const std::vector<OwnField>& fields) {
+  std::vector<io::Field> out;
+  for (const OwnField& f : fields) out.push_back({f.name, f.values, f.components});
+  return out;
+}
+
+}  // namespace
+
 void RunFolder::write_part(const std::string& body, const io::QuadMesh& mesh,
                            std::vector<io::Field> cells, std::span<const io::Field> points,
                            double time, int part) {
   const std::vector<double> number(mesh.quads.size(), part);
   cells.push_back({"body", number});
-  const std::string file = numbered("motion_" + body + "_", ++motion_frames_, ".vtu");
-  io::write_quad_mesh(path_ + "/motion/" + file, mesh, cells, points);
-  motion_.add(time, file, part);
+  writer_.then([this, file = numbered("motion_" + body + "_", ++motion_frames_, ".vtu"), mesh,
+                of_cells = copies_of(cells), of_points = copies_of(points), time, part] {
+    io::write_quad_mesh(path_ + "/motion/" + file, mesh, views_of(of_cells), views_of(of_points));
+    motion_.add(time, file, part);
+  });
 }
 
 void RunFolder::add_surface_frame(const fem::Body& body, const fem::State& x, const Pose& pose,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <string>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "cases/build/build.h"
 #include "cases/run/surface.h"
 #include "fem/dynamics/motion.h"
+#include "io/background.h"
 #include "io/plane_frames.h"
 #include "io/surfaces.h"
 #include "io/tables.h"
@@ -66,14 +68,19 @@ class RunFolder {
  public:
   /// Makes the folder and writes case.toml. A folder that holds another run (its run.json is there)
   /// is emptied of its files first.
+  /// @param beside  files for ParaView are written by a thread of their own, while the run goes on
   /// @throws Error (input) when it cannot be made, or holds files that no run has written.
-  RunFolder(std::string path, const Scene& scene, const std::string& case_text);
+  RunFolder(std::string path, const Scene& scene, const std::string& case_text,
+            bool beside = false);
 
   const std::string& path() const { return path_; }
+  /// Until all files are written. @throws Error (input) when one could not be.
+  void finish() { writer_.wait(); }
 
   /// One design iteration: a row of history.csv, and the VTK files the scene asks for.
   void add_iteration(const mmc::IterationReport& report);
-  /// CPU seconds spent on files since the last call.
+  /// CPU seconds spent on files since the last call; those of files that are written beside the run
+  /// when they are done.
   double take_output_seconds();
 
   /// loads/<body>.csv: one row per load set.
@@ -82,8 +89,8 @@ class RunFolder {
   /// The same for a plate at rest: one row per load, with its compliance; `active` loads are
   /// within 1 % of the largest.
   void write_static_loads(const Domain& domain, const mmc::BodyOutcome& outcome);
-  /// motion.csv (or another name): one row per time step.
-  void write_motion(const std::string& name, const Scene& scene, const MotionRecord& motion);
+  /// motion.csv (or another name): one row per time step. Several threads may write such tables.
+  void write_motion(const std::string& name, const Scene& scene, const MotionRecord& motion) const;
   /// A part of a frame of motion/motion.pvd, which has one file per part and time; the field `body`
   /// is its number. The deformed body with the density of its design:
   void add_motion_frame(const std::string& body, const DesignedSurface& surface, double time,
@@ -139,7 +146,8 @@ class RunFolder {
   std::vector<DesignPictures> pictures_;
   int rows_ = 0, motion_frames_ = 0;
   std::vector<io::SurfaceFrame> shapes_;
-  double output_seconds_ = 0;
+  std::atomic<double> output_seconds_ = 0;
+  io::Background writer_;  // last: its tasks use the others
 };
 
 }  // namespace flexmorph::cases

@@ -71,6 +71,7 @@ void RunFolder::write_start(const mmc::BodyProblem& problem) {
 }
 
 void RunFolder::write_design(const mmc::BodyProblem& problem, const mmc::BodyOutcome& outcome) {
+  writer_.wait();  // one picture at a time
   const std::string stem = scene_.designs.size() > 1 ? "_" + problem.body : "";
   const std::vector<Component> components = problem.design.components();
   io::write_components_csv(path_ + "/" + components_name(scene_, problem.body), components);

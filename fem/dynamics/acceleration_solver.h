@@ -2,9 +2,9 @@
 
 #include <optional>
 
-#include "fem/model.h"
 #include "fem/solve/klu_solver.h"
 #include "fem/solve/linear_solver.h"
+#include "fem/workspace.h"
 
 namespace flexmorph::fem {
 
@@ -18,11 +18,11 @@ namespace flexmorph::fem {
 /// flows, and the factor is kept while M and Φ_q are what they were.
 class AccelerationSolver {
  public:
-  explicit AccelerationSolver(const Model& model) : model_(model) {}
+  explicit AccelerationSolver(Workspace& model) : model_(model) {}
 
   /// Takes the mass anew at the next factorize(): after a change of factors of the design.
   void forget() { version_ = -1; }
-  /// Factors at x, of which model.prepare(x) was done, with its constraints.
+  /// Factors at x, with its constraints.
   /// @throws Error (input) naming bodies whose unknowns have no mass where nothing holds them;
   /// Error (numerical) when the matrix is singular for another reason, or not finite.
   void factorize(const State& x, const Constraints& c);
@@ -36,7 +36,7 @@ class AccelerationSolver {
   void number(const State& x, const Constraints& c);
   void require_mass() const;
 
-  const Model& model_;
+  Workspace& model_;
   int version_ = -1;  // of the model's pattern
   bool mass_moves_ = false, is_factored_ = false, is_small_ = true;
   SparseMatrix kkt_;         // scaled

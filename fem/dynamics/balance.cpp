@@ -143,7 +143,8 @@ class LinePowers {
 
 }  // namespace
 
-Powers powers(const Model& model, const State& x) {
+Powers powers(Workspace& model, const State& x) {
+  model.prepare(x);
   Powers out;
   Constraints c;
   model.constraints(x, c);

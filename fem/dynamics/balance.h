@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "fem/line_grid.h"
-#include "fem/model.h"
+#include "fem/workspace.h"
 
 namespace flexmorph::fem {
 
@@ -31,9 +31,9 @@ struct Powers {
 /// above; but of the strain energy the gradient, limits included (FreeElastic): dU/dt is ∂U/∂q · q̇
 /// and the strain density does not appear.
 ///
-/// @param x  consistent (λ belongs to q̈); prepare(x) done
+/// @param x  consistent (λ belongs to q̈)
 /// @throws Error (input) where an n-line moves that is driven or an edge of its body
-Powers powers(const Model& model, const State& x);
+Powers powers(Workspace& model, const State& x);
 
 /// Integrates the powers along a run and compares with the energies.
 class EnergyBalance {

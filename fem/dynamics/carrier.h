@@ -2,7 +2,7 @@
 
 #include <concepts>
 
-#include "fem/model.h"
+#include "fem/workspace.h"
 
 namespace flexmorph::fem {
 

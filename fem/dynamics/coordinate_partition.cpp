@@ -26,7 +26,7 @@ MatrixXd used_columns(const SparseMatrix& j, std::vector<int>& unknowns) {
   return out;
 }
 
-[[noreturn]] void refuse(const Model& model, const State& x) {
+[[noreturn]] void refuse(Workspace& model, const State& x) {
   std::string what = describe(diagnose(model, x));
   if (what.empty()) what = describe(ConstraintWatch(model).look(x));
   throw Error::numerical("minimal_coordinates: the constraints are dependent at t = " +
@@ -35,7 +35,7 @@ MatrixXd used_columns(const SparseMatrix& j, std::vector<int>& unknowns) {
 
 }  // namespace
 
-bool CoordinatePartition::choose(const Model& model, const State& x) {
+bool CoordinatePartition::choose(Workspace& model, const State& x) {
   rows_.evaluate(model, x);
   const Eigen::Index m = model.n_constraints();
   std::vector<int> used, chosen;

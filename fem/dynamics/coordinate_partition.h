@@ -1,8 +1,8 @@
 #pragma once
 
-#include "fem/model.h"
 #include "fem/solve/klu_solver.h"
 #include "fem/solve/scaled_constraints.h"
+#include "fem/workspace.h"
 
 namespace flexmorph::fem {
 
@@ -19,10 +19,10 @@ namespace flexmorph::fem {
 /// Source: Wehage & Haug (1982), J. Mech. Des. 104, 247-255, with QR in place of their LU.
 class CoordinatePartition {
  public:
-  /// Parts the unknowns anew at a state; model.prepare(x) was done.
+  /// Parts the unknowns anew at a state.
   /// @returns whether the parts differ from those before.
   /// @throws Error (numerical) when the constraints are dependent, with the joints.
-  bool choose(const Model& model, const State& x);
+  bool choose(Workspace& model, const State& x);
 
   const std::vector<int>& independent() const { return independent_; }  ///< (n - m), ascending
   const std::vector<int>& dependent() const { return dependent_; }      ///< (m), ascending

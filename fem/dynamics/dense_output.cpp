@@ -87,10 +87,8 @@ void DenseOutput::at(double t, State& out) {
   const int n = model_.n_dofs();
   if (version_ != model_.pattern_version()) scales_ = model_.scales();
   interpolate(t, out);
-  model_.prepare(out);
   if (model_.n_constraints() > 0) project_position(out);
 
-  if (model_.has_free_lines()) model_.prepare(out);
   model_.constraints(out, constraints_);
   factorize(out);
   miss_ = -constraints_.rate;
@@ -101,14 +99,12 @@ void DenseOutput::at(double t, State& out) {
   out.v += solution_.head(n);
 
   out.a.setZero(n);
-  model_.prepare(out);
   model_.constraints(out, constraints_);
   model_.force(out, force_);
   force_ *= -1;
   solve(constraints_.acceleration);
-  out.a = out.alpha = solution_.head(n);
+  out.a = solution_.head(n);
   out.lambda = solution_.tail(model_.n_constraints());
-  if (model_.has_free_lines()) model_.prepare(out);
 }
 
 }  // namespace flexmorph::fem

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "fem/model.h"
 #include "fem/solve/linear_solver.h"
+#include "fem/workspace.h"
 
 namespace flexmorph::fem {
 
@@ -18,12 +18,12 @@ namespace flexmorph::fem {
 /// Has its own matrix and factors: those that an integrator keeps stay what they are.
 class DenseOutput {
  public:
-  explicit DenseOutput(Model& model) : model_(model) {}
+  explicit DenseOutput(Workspace& model) : model_(model) {}
 
   /// The ends of the step; both must outlive the calls of at().
   void set_step(const State& start, const State& end) { start_ = &start, end_ = &end; }
 
-  /// The state at a time within the step; the model is prepared for it, not for the end any more.
+  /// The state at a time within the step.
   /// @throws Error (numerical) when the projection does not converge.
   void at(double t, State& out);
 
@@ -34,7 +34,7 @@ class DenseOutput {
   /// solution_ from force_ and constraint.
   void solve(const VectorXd& constraint);
 
-  Model& model_;
+  Workspace& model_;
   const State* start_ = nullptr;
   const State* end_ = nullptr;
   UnsymmetricSolver solver_;

@@ -2,7 +2,7 @@
 
 namespace flexmorph::fem {
 
-EnergyMomentum::EnergyMomentum(Model& model, const EnergyMomentumSettings& settings)
+EnergyMomentum::EnergyMomentum(Workspace& model, const EnergyMomentumSettings& settings)
     : StepSolver(model, settings, "energy_momentum",
                  "Nothing is damped here: a smaller time.step often helps, or integrator = "
                  "\"generalized_alpha\".") {}
@@ -17,7 +17,6 @@ void EnergyMomentum::begin(const State& x, double h) {
   mean_.t = x.t + 0.5 * h;
   step_ = h * x.v + 0.5 * h * h * x.a;
   set_mean();
-  model().prepare(mean_.t);
 }
 
 /// The other variables from the step of q.
@@ -49,9 +48,8 @@ void EnergyMomentum::correct(const VectorXd& dq, const VectorXd& dlambda) {
 
 void EnergyMomentum::finish(State& x) {
   end_.v = start_.v + h_ * mean_.a;
-  model().prepare(end_.t);
   follow_drives(!start_rate_.isZero(0));
-  end_.a = end_.alpha = mean_.a;
+  end_.a = mean_.a;
   end_.lambda = mean_.lambda;
   x = end_;
 }

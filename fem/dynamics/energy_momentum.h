@@ -33,7 +33,7 @@ namespace flexmorph::fem {
 /// 165-174, for constraints; fem/README.md, Energy and momentum.
 class EnergyMomentum final : public StepSolver {
  public:
-  EnergyMomentum(Model& model, const EnergyMomentumSettings& settings);
+  EnergyMomentum(Workspace& model, const EnergyMomentumSettings& settings);
   const State* step_mean() const override { return &mean_; }
 
  private:

@@ -127,7 +127,7 @@ void spread(const Grid& grid, int column, const Vec2& force, double moment,
 
 }  // namespace
 
-std::vector<AttachedForce> joint_forces(const Model& model, const State& x, const Body& body,
+std::vector<AttachedForce> joint_forces(Workspace& model, const State& x, const Body& body,
                                         std::span<const AttachedJoint> joints) {
   std::vector<AttachedForce> out;
   for (const AttachedJoint& attached : joints) {
@@ -144,7 +144,7 @@ std::vector<AttachedForce> joint_forces(const Model& model, const State& x, cons
   return out;
 }
 
-EslSet equivalent_static_load(const Model& model, const State& x, const Growth& growth,
+EslSet equivalent_static_load(Workspace& model, const State& x, const Growth& growth,
                               const Grid& grid, std::span<const AttachedMass> masses,
                               std::span<const AttachedForce> forces, const VectorXd& gravity) {
   const Body& body = model.body(growth.body);

@@ -28,7 +28,7 @@ struct AttachedJoint {
 };
 
 /// What the joints do to a body at x (multipliers of x). @throws Error (input) for unknown names.
-std::vector<AttachedForce> joint_forces(const Model& model, const State& x, const Body& body,
+std::vector<AttachedForce> joint_forces(Workspace& model, const State& x, const Body& body,
                                         std::span<const AttachedJoint> joints);
 
 /// Equivalent static load of one body at one time.
@@ -59,7 +59,7 @@ std::vector<AttachedForce> joint_forces(const Model& model, const State& x, cons
 /// @param masses, forces  must sit on nodes of the grid
 ///
 /// Source: P (31), (32); fem/README.md, Equivalent static loads.
-EslSet equivalent_static_load(const Model& model, const State& x, const Growth& growth,
+EslSet equivalent_static_load(Workspace& model, const State& x, const Growth& growth,
                               const Grid& grid, std::span<const AttachedMass> masses,
                               std::span<const AttachedForce> forces, const VectorXd& gravity);
 

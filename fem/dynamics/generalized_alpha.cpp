@@ -13,7 +13,7 @@ constexpr double kSmooth = 1.2;
 
 }  // namespace
 
-GeneralizedAlpha::GeneralizedAlpha(Model& model, const AlphaSettings& settings)
+GeneralizedAlpha::GeneralizedAlpha(Workspace& model, const AlphaSettings& settings)
     : StepSolver(model, settings, "generalized_alpha",
                  "A smaller time.step or a smaller rho_inf often helps.") {
   const double rho = settings.rho_inf;
@@ -30,21 +30,25 @@ void GeneralizedAlpha::begin(const State& x, double h) {
   next_ = x;
   next_.t = x.t + h;
   // Start of the iteration: the true acceleration stays what it was.
-  next_.alpha = ((1 - alpha_f_) * x.a + alpha_f_ * x.a - alpha_m_ * start_alpha_) / (1 - alpha_m_);
-  next_.q += h * start_v_ + h * h * ((0.5 - beta_) * start_alpha_ + beta_ * next_.alpha);
-  next_.v = start_v_ + h * ((1 - gamma_) * start_alpha_ + gamma_ * next_.alpha);
-  model().prepare(next_);
+  next_alpha_ = ((1 - alpha_f_) * x.a + alpha_f_ * x.a - alpha_m_ * start_alpha_) / (1 - alpha_m_);
+  next_.q += h * start_v_ + h * h * ((0.5 - beta_) * start_alpha_ + beta_ * next_alpha_);
+  next_.v = start_v_ + h * ((1 - gamma_) * start_alpha_ + gamma_ * next_alpha_);
+}
+
+void GeneralizedAlpha::change_mesh(const MeshMap& map, const State& before) {
+  if (alpha_.size() == map.n_before()) alpha_ = map.acceleration(before.q, before.v, alpha_);
 }
 
 void GeneralizedAlpha::set_start(const State& x) {
-  start_alpha_ = x.alpha;
+  if (alpha_.size() != x.a.size()) alpha_ = x.a;
+  start_alpha_ = alpha_;
   start_v_ = x.v;
   if (last_h_ < 0) return;
   const bool same_mesh = jerk_version_ == model().pattern_version();
   if (same_mesh && h_ == last_h_) return;
   if (!same_mesh) {
     if (last_h_ == 0 || shift() == 0) return;
-    jerk_ = (x.alpha - x.a) / (shift() * last_h_);
+    jerk_ = (alpha_ - x.a) / (shift() * last_h_);
   }
   if (!smooth_) return;
   start_alpha_ += shift() * (h_ - last_h_) * jerk_;
@@ -54,7 +58,6 @@ void GeneralizedAlpha::set_start(const State& x) {
   const double last = projected ? 0 : last_h_;
   change_ = error_constant() * (h_ * h_ - last * last) * jerk_;
   next_ = x;
-  model().prepare(next_);
   residual(balance_, miss_);
   if (projected) factorize_here(h_);
   error_ = change_;
@@ -67,7 +70,6 @@ Weights GeneralizedAlpha::weights() const {
 }
 
 void GeneralizedAlpha::residual(VectorXd& force, VectorXd& constraint) {
-  if (model().has_free_lines()) model().prepare(next_);
   model().constraints(next_, constraints_);
   model().force(next_, force);
   model().add_constraint_force(constraints_, next_.lambda, force);
@@ -87,7 +89,7 @@ void GeneralizedAlpha::correct(const VectorXd& dq, const VectorXd& dlambda) {
 }
 
 void GeneralizedAlpha::set_end_alpha(const State& x) {
-  next_.alpha =
+  next_alpha_ =
       ((1 - alpha_f_) * next_.a + alpha_f_ * x.a - alpha_m_ * start_alpha_) / (1 - alpha_m_);
 }
 
@@ -106,15 +108,13 @@ double GeneralizedAlpha::first_step(const State& x, double allowed, double longe
   jerk_version_ = model().pattern_version();
   last_h_ = 0;
   step_jerk_.resize(0);
-  model().prepare(x);
   const double jerk = std::abs(error_constant()) * displacement(jerk_) / size();
   return jerk > 0 ? std::min(longest, 0.5 * std::cbrt(allowed / jerk)) : longest;
 }
 
 double GeneralizedAlpha::local_error(const State& x, double allowed) {
   set_end_alpha(x);
-  error_ = error_constant() * h_ * h_ * (next_.alpha - start_alpha_);
-  if (model().has_free_lines()) model().prepare(next_);
+  error_ = error_constant() * h_ * h_ * (next_alpha_ - start_alpha_);
   double out = 0;
   const double tolerance = std::pow(allowed, 2.0 / 3);
   // What is resolved passes the filter unchanged, any number of times.
@@ -135,6 +135,10 @@ void GeneralizedAlpha::filter(VectorXd& e, const VectorXd& balance) {
   // A_M e as a difference of forces, which are linear in the acceleration.
   kept_a_ = next_.a;
   next_.a += weights().a * e;
+  // Free lines stay as they are: they carry no inertia of their own.
+  for (const Body& b : model().bodies())
+    if (const int n = b.element->n_scalars(); n > 0)
+      next_.a.segment(b.first_scalar(), n) = kept_a_.segment(b.first_scalar(), n);
   model().force(next_, force_);
   next_.a.swap(kept_a_);
   model().add_constraint_force(constraints_, next_.lambda, force_);
@@ -151,7 +155,7 @@ void GeneralizedAlpha::finish(State& x) {
 }
 
 void GeneralizedAlpha::keep_jerk() {
-  change_ = (next_.alpha - start_alpha_) / h_;
+  change_ = (next_alpha_ - start_alpha_) / h_;
   const int version = model().pattern_version();
   if (last_h_ > 0 && jerk_version_ == version && step_jerk_.size() == change_.size()) {
     jerk_ = (h_ * change_ + last_h_ * step_jerk_) / (h_ + last_h_);

@@ -44,12 +44,17 @@ namespace flexmorph::fem {
 class GeneralizedAlpha final : public StepSolver {
  public:
   /// @throws Error (input) when rho_inf is outside [0, 1].
-  GeneralizedAlpha(Model& model, const AlphaSettings& settings);
+  GeneralizedAlpha(Workspace& model, const AlphaSettings& settings);
 
   /// From q⃛_0 by a difference of consistent accelerations; the first step starts with it.
   double first_step(const State& x, double allowed, double longest) override;
   /// δ: the algorithmic acceleration is that of the time t + δ h.
   double shift() const { return alpha_m_ - alpha_f_; }
+  /// The algorithmic acceleration that the next step starts from: q̈ after make_consistent(), else
+  /// that of the last accepted step (n) [m/s²].
+  const VectorXd& alpha() const { return alpha_; }
+  void set_alpha(VectorXd alpha) { alpha_ = std::move(alpha); }
+  void change_mesh(const MeshMap& map, const State& before) override;
   /// C: the local error of the position is -C h³ q⃛.
   double error_constant() const { return 1.0 / 6 - beta_ - 0.5 * shift(); }
 
@@ -64,6 +69,8 @@ class GeneralizedAlpha final : public StepSolver {
   /// @param balance  the residual there; empty: zero
   void filter(VectorXd& e, const VectorXd& balance);
   void finish(State& x) override;
+  void keep() override { alpha_.swap(next_alpha_); }
+  void restart(const State& x) override { alpha_ = x.a; }
   /// The algorithmic acceleration at the end of the step, which belongs to the true one.
   void set_end_alpha(const State& x);
   /// Velocity and algorithmic acceleration that the step starts from.
@@ -74,7 +81,9 @@ class GeneralizedAlpha final : public StepSolver {
 
   double alpha_m_, alpha_f_, beta_, gamma_;
   double h_ = 0;
+  VectorXd alpha_;                  // of the last accepted step
   State next_;                      // the iterate
+  VectorXd next_alpha_;             // its algorithmic acceleration
   VectorXd start_v_, start_alpha_;  // as the step takes them
   // Of steps that adapt: the size of the last one (0: none so far; negative: steps are fixed), q⃛
   // there, and the pattern of the model that q⃛ belongs to.

@@ -1,6 +1,5 @@
 #include "fem/dynamics/growth.h"
 
-#include <Eigen/LU>
 #include <cmath>
 #include <limits>
 
@@ -101,112 +100,18 @@ std::optional<MeshChange> change_due(const Body& body, const Growth& growth) {
   return {};
 }
 
-namespace {
-
-/// Values of position-like rows and their material derivatives at a point of element e, in the
-/// order of a node's unknowns: f, f_m, f_n, f_mn.
-struct NodeSampler {
-  const LineGrid& plate;
-  int e;
-  double s, u;
-
-  /// Σ_k shape_k rows_k for value and derivatives; `rates` 0: N, 1: Ṅ, 2: N̈.
-  MatrixXd sample(const MatrixXd& rows, int rates) const;
-};
-
-MatrixXd NodeSampler::sample(const MatrixXd& rows, int rates) const {
-  // Derivatives along m by fitting: the field along m is a cubic in s, along n likewise; sampled at
-  // the four Chebyshev-like points it is known, and so are its derivatives.
-  static const Eigen::Vector4d points(0.0, 0.3, 0.7, 1.0);
-  Eigen::Matrix4d vandermonde;
-  for (int i = 0; i < 4; ++i)
-    vandermonde.row(i) << 1, points[i], points[i] * points[i], std::pow(points[i], 3);
-  const Eigen::Matrix4d inverse = vandermonde.inverse();
-  const auto basis = [&](double at, double length) {
-    Eigen::Matrix<double, 2, 4> out;  // value and derivative weights on the four samples
-    out.row(0) = Eigen::RowVector4d(1, at, at * at, at * at * at) * inverse;
-    out.row(1) = Eigen::RowVector4d(0, 1, 2 * at, 3 * at * at) * inverse / length;
-    return out;
-  };
-  const int i = e / plate.n_n(), j = e % plate.n_n();
-  const Eigen::Matrix<double, 2, 4> along =
-      basis(s, plate.line_m(i + 1).value - plate.line_m(i).value);
-  const Eigen::Matrix<double, 2, 4> across =
-      basis(u, plate.line_n(j + 1).value - plate.line_n(j).value);
-
-  MatrixXd out = MatrixXd::Zero(4, rows.cols());
-  ShapeTable t;
-  for (int p = 0; p < 4; ++p)
-    for (int r = 0; r < 4; ++r) {
-      plate.at(e, points[p], points[r], Tabulate::position_rates, t);
-      const MatrixXd& n = rates == 0 ? t.N : rates == 1 ? t.N_t : t.N_tt;
-      if (n.size() == 0) continue;
-      const Eigen::RowVectorXd value = n * rows;
-      out.row(0) += along(0, p) * across(0, r) * value;
-      out.row(1) += along(1, p) * across(0, r) * value;
-      out.row(2) += along(0, p) * across(1, r) * value;
-      out.row(3) += along(1, p) * across(1, r) * value;
-    }
-  return out;
-}
-
-struct NodeState {
-  MatrixXd q, v, a, alpha;  // (4 x dim): value and derivatives by m, n, mn
-};
-
-NodeState sample_node(const Body& body, const LineGrid& plate, const State& x, int e, double s,
-                      double u) {
-  const NodeSampler at{plate, e, s, u};
-  const MatrixXd q = local_rows(body, x.q, e), v = local_rows(body, x.v, e);
-  NodeState out;
-  out.q = at.sample(q, 0);
-  out.v = at.sample(v, 0) + at.sample(q, 1);
-  const MatrixXd flow = 2 * at.sample(v, 1) + at.sample(q, 2);
-  out.a = at.sample(local_rows(body, x.a, e), 0) + flow;
-  out.alpha = at.sample(local_rows(body, x.alpha, e), 0) + flow;
-  return out;
-}
-
-}  // namespace
-
-void change_mesh(Model& model, Body& body, MeshChange change, State& x) {
-  body.element->move_to(x.t);
-  const std::unique_ptr<LineGrid> mesh = grid_of(body).copy();
-  const LineGrid& old = *mesh;
-  const int rows = (old.n_n() + 1) * old.per_node();  // vector unknowns of one column of nodes
-  const int dim = old.dim();
-  std::vector<NodeState> fresh;
-  std::unique_ptr<LineGrid> next;
-  if (change == MeshChange::insertion) {
-    for (int j = 0; j <= old.n_n(); ++j)
-      fresh.push_back(
-          sample_node(body, old, x, old.element(0, std::max(0, j - 1)), 0.5, j == 0 ? 0.0 : 1.0));
-    next = old.with_line(0, 0.5 * (old.line_m(0).value + old.line_m(1).value));
-  } else {
-    next = old.without_line(1);
-  }
-
-  const auto carry = [&](VectorXd& all, MatrixXd NodeState::*field) {
-    const int first = body.first_dof, before = dim * rows;
-    const int skip = change == MeshChange::removal ? dim * rows : 0;
-    const int add = change == MeshChange::insertion ? dim * rows : 0;
-    VectorXd out(all.size() - skip + add);
-    out.head(first + before) = all.head(first + before);
-    if (add > 0)
-      for (int j = 0; j <= old.n_n(); ++j)
-        for (int k = 0; k < old.per_node(); ++k)
-          out.segment(first + before + dim * (j * old.per_node() + k), dim) =
-              (fresh[static_cast<size_t>(j)].*field).row(k);
-    const auto rest = all.size() - first - before - skip;
-    out.tail(rest) = all.tail(rest);
-    all = std::move(out);
-  };
-  carry(x.q, &NodeState::q);
-  carry(x.v, &NodeState::v);
-  carry(x.a, &NodeState::a);
-  carry(x.alpha, &NodeState::alpha);
-  model.set_element(body, std::move(next));
+MeshMap change_mesh(Workspace& model, Body& body, MeshChange change, State& x) {
   model.prepare(x);
+  MeshMap map(body, change, model.n_dofs());
+  const LineGrid& old = grid_of(body);
+  std::unique_ptr<LineGrid> next =
+      change == MeshChange::insertion
+          ? old.with_line(0, 0.5 * (old.line_m(0).value + old.line_m(1).value))
+          : old.without_line(1);
+  model.set_element(body, std::move(next));
+  map.carry(x);
+  model.prepare(x);
+  return map;
 }
 
 }  // namespace flexmorph::fem

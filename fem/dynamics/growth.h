@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fem/dynamics/carrier.h"
+#include "fem/dynamics/mesh_map.h"
 #include "fem/line_grid.h"
 
 namespace flexmorph::fem {
@@ -39,8 +40,6 @@ PointMotion point_motion(const Body& body, const State& x, const Vec2& material)
 /// @throws Error (input) when the point is outside the body.
 Vec3 point_position(const Body& body, const State& x, const Vec2& material);
 
-enum class MeshChange { insertion, removal };
-
 /// When the boundary element next leaves [min_length, max_length] in (t, end], and how; t =
 /// infinity when it does not. A removal needs a merged element below 0.9 max_length (else the pair
 /// would chatter: fem/README.md, Insertion and removal).
@@ -60,15 +59,17 @@ NextChange next_change(const Body& body, const Growth& growth, double t, double 
 /// and the like do not follow the change: such models have no limits.
 std::optional<MeshChange> change_due(const Body& body, const Growth& growth);
 
-/// Changes the mesh at x.t and carries the state over; the line inserted or removed is the one next
-/// to the root. A free root line stays the scalar unknown it is.
+/// Changes the mesh at x.t and carries the state over (MeshMap); the line inserted or removed is
+/// the one next to the root. A free root line stays the scalar unknown it is.
 ///
 /// Insertion: new nodes take position, slopes, and material velocity with its derivatives from the
 /// field at the fixed material point; accelerations likewise (N q̈ + 2 Ṅ q̇ + N̈ q). With h16 the
 /// field of position and velocity does not change at all. Removal keeps the values of the
 /// remaining nodes (a loss, of the size of the interpolation error). Multipliers keep their values.
 ///
+/// @returns what was done to the vectors of the state.
+///
 /// Source: P Fig. 3, 4; fem/README.md, Insertion and removal.
-void change_mesh(Model& model, Body& body, MeshChange change, State& x);
+MeshMap change_mesh(Workspace& model, Body& body, MeshChange change, State& x);
 
 }  // namespace flexmorph::fem

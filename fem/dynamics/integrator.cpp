@@ -9,20 +9,20 @@
 namespace flexmorph::fem {
 namespace {
 
-using Maker = std::unique_ptr<Integrator> (*)(Model&, const IntegratorSettings&);
+using Maker = std::unique_ptr<Integrator> (*)(Workspace&, const IntegratorSettings&);
 
 const std::map<std::string, Maker>& table() {
   static const std::map<std::string, Maker> kIntegrators = {
       {"generalized_alpha",
-       [](Model& model, const IntegratorSettings& s) -> std::unique_ptr<Integrator> {
+       [](Workspace& model, const IntegratorSettings& s) -> std::unique_ptr<Integrator> {
          return std::make_unique<GeneralizedAlpha>(model, s.alpha);
        }},
       {"energy_momentum",
-       [](Model& model, const IntegratorSettings& s) -> std::unique_ptr<Integrator> {
+       [](Workspace& model, const IntegratorSettings& s) -> std::unique_ptr<Integrator> {
          return std::make_unique<EnergyMomentum>(model, s.energy_momentum);
        }},
       {"minimal_coordinates",
-       [](Model& model, const IntegratorSettings& s) -> std::unique_ptr<Integrator> {
+       [](Workspace& model, const IntegratorSettings& s) -> std::unique_ptr<Integrator> {
          return std::make_unique<MinimalCoordinates>(model, s.minimal_coordinates);
        }}};
   return kIntegrators;
@@ -37,7 +37,7 @@ TriedStep Integrator::try_step(State&, double, double) {
 
 double Integrator::first_step(const State&, double, double longest) { return longest; }
 
-std::unique_ptr<Integrator> make_integrator(Model& model, const IntegratorSettings& settings) {
+std::unique_ptr<Integrator> make_integrator(Workspace& model, const IntegratorSettings& settings) {
   const auto row = table().find(settings.name);
   if (row == table().end()) {
     std::string known;

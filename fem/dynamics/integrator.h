@@ -5,7 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "fem/model.h"
+#include "fem/dynamics/mesh_map.h"
+#include "fem/workspace.h"
 
 namespace flexmorph::fem {
 
@@ -61,15 +62,20 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  /// Consistent q̈, λ from the twice differentiated constraints; the algorithmic acceleration is q̈.
+  /// Consistent q̈, λ from the twice differentiated constraints. What the scheme carries besides the
+  /// state (the algorithmic acceleration of generalized-alpha) starts from there.
   /// @throws Error (numerical) when the constraints are redundant.
   virtual void make_consistent(State& x) = 0;
   /// The same for velocities that miss Φ_q q̇ + Φ_t = 0 a little: the nearest in the mass norm.
   virtual void project_velocity(State& x) = 0;
 
+  /// The mesh changed between two steps, the state was carried over by `map`: so is what the scheme
+  /// carries besides it. @param before  the state before the change
+  virtual void change_mesh(const MeshMap& /*map*/, const State& /*before*/) {}
+
   /// Advances x to t_end: in one step, halved and retried where Newton fails, growing back later;
   /// or in as many as the tolerance of the integrator asks for.
-  /// `accepted` sees every accepted step, with the model prepared for its time.
+  /// `accepted` sees every accepted step.
   /// @throws Error (numerical) naming time, step and the residual history; x is the last good
   /// state.
   virtual void advance(State& x, double t_end,
@@ -95,9 +101,9 @@ class Integrator {
   virtual std::optional<double> condition() const = 0;
 };
 
-/// "generalized_alpha", "energy_momentum" or "minimal_coordinates". The model must outlive the
+/// "generalized_alpha", "energy_momentum" or "minimal_coordinates". The work space must outlive the
 /// integrator.
 /// @throws Error (input) naming the known integrators, or for settings that make no sense.
-std::unique_ptr<Integrator> make_integrator(Model& model, const IntegratorSettings& settings);
+std::unique_ptr<Integrator> make_integrator(Workspace& model, const IntegratorSettings& settings);
 
 }  // namespace flexmorph::fem

@@ -76,10 +76,10 @@ std::string text(const char* format, auto... values) {
 }  // namespace
 
 struct MinimalCoordinates::Impl {
-  Impl(Model& m, const MinimalCoordinatesSettings& s)
+  Impl(Workspace& m, const MinimalCoordinatesSettings& s)
       : model(m), settings(s), accelerations(m), stepper(make_stepper()) {}
 
-  Model& model;
+  Workspace& model;
   MinimalCoordinatesSettings settings;
   StepCounts counts;
   AccelerationSolver accelerations;
@@ -95,15 +95,9 @@ struct MinimalCoordinates::Impl {
   State at;         // of the last evaluation
   Constraints constraints;
   VectorXd right, correction, force, none;
-  double prepared = std::numeric_limits<double>::quiet_NaN();
 
   Stepper make_stepper() const {
     return Stepper(ErrorInScaledUnits(independent_scales, size, settings.tolerance));
-  }
-
-  void prepare(double t) {
-    if (t != prepared) model.prepare(t);
-    prepared = t;
   }
 
   void solve_motion(State& x) {
@@ -119,7 +113,7 @@ struct MinimalCoordinates::Impl {
   /// Parts the coordinates at x and starts the integration there.
   /// @returns whether it is another partition.
   bool choose(const State& x) {
-    model.prepare(x.t);
+    model.prepare(x);  // for the scales
     const bool differs = partition.choose(model, x);
     model.constraints(x, constraints);
     partition.factorize(constraints);
@@ -215,7 +209,6 @@ void MinimalCoordinates::Impl::evaluate(const Numbers& from, Numbers& rate, doub
     at.v[independent[k]] = from[n + k];
   }
   at.t = t;
-  prepare(t);
   if (!partition.dependent().empty()) {
     find_positions(motion);
     find_velocities();
@@ -231,7 +224,6 @@ void MinimalCoordinates::Impl::evaluate(const Numbers& from, Numbers& rate, doub
 /// @returns whether it was accepted; if not, why, where it is not the error.
 bool MinimalCoordinates::Impl::try_step(const State& x, double& h, std::string& reason) {
   at = last;
-  prepared = std::numeric_limits<double>::quiet_NaN();
   const double tried = h;
   double t = x.t;
   reason.clear();
@@ -262,7 +254,6 @@ double MinimalCoordinates::Impl::fastest_vibration(const State& x) {
   double square = 0;
   try {
     at = last;
-    prepared = std::numeric_limits<double>::quiet_NaN();
     evaluate(y, rate, x.t);
     for (int iteration = 0; iteration < 30; ++iteration) {
       double norm = 0;
@@ -286,7 +277,6 @@ double MinimalCoordinates::Impl::fastest_vibration(const State& x) {
 void MinimalCoordinates::Impl::give_up(const State& x, double h, const std::string& reason) {
   std::string message = text("minimal_coordinates: at t = %.9g s, step %d, step size %.3g s ", x.t,
                              counts.steps + 1, h);
-  model.prepare(x.t);
   if (!reason.empty()) throw Error::numerical(message + "is too small to go on: " + reason);
   const double omega = fastest_vibration(x);
   if (h * omega > 0.1)
@@ -300,7 +290,7 @@ void MinimalCoordinates::Impl::give_up(const State& x, double h, const std::stri
                          "time.tolerance may help.");
 }
 
-MinimalCoordinates::MinimalCoordinates(Model& model, const MinimalCoordinatesSettings& settings)
+MinimalCoordinates::MinimalCoordinates(Workspace& model, const MinimalCoordinatesSettings& settings)
     : impl_(std::make_unique<Impl>(model, settings)) {
   if (!(settings.tolerance >= 1e-13 && settings.tolerance < 1) || settings.max_steps < 1)
     throw Error::input(
@@ -321,16 +311,13 @@ std::optional<double> MinimalCoordinates::condition() const {
 
 void MinimalCoordinates::make_consistent(State& x) {
   Impl& s = *impl_;
-  s.model.prepare(x);
   s.accelerations.forget();
   if (s.version != s.model.pattern_version()) s.choose(x);
   s.solve_motion(x);
-  x.alpha = x.a;
 }
 
 void MinimalCoordinates::project_velocity(State& x) {
   Impl& s = *impl_;
-  s.model.prepare(x);
   s.accelerations.forget();
   if (s.version != s.model.pattern_version()) s.choose(x);
   s.model.constraints(x, s.constraints);
@@ -372,7 +359,6 @@ void MinimalCoordinates::advance(State& x, double t_end,
     }
     s.step = is_cut ? std::max(own, h) : h;
     if (ends) s.at.t = t_end;
-    s.at.alpha = s.at.a;
     x = s.last = s.at;
     ++s.counts.steps;
     accepted(x);

@@ -27,7 +27,7 @@ class MinimalCoordinates final : public Integrator {
  public:
   /// @throws Error (input) for a tolerance outside [1e-13, 1) and for free material lines, naming
   /// their bodies.
-  MinimalCoordinates(Model& model, const MinimalCoordinatesSettings& settings);
+  MinimalCoordinates(Workspace& model, const MinimalCoordinatesSettings& settings);
   ~MinimalCoordinates() override;
 
   /// Also looks for unknowns without mass. @throws Error (input) naming their bodies.

@@ -9,16 +9,16 @@
 
 namespace flexmorph::fem {
 
-Vec3 momentum_in_space(const Model& model, const State& x) { return model.momentum(x); }
+Vec3 momentum_in_space(Workspace& model, const State& x) { return model.momentum(x); }
 
-Vec2 momentum(const Model& model, const State& x) { return momentum_in_space(model, x).head<2>(); }
+Vec2 momentum(Workspace& model, const State& x) { return momentum_in_space(model, x).head<2>(); }
 
 namespace {
 
 /// The run of one motion: what integrate() carries along.
 class Run {
  public:
-  Run(Model& model, std::span<const Growth> growths, const MotionSettings& settings,
+  Run(Workspace& model, std::span<const Growth> growths, const MotionSettings& settings,
       const MotionObserver& observe)
       : model_(model),
         growths_(growths),
@@ -59,7 +59,7 @@ class Run {
   }
 
  private:
-  Powers measure(const State& x) const { return settings_.balance ? powers(model_, x) : Powers{}; }
+  Powers measure(const State& x) { return settings_.balance ? powers(model_, x) : Powers{}; }
 
   /// Work of a step to x, at the time its multipliers belong to.
   void balance(const State& x, const Energies& e) {
@@ -69,15 +69,21 @@ class Run {
       balance_.add(x.t, e, powers_);
       return;
     }
-    model_.prepare(*mean);
     powers_ = measure(*mean);
-    model_.prepare(x_);
     balance_.add_mean(x_.t, e, powers_);
   }
 
   void see(const State& x, const Energies& e, bool stop) {
+    keep(x, stop);
+    model_.prepare(x);
     observe_(
         {model_, x, e, powers_, balance_.work(), balance_.dissipated(), balance_.defect(), stop});
+  }
+
+  void keep(const State& x, bool stop) {
+    const bool start = result_.trajectory.points.empty();
+    if (settings_.keep == Keep::steps || (settings_.keep == Keep::stops && (stop || start)))
+      result_.trajectory.points.push_back({x, stop});
   }
 
   /// Times that steps must land on, in order, and whether they are stops.
@@ -176,7 +182,6 @@ class Run {
 
   /// Stops within the step from before_ to x_; true where its end is one.
   bool see_between(double tiny) {
-    bool seen = false;
     while (next_between_ < between_.size() && between_[next_between_] < x_.t - tiny) {
       const double t = between_[next_between_++];
       if (t <= before_.t + tiny) continue;
@@ -186,9 +191,7 @@ class Run {
       balance(within_, e);
       see(within_, e, true);
       watch(within_);
-      seen = true;
     }
-    if (seen) model_.prepare(x_);
     return next_between_ < between_.size() && std::abs(between_[next_between_] - x_.t) <= tiny;
   }
 
@@ -219,6 +222,7 @@ class Run {
 
   /// Changes at free root lines.
   void changes_due() {
+    model_.prepare(x_);
     for (const Growth& g : growths_)
       if (const auto change = change_due(model_.body(g.body), g)) execute(g, *change);
   }
@@ -311,13 +315,20 @@ class Run {
     event.before = model_.energies(x_);
     event.momentum_before = momentum_in_space(model_, x_);
     const Vec3 tip_before = point_position(*body, x_, tip);
-    change_mesh(model_, *body, change, x_);
+    const State before = x_;
+    MeshMap map = change_mesh(model_, *body, change, x_);
+    integrator_->change_mesh(map, before);
     event.after = model_.energies(x_);
     event.momentum_after = momentum_in_space(model_, x_);
     event.tip_jump = (point_position(*body, x_, tip) - tip_before).norm();
     result_.events.push_back(event);
     integrator_->project_velocity(x_);
     balance_.restart();
+    if (settings_.keep == Keep::nothing) return;
+    Trajectory& kept = result_.trajectory;
+    kept.changes.push_back(
+        {event.time, event.body, change, kept.points.size() - 1, std::move(map)});
+    if (settings_.keep == Keep::steps) kept.points.push_back({x_, false});
   }
 
   static constexpr double kTiny = 1e-6;    // of a step
@@ -328,7 +339,7 @@ class Run {
   int since_watched_ = 0, since_joints_ = 0;
   bool was_near_ = false;
 
-  Model& model_;
+  Workspace& model_;
   std::span<const Growth> growths_;
   const MotionSettings& settings_;
   const MotionObserver& observe_;
@@ -349,7 +360,7 @@ class Run {
 
 }  // namespace
 
-MotionResult integrate(Model& model, std::span<const Growth> growths,
+MotionResult integrate(Workspace& model, std::span<const Growth> growths,
                        const MotionSettings& settings, const MotionObserver& observe) {
   return Run(model, growths, settings, observe).go();
 }

@@ -10,6 +10,7 @@
 #include "fem/dynamics/integrator.h"
 #include "fem/dynamics/start.h"
 #include "fem/dynamics/step_control.h"
+#include "fem/dynamics/trajectory.h"
 #include "fem/solve/diagnosis.h"
 
 namespace flexmorph::fem {
@@ -34,7 +35,8 @@ struct MotionSettings {
   /// Energies that are round-off [J]. Given, a balanced motion that nothing drives is stopped when
   /// it gains energy (EnergyGrowth); absent where it may: loads without an energy, sudden drives.
   std::optional<double> energy_round_off;
-  bool condition = false;  ///< estimate the condition at the end (costs a factorization)
+  bool condition = false;     ///< estimate the condition at the end (costs a factorization)
+  Keep keep = Keep::nothing;  ///< of the trajectory, for those who look at it afterwards
 };
 
 /// A change of the mesh, and what it did to the state.
@@ -51,7 +53,7 @@ struct MeshEvent {
 /// that has a step_mean(), accelerations, multipliers and powers are means over the step before,
 /// but at stops x is consistent.
 struct MotionStep {
-  const Model& model;
+  Workspace& model;  ///< prepared for x
   const State& x;
   Energies energies;
   Powers powers;          ///< zero when no balance is kept
@@ -64,6 +66,7 @@ using MotionObserver = std::function<void(const MotionStep&)>;
 
 struct MotionResult {
   State final;
+  Trajectory trajectory;  ///< as far as MotionSettings::keep asks for it
   StepCounts counts;
   double smallest_step = 0, largest_step = 0;  ///< of the accepted ones [s]
   std::vector<MeshEvent> events;
@@ -79,7 +82,11 @@ struct MotionResult {
   std::vector<Conditioning> near_singular;
 };
 
-/// Advances a model from t = 0 to the end: steps land on stops (see MotionSettings), kinks and
+/// Advances a model from t = 0 to the end. Its work space is left with the mesh of the end. Motions
+/// that have a work space each do not know of each other: they may run at the same time, and every
+/// one is the same bit for bit as if it were alone.
+///
+/// Steps land on stops (see MotionSettings), kinks and
 /// changes of the mesh; a change that falls on the end itself is not executed.
 ///
 /// @throws Error (input) for an integrator whose steps cannot adapt, where they should.
@@ -87,12 +94,12 @@ struct MotionResult {
 ///         drives has gained more than EnergyGrowth::kLargest; the observer has seen every step
 ///         before it. Where rigid bodies are near a singular position, the message of a
 ///         failed step names the joints.
-MotionResult integrate(Model& model, std::span<const Growth> growths,
+MotionResult integrate(Workspace& model, std::span<const Growth> growths,
                        const MotionSettings& settings, const MotionObserver& observe);
 
 /// Linear momentum of all bodies' own mass [kg m/s]; z = 0 in the plane.
-Vec3 momentum_in_space(const Model& model, const State& x);
+Vec3 momentum_in_space(Workspace& model, const State& x);
 /// Its first two entries.
-Vec2 momentum(const Model& model, const State& x);
+Vec2 momentum(Workspace& model, const State& x);
 
 }  // namespace flexmorph::fem

@@ -10,7 +10,7 @@ namespace {
 
 const Eigen::Matrix2d kQuarter = (Eigen::Matrix2d() << 0, -1, 1, 0).finished();
 
-Body& body_named(Model& model, const std::string& name) {
+Body& body_named(Workspace& model, const std::string& name) {
   for (Body& b : model.bodies())
     if (b.name == name) return b;
   throw Error::input("there is no body '" + name + "'");
@@ -85,7 +85,7 @@ void carry_in_hub(const Model& model, const Growth& growth, State& x) {
   x.v[scalar] = growth.slide;
 }
 
-/// The whole model as rigid, extending bodies; prepare(x.t) done.
+/// The whole model as rigid, extending bodies; its lines are where they are at x.t.
 State rigid_state(const Model& model, std::span<const Growth> growths, const Placement& placement,
                   double t) {
   State x = model.reference();
@@ -109,7 +109,7 @@ State rigid_state(const Model& model, std::span<const Growth> growths, const Pla
 }
 
 /// The same model with the lines of all plates frozen where they are at `lines`, for statics.
-void freeze(Model& model, std::span<const Growth> growths, double lines) {
+void freeze(Workspace& model, std::span<const Growth> growths, double lines) {
   for (const Growth& g : growths) {
     Body& body = body_named(model, g.body);
     const std::unique_ptr<LineGrid> mesh = grid_of(body).copy();
@@ -118,13 +118,9 @@ void freeze(Model& model, std::span<const Growth> growths, double lines) {
   }
 }
 
-void move_lines(Model& model, double t) {
-  for (Body& b : model.bodies()) b.element->move_to(t);
-}
-
 /// Static equilibrium under centrifugal forces: q̈ = -ω² (q - origin), lines frozen. Its rate as
 /// the body grows comes from equilibria a little earlier and later.
-void stretch_in_hubs(Model& model, std::span<const Growth> growths, double delta, State& x) {
+void stretch_in_hubs(Workspace& model, std::span<const Growth> growths, double delta, State& x) {
   const double t = x.t;
   std::vector<std::unique_ptr<LineGrid>> moving;
   for (const Growth& g : growths) moving.push_back(grid_of(model.body(g.body)).copy());
@@ -154,7 +150,7 @@ void stretch_in_hubs(Model& model, std::span<const Growth> growths, double delta
   const VectorXd q = equilibrium(t), later = equilibrium(t + delta),
                  earlier = equilibrium(t - delta);
   restore();
-  move_lines(model, t);
+  model.move_lines(t);
   x.q = q;
   for (const Growth& g : growths) {
     const Body& body = model.body(g.body);
@@ -193,11 +189,11 @@ VectorXd turning(const Model& model, const State& rigid, const VectorXd& q) {
 /// little later (what drives a mechanism need not be defined before its start). A strained body
 /// turns as a rigid one, so that its material does not damp that: with the velocities of the
 /// undeformed body it would.
-void stretch_mechanism(Model& model, std::span<const Growth> growths, const Placement& placement,
-                       double delta, State& x) {
+void stretch_mechanism(Workspace& model, std::span<const Growth> growths,
+                       const Placement& placement, double delta, State& x) {
   constexpr int kPasses = 50;
   const auto strain = [&](double t) {
-    move_lines(model, t);
+    model.move_lines(t);
     State s = rigid_state(model, growths, placement, t);
     const State rigid = s;
     solve_carried_equilibrium(model, s);
@@ -219,9 +215,9 @@ void stretch_mechanism(Model& model, std::span<const Growth> growths, const Plac
 
 }  // namespace
 
-State start_state(Model& model, std::span<const Growth> growths, double t, Start start,
+State start_state(Workspace& model, std::span<const Growth> growths, double t, Start start,
                   const Placement& placement, double delta) {
-  move_lines(model, t);
+  model.move_lines(t);
   State x = rigid_state(model, growths, placement, t);
   if (start == Start::rigid) return x;
   if (start == Start::settled) {

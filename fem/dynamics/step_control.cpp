@@ -12,7 +12,7 @@ namespace {
 constexpr double kSafety = 0.95;
 // Exponents of the error and of its change; 1/3 alone would meet the allowed error at once.
 constexpr double kIntegral = 0.28, kProportional = 0.1;
-constexpr double kGrowth = 1.5, kShrink = 0.2;       // limits of one change
+constexpr double kGrowth = 1.5, kShrink = 0.2;     // limits of one change
 constexpr double kDeadLow = 0.9, kDeadHigh = 1.2;  // changes that are not worth a factorization
 // Newton iterations after which a step does not grow, and after which it shrinks; and for how many
 // steps a step as long as one that failed is not tried again.

@@ -16,7 +16,7 @@ constexpr double kFar = 0.1;
 
 }  // namespace
 
-StepSolver::StepSolver(Model& model, const StepSettings& settings, std::string name,
+StepSolver::StepSolver(Workspace& model, const StepSettings& settings, std::string name,
                        std::string advice)
     : model_(model), settings_(settings), name_(std::move(name)), advice_(std::move(advice)) {
   if (!(settings.tolerance > 0) || settings.max_iterations < 1 || settings.max_halvings < 0)
@@ -72,22 +72,19 @@ void StepSolver::solve_mass(const State& x, const VectorXd& force, const VectorX
 
 void StepSolver::solve_accelerations(State& x) {
   x.a.setZero(model_.n_dofs());
-  model_.prepare(x);
   model_.constraints(x, constraints_);
   model_.force(x, force_);
   solve_mass(x, -force_, constraints_.acceleration);
   x.a = solution_.head(model_.n_dofs()).cwiseQuotient(scales_);
   x.lambda = solution_.tail(model_.n_constraints());
-  if (model_.has_free_lines()) model_.prepare(x);
 }
 
 void StepSolver::make_consistent(State& x) {
   solve_accelerations(x);
-  x.alpha = x.a;
+  restart(x);
 }
 
 void StepSolver::project_velocity(State& x) {
-  model_.prepare(x);
   model_.constraints(x, constraints_);
   constraint_ = -constraints_.rate;
   for (const auto& entry : constraints_.jacobian)
@@ -134,8 +131,10 @@ bool StepSolver::finish_sound(State& x) {
   const bool look = largest_correction_ > kLarge;
   if (look) before_ = x;
   finish(x);
-  if (model_.has_free_lines()) model_.prepare(x);
-  if (!look || model_.smallest_area_ratio(x) > 0) return true;
+  if (!look || model_.smallest_area_ratio(x) > 0) {
+    keep();
+    return true;
+  }
   history_ += "converged with material turned inside out";
   x = before_;
   return false;

@@ -22,10 +22,10 @@ class StepSolver : public Integrator {
 
  protected:
   /// @throws Error (input) for settings that make no sense.
-  StepSolver(Model& model, const StepSettings& settings, std::string name, std::string advice);
+  StepSolver(Workspace& model, const StepSettings& settings, std::string name, std::string advice);
 
-  /// First guess of the step from x to x.t + h, and preparation of the model. Keeps what
-  /// residual(), tangent() and correct() need.
+  /// First guess of the step from x to x.t + h. Keeps what residual(), tangent() and correct()
+  /// need.
   virtual void begin(const State& x, double h) = 0;
   /// Factor of the equations of motion of this step, β h² of the scheme.
   virtual double scale() const = 0;
@@ -43,6 +43,10 @@ class StepSolver : public Integrator {
   virtual double local_error(const State& x, double allowed);
   /// x becomes the end of the converged step.
   virtual void finish(State& x) = 0;
+  /// The step stands: what the next one starts from besides the state is that of its end.
+  virtual void keep() {}
+  /// x was made consistent: what the next step starts from besides the state begins there.
+  virtual void restart(const State& /*x*/) {}
 
   /// Solves with the factors of the last factorization: force (n_dofs, times scale()) and
   /// constraint (n_constraints) as right side, dq and μ (λ times scale()) as result.
@@ -51,10 +55,10 @@ class StepSolver : public Integrator {
   /// Factors of the tangent at the iterate, after a residual() there; kept for steps h.
   void factorize_here(double h);
 
-  /// Consistent q̈ and λ at x, the algorithmic acceleration left alone.
+  /// Consistent q̈ and λ at x; the scheme does not start anew.
   void solve_accelerations(State& x);
 
-  Model& model() { return model_; }
+  Workspace& model() { return model_; }
   /// Largest displacement that a change of the unknowns means [m].
   double displacement(const VectorXd& dq) const {
     return dq.cwiseProduct(scales_).lpNorm<Eigen::Infinity>();
@@ -76,7 +80,7 @@ class StepSolver : public Integrator {
   void set_scales();
   void factorize(double miss);  ///< of kkt_; see UnsymmetricSolver
 
-  Model& model_;
+  Workspace& model_;
   StepSettings settings_;
   std::string name_, advice_;
   StepCounts counts_;

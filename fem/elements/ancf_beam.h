@@ -48,6 +48,7 @@ class AncfBeam final : public Element {
   /// det J_o > 0 between y = -h/2 and h/2.
   AncfBeam(std::vector<double> x, double height, std::vector<BeamNode> reference = {});
 
+  std::unique_ptr<Element> clone() const override { return std::make_unique<AncfBeam>(*this); }
   int dim() const override { return 2; }
   int n_shapes() const override { return 6; }
   int n_elements() const override { return static_cast<int>(x_.size()) - 1; }

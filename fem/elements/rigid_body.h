@@ -24,6 +24,7 @@ class RigidBody final : public Element {
   /// @throws Error (input) unless it is positive.
   explicit RigidBody(double length);
 
+  std::unique_ptr<Element> clone() const override { return std::make_unique<RigidBody>(*this); }
   int dim() const override { return 2; }
   int n_shapes() const override { return 2; }
   int n_elements() const override { return 1; }

@@ -59,6 +59,7 @@ class UnitAxis final : public PairJoint {
   UnitAxis(std::string name, std::string body)
       : PairJoint(std::move(name), {.body = std::move(body)}, {},
                   {{bits({kAxisA})}, {{kAxisA, kAxisA}}}) {}
+  std::unique_ptr<Joint> clone() const override { return std::make_unique<UnitAxis>(*this); }
   bool belongs_to_body() const override { return true; }
 
  private:
@@ -78,6 +79,7 @@ class Revolute final : public PairJoint {
                     entry(kPositionA, 1) | entry(kPositionB, 1)}}) {}
 
  private:
+  std::unique_ptr<Joint> clone() const override { return std::make_unique<Revolute>(*this); }
   void fill(double, const Values& y, std::vector<PairRow>& rows) const override {
     fill_difference(y, rows.data());
   }
@@ -92,6 +94,7 @@ class RigidWeld final : public PairJoint {
                    {{kAxisA, kAxisB}}}) {}
 
  private:
+  std::unique_ptr<Joint> clone() const override { return std::make_unique<RigidWeld>(*this); }
   void fill(double, const Values& y, std::vector<PairRow>& rows) const override {
     fill_difference(y, rows.data());
     fill_parallel(y, rows[2]);
@@ -106,6 +109,7 @@ class Slider final : public PairJoint {
                    {{kAxisA, kPositionA}, {kAxisA, kPositionB}, {kAxisA, kAxisB}}}) {}
 
  private:
+  std::unique_ptr<Joint> clone() const override { return std::make_unique<Slider>(*this); }
   void fill(double, const Values& y, std::vector<PairRow>& rows) const override {
     const Turned a(y, kAxisA, kPositionA, 1, 0), b(y, kAxisA, kPositionB, 1, 0);
     rows[0].f = b.value - a.value;
@@ -129,6 +133,7 @@ class AngleDrive final : public PairJoint {
         motion_(present(name, std::move(motion))) {}
 
  private:
+  std::unique_ptr<Joint> clone() const override { return std::make_unique<AngleDrive>(*this); }
   /// n_b · R(α) e_a = e_b × R(α) e_a.
   void fill(double t, const Values& y, std::vector<PairRow>& rows) const override {
     const Motion alpha = motion_(t);
@@ -164,6 +169,7 @@ class Distance final : public PairJoint {
                          " m; a distance is positive");
   }
 
+  std::unique_ptr<Joint> clone() const override { return std::make_unique<Distance>(*this); }
   void fill(double t, const Values& y, std::vector<PairRow>& rows) const override {
     const Motion length = motion_(t);
     check(name(), length.value);
@@ -207,6 +213,7 @@ class PointDriven final : public PairJoint {
     return out;
   }
 
+  std::unique_ptr<Joint> clone() const override { return std::make_unique<PointDriven>(*this); }
   void fill(double t, const Values& y, std::vector<PairRow>& rows) const override {
     const std::vector<Motion> drive = point_(t);
     if (drive.size() != rows.size())

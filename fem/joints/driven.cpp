@@ -15,6 +15,7 @@ class Weld final : public Joint {
         frame_(std::move(frame)),
         mode_(mode) {}
 
+  std::unique_ptr<Joint> clone() const override { return std::make_unique<Weld>(*this); }
   std::string name() const override { return name_; }
   int size() const override { return static_cast<int>(fixed_.size() + along_.size()); }
 
@@ -104,6 +105,7 @@ class Pin final : public Joint {
         components_(std::move(components)),
         all_(components_.empty()) {}
 
+  std::unique_ptr<Joint> clone() const override { return std::make_unique<Pin>(*this); }
   std::string name() const override { return name_; }
   int size() const override { return static_cast<int>(components_.size()); }
 

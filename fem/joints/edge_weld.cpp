@@ -20,6 +20,7 @@ class EdgeWeld final : public Joint {
         frame_(std::move(frame)),
         mode_(mode) {}
 
+  std::unique_ptr<Joint> clone() const override { return std::make_unique<EdgeWeld>(*this); }
   std::string name() const override { return name_; }
   int size() const override { return static_cast<int>(fixed_.size() + along_.size()); }
 

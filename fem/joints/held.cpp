@@ -26,6 +26,7 @@ class Hold final : public Joint {
   Hold(std::string name, std::string body, std::vector<Held> held)
       : name_(std::move(name)), body_(std::move(body)), held_(std::move(held)) {}
 
+  std::unique_ptr<Joint> clone() const override { return std::make_unique<Hold>(*this); }
   std::string name() const override { return name_; }
   int size() const override { return static_cast<int>(rows_.size()); }
 

@@ -11,6 +11,7 @@ class LineDrive final : public Joint {
         scalar_(scalar),
         motion_(std::move(motion)) {}
 
+  std::unique_ptr<Joint> clone() const override { return std::make_unique<LineDrive>(*this); }
   std::string name() const override { return name_; }
   int size() const override { return 1; }
 

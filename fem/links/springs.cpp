@@ -44,6 +44,7 @@ class Spring final : public PairLink {
     checked(name, "free length", spring.free_length, 0);
   }
 
+  std::unique_ptr<Link> clone() const override { return std::make_unique<Spring>(*this); }
   /// V is a function of |d|², and d̄ · (d₁ - d₀) half of its difference: with
   /// s_d = k (1 - 2 l₀/(l₀' + l₁')) d̄, l₀', l₁' the lengths at both ends, s_d · (d₁ - d₀) = V₁ -
   /// V₀. The damper acts as at the mean state.
@@ -154,6 +155,7 @@ class TorsionSpring final : public PairLink {
     checked(name, "rest angle", spring.rest_angle, -1e6);
   }
 
+  std::unique_ptr<Link> clone() const override { return std::make_unique<TorsionSpring>(*this); }
   double strain_energy(const State& x) const override {
     pair().evaluate(x.t, x.q, x.v);
     const double phi = angle(Turn(pair().y().segment<2>(MarkerPair::kAxisA)),
@@ -194,6 +196,7 @@ class PointForce final : public PairLink {
       : PairLink(name, std::move(at), {}, {kPositionA}, false), force_(force) {
     if (!force.allFinite()) throw Error::input("link '" + name + "': its force is not finite");
   }
+  std::unique_ptr<Link> clone() const override { return std::make_unique<PointForce>(*this); }
   void add_mean_force(const State& mean, const VectorXd& q0, const VectorXd& q1,
                       VectorXd& out) const override {
     if (pair().shifts()) Link::add_mean_force(mean, q0, q1, out);  // refuses
@@ -223,6 +226,7 @@ class Torque final : public PairLink {
       : PairLink(name, std::move(at), {}, {MarkerPair::kAxisA}, true), torque_(torque) {
     if (!std::isfinite(torque)) throw Error::input("link '" + name + "': its torque is not finite");
   }
+  std::unique_ptr<Link> clone() const override { return std::make_unique<Torque>(*this); }
   void scale_load(double factor) override { factor_ = factor; }
 
  private:

@@ -24,7 +24,7 @@ std::string number(double value) {
 /// Smallest corrections in the mass norm, in displacements S q and scaled rows.
 class Correction {
  public:
-  explicit Correction(Model& model) : model_(model) {}
+  explicit Correction(Workspace& model) : model_(model) {}
 
   /// Factor at a state and the rows there.
   void factorize(const State& x, const ScaledConstraints& rows, double delta) {
@@ -75,7 +75,7 @@ class Correction {
     shift_.setIdentity();
   }
 
-  Model& model_;
+  Workspace& model_;
   SparseMatrix kkt_, shift_, sum_;
   UnsymmetricSolver solver_;
   VectorXd scale_, diagonal_, right_, solution_, change_;
@@ -83,7 +83,7 @@ class Correction {
   bool fresh_ = true;
 };
 
-[[noreturn]] void fail(const Model& model, const State& x, const VectorXd& miss, int iterations) {
+[[noreturn]] void fail(Workspace& model, const State& x, const VectorXd& miss, int iterations) {
   const auto joints = heaviest_joints(model, miss, 0.01);
   const double largest = weights_of_joints(model, miss).lpNorm<Eigen::Infinity>();
   std::string text = "assembly: no position at t = " + number(x.t) + " s that joins all: joint '" +
@@ -97,12 +97,12 @@ class Correction {
 
 class Assembler {
  public:
-  Assembler(Model& model, State& x, const AssemblySettings& settings)
+  Assembler(Workspace& model, State& x, const AssemblySettings& settings)
       : model_(model), x_(x), settings_(settings), correction_(model) {}
 
   Assembly run() {
     const State start = x_;
-    model_.prepare(x_);
+    model_.prepare(x_);  // for the scales
     rows_.evaluate(model_, x_);
     if (model_.n_constraints() > 0) {
       find_position();
@@ -145,7 +145,6 @@ class Assembler {
     for (double part = 1; part > 1.0 / 256; part /= 2) {
       x_.q = start + part * change;
       if (!x_.q.allFinite()) continue;
-      if (model_.has_free_lines()) model_.prepare(x_);
       model_.constraints(x_, trial_);
       const double after = scale.cwiseProduct(trial_.value).squaredNorm();
       if (!(after <= before + 1e-4 * part * slope)) continue;  // also where it is not a number
@@ -153,7 +152,6 @@ class Assembler {
       return part;
     }
     x_.q = start;
-    if (model_.has_free_lines()) model_.prepare(x_);
     return 0;
   }
 
@@ -177,7 +175,7 @@ class Assembler {
     }
   }
 
-  Model& model_;
+  Workspace& model_;
   State& x_;
   AssemblySettings settings_;
   Correction correction_;
@@ -188,7 +186,7 @@ class Assembler {
 
 }  // namespace
 
-Assembly assemble(Model& model, State& x, const AssemblySettings& settings) {
+Assembly assemble(Workspace& model, State& x, const AssemblySettings& settings) {
   if (x.q.size() != model.n_dofs() || x.v.size() != model.n_dofs())
     throw Error::input("assembly: a state of " + std::to_string(x.q.size()) +
                        " unknowns for a model of " + std::to_string(model.n_dofs()));

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fem/model.h"
+#include "fem/workspace.h"
 
 namespace flexmorph::fem {
 
@@ -37,9 +37,9 @@ struct Assembly {
 ///
 /// The false roots of some rows (an axis turned by 180 degrees) are avoided by the start alone.
 ///
-/// @param x  in: t, near q, near v; out: q and v of the assembled model; prepare(x) was done.
+/// @param x  in: t, near q, near v; out: q and v of the assembled model.
 /// @throws Error (numerical) naming the joint that misses most, by how much, and the iterations,
 /// when no assembled position is found, or no velocity that all joints allow.
-Assembly assemble(Model& model, State& x, const AssemblySettings& settings = {});
+Assembly assemble(Workspace& model, State& x, const AssemblySettings& settings = {});
 
 }  // namespace flexmorph::fem

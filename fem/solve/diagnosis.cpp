@@ -167,7 +167,7 @@ bool Diagnosis::is_contradictory() const {
   return std::any_of(groups.begin(), groups.end(), [](const auto& g) { return g.contradictory; });
 }
 
-Diagnosis diagnose(const Model& model, const State& x) {
+Diagnosis diagnose(Workspace& model, const State& x) {
   Diagnosis out;
   out.unknowns = model.n_dofs();
   out.constraints = model.n_constraints();
@@ -215,7 +215,7 @@ Diagnosis diagnose(const Model& model, const State& x) {
   return out;
 }
 
-int degrees_of_freedom(const Model& model, const State& x) {
+int degrees_of_freedom(Workspace& model, const State& x) {
   return diagnose(model, x).degrees_of_freedom();
 }
 
@@ -279,7 +279,7 @@ Conditioning ConstraintWatch::look(const State& x) {
   return out;
 }
 
-double constraint_condition(const Model& model, const State& x) {
+double constraint_condition(Workspace& model, const State& x) {
   return ConstraintWatch(model).look(x).condition;
 }
 

@@ -43,10 +43,10 @@ struct Diagnosis {
 /// assembled and Φ not linear: assemble() first.
 ///
 /// @throws Error (numerical) when Φ or Φ_q hold numbers that are not finite.
-Diagnosis diagnose(const Model& model, const State& x);
+Diagnosis diagnose(Workspace& model, const State& x);
 
 /// Unknowns minus the rank of Φ_q.
-int degrees_of_freedom(const Model& model, const State& x);
+int degrees_of_freedom(Workspace& model, const State& x);
 
 /// One line per group: "joints 'pin', 'drive' hold the same freedom"; or "joints ... contradict
 /// each other: they miss by 0.012 m"; contradictions first, ten lines at most. Empty where all rows
@@ -71,12 +71,12 @@ struct Conditioning {
 /// matrix is shifted by 1e-14 to keep its factor.
 class ConstraintWatch {
  public:
-  explicit ConstraintWatch(const Model& model) : model_(model) {}
+  explicit ConstraintWatch(Workspace& model) : model_(model) {}
   /// @throws Error (numerical) when Φ_q holds numbers that are not finite.
   Conditioning look(const State& x);
 
  private:
-  const Model& model_;
+  Workspace& model_;
   ScaledConstraints rows_;
   int version_ = -1;  // of the model's pattern
   SparseMatrix gram_;
@@ -85,7 +85,7 @@ class ConstraintWatch {
 };
 
 /// The condition alone.
-double constraint_condition(const Model& model, const State& x);
+double constraint_condition(Workspace& model, const State& x);
 
 /// "constraints are nearly dependent at t = 0.35 s: condition 2.1e+07, joints 'a', 'b'".
 std::string describe(const Conditioning& conditioning);

@@ -19,7 +19,7 @@ std::string time_text(double t) {
 
 }  // namespace
 
-Kinematics::Kinematics(Model& model, State start, const KinematicsSettings& settings)
+Kinematics::Kinematics(Workspace& model, State start, const KinematicsSettings& settings)
     : model_(model), settings_(settings), x_(std::move(start)) {
   if (!(settings.smallest_step > 0 && settings.largest_step >= settings.smallest_step &&
         settings.correction > 0))
@@ -75,7 +75,6 @@ void Kinematics::solve(const VectorXd& right, VectorXd& out) const {
 bool Kinematics::newton(State& x, double& sign) {
   double last = 0;
   for (int iteration = 0; iteration < 12; ++iteration) {
-    if (model_.has_free_lines()) model_.prepare(x);
     if (!factorize(x)) return false;
     if (iteration > 0 && last <= 1e-11 * size_) {  // of second order: the next one is round-off
       sign = lu_.signDeterminant();
@@ -95,7 +94,6 @@ void Kinematics::find_rates(State& x) {
   solve(-rows_.unscaled().rate, x.v);
   rows_.evaluate(model_, x);  // the right side of the accelerations needs v
   solve(rows_.unscaled().acceleration, x.a);
-  x.alpha = x.a;
 }
 
 bool Kinematics::step_to(double t) {
@@ -106,7 +104,6 @@ bool Kinematics::step_to(double t) {
   const VectorXd predicted = trial_.q;
   const VectorXd& scales = rows_.scales();
   const double motion = scales.cwiseProduct(predicted - x_.q).lpNorm<Eigen::Infinity>();
-  model_.prepare(trial_);
   double sign = 0;
   if (!newton(trial_, sign) || sign != sign_) return false;
   const double corrected = scales.cwiseProduct(trial_.q - predicted).lpNorm<Eigen::Infinity>();
@@ -128,17 +125,14 @@ void Kinematics::give_up(double refused) {
   const Conditioning now = ConstraintWatch(model_).look(x_);
   const std::string where = "kinematics: path cannot be reached at t = " + time_text(t) + " s, ";
   if (now.condition > kSingular) {
-    model_.prepare(x_);
     throw Error::numerical(where + list_joints(now.joints) +
                            ": singular position (dead centre, or too short to reach)");
   }
   // Not singular: what jumps misses most when nothing moves but time.
   trial_ = x_;
   trial_.t = refused;
-  model_.prepare(trial_);
   rows_.evaluate(model_, trial_);
   const auto joints = heaviest_joints(model_, rows_.misses(), 0.1);
-  model_.prepare(x_);
   throw Error::numerical(where + list_joints(joints) + ": does a drive jump there?");
 }
 

@@ -31,9 +31,9 @@ class Kinematics {
   /// Assembles the start (fem/solve/assembly.h); the model must outlive this.
   /// @throws Error (input) when freedoms are left or rows contradict each other, with the joints;
   /// Error (numerical) when the start cannot be assembled.
-  Kinematics(Model& model, State start, const KinematicsSettings& settings = {});
+  Kinematics(Workspace& model, State start, const KinematicsSettings& settings = {});
 
-  /// q, v, a at time t, later or earlier than the last one asked for; λ is zero and alpha = a.
+  /// q, v, a at time t, later or earlier than the last one asked for; λ is zero.
   /// @throws Error (numerical) "path cannot be reached at t = ..." with the joints that hold it up;
   /// the time is right to smallest_step, and the last state before it is kept.
   const State& at(double t);
@@ -51,7 +51,7 @@ class Kinematics {
   /// The path ends between the last state and this time.
   [[noreturn]] void give_up(double refused);
 
-  Model& model_;
+  Workspace& model_;
   KinematicsSettings settings_;
   State x_, trial_;
   double sign_ = 0;                // of det Φ_q on this branch

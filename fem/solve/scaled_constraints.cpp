@@ -6,7 +6,7 @@
 
 namespace flexmorph::fem {
 
-void ScaledConstraints::evaluate(const Model& model, const State& x) {
+void ScaledConstraints::evaluate(Workspace& model, const State& x) {
   const int n = model.n_dofs(), m = model.n_constraints();
   if (version_ != model.pattern_version()) {
     scales_ = model.scales();

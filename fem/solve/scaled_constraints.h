@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fem/model.h"
+#include "fem/workspace.h"
 
 namespace flexmorph::fem {
 
@@ -14,7 +14,7 @@ namespace flexmorph::fem {
 class ScaledConstraints {
  public:
   /// @throws Error (numerical) naming the joint when Φ or Φ_q hold numbers that are not finite.
-  void evaluate(const Model& model, const State& x);
+  void evaluate(Workspace& model, const State& x);
 
   const Constraints& unscaled() const { return c_; }
   const VectorXd& row_scale() const { return row_scale_; }  ///< R (m)

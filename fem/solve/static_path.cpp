@@ -12,11 +12,11 @@ namespace {
 
 class Path {
  public:
-  Path(Model& model, State& x, const StaticSettings& settings, const StaticObserver& observe)
+  Path(Workspace& model, State& x, const StaticSettings& settings, const StaticObserver& observe)
       : model_(model), x_(x), settings_(settings), observe_(observe), scales_(model.scales()) {
     n_ = model.n_dofs();
     m_ = model.n_constraints();
-    x_.v = x_.a = x_.alpha = VectorXd::Zero(n_);
+    x_.v = x_.a = VectorXd::Zero(n_);
     if (x_.lambda.size() != m_) x_.lambda = VectorXd::Zero(m_);
     size_ = extent();
     range_ = std::abs(settings.to - settings.from);
@@ -25,7 +25,6 @@ class Path {
 
   StaticResult run() {
     check();
-    model_.prepare(x_);
     factor_ = settings_.from;
     if (!newton(factor_)) fail("no equilibrium at the start");
     result_.factor = factor_;
@@ -99,7 +98,6 @@ class Path {
   /// Right side -(F + Φ_qᵀ λ, Φ) at x_ and factor_; false where it is not finite.
   bool evaluate() {
     model_.scale_loads(factor_);
-    if (model_.has_free_lines()) model_.prepare(x_);
     model_.constraints(x_, c_);
     model_.force(x_, force_);
     model_.add_constraint_force(c_, x_.lambda, force_);
@@ -340,7 +338,7 @@ class Path {
                            "; residuals of the last attempt:" + residuals);
   }
 
-  Model& model_;
+  Workspace& model_;
   State& x_;
   StaticSettings settings_;
   const StaticObserver& observe_;
@@ -357,8 +355,7 @@ class Path {
 
 }  // namespace
 
-VectorXd linear_displacement(Model& model, const State& x) {
-  model.prepare(x);
+VectorXd linear_displacement(Workspace& model, const State& x) {
   const int n = model.n_dofs(), m = model.n_constraints();
   State at = x;
   at.lambda = VectorXd::Zero(m);
@@ -376,7 +373,7 @@ VectorXd linear_displacement(Model& model, const State& x) {
   return step.head(n);
 }
 
-StaticResult solve_static(Model& model, State& x, const StaticSettings& settings,
+StaticResult solve_static(Workspace& model, State& x, const StaticSettings& settings,
                           const StaticObserver& observe) {
   return Path(model, x, settings, observe).run();
 }

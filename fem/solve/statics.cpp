@@ -15,9 +15,9 @@ namespace {
 /// @param size        of the model [m]
 /// @param tolerance   of a correction that does not get smaller any more, in parts of the size
 template <class Accelerate, class Soften>
-void find_equilibrium(Model& model, State& x, double size, const Accelerate& accelerate,
+void find_equilibrium(Workspace& model, State& x, double size, const Accelerate& accelerate,
                       const Soften& soften, const char* failure, double tolerance = 0) {
-  model.prepare(x);
+  model.prepare(x);  // for the scales
   const int n = model.n_dofs(), m = model.n_constraints();
   const VectorXd scales = model.scales();
   Constraints c;
@@ -27,7 +27,6 @@ void find_equilibrium(Model& model, State& x, double size, const Accelerate& acc
   double correction = 0;
   for (int iteration = 0; iteration < 40; ++iteration) {
     const bool may_end = accelerate(x);
-    if (model.has_free_lines()) model.prepare(x);
     model.constraints(x, c);
     model.force(x, residual);
     model.add_constraint_force(c, x.lambda, residual);
@@ -49,7 +48,7 @@ void find_equilibrium(Model& model, State& x, double size, const Accelerate& acc
 
 }  // namespace
 
-void solve_rotating_equilibrium(Model& model, const VectorXd& spin, const VectorXd& center,
+void solve_rotating_equilibrium(Workspace& model, const VectorXd& spin, const VectorXd& center,
                                 State& x) {
   SparseMatrix mass;
   const auto accelerate = [&](State& s) {
@@ -70,7 +69,7 @@ void solve_rotating_equilibrium(Model& model, const VectorXd& spin, const Vector
       "iterations: the bodies are too soft for their loads, or nothing holds a part of them");
 }
 
-void solve_carried_equilibrium(Model& model, State& x) {
+void solve_carried_equilibrium(Workspace& model, State& x) {
   find_equilibrium(
       model, x, std::max(1e-300, x.q.lpNorm<Eigen::Infinity>()), [](State&) { return true; },
       [](const State&, const Constraints&, SparseMatrix&) {},
@@ -78,7 +77,7 @@ void solve_carried_equilibrium(Model& model, State& x) {
       "the bodies are too soft for them, or nothing holds a part of them");
 }
 
-void solve_resting_equilibrium(Model& model, State& x) {
+void solve_resting_equilibrium(Workspace& model, State& x) {
   constexpr double kFirst = 1e4, kLast = 1e-2;  // κ [1/s²]
   const VectorXd start = x.q;
   double hold = 10 * kFirst;

@@ -3,7 +3,7 @@
 #include <functional>
 #include <optional>
 
-#include "fem/model.h"
+#include "fem/workspace.h"
 
 namespace flexmorph::fem {
 
@@ -15,13 +15,13 @@ namespace flexmorph::fem {
 /// @param center  what the centrifugal acceleration is taken from (n_dofs) [m]
 /// @param x       in: start of the iteration; out: q and λ of the equilibrium
 /// @throws Error (numerical) when Newton does not converge in 40 iterations.
-void solve_rotating_equilibrium(Model& model, const VectorXd& spin, const VectorXd& center,
+void solve_rotating_equilibrium(Workspace& model, const VectorXd& spin, const VectorXd& center,
                                 State& x);
 
 /// Equilibrium under the inertia forces of a motion that is known: F(q, v, a) + Φ_qᵀ λ = 0,
 /// Φ(q, x.t) = 0 for q and λ with v and a as they are (d'Alembert). Rates of material lines count.
 /// @throws Error (numerical) likewise.
-void solve_carried_equilibrium(Model& model, State& x);
+void solve_carried_equilibrium(Workspace& model, State& x);
 
 /// Static equilibrium of a model that joints leave free to move (a load that hangs): F(q, 0, 0) +
 /// Φ_qᵀ λ = 0, Φ(q, x.t) = 0, by Newton's method near x.
@@ -33,12 +33,12 @@ void solve_carried_equilibrium(Model& model, State& x);
 ///
 /// @param x  in: near the equilibrium; out: q and λ of it, v = a = 0.
 /// @throws Error (numerical) likewise.
-void solve_resting_equilibrium(Model& model, State& x);
+void solve_resting_equilibrium(Workspace& model, State& x);
 
 /// Small displacements of a linear analysis: one Newton step from x under the loads as they are
 /// (n_dofs). x is an equilibrium without loads, for instance the reference.
 /// @throws Error (numerical) when the tangent is singular.
-VectorXd linear_displacement(Model& model, const State& x);
+VectorXd linear_displacement(Workspace& model, const State& x);
 
 struct StaticSettings {
   enum class Path {
@@ -97,7 +97,7 @@ struct StaticResult {
 ///           The model's loads are left at its factor.
 /// @throws Error (input) for settings that make no sense; Error (numerical) naming load factor and
 /// residuals when steps became too small or too many: x is then the last equilibrium.
-StaticResult solve_static(Model& model, State& x, const StaticSettings& settings = {},
+StaticResult solve_static(Workspace& model, State& x, const StaticSettings& settings = {},
                           const StaticObserver& observe = {});
 
 }  // namespace flexmorph::fem

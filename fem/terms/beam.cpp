@@ -147,6 +147,7 @@ class Beam final : public ElasticTerm {
  public:
   Beam(const PlaneSection& section, Mechanics mechanics)
       : ElasticTerm(mechanics == Mechanics::general ? "gcm" : "ecm", parts_of(section, mechanics)),
+        section_(section),
         width_(section.thickness),
         elasticity_(section.elasticity()),
         mechanics_(mechanics) {
@@ -164,6 +165,10 @@ class Beam final : public ElasticTerm {
             {density(s.elasticity() - uncoupled(s)), sample_sections(true)}};
   }
 
+  /// Made anew: what is prepared would only be prepared again.
+  std::unique_ptr<Term> clone() const override {
+    return mechanics_ == Mechanics::general ? make_beam_gcm(section_) : make_beam_ecm(section_);
+  }
   void prepare(const Element& element, const Factors& factors, bool all) override {
     if (element.dim() != kDim || element.n_shapes() != kShapes)
       throw Error::input("term '" + name() +
@@ -337,6 +342,7 @@ class Beam final : public ElasticTerm {
     return out;
   }
 
+  PlaneSection section_;
   double width_;
   Eigen::Matrix3d elasticity_, volume_, coupling_;  // D; D or D⁰; 0 or D^ν [Pa]
   Mechanics mechanics_;

@@ -62,6 +62,7 @@ class Bending final : public ElasticTerm {
  public:
   Bending(const PlaneSection& s, int n_points)
       : ElasticTerm("bending", parts_of(s, n_points)),
+        section_(s),
         stiffness_(stiffness_of(s)),
         degree_(degree_of(n_points)) {}
 
@@ -71,6 +72,8 @@ class Bending final : public ElasticTerm {
              sample_points(degree_of(n_points), Tabulate::curvature)}};
   }
 
+  /// Made anew: what is prepared would only be prepared again.
+  std::unique_ptr<Term> clone() const override { return make_bending(section_, degree_ / 2 + 1); }
   void prepare(const Element& element, const Factors& factors, bool all) override {
     if (element.dim() != 3) throw Error::input("term 'bending' needs a body in space");
     prepare_parts(element, factors);
@@ -230,6 +233,7 @@ class Bending final : public ElasticTerm {
     spread(&Table::weight, out.different.weight);
   }
 
+  PlaneSection section_;
   Mat3 stiffness_;  // D [N m]
   int degree_;
   bending::Places places_{};

@@ -64,6 +64,7 @@ class PointForce final : public DeadLoad {
  public:
   PointForce(const Vec2& material, VectorXd force)
       : DeadLoad(std::move(force)), material_(material) {}
+  std::unique_ptr<Term> clone() const override { return std::make_unique<PointForce>(*this); }
   void prepare(const Element& element, const Factors&, bool all) override {
     if (!all) return;  // only elements whose lines stand still are loaded
     check(element, "point force");
@@ -78,6 +79,7 @@ class PointForce final : public DeadLoad {
 class EdgeLoad final : public DeadLoad {
  public:
   EdgeLoad(std::string edge, VectorXd load) : DeadLoad(std::move(load)), edge_(std::move(edge)) {}
+  std::unique_ptr<Term> clone() const override { return std::make_unique<EdgeLoad>(*this); }
   void prepare(const Element& element, const Factors&, bool all) override {
     if (!all) return;  // only elements whose lines stand still are loaded
     check(element, "load of edge '" + edge_ + "'");
@@ -102,6 +104,7 @@ class EdgeLoad final : public DeadLoad {
 class SurfaceLoad final : public DeadLoad {
  public:
   using DeadLoad::DeadLoad;
+  std::unique_ptr<Term> clone() const override { return std::make_unique<SurfaceLoad>(*this); }
   void prepare(const Element& element, const Factors&, bool all) override {
     check(element, "surface load");
     if (element.n_scalars() > 0)

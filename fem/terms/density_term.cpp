@@ -134,6 +134,7 @@ class Elastic final : public ElasticTerm {
  public:
   Elastic(std::string name, std::vector<ElasticPart> parts)
       : ElasticTerm(std::move(name), std::move(parts)) {}
+  std::unique_ptr<Term> clone() const override { return make_elastic_term(name(), parts()); }
 
   void prepare(const Element& element, const Factors& factors, bool all) override {
     prepare_parts(element, factors);
@@ -206,6 +207,7 @@ class Dissipative final : public StrainTerm {
  public:
   Dissipative(std::string name, std::vector<DissipativePart> parts)
       : name_(std::move(name)), parts_(std::move(parts)) {}
+  std::unique_ptr<Term> clone() const override { return make_dissipative_term(name_, parts_); }
   std::string name() const override { return name_; }
 
   void prepare(const Element& element, const Factors& factors, bool all) override {

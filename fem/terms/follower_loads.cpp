@@ -42,6 +42,7 @@ class Pressure final : public Term {
  public:
   explicit Pressure(double pressure) : pressure_(pressure) {}
 
+  std::unique_ptr<Term> clone() const override { return std::make_unique<Pressure>(*this); }
   void prepare(const Element& element, const Factors&, bool all) override {
     check(element, pressure_, "pressure");
     if (!all) return;
@@ -95,6 +96,7 @@ class EdgeMoment final : public Term {
  public:
   EdgeMoment(std::string edge, double moment) : edge_(std::move(edge)), moment_(moment) {}
 
+  std::unique_ptr<Term> clone() const override { return std::make_unique<EdgeMoment>(*this); }
   void prepare(const Element& element, const Factors&, bool all) override {
     check(element, moment_, "moment of edge '" + edge_ + "'");
     if (!all) return;

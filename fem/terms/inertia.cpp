@@ -19,8 +19,10 @@ namespace {
 class Inertia final : public Term {
  public:
   explicit Inertia(const PlaneSection& s)
-      : area_density_(s.density * s.thickness), of_free_(area_density_, {}, true) {}
+      : section_(s), area_density_(s.density * s.thickness), of_free_(area_density_, {}, true) {}
 
+  /// Made anew: what is prepared would only be prepared again.
+  std::unique_ptr<Term> clone() const override { return make_inertia(section_); }
   void prepare(const Element& element, const Factors& factors, bool all) override {
     free_.prepare(element, 6, Tabulate::position, factors);
     matrices_.resize(static_cast<size_t>(element.n_elements()));
@@ -194,6 +196,7 @@ class Inertia final : public Term {
     m.rate_transport.noalias() = weighted_.transpose() * table_.N_tt;
   }
 
+  PlaneSection section_;
   double area_density_;
   FreeInertia of_free_;
   FreeTables free_;

@@ -13,6 +13,7 @@ class Gravity final : public Term {
         gravity_(std::move(gravity)),
         of_free_(area_density_, gravity_, false) {}
 
+  std::unique_ptr<Term> clone() const override { return std::make_unique<Gravity>(*this); }
   void prepare(const Element& element, const Factors& factors, bool all) override {
     free_.prepare(element, 6, Tabulate::position, factors);
     mass_.resize(static_cast<size_t>(element.n_elements()));
@@ -86,6 +87,7 @@ class PointMass final : public Term {
   PointMass(double mass, const Vec2& material, VectorXd gravity)
       : mass_(mass), material_(material), gravity_(std::move(gravity)) {}
 
+  std::unique_ptr<Term> clone() const override { return std::make_unique<PointMass>(*this); }
   void prepare(const Element& element, const Factors&, bool) override {
     element_ = element.locate(material_, Tabulate::position_rates, table_);
     flows_ = table_.N_t.size() > 0;

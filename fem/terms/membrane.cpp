@@ -37,6 +37,7 @@ class Membrane final : public ElasticTerm {
   Membrane(const PlaneSection& s, Strains strains)
       : ElasticTerm(strains == Strains::assumed ? "membrane_assumed" : "membrane",
                     parts_of(s, strains)),
+        section_(s),
         elasticity_(s.thickness * s.elasticity()),
         strains_(strains) {}
 
@@ -46,6 +47,10 @@ class Membrane final : public ElasticTerm {
                                                        : sample_points(12, Tabulate::gradient)}};
   }
 
+  /// Made anew: what is prepared would only be prepared again.
+  std::unique_ptr<Term> clone() const override {
+    return strains_ == Strains::assumed ? make_assumed_membrane(section_) : make_membrane(section_);
+  }
   void prepare(const Element& element, const Factors& factors, bool all) override {
     tabulated_ = -1;
     prepare_parts(element, factors);
@@ -351,6 +356,7 @@ class Membrane final : public ElasticTerm {
     return squares_ = std::move(out);
   }
 
+  PlaneSection section_;
   Eigen::Matrix3d elasticity_;  // h C [N/m]
   Strains strains_;
   int dim_ = 0, kinds_ = 0;

@@ -41,6 +41,7 @@ class RigidInertia final : public Term {
         (s.inertia + s.mass * s.center.squaredNorm()) * Eigen::Matrix2d::Identity();
   }
 
+  std::unique_ptr<Term> clone() const override { return std::make_unique<RigidInertia>(*this); }
   void prepare(const Element& element, const Factors&, bool) override { check(element, name()); }
   void add_force(int, const Local& x, LocalRows& force) const override {
     const Eigen::Vector4d f = mass_ * column(x.a);
@@ -85,6 +86,7 @@ class RigidGravity final : public Term {
     weight_.tail<2>() = s.mass * arm(s.center).transpose() * gravity;
   }
 
+  std::unique_ptr<Term> clone() const override { return std::make_unique<RigidGravity>(*this); }
   void prepare(const Element& element, const Factors&, bool) override { check(element, name()); }
   void add_force(int, const Local&, LocalRows& force) const override {
     for (int i = 0; i < 4; ++i) force.data()[i] -= factor_ * weight_[i];

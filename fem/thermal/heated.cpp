@@ -12,6 +12,14 @@ class Heated final : public StrainTerm {
   Heated(std::unique_ptr<StrainTerm> cold, const Heat& heat)
       : cold_(std::move(cold)), heat_(heat), power_(heat.volume_exponent()) {}
 
+  std::unique_ptr<Term> clone() const override {
+    // The copy of a term is of its kind.
+    std::unique_ptr<StrainTerm> cold(static_cast<StrainTerm*>(cold_->clone().release()));
+    auto out = std::make_unique<Heated>(std::move(cold), heat_);
+    out->factor_ = factor_;  // the rest is put there by heat_to()
+    return out;
+  }
+
   void prepare(const Element& element, const Factors& factors, bool all) override {
     element_ = &element;
     cold_->prepare(element, factors, all);

@@ -31,6 +31,7 @@ class ThermalForce final : public Link {
   /// one, or one with material lines that move; at add_force() (numerical) where θ is not defined.
   ThermalForce(std::string name, std::string body, Heat heat, double area_density);
 
+  std::unique_ptr<Link> clone() const override { return std::make_unique<ThermalForce>(*this); }
   /// θ [rad], in (-π, π].
   double rotation(const VectorXd& q) const;
 

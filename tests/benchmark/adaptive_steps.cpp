@@ -157,7 +157,7 @@ Problem shipped_case(const std::string& name, const std::vector<std::string>& ch
 }
 
 /// Rigid models: their position in the first two unknowns of a body.
-Course move(fem::Model& model, const Wish& wish, double end, fem::Placement placement,
+Course move(fem::Workspace& model, const Wish& wish, double end, fem::Placement placement,
             const char* body) {
   fem::MotionSettings motion;
   motion.end = end;
@@ -180,7 +180,7 @@ Course move(fem::Model& model, const Wish& wish, double end, fem::Placement plac
 /// A block on a spring about the origin, from the horizontal: a pendulum whose rod gives.
 Problem spring_pendulum(double stiffness) {
   return [=](const Wish& wish) {
-    fem::Model model;
+    fem::Workspace model;
     testing::add_rigid(model, "bob", {2, {0, 0}, 0.02}, Vec2(0, -9.81));
     model.add_link(
         fem::make_spring("rod", {.point = {0, 0}}, {.body = "bob"}, {stiffness, 0, 1.0}));
@@ -197,7 +197,7 @@ Problem spring_pendulum(double stiffness) {
 /// between them.
 Problem slider_crank(double stiffness) {
   return [=](const Wish& wish) {
-    fem::Model model;
+    fem::Workspace model;
     const Vec2 gravity(0, -9.81);
     testing::add_rigid(model, "crank", {1, {0.08, 0}, 0.003}, gravity);
     testing::add_rigid(model, "block", {0.5, {0, 0}, 0.001}, gravity);

@@ -46,7 +46,7 @@ double microseconds(const F& f) {
 
 void evaluate(const RotatingPlate& p, const char* design) {
   testing::Scene scene = testing::make_scene(p);
-  fem::Model& model = scene.model;
+  fem::Workspace& model = scene.model;
   model.prepare(0.05);
   const fem::State reference = model.reference();
   fem::State x =
@@ -81,7 +81,7 @@ void compare_integrators() {
   terms.push_back(fem::make_inertia(section));
   terms.push_back(fem::make_membrane(section));
   terms.push_back(fem::make_gravity(section, g));
-  fem::Model model;
+  fem::Workspace model;
   model.add_body("plate",
                  std::make_unique<fem::AncfPlate>(2, ShapeSet::h16, testing::even_lines(0, 0.3, 4),
                                                   testing::even_lines(0, 0.3, 4)),

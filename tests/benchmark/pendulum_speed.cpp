@@ -53,7 +53,7 @@ struct Phases {
   double force = 0, tangent = 0, factor = 0, solve = 0;
 };
 
-Phases measure(const fem::Model& model, const fem::State& x, double h) {
+Phases measure(fem::Workspace& model, const fem::State& x, double h) {
   // As in generalized-alpha with ρ = 0.8 at this step.
   const double beta_h2 = h * h * 0.25 * (1 + 0.2 / 1.8) * (1 + 0.2 / 1.8);
   fem::Constraints c;
@@ -86,7 +86,7 @@ constexpr Place kPublic[] = {{0.1, 0.30000, 0.30000, -0.049049},
                              {0.2, 0.29568, 0.29568, -0.196177},
                              {0.3, 0.23272, 0.23272, -0.43761}};
 
-fem::Model pendulum(int mesh, ShapeSet shapes, double youngs_modulus) {
+fem::Workspace pendulum(int mesh, ShapeSet shapes, double youngs_modulus) {
   testing::SpacePlate plate;
   plate.length = plate.width = 0.3;
   plate.nx = plate.ny = mesh;
@@ -137,7 +137,7 @@ void print(const fem::StepCounts& n, double whole, const Phases& one) {
 }
 
 Costs run(int mesh, ShapeSet shapes, double h, double end, double youngs_modulus) {
-  fem::Model model = pendulum(mesh, shapes, youngs_modulus);
+  fem::Workspace model = pendulum(mesh, shapes, youngs_modulus);
   const auto integrator = fem::make_integrator(model, {});
   fem::State x = model.reference();
   double start = cpu_seconds();

@@ -84,7 +84,7 @@ TEST(Gear, RowsAreWhatTheySay) {
   const cases::Scene scene =
       cases::read_scene(io::CaseFile(scratch.write("w.toml", wheels("[14, 35]", 1, kMotor))));
   cases::Mechanism mechanism = cases::build_mechanism(scene);
-  fem::Model& model = mechanism.model;
+  fem::Workspace& model = mechanism.model;
   model.prepare(0.0);
   const fem::Joint* gear = nullptr;
   for (const auto& joint : model.joints())

@@ -69,7 +69,8 @@ TEST_F(MotionPlatform, RigidTwinFollowsThePathAndIsDetermined) {
     const fem::FrameMotion platform = motion.twin().frame("platform", x);
     EXPECT_LT((platform.origin - center(t)).norm(), 1e-10) << t;
     EXPECT_NEAR(platform.angle, 0, 1e-10) << t;
-    const fem::Diagnosis found = fem::diagnose(motion.twin().model(), x);
+    fem::Workspace twin(motion.twin().model());
+    const fem::Diagnosis found = fem::diagnose(twin, x);
     EXPECT_TRUE(found.is_independent()) << t;
     EXPECT_EQ(found.degrees_of_freedom(), 0) << t;
   }

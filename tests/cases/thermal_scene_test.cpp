@@ -31,7 +31,7 @@ TEST(ThermalScene, BeamIsReadAndBuilt) {
   EXPECT_EQ(built.section.thickness, 5.5e-3);
   // At rest where the case puts it, with the velocities of the rigid mechanism: the crank pin goes
   // up at r ω, the slider rests.
-  fem::Model& model = const_cast<fem::Model&>(mechanism.model);
+  fem::Workspace& model = const_cast<fem::Workspace&>(mechanism.model);
   const fem::State x = fem::start_state(model, mechanism.growths, 0, mechanism.motion.start,
                                         mechanism.motion.placement);
   const fem::PointMotion pin = fem::point_motion(built, x, {0, 0}),

@@ -44,7 +44,7 @@ enum class Steps { equal, random };
 /// parts of h again and again.
 /// @param adapts  as adaptive steps, or as fixed ones, which take no notice of their size
 Errors swing(double h, double rho_inf, Steps steps, bool adapts) {
-  Model model = testing::particle_pendulum();
+  Workspace model = testing::particle_pendulum();
   GeneralizedAlpha alpha(model, sharp(rho_inf));
   State x = testing::swing_start(model);
   alpha.make_consistent(x);
@@ -114,8 +114,8 @@ Swing swing_at(double t) {
 struct RigidPendulum {
   RigidSection section{2, {0.5, 0}, 0.5};
 
-  Model model() const {
-    Model out;
+  Workspace model() const {
+    Workspace out;
     testing::add_rigid(out, "arm", section, Vec2(0, -testing::kGravity));
     out.add_joint(make_revolute("hinge", {}, {.body = "arm"}));
     return out;
@@ -134,7 +134,7 @@ struct RigidPendulum {
         2 * std::numbers::pi));
   }
   /// Of the hinge's force: m (c̈ - g) with the centre of mass c [N].
-  double force_error(const Model& model, const State& x) const {
+  double force_error(Workspace& model, const State& x) const {
     const Swing s = swing_at(x.t);
     const double l = section.center.norm(),
                  spin = -testing::kGravity / testing::kLength * std::sin(s.angle);
@@ -168,7 +168,7 @@ struct RunErrors {
 
 RunErrors swing_adaptively(MotionSettings settings, double rho_inf) {
   const RigidPendulum p;
-  Model model = p.model();
+  Workspace model = p.model();
   settings.placement = p.placement();
   settings.alpha.rho_inf = rho_inf;
   for (int k = 1; k <= 40; ++k) settings.stops.push_back(0.0497 * k);
@@ -240,7 +240,7 @@ TEST(AdaptiveSteps, AreReproducible) {
 
 TEST(AdaptiveSteps, LandOnKinksAndKeepTheirLimits) {
   const RigidPendulum p;
-  Model model = p.model();
+  Workspace model = p.model();
   MotionSettings settings = adaptive(1e-2, 1);
   settings.placement = p.placement();
   settings.kinks = {0.731, 0.2345};
@@ -265,7 +265,7 @@ TEST(AdaptiveSteps, LandOnKinksAndKeepTheirLimits) {
 
 TEST(AdaptiveSteps, NeedAnIntegratorThatKnowsItsError) {
   const RigidPendulum p;
-  Model model = p.model();
+  Workspace model = p.model();
   MotionSettings settings = adaptive(1e-3, 1);
   settings.placement = p.placement();
   settings.integrator = "energy_momentum";
@@ -280,7 +280,7 @@ TEST(AdaptiveSteps, NeedAnIntegratorThatKnowsItsError) {
 
 /// Errors [m], [m/s], [N] within a step between exact ends at start and start + h.
 std::array<double, 3> within(double start, double h) {
-  Model model = testing::particle_pendulum();
+  Workspace model = testing::particle_pendulum();
   const auto exact = [&](double t) {
     const Swing s = exact_swing(t);
     State x = model.reference();

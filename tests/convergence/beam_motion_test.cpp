@@ -10,8 +10,8 @@
 #include "fem/dynamics/integrator.h"
 #include "fem/elements/ancf_beam.h"
 #include "fem/loads.h"
-#include "fem/model.h"
 #include "fem/terms.h"
+#include "fem/workspace.h"
 #include "tests/support/rates.h"
 
 namespace flexmorph::fem {
@@ -21,15 +21,15 @@ constexpr double kLength = 1, kHeight = 0.05, kGravity = 9.81;
 
 PlaneSection section(double youngs_modulus) { return {0.05, youngs_modulus, 0.3, 7200}; }
 
-Model beam_model(const std::string& term, std::unique_ptr<AncfBeam> beam, double youngs_modulus,
-                 bool gravity) {
+Workspace beam_model(const std::string& term, std::unique_ptr<AncfBeam> beam, double youngs_modulus,
+                     bool gravity) {
   const PlaneSection s = section(youngs_modulus);
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(make_inertia(s));
   terms.push_back(make_term(term, s));
   const Vec2 g(0, -kGravity);
   if (gravity) terms.push_back(make_gravity(s, g));
-  Model model;
+  Workspace model;
   model.add_body("beam", std::move(beam), s, std::move(terms));
   return model;
 }
@@ -58,7 +58,7 @@ double angular_momentum(const Model& model, const State& x) {
 // of Newton's method adds up.
 TEST(FreeBeam, KeepsEnergyAndMomenta) {
   for (const char* term : {"gcm", "ecm"}) {
-    Model model = beam_model(
+    Workspace model = beam_model(
         term,
         std::make_unique<AncfBeam>(even_nodes(kLength, 8), kHeight, arc_reference(kLength, 1, 8)),
         1e7, false);
@@ -96,7 +96,7 @@ TEST(FreeBeam, KeepsEnergyAndMomenta) {
 /// Tip of a pendulum that starts at rest and level, pinned at its root by a revolute joint.
 Vec2 pendulum_tip(const std::string& integrator_name, double youngs_modulus, double step,
                   double end) {
-  Model model =
+  Workspace model =
       beam_model("ecm", std::make_unique<AncfBeam>(kLength, kHeight, 4), youngs_modulus, true);
   model.add_joint(make_revolute("pin", {}, {"beam", {0, 0}}));
   State x = model.reference();

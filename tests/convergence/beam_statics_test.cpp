@@ -27,11 +27,11 @@ VectorXd vector(double x, double y) {
   return out;
 }
 
-Model beam_model(const std::string& term, int n, const Vec2& at, const VectorXd& force) {
+Workspace beam_model(const std::string& term, int n, const Vec2& at, const VectorXd& force) {
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(make_term(term, kSection));
   terms.push_back(make_point_force(at, force));
-  Model model;
+  Workspace model;
   model.add_body("beam", std::make_unique<AncfBeam>(kLength, kHeight, n), kSection,
                  std::move(terms));
   return model;
@@ -43,7 +43,7 @@ Vec2 position(const Model& model, const State& x, const Vec2& material) {
 
 /// Deflection of the middle on a pin and a roller.
 double on_roller(const std::string& term, int n, double force) {
-  Model model = beam_model(term, n, {kLength / 2, 0}, vector(0, -force));
+  Workspace model = beam_model(term, n, {kLength / 2, 0}, vector(0, -force));
   model.add_joint(make_hold("supports", "beam",
                             {{HoldPlace::at({0, 0}), NodeVector::r, {0, 1}, {}},
                              {HoldPlace::at({kLength, 0}), NodeVector::r, {1}, {}}}));
@@ -120,7 +120,7 @@ TEST(Clamps, PartialLetsContractAndFullDoesNot) {
   for (const char* term : {"gcm", "ecm"})
     for (const WeldMode mode :
          {WeldMode::partial, WeldMode::edge, WeldMode::direction, WeldMode::full}) {
-      Model model = beam_model(term, 40, {kLength, 0}, vector(force, 0));
+      Workspace model = beam_model(term, 40, {kLength, 0}, vector(force, 0));
       model.add_joint(make_weld("clamp", "beam", "root", still, mode));
       State x = model.reference();
       solve_static(model, x);
@@ -144,7 +144,7 @@ TEST(Clamps, PartialLetsContractAndFullDoesNot) {
 // A cantilever that a hold, a driven weld and a weld to a body on the ground keep alike.
 TEST(Clamps, WeldsAreTheHoldsTheySay) {
   const auto tip = [](const std::function<std::unique_ptr<Joint>()>& joint) {
-    Model model = beam_model("ecm", 8, {kLength, 0}, vector(20, -60));
+    Workspace model = beam_model("ecm", 8, {kLength, 0}, vector(20, -60));
     model.add_joint(joint());
     State x = model.reference();
     solve_static(model, x);

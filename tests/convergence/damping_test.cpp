@@ -12,8 +12,8 @@
 #include "fem/dynamics/balance.h"
 #include "fem/dynamics/integrator.h"
 #include "fem/elements/ancf_beam.h"
-#include "fem/model.h"
 #include "fem/terms.h"
+#include "fem/workspace.h"
 #include "tests/support/models.h"
 #include "tests/support/rates.h"
 
@@ -26,8 +26,8 @@ constexpr double kLength = 1, kThickness = 0.01;
 const PlaneSection kSection{kThickness, 1e9, 0.3, 1000};
 
 /// A free beam of height kThickness, or a free strip in space of that thickness.
-Model free_body(const Names& terms, double damping_time) {
-  Model model;
+Workspace free_body(const Names& terms, double damping_time) {
+  Workspace model;
   std::unique_ptr<Element> element;
   if (terms[1] == "ecm")
     element = std::make_unique<AncfBeam>(kLength, kThickness, 6);
@@ -45,7 +45,7 @@ struct Mode {
   double pulsation = 0;
   VectorXd shape, momentum;  // φ with φᵀ M φ = 1; M φ
 };
-Mode first_mode(Model& model) {
+Mode first_mode(Workspace& model) {
   const State x = model.reference();
   model.prepare(0.0);
   Constraints none;
@@ -71,9 +71,9 @@ TEST(Decay, OfTheFirstBendingModeIsTheClosedForm) {
   for (const Names& terms :
        {Names{"inertia", "ecm", "damping"}, Names{"inertia", "membrane", "bending", "damping"},
         Names{"inertia", "membrane_assumed", "bending", "damping"}}) {
-    Model still = free_body(terms, 1);
+    Workspace still = free_body(terms, 1);
     const double omega = first_mode(still).pulsation, tau = 2 * ratio / omega;
-    Model model = free_body(terms, tau);
+    Workspace model = free_body(terms, tau);
     const Mode mode = first_mode(model);
     // Free ends, Euler and Bernoulli: (4.7300)² sqrt(E I / (ρ A)) / L²; a strip between E and
     // E / (1 - ν²).
@@ -123,7 +123,7 @@ struct Outcome {
 };
 /// A free body that is bent, spins [rad/s] and flies.
 Outcome run(const Names& terms, const std::string& integrator, double spin, double h, double end) {
-  Model model = free_body(terms, 2e-3);
+  Workspace model = free_body(terms, 2e-3);
   const Mode mode = first_mode(model);
   State x = model.reference();
   x.v = 0.02 * kLength * mode.pulsation * mode.shape / mode.shape.lpNorm<Eigen::Infinity>();

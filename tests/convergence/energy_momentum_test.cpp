@@ -31,7 +31,7 @@ struct Plate {
   PlaneSection section() const { return {0.01, youngs_modulus, 0.3, 2700}; }
 };
 
-Model make_model(const Plate& p) {
+Workspace make_model(const Plate& p) {
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(make_inertia(p.section()));
   terms.push_back(make_membrane(p.section()));
@@ -39,7 +39,7 @@ Model make_model(const Plate& p) {
   const VectorXd gravity = p.gravity ? VectorXd(g) : VectorXd();
   if (p.gravity) terms.push_back(make_gravity(p.section(), g));
   terms.push_back(make_point_mass(0.3, {0.3, 0.1}, gravity));
-  Model model;
+  Workspace model;
   model.add_body("plate",
                  std::make_unique<AncfPlate>(2, p.shapes, testing::even_lines(0, 0.3, p.nx),
                                              testing::even_lines(-0.1, 0.1, p.ny)),
@@ -110,7 +110,7 @@ struct Drift {
 };
 
 Drift drift(const Plate& p, double h, int steps) {
-  Model model = make_model(p);
+  Workspace model = make_model(p);
   EnergyMomentum scheme(model, {});
   State x = p.pinned ? hanging(model) : flying(model, p.strain);
   scheme.make_consistent(x);
@@ -192,7 +192,7 @@ TEST(EnergyMomentum, ConvergesWithOrderTwoToTheLimitOfGeneralizedAlpha) {
     p.nx = 1;
     p.gravity = p.pinned = pinned;
     p.strain = 0.02;
-    Model model = make_model(p);
+    Workspace model = make_model(p);
     const State start = pinned ? hanging(model) : flying(model, p.strain);
     constexpr double kEnd = 0.08;
     AlphaSettings settings;
@@ -225,7 +225,7 @@ struct SwingErrors {
 
 /// The pendulum on a rod of constant length, (|r|² - L²)/2 = 0.
 SwingErrors swing(double h) {
-  Model model = testing::particle_pendulum();
+  Workspace model = testing::particle_pendulum();
   EnergyMomentum scheme(model, {});
   State x = testing::swing_start(model);
   scheme.make_consistent(x);
@@ -343,7 +343,7 @@ TEST(EnergyMomentum, DrivenAndGrowingPlateConvergesWithOrderTwo) {
 TEST(EnergyMomentum, SaysWhatItCannotDo) {
   Plate p;
   p.gravity = p.pinned = true;
-  Model model = make_model(p);
+  Workspace model = make_model(p);
   State x = hanging(model);
   EnergyMomentumSettings settings;
   settings.max_iterations = 1;

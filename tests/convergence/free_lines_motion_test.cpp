@@ -44,7 +44,7 @@ struct Strip {
   }
   double mass() const { return section.density * section.thickness * width * length; }
 
-  Model model(std::unique_ptr<Term> load, bool inertia) const {
+  Workspace model(std::unique_ptr<Term> load, bool inertia) const {
     std::vector<std::unique_ptr<Term>> terms;
     terms.push_back(make_membrane(section));
     terms.push_back(make_bending(section));
@@ -52,7 +52,7 @@ struct Strip {
     terms.push_back(std::move(load));
     auto lines = even_lines(0, length, n);
     lines[0].free = true;
-    Model out;
+    Workspace out;
     out.add_body("strip",
                  std::make_unique<AncfPlate>(3, ShapeSet::h16, lines, even_lines(0, width, 1)),
                  section, std::move(terms));
@@ -67,7 +67,7 @@ std::unique_ptr<Joint> hold_line(int scalar, double at) {
 
 /// Force out of the sleeve on the free line of a strip bent by a load, in equilibrium [N].
 double force_of_the_sleeve(const Strip& strip, std::unique_ptr<Term> load) {
-  Model model = strip.model(std::move(load), false);
+  Workspace model = strip.model(std::move(load), false);
   model.add_joint(hold_line(0, 0));
   State x = model.reference();
   solve_static(model, x);
@@ -107,12 +107,12 @@ TEST(Sleeve, FeelsTheConfigurationalForceOfATipLoad) {
 double released(double curvature) {
   const Strip strip;
   const double moment = strip.bending() * curvature;
-  Model held = strip.model(make_edge_moment("free_end", moment / strip.width), false);
+  Workspace held = strip.model(make_edge_moment("free_end", moment / strip.width), false);
   held.add_joint(hold_line(0, 0));
   State bent = held.reference();
   solve_static(held, bent);
 
-  Model model = strip.model(make_edge_moment("free_end", moment / strip.width), true);
+  Workspace model = strip.model(make_edge_moment("free_end", moment / strip.width), true);
   State x = model.reference();
   x.q = bent.q;
   GeneralizedAlpha integrator(model, damped(0.8));
@@ -157,7 +157,7 @@ TEST(FreeLine, DrivenByAJointMovesAsAPrescribedOne) {
     terms.push_back(make_membrane(section));
     terms.push_back(make_inertia(section));
     terms.push_back(make_point_mass(0.5, {1, 0}, {}));
-    Model model;
+    Workspace model;
     model.add_body("strip",
                    std::make_unique<AncfPlate>(2, ShapeSet::h16, lines, even_lines(-0.05, 0.05, 2)),
                    section, std::move(terms));
@@ -200,7 +200,7 @@ TEST(FreeLine, AnInnerSleeveKeepsEnergyAndOrder) {
     terms.push_back(make_bending(section));
     terms.push_back(make_inertia(section));
     terms.push_back(make_gravity(section, vector(1.0, 0, -2.0)));
-    Model model;
+    Workspace model;
     model.add_body("strip",
                    std::make_unique<AncfPlate>(3, ShapeSet::h16, lines, even_lines(0, 0.05, 1)),
                    section, std::move(terms));
@@ -241,7 +241,7 @@ Pulled pulled(int n, double max_length, double speed, double along) {
   strip.length = 0.3;
   strip.n = n;
   strip.section.youngs_modulus = 1e9;
-  Model model = strip.model(make_gravity(strip.section, vector(along, 0, -4)), true);
+  Workspace model = strip.model(make_gravity(strip.section, vector(along, 0, -4)), true);
   const std::vector<Growth> growths = {
       {"strip", at_rest({0, 0}), max_length, max_length < 1 ? 0.3 * max_length : 0, 0, speed}};
   MotionSettings settings;

@@ -27,7 +27,7 @@ struct Errors {
 };
 
 Errors run(double h, double rho_inf, bool exact_tangent = true, AlphaSettings settings = {}) {
-  Model model = testing::particle_pendulum(exact_tangent);
+  Workspace model = testing::particle_pendulum(exact_tangent);
   settings.rho_inf = rho_inf;
   // The multiplier sees errors of Newton's method divided by h^2: below its own error at 1 ms.
   settings.tolerance = 1e-14;

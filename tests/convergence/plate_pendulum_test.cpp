@@ -36,14 +36,14 @@ SpacePlate pendulum(ShapeSet shapes, int n) {
   return p;
 }
 
-Model hung(const SpacePlate& p) {
-  Model model = p.model(make_gravity(p.section, vector(0, 0, -9.81)));
+Workspace hung(const SpacePlate& p) {
+  Workspace model = p.model(make_gravity(p.section, vector(0, 0, -9.81)));
   const auto still = [](double) { return std::vector<Motion>(3); };
   model.add_joint(make_pin("pin", "plate", {0, 0}, still, {}));
   return model;
 }
 
-Fall fall(Model& model, double h, const std::vector<double>& times) {
+Fall fall(Workspace& model, double h, const std::vector<double>& times) {
   Fall out;
   State x = model.reference();
   AlphaSettings settings;
@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(Plate, Pendulum, ::testing::Values(ShapeSet::h12, Shape
                          });
 
 TEST_P(Pendulum, KeepsItsEnergyAndSymmetry) {
-  Model model = hung(pendulum(GetParam(), 8));
+  Workspace model = hung(pendulum(GetParam(), 8));
   const Fall x = fall(model, 1e-3, {0.1, 0.2, 0.3, 0.4, 0.5, 0.6});
   for (const Vec3& c : x.corner) std::printf("  %.5f %.5f %.5f\n", c.x(), c.y(), c.z());
   std::printf("energy %.2e of what is exchanged, Newton %d, factorizations %d\n", x.drift,
@@ -91,7 +91,7 @@ TEST_P(Pendulum, KeepsItsEnergyAndSymmetry) {
 }
 
 TEST_P(Pendulum, ConvergesWithOrderTwo) {
-  Model model = hung(pendulum(GetParam(), 4));
+  Workspace model = hung(pendulum(GetParam(), 4));
   std::vector<Vec3> at;
   for (const double h : {1e-3, 5e-4, 2.5e-4}) at.push_back(fall(model, h, {0.2}).corner[0]);
   const double order = std::log2((at[0] - at[1]).norm() / (at[1] - at[2]).norm());
@@ -102,10 +102,10 @@ TEST_P(Pendulum, ConvergesWithOrderTwo) {
 // Lines that are driven to stay where they are: the element that could flow is the plain plate.
 TEST_P(Pendulum, LinesThatStandStillChangeNothing) {
   const SpacePlate p = pendulum(GetParam(), 3);
-  Model plain = hung(p);
+  Workspace plain = hung(p);
   auto lines = testing::even_lines(0, 0.3, 3);
   for (auto& line : lines) line.drive = [at = line.value](double) { return Motion{at, 0, 0}; };
-  Model driven;
+  Workspace driven;
   std::vector<std::unique_ptr<Term>> terms;
   for (const std::string& name : p.terms) terms.push_back(make_term(name, p.section));
   terms.push_back(make_gravity(p.section, vector(0, 0, -9.81)));
@@ -131,7 +131,7 @@ TEST_P(Pendulum, LinesThatStandStillChangeNothing) {
 
 // Bending has no quadratic energy: its discrete gradient is GramGradient's.
 TEST(PendulumByEnergyMomentum, KeepsItsEnergy) {
-  Model model = hung(pendulum(ShapeSet::h16, 3));
+  Workspace model = hung(pendulum(ShapeSet::h16, 3));
   EnergyMomentum integrator(model, EnergyMomentumSettings{});
   State x = model.reference();
   integrator.make_consistent(x);

@@ -37,7 +37,7 @@ SpacePlate supported(ShapeSet shapes, int n) {
 }
 
 /// Deflection of the linear plate at a point.
-double deflection(Model model, const Vec2& at) {
+double deflection(Workspace model, const Vec2& at) {
   return at_point(model, linear_displacement(model, model.reference()), at).z();
 }
 
@@ -149,7 +149,7 @@ SpacePlate strip(double thickness, const std::string& membrane, int nx = 8) {
 // End moment 2π E I / L: the tip comes back to the root.
 TEST(LargeBending, StripRollsUpToACircle) {
   const SpacePlate p = strip(1e-2, "membrane_assumed");
-  Model model = p.model(make_edge_moment("free_end", 2 * std::numbers::pi * p.stiffness()));
+  Workspace model = p.model(make_edge_moment("free_end", 2 * std::numbers::pi * p.stiffness()));
   State x = model.reference();
   EXPECT_TRUE(solve_static(model, x).completed);
   const Vec3 tip = at_point(model, x.q, {1, 0.1});
@@ -160,7 +160,7 @@ TEST(LargeBending, StripRollsUpToACircle) {
 // there.
 TEST(LargeBending, AVeryThinStripRollsUpToACircle) {
   const SpacePlate p = strip(1e-4, "membrane_assumed", 16);
-  Model model = p.model(make_edge_moment("free_end", 2 * std::numbers::pi * p.stiffness()));
+  Workspace model = p.model(make_edge_moment("free_end", 2 * std::numbers::pi * p.stiffness()));
   State x = model.reference();
   EXPECT_TRUE(solve_static(model, x).completed);
   const Vec3 tip = at_point(model, x.q, {1, 0.1});
@@ -171,7 +171,7 @@ TEST(LargeBending, AVeryThinStripRollsUpToACircle) {
 double elastica_error(double thickness, const std::string& membrane) {
   const double alpha = 10;
   const SpacePlate p = strip(thickness, membrane);
-  Model model = p.model(make_edge_load("free_end", vector(0, 0, alpha * p.stiffness())));
+  Workspace model = p.model(make_edge_load("free_end", vector(0, 0, alpha * p.stiffness())));
   State x = model.reference();
   EXPECT_TRUE(solve_static(model, x).completed);
   return at_point(model, x.q, {1, 0.1}).z() / reference::elastica(alpha).z - 1;
@@ -198,7 +198,7 @@ double bent_obliquely(const std::string& membrane, int n) {
   p.section.thickness = 1e-4;
   p.terms = {membrane, "bending"};
   p.hold(clamped_edge("root"));
-  Model model = p.model(make_point_force({1, 1}, vector(0, 0, p.stiffness())));
+  Workspace model = p.model(make_point_force({1, 1}, vector(0, 0, p.stiffness())));
   State x = model.reference();
   EXPECT_TRUE(solve_static(model, x).completed);
   return at_point(model, x.q, {1, 1}).z();
@@ -241,7 +241,7 @@ struct Buckled {
   double middle() const { return at_point(model, x.q, {1, 0.1}).z(); }
 
   SpacePlate plate;
-  Model model;
+  Workspace model;
   State x;
 };
 
@@ -315,7 +315,7 @@ TEST(ArcLength, LimitLoadIsThatOfDisplacementControl) {
 
 TEST(StaticPath, SaysWhereItFailed) {
   const SpacePlate p = strip(1e-2, "membrane");
-  Model model = p.model(make_edge_load("free_end", vector(0, 0, p.stiffness())));
+  Workspace model = p.model(make_edge_load("free_end", vector(0, 0, p.stiffness())));
   State x = model.reference();
   StaticSettings s;
   s.max_iterations = 1;  // cannot converge: the problem is nonlinear

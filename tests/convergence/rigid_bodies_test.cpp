@@ -38,7 +38,7 @@ void expect_order_two(const std::string& what, const std::vector<double>& steps,
 }
 
 /// Advances from t = 0 to the end in steps of about h.
-void advance(Model& model, State& x, double end, double h) {
+void advance(Workspace& model, State& x, double end, double h) {
   AlphaSettings settings;
   settings.tolerance = 1e-14;
   GeneralizedAlpha alpha(model, settings);
@@ -65,8 +65,8 @@ struct PhysicalPendulum {
     const Vec2 line = section.center - hinge;
     return swing - std::numbers::pi / 2 - std::atan2(line.y(), line.x());
   }
-  Model model() const {
-    Model out;
+  Workspace model() const {
+    Workspace out;
     testing::add_rigid(out, "body", section, Vec2(0, -kGravity));
     out.add_joint(make_revolute("hinge", {}, {.body = "body", .point = hinge}));
     return out;
@@ -87,7 +87,7 @@ TEST(PhysicalPendulum, ConvergesToEllipticFunctions) {
   const double rate = -std::sqrt(2 * p.weight_moment() * (1 - std::cos(p.amplitude)) / p.inertia());
   const Vec2 reaction(0, p.section.mass * (kGravity + p.length() * rate * rate));
   expect_order_two("pendulum", {end / 400, end / 800, end / 1600}, [&](double h) {
-    Model model = p.model();
+    Workspace model = p.model();
     State x = p.start(model);
     advance(model, x, end, h);
     return Errors{
@@ -102,7 +102,7 @@ TEST(PhysicalPendulum, ConvergesToEllipticFunctions) {
 TEST(PhysicalPendulum, KeepsItsEnergyInTheEnergyMomentumScheme) {
   const PhysicalPendulum p;
   for (const bool spring : {false, true}) {
-    Model model = p.model();
+    Workspace model = p.model();
     if (spring)
       model.add_link(make_spring("spring", {.point = {1, 0.5}},
                                  {.body = "body", .point = {0.4, 0.1}}, {60, 0, 0.4}));
@@ -127,7 +127,7 @@ TEST(PhysicalPendulum, KeepsItsEnergyInTheEnergyMomentumScheme) {
 // balance is that of the trapezoidal rule over the powers and of the scheme.
 TEST(EnergyBalance, CountsDampersAndMotors) {
   const auto defect = [](double h) {
-    Model model;
+    Workspace model;
     testing::add_rigid(model, "rotor", {3, {0.4, -0.1}, 0.2}, Vec2(0, -kGravity));
     model.add_joint(make_revolute("axis", {}, {.body = "rotor"}));
     model.add_link(make_torque("motor", {.body = "rotor"}, 8));
@@ -185,8 +185,8 @@ struct SliderCrank {
            of(block_section, x.segment<2>(2), 0, rate.segment<2>(2), 0);
   }
 
-  Model model() const {
-    Model out;
+  Workspace model() const {
+    Workspace out;
     const Vec2 gravity(0, -kGravity);
     testing::add_rigid(out, "crank", crank_section, gravity);
     testing::add_rigid(out, "rod", rod_section, gravity);
@@ -219,7 +219,7 @@ TEST(SliderCrank, FollowsItsClosedFormKinematics) {
   const auto energy = [&](double dt) { return s.energy(end + dt); };
   const double moment = testing::first_difference(energy, 1e-3) / s.drive(end).rate;
   const auto run = [&](double h) {
-    Model model = s.model();
+    Workspace model = s.model();
     State x = s.at(model, 0);
     advance(model, x, end, h);
     const State exact = s.at(model, end);
@@ -252,7 +252,7 @@ TEST(Spring, MakesAnOscillator) {
   const double rest = 0.6 + mass * gravity.dot(along) / stiffness;
   for (const double damping : {0.0, 3.0})
     expect_order_two(damping > 0 ? "damped spring" : "spring", {4e-3, 2e-3, 1e-3}, [&](double h) {
-      Model model;
+      Workspace model;
       testing::add_rigid(model, "block", {mass, {0, 0}, 0.1}, gravity);
       model.add_joint(
           make_slider("guide", {.point = {0.2, 0.1}, .angle = slope}, {.body = "block"}));
@@ -282,7 +282,7 @@ TEST(TorsionSpring, MakesAnOscillator) {
     expect_order_two(
         damping > 0 ? "damped torsion spring" : "torsion spring", {4e-3, 2e-3, 1e-3},
         [&](double h) {
-          Model model;
+          Workspace model;
           testing::add_rigid(model, "rotor", section);
           model.add_joint(make_revolute("axis", {}, {.body = "rotor"}));
           model.add_link(make_torsion_spring("spring", {.angle = 0.3},

@@ -54,13 +54,13 @@ MarkerPlace on(int body, const Vec2& point = {0, 0}) {
 const Vec2 kF2(-kD, 0), kF3(0, -kSs), kF4(0, -kE), kF6(kZf, 0), kD3(kSd, -kSc), kE5(kZt, 0),
     kH7(0, -kU);
 
-Model squeezer() {
+Workspace squeezer() {
   const RigidSection sections[7] = {
       {0.04325, {kRa, 0}, 2.194e-6},    {0.00365, {-kDa, 0}, 4.410e-7},
       {0.02373, {kSb, -kSa}, 5.255e-6}, {0.00706, {0, -(kE - kEa)}, 5.667e-7},
       {0.07050, {kTb, -kTa}, 1.169e-5}, {0.00706, {kZf - kFa, 0}, 5.667e-7},
       {0.05498, {kUb, -kUa}, 1.912e-5}};
-  Model model;
+  Workspace model;
   for (int k = 1; k <= 7; ++k) testing::add_rigid(model, name(k), sections[k - 1]);
   model.add_joint(make_revolute("O", {}, on(1)));
   model.add_joint(make_revolute("crank", on(1, {kRr, 0}), on(2)));
@@ -103,7 +103,7 @@ VectorXd errors_of(const Model& model, const State& x) {
 }
 
 VectorXd errors(double h) {
-  Model model = squeezer();
+  Workspace model = squeezer();
   State x = start(model);
   AlphaSettings settings;
   settings.tolerance = 1e-14;
@@ -116,7 +116,7 @@ VectorXd errors(double h) {
 
 // The published start fits the joints, and has the published accelerations.
 TEST(Squeezer, StartsAsPublished) {
-  Model model = squeezer();
+  Workspace model = squeezer();
   State x = start(model);
   Constraints c;
   model.constraints(x, c);
@@ -151,7 +151,7 @@ TEST(Squeezer, ConvergesToThePublishedSolution) {
 TEST(Squeezer, FollowsThePublishedSolutionInMinimalCoordinates) {
   std::vector<double> error;
   for (const double tolerance : {1e-6, 1e-8, 1e-10, 1e-12}) {
-    Model model = squeezer();
+    Workspace model = squeezer();
     State x = start(model);
     MinimalCoordinates scheme(model, {tolerance});
     scheme.make_consistent(x);

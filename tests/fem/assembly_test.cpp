@@ -32,7 +32,7 @@ using Parts = std::vector<LinearRow::Part>;
 // mean mass more than they are (assembly.h).
 TEST(Assembly, MovesTheLeastMass) {
   const double extra = 1e-8 * 2.5, m1 = 1 + extra, m2 = 4 + extra, length = 2;
-  Model model = point_model(places({{0, 0}, {3, 4}}), Vec2(1, 4));
+  Workspace model = point_model(places({{0, 0}, {3, 4}}), Vec2(1, 4));
   add<Rod>(model, "rod", 0, 1, constant(length));
   State x = model.reference();
   x.v << 1, 2, -3, 1;
@@ -58,7 +58,7 @@ TEST(Assembly, FourBarFromAStartFarOff) {
   int most = 0;
   for (int i = 0; i < 20; ++i) {
     const double angle = 0.3 * i;
-    Model model = bar.model(linear(angle, speed));
+    Workspace model = bar.model(linear(angle, speed));
     State x = model.reference();
     for (double& entry : x.q) entry += off(random);
     for (double& entry : x.v) entry += off(random);
@@ -72,7 +72,7 @@ TEST(Assembly, FourBarFromAStartFarOff) {
 
 // Ten times too far away and lying on top of each other: a rod that must grow and turn.
 TEST(Assembly, ConvergesFromFarAway) {
-  Model model = point_model(places({{10, 0.5}, {10.1, -0.3}, {-8, 3}}));
+  Workspace model = point_model(places({{10, 0.5}, {10.1, -0.3}, {-8, 3}}));
   add<Rod>(model, "a", 0, -1, constant(1));
   add<Rod>(model, "b", 0, 1, constant(0.5));
   add<Rod>(model, "c", 1, 2, constant(0.5));
@@ -92,7 +92,7 @@ TEST(Assembly, LongLadder) {
     points.emplace_back(i, 0);
     points.emplace_back(i + 0.1 * std::sin(3.0 * i), 1);
   }
-  Model model = point_model(places(points));
+  Workspace model = point_model(places(points));
   std::vector<std::pair<int, int>> rods;
   for (int a = 0; a + 1 < 2 * (cells + 1); ++a)
     for (const int b : {a + 1, a + 2})
@@ -120,7 +120,7 @@ TEST(Assembly, LongLadder) {
 // The rods do not reach each other: the gap that remains is what a chain stretched by least squares
 // leaves, 0.4 m shared by two rods.
 TEST(Assembly, TooShortRodsAreNamed) {
-  Model model = point_model(places({{0.3, 0.4}}));
+  Workspace model = point_model(places({{0.3, 0.4}}));
   add<Rod>(model, "left", 0, -1, constant(0.3));
   add<Rod>(model, "right", 0, -1, constant(0.3), Vec2(1, 0));
   State x = model.reference();
@@ -131,7 +131,7 @@ TEST(Assembly, TooShortRodsAreNamed) {
 }
 
 TEST(Assembly, VelocitiesThatContradictAreNamed) {
-  Model model = point_model(places({{1, 0}}));
+  Workspace model = point_model(places({{1, 0}}));
   add<Rod>(model, "rod", 0, -1, constant(1));
   add<LinearRow>(model, "y", Parts{{0, 1}}, constant(0));
   add<LinearRow>(model, "pull", Parts{{0, 0}}, linear(1, 0.5));
@@ -142,7 +142,7 @@ TEST(Assembly, VelocitiesThatContradictAreNamed) {
 
 TEST(Assembly, RedundantRodsDoNoHarm) {
   const FourBar bar;
-  Model model = bar.model(linear(0.9, 2));
+  Workspace model = bar.model(linear(0.9, 2));
   add<Rod>(model, "second", 1, -1, constant(bar.s), Vec2(bar.g, 0));
   State x = model.reference();
   for (int i = 0; i < 4; ++i) x.q[i] += 0.05 * std::cos(2.0 * i);
@@ -152,7 +152,7 @@ TEST(Assembly, RedundantRodsDoNoHarm) {
 
 TEST(Assembly, BadStartsAreRefused) {
   const FourBar bar;
-  Model model = bar.model(linear(0.9, 2));
+  Workspace model = bar.model(linear(0.9, 2));
   State x = model.reference();
   x.q[1] = NAN;
   error_of(Error::Kind::input, [&] { assemble(model, x); });

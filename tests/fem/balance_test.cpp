@@ -48,7 +48,7 @@ void PrintTo(const Case& c, std::ostream* out) {
        << (c.shapes == ShapeSet::h12 ? " h12" : "") << ' ' << c.dim << 'd';
 }
 
-Model model_of(const Case& c) {
+Workspace model_of(const Case& c) {
   VectorXd load = VectorXd::LinSpaced(c.dim, 3, 5);
   std::vector<std::unique_ptr<Term>> terms;
   for (const char term : c.terms) {
@@ -60,7 +60,7 @@ Model model_of(const Case& c) {
     if (term == 'g') terms.push_back(make_gravity(kSection, load));
     if (term == 's') terms.push_back(make_surface_load(2 * load));
   }
-  Model model;
+  Workspace model;
   Body& body = model.add_body("plate",
                               std::make_unique<AncfPlate>(c.dim, c.shapes, lines(c.lines),
                                                           testing::even_lines(-0.05, 0.07, 2)),
@@ -72,7 +72,7 @@ Model model_of(const Case& c) {
 class AnyMotion : public ::testing::TestWithParam<Case> {};
 
 TEST_P(AnyMotion, ChangesTheEnergyByThePowers) {
-  Model model = model_of(GetParam());
+  Workspace model = model_of(GetParam());
   const testing::SmoothMotion motion = testing::any_motion(model);
   for (const double time : {0.3, 0.9}) {
     const auto [rate, work, p] = testing::energy_rate(model, motion, time);
@@ -112,7 +112,7 @@ TEST(FlowPower, OfMembranesIsThatOfAnInnerNLine) {
     terms.push_back(assumed ? make_assumed_membrane(kSection) : make_membrane(kSection));
     auto across = testing::even_lines(-0.05, 0.07, 2);
     across[1] = swinging_line(0.01, 0.02, 1.7);
-    Model model;
+    Workspace model;
     model.add_body("plate", std::make_unique<AncfPlate>(3, ShapeSet::h16, lines("|d|"), across),
                    kSection, std::move(terms));
     model.prepare(0.0);
@@ -135,7 +135,7 @@ TEST(FlowPower, OfMembranesIsThatOfAnInnerNLine) {
 }
 
 TEST(Powers, RefuseNLinesThatMove) {
-  Model model;
+  Workspace model;
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(make_membrane(kSection));
   auto across = testing::even_lines(-0.05, 0.07, 1);

@@ -37,7 +37,7 @@ std::unique_ptr<AncfBeam> quarter_arc() {
 Vec2 resultant(std::unique_ptr<Term> load, double* moment = nullptr) {
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(std::move(load));
-  Model model;
+  Workspace model;
   model.add_body("beam", quarter_arc(), kSection, std::move(terms));
   model.prepare(0);
   const State x = model.reference();
@@ -81,7 +81,7 @@ TEST(BeamLoads, HaveTheirResultants) {
 
 /// A beam and a rigid body, some joint between them, a state near the one where it is closed.
 struct Pair {
-  Model model;
+  Workspace model;
   State x;
 
   explicit Pair(std::unique_ptr<Joint> joint, std::unique_ptr<AncfBeam> beam = quarter_arc()) {
@@ -187,7 +187,7 @@ TEST(BeamHolds, FindNodesByTheirCoordinates) {
 TEST(BeamStart, PlacedBeamsMoveAsRigidBodies) {
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(make_inertia(kSection));
-  Model model;
+  Workspace model;
   model.add_body("beam", quarter_arc(), kSection, std::move(terms));
   const FrameMotion f{{0.3, -0.2}, {1, 2}, {0, 0}, 0.8, 3, 0};
   const Placement placement = [&](double) { return std::vector<Placed>{{"beam", f}}; };

@@ -262,7 +262,7 @@ TEST(Bending, BatchesAreTheirElements) {
 }
 
 TEST(Bending, NeedsSpace) {
-  Model model;
+  Workspace model;
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(make_term("bending", kSection));
   model.add_body("arm",
@@ -306,7 +306,7 @@ TEST(Bending, SecondDerivativesAreDerivativesOfTheFirst) {
 TEST(SpaceModel, SmallestAreaRatioIsThatOfTheSurface) {
   testing::SpacePlate p;
   p.nx = p.ny = 2;
-  Model model = p.model();
+  Workspace model = p.model();
   State x = model.reference();
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(1.1, Vec3(1, 2, 0).normalized()).matrix();
   for (Eigen::Index k = 0; k < x.q.size(); k += 3)

@@ -251,7 +251,7 @@ TEST(EdgeWeld, OnABodyIsAWeldInADrivenHub) {
   for (const int dim : {2, 3})
     for (const ShapeSet shapes : {ShapeSet::h12, ShapeSet::h16})
       for (const WeldMode mode : {WeldMode::edge, WeldMode::direction, WeldMode::full}) {
-        Model model;
+        Workspace model;
         model.add_body("plate",
                        std::make_unique<AncfPlate>(
                            dim, shapes,

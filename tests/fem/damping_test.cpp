@@ -270,7 +270,7 @@ TEST(DampingWithFlow, ChangesTheEnergyByThePowers) {
   for (const Names& names :
        {Names{"inertia", "membrane", "bending", "damping"}, Names{"membrane_assumed", "damping"}})
     for (const bool designed : {false, true}) {
-      Model model;
+      Workspace model;
       const double points = designed ? 8 : 15;  // the rational energy of bending by quadrature
       Body& body = model.add_body(
           "plate",

@@ -38,12 +38,12 @@ FrameMotion at_place(const Vec2& origin, const Vec2& rate = {0, 0}) {
   f.origin_rate = rate;
   return f;
 }
-Model pinned_plate(const std::vector<std::pair<std::string, Vec2>>& pins, const Vec2& material,
-                   bool with_mass = true) {
+Workspace pinned_plate(const std::vector<std::pair<std::string, Vec2>>& pins, const Vec2& material,
+                       bool with_mass = true) {
   const PlaneSection section{0.01, 1e9, 0.3, 1000};
   std::vector<std::unique_ptr<Term>> terms;
   if (with_mass) terms.push_back(make_inertia(section));
-  Model model;
+  Workspace model;
   model.add_body(
       "plate",
       std::make_unique<AncfPlate>(2, AncfPlate::ShapeSet::h16, testing::even_lines(0, 0.4, 3),
@@ -57,7 +57,7 @@ Model pinned_plate(const std::vector<std::pair<std::string, Vec2>>& pins, const 
 // Without mass the norm is that of displacements; pins are linear: one step.
 TEST(Assembly, PlatesComeToTheirPins) {
   for (const bool with_mass : {true, false}) {
-    Model model = pinned_plate({{"pin", {0.11, -0.07}}}, {0.1, 0.02}, with_mass);
+    Workspace model = pinned_plate({{"pin", {0.11, -0.07}}}, {0.1, 0.02}, with_mass);
     State x = model.reference();
     const Assembly report = assemble(model, x);
     Constraints c;
@@ -70,7 +70,7 @@ TEST(Assembly, PlatesComeToTheirPins) {
 }
 
 TEST(Diagnosis, TwoPinsAtOnePlace) {
-  const Model twice = pinned_plate({{"pin_1", {0.1, 0}}, {"pin_2", {0.1, 0}}}, {0.1, 0});
+  Workspace twice = pinned_plate({{"pin_1", {0.1, 0}}, {"pin_2", {0.1, 0}}}, {0.1, 0});
   const Diagnosis redundant = diagnose(twice, twice.reference());
   EXPECT_EQ(redundant.rank, 2);
   EXPECT_EQ(redundant.degrees_of_freedom(), twice.n_dofs() - 2);
@@ -80,7 +80,7 @@ TEST(Diagnosis, TwoPinsAtOnePlace) {
   EXPECT_FALSE(redundant.is_contradictory());
   EXPECT_EQ(describe(redundant), "joints 'pin_1', 'pin_2' hold the same 2 freedoms");
 
-  Model apart = pinned_plate({{"pin_1", {0.1, 0}}, {"pin_2", {0.112, 0}}}, {0.1, 0});
+  Workspace apart = pinned_plate({{"pin_1", {0.1, 0}}, {"pin_2", {0.112, 0}}}, {0.1, 0});
   State x = apart.reference();
   const Diagnosis diagnosis = diagnose(apart, x);
   EXPECT_TRUE(diagnosis.is_contradictory());
@@ -95,7 +95,7 @@ TEST(Diagnosis, TwoPinsAtOnePlace) {
 
 TEST(Diagnosis, ContradictionsByValueRateAndAcceleration) {
   const auto diagnosis_of = [](const testing::Course& second) {
-    Model model = point_model(places({{1, 0}}));
+    Workspace model = point_model(places({{1, 0}}));
     add<LinearRow>(model, "a", Parts{{0, 0}}, linear(1, 0.3));
     add<LinearRow>(model, "b", Parts{{0, 0}}, second);
     return diagnose(model, model.reference());
@@ -114,7 +114,7 @@ TEST(Diagnosis, ContradictionsByValueRateAndAcceleration) {
 // x_a = 0, x_b = 1 and x_b - x_a = 1: any two of the three are independent. Others stay out of it.
 TEST(Diagnosis, ThreeJointsDependentOnlyTogether) {
   for (const double distance : {1.0, 1.25}) {
-    Model model = point_model(places({{0, 0}, {1, 0}, {2, 1}}));
+    Workspace model = point_model(places({{0, 0}, {1, 0}, {2, 1}}));
     add<LinearRow>(model, "other", Parts{{0, 1}}, constant(0));
     add<LinearRow>(model, "a", Parts{{0, 0}}, constant(0));
     add<Rod>(model, "rod", 1, 2, constant(std::sqrt(2)));
@@ -127,7 +127,7 @@ TEST(Diagnosis, ThreeJointsDependentOnlyTogether) {
     EXPECT_EQ(d.groups[0].joints, (Names{"a", "b", "between"}));
     EXPECT_EQ(d.groups[0].contradictory, distance != 1.0);
     for (const Names& pair : {Names{"a", "b"}, Names{"a", "between"}, Names{"b", "between"}}) {
-      Model two = point_model(places({{0, 0}, {1, 0}}));
+      Workspace two = point_model(places({{0, 0}, {1, 0}}));
       for (const auto& joint : pair) {
         if (joint == "a") add<LinearRow>(two, joint, Parts{{0, 0}}, constant(0));
         if (joint == "b") add<LinearRow>(two, joint, Parts{{1, 0}}, constant(1));
@@ -147,7 +147,7 @@ TEST(Diagnosis, ThreeParallelCranks) {
   const auto model_with = [&](double third) {
     std::vector<Vec2> points;
     for (const Vec2& g : ground) points.push_back(g + crank);
-    Model model = point_model(places(points));
+    Workspace model = point_model(places(points));
     for (int i = 0; i < 3; ++i)
       add<Rod>(model, "crank_" + std::to_string(i), i, -1,
                constant(crank.norm() * (i == 2 ? third : 1)), ground[static_cast<size_t>(i)]);
@@ -159,7 +159,7 @@ TEST(Diagnosis, ThreeParallelCranks) {
     }
     return model;
   };
-  Model model = model_with(1);
+  Workspace model = model_with(1);
   State x = model.reference();
   for (int i = 0; i < 6; ++i) x.q[i] += 0.04 * std::cos(2.0 * i);
   EXPECT_EQ(degrees_of_freedom(model, x), 0);
@@ -174,7 +174,7 @@ TEST(Diagnosis, ThreeParallelCranks) {
 // The closed chain of an edge held three times at once: every surplus joint is named with one
 // other, not with all.
 TEST(Diagnosis, NamesAsFewJointsAsItCan) {
-  Model model = point_model(places({{1, 0}, {2, 0}}));
+  Workspace model = point_model(places({{1, 0}, {2, 0}}));
   add<LinearRow>(model, "a", Parts{{0, 0}}, constant(1));
   add<LinearRow>(model, "b", Parts{{0, 0}, {1, 0}}, constant(3));
   add<LinearRow>(model, "c", Parts{{0, 0}, {1, 0, -1}}, constant(-1));
@@ -191,7 +191,7 @@ TEST(Diagnosis, NamesAsFewJointsAsItCan) {
   EXPECT_EQ(triples, 1) << describe(d);
 }
 
-MatrixXd dense_jacobian(const Model& model, const State& x) {
+MatrixXd dense_jacobian(Workspace& model, const State& x) {
   ScaledConstraints rows;
   rows.evaluate(model, x);
   return MatrixXd(rows.jacobian());
@@ -205,7 +205,7 @@ TEST(Diagnosis, RankOfRandomMechanismsAgainstSingularValues) {
     const int n = 3 + trial % 10;
     const MatrixXd at = MatrixXd::NullaryExpr(
         n, 2, [&] { return std::uniform_real_distribution<double>(-1, 1)(random); });
-    Model model = point_model(at);
+    Workspace model = point_model(at);
     const auto point = [&] { return std::uniform_int_distribution<int>(0, n - 1)(random); };
     const int rods = std::uniform_int_distribution<int>(n, 3 * n)(random);
     for (int i = 0; i < rods; ++i) {
@@ -248,7 +248,7 @@ TEST(Diagnosis, RankOfRandomMechanismsAgainstSingularValues) {
 // stretched rods are named.
 TEST(ConstraintWatch, ConditionOfAMechanismNearItsDeadCentre) {
   const FourBar bar{.r = 0.3, .l = 0.35, .s = 0.25, .g = 0.45};
-  Model model = bar.model(linear(0, 0));
+  Workspace model = bar.model(linear(0, 0));
   ConstraintWatch watch(model);
   for (const double before : {0.5, 1e-2, 1e-4, 1e-6, 1e-8}) {
     State x = model.reference();
@@ -266,7 +266,7 @@ TEST(ConstraintWatch, ConditionOfAMechanismNearItsDeadCentre) {
 }
 
 TEST(ConstraintWatch, SaturatesWhereRowsAreDependent) {
-  Model model = point_model(places({{1, 0}}));
+  Workspace model = point_model(places({{1, 0}}));
   EXPECT_EQ(constraint_condition(model, model.reference()), 1);
   add<Rod>(model, "a", 0, -1, constant(1));
   add<Rod>(model, "b", 0, -1, constant(1));

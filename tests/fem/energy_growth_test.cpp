@@ -76,13 +76,13 @@ TEST(EnergyGrowth, RoundOffIsNoGain) {
 }
 
 /// One element of the plate pendulum of P 4.1, with steps of 1 ms.
-Model pendulum() {
+Workspace pendulum() {
   testing::SpacePlate p;
   p.length = p.width = 0.3;
   p.nx = p.ny = 1;
   p.section = {0.01, 1e5, 0.3, 7810};
   p.terms = {"membrane", "bending", "inertia"};
-  Model model = p.model(make_gravity(p.section, testing::vector(0, 0, -9.81)));
+  Workspace model = p.model(make_gravity(p.section, testing::vector(0, 0, -9.81)));
   const auto still = [](double) { return std::vector<Motion>(3); };
   model.add_joint(make_pin("pin", "plate", {0, 0}, still, {}));
   return model;
@@ -106,7 +106,7 @@ MotionSettings fall(double end) {
 // first step whose gain passes the limit, not at a failure of Newton's method; nothing else makes
 // the gain; and the message says how much of it there is and since when.
 TEST(EnergyGrowth, StopsAPlateWhoseStepsDoNotFollow) {
-  Model model = pendulum();
+  Workspace model = pendulum();
   struct Seen {
     double t, gain, part;  // of the books: total energy against the start, nothing comes in
   };
@@ -150,14 +150,14 @@ TEST(EnergyGrowth, StopsAPlateWhoseStepsDoNotFollow) {
 
 // While it still swings as a plate the error is that of the step, and no loss is taken for a gain.
 TEST(EnergyGrowth, LetsGoodMotionsPass) {
-  Model model = pendulum();
+  Workspace model = pendulum();
   const EnergyGain early = integrate(model, {}, fall(1), [](const MotionStep&) {}).energy_gain;
   EXPECT_LT(early.part, 1e-3);
   EXPECT_EQ(early.time, 0);
   // Kept exactly through the collapse.
   MotionSettings settings = fall(3);
   settings.integrator = "energy_momentum";
-  Model other = pendulum();
+  Workspace other = pendulum();
   const EnergyGain kept = integrate(other, {}, settings, [](const MotionStep&) {}).energy_gain;
   EXPECT_LT(kept.part, 1e-11);
 }
@@ -167,7 +167,7 @@ TEST(EnergyGrowth, LetsGoodMotionsPass) {
 TEST(EnergyGrowth, IsNoneInRigidMotionsOverALongTime) {
   const VectorXd gravity = Vec2(0, -9.81);
   for (const double rho : {0.8, 0.9}) {
-    Model model;
+    Workspace model;
     testing::add_rigid(model, "upper", {1.2, {0.1, 0}, 0.01}, gravity);
     testing::add_rigid(model, "lower", {0.7, {0.15, 0.01}, 0.01}, gravity);
     model.add_joint(make_revolute("axis", {}, {.body = "upper"}));

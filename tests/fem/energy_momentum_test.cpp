@@ -27,6 +27,7 @@ constexpr double kStep = 0.02;
 ///   U = k/2 Σ_p w_p ((|r_m| - 1)² + (|r_n| - 1)² + (r_m·r_n)²)
 class Stretch final : public Term {
  public:
+  std::unique_ptr<Term> clone() const override { return std::make_unique<Stretch>(*this); }
   void prepare(const Element& element, const Factors& factors, bool) override {
     gradient_.prepare(element);
     tables_.resize(static_cast<size_t>(element.n_elements()));
@@ -253,6 +254,7 @@ TEST_P(MeanForce, TangentIsTheDerivativeByTheEnd) {
 /// A term as others may write it, without a mean force.
 class Spring final : public Term {
  public:
+  std::unique_ptr<Term> clone() const override { return std::make_unique<Spring>(*this); }
   void prepare(const Element&, const Factors&, bool) override {}
   void add_force(int, const Local&, LocalRows&) const override {}
   void add_tangent(int, const Local&, const Weights&, LocalTangent&) const override {}
@@ -260,7 +262,7 @@ class Spring final : public Term {
 };
 
 TEST(IntegratorTable, NamesWhatItKnowsAndWhatATermLacks) {
-  Model model;
+  Workspace model;
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(inertia());
   terms.push_back(std::make_unique<Spring>());

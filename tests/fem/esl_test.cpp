@@ -64,7 +64,7 @@ class Esl : public ::testing::Test {
     x.t = kTime;
     x.q = q(kTime);
     x.v = first_difference([&](double dt) { return VectorXd(q(kTime + dt)); }, 1e-3);
-    x.a = x.alpha = second_difference([&](double dt) { return VectorXd(q(kTime + dt)); }, 1e-3);
+    x.a = second_difference([&](double dt) { return VectorXd(q(kTime + dt)); }, 1e-3);
     model.prepare(kTime);
     return x;
   }
@@ -74,7 +74,7 @@ class Esl : public ::testing::Test {
     return equivalent_static_load(model, x, {"plate", hub, 1, 0.01}, grid, masses, forces, gravity);
   }
 
-  Model model;
+  Workspace model;
   Grid grid{0, -0.05, kEnd, 0.1, 30, 10};
 };
 

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "fem/loads.h"
-#include "fem/model.h"
 #include "fem/terms.h"
 #include "fem/terms/densities.h"
+#include "fem/workspace.h"
 #include "tests/support/differences.h"
 #include "tests/support/models.h"
 
@@ -233,7 +233,7 @@ TEST(FreeLinesOfAModel, TangentIsExact) {
     for (const char* name : {"membrane", "bending", "inertia"})
       terms.push_back(make_term(name, kSection));
     terms.push_back(make_gravity(kSection, VectorXd::Constant(3, 2.0)));
-    Model model;
+    Workspace model;
     model.add_body("plate",
                    std::make_unique<AncfPlate>(3, shapes, lines, testing::even_lines(0, 0.1, 1)),
                    kSection, std::move(terms));

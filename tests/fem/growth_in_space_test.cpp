@@ -20,7 +20,8 @@ const PlaneSection kSection{0.01, 1e7, 0.3, 2700};
 /// A plate that comes out of a hub at 0.3 m/s, with boundary element `first` and `n` others of
 /// `length`.
 /// The root line is free instead where asked for.
-Model plate(double first, double length, int n, int bending_points = 5, bool free_root = false) {
+Workspace plate(double first, double length, int n, int bending_points = 5,
+                bool free_root = false) {
   std::vector<MaterialLine> m = {{0, [first](double t) {
                                     return Motion{-first - 0.3 * t, -0.3, 0};
                                   }}};
@@ -30,7 +31,7 @@ Model plate(double first, double length, int n, int bending_points = 5, bool fre
   terms.push_back(make_membrane(kSection));
   terms.push_back(make_bending(kSection, bending_points));
   terms.push_back(make_inertia(kSection));
-  Model model;
+  Workspace model;
   model.add_body(
       "plate",
       std::make_unique<AncfPlate>(3, ShapeSet::h16, std::move(m), testing::even_lines(0, 0.1, 2)),
@@ -68,12 +69,11 @@ double largest(const VectorXd& x) { return x.lpNorm<Eigen::Infinity>(); }
 
 /// Relative jump of the strain energy by an insertion; checks everything else on the way.
 double insertion(int bending_points, bool free_root = false) {
-  Model model = plate(0.12, 0.08, 3, bending_points, free_root);
+  Workspace model = plate(0.12, 0.08, 3, bending_points, free_root);
   model.prepare(0);
   const State rest = model.reference();
   State x = testing::SmoothMotion(rest.q, 0.02 * model.scales().cwiseInverse(), 5).state(0);
   if (free_root) x.q[x.q.size() - 1] = -0.12;  // to the places of points()
-  x.alpha = x.a;
   x.lambda = rest.lambda;
   model.prepare(x);
   const Energies before = model.energies(x);
@@ -113,10 +113,9 @@ TEST(InsertionInSpace, BesideAFreeRootLineChangesNothing) {
 }
 
 TEST(RemovalInSpace, BesideAFreeRootLineUndoesAnInsertion) {
-  Model model = plate(0.12, 0.08, 3, 5, true);
+  Workspace model = plate(0.12, 0.08, 3, 5, true);
   const State rest = model.reference();
   State x = testing::SmoothMotion(rest.q, 0.02 * model.scales().cwiseInverse(), 5).state(0);
-  x.alpha = x.a + 0.1 * x.v;
   model.prepare(x);
   const State before = x;
   change_mesh(model, model.bodies()[0], MeshChange::insertion, x);
@@ -125,14 +124,12 @@ TEST(RemovalInSpace, BesideAFreeRootLineUndoesAnInsertion) {
   EXPECT_EQ(grid_of(model.bodies()[0]).line_m(0).rate, before.v[before.v.size() - 1]);
   EXPECT_EQ(grid_of(model.bodies()[0]).line_m(0).acceleration, before.a[before.a.size() - 1]);
   change_mesh(model, model.bodies()[0], MeshChange::removal, x);
-  EXPECT_EQ((x.q - before.q).norm() + (x.v - before.v).norm() + (x.a - before.a).norm() +
-                (x.alpha - before.alpha).norm(),
-            0);
+  EXPECT_EQ((x.q - before.q).norm() + (x.v - before.v).norm() + (x.a - before.a).norm(), 0);
 }
 
 // Limits 0.1 and 0.03 m: what is due depends on where the free line is, and does not chatter.
 TEST(ChangeDue, FollowsTheFreeRootLine) {
-  Model model = plate(0.05, 0.05, 3, 5, true);
+  Workspace model = plate(0.05, 0.05, 3, 5, true);
   Growth growth{"plate", [](double) { return FrameMotion{}; }, 0.1, 0.03};
   const auto due = [&](double root) {
     State x = model.reference();
@@ -148,7 +145,7 @@ TEST(ChangeDue, FollowsTheFreeRootLine) {
   EXPECT_EQ(due(-0.0299), std::nullopt);
   growth.line = 1;
   EXPECT_EQ(due(-0.2), std::nullopt);
-  const Model driven = plate(0.2, 0.05, 3);
+  Workspace driven = plate(0.2, 0.05, 3);
   EXPECT_EQ(change_due(driven.bodies()[0], {"plate", growth.hub}), std::nullopt);
 }
 
@@ -161,7 +158,7 @@ constexpr double kFourth = 0.02 * 2401 + 0.01 * 6561 + 0.05 * 4096;
 
 /// Largest change of position by a removal, elements of the given length.
 double removal(double h) {
-  Model model = plate(h, h, 3);
+  Workspace model = plate(h, h, 3);
   model.prepare(0);
   State x = model.reference();
   const LineGrid& grid = grid_of(model.bodies()[0]);

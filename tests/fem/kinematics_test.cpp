@@ -32,7 +32,7 @@ struct PathEnd {
     return text.find("'" + joint + "'") != std::string::npos;
   }
 };
-PathEnd end_of_path(Model& model, double until) {
+PathEnd end_of_path(Workspace& model, double until) {
   Kinematics motion(model, model.reference());
   try {
     motion.at(until);
@@ -58,7 +58,7 @@ TEST(Kinematics, FourBarFollowsItsClosedForm) {
     return Motion{0.7 + 2 * kPi * t + 0.3 * std::sin(5 * t), 2 * kPi + 1.5 * std::cos(5 * t),
                   -7.5 * std::sin(5 * t)};
   };
-  Model model = bar.model(angle);
+  Workspace model = bar.model(angle);
   const auto exact = [&](double t) { return bar.places(angle(t).value); };
   Kinematics motion(model, model.reference());
   double position = 0, rate = 0, acceleration = 0;
@@ -82,7 +82,7 @@ TEST(Kinematics, FourBarFollowsItsClosedForm) {
 TEST(Kinematics, KeepsToItsBranchOverLargeSteps) {
   const FourBar bar;
   const Course angle = linear(0.7, 2 * kPi);
-  Model model = bar.model(angle);
+  Workspace model = bar.model(angle);
   Kinematics motion(model, model.reference(), {.largest_step = 10});
   EXPECT_LT((motion.at(10.4).q - bar.places(angle(10.4).value)).lpNorm<Eigen::Infinity>(), 1e-12);
 }
@@ -91,7 +91,7 @@ TEST(Kinematics, KeepsToItsBranchOverLargeSteps) {
 TEST(Kinematics, StartsFromRest) {
   MatrixXd place(1, 2);
   place << 0.0, 0.5;
-  Model model = testing::point_model(place);
+  Workspace model = testing::point_model(place);
   add<LinearRow>(model, "x", Parts{{0, 0}}, [](double t) {
     return Motion{t * t * t, 3 * t * t, 6 * t};
   });
@@ -106,7 +106,7 @@ TEST(Kinematics, StartsFromRest) {
 TEST(Kinematics, UnreachablePathNamesTheTime) {
   const FourBar bar{.r = 0.3, .l = 0.35, .s = 0.25, .g = 0.45};
   const double speed = 1.3, end = (bar.limit_angle() - 0.5) / speed;
-  Model model = bar.model(linear(0.5, speed));
+  Workspace model = bar.model(linear(0.5, speed));
   const PathEnd found = end_of_path(model, 5);
   EXPECT_NEAR(found.t, end, 1e-6) << found.text;
   EXPECT_TRUE(found.names("coupler") && found.names("rocker")) << found.text;
@@ -121,7 +121,7 @@ TEST(Kinematics, DeadCentreOfADrivenSlider) {
   const double cosine = (r * r + x0 * x0 - l * l) / (2 * r * x0);
   MatrixXd places(2, 2);
   places << r * cosine, r * std::sqrt(1 - cosine * cosine), x0, 0.0;
-  Model model = testing::point_model(places);
+  Workspace model = testing::point_model(places);
   add<Rod>(model, "crank", 0, -1, constant(r));
   add<Rod>(model, "rod", 0, 1, constant(l));
   add<LinearRow>(model, "guide", Parts{{1, 1}}, constant(0));
@@ -137,14 +137,14 @@ TEST(Kinematics, DeadCentreOfADrivenSlider) {
 TEST(Kinematics, ChangePointOfAParallelogram) {
   const FourBar bar{.r = 0.3, .l = 0.5, .s = 0.3, .g = 0.5};
   const double speed = 1.1, start = 0.8;
-  Model model = bar.model(linear(start, -speed));
+  Workspace model = bar.model(linear(start, -speed));
   const PathEnd found = end_of_path(model, 5);
   EXPECT_NEAR(found.t, start / speed, 1e-6) << found.text;
 }
 
 TEST(Kinematics, DriveThatJumpsIsNamed) {
   const FourBar bar;
-  Model model = bar.model([](double t) { return Motion{t < 0.3 ? 0.7 : 1.4, 0, 0}; });
+  Workspace model = bar.model([](double t) { return Motion{t < 0.3 ? 0.7 : 1.4, 0, 0}; });
   const PathEnd found = end_of_path(model, 1);
   EXPECT_NEAR(found.t, 0.3, 1e-6) << found.text;
   EXPECT_TRUE(found.names("motor") && !found.names("rocker")) << found.text;
@@ -156,7 +156,7 @@ TEST(Kinematics, PassesKinksOfADrive) {
   const Course angle = [](double t) {
     return t < 0.3 ? Motion{0.7, 0, 0} : Motion{0.7 + 3 * (t - 0.3), 3, 0};
   };
-  Model model = bar.model(angle);
+  Workspace model = bar.model(angle);
   Kinematics motion(model, model.reference());
   EXPECT_LT((motion.at(1).q - bar.places(angle(1).value)).lpNorm<Eigen::Infinity>(), 1e-12);
 }
@@ -164,12 +164,12 @@ TEST(Kinematics, PassesKinksOfADrive) {
 // A second rocker rod between the same points: left out and watched.
 TEST(Kinematics, RedundantRowsAreWatched) {
   const FourBar bar;
-  Model model = bar.model(linear(0.7, 1));
+  Workspace model = bar.model(linear(0.7, 1));
   add<Rod>(model, "second", 1, -1, constant(bar.s), Vec2(bar.g, 0));
   Kinematics motion(model, model.reference());
   EXPECT_LT((motion.at(1).q - bar.places(1.7)).lpNorm<Eigen::Infinity>(), 1e-12);
 
-  Model growing = bar.model(linear(0.7, 1));
+  Workspace growing = bar.model(linear(0.7, 1));
   add<Rod>(
       growing, "second", 1, -1,
       [&](double t) {
@@ -186,7 +186,7 @@ TEST(Kinematics, FreedomsThatAreLeftAreRefused) {
   const FourBar bar;
   MatrixXd places(2, 2);
   places << 0.2, 0, 0.3, 0.4;
-  Model model = testing::point_model(places);
+  Workspace model = testing::point_model(places);
   add<Rod>(model, "crank", 0, -1, constant(0.2));
   add<Rod>(model, "coupler", 0, 1, constant(0.5));
   try {
@@ -197,7 +197,7 @@ TEST(Kinematics, FreedomsThatAreLeftAreRefused) {
     EXPECT_NE(std::string(error.what()).find("2 freedoms are not driven"), std::string::npos)
         << error.what();
   }
-  Model driven = bar.model(linear(0.7, 1));
+  Workspace driven = bar.model(linear(0.7, 1));
   Kinematics motion(driven, driven.reference());
   EXPECT_THROW(motion.at(NAN), Error);
   EXPECT_THROW(Kinematics(driven, driven.reference(), {.largest_step = 0}), Error);

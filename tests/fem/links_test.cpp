@@ -84,8 +84,8 @@ std::vector<LinkCase> cases() {
           {"torque", LinkCase::outside, false, [] { return make_torque("l", two(), 1.7); }}};
 }
 
-Model bodies() {
-  Model model;
+Workspace bodies() {
+  Workspace model;
   model.add_body("plate",
                  std::make_unique<AncfPlate>(2, ShapeSet::h16, testing::even_lines(0, 0.3, 2),
                                              testing::even_lines(-0.05, 0.05, 1)),
@@ -109,14 +109,14 @@ class EveryLink : public ::testing::TestWithParam<LinkCase> {
     model.add_link(GetParam().make());
     motion = std::make_unique<SmoothMotion>(away(model));
   }
-  VectorXd force(const State& x) const {
+  VectorXd force(const State& x) {
     VectorXd out;
     model.force(x, out);
     return out;
   }
   const Link& link() const { return *model.links()[0]; }
 
-  Model model;
+  Workspace model;
   std::unique_ptr<SmoothMotion> motion;
 };
 INSTANTIATE_TEST_SUITE_P(Links, EveryLink, ::testing::ValuesIn(cases()),
@@ -225,7 +225,7 @@ TEST(MeanForce, OfSpringsAndForcesKeepsTheEnergy) {
                                         return make_point_force("l", plate(), {2, -3});
                                       },
                                       false}}) {
-    Model model = bodies();
+    Workspace model = bodies();
     model.add_link(make());
     const SmoothMotion motion = away(model);
     const double h = 0.3;
@@ -274,7 +274,7 @@ State placed(const Model& model, const Vec2& r, double angle) {
 
 // 3-4-5 triangle, 5 m long: N = 3 (5 - 4) + 2 · l̇ with l̇ = (3 · 10)/5 = 6.
 TEST(Spring, PullsAlongItsLine) {
-  Model model;
+  Workspace model;
   model.add_body("one", std::make_unique<RigidBody>(1), {}, {});
   model.add_link(make_spring("s", {.point = {1, 1}}, {.body = "one", .point = {0, 1}}, {3, 2, 4}));
   State x = placed(model, {4, 4}, 0);
@@ -294,7 +294,7 @@ TEST(TorsionSpring, WrapsItsAngle) {
                                              {-0.9 * pi, 0.9 * pi, 0.2 * pi},
                                              {0.5 * pi, -0.5 * pi, pi},
                                              {0.3, 0.1, 0.2}}) {
-    Model model;
+    Workspace model;
     model.add_body("one", std::make_unique<RigidBody>(1), {}, {});
     model.add_link(make_torsion_spring("s", {}, {.body = "one"}, {2, 0, rest}));
     const State x = placed(model, {0, 0}, turn);
@@ -311,7 +311,7 @@ TEST(TorsionSpring, WrapsItsAngle) {
 }
 
 TEST(Torque, TurnsCounterClockwiseWithItsMoment) {
-  Model model;
+  Workspace model;
   testing::add_rigid(model, "one", {2, {0.3, 0.4}, 0.7});
   model.add_link(make_torque("t", {.body = "one"}, 5));
   const State x = placed(model, {1, 2}, 0.6);
@@ -325,7 +325,7 @@ TEST(Torque, TurnsCounterClockwiseWithItsMoment) {
 }
 
 TEST(PointForce, IsTheGeneralizedForceOfItsPoint) {
-  Model model;
+  Workspace model;
   model.add_body("one", std::make_unique<RigidBody>(1), {}, {});
   model.add_link(make_point_force("f", {.body = "one", .point = {2, 3}}, {5, 7}));
   const State x = placed(model, {1, 2}, 0);
@@ -350,7 +350,7 @@ TEST(Links, NameWhatTheyCannotUse) {
   EXPECT_THROW(make_point_force("f", {.body = "one"}, {INFINITY, 0}), Error);
   EXPECT_THROW(make_torque("t", {.body = "one"}, NAN), Error);
 
-  Model model;
+  Workspace model;
   model.add_body("one", std::make_unique<RigidBody>(1), {}, {});
   model.add_link(make_spring("s", {}, {.body = "one"}, {1, 0, 0.5}));
   VectorXd f;

@@ -43,7 +43,7 @@ class EveryLoad : public ::testing::TestWithParam<LoadCase> {
     for (int k = 0; k < element.n_vectors(); ++k) x.q.segment<3>(3 * k) = q.row(k).transpose();
     model.prepare(0);
   }
-  VectorXd force(const VectorXd& q) const {
+  VectorXd force(const VectorXd& q) {
     State y = x;
     y.q = q;
     VectorXd f;
@@ -51,7 +51,7 @@ class EveryLoad : public ::testing::TestWithParam<LoadCase> {
     return f;
   }
 
-  Model model;
+  Workspace model;
   State x;
 };
 INSTANTIATE_TEST_SUITE_P(
@@ -178,7 +178,7 @@ TEST(EdgeMoment, TurnsTheOutwardSlopeTowardsTheNormal) {
     p.width = 0.5;
     p.nx = p.ny = 2;
     p.terms = {};
-    Model model = p.model(make_edge_moment(c.edge, 2));
+    Workspace model = p.model(make_edge_moment(c.edge, 2));
     model.prepare(0);
     const State x = model.reference();
     VectorXd f;

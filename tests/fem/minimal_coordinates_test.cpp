@@ -34,7 +34,7 @@ constexpr double kGravity = 9.81;
 struct Drift {
   double position = 0, velocity = 0, acceleration = 0;
 
-  void see(const Model& model, const State& x) {
+  void see(Workspace& model, const State& x) {
     Constraints c;
     model.constraints(x, c);
     VectorXd rate = c.rate, second = -c.acceleration;
@@ -62,7 +62,7 @@ struct Swung {
 };
 
 Swung swing(double tolerance, double end = 2) {
-  Model model = testing::particle_pendulum();
+  Workspace model = testing::particle_pendulum();
   MinimalCoordinates scheme(model, {tolerance});
   State x = testing::swing_start(model);
   scheme.make_consistent(x);
@@ -108,7 +108,7 @@ TEST(MinimalCoordinates, ConvergesWithOrderFive) {
   const double omega = std::sqrt(stiffness / mass);
   testing::Rate rate;
   for (const double tolerance : {1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10}) {
-    Model model;
+    Workspace model;
     testing::add_rigid(model, "block", {mass, {0, 0}, 0.1});
     model.add_joint(make_slider("guide", {}, {.body = "block"}));
     model.add_link(make_spring("spring", {}, {.body = "block"}, {stiffness, 0, rest}));
@@ -134,8 +134,8 @@ struct SliderCrank {
   bool massless_block = false;
   std::function<Motion(double)> drive;
 
-  Model model() const {
-    Model out;
+  Workspace model() const {
+    Workspace out;
     testing::add_rigid(out, "crank", crank_section);
     testing::add_rigid(out, "rod", rod_section);
     if (massless_block) {
@@ -177,7 +177,7 @@ struct Turned {
 };
 
 Turned turn(const SliderCrank& s, double end, const IntegratorSettings& settings, int n) {
-  Model model = s.model();
+  Workspace model = s.model();
   const auto scheme = make_integrator(model, settings);
   Turned out;
   out.end = s.at(model, {0.4, 12, 0});
@@ -226,7 +226,7 @@ TEST(MinimalCoordinates, TurnsACrankThroughSeveralPartitions) {
 TEST(MinimalCoordinates, FollowsADrivenMechanism) {
   SliderCrank s;
   s.drive = [](double t) { return Motion{0.4 + 12 * t + 2 * t * t, 12 + 4 * t, 4}; };
-  Model model = s.model();
+  Workspace model = s.model();
   MinimalCoordinates scheme(model, {});
   State x = s.at(model, s.drive(0));
   scheme.make_consistent(x);
@@ -246,13 +246,13 @@ TEST(MinimalCoordinates, FollowsADrivenMechanism) {
 }
 
 /// A planar plate pinned at a corner, released from the horizontal.
-Model plate_pendulum(double youngs_modulus, int n) {
+Workspace plate_pendulum(double youngs_modulus, int n) {
   const PlaneSection section{0.01, youngs_modulus, 0.3, 7810};
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(make_inertia(section));
   terms.push_back(make_membrane(section));
   terms.push_back(make_gravity(section, Vec2(0, -kGravity)));
-  Model model;
+  Workspace model;
   model.add_body(
       "plate",
       std::make_unique<AncfPlate>(2, testing::ShapeSet::h16, testing::even_lines(0, 0.3, n),
@@ -263,7 +263,7 @@ Model plate_pendulum(double youngs_modulus, int n) {
 }
 
 TEST(MinimalCoordinates, FollowsAFlexiblePlateWithItsEnergy) {
-  Model model = plate_pendulum(1e6, 2);
+  Workspace model = plate_pendulum(1e6, 2);
   const double end = 0.15;
   MinimalCoordinates scheme(model, {1e-9});
   State x = model.reference();
@@ -337,7 +337,7 @@ TEST(MinimalCoordinates, FollowsMaterialThatFlows) {
 }
 
 TEST(MinimalCoordinates, SaysWhatIsStiff) {
-  Model model = plate_pendulum(2e11, 2);
+  Workspace model = plate_pendulum(2e11, 2);
   MinimalCoordinatesSettings settings;
   settings.max_steps = 300;
   MinimalCoordinates scheme(model, settings);
@@ -361,7 +361,7 @@ TEST(MinimalCoordinates, StopsWhereAMechanismLocks) {
   SliderCrank s;
   s.crank = 0.45;
   s.drive = [](double t) { return Motion{0.4 + t, 1, 0}; };
-  Model model = s.model();
+  Workspace model = s.model();
   MinimalCoordinates scheme(model, {});
   State x = s.at(model, s.drive(0));
   scheme.make_consistent(x);
@@ -377,7 +377,7 @@ TEST(MinimalCoordinates, StopsWhereAMechanismLocks) {
 TEST(MinimalCoordinates, RefusesWhatHasNoAccelerations) {
   const SliderCrank s;
   {  // redundant: named
-    Model model = s.model();
+    Workspace model = s.model();
     model.add_joint(make_revolute("second axis", {}, {.body = "crank"}));
     MinimalCoordinates scheme(model, {});
     State x = s.at(model, {0.4, 0, 0});
@@ -385,7 +385,7 @@ TEST(MinimalCoordinates, RefusesWhatHasNoAccelerations) {
     EXPECT_TRUE(says(text, "'axis', 'second axis' hold the same 2 freedoms")) << text;
   }
   {  // nothing holds the massless block along its guide
-    Model model;
+    Workspace model;
     model.add_body("block", std::make_unique<RigidBody>(0.05), {}, {});
     model.add_joint(make_unit_axis("unit axis", "block"));
     model.add_joint(make_slider("guide", {}, {.body = "block"}));
@@ -395,7 +395,7 @@ TEST(MinimalCoordinates, RefusesWhatHasNoAccelerations) {
     const std::string text = error_of(Error::Kind::input, [&] { scheme.make_consistent(x); });
     EXPECT_TRUE(says(text, "without mass, of 'block':")) << text;
   }
-  Model model = s.model();
+  Workspace model = s.model();
   for (const double tolerance : {0.0, 1e-15, 1.0, std::nan("")})
     EXPECT_TRUE(
         says(error_of(Error::Kind::input, [&] { make_integrator(model, minimal(tolerance)); }),

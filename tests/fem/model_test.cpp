@@ -1,8 +1,6 @@
 // Shows that the matrix of a Newton step is the derivative of the whole residual, by unknowns and
 // multipliers, with flow, with nonlinear joints, and not symmetric when material flows; that bodies
 // add up; and that what does not exist is named.
-#include "fem/model.h"
-
 #include <gtest/gtest.h>
 #include <omp.h>
 
@@ -10,6 +8,7 @@
 
 #include "fem/loads.h"
 #include "fem/terms.h"
+#include "fem/workspace.h"
 #include "tests/support/differences.h"
 #include "tests/support/models.h"
 
@@ -22,6 +21,7 @@ using testing::ShapeSet;
 /// |r|² = L² of the first two unknowns of a body: a constraint with curvature.
 class Distance final : public Joint {
  public:
+  std::unique_ptr<Joint> clone() const override { return std::make_unique<Distance>(*this); }
   std::string name() const override { return "distance"; }
   int size() const override { return 1; }
   void bind(std::span<const BodyView> bodies) override {
@@ -76,7 +76,7 @@ class ModelTangent : public ::testing::TestWithParam<ShapeSet> {
     model.prepare(x.t);
   }
   /// F + Φ_qᵀ λ and Φ.
-  VectorXd residual(const State& y) const {
+  VectorXd residual(const State& y) {
     VectorXd out(model.n_dofs() + model.n_constraints()), force;
     Constraints c;
     model.constraints(y, c);
@@ -86,7 +86,7 @@ class ModelTangent : public ::testing::TestWithParam<ShapeSet> {
     return out;
   }
 
-  Model model;
+  Workspace model;
   State x;
 };
 INSTANTIATE_TEST_SUITE_P(Shapes, ModelTangent, ::testing::Values(ShapeSet::h12, ShapeSet::h16),
@@ -145,8 +145,8 @@ TEST_P(ModelTangent, IsNotSymmetricWithMaterialFlow) {
 // A second body changes nothing for the first one.
 TEST(Model, BodiesAddUp) {
   const PlaneSection section;
-  Model one, two;
-  for (Model* model : {&one, &two})
+  Workspace one, two;
+  for (Workspace* model : {&one, &two})
     model->add_body("plate", std::make_unique<AncfPlate>(testing::swinging_plate(ShapeSet::h16)),
                     section, all_terms(section));
   two.add_body("arm", std::make_unique<AncfPlate>(testing::swinging_plate(ShapeSet::h12)), section,
@@ -175,7 +175,7 @@ TEST(Model, BatchesAreTheirElements) {
   const PlaneSection section{0.01, 1e3, 0.3, 2700};
   for (const ShapeSet shapes : {ShapeSet::h12, ShapeSet::h16})
     for (const bool designed : {false, true}) {
-      Model model;
+      Workspace model;
       // 15 elements: a batch that is not full, moving and standing elements in one batch.
       std::vector<MaterialLine> lines = testing::even_lines(0.1, 0.45, 5);
       lines[0] = testing::swinging_line(0.1, 0.03, 2.1);
@@ -227,7 +227,7 @@ TEST(Model, BatchesAreTheirElements) {
 // Sums are made in the order of the colours, by however many threads. (Enough elements for two.)
 TEST(Model, ThreadsChangeNothing) {
   const PlaneSection section{0.01, 1e3, 0.3, 2700};
-  Model model;
+  Workspace model;
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(make_inertia(section));
   terms.push_back(make_membrane(section));
@@ -258,7 +258,7 @@ TEST(Model, ThreadsChangeNothing) {
 // |r_m x r_n| of a plate stretched by (1.2, 0.5) everywhere.
 TEST(Model, SmallestAreaRatioIsThatOfTheMaterial) {
   const PlaneSection section;
-  Model model;
+  Workspace model;
   model.add_body("plate", std::make_unique<AncfPlate>(testing::swinging_plate(ShapeSet::h16)),
                  section, all_terms(section));
   State x = model.reference();

@@ -23,7 +23,7 @@ struct Pendulum {
     x.q << 0, 0, std::cos(angle), std::sin(angle);
   }
   double angle() const { return std::atan2(x.q[3], x.q[2]); }
-  Model model;
+  Workspace model;
   State x;
 };
 

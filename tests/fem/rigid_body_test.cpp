@@ -43,7 +43,7 @@ struct Points {
 TEST(RigidBody, IsTheSumOfItsPoints) {
   const Points points;
   const VectorXd given = Vec2(1.2, -9.81);
-  Model model;
+  Workspace model;
   testing::add_rigid(model, "body", points.section(), given);
   const Vec2 gravity = testing::disturbed(given);  // as add_rigid() takes it
   model.prepare(0.0);
@@ -88,7 +88,7 @@ TEST(RigidBody, IsTheSumOfItsPoints) {
 
 // A place that slides along a ray of a turning body: polar coordinates.
 TEST(PlaceMotion, OfAShiftedPlaceIsThatOfPolarCoordinates) {
-  Model model;
+  Workspace model;
   testing::add_rigid(model, "body", {});
   State x = model.reference();
   x.t = 0.7;
@@ -112,7 +112,7 @@ TEST(RigidBody, RefusesWhatItIsNot) {
   EXPECT_THROW(RigidBody(1).edge("root"), Error);
   ShapeTable table;
   EXPECT_THROW(RigidBody(1).locate({0, 0}, Tabulate::position, table), Error);
-  Model model;
+  Workspace model;
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(make_rigid_inertia({}));
   model.add_body("plate",
@@ -120,7 +120,7 @@ TEST(RigidBody, RefusesWhatItIsNot) {
                                              testing::even_lines(0, 1, 1)),
                  {}, std::move(terms));
   EXPECT_THROW(model.prepare(0.0), Error);
-  Model bodies;
+  Workspace bodies;
   testing::add_rigid(bodies, "body", {});
   EXPECT_EQ(bodies.smallest_area_ratio(bodies.reference()),
             std::numeric_limits<double>::infinity());  // none is sampled
@@ -131,7 +131,7 @@ TEST(RigidBody, RefusesWhatItIsNot) {
 TEST(JointForce, OfAHingeIsTheReaction) {
   const RigidSection section{3, {0.4, -0.1}, 0.2};
   const Vec2 gravity(0, -9.81), hinge(-0.3, 0.2);
-  Model model;
+  Workspace model;
   testing::add_rigid(model, "body", section, gravity);
   model.add_joint(make_revolute("hinge", {.point = {1, 2}}, {.body = "body", .point = hinge}));
   ASSERT_EQ(model.joints()[1]->name(), "hinge");
@@ -166,8 +166,8 @@ TEST(JointForce, OfAHingeIsTheReaction) {
 }
 
 /// A plate welded to a rigid body that hangs on a hinge, with a tip body on a revolute and springs.
-Model plate_on_body(WeldMode mode, bool driven_hub = false) {
-  Model model;
+Workspace plate_on_body(WeldMode mode, bool driven_hub = false) {
+  Workspace model;
   PlaneSection soft;
   soft.youngs_modulus = 1e6;
   std::vector<std::unique_ptr<Term>> terms;
@@ -217,7 +217,7 @@ TEST(PlateOnABody, MovesAsInADrivenHub) {
     VectorXd plates[2], rates[2];
     double torque = 0;
     for (const bool driven : {false, true}) {
-      Model model = plate_on_body(mode, driven);
+      Workspace model = plate_on_body(mode, driven);
       AlphaSettings settings;
       settings.tolerance = 1e-14;
       GeneralizedAlpha alpha(model, settings);
@@ -241,7 +241,7 @@ TEST(PlateOnABody, MovesAsInADrivenHub) {
 // What the weld does to the plate, the hub gets back: forces add to zero, moments about any point.
 TEST(PlateOnABody, WeldActsAndReacts) {
   for (const WeldMode mode : {WeldMode::edge, WeldMode::direction, WeldMode::full}) {
-    Model model = plate_on_body(mode);
+    Workspace model = plate_on_body(mode);
     GeneralizedAlpha alpha(model, {});
     State x = model.reference();
     const Body& plate = model.body("plate");
@@ -275,7 +275,7 @@ TEST(PlateOnABody, GrowsAsOutOfADrivenHub) {
     testing::Scene scene = testing::make_scene(plate);
     if (!driven) {
       // The same plate in front of a rigid hub that turns.
-      Model model;
+      Workspace model;
       Body& old = scene.model.bodies()[0];
       model.add_body("plate", std::move(old.element), plate.section, std::move(old.terms));
       testing::add_rigid(model, "hub", {2, {0.1, 0.02}, 0.3});
@@ -307,7 +307,7 @@ TEST(PlateOnABody, GrowsAsOutOfADrivenHub) {
 
 // A body on two springs of one direction, under its weight: k (l - l₀) each carries half.
 TEST(Statics, OfABodyOnSprings) {
-  Model model;
+  Workspace model;
   testing::add_rigid(model, "body", {4, {0, -0.2}, 0.3}, Vec2(0, -9.81));
   for (const double x : {-0.5, 0.5})
     model.add_link(
@@ -325,8 +325,8 @@ TEST(Statics, OfABodyOnSprings) {
 }
 
 /// Everything there is, in one model; nothing of it fits together.
-Model zoo() {
-  Model model = plate_on_body(WeldMode::direction);
+Workspace zoo() {
+  Workspace model = plate_on_body(WeldMode::direction);
   testing::add_rigid(model, "tip", {0.5, {0.1, -0.2}, 0.04}, Vec2(0, -9.81));
   testing::add_rigid(model, "slide", {0.7, {0, 0.1}, 0.1});
   const MarkerPlace tip{.body = "tip", .point = {0.1, 0.1}, .angle = 0.4};
@@ -343,7 +343,7 @@ Model zoo() {
 }
 
 TEST(Zoo, MatrixIsTheDerivativeOfTheResidual) {
-  Model model = zoo();
+  Workspace model = zoo();
   State x = model.reference();
   x.q += 0.1 * VectorXd::Random(model.n_dofs());
   x.v.setRandom();
@@ -382,7 +382,7 @@ TEST(Zoo, MatrixIsTheDerivativeOfTheResidual) {
 
 // All bodies carried along by one velocity: the momentum is that times their mass.
 TEST(Zoo, MomentumIsThatOfItsBodies) {
-  Model model = zoo();
+  Workspace model = zoo();
   model.prepare(0.0);
   State x = model.reference();
   x.v.setConstant(0);

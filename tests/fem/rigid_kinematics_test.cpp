@@ -21,7 +21,7 @@ using testing::linear;
 using Names = std::vector<std::string>;
 
 /// A rod from its origin along its first axis, with its unit axis.
-void add_rod(Model& model, const std::string& name, double length, double mass = 1) {
+void add_rod(Workspace& model, const std::string& name, double length, double mass = 1) {
   const RigidSection section{mass, {length / 2, 0}, mass * length * length / 12};
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(make_rigid_inertia(section));
@@ -46,8 +46,8 @@ struct RigidFourBar {
   FourBar bar;
   testing::Course angle;
 
-  Model model() const {
-    Model out;
+  Workspace model() const {
+    Workspace out;
     add_rod(out, "crank", bar.r);
     add_rod(out, "coupler", bar.l, 2);
     add_rod(out, "rocker", bar.s);
@@ -73,7 +73,7 @@ struct RigidFourBar {
 // Started with all angles 0.2 rad off; a revolution and back.
 TEST(RigidMechanisms, FourBarFollowsItsClosedForm) {
   const RigidFourBar mechanism{{}, linear(0.7, 2 * std::numbers::pi)};
-  Model model = mechanism.model();
+  Workspace model = mechanism.model();
   State start = model.reference();
   start.q = mechanism.exact(model, 0, 0.2);
   EXPECT_TRUE(diagnose(model, start).is_independent());
@@ -90,7 +90,7 @@ TEST(RigidMechanisms, FourBarFollowsItsClosedForm) {
 TEST(RigidMechanisms, UnreachablePathNamesTimeAndJoints) {
   const FourBar bar{.r = 0.3, .l = 0.35, .s = 0.25, .g = 0.45};
   const RigidFourBar mechanism{bar, linear(0.5, 1.3)};
-  Model model = mechanism.model();
+  Workspace model = mechanism.model();
   State start = model.reference();
   start.q = mechanism.exact(model, 0);
   Kinematics motion(model, start);
@@ -114,7 +114,7 @@ TEST(RigidMechanisms, UnreachablePathNamesTimeAndJoints) {
 TEST(RigidMechanisms, VelocitiesAreThoseOfAnImpulse) {
   const double length = 0.6, mass = 3, s = length / 2, inertia = mass * length * length / 12;
   const double w = 2, impulse = w / (1 / mass + s * s / inertia);
-  Model model;
+  Workspace model;
   add_rod(model, "rod", length, mass);
   model.add_joint(make_point_drive("pull", {"rod", {length, 0}},
                                    [&](double t) {
@@ -133,7 +133,7 @@ TEST(RigidMechanisms, VelocitiesAreThoseOfAnImpulse) {
 
 TEST(RigidMechanisms, HingeAndWeldTwice) {
   const auto model_with = [](bool weld, double miss) {
-    Model out;
+    Workspace out;
     add_rod(out, "a", 1);
     add_rod(out, "b", 1);
     out.add_joint(make_revolute("ground", {}, {.body = "a"}));
@@ -148,7 +148,7 @@ TEST(RigidMechanisms, HingeAndWeldTwice) {
     }
     return out;
   };
-  const auto diagnosis_of = [](const Model& model) {
+  const auto diagnosis_of = [](Workspace model) {
     State x = model.reference();
     place(model, "b", {1, 0}, 0, x.q);
     return diagnose(model, x);
@@ -167,7 +167,7 @@ TEST(RigidMechanisms, HingeAndWeldTwice) {
 // A platform on three equal, parallel links: no pair of them is too much, the three together are.
 TEST(RigidMechanisms, ThreeParallelLinks) {
   const auto model_with = [](int links, double third) {
-    Model out;
+    Workspace out;
     add_rod(out, "platform", 1);
     for (int i = 0; i < links; ++i) {
       const std::string name = "link_" + std::to_string(i);
@@ -187,12 +187,12 @@ TEST(RigidMechanisms, ThreeParallelLinks) {
             x.q);
     return x;
   };
-  const Model two = model_with(2, 0.5);
+  Workspace two = model_with(2, 0.5);
   const Diagnosis fine = diagnose(two, start(two, 2));
   EXPECT_TRUE(fine.is_independent());
   EXPECT_EQ(fine.degrees_of_freedom(), 1);
 
-  Model three = model_with(3, 0.5);
+  Workspace three = model_with(3, 0.5);
   State x = start(three, 3);
   for (int i = 0; i < x.q.size(); ++i) x.q[i] += 0.05 * std::cos(3.0 * i);
   assemble(three, x);

@@ -27,7 +27,7 @@ FrameMotion hub(double t) {
 FrameMotion hub_at_rest(double) { return {}; }
 
 /// A plate that leaves its hub with this speed, in the plane or in space.
-Model plate(int dim, double speed, const VectorXd& gravity, const FrameDrive& drive) {
+Workspace plate(int dim, double speed, const VectorXd& gravity, const FrameDrive& drive) {
   const PlaneSection section{0.005, 7e8, 0.3, 2700};
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(make_inertia(section));
@@ -37,7 +37,7 @@ Model plate(int dim, double speed, const VectorXd& gravity, const FrameDrive& dr
   auto lines = even_lines(kWhole - kLength, kWhole, 4);
   if (speed != 0)
     lines[0].drive = [speed](double t) { return Motion{kWhole - kLength - speed * t, -speed, 0}; };
-  Model model;
+  Workspace model;
   model.add_body("plate",
                  std::make_unique<AncfPlate>(dim, ShapeSet::h16, lines, even_lines(0, kWidth, 2)),
                  section, std::move(terms));
@@ -49,7 +49,7 @@ Model plate(int dim, double speed, const VectorXd& gravity, const FrameDrive& dr
 TEST(StartInSpace, IsThatOfThePlane) {
   for (const Start start : {Start::rigid, Start::prestretched}) {
     const std::vector<Growth> growths = {{"plate", hub}};
-    Model plane = plate(2, 0.5, {}, hub), space = plate(3, 0.5, {}, hub);
+    Workspace plane = plate(2, 0.5, {}, hub), space = plate(3, 0.5, {}, hub);
     const State a = start_state(plane, growths, 0, start),
                 b = start_state(space, growths, 0, start);
     for (int k = 0; k < plane.n_dofs() / 2; ++k) {
@@ -64,7 +64,7 @@ TEST(StartInSpace, IsThatOfThePlane) {
 TEST(StartInSpace, HangsUnderItsWeight) {
   const std::vector<Growth> growths = {{"plate", hub_at_rest}};
   const VectorXd gravity = vector(0, 0, -9.81);
-  Model model = plate(3, 0, gravity, hub_at_rest);
+  Workspace model = plate(3, 0, gravity, hub_at_rest);
   const State hanging = start_state(model, growths, 0, Start::prestretched);
   State x = start_state(model, growths, 0, Start::rigid);
   EXPECT_TRUE(solve_static(model, x).completed);

@@ -79,7 +79,7 @@ double strip(ShapeSet shapes, int nx, int ny) {
   p.ny = ny;
   testing::Scene scene = testing::make_scene(p);
   // Weights of masses at the Gauss points of the end: exactly its uniform traction.
-  Model model;
+  Workspace model;
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(make_membrane(p.section));
   const double force = 1e-3;  // rotations of 1e-5: linear

@@ -37,10 +37,10 @@ struct Missed {
 /// One step from the exact motion, its algorithmic acceleration q̈(t + δ h).
 Missed miss_of_oscillator(double rho_inf, double omega, double h, double t = 0.3) {
   const Oscillators exact{{omega, omega}};
-  Model model = exact.model();
+  Workspace model = exact.model();
   GeneralizedAlpha alpha(model, sharp(rho_inf));
   State x = exact.at(t);
-  x.alpha = exact.at(t + alpha.shift() * h).a;
+  alpha.set_alpha(exact.at(t + alpha.shift() * h).a);
   const TriedStep step = alpha.try_step(x, h, kAny);
   EXPECT_TRUE(step.converged);
   // The size of this model is 1 m.
@@ -49,7 +49,7 @@ Missed miss_of_oscillator(double rho_inf, double omega, double h, double t = 0.3
 
 Missed miss_of_pendulum(double rho_inf, double h) {
   constexpr double t = 0.4;
-  Model model = testing::particle_pendulum();
+  Workspace model = testing::particle_pendulum();
   GeneralizedAlpha alpha(model, sharp(rho_inf));
   const auto acceleration = [](double at) -> Vec2 {
     const testing::Swing s = exact_swing(at);
@@ -63,7 +63,9 @@ Missed miss_of_pendulum(double rho_inf, double h) {
   x.v.head<2>() = exact_swing(t).velocity();
   x.a.head<2>() = acceleration(t);
   x.lambda = VectorXd::Constant(1, exact_swing(t).lambda());
-  x.alpha.head<2>() = acceleration(t + alpha.shift() * h);
+  VectorXd shifted = VectorXd::Zero(x.a.size());
+  shifted.head<2>() = acceleration(t + alpha.shift() * h);
+  alpha.set_alpha(shifted);
   const TriedStep step = alpha.try_step(x, h, kAny);
   return {step.error,
           (x.q - exact_swing(t + h).position()).lpNorm<Eigen::Infinity>() / testing::kLength};
@@ -78,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(RhoInf, LocalError, ::testing::Values(0.0, 0.5, 0.8, 1.
                          });
 
 TEST_P(LocalError, ConstantIsThatOfTheExpansion) {
-  Model model = testing::particle_pendulum();
+  Workspace model = testing::particle_pendulum();
   const GeneralizedAlpha alpha(model, sharp(GetParam()));
   const double shift = (GetParam() - 1) / (GetParam() + 1);
   EXPECT_NEAR(alpha.shift(), shift, 1e-15);
@@ -112,7 +114,7 @@ TEST_P(LocalError, OfAPendulumIsEstimated) {
 
 /// Steps over 2 s of oscillators, as the estimate lets them be.
 int steps_over(const Oscillators& exact, double tolerance, double* error = nullptr) {
-  Model model = exact.model();
+  Workspace model = exact.model();
   GeneralizedAlpha alpha(model, sharp(0.8));
   AdaptiveStep settings;
   settings.tolerance = tolerance;
@@ -241,7 +243,7 @@ TEST(StepControl, SaysWhatItCannotDo) {
 
 TEST(TryStep, IsRefusedWithoutAnEstimate) {
   const Oscillators exact{{3, 3}};
-  Model model = exact.model();
+  Workspace model = exact.model();
   EnergyMomentum scheme(model, {});
   State x = exact.at(0);
   EXPECT_THROW(scheme.try_step(x, 0.01, 1), Error);

@@ -124,7 +124,7 @@ TEST(HotCompliance, TheTestsWeighHeatAndLoadsAlike) {
 /// (s (X, Y) + w) with K_ff w_f = -K_fc w_c of the plate's own tangent. With `edge_grows` w = 0.
 struct HotDynamics {
   double a;
-  fem::Model model;
+  fem::Workspace model;
   fem::State x;
   fem::Growth growth;
   double strain_energy = 0;  // s³ U_cold(q / s), fem/README.md, Heat

@@ -13,7 +13,7 @@ struct EnergyRate {
   fem::Powers powers;
 };
 
-inline EnergyRate energy_rate(fem::Model& model, const SmoothMotion& motion, double time) {
+inline EnergyRate energy_rate(fem::Workspace& model, const SmoothMotion& motion, double time) {
   const auto state = [&](double t) {
     fem::State x = motion.state(t);
     x.lambda = VectorXd::Zero(model.n_constraints());
@@ -32,7 +32,7 @@ inline EnergyRate energy_rate(fem::Model& model, const SmoothMotion& motion, dou
 }
 
 /// A motion of all unknowns about the undeformed model.
-inline SmoothMotion any_motion(fem::Model& model) {
+inline SmoothMotion any_motion(fem::Workspace& model) {
   model.prepare(0.0);
   return {model.reference().q, 0.02 * model.scales().cwiseInverse(), 7};
 }

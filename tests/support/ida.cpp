@@ -13,9 +13,9 @@ namespace flexmorph::testing {
 namespace {
 
 using fem::Constraints;
-using fem::Model;
 using fem::SparseMatrix;
 using fem::State;
+using fem::Workspace;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
 template <class T, void (*destroy)(T)>
@@ -40,7 +40,8 @@ void require(int flag, const char* what) {
 /// The four equations and their derivative; y = (q, v, λ, μ).
 class Equations {
  public:
-  explicit Equations(Model& model) : model_(model), n_(model.n_dofs()), m_(model.n_constraints()) {}
+  explicit Equations(Workspace& model)
+      : model_(model), n_(model.n_dofs()), m_(model.n_constraints()) {}
 
   Eigen::Index size() const { return 2 * (n_ + m_); }
 
@@ -134,7 +135,7 @@ class Equations {
     model_.constraints(x_, c_);
   }
 
-  Model& model_;
+  Workspace& model_;
   int n_, m_;
   State x_;
   Constraints c_;
@@ -178,7 +179,7 @@ void set_allowed(const Model& model, const State& start, const IdaSettings& s, N
 
 }  // namespace
 
-std::vector<State> solve_by_ida(Model& model, const State& start, std::span<const double> times,
+std::vector<State> solve_by_ida(Workspace& model, const State& start, std::span<const double> times,
                                 const IdaSettings& settings, IdaCounts* counts) {
   const int n = model.n_dofs(), m = model.n_constraints();
   Equations equations(model);

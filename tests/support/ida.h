@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "fem/model.h"
+#include "fem/workspace.h"
 
 /// A second integrator, of another family than ours and by other hands: IDA of SUNDIALS, backward
 /// differentiation formulas of order 1 to 5 with steps and orders chosen by the local error.
@@ -38,7 +38,7 @@ struct IdaCounts {
 /// Source: Gear, Leimkuhler & Gupta (1985), J. Comput. Appl. Math. 12-13, 77-90; Hindmarsh et al.
 /// (2005), ACM Trans. Math. Softw. 31, 363-396.
 /// @throws Error (numerical) with IDA's own code when it gives up.
-std::vector<fem::State> solve_by_ida(fem::Model& model, const fem::State& start,
+std::vector<fem::State> solve_by_ida(fem::Workspace& model, const fem::State& start,
                                      std::span<const double> times, const IdaSettings& settings,
                                      IdaCounts* counts = nullptr);
 

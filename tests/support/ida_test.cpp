@@ -18,7 +18,7 @@ struct Swung {
 };
 
 Swung swing(double tolerance) {
-  fem::Model model = particle_pendulum();
+  fem::Workspace model = particle_pendulum();
   fem::State x = swing_start(model);
   fem::GeneralizedAlpha(model, {}).make_consistent(x);
   IdaSettings settings;
@@ -50,7 +50,7 @@ TEST(Ida, FollowsAPendulumAsItsToleranceSays) {
 }
 
 TEST(Ida, SaysWhenItGivesUp) {
-  fem::Model model = particle_pendulum();
+  fem::Workspace model = particle_pendulum();
   fem::State x = swing_start(model);
   fem::GeneralizedAlpha(model, {}).make_consistent(x);
   IdaSettings settings;

@@ -132,7 +132,7 @@ fem::State SmoothMotion::state(double t) const {
   x.t = t;
   x.q = q(t);
   x.v = v(t);
-  x.a = x.alpha = a(t);
+  x.a = a(t);
   return x;
 }
 

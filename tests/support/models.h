@@ -69,7 +69,7 @@ struct RotatingPlate {
   Vec2 tip() const { return {whole(), 0}; }
 };
 struct Scene {
-  fem::Model model;
+  fem::Workspace model;
   std::vector<fem::Growth> growths;
 };
 Scene make_scene(const RotatingPlate& plate);

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <memory>
 
-#include "fem/model.h"
+#include "fem/workspace.h"
 #include "tests/support/particle_pendulum.h"
 
 /// Two oscillators side by side: no joints, and a motion that is known.
@@ -13,6 +13,7 @@ namespace flexmorph::testing {
 class Springs final : public fem::Term {
  public:
   explicit Springs(const Vec2& stiffness) : stiffness_(stiffness) {}
+  std::unique_ptr<fem::Term> clone() const override { return std::make_unique<Springs>(*this); }
   void prepare(const fem::Element&, const fem::Factors&, bool) override {}
   void add_force(int, const fem::Local& x, fem::LocalRows& force) const override {
     for (int c = 0; c < 2; ++c) force(0, c) += x.a(0, c) + stiffness_[c] * x.q(0, c);
@@ -30,8 +31,8 @@ class Springs final : public fem::Term {
 struct Oscillators {
   Vec2 omega, amplitude{1, 1};
 
-  fem::Model model() const {
-    fem::Model out;
+  fem::Workspace model() const {
+    fem::Workspace out;
     std::vector<std::unique_ptr<fem::Term>> terms;
     terms.push_back(std::make_unique<Springs>(omega.cwiseAbs2()));
     out.add_body("mass", std::make_unique<Particle>(), {}, std::move(terms));
@@ -48,7 +49,6 @@ struct Oscillators {
       x.v[c] = -amplitude[c] * omega[c] * std::sin(omega[c] * t);
       x.a[c] = -omega[c] * omega[c] * x.q[c];
     }
-    x.alpha = x.a;
     x.lambda.resize(0);
     return x;
   }

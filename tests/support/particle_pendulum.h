@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fem/loads.h"
-#include "fem/model.h"
+#include "fem/workspace.h"
 #include "tests/support/disturbance.h"
 
 /// A pendulum in Cartesian coordinates (index 3) whose motion is known: one point on a rod.
@@ -16,6 +16,7 @@ inline constexpr double kLength = 1, kGravity = 9.81, kMass = 2;
 /// A body of one point: r = q.
 class Particle final : public fem::Element {
  public:
+  std::unique_ptr<fem::Element> clone() const override { return std::make_unique<Particle>(*this); }
   int dim() const override { return 2; }
   int n_shapes() const override { return 1; }
   int n_elements() const override { return 1; }
@@ -50,6 +51,7 @@ class Particle final : public fem::Element {
 class Rod final : public fem::Joint {
  public:
   explicit Rod(bool exact_tangent) : exact_tangent_(exact_tangent) {}
+  std::unique_ptr<fem::Joint> clone() const override { return std::make_unique<Rod>(*this); }
   std::string name() const override { return "rod"; }
   int size() const override { return 1; }
   void bind(std::span<const fem::BodyView> bodies) override {
@@ -105,8 +107,8 @@ inline Swing exact_swing(double t) {
 }
 
 /// The model, and its state at time 0 without accelerations and multipliers.
-inline fem::Model particle_pendulum(bool exact_tangent = true) {
-  fem::Model model;
+inline fem::Workspace particle_pendulum(bool exact_tangent = true) {
+  fem::Workspace model;
   std::vector<std::unique_ptr<fem::Term>> terms;
   terms.push_back(fem::make_point_mass(kMass, {0, 0}, Vec2(0, -kGravity)));
   model.add_body("bob", std::make_unique<Particle>(), {}, std::move(terms));

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "fem/model.h"
+#include "fem/workspace.h"
 
 /// Mechanisms of free points in the plane, for tests of what joints do: no elements or joints of
 /// the library take part.
@@ -16,6 +16,7 @@ class Points final : public fem::Element {
   explicit Points(MatrixXd places) : places_(std::move(places)) {
     for (int i = 0; i < places_.rows(); ++i) numbers_.push_back(i);
   }
+  std::unique_ptr<fem::Element> clone() const override { return std::make_unique<Points>(*this); }
   int dim() const override { return 2; }
   int n_shapes() const override { return 1; }
   int n_elements() const override { return static_cast<int>(numbers_.size()); }
@@ -40,6 +41,7 @@ class Points final : public fem::Element {
 class PointMasses final : public fem::Term {
  public:
   explicit PointMasses(VectorXd masses) : masses_(std::move(masses)) {}
+  std::unique_ptr<fem::Term> clone() const override { return std::make_unique<PointMasses>(*this); }
   void prepare(const fem::Element&, const fem::Factors&, bool) override {}
   void add_force(int e, const fem::Local& x, fem::LocalRows& force) const override {
     force += masses_[e] * x.a;
@@ -92,6 +94,7 @@ class Rod final : public PointJoint {
  public:
   Rod(std::string name, int a, int b, Course length, Vec2 ground = {0, 0})
       : PointJoint(std::move(name)), a_(a), b_(b), length_(std::move(length)), ground_(ground) {}
+  std::unique_ptr<fem::Joint> clone() const override { return std::make_unique<Rod>(*this); }
   void evaluate(double t, const VectorXd& q, const VectorXd& v,
                 fem::ConstraintRows& rows) const override {
     const fem::Motion l = length_(t);
@@ -116,6 +119,7 @@ class AngleDrive final : public PointJoint {
  public:
   AngleDrive(std::string name, int point, Course angle)
       : PointJoint(std::move(name)), point_(point), angle_(std::move(angle)) {}
+  std::unique_ptr<fem::Joint> clone() const override { return std::make_unique<AngleDrive>(*this); }
   void evaluate(double t, const VectorXd& q, const VectorXd& v,
                 fem::ConstraintRows& rows) const override {
     const fem::Motion a = angle_(t);
@@ -140,6 +144,7 @@ class LinearRow final : public PointJoint {
   };
   LinearRow(std::string name, std::vector<Part> parts, Course value)
       : PointJoint(std::move(name)), parts_(std::move(parts)), value_(std::move(value)) {}
+  std::unique_ptr<fem::Joint> clone() const override { return std::make_unique<LinearRow>(*this); }
   void evaluate(double t, const VectorXd& q, const VectorXd&,
                 fem::ConstraintRows& rows) const override {
     const fem::Motion m = value_(t);
@@ -162,19 +167,19 @@ inline MatrixXd places(const std::vector<Vec2>& points) {
   return out;
 }
 
-inline fem::Model point_model(const MatrixXd& places, const VectorXd& masses) {
-  fem::Model model;
+inline fem::Workspace point_model(const MatrixXd& places, const VectorXd& masses) {
+  fem::Workspace model;
   std::vector<std::unique_ptr<fem::Term>> terms;
   terms.push_back(std::make_unique<PointMasses>(masses));
   model.add_body("points", std::make_unique<Points>(places), {}, std::move(terms));
   return model;
 }
-inline fem::Model point_model(const MatrixXd& places) {
+inline fem::Workspace point_model(const MatrixXd& places) {
   return point_model(places, VectorXd::Ones(places.rows()));
 }
 
 template <class J, class... Arguments>
-void add(fem::Model& model, Arguments&&... arguments) {
+void add(fem::Workspace& model, Arguments&&... arguments) {
   model.add_joint(std::make_unique<J>(std::forward<Arguments>(arguments)...));
 }
 
@@ -203,11 +208,11 @@ struct FourBar {
   double limit_angle() const {
     return std::acos((r * r + g * g - (l + s) * (l + s)) / (2 * r * g));
   }
-  fem::Model model(const Course& angle) const {
+  fem::Workspace model(const Course& angle) const {
     const VectorXd q = places(angle(0).value);
     MatrixXd rows(2, 2);
     rows << q[0], q[1], q[2], q[3];
-    fem::Model out = point_model(rows, Vec2(1, 3));
+    fem::Workspace out = point_model(rows, Vec2(1, 3));
     add<Rod>(out, "crank", 0, -1, constant(r));
     add<AngleDrive>(out, "motor", 0, angle);
     add<Rod>(out, "coupler", 0, 1, constant(l));

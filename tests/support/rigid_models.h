@@ -5,16 +5,16 @@
 
 #include "fem/body_joints.h"
 #include "fem/elements/rigid_body.h"
-#include "fem/model.h"
 #include "fem/rigid.h"
+#include "fem/workspace.h"
 #include "tests/support/disturbance.h"
 
 /// Planar rigid bodies set up and put in place by hand.
 namespace flexmorph::testing {
 
 /// A rigid body with mass, and weight where gravity is given; its unit axis is a joint behind it.
-inline void add_rigid(fem::Model& model, const std::string& name, const fem::RigidSection& section,
-                      const VectorXd& gravity = {}) {
+inline void add_rigid(fem::Workspace& model, const std::string& name,
+                      const fem::RigidSection& section, const VectorXd& gravity = {}) {
   std::vector<std::unique_ptr<fem::Term>> terms;
   terms.push_back(fem::make_rigid_inertia(section));
   if (gravity.size() > 0) terms.push_back(fem::make_rigid_gravity(section, disturbed(gravity)));

@@ -35,12 +35,12 @@ struct SpacePlate {
   }
 
   template <class... Loads>
-  fem::Model model(Loads... loads) const {
+  fem::Workspace model(Loads... loads) const {
     const fem::PlaneSection section = disturbed(this->section);
     std::vector<std::unique_ptr<fem::Term>> all;
     for (const std::string& name : terms) all.push_back(fem::make_term(name, section));
     (all.push_back(std::move(loads)), ...);
-    fem::Model out;
+    fem::Workspace out;
     out.add_body(
         "plate",
         std::make_unique<AncfPlate>(3, shapes, even_lines(0, length, nx), even_lines(0, width, ny)),

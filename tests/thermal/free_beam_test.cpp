@@ -27,7 +27,7 @@ constexpr double kStretch = 0.02;  // α ΔT of 200 K
 State run(const HotBeam& beam, double end, double h, const std::function<void(const State&)>& see,
           double spin = 0, const IntegratorSettings& integrator = {},
           StepCounts* counts = nullptr) {
-  Model model = beam.model();
+  Workspace model = beam.model();
   model.prepare(0.0);
   State x = model.reference();
   const MatrixXd Y = thermal_matrices(*model.bodies()[0].element, 1).from_centre();
@@ -53,7 +53,7 @@ TEST_P(Profiles, BeamGrowsAsTheClosedForm) {
     HotBeam beam;
     beam.rise.profile = profile_of(GetParam());
     beam.thermal_force = force;
-    const Model model = beam.model();
+    Workspace model = beam.model();
     double strain = 0;
     StepCounts counts;
     const State x = run(
@@ -86,7 +86,7 @@ TEST_P(Profiles, KineticEnergyIsThatOfTheThermalMotion) {
   EXPECT_NEAR(beam.mass(), 72, 1e-12);
   const double inertia = 0.5 * (72 * 1.0 / 12 + 72 * 0.01 / 12);
   EXPECT_NEAR(inertia, 3.03, 1e-12);
-  Model model = beam.model();
+  Workspace model = beam.model();
   double largest = 0, error = 0;
   run(beam, 0.6, 1e-3, [&](const State& x) {
     model.prepare(x.t);
@@ -138,7 +138,7 @@ double printed_strain(const Element& element, const MatrixXd& q, double a) {
 TEST(TurningBeam, IsNotStrainedByItsHeat) {
   HotBeam beam;
   beam.n = 2;
-  Model model = beam.model();
+  Workspace model = beam.model();
   model.prepare(1.0);
   const Element& element = *model.bodies()[0].element;
   const MatrixXd hot = element.reference() + thermal_displacement(element, kStretch);
@@ -158,7 +158,7 @@ TEST(TurningBeam, IsNotStrainedByItsHeat) {
 TEST(ThermalForce, TurnsWithTheBodyAndHasNoMoment) {
   HotBeam beam;
   beam.n = 3;
-  Model model = beam.model();
+  Workspace model = beam.model();
   model.prepare(0.1);
   const Element& element = *model.bodies()[0].element;
   const auto& link = dynamic_cast<const ThermalForce&>(*model.links()[0]);
@@ -208,7 +208,7 @@ TEST(TurningBeam, KeepsItsAngularMomentumWhileItIsHeated) {
       HotBeam beam;
       beam.n = 2;
       beam.thermal_force = force;
-      const Model model = beam.model();
+      Workspace model = beam.model();
       const double omega = 2 * M_PI;
       double first = 0, drift = 0;
       StepCounts counts;
@@ -250,7 +250,7 @@ TEST(ThermalForce, RefusesWhatItDoesNotKnow) {
       testing::error_of(Kind::input, [&] { ThermalForce("q", "b", heat, 0); }), "mass"));
   const auto added = [&](std::unique_ptr<Element> element) {
     return testing::error_of(Kind::input, [&] {
-      Model model;
+      Workspace model;
       model.add_body("arm", std::move(element), {}, {});
       model.add_link(std::make_unique<ThermalForce>("q", "arm", heat, 1));
     });
@@ -272,7 +272,7 @@ TEST(ThermalForce, FollowsTheDesignOfThePlate) {
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(make_inertia(section));
   terms.push_back(make_membrane(section));
-  Model model;
+  Workspace model;
   Body& body = model.add_body(
       "plate",
       std::make_unique<AncfPlate>(2, testing::ShapeSet::h16, testing::even_lines(0.05, 0.4, 2),

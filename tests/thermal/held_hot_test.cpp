@@ -20,7 +20,7 @@ using testing::ShapeSet;
 const PlaneSection kSection{0.1, 7e8, 0.3, 7200};
 
 struct Equilibrium {
-  Model model;
+  Workspace model;
   State x;
   StaticResult result;
   double held = 0;  ///< strain energy at the cold size

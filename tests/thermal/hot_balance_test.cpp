@@ -30,7 +30,7 @@ Heat warm() {
 }
 
 /// Lines at 0.1, 0.21, 0.3 m: d driven, f free, | fixed.
-Model plate_of(const std::string& kinds) {
+Workspace plate_of(const std::string& kinds) {
   const double at[] = {0.1, 0.21, 0.3};
   std::vector<MaterialLine> lines;
   for (size_t i = 0; i < kinds.size(); ++i)
@@ -40,7 +40,7 @@ Model plate_of(const std::string& kinds) {
   terms.push_back(make_inertia(kSection));
   terms.push_back(make_membrane(kSection));
   terms.push_back(make_bending(kSection, 15));  // quadrature of the rational energy does not show
-  Model model;
+  Workspace model;
   Body& body = model.add_body(
       "plate",
       std::make_unique<AncfPlate>(3, ShapeSet::h16, lines, testing::even_lines(-0.05, 0.07, 1)),
@@ -53,7 +53,7 @@ class AnyMotion : public ::testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Lines, AnyMotion, ::testing::Values("|||", "d||", "dd|", "f||", "df|"));
 
 TEST_P(AnyMotion, ChangesTheEnergyByThePowers) {
-  Model model = plate_of(GetParam());
+  Workspace model = plate_of(GetParam());
   const testing::SmoothMotion motion = testing::any_motion(model);
   for (const double time : {0.3, 0.9}) {
     const auto [rate, work, p] = testing::energy_rate(model, motion, time);
@@ -64,7 +64,7 @@ TEST_P(AnyMotion, ChangesTheEnergyByThePowers) {
 }
 
 /// Largest defect over the largest energy of a run from rest.
-double defect(Model& model, double end, double h) {
+double defect(Workspace& model, double end, double h) {
   model.prepare(0.0);
   State x = model.reference();
   const auto alpha = make_integrator(model, {});
@@ -93,7 +93,7 @@ TEST(HeldBeam, BalanceHasADefectOfSecondOrder) {
       beam.thermal_force = force;
       beam.section.youngs_modulus = 2e4;
       beam.rise = {Profile::quartic, 2000, 0, 0.5};
-      Model model = beam.model();
+      Workspace model = beam.model();
       const HoldPlace root = HoldPlace::at({0, 0});
       model.add_joint(make_hold("clamp", "beam",
                                 {{root, NodeVector::r, {0, 1}},
@@ -112,7 +112,7 @@ TEST(HeldPlate, BalanceHasADefectOfSecondOrder) {
     std::vector<std::unique_ptr<Term>> terms;
     terms.push_back(make_inertia(section));
     terms.push_back(make_membrane(section));
-    Model model;
+    Workspace model;
     Body& body =
         model.add_body("plate",
                        std::make_unique<AncfPlate>(2, ShapeSet::h16, testing::even_lines(0, 0.4, 2),
@@ -137,7 +137,7 @@ TEST(HotBeam, KeepsItsEnergyAtConstantTemperature) {
     beam.n = 2;
     beam.term = term;
     beam.rise = {Profile::step, 500, 0, 0};
-    Model model = beam.model();
+    Workspace model = beam.model();
     model.prepare(0.0);
     State x = model.reference();
     const auto scheme = make_integrator(model, {"energy_momentum", {}, {}, {}});

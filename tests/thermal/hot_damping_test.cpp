@@ -25,8 +25,8 @@ const std::vector<std::pair<Names, TermPlace>> kDamped = {
     {{"inertia", "membrane", "bending", "damping"}, TermPlace::space},
     {{"inertia", "ecm", "damping"}, TermPlace::beam}};
 
-Model hot_model(const Names& names, TermPlace place) {
-  Model model;
+Workspace hot_model(const Names& names, TermPlace place) {
+  Workspace model;
   Body& body =
       model.add_body("body", element_in(place), kSection,
                      make_terms(names, kSection, {{"damping_time", 0.3}, {"bending_points", 12}}));
@@ -37,7 +37,7 @@ Model hot_model(const Names& names, TermPlace place) {
 // Strains are those of q/s: where that stands still no stress arises, however fast q moves.
 TEST(HotDamping, FreeGrowthDissipatesNothing) {
   for (const auto& [names, place] : kDamped) {
-    Model model = hot_model(names, place);
+    Workspace model = hot_model(names, place);
     State x = model.reference();
     x.t = kNow;
     model.prepare(x);
@@ -79,7 +79,7 @@ TEST(HotDamping, TangentsAreDerivatives) {
 // d(T + U)/dt = (M q̈ + F) · q̇ + heat - loss for any motion.
 TEST(HotDamping, ChangesTheEnergyByThePowers) {
   for (const auto& [names, place] : kDamped) {
-    Model model = hot_model(names, place);
+    Workspace model = hot_model(names, place);
     const testing::SmoothMotion motion = testing::any_motion(model);
     for (const double time : {0.3, 0.9}) {
       const auto [rate, work, p] = testing::energy_rate(model, motion, time);
@@ -91,7 +91,7 @@ TEST(HotDamping, ChangesTheEnergyByThePowers) {
 
 // Eight elements side by side see the same rates.
 TEST(HotDamping, BatchesAreElements) {
-  Model model = hot_model(kDamped[0].first, kDamped[0].second);
+  Workspace model = hot_model(kDamped[0].first, kDamped[0].second);
   State x = model.reference();
   x.t = kNow;
   model.prepare(x);

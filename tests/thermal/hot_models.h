@@ -4,12 +4,12 @@
 
 #include "fem/elements/ancf_beam.h"
 #include "fem/elements/ancf_plate.h"
-#include "fem/model.h"
 #include "fem/terms.h"
 #include "fem/thermal/heated.h"
 #include "fem/thermal/temperature.h"
 #include "fem/thermal/thermal_displacement.h"
 #include "fem/thermal/thermal_force.h"
+#include "fem/workspace.h"
 #include "tests/support/disturbance.h"
 #include "tests/support/models.h"
 
@@ -38,12 +38,12 @@ struct HotBeam {
   fem::Heat heat() const { return {expansion, fem::make_temperature(rise), volume}; }
   double mass() const { return section.density * section.thickness * height * length; }
 
-  fem::Model model() const {
+  fem::Workspace model() const {
     const fem::PlaneSection section = disturbed(this->section);
     std::vector<std::unique_ptr<fem::Term>> terms;
     terms.push_back(fem::make_inertia(section));
     terms.push_back(fem::make_term(term, section));
-    fem::Model out;
+    fem::Workspace out;
     fem::Body& body = out.add_body("beam", std::make_unique<fem::AncfBeam>(length, height, n),
                                    section, std::move(terms));
     fem::heat(body, heat());

@@ -52,6 +52,7 @@ class Gear final : public fem::PairJoint {
     q_ = 1.0 * wheels.teeth_b / common;
     start_ = p_ * parts.angle_a + q_ * parts.angle_b;
   }
+  std::unique_ptr<fem::Joint> clone() const override { return std::make_unique<Gear>(*this); }
 
  private:
   void fill(double, const Values& y, std::vector<PairRow>& rows) const override {

@@ -8,7 +8,7 @@
 #include <iterator>
 #include <limits>
 
-#include "fem/model.h"
+#include "fem/workspace.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -21,7 +21,7 @@ constexpr int kForcesPerThread = 512, kTangentsPerThread = 128;
 }  // namespace
 
 /// Every batch gets the first colour that no batch before it with a common unknown has.
-void Model::number_batches() {
+void Workspace::number_batches() {
   std::vector<std::vector<BatchPlaces>> by_colour;
   singles_.clear();
   for (size_t index = 0; index < bodies_.size(); ++index) {
@@ -59,9 +59,10 @@ void Model::number_batches() {
     std::move(colour.begin(), colour.end(), std::back_inserter(batches_));
     colours_.push_back(static_cast<int>(batches_.size()));
   }
+  numbered_version_ = pattern_version();
 }
 
-void Model::number_singles(size_t body) {
+void Workspace::number_singles(size_t body) {
   const Body& b = bodies_[body];
   for (int e = 0; e < b.element->n_elements(); ++e) {
     const auto sides = b.element->free_sides(e);
@@ -75,7 +76,7 @@ void Model::number_singles(size_t body) {
 }
 
 template <class F>
-void Model::for_batches(const State& x, int per_thread, const F& f) const {
+void Workspace::for_batches(const State& x, int per_thread, const F& f) const {
   const int threads =
       std::clamp(static_cast<int>(batches_.size()) / per_thread, 1, omp_get_max_threads());
   std::exception_ptr failure;
@@ -106,8 +107,9 @@ void Model::for_batches(const State& x, int per_thread, const F& f) const {
   if (failure) std::rethrow_exception(failure);
 }
 
-void Model::force(const State& x, VectorXd& out) const {
-  out.setZero(n_dofs_);
+void Workspace::force(const State& x, VectorXd& out) {
+  prepare(x);
+  out.setZero(n_dofs());
   for_batches(x, kForcesPerThread, [&](const Batch& batch, const BatchPlaces& places) {
     Lanes f[kMaxLocal];
     std::fill(f, f + batch.n_local(), Lanes{});
@@ -120,7 +122,7 @@ void Model::force(const State& x, VectorXd& out) const {
   for (const auto& link : links_) link->add_force(x, out);
 }
 
-void Model::add_single_force(const Single& single, const State& x, VectorXd& out) const {
+void Workspace::add_single_force(const Single& single, const State& x, VectorXd& out) const {
   const Body& b = bodies_[single.body];
   Local local;
   gather(b, single.e, x, local);
@@ -136,8 +138,8 @@ void Model::add_single_force(const Single& single, const State& x, VectorXd& out
     if (single.dofs[k] >= 0) out[single.dofs[k]] += f[static_cast<Eigen::Index>(k)];
 }
 
-void Model::add_single_tangent(const Single& single, const State& x, const Weights& w, double scale,
-                               double* values) const {
+void Workspace::add_single_tangent(const Single& single, const State& x, const Weights& w,
+                                   double scale, double* values) const {
   const Body& b = bodies_[single.body];
   Local local;
   gather(b, single.e, x, local);
@@ -157,11 +159,12 @@ void Model::add_single_tangent(const Single& single, const State& x, const Weigh
   }
 }
 
-void Model::mean_force(const State& mean, const VectorXd& q0, const VectorXd& q1,
-                       VectorXd& out) const {
+void Workspace::mean_force(const State& mean, const VectorXd& q0, const VectorXd& q1,
+                           VectorXd& out) {
   if (has_free_lines())
     throw Error::input("integrator \"energy_momentum\" does not know free material lines");
-  out.setZero(n_dofs_);
+  prepare(mean);
+  out.setZero(n_dofs());
   LocalStep step;
   LocalRows f;
   for (const Body& b : bodies_) {
@@ -178,7 +181,7 @@ void Model::mean_force(const State& mean, const VectorXd& q0, const VectorXd& q1
   for (const auto& link : links_) link->add_mean_force(mean, q0, q1, out);
 }
 
-void Model::joint_stiffness(const State& x, std::vector<Eigen::Triplet<double>>& out) const {
+void Workspace::joint_stiffness(const State& x, std::vector<Eigen::Triplet<double>>& out) const {
   out.clear();
   int first = 0;
   for (const auto& joint : joints_) {
@@ -187,8 +190,8 @@ void Model::joint_stiffness(const State& x, std::vector<Eigen::Triplet<double>>&
   }
 }
 
-void Model::build_pattern() const {
-  const int n = n_dofs_ + n_constraints_;
+void Workspace::build_pattern() {
+  const int n = n_dofs() + n_constraints();
   std::vector<Eigen::Triplet<double>> entries;
   for (const BatchPlaces& batch : batches_)
     for (int lane = 0; lane < batch.count; ++lane)
@@ -210,8 +213,8 @@ void Model::build_pattern() const {
   for (const auto& link : links_) link->add_pattern(link_entries_);
   entries.insert(entries.end(), link_entries_.begin(), link_entries_.end());
   for (const auto& entry : c.jacobian) {
-    entries.emplace_back(n_dofs_ + entry.row(), entry.col(), 1.0);
-    entries.emplace_back(entry.col(), n_dofs_ + entry.row(), 1.0);
+    entries.emplace_back(n_dofs() + entry.row(), entry.col(), 1.0);
+    entries.emplace_back(entry.col(), n_dofs() + entry.row(), 1.0);
   }
   pattern_.resize(n, n);
   pattern_.setFromTriplets(entries.begin(), entries.end());
@@ -239,18 +242,19 @@ void Model::build_pattern() const {
   }
   joint_places_.clear();
   for (const auto& entry : c.jacobian) {
-    joint_places_.push_back(place(n_dofs_ + entry.row(), entry.col()));
-    joint_places_.push_back(place(entry.col(), n_dofs_ + entry.row()));
+    joint_places_.push_back(place(n_dofs() + entry.row(), entry.col()));
+    joint_places_.push_back(place(entry.col(), n_dofs() + entry.row()));
   }
   stiffness_places_.clear();
   for (const auto& entry : stiffness) stiffness_places_.push_back(place(entry.row(), entry.col()));
   link_places_.clear();
   for (const auto& entry : link_entries_) link_places_.push_back(place(entry.row(), entry.col()));
-  built_version_ = pattern_version_;
+  built_version_ = pattern_version();
 }
 
-void Model::kkt(const State& x, const Constraints& c, const Weights& w, double scale,
-                SparseMatrix& out) const {
+void Workspace::kkt(const State& x, const Constraints& c, const Weights& w, double scale,
+                    SparseMatrix& out) {
+  prepare(x);
   clear(out);
   double* values = out.valuePtr();
   for_batches(x, kTangentsPerThread, [&](const Batch& batch, const BatchPlaces& places) {
@@ -271,9 +275,10 @@ void Model::kkt(const State& x, const Constraints& c, const Weights& w, double s
   fill_joints(x, scale * w.q, c, c, out);
 }
 
-void Model::mean_kkt(const State& mean, const VectorXd& q0, const VectorXd& q1,
-                     const Constraints& at_mean, const Constraints& at_end, const Weights& w,
-                     double scale, SparseMatrix& out) const {
+void Workspace::mean_kkt(const State& mean, const VectorXd& q0, const VectorXd& q1,
+                         const Constraints& at_mean, const Constraints& at_end, const Weights& w,
+                         double scale, SparseMatrix& out) {
+  prepare(mean);
   clear(out);
   double* values = out.valuePtr();
   LocalStep step;
@@ -297,19 +302,19 @@ void Model::mean_kkt(const State& mean, const VectorXd& q0, const VectorXd& q1,
   fill_joints(mean, scale * w.q, at_end, at_mean, out);
 }
 
-void Model::add_link_entries(double scale, double* values) const {
+void Workspace::add_link_entries(double scale, double* values) const {
   for (size_t k = 0; k < link_entries_.size(); ++k)
     values[link_places_[k]] += scale * link_entries_[k].value();
 }
 
-void Model::clear(SparseMatrix& out) const {
-  if (built_version_ != pattern_version_) build_pattern();
+void Workspace::clear(SparseMatrix& out) {
+  if (built_version_ != pattern_version()) build_pattern();
   if (out.rows() != pattern_.rows() || out.nonZeros() != pattern_.nonZeros()) out = pattern_;
   std::fill(out.valuePtr(), out.valuePtr() + out.nonZeros(), 0.0);
 }
 
-void Model::fill_joints(const State& x, double stiffness_scale, const Constraints& rows,
-                        const Constraints& columns, SparseMatrix& out) const {
+void Workspace::fill_joints(const State& x, double stiffness_scale, const Constraints& rows,
+                            const Constraints& columns, SparseMatrix& out) {
   double* values = out.valuePtr();
   if (stiffness_scale != 0 && !stiffness_places_.empty()) {
     joint_stiffness(x, stiffness_);

@@ -1,0 +1,60 @@
+#include "io/background.h"
+
+namespace flexmorph::io {
+
+Background::Background(bool own_thread) {
+  if (own_thread) thread_ = std::thread([this] { work(); });
+}
+
+Background::~Background() {
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    ends_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void Background::rethrow() {
+  if (failure_) std::rethrow_exception(failure_);
+}
+
+void Background::then(std::function<void()> task) {
+  if (!thread_.joinable()) return task();
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return tasks_.size() < kMost || failure_; });
+  rethrow();
+  tasks_.push_back(std::move(task));
+  changed_.notify_all();
+}
+
+void Background::wait() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return tasks_.empty(); });
+  rethrow();
+}
+
+void Background::work() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    changed_.wait(lock, [this] { return !tasks_.empty() || ends_; });
+    if (tasks_.empty()) return;
+    const std::function<void()>& task = tasks_.front();  // stays where it is while others come
+    if (!failure_) {
+      lock.unlock();
+      std::exception_ptr failure;
+      try {
+        task();
+      } catch (...) {
+        failure = std::current_exception();
+      }
+      lock.lock();
+      failure_ = failure;
+    }
+    tasks_.pop_front();
+    changed_.notify_all();
+  }
+}
+
+}  // namespace flexmorph::io

@@ -1,0 +1,74 @@
+// Runs with several threads: motions side by side, files written beside the design. What comes out
+// are the bytes of one thread. (So few loads are not shared among threads: the design is the same,
+// too.)
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <regex>
+
+#include "tests/cases/program.h"
+
+namespace flexmorph::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Without what a clock says, and the number of threads.
+std::string timeless(const fs::path& file, std::string text) {
+  if (file.filename() == "history.csv") {
+    std::string out;
+    for (const std::string& line : lines_of(text)) {
+      size_t end = line.size();
+      for (int k = 0; k < 6; ++k) end = line.rfind(',', end - 1);
+      out += line.substr(0, end) + "\n";
+    }
+    return out;
+  }
+  if (file.filename() != "run.json" && file.filename() != "report.html") return text;
+  std::string out;
+  for (const std::string& line : lines_of(text))
+    if (!std::regex_search(line, std::regex("seconds|threads|memory|CPU|wall"))) out += line + "\n";
+  return out;
+}
+
+std::map<std::string, std::string> files_of(const std::string& folder) {
+  std::map<std::string, std::string> out;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file())
+      out[fs::relative(entry.path(), folder)] =
+          timeless(entry.path(), contents_of(entry.path().string()));
+  return out;
+}
+
+TEST(Threads, ChangeNoByte) {
+  std::map<std::string, std::string> one;
+  std::string said;
+  for (const char* threads : {"1", "2", "4"}) {
+    const Scratch scratch;
+    const std::string folder = scratch / "out";
+    Words words = short_run(folder, {"verify.mesh=[12,2]", "time.end=0.11", "output.plots=true"});
+    words.insert(words.end(), {"--threads", threads});
+    const Ended ended = flexmorph(scratch, words);
+    ASSERT_EQ(ended.code, 0) << ended.err;
+    std::string out = ended.out;
+    for (size_t at; (at = out.find(folder)) != std::string::npos;) out.erase(at, folder.size());
+    const std::map<std::string, std::string> files = files_of(folder);
+    if (one.empty()) {
+      one = files;
+      said = out;
+      for (const char* name : {"motion.csv", "motion_uniform.csv", "motion_verified.csv",
+                               "motion_verified_uniform.csv", "design/iterations.pvd"})
+        EXPECT_TRUE(one.contains(name)) << name;
+      continue;
+    }
+    EXPECT_EQ(out, said);
+    EXPECT_EQ(files.size(), one.size());
+    for (const auto& [name, text] : files)
+      EXPECT_TRUE(one.contains(name) && one.at(name) == text) << name << ", threads " << threads;
+  }
+}
+
+}  // namespace
+}  // namespace flexmorph::test

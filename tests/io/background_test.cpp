@@ -1,0 +1,48 @@
+// Tasks are done in their order, all of them before wait() returns, and what one throws reaches the
+// one who asked for it.
+#include "io/background.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <vector>
+
+namespace flexmorph::io {
+namespace {
+
+class EveryBackground : public ::testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(OwnThread, EveryBackground, ::testing::Bool());
+
+TEST_P(EveryBackground, KeepsTheOrder) {
+  std::vector<int> done;
+  {
+    Background background(GetParam());
+    for (int k = 0; k < 100; ++k) background.then([&done, k] { done.push_back(k); });
+    background.wait();
+    ASSERT_EQ(done.size(), 100u);
+    for (int k = 0; k < 100; ++k) EXPECT_EQ(done[static_cast<size_t>(k)], k);
+    background.then([&done] { done.push_back(100); });
+  }
+  EXPECT_EQ(done.size(), 101u);  // the end waits, too
+}
+
+TEST_P(EveryBackground, TellsWhatATaskThrew) {
+  std::atomic<int> done = 0;
+  Background background(GetParam());
+  bool told = false;
+  try {
+    background.then([] { throw std::runtime_error("a full disk"); });
+    background.wait();
+  } catch (const std::runtime_error& error) {
+    told = true;
+    EXPECT_STREQ(error.what(), "a full disk");
+  }
+  EXPECT_TRUE(told);
+  if (!GetParam()) return;
+  EXPECT_THROW(background.then([&done] { ++done; }), std::runtime_error);
+  EXPECT_EQ(done, 0);
+}
+
+}  // namespace
+}  // namespace flexmorph::io
