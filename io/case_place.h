@@ -86,7 +86,8 @@ struct Table::Place {
       if (!key.fallback) return {};
       if constexpr (std::is_same_v<T, double>)
         if (const int* whole = std::get_if<int>(&*key.fallback)) return *whole;
-      return std::get<T>(*key.fallback);
+      // A key that takes a number or a word has a fallback of one kind only.
+      if (const T* value = std::get_if<T>(&*key.fallback)) return *value;
     }
     return {};
   }

@@ -26,6 +26,7 @@ set(dated "[^ (`]+( et al\\.)?,? \\(?(18|19|20)[0-9][0-9][^0-9A-Za-z.-]")
 
 # Text without what takes lists apart; the arrow stands where Markdown begins the target of a link.
 function(flatten text flat)
+  string(REPLACE "[](" "(" text "${text}")  # a lambda of C++: links have words
   string(REPLACE "](" " @to(" text "${text}")
   string(REGEX REPLACE "[][;\\]" " " text "${text}")
   set(${flat} "${text}" PARENT_SCOPE)

@@ -66,8 +66,7 @@ const TermRow& damping_row() {
                 .unit = "s",
                 .low_open = true,
                 .fallback = {},
-                .sentence = "The stress of strain rates is this time the stiffness by them; a mode "
-                            "of pulsation ω is damped by the ratio ω/2 times this time."}},
+                .sentence = "Modes of pulsation ω are damped by the ratio ω/2 times this time."}},
       .columns = {"energy.dissipated"},
       .make = [](const TermData& data) -> std::unique_ptr<Term> {
         const double time = number_of(damping_row(), "damping_time", data);

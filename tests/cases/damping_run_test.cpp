@@ -17,7 +17,8 @@ const Words kDamped = {"body.terms=[\"inertia\", \"membrane\", \"damping\"]",
 /// generalized_alpha of equal steps is asked for here, and without designs.
 Words still(Words more) {
   Words out = kDamped;
-  for (const char* change : {"body.element=ancf_plate", "body.flow=", "design=", "esl="})
+  for (const char* change :
+       {"body.element=ancf_plate", "body.flow=", "design=", "esl=", "optimizer="})
     out.emplace_back(change);
   out.insert(out.end(), more.begin(), more.end());
   return out;
@@ -43,14 +44,15 @@ std::vector<double> column(const std::string& folder, const std::string& name) {
   return out;
 }
 
-void expect_dissipation(const std::string& folder) {
+/// @param missed  what the balance of energies may miss at the end [J]
+void expect_dissipation(const std::string& folder, double missed) {
   const std::vector<double> lost = column(folder, "energy.dissipated"),
                             defect = column(folder, "energy.defect"),
                             kinetic = column(folder, "energy.kinetic");
   ASSERT_GT(lost.size(), 10u);
   EXPECT_EQ(lost.front(), 0);
   for (size_t i = 1; i < lost.size(); ++i) EXPECT_GE(lost[i], lost[i - 1]);
-  EXPECT_GT(lost.back(), 10 * std::abs(defect.back()));
+  EXPECT_LE(std::abs(defect.back()), missed);
   EXPECT_LT(lost.back(), kinetic.front());
   const auto json = nlohmann::json::parse(contents_of(folder + "/run.json"));
   EXPECT_NEAR(json["motion"]["balance"]["energy.dissipated"].get<double>(), lost.back(),
@@ -62,8 +64,8 @@ TEST(Damped, DesignWithFlowHasTheDissipatedWork) {
   const std::string damped = scratch / "damped", free = scratch / "free";
   const Ended run = flexmorph(scratch, short_run(damped, kDamped));
   ASSERT_EQ(run.code, 0) << run.err;
-  expect_dissipation(damped);
   ASSERT_EQ(flexmorph(scratch, short_run(free)).code, 0);
+  expect_dissipation(damped, std::abs(column(free, "energy.defect").back()));
   EXPECT_TRUE(column(free, "energy.dissipated").empty());
   EXPECT_FALSE(
       nlohmann::json::parse(contents_of(free + "/run.json"))["motion"].contains("balance"));
@@ -75,7 +77,7 @@ TEST(Damped, EveryIntegratorCountsTheDissipatedWork) {
     const std::string folder = scratch / "run";
     const Ended run = flexmorph(scratch, short_run(folder, still({changes, "time.start=rigid"})));
     ASSERT_EQ(run.code, 0) << run.err;
-    expect_dissipation(folder);
+    expect_dissipation(folder, 0.1 * column(folder, "energy.dissipated").back());
   }
 }
 
@@ -91,7 +93,7 @@ TEST(Damped, WhatItCannotDoIsRefusedWithItsPlace) {
         Bad{{"body.terms=[\"inertia\", \"damping\"]", "body.damping_time=1e-3"},
             "\"damping\" acts on elastic terms, and the body has none"},
         Bad{{"body.damping_time=1e-3"}, "unknown key"},
-        Bad{{terms, "body.damping_time=1e-3", "body.line=[{ index = 1, free = true }]"},
+        Bad{still({"body.line=[{ index = 1, free = true }]"}),
             "\"damping\" does not know free material lines"}}) {
     Scratch scratch;
     const Ended run = flexmorph(scratch, short_run(scratch / "run", changes));

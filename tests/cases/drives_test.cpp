@@ -164,7 +164,7 @@ TEST_F(Drives, AreRefusedWithTheirPlace) {
       {{"constants.L0=long"}, "a constant is a finite number"},
       {{"hub.angle=turns"}, "a drive is one of 'out', 'turn', 'side', did you mean 'turn'?"},
       {{"hub.angular_velocity=1"}, "the drive of `angle` says how the hub turns"},
-      {{"hub.position=[\"side\"]"}, "two drives, of x and of y"},
+      {{"hub.position=[\"side\"]"}, "a list of 2: a drive is one of"},
       {{"time.start=hub_at_rest"}, "spins up hubs that turn at a constant rate, not driven ones"},
       {{"body.flow.speed=0.1"}, "material flows at a `speed`, or as the drive `length` says"},
       {{"body.length=0.4"}, "this drive starts at 0.45, 'plate' at length = 0.4 [m]"},

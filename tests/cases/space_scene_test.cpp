@@ -197,7 +197,7 @@ const Bad kBad[] = {
     {"bending_in_the_plane",
      kPlanar,
      {"body.terms=[\"inertia\", \"bending\"]"},
-     "a term is one of 'inertia', 'membrane', none twice"},
+     "a term is one of 'inertia', 'membrane', 'damping', none twice"},
     {"space_without_bending",
      kPendulum,
      {"body.terms=[\"inertia\", \"membrane\"]"},

@@ -149,7 +149,7 @@ const std::vector<Bad> kBad = {
     {"two_models",
      kFree,
      {"body.terms=[\"inertia\", \"gcm\", \"ecm\"]"},
-     "either \"gcm\" or \"ecm\""},
+     "\"ecm\" stands in place of \"gcm\""},
     {"no_inertia", kFree, {"body.terms=[\"gcm\"]"}, "a body that moves has \"inertia\""},
     {"plate_elements", kFree, {"body.elements=[2, 1]"}, "body.elements"},
     {"thickness", kFree, {"body.thickness=0.1"}, "a beam has a `height`"},

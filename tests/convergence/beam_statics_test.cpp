@@ -8,6 +8,7 @@
 
 #include "fem/body_joints.h"
 #include "fem/elements/ancf_beam.h"
+#include "fem/loads.h"
 #include "fem/solve/statics.h"
 #include "fem/terms.h"
 #include "tests/support/rates.h"
@@ -37,7 +38,7 @@ Workspace beam_model(const std::string& term, int n, const Vec2& at, const Vecto
   return model;
 }
 
-Vec2 position(const Model& model, const State& x, const Vec2& material) {
+Vec2 position(const Workspace& model, const State& x, const Vec2& material) {
   return model.place_motion({"beam", material}, x).position;
 }
 

@@ -203,7 +203,6 @@ TEST(EnergyMomentum, ConvergesWithOrderTwoToTheLimitOfGeneralizedAlpha) {
                       .q = (4 * fine.q - coarse.q) / 3,
                       .v = (4 * fine.v - coarse.v) / 3,
                       .a = {},
-                      .alpha = {},
                       .lambda = {}};
     const VectorXd scales = model.scales();
     for (const bool velocity : {false, true}) {

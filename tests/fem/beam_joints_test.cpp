@@ -90,7 +90,7 @@ struct Pair {
     model.add_joint(std::move(joint));
     x = model.reference();
   }
-  VectorXd value(const VectorXd& q) const {
+  VectorXd value(const VectorXd& q) {
     State y = x;
     y.q = q;
     Constraints c;
@@ -144,12 +144,12 @@ TEST(BeamWelds, TakeTheReferenceVectorsOfTheEnd) {
   const std::vector<BeamNode> nodes = {{{0, 0}, {1.2, 0}, {0.2, 0.9}}, {{0.5, 0}, {1, 0}, {0, 1}}};
   for (const WeldMode mode :
        {WeldMode::partial, WeldMode::edge, WeldMode::direction, WeldMode::full}) {
-    const Pair pair(make_edge_weld("weld", "beam", "root", {"hub"}, mode),
-                    std::make_unique<AncfBeam>(x, kHeight, nodes));
+    Pair pair(make_edge_weld("weld", "beam", "root", {"hub"}, mode),
+              std::make_unique<AncfBeam>(x, kHeight, nodes));
     EXPECT_LT(pair.value(pair.x.q).norm(), 1e-15);
-    const Pair driven(make_weld(
-                          "weld", "beam", "root", [](double) { return FrameMotion{}; }, mode),
-                      std::make_unique<AncfBeam>(x, kHeight, nodes));
+    Pair driven(make_weld(
+                    "weld", "beam", "root", [](double) { return FrameMotion{}; }, mode),
+                std::make_unique<AncfBeam>(x, kHeight, nodes));
     EXPECT_LT(driven.value(driven.x.q).norm(), 1e-15);
   }
 }
@@ -172,9 +172,9 @@ TEST(BeamMarkers, ArePointsOfTheBeam) {
 }
 
 TEST(BeamHolds, FindNodesByTheirCoordinates) {
-  const Pair pair(make_hold("held", "beam",
-                            {{HoldPlace::at({0.45, 0}), NodeVector::r, {1}, {}},
-                             {{.edge = "free_end"}, NodeVector::r_n, {0, 1}, {}}}));
+  Pair pair(make_hold("held", "beam",
+                      {{HoldPlace::at({0.45, 0}), NodeVector::r, {1}, {}},
+                       {{.edge = "free_end"}, NodeVector::r_n, {0, 1}, {}}}));
   ASSERT_EQ(pair.model.joints()[1]->size(), 3);
   EXPECT_LT(pair.value(pair.x.q).norm(), 1e-15);  // at the reference of the arc
   const std::string text = testing::error_of(Error::Kind::input, [] {

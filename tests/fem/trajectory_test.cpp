@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "fem/dynamics/motion.h"
+#include "fem/terms.h"
 #include "tests/support/models.h"
 
 namespace flexmorph::fem {

@@ -11,6 +11,7 @@
 #include "fem/body_joints.h"
 #include "fem/dynamics/motion.h"
 #include "fem/dynamics/side_by_side.h"
+#include "fem/terms.h"
 #include "tests/support/models.h"
 #include "tests/support/rigid_models.h"
 

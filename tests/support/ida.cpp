@@ -167,7 +167,8 @@ int jacobian(realtype t, realtype c, N_Vector y, N_Vector rate, N_Vector, SUNMat
 
 /// 1 over what each unknown may miss: multipliers, which only Newton's method looks at, by their
 /// own size at the start.
-void set_allowed(const Model& model, const State& start, const IdaSettings& s, N_Vector allowed) {
+void set_allowed(const fem::Model& model, const State& start, const IdaSettings& s,
+                 N_Vector allowed) {
   const VectorXd unit = model.scales().cwiseInverse();
   const int n = model.n_dofs(), m = model.n_constraints();
   Eigen::Map<VectorXd> out(N_VGetArrayPointer(allowed), 2 * (n + m));

@@ -60,8 +60,8 @@ TEST(ClampedBeam, PartiallyIsFreeOfStress) {
       for (const double a : {0.02, 0.6}) {
         StaticSettings settings;
         settings.path = path;
-        const auto e = solve(std::make_unique<AncfBeam>(1, 0.1, 4), kSection, {term},
-                             partial_clamp(), testing::constant_heat(a), settings);
+        auto e = solve(std::make_unique<AncfBeam>(1, 0.1, 4), kSection, {term}, partial_clamp(),
+                       testing::constant_heat(a), settings);
         EXPECT_TRUE(e.result.completed);
         EXPECT_LT(e.model.energies(e.x).strain, 1e-20 * e.held);
         EXPECT_LT(testing::largest_strain(e.model, e.x.q, 1 + a), 1e-12 * a);
@@ -82,8 +82,8 @@ TEST(ClampedBeam, FullyIsTaperedOverABoundaryLayer) {
     std::vector<double> nodes;
     for (int i = 0; i < 60; ++i) nodes.push_back(length * i / 8);
     for (int i = 0; i <= 4; ++i) nodes.push_back(nodes[59] + (1 - nodes[59]) * (i + 1) / 5);
-    const auto e = solve(std::make_unique<AncfBeam>(nodes, h), kSection, {term}, full_clamp(),
-                         testing::constant_heat(a));
+    auto e = solve(std::make_unique<AncfBeam>(nodes, h), kSection, {term}, full_clamp(),
+                   testing::constant_heat(a));
     const MatrixXd q = rows_of_body(e.model, e.x.q);
     EXPECT_EQ(q(2, 1), 1);
     double sx = 0, sy = 0, sxx = 0, sxy = 0, n = 0;
@@ -115,8 +115,8 @@ TEST(HeldBar, PushesWithTheForceOfTheClosedForm) {
       for (const int n : {1, 3}) {
         const HoldPlace end = HoldPlace::at({0.25, 0});
         const Heat hot = testing::constant_heat(a, volume);
-        const auto e = solve(std::make_unique<AncfBeam>(0.25, 0.1, n), kSection, {term},
-                             {{kRoot, NodeVector::r, {0, 1}}, {end, NodeVector::r, {0, 1}}}, hot);
+        auto e = solve(std::make_unique<AncfBeam>(0.25, 0.1, n), kSection, {term},
+                       {{kRoot, NodeVector::r, {0, 1}}, {end, NodeVector::r, {0, 1}}}, hot);
         const double strain = 0.5 * (1 / (s * s) - 1),
                      force = std::pow(s, hot.volume_exponent() - 2) * 0.01 * 7e8 * strain;
         const VectorXd pull = e.model.joint_force(0, e.x);
@@ -180,7 +180,7 @@ TEST_P(HotPlate, GrowsWithoutStressWhereNothingHoldsIt) {
     held.push_back({across, NodeVector::r, {2}});
   }
   for (const auto volume : {ThermalVolume::grown, ThermalVolume::reference}) {
-    const auto e = solve(plate(), kPlate, terms(), held, testing::constant_heat(a, volume));
+    auto e = solve(plate(), kPlate, terms(), held, testing::constant_heat(a, volume));
     EXPECT_GT(e.held, 1);
     EXPECT_LE(e.model.energies(e.x).strain, 1e-20 * e.held);
     const Element& element = *e.model.bodies()[0].element;
@@ -200,7 +200,7 @@ TEST_P(HotPlate, HeldAtAllEdgesIsPressedFromAllSides) {
     held.push_back({{edge}, along_m ? NodeVector::r_m : NodeVector::r_n, all_components()});
   }
   const Heat hot = testing::constant_heat(a);
-  const auto e = solve(plate(), kPlate, terms(), held, hot);
+  auto e = solve(plate(), kPlate, terms(), held, hot);
   const double stress = 1e9 / 0.7 * 0.5 * (1 / (s * s) - 1);
   const VectorXd force = e.model.joint_force(0, e.x);
   for (const auto& [edge, width, component] :
