@@ -248,10 +248,10 @@ class Beam final : public ElasticTerm {
     return Vec3(E, E, E / (2 * (1 + nu))).asDiagonal();
   }
 
-  double energy_at(int e, const LocalRows& q) const override {
+  double energy_at(int e, const Local& x) const override {
     const Data& d = elements_[static_cast<size_t>(e)];
     double p[kVectors * kDim], g[kPairs], s[kPairs], energy = 0;
-    evaluate(d, q.data(), p, g, s);
+    evaluate(d, x.q.data(), p, g, s);
     for (size_t k = 0; k < kPairs; ++k) energy += 0.5 * s[k] * (g[k] - d.reference[k]);
     return energy;
   }

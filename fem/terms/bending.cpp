@@ -123,11 +123,11 @@ class Bending final : public ElasticTerm {
  private:
   using Table = bending::Table<double>;
 
-  double energy_at(int e, const LocalRows& q) const override {
+  double energy_at(int e, const Local& x) const override {
     double out = 0;
     dispatch([&]<bool kMixed>() {
-      out =
-          bending::energy<kMixed>(*tables_[static_cast<size_t>(e)], places_, stiffness_, q.data());
+      out = bending::energy<kMixed>(*tables_[static_cast<size_t>(e)], places_, stiffness_,
+                                    x.q.data());
     });
     return out;
   }

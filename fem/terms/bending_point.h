@@ -61,7 +61,8 @@ struct Hessian {
 template <class V>
 class Point {
  public:
-  Point(const Vec<V>* y, const Eigen::Matrix3d& stiffness, const V& weight)
+  // Inlined wherever it is called, as other code comes and goes around it: it rounds as it is.
+  [[gnu::always_inline]] Point(const Vec<V>* y, const Eigen::Matrix3d& stiffness, const V& weight)
       : r_m_(y[0]), r_n_(y[1]) {
     n_ = cross(r_m_, r_n_);
     square_inverse_ = 1.0 / dot(n_, n_);

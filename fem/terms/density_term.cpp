@@ -59,7 +59,7 @@ void ElasticTerm::add_mean_tangent(int e, const LocalStep& x, const Weights& w,
 Energies ElasticTerm::energies(int e, const Local& x) const {
   Energies out;
   if (!is_free(e)) {
-    out.strain = energy_at(e, x.q);
+    out.strain = energy_at(e, x);
     return out;
   }
   for (size_t i = 0; i < free_.size(); ++i)
@@ -194,9 +194,9 @@ class Elastic final : public ElasticTerm {
     return out;
   }
 
-  double energy_at(int e, const LocalRows& q) const override {
+  double energy_at(int e, const Local& x) const override {
     double out = 0;
-    for (size_t i = 0; i < parts().size(); ++i) out += stressed(i, e, q, false).energy;
+    for (size_t i = 0; i < parts().size(); ++i) out += stressed(i, e, x.q, false).energy;
     return out;
   }
 

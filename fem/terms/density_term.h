@@ -34,7 +34,7 @@ class ElasticTerm : public StrainTerm {
   /// @throws Error (input) for free lines and a density that does not know them.
   void prepare_parts(const Element& element, const Factors& factors);
   /// Strain energy of an element without free lines [J].
-  virtual double energy_at(int e, const LocalRows& q) const = 0;
+  virtual double energy_at(int e, const Local& x) const = 0;
 
   const std::vector<ElasticPart>& parts() const { return parts_; }
   const Element& element() const { return *element_; }  ///< of the last prepare_parts()

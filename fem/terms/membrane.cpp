@@ -154,16 +154,15 @@ class Membrane final : public ElasticTerm {
     std::vector<Lanes> reference;  // g°
   };
 
-  double energy_at(int e, const LocalRows& q) const override {
+  double energy_at(int e, const Local& x) const override {
     double energy = 0;
     const BatchData& batch = batches_[static_cast<size_t>(e / kLanes)];
-    evaluate(e, {q, {}, {}},
-             [&]<int kKinds, int kDim, Coupling>(const double* s, const double* p, auto) {
-               double g[kMaxPairs];
-               gram::products<kKinds, kDim>(p, g);
-               for (size_t k = 0; k < batch.reference.size(); ++k)
-                 energy += 0.5 * s[k] * (g[k] - batch.reference[k][e % kLanes]);
-             });
+    evaluate(e, x, [&]<int kKinds, int kDim, Coupling>(const double* s, const double* p, auto) {
+      double g[kMaxPairs];
+      gram::products<kKinds, kDim>(p, g);
+      for (size_t k = 0; k < batch.reference.size(); ++k)
+        energy += 0.5 * s[k] * (g[k] - batch.reference[k][e % kLanes]);
+    });
     return energy;
   }
 
