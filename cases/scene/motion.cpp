@@ -135,7 +135,6 @@ void read_position(const Table& t, const Scene& scene, Hub& hub) {
   if (t.is_list_of_strings(kHubPosition)) {
     refuse_spin_up(t, kHubPosition, scene);
     const std::vector<std::string> names = t.choices(kHubPosition, names_of(scene.drives));
-    if (names.size() != 2) t.fail(kHubPosition, "two drives, of x and of y");
     for (size_t c = 0; c < 2; ++c) {
       hub.path[c].drive = names[c];
       hub.position[static_cast<int>(c)] = scene.motion_of(hub.path[c])(0).value;
