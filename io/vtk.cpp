@@ -37,16 +37,18 @@ void add_fields(vtkFieldData* data, std::span<const Field> fields, int n, const 
                              std::to_string(n) + " times " + std::to_string(c));
     vtkNew<vtkFloatArray> array;
     array->SetName(field.name.c_str());
-    array->SetNumberOfComponents(c == 2 ? 3 : c);
+    const int width = c == 2 ? 3 : c;
+    array->SetNumberOfComponents(width);
     array->SetNumberOfTuples(n);
     for (int k = 0; k < n; ++k) {
-      if (c == 2) array->SetComponent(place(k), 2, 0);
+      float* tuple = array->GetPointer(static_cast<vtkIdType>(place(k)) * width);
+      if (c == 2) tuple[2] = 0;
       for (int i = 0; i < c; ++i) {
         const double value = field.values[static_cast<size_t>(k) * c + i];
         if (!std::isfinite(value))
           throw Error::numerical(path + ": field '" + field.name + "' is not finite at entry " +
                                  std::to_string(k));
-        array->SetComponent(place(k), i, value);
+        tuple[i] = static_cast<float>(value);
       }
     }
     data->AddArray(array);
