@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <string>
@@ -112,6 +113,10 @@ class Element {
   virtual std::vector<NodeVectors> edge(const std::string& name) const = 0;
   /// All nodes; none where an element has no nodes in material coordinates.
   virtual std::vector<NodeVectors> nodes() const { return {}; }
+
+  /// Material coordinates at which elements meet, along m and along n: elements are numbered along
+  /// n first. None where there are none.
+  virtual std::array<std::vector<double>, 2> lines() const { return {}; }
 
   /// Puts the material lines where they are at time t.
   virtual void move_to(double t) = 0;

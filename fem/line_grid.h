@@ -29,6 +29,12 @@ class LineGrid : public Element {
   virtual int n_n() const = 0;  ///< elements along n
 
   int n_m() const { return static_cast<int>(lines_m().size()) - 1; }
+  std::array<std::vector<double>, 2> lines() const final {
+    std::array<std::vector<double>, 2> out;
+    for (int i = 0; i <= n_m(); ++i) out[0].push_back(line_m(i).value);
+    for (int j = 0; j <= n_n(); ++j) out[1].push_back(line_n(j).value);
+    return out;
+  }
   int n_nodes() const { return (n_m() + 1) * (n_n() + 1); }
   int node(int i, int j) const { return i * (n_n() + 1) + j; }
   int element(int i, int j) const { return i * n_n() + j; }

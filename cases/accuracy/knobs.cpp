@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "cases/scene/elements/row.h"
 #include "cases/scene/joints/row.h"
 #include "io/files.h"
 
@@ -38,12 +39,13 @@ std::string pair(int a, int b) {
 
 bool any_beams(const Scene& scene) {
   return std::any_of(scene.bodies.begin(), scene.bodies.end(),
-                     [](const Body& b) { return b.is_beam(); });
+                     [](const Body& b) { return b.place() == fem::TermPlace::beam; });
 }
 
 bool all_beams(const Scene& scene) {
-  return !scene.bodies.empty() && std::all_of(scene.bodies.begin(), scene.bodies.end(),
-                                              [](const Body& b) { return b.is_beam(); });
+  return !scene.bodies.empty() &&
+         std::all_of(scene.bodies.begin(), scene.bodies.end(),
+                     [](const Body& b) { return b.place() == fem::TermPlace::beam; });
 }
 
 /// A number of elements `factor` times as large; nothing where that is no whole number.
@@ -55,7 +57,7 @@ std::optional<int> times(int count, double factor) {
 
 /// A strip of one element across stays one on coarser meshes, a beam on all.
 std::optional<int> across(const Body& b, double factor) {
-  if (b.is_beam() || (b.elements[1] == 1 && factor < 1)) return 1;
+  if (!b.row->across || (b.elements[1] == 1 && factor < 1)) return 1;
   return times(b.elements[1], factor);
 }
 
@@ -80,10 +82,10 @@ std::vector<Level> mesh_levels(const Scene& scene, const io::CaseFile&) {
       whole = whole && m && n;
       if (!whole) break;
       level.name += (level.name.empty() ? "" : ", ") + to_text(*m) +
-                    (b.is_beam() ? " elements" : " x " + to_text(*n));
+                    (b.row->across ? " x " + to_text(*n) : " elements");
       if (factor == 1) continue;
       level.overrides.push_back(key(b.name, "elements") +
-                                (b.is_beam() ? to_text(*m) : pair(*m, *n)));
+                                (b.row->across ? pair(*m, *n) : to_text(*m)));
       if (!b.flow) continue;
       level.overrides.push_back(key(b.name, "flow.max_length") +
                                 to_text(b.flow->max_length * level.h));

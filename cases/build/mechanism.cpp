@@ -6,9 +6,8 @@
 #include "cases/build/heat.h"
 #include "cases/build/joints.h"
 #include "cases/build/twin.h"
+#include "cases/scene/elements/row.h"
 #include "cases/scene/joints/row.h"
-#include "fem/elements/ancf_beam.h"
-#include "fem/elements/ancf_plate.h"
 #include "fem/elements/rigid_body.h"
 #include "fem/loads.h"
 #include "fem/rigid.h"
@@ -67,34 +66,6 @@ fem::FrameDrive drive_of(const Scene& scene, const Hub& hub) {
   };
 }
 
-std::unique_ptr<fem::Element> beam_of(const Body& body, int count) {
-  if (body.arc == 0) return std::make_unique<fem::AncfBeam>(body.length, body.width, count);
-  return std::make_unique<fem::AncfBeam>(fem::even_nodes(body.length, count), body.width,
-                                         fem::arc_reference(body.length, body.arc, count));
-}
-
-std::unique_ptr<fem::Element> elements_of(const Body& body, double end,
-                                          const std::array<int, 2>& count) {
-  if (body.is_beam()) return beam_of(body, count[0]);
-  const double longest = body.longest(end);
-  std::vector<fem::MaterialLine> m, n;
-  for (const double at : body.start_lines(longest - body.length, count[0])) m.push_back({at, {}});
-  for (const BodyLine& line : body.lines) m[static_cast<size_t>(line.index)].free = line.free;
-  if (body.flow && body.flow->motion)
-    m[0].drive = [longest, length = body.flow->motion](double t) {
-      const fem::Motion x = length(t);
-      return fem::Motion{longest - x.value, -x.rate, -x.acceleration};
-    };
-  else if (body.flow)
-    m[0].drive = [longest, length = body.length, speed = body.flow->speed](double t) {
-      return fem::Motion{longest - length - speed * t, -speed, 0};
-    };
-  for (int j = 0; j <= count[1]; ++j) n.push_back({body.low() + body.width * j / count[1], {}});
-  const auto shapes =
-      body.shape == "h12" ? fem::AncfPlate::ShapeSet::h12 : fem::AncfPlate::ShapeSet::h16;
-  return std::make_unique<fem::AncfPlate>(body.dim(), shapes, std::move(m), std::move(n));
-}
-
 fem::FrameDrive at_rest(const Vec2& origin, double angle) {
   fem::FrameMotion still;
   still.origin = origin;
@@ -120,7 +91,7 @@ void add_body(const Scene& scene, const Body& body, const std::array<int, 2>& co
     terms.push_back(fem::make_point_mass(m.mass, m.material, gravity));
   for (const BodyLoad& load : scene.loads)
     if (load.body == body.name) terms.push_back(load.row->make(load));
-  model.add_body(body.name, elements_of(body, scene.time.end, count), section, std::move(terms));
+  model.add_body(body.name, body.row->make(body, scene.time.end, count), section, std::move(terms));
 }
 
 /// The rate at the start of a line that is driven through the material; 0 where it is not.
@@ -145,7 +116,7 @@ void add_frame(const Scene& scene, const Joint& joint, double finer, Mechanism& 
     out.model.add_joint(
         fem::make_weld(joint.name, joint.body, joint.edge, carrier.drive(), joint.mode));
   }
-  if (joint.edge == "free_end" || body.is_beam()) return;
+  if (joint.edge == "free_end" || !body.row->lines) return;
   constexpr double kNever = std::numeric_limits<double>::infinity();
   fem::Growth growth{joint.body, carrier, kNever, 0, joint.line, slide_of(scene, joint)};
   if (body.flow) {
@@ -200,7 +171,7 @@ void place_bodies(const Scene& scene, fem::MotionSettings& motion) {
     for (const RigidBody& b : scene.rigid_bodies)
       out.push_back({b.name, twin->twin().frame(b.name, x)});
     for (const Body& b : scene.bodies) {
-      const bool rides = !b.is_beam() &&
+      const bool rides = b.row->lines &&
                          std::any_of(scene.joints.begin(), scene.joints.end(), [&](const Joint& j) {
                            return j.body == b.name && j.holds_frame() && j.edge != "free_end";
                          });
@@ -224,7 +195,7 @@ void place_alone(const Scene& scene, fem::MotionSettings& motion) {
     };
     const auto hub = std::find_if(scene.joints.begin(), scene.joints.end(), holds);
     const bool rides = hub != scene.joints.end();
-    if (!body.is_beam()) continue;
+    if (body.row->lines) continue;
     const Pose pose = start_pose(scene, body);
     frames.push_back(
         {body.name, rides ? hub_drive(scene, *hub) : at_rest(pose.origin, pose.angle), pose.line});

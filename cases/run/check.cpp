@@ -7,6 +7,7 @@
 #include "cases/run/check_cost.h"
 #include "cases/run/run.h"
 #include "cases/scene/design/goal.h"
+#include "cases/scene/elements/row.h"
 #include "cases/scene/heat/heat.h"
 #include "cases/scene/joints/row.h"
 #include "cases/scene/read.h"
@@ -77,16 +78,15 @@ std::string load_words(const BodyLoad& load) {
 void describe_body(const Body& body, const Mechanism& mechanism, std::ostringstream& out) {
   const fem::Body& built = mechanism.model.body(body.name);
   const int n = built.n_dofs();
-  const std::string mesh = body.is_beam()
-                               ? ", " + std::to_string(body.elements[0])
-                               : " " + body.shape + ", " + std::to_string(body.elements[0]) +
-                                     " x " + std::to_string(body.elements[1]);
-  out << row(
-      "body " + body.name,
-      body.element + mesh + " elements, " + std::to_string(n) + " unknowns, about " +
-          millions(built.element->n_elements() * (force_operations(body, *built.element) +
-                                                  tangent_operations(body, *built.element))) +
-          " Mflop for a force and tangent");
+  const std::string mesh = body.row->across
+                               ? " " + body.shape + ", " + std::to_string(body.elements[0]) +
+                                     " x " + std::to_string(body.elements[1])
+                               : ", " + std::to_string(body.elements[0]);
+  const ElementOperations each = body.row->operations(body, *built.element);
+  out << row("body " + body.name,
+             body.row->name + mesh + " elements, " + std::to_string(n) + " unknowns, about " +
+                 millions(built.element->n_elements() * (each.force + each.tangent)) +
+                 " Mflop for a force and tangent");
   std::string terms;
   for (const std::string& t : body.terms) terms += (terms.empty() ? "" : ", ") + t;
   out << row("", "terms: " + terms);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "cases/scene/elements/row.h"
+
 namespace flexmorph::cases {
 namespace {
 
@@ -20,31 +22,13 @@ constexpr double kFreePoint = 1e4;
 // Of a rigid body, a joint row or a spring.
 constexpr double kRigid = 1e3;
 
-/// Gauss points of the bending; 0 where none is.
-double bending_points(const Body& body) {
+/// Gauss points of an element.
+double points_of(const Body& body) {
   const double n = body.number("bending_points");
-  return n * n;
+  return 49 + n * n;
 }
-double points_of(const Body& body) { return 49 + bending_points(body); }
 
 }  // namespace
-
-double force_operations(const Body& body, const fem::Element& element) {
-  const double n = element.n_shapes(), d = element.dim();
-  if (body.is_beam()) return 15 * 300;  // Gauss points
-  // Gram form: n_p pairs of vectors in four classes, products and sums for d directions.
-  const double pairs = 0.5 * n * (n + 1);
-  double out = 2 * n * n * d * (body.flow ? 3 : 1);  // inertia
-  out += 0.5 * pairs * pairs + 2 * pairs * d + 2 * n * n * d;
-  return out + bending_points(body) * (2 * n * d * (5 + 3) + 150);
-}
-
-double tangent_operations(const Body& body, const fem::Element& element) {
-  const double n = element.n_shapes(), d = element.dim();
-  if (body.is_beam()) return 15 * 4 * n * d * n * d;
-  const double pairs = 0.5 * n * (n + 1);
-  return n * d * (n * pairs + n * n * d) + 2 * bending_points(body) * n * d * n * d;
-}
 
 StepOperations step_operations(const Scene& scene, const Mechanism& mechanism) {
   StepOperations out;
@@ -54,13 +38,13 @@ StepOperations step_operations(const Scene& scene, const Mechanism& mechanism) {
     const fem::Element& element = *built.element;
     const double n = element.n_elements(),
                  tangents = times(body.flow ? kTangentsOfFlow : kTangents);
-    const double points = points_of(body);
-    out.forces += times(kForces) * n *
-                  (body.has_free_lines() ? kFreePoint * points : force_operations(body, element));
-    out.tangents += tangents * n * tangent_operations(body, element);
+    const ElementOperations each = body.row->operations(body, element);
+    out.forces +=
+        times(kForces) * n * (body.has_free_lines() ? kFreePoint * points_of(body) : each.force);
+    out.tangents += tangents * n * each.tangent;
     // Nodes in order along the shorter side: a band of one row of them and a bit.
-    const double vectors = element.n_shapes() / (body.is_beam() ? 2.0 : 4.0);
-    const double across = body.is_beam() ? 1 : std::min(body.elements[0], body.elements[1]) + 2;
+    const double vectors = element.n_shapes() / (body.row->across ? 4.0 : 2.0);
+    const double across = body.row->across ? std::min(body.elements[0], body.elements[1]) + 2 : 1;
     const double band = across * vectors * element.dim();
     out.solver += built.n_dofs() * band * (tangents * kFactor * band + 4 * times(kSolutions));
     if (body.flow) out.flow += kRefresh + body.elements[1] * kPower;

@@ -15,8 +15,4 @@ struct StepOperations {
 /// valgrind in a portable build (README, "Measured"). Not of `minimal_coordinates`.
 StepOperations step_operations(const Scene& scene, const Mechanism& mechanism);
 
-/// Operations of one force and one tangent of an element of a body.
-double force_operations(const Body& body, const fem::Element& element);
-double tangent_operations(const Body& body, const fem::Element& element);
-
 }  // namespace flexmorph::cases

@@ -5,6 +5,7 @@
 #include "cases/run/measures.h"
 #include "cases/run/mechanism_columns.h"
 #include "cases/run/quantities.h"
+#include "cases/scene/elements/row.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
@@ -188,7 +189,7 @@ class Recorder {
         frame.plates.push_back(
             {scene_.designs[d].grid.ny, std::move(s.mesh.points), std::move(s.density)});
       } else {
-        Surface s = deformed_surface(step.model.body(body.name), step.x, poses_[i]);
+        Surface s = deformed_surface(*body.row, step.model.body(body.name), step.x, poses_[i]);
         const std::vector<double> full(s.mesh.quads.size(), 1.0);
         frame.plates.push_back({s.across, std::move(s.mesh.points), full});
       }

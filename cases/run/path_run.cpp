@@ -2,6 +2,7 @@
 
 #include "cases/run/measures.h"
 #include "cases/run/motion_run.h"
+#include "cases/scene/elements/row.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -50,8 +51,9 @@ PathRecord run_path(const Scene& scene, RunFolder& folder, const std::function<b
   std::vector<Vec3> starts;  // of the observed points
   for (const Observe& o : scene.observed) {
     const Body& body = scene.body(o.body);
-    starts.push_back(body.is_beam() ? fem::point_position(model.body(o.body), x, o.point)
-                                    : start_pose(scene, body).place(o.point));
+    // Of a body with lines it may still be in the hub; of one without, it may be on an arc.
+    starts.push_back(body.row->lines ? start_pose(scene, body).place(o.point)
+                                     : fem::point_position(model.body(o.body), x, o.point));
   }
   const auto observe = [&](const fem::StaticStep& step) {
     const fem::Energies energies = model.energies(step.x);

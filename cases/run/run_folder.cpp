@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "cases/scene/design/goal.h"
+#include "cases/scene/elements/row.h"
 #include "geometry/cpu_time.h"
 #include "io/files.h"
 
@@ -315,7 +316,7 @@ void RunFolder::write_part(const std::string& body, const io::QuadMesh& mesh,
 
 void RunFolder::add_surface_frame(const fem::Body& body, const fem::State& x, const Pose& pose,
                                   double time, int part, double heating) {
-  const Surface surface = deformed_surface(body, x, pose, heating);
+  const Surface surface = deformed_surface(*scene_.body(body.name).row, body, x, pose, heating);
   const io::Field points[] = {{"displacement", surface.displacement, surface.mesh.dimension}};
   std::vector<io::Field> cells = {{"strain_energy", surface.energy}};
   if (!surface.strain.empty()) cells.push_back({"elastic_strain", surface.strain, 3});

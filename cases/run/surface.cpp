@@ -2,31 +2,18 @@
 
 #include <cmath>
 
+#include "cases/scene/elements/row.h"
 #include "fem/dynamics/carrier.h"
-#include "fem/elements/ancf_beam.h"
 
 namespace flexmorph::cases {
 namespace {
 
-constexpr int kFine = 4;       // quads along an edge of an element
-constexpr int kFineAlong = 8;  // of a beam, whose elements are few
-
-/// Where the elements of a body meet, in material coordinates, and into how many quads they are cut
-/// in both directions. Elements are numbered across first.
+/// Where the elements of a body meet, in material coordinates. Elements are numbered across first.
 struct Cuts {
-  explicit Cuts(const fem::Body& body) {
-    if (const auto* beam = dynamic_cast<const fem::AncfBeam*>(body.element.get())) {
-      for (const fem::NodeVectors& node : beam->nodes()) m.push_back(node.material.x());
-      n = {-0.5 * beam->height(), 0.5 * beam->height()};
-      fine_m = kFineAlong;
-      return;
-    }
-    const fem::LineGrid& grid = fem::grid_of(body);
-    for (int i = 0; i <= grid.n_m(); ++i) m.push_back(grid.line_m(i).value);
-    for (int j = 0; j <= grid.n_n(); ++j) n.push_back(grid.line_n(j).value);
-  }
+  explicit Cuts(const fem::Body& body) : Cuts(body.element->lines()) {}
+  explicit Cuts(std::array<std::vector<double>, 2> lines)
+      : m(std::move(lines[0])), n(std::move(lines[1])) {}
   std::vector<double> m, n;
-  int fine_m = kFine, fine_n = kFine;
 
   size_t element(size_t i, size_t j) const { return i * (n.size() - 1) + j; }
 };
@@ -84,14 +71,13 @@ void add_strain(const fem::Body& body, const fem::State& x, const Vec2& material
 
 }  // namespace
 
-Surface deformed_surface(const fem::Body& body, const fem::State& x, const Pose& pose,
-                         double heating) {
+Surface deformed_surface(const ElementRow& row, const fem::Body& body, const fem::State& x,
+                         const Pose& pose, double heating) {
   const Cuts cuts(body);
-  const std::vector<double> along = fine_lines(cuts.m, cuts.fine_m),
-                            across = fine_lines(cuts.n, cuts.fine_n);
+  const auto [fine_m, fine_n] = row.drawn;
+  const std::vector<double> along = fine_lines(cuts.m, fine_m), across = fine_lines(cuts.n, fine_n);
   const std::vector<double> energy = energies(body, cuts, x);
   const int rows = static_cast<int>(across.size());
-  const bool is_beam = dynamic_cast<const fem::AncfBeam*>(body.element.get()) != nullptr;
   const double stretch =
       body.heat ? 1 + body.heat->expansion * heating * body.heat->temperature(x.t).value : 1;
   Surface out;
@@ -109,11 +95,11 @@ Surface deformed_surface(const fem::Body& body, const fem::State& x, const Pose&
       if (i + 1 == along.size() || j + 1 == across.size()) continue;
       const int a = static_cast<int>(i) * rows + static_cast<int>(j);
       out.mesh.quads.push_back({a, a + rows, a + rows + 1, a + 1});
-      if (is_beam)
+      if (row.draws_strain)
         add_strain(body, x, 0.5 * Vec2(along[i] + along[i + 1], across[j] + across[j + 1]), stretch,
                    out.strain);
-      out.energy.push_back(energy[cuts.element(i / static_cast<size_t>(cuts.fine_m),
-                                               j / static_cast<size_t>(cuts.fine_n))]);
+      out.energy.push_back(
+          energy[cuts.element(i / static_cast<size_t>(fine_m), j / static_cast<size_t>(fine_n))]);
     }
   return out;
 }

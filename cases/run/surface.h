@@ -5,8 +5,7 @@
 
 namespace flexmorph::cases {
 
-/// The deformed mid-surface of a body, fine enough to look curved: 4 x 4 quads per
-/// element, 8 x 4 of a beam.
+/// The deformed mid-surface of a body, fine enough to look curved.
 struct Surface {
   io::QuadMesh mesh;                 ///< dimension: that of the body; points across, then along
   int across = 0;                    ///< quads across
@@ -17,12 +16,13 @@ struct Surface {
                                ///< middle: of F/s, s = 1 + α ΔT; none of plates
 };
 
+/// @param row   how finely its elements are drawn, and whether with their strain
 /// @param pose  the displacement is counted from the undeformed body as it lies at the start;
 ///              material that is not out of its hub then lies behind it
 /// @param x     the model of the body is prepared for it
 /// @param heating  what its temperature is multiplied by, in a [static] analysis
-Surface deformed_surface(const fem::Body& body, const fem::State& x, const Pose& pose,
-                         double heating = 1);
+Surface deformed_surface(const ElementRow& row, const fem::Body& body, const fem::State& x,
+                         const Pose& pose, double heating = 1);
 
 /// A deformed body in the plane, cell by cell of its design; what is still in the hub is left out.
 /// Points and quads across, then along, as in a Surface.

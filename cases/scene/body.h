@@ -49,15 +49,17 @@ struct BodyHeat {
   bool force = false;  ///< the thermal force Q_tk acts
 };
 
+struct ElementRow;  // elements/row.h
+
 /// A plate or a beam. Material coordinates: X from the root to the free end; Y across,
 /// -width/2..width/2 in the plane and 0..width in space.
 struct Body {
   std::string name;
-  std::string element;             ///< row of the table of elements
-  std::string shape;               ///< shape set: "h16", "h12"
-  std::string space;               ///< "plane" or "space": two or three components
-  std::vector<std::string> terms;  ///< rows of the table of terms
-  double length = 0;               ///< at the start [m]
+  const ElementRow* row = nullptr;  ///< of the table of elements
+  std::string shape;                ///< shape set: "h16", "h12"
+  std::string space;                ///< "plane" or "space": two or three components
+  std::vector<std::string> terms;   ///< rows of the table of terms
+  double length = 0;                ///< at the start [m]
   /// Across the axis, and across the surface [m]. Of a beam (in the case: `height` and `width`): in
   /// the plane of the motion, and across it.
   double width = 0, thickness = 0;
@@ -73,7 +75,6 @@ struct Body {
   double arc = 0;  ///< angle that the axis of an undeformed beam turns by, an arc of a circle [rad]
   std::optional<BodyHeat> heat;  ///< absent: cold
 
-  bool is_beam() const { return element == "ancf_beam"; }
   double length_at(double time) const;
   fem::Motion length_motion(double time) const;
   double longest(double end) const;   ///< in [0, end], the time of the run
@@ -81,11 +82,7 @@ struct Body {
   bool in_space() const { return space == "space"; }
   int dim() const { return in_space() ? 3 : 2; }
   double low() const { return in_space() ? 0 : -0.5 * width; }  ///< where Y begins [m]
-  fem::TermPlace place() const {
-    return is_beam()    ? fem::TermPlace::beam
-           : in_space() ? fem::TermPlace::space
-                        : fem::TermPlace::plane;
-  }
+  fem::TermPlace place() const;                                 ///< of its terms
   /// Has it a term of which that is so?
   template <class Condition>
   bool has_term(const Condition& condition) const {

@@ -1,6 +1,6 @@
 #include "cases/scene/body_keys.h"
 
-#include "cases/scene/scene.h"
+#include "cases/scene/elements/row.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -25,10 +25,15 @@ namespace body_keys {
 const io::Key& kBodyName = io::key("body", "name")
                                .text("the name of a body")
                                .says("What joints, loads and columns of tables call it.");
-const io::Key& kElement =
-    io::key("body", "element")
-        .word("an element", element_names)
-        .says("A plate, a plate out of which material flows (`ale_ancf_plate`), or a beam.");
+const io::Key& kElement = io::key("body", "element")
+                              .word("an element",
+                                    [] {
+                                      io::Glossary rows;
+                                      for (const ElementRow* row : element_rows())
+                                        rows.emplace_back(row->name, row->sentence);
+                                      return rows;
+                                    })
+                              .says("What it is made of.");
 const io::Key& kLength = io::key("body", "length")
                              .number(positive("a length", "m"))
                              .otherwise_as("where `body.flow.length` is a drive: as that starts")
@@ -70,6 +75,17 @@ const io::Key& kMinLength =
         .says("A shorter element at the root is merged with its neighbour.");
 
 }  // namespace flow_keys
+
+const ElementRow* read_element(const io::Table& t) {
+  const std::string name = t.choice(body_keys::kElement);
+  return *std::find_if(element_rows().begin(), element_rows().end(),
+                       [&](const ElementRow* row) { return row->name == name; });
+}
+
+void refuse_flow(const io::Table& t) {
+  if (t.has(body_keys::kFlow))
+    t.fail(body_keys::kFlow, "material flows through \"ale_ancf_plate\" only");
+}
 
 void read_material(const io::Table& t, bool has_density, Body& body) {
   body.density = t.number(kDensity, has_density ? std::nullopt : std::optional<double>(1));

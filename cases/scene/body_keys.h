@@ -6,6 +6,7 @@
 namespace flexmorph::cases {
 
 struct Body;
+struct ElementRow;
 
 namespace body_keys {
 extern const io::Key &kBodyName, &kElement, &kTerms, &kLength, &kThickness, &kLine, &kFlow;
@@ -17,6 +18,11 @@ extern const io::Key &kSpeed, &kLength, &kMaxLength, &kMinLength;
 
 /// Declares the numbers that terms read: rows of another table, which is not there before main().
 void declare_term_keys();
+
+/// The row that `element` names.
+const ElementRow* read_element(const io::Table& t);
+/// Of bodies out of which no material flows.
+void refuse_flow(const io::Table& t);
 
 /// Density, Young's modulus, Poisson's ratio.
 /// @param has_density  without it the density does not matter: nothing moves and nothing weighs

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "cases/scene/elements/row.h"
 #include "cases/scene/joints/reading.h"
 #include "cases/scene/tables.h"
 
@@ -116,7 +117,7 @@ BodyLoad read_load(const Table& t, const Scene& scene) {
   const Body& body = scene.body(load.body);
   if (row.at_point) load.point = read_point(t, kPoint, body, scene.time.end);
   if (row.at_edge) load.edge = read_edge(t, kEdge, body, edge_names());
-  if (body.is_beam() && !row.at_point) t.fail(kType, "loads on a beam act at points");
+  if (!body.row->spreads && !row.at_point) t.fail(kType, "loads on a beam act at points");
   if (row.follows && !body.in_space()) t.fail(kType, "this load acts on a plate in space");
   if (row.follows && scene.time.integrator == "energy_momentum")
     t.fail(kType, "a load that follows the plate needs integrator = \"generalized_alpha\"");

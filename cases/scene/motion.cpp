@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "cases/scene/body_keys.h"
+#include "cases/scene/elements/row.h"
 #include "cases/scene/heat/heat.h"
 #include "cases/scene/read.h"
 #include "cases/scene/tables.h"
@@ -165,24 +166,6 @@ Hub read_hub(const Table& t, const Scene& scene) {
   return hub;
 }
 
-const io::Key& kShape =
-    io::key("body", "shape")
-        .word("a shape set", plate_shapes)
-        .otherwise("h16")
-        .when("plates")
-        .says("Shape functions; `h12` leaves out the mixed slopes, and is too stiff in twist.");
-const io::Key& kSpace = io::key("body", "space")
-                            .word("a space", {"plane", "space"})
-                            .otherwise("plane")
-                            .says("Positions have two components, or three; beams: `plane`.");
-const io::Key& kWidth = io::key("body", "width")
-                            .number(positive("a width", "m"))
-                            .when("plates")
-                            .says("Across the length, in its surface.");
-const io::Key& kElements = io::key("body", "elements")
-                               .integers("a number of elements", 1, kMostElements, 2, 2)
-                               .when("plates")
-                               .says("Elements along the length at the start, and across.");
 const io::Key& kBodyPosition =
     io::key("body", "position")
         .numbers(any_number("a position", "m"), 2, 2)
@@ -196,62 +179,12 @@ const io::Key& kBodyAngle = io::key("body", "angle")
 const io::Key& kHeat =
     io::key("body", "heat").table().otherwise_as("the body is cold").says("Its temperature.");
 
-Flow read_flow(const Table& t, const Scene& scene) {
-  Flow flow;
-  if (t.has(flow_keys::kLength)) {
-    if (t.has(flow_keys::kSpeed))
-      t.fail(flow_keys::kSpeed, "material flows at a `speed`, or as the drive `length` says");
-    flow.length.drive = t.choice(flow_keys::kLength, names_of(scene.drives));
-  } else {
-    flow.speed = t.number(flow_keys::kSpeed);
-  }
-  flow.max_length = t.number(flow_keys::kMaxLength);
-  flow.min_length = t.number(flow_keys::kMinLength, 0.3 * flow.max_length);
-  return flow;
-}
-
-void read_plate(const Table& t, const Scene& scene, bool has_density, Body& body) {
-  body.shape = t.choice(kShape);
-  body.space = t.choice(kSpace);
-  if (!scene.bodies.empty() && scene.bodies.front().space != body.space)
-    t.fail(kSpace, "all bodies of a scene live in the plane, or all in space");
-  if (scene.is_mechanism() && body.in_space())
-    t.fail(kSpace, "rigid bodies live in the plane: in their scenes plates do, too");
-  read_terms(t, scene, body);
-  // A drive of the length says how it starts, too.
-  const bool driven = t.has(kFlow) && t.table(kFlow).has(flow_keys::kLength);
-  body.length = t.number(kLength, driven ? std::optional<double>(0) : std::nullopt);
-  body.width = t.number(kWidth);
-  body.thickness = t.number(kThickness);
-  read_material(t, has_density, body);
-  const std::vector<int> elements = t.integers(kElements);
-  body.elements = {elements[0], elements[1]};
-  if (1.0 * elements[0] * elements[1] > kMostElements)
-    t.fail(kElements, "at most " + to_text(kMostElements) + " elements");
-
-  const bool flows = body.element == "ale_ancf_plate";
-  if (flows) {
-    body.flow = read_flow(t.table(kFlow), scene);
-  } else if (t.has(kFlow)) {
-    t.fail(kFlow, "material flows through \"ale_ancf_plate\" only");
-  }
-  if (flows && scene.statics) t.fail(kElement, "in a [static] analysis no material flows");
-  body.lines = read_lines(t, body);
-  for (const std::string& term : body.terms)
-    if (body.has_free_lines() && !fem::term_row(term).free_lines)
-      t.fail(kTerms, "\"" + term + "\" does not know free material lines ([[body.line]])");
-}
-
 Body read_body(const Table& t, const Scene& scene, bool has_gravity) {
   Body body;
   body.name = read_name(t, kBodyName, scene);
-  body.element = t.choice(kElement);
+  body.row = read_element(t);
   // Nothing at rest asks for the density but weight.
-  const bool has_density = !scene.statics || has_gravity;
-  if (body.is_beam())
-    read_beam(t, scene, has_density, body);
-  else
-    read_plate(t, scene, has_density, body);
+  body.row->read(t, scene, !scene.statics || has_gravity, body);
   if (t.has(kBodyPosition)) {
     const auto at = t.numbers(kBodyPosition);
     body.position = Vec2(at[0], at[1]);

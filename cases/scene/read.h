@@ -39,10 +39,6 @@ void read_joints(const io::Table& root, Scene& scene);
 /// [[observe]].
 void read_observed(const io::Table& root, Scene& scene);
 
-/// The keys of a beam's [[body]] that follow `element`, but for its place.
-/// @param has_density  without it the density does not matter: nothing moves and nothing weighs
-void read_beam(const io::Table& t, const Scene& scene, bool has_density, Body& body);
-
 /// The list of terms of a [[body]], whose element and space are read, and the numbers they read.
 void read_terms(const io::Table& t, const Scene& scene, Body& body);
 

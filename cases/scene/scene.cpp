@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "cases/scene/elements/row.h"
 #include "cases/scene/read.h"
 #include "cases/scene/tables.h"
 
@@ -114,6 +115,8 @@ bool Expectation::holds(double found) const {
          (!at_least || found >= *at_least) && (!at_most || found <= *at_most);
 }
 
+fem::TermPlace Body::place() const { return in_space() ? fem::TermPlace::space : row->in_plane; }
+
 double Body::length_at(double time) const {
   if (!flow) return length;
   return flow->motion ? flow->motion(time).value : length + flow->speed * time;
@@ -149,16 +152,6 @@ const Body& Scene::body(const std::string& body_name) const {
   for (const Body& each : bodies)
     if (each.name == body_name) return each;
   throw Error::input("there is no body '" + body_name + "' in this scene");
-}
-
-const std::vector<std::string>& element_names() {
-  static const std::vector<std::string> kNames{"ancf_plate", "ale_ancf_plate", "ancf_beam"};
-  return kNames;
-}
-
-const std::vector<std::string>& plate_shapes() {
-  static const std::vector<std::string> kNames{"h16", "h12"};
-  return kNames;
 }
 
 std::string Verify::words() const {

@@ -62,10 +62,6 @@ struct Scene {
   bool has_heat() const;
 };
 
-/// What a body may name: rows of the tables of elements and of shape sets. Terms: fem/terms.h.
-const std::vector<std::string>& element_names();
-const std::vector<std::string>& plate_shapes();
-
 /// Fills the drives that follow from the trajectory of a scene read as far as its joints: a job for
 /// those who know mechanisms (build/trajectory.h); here it is only asked.
 using Follow = std::function<void(Scene&)>;

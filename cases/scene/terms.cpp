@@ -1,6 +1,7 @@
 #include <map>
 
 #include "cases/scene/body_keys.h"
+#include "cases/scene/elements/row.h"
 #include "cases/scene/read.h"
 
 /// The terms of a body, and the numbers that they take from it.
@@ -52,8 +53,7 @@ void declare_term_keys() { term_keys(); }
 
 void read_terms(const io::Table& t, const Scene& scene, Body& body) {
   const Key& key = body_keys::kTerms;
-  body.terms = t.choices(body.is_beam() ? key.called("a term of a beam") : key,
-                         fem::term_names(body.place()));
+  body.terms = t.choices(key.called(body.row->term), fem::term_names(body.place()));
   if (const std::string why = fem::refusal_of_terms(body.place(), body.terms, !scene.statics);
       !why.empty())
     t.fail(key, why);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cases/scene/elements/row.h"
 #include "cases/scene/joints/row.h"
 #include "cases/stability/judge.h"
 #include "cases/stability/overrides.h"
@@ -170,7 +171,7 @@ Rows long_runs(const Scene& scene) {
     row.demand = Demand::runs;
     for (size_t i = 0; i < scene.bodies.size(); ++i)
       row.overrides.push_back(
-          entry_text("body", i, "elements", scene.bodies[i].is_beam() ? "1" : "[1, 1]"));
+          entry_text("body", i, "elements", scene.bodies[i].row->across ? "[1, 1]" : "1"));
     row.overrides.insert(row.overrides.end(),
                          {scheme, "time.step=" + to_text(step), "time.end=" + to_text(1e5 * step)});
   };

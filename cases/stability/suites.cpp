@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "cases/scene/elements/row.h"
 #include "cases/scene/joints/row.h"
 #include "cases/stability/overrides.h"
 #include "cases/study/study.h"
@@ -17,8 +18,6 @@ using Rows = std::vector<Perturbation>;
 
 constexpr int kShortSteps = 40;  // of a row that is about nothing else
 
-const char* thickness_of(const Body& body) { return body.is_beam() ? "height" : "thickness"; }
-
 Rows stiffness(const Scene& scene) {
   if (scene.domain || scene.bodies.empty()) return {};
   Rows out;
@@ -28,7 +27,7 @@ Rows stiffness(const Scene& scene) {
     for (size_t i = 0; i < scene.bodies.size(); ++i) {
       if (modulus > 0) row.overrides.push_back(entry("body", i, "youngs_modulus", modulus));
       if (thickness > 0)
-        row.overrides.push_back(entry("body", i, thickness_of(scene.bodies[i]), thickness));
+        row.overrides.push_back(entry("body", i, scene.bodies[i].row->thinnest, thickness));
       if (density > 0 && !scene.statics)
         row.overrides.push_back(entry("body", i, "density", density));
     }
@@ -55,7 +54,7 @@ Rows boundary(const Scene& scene) {
     for (size_t i = 0; i < scene.bodies.size(); ++i) {
       const Body& body = scene.bodies[i];
       const double element = body.length / body.elements[0];
-      if (body.is_beam() || body.elements[0] < 2) continue;
+      if (!body.row->lines || body.elements[0] < 2) continue;
       if (body.flow && body.flow->length.drive.empty()) {
         row.overrides.push_back(entry("body", i, "flow.speed", -element * (1 - fraction) / end));
         row.overrides.push_back(entry("body", i, "flow.min_length", 0.5 * fraction * element));

@@ -66,6 +66,10 @@ class AncfBeam final : public Element {
                 ShapeTable& out) const override;
   int locate(const Vec2& material, Tabulate what, ShapeTable& out) const override;
 
+  std::array<std::vector<double>, 2> lines() const override {
+    return {x_, {-0.5 * height_, 0.5 * height_}};
+  }
+
   double height() const { return height_; }
   bool straight() const { return straight_; }
 

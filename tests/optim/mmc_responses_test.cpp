@@ -11,6 +11,10 @@
 #include "optim/mmc/goal.h"
 #include "tests/optim/mmc_small.h"
 
+namespace flexmorph::mmc {
+extern const ResponseRow kFirstMoment;  // tests/examples/response.cpp
+}
+
 namespace flexmorph::mmc::test {
 namespace {
 
@@ -70,6 +74,7 @@ void each_value(MmcProblem& problem, const optim::Response& at, const Use& use) 
 std::vector<const ResponseRow*> all_rows() {
   std::vector<const ResponseRow*> rows(responses().begin(), responses().end());
   rows.push_back(&kAxes);
+  rows.push_back(&kFirstMoment);
   return rows;
 }
 

@@ -1,7 +1,8 @@
 #include <cmath>
 
-#include "cases/scene/design/keys.h"
 #include "cases/scene/design/goal.h"
+#include "cases/scene/design/keys.h"
+#include "cases/scene/elements/row.h"
 #include "cases/scene/read.h"
 #include "io/exports.h"
 #include "io/files.h"
@@ -284,7 +285,7 @@ BodyDesign read_design(const Table& t, const Scene& scene) {
   if (scene.domain) return read_static_design(t, scene);
   BodyDesign design;
   design.body = t.choice(kBody, names_of(scene.bodies));
-  if (scene.body(design.body).is_beam()) t.fail(kBody, "plates are designed, beams are not");
+  if (!scene.body(design.body).row->designable) t.fail(kBody, "plates are designed, beams are not");
   if (const auto& heat = scene.body(design.body).heat; heat && heat->force)
     t.fail(kBody, "the thermal force is that of full material: body.heat.force = false");
   for (const BodyDesign& other : scene.designs)

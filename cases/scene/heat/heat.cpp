@@ -1,5 +1,6 @@
 #include "cases/scene/heat/heat.h"
 
+#include "cases/scene/elements/row.h"
 #include "cases/scene/heat/keys.h"
 #include "cases/scene/read.h"
 
@@ -32,7 +33,7 @@ void read_force(const Table& t, const Scene& scene, const Body& body, BodyHeat& 
                           : body.flow             ? "no thermal force where material flows"
                           : body.has_free_lines() ? "no thermal force with free material lines"
                                                   : "";
-  heat.force = t.boolean(kForce, why.empty() && body.is_beam());
+  heat.force = t.boolean(kForce, why.empty() && body.row->thermal_force);
   if (heat.force && !why.empty()) t.fail(kForce, why);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cases/scene/elements/row.h"
 #include "cases/scene/joints/row.h"
 #include "io/files.h"
 
@@ -187,7 +188,7 @@ void read_framed_edge(const Table& t, const Body& body, const std::vector<std::s
   joint.edge = read_edge(t, joint_keys::kEdge, body, names);
   joint.line = std::max(0, line_of(joint.edge, body));
   joint.name = joint.body + "." + joint.edge;
-  if (body.is_beam() && joint.line != 0)
+  if (!body.row->lines && joint.line != 0)
     t.fail(joint_keys::kEdge, "a beam is welded at one of its ends");
 }
 

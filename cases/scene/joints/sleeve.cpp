@@ -1,3 +1,4 @@
+#include "cases/scene/elements/row.h"
 #include "cases/scene/joints/reading.h"
 #include "cases/scene/joints/row.h"
 
@@ -18,7 +19,7 @@ const io::Key& kAngle = io::key("joint", "angle")
 void read(const io::Table& t, const Scene& scene, Joint& joint) {
   const Body& body = read_jointed_body(t, scene, joint);
   read_framed_edge(t, body, {"root"}, joint);
-  if (body.is_beam())
+  if (!body.row->lines)
     t.fail(joint_keys::kBody, "material slides through the sleeves of plates only");
   const double line = body.start_lines(0, body.elements[0])[static_cast<size_t>(joint.line)];
   joint.position = read_pair(t, kPosition, Vec2(line, 0));

@@ -1,20 +1,10 @@
+#include "cases/scene/elements/row.h"
 #include "cases/scene/joints/reading.h"
 #include "cases/scene/joints/row.h"
 
 namespace flexmorph::cases {
 namespace {
 
-/// How the end of a beam is welded: its section keeps its direction and is free to grow (partial);
-/// it keeps direction and size (edge); the axis is not stretched, either (full).
-const io::Choice<fem::WeldMode> kBeamMode(
-    io::key("joint", "mode")
-        .otherwise("partial")
-        .when("weld of a beam")
-        .says("Its section may grow, keeps its size, or the axis is not stretched, either."),
-    "the weld of a beam",
-    {{"partial", fem::WeldMode::partial},
-     {"edge", fem::WeldMode::edge},
-     {"full", fem::WeldMode::full}});
 const io::Key& kTo = io::key("joint", "to")
                          .name_of("a hub or rigid body")
                          .when("weld of a body")
@@ -48,7 +38,7 @@ void read_welded_edge(const io::Table& t, const Scene& scene, Joint& joint) {
   using Names = std::vector<std::string>;
   read_framed_edge(t, body, on_rigid ? Names{"root", "free_end"} : Names{"root"}, joint);
   if (on_rigid) read_carrier(t, joint);
-  joint.mode = body.is_beam() ? t.choice(kBeamMode) : read_mode(t, fem::WeldMode::edge);
+  joint.mode = body.row->read_weld(t);
   check_frame(t, scene, body, joint);
 }
 

@@ -1,10 +1,13 @@
 #include "cases/scene/body_keys.h"
+#include "cases/scene/elements/row.h"
 #include "cases/scene/read.h"
+#include "fem/elements/ancf_beam.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
 namespace {
 
+using namespace body_keys;
 using io::Key;
 using io::positive;
 using io::Table;
@@ -32,10 +35,18 @@ const Key& kArc = io::key("body", "arc")
                       .when("beams")
                       .says("Angle that its axis turns by without stress; 0: it is straight.");
 
-}  // namespace
-
+/// How the end of a beam is welded: its section keeps its direction and is free to grow (partial);
+/// it keeps direction and size (edge); the axis is not stretched, either (full).
+const io::Choice<fem::WeldMode> kBeamMode(
+    io::key("joint", "mode")
+        .otherwise("partial")
+        .when("weld of a beam")
+        .says("Its section may grow, keeps its size, or the axis is not stretched, either."),
+    "the weld of a beam",
+    {{"partial", fem::WeldMode::partial},
+     {"edge", fem::WeldMode::edge},
+     {"full", fem::WeldMode::full}});
 void read_beam(const Table& t, const Scene& scene, bool has_density, Body& body) {
-  using namespace body_keys;
   body.space = t.choice(kSpace);
   if (scene.in_space()) t.fail(kElement, "beams live in the plane, the bodies before in space");
   read_terms(t, scene, body);
@@ -50,8 +61,43 @@ void read_beam(const Table& t, const Scene& scene, bool has_density, Body& body)
   if (body.arc != 0 && 0.5 * body.width >= body.length / std::abs(body.arc))
     t.fail(kArc, "half the height stays below the radius of the arc, " +
                      io::to_text(body.length / std::abs(body.arc), 4) + " m");
-  if (t.has(kFlow)) t.fail(kFlow, "material flows through \"ale_ancf_plate\" only");
+  refuse_flow(t);
   if (t.has(kLine)) t.fail("the lines of a beam's elements stay where they are: no [[body.line]]");
 }
+
+fem::WeldMode read_weld(const Table& joint) { return joint.choice(kBeamMode); }
+
+std::unique_ptr<fem::Element> make_beam(const Body& body, double /*end*/,
+                                        const std::array<int, 2>& count) {
+  if (body.arc == 0) return std::make_unique<fem::AncfBeam>(body.length, body.width, count[0]);
+  return std::make_unique<fem::AncfBeam>(fem::even_nodes(body.length, count[0]), body.width,
+                                         fem::arc_reference(body.length, body.arc, count[0]));
+}
+
+/// By Gauss points.
+ElementOperations operations(const Body&, const fem::Element& element) {
+  const double points = 15, unknowns = element.n_shapes() * element.dim();
+  return {points * 300, points * 4 * unknowns * unknowns};
+}
+
+}  // namespace
+
+extern const ElementRow kAncfBeam;
+const ElementRow kAncfBeam = {.name = "ancf_beam",
+                              .sentence = "A beam in the plane.",
+                              .read = read_beam,
+                              .read_weld = read_weld,
+                              .make = make_beam,
+                              .operations = operations,
+                              .in_plane = fem::TermPlace::beam,
+                              .term = "a term of a beam",
+                              .thinnest = "height",
+                              .across = false,
+                              .lines = false,
+                              .spreads = false,
+                              .designable = false,
+                              .thermal_force = true,
+                              .drawn = {8, 4},
+                              .draws_strain = true};
 
 }  // namespace flexmorph::cases

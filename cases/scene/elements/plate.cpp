@@ -1,0 +1,149 @@
+#include "cases/scene/body_keys.h"
+#include "cases/scene/elements/row.h"
+#include "cases/scene/joints/reading.h"
+#include "fem/elements/ancf_plate.h"
+#include "io/files.h"
+
+namespace flexmorph::cases {
+namespace {
+
+using namespace body_keys;
+using io::Key;
+using io::positive;
+using io::Table;
+using io::to_text;
+
+constexpr int kMostElements = 100'000;
+
+const std::vector<std::string>& plate_shapes() {
+  static const std::vector<std::string> kNames{"h16", "h12"};
+  return kNames;
+}
+
+const io::Key& kShape =
+    io::key("body", "shape")
+        .word("a shape set", plate_shapes)
+        .otherwise("h16")
+        .when("plates")
+        .says("Shape functions; `h12` leaves out the mixed slopes, and is too stiff in twist.");
+const io::Key& kSpace = io::key("body", "space")
+                            .word("a space", {"plane", "space"})
+                            .otherwise("plane")
+                            .says("Positions have two components, or three; beams: `plane`.");
+const io::Key& kWidth = io::key("body", "width")
+                            .number(positive("a width", "m"))
+                            .when("plates")
+                            .says("Across the length, in its surface.");
+const io::Key& kElements = io::key("body", "elements")
+                               .integers("a number of elements", 1, kMostElements, 2, 2)
+                               .when("plates")
+                               .says("Elements along the length at the start, and across.");
+Flow read_flow(const Table& t, const Scene& scene) {
+  Flow flow;
+  if (t.has(flow_keys::kLength)) {
+    if (t.has(flow_keys::kSpeed))
+      t.fail(flow_keys::kSpeed, "material flows at a `speed`, or as the drive `length` says");
+    flow.length.drive = t.choice(flow_keys::kLength, names_of(scene.drives));
+  } else {
+    flow.speed = t.number(flow_keys::kSpeed);
+  }
+  flow.max_length = t.number(flow_keys::kMaxLength);
+  flow.min_length = t.number(flow_keys::kMinLength, 0.3 * flow.max_length);
+  return flow;
+}
+
+/// All but its flow and its lines.
+void read_sheet(const Table& t, const Scene& scene, bool has_density, Body& body) {
+  body.shape = t.choice(kShape);
+  body.space = t.choice(kSpace);
+  if (!scene.bodies.empty() && scene.bodies.front().space != body.space)
+    t.fail(kSpace, "all bodies of a scene live in the plane, or all in space");
+  if (scene.is_mechanism() && body.in_space())
+    t.fail(kSpace, "rigid bodies live in the plane: in their scenes plates do, too");
+  read_terms(t, scene, body);
+  // A drive of the length says how it starts, too.
+  const bool driven = t.has(kFlow) && t.table(kFlow).has(flow_keys::kLength);
+  body.length = t.number(kLength, driven ? std::optional<double>(0) : std::nullopt);
+  body.width = t.number(kWidth);
+  body.thickness = t.number(kThickness);
+  read_material(t, has_density, body);
+  const std::vector<int> elements = t.integers(kElements);
+  body.elements = {elements[0], elements[1]};
+  if (1.0 * elements[0] * elements[1] > kMostElements)
+    t.fail(kElements, "at most " + to_text(kMostElements) + " elements");
+}
+
+void read_mesh(const Table& t, Body& body) {
+  body.lines = read_lines(t, body);
+  for (const std::string& term : body.terms)
+    if (body.has_free_lines() && !fem::term_row(term).free_lines)
+      t.fail(kTerms, "\"" + term + "\" does not know free material lines ([[body.line]])");
+}
+
+void read_plate(const Table& t, const Scene& scene, bool has_density, Body& body) {
+  read_sheet(t, scene, has_density, body);
+  refuse_flow(t);
+  read_mesh(t, body);
+}
+
+void read_flowing_plate(const Table& t, const Scene& scene, bool has_density, Body& body) {
+  read_sheet(t, scene, has_density, body);
+  body.flow = read_flow(t.table(kFlow), scene);
+  if (scene.statics) t.fail(kElement, "in a [static] analysis no material flows");
+  read_mesh(t, body);
+}
+
+std::unique_ptr<fem::Element> make_plate(const Body& body, double end,
+                                         const std::array<int, 2>& count) {
+  const double longest = body.longest(end);
+  std::vector<fem::MaterialLine> m, n;
+  for (const double at : body.start_lines(longest - body.length, count[0])) m.push_back({at, {}});
+  for (const BodyLine& line : body.lines) m[static_cast<size_t>(line.index)].free = line.free;
+  if (body.flow && body.flow->motion)
+    m[0].drive = [longest, length = body.flow->motion](double t) {
+      const fem::Motion x = length(t);
+      return fem::Motion{longest - x.value, -x.rate, -x.acceleration};
+    };
+  else if (body.flow)
+    m[0].drive = [longest, length = body.length, speed = body.flow->speed](double t) {
+      return fem::Motion{longest - length - speed * t, -speed, 0};
+    };
+  for (int j = 0; j <= count[1]; ++j) n.push_back({body.low() + body.width * j / count[1], {}});
+  const auto shapes =
+      body.shape == "h12" ? fem::AncfPlate::ShapeSet::h12 : fem::AncfPlate::ShapeSet::h16;
+  return std::make_unique<fem::AncfPlate>(body.dim(), shapes, std::move(m), std::move(n));
+}
+
+/// Gram form: n_p pairs of vectors in four classes, products and sums for d directions; and the
+/// Gauss points of the bending, where there are any.
+ElementOperations operations(const Body& body, const fem::Element& element) {
+  const double n = element.n_shapes(), d = element.dim(), pairs = 0.5 * n * (n + 1);
+  const double points = body.number("bending_points") * body.number("bending_points");
+  ElementOperations out;
+  out.force = 2 * n * n * d * (body.flow ? 3 : 1);  // inertia
+  out.force += 0.5 * pairs * pairs + 2 * pairs * d + 2 * n * n * d;
+  out.force += points * (2 * n * d * (5 + 3) + 150);
+  out.tangent = n * d * (n * pairs + n * n * d) + 2 * points * n * d * n * d;
+  return out;
+}
+
+fem::WeldMode read_weld(const Table& joint) { return read_mode(joint, fem::WeldMode::edge); }
+
+}  // namespace
+
+extern const ElementRow kAncfPlate, kAleAncfPlate;
+const ElementRow kAncfPlate = {.name = "ancf_plate",
+                               .sentence = "A plate.",
+                               .read = read_plate,
+                               .read_weld = read_weld,
+                               .make = make_plate,
+                               .operations = operations};
+
+const ElementRow kAleAncfPlate = {.name = "ale_ancf_plate",
+                                  .sentence = "A plate out of which material flows.",
+                                  .read = read_flowing_plate,
+                                  .read_weld = read_weld,
+                                  .make = make_plate,
+                                  .operations = operations};
+
+}  // namespace flexmorph::cases
