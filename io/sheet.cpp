@@ -30,7 +30,8 @@ struct Page {
       throw Error::input("contact sheet: a picture has no viewBox");
     for (const char* kept : {"font-family", "font-size", "fill"}) {
       const std::string value = attribute(head, kept);
-      if (!value.empty()) attributes.append(" ").append(kept).append("=\"").append(value).append("\"");
+      if (!value.empty())
+        attributes.append(" ").append(kept).append("=\"").append(value).append("\"");
     }
     contents = svg.substr(end + 1, last - end - 1);
   }

@@ -13,24 +13,6 @@
 namespace flexmorph::io {
 namespace {
 
-std::string json_string(const std::string& text) {
-  constexpr const char* kHex = "0123456789abcdef";
-  std::string out = "\"";
-  for (const char c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      out += std::string("\\") + c;
-    } else if (c == '\n') {
-      out += "\\n";
-    } else if (code < 32) {
-      out += std::string("\\u00") + kHex[code / 16] + kHex[code % 16];
-    } else {
-      out += c;
-    }
-  }
-  return out + "\"";
-}
-
 std::string html_table(const std::vector<std::vector<std::string>>& rows) {
   std::string out = "<table>\n";
   for (size_t i = 0; i < rows.size(); ++i) {
@@ -88,48 +70,6 @@ void CsvWriter::write(const std::string& line) {
       throw Error::input(path_ + ": cannot be written: " + std::generic_category().message(errno));
     if (n > 0) done += static_cast<size_t>(n);
   }
-}
-
-Json::Json(double value) : text_(std::isfinite(value) ? to_text(value) : "null") {}
-
-Json::Json(const std::string& text) : text_(json_string(text)) {}
-
-Json& Json::set(const std::string& key, Json value) {
-  for (auto& [name, old] : entries_) {
-    if (name != key) continue;
-    old = std::move(value);
-    return *this;
-  }
-  entries_.emplace_back(key, std::move(value));
-  return *this;
-}
-
-Json& Json::push(Json value) {
-  entries_.emplace_back("", std::move(value));
-  return *this;
-}
-
-void Json::write(std::string& out, size_t depth) const {
-  if (kind_ == Kind::scalar) {
-    out += text_;
-    return;
-  }
-  const bool is_object = kind_ == Kind::object;
-  out += is_object ? "{" : "[";
-  for (size_t i = 0; i < entries_.size(); ++i) {
-    out += i ? ",\n" : "\n";
-    out.append(2 * (depth + 1), ' ');
-    if (is_object) out += json_string(entries_[i].first) + ": ";
-    entries_[i].second.write(out, depth + 1);
-  }
-  if (!entries_.empty()) out.append("\n").append(2 * depth, ' ');
-  out += is_object ? "}" : "]";
-}
-
-std::string Json::text() const {
-  std::string out;
-  write(out, 0);
-  return out + "\n";
 }
 
 std::string report_html(const std::string& title, std::span<const ReportSection> sections) {

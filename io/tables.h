@@ -70,37 +70,6 @@ std::string aligned_table(std::span<const std::vector<std::string>> rows);
 /// The same as Markdown.
 std::string markdown_table(std::span<const std::vector<std::string>> rows);
 
-/// A JSON value. Objects keep the order of their keys; NaN and infinity become null.
-class Json {
- public:
-  Json() : text_("null") {}
-  Json(double value);
-  Json(int value) : text_(to_text(value)) {}
-  Json(long long value) : text_(to_text(value)) {}
-  Json(bool value) : text_(value ? "true" : "false") {}
-  Json(const std::string& text);
-  Json(const char* text) : Json(std::string(text)) {}
-  static Json object() { return Json(Kind::object); }
-  static Json array() { return Json(Kind::array); }
-
-  /// Sets a key of an object (in place if it is there already).
-  Json& set(const std::string& key, Json value);
-  /// Appends to an array.
-  Json& push(Json value);
-
-  /// Indented text, with a line end.
-  std::string text() const;
-
- private:
-  enum class Kind { scalar, object, array };
-  explicit Json(Kind kind) : kind_(kind) {}
-  void write(std::string& out, size_t depth) const;
-
-  Kind kind_ = Kind::scalar;
-  std::string text_;
-  std::vector<std::pair<std::string, Json>> entries_;
-};
-
 /// One part of a report: a heading, words, a table, pictures; whatever is empty is left out.
 struct ReportSection {
   std::string heading = {}, words = {};

@@ -28,14 +28,20 @@ bool is_table(const io::Key& key) {
   });
 }
 
+/// What an entry is called and which kind it is come first; the others as they stand in the files.
+int rank(const io::Key& key) {
+  if (key.name == "name") return 0;
+  return key.name == "type" || key.name == "element" ? 1 : 2;
+}
+
 std::vector<const io::Key*> keys_of(const std::string& table) {
   std::vector<const io::Key*> out;
   for (const io::Key& key : io::all_keys())
     if (has(key, table)) out.push_back(&key);
   std::stable_sort(out.begin(), out.end(), [](const io::Key* a, const io::Key* b) {
     const std::string first = a->place.file_name(), second = b->place.file_name();
-    return std::make_tuple(first, a->place.line(), a->place.column()) <
-           std::make_tuple(second, b->place.line(), b->place.column());
+    return std::make_tuple(rank(*a), first, a->place.line(), a->place.column()) <
+           std::make_tuple(rank(*b), second, b->place.line(), b->place.column());
   });
   return out;
 }

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cases/keys/book.h"
+#include "io/json.h"
 
 /// The book of keys as a JSON schema, for editors of TOML.
 namespace flexmorph::cases {
@@ -115,7 +116,7 @@ Json schema_of_table(const std::string& path) {
 std::string keys_as_schema() {
   Json out{{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "Flexmorph case"}};
   out.update(schema_of_table(""));
-  return out.dump(2) + "\n";
+  return io::json_text(out);
 }
 
 }  // namespace flexmorph::cases

@@ -9,6 +9,7 @@
 #include "cases/stability/report.h"
 #include "cases/study/study.h"
 #include "io/files.h"
+#include "io/json.h"
 #include "io/tables.h"
 
 namespace flexmorph::cases {
@@ -173,11 +174,13 @@ class Check {
       StabilityRow& row = rows_[of[i]->row];
       row.ending = ending;
       row.ran = true;
-      io::Json out = io::Json::object();
-      out.set("exit_code", ending.code).set("signal", ending.signal);
-      out.set("over_time", ending.over_time).set("seconds_cpu", ending.seconds);
-      out.set("key", of[i]->key);
-      io::write_file(of[i]->stem + ".json", out.text());
+      nlohmann::ordered_json out;
+      out["exit_code"] = ending.code;
+      out["signal"] = ending.signal;
+      out["over_time"] = ending.over_time;
+      out["seconds_cpu"] = ending.seconds;
+      out["key"] = of[i]->key;
+      io::write_file(of[i]->stem + ".json", io::json_text(out));
       judge_row(*of[i]);
       if (++done % kBatch == 0) write();
       if (options_.quiet) return;

@@ -341,18 +341,8 @@ class Membrane final : public ElasticTerm {
   /// Full squares of the blocks of W; those of the last W asked for are kept.
   Packed squares(const std::vector<double>& w) {
     if (squares_of_ == last_) return squares_;
-    auto out = std::make_shared<std::vector<double>>();
-    size_t at = 0;
-    for (size_t c = 0; c + 1 < pairs_.starts.size(); ++c) {
-      const auto m = static_cast<size_t>(pairs_.starts[c + 1] - pairs_.starts[c]),
-                 block = out->size();
-      out->resize(block + m * m);
-      for (size_t r = 0; r < m; ++r)
-        for (size_t t = 0; t <= r; ++t, ++at)
-          (*out)[block + r * m + t] = (*out)[block + t * m + r] = w[at];
-    }
     squares_of_ = last_;
-    return squares_ = std::move(out);
+    return squares_ = std::make_shared<std::vector<double>>(full_squares(pairs_, w));
   }
 
   PlaneSection section_;

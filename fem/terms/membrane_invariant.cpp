@@ -174,4 +174,17 @@ std::vector<double> membrane_invariant(const ProductTable& table, const PairNumb
   return out;
 }
 
+std::vector<double> full_squares(const PairNumbers& pairs, const std::vector<double>& triangles) {
+  std::vector<double> out;
+  size_t at = 0;
+  for (size_t c = 0; c + 1 < pairs.starts.size(); ++c) {
+    const auto m = static_cast<size_t>(pairs.starts[c + 1] - pairs.starts[c]), block = out.size();
+    out.resize(block + m * m);
+    for (size_t r = 0; r < m; ++r)
+      for (size_t t = 0; t <= r; ++t, ++at)
+        out[block + r * m + t] = out[block + t * m + r] = triangles[at];
+  }
+  return out;
+}
+
 }  // namespace flexmorph::fem

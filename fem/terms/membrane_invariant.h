@@ -39,4 +39,7 @@ MatrixXd parabola_through_samples(int n);
 std::vector<double> membrane_invariant(const ProductTable& table, const PairNumbers& pairs,
                                        const Eigen::Matrix3d& elasticity, Strains strains);
 
+/// The blocks of W as full squares, one after the other, from their lower triangles.
+std::vector<double> full_squares(const PairNumbers& pairs, const std::vector<double>& triangles);
+
 }  // namespace flexmorph::fem

@@ -14,6 +14,7 @@
 #include "fem/loads.h"
 #include "fem/terms.h"
 #include "tests/support/differences.h"
+#include "tests/support/drift.h"
 #include "tests/support/errors.h"
 #include "tests/support/models.h"
 #include "tests/support/particle_pendulum.h"
@@ -23,30 +24,13 @@
 namespace flexmorph::fem {
 namespace {
 
+using testing::Drift;
 using testing::error_of;
 using testing::exact_swing;
 using testing::says;
 using testing::Swing;
 
 constexpr double kGravity = 9.81;
-
-/// Largest misses of the constraints: Φ [m], Φ_q q̇ + Φ_t [m/s], Φ_q q̈ - γ [m/s²].
-struct Drift {
-  double position = 0, velocity = 0, acceleration = 0;
-
-  void see(Workspace& model, const State& x) {
-    Constraints c;
-    model.constraints(x, c);
-    VectorXd rate = c.rate, second = -c.acceleration;
-    for (const auto& entry : c.jacobian) {
-      rate[entry.row()] += entry.value() * x.v[entry.col()];
-      second[entry.row()] += entry.value() * x.a[entry.col()];
-    }
-    position = std::max(position, c.value.lpNorm<Eigen::Infinity>());
-    velocity = std::max(velocity, rate.lpNorm<Eigen::Infinity>());
-    acceleration = std::max(acceleration, second.lpNorm<Eigen::Infinity>());
-  }
-};
 
 void print(const std::string& what, const StepCounts& n, const Drift& d) {
   std::cout << what << ": " << n.steps << " steps, " << n.rejected << " rejected, " << n.evaluations

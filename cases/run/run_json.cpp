@@ -1,0 +1,281 @@
+#include "cases/run/run_json.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "cases/run/expectations.h"
+#include "cases/run/plots/measured.h"
+#include "cases/run/plots/mechanism.h"
+#include "cases/run/run_warnings.h"
+#include "cases/run/version.h"
+#include "cases/scene/design/goal.h"
+#include "cases/scene/heat/heat.h"
+#include "fem/solve/linear_solver.h"
+#include "io/json.h"
+
+namespace flexmorph::cases {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Thinnest half-thickness of any component anywhere along its axis [m].
+double thinnest(const mmc::BodyProblem& problem) {
+  double out = problem.grid.width;
+  for (const Component& c : problem.design.components())
+    for (int k = 0; k <= 200; ++k)
+      out = std::min(
+          out,
+          profile(c, c.half_length * (k / 100.0 - 1), problem.stages.back().min_half_thickness).g);
+  return out;
+}
+
+/// Where it was asked for, and the matrix is not singular to working precision.
+void set_condition(Json& out, const std::optional<double>& condition) {
+  if (condition && std::isfinite(*condition)) out["condition"] = *condition;
+}
+
+Json body_results(const RunReport& report, size_t i) {
+  const mmc::BodyOutcome& o = report.outcomes[i];
+  Json out = Json::object();
+  out["body"] = o.body;
+  out["compliance"] = o.compliance;
+  out["volume"] = o.volume;
+  out["sharp_compliance"] = o.sharp.compliance;
+  out["sharp_volume"] = o.sharp.volume;
+  for (const auto& [name, value] : o.further) {
+    out[name] = value;
+    out["sharp_" + name] = o.sharp.further.at(name);
+  }
+  out["uniform_compliance"] = o.uniform_compliance;
+  out["connected"] = o.sharp.connectivity.connected;
+  out["islands"] = o.sharp.connectivity.islands;
+  const auto width = [&](double Features::*which) {
+    const bool there = o.sharp.features && std::isfinite((*o.sharp.features).*which);
+    return there ? Json((*o.sharp.features).*which) : Json();
+  };
+  out["min_feature"] = width(&Features::solid);
+  out["min_gap"] = width(&Features::gap);
+  if (o.clean_up) {
+    const mmc::CleanUp& c = *o.clean_up;
+    Json clean = Json::object();
+    clean["min_feature_wanted"] = c.wanted;
+    clean["min_feature_before"] = c.before;
+    clean["compliance_before"] = c.compliance_before;
+    clean["compliance_cost"] = c.compliance_after / c.compliance_before - 1;
+    clean["patches"] = c.patches;
+    clean["dropped"] = c.dropped;
+    clean["rounds"] = c.rounds;
+    clean["reached"] = c.reached();
+    out["clean_up"] = std::move(clean);
+  }
+  out["thinnest_component"] = thinnest(report.problems[i]);
+  const auto amplitude = [&](const std::optional<MotionRecord>& motion) {
+    if (!motion) return Json();
+    const auto found = std::find(motion->bodies.begin(), motion->bodies.end(), o.body);
+    return Json(motion->amplitude.at(static_cast<size_t>(found - motion->bodies.begin())));
+  };
+  const bool finer = report.verified.has_value();
+  out["dynamic_amplitude"] = amplitude(finer ? report.verified : report.motion);
+  out["uniform_dynamic_amplitude"] =
+      amplitude(finer ? report.verified_uniform : report.uniform_motion);
+  out["scene_mesh_amplitude"] = amplitude(report.motion);
+  out["scene_mesh_uniform_amplitude"] = amplitude(report.uniform_motion);
+  out["cycles"] = report.cycles;
+  out["iterations"] = o.iterations;
+  out["state_solves"] = o.evaluations;
+  out["kkt"] = o.kkt;
+  out["factorizations"] = o.factorizations;
+  out["worst_compliance"] = o.worst_compliance;
+  set_condition(out, o.condition);
+  Json active = Json::array();  // loads within 1 % of the worst, from 1
+  for (size_t l = 0; l < o.load_compliances.size(); ++l)
+    if (o.load_compliances[l] >= 0.99 * o.worst_compliance)
+      active.push_back(static_cast<int>(l + 1));
+  out["active_loads"] = std::move(active);
+  out["loads"] = o.n_loads;
+  out["right_hand_sides"] = o.n_right_hand_sides;
+  out["components"] = report.problems[i].design.n_components();
+  out["component_changes"] = static_cast<int>(o.events.size());
+  out["stop"] = o.stop;
+  return out;
+}
+
+/// Last values of columns, by their names.
+Json last_values(const std::vector<Column>& columns) {
+  Json out = Json::object();
+  for (const Column& column : columns)
+    if (!column.values.empty()) out[column.name] = column.values.back();
+  return out;
+}
+
+Json path_results(const PathRecord& path) {
+  Json out = Json::object();
+  out["equilibria"] = static_cast<int>(path.factor.size());
+  if (!path.factor.empty()) out["load_factor"] = path.factor.back();
+  if (!path.strain.empty()) out["strain_energy"] = path.strain.back();
+  out["completed"] = path.result.completed;
+  out["rejected_steps"] = path.result.rejected;
+  out["newton_iterations"] = path.result.iterations;
+  set_condition(out, path.result.condition);
+  out["observed"] = last_values(path.observed);
+  if (!path.measured.empty()) out["measured"] = last_values(path.measured);
+  return out;
+}
+
+/// How far the trajectory's body was from its path at worst.
+Json trajectory_errors(const Scene& scene, const RunReport& report) {
+  const std::string& body = scene.trajectory->body;
+  Json out = Json::object();
+  out["body"] = body;
+  const auto add = [&](const std::string& prefix, const MotionRecord& motion) {
+    for (const char* quantity : {"delta_x", "delta_y", "delta_angle"}) {
+      const LargestError error = largest_error(motion, body, quantity);
+      out[prefix + quantity] = error.size;
+      out[prefix + quantity + "_time"] = error.time;
+    }
+  };
+  add("", *report.motion);
+  if (report.uniform_motion) add("uniform_", *report.uniform_motion);
+  return out;
+}
+
+Json motion_results(const Scene& scene, const RunReport& report) {
+  const MotionRecord& motion = *report.motion;
+  const fem::MotionResult& r = motion.result;
+  Json out = Json::object();
+  out["steps"] = r.counts.steps;
+  out["newton_iterations"] = r.counts.newton;
+  out["factorizations"] = r.counts.factorizations;
+  out["rejected_steps"] = r.counts.rejected;
+  if (r.counts.evaluations > 0) {
+    out["evaluations"] = r.counts.evaluations;
+    out["partitions"] = r.counts.partitions;
+  }
+  if (scene.time.tolerance) {
+    out["inaccurate_steps"] = r.counts.inaccurate;
+    out["smallest_step"] = r.smallest_step;
+  }
+  out["largest_step"] = r.largest_step;
+  out["energy_defect"] = r.energy_defect;
+  if (!motion.written.empty()) out["balance"] = last_values(motion.written);
+  out["constraint_drift"] = r.constraint_drift;
+  out["velocity_drift"] = r.velocity_drift;
+  out["smallest_area_ratio"] = r.smallest_area_ratio;
+  set_condition(out, r.condition);
+  Json events = Json::array();
+  for (const fem::MeshEvent& e : r.events) {
+    Json event = Json::object();
+    event["time"] = e.time;
+    event["body"] = e.body;
+    event["change"] = e.change == fem::MeshChange::insertion ? "insertion" : "removal";
+    event["kinetic_jump"] = e.after.kinetic - e.before.kinetic;
+    event["strain_jump"] = e.after.strain - e.before.strain;
+    event["momentum_jump"] = (e.momentum_after - e.momentum_before).norm();
+    event["tip_jump"] = e.tip_jump;
+    events.push_back(std::move(event));
+  }
+  out["events"] = std::move(events);
+  if (!motion.observed.empty()) out["observed"] = last_values(motion.observed);
+  if (!motion.measured.empty()) out["measured"] = last_values(motion.measured);
+  if (scene.trajectory) out["platform_error"] = trajectory_errors(scene, report);
+  return out;
+}
+
+Json expectations(const Scene& scene, const RunReport& report) {
+  Json out = Json::object();
+  for (const Expected& expected : judge_expectations(scene, report)) {
+    Json entry = Json::object();
+    entry["found"] = expected.found ? Json(*expected.found) : Json();
+    entry["holds"] = expected.holds;
+    out[expected.name] = std::move(entry);
+  }
+  return out;
+}
+
+Json cycle_results(const mmc::CycleVerdict& v) {
+  Json out = Json::object();
+  out["cycle"] = v.cycle;
+  out["objective"] = v.objective;
+  Json bodies = Json::array();
+  for (const mmc::BodyVerdict& b : v.bodies) {
+    Json body = Json::object();
+    body["body"] = b.body;
+    body["compliance"] = b.compliance;
+    body["sharp_compliance"] = b.sharp_compliance;
+    body["design_change"] = b.design_change;
+    bodies.push_back(std::move(body));
+  }
+  out["bodies"] = std::move(bodies);
+  out["strain_energy_integral"] = v.strain_energy_integral;
+  out["best"] = v.best;
+  return out;
+}
+
+Json heat_results(const Scene& scene) {
+  Json out = Json::array();
+  for (const Body& body : scene.bodies) {
+    if (!body.heat) continue;
+    Json hot = Json::object();
+    hot["body"] = body.name;
+    hot["temperature"] = temperature_words(*body.heat);
+    hot["expansion"] = body.heat->expansion;
+    hot["thermal_volume"] = volume_name(body.heat->volume);
+    hot["force"] = body.heat->force;
+    out.push_back(std::move(hot));
+  }
+  return out;
+}
+
+/// What bodies with one budget take of it, if there are such.
+std::optional<Json> shared_mass(const RunReport& report) {
+  double used = 0, allowed = 0;
+  for (size_t i = 0; i < report.outcomes.size(); ++i) {
+    const mmc::BodyProblem& p = report.problems[i];
+    if (!p.shares_mass) continue;
+    used += mmc::full_mass_of(p) * report.outcomes[i].volume;
+    allowed += mmc::full_mass_of(p) * mmc::allowed_volume(p.goal).value_or(1);
+  }
+  if (allowed == 0) return {};
+  Json out = Json::object();
+  out["used"] = used;
+  out["allowed"] = allowed;
+  return out;
+}
+
+}  // namespace
+
+std::string run_json(const Scene& scene, const RunReport& report) {
+  Json out = Json::object();
+  out["case"] = scene.name;
+  out["title"] = scene.title;
+  out["version"] = kVersion;
+  Json libraries = Json::object();
+  for (const auto& [name, version] : library_versions()) libraries[name] = version;
+  out["libraries"] = std::move(libraries);
+  out["blas_kernel"] = fem::blas_kernel();
+  out["threads"] = report.threads;
+  out["status"] = report.status;
+  if (!report.message.empty()) out["message"] = report.message;
+  out["seconds_wall"] = report.seconds_wall;
+  out["seconds_cpu"] = report.seconds_cpu;
+  out["peak_memory_bytes"] = static_cast<long long>(report.peak_memory_bytes);
+  Json warnings = Json::array();
+  for (const std::string& words : warnings_of(scene, report)) warnings.push_back(words);
+  out["warnings"] = std::move(warnings);
+  Json results = Json::array();
+  for (size_t i = 0; i < report.outcomes.size(); ++i) results.push_back(body_results(report, i));
+  out["results"] = std::move(results);
+  if (std::optional<Json> shared = shared_mass(report)) out["shared_mass"] = std::move(*shared);
+  if (!report.verdicts.empty()) {
+    Json cycles = Json::array();
+    for (const mmc::CycleVerdict& v : report.verdicts) cycles.push_back(cycle_results(v));
+    out["cycles"] = std::move(cycles);
+  }
+  if (scene.has_heat()) out["heat"] = heat_results(scene);
+  if (report.motion) out["motion"] = motion_results(scene, report);
+  if (report.path) out["static"] = path_results(*report.path);
+  if (!scene.expect.empty()) out["expect"] = expectations(scene, report);
+  return io::json_text(out);
+}
+
+}  // namespace flexmorph::cases

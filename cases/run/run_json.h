@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+#include "cases/run/report.h"
+
+namespace flexmorph::cases {
+
+/// The text of run.json: what the run found, in numbers (cases/README.md, The run folder).
+std::string run_json(const Scene& scene, const RunReport& report);
+
+}  // namespace flexmorph::cases
