@@ -137,6 +137,8 @@ class Workspace : public Model {
   void add_single_force(const Single& single, const State& x, VectorXd& out) const;
   void add_single_tangent(const Single& single, const State& x, const Weights& w, double scale,
                           double* values) const;
+  /// Of the tangents of all elements; values do not count.
+  std::vector<Eigen::Triplet<double>> element_entries() const;
   void build_pattern();
   void joint_stiffness(const State& x, std::vector<Eigen::Triplet<double>>& out) const;
   static void gather(const Body& body, int e, const State& x, Local& local);

@@ -190,8 +190,7 @@ void Workspace::joint_stiffness(const State& x, std::vector<Eigen::Triplet<doubl
   }
 }
 
-void Workspace::build_pattern() {
-  const int n = n_dofs() + n_constraints();
+std::vector<Eigen::Triplet<double>> Workspace::element_entries() const {
   std::vector<Eigen::Triplet<double>> entries;
   for (const BatchPlaces& batch : batches_)
     for (int lane = 0; lane < batch.count; ++lane)
@@ -203,6 +202,12 @@ void Workspace::build_pattern() {
     for (const int row : single.dofs)
       for (const int column : single.dofs)
         if (row >= 0 && column >= 0) entries.emplace_back(row, column, 1.0);
+  return entries;
+}
+
+void Workspace::build_pattern() {
+  const int n = n_dofs() + n_constraints();
+  std::vector<Eigen::Triplet<double>> entries = element_entries();
   Constraints c;
   const State at = reference();
   constraints(at, c);
@@ -240,15 +245,18 @@ void Workspace::build_pattern() {
       for (const int column : single.dofs)
         single.entries.push_back(row >= 0 && column >= 0 ? place(row, column) : -1);
   }
+  const auto places_of = [&](const std::vector<Eigen::Triplet<double>>& of) {
+    std::vector<int> out;
+    for (const auto& entry : of) out.push_back(place(entry.row(), entry.col()));
+    return out;
+  };
+  stiffness_places_ = places_of(stiffness);
+  link_places_ = places_of(link_entries_);
   joint_places_.clear();
   for (const auto& entry : c.jacobian) {
     joint_places_.push_back(place(n_dofs() + entry.row(), entry.col()));
     joint_places_.push_back(place(entry.col(), n_dofs() + entry.row()));
   }
-  stiffness_places_.clear();
-  for (const auto& entry : stiffness) stiffness_places_.push_back(place(entry.row(), entry.col()));
-  link_places_.clear();
-  for (const auto& entry : link_entries_) link_places_.push_back(place(entry.row(), entry.col()));
   built_version_ = pattern_version();
 }
 

@@ -34,6 +34,19 @@ void set_condition(Json& out, const std::optional<double>& condition) {
   if (condition && std::isfinite(*condition)) out["condition"] = *condition;
 }
 
+Json clean_up_results(const mmc::CleanUp& c) {
+  Json out = Json::object();
+  out["min_feature_wanted"] = c.wanted;
+  out["min_feature_before"] = c.before;
+  out["compliance_before"] = c.compliance_before;
+  out["compliance_cost"] = c.compliance_after / c.compliance_before - 1;
+  out["patches"] = c.patches;
+  out["dropped"] = c.dropped;
+  out["rounds"] = c.rounds;
+  out["reached"] = c.reached();
+  return out;
+}
+
 Json body_results(const RunReport& report, size_t i) {
   const mmc::BodyOutcome& o = report.outcomes[i];
   Json out = Json::object();
@@ -55,19 +68,7 @@ Json body_results(const RunReport& report, size_t i) {
   };
   out["min_feature"] = width(&Features::solid);
   out["min_gap"] = width(&Features::gap);
-  if (o.clean_up) {
-    const mmc::CleanUp& c = *o.clean_up;
-    Json clean = Json::object();
-    clean["min_feature_wanted"] = c.wanted;
-    clean["min_feature_before"] = c.before;
-    clean["compliance_before"] = c.compliance_before;
-    clean["compliance_cost"] = c.compliance_after / c.compliance_before - 1;
-    clean["patches"] = c.patches;
-    clean["dropped"] = c.dropped;
-    clean["rounds"] = c.rounds;
-    clean["reached"] = c.reached();
-    out["clean_up"] = std::move(clean);
-  }
+  if (o.clean_up) out["clean_up"] = clean_up_results(*o.clean_up);
   out["thinnest_component"] = thinnest(report.problems[i]);
   const auto amplitude = [&](const std::optional<MotionRecord>& motion) {
     if (!motion) return Json();

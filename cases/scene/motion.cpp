@@ -209,19 +209,44 @@ PointMass read_point_mass(const Table& t, const Scene& scene) {
   return mass;
 }
 
+/// [time], or [static] in its place.
+void read_span(const Table& root, Scene& scene) {
+  if (!root.has(tables::kStatic)) {
+    scene.time = read_time(root.table(tables::kTime));
+    return;
+  }
+  for (const Key* key : {&tables::kTime, &tables::kDrive, &tables::kConstants, &tables::kEsl,
+                         &tables::kDesign, &tables::kOptimizer, &tables::kCycle, &tables::kVerify})
+    if (root.has(*key))
+      root.fail(*key, "a scene with a [static] analysis has no '" + key->name + "'");
+  scene.statics = read_analysis(root.table(tables::kStatic));
+}
+
+/// Does the start fit what the scene turned out to be?
+void settle_start(const Table& root, Scene& scene) {
+  const Table time = root.table(tables::kTime);
+  if (scene.is_mechanism() && scene.time.start == Start::hub_at_rest)
+    time.fail(kStart,
+              "\"hub_at_rest\" spins up hubs; the drives of a scene with rigid bodies say "
+              "themselves how they start");
+  if (scene.time.integrator != "generalized_alpha" && scene.has_free_lines())
+    time.fail(kIntegrator, "free material lines ([[body.line]]) need \"generalized_alpha\": \"" +
+                               scene.time.integrator + "\" does not know them");
+  // Without a hub there is nothing to be stretched by, and a free line starts where it is put.
+  if (!scene.is_mechanism() && (scene.hubs.empty() || scene.has_free_lines())) {
+    if (time.has(kStart) && scene.time.start == Start::prestretched)
+      time.fail(kStart, "\"prestretched\" is for bodies in hubs whose lines are not free");
+    if (scene.time.start == Start::prestretched) {
+      scene.time.start = Start::rigid;
+      time.settle(kStart, "rigid");
+    }
+  }
+}
+
 }  // namespace
 
 void read_motion(const Table& root, const Follow& follow, Scene& scene) {
-  if (root.has(tables::kStatic)) {
-    for (const Key* key :
-         {&tables::kTime, &tables::kDrive, &tables::kConstants, &tables::kEsl, &tables::kDesign,
-          &tables::kOptimizer, &tables::kCycle, &tables::kVerify})
-      if (root.has(*key))
-        root.fail(*key, "a scene with a [static] analysis has no '" + key->name + "'");
-    scene.statics = read_analysis(root.table(tables::kStatic));
-  } else {
-    scene.time = read_time(root.table(tables::kTime));
-  }
+  read_span(root, scene);
   read_drives(root, scene);
   for (const Table& t : root.tables(tables::kHub)) scene.hubs.push_back(read_hub(t, scene));
   read_rigid_bodies(root, scene);
@@ -246,34 +271,15 @@ void read_motion(const Table& root, const Follow& follow, Scene& scene) {
   read_joints(root, scene);
   read_springs(root, scene);
   check_mechanism_parts(root, scene);
-  if (scene.is_mechanism() && scene.time.start == Start::hub_at_rest)
-    root.table(tables::kTime)
-        .fail(kStart,
-              "\"hub_at_rest\" spins up hubs; the drives of a scene with rigid bodies say "
-              "themselves how they start");
   for (const Table& t : root.tables(tables::kPointMass))
     scene.point_masses.push_back(read_point_mass(t, scene));
   read_loads(root, scene);
   read_observed(root, scene);
   read_measures(root, scene);
-  if (scene.statics) {
+  if (scene.statics)
     read_growing(root, scene);
-    return;
-  }
-
-  const Table time = root.table(tables::kTime);
-  if (scene.time.integrator != "generalized_alpha" && scene.has_free_lines())
-    time.fail(kIntegrator, "free material lines ([[body.line]]) need \"generalized_alpha\": \"" +
-                               scene.time.integrator + "\" does not know them");
-  // Without a hub there is nothing to be stretched by, and a free line starts where it is put.
-  if (!scene.is_mechanism() && (scene.hubs.empty() || scene.has_free_lines())) {
-    if (time.has(kStart) && scene.time.start == Start::prestretched)
-      time.fail(kStart, "\"prestretched\" is for bodies in hubs whose lines are not free");
-    if (scene.time.start == Start::prestretched) {
-      scene.time.start = Start::rigid;
-      time.settle(kStart, "rigid");
-    }
-  }
+  else
+    settle_start(root, scene);
 }
 
 }  // namespace flexmorph::cases

@@ -64,34 +64,35 @@ std::vector<int> wins(const Comparison& plan, std::span<const VariantResult> run
   return out;
 }
 
+const std::vector<std::string> kColumns = {"run",
+                                           "optimizer",
+                                           "start",
+                                           "status",
+                                           "body",
+                                           "figure",
+                                           "compliance",
+                                           "volume",
+                                           "sharp_compliance",
+                                           "sharp_volume",
+                                           "violation",
+                                           "kkt",
+                                           "connected",
+                                           "min_feature",
+                                           "iterations",
+                                           "state_solves",
+                                           "gradients",
+                                           "factorizations",
+                                           "seconds_cpu",
+                                           "seconds_wall",
+                                           "seconds_design",
+                                           "seconds_optimizer",
+                                           "peaks",
+                                           "disconnected",
+                                           "stop"};
+
 void write_csv(const Comparison& plan, std::span<const VariantResult> runs,
                const std::string& path) {
-  const std::vector<std::string> columns = {"run",
-                                            "optimizer",
-                                            "start",
-                                            "status",
-                                            "body",
-                                            "figure",
-                                            "compliance",
-                                            "volume",
-                                            "sharp_compliance",
-                                            "sharp_volume",
-                                            "violation",
-                                            "kkt",
-                                            "connected",
-                                            "min_feature",
-                                            "iterations",
-                                            "state_solves",
-                                            "gradients",
-                                            "factorizations",
-                                            "seconds_cpu",
-                                            "seconds_wall",
-                                            "seconds_design",
-                                            "seconds_optimizer",
-                                            "peaks",
-                                            "disconnected",
-                                            "stop"};
-  io::CsvWriter csv(path, columns);
+  io::CsvWriter csv(path, kColumns);
   const auto starts = static_cast<size_t>(plan.starts);
   for (size_t k = 0; k < runs.size(); ++k) {
     const VariantResult& run = runs[k];
@@ -128,7 +129,7 @@ void write_csv(const Comparison& plan, std::span<const VariantResult> runs,
     }
     if (!run.bodies.empty()) continue;
     std::vector<io::Cell> row = head;
-    row.resize(columns.size());
+    row.resize(kColumns.size());
     row.back() = run.message;
     csv.row(row);
   }
