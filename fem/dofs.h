@@ -13,6 +13,9 @@ struct State {
   double t = 0;      ///< [s]
   VectorXd q, v, a;  ///< unknowns, their rates and accelerations (n)
   VectorXd lambda;   ///< Lagrange multipliers (m)
+  /// Angles that links follow over whole turns, as they were after the last accepted step [rad];
+  /// empty before the first one.
+  VectorXd turned;
 };
 
 }  // namespace flexmorph::fem

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "fem/dofs.h"
 #include "fem/marker.h"
 #include "fem/term.h"
@@ -43,8 +45,21 @@ class Link {
   /// negative in a damper, that of a motor, and that of what shifts a marker along its axis.
   virtual double power(const State&) const { return 0; }
 
+  /// Does it follow an angle over whole turns? Then State::turned has a place for it.
+  virtual bool counts_turns() const { return false; }
+  /// That angle at a state, less than half a turn from what it was after the last accepted step.
+  virtual double turned(const State&) const { return 0; }
+  /// @param place  in State::turned; said by the model that it is part of
+  void set_place(int place) { place_ = place; }
+
   /// As Term::scale_load().
   virtual void scale_load(double /*factor*/) {}
+
+ protected:
+  int place() const { return place_; }
+
+ private:
+  int place_ = 0;
 };
 
 /// Springs along a line and forces on points have mean forces where no place is shifted; torsion
@@ -63,11 +78,14 @@ std::unique_ptr<Link> make_spring(std::string name, MarkerPlace a, MarkerPlace b
                                   const SpringData& spring);
 
 /// Torsion spring and damper between axes 1 of two rigid bodies (or the ground): with φ the angle
-/// θ_b - θ_a - φ₀ wrapped to (-π, π], the moment M = k φ + c φ̇ turns b back and a forth.
+/// θ_b - θ_a - φ₀, the moment M = k φ + c φ̇ turns b back and a forth. Turns count: the angle goes
+/// on from that of the last accepted step.
 struct TorsionSpringData {
   double stiffness = 0;   ///< k [N m/rad]
   double damping = 0;     ///< c [N m s/rad]
   double rest_angle = 0;  ///< φ₀ [rad]
+  /// What θ_b - θ_a is next to before the first step [rad]; else it is next to φ₀.
+  std::optional<double> start_angle{};
 };
 std::unique_ptr<Link> make_torsion_spring(std::string name, MarkerPlace a, MarkerPlace b,
                                           const TorsionSpringData& spring);

@@ -83,7 +83,11 @@ void Model::number_dofs() {
     n_constraints_ += joint->size();
     first_rows_.push_back(n_constraints_);
   }
-  for (const auto& link : links_) link->bind(bodies);
+  int n_turned = 0;
+  for (const auto& link : links_) {
+    link->bind(bodies);
+    if (link->counts_turns()) link->set_place(n_turned++);
+  }
   ++pattern_version_;
   ++content_version_;
 }

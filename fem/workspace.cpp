@@ -189,6 +189,15 @@ Vec3 Workspace::momentum(const State& x) {
   return out;
 }
 
+void Workspace::follow_turns(State& x) const {
+  const auto counts = [](const auto& link) { return link->counts_turns(); };
+  VectorXd turned(std::count_if(links_.begin(), links_.end(), counts));
+  Eigen::Index k = 0;
+  for (const auto& link : links_)
+    if (counts(link)) turned[k++] = link->turned(x);
+  x.turned = std::move(turned);
+}
+
 double Workspace::link_power(const State& x) {
   double out = 0;
   for (const auto& link : links_) out += link->power(x);

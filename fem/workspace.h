@@ -98,6 +98,8 @@ class Workspace : public Model {
   Energies energies(const State& x);
   /// Linear momentum of the bodies' own mass [kg m/s], see Term::momentum(); z = 0 in the plane.
   Vec3 momentum(const State& x);
+  /// Lets links that count turns go on from this state: to be called after every accepted step.
+  void follow_turns(State& x) const;
   /// Power of all links, see Link::power() [W].
   double link_power(const State& x);
   /// Power of all terms at fixed unknowns, see Term::flow_power() [W].

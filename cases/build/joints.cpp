@@ -47,8 +47,10 @@ std::unique_ptr<fem::Joint> make_joint(const Scene& scene, const Joint& joint,
   return joint.row->make(joint, parts);
 }
 
-std::unique_ptr<fem::Link> make_link(const Spring& spring, const FindPlace& place) {
-  return spring.row->make(spring, place(spring.a), place(spring.b));
+std::unique_ptr<fem::Link> make_link(const Scene& scene, const Spring& spring,
+                                     const FindPlace& place) {
+  return spring.row->make(spring, place(spring.a), place(spring.b),
+                          start_angle(scene, spring.b) - start_angle(scene, spring.a));
 }
 
 }  // namespace flexmorph::cases

@@ -16,7 +16,8 @@ using FindPlace = std::function<fem::MarkerPlace(const Anchor&)>;
 std::unique_ptr<fem::Joint> make_joint(const Scene& scene, const Joint& joint,
                                        const FindPlace& place, bool rigid);
 
-std::unique_ptr<fem::Link> make_link(const Spring& spring, const FindPlace& place);
+std::unique_ptr<fem::Link> make_link(const Scene& scene, const Spring& spring,
+                                     const FindPlace& place);
 
 /// Position of an anchor at the start, as far as the case says [m]; of a joint's other anchor where
 /// it is not given itself.

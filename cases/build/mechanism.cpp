@@ -306,7 +306,7 @@ Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh) {
   const FindPlace place = [](const Anchor& a) {
     return fem::MarkerPlace{a.body, a.point, a.angle, {}};
   };
-  for (const Spring& spring : scene.springs) out.model.add_link(make_link(spring, place));
+  for (const Spring& spring : scene.springs) out.model.add_link(make_link(scene, spring, place));
   for (const Joint& joint : scene.joints) {
     if (!joint.holds_frame()) {
       if (auto made = make_joint(scene, joint, place, false)) out.model.add_joint(std::move(made));

@@ -88,7 +88,7 @@ Twin::Twin(const Scene& scene, Driven driven) : scene_(scene), driven_(driven) {
         point = undeformed_place(b, point) - Vec2(b.longest(scene.time.end), 0);
     return fem::MarkerPlace{anchor.body, point, anchor.angle, {}};
   };
-  for (const Spring& spring : scene.springs) model_.add_link(make_link(spring, place));
+  for (const Spring& spring : scene.springs) model_.add_link(make_link(scene, spring, place));
   for (const Joint& joint : scene.joints) {
     if (joint.holds_frame()) {
       add_carried(joint);

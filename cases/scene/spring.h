@@ -30,8 +30,9 @@ struct SpringRow {
   bool points, axes;     ///< does it look at points, at axes?
   const io::Key &stiffness, &damping;
   const io::Key& rest;  ///< length or angle without force
+  /// @param start_angle  from the first axis of a to that of b, whole turns counted [rad]
   std::unique_ptr<fem::Link> (*make)(const Spring& spring, const fem::MarkerPlace& a,
-                                     const fem::MarkerPlace& b);
+                                     const fem::MarkerPlace& b, double start_angle);
 };
 
 /// All rows, in the order in which messages list them; the first one is meant where a case says

@@ -34,20 +34,23 @@ const SpringRow kLinear = {
     .stiffness = size_key("stiffness", not_negative("a stiffness", "N/m"), "linear"),
     .damping = size_key("damping", not_negative("a damping", "N s/m"), "linear"),
     .rest = rest_key("free_length", not_negative("a length", "m"), "linear"),
-    .make = [](const Spring& s, const fem::MarkerPlace& a, const fem::MarkerPlace& b) {
+    .make = [](const Spring& s, const fem::MarkerPlace& a, const fem::MarkerPlace& b, double) {
       return fem::make_spring(s.name, a, b, {s.stiffness, s.damping, s.rest});
     }};
 
 const SpringRow kTorsion = {
     .name = "torsion",
-    .sentence = "Spring and damper between the first axes of two rigid bodies, or of the ground.",
+    .sentence =
+        "Spring and damper between the first axes of two rigid bodies, or of the ground; turns "
+        "count.",
     .points = false,
     .axes = true,
     .stiffness = size_key("stiffness", not_negative("a stiffness", "N m/rad"), "torsion"),
     .damping = size_key("damping", not_negative("a damping", "N m s/rad"), "torsion"),
     .rest = rest_key("rest_angle", io::any_number("an angle", "rad"), "torsion"),
-    .make = [](const Spring& s, const fem::MarkerPlace& a, const fem::MarkerPlace& b) {
-      return fem::make_torsion_spring(s.name, a, b, {s.stiffness, s.damping, s.rest});
+    .make = [](const Spring& s, const fem::MarkerPlace& a, const fem::MarkerPlace& b,
+               double start_angle) {
+      return fem::make_torsion_spring(s.name, a, b, {s.stiffness, s.damping, s.rest, start_angle});
     }};
 
 const io::Key& kType = io::key("spring", "type")

@@ -23,6 +23,7 @@ void DenseOutput::interpolate(double t, State& out) const {
   };
   const Functions f = of_start(s), g = of_start(r);
   out.t = t;
+  out.turned = a.turned;
   out.q = f.value[0] * a.q + h * f.value[1] * a.v + h * h * f.value[2] * a.a + g.value[0] * b.q -
           h * g.value[1] * b.v + h * h * g.value[2] * b.a;
   out.v = (f.rate[0] / h) * a.q + f.rate[1] * a.v + h * f.rate[2] * a.a - (g.rate[0] / h) * b.q +

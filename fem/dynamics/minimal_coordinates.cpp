@@ -359,6 +359,7 @@ void MinimalCoordinates::advance(State& x, double t_end,
     }
     s.step = is_cut ? std::max(own, h) : h;
     if (ends) s.at.t = t_end;
+    s.model.follow_turns(s.at);
     x = s.last = s.at;
     ++s.counts.steps;
     accepted(x);

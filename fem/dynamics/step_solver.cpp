@@ -131,6 +131,7 @@ bool StepSolver::finish_sound(State& x) {
   const bool look = largest_correction_ > kLarge;
   if (look) before_ = x;
   finish(x);
+  model_.follow_turns(x);
   if (!look || model_.smallest_area_ratio(x) > 0) {
     keep();
     return true;

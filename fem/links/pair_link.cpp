@@ -54,7 +54,7 @@ void PairLink::append(const MarkerPair::Square& by_y, const MarkerPair::Square& 
 void PairLink::add_force(const State& x, VectorXd& out) const {
   pair_.evaluate(x.t, x.q, x.v);
   PairForce force;
-  fill(pair_.y(), pair_.rate(), force);
+  fill(x, pair_.y(), pair_.rate(), force);
   add_to(force.s, out);
 }
 
@@ -69,14 +69,14 @@ void PairLink::add_tangent(const State& x, const Weights& w,
   if (!varies_) return;
   pair_.evaluate(x.t, x.q, x.v);
   PairForce force;
-  fill(pair_.y(), pair_.rate(), force);
+  fill(x, pair_.y(), pair_.rate(), force);
   append(w.q * force.s_y + w.v * force.s_rate, w.q * force.s_rate, out);
 }
 
 double PairLink::power(const State& x) const {
   pair_.evaluate(x.t, x.q, x.v);
   PairForce force;
-  fill(pair_.y(), pair_.rate(), force);
+  fill(x, pair_.y(), pair_.rate(), force);
   return force.s.dot(pair_.y_t()) - (force.s - force.stored).dot(pair_.rate());
 }
 

@@ -34,8 +34,8 @@ class PairLink : public Link {
   /// @param varies  does the force depend on the state?
   PairLink(std::string name, MarkerPlace a, MarkerPlace b, std::vector<Part> parts, bool varies);
 
-  /// The force at (y, ẏ) into a PairForce that is zero.
-  virtual void fill(const Values& y, const Values& rate, PairForce& out) const = 0;
+  /// The force at a state, where the markers are at (y, ẏ), into a PairForce that is zero.
+  virtual void fill(const State& x, const Values& y, const Values& rate, PairForce& out) const = 0;
 
   const MarkerPair& pair() const { return pair_; }
   /// Adds Yᵀ s as the last pair().evaluate() found Y.

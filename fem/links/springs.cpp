@@ -99,7 +99,7 @@ class Spring final : public PairLink {
     throw Error::numerical("spring '" + name() + "': its ends meet, it has no direction");
   }
 
-  void fill(const Values& y, const Values& rate, PairForce& out) const override {
+  void fill(const State&, const Values& y, const Values& rate, PairForce& out) const override {
     fill_spring(spring_, y, rate, out);
   }
 
@@ -144,7 +144,8 @@ struct Turn {
   }
 };
 
-/// Moment M = k φ + c φ̇ on φ = θ_b - θ_a - φ₀; V = ½ k φ².
+/// Moment M = k φ + c φ̇ on φ = θ_b - θ_a - φ₀; V = ½ k φ². Two axes say θ_b - θ_a but for whole
+/// turns, which are those of the last accepted step.
 class TorsionSpring final : public PairLink {
  public:
   TorsionSpring(std::string name, MarkerPlace a, MarkerPlace b, const TorsionSpringData& spring)
@@ -157,19 +158,25 @@ class TorsionSpring final : public PairLink {
 
   std::unique_ptr<Link> clone() const override { return std::make_unique<TorsionSpring>(*this); }
   double strain_energy(const State& x) const override {
-    pair().evaluate(x.t, x.q, x.v);
-    const double phi = angle(Turn(pair().y().segment<2>(MarkerPair::kAxisA)),
-                             Turn(pair().y().segment<2>(MarkerPair::kAxisB)));
+    const double phi = turned(x) - spring_.rest_angle;
     return 0.5 * spring_.stiffness * phi * phi;
+  }
+  bool counts_turns() const override { return true; }
+  double turned(const State& x) const override {
+    pair().evaluate(x.t, x.q, x.v);
+    return angle(x, Turn(pair().y().segment<2>(MarkerPair::kAxisA)),
+                 Turn(pair().y().segment<2>(MarkerPair::kAxisB)));
   }
 
  private:
-  double angle(const Turn& a, const Turn& b) const {
-    const double phi = std::remainder(b.angle - a.angle - spring_.rest_angle, 2 * std::numbers::pi);
-    return phi > -std::numbers::pi ? phi : std::numbers::pi;
+  double angle(const State& x, const Turn& a, const Turn& b) const {
+    const double last = place() < x.turned.size()
+                            ? x.turned[place()]
+                            : spring_.start_angle.value_or(spring_.rest_angle);
+    return last + std::remainder(b.angle - a.angle - last, 2 * std::numbers::pi);
   }
 
-  void fill(const Values& y, const Values& rate, PairForce& out) const override {
+  void fill(const State& x, const Values& y, const Values& rate, PairForce& out) const override {
     const Turn a(y.segment<2>(MarkerPair::kAxisA)), b(y.segment<2>(MarkerPair::kAxisB));
     Values phi_y = Values::Zero();
     phi_y.segment<2>(MarkerPair::kAxisA) = -a.by_e;
@@ -177,7 +184,7 @@ class TorsionSpring final : public PairLink {
     Square phi_yy = Square::Zero();
     phi_yy.block<2, 2>(MarkerPair::kAxisA, MarkerPair::kAxisA) = -a.by_ee;
     phi_yy.block<2, 2>(MarkerPair::kAxisB, MarkerPair::kAxisB) = b.by_ee;
-    const double elastic = spring_.stiffness * angle(a, b);
+    const double elastic = spring_.stiffness * (angle(x, a, b) - spring_.rest_angle);
     const double moment = elastic + spring_.damping * phi_y.dot(rate);
     out.stored = elastic * phi_y;
     out.s = moment * phi_y;
@@ -211,7 +218,7 @@ class PointForce final : public PairLink {
   void scale_load(double factor) override { factor_ = factor; }
 
  private:
-  void fill(const Values&, const Values&, PairForce& out) const override {
+  void fill(const State&, const Values&, const Values&, PairForce& out) const override {
     out.s.segment<2>(kPositionA) = -factor_ * force_;
     out.stored = out.s;
   }
@@ -230,7 +237,7 @@ class Torque final : public PairLink {
   void scale_load(double factor) override { factor_ = factor; }
 
  private:
-  void fill(const Values& y, const Values&, PairForce& out) const override {
+  void fill(const State&, const Values& y, const Values&, PairForce& out) const override {
     const Turn a(y.segment<2>(MarkerPair::kAxisA));
     out.s.segment<2>(MarkerPair::kAxisA) = -factor_ * torque_ * a.by_e;
     out.s_y.block<2, 2>(MarkerPair::kAxisA, MarkerPair::kAxisA) = -factor_ * torque_ * a.by_ee;

@@ -85,7 +85,10 @@ class Path {
     model_.scale_loads(factor_);
   }
 
-  bool accepted() { return !observe_ || observe_({result_.steps, factor_, last_iterations_, x_}); }
+  bool accepted() {
+    model_.follow_turns(x_);
+    return !observe_ || observe_({result_.steps, factor_, last_iterations_, x_});
+  }
 
   /// Root mean square of scaled displacements, and the product that belongs to it.
   double product(const VectorXd& a, const VectorXd& b) const {

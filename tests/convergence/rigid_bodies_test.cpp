@@ -274,6 +274,50 @@ TEST(Spring, MakesAnOscillator) {
     });
 }
 
+// Wound up by several turns it comes back by as many: A sin t of A = 5 and 40, in every scheme.
+TEST(TorsionSpring, CountsTurns) {
+  for (const char* scheme : {"generalized_alpha", "minimal_coordinates"})
+    for (const double rate : {5.0, 40.0}) {
+      Workspace model;
+      testing::add_rigid(model, "rotor", {1, {0, 0}, 1});
+      model.add_joint(make_revolute("axis", {}, {.body = "rotor"}));
+      model.add_link(make_torsion_spring("spring", {}, {.body = "rotor"}, {1, 0, 0}));
+      State x = model.reference();
+      testing::put(model, "rotor", {.angle_rate = rate}, x);
+      IntegratorSettings settings;
+      settings.name = scheme;
+      const auto integrator = make_integrator(model, settings);
+      integrator->make_consistent(x);
+      double most = 0;
+      for (int k = 1; k <= 6000; ++k) {
+        integrator->advance(x, 1e-3 * k, [](const State&) {});
+        const Energies e = model.energies(x);
+        most = std::max(most, std::abs(e.kinetic + e.strain - 0.5 * rate * rate));
+      }
+      ASSERT_EQ(x.turned.size(), 1);
+      // A step of h turns a body by about (h theta')^2/12 too little, with rho 0.8 up to three
+      // times that (coordinates are the axes); the way there and back is the integral of rate |cos
+      // t|.
+      const double part = std::pow(1e-3 * rate, 2), way = rate * (4 + std::sin(6.0));
+      EXPECT_NEAR(x.turned[0], rate * std::sin(6.0), 3 * part / 12 * way) << scheme;
+      EXPECT_LT(most, part * 0.5 * rate * rate) << scheme;
+    }
+}
+
+// A rest angle that lies more than half a turn away is reached the whole way: rest (1 - cos t).
+TEST(TorsionSpring, GoesTheWholeWayToItsRest) {
+  Workspace model;
+  testing::add_rigid(model, "rotor", {1, {0, 0}, 1});
+  model.add_joint(make_revolute("axis", {}, {.body = "rotor"}));
+  model.add_link(make_torsion_spring("spring", {}, {.body = "rotor"}, {1, 0, 4.0, 0.0}));
+  State x = model.reference();
+  testing::put(model, "rotor", {}, x);
+  EXPECT_NEAR(model.energies(x).strain, 8, 1e-14);
+  advance(model, x, 2.5, 1e-3);
+  const double way = 4 * (1 - std::cos(2.5));
+  EXPECT_NEAR(x.turned[0], way, 3 * std::pow(4e-3, 2) / 12 * way);  // as above, theta' <= 4
+}
+
 TEST(TorsionSpring, MakesAnOscillator) {
   const RigidSection section{3, {0.2, 0.1}, 0.4};
   const double stiffness = 30, rest = 2.9, end = 2;  // swings across the cut at π
