@@ -82,12 +82,15 @@ std::string report_html(const std::string& title, std::span<const ReportSection>
       "h1 { font-size: 1.5em; } h2 { font-size: 1.15em; margin-top: 2em; }\n"
       "table { border-collapse: collapse; } th, td { padding: .2em .9em .2em 0; text-align: left; "
       "border-bottom: 1px solid #ddd; font-variant-numeric: tabular-nums; }\n"
+      ".warning { border-left: .3em solid #d80; padding-left: .8em; }\n"
       "svg { max-width: 100%; height: auto; display: block; margin: 1em 0; }\n"
       "</style>\n</head>\n<body>\n<h1>" +
       xml_escaped(title) + "</h1>\n";
   for (const ReportSection& section : sections) {
     if (!section.heading.empty()) out += "<h2>" + xml_escaped(section.heading) + "</h2>\n";
     if (!section.words.empty()) out += "<p>" + xml_escaped(section.words) + "</p>\n";
+    for (const std::string& each : section.warnings)
+      out += "<p class=\"warning\">" + xml_escaped(each) + "</p>\n";
     if (!section.rows.empty()) out += html_table(section.rows);
     for (const std::string& picture : section.pictures) out += picture.substr(picture.find("<svg"));
   }

@@ -73,6 +73,7 @@ std::string markdown_table(std::span<const std::vector<std::string>> rows);
 /// One part of a report: a heading, words, a table, pictures; whatever is empty is left out.
 struct ReportSection {
   std::string heading = {}, words = {};
+  std::vector<std::string> warnings = {};           ///< stand out
   std::vector<std::vector<std::string>> rows = {};  ///< the first one is the header
   std::vector<std::string> pictures = {};           ///< SVG, see plots.h
 };

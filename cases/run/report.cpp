@@ -103,8 +103,9 @@ void write_report(const Scene& scene, const RunReport& report, RunFolder& folder
   io::ReportSection head;
   head.heading = "Run";
   head.words = "Status: " + report.status + (report.message.empty() ? "" : " - " + report.message);
+  for (const Warning& each : warnings_of(scene, report)) head.warnings.push_back(each.words);
   sections.push_back(head);
-  if (!scene.expect.empty() && report.status == "done")
+  if (!scene.expect.empty() && report.status.starts_with("done"))
     sections.push_back(expect_section(scene, report));
   if (scene.has_heat()) sections.push_back(heat_section(scene));
   if (!report.outcomes.empty()) sections.push_back(results_section(scene, report));

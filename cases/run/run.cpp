@@ -8,6 +8,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 
 #include "cases/build/twin.h"
@@ -15,6 +16,7 @@
 #include "cases/run/motion_run.h"
 #include "cases/run/path_run.h"
 #include "cases/run/report.h"
+#include "cases/run/run_warnings.h"
 #include "cases/run/version.h"
 #include "fem/dynamics/side_by_side.h"
 #include "geometry/cpu_time.h"
@@ -37,6 +39,14 @@ class Progress {
     end_line();
     if (!quiet_) std::printf("%s\n", text.c_str());
     std::fflush(stdout);
+  }
+  /// What is to be said against the run, also by a quiet one: in colour where people look on.
+  void object(const std::string& kind, const std::string& text) {
+    end_line();
+    const bool colour = isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
+    const char* const before = !colour ? "" : kind == "warning" ? "\x1b[33m" : "\x1b[31m";
+    std::fprintf(stderr, "flexmorph: %s%s:%s %s\n", before, kind.c_str(), colour ? "\x1b[0m" : "",
+                 text.c_str());
   }
   void iteration(const mmc::IterationReport& r) {
     if (quiet_) return;
@@ -340,19 +350,20 @@ int run_case(const RunOptions& options) {
     close("failed", error.what());
     throw;
   }
-  close("done", "");
-  int missed = 0;
+  const std::vector<Warning> warnings = warnings_of(scene, report);
+  close(done_words(warnings), "");
+  for (const Warning& each : warnings)
+    progress.object(each.unusable ? "not usable" : "warning", each.words);
+  size_t missed = 0;
   for (const Expected& expected : judge_expectations(scene, report)) {
     if (expected.holds) continue;
     ++missed;
-    std::fprintf(stderr, "flexmorph: missed: %s\n", expected.words.c_str());
+    progress.object("missed", expected.words);
   }
-  progress.say("done" +
-               (missed > 0 ? ", " + std::to_string(missed) +
-                                 (missed > 1 ? " expectations missed" : " expectation missed")
-                           : "") +
-               ": " + directory + "/report.html");
-  return missed > 0 ? kMissed : 0;
+  progress.say(report.status + counted(warnings.size(), "warning", "warnings") +
+               counted(missed, "expectation missed", "expectations missed") + ": " + directory +
+               "/report.html");
+  return missed > 0 || !usable(warnings) ? kMissed : 0;
 }
 
 }  // namespace flexmorph::cases

@@ -26,7 +26,7 @@ void build_scene(const Scene& scene);
 /// Names of the shipped cases.
 std::vector<std::string> shipped_cases();
 
-/// Exit code of a run that is whole, but misses an expectation of its case.
+/// Exit code of a run that is whole, but misses an expectation of its case or is of no use.
 inline constexpr int kMissed = 5;
 
 /// Runs a case from file to folder. @return exit code: 0 done, 4 interrupted (what was computed is

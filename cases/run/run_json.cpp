@@ -261,7 +261,7 @@ std::string run_json(const Scene& scene, const RunReport& report) {
   out["seconds_cpu"] = report.seconds_cpu;
   out["peak_memory_bytes"] = static_cast<long long>(report.peak_memory_bytes);
   Json warnings = Json::array();
-  for (const std::string& words : warnings_of(scene, report)) warnings.push_back(words);
+  for (const Warning& each : warnings_of(scene, report)) warnings.push_back(each.words);
   out["warnings"] = std::move(warnings);
   Json results = Json::array();
   for (size_t i = 0; i < report.outcomes.size(); ++i) results.push_back(body_results(report, i));

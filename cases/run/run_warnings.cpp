@@ -9,7 +9,7 @@
 namespace flexmorph::cases {
 namespace {
 
-using Words = std::vector<std::string>;
+using Warnings = std::vector<Warning>;
 
 constexpr double kLargestDefect = 0.1;  // of the balance of energy before a motion is warned of
 // Compliance of the blurred design over that of the sharp one. Where the start of a design is
@@ -25,7 +25,7 @@ double found_of(const mmc::ResponseRow& row, const mmc::BodyProblem& p, const mm
 
 /// Has the optimizer left a design that is not feasible? (One that is analysed as it starts was not
 /// asked; what bodies share is no limit of one.)
-void add_limits(const mmc::BodyProblem& p, const mmc::BodyOutcome& o, Words& out) {
+void add_limits(const mmc::BodyProblem& p, const mmc::BodyOutcome& o, Warnings& out) {
   if (o.iterations == 0) return;
   for (const mmc::Limit& limit : p.goal.limits) {
     if (p.shares_mass && limit.volume && !limit.at_least) continue;
@@ -33,11 +33,11 @@ void add_limits(const mmc::BodyProblem& p, const mmc::BodyOutcome& o, Words& out
     const double scale = limit.row->full ? limit.row->full(mmc::plate_of(p)) : limit.value;
     const double beyond = limit.at_least ? limit.value - found : found - limit.value;
     if (!(beyond > 1e-3 * scale)) continue;
-    out.push_back("body '" + o.body + "': the " + std::string(limit.row->words) + " " +
-                  io::to_text(found, 4) + " is " +
-                  (limit.at_least ? "below what is wanted, " : "above what is allowed, ") +
-                  io::to_text(limit.value, 4) + ": no design that was found " +
-                  (limit.row->even && !limit.at_least ? "is as light" : "keeps to it"));
+    out.push_back({"body '" + o.body + "': the " + std::string(limit.row->words) + " " +
+                   io::to_text(found, 4) + " is " +
+                   (limit.at_least ? "below what is wanted, " : "above what is allowed, ") +
+                   io::to_text(limit.value, 4) + ": no design that was found " +
+                   (limit.row->even && !limit.at_least ? "is as light" : "keeps to it")});
   }
 }
 
@@ -56,54 +56,85 @@ bool damps_no_multipliers(const Scene& scene) {
          scene.time.rho_inf > 0.98;
 }
 
-void add_designs(const RunReport& report, Words& out) {
+/// A design for a compliance that is worse than the same material spread evenly. (One that is
+/// analysed as it starts was not asked.)
+void add_worse(const mmc::BodyProblem& p, const mmc::BodyOutcome& o, Warnings& out) {
+  if (o.iterations == 0 || p.goal.objective != &mmc::compliance_row(p.goal)) return;
+  if (!(o.sharp.compliance > o.uniform_compliance)) return;
+  out.push_back({"body '" + o.body + "': the sharp compliance " +
+                     io::to_text(o.sharp.compliance, 4) + " J is above that of uniform material, " +
+                     io::to_text(o.uniform_compliance, 4) + " J: the design is worse than none",
+                 true});
+}
+
+void add_designs(const RunReport& report, Warnings& out) {
   for (const mmc::BodyOutcome& o : report.outcomes) {
     if (!o.sharp.connectivity.connected)
-      out.push_back("body '" + o.body +
-                    "': no piece of material joins what is held and what is loaded");
+      out.push_back(
+          {"body '" + o.body + "': no piece of material joins what is held and what is loaded",
+           true});
     if (o.clean_up && !o.clean_up->reached())
-      out.push_back("body '" + o.body + "': the smallest feature is " +
-                    io::to_text(o.clean_up->after, 4) + " m where " +
-                    io::to_text(o.clean_up->wanted, 4) + " m was wanted");
+      out.push_back({"body '" + o.body + "': the smallest feature is " +
+                     io::to_text(o.clean_up->after, 4) + " m where " +
+                     io::to_text(o.clean_up->wanted, 4) + " m was wanted"});
     if (o.sharp.compliance > 1.15 * o.compliance)
-      out.push_back("body '" + o.body +
-                    "': the sharp compliance is far above the blurred one: gaps are bridged");
+      out.push_back({"body '" + o.body +
+                     "': the sharp compliance is far above the blurred one: gaps are bridged"});
     if (o.compliance > kHangingMass * o.sharp.compliance)
-      out.push_back("body '" + o.body + "': the compliance is " +
-                    io::to_text(o.compliance / o.sharp.compliance, 2) +
-                    " times the sharp one: edges of material hang on void of hardly any stiffness; "
-                    "a larger design.alpha helps");
+      out.push_back(
+          {"body '" + o.body + "': the compliance is " +
+           io::to_text(o.compliance / o.sharp.compliance, 2) +
+           " times the sharp one: edges of material hang on void of hardly any stiffness; "
+           "a larger design.alpha helps"});
   }
   for (const mmc::BodyProblem& p : report.problems)
     for (const mmc::BodyOutcome& o : report.outcomes)
-      if (o.body == p.body) add_limits(p, o, out);
+      if (o.body == p.body) {
+        add_limits(p, o, out);
+        add_worse(p, o, out);
+      }
 }
 
-void add_motion(const Scene& scene, const MotionRecord& motion, Words& out) {
-  for (const fem::Conditioning& c : motion.result.near_singular) out.push_back(fem::describe(c));
+void add_motion(const Scene& scene, const MotionRecord& motion, Warnings& out) {
+  for (const fem::Conditioning& c : motion.result.near_singular) out.push_back({fem::describe(c)});
   if (damps_no_multipliers(scene))
-    out.push_back("rho_inf = " + io::to_text(scene.time.rho_inf, 3) +
-                  " hardly damps multipliers: joint forces may alternate from step to step and "
-                  "grow; time.rho_inf = 0.9 damps them");
+    out.push_back({"rho_inf = " + io::to_text(scene.time.rho_inf, 3) +
+                   " hardly damps multipliers: joint forces may alternate from step to step and "
+                   "grow; time.rho_inf = 0.9 damps them"});
   if (const fem::EnergyGain& gain = motion.result.energy_gain; gain.time > 0)
-    out.push_back("no drive brings energy in, but the energy of the motion has grown by " +
-                  io::to_text(100 * gain.part, 3) + " % of the largest, by more than 10 % from " +
-                  "t = " + io::to_text(gain.time, 4) +
-                  " s on: do not trust what comes after; a smaller time.step helps, "
-                  "time.integrator = \"energy_momentum\" keeps the energy");
+    out.push_back({"no drive brings energy in, but the energy of the motion has grown by " +
+                       io::to_text(100 * gain.part, 3) +
+                       " % of the largest, by more than 10 % from " +
+                       "t = " + io::to_text(gain.time, 4) +
+                       " s on: do not trust what comes after; a smaller time.step helps, "
+                       "time.integrator = \"energy_momentum\" keeps the energy",
+                   true});
   else if (misses_energy(scene, motion))
-    out.push_back("the balance of energy is missed by " +
-                  io::to_text(100 * motion.result.energy_defect, 3) +
-                  " % of the largest energy: do not trust this motion; a smaller time.step helps");
+    out.push_back(
+        {"the balance of energy is missed by " + io::to_text(100 * motion.result.energy_defect, 3) +
+         " % of the largest energy: do not trust this motion; a smaller time.step helps"});
 }
 
 }  // namespace
 
-Words warnings_of(const Scene& scene, const RunReport& report) {
-  Words out;
+Warnings warnings_of(const Scene& scene, const RunReport& report) {
+  Warnings out;
   add_designs(report, out);
   if (report.motion) add_motion(scene, *report.motion, out);
   return out;
+}
+
+bool usable(const Warnings& warnings) {
+  return std::none_of(warnings.begin(), warnings.end(),
+                      [](const Warning& each) { return each.unusable; });
+}
+
+std::string done_words(const Warnings& warnings) {
+  return usable(warnings) ? "done" : "done, not usable";
+}
+
+std::string counted(size_t n, const std::string& one, const std::string& many) {
+  return n == 0 ? "" : ", " + std::to_string(n) + " " + (n == 1 ? one : many);
 }
 
 }  // namespace flexmorph::cases

@@ -7,8 +7,19 @@
 
 namespace flexmorph::cases {
 
-/// What a run has to say against its own results, a sentence each: designs in pieces, bridged gaps,
-/// limits that are not kept; nearly singular joints, energy that is missed.
-std::vector<std::string> warnings_of(const Scene& scene, const RunReport& report);
+/// What a run has to say against its own results, in a sentence.
+struct Warning {
+  std::string words;
+  bool unusable = false;  ///< nobody can use the result: it ends "done, not usable", kMissed
+};
+
+/// Designs in pieces or worse than none, bridged gaps, limits that are not kept; nearly singular
+/// joints, energy that is missed.
+std::vector<Warning> warnings_of(const Scene& scene, const RunReport& report);
+bool usable(const std::vector<Warning>& warnings);
+/// Status of a run that came to its end.
+std::string done_words(const std::vector<Warning>& warnings);
+/// ", 2 warnings"; nothing without any.
+std::string counted(size_t n, const std::string& one, const std::string& many);
 
 }  // namespace flexmorph::cases

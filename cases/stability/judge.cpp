@@ -7,6 +7,7 @@
 #include <regex>
 #include <sstream>
 
+#include "cases/run/run.h"
 #include "cases/study/study.h"
 #include "io/files.h"
 #include "io/tables.h"
@@ -161,7 +162,7 @@ void judge_invariances(const Evidence& e, const json& run, Findings& out) {
 void judge_finished(const Evidence& e, Judgement& out) {
   Findings findings;
   const json run = json::parse(text_of(e.folder + "/run.json"), nullptr, false);
-  if (!run.is_object() || run.value("status", "") != "done") {
+  if (!run.is_object() || !run.value("status", "").starts_with("done")) {
     out.reason = "exit 0 without a run.json that is done";
     return;
   }
@@ -250,7 +251,7 @@ Judgement judge(const Evidence& e) {
     out.reason = "too slow for the time limit: " +
                  (t ? "at t = " + to_text(*t, 4) + " s" : std::string("not under way")) +
                  " after " + to_text(end.seconds, 3) + " s";
-  } else if (end.code == 0)
+  } else if (end.code == 0 || end.code == kMissed)
     judge_finished(e, out);
   else if (end.code == 2 || end.code == 3)
     judge_refused(e, out);

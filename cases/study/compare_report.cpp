@@ -140,11 +140,11 @@ Rows rows_of(const Comparison& plan, std::span<const VariantResult> runs) {
                 "solves", "CPU s", "peaks", "stopped"}};
   for (const VariantResult& run : runs) {
     if (run.bodies.empty()) {
-      rows.push_back({run.name, run.status, "", "", "", "", "", "", "", "", run.message});
+      rows.push_back({run.name, run.words(), "", "", "", "", "", "", "", "", run.message});
       continue;
     }
     const BodyResult& b = run.bodies.front();
-    rows.push_back({run.name, run.status, io::to_text(figure_of(run, plan), 5),
+    rows.push_back({run.name, run.words(), io::to_text(figure_of(run, plan), 5),
                     io::to_text(b.sharp_compliance, 5), io::to_text(b.sharp_volume, 5),
                     io::to_text(violation_of(b, plan.goals.front()), 2), io::to_text(b.kkt, 2),
                     io::to_text(b.solves), io::to_text(run.seconds_cpu, 3), io::to_text(b.peaks),

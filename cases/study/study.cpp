@@ -103,7 +103,7 @@ int run_variant(const StudyOptions& options, const Variant& variant) {
                 .ended =
                     [&](size_t, const Ending& ending) {
                       const VariantResult result = result_of(options, variant, ending);
-                      say(options, variant.name + ": " + result.status);
+                      say(options, variant.name + ": " + result.words());
                       if (!result.message.empty())
                         std::fprintf(stderr, "flexmorph: %s: %s\n", variant.name.c_str(),
                                      result.message.c_str());
@@ -139,7 +139,7 @@ StudyOutcome run_variants(const StudyOptions& options, std::span<const Variant> 
     const size_t i = wanted[at];
     VariantResult& result = out.results[i];
     result = result_of(options, variants[i], ending);
-    say(options, result.name + ": " + result.status);
+    say(options, result.name + ": " + result.words());
     if (result.status == "failed") {
       out.exit_code = 3;
       std::fprintf(stderr, "flexmorph: %s: %s\n", result.name.c_str(), result.message.c_str());

@@ -50,12 +50,17 @@ struct BodyResult {
 /// What a run folder says.
 struct VariantResult {
   std::string name, directory;
-  std::string status = "missing";  ///< "done", "failed", "interrupted", "running", "missing"
-  std::string message;             ///< why it failed
+  std::string status =
+      "missing";  ///< "done", "done, not usable", "failed", "interrupted", "running", "missing"
+  std::string message;  ///< why it failed
   double seconds_cpu = 0, seconds_wall = 0, peak_memory_bytes = 0;
   std::vector<BodyResult> bodies;
 
-  bool done() const { return status == "done"; }
+  int warnings = 0;  ///< that it gave
+
+  bool done() const { return status.starts_with("done"); }
+  /// The status, and that there are warnings.
+  std::string words() const;
 };
 
 /// Reads every variant's case and builds what it would build.

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "cases/run/run_warnings.h"
 #include "cases/study/statistics.h"
 #include "cases/study/study.h"
 #include "io/tables.h"
@@ -104,6 +105,7 @@ void read_run(const std::string& text, VariantResult& out) {
   if (!run.is_object()) throw Error::input(out.directory + "/run.json: not as a run writes it");
   out.status = run.value("status", "missing");
   out.message = run.value("message", "");
+  out.warnings = static_cast<int>(run.value("warnings", nlohmann::json::array()).size());
   out.seconds_cpu = number(run, "seconds_cpu");
   out.seconds_wall = number(run, "seconds_wall");
   out.peak_memory_bytes = number(run, "peak_memory_bytes");
@@ -116,6 +118,10 @@ void read_run(const std::string& text, VariantResult& out) {
 
 std::string folder_of(const StudyOptions& options, const Variant& variant) {
   return options.directory + "/" + variant.name;
+}
+
+std::string VariantResult::words() const {
+  return status + counted(static_cast<size_t>(warnings), "warning", "warnings");
 }
 
 std::string text_of(const std::string& path) {

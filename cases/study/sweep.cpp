@@ -76,7 +76,7 @@ std::vector<std::vector<std::string>> table_of(const Sweep& sweep,
       std::vector<std::string>& row = rows.emplace_back(head);
       if (several) row.push_back(b.body);
       row.insert(row.end(),
-                 {runs[k].status, io::to_text(b.compliance, 5), io::to_text(b.volume, 5),
+                 {runs[k].words(), io::to_text(b.compliance, 5), io::to_text(b.volume, 5),
                   io::to_text(b.sharp_compliance, 5), io::to_text(b.sharp_volume, 5),
                   io::to_text(sweep.figure(k, b, i), 5),
                   io::to_text(b.sharp_compliance / b.uniform_compliance, 4),
@@ -87,7 +87,7 @@ std::vector<std::vector<std::string>> table_of(const Sweep& sweep,
     if (!runs[k].bodies.empty()) continue;
     std::vector<std::string>& row = rows.emplace_back(head);
     if (several) row.emplace_back("");
-    row.push_back(runs[k].status + (runs[k].message.empty() ? "" : ": " + runs[k].message));
+    row.push_back(runs[k].words() + (runs[k].message.empty() ? "" : ": " + runs[k].message));
     row.resize(rows[0].size());
   }
   return rows;

@@ -131,7 +131,7 @@ std::vector<std::vector<std::string>> motion_table(std::span<const Motions> vari
   std::vector<std::vector<std::string>> rows = {
       {"variant", "status", "quantity", "smallest", "largest", "last", "CPU s"}};
   for (size_t v = 0; v < variants.size(); ++v) {
-    const std::string& status = runs[v].status;
+    const std::string status = runs[v].words();
     if (variants[v].names.size() < 2)
       rows.push_back({variants[v].label,
                       status + (runs[v].message.empty() ? "" : ": " + runs[v].message), "", "", "",

@@ -13,11 +13,12 @@ namespace flexmorph::test {
 namespace {
 
 /// short_beam on 20 x 10 cells, 2000 kg when it is full.
-nlohmann::json run_beam(const Scratch& scratch, const std::string& folder, Words changes) {
+nlohmann::json run_beam(const Scratch& scratch, const std::string& folder, Words changes,
+                        int code = 0) {
   changes.insert(changes.begin(), {"design.cell=0.1", "design.min_thickness=0.1",
                                    "domain.density=1000.0", "design.max_volume="});
   const Ended ended = run(scratch, "short_beam", folder, changes);
-  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_EQ(ended.code, code) << ended.err;
   return nlohmann::json::parse(contents_of(folder + "/run.json"));
 }
 
@@ -53,7 +54,8 @@ TEST(GoalRun, WithoutAStateNoneIsSolved) {
   const nlohmann::json run =
       run_beam(scratch, folder,
                {"design.minimize=volume", "optimizer.max_iterations=30", "output.sharp_every=0",
-                "output.vtk=false", "design.constraint=[{response='mass', at_least=900.0}]"});
+                "output.vtk=false", "design.constraint=[{response='mass', at_least=900.0}]"},
+               5);  // nothing asks it to join what is held and what is loaded
   const nlohmann::json& body = run["results"][0];
   EXPECT_NEAR(body["mass"].get<double>(), 900, 10);
   EXPECT_GT(body["compliance"].get<double>(), 0);
@@ -72,6 +74,26 @@ TEST(GoalRun, SaysWhatIsNotKept) {
   const std::string warnings = run["warnings"].dump();
   EXPECT_NE(warnings.find("the summed compliance"), std::string::npos) << warnings;
   EXPECT_NE(warnings.find("is above what is allowed, 1: no design"), std::string::npos) << warnings;
+}
+
+// A design that joins nothing ends as what it is: on the screen, in its exit code, first in the
+// report and in the tables of a study.
+TEST(GoalRun, SaysWhatNobodyCanUse) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const Words changes = {"design.cell=0.1", "design.min_thickness=0.1", "design.max_volume=0.02",
+                         "optimizer.max_iterations=5", "expect="};
+  const Ended ended = run(scratch, "short_beam", folder, changes);
+  EXPECT_EQ(ended.code, 5);
+  const auto json = nlohmann::json::parse(contents_of(folder + "/run.json"));
+  EXPECT_EQ(json["status"], "done, not usable");
+  const std::string words = "no piece of material joins what is held and what is loaded";
+  EXPECT_NE(ended.err.find("flexmorph: not usable: body 'beam': " + words), std::string::npos)
+      << ended.err;
+  const std::string counted = ", " + std::to_string(json["warnings"].size()) + " warnings: ";
+  EXPECT_NE(ended.out.find("done, not usable" + counted + folder), std::string::npos) << ended.out;
+  const std::string report = contents_of(folder + "/report.html");
+  EXPECT_LT(report.find(words), report.find("<table")) << "first in the report";
 }
 
 }  // namespace

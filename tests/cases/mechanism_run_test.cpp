@@ -214,7 +214,7 @@ TEST(MechanismRun, PlatformShowsItsDesignsAndItsError) {
       run(scratch, "motion_platform", folder,
           {"time.end=0.03", "optimizer.max_iterations=2", "design.bar1.cells=[75, 20]",
            "design.bar2.cells=[150, 20]", "output.motion_every=0.03"});
-  ASSERT_EQ(ended.code, 0) << ended.err;
+  ASSERT_EQ(ended.code, kTooFew) << ended.err;
   const io::CsvTable motion = io::read_csv(folder + "/motion.csv");
   const auto t = motion.numbers("time"), x = motion.numbers("platform.x"),
              y = motion.numbers("platform.y"), dx = motion.numbers("platform.delta_x"),

@@ -40,6 +40,10 @@ inline pid_t start(const Scratch& scratch, const Words& arguments) {
   return child;
 }
 
+/// Exit code of a run that is whole, but ended after so few iterations that its design is worse
+/// than uniform material: "done, not usable".
+inline constexpr int kTooFew = 5;
+
 struct Ended {
   int code = -1;  ///< exit code, -1 when a signal ended it
   std::string out, err;

@@ -186,7 +186,8 @@ TEST(Sweep, KeepsTheOthersWhenOneFails) {
   const Ended ended =
       test::flexmorph(scratch, small("sweep", folder, {"--vary", "optimizer.max_iterations=3,5"}));
   EXPECT_EQ(ended.code, 3);
-  EXPECT_EQ(io::read_csv(folder + "/sweep.csv").texts("status"), (Words{"failed", "done"}));
+  EXPECT_EQ(io::read_csv(folder + "/sweep.csv").texts("status"),
+            (Words{"failed", "done, not usable"}));
   EXPECT_NE(ended.err.find("max_iterations=3"), std::string::npos) << ended.err;
   EXPECT_TRUE(std::filesystem::exists(folder + "/max_iterations=5/design.svg"));
 }

@@ -20,7 +20,7 @@ namespace {
 TEST(ThermalScene, BeamIsReadAndBuilt) {
   const Scene scene = read("slider_crank_heated");
   const Body& rod = scene.body("rod");
-  EXPECT_TRUE(rod.is_beam());
+  EXPECT_EQ(rod.place(), fem::TermPlace::beam);
   EXPECT_EQ(rod.elements, (std::array{6, 1}));
   EXPECT_EQ(rod.width, 5.76e-3);     // in the plane of the motion
   EXPECT_EQ(rod.thickness, 5.5e-3);  // across it
