@@ -166,6 +166,9 @@ void judge_finished(const Evidence& e, Judgement& out) {
     out.reason = "exit 0 without a run.json that is done";
     return;
   }
+  if (run.value("status", "") != "done")
+    findings.add(Verdict::degraded,
+                 "the result is of no use, and the run says so" + warning_in(run));
   const bool moves = run.contains("motion") || run.contains("static");
   for (const auto& [key, table] : {std::pair("motion", "motion.csv"), {"static", "path.csv"}})
     if (run.contains(key) && text_of(e.folder + "/" + table).empty())
