@@ -53,19 +53,35 @@ LoadRange reaching(std::span<const int> active, int column, const LoadRange& min
   return {std::min(first, mine.first + mine.count), std::max(0, end - first)};
 }
 
-/// Fewer loads are not worth a thread: products with a few columns stream L for little work.
-constexpr int kLoadsPerThread = 8;
+/// Loads go through a supernode in blocks that do not depend on the threads, or last bits would:
+/// BLAS adds in another order where there are more or fewer columns. A supernode stays in the cache
+/// from block to block.
+struct LoadBlocks {
+  static constexpr int kSmallest = 16;  ///< fewer loads stream L for little work
+  static constexpr int kMost = 4;
 
-/// Calls use(loads) for the share of every thread, at the same time. A share is the same loads for
-/// a given number of threads: results repeat bit for bit.
+  int n_loads, n;
+  int first = 0, last = 0;  ///< blocks of one thread
+
+  explicit LoadBlocks(int loads)
+      : n_loads(loads), n(std::clamp(loads / kSmallest, 1, kMost)), last(n) {}
+  LoadRange block(int k) const {
+    const int from = n_loads * k / n, to = n_loads * (k + 1) / n;
+    return {from, to - from};
+  }
+};
+
+/// Calls use(blocks) for the share of every thread, at the same time.
 template <class Use>
 void each_share(Eigen::Index n_loads, const Use& use) {
-  const int n = static_cast<int>(n_loads);
-  const int parts = std::clamp(n / kLoadsPerThread, 1, omp_get_max_threads());
+  const LoadBlocks all(static_cast<int>(n_loads));
+  const int parts = std::min(all.n, omp_get_max_threads());
 #pragma omp parallel for schedule(static, 1) num_threads(parts) if (parts > 1)
   for (int k = 0; k < parts; ++k) {
-    const int first = n * k / parts, end = n * (k + 1) / parts;
-    use(LoadRange{first, end - first});
+    LoadBlocks mine = all;
+    mine.first = all.n * k / parts;
+    mine.last = all.n * (k + 1) / parts;
+    use(mine);
   }
 }
 
@@ -111,8 +127,9 @@ struct SupernodalFactor::Impl {
   void add_update(int child, const double* update, int parent, double* block, double* own) const;
   int factorize_block(int s, double* block, double keep, double* own) const;
   int smallest_pivot(int s) const;
-  void forward(MatrixXd& x, std::span<const int> active, int tail, const LoadRange& mine) const;
-  void backward(MatrixXd& x, std::span<const int> active, const Fill& fill,
+  void forward(int s, MatrixXd& x, std::span<const int> active, int tail,
+               const LoadRange& mine) const;
+  void backward(int s, MatrixXd& x, std::span<const int> active, const Fill& fill,
                 const LoadRange& mine) const;
   void make_room(Eigen::Index n_loads) const {
     if (gathered.cols() < n_loads || gathered.rows() < most_below)
@@ -268,79 +285,80 @@ int SupernodalFactor::factorize() {
 void SupernodalFactor::forward(MatrixXd& x, std::span<const int> active, int tail) const {
   const Impl& m = *impl_;
   m.make_room(x.rows());
-  each_share(x.rows(), [&](const LoadRange& mine) { m.forward(x, active, tail, mine); });
+  each_share(x.rows(), [&](const LoadBlocks& mine) {
+    for (int s = 0; s < m.n_supernodes(); ++s)
+      for (int k = mine.first; k < mine.last; ++k) m.forward(s, x, active, tail, mine.block(k));
+  });
 }
 
 void SupernodalFactor::backward(MatrixXd& x, std::span<const int> active, const Fill& fill) const {
   const Impl& m = *impl_;
   m.make_room(x.rows());
-  each_share(x.rows(), [&](const LoadRange& mine) { m.backward(x, active, fill, mine); });
+  each_share(x.rows(), [&](const LoadBlocks& mine) {
+    for (int s = m.n_supernodes() - 1; s >= 0; --s)
+      for (int k = mine.first; k < mine.last; ++k) m.backward(s, x, active, fill, mine.block(k));
+  });
 }
 
-void SupernodalFactor::Impl::forward(MatrixXd& x, std::span<const int> active, int tail,
+void SupernodalFactor::Impl::forward(int s, MatrixXd& x, std::span<const int> active, int tail,
                                      const LoadRange& mine) const {
   const int ld = static_cast<int>(x.rows());
-  for (int s = 0; s < n_supernodes(); ++s) {
-    const Supernode node = supernode(s);
-    const LoadRange reached = reaching(active, node.first, mine);
-    if (reached.count == 0) break;  // the blocks of later supernodes reach even fewer loads
-    const LoadRange zero = reaching(active, node.last + tail - 1, mine);
-    const int count = reached.count - zero.count;
-    if (count == 0) continue;
-    const int load = reached.first + (zero.first == reached.first ? zero.count : 0);
-    double* y = &x(load, node.first);
-    solve_triangle(node.block, node.width(), node.height, true, y, ld, count);
-    if (node.n_below == 0) continue;
-    if (node.contiguous) {
-      push_below(node.rectangle(), node.n_below, node.width(), node.height, y, ld, count, 1,
-                 &x(load, node.below[0]), ld);
-      continue;
-    }
-    double* g = gather_buffer(mine);
-    push_below(node.rectangle(), node.n_below, node.width(), node.height, y, ld, count, 0, g,
-               count);
-    for (int k = 0; k < node.n_below; ++k) {
-      double* __restrict to = &x(load, node.below[k]);
-      const double* __restrict from = g + static_cast<std::ptrdiff_t>(k) * count;
-      for (int l = 0; l < count; ++l) to[l] += from[l];
-    }
+  const Supernode node = supernode(s);
+  const LoadRange reached = reaching(active, node.first, mine);
+  if (reached.count == 0) return;
+  const LoadRange zero = reaching(active, node.last + tail - 1, mine);
+  const int count = reached.count - zero.count;
+  if (count == 0) return;
+  const int load = reached.first + (zero.first == reached.first ? zero.count : 0);
+  double* y = &x(load, node.first);
+  solve_triangle(node.block, node.width(), node.height, true, y, ld, count);
+  if (node.n_below == 0) return;
+  if (node.contiguous) {
+    push_below(node.rectangle(), node.n_below, node.width(), node.height, y, ld, count, 1,
+               &x(load, node.below[0]), ld);
+    return;
+  }
+  double* g = gather_buffer(mine);
+  push_below(node.rectangle(), node.n_below, node.width(), node.height, y, ld, count, 0, g, count);
+  for (int k = 0; k < node.n_below; ++k) {
+    double* __restrict to = &x(load, node.below[k]);
+    const double* __restrict from = g + static_cast<std::ptrdiff_t>(k) * count;
+    for (int l = 0; l < count; ++l) to[l] += from[l];
   }
 }
 
-void SupernodalFactor::Impl::backward(MatrixXd& x, std::span<const int> active, const Fill& fill,
-                                      const LoadRange& mine) const {
+void SupernodalFactor::Impl::backward(int s, MatrixXd& x, std::span<const int> active,
+                                      const Fill& fill, const LoadRange& mine) const {
   const int ld = static_cast<int>(x.rows());
-  for (int s = n_supernodes() - 1; s >= 0; --s) {
-    const Supernode node = supernode(s);
-    const auto [load, count] = reaching(active, node.first, mine);
-    const int end = mine.first + mine.count;
-    x.block(mine.first, node.first, load - mine.first, node.width()).setZero();
-    x.block(load + count, node.first, end - load - count, node.width()).setZero();
-    if (count == 0) continue;
-    if (fill) fill(node.first, node.last, load, count);
-    // Lᵀ is upper triangular: held entries that start as zero stay zero, and so does the cut.
-    for (int l = load; l < load + count; ++l) {
-      const int kept = active[static_cast<std::size_t>(l)];
-      for (int k = kept; k < node.last; ++k) x(l, k) = 0;
-    }
-    double* y = &x(load, node.first);
-    if (node.n_below > 0) {
-      const double* below = &x(load, node.below[0]);
-      int below_ld = ld;
-      if (!node.contiguous) {
-        double* g = gather_buffer(mine);
-        for (int k = 0; k < node.n_below; ++k) {
-          const double* from = &x(load, node.below[k]);
-          std::copy(from, from + count, g + static_cast<std::ptrdiff_t>(k) * count);
-        }
-        below = g;
-        below_ld = count;
-      }
-      pull_below(node.rectangle(), node.n_below, node.width(), node.height, below, below_ld, count,
-                 y, ld);
-    }
-    solve_triangle(node.block, node.width(), node.height, false, y, ld, count);
+  const Supernode node = supernode(s);
+  const auto [load, count] = reaching(active, node.first, mine);
+  const int end = mine.first + mine.count;
+  x.block(mine.first, node.first, load - mine.first, node.width()).setZero();
+  x.block(load + count, node.first, end - load - count, node.width()).setZero();
+  if (count == 0) return;
+  if (fill) fill(node.first, node.last, load, count);
+  // Lᵀ is upper triangular: held entries that start as zero stay zero, and so does the cut.
+  for (int l = load; l < load + count; ++l) {
+    const int kept = active[static_cast<std::size_t>(l)];
+    for (int k = kept; k < node.last; ++k) x(l, k) = 0;
   }
+  double* y = &x(load, node.first);
+  if (node.n_below > 0) {
+    const double* below = &x(load, node.below[0]);
+    int below_ld = ld;
+    if (!node.contiguous) {
+      double* g = gather_buffer(mine);
+      for (int k = 0; k < node.n_below; ++k) {
+        const double* from = &x(load, node.below[k]);
+        std::copy(from, from + count, g + static_cast<std::ptrdiff_t>(k) * count);
+      }
+      below = g;
+      below_ld = count;
+    }
+    pull_below(node.rectangle(), node.n_below, node.width(), node.height, below, below_ld, count, y,
+               ld);
+  }
+  solve_triangle(node.block, node.width(), node.height, false, y, ld, count);
 }
 
 }  // namespace flexmorph::fem

@@ -237,31 +237,6 @@ TEST(Run, RepeatsItselfByteForByte) {
   EXPECT_EQ(a.size(), b.size());
 }
 
-// Threads share loads and cells in a fixed way: two of them repeat each other bit for bit, and find
-// what one finds but for rounding.
-TEST(Run, ThreadsDoNotChangeTheDesign) {
-  const Scratch scratch;
-  const auto folder_of = [&](const std::string& name, const char* threads) {
-    const std::string folder = scratch / name;
-    Words words = short_run(folder, {"esl.every=0.005", "esl.compress=false",  // 24 loads
-                                     "design.cell=0.0025"});
-    words.insert(words.end(), {"--threads", threads});
-    EXPECT_EQ(flexmorph(scratch, words).code, kTooFew);
-    return lasting(folder);
-  };
-  folder_of("one", "1");
-  const auto two = folder_of("two", "2"), again = folder_of("again", "2");
-  EXPECT_TRUE(two.at("history.csv") == again.at("history.csv"));
-  EXPECT_TRUE(two.at("components.csv") == again.at("components.csv"));
-  const Table a = read_csv(scratch / "one" + "/history.csv");
-  const Table b = read_csv(scratch / "two" + "/history.csv");
-  ASSERT_EQ(a.size(), 7u);
-  ASSERT_EQ(a.size(), b.size());
-  const auto column = std::find(a[0].begin(), a[0].end(), "objective") - a[0].begin();
-  for (size_t r = 1; r < a.size(); ++r)  // rounding grows some forty times in each iteration
-    EXPECT_NEAR(std::stod(a[r][column]), std::stod(b[r][column]), r == 1 ? 1e-12 : 1e-6) << r;
-}
-
 // A hub that suddenly turns 16000 times a second tears the plate apart within a few steps.
 TEST(Run, AFailureKeepsWhatCameBefore) {
   const Scratch scratch;

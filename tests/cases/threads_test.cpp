@@ -1,6 +1,5 @@
-// Runs with several threads: motions side by side, files written beside the design. What comes out
-// are the bytes of one thread. (So few loads are not shared among threads: the design is the same,
-// too.)
+// Runs with several threads: motions side by side, files written beside the design, cells and loads
+// shared. What comes out are the bytes of one thread.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -48,9 +47,10 @@ TEST(Threads, ChangeNoByte) {
   for (const char* threads : {"1", "2", "4"}) {
     const Scratch scratch;
     const std::string folder = scratch / "out";
-    // One load: products of blocks of loads are shared, and depend on how in their last bits.
+    // 48 loads, in three blocks that threads share.
     Words words = short_run(
-        folder, {"verify.mesh=[12,2]", "time.end=0.11", "output.plots=true", "esl.every=0.11"});
+        folder, {"verify.mesh=[12,2]", "output.plots=true", "esl.every=0.0025",
+                 "esl.compress=false", "design.cell=0.00125", "optimizer.max_iterations=2"});
     words.insert(words.end(), {"--threads", threads});
     const Ended ended = flexmorph(scratch, words);
     ASSERT_EQ(ended.code, kTooFew) << ended.err;
