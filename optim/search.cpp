@@ -151,7 +151,7 @@ bool Search::row(int iteration, const Point& point) {
   const bool first = previous_row_.size() == 0;
   previous_row_ = point.x;
   if (!go_on) {
-    stop(Stop::observer, "stopped by the observer");
+    stop(Stop::observer, "those who look on asked for it");
   } else if (it.kkt <= settings_.kkt_tolerance && it.violation <= settings_.feasibility) {
     stop(Stop::converged, "KKT residual " + scientific(it.kkt) + " and violation " +
                               scientific(it.violation) + " are below their tolerances");

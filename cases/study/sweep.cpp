@@ -66,7 +66,7 @@ std::vector<std::vector<std::string>> table_of(const Sweep& sweep,
   if (several) rows[0].emplace_back("body");
   for (const char* name : {"status", "compliance", "volume", "sharp compliance", "sharp volume",
                            "figure", "sharp/uniform", "connected", "smallest feature", "components",
-                           "peaks", "iterations", "solves", "CPU s"})
+                           "peaks", "kkt", "iterations", "solves", "CPU s", "stopped by"})
     rows[0].emplace_back(name);
   for (size_t k = 0; k < runs.size(); ++k) {
     std::vector<std::string> head;
@@ -81,8 +81,9 @@ std::vector<std::vector<std::string>> table_of(const Sweep& sweep,
                   io::to_text(sweep.figure(k, b, i), 5),
                   io::to_text(b.sharp_compliance / b.uniform_compliance, 4),
                   b.connected ? "yes" : "no", b.min_feature ? io::to_text(*b.min_feature, 4) : "-",
-                  io::to_text(b.components), io::to_text(b.peaks), io::to_text(b.iterations),
-                  io::to_text(b.solves), io::to_text(runs[k].seconds_cpu, 3)});
+                  io::to_text(b.components), io::to_text(b.peaks), io::to_text(b.kkt, 2),
+                  io::to_text(b.iterations), io::to_text(b.solves),
+                  io::to_text(runs[k].seconds_cpu, 3), b.stop.substr(0, b.stop.find(':'))});
     }
     if (!runs[k].bodies.empty()) continue;
     std::vector<std::string>& row = rows.emplace_back(head);
@@ -99,7 +100,7 @@ void write_csv(const Sweep& sweep, std::span<const VariantResult> runs, const st
   for (const char* name :
        {"status", "body", "compliance", "volume", "sharp_compliance", "sharp_volume", "figure",
         "uniform_compliance", "kkt", "connected", "min_feature", "components", "peaks",
-        "disconnected", "iterations", "state_solves", "seconds_cpu", "message"})
+        "disconnected", "iterations", "state_solves", "seconds_cpu", "stop", "message"})
     columns.emplace_back(name);
   io::CsvWriter csv(path, columns);
   for (size_t k = 0; k < runs.size(); ++k) {
@@ -113,7 +114,8 @@ void write_csv(const Sweep& sweep, std::span<const VariantResult> runs, const st
                b.body, b.compliance, b.volume, b.sharp_compliance, b.sharp_volume,
                sweep.figure(k, b, i), b.uniform_compliance, b.kkt, b.connected,
                b.min_feature ? io::Cell(*b.min_feature) : io::Cell(), b.components, b.peaks,
-               b.disconnected, b.iterations, b.solves, runs[k].seconds_cpu, runs[k].message})
+               b.disconnected, b.iterations, b.solves, runs[k].seconds_cpu, b.stop,
+               runs[k].message})
         row.push_back(cell);
       csv.row(row);
     }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "optim/mmc/shared_problem.h"
+#include "optim/search.h"
 
 namespace flexmorph::mmc {
 namespace {
@@ -23,7 +24,8 @@ struct Part {
   const TdfSettings* tdf = nullptr;  // of the stage
   std::optional<Turnover> turnover;  // of the stage
   BodyOutcome outcome;
-  Design next;  // when a list of components changed: where to go on
+  optim::Stop stopped = optim::Stop::failed;  // the optimizer, last
+  Design next;                                // when a list of components changed: where to go on
 
   explicit Part(const LoadedBody& body)
       : problem(body.problem),
@@ -175,6 +177,7 @@ class Designer {
             {ComponentEvent::Kind::restored, 0, best.designs[k].n_components()});
       p.outcome.change = best.changes[k];
       p.outcome.kkt = best.result.kkt;
+      p.stopped = best.result.stop;
       p.outcome.stop = optim::to_string(best.result.stop) +
                        (best.result.message.empty() ? "" : ": " + best.result.message);
       measure(p);
@@ -323,6 +326,13 @@ class Designer {
     out.iterations = iterations_;
     out.evaluations = evaluations_;
     const bool analysed = settings_.optimizer.max_iterations == 0;
+    // Stages and changes of components stop the optimizer, too: that is no reason of the whole.
+    if (!going_)
+      out.stop = "interrupted after " + std::to_string(iterations_) + " iterations";
+    else if (!analysed &&
+             (p.stopped == optim::Stop::iteration_limit || p.stopped == optim::Stop::observer))
+      out.stop = "iteration limit: " + std::to_string(iterations_) + " iterations, KKT residual " +
+                 optim::scientific(out.kkt);
     out.sharp = analysed ? without_outlines(p)
                          : sharp_design(p.problem, p.problem.design.components(), p.loads);
     const CellFactors sharp = p.ersatz.sharp(out.sharp.fractions);
