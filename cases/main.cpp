@@ -2,7 +2,11 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <filesystem>
+#include <system_error>
 
 #include "cases/accuracy/accuracy.h"
 #include "cases/keys/book.h"
@@ -14,6 +18,7 @@
 #include "cases/study/sweep.h"
 #include "geometry/plain_numbers.h"
 #include "geometry/processor.h"
+#include "io/case_document.h"
 #include "io/case_parser.h"
 #include "io/files.h"
 
@@ -152,6 +157,30 @@ std::vector<CommandWords> command_words(const CLI::App& app) {
   return out;
 }
 
+/// @throws Error (input) for a first word that is neither a command nor an option.
+void refuse_unknown_command(const CLI::App& app, const std::string& word) {
+  if (word.empty() || word[0] == '-') return;
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  if (std::find(names.begin(), names.end(), word) != names.end()) return;
+  const std::vector<std::string> shipped = shipped_cases();
+  if (std::filesystem::is_regular_file(word) ||
+      std::find(shipped.begin(), shipped.end(), word) != shipped.end())
+    throw Error::input("'" + word + "' is a case: flexmorph run " + word);
+  const std::string close = flexmorph::io::nearest(word, names);
+  std::string known;
+  for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
+  throw Error::input("'" + word + "' is no command" +
+                     (close.empty() ? "; there are " + known : ", did you mean '" + close + "'?"));
+}
+
+/// What stands in buffers goes out, or is missed: a full disk, a closed pipe.
+/// @throws Error (input).
+void finish_output() {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+    throw Error::input("the output cannot be written: " + std::generic_category().message(errno));
+}
+
 int parse_and_run(int argc, char** argv) {
   CLI::App app("Topology optimization of flexible mechanisms", "flexmorph");
   app.set_version_flag("--version", std::string("flexmorph ") + kVersion);
@@ -160,7 +189,8 @@ int parse_and_run(int argc, char** argv) {
   CLI::App* run = app.add_subcommand("run", "runs a case and writes its run folder");
   add_case(*run, options.case_name, options.overrides);
   run->add_option("-o,--output", options.directory, "run folder (default runs/<name>)");
-  run->add_option("--threads", options.threads, "threads for loads, cells, and motions side by side")
+  run->add_option("--threads", options.threads,
+                  "threads for loads, cells, and motions side by side")
       ->check(CLI::Range(1, 256));
   run->add_flag("--condition", options.condition,
                 "estimates the condition of the last matrices, for run.json");
@@ -186,6 +216,12 @@ int parse_and_run(int argc, char** argv) {
   completion->add_option("shell", shell, "bash or zsh")
       ->required()
       ->check(CLI::IsMember({"bash", "zsh"}));
+  CLI::App* help = app.add_subcommand("help", "this list");
+  const std::string all_help = app.help();  // later it would be that of one command
+  if (argc > 1)
+    refuse_unknown_command(app, argv[1]);
+  else
+    std::fputs(all_help.c_str(), stdout);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -197,6 +233,7 @@ int parse_and_run(int argc, char** argv) {
   if (*sweep) return sweep_case(sweep_options);
   if (*accuracy) return accuracy_case(accuracy_options);
   if (*stability) return check_stability(stability_options);
+  if (*help) std::fputs(all_help.c_str(), stdout);
   if (*keys) print_keys(keys_options);
   if (*completion) std::fputs(completion_script(shell, command_words(app)).c_str(), stdout);
   if (*check) std::fputs(check_case(options).c_str(), stdout);
@@ -208,11 +245,13 @@ int parse_and_run(int argc, char** argv) {
 }  // namespace
 
 /// Exit codes: 0 done, 1 a defect of the program, 2 bad input, 3 numerical failure, 4 interrupted,
-/// 5 done, but an expectation of the case was missed.
+/// 5 done, but an expectation of the case was missed, or the result is of no use.
 int main(int argc, char** argv) {
   const flexmorph::PlainNumbers plain;  // messages, too
   try {
-    return parse_and_run(argc, argv);
+    const int code = parse_and_run(argc, argv);
+    finish_output();
+    return code;
   } catch (const Error& error) {
     std::fprintf(stderr, "flexmorph: %s\n", error.what());
     return error.kind() == Error::Kind::input ? 2 : 3;

@@ -245,12 +245,15 @@ void Table::settle(const Key& key, const Value& value) const {
   place_->note(key, place_->find(key.name) ? "" : toml_text(value));
 }
 
-std::string Table::beside(const std::string& name) const {
+std::string Table::path_of(const Key& key) const {
+  const std::string name = string(key);
+  const CaseNode* node = place_->find(key.name);
+  if (node != nullptr && node->is_option) return name;
   return (std::filesystem::path(place_->document->path).parent_path() / name).string();
 }
 
-std::string Table::absolute(const std::string& name) const {
-  return std::filesystem::absolute(beside(name)).string();
+std::string Table::absolute(const Key& key) const {
+  return std::filesystem::absolute(path_of(key)).string();
 }
 
 void Table::fail(const Key& key, const std::string& allowed) const {

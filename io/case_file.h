@@ -77,10 +77,11 @@ class Table {
   /// The same about the table as a whole: "<file:line>: <path>: <allowed>".
   [[noreturn]] void fail(const std::string& allowed) const;
 
-  /// Path of a file that the case names: relative names start at the folder of the case file.
-  std::string beside(const std::string& name) const;
+  /// Path of the file that a key names: relative names start at the folder of the case file, those
+  /// of a --set option at the working directory, as others on the command line.
+  std::string path_of(const Key& key) const;
   /// The same from the root of the file system.
-  std::string absolute(const std::string& name) const;
+  std::string absolute(const Key& key) const;
 
  private:
   friend class CaseFile;

@@ -20,6 +20,7 @@
 #include "cases/run/version.h"
 #include "fem/dynamics/side_by_side.h"
 #include "geometry/cpu_time.h"
+#include "io/case_document.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
@@ -300,13 +301,19 @@ std::vector<std::string> shipped_cases() {
 }
 
 std::string find_case(const std::string& name) {
-  if (std::filesystem::is_regular_file(name)) return name;
+  if (name == "-") return "/dev/stdin";
+  // A pipe is a file as well; a folder is refused by who reads it.
+  const std::vector<std::string> shipped = shipped_cases();
+  if (std::find(shipped.begin(), shipped.end(), name) != shipped.end() &&
+      !std::filesystem::is_regular_file(name))
+    return std::string(kCasesFolder) + "/" + name + ".toml";
+  if (std::filesystem::exists(name)) return name;
+  const std::string stem = std::filesystem::path(name).stem().string();
+  const std::string close = io::nearest(stem, shipped);
   std::string known;
-  for (const std::string& shipped : shipped_cases()) {
-    if (shipped == name) return std::string(kCasesFolder) + "/" + name + ".toml";
-    known += (known.empty() ? "" : ", ") + shipped;
-  }
-  throw Error::input("case '" + name + "': no such file, and not a shipped case (" + known + ")");
+  for (const std::string& each : shipped) known += (known.empty() ? "" : ", ") + each;
+  throw Error::input("case '" + name + "': no such file, and not a shipped case" +
+                     (close.empty() ? " (" + known + ")" : ", did you mean '" + close + "'?"));
 }
 
 int run_case(const RunOptions& options) {

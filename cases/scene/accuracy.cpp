@@ -72,7 +72,7 @@ void read_shared(const Table& t, Interest& interest) {
   if (reference.has(kValue))
     interest.value = reference.number(kValue);
   else
-    interest.file = reference.beside(reference.string(kFile));
+    interest.file = reference.path_of(kFile);
   interest.source = reference.string(kSource);
 }
 
@@ -97,7 +97,7 @@ std::vector<std::string> overrides_of_reference_files(const Table& t) {
     if (!of.has(kReference)) return;
     const Table reference = of.table(kReference);
     if (reference.is_string(kFile))
-      out.push_back(path + ".reference.file='" + reference.absolute(reference.string(kFile)) + "'");
+      out.push_back(path + ".reference.file='" + reference.absolute(kFile) + "'");
   };
   keep(t, "accuracy");
   if (t.is_string(kQuantity) || t.is_list_of_strings(kQuantity)) return out;

@@ -143,7 +143,7 @@ std::function<fem::Motion(double)> read_csv_drive(const Table& t, double end, st
   };
   io::CsvTable csv;
   try {
-    csv = io::read_csv(t.beside(name));
+    csv = io::read_csv(t.path_of(kCsv));
   } catch (const Error& error) {
     pass_on(t, kCsv, error);
   }
@@ -222,8 +222,7 @@ std::vector<std::string> overrides_of_drive_files(const Table& root) {
   const std::vector<Table> drives = root.tables(tables::kDrive);
   for (size_t i = 0; i < drives.size(); ++i)
     if (drives[i].is_string(kCsv))
-      out.push_back("drive." + std::to_string(i) + ".csv='" +
-                    drives[i].absolute(drives[i].string(kCsv)) + "'");
+      out.push_back("drive." + std::to_string(i) + ".csv='" + drives[i].absolute(kCsv) + "'");
   return out;
 }
 

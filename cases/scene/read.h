@@ -20,6 +20,7 @@ void read_drives(const io::Table& root, Scene& scene);
 /// See overrides_of_files(). @param t  [accuracy]
 std::vector<std::string> overrides_of_drive_files(const io::Table& root);
 std::vector<std::string> overrides_of_reference_files(const io::Table& t);
+std::vector<std::string> overrides_of_start_files(const io::Table& root);
 
 /// A number, or the name of a drive in its place.
 Law read_law(const io::Table& t, const io::Key& key, const Scene& scene,

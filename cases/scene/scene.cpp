@@ -183,6 +183,7 @@ bool is_whole(double ratio) {
 std::vector<std::string> overrides_of_files(const io::CaseFile& file) {
   const io::Table root = file.root();
   std::vector<std::string> out = overrides_of_drive_files(root);
+  for (std::string& each : overrides_of_start_files(root)) out.push_back(std::move(each));
   if (!root.has(tables::kAccuracy)) return out;
   for (std::string& each : overrides_of_reference_files(root.table(tables::kAccuracy)))
     out.push_back(std::move(each));

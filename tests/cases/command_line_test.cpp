@@ -22,6 +22,58 @@ TEST(CommandLine, SaysItsVersion) {
   EXPECT_EQ(ended.err, "");
 }
 
+TEST(CommandLine, SaysWhatWasProbablyMeant) {
+  const Scratch scratch;
+  struct Meant {
+    Words words;
+    std::string answer;
+  };
+  for (const Meant& each : std::vector<Meant>{
+           {{"chek", "short_beam"}, "'chek' is no command, did you mean 'check'?"},
+           {{"short_beam"}, "'short_beam' is a case: flexmorph run short_beam"},
+           {{"run", "shortbeam"}, "not a shipped case, did you mean 'short_beam'?"},
+           {{"run", "four-bar.toml"}, "not a shipped case, did you mean 'four_bar'?"},
+           {{"check", "."}, ".: a directory; a case is one TOML file"},
+           {{"keys", "boddy"}, "did you mean 'body'?"}}) {
+    const Ended ended = flexmorph(scratch, each.words);
+    EXPECT_EQ(ended.code, 2) << each.words[0];
+    EXPECT_EQ(lines_of(ended.err).size(), 1u) << ended.err;
+    EXPECT_TRUE(contains(ended.err, each.answer)) << ended.err;
+  }
+  const Ended help = flexmorph(scratch, {"help"});
+  EXPECT_EQ(help.code, 0);
+  EXPECT_TRUE(contains(help.out, "runs a case and writes its run folder")) << help.out;
+}
+
+// A case may come through a pipe; and what nobody can write is no success.
+TEST(CommandLine, ReadsStandardInputAndMissesAFullDisk) {
+  const Scratch scratch;
+  const std::string out = scratch / "checked", program = std::string("'") + FLEXMORPH_PROGRAM +
+                                                         "' check - <'" + FLEXMORPH_SHORT_CASE +
+                                                         "' ";
+  ASSERT_EQ(std::system((program + ">'" + out + "'").c_str()), 0);
+  EXPECT_TRUE(contains(contents_of(out), "\nactive\n"));
+  const std::string err = scratch / "err";
+  EXPECT_EQ(WEXITSTATUS(std::system((program + ">/dev/full 2>'" + err + "'").c_str())), 2);
+  EXPECT_TRUE(contains(contents_of(err), "the output cannot be written")) << contents_of(err);
+}
+
+// Files of components are found beside the case that names them, those of --set where one is.
+TEST(CommandLine, FindsFilesBesideTheCase) {
+  const Scratch scratch;
+  scratch.write("start.csv", "X0,Y0,half_length,angle,c1,c2,c3\n0.3,0.5,0.2,0,0.2,0.2,0.2\n");
+  std::string text = contents_of(std::string(FLEXMORPH_CASES) + "/short_beam.toml");
+  const size_t at = text.find("components = ");
+  ASSERT_NE(at, std::string::npos);
+  text.insert(at, "start = \"start.csv\"\n");
+  const std::string beside = scratch.write("beside.toml", text);
+  EXPECT_EQ(flexmorph(scratch, {"check", beside}).code, 0);
+  const Ended elsewhere =
+      flexmorph(scratch, {"check", beside, "--set", "design.start=\"start.csv\""});
+  EXPECT_EQ(elsewhere.code, 2);
+  EXPECT_TRUE(contains(elsewhere.err, "start.csv: cannot be read")) << elsewhere.err;
+}
+
 TEST(CommandLine, ListsTheShippedCases) {
   const Scratch scratch;
   const Ended ended = flexmorph(scratch, {"cases"});

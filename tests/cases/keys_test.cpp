@@ -168,13 +168,13 @@ TEST(ExplainedCases, RunAsTheCaseItself) {
   const Words changes = {"time.end=0.02", "optimizer.max_iterations=2"};
   const std::string plain = scratch / "plain", explained = scratch / "explained",
                     again = scratch / "again";
-  ASSERT_EQ(flexmorph(scratch, short_run(plain, changes)).code, 0);
+  ASSERT_EQ(flexmorph(scratch, short_run(plain, changes)).code, kTooFew);
   Words words = short_run(explained, changes);
   words.emplace_back("--explain");
-  ASSERT_EQ(flexmorph(scratch, words).code, 0);
+  ASSERT_EQ(flexmorph(scratch, words).code, kTooFew);
   const std::string kept = explained + "/case.toml";
   EXPECT_TRUE(contains(contents_of(kept), "kkt_tolerance = 1e-04 "));
-  ASSERT_EQ(flexmorph(scratch, {"run", kept, "-o", again}).code, 0);
+  ASSERT_EQ(flexmorph(scratch, {"run", kept, "-o", again}).code, kTooFew);
   for (const char* file : {"motion.csv", "components.csv", "case.toml"})
     EXPECT_EQ(contents_of(again + "/" + file), contents_of(explained + "/" + file)) << file;
   for (const char* file : {"motion.csv", "components.csv"})

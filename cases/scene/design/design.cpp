@@ -4,6 +4,7 @@
 #include "cases/scene/design/keys.h"
 #include "cases/scene/elements/row.h"
 #include "cases/scene/read.h"
+#include "cases/scene/tables.h"
 #include "io/exports.h"
 #include "io/files.h"
 #include "optim/mmc/clean_up.h"
@@ -212,9 +213,8 @@ void read_components(const Table& t, const Body& body, BodyDesign& design) {
   design.half_thickness = t.number(kHalfThickness.within(design.min_thickness, 0.5 * body.width),
                                    std::max(design.min_thickness, filling));
   if (t.has(kStart)) {
-    const std::string path = t.string(kStart);
     try {
-      design.start = io::read_components_csv(path);
+      design.start = io::read_components_csv(t.path_of(kStart));
     } catch (const Error& error) {
       t.fail(kStart, error.what());
     }
@@ -278,6 +278,16 @@ BodyDesign read_static_design(const Table& t, const Scene& scene) {
 }
 
 }  // namespace
+
+std::vector<std::string> overrides_of_start_files(const Table& root) {
+  std::vector<std::string> out;
+  if (!root.has(tables::kDesign)) return out;
+  const std::vector<Table> designs = root.tables(tables::kDesign);
+  for (size_t i = 0; i < designs.size(); ++i)
+    if (designs[i].is_string(kStart))
+      out.push_back("design." + std::to_string(i) + ".start='" + designs[i].absolute(kStart) + "'");
+  return out;
+}
 
 const io::Key& design_keys::kCoupling = kSharesMass;
 
