@@ -331,6 +331,17 @@ TEST(Run, SaysWhichExpectationsItMisses) {
   EXPECT_TRUE(run["expect"]["plate.tip_deflection.largest"]["holds"].get<bool>());
 }
 
+// With changes it is another case: said, but no failure.
+TEST(Run, SaysWhatChangesMakeOfExpectations) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const Ended ended = flexmorph(
+      scratch, {"run", "beam_heated_static", "-o", folder, "--set", "body.youngs_modulus=1e9"});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NE(ended.err.find("not as the case without --set: "), std::string::npos) << ended.err;
+  EXPECT_NE(ended.out.find("done: "), std::string::npos) << ended.out;
+}
+
 TEST(Run, RefusesExpectationsOfNumbersThatNoRunHas) {
   const Scratch scratch;
   const std::string text = contents_of(FLEXMORPH_SHORT_CASE) + "\n[expect]\n";

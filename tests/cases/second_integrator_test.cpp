@@ -126,13 +126,16 @@ Verdict judge(const Interval& interval) {
   return out;
 }
 
-/// The difference is explained, and what explains it is small against the motion.
+/// The difference is explained, and what explains it is small against the motion. An estimate from
+/// two levels is multiplied by 3 (Roache 1994, J. Fluids Eng. 116, 405-413): here that of IDA, whose
+/// velocities on the platform are only twice as good at a tenth of the tolerance, so that two runs
+/// differ by about their error, more or less as the last bits have it.
 void expect_agreement(const Verdict& v, double multipliers) {
   const auto expect = [](const char* what, const VectorXd& end, const VectorXd& difference,
                          const VectorXd& ida, const VectorXd& alpha, double part) {
-    const double open = End::most(ida) + End::most(alpha);
-    EXPECT_LT(End::most(difference), open) << what;
-    EXPECT_LT(open, part * End::most(end)) << what;
+    const double by_ida = End::most(ida), by_alpha = End::most(alpha);
+    EXPECT_LT(End::most(difference), 3 * by_ida + by_alpha) << what;
+    EXPECT_LT(by_ida + by_alpha, part * End::most(end)) << what;
   };
   expect("positions", v.end.q, v.difference.q, v.ida.q, v.alpha.q, 1e-6);
   expect("velocities", v.end.v, v.difference.v, v.ida.v, v.alpha.v, 1e-3);
