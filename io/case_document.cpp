@@ -284,8 +284,13 @@ void CaseDocument::refuse_unknown_keys() const {
   if (messages.empty()) return;
   std::stable_sort(messages.begin(), messages.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
+  // As many as fit on a screen: who has more has mistaken something else.
+  constexpr size_t kMost = 19;
   std::string all;
-  for (const auto& [line, message] : messages) all += (all.empty() ? "" : "\n") + message;
+  for (size_t i = 0; i < std::min(kMost, messages.size()); ++i)
+    all += (all.empty() ? "" : "\n") + messages[i].second;
+  if (messages.size() > kMost)
+    all += "\n" + path + ": " + std::to_string(messages.size() - kMost) + " more unknown keys";
   throw Error::input(all);
 }
 

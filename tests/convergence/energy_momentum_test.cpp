@@ -203,7 +203,8 @@ TEST(EnergyMomentum, ConvergesWithOrderTwoToTheLimitOfGeneralizedAlpha) {
                       .q = (4 * fine.q - coarse.q) / 3,
                       .v = (4 * fine.v - coarse.v) / 3,
                       .a = {},
-                      .lambda = {}};
+                      .lambda = {},
+                      .turned = {}};
     const VectorXd scales = model.scales();
     for (const bool velocity : {false, true}) {
       const auto rate = testing::fit_rate({8e-4, 4e-4, 2e-4, 1e-4}, [&](double h) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 
 #include "tests/io/scratch.h"
@@ -120,10 +121,14 @@ TEST_F(CaseFiles, ListsOfLists) {
       "plate.toml:4: mixed = [1, \"b\"]: a list: lists of 1 numbers; it is a finite number");
 }
 
+// Those of the command line lie where it is typed.
 TEST_F(CaseFiles, FilesLieBesideTheCase) {
-  const CaseFile file(scratch_.write("plate.toml", kText));
-  EXPECT_EQ(file.root().beside("motion.csv"), scratch_ / "motion.csv");
-  EXPECT_EQ(plate(file.root()).beside("/elsewhere.csv"), "/elsewhere.csv");
+  const std::string path = scratch_.write("plate.toml", kText),
+                    other = scratch_.write("other.toml", "title = '/elsewhere.csv'\n");
+  EXPECT_EQ(CaseFile(path).root().path_of(kTitle), scratch_ / "a plate");
+  EXPECT_EQ(CaseFile(other).root().path_of(kTitle), "/elsewhere.csv");
+  const Overrides typed = {"title='motion.csv'"};
+  EXPECT_EQ(CaseFile(path, typed).root().path_of(kTitle), "motion.csv");
 }
 
 TEST_F(CaseFiles, RangeIsSaidWithUnit) {
@@ -222,6 +227,18 @@ TEST_F(CaseFiles, UnknownKeysAreErrors) {
                 },
                 {"bdoy.x=1"}),
             "--set bdoy.x=1: [bdoy]: unknown key, did you mean 'body'?");
+}
+
+TEST_F(CaseFiles, UnknownKeysFillOneScreenAtMost) {
+  std::vector<std::string> changes;
+  for (int k = 0; k < 100; ++k) changes.push_back("junk" + std::to_string(k) + "=1");
+  const std::string words = error(
+      [](const Table& root) {
+        for (auto k : {"title", "time", "body"}) root.has(quick("", k));
+      },
+      changes);
+  EXPECT_EQ(std::count(words.begin(), words.end(), '\n'), 19);
+  EXPECT_TRUE(ends(words, "plate.toml: 81 more unknown keys")) << words;
 }
 
 TEST_F(CaseFiles, FilesThatAreNone) {

@@ -168,6 +168,7 @@ TEST(Formula, SaysWhatIsWrongAndWhere) {
       {"1.2.3*t", "character 1: '1.2.3' is no number"},
       {"1e999*t", "character 1: '1e999' is no number"},
       {"1/0", "division by zero"},
+      {"0^t", "division by zero, or a power of 0 whose exponent is not positive at all times"},
       {"log(-1)", "no real number"},
       {"sqrt(t - 0.5)", "its value at t = 0 s is no real number"},
       {"1/(t - 0.5)", "its value at t = 0.5 s is infinite"},
