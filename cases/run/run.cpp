@@ -294,7 +294,8 @@ void build_scene(const Scene& scene) {
 
 std::vector<std::string> shipped_cases() {
   std::vector<std::string> out;
-  for (const auto& entry : std::filesystem::directory_iterator(kCasesFolder))
+  std::error_code none;  // of a program that was moved away from its cases
+  for (const auto& entry : std::filesystem::directory_iterator(kCasesFolder, none))
     if (entry.path().extension() == ".toml") out.push_back(entry.path().stem().string());
   std::sort(out.begin(), out.end());
   return out;
@@ -302,11 +303,11 @@ std::vector<std::string> shipped_cases() {
 
 std::string find_case(const std::string& name) {
   if (name == "-") return "/dev/stdin";
-  // A pipe is a file as well; a folder is refused by who reads it.
+  if (std::filesystem::is_regular_file(name)) return name;
   const std::vector<std::string> shipped = shipped_cases();
-  if (std::find(shipped.begin(), shipped.end(), name) != shipped.end() &&
-      !std::filesystem::is_regular_file(name))
+  if (std::find(shipped.begin(), shipped.end(), name) != shipped.end())
     return std::string(kCasesFolder) + "/" + name + ".toml";
+  // A pipe is a file as well; a folder is refused by who reads it.
   if (std::filesystem::exists(name)) return name;
   const std::string stem = std::filesystem::path(name).stem().string();
   const std::string close = io::nearest(stem, shipped);

@@ -66,10 +66,15 @@ class Inertia final : public Term {
   }
 
   void add_tangents(const Batch& x, const Weights& w, Lanes* tangent) const override {
-    if (x.dim == 2)
-      add_lanes<2>(x, w, tangent);
-    else
-      add_lanes<3>(x, w, tangent);
+    const LaneMatrices& m = batches_[static_cast<size_t>(x.first / kLanes)];
+    const auto n = static_cast<size_t>(x.n_shapes), d = static_cast<size_t>(x.dim);
+    for (size_t l = 0; l < n; ++l)
+      for (size_t k = 0; k < n; ++k) {
+        const size_t at = l * n + k;
+        Lanes entry = w.a * m.mass[at];
+        if (!m.convection.empty()) entry += w.v * m.convection[at] + w.q * m.transport[at];
+        for (size_t c = 0; c < d; ++c) tangent[(d * l + c) * n * d + d * k + c] += entry;
+      }
   }
 
   void add_free_force(int e, const Local& x, FreeForce& force) const override {
@@ -131,23 +136,6 @@ class Inertia final : public Term {
   }
 
  private:
-  template <size_t d>
-  void add_lanes(const Batch& x, const Weights& w, Lanes* tangent) const {
-    const LaneMatrices& m = batches_[static_cast<size_t>(x.first / kLanes)];
-    const auto n = static_cast<size_t>(x.n_shapes);
-    const Lanes *mass = m.mass.data(), *convection = m.convection.data(),
-                *transport = m.transport.data();
-    const bool flows = !m.convection.empty();
-    for (size_t l = 0; l < n; ++l)
-      for (size_t k = 0; k < n; ++k) {
-        const size_t at = l * n + k;
-        Lanes entry = w.a * mass[at];
-        if (flows) entry += w.v * convection[at] + w.q * transport[at];
-        Lanes* const to = tangent + d * l * n * d + d * k;
-        for (size_t c = 0; c < d; ++c) to[c * (n * d + 1)] += entry;
-      }
-  }
-
   using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxShapes, kMaxShapes>;
   using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxShapes, 1>;
   struct Matrices {
