@@ -250,7 +250,8 @@ void StaticSolver::cell_energies(const MatrixXd& displacements, const VectorXd& 
   const Eigen::Index ld = displacements.rows();
   energies.setZero(g.n_cells());
   m.held.setZero(ld);
-  m.energy_of_load.resize(ld, omp_get_max_threads());
+  // Columns begin alike in memory: Eigen adds in an order that depends on it.
+  m.energy_of_load.resize((ld + 7) / 8 * 8, omp_get_max_threads());
 
 #pragma omp parallel for schedule(static)
   for (int i = m.first_root; i < g.nx; ++i) {
