@@ -142,11 +142,20 @@ void add_holds(const Scene& scene, const Body& body, fem::Model& model) {
   if (!all.empty()) model.add_joint(fem::make_hold(body.name + ".held", body.name, std::move(all)));
 }
 
+/// What the prestretched start looks ahead by, at most (fem::start_state()) [s].
+constexpr double kAhead = 2e-4;
+
 /// How a mechanism starts: at rest in equilibrium where its drives do not determine it all.
 /// @throws Error (input) when that is asked for but it does not rest.
 fem::Start start_of(const Scene& scene, TwinMotion& twin) {
-  if (scene.time.start != Start::prestretched) return fem::Start::rigid;
-  if (twin.degrees_of_freedom() == 0) return fem::Start::prestretched;
+  // Where nothing bends nothing is stretched.
+  if (scene.time.start != Start::prestretched || scene.bodies.empty()) return fem::Start::rigid;
+  if (twin.degrees_of_freedom() == 0)
+    return twin.reaches(kAhead) ? fem::Start::prestretched : fem::Start::rigid;
+  if (twin.is_indeterminate())
+    throw Error::input(
+        "time.start: \"prestretched\" needs a motion of the rigid mechanism, but its joints hold "
+        "more than it has freedoms: start = \"rigid\"");
   // What is left of it is the start of a swing; the equilibrium of the plates ends it.
   const double nearly = 0.05 * std::max(1.0, scene.gravity ? scene.gravity->norm() : 0.0);
   const double speed = twin.start_speed(), acceleration = twin.start_acceleration();

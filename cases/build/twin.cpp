@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "cases/build/build.h"
+#include "cases/build/given_velocities.h"
 #include "cases/build/joints.h"
 #include "cases/scene/joints/row.h"
 #include "fem/dynamics/integrator.h"
@@ -60,17 +61,28 @@ Error refusal(const Scene& scene, const fem::Diagnosis& diagnosis) {
   return Error::input(words);
 }
 
+/// Do rows miss each other in position?
+bool misses_positions(const fem::Diagnosis& diagnosis) {
+  return std::any_of(diagnosis.groups.begin(), diagnosis.groups.end(),
+                     [](const fem::DependentGroup& group) { return group.miss > 0; });
+}
+
 /// Assembles; says which joints are to blame where there is no position or velocity because they
-/// hold more than there is, wherever the bodies are.
-void assemble_start(const Scene& scene, fem::Workspace& model, fem::State& x) {
+/// hold more than there is, wherever the bodies are. False where there are positions, but only
+/// plates that bend have velocities: all are 0 then.
+bool assemble_start(const Scene& scene, fem::Workspace& model, fem::State& x) {
   const fem::State guess = x;
   try {
     fem::assemble(model, x);
+    return true;
   } catch (const Error& error) {
     const fem::Diagnosis anywhere = fem::diagnose(model, guess);
     if (error.kind() == Error::Kind::input || anywhere.is_independent()) throw;
     const fem::Diagnosis nearest = fem::diagnose(model, x);  // x is the best fit
-    throw refusal(scene, nearest.is_contradictory() ? nearest : anywhere);
+    if (scene.bodies.empty() || misses_positions(nearest) || !nearest.is_contradictory())
+      throw refusal(scene, nearest.is_contradictory() ? nearest : anywhere);
+    x.v.setZero();
+    return false;
   }
 }
 
@@ -162,31 +174,28 @@ void Twin::add_carried(const Joint& joint) {
                                   {f.origin.y(), f.origin_rate.y(), f.origin_acceleration.y()}};
                             },
                             {}));
-  model_.add_joint(fem::make_angle_drive(joint.name, {}, {joint.body}, [hub](double t) {
-    const fem::FrameMotion f = hub(t);
-    return fem::Motion{f.angle, f.angle_rate, f.angle_acceleration};
-  }));
+  model_.add_joint(
+      fem::make_angle_drive(joint.name, {}, {joint.body, {0, 0}, plate.angle, {}}, [hub](double t) {
+        const fem::FrameMotion f = hub(t);
+        return fem::Motion{f.angle, f.angle_rate, f.angle_acceleration};
+      }));
 }
 
 fem::State Twin::guess() const {
   fem::State x = model_.reference();
-  const auto put = [&](const std::string& name, const Vec2& r, double angle, const Vec2& rate,
-                       double spin) {
-    const int at = model_.body(name).first_dof;
-    const Vec2 u(std::cos(angle), std::sin(angle));
-    x.q.segment<4>(at) << r, u;
-    x.v.segment<4>(at) << rate, -spin * u.y(), spin * u.x();
+  const auto put = [&](const std::string& name, const Vec2& r, double angle) {
+    x.q.segment<4>(model_.body(name).first_dof) << r, std::cos(angle), std::sin(angle);
   };
-  for (const RigidBody& b : scene_.rigid_bodies)
-    put(b.name, b.position, b.angle, b.velocity, b.angular_velocity);
+  for (const RigidBody& b : scene_.rigid_bodies) put(b.name, b.position, b.angle);
   for (const Body& b : scene_.bodies) {
     const Pose pose = start_pose(scene_, b);
     // The origin of the twin: the end of the straight axis, also of an arc.
     Vec2 end =
         pose.origin + fem::rotation(pose.angle) * Vec2(b.longest(scene_.time.end) - pose.line, 0);
     for (const Joint& j : scene_.joints)
-      if (j.body == b.name && j.edge == "free_end" && b.flow) end = start_place(scene_, j.b);
-    put(b.name, end, pose.angle, Vec2::Zero(), 0);
+      if (j.body == b.name && j.edge == "free_end" && b.flow)
+        end = j.on_rigid_body() ? start_place(scene_, j.b) : hub_drive(scene_, j)(0).origin;
+    put(b.name, end, pose.angle);
   }
   return x;
 }
@@ -221,11 +230,26 @@ fem::Motion Twin::motion_of(const std::string& drive, const fem::State& x) const
 }
 
 TwinMotion::TwinMotion(const Scene& scene) : twin_(scene), start_(twin_.guess()) {
-  assemble_start(scene, twin_.model(), start_);
+  const bool moves = assemble_start(scene, twin_.model(), start_);
   const fem::Diagnosis diagnosis = fem::diagnose(twin_.model(), start_);
-  if (!diagnosis.is_independent()) throw refusal(scene, diagnosis);
+  indeterminate_ = !diagnosis.is_independent();
+  if (indeterminate_ && (scene.bodies.empty() || misses_positions(diagnosis)))
+    throw refusal(scene, diagnosis);
+  if (moves) move_as_given(scene, twin_.model(), start_);
   freedoms_ = diagnosis.degrees_of_freedom();
-  if (freedoms_ == 0) kinematics_ = std::make_unique<fem::Kinematics>(twin_.model(), start_);
+  if (freedoms_ > 0 || (indeterminate_ && diagnosis.is_contradictory())) return;
+  kinematics_ = std::make_unique<fem::Kinematics>(twin_.model(), start_);
+}
+
+bool TwinMotion::reaches(double t) {
+  if (!indeterminate_) return true;
+  if (!kinematics_) return false;
+  try {
+    kinematics_->at(t);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 int undriven_freedoms(const Scene& scene) {
@@ -250,7 +274,8 @@ double TwinMotion::start_acceleration() {
 void check_mechanism(const Scene& scene) {
   constexpr int kLooks = 200;
   TwinMotion motion(scene);
-  if (motion.degrees_of_freedom() > 0) return;
+  // Plates that bend may go where the rigid twin cannot.
+  if (motion.degrees_of_freedom() > 0 || motion.is_indeterminate()) return;
   for (int k = 1; k <= kLooks; ++k) motion.at(scene.time.end * k / kLooks);
 }
 

@@ -28,7 +28,7 @@ class Twin {
   const fem::Model& model() const { return model_; }
   const Scene& scene() const { return scene_; }
 
-  /// Bodies where the case says they are, joints perhaps not yet met; velocities as given.
+  /// Bodies where the case says they are, joints perhaps not yet met; at rest.
   fem::State guess() const;
 
   /// Frame of a plate's material point (X, 0), or of a rigid body, at a state of the twin.
@@ -48,14 +48,22 @@ class Twin {
   fem::Workspace model_;
 };
 
-/// Motion of a scene's twin in time.
+/// Motion of a scene's twin in time. It starts with the velocities that the case gives.
+///
+/// Where plates and beams bend, joints may hold more than rigid ones have freedoms: the twin is
+/// then indeterminate, and whether joints are independent is asked of the flexible model.
 class TwinMotion {
  public:
-  /// @throws Error (input) naming joints that contradict each other or hold the same freedom; Error
-  /// (numerical) when the start cannot be assembled for another reason.
+  /// @throws Error (input) naming joints that contradict each other or, where nothing bends, hold
+  /// the same freedom, and given velocities that contradict joints; Error (numerical) when the
+  /// start cannot be assembled for another reason.
   explicit TwinMotion(const Scene& scene);
 
   int degrees_of_freedom() const { return freedoms_; }
+  /// Do joints hold more than the rigid twin has freedoms?
+  bool is_indeterminate() const { return indeterminate_; }
+  /// Can drives lead the rigid twin to time t? Always, unless it is indeterminate.
+  bool reaches(double t);
   /// At time t where drives determine it all; else at the start, whatever t.
   /// @throws Error (numerical) where that cannot be reached, with the time and the joints.
   const fem::State& at(double t);
@@ -70,6 +78,7 @@ class TwinMotion {
  private:
   Twin twin_;
   int freedoms_ = 0;
+  bool indeterminate_ = false;
   fem::State start_;
   std::unique_ptr<fem::Kinematics> kinematics_;
 };

@@ -5,6 +5,8 @@
 #include "cases/run/measures.h"
 #include "cases/run/mechanism_columns.h"
 #include "cases/run/quantities.h"
+#include "cases/run/run_warnings.h"
+#include "cases/run/start_remarks.h"
 #include "cases/scene/elements/row.h"
 #include "io/files.h"
 
@@ -73,6 +75,7 @@ class Recorder {
 
   void operator()(const fem::MotionStep& step) {
     MotionRecord& r = out_.record;
+    remark(step);
     if (!r.time.empty())
       r.strain_integral +=
           0.5 * (step.x.t - r.time.back()) * (r.strain.back() + step.energies.strain);
@@ -114,6 +117,25 @@ class Recorder {
   }
 
  private:
+  /// What is not as the case says at the start, and what goes wrong on the way, once each.
+  void remark(const fem::MotionStep& step) {
+    const auto say = [&](const std::string& words) {
+      if (wishes_.say) wishes_.say(words);
+    };
+    if (out_.record.time.empty()) {
+      out_.record.remarks = start_remarks(scene_, step.model, step.x, step.so_far.start_change);
+      for (const std::string& each : out_.record.remarks) say(each);
+      if (damps_no_multipliers(scene_)) say(undamped_words(scene_));
+    }
+    const fem::MotionResult& found = step.so_far;
+    if (found.alternation && !said_alternation_) say(alternation_words(*found.alternation));
+    said_alternation_ = found.alternation.has_value();
+    if (found.cut.number > 0 && !said_cut_)
+      say("t = " + io::to_text(step.x.t, 4) + " s: Newton's method did not solve a step of " +
+          io::to_text(scene_.time.step, 3) + " s, steps are cut");
+    said_cut_ = found.cut.number > 0;
+  }
+
   void observe(const fem::MotionStep& step) {
     size_t column = 0;
     const auto add = [&](double value) { out_.record.observed[column++].values.push_back(value); };
@@ -210,6 +232,7 @@ class Recorder {
   MechanismColumns columns_;
   fem::State undeformed_;  // at the start, where something is measured
   std::optional<BodyMeasures> measures_;
+  bool said_alternation_ = false, said_cut_ = false;
 };
 
 }  // namespace

@@ -17,7 +17,8 @@ struct MotionWishes {
   bool condition = false;            ///< estimate it at the end
   bool balance = true;               ///< keep the energy balance
   std::string table = "motion.csv";  ///< file of the folder: the steps, up to a failure too
-  std::function<bool()> go_on;       ///< asked at every step; false ends it with Interrupted
+  std::function<void(const std::string&)> say;  ///< told what is odd when it happens, if there
+  std::function<bool()> go_on;  ///< asked at every step; false ends it with Interrupted
 };
 
 /// The user wants no more. What was computed is in the folder.

@@ -103,6 +103,8 @@ void write_report(const Scene& scene, const RunReport& report, RunFolder& folder
   io::ReportSection head;
   head.heading = "Run";
   head.words = "Status: " + report.status + (report.message.empty() ? "" : " - " + report.message);
+  if (report.motion)
+    for (const std::string& each : report.motion->remarks) head.words += ". Note: " + each;
   for (const Warning& each : warnings_of(scene, report)) head.warnings.push_back(each.words);
   sections.push_back(head);
   if (!scene.expect.empty() && report.status.starts_with("done"))

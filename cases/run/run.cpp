@@ -19,6 +19,7 @@
 #include "cases/run/run_warnings.h"
 #include "cases/run/version.h"
 #include "fem/dynamics/side_by_side.h"
+#include "fem/solve/scaled_constraints.h"
 #include "geometry/cpu_time.h"
 #include "io/case_document.h"
 #include "io/files.h"
@@ -173,6 +174,8 @@ void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress
     wishes.loads = true;
     wishes.condition = condition && analysed;
     wishes.go_on = go_on;
+    if (!report.motion && report.cycles == 0)
+      wishes.say = [&](const std::string& words) { progress.say(words); };
     MotionOutcome motion = run_motion(scene, wishes, folder);
     progress.say("motion: " + std::to_string(motion.record.result.counts.steps) + " steps, " +
                  std::to_string(motion.record.result.events.size()) + " changes of the mesh, " +
@@ -264,11 +267,29 @@ void run_scene(const Scene& scene, bool condition, RunFolder& folder, Progress& 
   wishes.moments = moments_of(scene);
   wishes.condition = condition;
   wishes.go_on = go_on;
+  wishes.say = [&](const std::string& words) { progress.say(words); };
   report.motion = run_motion(scene, wishes, folder).record;
   const fem::MotionResult& result = report.motion->result;
   progress.say("motion: " + std::to_string(result.counts.steps) + " steps, " +
                std::to_string(result.counts.newton) + " Newton iterations, " +
                std::to_string(result.events.size()) + " changes of the mesh");
+}
+
+/// Refuses joints that depend on each other, and bodies that do not reach their joints.
+void require_start(Mechanism& mechanism) {
+  constexpr double kMiss = 1e-6;  // of the model: coordinates in cases are rounded
+  fem::Workspace& model = mechanism.model;
+  const fem::State x =
+      fem::start_state(model, mechanism.growths, 0, fem::Start::rigid, mechanism.motion.placement);
+  fem::require_independent(fem::diagnose(model, x));
+  fem::ScaledConstraints rows;
+  rows.evaluate(model, x);
+  const VectorXd misses = rows.misses();
+  const double worst = misses.lpNorm<Eigen::Infinity>();
+  if (worst > kMiss * fem::model_size(rows.scales(), x.q))
+    throw Error::input("at the start " + fem::list_joints(fem::heaviest_joints(model, misses, 1)) +
+                       " misses by " + io::to_text(worst, 3) +
+                       " m: bodies that are not deformed do not reach their joints");
 }
 
 }  // namespace
@@ -278,10 +299,7 @@ void build_scene(const Scene& scene) {
     // One evaluation: loads and terms find their places, or say what they cannot do.
     if (scene.is_mechanism()) check_mechanism(scene);  // its joints have the names of the case
     Mechanism mechanism = build_mechanism(scene);
-    if (mechanism.model.n_constraints() > 0)
-      fem::require_independent(fem::diagnose(
-          mechanism.model, fem::start_state(mechanism.model, mechanism.growths, 0,
-                                            fem::Start::rigid, mechanism.motion.placement)));
+    if (mechanism.model.n_constraints() > 0) require_start(mechanism);
     const fem::State x = mechanism.model.reference();
     VectorXd force;
     mechanism.model.force(x, force);

@@ -37,6 +37,7 @@ struct MotionRecord {
   std::vector<Column> written;          ///< by terms (fem::TermRow::columns) [J]
   std::vector<Column> powers;           ///< that enter a mechanism, where the balance is kept [W]
   std::vector<io::PlaneFrame> moments;  ///< pictures of a mechanism
+  std::vector<std::string> remarks;     ///< on the start, where it is not as the case says
   fem::MotionResult result;
 
   /// The values of a column of `observed`, `measured`, `mechanism` or `written`; null where there

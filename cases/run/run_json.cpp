@@ -263,6 +263,7 @@ std::string run_json(const Scene& scene, const RunReport& report) {
   Json warnings = Json::array();
   for (const Warning& each : warnings_of(scene, report)) warnings.push_back(each.words);
   out["warnings"] = std::move(warnings);
+  if (report.motion && !report.motion->remarks.empty()) out["remarks"] = report.motion->remarks;
   Json results = Json::array();
   for (size_t i = 0; i < report.outcomes.size(); ++i) results.push_back(body_results(report, i));
   out["results"] = std::move(results);

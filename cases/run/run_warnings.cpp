@@ -48,14 +48,6 @@ bool misses_energy(const Scene& scene, const MotionRecord& motion) {
   return motion.result.energy_defect > kLargestDefect && worst > stress_round_off(scene);
 }
 
-/// On constraints that are not linear generalized_alpha is stable for rho_inf < 1 - c h only, with
-/// c of the rates of the mechanism (Arnold & Brüls 2007 assume rho_inf < 1): a free slider-crank
-/// with h = 1e-3 is lost at 0.99, after 8 s.
-bool damps_no_multipliers(const Scene& scene) {
-  return scene.is_mechanism() && scene.time.integrator == "generalized_alpha" &&
-         scene.time.rho_inf > 0.98;
-}
-
 /// A design for a compliance that is worse than the same material spread evenly. (One that is
 /// analysed as it starts was not asked.)
 void add_worse(const mmc::BodyProblem& p, const mmc::BodyOutcome& o, Warnings& out) {
@@ -97,10 +89,15 @@ void add_designs(const RunReport& report, Warnings& out) {
 
 void add_motion(const Scene& scene, const MotionRecord& motion, Warnings& out) {
   for (const fem::Conditioning& c : motion.result.near_singular) out.push_back({fem::describe(c)});
-  if (damps_no_multipliers(scene))
-    out.push_back({"rho_inf = " + io::to_text(scene.time.rho_inf, 3) +
-                   " hardly damps multipliers: joint forces may alternate from step to step and "
-                   "grow; time.rho_inf = 0.9 damps them"});
+  if (motion.result.alternation)
+    out.push_back({alternation_words(*motion.result.alternation)});
+  else if (damps_no_multipliers(scene))
+    out.push_back({undamped_words(scene)});
+  if (const fem::CutSteps& cut = motion.result.cut; cut.number > 0)
+    out.push_back({"Newton's method did not solve all steps of " + io::to_text(scene.time.step, 3) +
+                   " s: from t = " + io::to_text(cut.since, 4) + " s on " +
+                   std::to_string(cut.number) + " steps were cut, down to " +
+                   io::to_text(cut.shortest, 2) + " s"});
   if (const fem::EnergyGain& gain = motion.result.energy_gain; gain.time > 0)
     out.push_back({"no drive brings energy in, but the energy of the motion has grown by " +
                        io::to_text(100 * gain.part, 3) +
@@ -122,6 +119,23 @@ Warnings warnings_of(const Scene& scene, const RunReport& report) {
   add_designs(report, out);
   if (report.motion) add_motion(scene, *report.motion, out);
   return out;
+}
+
+bool damps_no_multipliers(const Scene& scene) {
+  return !scene.joints.empty() && scene.time.integrator == "generalized_alpha" &&
+         scene.time.rho_inf > 0.98;
+}
+
+std::string undamped_words(const Scene& scene) {
+  return "rho_inf = " + io::to_text(scene.time.rho_inf, 3) +
+         " hardly damps multipliers: joint forces may alternate from step to step and "
+         "grow; time.rho_inf = 0.9 damps them";
+}
+
+std::string alternation_words(const fem::Alternation& found) {
+  return "from t = " + io::to_text(found.time, 4) + " s on the force of joint '" + found.joint +
+         "' alternates from step to step, by " + io::to_text(100 * found.part, 2) +
+         " % of its largest: these forces are no results; time.rho_inf = 0.9 damps them";
 }
 
 bool usable(const Warnings& warnings) {

@@ -72,6 +72,16 @@ void read_joints(const Table& root, Scene& scene) {
     if (body.flow && !welded)
       bodies[i].fail("material flows out of a hub: a [[joint]] with edge = \"root\" is missing");
     check_lines(bodies[i], body, scene);
+    const bool framed = std::any_of(scene.joints.begin(), scene.joints.end(), [&](const Joint& j) {
+      return j.body == body.name && j.holds_frame() && j.edge != "free_end";
+    });
+    const bool at_end = std::any_of(scene.joints.begin(), scene.joints.end(), [&](const Joint& j) {
+      return j.body == body.name && j.edge == "free_end" && !j.on_rigid_body();
+    });
+    if (at_end && !framed)
+      bodies[i].fail(
+          "its free end sits in a hub, and nothing says where its root is: a [[joint]] "
+          "with edge = \"root\" is missing");
   }
 }
 

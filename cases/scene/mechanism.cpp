@@ -34,16 +34,18 @@ const Key& kPosition = io::key("rigid_body", "position")
                            .says("Of its axes at the start; a guess where joints say more.");
 const Key& kVelocity = io::key("rigid_body", "velocity")
                            .numbers(any_number("a velocity", "m/s"), 2, 2)
-                           .otherwise(std::vector<double>{0, 0})
-                           .says("At the start, where joints and drives leave it free.");
+                           .otherwise_as(
+                               "what joints, drives and given velocities leave of it: "
+                               "of all motions that of least kinetic energy")
+                           .says("Of its axes at the start, exactly.");
 const Key& kAngle = io::key("rigid_body", "angle")
                         .number(any_number("an angle", "rad"))
                         .otherwise(0.0)
                         .says("Of its axes at the start; a guess where joints say more.");
 const Key& kAngularVelocity = io::key("rigid_body", "angular_velocity")
                                   .number(any_number("an angular velocity", "rad/s"))
-                                  .otherwise(0.0)
-                                  .says("At the start, where joints and drives leave it free.");
+                                  .otherwise_as("as `velocity`")
+                                  .says("At the start, exactly.");
 
 const Key& kFollower =
     io::key("trajectory", "body").name_of("a rigid body").says("What follows the path.");
@@ -73,9 +75,11 @@ RigidBody read_rigid_body(const Table& t, const Scene& scene) {
       t.number(kInertia, t.has(kSize) ? std::optional(body.mass * body.size.squaredNorm() / 12)
                                       : std::nullopt);
   body.position = read_pair(t, kPosition);
-  body.velocity = read_pair(t, kVelocity);
+  if (t.has(kVelocity)) body.velocity = read_pair(t, kVelocity);
   body.angle = t.number(kAngle);
-  body.angular_velocity = t.number(kAngularVelocity);
+  if (t.has(kAngularVelocity)) body.angular_velocity = t.number(kAngularVelocity);
+  body.is_placed = t.has(kPosition) || t.has(kAngle);
+  body.place = t.place();
   return body;
 }
 
@@ -88,20 +92,26 @@ void read_rigid_bodies(const Table& root, Scene& scene) {
 
 void check_mechanism_parts(const Table& root, const Scene& scene) {
   if (!scene.is_mechanism()) return;
-  const auto check = [&](const Table& t, const Key& key, const std::string& name) {
+  const auto check = [&](const Table& t, const Key& key, const std::string& name,
+                         const std::string& or_else) {
     const auto here = [&](const Anchor& anchor) { return anchor.body == name; };
     const bool held =
         std::any_of(scene.joints.begin(), scene.joints.end(),
                     [&](const Joint& j) { return j.body == name || here(j.a) || here(j.b); }) ||
         std::any_of(scene.springs.begin(), scene.springs.end(),
                     [&](const Spring& s) { return here(s.a) || here(s.b); });
-    if (!held) t.fail(key, "nothing holds '" + name + "': a [[joint]] or [[spring]] is missing");
+    if (!held)
+      t.fail(key, "nothing holds '" + name + "': a [[joint]] or [[spring]] is missing" + or_else);
   };
   const std::vector<Table> rigid = root.tables(tables::kRigidBody),
                            bodies = root.tables(tables::kBody);
-  for (size_t i = 0; i < rigid.size(); ++i) check(rigid[i], kName, scene.rigid_bodies[i].name);
+  for (size_t i = 0; i < rigid.size(); ++i) {
+    const RigidBody& body = scene.rigid_bodies[i];
+    const bool flies = body.velocity || body.angular_velocity;
+    if (!flies) check(rigid[i], kName, body.name, ", or its velocity where it flies");
+  }
   for (size_t i = 0; i < bodies.size(); ++i)
-    check(bodies[i], body_keys::kBodyName, scene.bodies[i].name);
+    check(bodies[i], body_keys::kBodyName, scene.bodies[i].name, "");
 }
 
 void read_trajectory(const Table& root, const Follow& follow, Scene& scene) {

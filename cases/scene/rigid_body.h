@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "geometry/base.h"
@@ -24,8 +25,12 @@ struct RigidBody {
   double inertia = 0;                      ///< about the centre of mass [kg m^2]
   Vec2 center{0, 0};                       ///< of mass, in the axes of the body [m]
   Vec2 size{0, 0};                         ///< of the rectangle around it that is drawn [m]
-  Vec2 position{0, 0}, velocity{0, 0};     ///< [m], [m/s]; where joints leave them free
-  double angle = 0, angular_velocity = 0;  ///< [rad], [rad/s]
+  Vec2 position{0, 0};                     ///< of the axes; a guess where joints say more [m]
+  double angle = 0;                        ///< likewise [rad]
+  std::optional<Vec2> velocity;            ///< of the axes at the start, where given [m/s]
+  std::optional<double> angular_velocity;  ///< likewise [rad/s]
+  bool is_placed = false;                  ///< is `position` or `angle` in the case?
+  std::string place;                       ///< in the case: "cases/four_bar.toml:14"
 };
 
 }  // namespace flexmorph::cases

@@ -36,7 +36,9 @@ class Run {
     // What drives a motion need not be defined behind its end.
     x_ = start_state(model_, growths_, 0, settings_.start, settings_.placement,
                      std::min(1e-4, 0.5 * settings_.end));
+    const VectorXd given = x_.v;
     integrator_->project_velocity(x_);
+    result_.start_change = model_.scales().cwiseProduct(x_.v - given).lpNorm<Eigen::Infinity>();
     integrator_->make_consistent(x_);
     const Energies e = model_.energies(x_);
     powers_ = measure(x_);
@@ -76,8 +78,8 @@ class Run {
   void see(const State& x, const Energies& e, bool stop) {
     keep(x, stop);
     model_.prepare(x);
-    observe_(
-        {model_, x, e, powers_, balance_.work(), balance_.dissipated(), balance_.defect(), stop});
+    observe_({model_, x, e, powers_, balance_.work(), balance_.dissipated(), balance_.defect(),
+              stop, result_});
   }
 
   void keep(const State& x, bool stop) {
@@ -148,6 +150,7 @@ class Run {
       double last = x_.t;
       watching_joints([&] {
         integrator_->advance(x_, t, [&](const State& x) {
+          watch_steps(x.t - last, (end - begin) / n);
           accepted(x.t - last, stop && x.t >= end);
           last = x.t;
         });
@@ -252,6 +255,16 @@ class Run {
     was_near_ = near;
   }
 
+  /// After a step of equal ones. @param meant  its length, had Newton's method solved it [s]
+  void watch_steps(double h, double meant) {
+    multipliers_.see(model_, x_, h);
+    if (multipliers_.found()) result_.alternation = multipliers_.found();
+    if (h > 0.75 * meant) return;
+    CutSteps& cut = result_.cut;
+    if (cut.number++ == 0) cut = {1, x_.t - h, h};
+    cut.shortest = std::min(cut.shortest, h);
+  }
+
   /// A St. Venant-Kirchhoff material that has collapsed or turned inside out has equilibria, but
   /// no meaning: better stop than go on with them.
   void watch(const State& x) {
@@ -347,6 +360,7 @@ class Run {
   State x_;
   Powers powers_;
   EnergyBalance balance_;
+  MultiplierWatch multipliers_;
   EnergyGrowth growth_;
   std::optional<ConstraintWatch> joint_watch_;  // only with rigid bodies
   // Only where steps adapt.

@@ -10,6 +10,7 @@
 #include "fem/dynamics/integrator.h"
 #include "fem/dynamics/start.h"
 #include "fem/dynamics/step_control.h"
+#include "fem/dynamics/step_watch.h"
 #include "fem/dynamics/trajectory.h"
 #include "fem/solve/diagnosis.h"
 
@@ -49,6 +50,8 @@ struct MeshEvent {
   double tip_jump = 0;  ///< of the free end's mid-point [m]
 };
 
+struct MotionResult;
+
 /// What an observer of a motion sees at every accepted step (and at the start). With an integrator
 /// that has a step_mean(), accelerations, multipliers and powers are means over the step before,
 /// but at stops x is consistent.
@@ -56,11 +59,12 @@ struct MotionStep {
   Workspace& model;  ///< prepared for x
   const State& x;
   Energies energies;
-  Powers powers;          ///< zero when no balance is kept
-  double work = 0;        ///< of all powers since the start [J]
-  double dissipated = 0;  ///< of terms that dissipate, a part of it [J]
-  double defect = 0;      ///< energy - energy at the start - work [J]
-  bool stop = false;      ///< is x.t one of the settings' stops (or the end)?
+  Powers powers;               ///< zero when no balance is kept
+  double work = 0;             ///< of all powers since the start [J]
+  double dissipated = 0;       ///< of terms that dissipate, a part of it [J]
+  double defect = 0;           ///< energy - energy at the start - work [J]
+  bool stop = false;           ///< is x.t one of the settings' stops (or the end)?
+  const MotionResult& so_far;  ///< what was changed at the start, went wrong since
 };
 using MotionObserver = std::function<void(const MotionStep&)>;
 
@@ -70,10 +74,14 @@ struct MotionResult {
   StepCounts counts;
   double smallest_step = 0, largest_step = 0;  ///< of the accepted ones [s]
   std::vector<MeshEvent> events;
-  double energy_defect = 0;     ///< largest relative defect of the balance
-  EnergyGain energy_gain;       ///< out of nothing, where nothing drives
-  double constraint_drift = 0;  ///< largest |Φ| met [m]
-  double velocity_drift = 0;    ///< largest |Φ_q q̇ + Φ_t| met [m/s]
+  double energy_defect = 0;  ///< largest relative defect of the balance
+  EnergyGain energy_gain;    ///< out of nothing, where nothing drives
+  /// Largest change of a velocity at the start, so that joints allow it, as a displacement [m/s].
+  double start_change = 0;
+  std::optional<Alternation> alternation;  ///< of multipliers
+  CutSteps cut;                            ///< of equal steps
+  double constraint_drift = 0;             ///< largest |Φ| met [m]
+  double velocity_drift = 0;               ///< largest |Φ_q q̇ + Φ_t| met [m/s]
   /// Of the matrix that was factored last, where it was asked for: Integrator::condition().
   std::optional<double> condition;
   double smallest_area_ratio = 1;  ///< |r_m × r_n|, every tenth step and at the stops

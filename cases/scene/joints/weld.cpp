@@ -36,7 +36,7 @@ void read_welded_edge(const io::Table& t, const Scene& scene, Joint& joint) {
   joint.to = t.choice(rigid.empty() ? kTo.called("a hub") : kTo, carriers);
   const bool on_rigid = std::find(rigid.begin(), rigid.end(), joint.to) != rigid.end();
   using Names = std::vector<std::string>;
-  read_framed_edge(t, body, on_rigid ? Names{"root", "free_end"} : Names{"root"}, joint);
+  read_framed_edge(t, body, Names{"root", "free_end"}, joint);
   if (on_rigid) read_carrier(t, joint);
   joint.mode = body.row->read_weld(t);
   check_frame(t, scene, body, joint);

@@ -1,0 +1,68 @@
+#include "cases/run/start_remarks.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "fem/dynamics/carrier.h"
+#include "io/files.h"
+
+namespace flexmorph::cases {
+namespace {
+
+constexpr double kSaid = 1e-9;  // design.md section 21
+// What the differences leave that give the rates of a prestretched start, of the fastest.
+constexpr double kDifference = 1e-6;
+constexpr size_t kMost = 5;  // bodies that are named
+
+/// "a, b and 3 more".
+std::string list_of(const std::vector<std::string>& all) {
+  std::string out;
+  for (size_t i = 0; i < std::min(all.size(), kMost); ++i) out += (i > 0 ? ", " : "") + all[i];
+  if (all.size() > kMost) out += " and " + std::to_string(all.size() - kMost) + " more";
+  return out;
+}
+
+std::string moved_words(const RigidBody& body, const fem::FrameMotion& frame) {
+  const double by = (frame.origin - body.position).norm(),
+               turn = std::remainder(frame.angle - body.angle, 2 * std::numbers::pi);
+  std::string out;
+  if (by > kSaid) out = "by " + io::to_text(by, 3) + " m";
+  if (std::abs(turn) > kSaid)
+    out += (out.empty() ? "by " : " and ") + io::to_text(turn, 3) + " rad";
+  return out.empty() ? "" : "'" + body.name + "' " + out;
+}
+
+std::string speed_words(const RigidBody& body, const fem::FrameMotion& frame) {
+  std::string out;
+  if (body.velocity && (frame.origin_rate - *body.velocity).norm() > kSaid)
+    out = "velocity [" + io::to_text(frame.origin_rate.x(), 6) + ", " +
+          io::to_text(frame.origin_rate.y(), 6) + "]";
+  if (body.angular_velocity && std::abs(frame.angle_rate - *body.angular_velocity) > kSaid)
+    out += (out.empty() ? "" : ", ") + ("angular_velocity " + io::to_text(frame.angle_rate, 6));
+  return out.empty() ? "" : "'" + body.name + "' " + out;
+}
+
+}  // namespace
+
+std::vector<std::string> start_remarks(const Scene& scene, const fem::Model& model,
+                                       const fem::State& x, double change) {
+  std::vector<std::string> moved, faster, out;
+  for (const RigidBody& body : scene.rigid_bodies) {
+    const fem::FrameMotion frame = fem::frame_of(model.body(body.name), x);
+    if (body.is_placed)
+      if (std::string words = moved_words(body, frame); !words.empty()) moved.push_back(words);
+    if (std::string words = speed_words(body, frame); !words.empty()) faster.push_back(words);
+  }
+  if (!moved.empty())
+    out.push_back("at the start joints moved bodies from where the case puts them: " +
+                  list_of(moved));
+  if (!faster.empty())
+    out.push_back("the start has other velocities than the case gives: " + list_of(faster));
+  const double speed = model.scales().cwiseProduct(x.v).lpNorm<Eigen::Infinity>();
+  if (change > kSaid + kDifference * speed)
+    out.push_back("velocities of the start were changed by up to " + io::to_text(change, 3) +
+                  " m/s, so that joints allow them");
+  return out;
+}
+
+}  // namespace flexmorph::cases
