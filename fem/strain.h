@@ -97,7 +97,8 @@ class DissipationDensity {
 };
 
 /// Points of an element at which its density is taken, and the strains there: with e the strains
-/// of the measures at all points, strain i of the density is mix[i] e_i.
+/// of the measures at all points, strain i of n of the density is mix[i] e_i; or, with n² matrices,
+/// Σ_j mix[n i + j] e_j, empty ones being zero.
 struct StrainTable {
   VectorXd weight;                      ///< reference area times the factor (n_points) [m²]
   std::vector<MatrixXd> measure;        ///< z_i = measure[i] q (n_points x n_shapes)

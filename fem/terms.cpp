@@ -7,7 +7,9 @@ namespace flexmorph::fem {
 const TermRow& bending_row();
 const TermRow& damping_row();
 const TermRow& ecm_row();
+const TermRow& ecm_full_row();
 const TermRow& gcm_row();
+const TermRow& gcm_full_row();
 const TermRow& inertia_row();
 const TermRow& membrane_row();
 const TermRow& membrane_assumed_row();
@@ -20,6 +22,8 @@ const std::vector<const TermRow*>& term_rows() {
       &membrane_assumed_row(),  //
       &gcm_row(),               //
       &ecm_row(),               //
+      &gcm_full_row(),          //
+      &ecm_full_row(),          //
       &damping_row(),           //
   };
   return kRows;

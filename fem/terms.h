@@ -85,7 +85,8 @@ std::unique_ptr<Term> make_membrane(const PlaneSection& section);
 std::unique_ptr<Term> make_assumed_membrane(const PlaneSection& section);
 /// Fully parameterized beam in the plane (elements/ancf_beam.h), section.thickness: its width
 /// across the plane. General continuum mechanics, plane stress; and enhanced continuum mechanics,
-/// which does not lock by Poisson's effect (terms/beam.cpp).
+/// which does not lock by Poisson's effect (terms/beam.cpp). Strains of the axis are assumed
+/// (terms/beam_strains.h); the rows "gcm_full" and "ecm_full" have those of the displacements.
 std::unique_ptr<Term> make_beam_gcm(const PlaneSection& section);
 std::unique_ptr<Term> make_beam_ecm(const PlaneSection& section);
 /// Bending of a thin plate in space, n x n Gauss points per element (5: force to 5e-4 at strong

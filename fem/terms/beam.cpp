@@ -1,127 +1,22 @@
-#include <array>
-#include <cmath>
-
 #include "fem/terms.h"
+#include "fem/terms/beam_gram.h"
+#include "fem/terms/beam_strains.h"
 #include "fem/terms/density_term.h"
 #include "fem/terms/sampling.h"
 
 namespace flexmorph::fem {
 namespace {
 
+using namespace beam_gram;
+
 enum class Mechanics { general, enhanced };
 
-constexpr int kVectors = 5, kDim = 2, kShapes = 6;
-constexpr int kPairs = kVectors * (kVectors + 1) / 2;
-
-/// Number of the pair i, j in the order 00, 10, 11, 20, ...
-constexpr int pair(int i, int j) { return i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i; }
-
-/// Where W stands for the pairs x and (l, j) in its packed lower triangle: kPlace[x][l][j].
-constexpr auto kPlace = [] {
-  std::array<std::array<std::array<int, kVectors>, kVectors>, kPairs> out{};
-  for (int x = 0; x < kPairs; ++x)
-    for (int l = 0; l < kVectors; ++l)
-      for (int j = 0; j < kVectors; ++j)
-        out[static_cast<size_t>(x)][static_cast<size_t>(l)][static_cast<size_t>(j)] =
-            pair(x, pair(l, j));
-  return out;
-}();
-
-/// Vectors p of nodal ones (r¹ r_x¹ r_y¹ r² r_x² r_y²): r² - r¹, r_x¹, r_y¹, r_x², r_y². Rigid
-/// translations strain nothing, and no digits are lost far from the origin.
-template <class V>
-void vectors(const V* q, V* p) {
-  for (int c = 0; c < kDim; ++c) {
-    p[c] = q[3 * kDim + c] - q[c];
-    p[kDim + c] = q[kDim + c];
-    p[2 * kDim + c] = q[2 * kDim + c];
-    p[3 * kDim + c] = q[4 * kDim + c];
-    p[4 * kDim + c] = q[5 * kDim + c];
-  }
-}
-/// Shape functions that vector k goes to with +1; vector 0 also to shape function 0, with -1.
-constexpr std::array<int, kVectors> kShapeOf = {3, 1, 2, 4, 5};
-
-/// g_ij = p_i · p_j (i ≠ j), g_ii = ½ p_i · p_i.
-template <class V>
-void products(const V* p, V* g) {
-  for (int i = 0; i < kVectors; ++i)
-    for (int j = 0; j <= i; ++j) {
-      const V sum = p[i * kDim] * p[j * kDim] + p[i * kDim + 1] * p[j * kDim + 1];
-      g[pair(i, j)] = i == j ? 0.5 * sum : sum;
-    }
-}
-
-/// s = W (g - g°); W packed as a lower triangle.
-template <class V>
-void stress(const V* w, const V* reference, const V* g, V* s) {
-  V change[kPairs];
-  for (int k = 0; k < kPairs; ++k) change[k] = g[k] - reference[k];
-  for (int r = 0; r < kPairs; ++r) {
-    const V* row = w + r * (r + 1) / 2;
-    V sum{};
-    for (int t = 0; t < r; ++t) {
-      sum += row[t] * change[t];
-      s[t] += row[t] * change[r];
-    }
-    s[r] = sum + row[r] * change[r];
-  }
-}
-
-/// Adds F_k = Σ_l s_kl p_l.
-template <class V>
-void add_force_of(const V* s, const V* p, V* force) {
-  for (int k = 0; k < kVectors; ++k)
-    for (int c = 0; c < kDim; ++c) {
-      V sum{};
-      for (int l = 0; l < kVectors; ++l) sum += s[pair(k, l)] * p[l * kDim + c];
-      force[kShapeOf[static_cast<size_t>(k)] * kDim + c] += sum;
-      if (k == 0) force[c] -= sum;
-    }
-}
-
-/// Entries of a tangent (kShapes kDim)², by rows.
-struct ByRows {
-  double* data;
-  double& operator()(int row, int column) const { return data[row * kShapes * kDim + column]; }
+/// A row of the table.
+struct Kind {
+  const char* name;
+  Mechanics mechanics;
+  BeamStrains strains;
 };
-
-/// Adds weight (s_kl δ_bc + Σ_ij left_ib W_(ki),(lj) right_jc) at entry(row, column).
-template <class V, class Entry>
-void add_tangent_of(const V* w, const V* s, const V* left, const V* right, double weight,
-                    const Entry& entry) {
-  V rows[kPairs][kVectors * kDim];  // Σ_j W_(pair),(lj) right_jc
-  for (size_t x = 0; x < kPairs; ++x)
-    for (size_t l = 0; l < kVectors; ++l) {
-      V sum[kDim] = {};
-#pragma GCC unroll 5
-      for (size_t j = 0; j < kVectors; ++j) {
-        const V value = w[kPlace[x][l][j]];
-        for (size_t c = 0; c < kDim; ++c) sum[c] += value * right[j * kDim + c];
-      }
-      for (size_t c = 0; c < kDim; ++c) rows[x][l * kDim + c] = sum[c];
-    }
-  for (int k = 0; k < kVectors; ++k)
-    for (int l = 0; l < kVectors; ++l) {
-      V block[kDim][kDim] = {};
-#pragma GCC unroll 5
-      for (int i = 0; i < kVectors; ++i) {
-        const V* row = rows[pair(k, i)] + l * kDim;
-        for (int b = 0; b < kDim; ++b)
-          for (int c = 0; c < kDim; ++c) block[b][c] += left[i * kDim + b] * row[c];
-      }
-      const int first = kShapeOf[static_cast<size_t>(k)] * kDim,
-                other = kShapeOf[static_cast<size_t>(l)] * kDim;
-      for (int b = 0; b < kDim; ++b)
-        for (int c = 0; c < kDim; ++c) {
-          const V value = weight * (b == c ? block[b][c] + s[pair(k, l)] : block[b][c]);
-          entry(first + b, other + c) += value;
-          if (k == 0) entry(b, other + c) -= value;
-          if (l == 0) entry(first + b, c) -= value;
-          if (k == 0 && l == 0) entry(b, c) += value;
-        }
-    }
-}
 
 /// Elastic force of a planar fully parameterized ANCF beam of St. Venant-Kirchhoff material, by
 /// general (gcm) or enhanced (ecm) continuum mechanics.
@@ -134,6 +29,10 @@ void add_tangent_of(const V* w, const V* s, const V* left, const V* right, doubl
 /// 1 and 2: Cartesian axes of the reference; in ecm, where D⁰ is not isotropic, 2 is along the
 /// section and 1 at right angles to it. b is the width across the plane.
 ///
+/// Strains are those of the displacements or assumed on the axis (terms/beam_strains.h), without
+/// which slender beams lock in large bending. Seen from a straight beam both are the same to first
+/// order: its linear stiffness and its frequencies do not change.
+///
 /// gcm bends 1/(1 - ν²) too stiffly on every mesh: r_y is constant over the height, so that ε₂₂
 /// cannot follow -ν ε₁₁, which is linear in y. With ecm the coupling sees the mean strain only.
 ///
@@ -145,30 +44,28 @@ void add_tangent_of(const V* w, const V* s, const V* left, const V* right, doubl
 /// Nachbagauer et al. (2011), Multibody Syst. Dyn. 26, 245-263.
 class Beam final : public ElasticTerm {
  public:
-  Beam(const PlaneSection& section, Mechanics mechanics)
-      : ElasticTerm(mechanics == Mechanics::general ? "gcm" : "ecm", parts_of(section, mechanics)),
+  Beam(const PlaneSection& section, const Kind& kind)
+      : ElasticTerm(kind.name, parts_of(section, kind)),
         section_(section),
         width_(section.thickness),
         elasticity_(section.elasticity()),
-        mechanics_(mechanics) {
-    volume_ = mechanics == Mechanics::general ? elasticity_ : uncoupled(section);
+        kind_(kind) {
+    volume_ = kind.mechanics == Mechanics::general ? elasticity_ : uncoupled(section);
     coupling_ = elasticity_ - volume_;
   }
 
-  static std::vector<ElasticPart> parts_of(const PlaneSection& s, Mechanics mechanics) {
+  static std::vector<ElasticPart> parts_of(const PlaneSection& s, const Kind& kind) {
     const auto density = [&](const Eigen::Matrix3d& D) {
       return std::make_shared<LinearDensity>(green_lagrange(), s.thickness * D);
     };
-    if (mechanics == Mechanics::general)  // isotropic: any axes do
-      return {{density(s.elasticity()), sample_points(8, Tabulate::gradient)}};
-    return {{density(uncoupled(s)), sample_sections(false)},
-            {density(s.elasticity() - uncoupled(s)), sample_sections(true)}};
+    const auto sections = [&](bool on_axis) { return sample_sections(kind.strains, on_axis); };
+    if (kind.mechanics == Mechanics::general) return {{density(s.elasticity()), sections(false)}};
+    return {{density(uncoupled(s)), sections(false)},
+            {density(s.elasticity() - uncoupled(s)), sections(true)}};
   }
 
   /// Made anew: what is prepared would only be prepared again.
-  std::unique_ptr<Term> clone() const override {
-    return mechanics_ == Mechanics::general ? make_beam_gcm(section_) : make_beam_ecm(section_);
-  }
+  std::unique_ptr<Term> clone() const override { return std::make_unique<Beam>(section_, kind_); }
   void prepare(const Element& element, const Factors& factors, bool all) override {
     if (element.dim() != kDim || element.n_shapes() != kShapes)
       throw Error::input("term '" + name() +
@@ -293,13 +190,12 @@ class Beam final : public ElasticTerm {
 
   using Strains = Eigen::Matrix<double, 3, kPairs>;
 
-  /// Λ of one point: (r_1 r_2) = (F e₁, F e₂), r_1 = Σ a_i p_i, r_2 = Σ b_i p_i.
-  static Strains strains(const ShapeTable& t, Eigen::Index at, const Vec2& e1, const Vec2& e2) {
+  /// Λ of one row: r_1 = Σ a_i p_i, r_2 = Σ b_i p_i.
+  static Strains strains(const BeamStrainPoints& points, Eigen::Index row) {
     double a[kVectors], b[kVectors];
     for (size_t k = 0; k < kVectors; ++k) {
-      const Vec2 d(t.N_m(at, kShapeOf[k]), t.N_n(at, kShapeOf[k]));
-      a[k] = e1.dot(d);
-      b[k] = e2.dot(d);
+      a[k] = points.d_1(row, kShapeOf[k]);
+      b[k] = points.d_2(row, kShapeOf[k]);
     }
     Strains out;
     for (int i = 0; i < kVectors; ++i)
@@ -308,34 +204,43 @@ class Beam final : public ElasticTerm {
     return out;
   }
 
+  /// Λ of the points, then of the sections on the axis.
+  std::vector<Strains> strains(const BeamStrainPoints& points) const {
+    std::vector<Strains> out;
+    const Eigen::Index n = points.n_points(), n_sections = points.sample(0) - n;
+    for (Eigen::Index row = 0; row < n + n_sections; ++row) out.push_back(strains(points, row));
+    if (kind_.strains == BeamStrains::displacement) return out;
+    for (Eigen::Index s = 0; s < n_sections; ++s) {
+      Strains change = -out[static_cast<size_t>(points.on_axis(s))];
+      for (Eigen::Index k = 0; k < BeamStrainPoints::kSamples; ++k)
+        change += points.assumed[static_cast<size_t>(s)].middleCols<3>(3 * k) *
+                  strains(points, points.sample(k));
+      for (Eigen::Index p = 0; p < n; ++p)
+        if (points.section[static_cast<size_t>(p)] == s) out[static_cast<size_t>(p)] += change;
+      out[static_cast<size_t>(points.on_axis(s))] += change;
+    }
+    return out;
+  }
+
   Data integrate(const Element& element, int e, const Factors& factors, const MatrixXd& reference) {
-    const auto numbers = element.vectors(e);
-    Eigen::Matrix<double, kShapes, kDim, Eigen::RowMajor> X;
-    for (int k = 0; k < kShapes; ++k) X.row(k) = reference.row(numbers[static_cast<size_t>(k)]);
-    element.tabulate(e, 8, Tabulate::gradient, factors, FactorKind::stiffness, table_);
+    const BeamStrainPoints points = beam_strain_points(element, e, factors, reference);
+    const std::vector<Strains> lambda = strains(points);
     Eigen::Matrix<double, kPairs, kPairs> W;
     W.setZero();
-    const auto n = table_.weight.size();
-    // Points with the same x follow each other; they are a section.
-    for (Eigen::Index first = 0, last = 0; first < n; first = last) {
-      const double x = table_.material[static_cast<size_t>(first)].x();
-      while (last < n && table_.material[static_cast<size_t>(last)].x() == x) ++last;
-      const Vec2 across = ((table_.N.row(last - 1) - table_.N.row(first)) * X).transpose();
-      const Vec2 e2 = across.normalized(), e1(e2.y(), -e2.x());
-      double area = 0;  // of the section: h dX
-      for (Eigen::Index p = first; p < last; ++p) {
-        const Strains lambda = strains(table_, p, e1, e2);
-        W += width_ * table_.weight[p] * lambda.transpose() * volume_ * lambda;
-        area += table_.weight[p];
-      }
-      if (mechanics_ == Mechanics::general) continue;
-      element.locate({x, 0}, Tabulate::gradient, axis_);
-      const Strains lambda = strains(axis_, 0, e1, e2);
-      W += width_ * area * lambda.transpose() * coupling_ * lambda;
-    }
+    const auto add = [&](double area, Eigen::Index row, const Eigen::Matrix3d& D) {
+      const Strains& l = lambda[static_cast<size_t>(row)];
+      W += width_ * area * l.transpose() * D * l;
+    };
+    for (Eigen::Index p = 0; p < points.n_points(); ++p) add(points.weight[p], p, volume_);
+    if (kind_.mechanics == Mechanics::enhanced)
+      for (size_t s = 0; s < points.area.size(); ++s)
+        add(points.area[s], points.on_axis(static_cast<Eigen::Index>(s)), coupling_);
     Data out;
     for (int r = 0; r < kPairs; ++r)
       for (int t = 0; t <= r; ++t) out.w[static_cast<size_t>(pair(r, t))] = W(r, t);
+    Eigen::Matrix<double, kShapes, kDim, Eigen::RowMajor> X;
+    const auto numbers = element.vectors(e);
+    for (int k = 0; k < kShapes; ++k) X.row(k) = reference.row(numbers[static_cast<size_t>(k)]);
     double p[kVectors * kDim];
     vectors(X.data(), p);
     products(p, out.reference.data());
@@ -345,49 +250,65 @@ class Beam final : public ElasticTerm {
   PlaneSection section_;
   double width_;
   Eigen::Matrix3d elasticity_, volume_, coupling_;  // D; D or D⁰; 0 or D^ν [Pa]
-  Mechanics mechanics_;
+  Kind kind_;
   std::vector<Data> elements_;
   std::vector<Batched> batches_;
-  ShapeTable table_, axis_;
 };
+
+constexpr Kind kGcm = {"gcm", Mechanics::general, BeamStrains::assumed},
+               kEcm = {"ecm", Mechanics::enhanced, BeamStrains::assumed},
+               kGcmFull = {"gcm_full", Mechanics::general, BeamStrains::displacement},
+               kEcmFull = {"ecm_full", Mechanics::enhanced, BeamStrains::displacement};
+
+template <const Kind& kind>
+TermRow row_of(std::string sentence) {
+  return {.name = kind.name,
+          .sentence = std::move(sentence),
+          .role = "beam",
+          .places = {TermPlace::beam},
+          .required_in = {TermPlace::beam},
+          .keys = {},
+          .columns = {},
+          .elastic = [](const TermData& data) { return Beam::parts_of(data.section, kind); },
+          .make = [](const TermData& data) -> std::unique_ptr<Term> {
+            return std::make_unique<Beam>(data.section, kind);
+          }};
+}
 
 }  // namespace
 
 std::unique_ptr<Term> make_beam_gcm(const PlaneSection& section) {
-  return std::make_unique<Beam>(section, Mechanics::general);
+  return std::make_unique<Beam>(section, kGcm);
 }
 
 std::unique_ptr<Term> make_beam_ecm(const PlaneSection& section) {
-  return std::make_unique<Beam>(section, Mechanics::enhanced);
+  return std::make_unique<Beam>(section, kEcm);
 }
 
 const TermRow& gcm_row() {
-  static const TermRow kRow{
-      .name = "gcm",
-      .sentence = "Elastic forces of a beam by general continuum mechanics.",
-      .role = "beam",
-      .places = {TermPlace::beam},
-      .required_in = {TermPlace::beam},
-      .keys = {},
-      .columns = {},
-      .elastic =
-          [](const TermData& data) { return Beam::parts_of(data.section, Mechanics::general); },
-      .make = [](const TermData& data) { return make_beam_gcm(data.section); }};
+  static const TermRow kRow = row_of<kGcm>(
+      "Elastic forces of a beam by general continuum mechanics, with assumed strains on the axis.");
   return kRow;
 }
 
 const TermRow& ecm_row() {
-  static const TermRow kRow{
-      .name = "ecm",
-      .sentence = "Elastic forces of a beam by enhanced continuum mechanics, which does not lock.",
-      .role = "beam",
-      .places = {TermPlace::beam},
-      .required_in = {TermPlace::beam},
-      .keys = {},
-      .columns = {},
-      .elastic =
-          [](const TermData& data) { return Beam::parts_of(data.section, Mechanics::enhanced); },
-      .make = [](const TermData& data) { return make_beam_ecm(data.section); }};
+  static const TermRow kRow = row_of<kEcm>(
+      "Elastic forces of a beam by enhanced continuum mechanics, with assumed strains on the axis: "
+      "locks neither in thick nor in slender beams.");
+  return kRow;
+}
+
+const TermRow& gcm_full_row() {
+  static const TermRow kRow = row_of<kGcmFull>(
+      "As \"gcm\", strains as the displacements have them: locks in large bending of slender "
+      "beams.");
+  return kRow;
+}
+
+const TermRow& ecm_full_row() {
+  static const TermRow kRow = row_of<kEcmFull>(
+      "As \"ecm\", strains as the displacements have them: locks in large bending of slender "
+      "beams.");
   return kRow;
 }
 

@@ -73,42 +73,47 @@ class Assumed final : public StrainSampling {
 
 class Sections final : public StrainSampling {
  public:
-  explicit Sections(bool on_axis) : on_axis_(on_axis) {}
+  Sections(BeamStrains strains, bool on_axis) : strains_(strains), on_axis_(on_axis) {}
   void tabulate(const StrainSource& from, int e, StrainTable& out) const override {
-    const auto numbers = from.element.vectors(e);
-    MatrixXd X(numbers.size(), from.reference.cols());
-    for (size_t k = 0; k < numbers.size(); ++k)
-      X.row(static_cast<Eigen::Index>(k)) = from.reference.row(numbers[k]);
-    ShapeTable t, axis;
-    from.element.tabulate(e, 8, Tabulate::gradient, from.factors, FactorKind::stiffness, t);
-    const Eigen::Index n = t.weight.size(), n_shapes = t.N.cols();
-    out = {
-        VectorXd::Zero(n), {MatrixXd::Zero(n, n_shapes), MatrixXd::Zero(n, n_shapes)}, {}, {}, {}};
-    // Points with the same x follow each other; they are a section.
-    for (Eigen::Index first = 0, last = 0; first < n; first = last) {
-      const double x = t.material[static_cast<size_t>(first)].x();
-      while (last < n && t.material[static_cast<size_t>(last)].x() == x) ++last;
-      const Vec2 e2 = ((t.N.row(last - 1) - t.N.row(first)) * X).transpose().normalized(),
-                 e1(e2.y(), -e2.x());
-      if (on_axis_) {
-        from.element.locate({x, 0}, Tabulate::gradient, axis);
-        out.weight[first] = t.weight.segment(first, last - first).sum();
-        turn(axis, 0, e1, e2, first, out);
-        continue;
-      }
-      for (Eigen::Index p = first; p < last; ++p) {
-        out.weight[p] = t.weight[p];
-        turn(t, p, e1, e2, p, out);
-      }
+    BeamStrainPoints at = beam_strain_points(from.element, e, from.factors, from.reference);
+    const Eigen::Index n = at.n_points(), n_sections = at.sample(0) - n, n_rows = at.d_1.rows();
+    out = {VectorXd::Zero(n_rows), {std::move(at.d_1), std::move(at.d_2)}, {}, {}, {}};
+    if (on_axis_)
+      for (Eigen::Index s = 0; s < n_sections; ++s)
+        out.weight[at.on_axis(s)] = at.area[static_cast<size_t>(s)];
+    else
+      out.weight.head(n) = at.weight;
+    if (strains_ == BeamStrains::assumed) {
+      mix(at, n_sections, out);
+      return;
     }
+    // The points that count.
+    const Eigen::Index first = on_axis_ ? n : 0, count = on_axis_ ? n_sections : n;
+    out.weight = out.weight.segment(first, count).eval();
+    for (MatrixXd& measure : out.measure) measure = measure.middleRows(first, count).eval();
   }
 
  private:
-  static void turn(const ShapeTable& t, Eigen::Index from, const Vec2& e1, const Vec2& e2,
-                   Eigen::Index to, StrainTable& out) {
-    out.measure[0].row(to) = e1.x() * t.N_m.row(from) + e1.y() * t.N_n.row(from);
-    out.measure[1].row(to) = e2.x() * t.N_m.row(from) + e2.y() * t.N_n.row(from);
+  /// ε̄(x, y) = ε(x, y) - ε(x, 0) + ε̄(x), ε̄(x) made of the samples.
+  void mix(const BeamStrainPoints& at, Eigen::Index n_sections, StrainTable& out) const {
+    const Eigen::Index n = at.n_points(), n_rows = out.weight.size();
+    out.mix.assign(9, MatrixXd());
+    for (Eigen::Index i = 0; i < 3; ++i)
+      for (Eigen::Index j = 0; j < 3; ++j) {
+        MatrixXd part = MatrixXd::Zero(n_rows, n_rows);
+        for (Eigen::Index row = on_axis_ ? n : 0; row < (on_axis_ ? n + n_sections : n); ++row) {
+          const Eigen::Index s = on_axis_ ? row - n : at.section[static_cast<size_t>(row)];
+          if (i == j) {
+            part(row, row) += 1;
+            part(row, at.on_axis(s)) -= 1;
+          }
+          for (Eigen::Index k = 0; k < BeamStrainPoints::kSamples; ++k)
+            part(row, at.sample(k)) = at.assumed[static_cast<size_t>(s)](i, 3 * k + j);
+        }
+        if (!part.isZero(0)) out.mix[static_cast<size_t>(3 * i + j)] = std::move(part);
+      }
   }
+  BeamStrains strains_;
   bool on_axis_;
 };
 
@@ -118,8 +123,8 @@ std::shared_ptr<const StrainSampling> sample_points(int degree, Tabulate what) {
   return std::make_shared<Points>(degree, what);
 }
 std::shared_ptr<const StrainSampling> sample_assumed() { return std::make_shared<Assumed>(); }
-std::shared_ptr<const StrainSampling> sample_sections(bool on_axis) {
-  return std::make_shared<Sections>(on_axis);
+std::shared_ptr<const StrainSampling> sample_sections(BeamStrains strains, bool on_axis) {
+  return std::make_shared<Sections>(strains, on_axis);
 }
 
 }  // namespace flexmorph::fem

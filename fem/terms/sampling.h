@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fem/strain.h"
+#include "fem/terms/beam_strains.h"
 
 /// The ways in which terms sample the strains of their elements.
 namespace flexmorph::fem {
@@ -15,6 +16,6 @@ std::shared_ptr<const StrainSampling> sample_assumed();
 
 /// The sections of a beam, measures along e₁ and e₂: e₂ across the section of the reference and e₁
 /// at right angles to it. At points over the sections, or with all their area on the axis.
-std::shared_ptr<const StrainSampling> sample_sections(bool on_axis);
+std::shared_ptr<const StrainSampling> sample_sections(BeamStrains strains, bool on_axis);
 
 }  // namespace flexmorph::fem

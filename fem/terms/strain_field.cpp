@@ -1,27 +1,43 @@
 #include "fem/terms/strain_field.h"
 
 namespace flexmorph::fem {
+namespace {
+
+/// f(i, j, m): m of strain j is a part of strain i.
+template <class F>
+void for_parts(const std::vector<MatrixXd>& mix, Eigen::Index n_strains, const F& f) {
+  const bool own = static_cast<Eigen::Index>(mix.size()) == n_strains;
+  for (Eigen::Index i = 0; i < n_strains; ++i)
+    for (Eigen::Index j = own ? i : 0; j < (own ? i + 1 : n_strains); ++j) {
+      const MatrixXd& m = mix[static_cast<size_t>(own ? i : n_strains * i + j)];
+      if (m.size() > 0) f(i, j, m);
+    }
+}
+
+}  // namespace
 
 void StrainField::mix(const std::vector<MatrixXd>& by, const MatrixXd& from, MatrixXd& to) const {
-  to.resize(from.rows(), from.cols());
-  for (Eigen::Index i = 0; i < from.rows(); ++i)
-    to.row(i).noalias() = from.row(i) * by[static_cast<size_t>(i)].transpose();
+  to.setZero(from.rows(), from.cols());
+  for_parts(by, from.rows(), [&](Eigen::Index i, Eigen::Index j, const MatrixXd& m) {
+    to.row(i).noalias() += from.row(j) * m.transpose();
+  });
 }
 
 void StrainField::mix_rows(const std::vector<MatrixXd>& by, const MatrixXd& from,
                            MatrixXd& to) const {
-  to.resize(from.rows(), from.cols());
+  to.setZero(from.rows(), from.cols());
   const Eigen::Index n = n_points();
-  for (size_t i = 0; i < by.size(); ++i)
-    to.middleRows(static_cast<Eigen::Index>(i) * n, n).noalias() =
-        by[i] * from.middleRows(static_cast<Eigen::Index>(i) * n, n);
+  for_parts(by, from.rows() / n, [&](Eigen::Index i, Eigen::Index j, const MatrixXd& m) {
+    to.middleRows(i * n, n).noalias() += m * from.middleRows(j * n, n);
+  });
 }
 
 const MatrixXd& StrainField::unmixed(const MatrixXd& stress) {
   if (table_->mix.empty()) return stress;
-  mixed_.resize(stress.rows(), stress.cols());
-  for (Eigen::Index i = 0; i < stress.rows(); ++i)
-    mixed_.row(i).noalias() = stress.row(i) * table_->mix[static_cast<size_t>(i)];
+  mixed_.setZero(stress.rows(), stress.cols());
+  for_parts(table_->mix, stress.rows(), [&](Eigen::Index i, Eigen::Index j, const MatrixXd& m) {
+    mixed_.row(j).noalias() += stress.row(i) * m;
+  });
   return mixed_;
 }
 

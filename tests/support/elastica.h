@@ -11,9 +11,10 @@ struct ElasticaTip {
   double x = 0, z = 0;  ///< position of the tip in parts of the length
 };
 
-/// θ' = κ, κ' = -α cos θ, x' = cos θ, z' = sin θ on [0, 1] with θ(0) = 0, κ(1) = 0 and
-/// α = F L²/(E I); κ(0) by bisection, 4000 steps of the classical Runge-Kutta method.
-inline ElasticaTip elastica(double alpha) {
+/// θ' = κ, κ' = -α cos θ, x' = cos θ, z' = sin θ on [0, 1] with θ(0) = 0, κ(1) = κ° and
+/// α = F L²/(E I); κ° times the length: the curvature that it has unloaded. κ(0) by bisection, 4000
+/// steps of the classical Runge-Kutta method.
+inline ElasticaTip elastica(double alpha, double rest_curvature = 0) {
   using Y = std::array<double, 4>;  // θ, κ, x, z
   const auto rate = [alpha](const Y& y) {
     return Y{y[1], -alpha * std::cos(y[0]), std::cos(y[0]), std::sin(y[0])};
@@ -34,11 +35,12 @@ inline ElasticaTip elastica(double alpha) {
     }
     return y;
   };
-  // κ(0)² = 2 α sin θ(1) <= 2 α: the moment at the tip is below zero at 0 and above at the end.
-  double low = 0, high = std::sqrt(2 * alpha);
+  // κ(0)² = κ°² + 2 α sin θ(1) <= κ°² + 2 α: the moment at the tip is below zero at κ° and above at
+  // the end.
+  double low = rest_curvature, high = std::sqrt(rest_curvature * rest_curvature + 2 * alpha);
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high);
-    (shoot(middle)[1] < 0 ? low : high) = middle;
+    (shoot(middle)[1] < rest_curvature ? low : high) = middle;
   }
   const Y y = shoot(0.5 * (low + high));
   return {y[2], y[3]};

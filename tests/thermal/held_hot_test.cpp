@@ -55,7 +55,7 @@ std::vector<Held> full_clamp() {
 
 // T 3.1: position and rotation of a section hold no strain.
 TEST(ClampedBeam, PartiallyIsFreeOfStress) {
-  for (const char* term : {"gcm", "ecm"})
+  for (const char* term : {"gcm", "ecm", "gcm_full", "ecm_full"})
     for (const auto path : {StaticSettings::Path::load, StaticSettings::Path::arc_length})
       for (const double a : {0.02, 0.6}) {
         StaticSettings settings;
@@ -78,7 +78,7 @@ TEST(ClampedBeam, PartiallyIsFreeOfStress) {
 // (σ₁₁ = 0), so δ decays over h √(G/(12 E)), 0.0179 m here. Fitted from one to four such lengths.
 TEST(ClampedBeam, FullyIsTaperedOverABoundaryLayer) {
   const double h = 0.1, a = 1e-3, length = h * std::sqrt(1 / (12 * 2 * 1.3));
-  for (const char* term : {"gcm", "ecm"}) {
+  for (const char* term : {"gcm", "ecm", "gcm_full", "ecm_full"}) {
     std::vector<double> nodes;
     for (int i = 0; i < 60; ++i) nodes.push_back(length * i / 8);
     for (int i = 0; i <= 4; ++i) nodes.push_back(nodes[59] + (1 - nodes[59]) * (i + 1) / 5);
@@ -111,7 +111,7 @@ TEST(HeldBar, PushesWithTheForceOfTheClosedForm) {
   const double a = 0.02, s = 1 + a;
   for (const auto volume :
        {ThermalVolume::grown, ThermalVolume::grown_plane, ThermalVolume::reference})
-    for (const char* term : {"gcm", "ecm"})
+    for (const char* term : {"gcm", "ecm", "gcm_full", "ecm_full"})
       for (const int n : {1, 3}) {
         const HoldPlace end = HoldPlace::at({0.25, 0});
         const Heat hot = testing::constant_heat(a, volume);

@@ -115,7 +115,8 @@ INSTANTIATE_TEST_SUITE_P(Bodies, Damping,
                                            Case{{"membrane", "bending"}, TermPlace::space, true},
                                            Case{{"membrane_assumed", "bending"}, TermPlace::space},
                                            Case{{"gcm"}, TermPlace::beam},
-                                           Case{{"ecm"}, TermPlace::beam}));
+                                           Case{{"ecm"}, TermPlace::beam},
+                                           Case{{"ecm_full"}, TermPlace::beam}));
 
 // Where nothing is strained, U(q + h v) = ½ h² ∫ ė·D ė dA + O(h³): its second derivative is P/τ,
 // factors of a design included.

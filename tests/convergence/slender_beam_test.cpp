@@ -1,0 +1,155 @@
+// Shows slender beams in large bending: Mattiasson's cantilever and a curved one against the
+// elastica, as good at L/h = 1000 as at 50; the order of convergence; that "ecm_full" locks there;
+// and the frequencies of slender beams.
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <iostream>
+#include <numbers>
+
+#include "fem/elements/ancf_beam.h"
+#include "fem/loads.h"
+#include "fem/solve/statics.h"
+#include "fem/terms.h"
+#include "fem/workspace.h"
+#include "tests/support/elastica.h"
+#include "tests/support/rates.h"
+
+namespace flexmorph::fem {
+namespace {
+
+constexpr double kModulus = 2.1e11, kWidth = 0.01;
+
+PlaneSection section() { return {kWidth, kModulus, 0.3, 7850}; }
+double bending_stiffness(double height) { return kModulus * kWidth * std::pow(height, 3) / 12; }
+
+Workspace cantilever(const std::string& term, std::unique_ptr<AncfBeam> beam,
+                     const VectorXd& force) {
+  std::vector<std::unique_ptr<Term>> terms;
+  terms.push_back(make_inertia(section()));
+  terms.push_back(make_term(term, section()));
+  if (force.size() > 0) terms.push_back(make_point_force({1, 0}, force));
+  Workspace model;
+  model.add_body("beam", std::move(beam), section(), std::move(terms));
+  model.add_joint(make_hold("clamp", "beam",
+                            {{HoldPlace::at({0, 0}), NodeVector::r, {0, 1}},
+                             {HoldPlace::at({0, 0}), NodeVector::r_n, {0, 1}}}));
+  return model;
+}
+
+/// Of a straight cantilever of length 1 with P L²/(E I) = 5.
+reference::ElasticaTip tip(const std::string& term, double slenderness, int n) {
+  VectorXd force(2);
+  force << 0, 5 * bending_stiffness(1 / slenderness);
+  Workspace model = cantilever(term, std::make_unique<AncfBeam>(1, 1 / slenderness, n), force);
+  State x = model.reference();
+  EXPECT_TRUE(solve_static(model, x).completed);
+  const Vec2 at = model.place_motion({"beam", {1, 0}}, x).position;
+  return {at.x(), at.y()};
+}
+
+/// Its distance from the elastica by the length of the displacement.
+double error(const reference::ElasticaTip& is) {
+  const reference::ElasticaTip should = reference::elastica(5);
+  return std::hypot(is.x - should.x, is.z - should.z) / std::hypot(1 - should.x, should.z);
+}
+
+// Mattiasson (1981), Int. J. Numer. Meth. Eng. 17, 145-153: w/L = 0.71379, u/L = 0.38763.
+TEST(Mattiasson, TableIsTheElastica) {
+  const reference::ElasticaTip exact = reference::elastica(5);
+  EXPECT_NEAR(exact.z, 0.71379, 5e-6);
+  EXPECT_NEAR(1 - exact.x, 0.38763, 5e-6);
+}
+
+// Curvature is constant in an element: (1/8)² of it is left. What the elastica leaves out, shear
+// and the squares of strains, is 5e-4 at L/h = 50.
+TEST(Mattiasson, EightElementsAreEnoughHoweverSlender) {
+  const reference::ElasticaTip exact = reference::elastica(5);
+  for (const double slenderness : {50, 200, 500, 1000}) {
+    const reference::ElasticaTip is = tip("ecm", slenderness, 8);
+    std::cout << "  L/h " << slenderness << ": w " << 100 * (is.z / exact.z - 1) << " %, u "
+              << 100 * ((1 - is.x) / (1 - exact.x) - 1) << " %, tip " << 100 * error(is)
+              << " %, full " << 100 * error(tip("ecm_full", slenderness, 8)) << " %\n";
+    EXPECT_LT(error(is), 0.01) << slenderness;
+    EXPECT_NEAR(is.z, exact.z, 0.005 * exact.z) << slenderness;
+    EXPECT_NEAR(is.x, exact.x, 0.01 * exact.x) << slenderness;
+  }
+}
+
+TEST(Mattiasson, ConvergesWithOrderTwo) {
+  for (const double slenderness : {500, 1000}) {
+    const testing::Rate rate = testing::fit_rate({1.0 / 8, 1.0 / 16, 1.0 / 32}, [&](double size) {
+      return error(tip("ecm", slenderness, static_cast<int>(std::lround(1 / size))));
+    });
+    std::cout << rate.table();
+    EXPECT_NEAR(rate.order(), 2, 0.1) << rate.table();
+  }
+}
+
+// The same load on an arc of 60 degrees, which it bends on. The sections of the reference turn.
+TEST(SlenderArc, BendsAsTheElastica) {
+  const double turn = std::numbers::pi / 3;
+  const reference::ElasticaTip exact = reference::elastica(2, turn);
+  for (const double slenderness : {50, 200, 1000}) {
+    const auto off = [&](double size) {
+      const int n = static_cast<int>(std::lround(1 / size));
+      const double height = 1 / slenderness;
+      VectorXd force(2);
+      force << 0, 2 * bending_stiffness(height);
+      auto beam = std::make_unique<AncfBeam>(even_nodes(1, n), height, arc_reference(1, turn, n));
+      Workspace model = cantilever("ecm", std::move(beam), force);
+      State x = model.reference();
+      EXPECT_TRUE(solve_static(model, x).completed);
+      const Vec2 at = model.place_motion({"beam", {1, 0}}, x).position;
+      return std::hypot(at.x() - exact.x, at.y() - exact.z);
+    };
+    const testing::Rate rate = testing::fit_rate({1.0 / 8, 1.0 / 16, 1.0 / 32}, off);
+    std::cout << "  L/h " << slenderness << '\n' << rate.table();
+    EXPECT_LT(rate.error.front(), 0.01);
+    // At 50 what the elastica leaves out, 1.5e-4, is as large as what is left of the mesh.
+    if (slenderness > 100) {
+      EXPECT_NEAR(rate.order(), 2, 0.15) << rate.table();
+    }
+  }
+}
+
+/// Pulsations of a free beam of L/h = 200, without those of rigid motions.
+VectorXd pulsations(const std::string& term, int n) {
+  std::vector<std::unique_ptr<Term>> terms;
+  terms.push_back(make_inertia(section()));
+  terms.push_back(make_term(term, section()));
+  Workspace model;
+  model.add_body("beam", std::make_unique<AncfBeam>(1, 1.0 / 200, n), section(), std::move(terms));
+  const State x = model.reference();
+  model.prepare(0.0);
+  Constraints none;
+  model.constraints(x, none);
+  SparseMatrix stiffness, mass;
+  model.kkt(x, none, {1, 0, 0}, 1, stiffness);
+  model.kkt(x, none, {0, 0, 1}, 1, mass);
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> modes{MatrixXd(stiffness),
+                                                                 MatrixXd(mass)};
+  return modes.eigenvalues().tail(modes.eigenvalues().size() - 3).cwiseSqrt();
+}
+
+// ω = β² √(E I/(ρ A)), cos β cosh β = 1; shear and rotary inertia take 1e-5 (1 + E/G) β²/24 of it
+// or so. Elements of constant curvature: order 2. To first order about a straight beam assumed
+// strains are those of the displacements.
+TEST(SlenderBeam, HasTheFrequenciesOfBernoulliAndEuler) {
+  const double beta[] = {4.7300407, 7.8532046, 10.9956078},
+               unit = std::sqrt(kModulus / (12 * 7850.0)) / 200;
+  for (int mode = 0; mode < 3; ++mode) {
+    const testing::Rate rate = testing::fit_rate({1.0 / 8, 1.0 / 16, 1.0 / 32}, [&](double size) {
+      const int n = static_cast<int>(std::lround(1 / size));
+      const double omega = pulsations("ecm", n)[mode];
+      EXPECT_NEAR(omega, pulsations("ecm_full", n)[mode], 1e-6 * omega);
+      return std::abs(omega / (beta[mode] * beta[mode] * unit) - 1);
+    });
+    std::cout << "  bending " << mode + 1 << '\n' << rate.table();
+    EXPECT_NEAR(rate.order(), 2, 0.15) << rate.table();
+  }
+}
+
+}  // namespace
+}  // namespace flexmorph::fem
