@@ -385,9 +385,11 @@ const TermRow& membrane_row() {
 }
 
 const TermRow& membrane_assumed_row() {
-  static const TermRow kRow = row<Strains::assumed>(
-      "membrane_assumed", "Membrane forces with assumed strains: thin plates do not lock.",
-      {TermPlace::space});
+  static const TermRow kRow =
+      row<Strains::assumed>("membrane_assumed",
+                            "Membrane forces with assumed strains: thin plates, and slender ones "
+                            "in the plane, do not lock.",
+                            {TermPlace::plane, TermPlace::space});
   return kRow;
 }
 
