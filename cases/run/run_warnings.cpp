@@ -87,7 +87,22 @@ void add_designs(const RunReport& report, Warnings& out) {
       }
 }
 
+/// Of bodies whose temperature jumps on the way; nothing where none does.
+std::string jump_words(const Scene& scene) {
+  std::string jumps;
+  for (const Body& body : scene.bodies)
+    if (body.heat && body.heat->profile == "step" && body.heat->start < scene.time.end)
+      jumps += (jumps.empty() ? "" : ", ") + ("'" + body.name + "' at t = ") +
+               io::to_text(body.heat->start, 4) + " s";
+  if (jumps.empty()) return "";
+  return "a temperature that jumps (" + jumps +
+         ") brings energy in between two steps, where no power shows, and that is missed here; the "
+         "motion is as good as its step. A body.heat.profile that takes time, as \"quartic\", has "
+         "a power";
+}
+
 void add_motion(const Scene& scene, const MotionRecord& motion, Warnings& out) {
+  const std::string jumps = jump_words(scene);
   for (const fem::Conditioning& c : motion.result.near_singular) out.push_back({fem::describe(c)});
   if (motion.result.alternation)
     out.push_back({alternation_words(*motion.result.alternation)});
@@ -109,7 +124,8 @@ void add_motion(const Scene& scene, const MotionRecord& motion, Warnings& out) {
   else if (misses_energy(scene, motion))
     out.push_back(
         {"the balance of energy is missed by " + io::to_text(100 * motion.result.energy_defect, 3) +
-         " % of the largest energy: do not trust this motion; a smaller time.step helps"});
+         " % of the largest energy: " +
+         (jumps.empty() ? "do not trust this motion; a smaller time.step helps" : jumps)});
 }
 
 }  // namespace

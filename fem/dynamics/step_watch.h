@@ -20,15 +20,16 @@ struct Alternation {
 /// grows where constraints are not linear, until Newton's method fails and steps are halved.
 ///
 /// A row alternates while its second differences λ_{n+1} - 2 λ_n + λ_{n-1} change sign from step to
-/// step and are not small against its largest multiplier, kSteps steps in a row: with the default
-/// ρ_∞ = 0.8 one per cent is left of anything after that many.
+/// step and are not small against its largest multiplier, kSteps steps in a row: with ρ_∞ = 0.95
+/// less than a hundredth is left of anything after that many. Axial waves that a step does not
+/// resolve alternate for some tens of steps at a start, and are damped.
 ///
 /// Source: Cardona & Géradin (1989), Comput. Struct. 33, 801-820; Arnold & Brüls (2007), Multibody
 /// Syst. Dyn. 18, 185-202.
 class MultiplierWatch {
  public:
-  static constexpr int kSteps = 20;         ///< of equal length
-  static constexpr double kNoticed = 0.05;  ///< amplitude, of the row's largest multiplier
+  static constexpr int kSteps = 100;         ///< of equal length
+  static constexpr double kNoticed = 0.005;  ///< amplitude, of the row's largest multiplier
 
   /// After an accepted step of length h.
   void see(const Model& model, const State& x, double h);
