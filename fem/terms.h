@@ -90,7 +90,8 @@ std::unique_ptr<Term> make_assumed_membrane(const PlaneSection& section);
 std::unique_ptr<Term> make_beam_gcm(const PlaneSection& section);
 std::unique_ptr<Term> make_beam_ecm(const PlaneSection& section);
 /// Bending of a thin plate in space, n x n Gauss points per element (5: force to 5e-4 at strong
-/// deformation; 7: 4e-7). @throws Error (input) at prepare() for a body in the plane.
-std::unique_ptr<Term> make_bending(const PlaneSection& section, int n_points = 5);
+/// deformation; 7: 4e-7; 9: where a plate folds, fem/README.md, Bending). @throws Error (input) at
+/// prepare() for a body in the plane.
+std::unique_ptr<Term> make_bending(const PlaneSection& section, int n_points = 9);
 
 }  // namespace flexmorph::fem

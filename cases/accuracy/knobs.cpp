@@ -301,7 +301,7 @@ std::string no_bending(const Scene& scene, Part part) {
 std::vector<Level> quadrature_levels(const Scene& scene, const io::CaseFile&) {
   const int own = static_cast<int>(scene.bodies.front().number(kPoints));
   std::vector<Level> out;
-  for (int points = std::min(3, own); points <= std::max(9, own); ++points) {
+  for (int points = std::min(3, own); points <= std::max(11, own); ++points) {
     Level& level = out.emplace_back();
     level.h = static_cast<double>(own) / points;
     level.name = to_text(points) + " x " + to_text(points);

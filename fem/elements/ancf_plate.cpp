@@ -264,8 +264,11 @@ bool weighted(const Factors& factors, FactorKind kind) {
 }
 
 /// Points per direction for integrands of a degree: with a stepwise factor the weights are
-/// interpolatory, exact up to degree n - 1 only.
-int n_points(int degree, bool weighted) { return weighted ? degree + 1 : degree / 2 + 1; }
+/// interpolatory, exact up to degree n - 1 only. Sixteen are the most there are (gauss()); only
+/// what is rational, and has no degree, asks for more.
+int n_points(int degree, bool weighted) {
+  return weighted ? std::min(degree + 1, 16) : degree / 2 + 1;
+}
 
 }  // namespace
 

@@ -265,7 +265,7 @@ const TermRow& bending_row() {
                 .low = 3,
                 .high = 16,
                 .whole = true,
-                .fallback = 5,
+                .fallback = 9,
                 .sentence = "Gauss points of the bending per element and direction."}},
       .columns = {},
       .elastic = [](const TermData& data) { return Bending::parts_of(data.section, points(data)); },

@@ -156,7 +156,7 @@ void term_rows(double rate) {
                               64;
           const bool h12 = shapes == ShapeSet::h12;
           const double n = p.element.n_shapes();
-          const Operations ops = name == "bending" ? bending_operations(designed ? 9 : 5, !h12)
+          const Operations ops = name == "bending" ? bending_operations(designed ? 16 : 9, !h12)
                                  : name == "inertia"
                                      ? Operations{2 * n * n * dim, n * n * (3 * dim + 1)}
                                  : h12 ? gram_operations<3>(dim, !designed)

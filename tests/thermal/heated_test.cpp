@@ -135,10 +135,10 @@ double of_samples(const AncfPlate& plate, int e, const LocalRows& q, double s) {
   return kSection.thickness * out;
 }
 
-/// P (7), at the 5 x 5 points of the term.
+/// P (7), at the 9 x 9 points of the term.
 double of_curvature(const Element& element, int e, const LocalRows& q, double s) {
   ShapeTable t;
-  element.tabulate(e, 8, Tabulate::curvature, {}, FactorKind::none, t);
+  element.tabulate(e, 16, Tabulate::curvature, {}, FactorKind::none, t);
   double out = 0;
   for (Eigen::Index p = 0; p < t.weight.size(); ++p) {
     const auto at = [&](const MatrixXd& table) { return Vec3((table.row(p) * q / s).transpose()); };

@@ -245,6 +245,26 @@ TEST_P(BeamTerm, UniformStrainHasTheExactEnergyAndStress) {
   }
 }
 
+// Assumed strains leave nothing free but rigid motions: three eigenvalues of the stiffness are
+// zero, the next is that of bending, (h/L)² or so of the largest.
+TEST_P(BeamTerm, NothingButRigidMotionsIsFree) {
+  const int n = 2 * beam.n_vectors();
+  MatrixXd stiffness = MatrixXd::Zero(n, n);
+  for (int e = 0; e < beam.n_elements(); ++e) {
+    LocalTangent k = LocalTangent::Zero(12, 12);
+    term->add_tangent(e, local(e, beam.reference()), {1, 0, 0}, k);
+    const int first = 6 * e;  // three vectors a node
+    stiffness.block(first, first, 12, 12) += k;
+  }
+  for (int k = 0; k < beam.n_vectors(); ++k) {  // as forces by displacements
+    stiffness.middleRows(2 * k, 2) /= beam.scale(k);
+    stiffness.middleCols(2 * k, 2) /= beam.scale(k);
+  }
+  const VectorXd values = stiffness.selfadjointView<Eigen::Lower>().eigenvalues();
+  EXPECT_LT(std::abs(values[2]), 1e-13 * values[n - 1]);
+  EXPECT_GT(values[3], 1e-6 * values[n - 1]);
+}
+
 // The force is cubic in the unknowns: differences of order 4 are exact but for round-off.
 TEST_P(BeamTerm, TangentIsTheDerivativeOfTheForceAndForceThatOfTheEnergy) {
   const int e = beam.n_elements() - 1;

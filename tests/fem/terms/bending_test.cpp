@@ -179,7 +179,7 @@ TEST(Bending, SevenPointsConfirmFive) {
 }
 
 // The kernels sum over one direction after the other; here, point by point from the tables of all
-// shape functions: the same points and weights, κ by its definition. Sums of 25 to 81 points.
+// shape functions: the same points and weights, κ by its definition. Sums of 81 and 256 points.
 TEST(Bending, EnergyIsThatOfItsPoints) {
   const Eigen::Matrix3d d = std::pow(kSection.thickness, 3) / 12 * kSection.elasticity();
   for (const ShapeSet shapes : {ShapeSet::h12, ShapeSet::h16})
@@ -194,7 +194,7 @@ TEST(Bending, EnergyIsThatOfItsPoints) {
         Local x;
         x.q = testing::rows_of_element(plate, shape, e);
         ShapeTable t;
-        plate.tabulate(e, 8, Tabulate::curvature, factors, FactorKind::stiffness, t);
+        plate.tabulate(e, 16, Tabulate::curvature, factors, FactorKind::stiffness, t);
         const MatrixXd q = x.q, r_m = t.N_m * q, r_n = t.N_n * q, r_mm = t.N_mm * q,
                        r_nn = t.N_nn * q, r_mn = t.N_mn * q;
         double expected = 0;
