@@ -216,7 +216,7 @@ const Bad kBadInputs[] = {
      "an element is one of 'ancf_plate', 'ale_ancf_plate', 'ancf_beam'"},
     {"unknown_term",
      {"body.terms=[\"inertia\", \"bending\"]"},
-     "a list: a term is one of 'inertia', 'membrane', 'damping', none twice"},
+     "a list: a term is one of 'inertia', 'membrane', 'membrane_assumed', 'damping', none twice"},
     {"unknown_optimizer",
      {"optimizer.name=sqp"},
      "an optimizer is one of 'gcmma', 'ipopt', 'mma', 'nlopt_ccsaq', 'nlopt_mma'"},

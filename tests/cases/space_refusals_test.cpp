@@ -51,7 +51,7 @@ const Bad kBad[] = {
     {"bending_in_the_plane",
      kPlanar,
      {"body.terms=[\"inertia\", \"bending\"]"},
-     "a term is one of 'inertia', 'membrane', 'damping', none twice"},
+     "a term is one of 'inertia', 'membrane', 'membrane_assumed', 'damping', none twice"},
     {"space_without_bending",
      kPendulum,
      {"body.terms=[\"inertia\", \"membrane\"]"},
