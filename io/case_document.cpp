@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "geometry/base.h"
+#include "io/case_forms.h"
 #include "io/case_parser.h"
 
 namespace flexmorph::io {
@@ -63,7 +64,7 @@ CaseNode& entry_of(CaseNode& list, const std::string& so_far, const std::vector<
 }
 
 void collect_unknown(const CaseNode& node, const std::string& path,
-                     std::vector<std::pair<unsigned, std::string>>& messages) {
+                     std::vector<Complaint>& messages) {
   if (node.kind == CaseNode::Kind::list) {
     for (size_t i = 0; i < node.entries.size(); ++i)
       collect_unknown(node.entries[i], entry_path(node, i, path), messages);
@@ -79,14 +80,14 @@ void collect_unknown(const CaseNode& node, const std::string& path,
       continue;
     }
     const std::string close = nearest(key, known);
-    std::string message = located(child, full) + ": unknown key";
+    std::string message = ": unknown key";
     if (!close.empty()) {
       message += ", did you mean '" + close + "'?";
     } else {
       message += "; known here:";
       for (const std::string& each : known) message += " " + each;
     }
-    messages.emplace_back(child.line, message);
+    messages.push_back({child.line, located(child, full), message});
   }
 }
 
@@ -279,19 +280,45 @@ void CaseDocument::apply(const std::string& change) {
 }
 
 void CaseDocument::refuse_unknown_keys() const {
-  std::vector<std::pair<unsigned, std::string>> messages;
+  std::vector<Complaint> messages;
   collect_unknown(root, "", messages);
-  if (messages.empty()) return;
-  std::stable_sort(messages.begin(), messages.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  // As many as fit on a screen: who has more has mistaken something else.
-  constexpr size_t kMost = 19;
-  std::string all;
-  for (size_t i = 0; i < std::min(kMost, messages.size()); ++i)
-    all += (all.empty() ? "" : "\n") + messages[i].second;
-  if (messages.size() > kMost)
-    all += "\n" + path + ": " + std::to_string(messages.size() - kMost) + " more unknown keys";
-  throw Error::input(all);
+  if (!messages.empty()) throw Error::input(complaints_text(std::move(messages), path));
+}
+
+CaseDocument::Looked CaseDocument::look(const std::string& key_path) const {
+  Looked out{&root, "", ""};
+  std::istringstream in(key_path);
+  for (std::string part; std::getline(in, part, '.');) {
+    if (is_list_of_tables(*out.node)) {
+      const CaseNode& list = *out.node;
+      const size_t size = list.entries.size();
+      size_t i = 0;
+      while (i < size && entry_label(list, i) != part && std::to_string(i) != part) ++i;
+      const bool named = i < size;
+      if (!named && size > 1) return out;
+      out.path = entry_path(list, named ? i : 0, out.path);
+      out.node = &list.entries[named ? i : 0];
+      if (named) continue;
+    }
+    const CaseNode* child = out.node->find(part);
+    if (child == nullptr) {
+      out.next = part;
+      return out;
+    }
+    out.node = child;
+    out.path += (out.path.empty() ? "" : ".") + part;
+  }
+  out.whole = true;
+  return out;
+}
+
+std::string CaseDocument::where(const std::string& key_path) const {
+  const Looked found = look(key_path);
+  for (const CaseNote& note : found.node->notes)
+    if (!found.whole && note.key == found.next && !note.value.empty())
+      return found.node->place + ": " + (found.path.empty() ? "" : found.path + ".") + note.key +
+             " = " + note.value + " (not given)";
+  return found.path.empty() ? path : located(*found.node, found.path);
 }
 
 std::string CaseDocument::effective_text() const {

@@ -28,7 +28,7 @@ struct CaseNode {
   bool is_inline = false;         ///< a table in braces
   std::vector<CaseNode> entries;  ///< of tables and lists
 
-  std::string place;                    ///< "cases/four_bar.toml:14", or "--set KEY=VALUE"
+  std::string place;                    ///< "cases/four_bar.toml:14:13", or "--set KEY=VALUE"
   std::string shown;                    ///< as it was written: "-0.002", "[10, 2]"
   unsigned line = 0;                    ///< to sort messages
   bool is_option = false;               ///< the very value of a --set option
@@ -51,6 +51,16 @@ struct CaseDocument {
   void apply(const std::string& change);
 
   void refuse_unknown_keys() const;  ///< @throws Error (input)
+  /// How far a dotted path leads: one entry goes by its label, its number, or nothing where it is
+  /// the only one.
+  struct Looked {
+    const CaseNode* node;    ///< the last one on the way
+    std::string path, next;  ///< its path; the key that it does not have
+    bool whole = false;      ///< did it lead to the end?
+  };
+  Looked look(const std::string& key_path) const;
+  /// See CaseFile::where().
+  std::string where(const std::string& key_path) const;
   std::string effective_text() const;
   /// The effective case with the values that readers took for missing keys, a sentence to each.
   std::string explained_text() const;
@@ -60,7 +70,7 @@ struct CaseDocument {
   CaseNode root;
 };
 
-/// "cases/four_bar.toml:14: body.thickness = -0.002"; of a table its path only.
+/// "cases/four_bar.toml:14:13: body.thickness = -0.002"; of a table its path only.
 std::string located(const CaseNode& node, const std::string& key_path);
 
 /// How an entry of a list of tables is called: its name, else the body it is about, else its index.

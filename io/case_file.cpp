@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <limits>
 #include <set>
 #include <stdexcept>
 
+#include "io/case_forms.h"
 #include "io/case_place.h"
 #include "io/files.h"
 
@@ -13,35 +13,6 @@ namespace flexmorph::io {
 namespace {
 
 using Kind = CaseNode::Kind;
-
-std::optional<double> read_number(const CaseNode& node, const Quantity& quantity) {
-  if (node.kind != Kind::number && node.kind != Kind::integer) return {};
-  return quantity.holds(node.number) ? std::optional(node.number) : std::nullopt;
-}
-
-std::optional<int> read_integer(const CaseNode& node, const Form& form) {
-  if (node.kind != Kind::integer || node.integer < form.lower || node.integer > form.upper)
-    return {};
-  return static_cast<int>(node.integer);
-}
-
-std::optional<std::string> read_text(const CaseNode& node) {
-  return node.kind == Kind::text ? std::optional(node.text) : std::nullopt;
-}
-
-std::string whole_number(const Form& form) {
-  const std::string start = form.quantity.noun + " is a whole number ";
-  if (form.upper == std::numeric_limits<int>::max())
-    return start + "of at least " + to_text(form.lower);
-  return start + "between " + to_text(form.lower) + " and " + to_text(form.upper);
-}
-
-std::string one_of(const std::string& noun, std::span<const std::string> allowed) {
-  if (allowed.empty()) return noun + ": this case has none";
-  std::string text = noun + (allowed.size() == 1 ? " is " : " is one of ");
-  for (size_t i = 0; i < allowed.size(); ++i) text += (i ? ", '" : "'") + allowed[i] + "'";
-  return text;
-}
 
 }  // namespace
 
@@ -86,6 +57,12 @@ bool Table::is_string(const Key& key) const {
   return node != nullptr && node->kind == Kind::text;
 }
 
+bool Table::says_one_of(const Key& key, std::span<const std::string> words) const {
+  const CaseNode* node = place_->find(key.name);
+  return node != nullptr && node->kind == Kind::text &&
+         std::find(words.begin(), words.end(), node->text) != words.end();
+}
+
 bool Table::is_list_of_strings(const Key& key) const {
   const CaseNode* node = place_->find(key.name);
   return node != nullptr && node->kind == Kind::list && !node->entries.empty() &&
@@ -96,7 +73,7 @@ bool Table::is_list_of_strings(const Key& key) const {
 double Table::number(const Key& key, std::optional<double> computed) const {
   const Quantity& quantity = place_->form(key, Form::Kind::number).quantity;
   return place_->value<double>(key, computed, quantity.allowed(), [&](const CaseNode& node) {
-    if (node.kind == Kind::text) fail(key, quantity.allowed() + "; a number stands without quotes");
+    if (node.kind == Kind::text) fail(key, quantity.allowed() + kNoQuotes);
     return read_number(node, quantity);
   });
 }
@@ -127,14 +104,13 @@ std::string Table::choice(const Key& key, std::optional<std::string> computed) c
 
 std::string Table::choice(const Key& key, std::span<const std::string> allowed,
                           std::optional<std::string> computed) const {
-  const std::string text = one_of(place_->form(key, Form::Kind::word).quantity.noun, allowed);
+  const std::string& noun = place_->form(key, Form::Kind::word).quantity.noun;
   const auto read = [&](const CaseNode& node) -> std::optional<std::string> {
     if (node.kind != Kind::text) return {};
     if (std::find(allowed.begin(), allowed.end(), node.text) != allowed.end()) return node.text;
-    const std::string close = nearest(node.text, allowed);
-    fail(key, close.empty() ? text : text + ", did you mean '" + close + "'?");
+    fail(key, one_of(noun, allowed, node.text));
   };
-  return place_->value<std::string>(key, computed, text, read);
+  return place_->value<std::string>(key, computed, one_of(noun, allowed), read);
 }
 
 std::vector<double> Table::numbers(const Key& key,
@@ -276,6 +252,32 @@ CaseFile::CaseFile(const std::string& path, std::span<const std::string> overrid
 const std::string& CaseFile::path() const { return root_->document->path; }
 
 Table CaseFile::root() const { return Table(root_); }
+
+std::string CaseFile::with_others(const std::string& complaint) const {
+  BookCheck found = check_by_book(root_->document->root);
+  bool known = false;
+  const auto same = [&](const Complaint& each) {
+    const bool is = complaint.starts_with(each.subject + ":");
+    known = known || is;
+    return is;
+  };
+  for (std::vector<Complaint>* list : {&found.values, &found.unknown, &found.missing})
+    std::erase_if(*list, same);
+  std::vector<Complaint> all = {{0, complaint, ""}};
+  all.insert(all.end(), found.values.begin(), found.values.end());
+  all.insert(all.end(), found.unknown.begin(), found.unknown.end());
+  // Parts that do not fit together may be there by mistake: nobody misses what they lack.
+  if (known) all.insert(all.end(), found.missing.begin(), found.missing.end());
+  return complaints_text(std::move(all), path());
+}
+
+std::string CaseFile::where(const std::string& key_path) const {
+  return root_->document->where(key_path);
+}
+
+bool CaseFile::gives(const std::string& key_path) const {
+  return root_->document->look(key_path).whole;
+}
 
 void CaseFile::finish() const { root_->document->refuse_unknown_keys(); }
 

@@ -16,9 +16,9 @@ struct CaseNode;
 
 /// One table of a case file, and what was asked of it.
 ///
-/// Every reader throws Error (input) with file, line, key, value and what is allowed:
+/// Every reader throws Error (input) with file, line, column, key, value and what is allowed:
 ///
-///   cases/four_bar.toml:14: body.thickness = -0.002: a thickness is positive [m]
+///   cases/four_bar.toml:14:13: body.thickness = -0.002: a thickness is positive [m]
 ///
 /// A missing key has the value that its declaration or the reader (`computed`) says; without either
 /// it is an error. Asking for a key makes it known: CaseFile::finish() refuses all others. Reading
@@ -27,11 +27,12 @@ struct CaseNode;
 class Table {
  public:
   const std::string& path() const;        ///< "body.flow"; empty for the file itself
-  std::string place() const;              ///< "cases/four_bar.toml:14"
+  std::string place() const;              ///< "cases/four_bar.toml:14:1"
   std::vector<std::string> keys() const;  ///< in the order of the file (makes none known)
   bool has(const Key& key) const;         ///< is it in the file? (makes it known)
   bool is_string(const Key& key) const;   ///< is its value a string?
   bool is_list_of_strings(const Key& key) const;
+  bool says_one_of(const Key& key, std::span<const std::string> words) const;  ///< as its string
 
   /// Whole numbers are numbers; inf and nan are refused.
   double number(const Key& key, std::optional<double> computed = {}) const;
@@ -72,9 +73,9 @@ class Table {
   /// What a missing key came to in the end, where that is known only later: for the explained case.
   void settle(const Key& key, const Value& value) const;
 
-  /// @throws Error (input): "<file:line>: <path.key> = <value>: <allowed>".
+  /// @throws Error (input): "<file:line:column>: <path.key> = <value>: <allowed>".
   [[noreturn]] void fail(const Key& key, const std::string& allowed) const;
-  /// The same about the table as a whole: "<file:line>: <path>: <allowed>".
+  /// The same about the table as a whole: "<file:line:column>: <path>: <allowed>".
   [[noreturn]] void fail(const std::string& allowed) const;
 
   /// Path of the file that a key names: relative names start at the folder of the case file, those
@@ -104,6 +105,18 @@ class CaseFile {
 
   const std::string& path() const;
   Table root() const;
+
+  /// What a reader complained of first, and what else is wrong in the file whatever it means, so
+  /// that all is said at once: values out of their ranges, unknown keys, and, if the first
+  /// complaint is of that kind, keys that every such table must have (check_by_book). A line to
+  /// each, twenty at most.
+  std::string with_others(const std::string& complaint) const;
+
+  /// Where a dotted path of keys leads (entries of lists as in overrides), as messages begin:
+  /// "cases/four_bar.toml:14:8: time.step = 0.001". Of a key that is not in the file, its table and
+  /// the value that was taken for it.
+  std::string where(const std::string& key_path) const;
+  bool gives(const std::string& key_path) const;  ///< is the key in the file, or set?
 
   /// @throws Error (input) naming every key nobody asked for, with the nearest known one.
   void finish() const;

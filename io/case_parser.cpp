@@ -15,6 +15,11 @@
 namespace flexmorph::io {
 namespace {
 
+/// ":14:13", line and column (characters, not bytes) as editors count them.
+std::string place_in(const toml::source_position& at) {
+  return ":" + std::to_string(at.line) + ":" + std::to_string(at.column);
+}
+
 /// The source behind a tree: its lines, and what it is called in messages.
 struct Source {
   std::vector<std::string> lines;
@@ -23,7 +28,7 @@ struct Source {
 
   std::string place(const toml::source_region& region) const {
     if (is_option || !region.begin) return name;
-    return name + ":" + std::to_string(region.begin.line);
+    return name + place_in(region.begin);
   }
 
   /// The words of a value as they stand in the source; empty when they fill several lines.
@@ -137,7 +142,7 @@ CaseNode parse_case(const std::string& text, const std::string& file) {
     node.place = file;
     return node;
   } catch (const toml::parse_error& e) {
-    throw Error::input(file + ":" + std::to_string(e.source().begin.line) +
+    throw Error::input(file + place_in(e.source().begin) +
                        ": not TOML: " + std::string(e.description()));
   }
 }

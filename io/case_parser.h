@@ -10,7 +10,7 @@ namespace flexmorph::io {
 std::string read_text(const std::string& path);
 
 /// TOML text as a tree; keys stay in the order of the file.
-/// @throws Error (input) "<file>:<line>: not TOML: <reason>"
+/// @throws Error (input) "<file>:<line>:<column>: not TOML: <reason>"
 CaseNode parse_case(const std::string& text, const std::string& file);
 
 /// VALUE of a command line option: TOML, or a bare word, which is a string.

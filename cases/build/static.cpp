@@ -17,11 +17,12 @@ struct PlaceNodes {
 
 class NodeFinder {
  public:
-  NodeFinder(const Grid& grid, std::span<const signed char> outside)
-      : grid_(grid), outside_(outside) {}
+  NodeFinder(const Scene& scene, const Grid& grid, std::span<const signed char> outside)
+      : scene_(scene), grid_(grid), outside_(outside) {}
 
+  /// @param path  of the place in the case, for messages
   /// @throws Error (input) when no node of the domain is there.
-  PlaceNodes at(const Place& place, const std::string& what) const {
+  PlaceNodes at(const Place& place, const std::string& path) const {
     const double small = 1e-6 * grid_.dx();
     Box box = place.box;
     if (place.kind == Place::Kind::point) box = nearest(box.lower);
@@ -38,8 +39,8 @@ class NodeFinder {
         out.shares.push_back(place.kind == Place::Kind::edge ? cells : 1.0);
       }
     if (out.nodes.empty())
-      throw Error::input(what + ": no node of the domain is there; the cells are " +
-                         io::to_text(grid_.dx()) + " m wide");
+      scene_.refuse(path, "no node of the domain is there; the cells are " +
+                              io::to_text(grid_.dx()) + " m wide");
     double sum = 0;
     for (const double s : out.shares) sum += s;
     for (double& s : out.shares) s /= sum;
@@ -67,26 +68,29 @@ class NodeFinder {
     return count;
   }
 
+  const Scene& scene_;
   const Grid& grid_;
   std::span<const signed char> outside_;
 };
 
-std::string name_of(const char* what, size_t index) {
-  return std::string("[[") + what + "]] " + std::to_string(index + 1);
+std::string support_path(size_t support) { return "support." + std::to_string(support); }
+
+std::string force_path(size_t load, size_t force) {
+  return "load." + std::to_string(load) + ".force." + std::to_string(force);
 }
 
 }  // namespace
 
 std::vector<std::vector<int>> static_places(const Scene& scene, const Grid& grid,
                                             std::span<const signed char> outside) {
-  const NodeFinder find(grid, outside);
+  const NodeFinder find(scene, grid, outside);
   std::vector<std::vector<int>> places;
   const Domain& domain = *scene.domain;
   for (size_t s = 0; s < domain.supports.size(); ++s)
-    places.push_back(find.at(domain.supports[s].place, name_of("support", s)).cells);
+    places.push_back(find.at(domain.supports[s].place, support_path(s)).cells);
   for (size_t l = 0; l < domain.loads.size(); ++l)
-    for (const PlaneForce& f : domain.loads[l].forces)
-      places.push_back(find.at(f.place, name_of("load", l)).cells);
+    for (size_t f = 0; f < domain.loads[l].forces.size(); ++f)
+      places.push_back(find.at(domain.loads[l].forces[f].place, force_path(l, f)).cells);
   return places;
 }
 
@@ -94,11 +98,11 @@ std::unique_ptr<mmc::LoadResponse> build_static_loads(const Scene& scene,
                                                       const mmc::BodyProblem& problem) {
   const Domain& domain = *scene.domain;
   const Grid& grid = problem.grid;
-  const NodeFinder find(grid, problem.outside);
+  const NodeFinder find(scene, grid, problem.outside);
   std::vector<fem::HeldUnknown> held;
   for (size_t s = 0; s < domain.supports.size(); ++s) {
     const PlaneSupport& support = domain.supports[s];
-    for (const int node : find.at(support.place, name_of("support", s)).nodes) {
+    for (const int node : find.at(support.place, support_path(s)).nodes) {
       if (support.x) held.push_back({node, 0});
       if (support.y) held.push_back({node, 1});
     }
@@ -108,10 +112,11 @@ std::unique_ptr<mmc::LoadResponse> build_static_loads(const Scene& scene,
     mmc::LoadCase& out = loads.emplace_back();
     out.name = domain.loads[l].name;
     out.weight = domain.loads[l].weight;
-    for (const PlaneForce& f : domain.loads[l].forces) {
-      const PlaceNodes place = find.at(f.place, name_of("load", l));
+    for (size_t f = 0; f < domain.loads[l].forces.size(); ++f) {
+      const PlaneForce& force = domain.loads[l].forces[f];
+      const PlaceNodes place = find.at(force.place, force_path(l, f));
       for (size_t k = 0; k < place.nodes.size(); ++k)
-        out.forces.push_back({place.nodes[k], place.shares[k] * f.force});
+        out.forces.push_back({place.nodes[k], place.shares[k] * force.force});
     }
   }
   // Rows with a value per load solve every load as it is.

@@ -5,6 +5,7 @@
 #include "cases/build/build.h"
 #include "cases/build/twin.h"
 #include "cases/run/check_cost.h"
+#include "cases/run/check_figures.h"
 #include "cases/run/run.h"
 #include "cases/scene/design/goal.h"
 #include "cases/scene/elements/row.h"
@@ -17,7 +18,7 @@ namespace flexmorph::cases {
 namespace {
 
 std::string row(const std::string& what, const std::string& words) {
-  return "  " + what + std::string(what.size() < 22 ? 22 - what.size() : 1, ' ') + words + "\n";
+  return summary_row(what, words);
 }
 
 std::string millions(double operations) { return io::to_text(1e-6 * operations, 2); }
@@ -59,8 +60,7 @@ void describe_course(const Scene& scene, std::ostringstream& out) {
                                  ? "energy_momentum, "
                                  : "rho_inf " + io::to_text(time.rho_inf) + ", ";
   out << row("time", until + "step " + io::to_text(time.step) + " s, " + scheme +
-                         std::to_string(static_cast<int>(std::ceil(time.end / time.step - 1e-9))) +
-                         " steps");
+                         io::to_text(std::ceil(time.end / time.step - 1e-9)) + " steps");
 }
 
 std::string measure_words(const Measure& measure) {
@@ -186,7 +186,7 @@ void describe_design(const Scene& scene, const BodyDesign& d, std::ostringstream
                      io::to_text(1e-9 * factor * (2 * g.ny + 5 + 3.0 * loads), 2) + " Gflop");
 }
 
-void describe_static(const Scene& scene, std::ostringstream& out) {
+void describe_static(const Scene& scene, std::ostringstream& out, const Machine& machine) {
   const Domain& domain = *scene.domain;
   const mmc::BodyProblem problem = build_problems(scene).front();
   const std::unique_ptr<mmc::LoadResponse> loads = build_static_loads(scene, problem);
@@ -205,6 +205,7 @@ void describe_static(const Scene& scene, std::ostringstream& out) {
   out << row("", thickness_words(d));
   out << row("optimizer", scene.optimizer.name + ", at most " +
                               std::to_string(scene.optimizer.max_iterations) + " iterations");
+  out << figures_text(scene, nullptr, machine);
   out << "\nabsent: not built, costs nothing\n";
   out << row("motion", "no bodies, no joints, no time, no equivalent static loads");
   if (loads->n_loads() == 1) out << row("load compression", "one load");
@@ -253,14 +254,13 @@ void describe_absent(const Scene& scene, std::ostringstream& out) {
 }  // namespace
 
 std::string check_case(const RunOptions& options) {
-  const io::CaseFile file(find_case(options.case_name), options.overrides);
-  const Scene scene = read_scene(file);
-  build_scene(scene);
+  const auto [file, scene] = ready_case(options.case_name, options.overrides);
   if (options.explain) return file.explained();
+  const Machine machine = this_machine(scene.output.directory);
   std::ostringstream out;
   out << scene.name << ": " << scene.title << "\n\nactive\n";
   if (scene.domain) {
-    describe_static(scene, out);
+    describe_static(scene, out, machine);
     return out.str();
   }
   Mechanism mechanism = build_mechanism(scene);
@@ -296,6 +296,7 @@ std::string check_case(const RunOptions& options) {
                                         ? ", adaptive steps"
                                         : ", step " + io::to_text(scene.verify->step) + " s"));
   describe_operations(scene, mechanism, out);
+  out << figures_text(scene, &mechanism, machine);
   out << "\nabsent: not built, costs nothing\n";
   describe_absent(scene, out);
   return out.str();

@@ -1,7 +1,9 @@
 #include "cases/run/check_cost.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "cases/run/room.h"
 #include "cases/scene/elements/row.h"
 
 namespace flexmorph::cases {
@@ -28,6 +30,12 @@ double points_of(const Body& body) {
   return 49 + n * n;
 }
 
+// Of one core: operations of a motion, of dense and sparse factors; seconds of a frame with its
+// points, of a cell of a design in an iteration; of the start, plots and the report.
+constexpr double kMotionRate = 5e9, kFactorRate = 1.2e10, kFrameSeconds = 1e-3,
+                 kPointSeconds = 2e-7;
+constexpr double kCellSeconds = 1.5e-6, kStart = 0.1;
+
 }  // namespace
 
 StepOperations step_operations(const Scene& scene, const Mechanism& mechanism) {
@@ -52,6 +60,42 @@ StepOperations step_operations(const Scene& scene, const Mechanism& mechanism) {
   const auto rows = static_cast<double>(4 * scene.rigid_bodies.size() + scene.springs.size()) +
                     mechanism.model.n_constraints();
   out.forces += times(kForces) * kRigid * rows;
+  return out;
+}
+
+double design_operations(const Scene& scene, const BodyDesign& d) {
+  const Grid& g = d.grid;
+  const double n = 2.0 * (g.nx + 1) * (g.ny + 1);
+  if (scene.domain) {
+    // Nested dissection: of the order n^1.5, each load twice through the factor.
+    const double loads = static_cast<double>(scene.domain->loads.size());
+    return 10 * std::pow(n, 1.5) + loads * 4 * n * 24 * std::log2(1.0 + std::min(g.nx, g.ny));
+  }
+  // Natural order from the free end: a band of ny + 2 nodes.
+  const double band = 2.0 * g.ny + 5, loads = scene.esl->count(scene.time.end);
+  return n * band * (band + 3 * loads);
+}
+
+double expected_seconds(const Scene& scene, const Mechanism* mechanism) {
+  const Extent extent = extent_of(scene);
+  double out = kStart;
+  if (mechanism != nullptr) {
+    const double step = scene.time.integrator == "minimal_coordinates"
+                            ? kRigid * 1e2
+                            : step_operations(scene, *mechanism).total();
+    // A finer mesh in the two motions of the verification; one motion per cycle for the loads.
+    const double finer =
+        scene.verify ? scene.verify->mesh ? 4 : std::pow(scene.verify->refine, 2) : 0;
+    const double cycles = extent.iterations > 0 ? scene.cycle.max_cycles + 2 : 1;
+    out += extent.steps * step * (cycles + 2 * finer) / kMotionRate;
+    out += extent.frames * kFrameSeconds * static_cast<double>(scene.bodies.size());
+  }
+  for (const BodyDesign& d : scene.designs) {
+    const double iterations = extent.iterations / static_cast<double>(scene.designs.size());
+    const double cells = 1.0 * d.grid.nx * d.grid.ny;
+    out += iterations * (design_operations(scene, d) / kFactorRate + cells * kCellSeconds);
+    if (mechanism != nullptr) out += extent.frames * cells * kPointSeconds;
+  }
   return out;
 }
 

@@ -15,4 +15,9 @@ struct StepOperations {
 /// valgrind in a portable build (README, "Measured"). Not of `minimal_coordinates`.
 StepOperations step_operations(const Scene& scene, const Mechanism& mechanism);
 
+/// CPU time of a run [s]: all its motions, and as many iterations as its designs may take. Within a
+/// factor of three of the shipped cases on one core of 2020; of adaptive steps at the least.
+/// @param mechanism  of a scene that moves, else null
+double expected_seconds(const Scene& scene, const Mechanism* mechanism);
+
 }  // namespace flexmorph::cases

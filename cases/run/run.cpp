@@ -19,7 +19,6 @@
 #include "cases/run/run_warnings.h"
 #include "cases/run/version.h"
 #include "fem/dynamics/side_by_side.h"
-#include "fem/solve/scaled_constraints.h"
 #include "geometry/cpu_time.h"
 #include "io/case_document.h"
 #include "io/files.h"
@@ -275,65 +274,7 @@ void run_scene(const Scene& scene, bool condition, RunFolder& folder, Progress& 
                std::to_string(result.events.size()) + " changes of the mesh");
 }
 
-/// Refuses joints that depend on each other, and bodies that do not reach their joints.
-void require_start(Mechanism& mechanism) {
-  constexpr double kMiss = 1e-6;  // of the model: coordinates in cases are rounded
-  fem::Workspace& model = mechanism.model;
-  const fem::State x =
-      fem::start_state(model, mechanism.growths, 0, fem::Start::rigid, mechanism.motion.placement);
-  fem::require_independent(fem::diagnose(model, x));
-  fem::ScaledConstraints rows;
-  rows.evaluate(model, x);
-  const VectorXd misses = rows.misses();
-  const double worst = misses.lpNorm<Eigen::Infinity>();
-  if (worst > kMiss * fem::model_size(rows.scales(), x.q))
-    throw Error::input("at the start " + fem::list_joints(fem::heaviest_joints(model, misses, 1)) +
-                       " misses by " + io::to_text(worst, 3) +
-                       " m: bodies that are not deformed do not reach their joints");
-}
-
 }  // namespace
-
-void build_scene(const Scene& scene) {
-  if (!scene.domain) {
-    // One evaluation: loads and terms find their places, or say what they cannot do.
-    if (scene.is_mechanism()) check_mechanism(scene);  // its joints have the names of the case
-    Mechanism mechanism = build_mechanism(scene);
-    if (mechanism.model.n_constraints() > 0) require_start(mechanism);
-    const fem::State x = mechanism.model.reference();
-    VectorXd force;
-    mechanism.model.force(x, force);
-    if (scene.time.integrator == "energy_momentum") mechanism.model.mean_force(x, x.q, x.q, force);
-  }
-  check_expectations(scene);
-  const std::vector<mmc::BodyProblem> problems = build_problems(scene);
-  if (scene.domain) build_static_loads(scene, problems.front());
-}
-
-std::vector<std::string> shipped_cases() {
-  std::vector<std::string> out;
-  std::error_code none;  // of a program that was moved away from its cases
-  for (const auto& entry : std::filesystem::directory_iterator(kCasesFolder, none))
-    if (entry.path().extension() == ".toml") out.push_back(entry.path().stem().string());
-  std::sort(out.begin(), out.end());
-  return out;
-}
-
-std::string find_case(const std::string& name) {
-  if (name == "-") return "/dev/stdin";
-  if (std::filesystem::is_regular_file(name)) return name;
-  const std::vector<std::string> shipped = shipped_cases();
-  if (std::find(shipped.begin(), shipped.end(), name) != shipped.end())
-    return std::string(kCasesFolder) + "/" + name + ".toml";
-  // A pipe is a file as well; a folder is refused by who reads it.
-  if (std::filesystem::exists(name)) return name;
-  const std::string stem = std::filesystem::path(name).stem().string();
-  const std::string close = io::nearest(stem, shipped);
-  std::string known;
-  for (const std::string& each : shipped) known += (known.empty() ? "" : ", ") + each;
-  throw Error::input("case '" + name + "': no such file, and not a shipped case" +
-                     (close.empty() ? " (" + known + ")" : ", did you mean '" + close + "'?"));
-}
 
 /// Do these options make another case, of which [expect] does not speak?
 bool is_another_case(std::span<const std::string> overrides) {
@@ -344,10 +285,8 @@ bool is_another_case(std::span<const std::string> overrides) {
 
 int run_case(const RunOptions& options) {
   const auto wall = std::chrono::steady_clock::now();
-  const io::CaseFile file(find_case(options.case_name), options.overrides);
-  const Scene scene = read_scene(file);
-  // What cannot be built is refused before a folder exists.
-  build_scene(scene);
+  // What cannot be built, or is too large, is refused before a folder exists.
+  const auto [file, scene] = ready_case(options.case_name, options.overrides, options.directory);
   std::string directory = options.directory;
   if (directory.empty()) directory = scene.output.directory;
   if (directory.empty()) directory = "runs/" + scene.name;

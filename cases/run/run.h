@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "cases/build/build.h"
+#include "cases/run/ready.h"
 
 namespace flexmorph::cases {
 
@@ -16,15 +16,6 @@ struct RunOptions {
   bool explain = false;    ///< the case with all its defaults: printed by check, kept by run
   bool condition = false;  ///< estimate the conditions of matrices at the end, for run.json
 };
-
-/// Path of a case file: the path itself, or that of a shipped case of this name.
-/// @throws Error (input) naming the shipped cases.
-std::string find_case(const std::string& name);
-/// Builds everything a run of the scene would build: what cannot be built is refused here.
-/// @throws Error (input).
-void build_scene(const Scene& scene);
-/// Names of the shipped cases.
-std::vector<std::string> shipped_cases();
 
 /// Exit code of a run that is whole, but misses an expectation of its case or is of no use.
 inline constexpr int kMissed = 5;

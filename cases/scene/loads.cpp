@@ -113,7 +113,7 @@ BodyLoad read_load(const Table& t, const Scene& scene) {
   load.row = *std::find_if(load_rows().begin(), load_rows().end(),
                            [&](const LoadRow* row) { return row->name == type; });
   const LoadRow& row = *load.row;
-  load.body = t.choice(kBody, names_of(scene.bodies));
+  load.body = read_flexible(t, kBody, scene);
   const Body& body = scene.body(load.body);
   if (row.at_point) load.point = read_point(t, kPoint, body, scene.time.end);
   if (row.at_edge) load.edge = read_edge(t, kEdge, body, edge_names());

@@ -203,7 +203,7 @@ const io::Key& kMass =
 
 PointMass read_point_mass(const Table& t, const Scene& scene) {
   PointMass mass;
-  mass.body = t.choice(kMassBody, names_of(scene.bodies));
+  mass.body = read_flexible(t, kMassBody, scene);
   mass.at = t.choice(kMassAt);
   mass.mass = t.number(kMass);
   return mass;

@@ -17,6 +17,19 @@ std::string read_word(const Table& t, const io::Key& key) {
   return name;
 }
 
+std::string read_flexible(const Table& t, const io::Key& key, const Scene& scene) {
+  const std::vector<std::string> known = names_of(scene.bodies);
+  const auto refuse_other = [&](const std::vector<std::string>& others, const char* what) {
+    if (t.says_one_of(key, others))
+      t.fail(key, std::string("that is ") + what + "; " +
+                      key.form(io::Form::Kind::word).quantity.noun +
+                      " is a plate or beam, a [[body]]");
+  };
+  refuse_other(names_of(scene.rigid_bodies), "a rigid body");
+  refuse_other(names_of(scene.hubs), "a hub");
+  return t.choice(key, known);
+}
+
 std::string read_name(const Table& t, const io::Key& key, const Scene& scene) {
   std::string name = read_word(t, key);
   if (name == "energy") t.fail(key, "'energy' names columns of motion.csv already");

@@ -55,6 +55,9 @@ void check_mechanism_parts(const io::Table& root, const Scene& scene);
 /// [trajectory]; lets `follow` fill the drives that follow from it (needs bodies and joints).
 void read_trajectory(const io::Table& root, const Follow& follow, Scene& scene);
 
+/// The name of a plate or beam that the case has; of a rigid body or a hub it says that it is one.
+std::string read_flexible(const io::Table& t, const io::Key& key, const Scene& scene);
+
 /// The name of a body, unlike all others.
 std::string read_name(const io::Table& t, const io::Key& key, const Scene& scene);
 

@@ -30,7 +30,7 @@ const io::Key& kQuantities = io::key("measure", "quantities")
 Observe read_observe(const Table& t, const Scene& scene) {
   Observe out;
   out.name = read_word(t, kName);
-  out.body = t.choice(kBody, names_of(scene.bodies));
+  out.body = read_flexible(t, kBody, scene);
   const Body& body = scene.body(out.body);
   if (t.has(kPoint) == t.has(kAt))
     t.fail("an observed point has either a `point` or `at` = \"free_end\"");
@@ -56,7 +56,7 @@ void read_observed(const Table& root, Scene& scene) {
 void read_measures(const Table& root, Scene& scene) {
   for (const Table& t : root.tables(tables::kMeasure)) {
     Measure out;
-    out.body = t.choice(kMeasured, names_of(scene.bodies));
+    out.body = read_flexible(t, kMeasured, scene);
     out.quantities = t.choices(kQuantities);
     const Body& body = scene.body(out.body);
     for (const Measure& other : scene.measures)

@@ -154,6 +154,10 @@ const Body& Scene::body(const std::string& body_name) const {
   throw Error::input("there is no body '" + body_name + "' in this scene");
 }
 
+void Scene::refuse(const std::string& key_path, const std::string& why) const {
+  throw Error::input((file ? file->where(key_path) : key_path) + ": " + why);
+}
+
 std::string Verify::words() const {
   if (!mesh) return std::to_string(refine) + " times the elements in each direction";
   return std::to_string((*mesh)[0]) + " x " + std::to_string((*mesh)[1]) + " elements";
@@ -190,9 +194,12 @@ std::vector<std::string> overrides_of_files(const io::CaseFile& file) {
   return out;
 }
 
-Scene read_scene(const io::CaseFile& file, const Follow& follow) {
+namespace {
+
+Scene read_parts(const io::CaseFile& file, const Follow& follow) {
   const io::Table root = file.root();
   Scene scene;
+  scene.file = file;
   scene.name = std::filesystem::path(file.path()).stem().string();
   scene.title = root.string(kTitle, scene.name);
   if (root.has(tables::kDomain))
@@ -209,6 +216,17 @@ Scene read_scene(const io::CaseFile& file, const Follow& follow) {
   }
   file.finish();
   return scene;
+}
+
+}  // namespace
+
+Scene read_scene(const io::CaseFile& file, const Follow& follow) {
+  try {
+    return read_parts(file, follow);
+  } catch (const Error& error) {
+    if (error.kind() != Error::Kind::input) throw;
+    throw Error::input(file.with_others(error.what()));
+  }
 }
 
 }  // namespace flexmorph::cases

@@ -51,6 +51,7 @@ struct Scene {
   Output output;
   std::optional<Accuracy> accuracy;           ///< for the command of that name; no run needs it
   std::map<std::string, Expectation> expect;  ///< by name of the result
+  std::optional<io::CaseFile> file;           ///< where it comes from, for messages; none: made
 
   const Body& body(const std::string& name) const;  ///< name resolves: checked when read
   /// A law in time; drives that follow from a trajectory: after follow_trajectory().
@@ -60,6 +61,9 @@ struct Scene {
   bool in_space() const { return !bodies.empty() && bodies.front().in_space(); }  ///< all, or none
   bool has_free_lines() const;
   bool has_heat() const;
+  /// @param key_path  see io::CaseFile::where(): "body.plate.elements"
+  /// @throws Error (input): "<file:line:column>: <path> = <value>: <why>"
+  [[noreturn]] void refuse(const std::string& key_path, const std::string& why) const;
 };
 
 /// Fills the drives that follow from the trajectory of a scene read as far as its joints: a job for

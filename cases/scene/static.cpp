@@ -145,6 +145,12 @@ PlaneSupport read_support(const Table& t, const Domain& domain) {
 LoadCase read_load(const Table& t, const Domain& domain) {
   LoadCase load;
   load.name = t.string(kLoadName, "load_" + std::to_string(domain.loads.size() + 1));
+  for (const LoadCase& other : domain.loads)
+    if (other.name == load.name) {
+      // A name that a load has without being asked may be taken as well.
+      const std::string taken = "there is another load '" + load.name + "'";
+      t.has(kLoadName) ? t.fail(kLoadName, taken) : t.fail(taken);
+    }
   load.weight = t.number(kWeight);
   for (const Table& f : t.tables(kForces)) {
     const std::vector<double> force = f.numbers(kForce);

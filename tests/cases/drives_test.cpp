@@ -186,7 +186,7 @@ TEST_F(Drives, AreRefusedWithTheirPlace) {
     read({}, text);
     FAIL();
   } catch (const Error& e) {
-    EXPECT_TRUE(contains(e.what(), "breathing.toml:11: drive.out.formula = "));
+    EXPECT_TRUE(contains(e.what(), "breathing.toml:11:11: drive.out.formula = "));
     EXPECT_TRUE(contains(e.what(), "character 6: 'twist' is unknown"));
   }
 }

@@ -145,10 +145,10 @@ TEST(Goal, ErrorsOfConstraintsAreLocated) {
     read_scene(io::CaseFile(scratch / "constrained.toml"));
     ADD_FAILURE() << "is no bound";
   } catch (const Error& e) {
-    EXPECT_EQ(
-        std::string(e.what()).rfind(
-            (scratch / "constrained.toml") + ":" + std::to_string(line) + ": design.constraint", 0),
-        0u)
+    EXPECT_EQ(std::string(e.what()).rfind((scratch / "constrained.toml") + ":" +
+                                              std::to_string(line) + ":11: design.constraint",
+                                          0),
+              0u)
         << e.what();
   }
 }

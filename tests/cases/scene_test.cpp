@@ -336,7 +336,7 @@ TEST(SceneReader, ErrorsInTheFileNameLineKeyAndValue) {
   }
   std::remove(path.c_str());
   EXPECT_EQ(message, path + ":" + std::to_string(found) +
-                         ": body.thickness = -0.002: a thickness is positive [m]");
+                         ":13: body.thickness = -0.002: a thickness is positive [m]");
 }
 
 // Designs that share mass minimize sums of compliances, all of them; volumes may differ.

@@ -108,7 +108,7 @@ TEST_F(CaseFiles, ListsOfLists) {
   EXPECT_TRUE(root.is_list_of_strings(quick("", "names")));
   for (const char* key : {"table", "mixed", "none"})
     EXPECT_FALSE(root.is_list_of_strings(quick("", key)));
-  const std::string place = "plate.toml:1: table = [[0, 1.5], [1, -2]]: a list: lists of ";
+  const std::string place = "plate.toml:1:9: table = [[0, 1.5], [1, -2]]: a list: lists of ";
   EXPECT_EQ(
       error([](const Table& t) { t.rows(quick("", "table").rows(any_number("it"), 3)); }, {}, text),
       place + "3 numbers; it is a finite number");
@@ -118,7 +118,7 @@ TEST_F(CaseFiles, ListsOfLists) {
       place + "2 numbers; it is not negative [m]");
   EXPECT_EQ(
       error([](const Table& t) { t.rows(quick("", "mixed").rows(any_number("it"), 1)); }, {}, text),
-      "plate.toml:4: mixed = [1, \"b\"]: a list: lists of 1 numbers; it is a finite number");
+      "plate.toml:4:9: mixed = [1, \"b\"]: a list: lists of 1 numbers; it is a finite number");
 }
 
 // Those of the command line lie where it is typed.
@@ -135,7 +135,7 @@ TEST_F(CaseFiles, RangeIsSaidWithUnit) {
   const auto thickness = [](const Quantity& q) {
     return [q](const Table& root) { plate(root).number(a_number("body", "thickness", q)); };
   };
-  const std::string start = "plate.toml:9: body.plate.thickness = -0.002: ";
+  const std::string start = "plate.toml:9:13: body.plate.thickness = -0.002: ";
   EXPECT_EQ(error(thickness(positive("a thickness", "m"))), start + "a thickness is positive [m]");
   EXPECT_EQ(error(thickness(between("a share", "", 0, 1))), start + "a share lies between 0 and 1");
   EXPECT_EQ(error(thickness({.noun = "it", .lower = 2, .lower_open = true})),
@@ -144,24 +144,25 @@ TEST_F(CaseFiles, RangeIsSaidWithUnit) {
 }
 
 TEST_F(CaseFiles, WrongTypesAreSaid) {
-  EXPECT_EQ(error([](const Table& root) { arm(root).number(kThickness.called("a size")); }),
-            "plate.toml:16: body.arm.thickness = \"thin\": a size is positive [m]; a number stands "
-            "without quotes");
+  EXPECT_EQ(
+      error([](const Table& root) { arm(root).number(kThickness.called("a size")); }),
+      "plate.toml:16:13: body.arm.thickness = \"thin\": a size is positive [m]; a number stands "
+      "without quotes");
   EXPECT_EQ(error([](const Table& root) { arm(root).boolean(quick("body", "flag").boolean()); }),
-            "plate.toml:17: body.arm.flag = 1: true or false");
+            "plate.toml:17:8: body.arm.flag = 1: true or false");
   EXPECT_EQ(error([](const Table& root) {
               root.table(kTime).integer(quick("time", "step").integer("a count", 1, 9));
             }),
-            "plate.toml:5: time.step = 1e-3: a count is a whole number between 1 and 9");
+            "plate.toml:5:8: time.step = 1e-3: a count is a whole number between 1 and 9");
   EXPECT_EQ(error([](const Table& root) { root.table(a_table("title")); }),
-            "plate.toml:1: title = \"a plate\": [title] is a table");
+            "plate.toml:1:9: title = \"a plate\": [title] is a table");
   EXPECT_EQ(error([](const Table& root) { root.tables(quick("", "time").tables_of()); }),
-            "plate.toml:3: [time]: a list of tables, each under its own [[time]]");
+            "plate.toml:3:1: [time]: a list of tables, each under its own [[time]]");
   EXPECT_EQ(error([](const Table& root) { plate(root).numbers(kAnyCounts.counted(3)); }),
-            "plate.toml:10: body.plate.elements = [10, 2]: a list of 3: a count is positive");
+            "plate.toml:10:12: body.plate.elements = [10, 2]: a list of 3: a count is positive");
   EXPECT_TRUE(starts(
       error([](const Table& root) { arm(root).string(quick("body", "when").text("a date")); }),
-      "plate.toml:18: body.arm.when = 2020-01-01: "));
+      "plate.toml:18:8: body.arm.when = 2020-01-01: "));
 }
 
 TEST_F(CaseFiles, NotANumberAndInfinityAreRefused) {
@@ -180,7 +181,7 @@ TEST_F(CaseFiles, ChoicesListWhatIsAllowed) {
   const std::vector<std::string> terms = {"inertia", "membrane"};
   EXPECT_EQ(
       error([&](const Table& root) { root.choice(quick("", "title").name_of("a title"), terms); }),
-      "plate.toml:1: title = \"a plate\": a title is one of 'inertia', 'membrane'");
+      "plate.toml:1:9: title = \"a plate\": a title is one of 'inertia', 'membrane'");
   EXPECT_EQ(
       error([&](const Table& root) { root.choice(quick("", "title").name_of("a term"), terms); },
             {"title=inertai"}),
@@ -189,7 +190,7 @@ TEST_F(CaseFiles, ChoicesListWhatIsAllowed) {
       error([&](const Table& root) {
         plate(root).choices(quick("body", "terms").names_of("a term"), terms);
       }),
-      "plate.toml:11: body.plate.terms = [\"inertia\", \"inertia\"]: a list: a term is one of "
+      "plate.toml:11:9: body.plate.terms = [\"inertia\", \"inertia\"]: a list: a term is one of "
       "'inertia', 'membrane', none twice");
 }
 
@@ -197,14 +198,14 @@ TEST_F(CaseFiles, MissingKeysAreNamed) {
   EXPECT_EQ(error([](const Table& root) {
               plate(root).number(a_number("body", "width", positive("a width", "m")));
             }),
-            "plate.toml:7: body.plate.width is missing: a width is positive [m]");
+            "plate.toml:7:1: body.plate.width is missing: a width is positive [m]");
   EXPECT_EQ(error([](const Table& root) { root.table(kEsl); }),
             "plate.toml: esl is missing: [esl] is a table");
   // A misspelt key is the better explanation.
   EXPECT_EQ(error([](const Table& root) {
               root.table(kTime).number(a_number("time", "steps", positive("it")));
             }),
-            "plate.toml:5: time.step = 1e-3: unknown key, did you mean 'steps'?");
+            "plate.toml:5:8: time.step = 1e-3: unknown key, did you mean 'steps'?");
 }
 
 TEST_F(CaseFiles, UnknownKeysAreErrors) {
@@ -213,12 +214,12 @@ TEST_F(CaseFiles, UnknownKeysAreErrors) {
               root.table(kTime).number(a_number("time", "end", positive("it")));
               root.table(kTime).has(quick("time", "stepp"));
             }),
-            "plate.toml:5: time.step = 1e-3: unknown key, did you mean 'stepp'?");
+            "plate.toml:5:8: time.step = 1e-3: unknown key, did you mean 'stepp'?");
   EXPECT_EQ(error([](const Table& root) {
               root.has(kTitle);
               root.has(kBody);
             }),
-            "plate.toml:3: [time]: unknown key; known here: body title");
+            "plate.toml:3:1: [time]: unknown key; known here: body title");
   EXPECT_EQ(error(touch_all), "");
   EXPECT_EQ(error(touch_all, {"foo=1"}), "");
   EXPECT_EQ(error(
@@ -238,7 +239,32 @@ TEST_F(CaseFiles, UnknownKeysFillOneScreenAtMost) {
       },
       changes);
   EXPECT_EQ(std::count(words.begin(), words.end(), '\n'), 19);
-  EXPECT_TRUE(ends(words, "plate.toml: 81 more unknown keys")) << words;
+  EXPECT_TRUE(ends(words, "plate.toml: and 81 more")) << words;
+}
+
+// Columns count characters as editors do, not bytes.
+TEST_F(CaseFiles, ColumnsCountCharacters) {
+  const auto read = [](const Table& root) { root.number(a_number("", "a", positive("it"))); };
+  EXPECT_EQ(error(read, {}, "\n  a = -1\n"), "plate.toml:2:7: a = -1: it is positive");
+  EXPECT_TRUE(starts(error(read, {}, "b = { c = \"äöü\" }\na = \"ä\"\n"), "plate.toml:2:5: a"));
+}
+
+// Where a path leads, with what was read for keys that are not there.
+TEST_F(CaseFiles, PathsAreFound) {
+  const CaseFile file(scratch_.write("plate.toml", kText), Overrides{"time.end=2"});
+  const std::string start = (scratch_ / "plate.toml") + ":";
+  EXPECT_EQ(file.where("body.plate.thickness"), start + "9:13: body.plate.thickness = -0.002");
+  EXPECT_EQ(file.where("body.0.thickness"), start + "9:13: body.plate.thickness = -0.002");
+  EXPECT_EQ(file.where("body.1"), start + "14:1: [body.arm]");
+  EXPECT_EQ(file.where("body.nobody.thickness"), start + "7:1: [[body]]");
+  EXPECT_EQ(file.where("body.plate.flow.speed"), start + "12:18: body.plate.flow.speed = 0.1");
+  EXPECT_EQ(file.where("time.end"), "--set time.end=2");
+  EXPECT_EQ(file.where("time.rho_inf"), start + "3:1: [time]");
+  file.root().table(kTime).number(a_number("time", "rho_inf", any_number("it")), 0.8);
+  EXPECT_EQ(file.where("time.rho_inf"), start + "3:1: time.rho_inf = 0.8 (not given)");
+  EXPECT_EQ(file.where("verify.mesh"), scratch_ / "plate.toml");
+  EXPECT_TRUE(file.gives("time.step"));
+  EXPECT_FALSE(file.gives("time.rho_inf"));
 }
 
 TEST_F(CaseFiles, FilesThatAreNone) {
@@ -254,9 +280,9 @@ TEST_F(CaseFiles, FilesThatAreNone) {
   } catch (const Error& e) {
     EXPECT_TRUE(contains(e.what(), "a directory"));
   }
-  EXPECT_TRUE(starts(error(touch_all, {}, "a = 1\nb = = 2\n"), "plate.toml:2: not TOML: "));
-  EXPECT_TRUE(starts(error(touch_all, {}, "a = 1\na = 2\n"), "plate.toml:2: not TOML: "));
-  EXPECT_TRUE(starts(error(touch_all, {}, "a = \"\xff\"\n"), "plate.toml:1: not TOML: "));
+  EXPECT_TRUE(starts(error(touch_all, {}, "a = 1\nb = = 2\n"), "plate.toml:2:5: not TOML: "));
+  EXPECT_TRUE(starts(error(touch_all, {}, "a = 1\na = 2\n"), "plate.toml:2:5: not TOML: "));
+  EXPECT_TRUE(starts(error(touch_all, {}, "a = \"\xff\"\n"), "plate.toml:1:5: not TOML: "));
   EXPECT_EQ(error(touch_all, {}, ""), "");
 }
 

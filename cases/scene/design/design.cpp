@@ -294,7 +294,7 @@ const io::Key& design_keys::kCoupling = kSharesMass;
 BodyDesign read_design(const Table& t, const Scene& scene) {
   if (scene.domain) return read_static_design(t, scene);
   BodyDesign design;
-  design.body = t.choice(kBody, names_of(scene.bodies));
+  design.body = read_flexible(t, kBody, scene);
   if (!scene.body(design.body).row->designable) t.fail(kBody, "plates are designed, beams are not");
   if (const auto& heat = scene.body(design.body).heat; heat && heat->force)
     t.fail(kBody, "the thermal force is that of full material: body.heat.force = false");

@@ -139,7 +139,7 @@ void name_between(const Table& t, const Scene& scene, Joint& joint) {
 }
 
 const Body& read_jointed_body(const Table& t, const Scene& scene, Joint& joint) {
-  joint.body = t.choice(joint_keys::kBody, names_of(scene.bodies));
+  joint.body = read_flexible(t, joint_keys::kBody, scene);
   joint.name = joint.body + "." + joint.row->name;
   return scene.body(joint.body);
 }

@@ -1,0 +1,148 @@
+// What a run will take, against runs that were measured, and the refusal of what a machine has not.
+#include "cases/run/room.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "cases/run/check_cost.h"
+#include "tests/cases/scenes.h"
+#include "tests/io/scratch.h"
+
+namespace flexmorph::cases {
+namespace {
+
+constexpr double kMega = 1e6, kPlenty = 1e18;
+
+std::string complaint(const Scene& scene, const Machine& machine) {
+  try {
+    require_room(scene, machine);
+  } catch (const Error& e) {
+    EXPECT_EQ(e.kind(), Error::Kind::input);
+    return e.what();
+  }
+  return "";
+}
+
+struct Measured {
+  const char* name;
+  Changes changes;
+  double memory, disk;  ///< of run.json and of the folder [MB]; 0: the run ended before its limits
+  double seconds;  ///< CPU time; 0: so short that starting counts, not all its iterations, or more
+                   ///< than ten thousand unknowns, of whose factors check_cost.h thinks too badly
+};
+
+Changes moves_only(Changes more) {
+  for (const char* part : {"design=", "esl=", "optimizer=", "cycle=", "verify=", "accuracy="})
+    more.emplace_back(part);
+  return more;
+}
+
+// Measured with one thread, -O3 -march=native, November 2026. Twice is near enough for a warning,
+// three times for the time, which machines share.
+TEST(Room, IsThatOfMeasuredRuns) {
+  const std::vector<Measured> all = {
+      {"cantilever_roll_up", {}, 39.1, 0.47, 0.43},
+      {"square_plate_twist", {}, 47.9, 0.81, 0},
+      {"plate_pendulum", {}, 47.4, 3.29, 1.8},
+      {"plate_pendulum", {"body.elements=[40,40]", "time.end=0.004"}, 244, 6.2, 1.26},
+      {"plate_pendulum", {"body.elements=[80,80]", "time.end=0.002"}, 886, 24.9, 0},
+      {"deploying_plate", {}, 47.4, 1.71, 1.15},
+      {"elastic_sleeve", {}, 37.9, 0.70, 0},
+      {"rotating_plate_v01",
+       moves_only({"body.elements=[100,20]", "body.flow.max_length=0.01", "time.end=0.02"}), 199,
+       2.46, 6.7},
+      {"four_bar", {}, 134, 19.7, 7.5},
+      {"telescopic_crane", {}, 360, 40, 27.2},
+      {"motion_platform", {}, 431, 0, 128.6},
+      {"rotating_plate_v01", {}, 105, 0, 21.9},
+      {"short_beam", {}, 47.1, 0, 0},
+      {"short_beam", {"design.cell=0.00625", "optimizer.max_iterations=10"}, 182, 0, 2.6},
+      {"bridge", {}, 57, 0, 6.7},
+  };
+  for (const Measured& each : all) {
+    const Scene scene = read(each.name, each.changes);
+    const Extent extent = extent_of(scene);
+    const auto near = [&](double found, double measured, double factor, const char* what) {
+      if (measured == 0) return;
+      EXPECT_LT(found, factor * measured) << each.name << ": " << what;
+      EXPECT_GT(found, measured / factor) << each.name << ": " << what;
+    };
+    near(extent.memory_bytes() / kMega, each.memory, 2, "memory");
+    near(extent.disk_bytes() / kMega, each.disk, 2, "disk");
+    if (each.seconds == 0) continue;
+    std::optional<Mechanism> built;
+    if (!scene.domain) built = build_mechanism(scene);
+    near(expected_seconds(scene, built ? &*built : nullptr), each.seconds, 3, "seconds");
+  }
+}
+
+// 2^31 steps and more are counted, not built.
+TEST(Room, StepsAreCountedBeyondAllIntegers) {
+  const Machine endless{INFINITY, INFINITY};
+  EXPECT_EQ(extent_of(read("free_beam_heated", {"time.step=1e-12"})).steps, 1e12);
+  EXPECT_EQ(complaint(read("free_beam_heated", {"time.step=1e-12"}), endless),
+            "--set time.step=1e-12: 1e+12 steps; the most are 2.15e+09");
+  EXPECT_EQ(complaint(read("free_beam_heated", {"output.motion_every=1e-11"}), endless),
+            "--set output.motion_every=1e-11: 1e+11 steps; the most are 2.15e+09");
+  EXPECT_EQ(complaint(read("free_beam_heated", {"time.step=1e-9"}), endless), "");
+}
+
+TEST(Room, WhatAMachineHasNotIsRefusedAtTheNumberToBlame) {
+  struct Row {
+    const char* name;
+    Changes changes;
+    Machine machine;
+    std::string place, words;
+  };
+  const std::string folder = FLEXMORPH_CASES;
+  const std::string four_bar = folder + "/four_bar.toml:", beam = folder + "/short_beam.toml:";
+  for (const Row& row : std::vector<Row>{
+           {"four_bar", {"time.step=1e-7"}, {1e9, kPlenty}, "--set time.step=1e-7: ", "of memory"},
+           {"four_bar",
+            {"body.elements=[300, 300]"},
+            {1e9, kPlenty},
+            "--set body.elements=[300, 300]: ",
+            "for the mesh of 'rocker'; this machine has 1 GB"},
+           {"four_bar", {}, {9e7, kPlenty}, four_bar + "123:9: esl.every = ", "the loads of"},
+           {"four_bar", {}, {kPlenty, 1e6}, four_bar, "frames of the motion; free are 1 MB"},
+           {"short_beam",
+            {"design.cell=0.00125"},
+            {1e9, kPlenty},
+            "--set design.cell=0.00125: ",
+            "for the design of 'beam'; this machine has 1 GB"},
+           {"short_beam", {}, {kPlenty, 1e6}, beam, "frames of the design of 'beam'; free are"},
+           {"plate_pendulum",
+            {"output.motion_every=1e-5"},
+            {kPlenty, 1e8},
+            "--set output.motion_every=1e-5: ",
+            "of disk"}}) {
+    const std::string found = complaint(read(row.name, row.changes), row.machine);
+    EXPECT_TRUE(starts(found, row.place)) << found;
+    EXPECT_TRUE(contains(found, row.words)) << found;
+    EXPECT_EQ(complaint(read(row.name, row.changes), {kPlenty, kPlenty}), "") << row.name;
+  }
+}
+
+TEST(Room, ThisMachineHasSome) {
+  const Machine here = this_machine(), nowhere = this_machine("no/such/folder/yet");
+  EXPECT_GT(here.memory, 1e8);  // less would not have built this test
+  EXPECT_GT(here.disk, 0);
+  EXPECT_NEAR(nowhere.disk, here.disk, 1e9);  // others write meanwhile
+  EXPECT_EQ(here.disk > 1e6,
+            std::filesystem::space(std::filesystem::current_path()).available > 1'000'000);
+}
+
+TEST(Room, SizesAreSaidInTheirUnits) {
+  EXPECT_EQ(bytes_text(12'300), "12.3 kB");
+  EXPECT_EQ(bytes_text(1.26e9), "1.3 GB");
+  EXPECT_EQ(bytes_text(3e20), "3e+05 PB");
+  EXPECT_EQ(duration_text(1.26), "1.3 s");
+  EXPECT_EQ(duration_text(600), "10 min");
+  EXPECT_EQ(duration_text(3 * 3600), "3 h");
+  EXPECT_EQ(duration_text(1e6), "11.6 days");
+}
+
+}  // namespace
+}  // namespace flexmorph::cases
