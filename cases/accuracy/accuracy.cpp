@@ -8,6 +8,7 @@
 
 #include "cases/accuracy/report.h"
 #include "cases/build/build.h"
+#include "cases/run/room.h"
 #include "cases/run/run.h"
 #include "cases/run/run_folder.h"
 #include "io/files.h"
@@ -227,8 +228,11 @@ class Story {
       if (study_.parts[q] == part)
         rung.values[q] = value_in(folder_of(quiet, one), study_.interests[q], part);
     if (options_.study.quiet) return;
-    std::printf("%s %s: %s, %s CPU s\n", name.c_str(), rung.level.name.c_str(), rung.status.c_str(),
-                io::to_text(rung.seconds_cpu, 3).c_str());
+    // How many runs there will be shows as they end; what is left of the budget ends them.
+    std::printf("run %d, %s %s: %s, %s CPU s; at most %s left\n", ++runs_, name.c_str(),
+                rung.level.name.c_str(), rung.status.c_str(),
+                io::to_text(rung.seconds_cpu, 3).c_str(),
+                duration_text(std::max(0.0, budget_.left())).c_str());
     std::fflush(stdout);
   }
 
@@ -353,6 +357,7 @@ class Story {
   AccuracyOptions options_;
   io::CaseFile file_;
   Scene scene_;
+  int runs_ = 0;
   double spent_ = 0;                 // CPU seconds of all runs
   std::vector<std::string> design_;  // overrides that say where the designs start
   Budget budget_;

@@ -160,12 +160,13 @@ fem::Start start_of(const Scene& scene, TwinMotion& twin) {
   const double nearly = 0.05 * std::max(1.0, scene.gravity ? scene.gravity->norm() : 0.0);
   const double speed = twin.start_speed(), acceleration = twin.start_acceleration();
   if (speed < 1e-6 && acceleration < nearly) return fem::Start::settled;
-  throw Error::input(
-      "time.start: \"prestretched\" puts a mechanism whose drives leave freedoms (" +
-      std::to_string(twin.degrees_of_freedom()) +
-      " here) into its equilibrium at rest, but this one sets off with " + io::to_text(speed, 3) +
-      " m/s and " + io::to_text(acceleration, 3) +
-      " m/s²: bodies where they hang at rest and drives that begin at rest, or start = \"rigid\"");
+  scene.refuse("time.start",
+               "\"prestretched\" puts a mechanism whose drives leave freedoms (" +
+                   std::to_string(twin.degrees_of_freedom()) +
+                   " here) into its equilibrium at rest, but this one sets off with " +
+                   io::to_text(speed, 3) + " m/s and " + io::to_text(acceleration, 3) +
+                   " m/s²: bodies where they hang at rest and drives that begin at rest, or start "
+                   "= \"rigid\"");
 }
 
 /// Where bodies that ride in no hub are, by the rigid twin.

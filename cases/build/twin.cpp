@@ -47,7 +47,10 @@ fem::Motion distance_along(const fem::FrameMotion& frame, const fem::FrameMotion
 /// What is wrong with the joints, and which drives of the case take part: of many joints they are
 /// the ones to look at.
 Error refusal(const Scene& scene, const fem::Diagnosis& diagnosis) {
-  std::string words = scene.name + ": " + fem::describe(diagnosis);
+  // A line to each group; the drives of the first groups are as many as one reads.
+  constexpr int kMostDrives = 8;
+  std::string words = fem::describe(diagnosis);
+  int said = 0;
   for (const fem::DependentGroup& group : diagnosis.groups) {
     std::vector<std::string> drives;
     for (const std::string& name : group.joints)
@@ -55,7 +58,7 @@ Error refusal(const Scene& scene, const fem::Diagnosis& diagnosis) {
           std::any_of(scene.joints.begin(), scene.joints.end(),
                       [&](const Joint& j) { return j.name == name && !j.laws.empty(); }))
         drives.push_back(name);
-    if (group.joints.size() > 5 && !drives.empty())
+    if (group.joints.size() > 5 && !drives.empty() && said++ < kMostDrives)
       words += "\nof them drives: " + fem::list_joints(drives);
   }
   return Error::input(words);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "cases/run/failure.h"
 #include "cases/run/measures.h"
 #include "cases/run/mechanism_columns.h"
 #include "cases/run/quantities.h"
@@ -107,6 +108,7 @@ class Recorder {
         step.x.t >= shown / (wishes_.moments - 1) * scene_.time.end - 1e-9)
       add_moment(step);
     if (step.stop || step.x.t == 0) at_stop(step);
+    if (wishes_.way) wishes_.way(step.x.t);
     if (wishes_.go_on && !wishes_.go_on()) throw Interrupted();
   }
 
@@ -235,6 +237,15 @@ class Recorder {
   bool said_alternation_ = false, said_cut_ = false;
 };
 
+/// A motion that could not go on after what its record holds.
+Failure failure_in(const MotionWishes& wishes, const MotionRecord& record) {
+  Failure out;
+  out.phase = wishes.phase;
+  out.time = record.time.empty() ? 0 : record.time.back();
+  out.step = std::max(0, static_cast<int>(record.time.size()) - 1);  // the start is none
+  return out;
+}
+
 }  // namespace
 
 MotionOutcome run_motion(const Scene& scene, const MotionWishes& wishes, RunFolder& folder) {
@@ -255,6 +266,10 @@ MotionOutcome run_motion(const Scene& scene, const MotionWishes& wishes, RunFold
   try {
     out.record.result = fem::integrate(mechanism.model, mechanism.growths, mechanism.motion,
                                        [&](const fem::MotionStep& step) { record(step); });
+  } catch (const Error& error) {
+    record.finish();
+    folder.write_motion(wishes.table, scene, out.record);
+    throw FailedRun(error, failure_in(wishes, out.record));
   } catch (...) {
     record.finish();
     folder.write_motion(wishes.table, scene, out.record);

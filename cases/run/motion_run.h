@@ -18,7 +18,9 @@ struct MotionWishes {
   bool balance = true;               ///< keep the energy balance
   std::string table = "motion.csv";  ///< file of the folder: the steps, up to a failure too
   std::function<void(const std::string&)> say;  ///< told what is odd when it happens, if there
-  std::function<bool()> go_on;  ///< asked at every step; false ends it with Interrupted
+  std::function<bool()> go_on;      ///< asked at every step; false ends it with Interrupted
+  std::string phase = "motion";     ///< of the run, for messages
+  std::function<void(double)> way;  ///< told the time of every step [s]
 };
 
 /// The user wants no more. What was computed is in the folder.
@@ -31,7 +33,7 @@ struct MotionOutcome {
 
 /// Builds the mechanism of a scene and moves it through its time.
 /// @param folder  receives the table of steps and VTK frames
-/// @throws Error (numerical) or Interrupted, with the steps before it in the table
+/// @throws FailedRun or Interrupted, with the steps before it in the table
 MotionOutcome run_motion(const Scene& scene, const MotionWishes& wishes, RunFolder& folder);
 
 }  // namespace flexmorph::cases

@@ -1,5 +1,6 @@
 #include "cases/run/path_run.h"
 
+#include "cases/run/failure.h"
 #include "cases/run/measures.h"
 #include "cases/run/motion_run.h"
 #include "cases/scene/elements/row.h"
@@ -36,8 +37,7 @@ void put_on(const Scene& scene, fem::Workspace& model, fem::State& x) {
 
 }  // namespace
 
-PathRecord run_path(const Scene& scene, RunFolder& folder, const std::function<bool()>& go_on,
-                    bool condition) {
+PathRecord run_path(const Scene& scene, RunFolder& folder, const PathWishes& wishes) {
   Mechanism mechanism = build_mechanism(scene);
   fem::Workspace& model = mechanism.model;
   fem::State x =
@@ -74,14 +74,23 @@ PathRecord run_path(const Scene& scene, RunFolder& folder, const std::function<b
         folder.add_surface_frame(model.body(scene.bodies[i].name), step.x,
                                  start_pose(scene, scene.bodies[i]), step.number,
                                  static_cast<int>(i), heating);
-    if (go_on && !go_on()) throw Interrupted();
+    if (wishes.way) wishes.way(step.factor);
+    if (wishes.go_on && !wishes.go_on()) throw Interrupted();
     return true;
   };
   try {
     if (scene.has_heat()) put_on(scene, model, x);
     fem::StaticSettings settings = settings_of(*scene.statics);
-    settings.condition = condition;
+    settings.condition = wishes.condition;
     out.result = fem::solve_static(model, x, settings, observe);
+  } catch (const Error& error) {
+    out.measured = measures.take();
+    folder.write_path(out);
+    Failure where;
+    where.phase = "statics";
+    where.load_factor = out.factor.empty() ? 0 : out.factor.back();
+    where.step = static_cast<int>(out.factor.size());
+    throw FailedRun(error, where);
   } catch (...) {
     out.measured = measures.take();
     folder.write_path(out);

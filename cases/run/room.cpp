@@ -236,7 +236,7 @@ Machine this_machine(const std::string& directory) {
   std::error_code code;
   fs::path folder = fs::absolute(directory.empty() ? "." : directory, code);
   while (!fs::exists(folder, code) && folder.has_relative_path()) folder = folder.parent_path();
-  if (const fs::space_info space = fs::space(folder, code); !code)
+  if (const fs::space_info space = fs::space(folder, code); !code && space.capacity > 0)
     out.disk = static_cast<double>(space.available);
   return out;
 }

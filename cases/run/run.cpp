@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -15,7 +16,9 @@
 #include "cases/run/expectations.h"
 #include "cases/run/motion_run.h"
 #include "cases/run/path_run.h"
+#include "cases/run/progress.h"
 #include "cases/run/report.h"
+#include "cases/run/room.h"
 #include "cases/run/run_warnings.h"
 #include "cases/run/version.h"
 #include "fem/dynamics/side_by_side.h"
@@ -29,55 +32,6 @@ namespace {
 std::atomic<bool> interrupted = false;  // set by a signal, read by every motion
 
 bool go_on() { return !interrupted; }
-
-/// A line that rewrites itself on a terminal, plain lines now and then elsewhere.
-class Progress {
- public:
-  explicit Progress(bool quiet) : quiet_(quiet), terminal_(isatty(STDOUT_FILENO) != 0) {}
-  ~Progress() { end_line(); }
-
-  void say(const std::string& text) {
-    end_line();
-    if (!quiet_) std::printf("%s\n", text.c_str());
-    std::fflush(stdout);
-  }
-  /// What is to be said against the run, also by a quiet one: in colour where people look on.
-  void object(const std::string& kind, const std::string& text) {
-    end_line();
-    const bool colour = isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
-    const char* const before = !colour ? "" : kind == "warning" ? "\x1b[33m" : "\x1b[31m";
-    std::fprintf(stderr, "flexmorph: %s%s:%s %s\n", before, kind.c_str(), colour ? "\x1b[0m" : "",
-                 text.c_str());
-  }
-  void iteration(const mmc::IterationReport& r) {
-    if (quiet_) return;
-    for (const mmc::ComponentEvent& e : r.events)
-      say(r.problem.body + " iteration " + std::to_string(r.iteration) + ": component " +
-          std::to_string(e.component + 1) + " " + to_string(e.kind) + ", " +
-          std::to_string(e.n_components) + " components");
-    char compliance[32] = "";  // goals without one have none
-    if (std::isfinite(r.state.compliance()))
-      std::snprintf(compliance, sizeof compliance, "compliance %.5g, ", r.state.compliance());
-    char text[160];
-    std::snprintf(text, sizeof text, "%s cycle %d iteration %d: %svolume %.4f, kkt %.1e",
-                  r.problem.body.c_str(), r.cycle, r.iteration, compliance, r.state.volume(),
-                  r.iterate.kkt);
-    if (terminal_) {
-      std::printf("\r%-100s", text);
-      open_ = true;
-    } else if (r.iteration == 1 || r.iteration % 25 == 0) {
-      std::printf("%s\n", text);
-    }
-    std::fflush(stdout);
-  }
-
- private:
-  void end_line() {
-    if (open_) std::printf("\n");
-    open_ = false;
-  }
-  bool quiet_, terminal_, open_ = false;
-};
 
 std::string summary(const mmc::BodyOutcome& o) {
   return o.body + ": compliance " + io::to_text(o.compliance, 5) + ", sharp " +
@@ -105,14 +59,24 @@ std::vector<fem::Factors> final_factors(const std::vector<mmc::BodyProblem>& pro
 /// Pictures of a mechanism in its motion.
 int moments_of(const Scene& scene) { return scene.is_mechanism() && scene.output.plots ? 4 : 0; }
 
+/// Tells how far a motion is.
+std::function<void(double)> way_of(Progress& progress, const Scene& scene,
+                                   const std::string& phase) {
+  return [&progress, phase, end = scene.time.end](double t) {
+    progress.way(phase, t / end, "t = " + io::to_text(t, 4) + " of " + io::to_text(end, 4) + " s");
+  };
+}
+
 /// Motions that do not need each other, at the same time where there are threads for it.
 class Motions {
  public:
-  Motions(const Scene& scene, RunFolder& folder, int threads)
-      : scene_(scene), folder_(folder), threads_(threads) {}
+  Motions(const Scene& scene, RunFolder& folder, Progress& progress, int threads)
+      : scene_(scene), folder_(folder), progress_(progress), threads_(threads) {}
 
   /// @param out  what becomes of it
   void add(std::string name, double cost, MotionWishes wishes, std::optional<MotionRecord>& out) {
+    wishes.phase = name;
+    wishes.way = way_of(progress_, scene_, name);
     jobs_.push_back({std::move(name), cost,
                      [this, wishes = std::move(wishes), &out](const std::function<bool()>& others) {
                        MotionWishes mine = wishes;
@@ -126,6 +90,7 @@ class Motions {
  private:
   const Scene& scene_;
   RunFolder& folder_;
+  Progress& progress_;
   int threads_;
   std::vector<fem::Job> jobs_;
 };
@@ -133,7 +98,7 @@ class Motions {
 /// The judge of a design is the motion with it; beside it the same volume spread evenly.
 void judge_by_motion(const Scene& scene, bool condition, RunFolder& folder, Progress& progress,
                      RunReport& report) {
-  Motions motions(scene, folder, report.threads);
+  Motions motions(scene, folder, progress, report.threads);
   const std::vector<fem::Factors> designed = final_factors(report.problems),
                                   uniform = uniform_factors(report.problems);
   MotionWishes wishes;
@@ -158,6 +123,7 @@ void judge_by_motion(const Scene& scene, bool condition, RunFolder& folder, Prog
     wishes.table = "motion_verified.csv";
     motions.add("verification with the design", kFiner, wishes, report.verified);
   }
+  progress.begin(scene.verify ? "verification" : "motion with the design");
   motions.run();
 }
 
@@ -166,6 +132,7 @@ void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress
                  RunReport& report) {
   report.problems = build_problems(scene);
   for (const mmc::BodyProblem& problem : report.problems) folder.write_start(problem);
+  const double most = extent_of(scene).iterations;
   const bool analysed = scene.optimizer.max_iterations == 0;  // as they start: one motion says all
   const auto simulate = [&](std::span<const fem::Factors> factors) {
     MotionWishes wishes;
@@ -175,6 +142,8 @@ void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress
     wishes.go_on = go_on;
     if (!report.motion && report.cycles == 0)
       wishes.say = [&](const std::string& words) { progress.say(words); };
+    wishes.way = way_of(progress, scene, wishes.phase);
+    progress.begin(wishes.phase);
     MotionOutcome motion = run_motion(scene, wishes, folder);
     progress.say("motion: " + std::to_string(motion.record.result.counts.steps) + " steps, " +
                  std::to_string(motion.record.result.events.size()) + " changes of the mesh, " +
@@ -191,7 +160,7 @@ void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress
   };
   observer.iteration = [&](const mmc::IterationReport& r) {
     folder.add_iteration(r);
-    progress.iteration(r);
+    progress.iteration(r, most);
     return go_on();
   };
   observer.cycle = [&](int cycle, std::span<const mmc::BodyOutcome> outcomes) {
@@ -234,9 +203,11 @@ void run_static(const Scene& scene, bool condition, RunFolder& folder, Progress&
   mmc::BodyProblem& problem = report.problems.front();
   const std::unique_ptr<mmc::LoadResponse> loads = build_static_loads(scene, problem);
   bool going = true;
+  const double most = extent_of(scene).iterations;
+  progress.begin("design");
   const mmc::IterationObserver observe = [&](const mmc::IterationReport& r) {
     folder.add_iteration(r);
-    progress.iteration(r);
+    progress.iteration(r, most);
     return go_on();
   };
   const mmc::BodyOutcome outcome = mmc::design_body(
@@ -254,7 +225,13 @@ void run_scene(const Scene& scene, bool condition, RunFolder& folder, Progress& 
   if (scene.domain) return run_static(scene, condition, folder, progress, report);
   if (!scene.designs.empty()) return run_designs(scene, condition, folder, progress, report);
   if (scene.statics) {
-    report.path = run_path(scene, folder, go_on, condition);
+    progress.begin("statics");
+    const double to = scene.statics->to;
+    const auto way = [&](double factor) {
+      progress.way("statics", std::clamp(factor / to, 0.0, 1.0),
+                   "load factor " + io::to_text(factor, 4) + " of " + io::to_text(to, 4));
+    };
+    report.path = run_path(scene, folder, {.condition = condition, .go_on = go_on, .way = way});
     const fem::StaticResult& result = report.path->result;
     progress.say("statics: load factor " + io::to_text(result.factor, 5) + " after " +
                  std::to_string(result.steps) + " steps, " + std::to_string(result.iterations) +
@@ -267,6 +244,8 @@ void run_scene(const Scene& scene, bool condition, RunFolder& folder, Progress& 
   wishes.condition = condition;
   wishes.go_on = go_on;
   wishes.say = [&](const std::string& words) { progress.say(words); };
+  wishes.way = way_of(progress, scene, wishes.phase);
+  progress.begin(wishes.phase);
   report.motion = run_motion(scene, wishes, folder).record;
   const fem::MotionResult& result = report.motion->result;
   progress.say("motion: " + std::to_string(result.counts.steps) + " steps, " +
@@ -319,6 +298,7 @@ int run_case(const RunOptions& options) {
     progress.say("interrupted: what was computed is in " + directory);
     return 4;
   } catch (const std::exception& error) {
+    report.failure = failure_of(error, progress.where());
     close("failed", error.what());
     throw;
   }

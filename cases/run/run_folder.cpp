@@ -13,10 +13,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> kHistoryColumns = {
-    "body",         "cycle",     "iteration",  "evaluations", "objective", "compliance",
-    "volume",       "violation", "kkt",        "change",      "band",      "sharp_compliance",
-    "sharp_volume", "connected", "min_feature"};
+const std::vector<std::string> kHistoryColumns = {"body",
+                                                  "cycle",
+                                                  "iteration",
+                                                  "evaluations",
+                                                  "scaled_objective",
+                                                  "compliance",
+                                                  "volume",
+                                                  "violation",
+                                                  "kkt",
+                                                  "change",
+                                                  "band",
+                                                  "sharp_compliance",
+                                                  "sharp_volume",
+                                                  "connected",
+                                                  "min_feature"};
 /// Between these and what follows are the responses of further_rows().
 const std::vector<std::string> kHistorySeconds = {"seconds_tdf",       "seconds_factor",
                                                   "seconds_solve",     "seconds_sensitivity",

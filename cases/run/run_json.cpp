@@ -47,6 +47,15 @@ Json clean_up_results(const mmc::CleanUp& c) {
   return out;
 }
 
+/// What the column `scaled_objective` of history.csv holds: the objective as optimizers see it.
+std::string objective_words(const mmc::BodyProblem& p) {
+  const mmc::ResponseRow& row = *p.goal.objective;
+  const std::string of = std::string(row.words).append(" [").append(row.unit).append("]");
+  if (p.shares_mass)
+    return "natural logarithm of the " + of + ", summed over bodies that share mass";
+  return row.full ? of + ", divided by that of the full plate" : "natural logarithm of the " + of;
+}
+
 Json body_results(const RunReport& report, size_t i) {
   const mmc::BodyOutcome& o = report.outcomes[i];
   Json out = Json::object();
@@ -81,6 +90,7 @@ Json body_results(const RunReport& report, size_t i) {
       amplitude(finer ? report.verified_uniform : report.uniform_motion);
   out["scene_mesh_amplitude"] = amplitude(report.motion);
   out["scene_mesh_uniform_amplitude"] = amplitude(report.uniform_motion);
+  out["scaled_objective"] = objective_words(report.problems[i]);
   out["cycles"] = report.cycles;
   out["iterations"] = o.iterations;
   out["state_solves"] = o.evaluations;
@@ -243,6 +253,23 @@ std::optional<Json> shared_mass(const RunReport& report) {
   return out;
 }
 
+Json failure_results(const Failure& f) {
+  Json out = Json::object();
+  if (!f.phase.empty()) out["phase"] = f.phase;
+  if (!f.body.empty()) out["body"] = f.body;
+  const auto set = [&](const char* key, const auto& value) {
+    if (value) out[key] = *value;
+  };
+  set("time", f.time);
+  set("load_factor", f.load_factor);
+  set("step", f.step);
+  set("cycle", f.cycle);
+  set("iteration", f.iteration);
+  out["kind"] = f.kind;
+  out["cause"] = f.cause;
+  return out;
+}
+
 }  // namespace
 
 std::string run_json(const Scene& scene, const RunReport& report) {
@@ -257,6 +284,7 @@ std::string run_json(const Scene& scene, const RunReport& report) {
   out["threads"] = report.threads;
   out["status"] = report.status;
   if (!report.message.empty()) out["message"] = report.message;
+  if (report.failure) out["failure"] = failure_results(*report.failure);
   out["seconds_wall"] = report.seconds_wall;
   out["seconds_cpu"] = report.seconds_cpu;
   out["peak_memory_bytes"] = static_cast<long long>(report.peak_memory_bytes);

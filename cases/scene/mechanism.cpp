@@ -130,7 +130,7 @@ void read_trajectory(const Table& root, const Follow& follow, Scene& scene) {
     follow(draft);
   } catch (const Error& error) {
     if (error.kind() == Error::Kind::input) t.fail(error.what());
-    throw Error::numerical(std::string("trajectory: ") + error.what());
+    throw Error::numerical(t.place() + ": trajectory: " + error.what());
   }
   scene.drives = draft.drives;
 }

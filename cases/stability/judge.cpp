@@ -4,8 +4,6 @@
 #include <cmath>
 #include <csignal>
 #include <nlohmann/json.hpp>
-#include <regex>
-#include <sstream>
 
 #include "cases/run/run.h"
 #include "cases/study/study.h"
@@ -21,15 +19,6 @@ using nlohmann::json;
 constexpr double kResolved = 0.3;  // h ω: twenty steps to a period
 
 std::string percent(double share) { return to_text(100 * share, 2) + " %"; }
-
-/// The last line a run said, without the name of the program.
-std::string last_words(const std::string& words) {
-  std::istringstream in(words);
-  std::string last;
-  for (std::string line; std::getline(in, line);)
-    if (!line.empty()) last = line;
-  return last.starts_with("flexmorph: ") ? last.substr(11) : last;
-}
 
 std::optional<double> number(const json& object, const char* key) {
   if (!object.is_object() || !object.contains(key) || !object[key].is_number()) return {};
@@ -205,7 +194,7 @@ void judge_refused(const Evidence& e, Judgement& out) {
   out.reason = message;
   if (e.row->demand == Demand::runs)
     out.reason = "has to run: " + message;
-  else if (!names_cause(message, e.ending.code))
+  else if (!names_cause(e))
     out.reason = "refused without a cause: '" + message + "'";
   else
     out.verdict = Verdict::refused;
@@ -227,15 +216,19 @@ std::string to_string(Verdict verdict) {
   return "WRONG";
 }
 
-bool names_cause(const std::string& message, int exit_code) {
-  static const std::regex kFile(R"(\S+:\d+: )"), kOption("--set "),
-      kKey(R"([a-z_]+(\.[a-z_0-9]+)+)"), kQuoted("'[^']+'"),
-      kPlace(R"((t = |time |load factor|at the start|initial|start))"),
-      kReason(R"(: |because|after )");
-  if (exit_code == 2)
-    return std::regex_search(message, kFile) || std::regex_search(message, kOption) ||
-           std::regex_search(message, kKey) || std::regex_search(message, kQuoted);
-  return std::regex_search(message, kPlace) && std::regex_search(message, kReason);
+bool names_cause(const Evidence& e) {
+  const std::string message = last_words(e.words);
+  if (message.starts_with("--set ") || message.starts_with(e.path + ":")) return true;
+  const json run = json::parse(text_of(e.folder + "/run.json"), nullptr, false);
+  if (!run.is_object() || !run.contains("failure")) return false;
+  const json& failure = run["failure"];
+  const auto says = [&](const char* key) {
+    return failure.contains(key) && failure[key].is_string() && !failure[key].empty() &&
+           !failure[key].get<std::string>().empty();
+  };
+  return says("phase") && says("cause") && failure.value("kind", "") != "defect" &&
+         (number(failure, "time") || number(failure, "load_factor") ||
+          number(failure, "iteration"));
 }
 
 Judgement judge(const Evidence& e) {

@@ -65,6 +65,7 @@ struct Judgement {
 struct Evidence {
   std::string folder;  ///< of the run; may be missing
   std::string words;   ///< what it said on the terminal
+  std::string path;    ///< of its case file
   Ending ending;
   const Perturbation* row = nullptr;
   std::optional<Bounds> bounds;  ///< absent: the scene cannot be read
@@ -82,7 +83,9 @@ std::string first_unreal(const std::string& folder);
 /// "events", the number of changes of the mesh. None where it is not there.
 std::optional<double> quantity_in(const std::string& folder, const std::string& quantity);
 
-/// Does a message say what is wrong and where: a file and line, a key, or a time and a reason?
-bool names_cause(const std::string& message, int exit_code);
+/// Does a run that was refused or gave up say what is wrong and where? One that gave up by the
+/// failure in its run.json (phase, cause, and a time, load factor or iteration); one that was not
+/// begun by the place that its message begins with, of the case file or of an option.
+bool names_cause(const Evidence& evidence);
 
 }  // namespace flexmorph::cases

@@ -1,10 +1,12 @@
 #include "cases/stability/stability.h"
 
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "cases/run/progress.h"
 #include "cases/run/run.h"
 #include "cases/stability/report.h"
 #include "cases/study/study.h"
@@ -168,6 +170,7 @@ class Check {
     ChildLimits limits;
     limits.seconds = options_.timeout;
     limits.memory = 4e9;
+    const auto begin = std::chrono::steady_clock::now();
     size_t done = 0;
     const auto ended = [&](size_t i, const Ending& ending) {
       if (ending.interrupted) return;  // says nothing about the row
@@ -184,9 +187,13 @@ class Check {
       judge_row(*of[i]);
       if (++done % kBatch == 0) write();
       if (options_.quiet) return;
-      std::printf("%zu/%zu %s %s, %s: exit %d, %s s\n", done, children.size(),
+      const double part = static_cast<double>(done) / static_cast<double>(children.size());
+      const double seconds =
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+      std::printf("%zu/%zu %s %s, %s: exit %d, %s s%s\n", done, children.size(),
                   row.case_name.c_str(), row.suite.c_str(), row.perturbation.parameter.c_str(),
-                  ending.code, io::to_text(ending.seconds, 2).c_str());
+                  ending.code, io::to_text(ending.seconds, 2).c_str(),
+                  part < 1 ? time_left(seconds, part).c_str() : "");
       std::fflush(stdout);
     };
     return run_children(children, options_.jobs, limits, {.ended = ended});
@@ -198,6 +205,7 @@ class Check {
     Evidence e;
     e.folder = job.stem;
     e.words = text_of(job.stem + ".log");
+    e.path = job.path;
     e.ending = row.ending;
     e.row = &row.perturbation;
     e.bounds = job.bounds;

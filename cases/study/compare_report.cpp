@@ -88,6 +88,7 @@ const std::vector<std::string> kColumns = {"run",
                                            "seconds_optimizer",
                                            "peaks",
                                            "disconnected",
+                                           "converged",
                                            "stop"};
 
 void write_csv(const Comparison& plan, std::span<const VariantResult> runs,
@@ -123,6 +124,7 @@ void write_csv(const Comparison& plan, std::span<const VariantResult> runs,
                r.seconds_optimizer,
                r.peaks,
                r.disconnected,
+               r.converged(),
                r.stop})
         row.push_back(cell);
       csv.row(row);
@@ -158,8 +160,11 @@ std::vector<std::string> summary_row(const Comparison& plan, std::span<const Var
                                      size_t o, const std::vector<double>& best, int won) {
   const auto done = runs_of(plan, runs, o);
   const std::string starts = std::string("/").append(io::to_text(plan.starts));
+  const auto met = std::count_if(done.begin(), done.end(),
+                                 [](const auto& each) { return each.first->converged(); });
   std::vector<std::string> row = {plan.optimizers[o],
-                                  io::to_text(static_cast<int>(done.size())) + starts};
+                                  io::to_text(static_cast<int>(done.size())) + starts,
+                                  io::to_text(static_cast<int>(met)) + starts};
   if (done.empty()) return row;
   const auto middle = [&](auto member, int digits) {
     return io::to_text(median(values_of(plan, runs, o, of_first(member))), digits);
@@ -238,9 +243,10 @@ double violation_of(const BodyResult& result, const mmc::Goal& goal) {
 
 std::vector<std::vector<std::string>> summary_of(const Comparison& plan,
                                                  std::span<const VariantResult> runs) {
-  Rows rows = {{"optimizer", "done", "figure: median", "range", "over best", "told apart",
-                "best in", "sharp compliance", "compliance", "kkt", "solves", "factorizations",
-                "CPU s", "optimizer's share", "peaks", "connected", "smallest feature"}};
+  Rows rows = {{"optimizer", "done", "converged", "figure: median", "range", "over best",
+                "told apart", "best in", "sharp compliance", "compliance", "kkt", "solves",
+                "factorizations", "CPU s", "optimizer's share", "peaks", "connected",
+                "smallest feature"}};
   std::vector<double> best;
   for (size_t o = 0; o < plan.optimizers.size(); ++o) {
     const auto figures =
@@ -268,7 +274,7 @@ void write_comparison(const Comparison& plan, std::span<const VariantResult> run
           "of the other; where it says no, the starts spread too far for a verdict. One state "
           "solve gives values and gradients. Peaks stand out by more than 2 % of the best "
           "compliance so far.\n\n" +
-          io::markdown_table(rows_of(plan, runs)));
+          io::markdown_table(rows_of(plan, runs)) + "\n" + convergence_note(runs) + "\n");
   io::write_file(stem + ".svg", comparison_svg(plan, runs));
 }
 

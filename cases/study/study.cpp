@@ -1,10 +1,12 @@
 #include "cases/study/study.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <sstream>
 
+#include "cases/run/progress.h"
 #include "cases/run/run.h"
 #include "cases/study/processes.h"
 #include "io/files.h"
@@ -45,15 +47,6 @@ void say(const StudyOptions& options, const std::string& line) {
   std::fflush(stdout);
 }
 
-/// The last line a run wrote: what it died of.
-std::string last_words(const std::string& log) {
-  std::istringstream in(text_of(log));
-  std::string last;
-  for (std::string line; std::getline(in, line);)
-    if (!line.empty()) last = line;
-  return last;
-}
-
 /// The result of a run that has just ended. A run that could not say so itself has failed.
 VariantResult result_of(const StudyOptions& options, const Variant& variant, const Ending& ending) {
   VariantResult out = read_result(options, variant);
@@ -67,7 +60,7 @@ VariantResult result_of(const StudyOptions& options, const Variant& variant, con
     out.message = "ended by signal " + std::to_string(ending.signal);
   } else if (ending.code != 0 && ending.code != kMissed) {
     out.status = "failed";
-    if (out.message.empty()) out.message = last_words(out.directory + ".log");
+    if (out.message.empty()) out.message = last_words(text_of(out.directory + ".log"));
   } else if (!out.done()) {
     out.status = "failed";
     if (out.message.empty()) out.message = "there is no run.json of a finished run";
@@ -82,6 +75,17 @@ void make_folder(const std::string& path) {
 }
 
 }  // namespace
+
+std::string last_words(const std::string& words) {
+  constexpr const char* kProgram = "flexmorph: ";
+  std::istringstream in(words);
+  std::string last, complaint;
+  for (std::string line; std::getline(in, line);) {
+    if (!line.empty()) last = line;
+    if (line.starts_with(kProgram)) complaint = line.substr(std::string(kProgram).size());
+  }
+  return complaint.empty() ? last : complaint;
+}
 
 io::CaseFile case_of(const StudyOptions& options, const Variant& variant) {
   return io::CaseFile(find_case(options.case_name), overrides_of(options, variant));
@@ -135,11 +139,19 @@ StudyOutcome run_variants(const StudyOptions& options, std::span<const Variant> 
     wanted.push_back(i);
     children.push_back(child_of(options, variants[i]));
   }
+  const auto begin = std::chrono::steady_clock::now();
+  size_t ended = 0;
   const auto collect = [&](size_t at, const Ending& ending) {
     const size_t i = wanted[at];
     VariantResult& result = out.results[i];
     result = result_of(options, variants[i], ending);
-    say(options, result.name + ": " + result.words());
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const double part = static_cast<double>(++ended) / static_cast<double>(wanted.size());
+    const size_t before = variants.size() - wanted.size();
+    say(options, std::to_string(before + ended) + "/" + std::to_string(variants.size()) + " " +
+                     result.name + ": " + result.words() +
+                     (part < 1 ? time_left(seconds, part) : ""));
     if (result.status == "failed") {
       out.exit_code = 3;
       std::fprintf(stderr, "flexmorph: %s: %s\n", result.name.c_str(), result.message.c_str());

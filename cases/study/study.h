@@ -45,6 +45,9 @@ struct BodyResult {
   std::vector<double> history_solves, history_compliance, history_violation, history_seconds;
   std::vector<int> history_stage;
   std::vector<double> sharp_iteration, sharp_history;  ///< where evaluated
+
+  /// Did its optimizer meet its tolerances? What was analysed as it starts was not asked: yes.
+  bool converged() const;
 };
 
 /// What a run folder says.
@@ -59,9 +62,13 @@ struct VariantResult {
   int warnings = 0;  ///< that it gave
 
   bool done() const { return status.starts_with("done"); }
-  /// The status, and that there are warnings.
+  bool converged() const;  ///< all its designs
+  /// The status, whether it is a result that did not converge, and that there are warnings.
   std::string words() const;
 };
+
+/// What tables of a study end with: how many of its runs did not converge; empty: none.
+std::string convergence_note(std::span<const VariantResult> runs);
 
 /// Reads every variant's case and builds what it would build.
 /// @throws Error (input) as a run would; nothing has been written then.
@@ -90,6 +97,10 @@ io::CaseFile case_of(const StudyOptions& options, const Variant& variant);
 
 /// What the folder of a variant says.
 VariantResult read_result(const StudyOptions& options, const Variant& variant);
+
+/// What a run complained of last, from its words on the terminal: the first line of that message,
+/// without the name of the program; of one that did not complain its last line.
+std::string last_words(const std::string& words);
 
 /// A whole file; empty when it cannot be read.
 std::string text_of(const std::string& path);

@@ -9,6 +9,7 @@
 #include "cases/study/statistics.h"
 #include "cases/study/study.h"
 #include "io/tables.h"
+#include "optim/optimizer.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -120,8 +121,28 @@ std::string folder_of(const StudyOptions& options, const Variant& variant) {
   return options.directory + "/" + variant.name;
 }
 
+bool BodyResult::converged() const {
+  return iterations == 0 || stop.starts_with(optim::to_string(optim::Stop::converged));
+}
+
+bool VariantResult::converged() const {
+  return std::all_of(bodies.begin(), bodies.end(),
+                     [](const BodyResult& body) { return body.converged(); });
+}
+
+std::string convergence_note(std::span<const VariantResult> runs) {
+  const auto missed = std::count_if(runs.begin(), runs.end(), [](const VariantResult& run) {
+    return run.done() && !run.converged();
+  });
+  if (missed == 0) return "";
+  return std::to_string(missed) + " of " + std::to_string(runs.size()) +
+         " runs did not converge (see \"stopped\"): their numbers are those of a design on its "
+         "way.";
+}
+
 std::string VariantResult::words() const {
-  return status + counted(static_cast<size_t>(warnings), "warning", "warnings");
+  return status + (done() && !converged() ? ", NOT CONVERGED" : "") +
+         counted(static_cast<size_t>(warnings), "warning", "warnings");
 }
 
 std::string text_of(const std::string& path) {

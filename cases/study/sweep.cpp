@@ -97,10 +97,26 @@ std::vector<std::vector<std::string>> table_of(const Sweep& sweep,
 void write_csv(const Sweep& sweep, std::span<const VariantResult> runs, const std::string& path) {
   std::vector<std::string> columns = {"variant"};
   for (const Varied& v : sweep.varied) columns.push_back(v.key);
-  for (const char* name :
-       {"status", "body", "compliance", "volume", "sharp_compliance", "sharp_volume", "figure",
-        "uniform_compliance", "kkt", "connected", "min_feature", "components", "peaks",
-        "disconnected", "iterations", "state_solves", "seconds_cpu", "stop", "message"})
+  for (const char* name : {"status",
+                           "body",
+                           "compliance",
+                           "volume",
+                           "sharp_compliance",
+                           "sharp_volume",
+                           "figure",
+                           "uniform_compliance",
+                           "kkt",
+                           "connected",
+                           "min_feature",
+                           "components",
+                           "peaks",
+                           "disconnected",
+                           "iterations",
+                           "state_solves",
+                           "seconds_cpu",
+                           "converged",
+                           "stop",
+                           "message"})
     columns.emplace_back(name);
   io::CsvWriter csv(path, columns);
   for (size_t k = 0; k < runs.size(); ++k) {
@@ -114,7 +130,7 @@ void write_csv(const Sweep& sweep, std::span<const VariantResult> runs, const st
                b.body, b.compliance, b.volume, b.sharp_compliance, b.sharp_volume,
                sweep.figure(k, b, i), b.uniform_compliance, b.kkt, b.connected,
                b.min_feature ? io::Cell(*b.min_feature) : io::Cell(), b.components, b.peaks,
-               b.disconnected, b.iterations, b.solves, runs[k].seconds_cpu, b.stop,
+               b.disconnected, b.iterations, b.solves, runs[k].seconds_cpu, b.converged(), b.stop,
                runs[k].message})
         row.push_back(cell);
       csv.row(row);
@@ -176,7 +192,10 @@ std::string sheet_of(const Sweep& sweep, std::span<const VariantResult> runs) {
     const VariantResult& run = runs[k];
     io::SheetEntry entry;
     entry.title = title_of(sweep, k);
-    if (!run.done()) entry.title += " (" + run.status + ")";
+    if (!run.done())
+      entry.title += " (" + run.status + ")";
+    else if (!run.converged())
+      entry.title += " (NOT CONVERGED)";
     for (size_t i = 0; i < run.bodies.size(); ++i) {
       const std::string stem = run.bodies.size() > 1 ? "/design_" + run.bodies[i].body : "/design";
       const std::string design = text_of(run.directory + stem + ".svg");
@@ -248,6 +267,8 @@ void write_motions(const Sweep& sweep, std::span<const VariantResult> runs,
     io::write_file(stem + "_ends.svg", ends);
 }
 
+std::string paragraph(const std::string& text) { return text.empty() ? "" : "\n" + text + "\n"; }
+
 void write_all(const Sweep& sweep, std::span<const VariantResult> runs,
                const std::string& directory) {
   const std::string stem = directory + "/sweep";
@@ -257,7 +278,8 @@ void write_all(const Sweep& sweep, std::span<const VariantResult> runs,
       stem + ".md",
       "# " + sweep.case_name + "\n\n" + io::markdown_table(table_of(sweep, runs)) +
           "\nFigure: sharp compliance x sharp volume / volume allowed (what is minimized, "
-          "of the sharp design, where that is no compliance).\n");
+          "of the sharp design, where that is no compliance).\n" +
+          paragraph(convergence_note(runs)));
   io::write_file(stem + ".svg", sheet_of(sweep, runs));
 }
 
@@ -379,6 +401,7 @@ int sweep_case(const SweepOptions& options) {
       study, sweep.variants,
       [&](std::span<const VariantResult> runs) { write_all(sweep, runs, study.directory); });
   std::fputs(io::aligned_table(summary_of(sweep, outcome.results)).c_str(), stdout);
+  std::fputs(paragraph(convergence_note(outcome.results)).c_str(), stdout);
   std::printf("%s/sweep.md, .csv, .svg\n", study.directory.c_str());
   return outcome.exit_code;
 }

@@ -12,7 +12,10 @@ namespace {
 constexpr double kNewPart = 1e-9;     // of a row of unit size, below which it is dependent
 constexpr double kZeroEntry = 1e-7;   // of a null vector with largest entry 1
 constexpr double kConsistent = 1e-8;  // of what is added up to zero
-constexpr double kShift = 1e-14;      // of the Gram matrix of the watch
+// Of the size of the model, per second and per second squared: rates and accelerations that are
+// zero but for round-off have no scale of their own, a model at rest least of all.
+constexpr double kRoundOff = 1e-10;
+constexpr double kShift = 1e-14;  // of the Gram matrix of the watch
 
 std::string number(double value) {
   char text[32];
@@ -199,10 +202,11 @@ Diagnosis diagnose(Workspace& model, const State& x) {
     for (const auto& [row, entry] : z) g.rows.push_back(row);
     const Constraints& c = rows.unscaled();
     g.miss = std::max(g.miss, miss_of(z, rows.row_scale(), c.value, 1e-10 * size));
-    g.rate_miss = std::max(g.rate_miss, miss_of(z, rows.row_scale(), c.rate, kConsistent * speed));
-    g.acceleration_miss =
-        std::max(g.acceleration_miss,
-                 miss_of(z, rows.row_scale(), c.acceleration, kConsistent * speed * speed / size));
+    g.rate_miss = std::max(
+        g.rate_miss, miss_of(z, rows.row_scale(), c.rate, kConsistent * speed + kRoundOff * size));
+    g.acceleration_miss = std::max(g.acceleration_miss,
+                                   miss_of(z, rows.row_scale(), c.acceleration,
+                                           kConsistent * speed * speed / size + kRoundOff * size));
     g.contradictory = g.miss > 0 || g.rate_miss > 0 || g.acceleration_miss > 0;
   }
   for (auto& [joints, g] : groups) {

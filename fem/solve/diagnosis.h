@@ -15,7 +15,8 @@ struct DependentGroup {
   int surplus = 0;        ///< rows of the group that say nothing new
 
   /// What the rows miss each other by, as Σ z Φ with the null vector z (largest entry 1) of the
-  /// scaled rows: positions [m], rates [m/s], accelerations [m/s²]; the largest of the group.
+  /// scaled rows: positions [m], rates [m/s], accelerations [m/s²]; the largest of the group. 0
+  /// where it is round-off: of what is added up, or 1e-10 of the model's size (per s, per s²).
   double miss = 0, rate_miss = 0, acceleration_miss = 0;
   /// redundant (false): all three combine to zero, one joint may go; or contradictory.
   bool contradictory = false;

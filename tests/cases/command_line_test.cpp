@@ -169,11 +169,12 @@ TEST_P(BadInput, IsOneLocatedLineAndNoFolder) {
   }
   ASSERT_GT(found, 0);
   const std::string file = scratch.write("bad.toml", text), folder = scratch / "out";
+  const size_t column = GetParam().by.find("= ") + 3;  // of the value, from 1
   for (const Words& command : {Words{"run", file, "-o", folder}, Words{"check", file}}) {
     const Ended ended = flexmorph(scratch, command);
     EXPECT_EQ(ended.code, 2);
-    EXPECT_TRUE(starts(
-        ended.err, "flexmorph: " + file + ":" + std::to_string(found) + ": " + GetParam().where));
+    EXPECT_TRUE(starts(ended.err, "flexmorph: " + file + ":" + std::to_string(found) + ":" +
+                                      std::to_string(column) + ": " + GetParam().where));
     EXPECT_EQ(lines_of(ended.err).size(), 1u) << ended.err;
     EXPECT_EQ(ended.out, "");
     EXPECT_FALSE(fs::exists(folder));

@@ -36,7 +36,7 @@ TEST(GoalRun, TheLightestPlateThatIsStiffEnough) {
   EXPECT_LT(body["mass"].get<double>(), 0.6 * 2000);
   const io::CsvTable history = io::read_csv(folder + "/history.csv");
   const std::vector<double> mass = history.numbers("mass"), volume = history.numbers("volume"),
-                            objective = history.numbers("objective");
+                            objective = history.numbers("scaled_objective");
   ASSERT_GT(mass.size(), 10u);
   for (size_t k = 0; k < mass.size(); ++k) {
     EXPECT_NEAR(mass[k], 2000 * volume[k], 1e-9);

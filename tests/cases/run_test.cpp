@@ -59,7 +59,7 @@ void expect_history(const Table& history) {
     EXPECT_EQ(row[column("body")], "plate");
     EXPECT_EQ(row[column("iteration")], std::to_string(r));
     const double compliance = std::stod(row[column("compliance")]);
-    EXPECT_NEAR(std::log(compliance), std::stod(row[column("objective")]), 1e-12);
+    EXPECT_NEAR(std::log(compliance), std::stod(row[column("scaled_objective")]), 1e-12);
     const bool sharp = r % 4 == 0;
     for (const char* name : {"sharp_compliance", "sharp_volume", "connected"})
       EXPECT_EQ(row[column(name)].empty(), !sharp) << name << " in row " << r;

@@ -104,17 +104,43 @@ TEST_F(Judged, EndsThatAreNoEnd) {
 }
 
 TEST_F(Judged, RefusedNeedsACause) {
+  evidence_.path = "a.toml";
   evidence_.ending = {2, 0, false, 0};
-  evidence_.words = "flexmorph: a.toml:14: body.thickness = -1: a thickness is positive [m]\n";
-  says(Verdict::refused, "a.toml:14: body.thickness");
+  evidence_.words =
+      "flexmorph: a.toml:14:13: body.thickness = -1: a thickness is positive [m]\n"
+      "a.toml:15:9: body.width = 0: a width is positive [m]\n";
+  says(Verdict::refused, "a.toml:14:13: body.thickness");
+  evidence_.words = "flexmorph: --set body.thickness=-1: a thickness is positive [m]\n";
+  says(Verdict::refused, "--set body.thickness");
   evidence_.words = "flexmorph: this is bad\n";
   says(Verdict::wrong, "without a cause");
+}
+
+// Not what it says to people counts, but what it leaves as data.
+TEST_F(Judged, WhoGivesUpLeavesItsFailure) {
+  evidence_.path = "a.toml";
   evidence_.ending = {3, 0, false, 0};
-  evidence_.words = "flexmorph: no convergence\n";
-  says(Verdict::wrong, "without a cause");
-  evidence_.words =
-      "flexmorph: no convergence at t = 0.3 s, step 156: |R| 4e-2 after 12 iterations\n";
+  evidence_.words = "flexmorph: no convergence at t = 0.3 s: |R| 4e-2 after 12 iterations\n";
+  const auto failed = [&](const std::string& failure) {
+    write("run.json", "{\"status\": \"failed\", \"failure\": {" + failure + "}}");
+  };
+  const std::string cause = R"("kind": "numerical", "cause": "no convergence")";
+  says(Verdict::wrong, "without a cause");  // run.json of a run that is done
+  failed(R"("phase": "motion", "time": 0.3, "step": 3, )" + cause);
   says(Verdict::refused, "t = 0.3 s");
+  for (const char* where :
+       {R"("phase": "statics", "load_factor": 0, )", R"("phase": "design", "iteration": 3, )"}) {
+    failed(std::string(where) + cause);
+    EXPECT_TRUE(names_cause(evidence_)) << where;
+  }
+  for (const std::string& missing :
+       {R"("phase": "motion", )" + cause, R"("time": 0.3, )" + cause,
+        std::string(R"("phase": "motion", "time": 0.3, "kind": "numerical", "cause": "")"),
+        std::string(R"("phase": "motion", "time": 0, "kind": "defect", "cause": "bad_alloc")")}) {
+    failed(missing);
+    says(Verdict::wrong, "without a cause");
+  }
+  failed(R"("phase": "motion", "time": 0.3, )" + cause);
   row_.demand = Demand::runs;
   says(Verdict::wrong, "has to run");
 }

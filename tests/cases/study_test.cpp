@@ -135,7 +135,15 @@ TEST(Sweep, RunsCollectsAndSkips) {
   const io::CsvTable table = io::read_csv(folder + "/sweep.csv");
   EXPECT_EQ(table.texts("design.min_thickness"), (Words{"0.02", "0.02", "0.03", "0.03"}));
   EXPECT_EQ(table.numbers("iterations"), (std::vector<double>{3, 5, 3, 5}));
+  // How far it is, and what to think of designs that had no time.
+  for (int n = 1; n <= 4; ++n)
+    EXPECT_EQ(lines_with(first.out, std::to_string(n) + "/4 "), 1U) << first.out;
+  EXPECT_EQ(table.texts("converged"), Words(4, "0"));
+  EXPECT_EQ(lines_with(contents_of(folder + "/sweep.md"), "NOT CONVERGED"), 4U);
+  EXPECT_EQ(lines_with(contents_of(folder + "/sweep.md"), "4 of 4 runs did not converge"), 1U);
+  EXPECT_EQ(lines_with(first.out, "4 of 4 runs did not converge"), 1U);
   const std::string sheet = contents_of(folder + "/sweep.svg");
+  EXPECT_GE(lines_with(sheet, "(NOT CONVERGED)"), 4U);
   EXPECT_EQ(lines_with(sheet, "max_iterations = 3</text>"), 2U);
 
   const Ended second = test::flexmorph(scratch, small("sweep", folder, vary));

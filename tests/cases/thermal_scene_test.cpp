@@ -121,7 +121,7 @@ TEST(ThermalScene, ErrorsNameFileLineAndKey) {
   const std::string error =
       testing::error_of(Error::Kind::input, [&] { read_scene(io::CaseFile(file)); });
   EXPECT_TRUE(testing::says(error, "wrong.toml:" + std::to_string(line) +
-                                       ": body.heat.profile = \"abrupt\": a profile is one of"))
+                                       ":11: body.heat.profile = \"abrupt\": a profile is one of"))
       << error;
 }
 

@@ -111,6 +111,19 @@ TEST(Diagnosis, ContradictionsByValueRateAndAcceleration) {
             "joints 'a', 'b' contradict each other: they miss by 2 m/s² in acceleration");
 }
 
+// The last bits of drives that say the same in other words are no contradiction, also of a model at
+// rest, where nothing else says how large a rate is.
+TEST(Diagnosis, RoundOffIsNoContradiction) {
+  for (const Motion& second :
+       {Motion{1, 1.9e-15, 0}, Motion{1, 0, 1.89e-15}, Motion{1 + 2e-16, 0, 0}}) {
+    Workspace model = point_model(places({{1, 0}}));
+    add<LinearRow>(model, "a", Parts{{0, 0}}, linear(1, 0));
+    add<LinearRow>(model, "b", Parts{{0, 0}}, [second](double) { return second; });
+    EXPECT_EQ(describe(diagnose(model, model.reference())),
+              "joints 'a', 'b' hold the same freedom");
+  }
+}
+
 // x_a = 0, x_b = 1 and x_b - x_a = 1: any two of the three are independent. Others stay out of it.
 TEST(Diagnosis, ThreeJointsDependentOnlyTogether) {
   for (const double distance : {1.0, 1.25}) {

@@ -3,9 +3,11 @@
     xvfb-run -a pvpython check_run.py RUN [PICTURES]
 
 Shows that every frame of design/iterations.pvd, design/components.pvd and motion/motion.pvd can be
-read; that the design has one frame per row of history.csv and the motion starts and ends with
-motion.csv; that fields have their names, finite values, and densities in [0, 1]; and that both can
-be drawn: PICTURES/design.png and PICTURES/motion.png (default: RUN/pictures).
+read, as far as the run has them: a design where there is a history.csv, a motion where there is a
+motion.csv, a path of equilibria where there is a path.csv. The design has one frame per row of
+history.csv, the motion starts and ends with its table; fields have their names, finite values, and
+densities in [0, 1]; and both can be drawn: PICTURES/design.png and PICTURES/motion.png (default:
+RUN_pictures, beside the run: a folder in it would keep the next run from taking its place).
 
 Exit code 0 when all of that holds; 1, with every defect named, when not. run.sh beside this file
 gets ParaView and calls it.
@@ -23,7 +25,9 @@ from paraview.vtk.numpy_interface import dataset_adapter
 
 DESIGN = {"CellData": {"density", "stiffness_factor", "strain_energy"}, "PointData": {"tdf"}}
 OUTLINES = {"CellData": {"component"}}
-MOTION = {"CellData": {"density"}}
+MOTION = {"CellData": {"density", "body"}}
+FULL_MOTION = {"CellData": {"strain_energy", "body"}, "PointData": {"displacement"}}
+RIGID_MOTION = {"CellData": {"body"}}
 
 ROUND_OFF = 1e-6  # of the Float32 numbers in the files
 LEAST_GREY = 0.1  # of a picture, shows density: a plate fills 0.8, and 0.2 turned by 45 degrees
@@ -47,6 +51,20 @@ def column(path, name):
         if not expect(name in rows.fieldnames, "%s has no column %s" % (path, name)):
             return None
         return [row[name] for row in rows]
+
+
+def parts_of(run):
+    """What there is to look at in a run: its design (or None), and of its motion the fields of the
+    frames, the table and the column of their times (or None)."""
+    there = lambda name: os.path.exists(os.path.join(run, name))
+    design = DESIGN if there("history.csv") else None
+    with open(os.path.join(run, "case.toml")) as case:
+        bends = any(line.strip() == "[[body]]" for line in case)
+    fields = MOTION if design else FULL_MOTION if bends else RIGID_MOTION
+    for table, times in ("motion.csv", "time"), ("path.csv", "step"):
+        if there(table):
+            return design, (fields, table, times)
+    return design, None
 
 
 def pieces(data):
@@ -140,36 +158,49 @@ def draw(layers, time, path):
     colours = numpy.asarray(colours, dtype=int)[:, :3]
     coloured = numpy.ptp(colours, axis=1) > 60
     grey = ~coloured & (colours.max(axis=1) < 245)
-    expect(grey.mean() > LEAST_GREY, "%s shows no density" % path)
+    # A slender body fills little of its picture.
+    least = LEAST_GREY if isinstance(layers[0][1], str) else 0
+    expect(grey.mean() > least, "%s shows no body" % path)
     expect(len(layers) == 1 or coloured.any(), "%s shows no outlines" % path)
     print("%s: time %g, %d x %d, %.1f %% density, %.1f %% outlines"
           % (path, time, *size, 100 * grey.mean(), 100 * coloured.mean()))
 
 
-def main(run, pictures):
-    simple._DisableFirstRenderCameraReset()
-    os.makedirs(pictures, exist_ok=True)
-    design, iterations = open_series(run, "design/iterations.pvd", DESIGN)
+def check_design(run, pictures, fields):
+    design, iterations = open_series(run, "design/iterations.pvd", fields)
     outlines, outline_times = open_series(run, "design/components.pvd", OUTLINES)
-    motion, times = open_series(run, "motion/motion.pvd", MOTION)
-
     history = column(os.path.join(run, "history.csv"), "iteration")
     if history is not None:
         rows = len(history)
         expect(len(iterations) == rows, "%d designs, %d rows" % (len(iterations), rows))
     expect(outline_times == iterations, "outlines and designs have different times")
-    moments = column(os.path.join(run, "motion.csv"), "time")
-    if moments and times:
-        first, last = float(moments[0]), float(moments[-1])
-        step = (last - first) / len(moments)
-        expect(abs(times[0] - first) < step, "motion starts at %g, not %g" % (times[0], first))
-        expect(abs(times[-1] - last) < step, "motion ends at %g, not %g" % (times[-1], last))
-
     if design and outlines and iterations:
         layers = [(design, "density"), (outlines, [0.8, 0.1, 0.1])]
         draw(layers, iterations[-1], os.path.join(pictures, "design.png"))
+
+
+def check_motion(run, pictures, fields, table, name):
+    motion, times = open_series(run, "motion/motion.pvd", fields)
+    moments = column(os.path.join(run, table), name)
+    if moments and times:
+        first, last = float(moments[0]), float(moments[-1])
+        step = (last - first) / len(moments) if len(moments) > 1 else 1
+        expect(abs(times[0] - first) <= step, "motion starts at %g, not %g" % (times[0], first))
+        expect(abs(times[-1] - last) < step, "motion ends at %g, not %g" % (times[-1], last))
     if motion and times:
-        draw([(motion, "density")], times[-1], os.path.join(pictures, "motion.png"))
+        paint = "density" if fields is MOTION else [0.4, 0.4, 0.4]
+        draw([(motion, paint)], times[-1], os.path.join(pictures, "motion.png"))
+
+
+def main(run, pictures):
+    simple._DisableFirstRenderCameraReset()
+    os.makedirs(pictures, exist_ok=True)
+    design, motion = parts_of(run)
+    expect(design or motion, run + " holds neither a design nor a motion")
+    if design:
+        check_design(run, pictures, design)
+    if motion:
+        check_motion(run, pictures, *motion)
 
     version = simple.GetParaViewVersion()
     print("ParaView %s: %s" % (version, "%d defects" % len(defects) if defects else "all is well"))
@@ -179,5 +210,5 @@ def main(run, pictures):
 if __name__ == "__main__":
     if len(sys.argv) not in (2, 3):
         sys.exit(__doc__)
-    folder = sys.argv[1]
-    sys.exit(main(folder, sys.argv[2] if len(sys.argv) == 3 else os.path.join(folder, "pictures")))
+    folder = sys.argv[1].rstrip("/")
+    sys.exit(main(folder, sys.argv[2] if len(sys.argv) == 3 else folder + "_pictures"))

@@ -1,6 +1,7 @@
 #!/bin/sh
 # tests/paraview/run.sh RUN [PICTURES]
-# Opens a run folder in ParaView (see check_run.py); pictures go to PICTURES (RUN/pictures).
+# Opens a run folder in ParaView (see check_run.py); pictures go to PICTURES (RUN_pictures,
+# beside the run: a folder in it that no run has written would keep the next run out).
 # Debian's ParaView with Python and the VTK that Flexmorph is built with exclude each other, so
 # ParaView gets a Debian 12 of its own in PARAVIEW_ROOT (build/paraview), made by the first check:
 # 3 GB, needs root and the package debootstrap.
@@ -8,7 +9,7 @@ set -eu
 export LC_ALL=C
 here=$(cd "$(dirname "$0")" && pwd)
 run=$(cd "${1:?the run folder}" && pwd)
-pictures=${2:-$run/pictures}
+pictures=${2:-${run}_pictures}
 debian=${PARAVIEW_ROOT:-$here/../../build/paraview}
 
 if [ ! -x "$debian/usr/bin/pvpython" ]; then

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "geometry/base.h"
+
+namespace flexmorph::cases {
+
+/// Where a run was when it ended before its end: data, for who judges runs by it.
+struct Failure {
+  std::string phase;                    ///< "motion", "design", "verification ..."; empty: unknown
+  std::string body;                     ///< that was designed
+  std::optional<double> time;           ///< last one that was reached [s]
+  std::optional<double> load_factor;    ///< of a path of equilibria, likewise
+  std::optional<int> step;              ///< number of steps or equilibria until there
+  std::optional<int> cycle, iteration;  ///< of the design
+  std::string kind;                     ///< "input", "numerical", "defect"
+  std::string cause;                    ///< the message
+};
+
+/// An error that knows where it happened.
+class FailedRun : public Error {
+ public:
+  FailedRun(const Error& error, Failure where)
+      : Error(error.kind(), error.what()), where_(std::move(where)) {}
+  const Failure& where() const { return where_; }
+
+ private:
+  Failure where_;
+};
+
+/// What is known of an exception.
+/// @param here  where the run is, for those that do not know
+Failure failure_of(const std::exception& error, const Failure& here);
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,130 @@
+#include "cases/run/progress.h"
+
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "cases/run/room.h"
+#include "io/files.h"
+
+namespace flexmorph::cases {
+namespace {
+
+constexpr double kTerminal = 0.1, kElsewhere = 30;  // seconds between lines
+
+std::string one(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+}  // namespace
+
+std::string time_left(double seconds, double part) {
+  if (!(part > 0) || seconds < 0.5) return "";
+  return ", " + duration_text(seconds * (1 - std::min(1.0, part)) / part) + " left";
+}
+
+Progress::Progress(bool quiet) : quiet_(quiet), terminal_(isatty(STDOUT_FILENO) != 0) {}
+
+Progress::~Progress() { end_line(); }
+
+void Progress::say(const std::string& text) {
+  const std::lock_guard guard(lock_);
+  end_line();
+  if (!quiet_) std::printf("%s\n", text.c_str());
+  std::fflush(stdout);
+}
+
+void Progress::object(const std::string& kind, const std::string& text) {
+  const std::lock_guard guard(lock_);
+  end_line();
+  const bool colour = isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
+  const char* const before = !colour ? "" : kind == "warning" ? "\x1b[33m" : "\x1b[31m";
+  std::fprintf(stderr, "flexmorph: %s%s:%s %s\n", before, kind.c_str(), colour ? "\x1b[0m" : "",
+               text.c_str());
+}
+
+void Progress::begin(const std::string& phase) {
+  const std::lock_guard guard(lock_);
+  where_.phase = phase;
+  begin_ = shown_ = Clock::now();
+}
+
+double Progress::since_begin() const {
+  return std::chrono::duration<double>(Clock::now() - begin_).count();
+}
+
+void Progress::iteration(const mmc::IterationReport& r, double most) {
+  if (!quiet_)
+    for (const mmc::ComponentEvent& e : r.events)
+      say(r.problem.body + " iteration " + std::to_string(r.iteration) + ": component " +
+          std::to_string(e.component + 1) + " " + to_string(e.kind) + ", " +
+          std::to_string(e.n_components) + " components");
+  const std::lock_guard guard(lock_);
+  if (where_.phase != "design") {
+    where_.phase = "design";
+    begin_ = Clock::now();
+    iterations_ = 0;
+  }
+  where_.body = r.problem.body;
+  where_.cycle = r.cycle;
+  where_.iteration = r.iteration;
+  ++iterations_;
+  ++all_;
+  std::string text = "design of " + r.problem.body + ": cycle " + std::to_string(r.cycle) +
+                     ", iteration " + std::to_string(r.iteration) + " (" + io::to_text(all_) +
+                     " of at most " + io::to_text(most) + ")";
+  // Goals without a compliance have none.
+  if (std::isfinite(r.state.compliance()))
+    text += ", compliance " + one("%.5g", r.state.compliance());
+  text += ", volume " + one("%.4f", r.state.volume()) + ", kkt " + one("%.1e", r.iterate.kkt);
+  const double left = most - all_;
+  text += time_left(since_begin(), iterations_ / (iterations_ + left));
+  line(text, r.iteration == 1 || r.iteration % 25 == 0);
+}
+
+void Progress::way(const std::string& phase, double part, const std::string& words) {
+  if (quiet_) return;
+  const std::lock_guard guard(lock_);
+  const double pause = std::chrono::duration<double>(Clock::now() - shown_).count();
+  if (pause < (terminal_ ? kTerminal : kElsewhere)) return;
+  shown_ = Clock::now();
+  line(
+      phase + ": " + words + ", " + one("%.0f", 100 * part) + " %" + time_left(since_begin(), part),
+      true);
+}
+
+Failure Progress::where() const {
+  const std::lock_guard guard(lock_);
+  return where_;
+}
+
+void Progress::line(const std::string& text, bool now) {
+  if (quiet_ || (!terminal_ && !now)) return;
+  if (terminal_) {
+    std::printf("\r%-100s", text.c_str());
+    open_ = true;
+  } else {
+    std::printf("%s\n", text.c_str());
+  }
+  std::fflush(stdout);
+}
+
+void Progress::end_line() {
+  if (open_) std::printf("\n");
+  open_ = false;
+}
+
+Failure failure_of(const std::exception& error, const Failure& here) {
+  Failure out = here;
+  if (const auto* stopped = dynamic_cast<const FailedRun*>(&error)) out = stopped->where();
+  const auto* known = dynamic_cast<const Error*>(&error);
+  out.kind = !known ? "defect" : known->kind() == Error::Kind::input ? "input" : "numerical";
+  out.cause = error.what();
+  return out;
+}
+
+}  // namespace flexmorph::cases

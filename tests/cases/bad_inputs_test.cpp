@@ -1,0 +1,175 @@
+// Forty bad inputs as a new user tries them: typos, units, encodings, pipes, folders. Each has its
+// exit code, the place that the message begins with, and what it says; nothing is written.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+
+#include "tests/cases/program.h"
+
+namespace flexmorph::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// short_plate.toml with one thing changed, or arguments of their own.
+struct Tried {
+  const char* name;
+  std::string from, to;  ///< text of the case and what stands there instead; empty: as it is
+  std::string place;     ///< ":line:column" behind the name of the file; empty: none
+  std::string says;
+  Words words = {"check", "CASE"};  ///< CASE: the changed case; OUT: a run folder
+  int code = 2;
+  size_t lines = 1;  ///< of the message
+};
+void PrintTo(const Tried& tried, std::ostream* out) { *out << tried.name; }
+
+const std::string kLatin = "title = \"Tr\xe4ger\"\n", kMark = "\xef\xbb\xbf";
+
+const Tried kTyped[] = {
+    {"misspelt_key", "thickness = 0.01", "thicknes = 0.01", ":19:12", "did you mean 'thickness'?"},
+    {"misspelt_table", "[optimizer]", "[optimiser]", ":56:1", "did you mean 'optimizer'?"},
+    {"misspelt_word", "\"weld\"", "\"wedl\"", ":30:8", "did you mean 'weld'?"},
+    {"misspelt_body", "body = \"plate\"\nat", "body = \"palte\"\nat", ":36:8",
+     "did you mean 'plate'?"},
+    {"capital", "[time]", "[Time]", ":5:1", "did you mean 'time'?"},
+    {"comma_for_point", "width = 0.1", "width = 0,1", ":18:10", "not TOML"},
+    {"unit_behind", "length = 0.5\nwidth", "length = 0.5 m\nwidth", ":17:14", "not TOML"},
+    {"unit_in_quotes", "width = 0.1", "width = \"100 mm\"", ":18:9",
+     "a number stands without quotes"},
+    {"no_quotes", "name = \"mma\"", "name = mma", ":57:8", "not TOML"},
+    {"open_quote", "\"mma\"", "\"mma", ":57:12", "not TOML"},
+    {"open_bracket", "[10, 2]", "[10, 2", ":25:1", "not TOML"},
+    {"key_twice", "width = 0.1", "width = 0.1\nwidth = 0.2", ":19:9", "not TOML"},
+    {"table_twice", "[esl]", "[time]\n[esl]", ":40:1", "not TOML"},
+    {"semicolon", "speed = 0.5", "speed = 0.5;", ":26:12", "not TOML"},
+    {"colon", "end = 0.12", "end: 0.12", ":6:4", "not TOML"},
+    {"negative", "thickness = 0.01", "thickness = -0.01", ":19:13", "a thickness is positive [m]"},
+    {"zero_step", "step = 1e-3", "step = 0", ":7:8", "a time step is positive [s]"},
+    {"step_beyond_end", "step = 1e-3", "step = 1", ":7:8", "no longer than time.end [s]"},
+    {"not_a_number", "density = 2700.0", "density = nan", ":20:11", "a density is positive"},
+    {"infinite", "end = 0.12", "end = inf", ":6:7", "an end time is positive [s]"},
+    {"half_an_element", "[10, 2]", "[10.5, 2]", ":23:12", "a whole number"},
+    {"too_few", "[10, 2]", "[10]", ":23:12", "a list of 2"},
+    {"poisson_in_percent", "poisson_ratio = 0.3", "poisson_ratio = 30", ":22:17",
+     "lies between 0 and 0.5"},
+    {"volume_in_percent", "max_volume = 0.5", "max_volume = 50", ":47:14", "lies between 0 and 1"},
+    {"key_missing", "youngs_modulus = 1e8\n", "", ":13:1",
+     "body.youngs_modulus is missing: Young's modulus is positive [Pa]"},
+    {"joint_missing",
+     "[[joint]]\ntype = \"weld\"\nbody = \"plate\"\nedge = \"root\"\nto = \"hub\"\n", "", ":13:1",
+     "a [[joint]] with edge = \"root\" is missing"},
+    {"steps_too_many", "step = 1e-3", "step = 1e-13", ":7:8", "1.2e+12 steps; the most are"},
+    {"memory_too_small", "step = 1e-3", "step = 1e-10", ":7:8", "of memory"},
+    {"three_mistakes",
+     "length = 0.5\nwidth = 0.1\nthickness = 0.01\n",
+     "length = -0.5\nwidth = \"0.1\"\nthicknes = 0.01\n",
+     ":17:10",
+     ":19:12: body.thicknes = 0.01",
+     {"check", "CASE"},
+     2,
+     3},
+    {"latin_letters", "title = \"Growing plate, short\"\n", kLatin, ":3:11", "not TOML"},
+    {"empty_file", "*", "", "", "time is missing: [time] is a table"},
+    {"not_toml_at_all", "*", "<?xml version=\"1.0\"?>\n<case/>\n", ":1:1", "not TOML"},
+    {"binary", "*",
+     std::string("\x7f"
+                 "ELF\0\0\1",
+                 7),
+     ":1:1", "not TOML"},
+    {"windows_marks", "*", kMark + "[time]\r\nend = -1\r\n", ":2:7", "an end time is positive [s]"},
+    {"no_such_case", "", "", "", "did you mean 'short_beam'?", {"check", "shortbeam"}},
+    {"a_folder", "", "", "", ".: a directory; a case is one TOML file", {"check", "."}},
+    {"no_command", "", "", "", "is a case: flexmorph run", {"CASE"}},
+    {"set_without_value",
+     "",
+     "",
+     "",
+     "--set time.end: an override is written KEY=VALUE",
+     {"check", "CASE", "--set", "time.end"}},
+    {"set_of_a_wrong_key",
+     "",
+     "",
+     "",
+     "--set body.thicknes=0.1: unknown key, did you mean",
+     {"check", "CASE", "--set", "body.thicknes=0.1"}},
+    {"run_folder_is_a_file", "", "", "", "output folder", {"run", "CASE", "-o", "CASE"}},
+    {"wrong_threads", "", "", "", "--threads", {"run", "CASE", "-o", "OUT", "--threads", "0"}},
+};
+static_assert(std::size(kTyped) >= 40);
+
+class Forty : public ::testing::TestWithParam<Tried> {};
+INSTANTIATE_TEST_SUITE_P(Tried, Forty, ::testing::ValuesIn(kTyped),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+TEST_P(Forty, SaysWhereAndWhat) {
+  const Scratch scratch;
+  const Tried& tried = GetParam();
+  std::string text = contents_of(FLEXMORPH_SHORT_CASE);
+  if (tried.from == "*") {
+    text = tried.to;
+  } else if (!tried.from.empty()) {
+    const size_t at = text.find(tried.from);
+    ASSERT_NE(at, std::string::npos);
+    text.replace(at, tried.from.size(), tried.to);
+  }
+  const std::string file = scratch.write("tried.toml", text), out = scratch / "out";
+  Words words = tried.words;
+  for (std::string& word : words) word = word == "CASE" ? file : word == "OUT" ? out : word;
+  const Ended ended = flexmorph(scratch, words);
+  EXPECT_EQ(ended.code, tried.code) << ended.err;
+  EXPECT_EQ(ended.out, "");
+  EXPECT_TRUE(contains(ended.err, tried.says));
+  if (!tried.from.empty()) {
+    EXPECT_TRUE(starts(ended.err, "flexmorph: " + file + tried.place + ": "));
+  }
+  EXPECT_EQ(contents_of(file), text);  // what people wrote is theirs
+  EXPECT_FALSE(fs::exists(out));
+  // Of words on the command line CLI11 says more.
+  if (tried.name != std::string("wrong_threads")) {
+    EXPECT_EQ(lines_of(ended.err).size(), tried.lines) << ended.err;
+  }
+  // The table of these, for people: FLEXMORPH_FORTY=file.md.
+  if (const char* table = std::getenv("FLEXMORPH_FORTY")) {
+    std::string message = ended.err.substr(0, ended.err.find_last_not_of('\n') + 1);
+    for (size_t at; (at = message.find(file)) != std::string::npos;)
+      message.replace(at, file.size(), "plate.toml");
+    for (size_t at; (at = message.find('\n')) != std::string::npos;) message.replace(at, 1, "<br>");
+    std::ofstream(table, std::ios::app)
+        << "| " << tried.name << " | " << ended.code << " | "
+        << (tried.place.empty() ? "-" : tried.place.substr(1)) << " | `" << message << "` |\n";
+  }
+}
+
+// Through a pipe there is a place, too; of an empty one the same as of an empty file.
+TEST(Pipes, AreFilesWithoutAName) {
+  const Scratch scratch;
+  const std::string err = scratch / "err", program = std::string("'") + FLEXMORPH_PROGRAM + "'";
+  const auto ended = [&](const std::string& command) {
+    return WEXITSTATUS(std::system((command + " >/dev/null 2>'" + err + "'").c_str()));
+  };
+  EXPECT_EQ(ended("printf '[time]\\nend = -1\\n' | " + program + " check -"), 2);
+  EXPECT_TRUE(starts(contents_of(err), "flexmorph: /dev/stdin:2:7: time.end = -1: "));
+  EXPECT_EQ(ended("printf '' | " + program + " check -"), 2);
+  EXPECT_TRUE(contains(contents_of(err), "/dev/stdin: time is missing"));
+}
+
+// Twenty lines at most, in the order of the file.
+TEST(ManyMistakes, FillOneScreenAtMost) {
+  const Scratch scratch;
+  std::string text = "[time]\nend = -1\n";
+  for (int k = 0; k < 30; ++k)
+    text += "[[body]]\nname = \"b" + std::to_string(k) + "\"\nwidth = -1\n";
+  const Ended ended = flexmorph(scratch, {"check", scratch.write("many.toml", text)});
+  EXPECT_EQ(ended.code, 2);
+  const Words lines = lines_of(ended.err);
+  ASSERT_EQ(lines.size(), 20u);
+  EXPECT_TRUE(contains(lines[0], "many.toml:2:7: time.end = -1"));
+  EXPECT_TRUE(contains(lines[1], "many.toml:3:1: body.b0."));
+  EXPECT_TRUE(ends(lines[19], "more"));
+}
+
+}  // namespace
+}  // namespace flexmorph::test
