@@ -89,7 +89,7 @@ PathRecord run_path(const Scene& scene, RunFolder& folder, const PathWishes& wis
     Failure where;
     where.phase = "statics";
     where.load_factor = out.factor.empty() ? 0 : out.factor.back();
-    where.step = static_cast<int>(out.factor.size());
+    where.step = std::max(0, static_cast<int>(out.factor.size()) - 1);  // the start is none
     throw FailedRun(error, where);
   } catch (...) {
     out.measured = measures.take();

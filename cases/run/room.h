@@ -28,8 +28,9 @@ struct Extent {
   double disk_bytes() const;
 };
 
-/// Within a factor of two of the largest resident memory and of the run folder of the shipped
-/// cases, and of such on finer meshes (tests/cases/room_test.cpp; README, "Measured").
+/// Memory and disk are within a factor of two of what was measured of shipped cases and of such on
+/// finer meshes (tests/cases/room_test.cpp). Of designs the files are those of all iterations that
+/// are allowed, of paths along their arc those of all equilibria.
 Extent extent_of(const Scene& scene);
 
 /// Bytes that a run may take; infinite where the system does not say.

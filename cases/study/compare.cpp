@@ -69,8 +69,7 @@ int compare_case(const CompareOptions& wanted) {
       options.study, comparison.variants,
       [&](std::span<const VariantResult> runs) { write_comparison(comparison, runs, directory); });
   std::fputs(io::aligned_table(summary_of(comparison, outcome.results)).c_str(), stdout);
-  if (const std::string note = convergence_note(outcome.results); !note.empty())
-    std::printf("%s\n", note.c_str());
+  std::fputs(convergence_note(outcome.results).c_str(), stdout);
   std::printf("%s/compare.md, .csv, .svg\n", directory.c_str());
   return outcome.exit_code;
 }

@@ -274,7 +274,7 @@ void write_comparison(const Comparison& plan, std::span<const VariantResult> run
           "of the other; where it says no, the starts spread too far for a verdict. One state "
           "solve gives values and gradients. Peaks stand out by more than 2 % of the best "
           "compliance so far.\n\n" +
-          io::markdown_table(rows_of(plan, runs)) + "\n" + convergence_note(runs) + "\n");
+          io::markdown_table(rows_of(plan, runs)) + convergence_note(runs));
   io::write_file(stem + ".svg", comparison_svg(plan, runs));
 }
 

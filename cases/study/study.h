@@ -67,7 +67,7 @@ struct VariantResult {
   std::string words() const;
 };
 
-/// What tables of a study end with: how many of its runs did not converge; empty: none.
+/// What tables of a study end with: a paragraph on its runs that did not converge; empty: none.
 std::string convergence_note(std::span<const VariantResult> runs);
 
 /// Reads every variant's case and builds what it would build.

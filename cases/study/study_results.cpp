@@ -135,9 +135,9 @@ std::string convergence_note(std::span<const VariantResult> runs) {
     return run.done() && !run.converged();
   });
   if (missed == 0) return "";
-  return std::to_string(missed) + " of " + std::to_string(runs.size()) +
+  return "\n" + std::to_string(missed) + " of " + std::to_string(runs.size()) +
          " runs did not converge (see \"stopped\"): their numbers are those of a design on its "
-         "way.";
+         "way.\n";
 }
 
 std::string VariantResult::words() const {

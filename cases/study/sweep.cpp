@@ -267,8 +267,6 @@ void write_motions(const Sweep& sweep, std::span<const VariantResult> runs,
     io::write_file(stem + "_ends.svg", ends);
 }
 
-std::string paragraph(const std::string& text) { return text.empty() ? "" : "\n" + text + "\n"; }
-
 void write_all(const Sweep& sweep, std::span<const VariantResult> runs,
                const std::string& directory) {
   const std::string stem = directory + "/sweep";
@@ -279,7 +277,7 @@ void write_all(const Sweep& sweep, std::span<const VariantResult> runs,
       "# " + sweep.case_name + "\n\n" + io::markdown_table(table_of(sweep, runs)) +
           "\nFigure: sharp compliance x sharp volume / volume allowed (what is minimized, "
           "of the sharp design, where that is no compliance).\n" +
-          paragraph(convergence_note(runs)));
+          convergence_note(runs));
   io::write_file(stem + ".svg", sheet_of(sweep, runs));
 }
 
@@ -401,7 +399,7 @@ int sweep_case(const SweepOptions& options) {
       study, sweep.variants,
       [&](std::span<const VariantResult> runs) { write_all(sweep, runs, study.directory); });
   std::fputs(io::aligned_table(summary_of(sweep, outcome.results)).c_str(), stdout);
-  std::fputs(paragraph(convergence_note(outcome.results)).c_str(), stdout);
+  std::fputs(convergence_note(outcome.results).c_str(), stdout);
   std::printf("%s/sweep.md, .csv, .svg\n", study.directory.c_str());
   return outcome.exit_code;
 }

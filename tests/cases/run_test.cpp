@@ -43,7 +43,7 @@ int count(const std::string& text, const std::string& part) {
 }
 
 constexpr const char* kHistoryHeader =
-    "body,cycle,iteration,evaluations,objective,compliance,volume,violation,kkt,change,band,"
+    "body,cycle,iteration,evaluations,scaled_objective,compliance,volume,violation,kkt,change,band,"
     "sharp_compliance,sharp_volume,connected,min_feature,seconds_tdf,seconds_factor,seconds_solve,"
     "seconds_sensitivity,seconds_optimizer,seconds_output";
 

@@ -113,8 +113,43 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"limit", {"design.max_compliance=10.0"}, "only minimize = \"volume\""},
         Bad{"no_limit", {"design.minimize=\"volume\""}, "max_compliance"},
         Bad{"start", {"design.start=\"nowhere.csv\""}, "nowhere.csv: cannot be read"},
+        Bad{"far_load",
+            {"load.force.point=[9.0, 0.5]", "load.force.edge=", "load.force.box="},
+            "load.force.point=[9.0, 0.5]: a place lies in the domain"},
         Bad{"unknown", {"domain.depth=1.0"}, "depth"}),
     [](const auto& test) { return std::string(test.param.name); });
+
+// Inside of the bounding box, but not of the domain: the mesh finds out, and the file is named.
+TEST(StaticScene, LoadsOutsideOfAPolygonAreRefusedWhereTheyStand) {
+  const std::string said = complaint(
+      "l_bracket", {"load.force.point=[0.9, 0.9]", "load.force.edge=", "load.force.box="});
+  EXPECT_TRUE(contains(said, "l_bracket.toml:18:1: [load.force]: no node of the domain is there"));
+}
+
+TEST(StaticScene, NamesOfLoadsAreUnlike) {
+  EXPECT_TRUE(contains(complaint("bridge", {"load.1.name=left"}),
+                       "--set load.1.name=left: there is another load 'left'"));
+  // Also when one has it by its number.
+  EXPECT_TRUE(contains(complaint("bridge", {"load.0.name=load_2", "load.1.name="}),
+                       "another load 'load_2'"));
+  EXPECT_EQ(complaint("bridge", {"load.0.name=one", "load.1.name=two"}), "");
+}
+
+// What is rigid has nothing to measure, and is said to be so.
+TEST(FlexibleBodies, AreNotRigidOnes) {
+  for (const char* change : {"measure=[{body=\"crank\", quantities=[\"end_velocity\"]}]",
+                             "observe.body=crank", "design.body=crank"}) {
+    std::string said;
+    try {
+      read("four_bar", {change});
+    } catch (const Error& e) {
+      said = e.what();
+    }
+    EXPECT_TRUE(contains(said, "that is a rigid body; ")) << change;
+    EXPECT_TRUE(contains(said, " is a plate or beam, a [[body]]")) << change;
+    EXPECT_TRUE(starts(said, "--set ")) << change;
+  }
+}
 
 }  // namespace
 }  // namespace flexmorph::cases

@@ -1,0 +1,95 @@
+// What a run says on its way, and what it leaves behind where it fails.
+#include "cases/run/progress.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cases/stability/judge.h"
+#include "tests/cases/program.h"
+
+namespace flexmorph::cases {
+namespace {
+
+using nlohmann::json;
+using test::Ended;
+using test::Words;
+
+TEST(TimeLeft, FollowsFromThePartThatIsDone) {
+  EXPECT_EQ(time_left(10, 0.25), ", 30 s left");
+  EXPECT_EQ(time_left(3600, 0.5), ", 60 min left");
+  EXPECT_EQ(time_left(10, 1), ", 0 s left");
+  EXPECT_EQ(time_left(10, 0), "");     // nothing is known yet
+  EXPECT_EQ(time_left(0.1, 0.5), "");  // too little to tell
+}
+
+TEST(FailureOf, KnowsWhatTheErrorKnows) {
+  Failure here;
+  here.phase = "design";
+  here.iteration = 7;
+  const Failure told = failure_of(Error::numerical("singular"), here);
+  EXPECT_EQ(told.phase, "design");
+  EXPECT_EQ(told.iteration, 7);
+  EXPECT_EQ(told.kind, "numerical");
+  EXPECT_EQ(told.cause, "singular");
+  Failure motion;
+  motion.phase = "verification";
+  motion.time = 0.25;
+  const Failure own = failure_of(FailedRun(Error::numerical("no convergence"), motion), here);
+  EXPECT_EQ(own.phase, "verification");
+  EXPECT_EQ(own.time, 0.25);
+  EXPECT_FALSE(own.iteration.has_value());
+  EXPECT_EQ(failure_of(std::bad_alloc(), here).kind, "defect");
+}
+
+TEST(ProgressLines, SayPhaseAndHowManyOfHowMany) {
+  const Scratch scratch;
+  const std::string out = scratch / "out";
+  const Ended ended = test::flexmorph(scratch, test::short_run(out, {"output.vtk=false"}));
+  EXPECT_TRUE(ended.code == 0 || ended.code == test::kTooFew) << ended.err;
+  // Six iterations of each of two stages.
+  EXPECT_TRUE(contains(ended.out, "design of plate: cycle 1, iteration 1 (1 of at most 12)"));
+  EXPECT_LT(test::lines_of(ended.out).size(), 20u);  // no terminal: a line now and then
+  const json run = json::parse(contents_of(out + "/run.json"));
+  EXPECT_FALSE(run.contains("failure"));
+  EXPECT_EQ(run["results"][0]["scaled_objective"],
+            "natural logarithm of the summed compliance [J]");
+}
+
+// A path that cannot get over its limit point with so few equilibria, a motion of steps that are
+// far too long for what hits it: both are refusals for who reads run.json.
+TEST(Failures, AreDataInRunJson) {
+  struct Row {
+    Words words;
+    const char *phase, *place;
+  };
+  for (const Row& row : std::vector<Row>{
+           {{"beam_heated_held", "--set", "static.max_steps=5"}, "statics", "load_factor"},
+           {{"rotating_plate_v05", "--set", "hub.angular_velocity=2000", "--set",
+             "design=", "--set", "esl=", "--set", "optimizer=", "--set", "cycle=", "--set",
+             "verify=", "--set", "accuracy=", "--set", "body.youngs_modulus=1e4"},
+            "motion",
+            "time"}}) {
+    const Scratch scratch;
+    const std::string out = scratch / "out";
+    Words words = {"run", row.words[0], "-o", out, "--set", "expect="};
+    words.insert(words.end(), row.words.begin() + 1, row.words.end());
+    const Ended ended = test::flexmorph(scratch, words);
+    ASSERT_EQ(ended.code, 3) << ended.out << ended.err;
+    const json run = json::parse(contents_of(out + "/run.json"));
+    ASSERT_TRUE(run.contains("failure"));
+    const json& failure = run["failure"];
+    EXPECT_EQ(failure["phase"], row.phase);
+    EXPECT_TRUE(failure[row.place].is_number()) << failure;
+    EXPECT_EQ(failure["kind"], "numerical");
+    EXPECT_TRUE(contains(ended.err, failure["cause"].get<std::string>()));
+    Evidence evidence;
+    evidence.folder = out;
+    evidence.path = "another.toml";
+    evidence.words = "flexmorph: in words that nobody knows\n";
+    EXPECT_TRUE(names_cause(evidence));
+  }
+}
+
+}  // namespace
+}  // namespace flexmorph::cases
