@@ -135,6 +135,51 @@ std::string read_text(const std::string& path) {
   return text;
 }
 
+namespace {
+
+/// What people from other languages, countries and editors most often mean.
+std::string hint_of(const std::string& reason, const std::string& line, size_t column) {
+  const auto saw = [&](const char* what) {
+    return reason.find(std::string("saw '") + what) != std::string::npos;
+  };
+  const auto at = [&](size_t place) {
+    return place < line.size() ? static_cast<unsigned char>(line[place]) : '\0';
+  };
+  const bool behind_number = column >= 2 && (std::isdigit(at(column - 2)) || at(column - 2) == ' ');
+  if (reason.find("utf-8") != std::string::npos) return "a case is UTF-8 text";
+  if (reason.find("value type") != std::string::npos) return "texts stand in quotes";
+  if (reason.find("parsing string") != std::string::npos) return "a quote is open";
+  if (saw(":")) return "a value follows '='";
+  if (saw(",")) return "numbers have a decimal point";
+  if (saw(";")) return "a line ends without a mark";
+  if (behind_number && std::isalpha(at(column - 1)) &&
+      reason.find("comment or whitespace") != std::string::npos)
+    return "numbers are in SI units, which are not written";
+  return "";
+}
+
+/// Reason, the line it is about, and a hint.
+std::string syntax_text(const toml::parse_error& e, const std::string& text) {
+  constexpr size_t kLongest = 60;
+  const std::string reason(e.description());
+  const std::vector<std::string> lines = lines_of(text);
+  const size_t number = e.source().begin.line;
+  std::string line;
+  if (number >= 1 && number <= lines.size()) line = lines[number - 1];
+  if (line.ends_with('\r')) line.pop_back();
+  const std::string hint = hint_of(reason, line, e.source().begin.column);
+  // What is no text is not shown.
+  const bool plain = std::all_of(line.begin(), line.end(),
+                                 [](char c) { return c == '\t' || (c >= 32 && c < 127); });
+  std::string out = reason;
+  if (const size_t first = line.find_first_not_of(" \t"); plain && first < line.size())
+    out.append(" in `").append(line, first, kLongest).append("`");
+  if (!hint.empty()) out.append(": ").append(hint);
+  return out;
+}
+
+}  // namespace
+
 CaseNode parse_case(const std::string& text, const std::string& file) {
   try {
     const toml::table root = toml::parse(text, file);
@@ -142,8 +187,7 @@ CaseNode parse_case(const std::string& text, const std::string& file) {
     node.place = file;
     return node;
   } catch (const toml::parse_error& e) {
-    throw Error::input(file + place_in(e.source().begin) +
-                       ": not TOML: " + std::string(e.description()));
+    throw Error::input(file + place_in(e.source().begin) + ": not TOML: " + syntax_text(e, text));
   }
 }
 
