@@ -139,9 +139,9 @@ namespace {
 
 /// What people from other languages, countries and editors most often mean.
 std::string hint_of(const std::string& reason, const std::string& line, size_t column) {
-  const auto saw = [&](const char* what) {
-    return reason.find(std::string("saw '") + what) != std::string::npos;
-  };
+  constexpr std::string_view kSaw = "saw '";
+  const size_t mark = reason.find(kSaw);
+  const char saw = mark == std::string::npos ? '\0' : reason[mark + kSaw.size()];
   const auto at = [&](size_t place) {
     return place < line.size() ? static_cast<unsigned char>(line[place]) : '\0';
   };
@@ -149,9 +149,9 @@ std::string hint_of(const std::string& reason, const std::string& line, size_t c
   if (reason.find("utf-8") != std::string::npos) return "a case is UTF-8 text";
   if (reason.find("value type") != std::string::npos) return "texts stand in quotes";
   if (reason.find("parsing string") != std::string::npos) return "a quote is open";
-  if (saw(":")) return "a value follows '='";
-  if (saw(",")) return "numbers have a decimal point";
-  if (saw(";")) return "a line ends without a mark";
+  if (saw == ':') return "a value follows '='";
+  if (saw == ',') return "numbers have a decimal point";
+  if (saw == ';') return "a line ends without a mark";
   if (behind_number && std::isalpha(at(column - 1)) &&
       reason.find("comment or whitespace") != std::string::npos)
     return "numbers are in SI units, which are not written";
