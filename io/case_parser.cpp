@@ -17,7 +17,10 @@ namespace {
 
 /// ":14:13", line and column (characters, not bytes) as editors count them.
 std::string place_in(const toml::source_position& at) {
-  return ":" + std::to_string(at.line) + ":" + std::to_string(at.column);
+  return std::string(":")
+      .append(std::to_string(at.line))
+      .append(":")
+      .append(std::to_string(at.column));
 }
 
 /// The source behind a tree: its lines, and what it is called in messages.
