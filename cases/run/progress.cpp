@@ -1,5 +1,6 @@
 #include "cases/run/progress.h"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -18,6 +19,13 @@ std::string one(const char* format, double value) {
   char text[64];
   std::snprintf(text, sizeof text, format, value);
   return text;
+}
+
+/// Of the terminal.
+int columns() {
+  winsize size{};
+  const bool known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
+  return known ? size.ws_col : 80;
 }
 
 }  // namespace
@@ -74,15 +82,17 @@ void Progress::iteration(const mmc::IterationReport& r, double most) {
   where_.iteration = r.iteration;
   ++iterations_;
   ++all_;
-  std::string text = "design of " + r.problem.body + ": cycle " + std::to_string(r.cycle) +
-                     ", iteration " + std::to_string(r.iteration) + " (" + io::to_text(all_) +
-                     " of at most " + io::to_text(most) + ")";
+  std::string text = "design of " + r.problem.body + ", cycle " + std::to_string(r.cycle) +
+                     ": iteration " + std::to_string(r.iteration);
+  // With several bodies or cycles the run counts on where each begins anew.
+  const bool alone = all_ == r.iteration;
+  text += (alone ? " of at most " : " (" + io::to_text(all_) + " of at most ") + io::to_text(most) +
+          (alone ? "" : ")");
+  text += time_left(since_begin(), iterations_ / (iterations_ + most - all_));
   // Goals without a compliance have none.
   if (std::isfinite(r.state.compliance()))
     text += ", compliance " + one("%.5g", r.state.compliance());
   text += ", volume " + one("%.4f", r.state.volume()) + ", kkt " + one("%.1e", r.iterate.kkt);
-  const double left = most - all_;
-  text += time_left(since_begin(), iterations_ / (iterations_ + left));
   line(text, r.iteration == 1 || r.iteration % 25 == 0);
 }
 
@@ -105,7 +115,9 @@ Failure Progress::where() const {
 void Progress::line(const std::string& text, bool now) {
   if (quiet_ || (!terminal_ && !now)) return;
   if (terminal_) {
-    std::printf("\r%-100s", text.c_str());
+    // A line that wraps could not be written over.
+    const int width = columns() - 1;
+    std::printf("\r%-*.*s", width, width, text.c_str());
     open_ = true;
   } else {
     std::printf("%s\n", text.c_str());
