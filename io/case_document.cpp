@@ -318,7 +318,7 @@ std::string CaseDocument::where(const std::string& key_path) const {
     if (!found.whole && note.key == found.next && !note.value.empty())
       return found.node->place + ": " + (found.path.empty() ? "" : found.path + ".") + note.key +
              " = " + note.value + " (not given)";
-  return found.path.empty() ? path : located(*found.node, found.path);
+  return found.path.empty() ? root.place : located(*found.node, found.path);
 }
 
 std::string CaseDocument::effective_text() const {

@@ -187,7 +187,7 @@ CaseNode parse_case(const std::string& text, const std::string& file) {
   try {
     const toml::table root = toml::parse(text, file);
     CaseNode node = convert(root, {lines_of(text), file, false});
-    node.place = file;
+    node.place = file + ":1:1";  // where what is missing may be written
     return node;
   } catch (const toml::parse_error& e) {
     throw Error::input(file + place_in(e.source().begin) + ": not TOML: " + syntax_text(e, text));

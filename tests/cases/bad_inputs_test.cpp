@@ -76,7 +76,7 @@ const Tried kTyped[] = {
      3},
     {"latin_letters", "title = \"Growing plate, short\"\n", kLatin, ":3:11",
      "a case is UTF-8 text"},
-    {"empty_file", "*", "", "", "time is missing: [time] is a table"},
+    {"empty_file", "*", "", ":1:1", "time is missing: [time] is a table"},
     {"not_toml_at_all", "*", "<?xml version=\"1.0\"?>\n<case/>\n", ":1:1", "not TOML"},
     {"binary", "*",
      std::string("\x7f"
@@ -157,7 +157,7 @@ TEST(Pipes, AreFilesWithoutAName) {
   EXPECT_EQ(ended("printf '[time]\\nend = -1\\n' | " + program + " check -"), 2);
   EXPECT_TRUE(starts(contents_of(err), "flexmorph: /dev/stdin:2:7: time.end = -1: "));
   EXPECT_EQ(ended("printf '' | " + program + " check -"), 2);
-  EXPECT_TRUE(contains(contents_of(err), "/dev/stdin: time is missing"));
+  EXPECT_TRUE(contains(contents_of(err), "/dev/stdin:1:1: time is missing"));
 }
 
 // Twenty lines at most, in the order of the file.
