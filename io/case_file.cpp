@@ -281,8 +281,21 @@ bool CaseFile::gives(const std::string& key_path) const {
 
 void CaseFile::finish() const { root_->document->refuse_unknown_keys(); }
 
-std::string CaseFile::text() const { return root_->document->effective_text(); }
+namespace {
 
-std::string CaseFile::explained() const { return root_->document->explained_text(); }
+CaseDocument changed(CaseDocument document, std::span<const std::string> overrides) {
+  for (const std::string& change : overrides) document.apply(change);
+  return document;
+}
+
+}  // namespace
+
+std::string CaseFile::text(std::span<const std::string> overrides) const {
+  return changed(*root_->document, overrides).effective_text();
+}
+
+std::string CaseFile::explained(std::span<const std::string> overrides) const {
+  return changed(*root_->document, overrides).explained_text();
+}
 
 }  // namespace flexmorph::io

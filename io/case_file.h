@@ -121,10 +121,11 @@ class CaseFile {
   /// @throws Error (input) naming every key nobody asked for, with the nearest known one.
   void finish() const;
 
-  /// The effective case: the file's own text, or the rewritten document when overrides changed it.
-  std::string text() const;
+  /// The effective case: the file's own text, or the rewritten document when overrides changed it,
+  /// those from before and these.
+  std::string text(std::span<const std::string> overrides = {}) const;
   /// The case as it was read: with the values taken for missing keys, and a sentence to each key.
-  std::string explained() const;
+  std::string explained(std::span<const std::string> overrides = {}) const;
 
  private:
   std::shared_ptr<const Table::Place> root_;

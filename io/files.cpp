@@ -14,7 +14,7 @@ namespace flexmorph::io {
 namespace {
 
 [[noreturn]] void fail(const std::string& path, const std::string& reason) {
-  throw Error::input(path + ": cannot be written: " + reason);
+  throw Error::numerical(path + ": cannot be written: " + reason);
 }
 
 std::string reason_of(int code) { return std::generic_category().message(code); }

@@ -7,7 +7,7 @@ namespace flexmorph::io {
 
 /// Writes a whole file under a temporary name and renames it, so that a reader sees either the old
 /// or the new contents. Directories on the way are made.
-/// @throws Error (input) naming the file and the reason.
+/// @throws Error (numerical) naming the file and the reason: what was computed stays.
 void write_file(const std::string& path, std::string_view contents);
 
 /// Shortest decimal text that reads back to the same number, whatever the locale ("0.1", "1e-05",

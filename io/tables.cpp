@@ -41,7 +41,8 @@ CsvWriter::CsvWriter(std::string path, std::span<const std::string> columns)
   if (!folder.empty()) std::filesystem::create_directories(folder, code);
   file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
   if (file_ < 0)
-    throw Error::input(path_ + ": cannot be written: " + std::generic_category().message(errno));
+    throw Error::numerical(path_ +
+                           ": cannot be written: " + std::generic_category().message(errno));
   row(std::vector<Cell>(columns.begin(), columns.end()));
 }
 
@@ -52,7 +53,8 @@ CsvWriter::~CsvWriter() {
 CsvWriter::CsvWriter(CsvWriter&& other) noexcept
     : path_(std::move(other.path_)),
       n_columns_(other.n_columns_),
-      file_(std::exchange(other.file_, -1)) {}
+      file_(std::exchange(other.file_, -1)),
+      size_(other.size_) {}
 
 void CsvWriter::row(std::span<const Cell> cells) {
   if (cells.size() != n_columns_)
@@ -66,10 +68,16 @@ void CsvWriter::row(std::span<const Cell> cells) {
 void CsvWriter::write(const std::string& line) {
   for (size_t done = 0; done < line.size();) {
     const ssize_t n = ::write(file_, line.data() + done, line.size() - done);
-    if (n < 0 && errno != EINTR)
-      throw Error::input(path_ + ": cannot be written: " + std::generic_category().message(errno));
+    if (n < 0 && errno != EINTR) {
+      const int why = errno;
+      // A full disk takes a part of a row: what is read later ends with a whole one.
+      if (::ftruncate(file_, size_) != 0) ::close(std::exchange(file_, -1));
+      throw Error::numerical(path_ +
+                             ": cannot be written: " + std::generic_category().message(why));
+    }
     if (n > 0) done += static_cast<size_t>(n);
   }
+  size_ += static_cast<off_t>(line.size());
 }
 
 std::string report_html(const std::string& title, std::span<const ReportSection> sections) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <initializer_list>
 #include <span>
 #include <string>
@@ -31,7 +33,7 @@ class Cell {
 class CsvWriter {
  public:
   /// Begins a new file with its header.
-  /// @throws Error (input) when it cannot be written; row() likewise.
+  /// @throws Error (numerical) when it cannot be written; row() likewise, whole rows stay.
   CsvWriter(std::string path, std::span<const std::string> columns);
   ~CsvWriter();
   CsvWriter(CsvWriter&& other) noexcept;
@@ -46,6 +48,7 @@ class CsvWriter {
   std::string path_;
   size_t n_columns_;
   int file_ = -1;
+  off_t size_ = 0;  // of whole rows
 };
 
 /// A table of comma-separated values as read from a file.

@@ -24,6 +24,7 @@ class MechanismColumns {
 
   /// The next row. @param x  λ belongs to it
   void add(fem::Workspace& model, const fem::State& x);
+  const std::vector<Column>& columns() const { return columns_; }
   std::vector<Column> take() { return std::move(columns_); }
 
  private:

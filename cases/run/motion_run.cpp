@@ -5,6 +5,7 @@
 #include "cases/run/failure.h"
 #include "cases/run/measures.h"
 #include "cases/run/mechanism_columns.h"
+#include "cases/run/motion_table.h"
 #include "cases/run/quantities.h"
 #include "cases/run/run_warnings.h"
 #include "cases/run/start_remarks.h"
@@ -41,7 +42,8 @@ class Recorder {
         mechanism_(mechanism),
         folder_(folder),
         out_(out),
-        columns_(scene) {
+        columns_(scene),
+        table_(folder.file(wishes.table), scene) {
     MotionRecord& r = out.record;
     for (const fem::Growth& growth : mechanism.growths) {
       const Body& body = scene.body(growth.body);
@@ -107,6 +109,8 @@ class Recorder {
     if (shown < wishes_.moments &&
         step.x.t >= shown / (wishes_.moments - 1) * scene_.time.end - 1e-9)
       add_moment(step);
+    static const std::vector<Column> kNothing;
+    table_.add(r, measures_ ? measures_->columns() : kNothing, columns_.columns());
     if (step.stop || step.x.t == 0) at_stop(step);
     if (wishes_.way) wishes_.way(step.x.t);
     if (wishes_.go_on && !wishes_.go_on()) throw Interrupted();
@@ -232,6 +236,7 @@ class Recorder {
   std::vector<const fem::Growth*> tracked_;  // whose tip deflections are in the table
   std::vector<Pose> poses_;                  // of the bodies at the start
   MechanismColumns columns_;
+  MotionTable table_;
   fem::State undeformed_;  // at the start, where something is measured
   std::optional<BodyMeasures> measures_;
   bool said_alternation_ = false, said_cut_ = false;
@@ -272,11 +277,9 @@ MotionOutcome run_motion(const Scene& scene, const MotionWishes& wishes, RunFold
     throw FailedRun(error, failure_in(wishes, out.record));
   } catch (...) {
     record.finish();
-    folder.write_motion(wishes.table, scene, out.record);
     throw;
   }
   record.finish();
-  folder.write_motion(wishes.table, scene, out.record);
   for (fem::EslSets& sets : out.loads) sets.strain_energy_integral = out.record.strain_integral;
   return out;
 }

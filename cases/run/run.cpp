@@ -14,6 +14,7 @@
 
 #include "cases/build/twin.h"
 #include "cases/run/expectations.h"
+#include "cases/run/kept_case.h"
 #include "cases/run/motion_run.h"
 #include "cases/run/path_run.h"
 #include "cases/run/progress.h"
@@ -255,6 +256,18 @@ void run_scene(const Scene& scene, bool condition, RunFolder& folder, Progress& 
 
 }  // namespace
 
+/// Signals that end a run: it ends its step or iteration and writes what it has; a second one stops
+/// at once. Nobody who listened to the output and left ends it.
+void end_on_signals() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+    std::signal(signal, [](int number) {
+      if (!interrupted.exchange(true)) return;
+      std::signal(number, SIG_DFL);
+      std::raise(number);
+    });
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
 /// Do these options make another case, of which [expect] does not speak?
 bool is_another_case(std::span<const std::string> overrides) {
   return std::any_of(overrides.begin(), overrides.end(), [](const std::string& each) {
@@ -269,13 +282,13 @@ int run_case(const RunOptions& options) {
   std::string directory = options.directory;
   if (directory.empty()) directory = scene.output.directory;
   if (directory.empty()) directory = "runs/" + scene.name;
-  RunFolder folder(directory, scene, options.explain ? file.explained() : file.text(),
-                   options.threads > 1);
-
-  std::signal(SIGINT, [](int) { interrupted = true; });
-  std::signal(SIGTERM, [](int) { interrupted = true; });
+  RunFolder folder(directory, scene, options.threads > 1);
+  keep_case(file, options.explain, folder);
+  end_on_signals();
   Progress progress(options.quiet);
   progress.say(scene.title + " -> " + directory);
+  if (!folder.moved_to().empty())
+    progress.say("the run that was there is now " + folder.moved_to());
   RunReport report;
   report.threads = options.threads;
   const auto close = [&](const std::string& status, const std::string& message) {
@@ -293,6 +306,7 @@ int run_case(const RunOptions& options) {
   try {
     run_scene(scene, options.condition, folder, progress, report);
     folder.finish();
+    report.lost_frames = folder.lost_frames();
   } catch (const Interrupted&) {
     close("interrupted", "");
     progress.say("interrupted: what was computed is in " + directory);

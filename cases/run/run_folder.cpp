@@ -1,7 +1,6 @@
 #include "cases/run/run_folder.h"
 
 #include <cmath>
-#include <filesystem>
 
 #include "cases/scene/design/goal.h"
 #include "cases/scene/elements/row.h"
@@ -10,8 +9,6 @@
 
 namespace flexmorph::cases {
 namespace {
-
-namespace fs = std::filesystem;
 
 const std::vector<std::string> kHistoryColumns = {"body",
                                                   "cycle",
@@ -38,46 +35,6 @@ std::string numbered(const std::string& stem, int number, const std::string& end
   return stem + std::string(digits.size() < 5 ? 5 - digits.size() : 0, '0') + digits + ending;
 }
 
-/// The parts of a folder that a run writes: these, and only these, are removed before a new one.
-const std::vector<std::string> kOurs = {"case.toml",
-                                        "run.json",
-                                        "history.csv",
-                                        "cycles.csv",
-                                        "events.csv",
-                                        "motion.csv",
-                                        "path.csv",
-                                        "motion_uniform.csv",
-                                        "motion_verified.csv",
-                                        "motion_verified_uniform.csv",
-                                        "report.html",
-                                        "components.csv",
-                                        "design.svg",
-                                        "design.dxf",
-                                        "design.stl",
-                                        "design",
-                                        "motion",
-                                        "loads",
-                                        "plots"};
-/// With several designs their files carry the bodies' names.
-bool is_ours(const std::string& name) {
-  return std::find(kOurs.begin(), kOurs.end(), name) != kOurs.end() ||
-         name.starts_with("components_") || name.starts_with("design_");
-}
-
-void empty_folder(const std::string& path) {
-  if (fs::is_empty(path)) return;
-  if (!fs::exists(fs::path(path) / "run.json"))
-    throw Error::input("output folder '" + path +
-                       "' is not empty and holds no run; choose another with -o");
-  for (const auto& entry : fs::directory_iterator(path)) {
-    const std::string name = entry.path().filename().string();
-    if (!is_ours(name))
-      throw Error::input("output folder '" + path + "' holds '" + name +
-                         "', which no run has written; choose another with -o");
-  }
-  for (const auto& entry : fs::directory_iterator(path)) fs::remove_all(entry.path());
-}
-
 }  // namespace
 
 const std::vector<double>* MotionRecord::column(const std::string& name) const {
@@ -102,26 +59,40 @@ double tip_deflection(const fem::Model& model, const fem::Growth& growth, const 
   return Vec2(-std::sin(hub.angle), std::cos(hub.angle)).dot(tip - hub.origin);
 }
 
-RunFolder::RunFolder(std::string path, const Scene& scene, const std::string& case_text,
-                     bool beside)
-    : path_(std::move(path)),
+RunFolder::RunFolder(std::string path, const Scene& scene, bool beside)
+    : folder_(std::move(path)),
       scene_(scene),
-      iterations_(path_ + "/design/iterations.pvd"),
-      components_(path_ + "/design/components.pvd"),
-      motion_(path_ + "/motion/motion.pvd"),
+      iterations_(*this, "design/iterations.pvd"),
+      components_(*this, "design/components.pvd"),
+      motion_(*this, "motion/motion.pvd"),
       writer_(beside) {
-  try {
-    fs::create_directories(path_);
-    empty_folder(path_);
-  } catch (const fs::filesystem_error& error) {
-    throw Error::input("output folder '" + path_ + "': " + error.code().message());
-  }
-  io::write_file(path_ + "/case.toml", case_text);
   if (scene.designs.empty()) return;
   std::vector<std::string> columns = kHistoryColumns;
   for (const mmc::ResponseRow* row : further_rows(scene)) columns.push_back(mmc::key_of(*row));
   columns.insert(columns.end(), kHistorySeconds.begin(), kHistorySeconds.end());
-  history_ = std::make_unique<io::CsvWriter>(path_ + "/history.csv", columns);
+  history_ = std::make_unique<io::CsvWriter>(folder_.file("history.csv"), columns);
+}
+
+void RunFolder::FrameIndex::add(double time, const std::string& file, int part) {
+  if (!series_) series_.emplace(folder_.file(name_));
+  series_->add(time, file, part);
+}
+
+void RunFolder::write_frame(std::function<void()> task) {
+  writer_.then([this, task = std::move(task)] {
+    try {
+      task();
+    } catch (const Error& error) {
+      if (lost_frames_++ == 0) why_lost_ = error.what();
+    }
+  });
+}
+
+std::string RunFolder::lost_frames() {
+  writer_.wait();
+  if (lost_frames_ == 0) return "";
+  return io::to_text(lost_frames_) + (lost_frames_ == 1 ? " frame" : " frames") +
+         " for ParaView could not be written: " + why_lost_;
 }
 
 double RunFolder::take_output_seconds() { return output_seconds_.exchange(0); }
@@ -139,13 +110,13 @@ void RunFolder::write_design_frame(const mmc::IterationReport& r) {
   VectorXd shown = r.loads.displacement(factors.stiffness, factors.mass, r.loads.n_loads() - 1);
   output_seconds_ += thread_seconds() - start;
   // Whatever is shown is copied: it is written while the next iteration goes on.
-  writer_.then([this, image = numbered("iteration_" + stem, rows_, ".vti"),
-                lines = numbered("components_" + stem, rows_, ".vtp"), row = rows_,
-                grid = r.problem.grid, mass = factors.mass, stiffness = factors.stiffness,
-                energy = VectorXd(0.5 * by_stiffness.cwiseProduct(factors.stiffness)),
-                phi = VectorXd(r.state.phi()), displacement = std::move(shown),
-                components = r.state.components(),
-                min_half_thickness = r.problem.stages.back().min_half_thickness] {
+  write_frame([this, image = numbered("iteration_" + stem, rows_, ".vti"),
+               lines = numbered("components_" + stem, rows_, ".vtp"), row = rows_,
+               grid = r.problem.grid, mass = factors.mass, stiffness = factors.stiffness,
+               energy = VectorXd(0.5 * by_stiffness.cwiseProduct(factors.stiffness)),
+               phi = VectorXd(r.state.phi()), displacement = std::move(shown),
+               components = r.state.components(),
+               min_half_thickness = r.problem.stages.back().min_half_thickness] {
     const double clock = thread_seconds();
     const auto view = [](const VectorXd& v) {
       return std::span<const double>(v.data(), static_cast<size_t>(v.size()));
@@ -154,9 +125,9 @@ void RunFolder::write_design_frame(const mmc::IterationReport& r) {
                                {"stiffness_factor", view(stiffness)},
                                {"strain_energy", view(energy)}};
     const io::Field points[] = {{"tdf", view(phi)}, {"displacement", view(displacement), 2}};
-    io::write_image_data(path_ + "/design/" + image, grid, cells, points);
+    io::write_image_data(folder_.file("design/" + image), grid, cells, points);
     iterations_.add(row, image);
-    io::write_components(path_ + "/design/" + lines, components, min_half_thickness);
+    io::write_components(folder_.file("design/" + lines), components, min_half_thickness);
     components_.add(row, lines);
     output_seconds_ += thread_seconds() - clock;
   });
@@ -228,48 +199,11 @@ void RunFolder::add_events(const mmc::IterationReport& r) {
   if (!events_) {
     const std::vector<std::string> columns = {"body",  "cycle",     "iteration",
                                               "event", "component", "components"};
-    events_ = std::make_unique<io::CsvWriter>(path_ + "/events.csv", columns);
+    events_ = std::make_unique<io::CsvWriter>(folder_.file("events.csv"), columns);
   }
   for (const mmc::ComponentEvent& e : r.events)
     events_->row(
         {r.problem.body, r.cycle, r.iteration, to_string(e.kind), e.component + 1, e.n_components});
-}
-
-void RunFolder::write_motion(const std::string& name, const Scene& scene,
-                             const MotionRecord& motion) const {
-  std::vector<std::string> columns = {"time"};
-  for (const std::string& body : motion.bodies) columns.push_back(body + ".tip_deflection");
-  for (const std::string& body : motion.growing) columns.push_back(body + ".length");
-  for (const Column& column : motion.observed) columns.push_back(column.name);
-  for (const Column& column : motion.measured) columns.push_back(column.name);
-  for (const Column& column : motion.mechanism) columns.push_back(column.name);
-  for (const char* quantity :
-       {"energy.kinetic", "energy.strain", "energy.potential", "energy.defect"})
-    columns.emplace_back(quantity);
-  for (const Column& column : motion.written) columns.push_back(column.name);
-  for (const Column& column : motion.powers) columns.push_back(column.name);
-  io::CsvWriter csv(path_ + "/" + name, columns);
-  // What failed while a row was being filled left it unfinished: it is not written.
-  size_t rows = motion.time.size();
-  for (const auto* group :
-       {&motion.observed, &motion.measured, &motion.mechanism, &motion.written, &motion.powers})
-    for (const Column& column : *group) rows = std::min(rows, column.values.size());
-  for (size_t i = 0; i < rows; ++i) {
-    std::vector<io::Cell> row = {motion.time[i]};
-    for (const auto& deflection : motion.deflection) row.emplace_back(deflection[i]);
-    for (const std::string& body : motion.growing)
-      row.emplace_back(scene.body(body).length_at(motion.time[i]));
-    for (const Column& column : motion.observed) row.emplace_back(column.values[i]);
-    for (const Column& column : motion.measured) row.emplace_back(column.values[i]);
-    for (const Column& column : motion.mechanism) row.emplace_back(column.values[i]);
-    row.emplace_back(motion.kinetic[i]);
-    row.emplace_back(motion.strain[i]);
-    row.emplace_back(motion.potential[i]);
-    row.emplace_back(motion.defect[i]);
-    for (const Column& column : motion.written) row.emplace_back(column.values[i]);
-    for (const Column& column : motion.powers) row.emplace_back(column.values[i]);
-    csv.row(row);
-  }
 }
 
 void RunFolder::write_path(const PathRecord& path) {
@@ -278,7 +212,7 @@ void RunFolder::write_path(const PathRecord& path) {
     for (const Column& column : *group) columns.push_back(column.name);
   columns.emplace_back("energy.strain");
   columns.emplace_back("iterations");
-  io::CsvWriter csv(path_ + "/path.csv", columns);
+  io::CsvWriter csv(folder_.file("path.csv"), columns);
   for (size_t i = 0; i < path.factor.size(); ++i) {
     std::vector<io::Cell> row = {static_cast<int>(i), path.factor[i]};
     for (const auto* group : {&path.observed, &path.measured})
@@ -318,9 +252,10 @@ void RunFolder::write_part(const std::string& body, const io::QuadMesh& mesh,
                            double time, int part) {
   const std::vector<double> number(mesh.quads.size(), part);
   cells.push_back({"body", number});
-  writer_.then([this, file = numbered("motion_" + body + "_", ++motion_frames_, ".vtu"), mesh,
-                of_cells = copies_of(cells), of_points = copies_of(points), time, part] {
-    io::write_quad_mesh(path_ + "/motion/" + file, mesh, views_of(of_cells), views_of(of_points));
+  write_frame([this, file = numbered("motion_" + body + "_", ++motion_frames_, ".vtu"), mesh,
+               of_cells = copies_of(cells), of_points = copies_of(points), time, part] {
+    io::write_quad_mesh(folder_.file("motion/" + file), mesh, views_of(of_cells),
+                        views_of(of_points));
     motion_.add(time, file, part);
   });
 }
@@ -359,7 +294,7 @@ std::vector<io::SurfaceFrame> RunFolder::shapes(size_t most) const {
 }
 
 void RunFolder::write_text(const std::string& name, const std::string& text) {
-  io::write_file(path_ + "/" + name, text);
+  io::write_file(folder_.file(name), text);
 }
 
 }  // namespace flexmorph::cases

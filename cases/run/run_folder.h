@@ -9,6 +9,7 @@
 #include "cases/run/surface.h"
 #include "fem/dynamics/motion.h"
 #include "io/background.h"
+#include "io/output_folder.h"
 #include "io/plane_frames.h"
 #include "io/surfaces.h"
 #include "io/tables.h"
@@ -67,16 +68,20 @@ std::string components_name(const Scene& scene, const std::string& body);
 /// else.
 class RunFolder {
  public:
-  /// Makes the folder and writes case.toml. A folder that holds another run (its run.json is there)
-  /// is emptied of its files first.
+  /// Takes the folder. A run that is in it already is moved, whole.
   /// @param beside  files for ParaView are written by a thread of their own, while the run goes on
-  /// @throws Error (input) when it cannot be made, or holds files that no run has written.
-  RunFolder(std::string path, const Scene& scene, const std::string& case_text,
-            bool beside = false);
+  /// @throws Error (input) as io::OutputFolder: taken, or not a run's.
+  RunFolder(std::string path, const Scene& scene, bool beside = false);
 
-  const std::string& path() const { return path_; }
-  /// Until all files are written. @throws Error (input) when one could not be.
+  const std::string& path() const { return folder_.path(); }
+  /// Where the run is now that was here before; empty where there was none.
+  const std::string& moved_to() const { return folder_.moved_to(); }
+  /// Path of a file of the run, see io::OutputFolder::file().
+  std::string file(const std::string& name) { return folder_.file(name); }
+  /// Until all files are written.
   void finish() { writer_.wait(); }
+  /// What became of frames for ParaView that could not be written, in words; nothing when all are.
+  std::string lost_frames();
 
   /// One design iteration: a row of history.csv, and the VTK files the scene asks for.
   void add_iteration(const mmc::IterationReport& report);
@@ -90,8 +95,6 @@ class RunFolder {
   /// The same for a plate at rest: one row per load, with its compliance; `active` loads are
   /// within 1 % of the largest.
   void write_static_loads(const Domain& domain, const mmc::BodyOutcome& outcome);
-  /// motion.csv (or another name): one row per time step. Several threads may write such tables.
-  void write_motion(const std::string& name, const Scene& scene, const MotionRecord& motion) const;
   /// A part of a frame of motion/motion.pvd, which has one file per part and time; the field `body`
   /// is its number. The deformed body with the density of its design:
   void add_motion_frame(const std::string& body, const DesignedSurface& surface, double time,
@@ -135,14 +138,29 @@ class RunFolder {
   DesignPictures& pictures_of(const std::string& body);
   void write_part(const std::string& body, const io::QuadMesh& mesh, std::vector<io::Field> cells,
                   std::span<const io::Field> points, double time, int part);
+  /// Does the task, now or beside the run; a frame that cannot be written is counted.
+  void write_frame(std::function<void()> task);
   void add_events(const mmc::IterationReport& report);
   void write_design_frame(const mmc::IterationReport& report);
   void write_history_row(const mmc::IterationReport& report);
 
-  std::string path_;
+  io::OutputFolder folder_;
   const Scene& scene_;
   std::unique_ptr<io::CsvWriter> history_, events_;  // events.csv: from the first one on
-  io::Series iterations_, components_, motion_;
+  /// An index of frames, listed as a file of the run with its first one.
+  class FrameIndex {
+   public:
+    FrameIndex(RunFolder& folder, std::string name) : folder_(folder), name_(std::move(name)) {}
+    void add(double time, const std::string& file, int part = 0);
+
+   private:
+    RunFolder& folder_;
+    std::string name_;
+    std::optional<io::Series> series_;
+  };
+  FrameIndex iterations_, components_, motion_;
+  int lost_frames_ = 0;  // of the writer, as the next
+  std::string why_lost_;
   std::vector<History> histories_;
   std::vector<DesignPictures> pictures_;
   int rows_ = 0, motion_frames_ = 0;

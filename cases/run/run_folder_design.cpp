@@ -33,7 +33,7 @@ void RunFolder::write_loads(const std::string& body, const fem::EslSets& loads,
   const std::vector<std::string> columns = {"time",          "root_column",  "weight",
                                             "strain_energy", "energy_ratio", "compliance",
                                             "force_x",       "force_y"};
-  io::CsvWriter csv(path_ + "/loads/" + body + ".csv", columns);
+  io::CsvWriter csv(folder_.file("loads/" + body + ".csv"), columns);
   for (size_t i = 0; i < loads.sets.size(); ++i) {
     const fem::EslSet& s = loads.sets[i];
     Vec2 force(0, 0);
@@ -50,7 +50,7 @@ void RunFolder::write_loads(const std::string& body, const fem::EslSets& loads,
 
 void RunFolder::write_static_loads(const Domain& domain, const mmc::BodyOutcome& outcome) {
   const std::vector<std::string> columns = {"load", "weight", "compliance", "active"};
-  io::CsvWriter csv(path_ + "/loads/" + domain.name + ".csv", columns);
+  io::CsvWriter csv(folder_.file("loads/" + domain.name + ".csv"), columns);
   for (size_t l = 0; l < domain.loads.size(); ++l)
     csv.row({domain.loads[l].name, domain.loads[l].weight, outcome.load_compliances[l],
              outcome.load_compliances[l] >= 0.99 * outcome.worst_compliance});
@@ -67,22 +67,23 @@ void RunFolder::write_start(const mmc::BodyProblem& problem) {
   if (!scene_.output.plots) return;
   std::string& svg = pictures_of(problem.body).start;
   svg = Outlines(problem, 0.05).picture();
-  io::write_file(path_ + "/plots/start_" + problem.body + ".svg", svg);
+  io::write_file(folder_.file("plots/start_" + problem.body + ".svg"), svg);
 }
 
 void RunFolder::write_design(const mmc::BodyProblem& problem, const mmc::BodyOutcome& outcome) {
   writer_.wait();  // one picture at a time
   const std::string stem = scene_.designs.size() > 1 ? "_" + problem.body : "";
   const std::vector<Component> components = problem.design.components();
-  io::write_components_csv(path_ + "/" + components_name(scene_, problem.body), components);
+  io::write_components_csv(folder_.file(components_name(scene_, problem.body)), components);
   const Outlines outlines(problem);
-  io::write_file(path_ + "/design" + stem + ".svg", outlines.svg());
-  io::write_dxf(path_ + "/design" + stem + ".dxf", outlines.regions);
-  io::write_stl(path_ + "/design" + stem + ".stl", outlines.regions, problem.section.thickness);
+  io::write_file(folder_.file("design" + stem + ".svg"), outlines.svg());
+  io::write_dxf(folder_.file("design" + stem + ".dxf"), outlines.regions);
+  io::write_stl(folder_.file("design" + stem + ".stl"), outlines.regions,
+                problem.section.thickness);
   if (!scene_.output.plots) return;
   pictures_of(problem.body).result = outlines.picture();
   const auto& sharp = outcome.sharp.fractions;
-  io::write_png(path_ + "/plots/design" + stem + ".png", problem.grid,
+  io::write_png(folder_.file("plots/design" + stem + ".png"), problem.grid,
                 {sharp.data(), static_cast<size_t>(sharp.size())});
 }
 
@@ -90,7 +91,7 @@ void RunFolder::write_cycles(std::span<const mmc::CycleVerdict> cycles) {
   const std::vector<std::string> columns = {
       "cycle", "body", "compliance", "sharp_compliance", "design_change", "strain_energy_integral",
       "best"};
-  io::CsvWriter csv(path_ + "/cycles.csv", columns);
+  io::CsvWriter csv(folder_.file("cycles.csv"), columns);
   for (const mmc::CycleVerdict& c : cycles)
     for (const mmc::BodyVerdict& b : c.bodies)
       csv.row({c.cycle, b.body, b.compliance, b.sharp_compliance, b.design_change,

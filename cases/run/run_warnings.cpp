@@ -134,6 +134,7 @@ Warnings warnings_of(const Scene& scene, const RunReport& report) {
   Warnings out;
   add_designs(report, out);
   if (report.motion) add_motion(scene, *report.motion, out);
+  if (!report.lost_frames.empty()) out.push_back({report.lost_frames});
   return out;
 }
 

@@ -7,13 +7,20 @@ namespace flexmorph::cases {
 
 using io::Table;
 
+namespace {
+
+constexpr size_t kLongestName = 64;  // names become parts of those of files
+
+}  // namespace
+
 std::string read_word(const Table& t, const io::Key& key) {
   std::string name = t.string(key);
   const auto is_word_letter = [](char c) { return std::isalnum(c) || c == '_'; };
   if (name.empty() || static_cast<unsigned char>(name[0]) > 127 || !std::isalpha(name[0]) ||
-      !std::all_of(name.begin(), name.end(), is_word_letter))
+      !std::all_of(name.begin(), name.end(), is_word_letter) || name.size() > kLongestName)
     t.fail(key, key.form(io::Form::Kind::text).quantity.noun +
-                    " begins with a letter; letters, digits and _ follow");
+                    " begins with a letter; letters, digits and _ follow, " +
+                    std::to_string(kLongestName) + " at most in all");
   return name;
 }
 

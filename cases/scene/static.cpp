@@ -171,7 +171,7 @@ void read_static(const Table& root, Scene& scene) {
       root.fail(*key, "a scene with a [domain] rests: it has no '" + key->name + "'");
   const Table t = root.table(tables::kDomain);
   Domain domain;
-  domain.name = t.string(kName);
+  domain.name = read_word(t, kName);
   read_shape(t, domain);
   domain.thickness = t.number(kThickness);
   domain.youngs_modulus = t.number(kYoungsModulus);

@@ -25,7 +25,7 @@ Changes quick(const Changes& more = {}) {
 
 MotionOutcome move(const Scene& scene, bool loads = false) {
   const Scratch scratch;
-  RunFolder folder(scratch / "out", scene, "");
+  RunFolder folder(scratch / "out", scene);
   MotionWishes wishes;
   wishes.loads = loads;
   return run_motion(scene, wishes, folder);

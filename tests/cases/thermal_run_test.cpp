@@ -18,7 +18,7 @@ constexpr double kPi = std::numbers::pi;
 MotionRecord motion_of(const std::string& name, const Changes& changes = {}) {
   const Scratch scratch;
   const Scene scene = read(name, changes);
-  RunFolder folder(scratch / "out", scene, "");
+  RunFolder folder(scratch / "out", scene);
   return run_motion(scene, {}, folder).record;
 }
 
@@ -26,7 +26,7 @@ PathRecord path_of(const std::string& name, Changes changes = {}) {
   const Scratch scratch;
   changes.emplace_back("output.vtk=false");
   const Scene scene = read(name, changes);
-  RunFolder folder(scratch / "out", scene, "");
+  RunFolder folder(scratch / "out", scene);
   return run_path(scene, folder, {});
 }
 
@@ -185,7 +185,7 @@ TEST(HotBeam, RidesOnARigidBodyAsInAHub) {
     const std::string time = "[time]\nend = 0.2\nstep = 1e-3\nstart = \"rigid\"\n";
     const Scene scene =
         read_scene(io::CaseFile(scratch.write("arm.toml", time + rest + kArm + weld)));
-    RunFolder folder(scratch / "out", scene, "");
+    RunFolder folder(scratch / "out", scene);
     const MotionRecord r = run_motion(scene, {}, folder).record;
     return Vec2(r.column("arm.end_ux")->back(), r.column("arm.end_uy")->back());
   };

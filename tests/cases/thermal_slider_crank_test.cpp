@@ -19,7 +19,7 @@ constexpr double kPi = std::numbers::pi, kCrank = 0.152, kRod = 0.304, kAlpha = 
 MotionRecord run(const Changes& changes) {
   const Scratch scratch;
   const Scene scene = read("slider_crank_heated", changes);
-  RunFolder folder(scratch / "out", scene, "");
+  RunFolder folder(scratch / "out", scene);
   return run_motion(scene, {}, folder).record;
 }
 

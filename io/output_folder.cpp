@@ -1,0 +1,137 @@
+#include "io/output_folder.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+#include "geometry/base.h"
+
+namespace flexmorph::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* const kList = ".flexmorph";
+constexpr size_t kLongestPart = 200;  // of 255 bytes that file systems take: endings are added
+
+[[noreturn]] void refuse(const std::string& path, const std::string& why) {
+  throw Error::input("output folder '" + path + "': " + why);
+}
+
+std::string reason_of(int code) { return std::generic_category().message(code); }
+
+std::string list_of(const std::string& folder) { return (fs::path(folder) / kList).string(); }
+
+/// "process 1234 on 'machine'", as the first line of a list says it.
+std::string owner_of(const std::string& folder) {
+  std::ifstream list(list_of(folder));
+  std::string line;
+  std::getline(list, line);
+  const std::string begin = "flexmorph, ";
+  return line.starts_with(begin) ? line.substr(begin.size()) : "another process";
+}
+
+std::string own_words() {
+  std::array<char, 256> machine{};
+  gethostname(machine.data(), machine.size() - 1);
+  return "process " + std::to_string(getpid()) + " on '" + machine.data() + "'";
+}
+
+/// The lock of a list, or -1 with errno.
+int lock_of(const std::string& list, int flags) {
+  const int file = open(list.c_str(), flags | O_CLOEXEC, 0666);
+  if (file < 0) return -1;
+  if (flock(file, LOCK_EX | LOCK_NB) == 0) return file;
+  const int why = errno;
+  close(file);
+  errno = why;
+  return -1;
+}
+
+/// NAME.previous, or the first of NAME.previous.2, NAME.previous.3, ... that is free.
+std::string free_name(const std::string& path) {
+  std::string out = path + ".previous";
+  for (int k = 2; fs::symlink_status(out).type() != fs::file_type::not_found; ++k)
+    out = path + ".previous." + std::to_string(k);
+  return out;
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(std::string path) : path_(std::move(path)) {
+  while (path_.size() > 1 && path_.back() == '/') path_.pop_back();
+  try {
+    make();
+    if (!fs::is_empty(path_)) {
+      move_away();
+      make();
+    }
+  } catch (const fs::filesystem_error& error) {
+    refuse(path_, error.code().message());
+  }
+  take();
+}
+
+OutputFolder::~OutputFolder() {
+  if (list_ >= 0) close(list_);
+}
+
+void OutputFolder::make() { fs::create_directories(path_); }
+
+/// An earlier run makes room; what no list speaks of stays where it is.
+void OutputFolder::move_away() {
+  const std::string list = list_of(path_);
+  if (!fs::is_regular_file(fs::symlink_status(list)))
+    refuse(path_, "it is not empty, and no run has filled it; choose another with -o");
+  const int lock = lock_of(list, O_RDWR | O_NOFOLLOW);
+  if (lock < 0 && errno == EWOULDBLOCK)
+    refuse(path_, owner_of(path_) + " is filling it; wait for its end, or choose another with -o");
+  moved_to_ = free_name(path_);
+  std::error_code code;
+  fs::rename(path_, moved_to_, code);
+  if (lock >= 0) close(lock);
+  if (code)
+    refuse(path_, "the run in it cannot be moved to '" + moved_to_ + "': " + code.message());
+}
+
+void OutputFolder::take() {
+  list_ = lock_of(list_of(path_), O_RDWR | O_CREAT | O_EXCL | O_APPEND | O_NOFOLLOW);
+  if (list_ < 0 && errno == EEXIST) refuse(path_, owner_of(path_) + " has just begun to fill it");
+  if (list_ < 0) refuse(path_, reason_of(errno));
+  const std::string line = "flexmorph, " + own_words() + "\n";
+  if (write(list_, line.data(), line.size()) != static_cast<ssize_t>(line.size()))
+    refuse(path_, "its list cannot be written: " + reason_of(errno));
+}
+
+std::string OutputFolder::file(const std::string& name) {
+  const fs::path relative(name);
+  bool leaves = name.empty() || relative.is_absolute() || name == kList || name.back() == '/';
+  for (const fs::path& part : relative)
+    leaves = leaves || part == ".." || part == "." || part.native().size() > kLongestPart;
+  if (leaves || name.find('\n') != std::string::npos)
+    refuse(path_, "'" + name.substr(0, 80) + "' is no name of a file in it");
+  const fs::path whole = fs::path(path_) / relative;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!names_.insert(name).second) return whole.string();
+  std::error_code code;
+  if (relative.has_parent_path()) fs::create_directories(whole.parent_path(), code);
+  const std::string line = name + "\n";
+  if (code || write(list_, line.data(), line.size()) != static_cast<ssize_t>(line.size()))
+    throw Error::numerical(whole.string() +
+                           ": cannot be written: " + (code ? code.message() : reason_of(errno)));
+  return whole.string();
+}
+
+bool is_being_filled(const std::string& folder) {
+  const int lock = lock_of(list_of(folder), O_RDONLY | O_NOFOLLOW);
+  if (lock >= 0) close(lock);
+  return lock < 0 && errno == EWOULDBLOCK;
+}
+
+}  // namespace flexmorph::io

@@ -1,0 +1,131 @@
+// A folder that is filled: nobody else fills it meanwhile, nothing of the user's is touched, and
+// what was in it before is moved, not removed.
+#include "io/output_folder.h"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+
+#include "geometry/base.h"
+#include "tests/io/scratch.h"
+
+namespace flexmorph::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string refusal_of(const std::string& path) {
+  try {
+    const OutputFolder folder(path);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), Error::Kind::input);
+    return error.what();
+  }
+  return "";
+}
+
+void fill(const std::string& path, const std::string& text) {
+  OutputFolder folder(path);
+  std::ofstream(folder.file("run.json")) << text;
+}
+
+TEST(OutputFolder, KeepsAListOfItsFiles) {
+  const Scratch scratch;
+  {
+    OutputFolder folder(scratch / "run/");
+    EXPECT_EQ(folder.path(), scratch / "run");
+    EXPECT_EQ(folder.moved_to(), "");
+    std::ofstream(folder.file("design/frame_00001.vti")) << "frame";
+    folder.file("design/frame_00001.vti");  // twice is once
+    folder.file("history.csv");
+  }
+  const std::string list = contents_of(scratch / "run/.flexmorph");
+  EXPECT_TRUE(list.starts_with("flexmorph, process " + std::to_string(getpid()))) << list;
+  EXPECT_TRUE(list.ends_with("\ndesign/frame_00001.vti\nhistory.csv\n")) << list;
+  EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 3);
+}
+
+TEST(OutputFolder, MovesWhatWasThereWhole) {
+  const Scratch scratch;
+  fill(scratch / "run", "first");
+  scratch.write("run/my_notes.txt", "mine");
+  scratch.write("run/design_of_mine.svg", "mine as well");
+  OutputFolder second(scratch / "run");
+  EXPECT_EQ(second.moved_to(), scratch / "run.previous");
+  EXPECT_EQ(contents_of(scratch / "run.previous/run.json"), "first");
+  EXPECT_EQ(contents_of(scratch / "run.previous/my_notes.txt"), "mine");
+  EXPECT_EQ(contents_of(scratch / "run.previous/design_of_mine.svg"), "mine as well");
+  EXPECT_FALSE(fs::exists(scratch / "run/run.json"));
+}
+
+TEST(OutputFolder, RemovesNoRun) {
+  const Scratch scratch;
+  for (const char* text : {"first", "second", "third", "fourth"}) fill(scratch / "run", text);
+  EXPECT_EQ(contents_of(scratch / "run/run.json"), "fourth");
+  EXPECT_EQ(contents_of(scratch / "run.previous/run.json"), "first");
+  EXPECT_EQ(contents_of(scratch / "run.previous.2/run.json"), "second");
+  EXPECT_EQ(contents_of(scratch / "run.previous.3/run.json"), "third");
+}
+
+// A file run.json makes no run of a folder, and an empty one is free.
+TEST(OutputFolder, LeavesForeignFoldersAlone) {
+  const Scratch scratch;
+  fs::create_directories(scratch / "foreign");
+  scratch.write("foreign/run.json", "{}");
+  EXPECT_NE(refusal_of(scratch / "foreign").find("no run has filled it"), std::string::npos);
+  EXPECT_EQ(contents_of(scratch / "foreign/run.json"), "{}");
+  EXPECT_FALSE(fs::exists(scratch / "foreign/.flexmorph"));
+  fs::create_directories(scratch / "empty");
+  EXPECT_EQ(refusal_of(scratch / "empty"), "");
+  // Nor does a link to a list elsewhere.
+  fill(scratch / "run", "");
+  fs::create_directories(scratch / "linked");
+  fs::create_symlink(scratch / "run/.flexmorph", scratch / "linked/.flexmorph");
+  EXPECT_NE(refusal_of(scratch / "linked").find("no run has filled it"), std::string::npos);
+  scratch.write("file", "");
+  EXPECT_NE(refusal_of(scratch / "file"), "");
+  EXPECT_EQ(contents_of(scratch / "file"), "");
+}
+
+// Whoever is killed leaves no lock.
+TEST(OutputFolder, IsFilledByOneProcess) {
+  const Scratch scratch;
+  int ready[2];
+  ASSERT_EQ(pipe(ready), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    OutputFolder folder(scratch / "run");
+    std::ofstream(folder.file("run.json")) << "running";
+    [[maybe_unused]] const ssize_t n = write(ready[1], "x", 1);
+    for (;;) pause();
+  }
+  char byte = 0;
+  ASSERT_EQ(read(ready[0], &byte, 1), 1);
+  EXPECT_TRUE(is_being_filled(scratch / "run"));
+  const std::string words = refusal_of(scratch / "run");
+  EXPECT_NE(words.find("process " + std::to_string(child) + " on '"), std::string::npos) << words;
+  EXPECT_EQ(contents_of(scratch / "run/run.json"), "running");
+  EXPECT_FALSE(fs::exists(scratch / "run.previous"));
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  EXPECT_FALSE(is_being_filled(scratch / "run"));
+  EXPECT_EQ(refusal_of(scratch / "run"), "");
+  EXPECT_EQ(contents_of(scratch / "run.previous/run.json"), "running");
+  close(ready[0]);
+  close(ready[1]);
+}
+
+TEST(OutputFolder, MakesNoPathThatLeavesIt) {
+  const Scratch scratch;
+  OutputFolder folder(scratch / "run");
+  for (const std::string name : {"../precious", "loads/../../precious", "/etc/precious", "", ".",
+                                 "..", ".flexmorph", "loads/", "two\nlines", "a/./b"})
+    EXPECT_THROW(folder.file(name), Error) << name;
+  EXPECT_THROW(folder.file(std::string(201, 'a')), Error);
+  EXPECT_EQ(folder.file(std::string(200, 'a')), (scratch / "run/") + std::string(200, 'a'));
+  EXPECT_EQ(contents_of(scratch / "run/.flexmorph").find("precious"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace flexmorph::io
