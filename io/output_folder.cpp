@@ -43,6 +43,16 @@ std::string own_words() {
   return "process " + std::to_string(getpid()) + " on '" + machine.data() + "'";
 }
 
+/// Is it no name of a file below the folder, or that of the list?
+bool leaves_folder(const std::string& name) {
+  const fs::path relative(name);
+  bool leaves = name.empty() || relative.is_absolute() || name == kList || name.back() == '/' ||
+                name.find('\n') != std::string::npos;
+  for (const fs::path& part : relative)
+    leaves = leaves || part == ".." || part == "." || part.native().size() > kLongestPart;
+  return leaves;
+}
+
 /// The lock of a list, or -1 with errno.
 int lock_of(const std::string& list, int flags) {
   const int file = open(list.c_str(), flags | O_CLOEXEC, 0666);
@@ -111,11 +121,7 @@ void OutputFolder::take() {
 
 std::string OutputFolder::file(const std::string& name) {
   const fs::path relative(name);
-  bool leaves = name.empty() || relative.is_absolute() || name == kList || name.back() == '/';
-  for (const fs::path& part : relative)
-    leaves = leaves || part == ".." || part == "." || part.native().size() > kLongestPart;
-  if (leaves || name.find('\n') != std::string::npos)
-    refuse(path_, "'" + name.substr(0, 80) + "' is no name of a file in it");
+  if (leaves_folder(name)) refuse(path_, "'" + name.substr(0, 80) + "' is no name of a file in it");
   const fs::path whole = fs::path(path_) / relative;
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!names_.insert(name).second) return whole.string();
@@ -126,6 +132,43 @@ std::string OutputFolder::file(const std::string& name) {
     throw Error::numerical(whole.string() +
                            ": cannot be written: " + (code ? code.message() : reason_of(errno)));
   return whole.string();
+}
+
+FolderLock::FolderLock(const std::string& folder) {
+  list_ = lock_of(list_of(folder), O_RDWR | O_CREAT | O_APPEND | O_NOFOLLOW);
+  if (list_ < 0 && errno == EWOULDBLOCK)
+    refuse(folder,
+           owner_of(folder) + " is filling it; wait for its end, or choose another with -o");
+  if (list_ < 0) refuse(folder, reason_of(errno));
+  const std::string line = "flexmorph, " + own_words() + "\n";
+  if (ftruncate(list_, 0) != 0 ||
+      write(list_, line.data(), line.size()) != static_cast<ssize_t>(line.size()))
+    refuse(folder, "its list cannot be written: " + reason_of(errno));
+}
+
+FolderLock::~FolderLock() {
+  if (list_ >= 0) close(list_);
+}
+
+void remove_listed(const std::string& folder) {
+  const int lock = lock_of(list_of(folder), O_RDWR | O_NOFOLLOW);
+  if (lock < 0 && errno == EWOULDBLOCK) refuse(folder, owner_of(folder) + " is filling it");
+  if (lock < 0) return;  // without a list nothing in it is ours
+  std::ifstream list(list_of(folder));
+  std::error_code none;
+  std::set<fs::path> folders;
+  std::string name;
+  std::getline(list, name);  // who wrote it
+  while (std::getline(list, name)) {
+    if (leaves_folder(name)) continue;
+    const fs::path path = fs::path(folder) / name;
+    if (fs::is_regular_file(fs::symlink_status(path, none))) fs::remove(path, none);
+    folders.insert(path.parent_path());
+  }
+  fs::remove(list_of(folder), none);
+  close(lock);
+  folders.insert(fs::path(folder));
+  for (auto at = folders.rbegin(); at != folders.rend(); ++at) fs::remove(*at, none);
 }
 
 bool is_being_filled(const std::string& folder) {

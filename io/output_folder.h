@@ -46,6 +46,26 @@ class OutputFolder {
   std::set<std::string> names_;
 };
 
+/// Keeps a folder for one process that goes on with what is in it, as a study does, where an
+/// OutputFolder begins anew.
+class FolderLock {
+ public:
+  /// @param folder  which exists
+  /// @throws Error (input) when a living process has it, or its list cannot be written.
+  explicit FolderLock(const std::string& folder);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int list_ = -1;
+};
+
+/// Removes the files of a folder that stand in its list, then folders in it that are empty, and
+/// itself if it is. What else is in it stays.
+/// @throws Error (input) when a living process fills it.
+void remove_listed(const std::string& folder);
+
 /// Does a living process fill this folder?
 bool is_being_filled(const std::string& folder);
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <span>
 #include <string>
 
 #include "cases/run/run_folder.h"
@@ -14,5 +13,8 @@ namespace flexmorph::cases {
 /// @param explain  see io::CaseFile::explained()
 /// @throws Error (input) for a file that cannot be read; Error (numerical) for one not written.
 void keep_case(const io::CaseFile& file, bool explain, RunFolder& folder);
+
+/// Is this the case that was kept in a folder, and are the files the same that it reads?
+bool keeps_case(const std::string& folder, const io::CaseFile& file);
 
 }  // namespace flexmorph::cases

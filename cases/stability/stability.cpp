@@ -12,6 +12,7 @@
 #include "cases/study/study.h"
 #include "io/files.h"
 #include "io/json.h"
+#include "io/output_folder.h"
 #include "io/tables.h"
 
 namespace flexmorph::cases {
@@ -47,6 +48,7 @@ class Check {
     std::error_code error;
     fs::create_directories(options_.directory, error);
     if (error) throw Error::input("folder '" + options_.directory + "': " + error.message());
+    const io::FolderLock lock(options_.directory);
     prepare();
     for (const Job& job : jobs_) judge_row(job);
     const bool whole = run();
@@ -157,7 +159,7 @@ class Check {
     for (const Job& job : jobs_) {
       if (rows_[job.row].ran) continue;
       // Only what an earlier run of this row has left.
-      if (fs::exists(job.stem + "/run.json")) fs::remove_all(job.stem);
+      io::remove_listed(job.stem);
       Child& child = children.emplace_back();
       child.words = {"run", job.path, "-o", job.stem, "--quiet", "--threads", "1", "--condition"};
       for (const std::string& change : job.overrides) {

@@ -1,6 +1,7 @@
 #include "cases/study/processes.h"
 
 #include <fcntl.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -34,9 +35,11 @@ pid_t start(const Child& child, const ChildLimits& limits) {
   if (out < 0) throw Error::input("log '" + child.log + "' cannot be written");
   const auto bytes = static_cast<rlim_t>(limits.memory);
   const rlimit memory{bytes, bytes}, no_core{0, 0};
-  const pid_t pid = fork();
+  const pid_t parent = getpid(), pid = fork();
   if (pid < 0) throw Error::numerical("a process cannot be started");
   if (pid == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGTERM);  // a study that is killed takes its runs along
+    if (getppid() != parent) _exit(127);
     if (limits.memory > 0) setrlimit(RLIMIT_AS, &memory);
     setrlimit(RLIMIT_CORE, &no_core);
     dup2(out, STDOUT_FILENO);

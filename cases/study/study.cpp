@@ -6,10 +6,12 @@
 #include <filesystem>
 #include <sstream>
 
+#include "cases/run/kept_case.h"
 #include "cases/run/progress.h"
 #include "cases/run/run.h"
 #include "cases/study/processes.h"
 #include "io/files.h"
+#include "io/output_folder.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -23,8 +25,7 @@ std::vector<std::string> overrides_of(const StudyOptions& options, const Variant
 }
 
 bool finished(const StudyOptions& options, const Variant& variant, const VariantResult& result) {
-  return result.done() &&
-         text_of(folder_of(options, variant) + "/case.toml") == case_of(options, variant).text();
+  return result.done() && keeps_case(folder_of(options, variant), case_of(options, variant));
 }
 
 /// A run of the variant by this very program; its words go to a log beside its folder.
@@ -123,6 +124,7 @@ int run_variant(const StudyOptions& options, const Variant& variant) {
 StudyOutcome run_variants(const StudyOptions& options, std::span<const Variant> variants,
                           const std::function<void(std::span<const VariantResult>)>& changed) {
   make_folder(options.directory);
+  const io::FolderLock lock(options.directory);
   StudyOutcome out;
   std::vector<size_t> wanted;
   std::vector<Child> children;

@@ -116,6 +116,45 @@ TEST(OutputFolder, IsFilledByOneProcess) {
   close(ready[1]);
 }
 
+TEST(OutputFolder, IsRemovedAsFarAsItIsOurs) {
+  const Scratch scratch;
+  {
+    OutputFolder folder(scratch / "run");
+    for (const char* name : {"run.json", "plots/design.png", "loads/plate.csv"})
+      std::ofstream(folder.file(name)) << "ours";
+    folder.file("never_written.csv");
+  }
+  scratch.write("run/loads/mine.csv", "mine");
+  scratch.write("run/design_of_mine.svg", "mine");
+  scratch.write("precious", "mine");
+  std::ofstream(scratch / "run/.flexmorph", std::ios::app) << "../precious\n";
+  remove_listed(scratch / "run");
+  for (const char* ours : {"run.json", "plots", "loads/plate.csv", ".flexmorph"})
+    EXPECT_FALSE(fs::exists(scratch / (std::string("run/") + ours))) << ours;
+  EXPECT_EQ(contents_of(scratch / "run/loads/mine.csv"), "mine");
+  EXPECT_EQ(contents_of(scratch / "run/design_of_mine.svg"), "mine");
+  EXPECT_EQ(contents_of(scratch / "precious"), "mine");
+  fill(scratch / "other", "");
+  remove_listed(scratch / "other");
+  EXPECT_FALSE(fs::exists(scratch / "other"));
+  remove_listed(scratch / "nowhere");
+}
+
+// A study goes on with what is in its folder, alone.
+TEST(FolderLock, LeavesWhatIsThere) {
+  const Scratch scratch;
+  fs::create_directories(scratch / "study");
+  scratch.write("study/compare.csv", "rows");
+  {
+    const FolderLock lock(scratch / "study");
+    EXPECT_TRUE(is_being_filled(scratch / "study"));
+    EXPECT_THROW(FolderLock(scratch / "study"), Error);
+  }
+  EXPECT_FALSE(is_being_filled(scratch / "study"));
+  const FolderLock again(scratch / "study");
+  EXPECT_EQ(contents_of(scratch / "study/compare.csv"), "rows");
+}
+
 TEST(OutputFolder, MakesNoPathThatLeavesIt) {
   const Scratch scratch;
   OutputFolder folder(scratch / "run");
