@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "io/files.h"
 
@@ -170,16 +171,23 @@ class BookReader {
 
   void value(const CaseNode& node, const Declared& declared, const std::string& kind,
              const std::string& full) {
-    const Form *first = nullptr, *alike = nullptr;
+    std::string words;  // what is allowed
+    bool alike = false;
     for (const Key* key : declared)
       for (const Form& form : key->forms) {
         if (fits(node, form)) return inside(node, form, kind, full);
-        if (!first) first = &form;
-        if (!alike && is_alike(node, form)) alike = &form;
+        // Of several declarations, each for other cases, that of the same kind of value speaks, and
+        // of those the shortest: the book has no order.
+        const std::string own = allowed(node, form, full);
+        const bool like = is_alike(node, form);
+        if (words.empty() || (like && !alike) ||
+            (like == alike &&
+             std::make_pair(own.size(), own) < std::make_pair(words.size(), words))) {
+          words = own;
+          alike = like;
+        }
       }
-    if (!first) return;
-    out.values.push_back(
-        {node.line, located(node, full), ": " + allowed(node, alike ? *alike : *first, full)});
+    if (!words.empty()) out.values.push_back({node.line, located(node, full), ": " + words});
   }
 
   void inside(const CaseNode& node, const Form& form, const std::string& kind,

@@ -75,7 +75,7 @@ const Tried kTyped[] = {
      "length = 0.5\nwidth = 0.1\nthickness = 0.01\n",
      "length = -0.5\nwidth = \"0.1\"\nthicknes = 0.01\n",
      ":17:10",
-     ":19:12: body.thicknes = 0.01",
+     "18:9: body.width = \"0.1\": a width is positive [m]; a number stands",
      {"check", "CASE"},
      2,
      3},
