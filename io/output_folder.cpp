@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -124,6 +125,9 @@ std::string OutputFolder::file(const std::string& name) {
   if (leaves_folder(name)) refuse(path_, "'" + name.substr(0, 80) + "' is no name of a file in it");
   const fs::path whole = fs::path(path_) / relative;
   const std::lock_guard<std::mutex> lock(mutex_);
+  struct stat list {};
+  if (fstat(list_, &list) != 0 || list.st_nlink == 0)
+    throw Error::numerical("output folder '" + path_ + "' was removed while it was filled");
   if (!names_.insert(name).second) return whole.string();
   std::error_code code;
   if (relative.has_parent_path()) fs::create_directories(whole.parent_path(), code);

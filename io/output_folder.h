@@ -32,7 +32,8 @@ class OutputFolder {
   /// Path of a file of the folder, now in its list; folders on the way are made. The only way to a
   /// path in the folder. Several threads may ask.
   /// @throws Error (input) for a name that leaves the folder ("../a", "/a"), that is its list, or
-  ///         with a part of more than 200 bytes; Error (numerical) when the list cannot be written.
+  ///         with a part of more than 200 bytes; Error (numerical) when the list cannot be written,
+  ///         or the folder was removed meanwhile.
   std::string file(const std::string& name);
 
  private:

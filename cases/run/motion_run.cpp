@@ -273,7 +273,6 @@ MotionOutcome run_motion(const Scene& scene, const MotionWishes& wishes, RunFold
                                        [&](const fem::MotionStep& step) { record(step); });
   } catch (const Error& error) {
     record.finish();
-    folder.write_motion(wishes.table, scene, out.record);
     throw FailedRun(error, failure_in(wishes, out.record));
   } catch (...) {
     record.finish();

@@ -313,7 +313,10 @@ int run_case(const RunOptions& options) {
     return 4;
   } catch (const std::exception& error) {
     report.failure = failure_of(error, progress.where());
-    close("failed", error.what());
+    try {
+      close("failed", error.what());
+    } catch (const Error&) {  // on a full disk the first failure is the one to tell
+    }
     throw;
   }
   const std::vector<Warning> warnings = warnings_of(scene, report);

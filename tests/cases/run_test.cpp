@@ -204,7 +204,7 @@ std::map<std::string, std::string> lasting(const std::string& folder) {
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     if (!entry.is_regular_file()) continue;
     const std::string name = fs::relative(entry.path(), folder).string();
-    if (name == "run.json" || name == "report.html") continue;
+    if (name == "run.json" || name == "report.html" || name == ".flexmorph") continue;
     std::string text = contents_of(entry.path().string());
     if (name == "history.csv") {  // but for the seconds: the last six columns
       std::string kept;
@@ -224,7 +224,7 @@ TEST(Run, RepeatsItselfByteForByte) {
   const Scratch scratch;
   const std::string first = scratch / "first", second = scratch / "second";
   ASSERT_EQ(flexmorph(scratch, short_run(first)).code, kTooFew);
-  // Into a folder that held another run: nothing of that one stays.
+  // Into a folder that held another run: nothing of that one stays in it.
   ASSERT_EQ(flexmorph(scratch, short_run(second, {"optimizer.max_iterations=8"})).code, kTooFew);
   ASSERT_EQ(flexmorph(scratch, short_run(second)).code, kTooFew);
   const auto a = lasting(first), b = lasting(second);

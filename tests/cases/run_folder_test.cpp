@@ -1,0 +1,184 @@
+// Run folders under attack: second runs, kills, hang-ups, full disks, removed folders, names that
+// lead out of them. What a user has on the disk stays, and what a run wrote is whole.
+#include <csignal>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "io/tables.h"
+#include "tests/cases/program.h"
+
+namespace flexmorph::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// A pendulum of 1 s in `steps` steps.
+std::string pendulum(const std::string& steps, const std::string& more = "") {
+  return "gravity = [0.0, -9.81]\n[time]\nend = 1.0\nstep = " + steps +
+         "\n[[rigid_body]]\nname = \"rod\"\nmass = 1.0\nsize = [1.0, 0.1]\n"
+         "[[joint]]\ntype = \"revolute\"\nname = \"pin\"\nb = \"rod\"\npoint_a = [-0.5, 0.0]\n"
+         "point_b = [-0.5, 0.0]\n[output]\nvtk = false\nplots = false\n" +
+         more;
+}
+const char* const kQuick = "1e-2";
+const char* const kLong = "1e-6";  // for who is killed
+
+/// Waits until the table of steps has begun; false after a minute.
+bool moves(const std::string& folder) {
+  for (int k = 0; k < 1200; ++k) {
+    if (lines_of(contents_of(folder + "/motion.csv")).size() > 3) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  return false;
+}
+
+json run_of(const std::string& folder) { return json::parse(contents_of(folder + "/run.json")); }
+
+TEST(RunFolders, BelongToTheRunThatLives) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out", slow = scratch.write("slow.toml", pendulum(kLong)),
+                    quick = scratch.write("quick.toml", pendulum(kQuick));
+  const pid_t child = start(scratch, {"run", slow, "-o", folder, "--quiet"});
+  ASSERT_TRUE(moves(folder));
+  const Scratch other_words;
+  const std::string before = contents_of(folder + "/run.json");
+  const fs::path words = fs::path(scratch / "second");
+  fs::create_directories(words);
+  // Another process; its output goes to other files.
+  const std::string command = std::string(FLEXMORPH_PROGRAM) + " run " + quick + " -o " + folder +
+                              " --quiet 2> " + (words / "err").string();
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 2);
+  const std::string why = contents_of((words / "err").string());
+  EXPECT_TRUE(contains(why, "process " + std::to_string(child) + " on ")) << why;
+  EXPECT_EQ(contents_of(folder + "/run.json"), before);
+  kill(child, SIGKILL);
+  end_of(scratch, child);
+
+  // Killed, it holds nothing up: every file is whole, and makes room.
+  EXPECT_EQ(run_of(folder)["status"], "running");
+  const size_t columns = io::read_csv(folder + "/motion.csv").columns.size();
+  EXPECT_GT(columns, 5u);
+  const Ended ended = flexmorph(scratch, {"run", quick, "-o", folder});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_TRUE(contains(ended.out, "the run that was there is now " + folder + ".previous"));
+  EXPECT_EQ(run_of(folder)["status"], "done");
+  EXPECT_EQ(run_of(folder + ".previous")["status"], "running");
+}
+
+TEST(RunFolders, AreNeverDestroyed) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out", path = scratch.write("case.toml", pendulum(kQuick));
+  for (int k = 0; k < 3; ++k) {
+    ASSERT_EQ(flexmorph(scratch, {"run", path, "-o", folder, "--quiet"}).code, 0);
+    scratch.write("out/design_notes.txt", "mine, " + std::to_string(k));
+  }
+  for (const char* ending : {"", ".previous", ".previous.2"}) {
+    EXPECT_EQ(run_of(folder + ending)["status"], "done");
+    EXPECT_TRUE(contents_of(folder + ending + "/design_notes.txt").starts_with("mine, "));
+  }
+}
+
+TEST(RunFolders, RunAgainByThemselves) {
+  const Scratch scratch;
+  std::string table = "t,angle\n";
+  for (int k = 0; k <= 20; ++k)
+    table += std::to_string(0.05 * k) + "," + std::to_string(0.01 * k * k) + "\n";
+  fs::create_directories(scratch / "here/tables");
+  scratch.write("here/tables/turn.csv", table);
+  scratch.write("here/case.toml",
+                pendulum(kQuick,
+                         "[[drive]]\nname = \"turn\"\ncsv = \"tables/turn.csv\"\ntime = "
+                         "\"t\"\ncolumn = \"angle\"\n[[joint]]\ntype = "
+                         "\"angle_drive\"\nname = \"motor\"\nb = \"rod\"\nangle = "
+                         "\"turn\"\n"));
+  const Ended first =
+      flexmorph(scratch, {"run", scratch / "here/case.toml", "-o", scratch / "first", "--quiet"});
+  ASSERT_EQ(first.code, 0) << first.err;
+  fs::remove_all(scratch / "here");
+  fs::rename(scratch / "first", scratch / "moved");
+  const Ended again =
+      flexmorph(scratch, {"run", scratch / "moved/case.toml", "-o", scratch / "again", "--quiet"});
+  ASSERT_EQ(again.code, 0) << again.err;
+  EXPECT_EQ(contents_of(scratch / "moved/inputs/turn.csv"), table);
+  EXPECT_EQ(contents_of(scratch / "again/motion.csv"), contents_of(scratch / "moved/motion.csv"));
+  EXPECT_GT(contents_of(scratch / "again/motion.csv").size(), 1000u);
+}
+
+// Of a domain that is called so, loads/NAME.csv and plots/start_NAME.svg were written.
+TEST(RunFolders, AreNotLeftByNames) {
+  const Scratch scratch;
+  scratch.write("precious.csv", "years of work");
+  for (const std::string& name : {std::string("../../precious"), std::string(300, 'a')}) {
+    const Ended ended = flexmorph(scratch, {"run", "short_beam", "-o", scratch / "out/run", "--set",
+                                            "domain.name='" + name + "'"});
+    EXPECT_EQ(ended.code, 2);
+    EXPECT_TRUE(contains(ended.err, "64 at most")) << ended.err;
+    EXPECT_FALSE(fs::exists(scratch / "out"));
+  }
+  EXPECT_EQ(contents_of(scratch / "precious.csv"), "years of work");
+}
+
+// A terminal that is closed ends a run as SIGTERM does.
+TEST(RunFolders, AreFinishedWhenTheTerminalCloses) {
+  for (const int signal : {SIGHUP, SIGTERM}) {
+    const Scratch scratch;
+    const std::string folder = scratch / "out", slow = scratch.write("slow.toml", pendulum(kLong));
+    const pid_t child = start(scratch, {"run", slow, "-o", folder, "--quiet"});
+    ASSERT_TRUE(moves(folder));
+    kill(child, signal);
+    EXPECT_EQ(end_of(scratch, child).code, 4);
+    EXPECT_EQ(run_of(folder)["status"], "interrupted");
+    EXPECT_TRUE(fs::exists(folder + "/report.html"));
+  }
+}
+
+// Nobody reads what it says: it runs on.
+TEST(RunFolders, AreFinishedWhenNobodyListens) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out", path = scratch.write("case.toml", pendulum(kQuick));
+  const std::string command =
+      std::string(FLEXMORPH_PROGRAM) + " run " + path + " -o " + folder + " | true";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  for (int k = 0; k < 200 && !fs::exists(folder + "/report.html"); ++k)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_EQ(run_of(folder)["status"], "done");
+}
+
+// Files of 20 kB at most, as on a disk that fills up: the table ends with a whole row.
+TEST(RunFolders, OnAFullDiskHoldWholeRows) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out", path = scratch.write("case.toml", pendulum("1e-3"));
+  const std::string err = scratch / "err";
+  const std::string command = "trap '' XFSZ; ulimit -f 40; exec " + std::string(FLEXMORPH_PROGRAM) +
+                              " run " + path + " -o " + folder + " --quiet 2> " + err;
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 3);
+  EXPECT_TRUE(contains(contents_of(err), "motion.csv: cannot be written: File too large"))
+      << contents_of(err);
+  const std::string text = contents_of(folder + "/motion.csv");
+  EXPECT_GT(text.size(), 15000u);
+  EXPECT_EQ(text.back(), '\n');
+  EXPECT_GT(io::read_csv(folder + "/motion.csv").rows.size(), 50u);  // refuses ragged ones
+  EXPECT_EQ(run_of(folder)["status"], "failed");
+}
+
+TEST(RunFolders, ThatAreRemovedEndTheRun) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out", slow = scratch.write("slow.toml", pendulum("2e-6"));
+  const pid_t child = start(scratch, {"run", slow, "-o", folder, "--quiet"});
+  ASSERT_TRUE(moves(folder));
+  fs::remove_all(folder);
+  kill(child, SIGTERM);
+  const Ended ended = end_of(scratch, child);
+  EXPECT_EQ(ended.code, 3);
+  EXPECT_TRUE(contains(ended.err, "was removed while it was filled")) << ended.err;
+  EXPECT_FALSE(fs::exists(folder));
+}
+
+}  // namespace
+}  // namespace flexmorph::test
