@@ -9,7 +9,7 @@
 namespace flexmorph::cases {
 namespace {
 
-constexpr double kSaid = 1e-9;  // design.md section 21
+constexpr double kSaid = 1e-9;  // less is round-off of assembly
 // What the differences leave that give the rates of a prestretched start, of the fastest.
 constexpr double kDifference = 1e-6;
 constexpr size_t kMost = 5;  // bodies that are named

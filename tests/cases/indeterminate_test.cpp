@@ -34,7 +34,7 @@ std::string member(const std::string& name, int elements) {
 }
 
 // A column and a beam, clamped to each other, on two pins; a load at 0.2 L of the beam. Lee, Manuel
-// & Rossow (1968), J. Eng. Mech. Div. 94, 1223-1243; critical load 18.552 E I / L² with A L² =
+// & Rossow (1968), J. Eng. Mech. Div. 94, 521-547; critical load 18.552 E I / L² with A L² =
 // 43200 I: Schweizerhof & Wriggers (1986), Comput. Methods Appl. Mech. Eng. 59, 261-279.
 TEST(Indeterminate, LeesFrameSnapsAtItsCriticalLoad) {
   const Scene scene = scene_of(

@@ -74,7 +74,7 @@ std::string without_times(const io::CsvTable& table) {
 std::map<std::string, std::string> files_of(const std::string& folder, const Words& timed = {}) {
   std::map<std::string, std::string> out;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (!entry.is_regular_file()) continue;
+    if (!entry.is_regular_file() || entry.path().filename() == ".flexmorph") continue;
     const std::string name = fs::relative(entry.path(), folder).string(),
                       path = entry.path().string();
     if (std::find(timed.begin(), timed.end(), name) != timed.end()) continue;

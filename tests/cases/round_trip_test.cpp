@@ -18,9 +18,7 @@ using nlohmann::json;
 /// A scene, and a folder for it.
 struct Case {
   Case(const Scratch& scratch, const std::string& name, const test::Words& changes)
-      : file(find_case(name), changes),
-        scene(read_scene(file)),
-        folder(scratch / "out", scene) {}
+      : file(find_case(name), changes), scene(read_scene(file)), folder(scratch / "out", scene) {}
 
   io::CsvTable table(const std::string& name) const {
     return io::read_csv(folder.path() + "/" + name);

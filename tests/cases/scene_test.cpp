@@ -285,7 +285,7 @@ const Bad kBadInputs[] = {
     {"body_named_hub", {"body.name=hub"}, "there is another 'hub'"},
     {"body_with_a_blank",
      {"body.name=\"a b\""},
-     "the name of a body begins with a letter; letters, digits and _ follow"},
+     "the name of a body begins with a letter; letters, digits and _ follow, 64 at most in all"},
     {"no_body", {"body=[]"}, "a scene has one or more [[body]]"},
     {"free_root",
      {"joint=[]"},

@@ -127,9 +127,9 @@ Verdict judge(const Interval& interval) {
 }
 
 /// The difference is explained, and what explains it is small against the motion. An estimate from
-/// two levels is multiplied by 3 (Roache 1994, J. Fluids Eng. 116, 405-413): here that of IDA, whose
-/// velocities on the platform are only twice as good at a tenth of the tolerance, so that two runs
-/// differ by about their error, more or less as the last bits have it.
+/// two levels is multiplied by 3 (Roache 1994, J. Fluids Eng. 116, 405-413): here that of IDA,
+/// whose velocities on the platform are only twice as good at a tenth of the tolerance, so that two
+/// runs differ by about their error, more or less as the last bits have it.
 void expect_agreement(const Verdict& v, double multipliers) {
   const auto expect = [](const char* what, const VectorXd& end, const VectorXd& difference,
                          const VectorXd& ida, const VectorXd& alpha, double part) {

@@ -35,7 +35,7 @@ std::string timeless(const fs::path& file, std::string text) {
 std::map<std::string, std::string> files_of(const std::string& folder) {
   std::map<std::string, std::string> out;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
-    if (entry.is_regular_file())
+    if (entry.is_regular_file() && entry.path().filename() != ".flexmorph")  // who, and what
       out[fs::relative(entry.path(), folder)] =
           timeless(entry.path(), contents_of(entry.path().string()));
   return out;

@@ -118,11 +118,12 @@ std::unique_ptr<fem::Element> make_plate(const Body& body, double end,
 /// Gauss points of the bending, where there are any.
 ElementOperations operations(const Body& body, const fem::Element& element) {
   const double n = element.n_shapes(), d = element.dim(), pairs = 0.5 * n * (n + 1);
-  const double points = body.number("bending_points") * body.number("bending_points");
+  const double line = body.number("bending_points"), points = line * line;
   ElementOperations out;
   out.force = 2 * n * n * d * (body.flow ? 3 : 1);  // inertia
   out.force += 0.5 * pairs * pairs + 2 * pairs * d + 2 * n * n * d;
-  out.force += points * (2 * n * d * (5 + 3) + 150);
+  // Functions of m, then of n, and back: 3 derivatives, 5 vectors (fem/terms/bending_kernels.h).
+  out.force += n * (line * 2 * 2 * 3 * d + points * (2 * 2 * 5 * d / 4 + 10));
   out.tangent = n * d * (n * pairs + n * n * d) + 2 * points * n * d * n * d;
   return out;
 }
