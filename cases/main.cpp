@@ -196,6 +196,8 @@ int parse_and_run(int argc, char** argv) {
                 "estimates the condition of the last matrices, for run.json");
   run->add_flag("--explain", options.explain, "keeps the case with all its defaults");
   run->add_flag("--quiet", options.quiet, "no progress");
+  run->add_flag("--resume", options.resume,
+                "goes on with a run of this case that did not come to its end");
   CLI::App* check =
       app.add_subcommand("check", "validates a case; says what it contains and costs");
   add_case(*check, options.case_name, options.overrides);

@@ -19,7 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 
 const char* const kList = ".flexmorph";
-constexpr size_t kLongestPart = 200;  // of 255 bytes that file systems take: endings are added
+const std::string kOwner = "flexmorph, ";  // begins the line of a process that fills the folder
+constexpr size_t kLongestPart = 200;       // of 255 bytes that file systems take: endings are added
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
   throw Error::input("output folder '" + path + "': " + why);
@@ -32,10 +33,10 @@ std::string list_of(const std::string& folder) { return (fs::path(folder) / kLis
 /// "process 1234 on 'machine'", as the first line of a list says it.
 std::string owner_of(const std::string& folder) {
   std::ifstream list(list_of(folder));
-  std::string line;
-  std::getline(list, line);
-  const std::string begin = "flexmorph, ";
-  return line.starts_with(begin) ? line.substr(begin.size()) : "another process";
+  std::string out = "another process";
+  for (std::string line; std::getline(list, line);)
+    if (line.starts_with(kOwner)) out = line.substr(kOwner.size());
+  return out;
 }
 
 std::string own_words() {
@@ -75,10 +76,15 @@ std::string free_name(const std::string& path) {
 
 }  // namespace
 
-OutputFolder::OutputFolder(std::string path) : path_(std::move(path)) {
+OutputFolder::OutputFolder(std::string path, Begin begin) : path_(std::move(path)) {
   while (path_.size() > 1 && path_.back() == '/') path_.pop_back();
   try {
     make();
+    if (begin == Begin::go_on && fs::is_regular_file(fs::symlink_status(list_of(path_)))) {
+      take(0);
+      read_list();
+      return;
+    }
     if (!fs::is_empty(path_)) {
       move_away();
       make();
@@ -86,7 +92,7 @@ OutputFolder::OutputFolder(std::string path) : path_(std::move(path)) {
   } catch (const fs::filesystem_error& error) {
     refuse(path_, error.code().message());
   }
-  take();
+  take(O_CREAT | O_EXCL);
 }
 
 OutputFolder::~OutputFolder() {
@@ -111,11 +117,19 @@ void OutputFolder::move_away() {
     refuse(path_, "the run in it cannot be moved to '" + moved_to_ + "': " + code.message());
 }
 
-void OutputFolder::take() {
-  list_ = lock_of(list_of(path_), O_RDWR | O_CREAT | O_EXCL | O_APPEND | O_NOFOLLOW);
-  if (list_ < 0 && errno == EEXIST) refuse(path_, owner_of(path_) + " has just begun to fill it");
+/// Goes on with the list that is there.
+void OutputFolder::read_list() {
+  std::ifstream list(list_of(path_));
+  for (std::string name; std::getline(list, name);)
+    if (!name.starts_with(kOwner)) names_.insert(name);
+}
+
+void OutputFolder::take(int flags) {
+  list_ = lock_of(list_of(path_), O_RDWR | O_APPEND | O_NOFOLLOW | flags);
+  if (list_ < 0 && (errno == EEXIST || errno == EWOULDBLOCK))
+    refuse(path_, owner_of(path_) + " is filling it; wait for its end, or choose another with -o");
   if (list_ < 0) refuse(path_, reason_of(errno));
-  const std::string line = "flexmorph, " + own_words() + "\n";
+  const std::string line = kOwner + own_words() + "\n";
   if (write(list_, line.data(), line.size()) != static_cast<ssize_t>(line.size()))
     refuse(path_, "its list cannot be written: " + reason_of(errno));
 }
@@ -144,7 +158,7 @@ FolderLock::FolderLock(const std::string& folder) {
     refuse(folder,
            owner_of(folder) + " is filling it; wait for its end, or choose another with -o");
   if (list_ < 0) refuse(folder, reason_of(errno));
-  const std::string line = "flexmorph, " + own_words() + "\n";
+  const std::string line = kOwner + own_words() + "\n";
   if (ftruncate(list_, 0) != 0 ||
       write(list_, line.data(), line.size()) != static_cast<ssize_t>(line.size()))
     refuse(folder, "its list cannot be written: " + reason_of(errno));

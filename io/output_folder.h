@@ -20,7 +20,9 @@ class OutputFolder {
   /// Takes the folder, which is made where it is missing.
   /// @throws Error (input) when a living process has it (with its number and machine), when it
   ///         holds files but no list, or cannot be made or moved.
-  explicit OutputFolder(std::string path);
+  ///         With Begin::go_on what is in it stays, listed files are those of this one, too.
+  enum class Begin { anew, go_on };
+  explicit OutputFolder(std::string path, Begin begin = Begin::anew);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
@@ -38,7 +40,8 @@ class OutputFolder {
 
  private:
   void make();
-  void take();
+  void take(int flags);
+  void read_list();
   void move_away();
 
   std::string path_, moved_to_;

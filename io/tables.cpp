@@ -6,6 +6,8 @@
 #include <cerrno>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <system_error>
 
 #include "geometry/base.h"
@@ -34,16 +36,31 @@ Cell::Cell(std::string text) : text_(std::move(text)) {
   text_ = quoted + "\"";
 }
 
-CsvWriter::CsvWriter(std::string path, std::span<const std::string> columns)
-    : path_(std::move(path)), n_columns_(columns.size()) {
+CsvWriter::CsvWriter(std::string path, size_t n_columns, int flags)
+    : path_(std::move(path)), n_columns_(n_columns) {
   const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
   std::error_code code;
   if (!folder.empty()) std::filesystem::create_directories(folder, code);
-  file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
+  file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | flags, 0666);
   if (file_ < 0)
     throw Error::numerical(path_ +
                            ": cannot be written: " + std::generic_category().message(errno));
+}
+
+CsvWriter::CsvWriter(std::string path, std::span<const std::string> columns)
+    : CsvWriter(std::move(path), columns.size(), O_TRUNC) {
   row(std::vector<Cell>(columns.begin(), columns.end()));
+}
+
+CsvWriter CsvWriter::go_on(std::string path, size_t n_columns) {
+  CsvWriter out(std::move(path), n_columns, 0);
+  std::ifstream file(out.path_, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  out.size_ = static_cast<off_t>(text.rfind('\n') + 1);  // 0 without any
+  if (::ftruncate(out.file_, out.size_) != 0)
+    throw Error::numerical(out.path_ +
+                           ": cannot be written: " + std::generic_category().message(errno));
+  return out;
 }
 
 CsvWriter::~CsvWriter() {

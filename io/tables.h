@@ -35,6 +35,8 @@ class CsvWriter {
   /// Begins a new file with its header.
   /// @throws Error (numerical) when it cannot be written; row() likewise, whole rows stay.
   CsvWriter(std::string path, std::span<const std::string> columns);
+  /// Goes on with a file that is there, behind its last whole row.
+  static CsvWriter go_on(std::string path, size_t n_columns);
   ~CsvWriter();
   CsvWriter(CsvWriter&& other) noexcept;
   CsvWriter& operator=(CsvWriter&& other) = delete;
@@ -44,6 +46,7 @@ class CsvWriter {
   void row(std::initializer_list<Cell> cells) { row(std::span(cells.begin(), cells.size())); }
 
  private:
+  CsvWriter(std::string path, size_t n_columns, int flags);
   void write(const std::string& line);
   std::string path_;
   size_t n_columns_;

@@ -10,7 +10,7 @@ namespace flexmorph::cases {
 /// Everything a run knows at its end (or at its failure).
 struct RunReport {
   std::string status, message;
-  std::string lost_frames;  ///< what became of them, in words; mostly nothing
+  std::string lost_frames;         ///< what became of them, in words; mostly nothing
   std::optional<Failure> failure;  ///< of a run that failed
   int threads = 1, cycles = 0;
   double seconds_wall = 0, seconds_cpu = 0, peak_memory_bytes = 0;

@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "cases/build/twin.h"
 #include "cases/run/expectations.h"
@@ -25,6 +26,7 @@
 #include "fem/dynamics/side_by_side.h"
 #include "geometry/cpu_time.h"
 #include "io/case_document.h"
+#include "io/case_parser.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
@@ -128,6 +130,31 @@ void judge_by_motion(const Scene& scene, bool condition, RunFolder& folder, Prog
   motions.run();
 }
 
+/// Evaluations of a design, kept in the folder while the run is not done.
+class Memory {
+ public:
+  explicit Memory(RunFolder& folder)
+      : path_(folder.file("evaluations.log")),
+        log_(path_),
+        past_{log_, [&folder](const mmc::RowOfHistory& row) { return folder.has_row(row); }} {}
+
+  mmc::Past* past() { return &past_; }
+  void forget() const {
+    std::error_code none;
+    std::filesystem::remove(path_, none);
+  }
+  /// ", 35 state solves were known"; nothing in a run that began anew.
+  std::string words() const {
+    return counted(static_cast<size_t>(log_.n_known()), "state solve was known",
+                   "state solves were known");
+  }
+
+ private:
+  std::string path_;
+  optim::EvaluationLog log_;
+  mmc::Past past_;
+};
+
 /// The story of a run with designs; fills the report as far as it gets.
 void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress& progress,
                  RunReport& report) {
@@ -152,6 +179,7 @@ void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress
     if (analysed) report.motion = motion.record;
     return std::move(motion.loads);
   };
+  Memory memory(folder);
   std::vector<fem::EslSets> loads;
   mmc::LoopObserver observer;
   observer.loads = [&](int, std::span<const fem::EslSets> sets) {
@@ -170,12 +198,12 @@ void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress
     for (size_t i = 0; i < outcomes.size(); ++i) {
       folder.write_loads(outcomes[i].body, loads[i], &outcomes[i]);
       folder.write_design(report.problems[i], outcomes[i]);
-      progress.say(summary(outcomes[i]));
+      progress.say(summary(outcomes[i]) + memory.words());
     }
   };
   mmc::LoopSettings settings{analysed ? 1 : scene.cycle.max_cycles,
                              scene.cycle.tolerance,
-                             {scene.output.sharp_every, scene.optimizer, condition}};
+                             {scene.output.sharp_every, scene.optimizer, condition, memory.past()}};
   observer.verdict = [&](std::span<const mmc::CycleVerdict> verdicts) {
     report.verdicts.assign(verdicts.begin(), verdicts.end());
     folder.write_cycles(verdicts);
@@ -194,6 +222,7 @@ void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress
   }
 
   if (!analysed) judge_by_motion(scene, condition, folder, progress, report);
+  memory.forget();
 }
 
 /// The story of a plate at rest.
@@ -203,6 +232,7 @@ void run_static(const Scene& scene, bool condition, RunFolder& folder, Progress&
   for (const mmc::BodyProblem& problem : report.problems) folder.write_start(problem);
   mmc::BodyProblem& problem = report.problems.front();
   const std::unique_ptr<mmc::LoadResponse> loads = build_static_loads(scene, problem);
+  Memory memory(folder);
   bool going = true;
   const double most = extent_of(scene).iterations;
   progress.begin("design");
@@ -212,13 +242,15 @@ void run_static(const Scene& scene, bool condition, RunFolder& folder, Progress&
     return go_on();
   };
   const mmc::BodyOutcome outcome = mmc::design_body(
-      problem, *loads, 1, {scene.output.sharp_every, scene.optimizer, condition}, observe, going);
+      problem, *loads, 1, {scene.output.sharp_every, scene.optimizer, condition, memory.past()},
+      observe, going);
   report.cycles = 1;
   report.outcomes = {outcome};
   folder.write_static_loads(*scene.domain, outcome);
   folder.write_design(problem, outcome);
-  progress.say(summary(outcome));
+  progress.say(summary(outcome) + memory.words());
   if (interrupted) throw Interrupted();
+  memory.forget();
 }
 
 void run_scene(const Scene& scene, bool condition, RunFolder& folder, Progress& progress,
@@ -275,6 +307,18 @@ bool is_another_case(std::span<const std::string> overrides) {
   });
 }
 
+/// Is there nothing left to resume?
+/// @throws Error (input) when the run in the folder is that of another case.
+bool is_finished(const std::string& directory, const io::CaseFile& file) {
+  const std::string path = directory + "/run.json";
+  if (!std::filesystem::exists(path)) return false;
+  if (!keeps_case(directory, file))
+    throw Error::input("'" + directory +
+                       "' holds a run of another case, or of this one before it "
+                       "was changed: it cannot be resumed; without --resume it is moved");
+  return nlohmann::json::parse(io::read_text(path)).value("status", "").starts_with("done");
+}
+
 int run_case(const RunOptions& options) {
   const auto wall = std::chrono::steady_clock::now();
   // What cannot be built, or is too large, is refused before a folder exists.
@@ -282,11 +326,18 @@ int run_case(const RunOptions& options) {
   std::string directory = options.directory;
   if (directory.empty()) directory = scene.output.directory;
   if (directory.empty()) directory = "runs/" + scene.name;
-  RunFolder folder(directory, scene, options.threads > 1);
+  if (options.resume && is_finished(directory, file)) {
+    std::printf("%s: finished before\n", directory.c_str());
+    return 0;
+  }
+  RunFolder folder(directory, scene, options.threads > 1,
+                   options.resume ? RunFolder::Begin::go_on : RunFolder::Begin::anew);
   keep_case(file, options.explain, folder);
   end_on_signals();
   Progress progress(options.quiet);
   progress.say(scene.title + " -> " + directory);
+  if (options.resume && scene.designs.empty())
+    progress.say("a motion without a design is not resumed: it starts anew");
   if (!folder.moved_to().empty())
     progress.say("the run that was there is now " + folder.moved_to());
   RunReport report;

@@ -13,6 +13,7 @@ struct RunOptions {
   std::vector<std::string> overrides;  ///< KEY=VALUE
   int threads = 1;
   bool quiet = false;
+  bool resume = false;     ///< go on with a run of the same case in the folder
   bool explain = false;    ///< the case with all its defaults: printed by check, kept by run
   bool condition = false;  ///< estimate the conditions of matrices at the end, for run.json
 };

@@ -2,40 +2,15 @@
 
 #include <cmath>
 
-#include "cases/scene/design/goal.h"
 #include "cases/scene/elements/row.h"
-#include "geometry/cpu_time.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
-namespace {
-
-const std::vector<std::string> kHistoryColumns = {"body",
-                                                  "cycle",
-                                                  "iteration",
-                                                  "evaluations",
-                                                  "scaled_objective",
-                                                  "compliance",
-                                                  "volume",
-                                                  "violation",
-                                                  "kkt",
-                                                  "change",
-                                                  "band",
-                                                  "sharp_compliance",
-                                                  "sharp_volume",
-                                                  "connected",
-                                                  "min_feature"};
-/// Between these and what follows are the responses of further_rows().
-const std::vector<std::string> kHistorySeconds = {"seconds_tdf",       "seconds_factor",
-                                                  "seconds_solve",     "seconds_sensitivity",
-                                                  "seconds_optimizer", "seconds_output"};
 
 std::string numbered(const std::string& stem, int number, const std::string& ending) {
   std::string digits = io::to_text(number);
   return stem + std::string(digits.size() < 5 ? 5 - digits.size() : 0, '0') + digits + ending;
 }
-
-}  // namespace
 
 const std::vector<double>* MotionRecord::column(const std::string& name) const {
   for (const auto* columns : {&observed, &measured, &mechanism, &written})
@@ -59,18 +34,14 @@ double tip_deflection(const fem::Model& model, const fem::Growth& growth, const 
   return Vec2(-std::sin(hub.angle), std::cos(hub.angle)).dot(tip - hub.origin);
 }
 
-RunFolder::RunFolder(std::string path, const Scene& scene, bool beside)
-    : folder_(std::move(path)),
+RunFolder::RunFolder(std::string path, const Scene& scene, bool beside, Begin begin)
+    : folder_(std::move(path), begin),
       scene_(scene),
       iterations_(*this, "design/iterations.pvd"),
       components_(*this, "design/components.pvd"),
       motion_(*this, "motion/motion.pvd"),
       writer_(beside) {
-  if (scene.designs.empty()) return;
-  std::vector<std::string> columns = kHistoryColumns;
-  for (const mmc::ResponseRow* row : further_rows(scene)) columns.push_back(mmc::key_of(*row));
-  columns.insert(columns.end(), kHistorySeconds.begin(), kHistorySeconds.end());
-  history_ = std::make_unique<io::CsvWriter>(folder_.file("history.csv"), columns);
+  if (!scene.designs.empty()) begin_history(begin);
 }
 
 void RunFolder::FrameIndex::add(double time, const std::string& file, int part) {
@@ -96,115 +67,6 @@ std::string RunFolder::lost_frames() {
 }
 
 double RunFolder::take_output_seconds() { return output_seconds_.exchange(0); }
-
-/// VTK files of a design on its way.
-void RunFolder::write_design_frame(const mmc::IterationReport& r) {
-  const double start = thread_seconds();
-  const std::string stem = scene_.designs.size() > 1 ? r.problem.body + "_" : "";
-  const mmc::CellFactors& factors = r.state.factors();
-  // Σ w ½ uᵀ K_cell u: the derivative by the stiffness factor holds it. The energies of loads and
-  // of held growth are added; what they do on each other sums to zero over the cells.
-  VectorXd by_stiffness = -r.value.d_stiffness;
-  if (by_stiffness.size() == 0) by_stiffness.setZero(factors.stiffness.size());  // not solved
-  if (r.value.d_held.size() > 0) by_stiffness += 2 * r.value.d_held;
-  VectorXd shown = r.loads.displacement(factors.stiffness, factors.mass, r.loads.n_loads() - 1);
-  output_seconds_ += thread_seconds() - start;
-  // Whatever is shown is copied: it is written while the next iteration goes on.
-  write_frame([this, image = numbered("iteration_" + stem, rows_, ".vti"),
-               lines = numbered("components_" + stem, rows_, ".vtp"), row = rows_,
-               grid = r.problem.grid, mass = factors.mass, stiffness = factors.stiffness,
-               energy = VectorXd(0.5 * by_stiffness.cwiseProduct(factors.stiffness)),
-               phi = VectorXd(r.state.phi()), displacement = std::move(shown),
-               components = r.state.components(),
-               min_half_thickness = r.problem.stages.back().min_half_thickness] {
-    const double clock = thread_seconds();
-    const auto view = [](const VectorXd& v) {
-      return std::span<const double>(v.data(), static_cast<size_t>(v.size()));
-    };
-    const io::Field cells[] = {{"density", view(mass)},
-                               {"stiffness_factor", view(stiffness)},
-                               {"strain_energy", view(energy)}};
-    const io::Field points[] = {{"tdf", view(phi)}, {"displacement", view(displacement), 2}};
-    io::write_image_data(folder_.file("design/" + image), grid, cells, points);
-    iterations_.add(row, image);
-    io::write_components(folder_.file("design/" + lines), components, min_half_thickness);
-    components_.add(row, lines);
-    output_seconds_ += thread_seconds() - clock;
-  });
-}
-
-void RunFolder::add_iteration(const mmc::IterationReport& r) {
-  ++rows_;
-  const Output& wish = scene_.output;
-  if (wish.vtk && wish.design_every > 0 &&
-      (r.iteration == 1 || r.iteration % wish.design_every == 0))
-    write_design_frame(r);
-  History& h = history_of(r.problem.body);
-  h.row.push_back(static_cast<double>(h.row.size() + 1));
-  h.compliance.push_back(r.state.compliance());
-  h.volume.push_back(r.state.volume());
-  h.kkt.push_back(r.iterate.kkt);
-  if (r.sharp) {
-    h.sharp_row.push_back(h.row.back());
-    h.sharp_compliance.push_back(r.sharp->compliance);
-  }
-  add_events(r);
-  write_history_row(r);
-}
-
-void RunFolder::write_history_row(const mmc::IterationReport& r) {
-  io::Cell sharp_c, sharp_v, connected, min_feature;
-  if (r.sharp) {
-    sharp_c = r.sharp->compliance;
-    sharp_v = r.sharp->volume;
-    connected = r.sharp->connectivity.connected;
-    if (r.sharp->features && std::isfinite(r.sharp->features->solid))
-      min_feature = r.sharp->features->solid;
-  }
-  const mmc::LoadResponse::Seconds s = r.state.seconds();
-  const auto number = [](double v) { return std::isfinite(v) ? io::Cell(v) : io::Cell(); };
-  std::vector<io::Cell> row = {r.problem.body,
-                               r.cycle,
-                               r.iteration,
-                               r.evaluations,
-                               r.iterate.response->f,
-                               number(r.state.compliance()),
-                               r.state.volume(),
-                               r.iterate.violation,
-                               r.iterate.kkt,
-                               r.iterate.change,
-                               r.state.band() / r.problem.grid.dx(),
-                               sharp_c,
-                               sharp_v,
-                               connected,
-                               min_feature};
-  for (const mmc::ResponseRow* further : further_rows(scene_)) {
-    const std::optional<VectorXd> values = r.state.values(*further);
-    row.push_back(values ? io::Cell(values->maxCoeff()) : io::Cell());
-  }
-  row.insert(row.end(), {r.state.seconds_tdf(), s.factor, s.solve, s.sensitivity, r.iterate.seconds,
-                         take_output_seconds()});
-  history_->row(row);
-}
-
-RunFolder::History& RunFolder::history_of(const std::string& body) {
-  for (History& h : histories_)
-    if (h.body == body) return h;
-  histories_.emplace_back().body = body;
-  return histories_.back();
-}
-
-void RunFolder::add_events(const mmc::IterationReport& r) {
-  if (r.events.empty()) return;
-  if (!events_) {
-    const std::vector<std::string> columns = {"body",  "cycle",     "iteration",
-                                              "event", "component", "components"};
-    events_ = std::make_unique<io::CsvWriter>(folder_.file("events.csv"), columns);
-  }
-  for (const mmc::ComponentEvent& e : r.events)
-    events_->row(
-        {r.problem.body, r.cycle, r.iteration, to_string(e.kind), e.component + 1, e.n_components});
-}
 
 void RunFolder::write_path(const PathRecord& path) {
   std::vector<std::string> columns = {"step", "load_factor"};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <deque>
 #include <memory>
 #include <string>
 #include <vector>
@@ -61,6 +62,9 @@ struct PathRecord {
 /// Tip deflection: coordinate across the hub's axis of the middle of the free end [m].
 double tip_deflection(const fem::Model& model, const fem::Growth& growth, const fem::State& x);
 
+/// "frame_00012.vti".
+std::string numbered(const std::string& stem, int number, const std::string& ending);
+
 /// Name of the file with the components of a body's result.
 std::string components_name(const Scene& scene, const std::string& body);
 
@@ -71,7 +75,8 @@ class RunFolder {
   /// Takes the folder. A run that is in it already is moved, whole.
   /// @param beside  files for ParaView are written by a thread of their own, while the run goes on
   /// @throws Error (input) as io::OutputFolder: taken, or not a run's.
-  RunFolder(std::string path, const Scene& scene, bool beside = false);
+  using Begin = io::OutputFolder::Begin;
+  RunFolder(std::string path, const Scene& scene, bool beside = false, Begin begin = Begin::anew);
 
   const std::string& path() const { return folder_.path(); }
   /// Where the run is now that was here before; empty where there was none.
@@ -85,6 +90,10 @@ class RunFolder {
 
   /// One design iteration: a row of history.csv, and the VTK files the scene asks for.
   void add_iteration(const mmc::IterationReport& report);
+  /// Of a folder that is gone on with: is this row in its history, with all frames that belong to
+  /// it? It counts as written then. Rows are asked for in their order; the first one that is not
+  /// there ends those that are.
+  bool has_row(const mmc::RowOfHistory& row);
   /// CPU seconds spent on files since the last call; those of files that are written beside the run
   /// when they are done.
   double take_output_seconds();
@@ -140,7 +149,13 @@ class RunFolder {
                   std::span<const io::Field> points, double time, int part);
   /// Does the task, now or beside the run; a frame that cannot be written is counted.
   void write_frame(std::function<void()> task);
-  void add_events(const mmc::IterationReport& report);
+  void add_events(const std::string& body, int cycle, int iteration,
+                  std::span<const mmc::ComponentEvent> events);
+  void begin_history(Begin begin);
+  void keep_row(const mmc::RowOfHistory& row, const std::vector<std::string>& old);
+  void forget_old_rows();
+  bool wants_frame(int iteration) const;
+  bool has_frames(const mmc::RowOfHistory& row) const;
   void write_design_frame(const mmc::IterationReport& report);
   void write_history_row(const mmc::IterationReport& report);
 
@@ -162,6 +177,8 @@ class RunFolder {
   int lost_frames_ = 0;  // of the writer, as the next
   std::string why_lost_;
   std::vector<History> histories_;
+  std::deque<std::vector<std::string>> old_rows_;    // of a history that is gone on with
+  std::vector<std::vector<std::string>> kept_rows_;  // of these what stays
   std::vector<DesignPictures> pictures_;
   int rows_ = 0, motion_frames_ = 0;
   std::vector<io::SurfaceFrame> shapes_;

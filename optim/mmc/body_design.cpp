@@ -150,7 +150,10 @@ class Designer {
     Whole whole(parts_);
     const auto watch = [&](const optim::Iterate& iterate) { return see(whole, iterate); };
     Candidate out;
-    out.result = optim::make_optimizer(settings)->minimize(whole.problem(), watch);
+    std::optional<optim::RecordedProblem> recorded;
+    if (settings_.past) recorded.emplace(whole.problem(), settings_.past->log);
+    optim::Problem& problem = recorded ? *recorded : whole.problem();
+    out.result = optim::make_optimizer(settings)->minimize(problem, watch);
     for (size_t k = 0; k < parts_.size(); ++k) {
       out.designs.push_back(parts_[k].problem.design);
       out.changes.push_back(
@@ -287,16 +290,13 @@ class Designer {
     for (size_t k = 0; k < parts_.size(); ++k) {
       MmcProblem& state = whole.states[k];
       const VectorXd x = whole.part_of(*iterate.x, k);
-      if (state.x() != x) state.evaluate(x);  // a trial came after it
+      if (state.x() != x) state.recall(x, {});  // a trial came after it
       see(parts_[k], state, iterate, k == 0);
     }
     return going_ && !changed_;
   }
 
   void see(Part& p, MmcProblem& state, const optim::Iterate& iterate, bool first) {
-    SharpDesign sharp;
-    const bool wanted = settings_.sharp_every > 0 && iterations_ % settings_.sharp_every == 0;
-    if (wanted) sharp = sharp_design(p.problem, state.components(), p.loads);
     const bool look = p.problem.drop_every > 0 && iterations_ % p.problem.drop_every == 0;
     std::span<const ComponentEvent> events;
     p.next = p.problem.design;
@@ -308,6 +308,14 @@ class Designer {
       p.next.move_to(state.design_part(state.x()));
     }
     p.outcome.events.insert(p.outcome.events.end(), events.begin(), events.end());
+    const Past* past = settings_.past;
+    if (past && past->log.knew_last() &&
+        past->has_row({p.problem.body, cycle_, iterations_, events}))
+      return;
+    if (!state.is_solved()) state.evaluate(VectorXd(state.x()));
+    SharpDesign sharp;
+    const bool wanted = settings_.sharp_every > 0 && iterations_ % settings_.sharp_every == 0;
+    if (wanted) sharp = sharp_design(p.problem, state.components(), p.loads);
     optim::Iterate own = iterate;
     own.x = &state.x();
     if (!first) own.seconds = 0;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "optim/evaluation_log.h"
 #include "optim/mmc/body_problem.h"
 #include "optim/mmc/clean_up.h"
 #include "optim/mmc/turnover.h"
@@ -50,10 +51,25 @@ struct BodyOutcome {
   double design_change = 0;  ///< see esl_loop(): between the designs before and after the cycle
 };
 
+/// A row of the history that an earlier run may have written.
+struct RowOfHistory {
+  const std::string& body;
+  int cycle, iteration;
+  std::span<const ComponentEvent> events;  ///< after it
+};
+
+/// What an earlier run of the same case left, which is gone through again without solving states.
+struct Past {
+  optim::EvaluationLog& log;
+  /// Is the row on record, with all that belongs to it? It is not reported again then.
+  std::function<bool(const RowOfHistory&)> has_row;
+};
+
 struct DesignSettings {
   int sharp_every = 25;       ///< iterations between sharp evaluations; 0: only at the end
   optim::Settings optimizer;  ///< max_iterations 0: designs are analysed, at their last band
   bool condition = false;     ///< estimate it at the end (costs a factorization)
+  Past* past = nullptr;       ///< where evaluations are kept, and may be known from
 };
 
 /// Looks on; false stops the run after the current iteration.

@@ -88,9 +88,18 @@ void MmcProblem::solve(const VectorXd& x) {
   volume_ = factors_.mass.sum() / ersatz_.n_domain_cells();
   seconds_tdf_ += cpu_seconds() - clock;
 
+  solved_ = false;  // should it fail
   state_.begin();
   const Seen seen{factors_, components_, state_};
   for (Entry& e : entries_) e.response->evaluate(seen, e.values);
+  solved_ = true;
+}
+
+void MmcProblem::recall(const VectorXd& x, const VectorXd& memory) {
+  x_ = x;
+  design_.components(design_part(x), components_);
+  solved_ = false;
+  if (memory.size() > 0) lowest_ = memory[0];
 }
 
 /// Derivatives by cell factors and by components -> by components, of many values by the variables

@@ -53,6 +53,11 @@ class MmcProblem final : public optim::Problem {
   /// Does one piece of material, blurred links included, join all places, or does the design carry
   /// its loads about as well as the best one all the same?
   bool acceptable(const VectorXd& x) override;
+  /// The compliance that acceptable() compares with (1).
+  VectorXd memory() const override { return VectorXd::Constant(1, lowest_); }
+  /// Components are those of x; values and factors are not known until evaluate().
+  void recall(const VectorXd& x, const VectorXd& memory) override;
+  bool is_solved() const { return solved_; }  ///< are values those of x()?
 
   const Goal& goal() const { return goal_; }
   /// First constraint of a limit.
@@ -110,6 +115,7 @@ class MmcProblem final : public optim::Problem {
   VectorXd x_, d_stiffness_, d_mass_, d_h_, d_eroded_, zero_;
   MatrixXd many_by_h_, many_by_eroded_;
   double volume_ = 0, seconds_tdf_ = 0;
+  bool solved_ = false;
   double lowest_ = std::numeric_limits<double>::infinity();  // compliance of acceptable designs
 };
 

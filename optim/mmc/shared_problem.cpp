@@ -87,4 +87,19 @@ bool SharedProblem::acceptable(const VectorXd& x) {
   return true;
 }
 
+VectorXd SharedProblem::memory() const {
+  VectorXd out(static_cast<Eigen::Index>(parts_.size()));
+  for (size_t b = 0; b < parts_.size(); ++b)
+    out[static_cast<Eigen::Index>(b)] = parts_[b].problem->memory()[0];
+  return out;
+}
+
+void SharedProblem::recall(const VectorXd& x, const VectorXd& memory) {
+  for (size_t b = 0; b < parts_.size(); ++b) {
+    VectorXd own;
+    if (memory.size() > 0) own = memory.segment(static_cast<Eigen::Index>(b), 1);
+    parts_[b].problem->recall(part_of(x, b), own);
+  }
+}
+
 }  // namespace flexmorph::mmc

@@ -40,6 +40,9 @@ class SharedProblem final : public optim::Problem {
   optim::Response evaluate(const VectorXd& x) override;
   /// Only when every body's design is.
   bool acceptable(const VectorXd& x) override;
+  /// Those of the bodies, one after the other.
+  VectorXd memory() const override;
+  void recall(const VectorXd& x, const VectorXd& memory) override;
 
   /// The variables of one body.
   VectorXd part_of(const VectorXd& x, size_t body) const {

@@ -1,0 +1,190 @@
+// Evaluations that outlive their process: an optimizer that was killed goes on bit for bit,
+// whatever it is, and a log that is torn, damaged or of another problem costs evaluations, never a
+// result.
+#include "optim/evaluation_log.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "optim/optimizer.h"
+#include "tests/io/scratch.h"
+
+namespace flexmorph::optim {
+namespace {
+
+struct Killed {};
+
+/// A valley with a wall and a budget: Rosenbrock's function of 6 variables in pairs, its sum
+/// bounded, states near the origin that cannot be solved. It remembers its least value.
+class Valley final : public Problem {
+ public:
+  explicit Valley(int dies_after = 1 << 30, double shift = 0) : left_(dies_after), shift_(shift) {}
+  int n_variables() const override { return 6; }
+  int n_constraints() const override { return 1; }
+  VectorXd lower() const override { return VectorXd::Constant(6, -2); }
+  VectorXd upper() const override { return VectorXd::Constant(6, 2); }
+  VectorXd start() const override { return VectorXd::Constant(6, -0.9); }
+  Response evaluate(const VectorXd& x) override {
+    if (left_-- == 0) throw Killed();
+    ++solved;
+    if (x.norm() < 0.3) throw Error::numerical("no state near the origin");
+    Response out;
+    out.df.setZero(6);
+    for (int k = 0; k < 6; k += 2) {
+      const double a = 1 - x[k] + shift_, b = x[k + 1] - x[k] * x[k];
+      out.f += 0.1 * (a * a + 5 * b * b);
+      out.df[k] += 0.1 * (-2 * a - 20 * b * x[k]);
+      out.df[k + 1] += 0.1 * 10 * b;
+    }
+    out.g = VectorXd::Constant(1, (x.sum() - 4.5) / 6);
+    out.dg = MatrixXd::Constant(1, 6, 1.0 / 6);
+    value_ = out.f;
+    return out;
+  }
+  bool acceptable(const VectorXd&) override {
+    const bool good = value_ < 5 * least_;
+    if (good) least_ = std::min(least_, value_);
+    return good;
+  }
+  VectorXd memory() const override { return VectorXd::Constant(1, least_); }
+  void recall(const VectorXd&, const VectorXd& memory) override {
+    if (memory.size() > 0) least_ = memory[0];
+  }
+  int solved = 0;
+
+ private:
+  int left_;
+  double shift_, value_ = 0, least_ = 1e300;
+};
+
+Settings settings_of(const std::string& name) {
+  Settings out;
+  out.name = name;
+  out.max_iterations = 25;
+  out.move_limit = 0.2;
+  return out;
+}
+
+/// What a run came to, with all its rows, as bytes.
+struct Seen {
+  std::vector<double> numbers;
+  int solved = 0, known = 0;
+};
+
+Seen run(const std::string& name, const std::string& path, int dies_after = 1 << 30,
+         double shift = 0) {
+  Valley valley(dies_after, shift);
+  Seen out;
+  EvaluationLog log(path);
+  RecordedProblem problem(valley, log);
+  const auto observe = [&](const Iterate& it) {
+    out.numbers.insert(out.numbers.end(), it.x->data(), it.x->data() + it.x->size());
+    out.numbers.insert(out.numbers.end(), {it.response->f, it.kkt, it.violation, it.change});
+    return true;
+  };
+  const Result result = make_optimizer(settings_of(name))->minimize(problem, observe);
+  out.numbers.insert(out.numbers.end(), result.x.data(), result.x.data() + result.x.size());
+  out.solved = valley.solved;
+  out.known = log.n_known();
+  return out;
+}
+
+void expect_same(const Seen& a, const Seen& b) {
+  ASSERT_EQ(a.numbers.size(), b.numbers.size());
+  EXPECT_EQ(std::memcmp(a.numbers.data(), b.numbers.data(), sizeof(double) * a.numbers.size()), 0);
+}
+
+class LoggedOptimizer : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(LoggedOptimizer, GoesOnBitForBit) {
+  const Scratch scratch;
+  const Seen whole = run(GetParam(), scratch / "whole");
+  ASSERT_GT(whole.solved, 10);
+  for (const int dies_after : {0, 1, 4, 9}) {
+    const std::string path = scratch / ("after_" + std::to_string(dies_after));
+    // Ipopt's callbacks let nothing through: the run ends by itself there, having failed.
+    try {
+      run(GetParam(), path, dies_after);
+    } catch (...) {
+    }
+    const Seen again = run(GetParam(), path);
+    expect_same(again, whole);
+    EXPECT_EQ(again.known, dies_after);
+    EXPECT_EQ(again.solved + again.known, whole.solved);
+  }
+  // Done, it is all known.
+  const Seen once_more = run(GetParam(), scratch / "whole");
+  expect_same(once_more, whole);
+  EXPECT_EQ(once_more.solved, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, LoggedOptimizer, ::testing::ValuesIn(optimizer_names()),
+                         [](const auto& info) {
+                           std::string out = info.param;
+                           std::replace_if(
+                               out.begin(), out.end(), [](char c) { return !std::isalnum(c); },
+                               '_');
+                           return out;
+                         });
+
+/// All bytes of a log after `kept` of whole records.
+TEST(EvaluationLog, EndsWhereItIsTornOrDamaged) {
+  const Scratch scratch;
+  const std::string path = scratch / "log";
+  const Seen whole = run("mma", path);
+  const std::string bytes = contents_of(path);
+  const size_t record = (bytes.size() - 24) / static_cast<size_t>(whole.solved);
+  for (const size_t at : {size_t{0}, size_t{10}, size_t{24}, 24 + record / 2, 24 + 5 * record + 3,
+                          bytes.size() - 1}) {
+    scratch.write("log", bytes.substr(0, at));
+    expect_same(run("mma", path), whole);
+    EXPECT_EQ(contents_of(path), bytes) << "torn at " << at;
+    std::string damaged = bytes;
+    damaged[at] = static_cast<char>(damaged[at] ^ 0x10);
+    scratch.write("log", damaged);
+    const Seen mended = run("mma", path);
+    expect_same(mended, whole);
+    EXPECT_LT(mended.known, whole.solved);
+    EXPECT_EQ(contents_of(path), bytes) << "damaged at " << at;
+  }
+}
+
+// The answers of another problem are not those of this one once its iterates part.
+TEST(EvaluationLog, KnowsOnlyTheVeryDesign) {
+  const Scratch scratch;
+  EvaluationLog first(scratch / "log");
+  Evaluation known;
+  known.x = VectorXd::Constant(2, 0.5);
+  known.response.f = 3;
+  known.response.df = known.x;
+  known.acceptable = false;
+  known.memory = VectorXd::Constant(1, -0.0);
+  first.append(known);
+  known.x[1] = 0.25;
+  known.failure = "no state";
+  first.append(known);
+
+  EvaluationLog again(scratch / "log");
+  const auto found = again.next(VectorXd::Constant(2, 0.5));
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(found->response.f, 3);
+  EXPECT_FALSE(found->acceptable);
+  EXPECT_TRUE(std::signbit(found->memory[0]));
+  EXPECT_TRUE(again.knew_last());
+  EXPECT_FALSE(again.next(VectorXd::Constant(2, std::nextafter(0.5, 1))).has_value());
+  EXPECT_FALSE(again.knew_last());
+  EXPECT_FALSE(again.next(known.x).has_value());  // what followed is dropped
+  EvaluationLog third(scratch / "log");
+  EXPECT_TRUE(third.next(VectorXd::Constant(2, 0.5)).has_value());
+  EXPECT_FALSE(third.next(known.x).has_value());
+}
+
+TEST(EvaluationLog, ThatCannotBeWrittenSaysSo) {
+  EXPECT_THROW(EvaluationLog("/proc/no_such_folder/log"), Error);
+  EXPECT_THROW(EvaluationLog("/dev/full"), Error);
+}
+
+}  // namespace
+}  // namespace flexmorph::optim
