@@ -35,6 +35,8 @@ Child child_of(const StudyOptions& options, const Variant& variant) {
   out.log = folder + ".log";
   out.words = {"run",       options.case_name,           "-o", folder, "--quiet",
                "--threads", io::to_text(options.threads)};
+  // What was killed goes on; what was changed begins anew, beside it.
+  if (keeps_case(folder, case_of(options, variant))) out.words.emplace_back("--resume");
   for (const std::string& change : overrides_of(options, variant)) {
     out.words.emplace_back("--set");
     out.words.push_back(change);
