@@ -6,10 +6,10 @@
 #include <cctype>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <tuple>
 
 #include "geometry/base.h"
+#include "io/case_limits.h"
 #include "io/files.h"
 
 namespace flexmorph::io {
@@ -23,11 +23,20 @@ std::string place_in(const toml::source_position& at) {
       .append(std::to_string(at.column));
 }
 
+std::vector<bool> plain_lines(const std::vector<std::string>& lines) {
+  std::vector<bool> out;
+  for (const std::string& line : lines)
+    out.push_back(std::all_of(line.begin(), line.end(),
+                              [](char c) { return static_cast<unsigned char>(c) < 128; }));
+  return out;
+}
+
 /// The source behind a tree: its lines, and what it is called in messages.
 struct Source {
   std::vector<std::string> lines;
   std::string name;
   bool is_option;
+  std::vector<bool> plain = plain_lines(lines);  // of ASCII only; found once, lines may be long
 
   std::string place(const toml::source_region& region) const {
     if (is_option || !region.begin) return name;
@@ -40,9 +49,7 @@ struct Source {
       return "";
     const std::string& line = lines[region.begin.line - 1];
     // Columns count characters, not bytes: only plain text can be cut by them.
-    const bool plain = std::all_of(line.begin(), line.end(),
-                                   [](char c) { return static_cast<unsigned char>(c) < 128; });
-    if (!plain || region.end.column <= region.begin.column) return "";
+    if (!plain[region.begin.line - 1] || region.end.column <= region.begin.column) return "";
     std::string value =
         line.substr(region.begin.column - 1, region.end.column - region.begin.column);
     value.erase(value.find_last_not_of(" \t\r") + 1);
@@ -133,7 +140,14 @@ std::string read_text(const std::string& path) {
   if (std::filesystem::is_directory(status))
     throw Error::input(path + ": a directory; a case is one TOML file");
   std::ifstream in(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(in), {}};
+  // A case may come from a pipe, and what comes from a device has no end.
+  constexpr size_t kMostBytes = 100'000'000;
+  std::string text, block(size_t{1} << 16U, '\0');
+  while (in.read(block.data(), static_cast<std::streamsize>(block.size())) || in.gcount() > 0) {
+    text.append(block, 0, static_cast<size_t>(in.gcount()));
+    if (text.size() > kMostBytes)
+      throw Error::input(path + ": a case is one TOML file of at most 100 MB; here is more");
+  }
   if (!in.is_open() || in.bad()) throw Error::input(path + ": cannot be read");
   return text;
 }
@@ -184,6 +198,7 @@ std::string syntax_text(const toml::parse_error& e, const std::string& text) {
 }  // namespace
 
 CaseNode parse_case(const std::string& text, const std::string& file) {
+  check_case_limits(text, file);
   try {
     const toml::table root = toml::parse(text, file);
     CaseNode node = convert(root, {lines_of(text), file, false});
@@ -200,6 +215,7 @@ CaseNode parse_option(const std::string& value, const std::string& option) {
                     value != "true" && value != "false" && value != "inf" && value != "nan";
   std::string text = "value = ";
   text += word ? in_quotes(value) : value;
+  check_case_limits(text, option);
   try {
     const toml::table root = toml::parse(text, option);
     if (root.size() != 1) throw Error::input(option + ": one value at a time");

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 
@@ -72,6 +73,12 @@ std::vector<double> CsvTable::numbers(const std::string& column) const {
 }
 
 CsvTable read_csv(const std::string& path) {
+  // A pipe or a device may never end, or never begin.
+  std::error_code code;
+  const auto status = std::filesystem::status(path, code);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    throw Error::input(path + ": a table is read from a regular file, not from a " +
+                       (std::filesystem::is_directory(status) ? "folder" : "pipe or device"));
   std::ifstream file(path);
   if (!file) throw Error::input(path + ": cannot be read");
   CsvTable out;

@@ -13,12 +13,12 @@
 
 #include "geometry/base.h"
 #include "io/files.h"
+#include "io/formula_operations.h"
+#include "io/formula_size.h"
 #include "io/formula_words.h"
 
 namespace flexmorph::io {
 namespace {
-
-constexpr size_t kMostOperations = 8192;
 
 /// What GiNaC says, without the place in its own source and its name.
 std::string words_of(const std::exception& e) {
@@ -49,6 +49,7 @@ size_t place_of(std::istringstream& stream, const DecimalFormula& decimal,
 GiNaC::ex parsed(const std::string& text, const std::map<std::string, double>& constants,
                  const GiNaC::realsymbol& t) {
   check_formula_words(text, constants);
+  check_formula_size(text);
   GiNaC::symtab names = {{"t", t}, {"pi", GiNaC::Pi}};
   for (const auto& [name, value] : constants) names[name] = GiNaC::numeric(value);
   const DecimalFormula decimal(text);
@@ -63,16 +64,6 @@ GiNaC::ex parsed(const std::string& text, const std::map<std::string, double>& c
     refuse_formula(text, words_of(e));
   }
 }
-
-enum class Op { constant, time, add, multiply, whole_power, power, call, atan2 };
-
-struct Operation {
-  Op op;
-  int a = 0, b = 0;   // operations whose results it takes
-  double number = 0;  // constant
-  int exponent = 0;   // whole_power
-  FormulaFunction call = nullptr;
-};
 
 double whole_power(double x, int n) {
   double out = 1, square = n < 0 ? 1 / x : x;
@@ -108,9 +99,7 @@ class Translator {
 
  private:
   int push(const Operation& operation) {
-    if (operations.size() == kMostOperations)
-      refuse_formula(text_, "it is too long: value, rate and acceleration take more than " +
-                                std::to_string(kMostOperations) + " operations");
+    if (operations.size() == kMostOperations) refuse_as_too_long(text_);
     operations.push_back(operation);
     return static_cast<int>(operations.size()) - 1;
   }
@@ -225,6 +214,35 @@ class Translator {
   std::map<GiNaC::ex, std::uint64_t, GiNaC::ex_is_less> marks_;
 };
 
+/// Nodes of an expression and of its derivatives as GiNaC writes them, at most.
+struct Sizes {
+  double of_value = 1, of_rate = 0, of_acceleration = 0;
+};
+
+/// More than this is not differentiated as an expression: the derivatives of a product of n factors
+/// have n² and n³ of them.
+constexpr double kMostSymbolic = 20'000;
+
+Sizes size_of(const GiNaC::ex& e, const GiNaC::realsymbol& t) {
+  if (e.is_equal(t)) return {1, 1, 1};
+  Sizes out;
+  double moving = 0;  // operands that depend on time
+  for (size_t i = 0; i < e.nops(); ++i) {
+    const Sizes part = size_of(e.op(i), t);
+    out.of_value += part.of_value;
+    out.of_rate += part.of_rate;
+    out.of_acceleration += part.of_acceleration;
+    moving += part.of_rate > 0 ? 1 : 0;
+  }
+  if (moving == 0 || GiNaC::is_a<GiNaC::add>(e)) return out;
+  // Each moving operand: all others times its own derivative, of a function its derivative too.
+  constexpr double kOfFunction = 5;
+  const double factors = moving + (GiNaC::is_a<GiNaC::mul>(e) ? 0 : 1);
+  out.of_acceleration += factors * (factors * (out.of_value + kOfFunction) + 2 * out.of_rate);
+  out.of_rate += factors * (out.of_value + kOfFunction);
+  return out;
+}
+
 }  // namespace
 
 Formula::Formula(std::string text, const std::map<std::string, double>& constants)
@@ -239,9 +257,14 @@ Formula::Formula(std::string text, const std::map<std::string, double>& constant
   auto program = std::make_shared<Program>();
   Translator translator(text_, t);
   try {
-    const GiNaC::ex rate = value.diff(t), acceleration = rate.diff(t);
-    program->results = {translator.translate(value), translator.translate(rate),
-                        translator.translate(acceleration)};
+    if (size_of(value, t).of_acceleration > kMostSymbolic) {
+      const int result = translator.translate(value);
+      program->results = append_derivatives(text_, result, translator.operations);
+    } else {
+      const GiNaC::ex rate = value.diff(t), acceleration = rate.diff(t);
+      program->results = {translator.translate(value), translator.translate(rate),
+                          translator.translate(acceleration)};
+    }
   } catch (const Error&) {
     throw;
   } catch (const std::exception& e) {

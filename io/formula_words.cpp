@@ -10,7 +10,8 @@ namespace flexmorph::io {
 namespace {
 
 constexpr size_t kMostCharacters = 10'000;
-constexpr int kDeepest = 100;
+constexpr int kDeepest = 100;   // parentheses
+constexpr int kMostSigns = 10;  // in a row: each of them is one call of GiNaC's parser
 
 bool is_function(const std::string& name) {
   return name == "atan2" || formula_functions().contains(name);
@@ -54,9 +55,16 @@ void refuse_formula(const std::string& text, size_t position, const std::string&
 void check_formula_words(const std::string& text, const std::map<std::string, double>& constants) {
   if (text.size() > kMostCharacters)
     throw Error::input("a formula has at most " + std::to_string(kMostCharacters) + " characters");
-  int depth = 0;
+  int depth = 0, signs = 0;
   for (size_t i = 0; i < text.size();) {
     const size_t start = i;
+    const char c = text[i];
+    if (c == '+' || c == '-')
+      ++signs;
+    else if (c != ' ' && c != '\t' && c != '\n')
+      signs = 0;
+    if (signs > kMostSigns)
+      refuse_formula(text, start, "more than " + std::to_string(kMostSigns) + " signs in a row");
     if (is_digit(text[i]) || text[i] == '.') {
       i = end_of_number(text, i);
       double value = 0;

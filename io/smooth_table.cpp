@@ -15,6 +15,10 @@ using Spline = Eigen::Spline<double, 1, Eigen::Dynamic>;
 
 constexpr size_t kOrder = 6;  // coefficients of a polynomial of degree 5
 
+// Of the length of the table: closer times fall together when they are scaled to [0, 1], or have so
+// few digits left between them that no derivative is worth its name.
+constexpr double kClosest = 1e-11;
+
 void check(std::span<const double> times, std::span<const double> values) {
   if (times.size() != values.size())
     throw Error::input("a table has as many times as values: " + std::to_string(times.size()) +
@@ -29,6 +33,14 @@ void check(std::span<const double> times, std::span<const double> values) {
       throw Error::input(row + "times increase, but " + to_text(times[i]) + " s follows " +
                          to_text(times[i - 1]) + " s");
   }
+  const double length = times.back() - times.front();
+  if (!std::isfinite(length)) throw Error::input("the times of the table span more than a number");
+  for (size_t i = 1; i < times.size(); ++i)
+    if (times[i] - times[i - 1] < kClosest * length)
+      throw Error::input("row " + std::to_string(i + 1) + " of the table: " + to_text(times[i]) +
+                         " s follows " + to_text(times[i - 1]) +
+                         " s; between two rows lies at least 1e-11 of the whole, here " +
+                         to_text(kClosest * length, 3) + " s");
 }
 
 /// Coefficients of the spline with these knots that takes the values at u.
@@ -84,6 +96,10 @@ SmoothTable::SmoothTable(std::span<const double> times, std::span<const double> 
     }
   }
   breaks_.push_back(times.back());
+  if (!std::all_of(coefficients_.begin(), coefficients_.end(),
+                   [](double c) { return std::isfinite(c); }))
+    throw Error::input("no smooth function goes through the table: its values are too large for " +
+                       std::string("the distances of its times"));
 }
 
 Jet SmoothTable::operator()(double t) const {

@@ -111,6 +111,12 @@ TEST(SmoothTable, RefusesWhatIsNoTable) {
   const double nan = std::nan("");
   EXPECT_TRUE(contains(complaint({0, 1, 2}, {0, 1, 2}), "at least 4 points, not 3"));
   EXPECT_TRUE(contains(complaint({0, 1, 2, 3}, {0, 1, 2}), "as many times as values: 4 and 3"));
+  // Times so uneven that those in front are one number in parts of the whole, and values that
+  // leave no room for a derivative.
+  EXPECT_TRUE(contains(complaint({0, 1, 2, 3, 4, 5, 1e308}, {0, 1, 2, 3, 4, 5, 6}),
+                       "row 2 of the table: 1 s follows 0 s; between two rows lies at least"));
+  EXPECT_TRUE(contains(complaint({-1e308, 0, 1, 1e308}, {0, 1, 2, 3}), "span more than a number"));
+  EXPECT_TRUE(contains(complaint({0, 1, 2, 3}, {0, 1e308, -1e308, 1e308}), "no smooth function"));
   EXPECT_TRUE(
       contains(complaint({0, 1, 1, 3}, {0, 1, 2, 3}), "row 3 of the table: times increase"));
   EXPECT_TRUE(

@@ -3,6 +3,7 @@
 #include "io/tables.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <charconv>
 #include <cmath>
@@ -122,6 +123,27 @@ TEST(Files, AppearWholeAndReplaceOldOnes) {
   EXPECT_EQ(contents_of(path), std::string("new\0bytes", 9));
   EXPECT_FALSE(std::filesystem::exists(path + ".tmp"));
   EXPECT_THROW(write_file(path + "/below_a_file", ""), Error);
+}
+
+// A pipe that nobody writes to, a device that never ends: reading them would take for ever.
+TEST(Csv, IsReadFromRegularFiles) {
+  const Scratch scratch;
+  const std::string pipe = scratch / "pipe.csv";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const auto complaint = [](const std::string& path) -> std::string {
+    try {
+      read_csv(path);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(complaint(pipe),
+            pipe + ": a table is read from a regular file, not from a pipe or device");
+  EXPECT_EQ(complaint("/dev/zero"),
+            "/dev/zero: a table is read from a regular file, not from a pipe or device");
+  EXPECT_TRUE(contains(complaint(scratch / "."), "not from a folder"));
+  EXPECT_TRUE(contains(complaint(scratch / "none.csv"), "cannot be read"));
 }
 
 TEST(Text, OfNumbers) {

@@ -1,0 +1,69 @@
+// What a recursive parser of TOML would follow into the ground is refused with line and limit; what
+// only looks like it, in strings and comments, is not.
+#include "io/case_limits.h"
+
+#include "geometry/base.h"
+#include "io/case_parser.h"
+#include "tests/io/scratch.h"
+
+namespace flexmorph::io {
+namespace {
+
+std::string repeated(const std::string& part, int n) {
+  std::string out;
+  for (int i = 0; i < n; ++i) out += part;
+  return out;
+}
+
+std::string complaint(const std::string& text) {
+  try {
+    parse_case(text, "a.toml");
+  } catch (const Error& e) {
+    EXPECT_EQ(e.kind(), Error::Kind::input);
+    return e.what();
+  }
+  return "";
+}
+
+TEST(CaseLimits, OfKeysAndNesting) {
+  const std::string start = "b = 1\nc = \"\"\"\n\n\"\"\"\n";  // the next line is the fifth
+  EXPECT_EQ(complaint(start + repeated("a.", 20'000) + "a = 1"),
+            "a.toml:5: the parts of a key or number between dots are at most 100");
+  EXPECT_EQ(complaint(start + "[" + repeated("a.", 20'000) + "a]"),
+            "a.toml:5: the parts of a key or number between dots are at most 100");
+  EXPECT_EQ(complaint(start + "x = " + repeated("[", 20'000)),
+            "a.toml:5: lists and tables in each other are at most 100");
+  EXPECT_EQ(complaint(start + "x = " + repeated("{a = ", 20'000)),
+            "a.toml:5: lists and tables in each other are at most 100");
+  EXPECT_EQ(complaint(start + repeated("a", 5000) + " = 1"),
+            "a.toml:5: the characters of a key are at most 2000");
+}
+
+TEST(CaseLimits, LeaveStringsAndCommentsAlone) {
+  const std::string dots = repeated("[{.", 1000);
+  for (const std::string& text : std::vector<std::string>{
+           "a = \"" + dots + "\"", "a = '" + dots + "'", "a = 1 # " + dots, "# ' \"\n# " + dots,
+           "a = \"\"\"\n" + dots + "\n\"\"\"", "a = '''\n" + dots + "\n'''",
+           "a = \"\\\"" + dots + "\"", "a = [" + repeated("1.5, ", 1000) + "]",
+           repeated("a.", 99) + "a = 1", "x = " + repeated("[", 100) + repeated("]", 100)})
+    EXPECT_EQ(complaint(text), "") << text.substr(0, 20);
+}
+
+// The scan itself has to end at texts that are no TOML.
+TEST(CaseLimits, EndAtBrokenTexts) {
+  for (const std::string& text : std::vector<std::string>{"a = \"", "a = \"\\", "a = '''",
+                                                          "a = \"\"\"\\", "#", "]]]", "\"\n"})
+    EXPECT_NO_THROW(check_case_limits(text, "a.toml")) << text;
+}
+
+TEST(CaseLimits, OptionsHaveThem) {
+  EXPECT_THROW(parse_option(repeated("[", 1000), "--set a=..."), Error);
+}
+
+TEST(CaseLimits, CasesComeFromPipesButHaveAnEnd) {
+  EXPECT_THROW(read_text("/dev/zero"), Error);
+  EXPECT_EQ(read_text("/dev/null"), "");
+}
+
+}  // namespace
+}  // namespace flexmorph::io
