@@ -30,19 +30,35 @@ Body& Model::add_body(std::string name, std::unique_ptr<Element> element,
   body.element = std::move(element);
   body.section = section;
   body.terms = std::move(terms);
+  body.first_dof = n_dofs_;
+  const Body* before = bodies_.data();
   bodies_.push_back(std::move(body));
-  number_dofs();
+  n_dofs_ += bodies_.back().n_dofs();
+  ++pattern_version_;
+  ++content_version_;
+  // Joints and links may hold places in the list, which has moved: seldom, so that a model of n
+  // bodies is not bound n times.
+  if (bodies_.data() != before) number_dofs();
   return bodies_.back();
 }
 
 void Model::add_joint(std::unique_ptr<Joint> joint) {
   joints_.push_back(std::move(joint));
-  number_dofs();
+  joints_.back()->bind(views());
+  n_constraints_ += joints_.back()->size();
+  first_rows_.push_back(n_constraints_);
+  ++pattern_version_;
+  ++content_version_;
 }
 
 void Model::add_link(std::unique_ptr<Link> link) {
+  const auto turned = std::count_if(links_.begin(), links_.end(),
+                                    [](const auto& each) { return each->counts_turns(); });
   links_.push_back(std::move(link));
-  number_dofs();
+  links_.back()->bind(views());
+  if (links_.back()->counts_turns()) links_.back()->set_place(static_cast<int>(turned));
+  ++pattern_version_;
+  ++content_version_;
 }
 
 const Body& Model::body(const std::string& name) const {

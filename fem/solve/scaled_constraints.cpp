@@ -27,12 +27,18 @@ void ScaledConstraints::evaluate(Workspace& model, const State& x) {
 
   VectorXd& largest = row_scale_;
   largest.setZero(m);
+  of_body_.setZero(m);
+  // Only the rows that a body has a part in are looked at: chains have thousands of bodies.
   for (const Body& b : model.bodies()) {
-    of_body_.setZero(m);
-    for (int column = b.first_dof; column < b.first_dof + b.n_dofs(); ++column)
-      for (SparseMatrix::InnerIterator it(jacobian_, column); it; ++it)
-        of_body_[it.row()] += it.value() * it.value();
-    largest = largest.cwiseMax(of_body_);
+    const auto over_entries = [&](const auto& act) {
+      for (int column = b.first_dof; column < b.first_dof + b.n_dofs(); ++column)
+        for (SparseMatrix::InnerIterator it(jacobian_, column); it; ++it) act(it);
+    };
+    over_entries([&](const auto& it) { of_body_[it.row()] += it.value() * it.value(); });
+    over_entries([&](const auto& it) {
+      largest[it.row()] = std::max(largest[it.row()], of_body_[it.row()]);
+    });
+    over_entries([&](const auto& it) { of_body_[it.row()] = 0; });
   }
   row_scale_ = (largest.array() > 0).select(largest.array().sqrt().inverse(), 1.0);
   for (int column = 0; column < n; ++column)

@@ -10,11 +10,13 @@
 #include <algorithm>
 #include <random>
 
+#include "fem/body_joints.h"
 #include "fem/solve/assembly.h"
 #include "fem/terms.h"
 #include "tests/support/errors.h"
 #include "tests/support/models.h"
 #include "tests/support/point_mechanisms.h"
+#include "tests/support/rigid_models.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -182,6 +184,54 @@ TEST(Diagnosis, ThreeParallelCranks) {
   ASSERT_EQ(d.groups.size(), 1u);
   EXPECT_EQ(d.groups[0].joints.size(), 6u);
   EXPECT_FALSE(d.is_contradictory());
+}
+
+/// A chain of rigid links from one another's ends, the first on the ground; `last` pins its end
+/// there too, as often as it says.
+Workspace chain(int links, int last) {
+  const RigidSection section{1, {0.05, 0}, 0.01};
+  Workspace model;
+  for (int i = 0; i < links; ++i) testing::add_rigid(model, "link" + std::to_string(i), section);
+  const auto add = [&](const std::string& name, const MarkerPlace& a, const MarkerPlace& b) {
+    model.add_joint(make_revolute(name, a, b));
+  };
+  for (int i = 0; i < links; ++i) {
+    const MarkerPlace before = i == 0
+                                   ? MarkerPlace{"", {0, 0}, 0, {}}
+                                   : MarkerPlace{"link" + std::to_string(i - 1), {0.1, 0}, 0, {}};
+    add("pin" + std::to_string(i), before, {"link" + std::to_string(i), {0, 0}, 0, {}});
+  }
+  for (int k = 0; k < last; ++k)
+    add("end" + std::to_string(k), {"", {0.05 * links, 0}, 0, {}},
+        {"link" + std::to_string(links - 1), {0.1, 0}, 0, {}});
+  return model;
+}
+
+// Grübler: 3 n - 2 for each pin. A thousand links take the quick way, which knows independent rows
+// only; what is dependent in a chain is found as before, and named.
+TEST(Diagnosis, ChainsOfRigidLinks) {
+  const auto zigzag = [](Workspace& model, int links) {
+    State x = model.reference();
+    for (int i = 0; i < links; ++i) {
+      testing::Pose pose;
+      pose.r = {0.05 * i, i % 2 == 0 ? 0 : 0.1 * std::sqrt(0.75)};
+      pose.angle = (i % 2 == 0 ? 1 : -1) * std::acos(0.5);
+      testing::put(model, "link" + std::to_string(i), pose, x);
+    }
+    return x;
+  };
+  for (const int links : {4, 1000})
+    for (const int last : {0, 1}) {
+      Workspace model = chain(links, last);
+      const Diagnosis found = diagnose(model, zigzag(model, links));
+      EXPECT_TRUE(found.is_independent()) << describe(found);
+      EXPECT_EQ(found.degrees_of_freedom(), 3 * links - 2 * (links + last));
+      EXPECT_EQ(found.independent.size(), static_cast<size_t>(found.constraints));
+    }
+  Workspace model = chain(20, 2);
+  const Diagnosis found = diagnose(model, zigzag(model, 20));
+  EXPECT_EQ(found.degrees_of_freedom(), 3 * 20 - 2 * 21);
+  EXPECT_EQ(describe(found), "joints 'end0', 'end1' hold the same 2 freedoms");
 }
 
 // The closed chain of an edge held three times at once: every surplus joint is named with one

@@ -11,6 +11,7 @@
 #include "fem/workspace.h"
 #include "tests/support/differences.h"
 #include "tests/support/models.h"
+#include "tests/support/rigid_models.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -43,6 +44,40 @@ class Distance final : public Joint {
  private:
   int first_ = 0;
 };
+
+/// A joint that holds nothing and counts how often it and its copies are bound.
+class Counting final : public Joint {
+ public:
+  explicit Counting(int& count) : count_(&count) {}
+  std::unique_ptr<Joint> clone() const override { return std::make_unique<Counting>(*this); }
+  std::string name() const override { return "counting"; }
+  int size() const override { return 0; }
+  void bind(std::span<const BodyView>) override { ++*count_; }
+  void evaluate(double, const VectorXd&, const VectorXd&, ConstraintRows&) const override {}
+
+ private:
+  int* count_;
+};
+
+// A chain of n bodies, each followed by its joint, is bound a few times, not n times: the list of
+// bodies moves once each time it doubles.
+TEST(Model, IsBoundAFewTimesWhileItGrows) {
+  constexpr int kBodies = 512;
+  Workspace model;
+  int count = 0;
+  for (int i = 0; i < kBodies; ++i) {
+    testing::add_rigid(model, "link" + std::to_string(i), {1, {0, 0}, 1});
+    model.add_joint(std::make_unique<Counting>(count));
+    EXPECT_EQ(model.bodies().back().first_dof, 4 * i);
+    EXPECT_EQ(model.n_dofs(), 4 * (i + 1));
+    EXPECT_EQ(model.n_constraints(), i + 1);  // unit axes
+    EXPECT_EQ(model.first_row(model.joints().size()), i + 1);
+  }
+  EXPECT_LT(count, 3 * kBodies);
+  const Model copy(model);
+  EXPECT_EQ(copy.n_dofs(), model.n_dofs());
+  EXPECT_EQ(copy.n_constraints(), model.n_constraints());
+}
 
 FrameMotion hub(double t) {
   FrameMotion f;

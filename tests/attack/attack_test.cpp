@@ -1,0 +1,153 @@
+// What comes in from outside, changed at random: it is read and built, or refused with an Error;
+// nothing else may be thrown, nothing may crash, and nobody waits for more than a second.
+//
+//   FLEXMORPH_ATTACKS=100000 nice build/tests/attack/attack_tests    inputs of each kind, default
+//   800 FLEXMORPH_SEED=2                                                  others of them, default 1
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+
+#include "cases/build/build.h"
+#include "cases/run/run.h"
+#include "cases/scene/scene.h"
+#include "io/exports.h"
+#include "io/formula.h"
+#include "io/smooth_table.h"
+#include "io/tables.h"
+#include "tests/attack/mutations.h"
+#include "tests/io/scratch.h"
+
+namespace flexmorph {
+namespace {
+
+using testing::Mutations;
+
+constexpr double kLongest = 1;  // of processor time, for one input [s]
+
+size_t number_of(const char* name, size_t otherwise) {
+  const char* text = std::getenv(name);
+  return text ? std::strtoull(text, nullptr, 10) : otherwise;
+}
+
+/// Hands over many inputs, as texts and (where `ending` is not empty) as files.
+class Attack : public ::testing::Test {
+ protected:
+  template <class Make, class Try>
+  void run(const std::string& ending, size_t share, const Make& make, const Try& attempt) {
+    const size_t n = number_of("FLEXMORPH_ATTACKS", 800) * share,
+                 seed = number_of("FLEXMORPH_SEED", 1);
+    size_t accepted = 0, refused = 0;
+    for (size_t i = 0; i < n; ++i) {
+      Mutations random(1'000'003 * seed + i);
+      const std::string text = make(random);
+      const std::string file = ending.empty() ? "" : scratch_.write("input" + ending, text);
+      const std::clock_t begin = std::clock();
+      try {
+        attempt(file, text);
+        ++accepted;
+      } catch (const Error& e) {
+        ++refused;
+        EXPECT_STRNE(e.what(), "");
+      } catch (const std::exception& e) {
+        report(i, text, std::string("throws ") + e.what());
+      }
+      const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+      if (seconds > kLongest) report(i, text, "takes " + std::to_string(seconds) + " s");
+    }
+    std::printf("%zu inputs: %zu accepted, %zu refused\n", n, accepted, refused);
+    // Attacks that never get through, or always, look at one side of the checks only.
+    EXPECT_GT(accepted, n / 100);
+    EXPECT_GT(refused, n / 100);
+  }
+
+ private:
+  void report(size_t i, const std::string& text, const std::string& what) const {
+    const auto kept =
+        std::filesystem::temp_directory_path() /
+        (std::string("flexmorph_attack_") +
+         ::testing::UnitTest::GetInstance()->current_test_info()->name() + "_" + std::to_string(i));
+    std::ofstream(kept, std::ios::binary) << text;
+    ADD_FAILURE() << "input " << i << " " << what << "; kept as " << kept;
+  }
+
+  Scratch scratch_;
+};
+
+std::vector<std::string> shipped_cases() {
+  std::vector<std::filesystem::path> paths;
+  for (const auto& entry : std::filesystem::directory_iterator(FLEXMORPH_CASES))
+    if (entry.path().extension() == ".toml") paths.push_back(entry.path());
+  std::sort(paths.begin(), paths.end());
+  std::vector<std::string> out;
+  for (const auto& path : paths) out.push_back(contents_of(path.string()));
+  return out;
+}
+
+TEST_F(Attack, Cases) {
+  const std::vector<std::string> cases = shipped_cases();
+  ASSERT_GT(cases.size(), 10U);
+  run(
+      ".toml", 1,
+      [&](Mutations& random) {
+        const std::string& text = cases[random.below(cases.size())];
+        return random.changed(text, cases[random.below(cases.size())]);
+      },
+      [](const std::string& file, const std::string&) {
+        cases::read_scene(io::CaseFile(file, {}));
+      });
+}
+
+// What `check` does beyond reading: bodies, joints, the start; a part of the cases that are read.
+TEST_F(Attack, CasesAsCheckBuildsThem) {
+  const std::vector<std::string> cases = shipped_cases();
+  run(
+      ".toml", 1,
+      [&](Mutations& random) {
+        const std::string& text = cases[random.below(cases.size())];
+        return random.below(4) == 0 ? random.changed(text, text)
+                                    : random.changed(text, "0.5 1 2 0.01 -1");
+      },
+      [](const std::string& file, const std::string&) {
+        cases::RunOptions options;
+        options.case_name = file;
+        cases::check_case(options);
+      });
+}
+
+TEST_F(Attack, Formulas) {
+  run(
+      "", 5,
+      [](Mutations& random) {
+        const std::string formula = random.formula(1 + static_cast<int>(random.below(5)));
+        return random.below(5) == 0 ? random.changed(formula, "((3)^(999999))^99 t*t*t sin(")
+                                    : formula;
+      },
+      [](const std::string&, const std::string& text) {
+        io::Formula(text, {{"a", 0.7}}).check(1.5);
+      });
+}
+
+TEST_F(Attack, Components) {
+  const std::string table =
+      "X0,Y0,half_length,angle,c1,c2,c3\n0.1,0.2,0.5,0,0.1,0.1,0.1\n0.3,0.2,0.5,0.3,0.1,0.2,0.1\n";
+  run(
+      ".csv", 5, [&](Mutations& random) { return random.changed(table, table); },
+      [](const std::string& file, const std::string&) { io::read_components_csv(file); });
+}
+
+TEST_F(Attack, Tables) {
+  const std::string table = "time,x\n0,0\n0.1,0.2\n0.2,0.1\n0.3,0.7\n0.4,1\n0.5,1.5\n1,2\n";
+  run(
+      ".csv", 5,
+      [&](Mutations& random) { return random.changed(table, "1e-9 1e308 0.1 0.3\n0,0\n"); },
+      [](const std::string& file, const std::string&) {
+        const io::CsvTable csv = io::read_csv(file);
+        const auto times = csv.numbers("time"), values = csv.numbers("x");
+        io::SmoothTable(times, values)(0.25);
+      });
+}
+
+}  // namespace
+}  // namespace flexmorph
