@@ -307,16 +307,24 @@ bool is_another_case(std::span<const std::string> overrides) {
   });
 }
 
-/// Is there nothing left to resume?
+/// The exit code of the run in a folder that came to its end; nothing where there is something left
+/// to resume.
 /// @throws Error (input) when the run in the folder is that of another case.
-bool is_finished(const std::string& directory, const io::CaseFile& file) {
+std::optional<int> finished_with(const std::string& directory, const RunOptions& options,
+                                 const io::CaseFile& file) {
   const std::string path = directory + "/run.json";
-  if (!std::filesystem::exists(path)) return false;
+  if (!std::filesystem::exists(path)) return {};
   if (!keeps_case(directory, file))
     throw Error::input("'" + directory +
                        "' holds a run of another case, or of this one before it "
                        "was changed: it cannot be resumed; without --resume it is moved");
-  return nlohmann::json::parse(io::read_text(path)).value("status", "").starts_with("done");
+  const nlohmann::json run = nlohmann::json::parse(io::read_text(path));
+  const std::string status = run.value("status", "");
+  if (!status.starts_with("done")) return {};
+  bool missed = status != "done";  // of no use
+  for (const auto& [name, expected] : run.value("expect", nlohmann::json::object()).items())
+    missed = missed || (!is_another_case(options.overrides) && !expected.value("holds", true));
+  return missed ? kMissed : 0;
 }
 
 int run_case(const RunOptions& options) {
@@ -326,10 +334,11 @@ int run_case(const RunOptions& options) {
   std::string directory = options.directory;
   if (directory.empty()) directory = scene.output.directory;
   if (directory.empty()) directory = "runs/" + scene.name;
-  if (options.resume && is_finished(directory, file)) {
-    std::printf("%s: finished before\n", directory.c_str());
-    return 0;
-  }
+  if (options.resume)
+    if (const std::optional<int> code = finished_with(directory, options, file)) {
+      std::printf("%s: finished before\n", directory.c_str());
+      return *code;
+    }
   RunFolder folder(directory, scene, options.threads > 1,
                    options.resume ? RunFolder::Begin::go_on : RunFolder::Begin::anew);
   keep_case(file, options.explain, folder);
