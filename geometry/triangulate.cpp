@@ -2,6 +2,7 @@
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
 namespace flexmorph {
@@ -13,7 +14,11 @@ struct Point {
   int index = -1;  // in the triangulation that is returned
 };
 using Vertices = CGAL::Triangulation_vertex_base_with_info_2<Point, Kernel>;
-using Faces = CGAL::Constrained_triangulation_face_base_2<Kernel>;
+struct Patch {
+  int index = -1;  // of the faces that no edge of a ring separates
+};
+using Faces = CGAL::Constrained_triangulation_face_base_2<
+    Kernel, CGAL::Triangulation_face_base_with_info_2<Patch, Kernel>>;
 using Data = CGAL::Triangulation_data_structure_2<Vertices, Faces>;
 // Outlines are exact before they are rounded to doubles: after that, points may coincide and edges
 // cross by round-off, which this tag allows.
@@ -48,6 +53,50 @@ bool is_inside(const Region& region, const Vec2& p) {
   return inside;
 }
 
+Vec2 middle_of(const Cdt::Face_handle& face) {
+  Vec2 middle = Vec2::Zero();
+  for (int k = 0; k < 3; ++k)
+    middle += Vec2(face->vertex(k)->point().x(), face->vertex(k)->point().y()) / 3;
+  return middle;
+}
+
+double area_of(const Cdt::Face_handle& face) {
+  const auto &a = face->vertex(0)->point(), &b = face->vertex(1)->point(),
+             &c = face->vertex(2)->point();
+  return 0.5 * ((b.x() - a.x()) * (c.y() - a.y()) - (c.x() - a.x()) * (b.y() - a.y()));
+}
+
+/// Gives all faces that can be reached from `start` without crossing an edge of a ring the number
+/// `patch`. @returns the largest of them
+Cdt::Face_handle mark_patch(const Cdt& cdt, const Cdt::Face_handle& start, int patch) {
+  Cdt::Face_handle largest = start;
+  std::vector<Cdt::Face_handle> waiting = {start};
+  start->info().index = patch;
+  while (!waiting.empty()) {
+    const Cdt::Face_handle face = waiting.back();
+    waiting.pop_back();
+    if (area_of(face) > area_of(largest)) largest = face;
+    for (int k = 0; k < 3; ++k) {
+      const Cdt::Face_handle next = face->neighbor(k);
+      if (face->is_constrained(k) || cdt.is_infinite(next) || next->info().index >= 0) continue;
+      next->info().index = patch;
+      waiting.push_back(next);
+    }
+  }
+  return largest;
+}
+
+/// Is a patch inside? One look at all rings for each patch, at the middle of its largest face, not
+/// for each face. Not by counting constraints on the way from outside: rings that touch share some.
+std::vector<bool> inside_patches(const Cdt& cdt, const Region& region) {
+  std::vector<bool> inside;
+  for (const Cdt::Face_handle face : cdt.finite_face_handles())
+    if (face->info().index < 0)
+      inside.push_back(
+          is_inside(region, middle_of(mark_patch(cdt, face, static_cast<int>(inside.size())))));
+  return inside;
+}
+
 }  // namespace
 
 Triangulation triangulate(const Region& region) {
@@ -60,15 +109,13 @@ Triangulation triangulate(const Region& region) {
     v->info().index = static_cast<int>(out.points.size());
     out.points.emplace_back(v->point().x(), v->point().y());
   }
+  const std::vector<bool> inside = inside_patches(cdt, region);
   for (const Cdt::Face_handle face : cdt.finite_face_handles()) {
+    if (!inside[static_cast<std::size_t>(face->info().index)]) continue;
     std::array<int, 3> corners{};
-    Vec2 middle = Vec2::Zero();
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 3; ++k)
       corners[static_cast<std::size_t>(k)] = face->vertex(k)->info().index;
-      middle += Vec2(face->vertex(k)->point().x(), face->vertex(k)->point().y()) / 3;
-    }
-    // Not by counting constraints on the way from outside: rings that touch share some.
-    if (is_inside(region, middle)) out.triangles.push_back(corners);
+    out.triangles.push_back(corners);
   }
   if (out.triangles.empty()) throw Error::numerical("triangulate: the region has no area");
   return out;

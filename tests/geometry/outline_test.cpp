@@ -9,7 +9,6 @@
 #include <numbers>
 
 #include "geometry/triangulate.h"
-#include "geometry/triangulate.h"
 #include "tests/geometry/random_components.h"
 
 namespace flexmorph {
@@ -150,6 +149,17 @@ TEST(Triangulate, BearsWhatRoundingDoesToOutlines) {
   EXPECT_NEAR(area_of(triangulate({square, {}})), 1, 1e-15);
   const std::vector<Vec2> hole = {{0.4, -1e-18}, {0.2, 0.5}, {0.6, 0.5}};  // pokes through the edge
   EXPECT_NEAR(area_of(triangulate({square, {hole}})), 0.9, 1e-15);
+}
+
+// Diamonds that touch corner to corner: 900 holes, and between them as many patches of material
+// that share single points only. What is left of the area is known.
+TEST(Triangulate, KnowsInsideFromOutsideWhereRingsTouch) {
+  constexpr int kSide = 30;
+  Region sieve{rectangle(0, 0, kSide, kSide), {}};
+  for (int i = 0; i < kSide; ++i)
+    for (int j = 0; j < kSide; ++j)
+      sieve.holes.push_back({{i + 0.5, j}, {i, j + 0.5}, {i + 0.5, j + 1}, {i + 1, j + 0.5}});
+  EXPECT_NEAR(area_of(triangulate(sieve)), 0.5 * kSide * kSide, 1e-12 * kSide * kSide);
 }
 
 }  // namespace
