@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <map>
 #include <sstream>
 
 #include "geometry/base.h"
@@ -50,8 +51,9 @@ std::string trimmed(const std::string& s) {
 CaseNode& entry_of(CaseNode& list, const std::string& so_far, const std::vector<std::string>& keys,
                    size_t& next, const std::string& option) {
   std::string known;
+  const std::vector<std::string> labels = entry_labels(list);
   for (size_t i = 0; i < list.entries.size(); ++i) {
-    const std::string label = entry_label(list, i);
+    const std::string& label = labels[i];
     if (next + 1 < keys.size() && (keys[next] == label || keys[next] == std::to_string(i))) {
       ++next;
       return list.entries[i];
@@ -66,8 +68,13 @@ CaseNode& entry_of(CaseNode& list, const std::string& so_far, const std::vector<
 void collect_unknown(const CaseNode& node, const std::string& path,
                      std::vector<Complaint>& messages) {
   if (node.kind == CaseNode::Kind::list) {
+    const auto may_hold_keys = [](const CaseNode& entry) {
+      return entry.kind == CaseNode::Kind::table || entry.kind == CaseNode::Kind::list;
+    };
+    if (std::none_of(node.entries.begin(), node.entries.end(), may_hold_keys)) return;
+    const std::vector<std::string> paths = entry_paths(node, path);
     for (size_t i = 0; i < node.entries.size(); ++i)
-      collect_unknown(node.entries[i], entry_path(node, i, path), messages);
+      collect_unknown(node.entries[i], paths[i], messages);
     return;
   }
   if (node.kind != CaseNode::Kind::table || !node.visited) return;
@@ -194,23 +201,27 @@ bool is_bare_key(const std::string& word) {
   });
 }
 
-std::string entry_label(const CaseNode& list, size_t index) {
-  const auto label = [&](size_t i) -> std::string {
+std::vector<std::string> entry_labels(const CaseNode& list) {
+  const auto label = [](const CaseNode& entry) -> std::string {
     for (const char* key : {"name", "body"}) {
-      const CaseNode* node = list.entries[i].find(key);
+      const CaseNode* node = entry.find(key);
       if (node && node->kind == CaseNode::Kind::text) return node->text;
     }
     return "";
   };
-  const std::string own = label(index);
-  bool usable = is_bare_key(own);
-  for (size_t i = 0; i < list.entries.size(); ++i)
-    usable = usable && (i == index || label(i) != own);
-  return usable ? own : std::to_string(index);
+  std::vector<std::string> out;
+  std::map<std::string, int> times;
+  for (const CaseNode& entry : list.entries) ++times[out.emplace_back(label(entry))];
+  for (size_t i = 0; i < out.size(); ++i)
+    if (!is_bare_key(out[i]) || times.at(out[i]) > 1) out[i] = std::to_string(i);
+  return out;
 }
 
-std::string entry_path(const CaseNode& list, size_t index, const std::string& list_path) {
-  return list.entries.size() == 1 ? list_path : list_path + "." + entry_label(list, index);
+std::vector<std::string> entry_paths(const CaseNode& list, const std::string& list_path) {
+  if (list.entries.size() == 1) return {list_path};
+  std::vector<std::string> out = entry_labels(list);
+  for (std::string& each : out) each = list_path + "." + each;
+  return out;
 }
 
 std::string nearest(const std::string& word, std::span<const std::string> known) {
@@ -293,10 +304,11 @@ CaseDocument::Looked CaseDocument::look(const std::string& key_path) const {
       const CaseNode& list = *out.node;
       const size_t size = list.entries.size();
       size_t i = 0;
-      while (i < size && entry_label(list, i) != part && std::to_string(i) != part) ++i;
+      const std::vector<std::string> labels = entry_labels(list);
+      while (i < size && labels[i] != part && std::to_string(i) != part) ++i;
       const bool named = i < size;
       if (!named && size > 1) return out;
-      out.path = entry_path(list, named ? i : 0, out.path);
+      if (size > 1) out.path += "." + labels[i];
       out.node = &list.entries[named ? i : 0];
       if (named) continue;
     }

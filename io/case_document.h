@@ -73,11 +73,12 @@ struct CaseDocument {
 /// "cases/four_bar.toml:14:13: body.thickness = -0.002"; of a table its path only.
 std::string located(const CaseNode& node, const std::string& key_path);
 
-/// How an entry of a list of tables is called: its name, else the body it is about, else its index.
-std::string entry_label(const CaseNode& list, size_t index);
+/// How the entries of a list of tables are called: by their name, else the body they are about,
+/// else their index, which stands for what is no word or is said twice as well.
+std::vector<std::string> entry_labels(const CaseNode& list);
 
-/// Path of an entry of the list at `list_path`: a lone entry needs no label.
-std::string entry_path(const CaseNode& list, size_t index, const std::string& list_path);
+/// Paths of the entries of the list at `list_path`: a lone entry needs no label.
+std::vector<std::string> entry_paths(const CaseNode& list, const std::string& list_path);
 
 /// The known word a misspelt one probably meant; empty when none is near.
 std::string nearest(const std::string& word, std::span<const std::string> known);

@@ -209,10 +209,11 @@ std::vector<Table> Table::tables(const Key& key) const {
   const std::string full = place_->full(key.name);
   const std::string allowed = "a list of tables, each under its own [[" + full + "]]";
   if (node->kind != Kind::list) fail(key, allowed);
+  const std::vector<std::string> paths = entry_paths(*node, full);
   for (size_t i = 0; i < node->entries.size(); ++i) {
     const CaseNode& entry = node->entries[i];
     if (entry.kind != Kind::table) fail(key, allowed);
-    entries.push_back(opened(entry, entry_path(*node, i, full), key.name));
+    entries.push_back(opened(entry, paths[i], key.name));
   }
   return entries;
 }

@@ -193,9 +193,9 @@ class BookReader {
   void inside(const CaseNode& node, const Form& form, const std::string& kind,
               const std::string& full) {
     if (form.kind == Form::Kind::table) table(node, kind, full);
-    if (form.kind == Form::Kind::tables)
-      for (size_t i = 0; i < node.entries.size(); ++i)
-        table(node.entries[i], kind, entry_path(node, i, full));
+    if (form.kind != Form::Kind::tables) return;
+    const std::vector<std::string> paths = entry_paths(node, full);
+    for (size_t i = 0; i < node.entries.size(); ++i) table(node.entries[i], kind, paths[i]);
   }
 
   /// A key that every table of the kind must have, unless it is there misspelt.

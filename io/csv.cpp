@@ -12,7 +12,7 @@ namespace flexmorph::io {
 namespace {
 
 /// What separates the cells: of comma, semicolon and tabulator the one that the header has most of.
-char separator_of(const std::string& header) {
+char separator_of(std::string_view header) {
   const std::array<char, 3> known = {',', ';', '\t'};
   const auto count = [&](char c) { return std::count(header.begin(), header.end(), c); };
   return *std::max_element(known.begin(), known.end(),
@@ -20,86 +20,143 @@ char separator_of(const std::string& header) {
 }
 
 /// Without the spaces around it.
-void trim(std::string& cell) {
-  cell.erase(0, std::min(cell.find_first_not_of(' '), cell.size()));
-  cell.erase(cell.find_last_not_of(' ') + 1);
+std::string_view trimmed(std::string_view cell) {
+  const size_t first = cell.find_first_not_of(' ');
+  if (first == std::string_view::npos) return {};
+  return cell.substr(first, cell.find_last_not_of(' ') + 1 - first);
 }
 
-/// Cells of one line; a quoted cell keeps its separators, "" in it is a quote.
-std::vector<std::string> cells_of(const std::string& line, char separator) {
-  std::vector<std::string> cells(1);
+/// Takes the quotes from a cell, where it stands; "" within them is a quote.
+/// @returns the end of what is left
+char* unquote(char* begin, const char* end) {
+  char* out = begin;
   bool quoted = false;
-  for (size_t i = 0; i < line.size(); ++i) {
-    const char c = line[i];
-    if (c == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"') {
-      cells.back() += c;
-      ++i;
-    } else if (c == '"') {
+  for (const char* c = begin; c < end; ++c) {
+    if (*c == '"' && quoted && c + 1 < end && c[1] == '"') {
+      *out++ = *c++;
+    } else if (*c == '"') {
       quoted = !quoted;
-    } else if (c == separator && !quoted) {
-      cells.emplace_back();
     } else {
-      cells.back() += c;
+      *out++ = *c;
     }
   }
-  for (std::string& cell : cells) trim(cell);
-  return cells;
-}
-
-}  // namespace
-
-std::vector<std::string> CsvTable::texts(const std::string& column) const {
-  const auto found = std::find(columns.begin(), columns.end(), column);
-  if (found == columns.end()) {
-    std::string known;
-    for (const std::string& name : columns) known += (known.empty() ? "'" : ", '") + name + "'";
-    throw Error::input("table: there is no column '" + column + "'; its columns are " + known);
-  }
-  std::vector<std::string> out;
-  for (const auto& row : rows) out.push_back(row[static_cast<size_t>(found - columns.begin())]);
   return out;
 }
 
-std::vector<double> CsvTable::numbers(const std::string& column) const {
-  std::vector<double> out;
-  for (std::string& text : texts(column)) {
-    if (decimal_comma) std::replace(text.begin(), text.end(), ',', '.');
-    double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool whole = error == std::errc() && end == text.data() + text.size();
-    out.push_back(whole ? value : std::numeric_limits<double>::quiet_NaN());
+/// Where a cell ends: at the next separator that is not in quotes.
+char* end_of_cell(char* cell, char* line_end, char separator) {
+  bool quoted = false;
+  for (; cell < line_end; ++cell) {
+    if (*cell == '"') quoted = !quoted;
+    if (*cell == separator && !quoted) break;
   }
-  return out;
+  return cell;
 }
 
-CsvTable read_csv(const std::string& path) {
+/// Appends the cells of one line. @returns how many
+size_t add_cells(char* begin, char* line_end, char separator, std::vector<std::string_view>& out) {
+  const size_t before = out.size();
+  const bool quotes = std::find(begin, line_end, '"') != line_end;
+  for (char* cell = begin;; ++cell) {
+    char* const end =
+        quotes ? end_of_cell(cell, line_end, separator) : std::find(cell, line_end, separator);
+    out.push_back(trimmed({cell, quotes ? unquote(cell, end) : end}));
+    if (end == line_end) return out.size() - before;
+    cell = end;
+  }
+}
+
+/// All of a file, also when it grows meanwhile.
+std::string contents_of(const std::string& path) {
   // A pipe or a device may never end, or never begin.
   std::error_code code;
   const auto status = std::filesystem::status(path, code);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
     throw Error::input(path + ": a table is read from a regular file, not from a " +
                        (std::filesystem::is_directory(status) ? "folder" : "pipe or device"));
-  std::ifstream file(path);
+  std::ifstream file(path, std::ios::binary);
   if (!file) throw Error::input(path + ": cannot be read");
+  const auto size = std::filesystem::file_size(path, code);
+  std::string out(code ? 0 : size, '\0');
+  for (size_t done = 0;; out.resize(2 * out.size() + 1)) {
+    file.read(out.data() + done, static_cast<std::streamsize>(out.size() - done));
+    done += static_cast<size_t>(file.gcount());
+    if (file && file.peek() != std::ifstream::traits_type::eof()) continue;
+    out.resize(done);
+    return out;
+  }
+}
+
+size_t place_of(const CsvTable& table, const std::string& column) {
+  const auto found = std::find(table.columns.begin(), table.columns.end(), column);
+  if (found != table.columns.end()) return static_cast<size_t>(found - table.columns.begin());
+  std::string known;
+  for (const std::string& name : table.columns) known += (known.empty() ? "'" : ", '") + name + "'";
+  throw Error::input("table: there is no column '" + column + "'; its columns are " + known);
+}
+
+double number_of(std::string_view text) {
+  double value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [at, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc() && at == end ? value : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+std::vector<std::string> CsvTable::row(size_t r) const {
+  const auto first = cells_.begin() + static_cast<std::ptrdiff_t>(r * columns.size());
+  return {first, first + static_cast<std::ptrdiff_t>(columns.size())};
+}
+
+std::vector<std::string> CsvTable::texts(const std::string& column) const {
+  std::vector<std::string> out;
+  out.reserve(n_rows());
+  for (size_t i = place_of(*this, column); i < cells_.size(); i += columns.size())
+    out.emplace_back(cells_[i]);
+  return out;
+}
+
+std::vector<double> CsvTable::numbers(const std::string& column) const {
+  std::vector<double> out;
+  out.reserve(n_rows());
+  std::string with_point;
+  for (size_t i = place_of(*this, column); i < cells_.size(); i += columns.size()) {
+    std::string_view cell = cells_[i];
+    if (decimal_comma && cell.find(',') != std::string_view::npos) {
+      with_point = cell;
+      std::replace(with_point.begin(), with_point.end(), ',', '.');
+      cell = with_point;
+    }
+    out.push_back(number_of(cell));
+  }
+  return out;
+}
+
+CsvTable read_csv(const std::string& path) {
   CsvTable out;
-  std::string line;
+  out.text_ = std::make_shared<std::string>(contents_of(path));
+  char *line = out.text_->data(), *const end = line + out.text_->size();
+  if (out.text_->starts_with("\xEF\xBB\xBF")) line += 3;  // a byte-order mark
   char separator = ',';
-  for (int number = 1; std::getline(file, line); ++number) {
-    if (!line.empty() && line.back() == '\r') line.pop_back();
+  for (int number = 1; line < end; ++number) {
+    char *const next = std::find(line, end, '\n'), *line_end = next;
+    if (line_end > line && line_end[-1] == '\r') --line_end;
     if (number == 1) {
-      if (line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);  // a byte-order mark
-      separator = separator_of(line);
+      separator = separator_of({line, line_end});
       // Spreadsheets separate by semicolons where the comma is the decimal point.
       out.decimal_comma = separator != ',';
-      out.columns = cells_of(line, separator);
-      continue;
+      std::vector<std::string_view> header;
+      add_cells(line, line_end, separator, header);
+      out.columns.assign(header.begin(), header.end());
+    } else if (line == line_end && end - next <= 1) {
+      break;  // an empty line at the end
+    } else if (const size_t n = add_cells(line, line_end, separator, out.cells_);
+               n != out.columns.size()) {
+      throw Error::input(path + ":" + std::to_string(number) + ": " + std::to_string(n) +
+                         " values; the header has " + std::to_string(out.columns.size()));
     }
-    if (line.empty() && file.peek() == std::ifstream::traits_type::eof()) break;
-    out.rows.push_back(cells_of(line, separator));
-    if (out.rows.back().size() != out.columns.size())
-      throw Error::input(path + ":" + std::to_string(number) + ": " +
-                         std::to_string(out.rows.back().size()) + " values; the header has " +
-                         std::to_string(out.columns.size()));
+    line = next + (next < end ? 1 : 0);
   }
   return out;
 }

@@ -107,10 +107,11 @@ std::vector<Component> read_components_csv(const std::string& path) {
   if (!std::equal(table.columns.begin(), table.columns.end(), kColumns.begin(), kColumns.end()))
     fail(1, "the header of components is " + header);
   std::vector<Component> out;
-  for (size_t r = 0; r < table.rows.size(); ++r) {
+  for (size_t r = 0; r < table.n_rows(); ++r) {
     std::array<double, Component::kParameters> values{};
+    const std::vector<std::string> row = table.row(r);
     for (size_t n = 0; n < values.size(); ++n) {
-      const std::string& cell = table.rows[r][n];
+      const std::string& cell = row[n];
       const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), values[n]);
       if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(values[n]))
         fail(r + 2, kColumns[n] + " = '" + cell + "' is not a number");

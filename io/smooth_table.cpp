@@ -1,7 +1,7 @@
 #include "io/smooth_table.h"
 
-#include <Eigen/SparseLU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <unsupported/Eigen/Splines>
 
@@ -25,12 +25,12 @@ void check(std::span<const double> times, std::span<const double> values) {
                        " and " + std::to_string(values.size()));
   if (times.size() < 4)
     throw Error::input("a table has at least 4 points, not " + std::to_string(times.size()));
+  const auto row = [](size_t i) { return "row " + std::to_string(i + 1) + " of the table: "; };
   for (size_t i = 0; i < times.size(); ++i) {
-    const std::string row = "row " + std::to_string(i + 1) + " of the table: ";
     if (!std::isfinite(times[i]) || !std::isfinite(values[i]))
-      throw Error::input(row + "time and value are finite numbers");
+      throw Error::input(row(i) + "time and value are finite numbers");
     if (i > 0 && times[i] <= times[i - 1])
-      throw Error::input(row + "times increase, but " + to_text(times[i]) + " s follows " +
+      throw Error::input(row(i) + "times increase, but " + to_text(times[i]) + " s follows " +
                          to_text(times[i - 1]) + " s");
   }
   const double length = times.back() - times.front();
@@ -43,29 +43,82 @@ void check(std::span<const double> times, std::span<const double> values) {
                          to_text(kClosest * length, 3) + " s");
 }
 
-/// Coefficients of the spline with these knots that takes the values at u.
-VectorXd interpolate(const Spline::KnotVectorType& u, std::span<const double> values, int degree,
-                     const Spline::KnotVectorType& knots) {
-  const Eigen::Index n = u.size();
-  std::vector<Eigen::Triplet<double>> entries;
-  VectorXd right(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    right[i] = values[static_cast<size_t>(i)];
-    // At the last knot all basis functions but the last vanish; no need to divide by empty spans.
-    if (i == n - 1) {
-      entries.emplace_back(i, i, 1.0);
-      continue;
+/// B-splines that are not zero between knots k and k + 1: entry [p][r] is that of degree p and
+/// number k - p + r.
+using Basis = std::array<std::array<double, kOrder>, kOrder>;
+
+/// Their values at u (de Boor 1978, chapter X).
+Basis basis_at(double u, const double* knot, int degree) {
+  Basis out{};
+  out[0][0] = 1;
+  for (int p = 1; p <= degree; ++p)
+    for (int r = 0; r <= p; ++r) {
+      const double *const first = knot - p + r, *const last = first + p;
+      const auto& below = out[static_cast<size_t>(p - 1)];
+      double& value = out[static_cast<size_t>(p)][static_cast<size_t>(r)];
+      if (r > 0) value = (u - *first) / (*last - *first) * below[static_cast<size_t>(r - 1)];
+      if (r < p) value += (last[1] - u) / (last[1] - first[1]) * below[static_cast<size_t>(r)];
     }
-    const Eigen::Index span = Spline::Span(u[i], degree, knots);
-    const auto basis = Spline::BasisFunctions(u[i], degree, knots);
-    for (Eigen::Index k = 0; k <= degree; ++k) entries.emplace_back(i, span - degree + k, basis[k]);
+  return out;
+}
+
+[[noreturn]] void refuse_times() {
+  throw Error::input("no smooth function goes through the table: its times are too uneven");
+}
+
+/// Coefficients of the spline with these knots that takes the values at u.
+///
+/// Row i of the banded equations has the B-splines at u_i in columns i - degree .. i + degree.
+/// Elimination needs no pivots: the matrix is totally positive (de Boor 1978, chapter XIII).
+std::vector<double> interpolate(const Spline::KnotVectorType& u, std::span<const double> values,
+                                int degree, const Spline::KnotVectorType& knots) {
+  const Eigen::Index n = u.size();
+  Eigen::Array<double, 2 * kOrder - 1, Eigen::Dynamic> band(2 * kOrder - 1, n);
+  band.setZero();
+  Eigen::Index span = degree;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    while (span + 1 < n && u[i] >= knots[span + 1]) ++span;
+    const Basis basis = basis_at(u[i], knots.data() + span, degree);
+    const Eigen::Index first = span - i;  // its column is span - degree
+    if (first < 0 || first > degree) refuse_times();
+    for (int r = 0; r <= degree; ++r)
+      band(first + r, i) = basis[static_cast<size_t>(degree)][static_cast<size_t>(r)];
   }
-  Eigen::SparseMatrix<double> matrix(n, n);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  Eigen::SparseLU<Eigen::SparseMatrix<double>> solver(matrix);
-  VectorXd out = solver.solve(right);
-  if (solver.info() != Eigen::Success || !out.allFinite())
-    throw Error::input("no smooth function goes through the table: its times are too uneven");
+  std::vector<double> out(values.begin(), values.end());
+  for (Eigen::Index k = 0; k < n; ++k)
+    for (Eigen::Index i = k + 1; i <= std::min<Eigen::Index>(k + degree, n - 1); ++i) {
+      const double factor = band(k - i + degree, i) / band(degree, k);
+      if (factor == 0) continue;
+      for (int r = 1; r <= degree; ++r) band(k - i + degree + r, i) -= factor * band(degree + r, k);
+      out[static_cast<size_t>(i)] -= factor * out[static_cast<size_t>(k)];
+    }
+  for (Eigen::Index k = n - 1; k >= 0; --k) {
+    double& here = out[static_cast<size_t>(k)];
+    for (int r = 1; r <= degree && k + r < n; ++r)
+      here -= band(degree + r, k) * out[static_cast<size_t>(k + r)];
+    here /= band(degree, k);
+    if (!std::isfinite(here)) refuse_times();
+  }
+  return out;
+}
+
+/// The j-th derivatives of the spline at its knot k, j = 0 .. degree: coefficients of a derivative
+/// are differences of those before (de Boor 1978, chapter X).
+std::array<double, kOrder> derivatives_at(const double* knot, const double* control, int degree) {
+  const Basis basis = basis_at(*knot, knot, degree);
+  std::array<double, kOrder> c{}, out{};
+  for (int r = 0; r <= degree; ++r) c[static_cast<size_t>(r)] = control[r - degree];
+  for (int j = 0; j <= degree; ++j) {
+    const int p = degree - j;  // of the derivative; its coefficients are c[j] .. c[degree]
+    for (int r = 0; r <= p; ++r)
+      out[static_cast<size_t>(j)] +=
+          c[static_cast<size_t>(j + r)] * basis[static_cast<size_t>(p)][static_cast<size_t>(r)];
+    for (int i = degree; i > j; --i) {
+      const double* const first = knot - degree + i;
+      const double difference = c[static_cast<size_t>(i)] - c[static_cast<size_t>(i - 1)];
+      c[static_cast<size_t>(i)] = p * difference / (first[p] - *first);
+    }
+  }
   return out;
 }
 
@@ -80,18 +133,18 @@ SmoothTable::SmoothTable(std::span<const double> times, std::span<const double> 
   for (Eigen::Index i = 0; i < n; ++i) u[i] = (times[static_cast<size_t>(i)] - start) / length;
   u[n - 1] = 1;
   Eigen::KnotAveraging(u, degree, knots);
-  const VectorXd controls = interpolate(u, values, degree, knots);
-  const Spline spline(knots, controls.transpose());
+  const std::vector<double> controls = interpolate(u, values, degree, knots);
 
   // Between two knots the spline is a polynomial, here in powers of t - t_k.
+  breaks_.reserve(times.size() + 1);
+  coefficients_.reserve(kOrder * times.size());
   for (Eigen::Index k = degree; k + degree + 1 < knots.size(); ++k) {
     if (knots[k + 1] <= knots[k]) continue;
-    const auto derivatives = spline.derivatives(knots[k], degree);
+    const auto derivatives = derivatives_at(knots.data() + k, controls.data() + k, degree);
     breaks_.push_back(start + length * knots[k]);
     double scale = 1;
     for (size_t j = 0; j < kOrder; ++j) {
-      const bool there = static_cast<int>(j) <= degree;
-      coefficients_.push_back(there ? derivatives(0, static_cast<Eigen::Index>(j)) * scale : 0);
+      coefficients_.push_back(derivatives[j] * scale);
       scale /= length * static_cast<double>(j + 1);
     }
   }

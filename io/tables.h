@@ -3,8 +3,10 @@
 #include <sys/types.h>
 
 #include <initializer_list>
+#include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -54,16 +56,25 @@ class CsvWriter {
   off_t size_ = 0;  // of whole rows
 };
 
-/// A table of comma-separated values as read from a file.
-struct CsvTable {
+/// A table of comma-separated values as read from a file. Copies share its text.
+class CsvTable {
+ public:
   std::vector<std::string> columns;
-  std::vector<std::vector<std::string>> rows;  ///< as long as the header each
-  bool decimal_comma = false;                  ///< a comma may stand for the point of a number
+  bool decimal_comma = false;  ///< a comma may stand for the point of a number
 
+  size_t n_rows() const { return columns.empty() ? 0 : cells_.size() / columns.size(); }
+  /// One row, as long as the header.
+  std::vector<std::string> row(size_t r) const;
   /// @throws Error (input) for a column that is not there, naming those that are.
   std::vector<std::string> texts(const std::string& column) const;
   /// Numbers of a column; NaN where a cell is empty or no number.
+  /// @throws Error (input) as texts().
   std::vector<double> numbers(const std::string& column) const;
+
+ private:
+  friend CsvTable read_csv(const std::string& path);
+  std::shared_ptr<std::string> text_;    // what cells point into: no string of their own
+  std::vector<std::string_view> cells_;  // row by row
 };
 /// Cells are separated by commas, or as the header has it by semicolons or tabulators, where
 /// numbers may have decimal commas; a byte-order mark and spaces around cells do not count.

@@ -59,7 +59,7 @@ void RunFolder::begin_history(Begin begin) {
     history_ = std::make_unique<io::CsvWriter>(io::CsvWriter::go_on(path, columns.size()));
     const io::CsvTable old = io::read_csv(path);
     if (old.columns == columns) {
-      old_rows_.assign(old.rows.begin(), old.rows.end());
+      for (size_t r = 0; r < old.n_rows(); ++r) old_rows_.push_back(old.row(r));
       return;
     }
   }

@@ -43,7 +43,7 @@ BodyResult read_body(const nlohmann::json& r) {
 
 /// CPU seconds of every row: all evaluations since the row before.
 std::vector<double> row_seconds(const io::CsvTable& table) {
-  std::vector<double> seconds(table.rows.size(), 0);
+  std::vector<double> seconds(table.n_rows(), 0);
   for (const std::string& name : table.columns) {
     if (!name.starts_with("seconds_")) continue;
     const std::vector<double> part = table.numbers(name);

@@ -124,7 +124,7 @@ TEST(Accuracy, AnalysesADesignAsItStarts) {
                 "--no-verify", "--set", "design.cell=0.05", "--set", "design.min_thickness=0.05"});
   ASSERT_EQ(ended.code, 0) << ended.err;
   const io::CsvTable table = io::read_csv(folder + "/accuracy.csv");
-  EXPECT_GE(table.rows.size(), 5U);
+  EXPECT_GE(table.n_rows(), 5U);
   for (const double value : table.numbers("value"))
     if (std::isfinite(value)) {
       EXPECT_TRUE(value > 0.2 && value < 0.6) << value;
@@ -134,7 +134,7 @@ TEST(Accuracy, AnalysesADesignAsItStarts) {
       test::flexmorph(scratch, {"run", "short_beam", "-o", scratch / "start", "--set",
                                 "optimizer.max_iterations=0", "--set", "expect=", "--quiet"});
   EXPECT_EQ(run.code, 0) << run.err;
-  EXPECT_EQ(io::read_csv(scratch / "start/history.csv").rows.size(), 0U);
+  EXPECT_EQ(io::read_csv(scratch / "start/history.csv").n_rows(), 0U);
 }
 
 // The case has a final run on a finer mesh than its own: what is recommended may be finer still.

@@ -63,7 +63,7 @@ std::string without_times(const io::CsvTable& table) {
     const std::string& name = table.columns[c];
     if (name.starts_with("seconds") || name == "CPU s" || name == "peak_memory_bytes") continue;
     out += name;
-    for (const auto& row : table.rows) out += "," + row[c];
+    for (const auto& cell : table.texts(name)) out += "," + cell;
     out += "\n";
   }
   return out;

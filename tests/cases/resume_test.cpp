@@ -38,7 +38,7 @@ std::map<std::string, std::string> lasting(const std::string& folder) {
       for (size_t c = 0; c < table.columns.size(); ++c) {
         if (table.columns[c].starts_with("seconds")) continue;
         text += table.columns[c];
-        for (const auto& row : table.rows) text += "," + row[c];
+        for (const auto& cell : table.texts(table.columns[c])) text += "," + cell;
       }
     }
     out[name] = text;
@@ -95,7 +95,7 @@ TEST_P(Resumed, IsAsUndisturbed) {
   }
   const Ended ended = flexmorph(scratch, words_of(d.path, folder, d.changes, true));
   EXPECT_EQ(ended.code, code) << ended.err;
-  EXPECT_EQ(io::read_csv(folder + "/history.csv").rows.size(), d.all);
+  EXPECT_EQ(io::read_csv(folder + "/history.csv").n_rows(), d.all);
   expect_same(lasting(folder), lasting(whole));
   EXPECT_FALSE(fs::exists(folder + ".previous"));
 }

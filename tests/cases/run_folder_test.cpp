@@ -163,7 +163,7 @@ TEST(RunFolders, OnAFullDiskHoldWholeRows) {
   const std::string text = contents_of(folder + "/motion.csv");
   EXPECT_GT(text.size(), 15000u);
   EXPECT_EQ(text.back(), '\n');
-  EXPECT_GT(io::read_csv(folder + "/motion.csv").rows.size(), 50u);  // refuses ragged ones
+  EXPECT_GT(io::read_csv(folder + "/motion.csv").n_rows(), 50u);  // refuses ragged ones
   EXPECT_EQ(run_of(folder)["status"], "failed");
 }
 

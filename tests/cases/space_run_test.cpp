@@ -42,7 +42,7 @@ TEST(SpaceRun, PendulumFallsAsThePublicCodeSays) {
   const io::CsvTable motion = io::read_csv(folder + "/motion.csv");
   EXPECT_EQ(motion.columns,
             columns({"time", "plate.corner_x", "plate.corner_y", "plate.corner_z"}));
-  ASSERT_EQ(motion.rows.size(), 101u);
+  ASSERT_EQ(motion.n_rows(), 101u);
   EXPECT_NEAR(motion.numbers("plate.corner_z").back(), -0.049049, 1e-5);
   EXPECT_NEAR(motion.numbers("plate.corner_x").back(), 0.3, 1e-5);
   EXPECT_NEAR(motion.numbers("plate.corner_y").back(), 0.3, 1e-5);
@@ -82,7 +82,7 @@ TEST(SpaceRun, CantileverRollsUp) {
   const io::CsvTable path = io::read_csv(folder + "/path.csv");
   EXPECT_EQ(path.columns, (Words{"step", "load_factor", "strip.tip_ux", "strip.tip_uy",
                                  "strip.tip_uz", "energy.strain", "iterations"}));
-  EXPECT_EQ(path.rows.size(), 21u);
+  EXPECT_EQ(path.n_rows(), 21u);
   const double x = 1 + path.numbers("strip.tip_ux").back(), z = path.numbers("strip.tip_uz").back();
   const double c = 0.01, ea = 1e9 * c, ei = ea * c * c / 12, moment = 523.5987755982989;
   double s = 1, w = 1, t = 0;
@@ -181,7 +181,7 @@ TEST(SpaceRun, ALineThatReachesItsNeighbourSaysSo) {
            "output.vtk=false"});
   EXPECT_EQ(ended.code, 3) << ended.out;
   EXPECT_TRUE(contains(ended.err, "cross"));
-  EXPECT_GT(io::read_csv(folder + "/motion.csv").rows.size(), 5u);
+  EXPECT_GT(io::read_csv(folder + "/motion.csv").n_rows(), 5u);
 }
 
 // A new line leaves the plate as it is. Its bending energy is rational in the unknowns: what it

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "io/case_document.h"
 #include "tests/io/scratch.h"
 
 namespace flexmorph::io {
@@ -247,6 +248,19 @@ TEST_F(CaseFiles, ColumnsCountCharacters) {
   const auto read = [](const Table& root) { root.number(a_number("", "a", positive("it"))); };
   EXPECT_EQ(error(read, {}, "\n  a = -1\n"), "plate.toml:2:7: a = -1: it is positive");
   EXPECT_TRUE(starts(error(read, {}, "b = { c = \"äöü\" }\na = \"ä\"\n"), "plate.toml:2:5: a"));
+}
+
+// An entry goes by a name that is a word and its own, else by its number.
+TEST_F(CaseFiles, EntriesAreLabelled) {
+  std::string text;
+  for (const char* entry : {"name = \"a\"", "body = \"b\"", "name = \"b\"", "name = \"c d\"",
+                            "x = 1", "name = \"e\"\nbody = \"f\"", "name = 7\nbody = \"g\""})
+    text += std::string("[[list]]\n") + entry + "\n";
+  const CaseDocument document(scratch_.write("plate.toml", text + "[[one]]\nname = \"a\"\n"));
+  const CaseNode &list = *document.root.find("list"), &one = *document.root.find("one");
+  EXPECT_EQ(entry_labels(list), (std::vector<std::string>{"a", "1", "2", "3", "4", "e", "g"}));
+  EXPECT_EQ(entry_paths(list, "list")[5], "list.e");
+  EXPECT_EQ(entry_paths(one, "one"), std::vector<std::string>{"one"});
 }
 
 // Where a path leads, with what was read for keys that are not there.

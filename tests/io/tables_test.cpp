@@ -85,6 +85,89 @@ TEST(Csv, ReadsSemicolonsDecimalCommasAndByteOrderMarks) {
   }
 }
 
+/// Cells of one line, a character after the other.
+std::vector<std::string> plain_cells(const std::string& line) {
+  std::vector<std::string> cells(1);
+  bool quoted = false;
+  for (size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"' && quoted && line.substr(i, 2) == "\"\"") {
+      cells.back() += line[i++];
+    } else if (line[i] == '"') {
+      quoted = !quoted;
+    } else if (line[i] == ',' && !quoted) {
+      cells.emplace_back();
+    } else {
+      cells.back() += line[i];
+    }
+  }
+  for (std::string& cell : cells) {
+    cell.erase(0, std::min(cell.find_first_not_of(' '), cell.size()));
+    cell.erase(cell.find_last_not_of(' ') + 1);
+  }
+  return cells;
+}
+
+// Cells are read where they stand in the file; here beside a reader that copies every character.
+TEST(Csv, ReadsWhatAPlainReaderReads) {
+  const Scratch scratch;
+  std::mt19937 random(5);
+  const std::string letters = "\"\", 1e-.x";
+  for (int trial = 0; trial < 300; ++trial) {
+    std::string text = "a,b\n";
+    std::vector<std::string> expected;
+    bool ragged = false;
+    for (int row = 0; row < 4; ++row) {
+      std::string line = "q";  // no line is empty
+      for (auto n = random() % 12; n > 0; --n) line += letters[random() % letters.size()];
+      if (std::count(line.begin(), line.end(), ',') == 0) line += ",2";
+      const std::vector<std::string> cells = plain_cells(line);
+      ragged = ragged || cells.size() != 2;
+      expected.insert(expected.end(), cells.begin(), cells.end());
+      text += line + (row % 2 ? "\r\n" : "\n");
+    }
+    const std::string path = scratch.write("t.csv", text);
+    if (ragged) {
+      EXPECT_THROW(read_csv(path), Error) << text;
+      continue;
+    }
+    const CsvTable table = read_csv(path);
+    ASSERT_EQ(table.n_rows(), 4u) << text;
+    for (size_t r = 0; r < 4; ++r) {
+      EXPECT_EQ(table.row(r),
+                std::vector<std::string>(expected.begin() + 2 * r, expected.begin() + 2 * r + 2))
+          << text;
+      EXPECT_EQ(table.texts("b")[r], expected[2 * r + 1]) << text;
+    }
+  }
+}
+
+// A copy stays when the table it was made from is gone; lines at the end that are empty are none,
+// elsewhere they are rows of one cell.
+TEST(Csv, CopiesAndLineEnds) {
+  const Scratch scratch;
+  for (const char* text :
+       {"t,x\n1,2\n3,4", "t,x\n1,2\n3,4\n", "t,x\n1,2\n3,4\n\n", "t,x\r\n1,2\r\n3,4\r\n\r\n"}) {
+    CsvTable copy;
+    {
+      const CsvTable table = read_csv(scratch.write("t.csv", text));
+      copy = table;
+    }
+    EXPECT_EQ(copy.numbers("x"), (std::vector<double>{2, 4})) << text;
+  }
+  EXPECT_EQ(read_csv(scratch.write("t.csv", "x\n1\n\n3\n")).n_rows(), 3u);
+  EXPECT_EQ(read_csv(scratch.write("t.csv", "")).n_rows(), 0u);
+  const auto complaint = [&](const char* text) -> std::string {
+    try {
+      read_csv(scratch.write("t.csv", text));
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_TRUE(complaint("t,x\n1,2\n3\n").ends_with("t.csv:3: 1 values; the header has 2"));
+  EXPECT_TRUE(complaint("t,x\n1,2\n\n3,4\n").ends_with("t.csv:3: 1 values; the header has 2"));
+}
+
 TEST(Csv, UnwritablePlaceIsNoInputError) {
   const Scratch scratch;
   scratch.write("file", "");
