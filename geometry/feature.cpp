@@ -1,5 +1,6 @@
 #include "geometry/feature.h"
 
+#include <CGAL/Mpzf.h>
 #include <CGAL/Segment_Delaunay_graph_2.h>
 #include <CGAL/Segment_Delaunay_graph_filtered_traits_2.h>
 #include <CGAL/Simple_cartesian.h>
@@ -12,6 +13,8 @@
 #include <numbers>
 #include <optional>
 #include <utility>
+
+#include "geometry/crossings.h"
 
 namespace flexmorph {
 namespace {
@@ -47,14 +50,20 @@ class Numbered : public Base {
 };
 
 using Kernel = CGAL::Simple_cartesian<double>;
-using Traits = CGAL::Segment_Delaunay_graph_filtered_traits_2<Kernel>;
+/// Sides may cross: what filters leave open is decided in rational numbers.
+using Crossing = CGAL::Segment_Delaunay_graph_filtered_traits_2<Kernel>;
+/// They do not: sums and products of doubles decide, several times as fast, the same way.
+using Apart = CGAL::Segment_Delaunay_graph_filtered_traits_without_intersections_2<
+    Kernel, CGAL::Field_with_sqrt_tag, CGAL::Simple_cartesian<CGAL::Mpzf>,
+    CGAL::Integral_domain_without_division_tag>;
+template <class Traits>
 using Storage = CGAL::Segment_Delaunay_graph_storage_traits_2<Traits>;
+template <class Traits>
 using Graph = CGAL::Segment_Delaunay_graph_2<
-    Traits, Storage,
+    Traits, Storage<Traits>,
     CGAL::Triangulation_data_structure_2<
-        Numbered<CGAL::Segment_Delaunay_graph_vertex_base_2<Storage>>,
+        Numbered<CGAL::Segment_Delaunay_graph_vertex_base_2<Storage<Traits>>>,
         Numbered<CGAL::Segment_Delaunay_graph_face_base_2<Traits>>>>;
-using Site = Graph::Site_2;
 
 /// Flanks within this of opposite make a bar   [rad].
 constexpr double kNearlyOpposite = std::numbers::pi / 6;
@@ -166,7 +175,7 @@ class Outlines {
   std::vector<std::pair<const Corner*, const Corner*>> ends_;  // of the sides, as rings have them
 };
 
-Vec2 vec(const Graph::Point_2& p) { return {p.x(), p.y()}; }
+Vec2 vec(const Kernel::Point_2& p) { return {p.x(), p.y()}; }
 
 /// A vertex or a side of the outlines, as a disc may touch it.
 struct Contact {
@@ -178,10 +187,15 @@ struct Contact {
   Vec2 nearest(const Vec2& p) const { return is_side ? nearest_on(a, b, p) : a; }
 };
 
+/// Which places count.
+using Counts = std::function<bool(const NarrowPlace&)>;
+
+template <class Traits>
 class MedialAxis {
  public:
-  MedialAxis(const Outlines& outlines, double limit) : outlines_(outlines), limit_(limit) {
-    std::vector<Graph::Point_2> points;
+  MedialAxis(const Outlines& outlines, double limit)
+      : outlines_(outlines), limit_(limit), bounds_{limit, limit} {
+    std::vector<Kernel::Point_2> points;
     for (const Vec2& p : outlines.points()) points.emplace_back(p.x(), p.y());
     graph_.insert_segments(points.begin(), points.end(), outlines.sides().begin(),
                            outlines.sides().end());
@@ -192,20 +206,36 @@ class MedialAxis {
   }
 
   std::vector<NarrowPlace> places() {
-    corners();
-    for (auto e = graph_.finite_edges_begin(); e != graph_.finite_edges_end(); ++e) {
-      const Contact p = contact(e->first->vertex(Graph::cw(e->second))->site());
-      const Contact q = contact(e->first->vertex(Graph::ccw(e->second))->site());
-      if (p.known && q.known) neck(p, q, *e);
-    }
-    for (auto f = graph_.finite_faces_begin(); f != graph_.finite_faces_end(); ++f) vertex(f);
+    find();
     std::sort(found_.begin(), found_.end(),
               [](const NarrowPlace& x, const NarrowPlace& y) { return x.width < y.width; });
     return std::move(found_);
   }
 
+  /// The smallest of places(), of those that count. Of a disc that is larger than one that was
+  /// found nobody asks whether it is empty.
+  Features smallest(const Counts& counts) {
+    counts_ = &counts;
+    find();
+    return {bounds_[1], bounds_[0]};
+  }
+
  private:
+  using G = Graph<Traits>;
+  using Site = typename G::Site_2;
+  using Vertex = typename G::Vertex_handle;
   using Key = std::array<double, 4>;
+
+  void find() {
+    corners();
+    for (auto e = graph_.finite_edges_begin(); e != graph_.finite_edges_end(); ++e) {
+      const Contact p = contact(e->first->vertex(G::cw(e->second))->site());
+      const Contact q = contact(e->first->vertex(G::ccw(e->second))->site());
+      if (p.known && q.known) neck(p, q, *e);
+    }
+    for (auto f = graph_.finite_faces_begin(); f != graph_.finite_faces_end(); ++f) vertex(f);
+  }
+
   static Key key(const Vec2& a, const Vec2& b) {
     const bool ordered = std::pair(a.x(), a.y()) < std::pair(b.x(), b.y());
     const Vec2 &p = ordered ? a : b, &q = ordered ? b : a;
@@ -254,7 +284,7 @@ class MedialAxis {
   }
 
   /// Opposite contacts of an edge of the medial axis: the disc between them, when it is empty.
-  void neck(const Contact& p, const Contact& q, const Graph::Edge& edge) {
+  void neck(const Contact& p, const Contact& q, const typename G::Edge& edge) {
     Vec2 a = p.a, b = q.a;
     if (p.is_side && q.is_side) {
       const std::optional<std::pair<Vec2, Vec2>> between = parallel_contacts(p, q, edge);
@@ -271,13 +301,13 @@ class MedialAxis {
     const double width = (a - b).norm();
     if (!(width < limit_) || width == 0) return;
     const Vec2 center = 0.5 * (a + b);
-    if (!empty(center, 0.5 * width)) return;
+    if (!(width < bounds_[in_material(p, center)]) || !empty(center, 0.5 * width)) return;
     report(NarrowPlace::Kind::neck, p, {NarrowPlace::Kind::neck, true, width, center, a, b});
   }
 
   /// Two parallel sides: the contacts in the middle of their edge of the medial axis.
   std::optional<std::pair<Vec2, Vec2>> parallel_contacts(const Contact& p, const Contact& q,
-                                                         const Graph::Edge& edge) const {
+                                                         const typename G::Edge& edge) const {
     const Vec2 d = (p.b - p.a).normalized(), e = (q.b - q.a).normalized();
     if (std::abs(cross(d, e)) > kParallel || d.dot(e) > 0) return {};
     const auto other = edge.first->neighbor(edge.second);
@@ -288,7 +318,7 @@ class MedialAxis {
 
   bool empty(const Vec2& center, double radius) {
     const auto nearest = graph_.nearest_neighbor({center.x(), center.y()}, hint_);
-    if (nearest == Graph::Vertex_handle()) return false;
+    if (nearest == Vertex()) return false;
     hint_ = nearest;
     const Site& site = nearest->site();
     const Vec2 at = site.is_point() ? vec(site.point())
@@ -298,7 +328,7 @@ class MedialAxis {
   }
 
   /// A vertex of the medial axis: a disc with three contacts.
-  void vertex(const Graph::Finite_faces_iterator& face) {
+  void vertex(const typename G::Finite_faces_iterator& face) {
     const Vec2 center = vec(graph_.primal(face));
     std::array<Contact, 3> contacts;
     std::array<Vec2, 3> at;
@@ -339,13 +369,21 @@ class MedialAxis {
     add(place);
   }
   void add(const NarrowPlace& place) {
-    if (place.width < limit_) found_.push_back(place);
+    double& bound = bounds_[place.solid];
+    if (!(place.width < bound)) return;
+    if (counts_ == nullptr) {
+      found_.push_back(place);
+    } else if (!*counts_ || (*counts_)(place)) {
+      bound = place.width;
+    }
   }
 
   const Outlines& outlines_;
   double limit_;
-  Graph graph_;
-  Graph::Vertex_handle hint_;
+  std::array<double, 2> bounds_;  // of gaps and of solid places: those below are looked for
+  const Counts* counts_ = nullptr;
+  G graph_;
+  Vertex hint_;
   std::map<Key, std::pair<Vec2, Vec2>> sides_;
   std::vector<NarrowPlace> found_;
 };
@@ -356,11 +394,19 @@ std::vector<NarrowPlace> narrow_places(std::span<const Region> regions,
                                        std::span<const Vec2> domain, double limit) {
   const Outlines outlines(regions, domain);
   if (outlines.sides().empty()) return {};
-  return MedialAxis(outlines, limit).places();
+  if (sides_cross(outlines.points(), outlines.sides()))
+    return MedialAxis<Crossing>(outlines, limit).places();
+  return MedialAxis<Apart>(outlines, limit).places();
 }
 
-Features smallest_features(std::span<const Region> regions, std::span<const Vec2> domain) {
-  return smallest_of(narrow_places(regions, domain, std::numeric_limits<double>::infinity()));
+Features smallest_features(std::span<const Region> regions, std::span<const Vec2> domain,
+                           const std::function<bool(const NarrowPlace&)>& counts) {
+  const Outlines outlines(regions, domain);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (outlines.sides().empty()) return {kInfinity, kInfinity};
+  if (sides_cross(outlines.points(), outlines.sides()))
+    return MedialAxis<Crossing>(outlines, kInfinity).smallest(counts);
+  return MedialAxis<Apart>(outlines, kInfinity).smallest(counts);
 }
 
 Features smallest_of(std::span<const NarrowPlace> places) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -46,7 +47,9 @@ std::vector<NarrowPlace> narrow_places(std::span<const Region> regions,
 struct Features {
   double solid, gap;  ///< [m]
 };
-Features smallest_features(std::span<const Region> regions, std::span<const Vec2> domain);
+/// @param counts  which places do, if not all; asked of some of them only
+Features smallest_features(std::span<const Region> regions, std::span<const Vec2> domain,
+                           const std::function<bool(const NarrowPlace&)>& counts = {});
 
 /// The same of places that are known: all up to an infinite limit, or some of them.
 Features smallest_of(std::span<const NarrowPlace> places);

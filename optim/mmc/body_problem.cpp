@@ -1,7 +1,6 @@
 #include "optim/mmc/body_problem.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace flexmorph::mmc {
@@ -103,21 +102,29 @@ bool touches(const Grid& grid, const Region& region, int cell) {
 
 }  // namespace
 
+namespace {
+
+/// Does a passive solid region make the place by itself?
+bool is_given(const BodyProblem& problem, const NarrowPlace& place) {
+  const double small = 1e-6 * problem.grid.dx();
+  return place.solid &&
+         std::any_of(problem.solid.begin(), problem.solid.end(), [&](const Box& box) {
+           return bounds(box, place.a, small) && bounds(box, place.b, small);
+         });
+}
+
+}  // namespace
+
 std::vector<NarrowPlace> narrow_places_of(const BodyProblem& problem,
                                           std::span<const Region> regions, double limit) {
   std::vector<NarrowPlace> out = narrow_places(regions, domain_of(problem), limit);
-  const double small = 1e-6 * problem.grid.dx();
-  std::erase_if(out, [&](const NarrowPlace& place) {
-    return place.solid &&
-           std::any_of(problem.solid.begin(), problem.solid.end(), [&](const Box& box) {
-             return bounds(box, place.a, small) && bounds(box, place.b, small);
-           });
-  });
+  std::erase_if(out, [&](const NarrowPlace& place) { return is_given(problem, place); });
   return out;
 }
 
 Features features_of(const BodyProblem& problem, std::span<const Region> regions) {
-  return smallest_of(narrow_places_of(problem, regions, std::numeric_limits<double>::infinity()));
+  return smallest_features(regions, domain_of(problem),
+                           [&](const NarrowPlace& place) { return !is_given(problem, place); });
 }
 
 Connectivity connectivity_of(const BodyProblem& problem, std::span<const Region> regions) {

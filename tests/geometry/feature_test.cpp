@@ -301,6 +301,42 @@ std::vector<std::vector<Region>> shapes(const Polygon& domain) {
   return {unite(lattice, domain, {}), unite(outlines, domain, std::vector<Polygon>{hole})};
 }
 
+// Of a design and of what counts in it: the smallest of all its places, which are all looked at.
+TEST(SmallestFeature, IsTheSmallestOfAllPlaces) {
+  const Polygon domain = box(0, 0, 2, 1);
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    test::RandomComponents random(seed);
+    std::vector<Polygon> outlines;
+    for (const Component& c : random.several(20, 2, 1))
+      outlines.push_back(outline_within(c, 0.02, 1e-3));
+    const std::vector<Region> regions = unite(outlines, domain, {});
+    for (const double left : {0.0, 0.7, 3.0}) {
+      const auto counts = [left](const NarrowPlace& p) { return p.center.x() > left; };
+      std::vector<NarrowPlace> places =
+          narrow_places(regions, domain, std::numeric_limits<double>::infinity());
+      std::erase_if(places, [&](const NarrowPlace& p) { return !counts(p); });
+      const Features all = smallest_of(places), found = smallest_features(regions, domain, counts);
+      EXPECT_EQ(found.solid, all.solid) << seed;
+      EXPECT_EQ(found.gap, all.gap) << seed;
+    }
+  }
+}
+
+// Sides that cross by round-off take rational numbers: a design with a side twice has the places of
+// the one without, and those of the sides themselves.
+TEST(NarrowPlaces, OfSidesThatCross) {
+  const Polygon domain = box(0, 0, 2, 1);
+  const std::vector<Region> apart = {{box(0.1, 0.1, 0.5, 0.9), {}}, {box(0.8, 0.1, 1.5, 0.9), {}}};
+  std::vector<Region> crossing = apart;
+  crossing.push_back({{{1.6, 0.2}, {1.7, 0.2}, {1.65, 0.2}}, {}});  // no area: its sides overlap
+  const std::vector<NarrowPlace> expected = narrow_places(apart, domain, 0.75),
+                                 found = narrow_places(crossing, domain, 0.75);
+  for (const NarrowPlace& p : expected)
+    EXPECT_TRUE(std::any_of(found.begin(), found.end(), [&](const NarrowPlace& q) {
+      return q.kind == p.kind && q.solid == p.solid && q.width == p.width && q.center == p.center;
+    })) << p.width;
+}
+
 // CGAL orders what it made by address unless told otherwise: then no two calls agree.
 TEST(NarrowPlaces, AreTheSameBitForBitWhereverTheHeapPutsThings) {
   const Polygon domain = box(0, 0, 2, 1);
