@@ -1,9 +1,15 @@
 #include "io/background.h"
 
+#include <system_error>
+
 namespace flexmorph::io {
 
 Background::Background(bool own_thread) {
-  if (own_thread) thread_ = std::thread([this] { work(); });
+  if (!own_thread) return;
+  try {
+    thread_ = std::thread([this] { work(); });
+  } catch (const std::system_error&) {  // no room for a thread: all is done at once
+  }
 }
 
 Background::~Background() {

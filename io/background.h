@@ -13,7 +13,7 @@ namespace flexmorph::io {
 /// goes on. For files, which nobody waits for.
 class Background {
  public:
-  /// @param own_thread  false: all is done at once
+  /// @param own_thread  false: all is done at once, as where the system has no thread to give
   explicit Background(bool own_thread);
   /// When all is done. Errors that nobody asked for are lost.
   ~Background();

@@ -1,5 +1,8 @@
 #include "io/files.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <array>
 #include <cerrno>
 #include <charconv>
@@ -19,18 +22,30 @@ namespace {
 
 std::string reason_of(int code) { return std::generic_category().message(code); }
 
+/// Is an open file or folder on the disk? Also true where the file system knows no such wish.
+bool synced(int file) {
+  return fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP || errno == ENOSYS;
+}
+
+void sync_folder(const std::filesystem::path& folder) {
+  const std::string name = folder.empty() ? "." : folder.string();
+  const int file = open(name.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const bool done = file >= 0 && synced(file);
+  const int why = errno;
+  if (file >= 0) close(file);
+  if (!done) fail(name, reason_of(why));
+}
+
 }  // namespace
 
-void write_file(const std::string& path, std::string_view contents) {
+void write_file(const std::string& path, std::string_view contents, Sync sync) {
   const std::filesystem::path target(path);
   std::error_code code;
-  if (target.has_parent_path()) std::filesystem::create_directories(target.parent_path(), code);
-  if (code) fail(path, code.message());
-
   const std::string temporary = path + ".tmp";
   std::FILE* file = std::fopen(temporary.c_str(), "wb");
   if (!file) fail(path, reason_of(errno));
-  const bool written = std::fwrite(contents.data(), 1, contents.size(), file) == contents.size();
+  const bool written = std::fwrite(contents.data(), 1, contents.size(), file) == contents.size() &&
+                       std::fflush(file) == 0 && (sync == Sync::later || synced(fileno(file)));
   const int write_error = errno;
   const bool closed = std::fclose(file) == 0;  // the last block may fail here (a full disk)
   if (!written || !closed) {
@@ -43,6 +58,16 @@ void write_file(const std::string& path, std::string_view contents) {
     std::remove(temporary.c_str());
     fail(path, code.message());
   }
+  if (sync == Sync::now) sync_folder(target.parent_path());
+}
+
+void sync_file(const std::string& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool done = file >= 0 && synced(file);
+  const int why = errno;
+  if (file >= 0) close(file);
+  if (!done) fail(path, reason_of(why));
+  sync_folder(std::filesystem::path(path).parent_path());
 }
 
 std::string to_text(double value) {

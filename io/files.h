@@ -5,10 +5,19 @@
 
 namespace flexmorph::io {
 
+/// Is a file on the disk when a call returns, with its name in its folder, so that a machine may be
+/// switched off? Otherwise when the system likes; a process may be killed in either case.
+enum class Sync { later, now };
+
 /// Writes a whole file under a temporary name and renames it, so that a reader sees either the old
-/// or the new contents. Directories on the way are made.
+/// or the new contents. Directories on the way are there: what is written beside a run must not
+/// bring back a folder that was removed.
 /// @throws Error (numerical) naming the file and the reason: what was computed stays.
-void write_file(const std::string& path, std::string_view contents);
+void write_file(const std::string& path, std::string_view contents, Sync sync = Sync::later);
+
+/// Brings a file that is there to the disk, with its name in its folder.
+/// @throws Error (numerical) likewise: disks of other machines may refuse now what they took.
+void sync_file(const std::string& path);
 
 /// Shortest decimal text that reads back to the same number, whatever the locale ("0.1", "1e-05",
 /// "nan", "inf").

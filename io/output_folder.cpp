@@ -7,9 +7,11 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
+#include <thread>
 
 #include "geometry/base.h"
 
@@ -55,12 +57,18 @@ bool leaves_folder(const std::string& name) {
   return leaves;
 }
 
-/// The lock of a list, or -1 with errno.
+/// The lock of a list, or -1 with errno. Who asks is_being_filled() has it for a moment, which is
+/// waited for.
 int lock_of(const std::string& list, int flags) {
   const int file = open(list.c_str(), flags | O_CLOEXEC, 0666);
   if (file < 0) return -1;
-  if (flock(file, LOCK_EX | LOCK_NB) == 0) return file;
-  const int why = errno;
+  int why = 0;
+  for (int attempt = 0; attempt < 5; ++attempt) {
+    if (flock(file, LOCK_EX | LOCK_NB) == 0) return file;
+    why = errno;
+    if (why != EWOULDBLOCK) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
   close(file);
   errno = why;
   return -1;
@@ -142,14 +150,23 @@ std::string OutputFolder::file(const std::string& name) {
   struct stat list {};
   if (fstat(list_, &list) != 0 || list.st_nlink == 0)
     throw Error::numerical("output folder '" + path_ + "' was removed while it was filled");
-  if (!names_.insert(name).second) return whole.string();
   std::error_code code;
   if (relative.has_parent_path()) fs::create_directories(whole.parent_path(), code);
+  if (!code && !names_.insert(name).second) return whole.string();
   const std::string line = name + "\n";
   if (code || write(list_, line.data(), line.size()) != static_cast<ssize_t>(line.size()))
     throw Error::numerical(whole.string() +
                            ": cannot be written: " + (code ? code.message() : reason_of(errno)));
   return whole.string();
+}
+
+std::vector<std::string> OutputFolder::files() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::vector<std::string> out;
+  std::error_code none;
+  for (const std::string& name : names_)
+    if (fs::is_regular_file(fs::symlink_status(fs::path(path_) / name, none))) out.push_back(name);
+  return out;
 }
 
 FolderLock::FolderLock(const std::string& folder) {
@@ -190,9 +207,12 @@ void remove_listed(const std::string& folder) {
 }
 
 bool is_being_filled(const std::string& folder) {
-  const int lock = lock_of(list_of(folder), O_RDONLY | O_NOFOLLOW);
-  if (lock >= 0) close(lock);
-  return lock < 0 && errno == EWOULDBLOCK;
+  const int list = open(list_of(folder).c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+  if (list < 0) return false;
+  // Shared: others may look at the same time, and it is granted to who may not write.
+  const bool held = flock(list, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  close(list);
+  return held;
 }
 
 }  // namespace flexmorph::io

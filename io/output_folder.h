@@ -3,6 +3,7 @@
 #include <mutex>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace flexmorph::io {
 
@@ -37,6 +38,8 @@ class OutputFolder {
   ///         with a part of more than 200 bytes; Error (numerical) when the list cannot be written,
   ///         or the folder was removed meanwhile.
   std::string file(const std::string& name);
+  /// Names in the list whose files are there.
+  std::vector<std::string> files();
 
  private:
   void make();

@@ -5,7 +5,6 @@
 
 #include <cerrno>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <system_error>
@@ -38,9 +37,6 @@ Cell::Cell(std::string text) : text_(std::move(text)) {
 
 CsvWriter::CsvWriter(std::string path, size_t n_columns, int flags)
     : path_(std::move(path)), n_columns_(n_columns) {
-  const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
-  std::error_code code;
-  if (!folder.empty()) std::filesystem::create_directories(folder, code);
   file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | flags, 0666);
   if (file_ < 0)
     throw Error::numerical(path_ +

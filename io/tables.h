@@ -34,7 +34,7 @@ class Cell {
 /// Numbers are written in full precision, whatever the locale.
 class CsvWriter {
  public:
-  /// Begins a new file with its header.
+  /// Begins a new file with its header, in a folder that is there.
   /// @throws Error (numerical) when it cannot be written; row() likewise, whole rows stay.
   CsvWriter(std::string path, std::span<const std::string> columns);
   /// Goes on with a file that is there, behind its last whole row.

@@ -35,6 +35,33 @@ void put_on(const Scene& scene, fem::Workspace& model, fem::State& x) {
   model.choose_scaled(analysis.loads_grow, analysis.temperatures_grow);
 }
 
+/// path.csv, a row per equilibrium, which grows with the path: what a run was killed after is on
+/// the disk.
+class PathTable {
+ public:
+  explicit PathTable(std::string path) : path_(std::move(path)) {}
+
+  /// The last equilibrium of a record, whose columns of bodies may still be elsewhere.
+  void add(const PathRecord& path, const std::vector<Column>& measured) {
+    std::vector<std::string> names = {"step", "load_factor"};
+    std::vector<io::Cell> row = {static_cast<int>(path.factor.size()) - 1, path.factor.back()};
+    for (const auto* group : {&path.observed, &measured})
+      for (const Column& column : *group) {
+        names.push_back(column.name);
+        row.emplace_back(column.values.back());
+      }
+    names.insert(names.end(), {"energy.strain", "iterations"});
+    row.emplace_back(path.strain.back());
+    row.emplace_back(path.iterations.back());
+    if (!csv_) csv_.emplace(path_, names);
+    csv_->row(row);
+  }
+
+ private:
+  std::string path_;
+  std::optional<io::CsvWriter> csv_;
+};
+
 }  // namespace
 
 PathRecord run_path(const Scene& scene, RunFolder& folder, const PathWishes& wishes) {
@@ -44,6 +71,7 @@ PathRecord run_path(const Scene& scene, RunFolder& folder, const PathWishes& wis
       fem::start_state(model, mechanism.growths, 0, fem::Start::rigid, mechanism.motion.placement);
   BodyMeasures measures(scene, model, x);
   PathRecord out;
+  PathTable table(folder.file("path.csv"));
   static const char* const kAxes[] = {"_ux", "_uy", "_uz"};
   for (const Observe& o : scene.observed)
     for (int c = 0; c < scene.body(o.body).dim(); ++c)
@@ -69,6 +97,7 @@ PathRecord run_path(const Scene& scene, RunFolder& folder, const PathWishes& wis
     }
     const double heating = scene.statics->temperatures_grow ? step.factor : 1;
     measures.add(model, step.x, heating);
+    table.add(out, measures.columns());
     if (scene.output.vtk)
       for (size_t i = 0; i < scene.bodies.size(); ++i)
         folder.add_surface_frame(model.body(scene.bodies[i].name), step.x,
@@ -85,19 +114,13 @@ PathRecord run_path(const Scene& scene, RunFolder& folder, const PathWishes& wis
     out.result = fem::solve_static(model, x, settings, observe);
   } catch (const Error& error) {
     out.measured = measures.take();
-    folder.write_path(out);
     Failure where;
     where.phase = "statics";
     where.load_factor = out.factor.empty() ? 0 : out.factor.back();
     where.step = std::max(0, static_cast<int>(out.factor.size()) - 1);  // the start is none
     throw FailedRun(error, where);
-  } catch (...) {
-    out.measured = measures.take();
-    folder.write_path(out);
-    throw;
   }
   out.measured = measures.take();
-  folder.write_path(out);
   return out;
 }
 

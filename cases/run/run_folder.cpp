@@ -68,21 +68,12 @@ std::string RunFolder::lost_frames() {
 
 double RunFolder::take_output_seconds() { return output_seconds_.exchange(0); }
 
-void RunFolder::write_path(const PathRecord& path) {
-  std::vector<std::string> columns = {"step", "load_factor"};
-  for (const auto* group : {&path.observed, &path.measured})
-    for (const Column& column : *group) columns.push_back(column.name);
-  columns.emplace_back("energy.strain");
-  columns.emplace_back("iterations");
-  io::CsvWriter csv(folder_.file("path.csv"), columns);
-  for (size_t i = 0; i < path.factor.size(); ++i) {
-    std::vector<io::Cell> row = {static_cast<int>(i), path.factor[i]};
-    for (const auto* group : {&path.observed, &path.measured})
-      for (const Column& column : *group) row.emplace_back(column.values[i]);
-    row.emplace_back(path.strain[i]);
-    row.emplace_back(path.iterations[i]);
-    csv.row(row);
-  }
+void RunFolder::finish() {
+  writer_.wait();
+  // Frames are pictures on the way, and many.
+  for (const std::string& name : folder_.files())
+    if (!name.starts_with("design/") && !name.starts_with("motion/"))
+      io::sync_file(path() + "/" + name);
 }
 
 namespace {
@@ -156,7 +147,7 @@ std::vector<io::SurfaceFrame> RunFolder::shapes(size_t most) const {
 }
 
 void RunFolder::write_text(const std::string& name, const std::string& text) {
-  io::write_file(folder_.file(name), text);
+  io::write_file(folder_.file(name), text, io::Sync::now);
 }
 
 }  // namespace flexmorph::cases

@@ -83,8 +83,9 @@ class RunFolder {
   const std::string& moved_to() const { return folder_.moved_to(); }
   /// Path of a file of the run, see io::OutputFolder::file().
   std::string file(const std::string& name) { return folder_.file(name); }
-  /// Until all files are written.
-  void finish() { writer_.wait(); }
+  /// Until all files are written and, but for frames for ParaView, on the disk (io::Sync).
+  /// @throws Error (numerical) naming the first file that is not.
+  void finish();
   /// What became of frames for ParaView that could not be written, in words; nothing when all are.
   std::string lost_frames();
 
@@ -108,8 +109,6 @@ class RunFolder {
   /// is its number. The deformed body with the density of its design:
   void add_motion_frame(const std::string& body, const DesignedSurface& surface, double time,
                         int part);
-  /// path.csv: one row per equilibrium.
-  void write_path(const PathRecord& path);
   /// The deformed mid-surface of a body without a design, with displacements and strain energy per
   /// area, a beam with its elastic strain (`heating`: see deformed_surface()):
   void add_surface_frame(const fem::Body& body, const fem::State& x, const Pose& pose, double time,

@@ -120,8 +120,8 @@ class Check {
     for (Job& job : jobs_) {
       StabilityRow& row = rows_[job.row];
       const Perturbation& p = row.perturbation;
-      if (p.components) io::write_file(job.stem + ".components.csv", *p.components);
       fs::create_directories(fs::path(job.stem).parent_path());
+      if (p.components) io::write_file(job.stem + ".components.csv", *p.components);
       if (!p.appended.empty()) {
         io::write_file(job.stem + ".toml", whole_text(job.path) + p.appended);
         job.path = job.stem + ".toml";

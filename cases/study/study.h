@@ -54,7 +54,8 @@ struct BodyResult {
 struct VariantResult {
   std::string name, directory;
   std::string status =
-      "missing";  ///< "done", "done, not usable", "failed", "interrupted", "running", "missing"
+      "missing";  ///< "done", "done, not usable", "failed", "interrupted", "running" (its process
+                  ///< lives), "killed" (it does not), "missing"
   std::string message;  ///< why it failed
   double seconds_cpu = 0, seconds_wall = 0, peak_memory_bytes = 0;
   std::vector<BodyResult> bodies;

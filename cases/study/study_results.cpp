@@ -8,6 +8,7 @@
 #include "cases/run/run_warnings.h"
 #include "cases/study/statistics.h"
 #include "cases/study/study.h"
+#include "io/output_folder.h"
 #include "io/tables.h"
 #include "optim/optimizer.h"
 
@@ -165,6 +166,8 @@ VariantResult read_result(const StudyOptions& options, const Variant& variant) {
     out.message = error.what();
     out.bodies.clear();
   }
+  // Who was killed could not say so.
+  if (out.status == "running" && !io::is_being_filled(out.directory)) out.status = "killed";
   return out;
 }
 

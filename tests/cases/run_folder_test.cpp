@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "cases/study/study.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"
 
@@ -69,6 +70,33 @@ TEST(RunFolders, BelongToTheRunThatLives) {
   EXPECT_TRUE(contains(ended.out, "the run that was there is now " + folder + ".previous"));
   EXPECT_EQ(run_of(folder)["status"], "done");
   EXPECT_EQ(run_of(folder + ".previous")["status"], "running");
+}
+
+// Tables of paths grow as those of motions do, and who reads a run tells the living from the dead.
+TEST(RunFolders, OfTheDeadAreNotThoseOfTheLiving) {
+  const Scratch scratch;
+  const auto status = [&] {
+    cases::StudyOptions options;
+    options.directory = scratch / "";
+    return cases::read_result(options, {"out", {}}).status;
+  };
+  EXPECT_EQ(status(), "missing");
+  const pid_t child = start(scratch, {"run", "cantilever_roll_up", "-o", scratch / "out", "--set",
+                                      "static.steps=100000", "--quiet"});
+  const std::string path = scratch / "out/path.csv";
+  for (int k = 0; k < 1200 && lines_of(contents_of(path)).size() < 5; ++k)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_EQ(status(), "running");
+  kill(child, SIGKILL);
+  end_of(scratch, child);
+  EXPECT_EQ(status(), "killed");
+  const io::CsvTable table = io::read_csv(path);
+  ASSERT_GT(table.rows.size(), 3u);
+  // As the paths of the shipped case begin, and go.
+  EXPECT_EQ(table.columns.front(), "step");
+  EXPECT_EQ(table.columns.back(), "iterations");
+  EXPECT_EQ(table.numbers("step")[2], 2);
+  EXPECT_NEAR(table.numbers("load_factor")[2], 2e-5, 1e-12);
 }
 
 TEST(RunFolders, AreNeverDestroyed) {

@@ -40,10 +40,10 @@ TEST(Csv, NumbersReadBackExactlyInAnyLocale) {
   const CommaLocale comma;
   const std::vector<double> numbers = awkward_numbers();
   {
-    CsvWriter table(scratch / "deep/history.csv", std::vector<std::string>{"i", "value"});
+    CsvWriter table(scratch / "history.csv", std::vector<std::string>{"i", "value"});
     for (size_t i = 0; i < numbers.size(); ++i) table.row({static_cast<int>(i), numbers[i]});
   }
-  const auto lines = split(contents_of(scratch / "deep/history.csv"), '\n');
+  const auto lines = split(contents_of(scratch / "history.csv"), '\n');
   ASSERT_EQ(lines.size(), numbers.size() + 1);
   EXPECT_EQ(lines[0], "i,value");
   for (size_t i = 0; i < numbers.size(); ++i) {
@@ -201,7 +201,15 @@ TEST(JsonText, IsWhatAParserReads) {
 TEST(Files, AppearWholeAndReplaceOldOnes) {
   const Scratch scratch;
   const std::string path = scratch / "a/b/run.json";
+  // A folder that was removed is not brought back.
+  EXPECT_THROW(write_file(path, "old"), Error);
+  EXPECT_FALSE(std::filesystem::exists(scratch / "a"));
+  EXPECT_THROW(sync_file(path), Error);
+  std::filesystem::create_directories(std::filesystem::path(path).parent_path());
   write_file(path, "old");
+  write_file(path, "old", Sync::now);
+  sync_file(path);
+  EXPECT_EQ(contents_of(path), "old");
   write_file(path, std::string("new\0bytes", 9));
   EXPECT_EQ(contents_of(path), std::string("new\0bytes", 9));
   EXPECT_FALSE(std::filesystem::exists(path + ".tmp"));

@@ -143,6 +143,7 @@ TEST(Outlines, CarryNumberAndParameters) {
 TEST(SeriesFile, IsCompleteAfterEveryFrame) {
   const Scratch scratch;
   const CommaLocale comma;
+  std::filesystem::create_directories(scratch / "design");
   Series series(scratch / "design/iterations.pvd");
   EXPECT_FALSE(std::filesystem::exists(series.path()));
   const char* times[] = {"0", "1000.5", "2001"};
