@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
+#include <new>
 #include <system_error>
 
 #include "cases/accuracy/accuracy.h"
@@ -257,6 +258,9 @@ int main(int argc, char** argv) {
   } catch (const Error& error) {
     std::fprintf(stderr, "flexmorph: %s\n", error.what());
     return error.kind() == Error::Kind::input ? 2 : 3;
+  } catch (const std::bad_alloc&) {
+    std::fputs("flexmorph: memory ran out\n", stderr);
+    return 3;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "flexmorph: unexpected: %s\n", error.what());
     return 1;

@@ -22,6 +22,9 @@ using Inexact = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Polygon = CGAL::Polygon_2<Exact>;
 using PolygonWithHoles = CGAL::Polygon_with_holes_2<Exact>;
 
+// CGAL's intervals overflow where products of four coordinates do, and its sweep then crashes.
+constexpr double kFarthest = 1e60;
+
 /// Counterclockwise polygon; `number` is its place in the list, for the message.
 Polygon exact_polygon(const std::vector<Vec2>& vertices, std::size_t number) {
   const auto refuse = [&](const char* why) {
@@ -31,6 +34,7 @@ Polygon exact_polygon(const std::vector<Vec2>& vertices, std::size_t number) {
   Polygon polygon;
   for (const Vec2& v : vertices) {
     if (!v.allFinite()) refuse("is not finite");
+    if (!(v.cwiseAbs().maxCoeff() < kFarthest)) refuse("reaches beyond 1e60");
     polygon.push_back(Exact::Point_2(v.x(), v.y()));
   }
   if (polygon.size() < 3 || !polygon.is_simple()) refuse("is not simple");

@@ -279,7 +279,10 @@ void check_mechanism(const Scene& scene) {
   TwinMotion motion(scene);
   // Plates that bend may go where the rigid twin cannot.
   if (motion.degrees_of_freedom() > 0 || motion.is_indeterminate()) return;
-  for (int k = 1; k <= kLooks; ++k) motion.at(scene.time.end * k / kLooks);
+  // Of drives that turn ten thousand times the first turns are enough for a look.
+  constexpr int kMostSteps = 4000;
+  for (int k = 1; k <= kLooks && motion.n_steps() < kMostSteps; ++k)
+    motion.at(scene.time.end * k / kLooks);
 }
 
 namespace {
@@ -309,7 +312,9 @@ void follow_trajectory(Scene& scene) {
   Twin twin(scene, Twin::Driven::by_trajectory);
   fem::State start = twin.guess();
   assemble_start(scene, twin.model(), start);
-  fem::Kinematics kinematics(twin.model(), start);
+  fem::KinematicsSettings settings;
+  settings.most_steps = 5 * kSamples;
+  fem::Kinematics kinematics(twin.model(), start, settings);
   std::vector<std::vector<fem::Motion>> samples(drives.size());
   const double h = scene.time.end / kSamples;
   for (int k = 0; k <= kSamples; ++k) {

@@ -7,6 +7,7 @@
 #include "cases/run/expectations.h"
 #include "cases/run/room.h"
 #include "cases/run/version.h"
+#include "fem/solve/blas_room.h"
 #include "fem/solve/scaled_constraints.h"
 #include "io/case_document.h"
 #include "io/files.h"
@@ -44,7 +45,12 @@ void build_parts(const Scene& scene) {
   }
   check_expectations(scene);
   const std::vector<mmc::BodyProblem> problems = build_problems(scene);
-  if (scene.domain) build_static_loads(scene, problems.front());
+  if (!scene.domain) return;
+  const mmc::BodyProblem& problem = problems.front();
+  if (problem.grid.n_cells() <= kMostBuilt)
+    build_static_loads(scene, problem);
+  else
+    static_places(scene, problem.grid, problem.outside);
 }
 
 /// Keeps the entry that a message names earliest.
@@ -85,7 +91,8 @@ std::string located_refusal(const Scene& scene, const std::string& message) {
   return scene.file->where(named.path()) + ": " + message;
 }
 
-void build_scene(const Scene& scene, const std::string& directory) {
+void build_scene(const Scene& scene, const std::string& directory, int threads) {
+  fem::reserve_blas(threads);
   require_room(scene, this_machine(directory.empty() ? scene.output.directory : directory));
   try {
     build_parts(scene);
@@ -96,10 +103,10 @@ void build_scene(const Scene& scene, const std::string& directory) {
 }
 
 ReadyCase ready_case(const std::string& name, std::span<const std::string> overrides,
-                     const std::string& directory) {
+                     const std::string& directory, int threads) {
   io::CaseFile file(find_case(name), overrides);
   Scene scene = read_scene(file);
-  build_scene(scene, directory);
+  build_scene(scene, directory, threads);
   return {std::move(file), std::move(scene)};
 }
 

@@ -173,11 +173,20 @@ void add_design(const Scene& scene, const BodyDesign& d, Extent& out) {
                       frames * (kDesignCell * cells + kDesignComponent * components)});
 }
 
+/// Bytes that are mapped and not used, of libraries and of fem::reserve_blas(): they count where
+/// the address space is limited.
+double unused_mapped() {
+  std::ifstream status("/proc/self/statm");
+  double mapped = 0, used = 0;
+  status >> mapped >> used;
+  return (mapped - used) * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
 /// What the program may take less than the machine has: limits of the process and of its group.
 double allowed_memory() {
   double out = kAny;
   if (rlimit limit{}; getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
-    out = static_cast<double>(limit.rlim_cur);
+    out = std::max(0.0, static_cast<double>(limit.rlim_cur) - unused_mapped());
   std::ifstream group("/sys/fs/cgroup/memory.max");
   if (double most = 0; group >> most) out = std::min(out, most);  // "max": none
   return out;
@@ -248,6 +257,11 @@ void require_room(const Scene& scene, const Machine& machine) {
                                       io::to_text(kMostSteps, 3));
   refuse_more(scene, extent.memory, machine.memory, " of memory", "this machine has ");
   refuse_more(scene, extent.disk, machine.disk, " of disk", "free are ");
+}
+
+std::string out_of_memory_words(const Extent& extent) {
+  return "memory ran out: the run was to take about " + bytes_text(extent.memory_bytes()) +
+         " (within a factor of two), and there are " + bytes_text(this_machine().memory);
 }
 
 std::string bytes_text(double bytes) {

@@ -45,6 +45,9 @@ Machine this_machine(const std::string& directory = "");
 ///         takes more memory or disk than there is.
 void require_room(const Scene& scene, const Machine& machine);
 
+/// What is said when memory runs out all the same: the estimate, and what there is.
+std::string out_of_memory_words(const Extent& extent);
+
 /// "1.2 GB".
 std::string bytes_text(double bytes);
 /// "40 s", "12 min", "3.1 h", "8 days".

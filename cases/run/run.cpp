@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <new>
 #include <nlohmann/json.hpp>
 
 #include "cases/build/twin.h"
@@ -253,8 +254,9 @@ void run_static(const Scene& scene, bool condition, RunFolder& folder, Progress&
   memory.forget();
 }
 
-void run_scene(const Scene& scene, bool condition, RunFolder& folder, Progress& progress,
-               RunReport& report) {
+/// The run itself.
+void tell_story(const Scene& scene, bool condition, RunFolder& folder, Progress& progress,
+                RunReport& report) {
   if (scene.domain) return run_static(scene, condition, folder, progress, report);
   if (!scene.designs.empty()) return run_designs(scene, condition, folder, progress, report);
   if (scene.statics) {
@@ -284,6 +286,18 @@ void run_scene(const Scene& scene, bool condition, RunFolder& folder, Progress& 
   progress.say("motion: " + std::to_string(result.counts.steps) + " steps, " +
                std::to_string(result.counts.newton) + " Newton iterations, " +
                std::to_string(result.events.size()) + " changes of the mesh");
+}
+
+/// @throws Error (numerical) also where memory runs out: the estimate of room.h is within a factor.
+void run_scene(const Scene& scene, bool condition, RunFolder& folder, Progress& progress,
+               RunReport& report) {
+  try {
+    tell_story(scene, condition, folder, progress, report);
+    folder.finish();
+    report.lost_frames = folder.lost_frames();
+  } catch (const std::bad_alloc&) {
+    throw Error::numerical(out_of_memory_words(extent_of(scene)));
+  }
 }
 
 }  // namespace
@@ -330,7 +344,8 @@ std::optional<int> finished_with(const std::string& directory, const RunOptions&
 int run_case(const RunOptions& options) {
   const auto wall = std::chrono::steady_clock::now();
   // What cannot be built, or is too large, is refused before a folder exists.
-  const auto [file, scene] = ready_case(options.case_name, options.overrides, options.directory);
+  const auto [file, scene] =
+      ready_case(options.case_name, options.overrides, options.directory, options.threads);
   std::string directory = options.directory;
   if (directory.empty()) directory = scene.output.directory;
   if (directory.empty()) directory = "runs/" + scene.name;
@@ -365,8 +380,6 @@ int run_case(const RunOptions& options) {
   close("running", "");
   try {
     run_scene(scene, options.condition, folder, progress, report);
-    folder.finish();
-    report.lost_frames = folder.lost_frames();
   } catch (const Interrupted&) {
     close("interrupted", "");
     progress.say("interrupted: what was computed is in " + directory);
@@ -375,12 +388,22 @@ int run_case(const RunOptions& options) {
     report.failure = failure_of(error, progress.where());
     try {
       close("failed", error.what());
-    } catch (const Error&) {  // on a full disk the first failure is the one to tell
+    } catch (const std::exception&) {  // on a full disk the first failure is the one to tell
     }
     throw;
   }
   const std::vector<Warning> warnings = warnings_of(scene, report);
-  close(done_words(warnings), "");
+  try {
+    close(done_words(warnings), "");
+  } catch (const Error& error) {
+    // The results are whole, a page or a picture of them is not.
+    report.failure = failure_of(error, progress.where());
+    try {
+      close("failed", error.what());
+    } catch (const Error&) {  // likewise
+    }
+    throw;
+  }
   for (const Warning& each : warnings)
     progress.object(each.unusable ? "not usable" : "warning", each.words);
   size_t missed = 0;

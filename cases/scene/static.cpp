@@ -100,6 +100,9 @@ void read_shape(const Table& t, Domain& domain) {
   const std::vector<double> flat = t.numbers(kPolygon);
   if (flat.size() < 6 || flat.size() % 2 != 0)
     t.fail(kPolygon, "three corners or more: x0, y0, x1, y1, x2, y2, ... [m]");
+  constexpr double kFarthest = 1e30;  // a plate of any use, in any unit; products stay finite
+  for (const double x : flat)
+    if (std::abs(x) > kFarthest) t.fail(kPolygon, "coordinates are at most 1e30 m");
   for (size_t k = 0; k < flat.size(); k += 2) domain.polygon.emplace_back(flat[k], flat[k + 1]);
   domain.bounds = bounds_of(domain.polygon);
   if ((domain.bounds.upper - domain.bounds.lower).minCoeff() <= 0)

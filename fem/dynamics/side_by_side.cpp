@@ -7,6 +7,7 @@
 #include <exception>
 #include <mutex>
 #include <numeric>
+#include <system_error>
 #include <thread>
 
 #include "geometry/base.h"
@@ -29,11 +30,16 @@ class Crew {
       std::stable_sort(order_.begin(), order_.end(),
                        [&](size_t a, size_t b) { return jobs_[a].cost > jobs_[b].cost; });
       std::vector<std::thread> others;
-      for (size_t k = 0; k < n; ++k)
-        others.emplace_back([this] {
-          omp_set_num_threads(1);  // of this thread
-          work_off();
-        });
+      try {
+        for (size_t k = 0; k < n; ++k)
+          others.emplace_back([this] {
+            omp_set_num_threads(1);  // of this thread
+            work_off();
+          });
+      } catch (const std::system_error&) {
+        // No room for another thread: those that there are do it all, or this one does.
+        if (others.empty()) work_off();
+      }
       for (std::thread& other : others) other.join();
     }
     for (const std::exception_ptr& failure : failures_)

@@ -141,6 +141,10 @@ const State& Kinematics::at(double t) {
   const double direction = t >= x_.t ? 1 : -1;
   double h = settings_.largest_step;
   while (x_.t != t) {
+    if (++n_steps_ > settings_.most_steps)
+      throw Error::numerical("kinematics: at t = " + time_text(x_.t) + " s after " +
+                             std::to_string(settings_.most_steps) +
+                             " steps: what drives it is too fast to be followed");
     const bool last = h >= std::abs(t - x_.t);
     const double step = last ? std::abs(t - x_.t) : h;
     if (step_to(last ? t : x_.t + direction * step)) {

@@ -12,6 +12,7 @@ struct KinematicsSettings {
   /// The correction of a predicted position may have this part of the predicted motion or, where
   /// that is larger, a fifth of this part of the model's size.
   double correction = 0.1;
+  int most_steps = 1'000'000'000;  ///< until at() gives up, also those that are refused
 };
 
 /// Motion of a mechanism that its joints and drives determine: with as many independent rows as
@@ -40,6 +41,8 @@ class Kinematics {
 
   /// The last state found.
   const State& state() const { return x_; }
+  /// Steps that were tried so far, also those that were refused.
+  int n_steps() const { return n_steps_; }
 
  private:
   /// A step to time t; false, and x_ as before, when it is refused.
@@ -54,6 +57,7 @@ class Kinematics {
   Workspace& model_;
   KinematicsSettings settings_;
   State x_, trial_;
+  int n_steps_ = 0;
   double sign_ = 0;                // of det Φ_q on this branch
   double size_ = 1;                // of the model
   std::vector<int> place_of_row_;  // in the square matrix, -1: left out

@@ -87,6 +87,24 @@ TEST(Kinematics, KeepsToItsBranchOverLargeSteps) {
   EXPECT_LT((motion.at(10.4).q - bar.places(angle(10.4).value)).lpNorm<Eigen::Infinity>(), 1e-12);
 }
 
+// Whoever only wants a look says how long it may take.
+TEST(Kinematics, FastDrivesAreGivenUp) {
+  const FourBar bar;
+  const Course angle = [](double t) { return Motion{0.7 + 1e5 * t, 1e5, 0}; };
+  Workspace model = bar.model(angle);
+  KinematicsSettings settings;
+  settings.most_steps = 50;
+  Kinematics motion(model, model.reference(), settings);
+  try {
+    motion.at(1);
+    ADD_FAILURE() << "15 000 turns in 50 steps";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("after 50 steps"), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(motion.n_steps(), 51);
+  EXPECT_GT(motion.state().t, 0);
+}
+
 // From rest, so that the prediction says nothing at first: x = t³.
 TEST(Kinematics, StartsFromRest) {
   MatrixXd place(1, 2);
