@@ -5,6 +5,8 @@
 //   800 FLEXMORPH_SEED=2                                                  others of them, default 1
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -16,6 +18,7 @@
 #include "io/formula.h"
 #include "io/smooth_table.h"
 #include "io/tables.h"
+#include "tests/attack/attacked_program.h"
 #include "tests/attack/mutations.h"
 #include "tests/io/scratch.h"
 
@@ -23,12 +26,19 @@ namespace flexmorph {
 namespace {
 
 using testing::Mutations;
+using testing::number_of;
 
 constexpr double kLongest = 1;  // of processor time, for one input [s]
+// What malloc keeps of the largest inputs varies by this much; a leak of 100 bytes an input shows
+// in 1e6 of them [bytes].
+constexpr double kGrowth = 100e6;
 
-size_t number_of(const char* name, size_t otherwise) {
-  const char* text = std::getenv(name);
-  return text ? std::strtoull(text, nullptr, 10) : otherwise;
+/// Memory in use [bytes].
+double memory_in_use() {
+  std::ifstream status("/proc/self/statm");
+  double mapped = 0, used = 0;
+  status >> mapped >> used;
+  return used * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
 /// Hands over many inputs, as texts and (where `ending` is not empty) as files.
@@ -39,7 +49,9 @@ class Attack : public ::testing::Test {
     const size_t n = number_of("FLEXMORPH_ATTACKS", 800) * share,
                  seed = number_of("FLEXMORPH_SEED", 1);
     size_t accepted = 0, refused = 0;
+    double before = 0, longest = 0;
     for (size_t i = 0; i < n; ++i) {
+      if (i == n / 10) before = memory_in_use();  // what the first ones brought in stays
       Mutations random(1'000'003 * seed + i);
       const std::string text = make(random);
       const std::string file = ending.empty() ? "" : scratch_.write("input" + ending, text);
@@ -54,9 +66,15 @@ class Attack : public ::testing::Test {
         report(i, text, std::string("throws ") + e.what());
       }
       const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+      longest = std::max(longest, seconds);
       if (seconds > kLongest) report(i, text, "takes " + std::to_string(seconds) + " s");
     }
-    std::printf("%zu inputs: %zu accepted, %zu refused\n", n, accepted, refused);
+    const double grown = memory_in_use() - before;
+    std::printf(
+        "%zu inputs: %zu accepted, %zu refused; the longest took %.3f s; memory in use has "
+        "grown by %.1f MB since a tenth of them\n",
+        n, accepted, refused, longest, grown / 1e6);
+    EXPECT_LT(grown, kGrowth) << "memory leaks";
     // Attacks that never get through, or always, look at one side of the checks only.
     EXPECT_GT(accepted, n / 100);
     EXPECT_GT(refused, n / 100);
@@ -114,6 +132,31 @@ TEST_F(Attack, CasesAsCheckBuildsThem) {
         options.case_name = file;
         cases::check_case(options);
       });
+}
+
+// What mutations have found: a crash, gigabytes for a look, drives that were followed for seconds.
+TEST(Found, InputsAreReadOrRefusedInASecond) {
+  const std::vector<std::array<std::string, 2>> found = {
+      {"l_bracket", "domain.polygon=[0.0,0.0, 1.0,0.0, 1.0,0.4, 0.4,0.4, 0.4,1.0, 0.0,1e308]"},
+      {"short_beam", "domain.size=[1e3, 1.0]"},
+      {"short_beam", "domain.size=[2.0, 1e3]"},
+      {"bridge", "domain.size=[1e3, 1.0]"},
+      {"heated_boom_held", "hub.angular_velocity=100000"},
+      {"motion_platform",
+       "drive.1.formula='0.5*sin(pi - (-100000*pi*(t - 1/2)^3 + 3/2*pi*t - pi/4)) + 0.4'"}};
+  for (const auto& [name, change] : found) {
+    cases::RunOptions options;
+    options.case_name = name;
+    options.overrides = {change};
+    const std::clock_t begin = std::clock();
+    try {
+      cases::check_case(options);
+    } catch (const Error& error) {
+      EXPECT_STRNE(error.what(), "");
+    }
+    EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 2 * kLongest) << change;
+  }
+  EXPECT_LT(memory_in_use(), 2e9);
 }
 
 TEST_F(Attack, Formulas) {

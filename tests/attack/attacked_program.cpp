@@ -1,0 +1,177 @@
+#include "tests/attack/attacked_program.h"
+
+#include <fcntl.h>
+#include <sched.h>
+#include <sys/mount.h>
+#include <sys/resource.h>
+#include <sys/statvfs.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "geometry/base.h"
+#include "io/tables.h"
+#include "tests/io/scratch.h"
+
+namespace flexmorph::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+void limit(int what, double bytes) {
+  if (bytes <= 0) return;
+  const auto most = static_cast<rlim_t>(bytes);
+  const rlimit both{most, most};
+  setrlimit(static_cast<__rlimit_resource_t>(what), &both);
+}
+
+/// Why a file is not whole; empty: it is.
+std::string complaint(const fs::path& path) {
+  const std::string ending = path.extension().string(), text = contents_of(path.string());
+  if (ending == ".tmp") return "is left under a temporary name";
+  if (ending == ".csv") {
+    if (text.empty()) return "";  // no row at all
+    if (text.back() != '\n') return "ends within a row";
+    try {
+      io::read_csv(path.string());
+    } catch (const Error& error) {
+      return error.what();
+    }
+  }
+  if (ending == ".json" && !nlohmann::json::accept(text)) return "is no JSON";
+  const auto must_end = [&](const std::string& with) {
+    return text.ends_with(with) ? "" : "does not end with " + with;
+  };
+  if (ending == ".vtu" || ending == ".vti" || ending == ".vtp" || ending == ".pvd")
+    return must_end("</VTKFile>\n");
+  if (ending == ".svg") return must_end("</svg>\n");
+  if (ending == ".html") return must_end("</html>\n");
+  if (ending == ".dxf") return must_end("EOF\n");
+  if (ending == ".toml" && text.empty()) return "is empty";
+  return "";
+}
+
+/// Mounts of this process are its own from here on.
+bool own_mounts() {
+  static const bool done = [] {
+    if (unshare(CLONE_NEWNS) != 0) return false;
+    return mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0;
+  }();
+  return done;
+}
+
+}  // namespace
+
+Attacked::Attacked(const std::vector<std::string>& words, const std::string& folder,
+                   const Limits& limits)
+    : folder_(folder) {
+  const std::string out = folder + "/stdout", err = folder + "/stderr";
+  std::vector<char*> argv;
+  for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
+  argv.push_back(nullptr);
+  std::fflush(nullptr);  // what stands in buffers is not written by both
+  pid_ = fork();
+  if (pid_ != 0) return;
+  if (!std::freopen(out.c_str(), "w", stdout) || !std::freopen(err.c_str(), "w", stderr))
+    _exit(126);
+  if (limits.file_size > 0) std::signal(SIGXFSZ, SIG_IGN);
+  limit(RLIMIT_FSIZE, limits.file_size);
+  limit(RLIMIT_AS, limits.address_space);
+  const rlimit none{0, 0};
+  setrlimit(RLIMIT_CORE, &none);
+  execvp(argv[0], argv.data());
+  _exit(127);
+}
+
+Attacked::~Attacked() {
+  if (pid_ <= 0) return;
+  kill(pid_, SIGKILL);
+  waitpid(pid_, nullptr, 0);
+}
+
+bool Attacked::lives() const {
+  siginfo_t info{};
+  if (waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) != 0) return false;
+  return info.si_pid == 0;  // nobody has ended
+}
+
+End Attacked::end(double seconds) {
+  const auto begin = std::chrono::steady_clock::now();
+  End out;
+  int status = 0;
+  while (waitpid(pid_, &status, WNOHANG) == 0) {
+    const std::chrono::duration<double> now = std::chrono::steady_clock::now() - begin;
+    if (now.count() > seconds && !out.hung) {
+      out.hung = true;
+      kill(pid_, SIGKILL);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  pid_ = -1;
+  if (WIFEXITED(status)) out.code = WEXITSTATUS(status);
+  if (WIFSIGNALED(status)) out.signal = WTERMSIG(status);
+  out.words = contents_of(folder_ + "/stderr");
+  out.all = contents_of(folder_ + "/stdout");
+  return out;
+}
+
+std::string broken_files(const std::string& folder) {
+  std::string out;
+  std::error_code none;
+  for (const auto& entry : fs::recursive_directory_iterator(folder, none)) {
+    if (!entry.is_regular_file()) continue;
+    const std::string why = complaint(entry.path());
+    if (!why.empty()) out += entry.path().string() + " " + why + "\n";
+  }
+  return out;
+}
+
+double size_of(const std::string& folder) {
+  double out = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) out += static_cast<double>(entry.file_size());
+  return out;
+}
+
+SmallDisk::SmallDisk(std::string folder, double bytes) : folder_(std::move(folder)) {
+  fs::create_directories(folder_);
+  const std::string size = "size=" + std::to_string(static_cast<long>(bytes));
+  mounted_ = own_mounts() && mount("none", folder_.c_str(), "tmpfs", 0, size.c_str()) == 0;
+}
+
+SmallDisk::~SmallDisk() {
+  if (mounted_) umount2(folder_.c_str(), MNT_DETACH);
+}
+
+bool SmallDisk::make_read_only() {
+  return mount("none", folder_.c_str(), "tmpfs", MS_REMOUNT | MS_RDONLY, nullptr) == 0;
+}
+
+bool SmallDisk::fill_up_to(double free_bytes) const {
+  const int file = open((folder_ + "/of_others").c_str(), O_WRONLY | O_CREAT, 0600);
+  bool done = false;
+  // Somebody writes meanwhile: what is asked for may not be there any more.
+  for (int attempt = 0; attempt < 50 && !done; ++attempt) {
+    struct statvfs disk {};
+    statvfs(folder_.c_str(), &disk);
+    const double there = static_cast<double>(disk.f_bavail) * static_cast<double>(disk.f_bsize);
+    done = there <= free_bytes ||
+           posix_fallocate(file, 0, static_cast<off_t>(there - free_bytes)) == 0;
+  }
+  close(file);
+  return done;
+}
+
+size_t number_of(const char* name, size_t otherwise) {
+  const char* text = std::getenv(name);
+  return text ? std::strtoull(text, nullptr, 10) : otherwise;
+}
+
+}  // namespace flexmorph::testing

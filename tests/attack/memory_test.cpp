@@ -1,0 +1,108 @@
+// Address space that ends (ulimit -v): a run that does not fit is refused with numbers or ends with
+// a sentence; none hangs, none says "unexpected".
+//
+//   FLEXMORPH_LIMITS=12 build/tests/attack/attack_tests --gtest_filter='Memory.*'
+//   limits between 0.2 and 3 GB, default 3
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "fem/solve/blas_room.h"
+#include "tests/attack/attacked_program.h"
+#include "tests/io/scratch.h"
+
+extern "C" void* blas_memory_alloc(int purpose);  // of OpenBLAS
+extern "C" void blas_memory_free(void* buffer);
+
+namespace flexmorph {
+namespace {
+
+using testing::Attacked;
+using testing::End;
+using Words = std::vector<std::string>;
+
+struct Large {
+  const char* name;
+  Words words;
+};
+
+std::vector<Large> large_runs() {
+  const std::string short_case = FLEXMORPH_SHORT_CASE;
+  return {
+      {"cells of 5 mm",
+       {"short_beam", "--set", "design.cell=0.005", "--set", "optimizer.max_iterations=2"}},
+      {"cells of 5 mm, two threads",
+       {"short_beam", "--set", "design.cell=0.005", "--set", "optimizer.max_iterations=2",
+        "--threads", "2"}},
+      {"cells of 2.5 mm, and nothing but the start",
+       {"short_beam", "--set", "design.cell=0.0025", "--set", "optimizer.max_iterations=0"}},
+      {"a growing plate of 40 x 20 elements",
+       {"rotating_plate_v01", "--set", "design=", "--set", "optimizer=", "--set", "cycle=", "--set",
+        "verify=", "--set", "esl=", "--set", "accuracy=", "--set", "body.elements=[40,20]", "--set",
+        "body.flow.max_length=0.02", "--set", "time.end=0.003"}},
+      {"a load every two milliseconds on cells of 1 mm",
+       {short_case, "--set", "esl.every=0.002", "--set", "design.cell=0.001", "--set",
+        "optimizer.max_iterations=1"}}};
+}
+
+TEST(Memory, EndsWithASentence) {
+  const Scratch scratch;
+  const size_t n = testing::number_of("FLEXMORPH_LIMITS", 3);
+  ASSERT_GT(n, 1u);
+  for (const Large& run : large_runs()) {
+    std::map<int, int> codes;
+    for (size_t k = 0; k < n; ++k) {
+      // Evenly in the logarithm; the first ones are below what OpenBLAS maps.
+      const double bytes = 2e8 * std::pow(15, static_cast<double>(k) / static_cast<double>(n - 1));
+      const std::string what = std::string(run.name) + " in " + std::to_string(bytes / 1e6) + " MB";
+      Words words = {FLEXMORPH_PROGRAM, "run"};
+      words.insert(words.end(), run.words.begin(), run.words.end());
+      const std::string folder = scratch / "run";
+      words.insert(words.end(), {"--set", "expect=", "-o", folder, "--quiet"});
+      const End end = Attacked(words, scratch / "", {.address_space = bytes}).end();
+      ++codes[end.code];
+      EXPECT_FALSE(end.hung) << what;
+      EXPECT_TRUE(end.code == 0 || end.code == 2 || end.code == 3 || end.code == 5)
+          << what << ": exit code " << end.code << ", signal " << end.signal << "\n"
+          << end.words;
+      if (end.code == 2 || end.code == 3) EXPECT_TRUE(contains(end.words, "flexmorph: ")) << what;
+      EXPECT_FALSE(contains(end.words, "unexpected")) << what;
+      if (std::filesystem::exists(folder)) EXPECT_EQ(testing::broken_files(folder), "") << what;
+      std::filesystem::remove_all(folder);
+    }
+    std::string counts;
+    for (const auto& [code, count] : codes)
+      counts += ", exit code " + std::to_string(code) + ": " + std::to_string(count);
+    std::printf("%s, %zu limits%s\n", run.name, n, counts.c_str());
+  }
+}
+
+/// Mapped by this process [bytes].
+double mapped() {
+  std::ifstream status("/proc/self/statm");
+  double pages = 0;
+  status >> pages;
+  return pages * 4096;
+}
+
+// kBlasBuffer is that of the library that is used here: what is reserved is enough for as many
+// calls at a time, and no more is mapped for them.
+TEST(Memory, ReservedBuffersAreThoseOfBlas) {
+  const double before = mapped();
+  fem::reserve_blas(3);
+  const double reserved = mapped();
+  EXPECT_LE(reserved - before, 3 * fem::kBlasBuffer + 2 * 80e6);  // stacks and arenas of threads
+  void* buffers[] = {blas_memory_alloc(0), blas_memory_alloc(0), blas_memory_alloc(0)};
+  EXPECT_EQ(mapped(), reserved);
+  void* fourth = blas_memory_alloc(0);
+  EXPECT_GT(mapped(), reserved);
+  EXPECT_LE(mapped(), reserved + fem::kBlasBuffer);
+  blas_memory_free(fourth);
+  for (void* buffer : buffers) blas_memory_free(buffer);
+}
+
+}  // namespace
+}  // namespace flexmorph

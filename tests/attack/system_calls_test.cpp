@@ -1,0 +1,208 @@
+// All system calls of a run that change files, watched by strace: none reaches beyond the run
+// folder, and what a user keeps in it is there afterwards, byte for byte.
+//
+//   FLEXMORPH_WATCHED=all build/tests/attack/attack_tests --gtest_filter='SystemCalls.*'
+//   all shipped cases, shortened; by default four commands
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "cases/run/ready.h"
+#include "tests/attack/attacked_program.h"
+#include "tests/io/scratch.h"
+
+namespace flexmorph {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Attacked;
+using testing::End;
+using Words = std::vector<std::string>;
+
+const char* const kCalls =
+    "trace=open,openat,openat2,creat,rename,renameat,renameat2,unlink,unlinkat,mkdir,mkdirat,rmdir,"
+    "truncate,ftruncate,link,linkat,symlink,symlinkat,chmod,fchmod,fchmodat,chown,fchown,lchown,"
+    "fchownat,utimensat,utime,utimes,futimesat,mknod,mknodat,setxattr,lsetxattr,fsetxattr,"
+    "removexattr,lremovexattr,fremovexattr,fallocate,mount,umount2,chroot,swapon";
+
+/// Files that may be changed and belong to nobody.
+bool of_the_system(const std::string& path) {
+  return path == "/dev/null" || path == "/dev/tty" || path.starts_with("/proc/self/");
+}
+
+/// All texts in quotes of a line, and what stands in <> behind a number (strace -y).
+Words names_in(const std::string& line) {
+  Words out;
+  for (size_t at = line.find('"'); at != std::string::npos;) {
+    const size_t end = line.find('"', at + 1);
+    if (end == std::string::npos) break;
+    out.push_back(line.substr(at + 1, end - at - 1));
+    at = line.find('"', end + 1);
+  }
+  return out;
+}
+
+/// The first word behind the number of the process.
+std::string call_of(const std::string& line) {
+  const size_t begin = line.find_first_not_of("0123456789 "), end = line.find('(');
+  // "+++ exited with 0 +++", "--- SIGCHLD ...", "<... openat resumed>": said before, or no call.
+  const bool is_call = begin < end && end != std::string::npos && std::isalpha(line[begin]);
+  return is_call ? line.substr(begin, end - begin) : "";
+}
+
+struct Watched {
+  size_t calls = 0, changing = 0;
+  std::string beyond;  ///< lines of calls that reach beyond
+};
+
+/// Looks at what strace wrote.
+/// @param roots  paths below which all may be changed, or that are such
+Watched look(const std::string& log, const Words& roots) {
+  Watched out;
+  std::ifstream in(log);
+  for (std::string line; std::getline(in, line);) {
+    const std::string call = call_of(line);
+    if (call.empty()) continue;
+    ++out.calls;
+    const bool opens = call.starts_with("open") || call == "creat";
+    if (opens && call != "creat" && line.find("O_WRONLY") == std::string::npos &&
+        line.find("O_RDWR") == std::string::npos && line.find("O_CREAT") == std::string::npos &&
+        line.find("O_TRUNC") == std::string::npos)
+      continue;
+    ++out.changing;
+    Words names = names_in(line);
+    if (call == "ftruncate" || call == "fallocate" || call == "fchmod" || call == "fchown") {
+      const size_t at = line.find('<'), end = line.find('>');
+      names = {line.substr(at + 1, end - at - 1)};
+    }
+    bool inside = !names.empty();
+    for (const std::string& name : names) {
+      const std::string path = fs::absolute(name).lexically_normal().string();
+      bool mine = of_the_system(path);
+      for (const std::string& root : roots)
+        mine = mine || path == root || path.starts_with(root + "/");
+      inside = inside && mine;
+    }
+    if (!inside) out.beyond += line + "\n";
+  }
+  return out;
+}
+
+/// Is there a strace that may watch?
+bool can_watch(const Scratch& scratch) {
+  const End end = Attacked({"strace", "-f", "-o", scratch / "trial", "true"}, scratch / "").end();
+  return end.code == 0;
+}
+
+/// The command under strace. @param folder  its -o; with what belongs to it: NAME.previous
+Watched watch(const Scratch& scratch, const Words& words, const std::string& folder) {
+  const std::string log = scratch / "calls";
+  Words all = {"strace", "-f", "-y", "-s", "4096", "-o", log, "-e", kCalls, FLEXMORPH_PROGRAM};
+  all.insert(all.end(), words.begin(), words.end());
+  all.insert(all.end(), {"-o", folder, "--quiet"});
+  const End end = Attacked(all, scratch / "").end(900);
+  EXPECT_TRUE(end.code == 0 || end.code == 3 || end.code == 5)
+      << words[1] << ": " << end.code << "\n"
+      << end.words;
+  return look(log, {folder, folder + ".previous"});
+}
+
+/// Names that a run, or somebody who cleans up after it, might take for its own.
+const char* const kTempting[] = {
+    "design_mine.txt", "components_old.csv", "history.csv.bak", "run.json.orig",
+    "plots/mine.svg",  "loads/notes.csv",    "motion/my.vtu",   "motion/frame_99999.vtu",
+    "design/mine.vti", "design.dxf~",        "inputs/mine.csv", "case.toml.tmp2",
+    "evaluations.txt", "report_mine.html",   ".hidden",         "my folder/file.md"};
+
+void put_files(const std::string& folder) {
+  for (const char* name : kTempting) {
+    fs::create_directories((fs::path(folder) / name).parent_path());
+    std::ofstream(folder + "/" + name) << "mine: " << name;
+  }
+}
+
+void expect_files(const std::string& folder) {
+  for (const char* name : kTempting)
+    EXPECT_EQ(contents_of(folder + "/" + name), std::string("mine: ") + name) << folder;
+}
+
+struct Command {
+  std::string name;
+  Words words;
+  bool study = false;
+};
+
+/// Shortened: loads, iterations and times are few.
+Words short_words(const std::string& name) {
+  std::string path = FLEXMORPH_CASES;
+  path.append("/").append(name).append(".toml");
+  const std::string text = contents_of(path);
+  const auto has = [&](const char* part) { return text.find(part) != std::string::npos; };
+  Words out = {"run", name, "--set", "expect=", "--set", "accuracy="};
+  if (has("[optimizer]")) out.insert(out.end(), {"--set", "optimizer.max_iterations=2"});
+  if (has("[verify]")) out.insert(out.end(), {"--set", "verify="});
+  return out;
+}
+
+std::vector<Command> commands() {
+  const std::string small = FLEXMORPH_SHORT_CASE;
+  std::vector<Command> out = {
+      {"a design in a motion", {"run", small}},
+      {"a path", {"run", "cantilever_roll_up"}},
+      {"a sweep", {"sweep", small, "--vary", "time.step=1e-3,2e-3"}, true},
+      {"a comparison",
+       {"compare", "short_beam", "--optimizers", "mma,gcmma", "--starts", "1", "--budget", "3"},
+       true}};
+  if (!std::getenv("FLEXMORPH_WATCHED")) return out;
+  for (const std::string& name : cases::shipped_cases()) out.push_back({name, short_words(name)});
+  out.push_back(
+      {"accuracy", {"accuracy", "cantilever_roll_up", "--budget", "5s", "--no-verify"}, true});
+  out.push_back({"stability", {"stability", "plate_pendulum", "--suites", "extreme"}, true});
+  return out;
+}
+
+TEST(SystemCalls, ChangeNothingBeyondTheFolder) {
+  const Scratch scratch;
+  if (!can_watch(scratch)) GTEST_SKIP() << "strace is not there, or may not watch";
+  for (const Command& command : commands()) {
+    const std::string folder = scratch / "run";
+    const Watched first = watch(scratch, command.words, folder);
+    EXPECT_EQ(first.beyond, "") << command.name;
+    EXPECT_GT(first.changing, 5u) << command.name;
+    put_files(folder);
+    const Watched again = watch(scratch, command.words, folder);
+    EXPECT_EQ(again.beyond, "") << command.name << ", again";
+    // A run moves the folder whole, a study goes on in it.
+    expect_files(command.study ? folder : folder + ".previous");
+    std::printf("%s: %zu and %zu calls, %zu and %zu that change files\n", command.name.c_str(),
+                first.calls, again.calls, first.changing, again.changing);
+    std::fflush(stdout);
+    for (const char* ending : {"", ".previous"}) fs::remove_all(folder + ending);
+  }
+}
+
+// The watcher sees what it is there for.
+TEST(SystemCalls, AreSeen) {
+  const Scratch scratch;
+  scratch.write("log",
+                "12 openat(AT_FDCWD</x>, \"/a/run/f.csv\", O_WRONLY|O_CREAT, 0666) = 3</a/run/f>\n"
+                "12 openat(AT_FDCWD</x>, \"/etc/passwd\", O_RDONLY) = 3</etc/passwd>\n"
+                "12 rename(\"/a/run/f.tmp\", \"/a/run/../precious\") = 0\n"
+                "12 unlink(\"/a/runs\") = 0\n"
+                "12 ftruncate(3</a/run/f.csv>, 0) = 0\n"
+                "12 ftruncate(3</b/f.csv>, 0) = 0\n"
+                "12 +++ exited with 0 +++\n");
+  const Watched seen = look(scratch / "log", {"/a/run"});
+  EXPECT_EQ(seen.changing, 5u);
+  EXPECT_TRUE(contains(seen.beyond, "precious"));
+  EXPECT_TRUE(contains(seen.beyond, "/a/runs"));
+  EXPECT_TRUE(contains(seen.beyond, "/b/f.csv"));
+  EXPECT_FALSE(contains(seen.beyond, "f.csv\", O_WRONLY"));
+}
+
+}  // namespace
+}  // namespace flexmorph
