@@ -35,21 +35,29 @@ Cell::Cell(std::string text) : text_(std::move(text)) {
   text_ = quoted + "\"";
 }
 
-CsvWriter::CsvWriter(std::string path, size_t n_columns, int flags)
-    : path_(std::move(path)), n_columns_(n_columns) {
-  file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | flags, 0666);
+CsvWriter::CsvWriter(std::string path, size_t n_columns)
+    : path_(std::move(path)), n_columns_(n_columns) {}
+
+void CsvWriter::open() {
+  file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (file_ < 0)
     throw Error::numerical(path_ +
                            ": cannot be written: " + std::generic_category().message(errno));
 }
 
-CsvWriter::CsvWriter(std::string path, std::span<const std::string> columns)
-    : CsvWriter(std::move(path), columns.size(), O_TRUNC) {
-  row(std::vector<Cell>(columns.begin(), columns.end()));
+CsvWriter::CsvWriter(std::string path, std::span<const std::string> columns,
+                     std::span<const std::vector<Cell>> rows)
+    : CsvWriter(std::move(path), columns.size()) {
+  std::string text = line_of(std::vector<Cell>(columns.begin(), columns.end()));
+  for (const std::vector<Cell>& row : rows) text += line_of(row);
+  write_file(path_, text);
+  open();
+  size_ = static_cast<off_t>(text.size());
 }
 
 CsvWriter CsvWriter::go_on(std::string path, size_t n_columns) {
-  CsvWriter out(std::move(path), n_columns, 0);
+  CsvWriter out(std::move(path), n_columns);
+  out.open();
   std::ifstream file(out.path_, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   out.size_ = static_cast<off_t>(text.rfind('\n') + 1);  // 0 without any
@@ -69,13 +77,15 @@ CsvWriter::CsvWriter(CsvWriter&& other) noexcept
       file_(std::exchange(other.file_, -1)),
       size_(other.size_) {}
 
-void CsvWriter::row(std::span<const Cell> cells) {
+void CsvWriter::row(std::span<const Cell> cells) { write(line_of(cells)); }
+
+std::string CsvWriter::line_of(std::span<const Cell> cells) const {
   if (cells.size() != n_columns_)
     throw Error::numerical(path_ + ": a row of " + std::to_string(cells.size()) +
                            " entries under " + std::to_string(n_columns_) + " columns");
   std::string line;
   for (size_t i = 0; i < cells.size(); ++i) line += (i ? "," : "") + cells[i].text();
-  write(line + "\n");
+  return line + "\n";
 }
 
 void CsvWriter::write(const std::string& line) {

@@ -30,13 +30,16 @@ class Cell {
   std::string text_;
 };
 
-/// A table of comma-separated values that can be read while it grows: a row appears as a whole.
+/// A table of comma-separated values that can be read while it grows: a row appears as a whole, but
+/// for the instant in which the system takes one that crosses two pages of memory.
 /// Numbers are written in full precision, whatever the locale.
 class CsvWriter {
  public:
-  /// Begins a new file with its header, in a folder that is there.
+  /// Begins a new file with its header, and rows as long as it, in a folder that is there; an old
+  /// one is replaced as a whole: who reads it meanwhile sees the one or the other.
   /// @throws Error (numerical) when it cannot be written; row() likewise, whole rows stay.
-  CsvWriter(std::string path, std::span<const std::string> columns);
+  CsvWriter(std::string path, std::span<const std::string> columns,
+            std::span<const std::vector<Cell>> rows = {});
   /// Goes on with a file that is there, behind its last whole row.
   static CsvWriter go_on(std::string path, size_t n_columns);
   ~CsvWriter();
@@ -48,7 +51,9 @@ class CsvWriter {
   void row(std::initializer_list<Cell> cells) { row(std::span(cells.begin(), cells.size())); }
 
  private:
-  CsvWriter(std::string path, size_t n_columns, int flags);
+  CsvWriter(std::string path, size_t n_columns);
+  void open();
+  std::string line_of(std::span<const Cell> cells) const;
   void write(const std::string& line);
   std::string path_;
   size_t n_columns_;

@@ -66,6 +66,25 @@ TEST(Csv, EmptyCellsQuotesAndNonFiniteNumbers) {
   EXPECT_THROW(table.row({1, 2}), Error);
 }
 
+// Who reads an old table while a new one takes its place sees the old one to its end.
+TEST(CsvWriter, ReplacesAnOldTableAsAWhole) {
+  const Scratch scratch;
+  const std::string path = scratch / "t.csv";
+  const std::vector<std::string> columns = {"a", "b"};
+  CsvWriter old(path, columns, std::vector<std::vector<Cell>>{{1, 0.5}, {2, "x"}});
+  old.row({3, 4});
+  std::ifstream reader;
+  reader.rdbuf()->pubsetbuf(nullptr, 0);  // it has not read ahead
+  reader.open(path);
+  std::string header, rest;
+  std::getline(reader, header);
+  CsvWriter table(path, columns);
+  table.row({5, 6});
+  rest.assign(std::istreambuf_iterator<char>(reader), {});
+  EXPECT_EQ(header + "\n" + rest, "a,b\n1,0.5\n2,x\n3,4\n");
+  EXPECT_EQ(contents_of(path), "a,b\n5,6\n");
+}
+
 // What a spreadsheet saves where the comma is the decimal point.
 TEST(Csv, ReadsSemicolonsDecimalCommasAndByteOrderMarks) {
   const Scratch scratch;
