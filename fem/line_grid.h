@@ -48,6 +48,8 @@ class LineGrid : public Element {
   virtual std::unique_ptr<LineGrid> with_line(int i, double value) const = 0;
   virtual std::unique_ptr<LineGrid> without_line(int i) const = 0;
   virtual std::unique_ptr<LineGrid> frozen() const = 0;
+  /// The same elements on other m-lines, which increase at t; free lines start at their values.
+  virtual std::unique_ptr<LineGrid> with_lines_m(std::vector<MaterialLine> m, double t) const = 0;
 };
 
 }  // namespace flexmorph::fem

@@ -34,8 +34,24 @@ void Workspace::prepare(const State& x) {
     if (const int n = b.element->n_scalars(); n > 0)
       b.element->move_lines(x.q.segment(b.first_scalar(), n), x.v.segment(b.first_scalar(), n),
                             x.a.segment(b.first_scalar(), n));
-  prepare_bodies(x.t);
   keep_lines(x);
+  prepare_bodies(x.t);
+}
+
+void Workspace::prepare_whole(const Whole& whole) {
+  size_t at = 0;
+  for (Body& b : bodies_) {
+    const int n = b.element->n_scalars();
+    if (n == 0 || whole.lines.empty()) continue;
+    // A row per line: q, v, a.
+    const Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic>> line(whole.lines.data() + at,
+                                                                          3, n);
+    b.element->move_lines(line.row(0), line.row(1), line.row(2));
+    at += 3 * static_cast<size_t>(n);
+  }
+  lines_ = whole.lines;
+  prepared_version_ = -1;
+  prepare_bodies(whole.t);
 }
 
 void Workspace::prepare(double t) {
@@ -50,6 +66,7 @@ void Workspace::move_lines(double t) {
 void Workspace::prepare_bodies(double t) {
   prepared_t_ = std::numeric_limits<double>::quiet_NaN();  // where it fails, nothing is prepared
   const bool all = prepared_version_ != content_version();
+  if (all) whole_ = {t, lines_};
   if (numbered_version_ != pattern_version()) number_batches();
   for (Body& b : bodies_) {
     b.element->move_to(t);

@@ -61,6 +61,16 @@ class Workspace : public Model {
   /// rigid bodies and plates to be placed, before terms can be evaluated.
   void move_lines(double t);
 
+  /// Where all parts were prepared last, after the last change of the model: there elements of
+  /// equal size (up to round-off) share what is prepared, and go on doing so while only lines move.
+  /// Who goes on with a motion, the same bit for bit, begins with it.
+  struct Whole {
+    double t = 0;               ///< [s]
+    std::vector<double> lines;  ///< free ones: q, v, a in turn; empty: where they start
+  };
+  const Whole& prepared_whole() const { return whole_; }
+  void prepare_whole(const Whole& whole);
+
   /// M q̈ + F(q, q̇) without constraint forces (n_dofs).
   void force(const State& x, VectorXd& out);
   void constraints(const State& x, Constraints& out);
@@ -159,6 +169,7 @@ class Workspace : public Model {
   int prepared_version_ = -1;
   double prepared_t_ = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> lines_;
+  Whole whole_;
   // Batches and singles of the elements, of this pattern_version(); those of one colour follow each
   // other, colours_ has the first batch of every colour, and their number.
   int numbered_version_ = -1;

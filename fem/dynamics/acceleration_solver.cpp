@@ -126,6 +126,17 @@ void AccelerationSolver::factorize(const State& x, const Constraints& c) {
   ++factorizations_;
 }
 
+void AccelerationSolver::remember(Memory& memory) {
+  memory(factorizations_, mass_moves_, is_factored_, is_small_, kkt_, scale_, weights_, places_,
+         factored_);
+  right_.resize(scale_.size());
+  if (!memory.up_to_date(version_, model_.pattern_version())) return;
+  if (is_small_)
+    small_.remember(memory, kkt_);
+  else
+    large_.remember(memory, kkt_);
+}
+
 std::optional<double> AccelerationSolver::condition() const {
   if (factorizations_ == 0) return {};
   return condition_estimate(kkt_);

@@ -29,6 +29,7 @@ class AccelerationSolver {
   /// @param force, constraint  f (n) and γ (m)
   void solve(const VectorXd& force, const VectorXd& constraint, VectorXd& a, VectorXd& lambda);
   int factorizations() const { return factorizations_; }
+  void remember(Memory& memory);
   /// condition_estimate() of the matrix of the last factorize(); none before.
   std::optional<double> condition() const;
 

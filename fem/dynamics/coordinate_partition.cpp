@@ -107,6 +107,12 @@ void CoordinatePartition::factorize(const Constraints& c) {
   is_factored_ = true;
 }
 
+void CoordinatePartition::remember(Memory& memory) {
+  memory(independent_, dependent_, places_, weights_, row_scale_, column_scale_, matrix_, factored_,
+         is_factored_);
+  lu_.remember(memory, matrix_);
+}
+
 void CoordinatePartition::solve(const VectorXd& right, VectorXd& out) const {
   out = row_scale_.cwiseProduct(right);
   lu_.solve(out);

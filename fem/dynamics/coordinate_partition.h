@@ -35,6 +35,7 @@ class CoordinatePartition {
   /// Estimate of ‖Φ_qd⁻¹‖₁ of the last factorize(), scaled as J: about what errors of independent
   /// unknowns grow by in dependent ones. 1 at best; infinite where independent unknowns stop.
   double amplification() const;
+  void remember(Memory& memory);
 
  private:
   void number(const Model& model, const Constraints& c);

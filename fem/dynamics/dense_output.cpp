@@ -84,6 +84,11 @@ void DenseOutput::project_position(State& x) {
   }
 }
 
+void DenseOutput::remember(Memory& memory) {
+  memory(scales_, kkt_);
+  if (memory.up_to_date(version_, model_.pattern_version())) solver_.remember(memory, kkt_);
+}
+
 void DenseOutput::at(double t, State& out) {
   const int n = model_.n_dofs();
   if (version_ != model_.pattern_version()) scales_ = model_.scales();

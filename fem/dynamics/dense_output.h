@@ -26,6 +26,7 @@ class DenseOutput {
   /// The state at a time within the step.
   /// @throws Error (numerical) when the projection does not converge.
   void at(double t, State& out);
+  void remember(Memory& memory);
 
  private:
   void interpolate(double t, State& out) const;

@@ -39,6 +39,12 @@ void GeneralizedAlpha::change_mesh(const MeshMap& map, const State& before) {
   if (alpha_.size() == map.n_before()) alpha_ = map.acceleration(before.q, before.v, alpha_);
 }
 
+void GeneralizedAlpha::remember(Memory& memory) {
+  StepSolver::remember(memory);
+  memory(alpha_, last_h_, jerk_, step_jerk_, smooth_);
+  memory.up_to_date(jerk_version_, model().pattern_version());
+}
+
 void GeneralizedAlpha::set_start(const State& x) {
   if (alpha_.size() != x.a.size()) alpha_ = x.a;
   start_alpha_ = alpha_;

@@ -55,6 +55,7 @@ class GeneralizedAlpha final : public StepSolver {
   const VectorXd& alpha() const { return alpha_; }
   void set_alpha(VectorXd alpha) { alpha_ = std::move(alpha); }
   void change_mesh(const MeshMap& map, const State& before) override;
+  void remember(Memory& memory) override;
   /// C: the local error of the position is -C h³ q⃛.
   double error_constant() const { return 1.0 / 6 - beta_ - 0.5 * shift(); }
 

@@ -7,6 +7,9 @@
 #include "fem/dynamics/minimal_coordinates.h"
 
 namespace flexmorph::fem {
+
+void remember(Memory& memory, State& x) { memory(x.t, x.q, x.v, x.a, x.lambda, x.turned); }
+
 namespace {
 
 using Maker = std::unique_ptr<Integrator> (*)(Workspace&, const IntegratorSettings&);

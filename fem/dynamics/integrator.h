@@ -7,6 +7,7 @@
 
 #include "fem/dynamics/mesh_map.h"
 #include "fem/workspace.h"
+#include "geometry/memory.h"
 
 namespace flexmorph::fem {
 
@@ -48,6 +49,8 @@ struct StepCounts {
   int evaluations = 0;  ///< of accelerations, by explicit integrators
   int partitions = 0;   ///< choices of independent coordinates
 };
+
+void remember(Memory& memory, State& x);
 
 /// What became of a step of Integrator::try_step().
 struct TriedStep {
@@ -96,6 +99,9 @@ class Integrator {
   virtual const State* step_mean() const { return nullptr; }
 
   virtual const StepCounts& counts() const = 0;
+  /// What the next steps depend on besides the state, between two steps: put back into an
+  /// integrator of the same settings and model, its mesh included, they are the same bit for bit.
+  virtual void remember(Memory& memory) = 0;
   /// condition_estimate() of the matrix that was factored last; none before there is one. Costs a
   /// factorization.
   virtual std::optional<double> condition() const = 0;

@@ -90,9 +90,11 @@ struct MinimalCoordinates::Impl {
   double amplification = 1, best_amplification = 1;  // after the last step, since the choice
   Numbers y, independent_scales;
   Stepper stepper;
-  double step = 0;  // the next one, 0: none known
-  State last;       // accepted last: what goes on from there keeps the stepper's derivative
-  State at;         // of the last evaluation
+  double step = 0;        // the next one, 0: none known
+  State last;             // accepted last: what goes on from there keeps the stepper's derivative
+  Numbers rate;           // of y, from the last stage of the step before,
+  bool is_begun = false;  // where there is one
+  State at;               // of the last evaluation
   Constraints constraints;
   VectorXd right, correction, force, none;
 
@@ -138,6 +140,7 @@ struct MinimalCoordinates::Impl {
       y[n + k] = x.v[independent[k]];
     }
     stepper = make_stepper();
+    is_begun = false;
     at = last = x;
   }
 
@@ -231,7 +234,10 @@ bool MinimalCoordinates::Impl::try_step(const State& x, double& h, std::string& 
     const auto system = [this](const Numbers& from, Numbers& rate, double time) {
       evaluate(from, rate, time);
     };
-    if (stepper.try_step(system, y, t, h) == odeint::fail) return false;
+    rate.resize(y.size());
+    if (!is_begun) evaluate(y, rate, t);
+    is_begun = true;
+    if (stepper.try_step(system, y, rate, t, h) == odeint::fail) return false;
     amplification = partition.amplification();
     if (amplification <= kAmbiguous * best_amplification) return true;
     throw Error::numerical("the independent coordinates are at their limits");
@@ -307,6 +313,17 @@ MinimalCoordinates::~MinimalCoordinates() = default;
 const StepCounts& MinimalCoordinates::counts() const { return impl_->counts; }
 std::optional<double> MinimalCoordinates::condition() const {
   return impl_->accelerations.condition();
+}
+
+void MinimalCoordinates::remember(Memory& memory) {
+  Impl& s = *impl_;
+  memory(s.counts, s.scales, s.size, s.amplification, s.best_amplification, s.y, s.rate, s.is_begun,
+         s.independent_scales, s.step, s.last, s.partition);
+  memory.up_to_date(s.version, s.model.pattern_version());
+  s.accelerations.remember(memory);
+  if (!memory.puts_back()) return;
+  s.at = s.last;
+  s.stepper = s.make_stepper();
 }
 
 void MinimalCoordinates::make_consistent(State& x) {

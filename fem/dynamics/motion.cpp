@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
 #include "fem/dynamics/dense_output.h"
+#include "fem/dynamics/motion_failures.h"
+#include "fem/dynamics/motion_memory.h"
 
 namespace flexmorph::fem {
 
@@ -33,6 +34,29 @@ class Run {
   }
 
   MotionResult go() {
+    if (settings_.adaptive) prepare_to_adapt();
+    if (settings_.memory.empty())
+      begin();
+    else
+      go_on();
+    const double tiny = kTiny * settings_.step;
+    const auto all = landings();
+    for (; next_landing_ < all.size(); ++next_landing_) {
+      const auto& [stop, seen] = all[next_landing_];
+      if (!leg_.open && (stop <= x_.t + tiny || stop > settings_.end + tiny)) continue;
+      while (leg_.open || x_.t < stop - tiny) to_next_event(std::min(stop, settings_.end), seen);
+    }
+    between_steps();
+    result_.final = x_;
+    result_.counts = integrator_->counts();
+    result_.energy_defect = balance_.relative();
+    result_.energy_gain = growth_.gain();
+    if (settings_.condition) result_.condition = integrator_->condition();
+    return std::move(result_);
+  }
+
+ private:
+  void begin() {
     // What drives a motion need not be defined behind its end.
     x_ = start_state(model_, growths_, 0, settings_.start, settings_.placement,
                      std::min(1e-4, 0.5 * settings_.end));
@@ -46,21 +70,40 @@ class Run {
     if (settings_.balance && settings_.energy_round_off)
       growth_.begin(e, *settings_.energy_round_off);
     see(x_, e, false);
-    if (settings_.adaptive) adapt();
-    const double tiny = kTiny * settings_.step;
-    for (const auto& [stop, seen] : landings()) {
-      if (stop <= x_.t + tiny || stop > settings_.end + tiny) continue;
-      while (x_.t < stop - tiny) to_next_event(std::min(stop, settings_.end), seen);
-    }
-    result_.final = x_;
-    result_.counts = integrator_->counts();
-    result_.energy_defect = balance_.relative();
-    result_.energy_gain = growth_.gain();
-    if (settings_.condition) result_.condition = integrator_->condition();
-    return std::move(result_);
+    if (!control_) return;
+    // Asked for in any case: the start of the algorithmic acceleration comes with it.
+    const double first = integrator_->first_step(x_, control_->allowed(), control_->largest());
+    control_->begin(settings_.adaptive->first > 0 ? settings_.adaptive->first : first);
   }
 
- private:
+  void go_on() {
+    Memory memory(settings_.memory);
+    remember(memory);
+  }
+
+  /// All that the next steps depend on, or that is told of the motion at its end.
+  void remember(Memory& memory) {
+    memory(x_, result_);
+    if (!memory.puts_back()) model_.prepare(x_);
+    remember_meshes(memory, model_, growths_);
+    model_.prepare(x_);
+    integrator_->remember(memory);
+    multipliers_.remember(memory, model_);
+    if (control_) memory(*control_);
+    memory(powers_, balance_, growth_, leg_, next_landing_, next_between_, since_watched_,
+           since_joints_, was_near_);
+    if (dense_) dense_->remember(memory);
+  }
+
+  void between_steps() {
+    if (settings_.between_steps && settings_.keep == Keep::nothing)
+      settings_.between_steps([this] {
+        Memory memory;
+        remember(memory);
+        return memory.bytes();
+      });
+  }
+
   Powers measure(const State& x) { return settings_.balance ? powers(model_, x) : Powers{}; }
 
   /// Work of a step to x, at the time its multipliers belong to.
@@ -103,59 +146,74 @@ class Run {
   }
 
   /// Prepares steps that adapt.
-  void adapt() {
+  void prepare_to_adapt() {
     if (integrator_->step_mean())
       throw Error::input("adaptive steps need \"generalized_alpha\": \"" + settings_.integrator +
                          "\" does not estimate its local error");
     control_.emplace(*settings_.adaptive, settings_.end);
-    // Asked for in any case: the start of the algorithmic acceleration comes with it.
-    const double first = integrator_->first_step(x_, control_->allowed(), control_->largest());
-    control_->begin(settings_.adaptive->first > 0 ? settings_.adaptive->first : first);
     dense_.emplace(model_);
     between_ = settings_.stops;
     std::sort(between_.begin(), between_.end());
   }
 
-  /// To the stop, or to the first change of a mesh before it.
-  void to_next_event(double stop, bool seen) {
+  /// The way to a stop, or to the first change of a mesh before it.
+  struct Leg {
+    bool open = false;
+    double begin = 0, end = 0;
+    int steps = 0, done = 0;  // of equal ones
+    bool is_stop = false;
+    int changing = -1;  // of the growths
+    MeshChange change = MeshChange::insertion;
+  };
+
+  void plan(double stop, bool seen) {
     NextChange next{stop, MeshChange::insertion};
-    const Growth* changing = nullptr;
-    for (const Growth& g : growths_) {
+    int changing = -1;
+    for (size_t i = 0; i < growths_.size(); ++i) {
+      const Growth& g = growths_[i];
       const NextChange n = next_change(model_.body(g.body), g, x_.t, stop, settings_.step);
-      if (n.t < next.t || (n.t == next.t && !changing)) {
+      if (n.t < next.t || (n.t == next.t && changing < 0)) {
         next = n;
-        changing = &g;
+        changing = static_cast<int>(i);
       }
     }
     // A change this near to a stop is meant to fall on it; a step this short would be noise.
     if (std::abs(next.t - stop) < kTiny * settings_.step) next.t = stop;
+    leg_ = {true, x_.t, next.t, 0, 0, seen && next.t == stop, changing, next.change};
     // A limit that is passed already (a boundary element too long from the start) takes no step.
-    if (next.t - x_.t > kTiny * settings_.step) {
-      const bool at_stop = seen && next.t == stop;
-      if (control_)
-        adaptive_steps_to(next.t, at_stop);
-      else
-        steps_to(next.t, at_stop);
-    }
-    const bool at_end = next.t >= settings_.end - kTiny * settings_.step;
-    if (changing && !at_end) execute(*changing, next.change);
+    if (const double way = next.t - x_.t; way > kTiny * settings_.step)
+      leg_.steps = std::max(1, static_cast<int>(std::ceil(way / settings_.step - 1e-6)));
   }
 
-  /// Equal steps, none longer than the settings' step.
-  void steps_to(double end, bool stop) {
-    const double begin = x_.t;
-    const int n = std::max(1, static_cast<int>(std::ceil((end - begin) / settings_.step - 1e-6)));
-    for (int k = 1; k <= n; ++k) {
+  void to_next_event(double stop, bool seen) {
+    if (!leg_.open) plan(stop, seen);
+    if (leg_.steps > 0 && control_)
+      adaptive_steps_to(leg_.end, leg_.is_stop);
+    else
+      equal_steps();
+    leg_.open = false;
+    const bool at_end = leg_.end >= settings_.end - kTiny * settings_.step;
+    if (leg_.changing >= 0 && !at_end)
+      execute(growths_[static_cast<size_t>(leg_.changing)], leg_.change);
+  }
+
+  /// Those of the leg that are left, none longer than the settings' step.
+  void equal_steps() {
+    const double begin = leg_.begin, end = leg_.end;
+    const int n = leg_.steps;
+    while (leg_.done < n) {
+      const int k = ++leg_.done;
       const double t = k == n ? end : begin + (end - begin) * k / n;
       double last = x_.t;
       watching_joints([&] {
         integrator_->advance(x_, t, [&](const State& x) {
           watch_steps(x.t - last, (end - begin) / n);
-          accepted(x.t - last, stop && x.t >= end);
+          accepted(x.t - last, leg_.is_stop && x.t >= end);
           last = x.t;
         });
       });
       if (t < settings_.end - kTiny * settings_.step) changes_due();
+      between_steps();
     }
   }
 
@@ -180,6 +238,7 @@ class Run {
       const bool at_stop = see_between(tiny) || (stop && x_.t == end);
       accepted(h, at_stop);
       if (x_.t < settings_.end - tiny) changes_due();
+      between_steps();
     }
   }
 
@@ -271,38 +330,15 @@ class Run {
     since_watched_ = 0;
     const double ratio = model_.smallest_area_ratio(x);
     result_.smallest_area_ratio = std::min(result_.smallest_area_ratio, ratio);
-    if (ratio > 0) return;
-    char text[300];
-    std::snprintf(
-        text, sizeof text,
-        "motion: the material has collapsed at t = %.6g s, step %d: smallest area ratio "
-        "|r_m x r_n| = %.2e. It is too soft for its loads or too hot, or time.step is too "
-        "long for what changes in it: then a smaller one helps.",
-        x.t, integrator_->counts().steps, ratio);
-    throw Error::numerical(text);
+    if (!(ratio > 0)) throw collapsed(x.t, integrator_->counts().steps, ratio);
   }
 
   /// Better to stop than to go on until Newton's method fails: see EnergyGrowth.
   void watch_energy(const Energies& e) {
     growth_.see(x_.t, e, powers_, balance_.defect());
     if (!growth_.is_too_large()) return;
-    const EnergyGain gain = growth_.gain();
-    std::string remedy = "A smaller time.step";
-    if (settings_.integrator == "generalized_alpha") {
-      if (settings_.alpha.rho_inf > kWeaklyDamped && model_.n_constraints() > 0)
-        remedy += ", or a smaller time.rho_inf where joint forces alternate from step to step,";
-      remedy += " helps; time.integrator = \"energy_momentum\" keeps the energy exactly";
-    } else {
-      remedy += " helps";
-    }
-    char text[300];
-    std::snprintf(
-        text, sizeof text,
-        "motion: no drive brings energy in, but by t = %.6g s, step %d, the energy has grown by "
-        "%.3g J, %.0f %% of the largest (by more than 10 %% from t = %.6g s on): the "
-        "steps do not follow the motion. ",
-        x_.t, integrator_->counts().steps, balance_.defect(), 100 * gain.part, gain.time);
-    throw Error::numerical(text + remedy + ".");
+    throw gained_energy(settings_, x_.t, integrator_->counts().steps, balance_.defect(),
+                        growth_.gain(), model_.n_constraints() > 0);
   }
 
   void drift() {
@@ -347,7 +383,6 @@ class Run {
   static constexpr double kTiny = 1e-6;    // of a step
   static constexpr int kWatchEvery = 10;   // steps between looks at the area ratio
   static constexpr int kJointsEvery = 25;  // steps between looks at the joints of rigid bodies
-  static constexpr double kWeaklyDamped = 0.98;  // rho_inf: multipliers may gain more
   static constexpr double kNearlyDependent = 1e6, kSingular = 1e3;  // conditions
   int since_watched_ = 0, since_joints_ = 0;
   bool was_near_ = false;
@@ -369,6 +404,8 @@ class Run {
   State before_, within_;  // the start of the step, a state within it
   std::vector<double> between_;
   size_t next_between_ = 0;
+  Leg leg_;
+  size_t next_landing_ = 0;
   MotionResult result_;
 };
 

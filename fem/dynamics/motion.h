@@ -16,6 +16,9 @@
 
 namespace flexmorph::fem {
 
+/// Takes down what the motion needs to go on from where it is. Changes nothing.
+using TakeDown = std::function<std::string()>;
+
 struct MotionSettings {
   double end = 1;      ///< [s]
   double step = 1e-3;  ///< [s]; where steps adapt only the spacing of looks for mesh changes
@@ -38,6 +41,12 @@ struct MotionSettings {
   std::optional<double> energy_round_off;
   bool condition = false;     ///< estimate the condition at the end (costs a factorization)
   Keep keep = Keep::nothing;  ///< of the trajectory, for those who look at it afterwards
+  /// Where the motion goes on: what a TakeDown gave in the same motion of the same model; empty: it
+  /// begins. All that follows is the same bit for bit, whenever and however often it was taken.
+  std::string memory;
+  /// Called at the end of every step (not of the parts that Newton's method cut it into) and of the
+  /// motion; may throw. Not with a trajectory that is kept.
+  std::function<void(const TakeDown&)> between_steps;
 };
 
 /// A change of the mesh, and what it did to the state.

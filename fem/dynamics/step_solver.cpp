@@ -213,6 +213,14 @@ void StepSolver::give_up(const State& x, double h, int failures) const {
                          " An area ratio near zero means that the material has collapsed.");
 }
 
+void StepSolver::remember(Memory& memory) {
+  const int now = model_.pattern_version();
+  // Scales are those of the lines where they were, and the kept tangent is that of an earlier step.
+  memory(counts_, scales_, size_, kkt_, factored_h_, failures_);
+  memory.up_to_date(scaled_version_, now);
+  if (memory.up_to_date(analysed_version_, now)) solver_.remember(memory, kkt_);
+}
+
 void StepSolver::advance(State& x, double t_end,
                          const std::function<void(const State&)>& accepted) {
   const double whole = t_end - x.t;

@@ -19,6 +19,7 @@ class StepSolver : public Integrator {
   TriedStep try_step(State& x, double h, double allowed) final;
   const StepCounts& counts() const final { return counts_; }
   std::optional<double> condition() const final;
+  void remember(Memory& memory) override;
 
  protected:
   /// @throws Error (input) for settings that make no sense.

@@ -7,6 +7,13 @@
 
 namespace flexmorph::fem {
 
+void remember(Memory& memory, Alternation& a) { memory(a.time, a.joint, a.part); }
+
+void MultiplierWatch::remember(Memory& memory, const Model& model) {
+  memory(steps_, h_, last_, before_, difference_, largest_, in_a_row_, found_);
+  memory.up_to_date(version_, model.pattern_version());
+}
+
 void MultiplierWatch::begin(const Model& model, const State& x, double h) {
   const bool same_rows = largest_.size() == x.lambda.size();
   version_ = model.pattern_version();

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fem/model.h"
+#include "geometry/memory.h"
 
 namespace flexmorph::fem {
 
@@ -14,6 +15,8 @@ struct Alternation {
   std::string joint;  ///< whose row alternates most
   double part = 0;    ///< largest amplitude met, of the row's largest multiplier
 };
+
+void remember(Memory& memory, Alternation& alternation);
 
 /// Watches for multipliers that alternate. In index-3 equations the algorithmic part of λ obeys
 /// λ_{n+1} = -ρ_∞ λ_n + ...: what a step or a drive sets off is never damped for ρ_∞ = 1, and
@@ -34,6 +37,7 @@ class MultiplierWatch {
   /// After an accepted step of length h.
   void see(const Model& model, const State& x, double h);
   const std::optional<Alternation>& found() const { return found_; }
+  void remember(Memory& memory, const Model& model);
 
  private:
   void begin(const Model& model, const State& x, double h);

@@ -55,6 +55,7 @@ class AncfPlate final : public LineGrid {
   std::unique_ptr<LineGrid> with_line(int i, double value) const override;
   std::unique_ptr<LineGrid> without_line(int i) const override;
   std::unique_ptr<LineGrid> frozen() const override;
+  std::unique_ptr<LineGrid> with_lines_m(std::vector<MaterialLine> m, double t) const override;
 
  private:
   NodeVectors vectors_of(int i, int j) const;

@@ -156,6 +156,10 @@ std::unique_ptr<LineGrid> AncfPlate::without_line(int i) const {
   return std::make_unique<AncfPlate>(dim_, shapes_, std::move(m), where(n_, at_n_), t_);
 }
 
+std::unique_ptr<LineGrid> AncfPlate::with_lines_m(std::vector<MaterialLine> m, double t) const {
+  return std::make_unique<AncfPlate>(dim_, shapes_, std::move(m), where(n_, at_n_), t);
+}
+
 std::unique_ptr<LineGrid> AncfPlate::frozen() const {
   std::vector<MaterialLine> m, n;
   for (const Motion& line : at_m_) m.push_back({line.value, {}, false});

@@ -16,6 +16,8 @@ struct KluSolver::Impl {
   mutable klu_common common;
   klu_symbolic* symbolic = nullptr;
   klu_numeric* numeric = nullptr;
+  VectorXd pivoted;           // values of the matrix whose pivots are kept
+  bool keeps_pivots = false;  // did the last factorization?
 
   Impl() {
     klu_defaults(&common);
@@ -65,15 +67,32 @@ void KluSolver::factorize(const SparseMatrix& a) {
     if (klu_refactor(starts(a), rows(a), values(a), s.symbolic, s.numeric, &s.common) &&
         s.common.status == KLU_OK &&
         klu_rgrowth(starts(a), rows(a), values(a), s.symbolic, s.numeric, &s.common) &&
-        s.common.rgrowth > kPivotGrowth)
+        s.common.rgrowth > kPivotGrowth) {
+      s.keeps_pivots = true;
       return;
+    }
     klu_free_numeric(&s.numeric, &s.common);
   }
+  s.pivoted = Eigen::Map<const VectorXd>(a.valuePtr(), a.nonZeros());
+  s.keeps_pivots = false;
   s.numeric = klu_factor(starts(a), rows(a), values(a), s.symbolic, &s.common);
   if (s.numeric && s.common.status == KLU_OK) return;
   const int status = s.common.status;
   if (s.numeric) klu_free_numeric(&s.numeric, &s.common);
   fail(status);
+}
+
+void KluSolver::remember(Memory& memory, const SparseMatrix& a) {
+  bool is_factored = impl_->numeric != nullptr, keeps_pivots = impl_->keeps_pivots;
+  VectorXd pivoted = impl_->pivoted;
+  memory(is_factored, keeps_pivots, pivoted);
+  if (!memory.puts_back()) return;
+  analyze(a);
+  if (!is_factored || pivoted.size() != a.nonZeros()) return;
+  SparseMatrix first = a;
+  first.coeffs() = pivoted.array();
+  factorize(first);
+  if (keeps_pivots) factorize(a);
 }
 
 void KluSolver::solve(VectorXd& b) const {

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "fem/dofs.h"
+#include "geometry/memory.h"
 
 namespace flexmorph::fem {
 
@@ -24,6 +25,9 @@ class KluSolver {
   void factorize(const SparseMatrix& a);
   /// b becomes A⁻¹ b, with the matrix of the last factorize().
   void solve(VectorXd& b) const;
+  /// What analysis and factors came from: put back, they are made anew, the same bit for bit.
+  /// @param a  the matrix of the last factorize(), or analyze() after it
+  void remember(Memory& memory, const SparseMatrix& a);
   /// Estimate of ‖A‖₁ ‖A⁻¹‖₁ of the matrix of the last factorize().
   double condition(const SparseMatrix& a) const;
 

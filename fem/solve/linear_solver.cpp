@@ -14,6 +14,8 @@ struct UnsymmetricSolver::Impl {
   void* symbolic = nullptr;
   void* numeric = nullptr;
   double control[UMFPACK_CONTROL];
+  VectorXd analysed;  // values of the matrix that UMFPACK analysed; empty: none
+  double miss = 0;    // of the last factorization
   SaddleCholesky cholesky;
   bool may_cholesky = false, is_cholesky = false;
   VectorXd remainder, correction;
@@ -26,6 +28,7 @@ struct UnsymmetricSolver::Impl {
   void release_numeric() {
     if (numeric) umfpack_di_free_numeric(&numeric);
   }
+  void analyze(const SparseMatrix& a, const double* values);
 };
 
 UnsymmetricSolver::UnsymmetricSolver() : impl_(std::make_unique<Impl>()) {}
@@ -46,10 +49,19 @@ void check(int status, const char* what) {
 
 }  // namespace
 
+void UnsymmetricSolver::Impl::analyze(const SparseMatrix& a, const double* values) {
+  analysed = Eigen::Map<const VectorXd>(values, a.nonZeros());
+  check(
+      umfpack_di_symbolic(static_cast<int>(a.rows()), static_cast<int>(a.cols()), a.outerIndexPtr(),
+                          a.innerIndexPtr(), analysed.data(), &symbolic, control, nullptr),
+      "analysis");
+}
+
 void UnsymmetricSolver::analyze(const SparseMatrix& a) {
   impl_->release_numeric();
   // UMFPACK analyses when it is needed.
   if (impl_->symbolic) umfpack_di_free_symbolic(&impl_->symbolic);
+  impl_->analysed.resize(0);
   impl_->is_cholesky = false;
   impl_->may_cholesky = impl_->cholesky.analyze(a);
 }
@@ -57,14 +69,11 @@ void UnsymmetricSolver::analyze(const SparseMatrix& a) {
 void UnsymmetricSolver::factorize(const SparseMatrix& a, double miss) {
   if (!Eigen::Map<const VectorXd>(a.valuePtr(), a.nonZeros()).allFinite())
     throw Error::numerical("linear solver: the matrix holds numbers that are not finite");
+  impl_->miss = miss;
   impl_->is_cholesky = impl_->may_cholesky && impl_->cholesky.factorize(a, miss);
   impl_->release_numeric();
   if (impl_->is_cholesky) return;
-  if (!impl_->symbolic)
-    check(umfpack_di_symbolic(static_cast<int>(a.rows()), static_cast<int>(a.cols()),
-                              a.outerIndexPtr(), a.innerIndexPtr(), a.valuePtr(), &impl_->symbolic,
-                              impl_->control, nullptr),
-          "analysis");
+  if (!impl_->symbolic) impl_->analyze(a, a.valuePtr());
   check(umfpack_di_numeric(a.outerIndexPtr(), a.innerIndexPtr(), a.valuePtr(), impl_->symbolic,
                            &impl_->numeric, impl_->control, nullptr),
         "factorization");
@@ -86,6 +95,19 @@ void UnsymmetricSolver::solve(const SparseMatrix& a, const VectorXd& b, VectorXd
   check(umfpack_di_solve(UMFPACK_A, a.outerIndexPtr(), a.innerIndexPtr(), a.valuePtr(), x.data(),
                          b.data(), impl_->numeric, impl_->control, nullptr),
         "solution");
+}
+
+void UnsymmetricSolver::remember(Memory& memory, const SparseMatrix& a) {
+  bool is_factored = impl_->is_cholesky || impl_->numeric != nullptr;
+  bool refused = impl_->cholesky.is_refused();
+  VectorXd values = impl_->analysed;
+  double miss = impl_->miss;
+  memory(is_factored, refused, values, miss);
+  if (!memory.puts_back()) return;
+  analyze(a);
+  impl_->cholesky.set_refused(refused);
+  if (values.size() > 0 && values.size() == a.nonZeros()) impl_->analyze(a, values.data());
+  if (is_factored) factorize(a, miss);
 }
 
 bool UnsymmetricSolver::is_cholesky() const { return impl_->is_cholesky; }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "fem/dofs.h"
+#include "geometry/memory.h"
 
 namespace flexmorph::fem {
 
@@ -33,6 +34,10 @@ class UnsymmetricSolver {
   /// x = A⁻¹ b with the matrix of the last factorize(), which must still exist.
   /// @param refine  one step of iterative refinement; an outer iteration does not need it.
   void solve(const SparseMatrix& a, const VectorXd& b, VectorXd& x, bool refine = true) const;
+
+  /// What analysis and factors came from: put back, they are made anew, the same bit for bit.
+  /// @param a  the matrix of the last factorize(), or analyze() after it
+  void remember(Memory& memory, const SparseMatrix& a);
 
   /// Was the last factor that of Cholesky?
   bool is_cholesky() const;

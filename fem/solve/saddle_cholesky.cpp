@@ -228,6 +228,9 @@ bool SaddleCholesky::factorize(const SparseMatrix& a, double miss) {
   return !impl_->refused;
 }
 
+bool SaddleCholesky::is_refused() const { return impl_->refused; }
+void SaddleCholesky::set_refused(bool refused) { impl_->refused = refused; }
+
 double SaddleCholesky::misses(const SparseMatrix& a) {
   constexpr int kPasses = 2;
   Impl& s = *impl_;

@@ -28,6 +28,10 @@ class SaddleCholesky {
   /// x = a⁻¹ b (n), or that of the symmetric part.
   void solve(const VectorXd& b, VectorXd& x);
 
+  /// Was the symmetric part refused since the last analyze()?
+  bool is_refused() const;
+  void set_refused(bool refused);
+
  private:
   bool factorize_symmetric_part(const SparseMatrix& a);
   double misses(const SparseMatrix& a);

@@ -1,0 +1,67 @@
+#include "fem/dynamics/motion_memory.h"
+
+namespace flexmorph::fem {
+namespace {
+
+enum class LineKind { fixed, driven, free };
+
+LineKind kind_of(const MaterialLine& line) {
+  return line.drive ? LineKind::driven : line.free ? LineKind::free : LineKind::fixed;
+}
+
+/// Lines of the given kinds and places. Those that come and go are fixed ones next to the root:
+/// driven and free lines are the root or counted from the other end.
+std::vector<MaterialLine> lines_from(const LineGrid& grid, const std::vector<LineKind>& kinds,
+                                     const std::vector<double>& places) {
+  const std::vector<MaterialLine>& old = grid.lines_m();
+  std::vector<MaterialLine> out;
+  for (size_t i = 0; i < kinds.size(); ++i) {
+    const size_t behind = kinds.size() - i;
+    const bool is_there = i == 0 || behind < old.size();
+    if (kinds[i] == LineKind::fixed) {
+      out.push_back({places[i], {}, false});
+    } else if (is_there && kind_of(i == 0 ? old[0] : old[old.size() - behind]) == kinds[i]) {
+      out.push_back(i == 0 ? old[0] : old[old.size() - behind]);
+      out.back().value = places[i];
+    } else {
+      throw Error::input("memory of a motion: its mesh is another one");
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+void remember(Memory& memory, Conditioning& c) { memory(c.t, c.condition, c.joints); }
+
+void remember(Memory& memory, MeshEvent& e) {
+  memory(e.time, e.body, e.change, e.before, e.after, e.momentum_before, e.momentum_after,
+         e.tip_jump);
+}
+
+void remember(Memory& memory, MotionResult& r) {
+  memory(r.smallest_step, r.largest_step, r.events, r.energy_defect, r.energy_gain, r.start_change,
+         r.alternation, r.cut, r.constraint_drift, r.velocity_drift, r.smallest_area_ratio,
+         r.near_singular);
+}
+
+void remember_meshes(Memory& memory, Workspace& model, std::span<const Growth> growths) {
+  Workspace::Whole whole = model.prepared_whole();
+  memory(whole.t, whole.lines);
+  for (const Growth& growth : growths) {
+    std::vector<LineKind> kinds;
+    std::vector<double> places;
+    for (Body& body : model.bodies()) {
+      if (body.name != growth.body) continue;
+      const LineGrid& grid = grid_of(body);
+      for (const MaterialLine& line : grid.lines_m()) kinds.push_back(kind_of(line));
+      places = grid.lines()[0];
+      memory(kinds, places);
+      if (memory.puts_back())
+        model.set_element(body, grid.with_lines_m(lines_from(grid, kinds, places), whole.t));
+    }
+  }
+  if (memory.puts_back()) model.prepare_whole(whole);
+}
+
+}  // namespace flexmorph::fem
