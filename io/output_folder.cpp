@@ -160,6 +160,14 @@ std::string OutputFolder::file(const std::string& name) {
   return whole.string();
 }
 
+std::vector<std::string> OutputFolder::files_of(const std::string& ending) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::vector<std::string> out;
+  for (const std::string& name : names_)
+    if (name.ends_with(ending)) out.push_back((fs::path(path_) / name).string());
+  return out;
+}
+
 std::vector<std::string> OutputFolder::files() {
   const std::lock_guard<std::mutex> lock(mutex_);
   std::vector<std::string> out;

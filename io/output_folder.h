@@ -40,6 +40,8 @@ class OutputFolder {
   std::string file(const std::string& name);
   /// Names in the list whose files are there.
   std::vector<std::string> files();
+  /// Paths of the files in its list with this ending; they need not be there.
+  std::vector<std::string> files_of(const std::string& ending);
 
  private:
   void make();

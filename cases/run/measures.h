@@ -20,6 +20,7 @@ class BodyMeasures {
   void add(const fem::Model& model, const fem::State& x, double heating = 1);
   const std::vector<Column>& columns() const { return columns_; }
   std::vector<Column> take() { return std::move(columns_); }
+  void remember(Memory& memory) { memory(columns_); }
 
  private:
   /// One measured body, with what does not change.

@@ -55,6 +55,11 @@ void MechanismColumns::add(fem::Workspace& model, const fem::State& x) {
   for (const Watched& watched : joints_) add_joint(watched, model, x);
 }
 
+void MechanismColumns::remember(Memory& memory) {
+  for (fem::FrameMotion& frame : frames_) memory(frame.angle);  // all else is overwritten
+  memory(turns_, columns_);
+}
+
 void MechanismColumns::add_trajectory(double t) {
   size_t i = 0;
   while (scene_.rigid_bodies[i].name != scene_.trajectory->body) ++i;

@@ -26,6 +26,7 @@ class MechanismColumns {
   void add(fem::Workspace& model, const fem::State& x);
   const std::vector<Column>& columns() const { return columns_; }
   std::vector<Column> take() { return std::move(columns_); }
+  void remember(Memory& memory);
 
  private:
   /// A named joint: the body it acts on, and the place its moment is about.

@@ -5,6 +5,8 @@
 #include "cases/run/failure.h"
 #include "cases/run/measures.h"
 #include "cases/run/mechanism_columns.h"
+#include "cases/run/motion_checkpoint.h"
+#include "cases/run/motion_run_memory.h"
 #include "cases/run/motion_table.h"
 #include "cases/run/quantities.h"
 #include "cases/run/run_warnings.h"
@@ -109,12 +111,24 @@ class Recorder {
     if (shown < wishes_.moments &&
         step.x.t >= shown / (wishes_.moments - 1) * scene_.time.end - 1e-9)
       add_moment(step);
-    static const std::vector<Column> kNothing;
-    table_.add(r, measures_ ? measures_->columns() : kNothing, columns_.columns());
+    table_.add(r, measured(), columns_.columns());
     if (step.stop || step.x.t == 0) at_stop(step);
     if (wishes_.way) wishes_.way(step.x.t);
-    if (wishes_.go_on && !wishes_.go_on()) throw Interrupted();
   }
+
+  /// All that was recorded so far, between two steps. Put back, the table is written anew.
+  void remember(Memory& memory) {
+    memory(out_.record, out_.loads, said_alternation_, said_cut_, columns_, start_);
+    if (memory.puts_back() && !scene_.measures.empty()) {
+      mechanism_.model.prepare(start_);
+      measures_.emplace(scene_, mechanism_.model, undeformed_);
+    }
+    if (measures_) memory(*measures_);
+    if (wishes_.frames_every > 0) folder_.remember_frames(memory);
+    if (memory.puts_back()) table_.add_all(out_.record, measured(), columns_.columns());
+  }
+
+  double time() const { return out_.record.time.empty() ? 0 : out_.record.time.back(); }
 
   /// What comes after the last step, or after the one that failed.
   void finish() {
@@ -142,6 +156,11 @@ class Recorder {
     said_cut_ = found.cut.number > 0;
   }
 
+  const std::vector<Column>& measured() const {
+    static const std::vector<Column> kNothing;
+    return measures_ ? measures_->columns() : kNothing;
+  }
+
   void observe(const fem::MotionStep& step) {
     size_t column = 0;
     const auto add = [&](double value) { out_.record.observed[column++].values.push_back(value); };
@@ -154,7 +173,10 @@ class Recorder {
   }
 
   void measure(const fem::MotionStep& step) {
-    if (!measures_) measures_.emplace(scene_, step.model, undeformed_);
+    if (!measures_) {
+      measures_.emplace(scene_, step.model, undeformed_);
+      start_ = step.x;
+    }
     measures_->add(step.model, step.x);
   }
 
@@ -230,14 +252,14 @@ class Recorder {
 
   const Scene& scene_;
   const MotionWishes& wishes_;
-  const Mechanism& mechanism_;
+  Mechanism& mechanism_;
   RunFolder& folder_;
   MotionOutcome& out_;
   std::vector<const fem::Growth*> tracked_;  // whose tip deflections are in the table
   std::vector<Pose> poses_;                  // of the bodies at the start
   MechanismColumns columns_;
   MotionTable table_;
-  fem::State undeformed_;  // at the start, where something is measured
+  fem::State undeformed_, start_;  // as the motion starts, where something is measured
   std::optional<BodyMeasures> measures_;
   bool said_alternation_ = false, said_cut_ = false;
 };
@@ -250,6 +272,67 @@ Failure failure_in(const MotionWishes& wishes, const MotionRecord& record) {
   out.step = std::max(0, static_cast<int>(record.time.size()) - 1);  // the start is none
   return out;
 }
+
+/// The design and the mesh that a motion is one of, besides the case.
+std::string words_of(const MotionWishes& wishes) {
+  Memory m;
+  MeshChoice mesh = wishes.mesh;
+  bool loads = wishes.loads, balance = wishes.balance, condition = wishes.condition;
+  double every = wishes.frames_every;
+  int moments = wishes.moments;
+  m(mesh.elements, mesh.refine, mesh.step, loads, balance, condition, every, moments);
+  for (fem::Factors factors : wishes.factors) m(factors.stiffness, factors.mass);
+  return m.bytes();
+}
+
+/// Begins, or goes on, and keeps what it needs for that.
+class Keeper {
+ public:
+  Keeper(const MotionWishes& wishes, Recorder& record, RunFolder& folder,
+         fem::MotionSettings& motion)
+      : wishes_(wishes), record_(record), folder_(folder) {
+    if (!wishes.checkpoint.empty())
+      checkpoint_.emplace(folder, wishes.checkpoint, words_of(wishes), wishes.checkpoint_every);
+    if (checkpoint_ && wishes.resume) resume(motion);
+    motion.between_steps = [this](const fem::TakeDown& take_down) { between_steps(take_down); };
+  }
+
+ private:
+  void resume(fem::MotionSettings& motion) {
+    std::string why;
+    const std::optional<std::string> kept = checkpoint_->read(why);
+    const auto say = [&](const std::string& words) {
+      if (wishes_.resumed) wishes_.resumed(wishes_.phase + words);
+    };
+    if (!kept) {
+      say(": begins anew" +
+          (why.empty() ? std::string() : ", " + wishes_.checkpoint + " cannot be used: " + why));
+      return;
+    }
+    Memory memory(*kept);
+    record_.remember(memory);
+    memory(motion.memory);
+    say(": goes on at t = " + io::to_text(record_.time(), 6) + " s");
+  }
+
+  void between_steps(const fem::TakeDown& take_down) {
+    const bool ends = wishes_.go_on && !wishes_.go_on();
+    if (checkpoint_ && (ends || checkpoint_->is_due())) {
+      Memory memory;
+      record_.remember(memory);
+      std::string motion = take_down();
+      memory(motion);
+      checkpoint_->write(memory.bytes(),
+                         wishes_.frames_every > 0 ? folder_.frames() : std::vector<std::string>());
+    }
+    if (ends) throw Interrupted();
+  }
+
+  const MotionWishes& wishes_;
+  Recorder& record_;
+  RunFolder& folder_;
+  std::optional<MotionCheckpoint> checkpoint_;
+};
 
 }  // namespace
 
@@ -269,6 +352,7 @@ MotionOutcome run_motion(const Scene& scene, const MotionWishes& wishes, RunFold
   MotionOutcome out;
   Recorder record(scene, wishes, mechanism, folder, out);
   try {
+    const Keeper keeper(wishes, record, folder, mechanism.motion);
     out.record.result = fem::integrate(mechanism.model, mechanism.growths, mechanism.motion,
                                        [&](const fem::MotionStep& step) { record(step); });
   } catch (const Error& error) {

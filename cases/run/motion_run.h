@@ -21,6 +21,12 @@ struct MotionWishes {
   std::function<bool()> go_on;      ///< asked at every step; false ends it with Interrupted
   std::string phase = "motion";     ///< of the run, for messages
   std::function<void(double)> way;  ///< told the time of every step [s]
+  /// File of the folder that keeps what the motion needs to go on; empty: it is not kept.
+  std::string checkpoint;
+  double checkpoint_every = 1;  ///< [s] of wall time, at least
+  bool resume = false;          ///< go on from that file, where there is one of this motion
+  /// Told where the motion goes on, or why it begins anew.
+  std::function<void(const std::string&)> resumed;
 };
 
 /// The user wants no more. What was computed is in the folder.
@@ -33,7 +39,8 @@ struct MotionOutcome {
 
 /// Builds the mechanism of a scene and moves it through its time.
 /// @param folder  receives the table of steps and VTK frames
-/// @throws FailedRun or Interrupted, with the steps before it in the table
+/// @throws FailedRun or Interrupted, with the steps before it in the table, and the checkpoint
+/// written
 MotionOutcome run_motion(const Scene& scene, const MotionWishes& wishes, RunFolder& folder);
 
 }  // namespace flexmorph::cases

@@ -15,8 +15,14 @@ class MotionTable {
   /// @throws Error (numerical) when it cannot be written
   void add(const MotionRecord& motion, const std::vector<Column>& measured,
            const std::vector<Column>& mechanism);
+  /// All steps of a record, of a motion that goes on.
+  void add_all(const MotionRecord& motion, const std::vector<Column>& measured,
+               const std::vector<Column>& mechanism);
 
  private:
+  void begin(const MotionRecord& motion, const std::vector<Column>& measured,
+             const std::vector<Column>& mechanism, size_t n_rows);
+
   std::string path_;
   const Scene& scene_;
   std::optional<io::CsvWriter> csv_;

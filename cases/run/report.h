@@ -13,6 +13,7 @@ struct RunReport {
   std::string lost_frames;         ///< what became of them, in words; mostly nothing
   std::optional<Failure> failure;  ///< of a run that failed
   int threads = 1, cycles = 0;
+  bool resumed = false;  ///< does it go on with what is in its folder?
   double seconds_wall = 0, seconds_cpu = 0, peak_memory_bytes = 0;
   std::vector<mmc::BodyProblem> problems;
   std::vector<mmc::BodyOutcome> outcomes;

@@ -17,14 +17,13 @@
 #include "cases/build/twin.h"
 #include "cases/run/expectations.h"
 #include "cases/run/kept_case.h"
-#include "cases/run/motion_run.h"
+#include "cases/run/motions.h"
 #include "cases/run/path_run.h"
 #include "cases/run/progress.h"
 #include "cases/run/report.h"
 #include "cases/run/room.h"
 #include "cases/run/run_warnings.h"
 #include "cases/run/version.h"
-#include "fem/dynamics/side_by_side.h"
 #include "geometry/cpu_time.h"
 #include "io/case_document.h"
 #include "io/case_parser.h"
@@ -41,94 +40,6 @@ std::string summary(const mmc::BodyOutcome& o) {
   return o.body + ": compliance " + io::to_text(o.compliance, 5) + ", sharp " +
          io::to_text(o.sharp.compliance, 5) + " at volume " + io::to_text(o.sharp.volume, 4) +
          ", uniform material " + io::to_text(o.uniform_compliance, 5);
-}
-
-std::vector<fem::Factors> uniform_factors(const std::vector<mmc::BodyProblem>& problems) {
-  std::vector<fem::Factors> out;
-  for (const mmc::BodyProblem& p : problems) {
-    const double volume = mmc::allowed_volume(p.goal).value_or(0.5);
-    const VectorXd even = VectorXd::Constant(p.grid.n_cells(), volume);
-    out.push_back({p.grid, even, even});
-  }
-  return out;
-}
-
-std::vector<fem::Factors> final_factors(const std::vector<mmc::BodyProblem>& problems) {
-  std::vector<fem::Factors> out;
-  for (const mmc::BodyProblem& p : problems)
-    out.push_back(mmc::dynamic_factors(p, p.design.components()));
-  return out;
-}
-
-/// Pictures of a mechanism in its motion.
-int moments_of(const Scene& scene) { return scene.is_mechanism() && scene.output.plots ? 4 : 0; }
-
-/// Tells how far a motion is.
-std::function<void(double)> way_of(Progress& progress, const Scene& scene,
-                                   const std::string& phase) {
-  return [&progress, phase, end = scene.time.end](double t) {
-    progress.way(phase, t / end, "t = " + io::to_text(t, 4) + " of " + io::to_text(end, 4) + " s");
-  };
-}
-
-/// Motions that do not need each other, at the same time where there are threads for it.
-class Motions {
- public:
-  Motions(const Scene& scene, RunFolder& folder, Progress& progress, int threads)
-      : scene_(scene), folder_(folder), progress_(progress), threads_(threads) {}
-
-  /// @param out  what becomes of it
-  void add(std::string name, double cost, MotionWishes wishes, std::optional<MotionRecord>& out) {
-    wishes.phase = name;
-    wishes.way = way_of(progress_, scene_, name);
-    jobs_.push_back({std::move(name), cost,
-                     [this, wishes = std::move(wishes), &out](const std::function<bool()>& others) {
-                       MotionWishes mine = wishes;
-                       mine.go_on = [&others] { return go_on() && others(); };
-                       out = run_motion(scene_, mine, folder_).record;
-                     }});
-  }
-  /// @throws as fem::side_by_side(); Interrupted
-  void run() const { fem::side_by_side(threads_, jobs_); }
-
- private:
-  const Scene& scene_;
-  RunFolder& folder_;
-  Progress& progress_;
-  int threads_;
-  std::vector<fem::Job> jobs_;
-};
-
-/// The judge of a design is the motion with it; beside it the same volume spread evenly.
-void judge_by_motion(const Scene& scene, bool condition, RunFolder& folder, Progress& progress,
-                     RunReport& report) {
-  Motions motions(scene, folder, progress, report.threads);
-  const std::vector<fem::Factors> designed = final_factors(report.problems),
-                                  uniform = uniform_factors(report.problems);
-  MotionWishes wishes;
-  wishes.condition = condition;
-  wishes.factors = designed;
-  wishes.frames_every = scene.output.vtk ? scene.output.motion_every : 0;
-  wishes.moments = moments_of(scene);
-  motions.add("motion with the design", 1, wishes, report.motion);
-  wishes = {};
-  wishes.factors = uniform;
-  wishes.table = "motion_uniform.csv";
-  motions.add("motion with uniform material", 1, wishes, report.uniform_motion);
-  if (scene.verify) {
-    progress.say("verification on " + scene.verify->words());
-    // A finer mesh, and in all likelihood shorter steps.
-    constexpr double kFiner = 4;
-    wishes.mesh = {scene.verify->mesh, scene.verify->refine, scene.verify->step};
-    wishes.balance = false;
-    wishes.table = "motion_verified_uniform.csv";
-    motions.add("verification with uniform material", kFiner, wishes, report.verified_uniform);
-    wishes.factors = designed;
-    wishes.table = "motion_verified.csv";
-    motions.add("verification with the design", kFiner, wishes, report.verified);
-  }
-  progress.begin(scene.verify ? "verification" : "motion with the design");
-  motions.run();
 }
 
 /// Evaluations of a design, kept in the folder while the run is not done.
@@ -163,6 +74,7 @@ void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress
   for (const mmc::BodyProblem& problem : report.problems) folder.write_start(problem);
   const double most = extent_of(scene).iterations;
   const bool analysed = scene.optimizer.max_iterations == 0;  // as they start: one motion says all
+  int n_motions = 0;
   const auto simulate = [&](std::span<const fem::Factors> factors) {
     MotionWishes wishes;
     wishes.factors.assign(factors.begin(), factors.end());
@@ -172,6 +84,8 @@ void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress
     if (!report.motion && report.cycles == 0)
       wishes.say = [&](const std::string& words) { progress.say(words); };
     wishes.way = way_of(progress, scene, wishes.phase);
+    // Of all cycles, until the run is done: their designs come back from their evaluations.
+    keep_going(wishes, report, progress, "motion_" + io::to_text(++n_motions) + ".csv");
     progress.begin(wishes.phase);
     MotionOutcome motion = run_motion(scene, wishes, folder);
     progress.say("motion: " + std::to_string(motion.record.result.counts.steps) + " steps, " +
@@ -222,8 +136,9 @@ void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress
     for (size_t i = 0; i < best.size(); ++i) folder.write_design(report.problems[i], best[i]);
   }
 
-  if (!analysed) judge_by_motion(scene, condition, folder, progress, report);
+  if (!analysed) judge_by_motion(scene, condition, go_on, folder, progress, report);
   memory.forget();
+  forget_motions(folder);
 }
 
 /// The story of a plate at rest.
@@ -280,8 +195,10 @@ void tell_story(const Scene& scene, bool condition, RunFolder& folder, Progress&
   wishes.go_on = go_on;
   wishes.say = [&](const std::string& words) { progress.say(words); };
   wishes.way = way_of(progress, scene, wishes.phase);
+  keep_going(wishes, report, progress, wishes.table);
   progress.begin(wishes.phase);
   report.motion = run_motion(scene, wishes, folder).record;
+  forget_motions(folder);
   const fem::MotionResult& result = report.motion->result;
   progress.say("motion: " + std::to_string(result.counts.steps) + " steps, " +
                std::to_string(result.counts.newton) + " Newton iterations, " +
@@ -360,12 +277,13 @@ int run_case(const RunOptions& options) {
   end_on_signals();
   Progress progress(options.quiet);
   progress.say(scene.title + " -> " + directory);
-  if (options.resume && scene.designs.empty())
-    progress.say("a motion without a design is not resumed: it starts anew");
+  if (options.resume && scene.statics)
+    progress.say("a path of equilibria is not resumed: it starts anew");
   if (!folder.moved_to().empty())
     progress.say("the run that was there is now " + folder.moved_to());
   RunReport report;
   report.threads = options.threads;
+  report.resumed = options.resume;
   const auto close = [&](const std::string& status, const std::string& message) {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);

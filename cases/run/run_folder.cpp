@@ -26,6 +26,8 @@ const std::vector<double>* PathRecord::column(const std::string& name) const {
   return nullptr;
 }
 
+void remember(Memory& memory, Column& column) { memory(column.name, column.values); }
+
 double tip_deflection(const fem::Model& model, const fem::Growth& growth, const fem::State& x) {
   const fem::Body& body = model.body(growth.body);
   const fem::LineGrid& mesh = fem::grid_of(body);
@@ -110,7 +112,26 @@ void RunFolder::write_part(const std::string& body, const io::QuadMesh& mesh,
     io::write_quad_mesh(folder_.file("motion/" + file), mesh, views_of(of_cells),
                         views_of(of_points));
     motion_.add(time, file, part);
+    frames_.push_back({file, time, part});
   });
+}
+
+void RunFolder::remember_frames(Memory& memory) {
+  writer_.wait();
+  memory(motion_frames_, frames_, lost_frames_, why_lost_);
+  size_t n = shapes_.size();
+  memory(n);
+  shapes_.resize(n);
+  for (io::SurfaceFrame& shape : shapes_)
+    memory(shape.title, shape.mesh.dimension, shape.mesh.points, shape.mesh.quads, shape.values);
+  if (memory.puts_back())
+    for (const Frame& frame : frames_) motion_.add(frame.time, frame.file, frame.part);
+}
+
+std::vector<std::string> RunFolder::frames() const {
+  std::vector<std::string> out;
+  for (const Frame& frame : frames_) out.push_back("motion/" + frame.file);
+  return out;
 }
 
 void RunFolder::add_surface_frame(const fem::Body& body, const fem::State& x, const Pose& pose,

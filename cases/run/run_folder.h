@@ -9,6 +9,7 @@
 #include "cases/build/build.h"
 #include "cases/run/surface.h"
 #include "fem/dynamics/motion.h"
+#include "geometry/memory.h"
 #include "io/background.h"
 #include "io/output_folder.h"
 #include "io/plane_frames.h"
@@ -24,6 +25,8 @@ struct Column {
   std::string name;
   std::vector<double> values;
 };
+
+void remember(Memory& memory, Column& column);
 
 /// What a motion did: its table, and the numbers a report quotes.
 struct MotionRecord {
@@ -86,6 +89,8 @@ class RunFolder {
   /// Until all files are written and, but for frames for ParaView, on the disk (io::Sync).
   /// @throws Error (numerical) naming the first file that is not.
   void finish();
+  /// Paths of its files with this ending: of this run, and of the one it goes on with.
+  std::vector<std::string> files_of(const std::string& ending) { return folder_.files_of(ending); }
   /// What became of frames for ParaView that could not be written, in words; nothing when all are.
   std::string lost_frames();
 
@@ -138,6 +143,11 @@ class RunFolder {
   };
   const std::vector<DesignPictures>& design_pictures() const { return pictures_; }
 
+  /// What there is of the frames of a motion. Put back, their index is written anew.
+  void remember_frames(Memory& memory);
+  /// Files of these frames, as file() takes them.
+  std::vector<std::string> frames() const;
+
   /// Frames of the first body in space, for a picture: all up to a few, else some evenly spread.
   std::vector<io::SurfaceFrame> shapes(size_t most) const;
 
@@ -173,6 +183,14 @@ class RunFolder {
     std::optional<io::Series> series_;
   };
   FrameIndex iterations_, components_, motion_;
+  /// A part of a frame of the motion that was written.
+  struct Frame {
+    std::string file;
+    double time = 0;
+    int part = 0;
+    void remember(Memory& memory) { memory(file, time, part); }
+  };
+  std::vector<Frame> frames_;
   int lost_frames_ = 0;  // of the writer, as the next
   std::string why_lost_;
   std::vector<History> histories_;

@@ -2,57 +2,12 @@
 // byte.
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
-#include <filesystem>
-#include <iostream>
-#include <map>
-#include <nlohmann/json.hpp>
-#include <random>
 #include <thread>
 
-#include "io/tables.h"
-#include "tests/cases/program.h"
+#include "tests/cases/resumed.h"
 
 namespace flexmorph::test {
 namespace {
-
-namespace fs = std::filesystem;
-using nlohmann::json;
-
-/// Files of a folder by their path in it: without times, and what says who wrote them.
-std::map<std::string, std::string> lasting(const std::string& folder) {
-  std::map<std::string, std::string> out;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    const std::string name = fs::relative(entry.path(), folder).string();
-    if (!entry.is_regular_file() || name == ".flexmorph" || name == "report.html") continue;
-    std::string text = contents_of(entry.path().string());
-    if (name == "run.json") {
-      json run = json::parse(text);
-      for (const char* key : {"seconds_wall", "seconds_cpu", "peak_memory_bytes"}) run.erase(key);
-      for (json& result : run["results"]) result.erase("factorizations");
-      text = run.dump();
-    }
-    if (name == "history.csv") {
-      const io::CsvTable table = io::read_csv(entry.path().string());
-      text.clear();
-      for (size_t c = 0; c < table.columns.size(); ++c) {
-        if (table.columns[c].starts_with("seconds")) continue;
-        text += table.columns[c];
-        for (const auto& cell : table.texts(table.columns[c])) text += "," + cell;
-      }
-    }
-    out[name] = text;
-  }
-  return out;
-}
-
-Words words_of(const std::string& path, const std::string& folder, const Words& changes,
-               bool resume = false) {
-  Words out = {"run", path, "-o", folder, "--quiet", "--set", "expect="};
-  for (const std::string& change : changes) out.insert(out.end(), {"--set", change});
-  if (resume) out.emplace_back("--resume");
-  return out;
-}
 
 /// Waits until a history has so many rows; false when the run ended before.
 bool has_rows(const std::string& folder, size_t n, pid_t run) {
@@ -62,12 +17,6 @@ bool has_rows(const std::string& folder, size_t n, pid_t run) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   return false;
-}
-
-void expect_same(const std::map<std::string, std::string>& a,
-                 const std::map<std::string, std::string>& b) {
-  EXPECT_EQ(a.size(), b.size());
-  for (const auto& [name, text] : a) EXPECT_TRUE(b.contains(name) && b.at(name) == text) << name;
 }
 
 struct Design {
@@ -127,80 +76,6 @@ TEST(Resume, GoesOnAfterAnInterruption) {
   EXPECT_TRUE(fs::exists(folder + "/components.csv"));
   flexmorph(scratch, words_of(FLEXMORPH_SHORT_CASE, folder, changes, true));
   expect_same(lasting(folder), lasting(whole));
-}
-
-/// Can every file of a run be read, at any moment? Tables end with whole rows, indices name frames
-/// that are there.
-void expect_readable(const std::string& folder) {
-  if (!fs::exists(folder)) return;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    const std::string path = entry.path().string(), ending = entry.path().extension().string();
-    if (ending == ".tmp" || !entry.is_regular_file()) continue;
-    const std::string text = contents_of(path);
-    if (ending == ".json") {
-      EXPECT_TRUE(json::accept(text)) << path;
-    }
-    if (ending == ".csv" && !text.empty()) {
-      EXPECT_EQ(text.back(), '\n') << path;
-      EXPECT_NO_THROW(io::read_csv(path)) << path;
-    }
-    if (ending == ".vti" || ending == ".vtp" || ending == ".vtu") {
-      EXPECT_TRUE(text.ends_with("</VTKFile>\n")) << path;
-    }
-    if (ending != ".pvd") continue;
-    const std::string key = "file=\"";
-    for (size_t at = text.find(key); at != std::string::npos; at = text.find(key, at + 1)) {
-      const size_t begin = at + key.size();
-      const std::string frame = text.substr(begin, text.find('"', begin) - begin);
-      EXPECT_TRUE(fs::exists(entry.path().parent_path() / frame)) << path << " " << frame;
-    }
-  }
-}
-
-// FLEXMORPH_KILLS=200 is the long form: shipped cases, shortened, in about a quarter of an hour.
-TEST(Resume, AfterKillsAtRandomMoments) {
-  const char* wanted = std::getenv("FLEXMORPH_KILLS");
-  const int kills = wanted ? std::atoi(wanted) : 8;
-  std::vector<Design> all = {
-      {"short", FLEXMORPH_SHORT_CASE, {"optimizer.max_iterations=20"}, {}, 0}};
-  if (wanted) {
-    all.push_back({"plate",
-                   "rotating_plate_v01",
-                   {"optimizer.max_iterations=30", "time.end=0.2", "verify="},
-                   {},
-                   0});
-    all.push_back({"platform",
-                   "motion_platform",
-                   {"optimizer.max_iterations=12", "time.end=0.3", "verify=", "cycle="},
-                   {},
-                   0});
-  }
-  std::mt19937 engine(1);
-  int n = 0;
-  for (const Design& d : all) {
-    const Scratch scratch;
-    const std::string whole = scratch / "whole", folder = scratch / "out";
-    const auto begin = std::chrono::steady_clock::now();
-    const int code = flexmorph(scratch, words_of(d.path, whole, d.changes)).code;
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-    ASSERT_TRUE(code == 0 || code == kTooFew) << d.name << " " << code;
-    const auto undisturbed = lasting(whole);
-    for (int k = 0; k < kills / static_cast<int>(all.size()); ++k, ++n) {
-      // Mostly killed once before it goes on, sometimes again.
-      const pid_t run = start(scratch, words_of(d.path, folder, d.changes, true));
-      std::this_thread::sleep_for(took * (static_cast<double>(engine()) / 4294967296.0));
-      kill(run, SIGKILL);
-      end_of(scratch, run);
-      expect_readable(folder);
-      if (engine() % 3 == 0) continue;
-      EXPECT_EQ(flexmorph(scratch, words_of(d.path, folder, d.changes, true)).code, code);
-      expect_same(lasting(folder), undisturbed);
-      fs::remove_all(folder);
-    }
-    fs::remove_all(folder);
-  }
-  EXPECT_GE(n, kills - 3);
-  std::cout << "  " << n << " kills\n";
 }
 
 TEST(Resume, RefusesAnotherCase) {

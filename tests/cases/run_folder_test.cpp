@@ -91,7 +91,7 @@ TEST(RunFolders, OfTheDeadAreNotThoseOfTheLiving) {
   end_of(scratch, child);
   EXPECT_EQ(status(), "killed");
   const io::CsvTable table = io::read_csv(path);
-  ASSERT_GT(table.rows.size(), 3u);
+  ASSERT_GT(table.n_rows(), 3u);
   // As the paths of the shipped case begin, and go.
   EXPECT_EQ(table.columns.front(), "step");
   EXPECT_EQ(table.columns.back(), "iterations");

@@ -1,0 +1,168 @@
+// Runs and studies are killed at random moments (SIGKILL), again and again, and resumed: they come
+// to what those come to that nobody disturbs, byte for byte, and their files can be read all the
+// while.
+//
+//   FLEXMORPH_KILLS=200        kills of shortened cases, evenly spread over them; 6 without
+//   FLEXMORPH_WHOLE_KILLS=10   kills of whole runs of rotating_plate_v01; none without
+//   FLEXMORPH_SEED=1
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <iostream>
+#include <optional>
+#include <random>
+#include <thread>
+
+#include "io/output_folder.h"
+#include "tests/cases/resumed.h"
+
+namespace flexmorph::test {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+int number_from(const char* name, int otherwise) {
+  const char* said = std::getenv(name);
+  return said ? std::atoi(said) : otherwise;
+}
+
+/// Looks at a folder all the time, while it lives.
+class Reader {
+ public:
+  explicit Reader(std::string folder) : folder_(std::move(folder)), thread_([this] { read(); }) {}
+  ~Reader() {
+    ends_ = true;
+    thread_.join();
+    for (const std::string& file : found_) ADD_FAILURE() << "could not be read: " << file;
+  }
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
+  int looks() const { return looks_; }
+  int torn() const { return torn_; }  ///< looks at which a file was not whole for an instant
+
+ private:
+  void read() {
+    for (; !ends_; ++looks_) {
+      // Of a row across two pages of memory the system shows the first part an instant before the
+      // second: what is broken is so a moment later, too.
+      const Words now = unreadable(folder_);
+      if (!now.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      for (const std::string& each : now.empty() ? now : unreadable(folder_))
+        if (std::find(now.begin(), now.end(), each) != now.end()) found_.push_back(each);
+      torn_ += !now.empty();
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  }
+
+  std::string folder_;
+  std::vector<std::string> found_;
+  std::atomic<bool> ends_ = false;
+  std::atomic<int> looks_ = 0, torn_ = 0;
+  std::thread thread_;  // last: it uses the others
+};
+
+/// What is killed: a run, or a study, which goes on by itself.
+struct Victim {
+  const char* name;
+  std::string path;
+  Words changes, vary;
+  bool is_study() const { return !vary.empty(); }
+
+  Words words(const std::string& folder, bool resume) const {
+    if (!is_study()) return words_of(path, folder, changes, resume);
+    Words out = {"sweep", path, "-o", folder, "--set", "expect="};
+    for (const std::string& change : changes) out.insert(out.end(), {"--set", change});
+    for (const std::string& key : vary) out.insert(out.end(), {"--vary", key});
+    return out;
+  }
+};
+
+/// Children of a killed study end with it, a moment later.
+void wait_for_children(const std::string& folder) {
+  for (bool lives = true; lives;) {
+    lives = false;
+    for (const auto& entry : fs::directory_iterator(folder))
+      lives = lives || (entry.is_directory() && io::is_being_filled(entry.path().string()));
+    if (lives) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+}
+
+/// @returns kills
+int kill_and_resume(const Victim& v, int kills, std::mt19937& engine) {
+  const Scratch scratch;
+  const std::string whole = scratch / "whole", folder = scratch / "out";
+  const auto begin = Clock::now();
+  const int code = flexmorph(scratch, v.words(whole, false)).code;
+  const std::chrono::duration<double> took = Clock::now() - begin;
+  EXPECT_TRUE(code == 0 || code == kTooFew) << v.name << " " << code;
+  const auto undisturbed = lasting(whole);
+  int n = 0, ends = 0, looks = 0, torn = 0;
+  while (n < kills && !::testing::Test::HasFailure()) {
+    std::optional<Reader> reader(std::in_place, folder);
+    bool killed = true;
+    while (killed && n < kills) {
+      const pid_t run = start(scratch, v.words(folder, true));
+      std::this_thread::sleep_for(took * (static_cast<double>(engine()) / 4294967296.0));
+      kill(run, SIGKILL);
+      const Ended ended = end_of(scratch, run);
+      killed = ended.code == -1;
+      n += killed;
+      if (killed && v.is_study() && fs::exists(folder)) wait_for_children(folder);
+      expect_readable(folder);
+      if (!killed) EXPECT_EQ(ended.code, code) << v.name << " " << ended.err;
+      if (engine() % 2 == 0) break;  // killed once more, or resumed
+    }
+    if (killed) {
+      const Ended ended = flexmorph(scratch, v.words(folder, true));
+      EXPECT_EQ(ended.code, code) << v.name << " " << ended.err;
+    }
+    expect_same(lasting(folder), undisturbed);
+    ++ends;
+    looks += reader->looks();
+    torn += reader->torn();
+    reader.reset();  // what it found fails
+    fs::remove_all(folder);
+  }
+  std::cout << "  " << v.name << ": " << n << " kills, " << ends << " comparisons, " << looks
+            << " looks at all files (" << torn << " saw half a row for an instant), undisturbed "
+            << took.count() << " s, all "
+            << std::chrono::duration<double>(Clock::now() - begin).count() << " s" << std::endl;
+  return n;
+}
+
+TEST(Kills, AtRandomMomentsChangeNothing) {
+  const int kills = number_from("FLEXMORPH_KILLS", 0);
+  std::mt19937 engine(static_cast<unsigned>(number_from("FLEXMORPH_SEED", 1)));
+  std::vector<Victim> all = {{"short", FLEXMORPH_SHORT_CASE, {"optimizer.max_iterations=20"}, {}},
+                             {"sweep",
+                              FLEXMORPH_SHORT_CASE,
+                              {"optimizer.max_iterations=4"},
+                              {"design.max_volume=0.4,0.5"}}};
+  if (kills > 0) {
+    all.push_back({"plate",
+                   "rotating_plate_v01",
+                   {"optimizer.max_iterations=20", "time.end=0.2", "verify="},
+                   {}});
+    all.push_back({"platform",
+                   "motion_platform",
+                   {"optimizer.max_iterations=6", "time.end=0.3", "verify=", "cycle="},
+                   {}});
+  }
+  const int each =
+      kills > 0 ? (kills + static_cast<int>(all.size()) - 1) / static_cast<int>(all.size()) : 3;
+  int n = 0;
+  for (const Victim& v : all) n += kill_and_resume(v, each, engine);
+  EXPECT_GE(n, kills);
+}
+
+TEST(Kills, OfWholeRunsChangeNothing) {
+  const int kills = number_from("FLEXMORPH_WHOLE_KILLS", 0);
+  if (kills == 0) GTEST_SKIP() << "FLEXMORPH_WHOLE_KILLS";
+  std::mt19937 engine(static_cast<unsigned>(number_from("FLEXMORPH_SEED", 1)));
+  EXPECT_GE(kill_and_resume({"rotating_plate_v01", "rotating_plate_v01", {}, {}}, kills, engine),
+            kills);
+}
+
+}  // namespace
+}  // namespace flexmorph::test
