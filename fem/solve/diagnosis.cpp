@@ -18,6 +18,7 @@ constexpr double kConsistent = 1e-8;  // of what is added up to zero
 constexpr double kRoundOff = 1e-10;
 constexpr double kShift = 1e-14;     // of the Gram matrix of the watch
 constexpr double kSurelyNew = 1e-4;  // of a row, above which the Gram matrix tells it as well
+constexpr double kOwn = 0.1;         // entry of a row in a column of its own that sets it apart
 
 std::string number(double value) {
   char text[32];
@@ -67,40 +68,92 @@ bool surely_independent(const SparseMatrix& j) {
   return factor.info() == Eigen::Success && factor.vectorD().minCoeff() > kSurelyNew * kSurelyNew;
 }
 
+/// Rows that no others can span: those with an entry in a column that no other row has, then those
+/// of which that is true without them, and so on. A null vector is zero there. Welded edges and
+/// open chains are made of such rows, so that factors of what is left are small.
+/// @return the other rows (ascending)
+std::vector<int> entangled_rows(const SparseMatrix& j) {
+  using RowMajor = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+  const RowMajor by_row = j;
+  const auto counts = [](double entry) { return entry != 0; };
+  std::vector<int> left(static_cast<size_t>(j.cols()), 0);       // rows that a column is in
+  std::vector<long long> sum(static_cast<size_t>(j.cols()), 0);  // of their numbers
+  for (int row = 0; row < by_row.outerSize(); ++row)
+    for (RowMajor::InnerIterator e(by_row, row); e; ++e)
+      if (counts(e.value())) {
+        ++left[static_cast<size_t>(e.col())];
+        sum[static_cast<size_t>(e.col())] += row;
+      }
+  std::vector<char> free(static_cast<size_t>(j.rows()), 0);
+  std::vector<int> alone;
+  for (int column = 0; column < j.cols(); ++column)
+    if (left[static_cast<size_t>(column)] == 1) alone.push_back(column);
+  while (!alone.empty()) {
+    const int column = alone.back();
+    alone.pop_back();
+    if (left[static_cast<size_t>(column)] != 1) continue;
+    const auto row = static_cast<int>(sum[static_cast<size_t>(column)]);
+    if (std::abs(j.coeff(row, column)) < kOwn) continue;
+    free[static_cast<size_t>(row)] = 1;
+    for (RowMajor::InnerIterator e(by_row, row); e; ++e) {
+      if (!counts(e.value())) continue;
+      const auto c = static_cast<size_t>(e.col());
+      sum[c] -= row;
+      if (--left[c] == 1) alone.push_back(static_cast<int>(c));
+    }
+  }
+  std::vector<int> out;
+  for (int row = 0; row < j.rows(); ++row)
+    if (free[static_cast<size_t>(row)] == 0) out.push_back(row);
+  return out;
+}
+
+/// The given rows of a matrix.
+SparseMatrix rows_of(const SparseMatrix& j, const std::vector<int>& rows) {
+  SparseMatrix pick(static_cast<Eigen::Index>(rows.size()), j.rows());
+  for (size_t k = 0; k < rows.size(); ++k) pick.insert(static_cast<Eigen::Index>(k), rows[k]) = 1;
+  return pick * j;
+}
+
 /// Independent rows (ascending) and a null vector for every other row.
 ///
 /// With Jᵀ P = Q [R₁₁ R₁₂; 0 0]: null vectors are the columns of P [-R₁₁⁻¹ R₁₂; I]. Each of them
 /// says how a dependent row is spanned by the independent ones, in the one way there is.
-void factor_rows(const SparseMatrix& j, std::vector<int>& independent,
+void factor_rows(const SparseMatrix& all, std::vector<int>& independent,
                  std::vector<NullVector>& null_vectors) {
-  if (surely_independent(j)) {
-    independent.resize(static_cast<size_t>(j.rows()));
-    std::iota(independent.begin(), independent.end(), 0);
-    return;
+  const std::vector<int> rows = entangled_rows(all);
+  const SparseMatrix j = rows_of(all, rows);
+  const auto m = static_cast<Eigen::Index>(rows.size());
+  std::vector<char> depends(static_cast<size_t>(all.rows()), 0);
+  if (m > 0 && !surely_independent(j)) {
+    const SparseMatrix transpose = compressed_transpose(j);
+    Eigen::SparseQR<SparseMatrix, Eigen::COLAMDOrdering<int>> qr;
+    qr.setPivotThreshold(kNewPart);
+    qr.compute(transpose);
+    if (qr.info() != Eigen::Success)
+      throw Error::numerical("diagnosis of constraints: the QR factorization failed");
+    const auto& order = qr.colsPermutation().indices();
+    const Eigen::Index rank = qr.rank();
+    for (Eigen::Index k = rank; k < m; ++k)
+      depends[static_cast<size_t>(rows[static_cast<size_t>(order[k])])] = 1;
+    const Eigen::SparseMatrix<double, Eigen::RowMajor> sorted = qr.matrixR();
+    const SparseMatrix r = sorted;
+    const SparseMatrix r11 = r.topLeftCorner(rank, rank);
+    MatrixXd span = MatrixXd(r.block(0, rank, rank, m - rank));
+    r11.triangularView<Eigen::Upper>().solveInPlace(span);
+    VectorXd z(all.rows());
+    const auto entry = [&](Eigen::Index k) -> double& {
+      return z[rows[static_cast<size_t>(order[k])]];
+    };
+    for (Eigen::Index k = 0; k < m - rank; ++k) {
+      z.setZero();
+      for (Eigen::Index i = 0; i < rank; ++i) entry(i) = -span(i, k);
+      entry(rank + k) = 1;
+      null_vectors.push_back(normalized(z));
+    }
   }
-  const SparseMatrix transpose = compressed_transpose(j);
-  Eigen::SparseQR<SparseMatrix, Eigen::COLAMDOrdering<int>> qr;
-  qr.setPivotThreshold(kNewPart);
-  qr.compute(transpose);
-  if (qr.info() != Eigen::Success)
-    throw Error::numerical("diagnosis of constraints: the QR factorization failed");
-  const auto& order = qr.colsPermutation().indices();
-  const Eigen::Index rank = qr.rank(), m = j.rows();
-  independent.assign(order.data(), order.data() + rank);
-  std::sort(independent.begin(), independent.end());
-  if (rank == m) return;
-  const Eigen::SparseMatrix<double, Eigen::RowMajor> sorted = qr.matrixR();
-  const SparseMatrix r = sorted;
-  const SparseMatrix r11 = r.topLeftCorner(rank, rank);
-  MatrixXd span = MatrixXd(r.block(0, rank, rank, m - rank));
-  r11.triangularView<Eigen::Upper>().solveInPlace(span);
-  VectorXd z(m);
-  for (Eigen::Index k = 0; k < m - rank; ++k) {
-    z.setZero();
-    for (Eigen::Index i = 0; i < rank; ++i) z[order[i]] = -span(i, k);
-    z[order[rank + k]] = 1;
-    null_vectors.push_back(normalized(z));
-  }
+  for (int row = 0; row < all.rows(); ++row)
+    if (depends[static_cast<size_t>(row)] == 0) independent.push_back(row);
 }
 
 std::vector<int> joints_of(const NullVector& z, const std::vector<int>& joint_of) {

@@ -28,7 +28,7 @@ constexpr const char* kHead = "time,energy.kinetic,energy.strain,energy.potentia
 class Judged : public ::testing::Test {
  protected:
   Judged() {
-    std::filesystem::create_directories(folder_);
+    std::filesystem::create_directories(folder_ + "/loads");
     evidence_.folder = folder_;
     evidence_.row = &row_;
     evidence_.ending.code = 0;
