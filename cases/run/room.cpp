@@ -67,6 +67,13 @@ double moving_bytes(const Scene& scene, const Body& body, double finer) {
   return rows * (neighbours * each * kEntry + kNumber * fill) + elements * kNumber * size * size;
 }
 
+/// Two full matrices of its vectors, see fem::thermal_matrices().
+double thermal_bytes(const Scene& scene, const Body& body) {
+  const std::array<double, 2> n = elements_of(scene, body, 1);
+  const double vectors = (n[0] + 1) * (n[1] + 1) * node_unknowns(body) / body.dim();
+  return 2 * kNumber * vectors * vectors;
+}
+
 /// The finest mesh that any motion of the scene has, times that of its bodies.
 double finest(const Scene& scene) {
   if (!scene.verify) return 1;
@@ -130,6 +137,10 @@ void add_motions(const Scene& scene, Extent& out) {
   for (const Body& body : scene.bodies)
     out.memory.push_back({"the mesh of '" + body.name + "'", "body." + body.name + ".elements",
                           moving_bytes(scene, body, 1)});
+  for (const Body& body : scene.bodies)
+    if (body.heat && body.heat->force)
+      out.memory.push_back({"the thermal force of '" + body.name + "'",
+                            "body." + body.name + ".elements", thermal_bytes(scene, body)});
   if (const double finer = finest(scene); finer > 1) {
     double bytes = 0;
     for (const Body& body : scene.bodies) bytes += moving_bytes(scene, body, finer);

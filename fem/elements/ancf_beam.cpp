@@ -208,8 +208,8 @@ void AncfBeam::tabulate(int e, int degree, Tabulate what, const Factors& factors
 
 int AncfBeam::locate(const Vec2& material, Tabulate what, ShapeTable& out) const {
   constexpr double kSlack = 1e-9;  // of an element: coordinates are rounded
-  int e = 0;
-  while (e + 1 < n_elements() && material.x() > x_[static_cast<size_t>(e + 1)]) ++e;
+  const auto end = std::lower_bound(x_.begin() + 1, x_.end() - 1, material.x());
+  const auto e = static_cast<int>(end - x_.begin()) - 1;
   const double xi = (material.x() - x_[static_cast<size_t>(e)]) / length(e),
                u = material.y() / height_;
   if (!(xi >= -kSlack && xi <= 1 + kSlack && std::abs(u) <= 0.5 + kSlack))

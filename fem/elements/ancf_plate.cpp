@@ -341,10 +341,10 @@ void AncfPlate::at(int e, double s, double u, Tabulate what, ShapeTable& out) co
 
 int AncfPlate::locate(const Vec2& material, Tabulate what, ShapeTable& out) const {
   const auto interval = [](const std::vector<Motion>& lines, double x) {
-    int i = 0;
-    while (i + 2 < static_cast<int>(lines.size()) && x > lines[static_cast<size_t>(i + 1)].value)
-      ++i;
-    return i;
+    const auto end =
+        std::lower_bound(lines.begin() + 1, lines.end() - 1, x,
+                         [](const Motion& line, double at) { return line.value < at; });
+    return static_cast<int>(end - lines.begin()) - 1;
   };
   const auto local = [](const Hermite& h, double x) {
     const double s = (x - h.start) / h.length;
