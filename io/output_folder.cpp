@@ -177,7 +177,28 @@ std::vector<std::string> OutputFolder::files() {
   return out;
 }
 
+void require_study_folder(const std::string& folder) {
+  const std::string list = list_of(folder);
+  std::error_code error;
+  const bool empty = fs::is_empty(folder, error);
+  if (error) refuse(folder, error.message());
+  if (empty) {
+    const int file = open(list.c_str(), O_WRONLY | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (file < 0) refuse(folder, reason_of(errno));
+    close(file);
+    return;
+  }
+  if (!fs::is_regular_file(fs::symlink_status(list, error)))
+    refuse(folder, "it holds files that no study has written; choose another with -o");
+  std::ifstream names(list);
+  for (std::string name; std::getline(names, name);)
+    if (!name.starts_with(kOwner))
+      refuse(folder,
+             "it is the folder of a run, which wrote '" + name + "'; choose another with -o");
+}
+
 FolderLock::FolderLock(const std::string& folder) {
+  require_study_folder(folder);
   list_ = lock_of(list_of(folder), O_RDWR | O_CREAT | O_APPEND | O_NOFOLLOW);
   if (list_ < 0 && errno == EWOULDBLOCK)
     refuse(folder,

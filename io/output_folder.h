@@ -55,12 +55,18 @@ class OutputFolder {
   std::set<std::string> names_;
 };
 
+/// Makes an empty folder, which exists, one of studies: several may work in it at the same time,
+/// each at runs of its own.
+/// @throws Error (input) when it holds files and no study has filled it, or its list cannot be
+///         written: tables of a study must not take the place of a user's.
+void require_study_folder(const std::string& folder);
+
 /// Keeps a folder for one process that goes on with what is in it, as a study does, where an
 /// OutputFolder begins anew.
 class FolderLock {
  public:
   /// @param folder  which exists
-  /// @throws Error (input) when a living process has it, or its list cannot be written.
+  /// @throws Error (input) as require_study_folder(), or when a living process has it.
   explicit FolderLock(const std::string& folder);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;

@@ -100,6 +100,7 @@ void check_variants(const StudyOptions& options, std::span<const Variant> varian
 
 int run_variant(const StudyOptions& options, const Variant& variant) {
   make_folder(options.directory);
+  io::require_study_folder(options.directory);
   if (finished(options, variant, read_result(options, variant))) {
     say(options, variant.name + ": finished before");
     return 0;

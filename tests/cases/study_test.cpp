@@ -11,6 +11,7 @@
 #include "cases/study/sweep.h"
 #include "geometry/base.h"
 #include "io/files.h"
+#include "io/output_folder.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"
 
@@ -189,6 +190,7 @@ TEST(Sweep, KeepsTheOthersWhenOneFails) {
   const std::string folder = scratch / "sweep";
   // A file where a run folder should be: that run cannot start.
   std::filesystem::create_directories(folder);
+  io::require_study_folder(folder);
   io::write_file(folder + "/max_iterations=3", "in the way");
   const Ended ended =
       test::flexmorph(scratch, small("sweep", folder, {"--vary", "optimizer.max_iterations=3,5"}));

@@ -144,15 +144,33 @@ TEST(OutputFolder, IsRemovedAsFarAsItIsOurs) {
 TEST(FolderLock, LeavesWhatIsThere) {
   const Scratch scratch;
   fs::create_directories(scratch / "study");
-  scratch.write("study/compare.csv", "rows");
   {
     const FolderLock lock(scratch / "study");
+    scratch.write("study/compare.csv", "rows");
     EXPECT_TRUE(is_being_filled(scratch / "study"));
     EXPECT_THROW(FolderLock(scratch / "study"), Error);
   }
   EXPECT_FALSE(is_being_filled(scratch / "study"));
   const FolderLock again(scratch / "study");
   EXPECT_EQ(contents_of(scratch / "study/compare.csv"), "rows");
+}
+
+// A user's own compare.csv is no study's to write over, nor are the files of a run.
+TEST(FolderLock, LeavesFoldersThatNoStudyHasFilled) {
+  const Scratch scratch;
+  fs::create_directories(scratch / "mine");
+  scratch.write("mine/compare.csv", "precious");
+  EXPECT_THROW(FolderLock(scratch / "mine"), Error);
+  EXPECT_FALSE(fs::exists(scratch / "mine/.flexmorph"));
+  { OutputFolder(scratch / "run").file("run.json"); }
+  const std::string list = contents_of(scratch / "run/.flexmorph");
+  EXPECT_THROW(FolderLock(scratch / "run"), Error);
+  EXPECT_EQ(contents_of(scratch / "run/.flexmorph"), list);
+
+  fs::create_directories(scratch / "several");  // at work in it before there is a whole study
+  require_study_folder(scratch / "several");
+  require_study_folder(scratch / "several");
+  const FolderLock lock(scratch / "several");
 }
 
 TEST(OutputFolder, MakesNoPathThatLeavesIt) {
