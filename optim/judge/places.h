@@ -1,0 +1,63 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fem/esl_set.h"
+#include "geometry/part_mesh.h"
+
+/// Loads and supports of a part by position: nothing of them knows of cells or meshes.
+namespace flexmorph::judge {
+
+/// Where a part is held or pulled: the material on lines. Where there is none on any of them, the
+/// material in the box, when there is a box.
+struct Place {
+  std::vector<Segment> lines = {};
+  std::optional<Box> box = {};
+};
+
+/// What a point stands for: the border of the domain as far as `reach` to each side of it, in x and
+/// in y; the material in that square where the point is not on the border, or no material is there.
+/// (A point has no limit in two dimensions: its displacement under a force grows with every finer
+/// mesh.)
+/// @param border  polygon   @param reach  [m]
+Place point_place(const Vec2& point, std::span<const Vec2> border, double reach);
+/// A box, or a line where it has no width: as it is.
+Place box_place(const Box& box);
+
+struct Support {
+  int place = 0;  ///< of Loads
+  bool x = false, y = false;
+};
+struct Force {
+  int place = 0;
+  Vec2 force{0, 0};  ///< in all, spread evenly over the material there [N]
+};
+
+/// What acts at the same time.
+struct Load {
+  std::string name = {};
+  double weight = 1;
+  std::vector<Force> forces = {};
+  /// x of the line on which, and behind which, the part is held; nothing: supports alone hold it.
+  std::optional<double> clamp = {};
+  /// Acceleration minus gravity at the nodes of Loads::grid (2 n_nodes), bilinear between them: the
+  /// body force -ρ a of all material [m/s²]. Null: none. Lives longer.
+  const VectorXd* acceleration = nullptr;
+  /// The clamp prescribes u = -g (0, y), see fem::EslSet::held_stretch; the compliance is uᵀ K u.
+  double held_stretch = 0;
+};
+
+struct Loads {
+  std::vector<Place> places;
+  std::vector<Support> supports;
+  std::vector<Load> loads;
+  Grid grid;           ///< of accelerations
+  bool worst = false;  ///< What counts is the largest compliance, not the weighted sum.
+
+  int add(Place place);  ///< @return its number
+};
+
+}  // namespace flexmorph::judge

@@ -1,0 +1,272 @@
+// The judge against beams, a hole, a corner, a spinning rod, and itself on finer meshes.
+
+#include "optim/judge/judge.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace flexmorph::judge {
+namespace {
+
+std::vector<Vec2> rectangle(double x0, double y0, double x1, double y1) {
+  return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
+}
+
+const fem::PlaneSection kUnit{1, 1, 0.3, 0};
+constexpr double kLength = 8;
+
+/// A cantilever 8 x 1 of unit modulus, clamped at x = 0, pulled down at its end.
+Loads tip_load() {
+  Loads out;
+  out.supports.push_back({out.add(box_place({{0, 0}, {0, 1}})), true, true});
+  Load load;
+  load.name = "tip";
+  load.forces.push_back({out.add(box_place({{kLength, 0}, {kLength, 1}})), {0, -1}});
+  out.loads.push_back(load);
+  return out;
+}
+
+const std::vector<Region> kBeam = {{rectangle(0, 0, kLength, 1), {}}};
+
+/// Compliance of unit force: bending, and shear with Cowper's coefficient.
+double timoshenko(double length) {
+  const double nu = kUnit.poisson_ratio, inertia = 1. / 12, kappa = 10 * (1 + nu) / (12 + 11 * nu);
+  return std::pow(length, 3) / (3 * inertia) + 2 * (1 + nu) * length / kappa;
+}
+
+TEST(Judge, CantileverIsTimoshenkos) {
+  const Judged found =
+      judge(kBeam, kUnit, tip_load(), {.tolerance = 0.001, .size = 0.5, .reach = 0.1});
+  EXPECT_TRUE(found.converged);
+  EXPECT_NEAR(found.compliance, timoshenko(kLength), 0.004 * timoshenko(kLength));
+  EXPECT_LE(found.error, 0.001);
+  EXPECT_EQ(found.pieces, 1);
+  EXPECT_EQ(found.left_out, 0);
+  EXPECT_NEAR(found.area, kLength, 1e-12);
+  // Away from the clamp by 0.1: 6 (L - x) / h².
+  EXPECT_NEAR(found.largest_stress, 6 * (kLength - 0.1), 0.05 * 6 * kLength);
+}
+
+// Tension of a plate with a small hole: three times the stress far away, Kirsch's solution;
+// with a hole of a twentieth of the width 3.008, by Heywood's formula.
+TEST(Judge, HoleHasThreeTimesTheStress) {
+  std::vector<Vec2> hole;
+  constexpr int kSides = 240;
+  for (int k = 0; k < kSides; ++k) {  // clockwise, with a vertex where the stress is largest
+    const double angle = -2 * std::numbers::pi * k / kSides;
+    hole.emplace_back(std::sin(angle), std::cos(angle));
+  }
+  const std::vector<Region> plate = {{rectangle(-20, -20, 20, 20), {hole}}};
+  Loads loads;
+  loads.supports.push_back({loads.add(box_place({{-20, -20}, {-20, 20}})), true, false});
+  const std::vector<Vec2> border = rectangle(-20, -20, 20, 20);
+  loads.supports.push_back({loads.add(point_place({-20, -20}, border, 0.01)), false, true});
+  Load load;
+  load.forces.push_back({loads.add(box_place({{20, -20}, {20, 20}})), {40, 0}});
+  loads.loads.push_back(load);
+  const Judged found = judge(plate, kUnit, loads, {.tolerance = 2e-5, .size = 2, .reach = 1});
+  EXPECT_NEAR(found.largest_stress, 3.008, 0.03 * 3.008);
+  EXPECT_NEAR(std::abs(found.largest_at.y()), 1, 0.02);
+}
+
+Loads bracket_load() {
+  Loads out;
+  out.supports.push_back({out.add(box_place({{0, 1}, {0.4, 1}})), true, true});
+  Load load;
+  load.name = "foot";
+  load.forces.push_back({out.add(box_place({{1, 0.3}, {1, 0.4}})), {0, -1}});
+  out.loads.push_back(load);
+  return out;
+}
+
+const std::vector<Region> kBracket = {
+    {{{0, 0}, {1, 0}, {1, 0.4}, {0.4, 0.4}, {0.4, 1}, {0, 1}}, {}}};
+
+// At a corner that reaches around by 270 degrees, and at the ends of a clamp, stresses have no
+// limit: the estimate holds there, too.
+TEST(Judge, EstimatesItsErrorAtACorner) {
+  const auto at = [](double tolerance) {
+    return judge(kBracket, kUnit, bracket_load(),
+                 {.tolerance = tolerance, .size = 0.3, .reach = 0.02});
+  };
+  const double exact = at(1e-4).compliance;
+  for (const double tolerance : {0.03, 0.005}) {
+    const Judged found = at(tolerance);
+    const double error = exact / found.compliance - 1;
+    EXPECT_TRUE(found.converged);
+    EXPECT_LE(found.error, tolerance);
+    EXPECT_GT(error, 0) << "compliances come from below";
+    EXPECT_LE(error, 1.1 * found.error) << "at " << tolerance;
+    EXPECT_GE(error, 0.05 * found.error) << "at " << tolerance;
+  }
+}
+
+// A smooth field, uniform meshes: the energy that is missing falls with h⁴.
+TEST(Judge, CompliancesConvergeWithOrderFour) {
+  // A square that spins about its corner, held by the two lines of symmetry.
+  const std::vector<Region> square = {{rectangle(0, 0, 1, 1), {}}};
+  const fem::PlaneSection heavy{1, 1, 0.3, 1};
+  Loads loads;
+  loads.supports.push_back({loads.add(box_place({{0, 0}, {0, 1}})), true, false});
+  loads.supports.push_back({loads.add(box_place({{0, 0}, {1, 0}})), false, true});
+  loads.grid = {0, 0, 1, 1, 1, 1};
+  VectorXd acceleration(8);
+  for (int node = 0; node < 4; ++node)
+    acceleration.segment<2>(2 * node) = -loads.grid.node_position(node / 2, node % 2);
+  Load load;
+  load.acceleration = &acceleration;
+  loads.loads.push_back(load);
+  const auto at = [&](double size) {
+    return judge(square, heavy, loads,
+                 {.tolerance = 1e-12, .size = size, .reach = 0.01, .most_meshes = 1});
+  };
+  const double exact = at(0.03).compliance;
+  const Judged coarse = at(0.24), fine = at(0.08);
+  // Unstructured: by the mean size of triangles.
+  const double ratio = static_cast<double>(fine.mesh.triangles.size()) /
+                       static_cast<double>(coarse.mesh.triangles.size());
+  const double order =
+      2 * std::log((exact - coarse.compliance) / (exact - fine.compliance)) / std::log(ratio);
+  EXPECT_NEAR(order, 4, 0.6);
+  // Recovered stresses estimate what is missing.
+  EXPECT_NEAR(coarse.error * coarse.compliance / (exact - coarse.compliance), 1, 0.5);
+}
+
+/// A rod along x that spins about the origin, seen at rest: a = -ω² x.
+struct SpinningRod {
+  Loads loads;
+  VectorXd acceleration;
+
+  SpinningRod(double length, std::span<const double> clamps) {
+    loads.grid = {0, -0.1, length, 0.2, 7, 3};
+    acceleration.setZero(2 * loads.grid.n_nodes());
+    for (int node = 0; node < loads.grid.n_nodes(); ++node)
+      acceleration[2 * node] = -loads.grid.node_position(node / 4, node % 4).x();
+    for (const double x : clamps) {
+      Load load;
+      load.name = "clamp at " + std::to_string(x);
+      load.clamp = x;
+      load.acceleration = &acceleration;
+      loads.loads.push_back(load);
+    }
+  }
+  SpinningRod(const SpinningRod&) = delete;
+};
+
+// Without Poisson's effect the rod is one-dimensional: N = ρ A (L² - x²) / 2, C = ∫ N² dx / (E A).
+TEST(Judge, SpinningRodFromClampToClamp) {
+  const double length = 2, area = 0.2;
+  const fem::PlaneSection section{1, 7, 0, 3};
+  const std::vector<double> clamps = {0.5, 1.1, 0, 0.5};  // in any order, one of them twice
+  const SpinningRod rod(length, clamps);
+  const std::vector<Region> bar = {{rectangle(0, -0.1, length, 0.1), {}}};
+  const Judged found = judge(bar, section, rod.loads, {.size = 0.2, .reach = 0.01});
+  ASSERT_EQ(found.compliances.size(), 4u);
+  double sum = 0;
+  for (std::size_t l = 0; l < clamps.size(); ++l) {
+    const auto integral = [&](double x) {  // ∫ (L² - x²)² dx
+      return std::pow(length, 4) * x - 2 * length * length * std::pow(x, 3) / 3 +
+             std::pow(x, 5) / 5;
+    };
+    const double exact =
+        9 * area * area / 4 * (integral(length) - integral(clamps[l])) / (7 * area);
+    EXPECT_NEAR(found.compliances[l], exact, 1e-4 * exact);
+    sum += exact;
+  }
+  EXPECT_NEAR(found.compliance, sum, 1e-4 * sum);
+  // The worst load is carried to others, with what is behind its clamp held.
+  ASSERT_EQ(found.carried.size(), 1u);
+  EXPECT_EQ(found.carried[0].load, 2);
+  double force = 0;
+  for (const fem::NodalForce& f : found.carried[0].forces) force += f.force.x();
+  EXPECT_NEAR(force, 3 * area * length * length / 2, 1e-9);
+}
+
+TEST(Judge, LoadsOfOneBodyAreThoseOfMany) {
+  Loads two = tip_load();
+  Load pull;
+  pull.name = "pull";
+  pull.weight = 3;
+  pull.forces.push_back({two.add(box_place({{kLength, 0}, {kLength, 1}})), {5, 0}});
+  two.loads.push_back(pull);
+  const Settings settings{.size = 0.5, .reach = 0.1};
+  const Judged both = judge(kBeam, kUnit, two, settings);
+  EXPECT_NEAR(both.compliance, both.compliances[0] + 3 * both.compliances[1],
+              1e-12 * both.compliance);
+  EXPECT_NEAR(both.compliances[1], 25 * kLength, 0.01 * 25 * kLength);
+  two.worst = true;
+  const Judged worst = judge(kBeam, kUnit, two, settings);
+  EXPECT_EQ(worst.compliance,
+            *std::max_element(worst.compliances.begin(), worst.compliances.end()));
+  EXPECT_EQ(worst.carried.size(), 2u);
+}
+
+TEST(Judge, PointsAreSpreadOverACell) {
+  const std::vector<Vec2> border = rectangle(0, 0, kLength, 1);
+  const Place middle = point_place({kLength, 0.5}, border, 0.1);
+  ASSERT_EQ(middle.lines.size(), 1u);
+  EXPECT_NEAR((middle.lines[0].b - middle.lines[0].a).norm(), 0.2, 1e-15);
+  const Place corner = point_place({0, 1}, border, 0.1);
+  ASSERT_EQ(corner.lines.size(), 2u);
+  for (const Segment& s : corner.lines) EXPECT_NEAR((s.b - s.a).norm(), 0.1, 1e-15);
+  const Place inside = point_place({4, 0.5}, border, 0.1);
+  EXPECT_TRUE(inside.lines.empty());
+  ASSERT_TRUE(inside.box);
+  // Wherever the unit force is spread over the end, the beam bends alike.
+  Loads loads = tip_load();
+  loads.places[1] = middle;
+  const Judged found = judge(kBeam, kUnit, loads, {.size = 0.5, .reach = 0.1});
+  EXPECT_NEAR(found.compliance, timoshenko(kLength), 0.01 * timoshenko(kLength));
+  loads.places[1] = point_place({kLength - 0.3, 0.5}, border, 0.1);
+  EXPECT_LT(judge(kBeam, kUnit, loads, {.size = 0.5, .reach = 0.1}).compliance, found.compliance);
+}
+
+TEST(Judge, PiecesThatNothingHoldsAreLeftOut) {
+  std::vector<Region> regions = kBeam;
+  regions.push_back({rectangle(3, 2, 4, 3), {}});
+  const Settings settings{.size = 0.5, .reach = 0.1};
+  const Judged alone = judge(kBeam, kUnit, tip_load(), settings);
+  const Judged found = judge(regions, kUnit, tip_load(), settings);
+  EXPECT_EQ(found.pieces, 2);
+  EXPECT_EQ(found.left_out, 1);
+  EXPECT_NEAR(found.compliance, alone.compliance, 0.01 * alone.compliance);
+  EXPECT_NEAR(found.area, kLength + 1, 1e-12);
+}
+
+// A piece that could turn about its only hold is not held.
+TEST(Judge, LoadsOnLoosePiecesMakeTheComplianceInfinite) {
+  const std::vector<Region> parts = {{rectangle(0, 0, 3, 1), {}}, {rectangle(4, 0, 8, 1), {}}};
+  const Judged loose = judge(parts, kUnit, tip_load(), {.size = 0.5, .reach = 0.1});
+  EXPECT_EQ(loose.compliance, INFINITY);
+  EXPECT_EQ(loose.loose_load, "tip");
+  EXPECT_EQ(loose.left_out, 1);
+  Loads sliding = tip_load();
+  sliding.supports[0].y = false;
+  EXPECT_EQ(judge(kBeam, kUnit, sliding, {.size = 0.5, .reach = 0.1}).compliance, INFINITY);
+  Loads nowhere = tip_load();
+  nowhere.places[1] = box_place({{20, 0}, {20, 1}});
+  EXPECT_EQ(judge(kBeam, kUnit, nowhere, {.size = 0.5, .reach = 0.1}).compliance, INFINITY);
+}
+
+TEST(Judge, IsTheSameBitForBit) {
+  const Settings settings{.tolerance = 0.001, .size = 0.2, .reach = 0.02};
+  const Judged a = judge(kBracket, kUnit, bracket_load(), settings);
+  std::vector<std::vector<double>> other;  // elsewhere in memory
+  for (int k = 1; k < 2000; ++k) other.emplace_back(static_cast<std::size_t>(k % 97 + 1));
+  const Judged b = judge(kBracket, kUnit, bracket_load(), settings);
+  EXPECT_EQ(a.compliance, b.compliance);
+  EXPECT_EQ(a.error, b.error);
+  EXPECT_EQ(a.mesh.points, b.mesh.points);
+  EXPECT_EQ(a.largest_stress, b.largest_stress);
+}
+
+TEST(Judge, SaysWhatItLacks) {
+  EXPECT_THROW(judge(kBeam, kUnit, {}, {.size = 0.5}), Error);
+  EXPECT_THROW(judge({}, kUnit, tip_load(), {.size = 0.5}), Error);
+}
+
+}  // namespace
+}  // namespace flexmorph::judge
