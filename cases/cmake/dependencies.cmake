@@ -75,10 +75,12 @@ if(SUITESPARSE_FOUND)
 endif()
 flexmorph_library(SUITESPARSE 5.12 SUITESPARSE_FOUND)
 
-# Of the tests. valijson, headers alone, judges cases by their schema; SUNDIALS judges our integrators; its own package file would ask for PETSc and MPI,
+# Of the tests. CalculiX judges exported designs; valijson, headers alone, judges cases by their schema; SUNDIALS judges our integrators; its own package file would ask for PETSc and MPI,
 # which the serial libraries do not need.
 if(FLEXMORPH_TESTS)
   flexmorph_find(GTest 1.12)
+  find_program(FLEXMORPH_CCX ccx)
+  flexmorph_library(calculix-ccx 2.20 FLEXMORPH_CCX)
   find_path(VALIJSON_INCLUDE_DIR valijson/validator.hpp)
   flexmorph_library(valijson 1.0 VALIJSON_INCLUDE_DIR)
   find_path(SUNDIALS_INCLUDE_DIR ida/ida.h)

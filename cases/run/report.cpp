@@ -1,5 +1,7 @@
 #include "cases/run/report.h"
 
+#include <array>
+
 #include "cases/run/expectations.h"
 #include "cases/run/plots/measured.h"
 #include "cases/run/plots/mechanism.h"
@@ -15,19 +17,35 @@ namespace {
 
 constexpr size_t kShapes = 4;  // pictures of a plate in space
 
+/// Body-fitted compliance, its error and the volume of a body, where it was judged.
+std::array<std::string, 3> judged_cells(const RunReport& report, const std::string& body) {
+  for (const JudgedBody& j : report.judged)
+    if (j.body == body && j.verdict)
+      return {io::to_text(j.verdict->compliance, 6), io::to_text(100 * j.verdict->error, 2) + " %",
+              io::to_text(j.volume, 5)};
+  return {};
+}
+
 io::ReportSection results_section(const Scene& scene, const RunReport& report) {
   io::ReportSection out;
   out.heading = "Results";
   out.rows.push_back({"body", "compliance [J]", "volume", "sharp compliance [J]", "sharp volume",
+                      "body-fitted compliance [J]", "estimated error", "body-fitted volume",
                       "uniform compliance [J]", "sharp / uniform", "connected", "iterations",
                       "state solves", "stopped"});
-  for (const mmc::BodyOutcome& o : report.outcomes)
+  for (const JudgedBody& j : report.judged)
+    for (const mmc::BodyOutcome& o : report.outcomes)
+      if (o.body == j.body)
+        out.words += (out.words.empty() ? "" : " ") + judged_words(j, o.sharp.compliance) + ".";
+  for (const mmc::BodyOutcome& o : report.outcomes) {
+    const std::array<std::string, 3> judged = judged_cells(report, o.body);
     out.rows.push_back({o.body, io::to_text(o.compliance, 6), io::to_text(o.volume, 5),
                         io::to_text(o.sharp.compliance, 6), io::to_text(o.sharp.volume, 5),
-                        io::to_text(o.uniform_compliance, 6),
+                        judged[0], judged[1], judged[2], io::to_text(o.uniform_compliance, 6),
                         io::to_text(o.sharp.compliance / o.uniform_compliance, 4),
                         o.sharp.connectivity.connected ? "yes" : "no", io::to_text(o.iterations),
                         io::to_text(o.evaluations), o.stop});
+  }
   for (const mmc::ResponseRow* row : further_rows(scene)) {
     const std::string name = mmc::key_of(*row);
     const std::string words = std::string(row->words).append(" [").append(row->unit).append("]");

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "cases/run/failure.h"
+#include "cases/run/judged.h"
 #include "cases/run/run_folder.h"
 
 namespace flexmorph::cases {
@@ -17,6 +18,7 @@ struct RunReport {
   double seconds_wall = 0, seconds_cpu = 0, peak_memory_bytes = 0;
   std::vector<mmc::BodyProblem> problems;
   std::vector<mmc::BodyOutcome> outcomes;
+  std::vector<JudgedBody> judged;  ///< final designs, in the order of the outcomes; or none yet
   std::vector<mmc::CycleVerdict> verdicts;                 ///< of a run of several cycles
   std::optional<PathRecord> path;                          ///< of a [static] analysis
   std::optional<MotionRecord> motion, uniform_motion;      ///< of the design; of uniform material

@@ -42,6 +42,18 @@ std::string summary(const mmc::BodyOutcome& o) {
          ", uniform material " + io::to_text(o.uniform_compliance, 5);
 }
 
+/// What the outlines of the final designs say.
+/// @param loads  of the motion, of each body; none: a plate at rest
+void judge_outlines(const Scene& scene, std::span<const fem::EslSets> loads, RunFolder& folder,
+                    Progress& progress, RunReport& report) {
+  progress.begin("judge");
+  for (size_t i = 0; i < report.outcomes.size(); ++i) {
+    report.judged.push_back(
+        judge_body(scene, report.problems[i], loads.empty() ? nullptr : &loads[i], folder));
+    progress.say(judged_words(report.judged.back(), report.outcomes[i].sharp.compliance));
+  }
+}
+
 /// Evaluations of a design, kept in the folder while the run is not done.
 class Memory {
  public:
@@ -95,7 +107,7 @@ void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress
     return std::move(motion.loads);
   };
   Memory memory(folder);
-  std::vector<fem::EslSets> loads;
+  std::vector<fem::EslSets> loads, best_loads;
   mmc::LoopObserver observer;
   observer.loads = [&](int, std::span<const fem::EslSets> sets) {
     loads.assign(sets.begin(), sets.end());
@@ -123,6 +135,7 @@ void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress
     report.verdicts.assign(verdicts.begin(), verdicts.end());
     folder.write_cycles(verdicts);
     const mmc::CycleVerdict& v = verdicts.back();
+    if (v.best) best_loads = loads;  // the next cycle has others
     progress.say("cycle " + std::to_string(v.cycle) + ": compliance of all bodies " +
                  io::to_text(v.objective, 5) + ", strain energy over time " +
                  io::to_text(v.strain_energy_integral, 5) + " J s" +
@@ -133,9 +146,11 @@ void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress
   if (interrupted) throw Interrupted();
   if (!report.verdicts.empty()) {
     report.outcomes = best;
+    loads = std::move(best_loads);
     for (size_t i = 0; i < best.size(); ++i) folder.write_design(report.problems[i], best[i]);
   }
 
+  if (!analysed) judge_outlines(scene, loads, folder, progress, report);
   if (!analysed) judge_by_motion(scene, condition, go_on, folder, progress, report);
   memory.forget();
   forget_motions(folder);
@@ -166,6 +181,7 @@ void run_static(const Scene& scene, bool condition, RunFolder& folder, Progress&
   folder.write_design(problem, outcome);
   progress.say(summary(outcome) + memory.words());
   if (interrupted) throw Interrupted();
+  if (scene.optimizer.max_iterations > 0) judge_outlines(scene, {}, folder, progress, report);
   memory.forget();
 }
 

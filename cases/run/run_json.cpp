@@ -56,6 +56,44 @@ std::string objective_words(const mmc::BodyProblem& p) {
   return row.full ? of + ", divided by that of the full plate" : "natural logarithm of the " + of;
 }
 
+/// Numbers that JSON has none for: "infinite".
+Json finite_or_words(double value) { return std::isfinite(value) ? Json(value) : Json("infinite"); }
+
+Json judged_results(const JudgedBody& judged, double sharp_compliance) {
+  Json out = Json::object();
+  if (!judged.verdict) {
+    out["not_judged"] = judged.why_not;
+    return out;
+  }
+  const judge::Judged& j = *judged.verdict;
+  out["compliance"] = finite_or_words(j.compliance);
+  out["volume"] = judged.volume;
+  out["islands"] = j.pieces - 1;
+  out["held_by_nothing"] = j.left_out;
+  out["triangles"] = static_cast<int>(j.mesh.triangles.size());
+  out["seconds"] = j.seconds;
+  if (!std::isfinite(j.compliance)) {
+    out["loose_load"] = j.loose_load;
+    return out;
+  }
+  out["error"] = j.error;
+  out["converged"] = j.converged;
+  out["cells_over_this"] = sharp_compliance / j.compliance - 1;
+  out["meshes"] = j.meshes;
+  out["largest_stress"] = j.largest_stress;
+  out["largest_stress_at"] = {j.largest_at.x(), j.largest_at.y()};
+  out["largest_stress_load"] = j.largest_load + 1;
+  if (!j.carried.empty()) {
+    Json exported = Json::object();  // the first load of design.inp
+    exported["load"] = j.carried.front().load + 1;
+    exported["compliance"] = j.carried.front().compliance;
+    exported["largest_stress"] = j.carried_stress.value;
+    exported["largest_stress_at"] = {j.carried_stress.at.x(), j.carried_stress.at.y()};
+    out["exported"] = std::move(exported);
+  }
+  return out;
+}
+
 Json body_results(const RunReport& report, size_t i) {
   const mmc::BodyOutcome& o = report.outcomes[i];
   Json out = Json::object();
@@ -68,6 +106,8 @@ Json body_results(const RunReport& report, size_t i) {
     out[name] = value;
     out["sharp_" + name] = o.sharp.further.at(name);
   }
+  if (i < report.judged.size())
+    out["body_fitted"] = judged_results(report.judged[i], o.sharp.compliance);
   out["uniform_compliance"] = o.uniform_compliance;
   out["connected"] = o.sharp.connectivity.connected;
   out["islands"] = o.sharp.connectivity.islands;

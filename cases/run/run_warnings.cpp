@@ -59,6 +59,25 @@ void add_worse(const mmc::BodyProblem& p, const mmc::BodyOutcome& o, Warnings& o
                  true});
 }
 
+/// What the judge of outlines has against a design.
+void add_judged(const JudgedBody& judged, Warnings& out) {
+  if (!judged.verdict) {
+    out.push_back({"body '" + judged.body + "': no body-fitted compliance: " + judged.why_not});
+    return;
+  }
+  const judge::Judged& j = *judged.verdict;
+  if (!std::isfinite(j.compliance))
+    out.push_back({"body '" + judged.body + "': load '" + j.loose_load +
+                   "' acts on material that nothing holds, or on none: the body-fitted compliance "
+                   "is infinite"});
+  else if (!j.converged)
+    out.push_back({"body '" + judged.body + "': the body-fitted compliance has an error of about " +
+                   io::to_text(100 * j.error, 2) + " %: its mesh reached its largest size"});
+  if (j.left_out > 0)
+    out.push_back({"body '" + judged.body + "': " + std::to_string(j.left_out) + " of " +
+                   std::to_string(j.pieces) + " pieces are held by nothing"});
+}
+
 void add_designs(const RunReport& report, Warnings& out) {
   for (const mmc::BodyOutcome& o : report.outcomes) {
     if (!o.sharp.connectivity.connected)
@@ -85,6 +104,7 @@ void add_designs(const RunReport& report, Warnings& out) {
         add_limits(p, o, out);
         add_worse(p, o, out);
       }
+  for (const JudgedBody& judged : report.judged) add_judged(judged, out);
 }
 
 /// Of bodies whose temperature jumps on the way; nothing where none does.

@@ -19,8 +19,9 @@ struct Comparison {
   std::vector<Variant> variants;
 };
 
-/// What designs are ranked by: sharp compliance x sharp volume / volume allowed, because volumes
-/// differ a little [J]; where another response is minimized, that of the sharp design.
+/// What designs are ranked by: body-fitted compliance x volume / volume allowed, because volumes
+/// differ a little [J]; of designs that were not judged the same of the sharp one. Where another
+/// response is minimized, that of the sharp design.
 double figure_of(const BodyResult& result, const mmc::Goal& goal);
 
 /// How far the final design is beyond what is allowed, relative; 0 when it is feasible.

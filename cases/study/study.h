@@ -32,6 +32,9 @@ struct Variant {
 struct BodyResult {
   std::string body, stop;
   double compliance = 0, volume = 0, sharp_compliance = 0, sharp_volume = 0, uniform_compliance = 0;
+  /// Of the outline (NaN: not judged, infinite: a load acts on nothing that is held), its estimated
+  /// relative error, and its volume.
+  double body_fitted = 0, body_fitted_error = 0, body_fitted_volume = 0;
   mmc::Figures further;  ///< other responses, and likewise with sharp_ before their names
   double kkt = 0;
   bool connected = false;

@@ -28,6 +28,12 @@ BodyResult read_body(const nlohmann::json& r) {
   out.sharp_compliance = number(r, "sharp_compliance");
   out.sharp_volume = number(r, "sharp_volume");
   out.uniform_compliance = number(r, "uniform_compliance");
+  const nlohmann::json judged = r.value("body_fitted", nlohmann::json::object());
+  out.body_fitted = number(judged, "compliance");
+  if (judged.contains("compliance") && judged["compliance"] == "infinite")
+    out.body_fitted = INFINITY;
+  out.body_fitted_error = number(judged, "error");
+  out.body_fitted_volume = number(judged, "volume");
   for (const mmc::ResponseRow* row : mmc::responses())
     for (const std::string& key : {mmc::key_of(*row), "sharp_" + mmc::key_of(*row)})
       if (r.contains(key)) out.further[key] = number(r, key.c_str());

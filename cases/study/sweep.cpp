@@ -64,9 +64,10 @@ std::vector<std::vector<std::string>> table_of(const Sweep& sweep,
   for (const Varied& v : sweep.varied) rows[0].push_back(v.key);
   const bool several = sweep.n_bodies() > 1;
   if (several) rows[0].emplace_back("body");
-  for (const char* name : {"status", "compliance", "volume", "sharp compliance", "sharp volume",
-                           "figure", "sharp/uniform", "connected", "smallest feature", "components",
-                           "peaks", "kkt", "iterations", "solves", "CPU s", "stopped by"})
+  for (const char* name :
+       {"status", "compliance", "volume", "sharp compliance", "sharp volume",
+        "body-fitted compliance", "figure", "sharp/uniform", "connected", "smallest feature",
+        "components", "peaks", "kkt", "iterations", "solves", "CPU s", "stopped by"})
     rows[0].emplace_back(name);
   for (size_t k = 0; k < runs.size(); ++k) {
     std::vector<std::string> head;
@@ -78,7 +79,7 @@ std::vector<std::vector<std::string>> table_of(const Sweep& sweep,
       row.insert(row.end(),
                  {runs[k].words(), io::to_text(b.compliance, 5), io::to_text(b.volume, 5),
                   io::to_text(b.sharp_compliance, 5), io::to_text(b.sharp_volume, 5),
-                  io::to_text(sweep.figure(k, b, i), 5),
+                  io::to_text(b.body_fitted, 5), io::to_text(sweep.figure(k, b, i), 5),
                   io::to_text(b.sharp_compliance / b.uniform_compliance, 4),
                   b.connected ? "yes" : "no", b.min_feature ? io::to_text(*b.min_feature, 4) : "-",
                   io::to_text(b.components), io::to_text(b.peaks), io::to_text(b.kkt, 2),
@@ -103,6 +104,9 @@ void write_csv(const Sweep& sweep, std::span<const VariantResult> runs, const st
                            "volume",
                            "sharp_compliance",
                            "sharp_volume",
+                           "body_fitted",
+                           "body_fitted_error",
+                           "body_fitted_volume",
                            "figure",
                            "uniform_compliance",
                            "kkt",
@@ -126,12 +130,29 @@ void write_csv(const Sweep& sweep, std::span<const VariantResult> runs, const st
     for (size_t i = 0; i < runs[k].bodies.size(); ++i) {
       const BodyResult& b = runs[k].bodies[i];
       std::vector<io::Cell> row = head;
-      for (const io::Cell& cell : std::initializer_list<io::Cell>{
-               b.body, b.compliance, b.volume, b.sharp_compliance, b.sharp_volume,
-               sweep.figure(k, b, i), b.uniform_compliance, b.kkt, b.connected,
-               b.min_feature ? io::Cell(*b.min_feature) : io::Cell(), b.components, b.peaks,
-               b.disconnected, b.iterations, b.solves, runs[k].seconds_cpu, b.converged(), b.stop,
-               runs[k].message})
+      for (const io::Cell& cell :
+           std::initializer_list<io::Cell>{b.body,
+                                           b.compliance,
+                                           b.volume,
+                                           b.sharp_compliance,
+                                           b.sharp_volume,
+                                           b.body_fitted,
+                                           b.body_fitted_error,
+                                           b.body_fitted_volume,
+                                           sweep.figure(k, b, i),
+                                           b.uniform_compliance,
+                                           b.kkt,
+                                           b.connected,
+                                           b.min_feature ? io::Cell(*b.min_feature) : io::Cell(),
+                                           b.components,
+                                           b.peaks,
+                                           b.disconnected,
+                                           b.iterations,
+                                           b.solves,
+                                           runs[k].seconds_cpu,
+                                           b.converged(),
+                                           b.stop,
+                                           runs[k].message})
         row.push_back(cell);
       csv.row(row);
     }

@@ -38,10 +38,11 @@ struct Look {
   VectorXd compliances, errors;      // by rows of LoadedMesh [J]
   VectorXd by_triangle;              // what counts of the errors [J]
   double compliance = 0, error = 0;  // what counts of all loads [J]
-  double largest_stress = 0;
-  int largest_node = -1, largest_row = -1;
+  LargestStress largest;
+  int largest_row = -1;
   int worst_row = 0;
-  MatrixXd stress;  // of the worst row (3 x n_nodes)
+  MatrixXd stress;             // of the worst row (3 x n_nodes)
+  LargestStress worst_stress;  // likewise
 };
 
 class Judge {
@@ -91,6 +92,8 @@ class Judge {
   void look_at_stress(const LoadedMesh& mesh, const fem::RecoveredStress::Outcome& found,
                       Eigen::Index first, const std::vector<char>& counts, Look& out) const;
   std::vector<char> away_from_places(const LoadedMesh& mesh) const;
+  LargestStress largest_of(const LoadedMesh& mesh, int row, const MatrixXd& stress,
+                           const std::vector<char>& counts) const;
   void keep(const LoadedMesh& mesh, Look& now, double error, int meshes);
   void refine(const Look& now, double error);
   Judged loose(const LoadedMesh& mesh);
@@ -124,21 +127,28 @@ std::vector<char> Judge::away_from_places(const LoadedMesh& mesh) const {
 
 void Judge::look_at_stress(const LoadedMesh& mesh, const fem::RecoveredStress::Outcome& found,
                            Eigen::Index first, const std::vector<char>& counts, Look& out) const {
-  const PartMesh& m = mesh.plate().mesh();
   for (Eigen::Index l = 0; l < found.energies.size(); ++l) {
-    const auto row = static_cast<std::size_t>(first + l);
-    const std::optional<double>& clamp =
-        loads_.loads[static_cast<std::size_t>(mesh.order()[row])].clamp;
-    for (std::size_t k = 0; k < m.points.size(); ++k) {
-      if (!counts[k] || (clamp && m.points[k].x() < *clamp + settings_.reach)) continue;
-      const double value =
-          fem::von_mises(found.averaged.block<3, 1>(3 * l, static_cast<Eigen::Index>(k)));
-      if (!(value > out.largest_stress)) continue;
-      out.largest_stress = value;
-      out.largest_node = static_cast<int>(k);
-      out.largest_row = static_cast<int>(row);
-    }
+    const int row = static_cast<int>(first + l);
+    const LargestStress of_load =
+        largest_of(mesh, row, found.averaged.middleRows(3 * l, 3), counts);
+    if (!(of_load.value > out.largest.value)) continue;
+    out.largest = of_load;
+    out.largest_row = row;
   }
+}
+
+LargestStress Judge::largest_of(const LoadedMesh& mesh, int row, const MatrixXd& stress,
+                                const std::vector<char>& counts) const {
+  const PartMesh& m = mesh.plate().mesh();
+  const int load = mesh.order()[static_cast<std::size_t>(row)];
+  const std::optional<double>& clamp = loads_.loads[static_cast<std::size_t>(load)].clamp;
+  LargestStress out;
+  for (std::size_t k = 0; k < m.points.size(); ++k) {
+    if (!counts[k] || (clamp && m.points[k].x() < *clamp + settings_.reach)) continue;
+    const double value = fem::von_mises(stress.col(static_cast<Eigen::Index>(k)));
+    if (value > out.value) out = {value, m.points[k]};
+  }
+  return out;
 }
 
 Look Judge::look(LoadedMesh& mesh) const {
@@ -181,6 +191,7 @@ Look Judge::look(LoadedMesh& mesh) const {
     out.compliance = out.compliances[out.worst_row];
     out.error = out.errors[out.worst_row];
   }
+  out.worst_stress = largest_of(mesh, out.worst_row, out.stress, counts);
   if (!std::isfinite(out.compliance) || !std::isfinite(out.error))
     throw Error::numerical("judge: the compliance is not finite");
   return out;
@@ -194,16 +205,16 @@ void Judge::keep(const LoadedMesh& mesh, Look& now, double error, int meshes) {
   for (std::size_t row = 0; row < n; ++row)
     out_.compliances[static_cast<std::size_t>(mesh.order()[row])] =
         now.compliances[static_cast<Eigen::Index>(row)];
-  out_.largest_stress = now.largest_stress;
-  if (now.largest_node >= 0) {
-    out_.largest_at = out_.mesh.point(now.largest_node);
-    out_.largest_load = mesh.order()[static_cast<std::size_t>(now.largest_row)];
-  }
+  out_.largest_stress = now.largest.value;
+  out_.largest_at = now.largest.at;
+  out_.largest_load =
+      now.largest_row < 0 ? -1 : mesh.order()[static_cast<std::size_t>(now.largest_row)];
   out_.pieces = out_.mesh.n_pieces;
   out_.left_out = mesh.pieces_left_out();
   out_.meshes = meshes;
   out_.triangles_left_out = mesh.left_out();
   out_.stress = std::move(now.stress);
+  out_.carried_stress = now.worst_stress;
   out_.carried.clear();
   const bool clamped = std::any_of(loads_.loads.begin(), loads_.loads.end(),
                                    [](const Load& l) { return l.clamp.has_value(); });

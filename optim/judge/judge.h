@@ -31,6 +31,12 @@ struct CarriedLoad {
   std::vector<fem::NodalForce> forces;  ///< consistent [N]
 };
 
+/// The largest von Mises stress of one load, away from places and its clamp.
+struct LargestStress {
+  double value = 0;  ///< [Pa]
+  Vec2 at{0, 0};     ///< [m]
+};
+
 struct Judged {
   /// Weighted sum of the loads, or the largest; infinite where a load acts on nothing that is held.
   double compliance = 0;   ///< [J]
@@ -48,6 +54,7 @@ struct Judged {
   std::vector<signed char> triangles_left_out;
   MatrixXd stress;  ///< averaged at nodes, of the first load of `carried` (3 x n_nodes): σ₁₁, σ₂₂,
                     ///< σ₁₂ [Pa]
+  LargestStress carried_stress;      ///< of that load
   std::vector<CarriedLoad> carried;  ///< all loads; where they have clamps the worst one
   double seconds = 0;                ///< CPU
 };

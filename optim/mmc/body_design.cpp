@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "optim/mmc/shared_problem.h"
+#include "optim/mmc/united_connectivity.h"
 #include "optim/search.h"
 
 namespace flexmorph::mmc {
@@ -200,7 +201,8 @@ class Designer {
       p.outcome.further[key_of(*row)] = state.values(*row)->maxCoeff();
   }
 
-  /// The sharp design by its cells alone: outlines cost more than an analysis does.
+  /// The sharp design by its cells, without the widths of its outlines, which cost more than an
+  /// analysis does. What hangs together shows in the outlines here, too.
   static SharpDesign without_outlines(const Part& p) {
     SharpDesign out;
     out.fractions = fractions_of(p.problem, p.problem.design.components());
@@ -209,7 +211,7 @@ class Designer {
     const std::vector<Component> components = p.problem.design.components();
     out.compliance = judged_compliance(p.problem, p.loads, sharp);
     out.further = further_values(p.problem, components, p.loads, sharp);
-    out.connectivity = connectivity(p.problem.grid, out.fractions, p.problem.places);
+    out.connectivity = united_connectivity(p.problem, components, out.fractions);
     return out;
   }
 

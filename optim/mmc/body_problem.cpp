@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "optim/mmc/united_connectivity.h"
+
 namespace flexmorph::mmc {
 namespace {
 
@@ -138,6 +140,17 @@ Connectivity connectivity_of(const BodyProblem& problem, std::span<const Region>
     });
   });
   return out;
+}
+
+Connectivity united_connectivity(const BodyProblem& problem, std::span<const Component> components,
+                                 const VectorXd& fractions) {
+  try {
+    return connectivity_of(problem,
+                           regions_of(problem, components, kOutlineTolerance * problem.grid.dx()));
+  } catch (const Error& error) {
+    if (error.kind() == Error::Kind::input) throw;
+    return connectivity(problem.grid, fractions, problem.places);
+  }
 }
 
 SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> components,

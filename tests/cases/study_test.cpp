@@ -230,10 +230,17 @@ TEST(Compare, MakesATableOfOptimizersFromTheSameStarts) {
   EXPECT_EQ(test::lines_of(ended.out).size(), 6U) << ended.out;
 
   // Figures are what the columns say.
-  const auto figure = table.numbers("figure"), sharp = table.numbers("sharp_compliance"),
-             volume = table.numbers("sharp_volume");
-  for (size_t i = 0; i < figure.size(); ++i)
-    EXPECT_NEAR(figure[i], sharp[i] * volume[i] / 0.4, 1e-12 * figure[i]);  // two roundings
+  const auto figure = table.numbers("figure"), judged = table.numbers("body_fitted"),
+             volume = table.numbers("body_fitted_volume"),
+             error = table.numbers("body_fitted_error");
+  for (size_t i = 0; i < figure.size(); ++i) {
+    if (std::isinf(judged[i])) {  // after eight solves a load may still act on a loose piece
+      EXPECT_EQ(figure[i], judged[i]);
+      continue;
+    }
+    EXPECT_NEAR(figure[i], judged[i] * volume[i] / 0.4, 1e-12 * figure[i]);  // two roundings
+    EXPECT_LE(error[i], 0.005);
+  }
 }
 
 TEST(Compare, RefusesNamesThatAreUnknownOrTwice) {

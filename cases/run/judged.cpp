@@ -1,0 +1,78 @@
+#include "cases/run/judged.h"
+
+#include <cmath>
+
+#include "cases/build/judged_loads.h"
+#include "io/files.h"
+#include "io/mesh_exports.h"
+
+namespace flexmorph::cases {
+namespace {
+
+/// The last mesh of the judge with what it carries.
+void write_meshes(const Scene& scene, const mmc::BodyProblem& problem,
+                  std::span<const Region> regions, const judge::Judged& j, RunFolder& folder) {
+  const std::string stem = "design" + (scene.designs.size() > 1 ? "_" + problem.body : "");
+  io::PlateModel model{j.mesh,
+                       j.triangles_left_out,
+                       problem.section.thickness,
+                       problem.section.youngs_modulus,
+                       problem.section.poisson_ratio,
+                       {}};
+  for (const judge::CarriedLoad& c : j.carried) {
+    io::MeshLoad& load = model.loads.emplace_back();
+    load.name = c.name;
+    for (std::size_t k = 0; k < c.held.size(); ++k)
+      load.held.push_back({c.held[k].node, c.held[k].component, c.prescribed[k]});
+    for (const fem::NodalForce& f : c.forces) load.forces.push_back({f.node, f.force});
+  }
+  if (!model.loads.empty()) io::write_inp(folder.file(stem + ".inp"), model);
+  io::write_msh(folder.file(stem + ".msh"), j.mesh);
+  io::write_geo(folder.file(stem + ".geo"), regions, problem.grid.dx());
+}
+
+}  // namespace
+
+JudgedBody judge_body(const Scene& scene, const mmc::BodyProblem& problem,
+                      const fem::EslSets* loads, RunFolder& folder) {
+  JudgedBody out;
+  out.body = problem.body;
+  if (loads != nullptr) out.why_not = mmc::cannot_judge(problem, *loads);
+  if (!out.why_not.empty()) return out;
+  try {
+    const judge::Loads by_position =
+        loads != nullptr ? mmc::loads_by_position(problem, *loads) : judged_loads(scene, problem);
+    const std::vector<Region> regions = mmc::exported_regions(problem);
+    const Grid& g = problem.grid;
+    out.volume = area(regions) / (mmc::plate_of(problem).n_domain_cells() * g.dx() * g.dy());
+    out.verdict = mmc::judge_design(problem, regions, by_position);
+    write_meshes(scene, problem, regions, *out.verdict, folder);
+  } catch (const Error& error) {
+    out.verdict.reset();
+    out.why_not = error.what();
+  }
+  return out;
+}
+
+std::string judged_words(const JudgedBody& judged, double sharp_compliance) {
+  const std::string head = judged.body + ": ";
+  if (!judged.verdict) return head + "no body-fitted compliance: " + judged.why_not;
+  const judge::Judged& j = *judged.verdict;
+  if (!std::isfinite(j.compliance))
+    return head + "body-fitted compliance infinite: load '" + j.loose_load +
+           "' acts on nothing that is held";
+  const double apart = 100 * (sharp_compliance / j.compliance - 1);
+  std::string out =
+      head + "body-fitted compliance " + io::to_text(j.compliance, 5) + " (error about " +
+      io::to_text(100 * j.error, 2) + " %) at volume " + io::to_text(judged.volume, 4) +
+      "; its cells say " + io::to_text(sharp_compliance, 5) + ", " +
+      io::to_text(std::abs(apart), 2) + (apart < 0 ? " % less" : " % more") + "; largest stress " +
+      io::to_text(j.largest_stress, 4) + " Pa at (" + io::to_text(j.largest_at.x(), 4) + ", " +
+      io::to_text(j.largest_at.y(), 4) + ") m";
+  if (j.left_out > 0)
+    out += "; " + std::to_string(j.left_out) + " of " + std::to_string(j.pieces) +
+           " pieces are held by nothing";
+  return out;
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,61 @@
+#include "optim/mmc/judged_design.h"
+
+#include <algorithm>
+#include <map>
+
+namespace flexmorph::mmc {
+
+double point_reach(const BodyProblem& problem) {
+  return std::max(problem.grid.dx(), problem.grid.dy());
+}
+
+std::string cannot_judge(const BodyProblem& problem, const fem::EslSets& loads) {
+  if (problem.compliance.loads != LoadDefinition::inertia)
+    return "its loads are forces at the corners of cells: only esl.definition = \"inertia\" is "
+           "carried over to an outline";
+  const bool held_end = std::any_of(loads.sets.begin(), loads.sets.end(),
+                                    [](const fem::EslSet& s) { return s.held_end_stretch != 0; });
+  if (held_end) return "its far edge is held while the body is hot";
+  return "";
+}
+
+judge::Loads loads_by_position(const BodyProblem& problem, const fem::EslSets& loads) {
+  const std::vector<Vec2> border = domain_of(problem);
+  const Grid& g = loads.grid;
+  judge::Loads out;
+  out.grid = g;
+  out.worst = compliance_row(problem.goal).per_load;
+  std::map<int, int> places;  // of nodes
+  for (std::size_t l = 0; l < loads.sets.size(); ++l) {
+    const fem::EslSet& set = loads.sets[l];
+    judge::Load& load = out.loads.emplace_back();
+    load.name = "load_" + std::to_string(l + 1);
+    load.weight = set.weight;
+    load.clamp = g.node_position(set.root_column, 0).x();
+    load.acceleration = &set.acceleration;
+    load.held_stretch = set.held_stretch;
+    for (const fem::NodalForce& f : set.forces) {
+      const int i = f.node / (g.ny + 1), j = f.node % (g.ny + 1);
+      if (i <= set.root_column) continue;  // it goes straight into the hub
+      const auto [at, fresh] = places.try_emplace(f.node, static_cast<int>(out.places.size()));
+      if (fresh) out.add(judge::point_place(g.node_position(i, j), border, point_reach(problem)));
+      load.forces.push_back({at->second, f.force});
+    }
+  }
+  return out;
+}
+
+std::vector<Region> exported_regions(const BodyProblem& problem) {
+  return regions_of(problem, problem.design.components(), kOutlineTolerance * problem.grid.dx());
+}
+
+judge::Judged judge_design(const BodyProblem& problem, std::span<const Region> regions,
+                           const judge::Loads& loads) {
+  constexpr double kFirst = 2;  // cells: as wide as the thinnest bars
+  judge::Settings settings;
+  settings.size = kFirst * point_reach(problem);
+  settings.reach = point_reach(problem);
+  return judge::judge(regions, problem.section, loads, settings);
+}
+
+}  // namespace flexmorph::mmc

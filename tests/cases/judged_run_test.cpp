@@ -1,0 +1,170 @@
+// Designs as their outlines say: what a run writes of its judge, and CalculiX, another
+// finite-element program, on the files that it exports.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "tests/cases/program.h"
+
+namespace flexmorph::test {
+namespace {
+
+/// A run of few iterations with its judge's verdict.
+nlohmann::json judged(const Scratch& scratch, const std::string& name, const std::string& folder,
+                      Words changes) {
+  changes.insert(changes.end(), {"output.vtk=false", "output.plots=false"});
+  const Ended ended = run(scratch, name, folder, changes);
+  EXPECT_TRUE(ended.code == 0 || ended.code == 5) << ended.err;
+  return nlohmann::json::parse(contents_of(folder + "/run.json"))["results"][0]["body_fitted"];
+}
+
+/// Nodes of an input file, and the forces of its steps: node, direction, size.
+struct Input {
+  struct Force {
+    int node, direction;
+    double size;
+  };
+  std::map<int, std::pair<double, double>> nodes;
+  std::vector<std::vector<Force>> steps;
+  double thickness = 0;
+
+  explicit Input(const std::string& path) {
+    std::string card;
+    for (const std::string& line : lines_of(contents_of(path))) {
+      if (line.starts_with("**")) continue;
+      if (line.starts_with("*")) {
+        card = line;
+        if (card.starts_with("*STEP")) steps.emplace_back();
+        continue;
+      }
+      char comma = 0;
+      std::istringstream in(line);
+      if (card.starts_with("*NODE, NSET")) {
+        int node = 0;
+        double x = 0, y = 0;
+        in >> node >> comma >> x >> comma >> y;
+        nodes[node] = {x, y};
+      }
+      if (card.starts_with("*SOLID SECTION")) in >> thickness;
+      if (card.starts_with("*CLOAD")) {
+        Force f{};
+        in >> f.node >> comma >> f.direction >> comma >> f.size;
+        steps.back().push_back(f);
+      }
+    }
+  }
+};
+
+using Values = std::map<int, std::vector<double>>;  // of nodes
+
+/// Blocks of a result file of CalculiX: DISP or STRESS of one step after the other.
+std::vector<Values> blocks(const std::string& path, const std::string& name) {
+  std::vector<Values> out;
+  bool inside = false;
+  for (const std::string& line : lines_of(contents_of(path))) {
+    if (line.starts_with(" -4")) {
+      inside = line.find(name) != std::string::npos;
+      if (inside) out.emplace_back();
+    }
+    if (line.starts_with(" -3")) inside = false;
+    if (!inside || !line.starts_with(" -1")) continue;
+    std::vector<double>& values = out.back()[std::stoi(line.substr(3, 10))];
+    for (std::size_t at = 13; at + 12 <= line.size(); at += 12)
+      values.push_back(std::stod(line.substr(at, 12)));
+  }
+  return out;
+}
+
+double von_mises(const std::vector<double>& s) {
+  return std::sqrt(
+      0.5 * (std::pow(s[0] - s[1], 2) + std::pow(s[1] - s[2], 2) + std::pow(s[2] - s[0], 2)) +
+      3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
+}
+
+/// Runs CalculiX on design.inp and compares.
+/// @param thickness  of the plate  @param worst  is the compliance that of the worst load, or the
+/// sum?
+void expect_calculix_agrees(const std::string& folder, const nlohmann::json& found,
+                            double thickness, bool worst) {
+  const std::string command =
+      "cd '" + folder + "' && OMP_NUM_THREADS=1 ccx -i design > ccx.log 2>&1";
+  ASSERT_EQ(std::system(command.c_str()), 0) << contents_of(folder + "/ccx.log");
+  const Input input(folder + "/design.inp");
+  const auto moved = blocks(folder + "/design.frd", "DISP"),
+             stress = blocks(folder + "/design.frd", "STRESS");
+  ASSERT_EQ(moved.size(), input.steps.size());
+  ASSERT_EQ(stress.size(), input.steps.size());
+  double sum = 0, largest = 0;
+  for (std::size_t s = 0; s < moved.size(); ++s) {
+    double compliance = 0;
+    for (const Input::Force& f : input.steps[s])
+      compliance += f.size * moved[s].at(f.node).at(static_cast<std::size_t>(f.direction - 1));
+    compliance *= thickness / input.thickness;  // the file holds a slice of the plate
+    sum += compliance;
+    largest = std::max(largest, compliance);
+  }
+  const auto expected = found["compliance"].get<double>();
+  EXPECT_NEAR(worst ? largest : sum, expected, 0.005 * expected);
+  // The largest stress of the first step, where the judge says it is.
+  const nlohmann::json& exported = found["exported"];
+  const double x = exported["largest_stress_at"][0], y = exported["largest_stress_at"][1];
+  double near = INFINITY, there = 0;
+  for (const auto& [node, at] : input.nodes) {
+    const double distance = std::hypot(at.first - x, at.second - y);
+    if (distance >= near || !stress[0].contains(node)) continue;
+    near = distance;
+    there = von_mises(stress[0].at(node));
+  }
+  EXPECT_LT(near, 1e-9);
+  const auto judged = exported["largest_stress"].get<double>();
+  EXPECT_NEAR(there, judged, 0.03 * judged);
+}
+
+bool has_calculix() { return std::system("command -v ccx > /dev/null 2>&1") == 0; }
+
+struct Plate {
+  const char* name;
+  bool worst;
+};
+
+class ExportedPlates : public ::testing::TestWithParam<Plate> {};
+
+TEST_P(ExportedPlates, AreWhatCalculixFinds) {
+  ASSERT_TRUE(has_calculix()) << "the package calculix-ccx is missing";
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const nlohmann::json found =
+      judged(scratch, GetParam().name, folder, {"optimizer.max_iterations=60"});
+  ASSERT_TRUE(found["compliance"].is_number()) << found;
+  EXPECT_LE(found["error"].get<double>(), 0.005);
+  EXPECT_GT(found["volume"].get<double>(), 0.2);
+  expect_calculix_agrees(folder, found, 1, GetParam().worst);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shipped, ExportedPlates,
+                         ::testing::Values(Plate{"short_beam", false}, Plate{"mbb", false},
+                                           Plate{"l_bracket", false}, Plate{"bridge", true}),
+                         [](const auto& each) { return std::string(each.param.name); });
+
+// The worst load of a growing plate: what is in the hub is held, inertia is there as nodal forces.
+TEST(ExportedMotion, IsWhatCalculixFinds) {
+  ASSERT_TRUE(has_calculix()) << "the package calculix-ccx is missing";
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const nlohmann::json found =
+      judged(scratch, "rotating_plate_v05", folder,
+             {"optimizer.max_iterations=30", "design.cell=0.005", "time.step=5e-3",
+              "verify=", "esl.every=0.1", "design.components=[20, 2]", "design.loads=\"worst\""});
+  ASSERT_TRUE(found["compliance"].is_number()) << found;
+  EXPECT_LE(found["error"].get<double>(), 0.005);
+  expect_calculix_agrees(folder, found, 0.01, true);
+}
+
+}  // namespace
+}  // namespace flexmorph::test
