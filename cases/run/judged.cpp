@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "cases/build/judged_loads.h"
+#include "geometry/cpu_time.h"
 #include "io/files.h"
 #include "io/mesh_exports.h"
 
@@ -39,6 +40,7 @@ JudgedBody judge_body(const Scene& scene, const mmc::BodyProblem& problem,
   out.body = problem.body;
   if (loads != nullptr) out.why_not = mmc::cannot_judge(problem, *loads);
   if (!out.why_not.empty()) return out;
+  const double clock = thread_seconds();
   try {
     const judge::Loads by_position =
         loads != nullptr ? mmc::loads_by_position(problem, *loads) : judged_loads(scene, problem);
@@ -51,6 +53,7 @@ JudgedBody judge_body(const Scene& scene, const mmc::BodyProblem& problem,
     out.verdict.reset();
     out.why_not = error.what();
   }
+  out.seconds = thread_seconds() - clock;
   return out;
 }
 

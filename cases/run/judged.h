@@ -15,6 +15,7 @@ struct JudgedBody {
   std::optional<judge::Judged> verdict;
   std::string why_not;  ///< where there is no verdict
   double volume = 0;    ///< part of the domain, of the outline
+  double seconds = 0;   ///< CPU seconds, files included
 };
 
 /// Judges the design of a problem and writes design.inp, design.msh and design.geo. A judge that

@@ -114,6 +114,19 @@ io::ReportSection cycles_section(const RunReport& report) {
 
 }  // namespace
 
+std::vector<std::pair<std::string, double>> phases_of(const RunReport& report,
+                                                      const RunFolder& folder) {
+  std::vector<std::pair<std::string, double>> out = folder.phases();
+  if (out.empty()) return out;
+  for (auto& [name, seconds] : out)
+    if (name == "outlines")
+      for (const mmc::BodyOutcome& o : report.outcomes) seconds += o.sharp.seconds_outlines;
+  double judge = 0;
+  for (const JudgedBody& j : report.judged) judge += j.seconds;
+  out.emplace_back("judge", judge);
+  return out;
+}
+
 void write_report(const Scene& scene, const RunReport& report, RunFolder& folder) {
   folder.write_text("run.json", run_json(scene, report));
   if (report.status == "running") return;

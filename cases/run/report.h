@@ -16,6 +16,7 @@ struct RunReport {
   int threads = 1, cycles = 0;
   bool resumed = false;  ///< does it go on with what is in its folder?
   double seconds_wall = 0, seconds_cpu = 0, peak_memory_bytes = 0;
+  std::vector<std::pair<std::string, double>> phases;  ///< CPU seconds of designs (phases_of())
   std::vector<mmc::BodyProblem> problems;
   std::vector<mmc::BodyOutcome> outcomes;
   std::vector<JudgedBody> judged;  ///< final designs, in the order of the outcomes; or none yet
@@ -24,6 +25,11 @@ struct RunReport {
   std::optional<MotionRecord> motion, uniform_motion;      ///< of the design; of uniform material
   std::optional<MotionRecord> verified, verified_uniform;  ///< the same on the finer mesh
 };
+
+/// CPU seconds of iterations, outlines of final designs and their judge, by phase; empty without
+/// designs.
+std::vector<std::pair<std::string, double>> phases_of(const RunReport& report,
+                                                      const RunFolder& folder);
 
 /// Writes run.json, the plots and report.html.
 void write_report(const Scene& scene, const RunReport& report, RunFolder& folder);

@@ -309,6 +309,7 @@ int run_case(const RunOptions& options) {
     report.seconds_wall =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
     report.peak_memory_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
+    report.phases = phases_of(report, folder);
     write_report(scene, report, folder);
   };
   close("running", "");

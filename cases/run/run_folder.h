@@ -130,6 +130,10 @@ class RunFolder {
   void write_cycles(std::span<const mmc::CycleVerdict> cycles);
   void write_text(const std::string& name, const std::string& text);
 
+  /// What the iterations of all designs took, of earlier runs that this one goes on with too:
+  /// phases with their CPU seconds of all threads. Empty without designs.
+  const std::vector<std::pair<std::string, double>>& phases() const { return phases_; }
+
   /// Rows of the history per body, for plots.
   struct History {
     std::string body;
@@ -199,6 +203,7 @@ class RunFolder {
   std::vector<DesignPictures> pictures_;
   int rows_ = 0, motion_frames_ = 0;
   std::vector<io::SurfaceFrame> shapes_;
+  std::vector<std::pair<std::string, double>> phases_;  // CPU seconds of the history by phase
   std::atomic<double> output_seconds_ = 0;
   io::Background writer_;  // last: its tasks use the others
 };

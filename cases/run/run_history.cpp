@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -29,15 +30,22 @@ const std::vector<std::string> kHistoryColumns = {"body",
                                                   "connected",
                                                   "min_feature"};
 /// Between these and what follows are the responses of further_rows().
-const std::vector<std::string> kHistorySeconds = {"seconds_tdf",       "seconds_factor",
-                                                  "seconds_solve",     "seconds_sensitivity",
-                                                  "seconds_optimizer", "seconds_output"};
+const std::vector<std::string> kHistorySeconds = {
+    "seconds_tdf",         "seconds_outlines",  "seconds_factor", "seconds_solve",
+    "seconds_sensitivity", "seconds_optimizer", "seconds_output"};
 
 std::vector<std::string> columns_of(const Scene& scene) {
   std::vector<std::string> out = kHistoryColumns;
   for (const mmc::ResponseRow* row : further_rows(scene)) out.push_back(mmc::key_of(*row));
   out.insert(out.end(), kHistorySeconds.begin(), kHistorySeconds.end());
   return out;
+}
+
+/// Of a cell of an old table; NaN where it is empty.
+double value_of(const std::string& cell) {
+  double value = std::numeric_limits<double>::quiet_NaN();
+  std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  return value;
 }
 
 /// Names of the frames of a design, the n-th row of the history.
@@ -54,6 +62,8 @@ struct FrameNames {
 
 void RunFolder::begin_history(Begin begin) {
   const std::vector<std::string> columns = columns_of(scene_);
+  for (const std::string& name : kHistorySeconds)
+    phases_.emplace_back(name.substr(std::string("seconds_").size()), 0);
   const std::string path = folder_.file("history.csv");
   if (begin == Begin::go_on && std::filesystem::exists(path)) {
     history_ = std::make_unique<io::CsvWriter>(io::CsvWriter::go_on(path, columns.size()));
@@ -111,11 +121,10 @@ void RunFolder::keep_row(const mmc::RowOfHistory& row, const std::vector<std::st
     });
   const auto number = [&](const char* name) {
     const auto at = std::find(kHistoryColumns.begin(), kHistoryColumns.end(), name);
-    const std::string& text = old[static_cast<size_t>(at - kHistoryColumns.begin())];
-    double value = std::numeric_limits<double>::quiet_NaN();
-    std::from_chars(text.data(), text.data() + text.size(), value);
-    return value;
+    return value_of(old[static_cast<size_t>(at - kHistoryColumns.begin())]);
   };
+  for (size_t i = 0, first = old.size() - phases_.size(); i < phases_.size(); ++i)
+    phases_[i].second += value_of(old[first + i]);
   History& h = history_of(row.body);
   h.row.push_back(static_cast<double>(h.row.size() + 1));
   h.compliance.push_back(number("compliance"));
@@ -208,8 +217,15 @@ void RunFolder::write_history_row(const mmc::IterationReport& r) {
     const std::optional<VectorXd> values = r.state.values(*further);
     row.push_back(values ? io::Cell(values->maxCoeff()) : io::Cell());
   }
-  row.insert(row.end(), {r.state.seconds_tdf(), s.factor, s.solve, s.sensitivity, r.iterate.seconds,
-                         take_output_seconds()});
+  const std::array seconds = {r.state.seconds_tdf(),
+                              r.sharp ? r.sharp->seconds_outlines : 0,
+                              s.factor,
+                              s.solve,
+                              s.sensitivity,
+                              r.iterate.seconds,
+                              take_output_seconds()};
+  row.insert(row.end(), seconds.begin(), seconds.end());
+  for (size_t i = 0; i < seconds.size(); ++i) phases_.at(i).second += seconds[i];
   history_->row(row);
 }
 

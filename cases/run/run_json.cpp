@@ -327,6 +327,11 @@ std::string run_json(const Scene& scene, const RunReport& report) {
   if (report.failure) out["failure"] = failure_results(*report.failure);
   out["seconds_wall"] = report.seconds_wall;
   out["seconds_cpu"] = report.seconds_cpu;
+  if (!report.phases.empty()) {
+    Json phases = Json::object();
+    for (const auto& [name, seconds] : report.phases) phases["seconds_" + name] = seconds;
+    out["seconds_by_phase"] = std::move(phases);
+  }
   out["peak_memory_bytes"] = static_cast<long long>(report.peak_memory_bytes);
   Json warnings = Json::array();
   for (const Warning& each : warnings_of(scene, report)) warnings.push_back(each.words);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "geometry/cpu_time.h"
 #include "optim/mmc/united_connectivity.h"
 
 namespace flexmorph::mmc {
@@ -162,6 +163,7 @@ SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> 
   const CellFactors sharp = ersatz.sharp(out.fractions);
   out.compliance = judged_compliance(problem, loads, sharp);
   out.further = further_values(problem, components, loads, sharp);
+  const double clock = thread_seconds();
   try {
     const std::vector<Region> regions =
         regions_of(problem, components, kOutlineTolerance * problem.grid.dx());
@@ -171,6 +173,7 @@ SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> 
     if (error.kind() == Error::Kind::input) throw;
     out.connectivity = connectivity(problem.grid, out.fractions, problem.places);
   }
+  out.seconds_outlines = thread_seconds() - clock;
   return out;
 }
 

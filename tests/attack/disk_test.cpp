@@ -129,9 +129,10 @@ TEST(Disk, TakesNothing) {
   const bool read_only = disk.mounted() && disk.make_read_only();
   for (const Kind& kind : kinds(pendulum)) {
     EXPECT_EQ(refused(Attacked(command(kind, a_file + "/run"), scratch / "").end(), kind.name), 2);
-    if (read_only)
+    if (read_only) {
       EXPECT_EQ(
           refused(Attacked(command(kind, scratch / "disk/run"), scratch / "").end(), kind.name), 2);
+    }
   }
   EXPECT_EQ(contents_of(a_file), "mine");
   std::printf("a path below a file%s\n", read_only ? ", and a disk that is read-only" : " only");

@@ -110,7 +110,9 @@ int kill_and_resume(const Victim& v, int kills, std::mt19937& engine) {
       n += killed;
       if (killed && v.is_study() && fs::exists(folder)) wait_for_children(folder);
       expect_readable(folder);
-      if (!killed) EXPECT_EQ(ended.code, code) << v.name << " " << ended.err;
+      if (!killed) {
+        EXPECT_EQ(ended.code, code) << v.name << " " << ended.err;
+      }
       if (engine() % 2 == 0) break;  // killed once more, or resumed
     }
     if (killed) {

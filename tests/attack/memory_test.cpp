@@ -68,9 +68,13 @@ TEST(Memory, EndsWithASentence) {
       EXPECT_TRUE(end.code == 0 || end.code == 2 || end.code == 3 || end.code == 5)
           << what << ": exit code " << end.code << ", signal " << end.signal << "\n"
           << end.words;
-      if (end.code == 2 || end.code == 3) EXPECT_TRUE(contains(end.words, "flexmorph: ")) << what;
+      if (end.code == 2 || end.code == 3) {
+        EXPECT_TRUE(contains(end.words, "flexmorph: ")) << what;
+      }
       EXPECT_FALSE(contains(end.words, "unexpected")) << what;
-      if (std::filesystem::exists(folder)) EXPECT_EQ(testing::broken_files(folder), "") << what;
+      if (std::filesystem::exists(folder)) {
+        EXPECT_EQ(testing::broken_files(folder), "") << what;
+      }
       std::filesystem::remove_all(folder);
     }
     std::string counts;

@@ -81,7 +81,11 @@ std::map<std::string, std::string> files_of(const std::string& folder, const Wor
     std::string text = contents_of(path);
     if (name.ends_with("run.json")) {
       auto json = nlohmann::ordered_json::parse(text);
-      for (const char* key : {"seconds_wall", "seconds_cpu", "peak_memory_bytes"}) json.erase(key);
+      for (const char* key :
+           {"seconds_wall", "seconds_cpu", "seconds_by_phase", "peak_memory_bytes"})
+        json.erase(key);
+      for (auto& result : json["results"])
+        if (result.contains("body_fitted")) result["body_fitted"].erase("seconds");
       text = json.dump();
     } else if (name.ends_with(".csv")) {
       text = without_times(io::read_csv(path));

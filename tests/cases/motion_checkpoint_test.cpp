@@ -78,7 +78,9 @@ TEST_F(Checkpoints, AreThoseOfOneVersion) {
   const size_t at = other.find(kVersion), end = other.find('\n');
   other.replace(at, end - at, "0.0.1");
   put(other);
-  EXPECT_EQ(refusal(), std::string("it was written by version 0.0.1, this is ") + kVersion);
+  std::string expected = "it was written by version 0.0.1, this is ";
+  expected += kVersion;
+  EXPECT_EQ(refusal(), expected);
   put("flexmorph motion 0, " + whole.substr(whole.find(kVersion)));
   EXPECT_EQ(refusal(), "it is none of this format");
 }

@@ -30,7 +30,9 @@ inline std::map<std::string, std::string> lasting(const std::string& folder) {
     std::string text = contents_of(entry.path().string());
     if (name == "run.json") {
       json run = json::parse(text);
-      for (const char* key : {"seconds_wall", "seconds_cpu", "peak_memory_bytes"}) run.erase(key);
+      for (const char* key :
+           {"seconds_wall", "seconds_cpu", "seconds_by_phase", "peak_memory_bytes"})
+        run.erase(key);
       for (json& result : run["results"]) {
         result.erase("factorizations");
         if (result.contains("body_fitted")) result["body_fitted"].erase("seconds");

@@ -20,7 +20,7 @@ std::string timeless(const fs::path& file, std::string text) {
     std::string out;
     for (const std::string& line : lines_of(text)) {
       size_t end = line.size();
-      for (int k = 0; k < 6; ++k) end = line.rfind(',', end - 1);
+      for (int k = 0; k < 7; ++k) end = line.rfind(',', end - 1);
       out += line.substr(0, end) + "\n";
     }
     return out;
