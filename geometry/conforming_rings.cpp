@@ -1,6 +1,7 @@
 #include "geometry/conforming_rings.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -64,7 +65,67 @@ std::vector<Vec2> ring_with_points(const std::vector<Vec2>& ring, std::span<cons
   return out;
 }
 
+/// One number for all that are less than `small` apart, one after the other.
+class Unifier {
+ public:
+  Unifier(std::vector<double> values, double small) : values_(std::move(values)) {
+    std::sort(values_.begin(), values_.end());
+    values_.erase(std::unique(values_.begin(), values_.end()), values_.end());
+    for (std::size_t k = 0; k < values_.size(); ++k)
+      common_.push_back(k > 0 && values_[k] - values_[k - 1] <= small ? common_.back()
+                                                                      : values_[k]);
+  }
+  double operator()(double value) const {
+    const auto at = std::lower_bound(values_.begin(), values_.end(), value);
+    return common_[static_cast<std::size_t>(at - values_.begin())];
+  }
+
+ private:
+  std::vector<double> values_, common_;
+};
+
 }  // namespace
+
+std::vector<Segment> conforming_lines(std::span<const Segment> lines, double small) {
+  std::array<std::vector<double>, 2> ends;
+  for (const Segment& s : lines)
+    for (std::size_t axis = 0; axis < 2; ++axis)
+      for (const Vec2& p : {s.a, s.b}) ends[axis].push_back(p[static_cast<Eigen::Index>(axis)]);
+  const Unifier x(std::move(ends[0]), small), y(std::move(ends[1]), small);
+  // Horizontal and vertical ones: where they are, and from where to where.
+  struct Line {
+    double at, from, to;
+  };
+  std::array<std::vector<Line>, 2> along;
+  std::vector<Segment> out;
+  for (const Segment& s : lines) {
+    if (s.a.x() != s.b.x() && s.a.y() != s.b.y()) out.push_back(s);
+    const Vec2 a(x(s.a.x()), y(s.a.y())), b(x(s.b.x()), y(s.b.y()));
+    for (int axis = 0; axis < 2; ++axis)
+      if (a[1 - axis] == b[1 - axis] && a[axis] != b[axis])
+        along[static_cast<std::size_t>(axis)].push_back(
+            {a[1 - axis], std::min(a[axis], b[axis]), std::max(a[axis], b[axis])});
+    if (a == b) out.push_back({a, b});
+  }
+  std::vector<double> cuts;
+  for (int axis = 0; axis < 2; ++axis)
+    for (const Line& line : along[static_cast<std::size_t>(axis)]) {
+      cuts = {line.from, line.to};
+      for (const Line& other : along[static_cast<std::size_t>(1 - axis)])
+        if (other.at > line.from && other.at < line.to && line.at >= other.from &&
+            line.at <= other.to)
+          cuts.push_back(other.at);
+      std::sort(cuts.begin(), cuts.end());
+      for (std::size_t k = 1; k < cuts.size(); ++k) {
+        if (cuts[k - 1] == cuts[k]) continue;
+        Segment s{Vec2::Constant(line.at), Vec2::Constant(line.at)};
+        s.a[axis] = cuts[k - 1];
+        s.b[axis] = cuts[k];
+        out.push_back(s);
+      }
+    }
+  return out;
+}
 
 double smallest_distance(std::span<const Region> regions) {
   constexpr double kPart = 1e-9;

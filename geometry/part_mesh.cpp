@@ -75,6 +75,9 @@ struct Criteria {
   Is_bad is_bad_object() const { return {sizes}; }
 };
 
+/// Far above what any part of sizes that a computer can hold needs.
+constexpr long kMostSteps = 1'000'000;
+
 using Mesher = CGAL::Delaunay_mesher_2<Cdt, Criteria>;
 
 /// One region: its triangulation, refined as far as it is.
@@ -83,14 +86,13 @@ struct Piece {
   std::vector<Kernel::Point_2> seeds;  // one in every face of the arrangement that is inside
   std::optional<Mesher> mesher;
 
+  /// @param lines  as conforming_lines() returns them
   Piece(const Region& region, std::span<const Segment> lines) {
     insert_ring(region.outer);
     for (const auto& hole : region.holes) insert_ring(hole);
-    for (const Segment& s : lines) {
-      const bool straight = s.a.x() == s.b.x() || s.a.y() == s.b.y();
-      if (straight && s.a != s.b)
+    for (const Segment& s : lines)
+      if (s.a != s.b && (s.a.x() == s.b.x() || s.a.y() == s.b.y()))
         cdt.insert_constraint(Kernel::Point_2(s.a.x(), s.a.y()), Kernel::Point_2(s.b.x(), s.b.y()));
-    }
     find_seeds(region);
   }
   Piece(const Piece&) = delete;
@@ -102,8 +104,14 @@ struct Piece {
     } else {
       mesher.emplace(cdt, Criteria{&sizes});
       mesher->set_seeds(seeds.begin(), seeds.end(), true);
+      mesher->init();
     }
-    mesher->refine_mesh();
+    for (long step = 0; !mesher->is_refinement_done(); ++step) {
+      if (step == kMostSteps)
+        throw Error::numerical("mesh of a part: its refinement does not end (" +
+                               std::to_string(step) + " points)");
+      mesher->step_by_step_refine_mesh();
+    }
   }
 
  private:
@@ -218,10 +226,11 @@ struct PartMesher::Impl {
 PartMesher::PartMesher(std::span<const Region> regions, std::span<const Segment> lines)
     : impl_(std::make_unique<Impl>()) {
   impl_->small = smallest_distance(regions);
+  const std::vector<Segment> cut = conforming_lines(lines, impl_->small);
   for (const Region& region : regions) {
-    const Region conforming = with_points_of(region, lines, impl_->small);
+    const Region conforming = with_points_of(region, cut, impl_->small);
     if (conforming.outer.size() < 3) continue;
-    auto piece = std::make_unique<Piece>(conforming, lines);
+    auto piece = std::make_unique<Piece>(conforming, cut);
     if (!piece->seeds.empty()) impl_->pieces.push_back(std::move(piece));
   }
   if (impl_->pieces.empty()) throw Error::numerical("mesh of a part: it has no area");

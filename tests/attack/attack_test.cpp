@@ -23,6 +23,7 @@
 #include "tests/attack/attacked_program.h"
 #include "tests/attack/mutations.h"
 #include "tests/io/scratch.h"
+#include "tests/support/sanitizers.h"
 
 namespace flexmorph {
 namespace {
@@ -30,8 +31,10 @@ namespace {
 using testing::Mutations;
 using testing::number_of;
 
-constexpr double kLongest = 1;          // of processor time, for one input [s]
-constexpr double kPerElement = 200e-6;  // and for each element that it asks for: they are built [s]
+constexpr double kSlow = testing::kSanitized ? 50 : 1;
+constexpr double kLongest = 1 * kSlow;  // of processor time, for one input [s]
+// And for each element that it asks for: they are built   [s].
+constexpr double kPerElement = 200e-6 * kSlow;
 // What malloc keeps of the largest inputs varies by this much; a leak of 100 bytes an input shows
 // in 1e6 of them [bytes].
 constexpr double kGrowth = 100e6;

@@ -22,6 +22,7 @@
 #include "tests/attack/attacked_program.h"
 #include "tests/attack/mutations.h"
 #include "tests/io/scratch.h"
+#include "tests/support/sanitizers.h"
 
 namespace flexmorph {
 namespace {
@@ -30,7 +31,7 @@ namespace fs = std::filesystem;
 
 constexpr double kOwn = 1;  // processor time a run may take before it is asked to end [s]
 // ... and that its step or iteration may take then: a second, and what a busy machine adds.
-constexpr double kMore = 2;
+constexpr double kMore = testing::kSanitized ? 100 : 2;
 constexpr double kMemory = 4e9;  // address space [bytes]
 
 /// A shipped case, made small.
@@ -91,7 +92,7 @@ std::string nudged(std::string text, testing::Mutations& random) {
 [[noreturn]] void run_and_exit(const std::string& file, const std::string& folder) {
   const rlimit none{0, 0}, memory{static_cast<rlim_t>(kMemory), static_cast<rlim_t>(kMemory)};
   setrlimit(RLIMIT_CORE, &none);
-  setrlimit(RLIMIT_AS, &memory);
+  if (!testing::kSanitized) setrlimit(RLIMIT_AS, &memory);
   if (!std::freopen("/dev/null", "w", stdout)) _exit(126);
   const std::string words = fs::path(folder).parent_path() / "words";
   if (!std::freopen(words.c_str(), "w", stderr)) _exit(126);

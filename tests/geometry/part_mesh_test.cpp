@@ -117,6 +117,29 @@ TEST(PartMesh, LinesAreSides) {
 }
 
 // Ends of a line along a slanted border are nodes there.
+// Places of loads along a moving border begin where others end, but for the last bit: refinement
+// went on without end between such points.
+TEST(PartMesh, LinesThatAgreeUpToRoundOffAreOne) {
+  const double x = 0.37209595141998519, upper = 0.05;
+  const std::vector<Region> plate = {{rectangle(0, -0.05, x, upper), {}}};
+  std::vector<Segment> lines = {{{0.2, -0.06}, {0.2, 0.06}}};
+  for (int k = 0; k < 19; ++k)
+    lines.push_back({{x, -upper + 0.005 * k}, {x, 0.005 * (k + 2) - upper + (k % 2) * 7e-18}});
+  for (int k = 0; k < 9; ++k) {
+    const double y = -0.04 + 0.01 * k;
+    lines.push_back({{0.1 + 1e-17 * k, y}, {0.3, y}});
+  }
+  const PartMesh mesh = mesh_of(plate, 0.02, lines);
+  EXPECT_NEAR(mesh.area(), x * 2 * upper, 1e-15);
+  EXPECT_GT(smallest_angle(mesh), 20.7);
+  double shortest = 1;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto [a, b, c] = mesh.corners(t);
+    shortest = std::min({shortest, (b - a).norm(), (c - b).norm(), (a - c).norm()});
+  }
+  EXPECT_GT(shortest, 1e-4);
+}
+
 TEST(PartMesh, EndsOnASlantedBorderAreNodes) {
   const std::vector<Region> triangle = {{{{0, 0}, {1, 0}, {0, 0.7}}, {}}};
   const auto on = [](double t) { return Vec2(1 - t, 0.7 * t); };
