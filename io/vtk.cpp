@@ -132,6 +132,26 @@ void write_quad_mesh(const std::string& path, const QuadMesh& mesh,
   write_xml<vtkXMLUnstructuredGridWriter>(path, grid.Get());
 }
 
+void write_part_mesh(const std::string& path, const PartMesh& mesh,
+                     std::span<const Field> cell_fields, std::span<const Field> point_fields) {
+  const int n = static_cast<int>(mesh.points.size());
+  const auto points = float_points(n);
+  for (int k = 0; k < n; ++k) points->SetPoint(k, mesh.point(k).x(), mesh.point(k).y(), 0);
+  vtkNew<vtkCellArray> cells;
+  cells->Use32BitStorage();
+  for (const std::array<int, 6>& t : mesh.triangles) {
+    const std::array<vtkIdType, 6> nodes{t[0], t[1], t[2], t[3], t[4], t[5]};
+    cells->InsertNextCell(6, nodes.data());
+  }
+  vtkNew<vtkUnstructuredGrid> grid;
+  grid->SetPoints(points);
+  grid->SetCells(VTK_QUADRATIC_TRIANGLE, cells);
+  add_fields(grid->GetCellData(), cell_fields, static_cast<int>(mesh.triangles.size()), path,
+             same_place);
+  add_fields(grid->GetPointData(), point_fields, n, path, same_place);
+  write_xml<vtkXMLUnstructuredGridWriter>(path, grid.Get());
+}
+
 void write_outlines(const std::string& path, std::span<const std::vector<Vec2>> outlines,
                     std::span<const Field> cell_fields) {
   size_t n = 0;

@@ -7,6 +7,7 @@
 
 #include "geometry/component.h"
 #include "geometry/grid.h"
+#include "geometry/part_mesh.h"
 
 /// Files for ParaView: XML with base64 data inline, zlib level 1, Float32. The same input gives the
 /// same bytes. Every file appears under its name only when it is complete.
@@ -35,6 +36,10 @@ struct QuadMesh {
 
 /// Unstructured grid (.vtu).
 void write_quad_mesh(const std::string& path, const QuadMesh& mesh,
+                     std::span<const Field> cell_fields, std::span<const Field> point_fields);
+
+/// Six-node triangles of a part (.vtu).
+void write_part_mesh(const std::string& path, const PartMesh& mesh,
                      std::span<const Field> cell_fields, std::span<const Field> point_fields);
 
 /// Closed lines (.vtp), one cell each; no vertex repeated in the input.

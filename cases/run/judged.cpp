@@ -3,12 +3,30 @@
 #include <cmath>
 
 #include "cases/build/judged_loads.h"
+#include "fem/triangles/t6.h"
 #include "geometry/cpu_time.h"
 #include "io/files.h"
 #include "io/mesh_exports.h"
 
 namespace flexmorph::cases {
 namespace {
+
+/// Displacement and stress of the first load that is carried.
+void write_fields(const std::string& path, const judge::Judged& j) {
+  const auto n = j.mesh.points.size();
+  std::vector<double> mises(n);
+  for (std::size_t k = 0; k < n; ++k)
+    mises[k] = fem::von_mises(j.stress.col(static_cast<Eigen::Index>(k)));
+  std::vector<double> piece(j.mesh.piece.begin(), j.mesh.piece.end());
+  const auto view = [](const auto& values) {
+    return std::span<const double>(values.data(), static_cast<std::size_t>(values.size()));
+  };
+  const io::Field cells[] = {{"piece", piece}};
+  const io::Field points[] = {{"displacement", view(j.displacement), 2},
+                              {"von_mises", mises},
+                              {"stress_xx_yy_xy", view(j.stress), 3}};
+  io::write_part_mesh(path, j.mesh, cells, points);
+}
 
 /// The last mesh of the judge with what it carries.
 void write_meshes(const Scene& scene, const mmc::BodyProblem& problem,
@@ -29,6 +47,7 @@ void write_meshes(const Scene& scene, const mmc::BodyProblem& problem,
   }
   if (!model.loads.empty()) io::write_inp(folder.file(stem + ".inp"), model);
   io::write_msh(folder.file(stem + ".msh"), j.mesh);
+  if (scene.output.vtk && j.displacement.size() > 0) write_fields(folder.file(stem + ".vtu"), j);
   io::write_geo(folder.file(stem + ".geo"), regions, problem.grid.dx());
 }
 

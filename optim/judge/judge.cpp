@@ -42,6 +42,7 @@ struct Look {
   int largest_row = -1;
   int worst_row = 0;
   MatrixXd stress;             // of the worst row (3 x n_nodes)
+  VectorXd displacement;       // likewise (2 n_nodes)
   LargestStress worst_stress;  // likewise
 };
 
@@ -151,6 +152,14 @@ LargestStress Judge::largest_of(const LoadedMesh& mesh, int row, const MatrixXd&
   return out;
 }
 
+/// Of all nodes, from the unknowns.
+VectorXd displacement_of(LoadedMesh& mesh, const VectorXd& unknowns) {
+  VectorXd out = VectorXd::Zero(2 * static_cast<Eigen::Index>(mesh.plate().mesh().points.size()));
+  for (int k = 0; k < out.size(); ++k)
+    if (const int row = mesh.plate().row(k / 2, k % 2); row >= 0) out[k] = unknowns[row];
+  return out;
+}
+
 Look Judge::look(LoadedMesh& mesh) const {
   mesh.plate().factorize();
   MatrixXd u = mesh.forces();
@@ -191,6 +200,8 @@ Look Judge::look(LoadedMesh& mesh) const {
     out.compliance = out.compliances[out.worst_row];
     out.error = out.errors[out.worst_row];
   }
+  out.displacement = displacement_of(mesh, u.row(out.worst_row));
+  if (given.size() > 0) out.displacement += given.row(out.worst_row).transpose();
   out.worst_stress = largest_of(mesh, out.worst_row, out.stress, counts);
   if (!std::isfinite(out.compliance) || !std::isfinite(out.error))
     throw Error::numerical("judge: the compliance is not finite");
@@ -214,6 +225,7 @@ void Judge::keep(const LoadedMesh& mesh, Look& now, double error, int meshes) {
   out_.meshes = meshes;
   out_.triangles_left_out = mesh.left_out();
   out_.stress = std::move(now.stress);
+  out_.displacement = std::move(now.displacement);
   out_.carried_stress = now.worst_stress;
   out_.carried.clear();
   const bool clamped = std::any_of(loads_.loads.begin(), loads_.loads.end(),

@@ -54,6 +54,7 @@ struct Judged {
   std::vector<signed char> triangles_left_out;
   MatrixXd stress;  ///< averaged at nodes, of the first load of `carried` (3 x n_nodes): σ₁₁, σ₂₂,
                     ///< σ₁₂ [Pa]
+  VectorXd displacement;  ///< of nodes under that load (2 n_nodes) [m]; of what is left out: 0
   LargestStress carried_stress;      ///< of that load
   std::vector<CarriedLoad> carried;  ///< all loads; where they have clamps the worst one
   double seconds = 0;                ///< CPU

@@ -2,6 +2,11 @@
 // finite-element program, on the files that it exports.
 
 #include <gtest/gtest.h>
+#include <vtkDataArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLUnstructuredGridReader.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -18,7 +23,7 @@ namespace {
 /// A run of few iterations with its judge's verdict.
 nlohmann::json judged(const Scratch& scratch, const std::string& name, const std::string& folder,
                       Words changes) {
-  changes.insert(changes.end(), {"output.vtk=false", "output.plots=false"});
+  changes.insert(changes.end(), {"output.design_every=0", "output.plots=false"});
   const Ended ended = run(scratch, name, folder, changes);
   EXPECT_TRUE(ended.code == 0 || ended.code == 5) << ended.err;
   return nlohmann::json::parse(contents_of(folder + "/run.json"))["results"][0]["body_fitted"];
@@ -87,6 +92,33 @@ double von_mises(const std::vector<double>& s) {
       3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
 }
 
+/// design.vtu against the first step: displacements everywhere, relative to the largest one.
+void expect_fields(const std::string& path, const Input& input, const Values& moved) {
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  reader->SetFileName(path.c_str());
+  reader->Update();
+  vtkUnstructuredGrid* grid = reader->GetOutput();
+  ASSERT_GT(grid->GetNumberOfCells(), 0);
+  EXPECT_EQ(grid->GetCellType(0), VTK_QUADRATIC_TRIANGLE);
+  vtkDataArray* displacement = grid->GetPointData()->GetArray("displacement");
+  double largest = 0, difference = 0;
+  int n = 0;
+  for (const auto& [node, at] : input.nodes) {
+    if (!moved.contains(node) || node > grid->GetNumberOfPoints()) continue;
+    const double* place = grid->GetPoint(node - 1);
+    ASSERT_NEAR(place[0], at.first, 1e-6);
+    ASSERT_NEAR(place[1], at.second, 1e-6);
+    for (int c = 0; c < 2; ++c) {
+      const double value = moved.at(node)[static_cast<std::size_t>(c)];
+      largest = std::max(largest, std::abs(value));
+      difference = std::max(difference, std::abs(value - displacement->GetComponent(node - 1, c)));
+    }
+    ++n;
+  }
+  EXPECT_GT(n, 100);
+  EXPECT_LT(difference, 5e-3 * largest);
+}
+
 /// Runs CalculiX on design.inp and compares.
 /// @param thickness  of the plate  @param worst  is the compliance that of the worst load, or the
 /// sum?
@@ -111,6 +143,7 @@ void expect_calculix_agrees(const std::string& folder, const nlohmann::json& fou
   }
   const auto expected = found["compliance"].get<double>();
   EXPECT_NEAR(worst ? largest : sum, expected, 0.005 * expected);
+  expect_fields(folder + "/design.vtu", input, moved[0]);
   // The largest stress of the first step, where the judge says it is.
   const nlohmann::json& exported = found["exported"];
   const double x = exported["largest_stress_at"][0], y = exported["largest_stress_at"][1];
