@@ -1,5 +1,6 @@
 #include "cases/run/judged.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "cases/build/judged_loads.h"
@@ -51,7 +52,50 @@ void write_meshes(const Scene& scene, const mmc::BodyProblem& problem,
   io::write_geo(folder.file(stem + ".geo"), regions, problem.grid.dx());
 }
 
+/// Round-off and the outline's own tolerance: not below by more than 1 %.
+constexpr double kWithin = 0.99;
+
+void find_narrow(const mmc::BodyProblem& problem, std::span<const Region> regions,
+                 JudgedBody& out) {
+  out.cell = std::min(problem.grid.dx(), problem.grid.dy());
+  out.thickness = 2 * problem.stages.back().min_half_thickness;
+  // Discs side by side are one place: the narrowest stands for them.
+  for (const NarrowPlace& p :
+       mmc::narrow_places_of(problem, regions, kWithin * std::max(out.cell, out.thickness))) {
+    const double wanted = p.solid ? out.thickness : out.cell;
+    const bool known = std::any_of(out.narrow.begin(), out.narrow.end(), [&](const NarrowPlace& q) {
+      return q.solid == p.solid && (q.center - p.center).norm() < 2 * wanted;
+    });
+    if (!known && p.width < kWithin * wanted) out.narrow.push_back(p);
+  }
+}
+
 }  // namespace
+
+std::vector<std::string> narrow_words(const JudgedBody& judged) {
+  constexpr int kNamed = 4;
+  std::vector<std::string> out;
+  for (const bool solid : {true, false}) {
+    std::string places;
+    int n = 0;
+    for (const NarrowPlace& p : judged.narrow) {
+      if (p.solid != solid || ++n > kNamed) continue;
+      places += (n == 1 ? ": " : ", ") + io::to_text(p.width, 3) + " m at (" +
+                io::to_text(p.center.x(), 4) + ", " + io::to_text(p.center.y(), 4) + ")";
+    }
+    if (n == 0) continue;
+    const std::string which = n == 1 ? "one " : std::to_string(n) + " ";
+    const std::string what =
+        solid ? (n == 1 ? "place is" : "places are") +
+                    std::string(" narrower than twice design.min_thickness, ") +
+                    io::to_text(judged.thickness, 3)
+              : (n == 1 ? "gap is" : "gaps are") + std::string(" narrower than a cell, ") +
+                    io::to_text(judged.cell, 3);
+    out.push_back("body '" + judged.body + "', its outline: " + which + what + " m" + places +
+                  (n > kNamed ? ", ..." : ""));
+  }
+  return out;
+}
 
 JudgedBody judge_body(const Scene& scene, const mmc::BodyProblem& problem,
                       const fem::EslSets* loads, RunFolder& folder) {
@@ -65,6 +109,7 @@ JudgedBody judge_body(const Scene& scene, const mmc::BodyProblem& problem,
         loads != nullptr ? mmc::loads_by_position(problem, *loads) : judged_loads(scene, problem);
     const std::vector<Region> regions = mmc::exported_regions(problem);
     const Grid& g = problem.grid;
+    find_narrow(problem, regions, out);
     out.volume = area(regions) / (mmc::plate_of(problem).n_domain_cells() * g.dx() * g.dy());
     out.verdict = mmc::judge_design(problem, regions, by_position);
     write_meshes(scene, problem, regions, *out.verdict, folder);

@@ -13,10 +13,16 @@ namespace flexmorph::cases {
 struct JudgedBody {
   std::string body;
   std::optional<judge::Judged> verdict;
-  std::string why_not;  ///< where there is no verdict
-  double volume = 0;    ///< part of the domain, of the outline
-  double seconds = 0;   ///< CPU seconds, files included
+  std::string why_not;              ///< where there is no verdict
+  double volume = 0;                ///< part of the domain, of the outline
+  double seconds = 0;               ///< CPU seconds, files included
+  double cell = 0, thickness = 0;   ///< smallest gap and width that a part should have [m]
+  std::vector<NarrowPlace> narrow;  ///< what is below, of the exported outline, narrowest first
 };
+
+/// "body 'beam': 3 places of the exported outline are narrower than ...: 0.0014 m at (0.2, 0.1),
+/// ..." of its material and of its gaps; none where there are none.
+std::vector<std::string> narrow_words(const JudgedBody& judged);
 
 /// Judges the design of a problem and writes design.inp, design.msh and design.geo. A judge that
 /// fails says why; the run goes on.

@@ -104,7 +104,10 @@ void add_designs(const RunReport& report, Warnings& out) {
         add_limits(p, o, out);
         add_worse(p, o, out);
       }
-  for (const JudgedBody& judged : report.judged) add_judged(judged, out);
+  for (const JudgedBody& judged : report.judged) {
+    add_judged(judged, out);
+    for (std::string& words : narrow_words(judged)) out.push_back({std::move(words)});
+  }
 }
 
 /// Of bodies whose temperature jumps on the way; nothing where none does.

@@ -164,7 +164,30 @@ bool has_calculix() { return std::system("command -v ccx > /dev/null 2>&1") == 0
 struct Plate {
   const char* name;
   bool worst;
+  double cell, thickness;  // smallest gap and width that it should have [m]
 };
+
+/// What lies below them is said, the narrowest place first, as the medial axis of the final design
+/// has it (`min_feature`, `min_gap`; another tolerance of outlines, within a fiftieth of a cell).
+void expect_narrow_places(const nlohmann::json& run, const Plate& plate) {
+  const nlohmann::json& result = run["results"][0];
+  for (const bool solid : {true, false}) {
+    const nlohmann::json& smallest = result[solid ? "min_feature" : "min_gap"];
+    const double width = smallest.is_number() ? smallest.get<double>() : INFINITY;
+    const std::string words =
+        solid ? " narrower than twice design.min_thickness, " : " narrower than a cell, ";
+    const double wanted = solid ? plate.thickness : plate.cell;
+    double said = INFINITY;
+    for (const std::string warning : run["warnings"])
+      if (const std::size_t at = warning.find(words); at != std::string::npos)
+        said = std::stod(warning.substr(warning.find(": ", at) + 2));
+    if (width < 0.95 * wanted) {
+      EXPECT_NEAR(said, width, 0.02 * plate.cell) << run["warnings"];
+    } else if (width >= wanted) {
+      EXPECT_EQ(said, INFINITY) << run["warnings"];
+    }
+  }
+}
 
 class ExportedPlates : public ::testing::TestWithParam<Plate> {};
 
@@ -178,11 +201,14 @@ TEST_P(ExportedPlates, AreWhatCalculixFinds) {
   EXPECT_LE(found["error"].get<double>(), 0.005);
   EXPECT_GT(found["volume"].get<double>(), 0.2);
   expect_calculix_agrees(folder, found, 1, GetParam().worst);
+  expect_narrow_places(nlohmann::json::parse(contents_of(folder + "/run.json")), GetParam());
 }
 
 INSTANTIATE_TEST_SUITE_P(Shipped, ExportedPlates,
-                         ::testing::Values(Plate{"short_beam", false}, Plate{"mbb", false},
-                                           Plate{"l_bracket", false}, Plate{"bridge", true}),
+                         ::testing::Values(Plate{"short_beam", false, 0.025, 0.05},
+                                           Plate{"mbb", false, 0.025, 0.05},
+                                           Plate{"l_bracket", false, 0.0125, 0.03},
+                                           Plate{"bridge", true, 0.025, 0.05}),
                          [](const auto& each) { return std::string(each.param.name); });
 
 // The worst load of a growing plate: what is in the hub is held, inertia is there as nodal forces.
