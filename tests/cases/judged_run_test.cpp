@@ -167,6 +167,8 @@ struct Plate {
   double cell, thickness;  // smallest gap and width that it should have [m]
 };
 
+void PrintTo(const Plate& plate, std::ostream* out) { *out << plate.name; }
+
 /// What lies below them is said, the narrowest place first, as the medial axis of the final design
 /// has it (`min_feature`, `min_gap`; another tolerance of outlines, within a fiftieth of a cell).
 void expect_narrow_places(const nlohmann::json& run, const Plate& plate) {
