@@ -100,6 +100,7 @@ void GeneralizedAlpha::set_end_alpha(const State& x) {
 }
 
 double GeneralizedAlpha::first_step(const State& x, double allowed, double longest) {
+  set_scales();
   // Short against the motion, long against round-off: displacements of 1e-4 of the model.
   const double speed = displacement(x.v), pull = displacement(x.a);
   double s = 1e-3 * longest;

@@ -59,6 +59,8 @@ class StepSolver : public Integrator {
   /// Consistent q̈ and λ at x; the scheme does not start anew.
   void solve_accelerations(State& x);
 
+  /// Of the model as it is now: displacement() and size() stand on them. Steps do so themselves.
+  void set_scales();
   Workspace& model() { return model_; }
   /// Largest displacement that a change of the unknowns means [m].
   double displacement(const VectorXd& dq) const {
@@ -78,7 +80,6 @@ class StepSolver : public Integrator {
   bool finish_sound(State& x);
   [[noreturn]] void give_up(const State& x, double h, int failures) const;
   void solve_mass(const State& x, const VectorXd& force, const VectorXd& constraint);
-  void set_scales();
   void factorize(double miss);  ///< of kkt_; see UnsymmetricSolver
 
   Workspace& model_;

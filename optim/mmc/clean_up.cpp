@@ -86,7 +86,7 @@ class Cleaner {
         while (k < pieces.size() && !contains(pieces[k], inside)) ++k;
         return k;
       };
-      const auto [one, other] = std::minmax(piece_at(p.a), piece_at(p.b));
+      const auto [one, other] = std::minmax({piece_at(p.a), piece_at(p.b)});
       return one == other || !parted.insert({one, other}).second;
     });
     return out;
