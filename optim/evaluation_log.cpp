@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <boost/crc.hpp>
 #include <cerrno>
 #include <cstring>
@@ -45,7 +46,7 @@ class Reader {
   explicit Reader(const std::vector<char>& data) : data_(data) {}
   bool take(void* out, size_t bytes) {
     if (bytes > data_.size() - at_) return false;
-    std::memcpy(out, data_.data() + at_, bytes);
+    std::copy_n(data_.data() + at_, bytes, static_cast<char*>(out));
     at_ += bytes;
     return true;
   }
@@ -103,7 +104,8 @@ bool read_whole(int file, void* out, size_t bytes, std::int64_t at) {
 /// Bit for bit: also where it is no number.
 bool same(const VectorXd& a, const VectorXd& b) {
   return a.size() == b.size() &&
-         std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<size_t>(a.size())) == 0;
+         (a.size() == 0 ||
+          std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<size_t>(a.size())) == 0);
 }
 
 bool is_finite(const Response& r) {

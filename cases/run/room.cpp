@@ -16,7 +16,6 @@ namespace flexmorph::cases {
 namespace {
 
 constexpr double kAny = std::numeric_limits<double>::infinity();
-constexpr double kMostSteps = std::numeric_limits<int>::max();
 constexpr double kNumber = 8;
 
 // Measured, see room.h: the program with its libraries and a report; a number of a table; of a

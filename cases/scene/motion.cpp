@@ -89,6 +89,10 @@ void read_step(const Table& t, TimeSpan& time) {
     t.fail(kTolerance, "only step = \"adaptive\" and \"minimal_coordinates\" have one");
   time.step = t.number(kStep, time.step);
   if (time.step > time.end) t.fail(kStep, "a time step is no longer than time.end [s]");
+  // Here, and not with all that is counted: nobody looks at drives over such a time.
+  if (const double steps = time.end / time.step; steps > kMostSteps)
+    t.fail(t.has(kStep) ? kStep : kEnd,
+           io::to_text(steps, 3) + " steps; the most are " + io::to_text(kMostSteps, 3));
 }
 
 TimeSpan read_time(const Table& t) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -14,6 +15,9 @@ enum class Start {
   rigid,         ///< the same velocity, unstrained: sets off axial ringing
   hub_at_rest    ///< smooth spin-up of the hub from rest
 };
+
+/// Steps of a motion or a path are counted in an int.
+constexpr double kMostSteps = std::numeric_limits<int>::max();
 
 struct TimeSpan {
   double end = 1;      ///< [s], from 0

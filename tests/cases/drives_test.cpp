@@ -148,6 +148,7 @@ TEST_F(Drives, AreRefusedWithTheirPlace) {
       {{"drive.out.formula=\"0.45 + t*\""}, ": character 10: unexpected token, got: EOF"},
       {{"drive.out.formula=\"0.45/(1 - t)\""}, "its value at t = 1 s is infinite"},
       {{"drive.out.formula=\"0.45 + sqrt(t)\""}, "its rate at t = 0 s is infinite"},
+      {{"time.end=1e15"}, "1e+18 steps; the most are 2.15e+09"},
       {{"drive.out.formula=3"}, "a formula of the time t is a text in quotes"},
       {{"drive.out.table=[[0, 0]]"}, "a drive has one of `formula`, `table`, `csv` and `from`"},
       {{"drive.turn.table=[[0, 0], [0.5, 1], [1, 2]]"}, "a table has at least 4 points, not 3"},

@@ -29,7 +29,9 @@ TEST(GoalRun, TheLightestPlateThatIsStiffEnough) {
                                       {"design.minimize=mass", "design.max_compliance=80.0",
                                        "optimizer.max_iterations=60", "domain.density=1000.0"});
   const nlohmann::json& body = run["results"][0];
-  EXPECT_EQ(run["warnings"].size(), 0u) << run["warnings"];
+  // Of nothing but the widths of an outline on ten cells.
+  for (const std::string warning : run["warnings"])
+    EXPECT_NE(warning.find("'beam', its outline: "), std::string::npos) << warning;
   EXPECT_LE(body["compliance"].get<double>(), 80 * (1 + 1e-3));
   EXPECT_NEAR(body["mass"].get<double>(), 2000 * body["volume"].get<double>(), 1e-9);
   EXPECT_NEAR(body["sharp_mass"].get<double>(), 2000 * body["sharp_volume"].get<double>(), 1e-9);
