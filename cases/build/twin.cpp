@@ -264,6 +264,10 @@ int undriven_freedoms(const Scene& scene) {
 
 const fem::State& TwinMotion::at(double t) { return kinematics_ ? kinematics_->at(t) : start_; }
 
+bool TwinMotion::follow(double t, int most_steps) {
+  return !kinematics_ || kinematics_->follow(t, most_steps);
+}
+
 double TwinMotion::start_speed() const {
   return twin_.model().scales().cwiseProduct(start_.v).lpNorm<Eigen::Infinity>();
 }
@@ -281,8 +285,8 @@ void check_mechanism(const Scene& scene) {
   if (motion.degrees_of_freedom() > 0 || motion.is_indeterminate()) return;
   // Of drives that turn ten thousand times the first turns are enough for a look.
   constexpr int kMostSteps = 4000;
-  for (int k = 1; k <= kLooks && motion.n_steps() < kMostSteps; ++k)
-    motion.at(scene.time.end * k / kLooks);
+  for (int k = 1; k <= kLooks && motion.follow(scene.time.end * k / kLooks, kMostSteps); ++k) {
+  }
 }
 
 namespace {

@@ -67,8 +67,8 @@ class TwinMotion {
   /// At time t where drives determine it all; else at the start, whatever t.
   /// @throws Error (numerical) where that cannot be reached, with the time and the joints.
   const fem::State& at(double t);
-  /// Steps on the way so far.
-  int n_steps() const { return kinematics_ ? kinematics_->n_steps() : 0; }
+  /// As at(), but goes no further once so many steps were taken in all. @return is it there?
+  bool follow(double t, int most_steps);
 
   /// With freedoms left: largest speed of the bodies at the start [m/s], and their largest
   /// acceleration under weight, springs, drives and point masses [m/s²] (turning ones times a

@@ -137,14 +137,20 @@ void Kinematics::give_up(double refused) {
 }
 
 const State& Kinematics::at(double t) {
+  if (!follow(t, settings_.most_steps))
+    throw Error::numerical("kinematics: at t = " + time_text(x_.t) + " s after " +
+                           std::to_string(settings_.most_steps) +
+                           " steps: what drives it is too fast to be followed");
+  return x_;
+}
+
+bool Kinematics::follow(double t, int most_steps) {
   if (!std::isfinite(t)) throw Error::input("kinematics: the time is not a finite number");
   const double direction = t >= x_.t ? 1 : -1;
   double h = settings_.largest_step;
   while (x_.t != t) {
-    if (++n_steps_ > settings_.most_steps)
-      throw Error::numerical("kinematics: at t = " + time_text(x_.t) + " s after " +
-                             std::to_string(settings_.most_steps) +
-                             " steps: what drives it is too fast to be followed");
+    if (n_steps_ >= most_steps) return false;
+    ++n_steps_;
     const bool last = h >= std::abs(t - x_.t);
     const double step = last ? std::abs(t - x_.t) : h;
     if (step_to(last ? t : x_.t + direction * step)) {
@@ -154,7 +160,7 @@ const State& Kinematics::at(double t) {
       h = 0.5 * step;
     }
   }
-  return x_;
+  return true;
 }
 
 }  // namespace flexmorph::fem

@@ -38,6 +38,8 @@ class Kinematics {
   /// @throws Error (numerical) "path cannot be reached at t = ..." with the joints that hold it up;
   /// the time is right to smallest_step, and the last state before it is kept.
   const State& at(double t);
+  /// As at(), but goes no further once so many steps were tried in all. @return is it there?
+  bool follow(double t, int most_steps);
 
   /// The last state found.
   const State& state() const { return x_; }

@@ -101,7 +101,9 @@ TEST(Kinematics, FastDrivesAreGivenUp) {
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("after 50 steps"), std::string::npos) << error.what();
   }
-  EXPECT_EQ(motion.n_steps(), 51);
+  EXPECT_EQ(motion.n_steps(), 50);
+  EXPECT_FALSE(motion.follow(1, 60));
+  EXPECT_EQ(motion.n_steps(), 60);
   EXPECT_GT(motion.state().t, 0);
 }
 
