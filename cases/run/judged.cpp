@@ -98,7 +98,8 @@ std::vector<std::string> narrow_words(const JudgedBody& judged) {
 }
 
 JudgedBody judge_body(const Scene& scene, const mmc::BodyProblem& problem,
-                      const fem::EslSets* loads, RunFolder& folder) {
+                      const fem::EslSets* loads, const std::function<bool()>& go_on,
+                      RunFolder& folder) {
   JudgedBody out;
   out.body = problem.body;
   if (loads != nullptr) out.why_not = mmc::cannot_judge(problem, *loads);
@@ -111,7 +112,7 @@ JudgedBody judge_body(const Scene& scene, const mmc::BodyProblem& problem,
     const Grid& g = problem.grid;
     find_narrow(problem, regions, out);
     out.volume = area(regions) / (mmc::plate_of(problem).n_domain_cells() * g.dx() * g.dy());
-    out.verdict = mmc::judge_design(problem, regions, by_position);
+    out.verdict = mmc::judge_design(problem, regions, by_position, go_on);
     write_meshes(scene, problem, regions, *out.verdict, folder);
   } catch (const Error& error) {
     out.verdict.reset();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -27,8 +28,10 @@ std::vector<std::string> narrow_words(const JudgedBody& judged);
 /// Judges the design of a problem and writes design.inp, design.msh and design.geo. A judge that
 /// fails says why; the run goes on.
 /// @param loads  of the motion; null: those of a plate at rest
+/// @param go_on  asked on the way: a verdict of coarser meshes says how far it got
 JudgedBody judge_body(const Scene& scene, const mmc::BodyProblem& problem,
-                      const fem::EslSets* loads, RunFolder& folder);
+                      const fem::EslSets* loads, const std::function<bool()>& go_on,
+                      RunFolder& folder);
 
 /// "beam: body-fitted compliance 75.1 (error below 0.3 %), by its cells 74.4: 0.9 % less; ..."
 std::string judged_words(const JudgedBody& judged, double sharp_compliance);

@@ -49,7 +49,8 @@ void judge_outlines(const Scene& scene, std::span<const fem::EslSets> loads, Run
   progress.begin("judge");
   for (size_t i = 0; i < report.outcomes.size(); ++i) {
     report.judged.push_back(
-        judge_body(scene, report.problems[i], loads.empty() ? nullptr : &loads[i], folder));
+        judge_body(scene, report.problems[i], loads.empty() ? nullptr : &loads[i], go_on, folder));
+    if (interrupted) throw Interrupted();
     progress.say(judged_words(report.judged.back(), report.outcomes[i].sharp.compliance));
   }
 }

@@ -82,6 +82,7 @@ class Judge {
       before = n;
       out_.converged = k > 0 && out_.error <= settings_.tolerance;
       if (out_.converged || n > static_cast<std::size_t>(settings_.most_triangles)) break;
+      if (settings_.go_on && !settings_.go_on()) break;
       refine(now, error);
     }
     out_.seconds = cpu_seconds() - start;

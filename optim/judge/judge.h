@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,6 +20,7 @@ struct Settings {
   double reach = 0;
   int most_triangles = 400000;  ///< no mesh is refined beyond it
   int most_meshes = 9;
+  std::function<bool()> go_on = {};  ///< asked after each mesh; none: yes
 };
 
 /// A load on the last mesh, as another program may read it.

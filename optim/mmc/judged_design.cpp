@@ -50,11 +50,12 @@ std::vector<Region> exported_regions(const BodyProblem& problem) {
 }
 
 judge::Judged judge_design(const BodyProblem& problem, std::span<const Region> regions,
-                           const judge::Loads& loads) {
+                           const judge::Loads& loads, const std::function<bool()>& go_on) {
   constexpr double kFirst = 2;  // cells: as wide as the thinnest bars
   judge::Settings settings;
   settings.size = kFirst * point_reach(problem);
   settings.reach = point_reach(problem);
+  settings.go_on = go_on;
   return judge::judge(regions, problem.section, loads, settings);
 }
 

@@ -26,6 +26,6 @@ std::vector<Region> exported_regions(const BodyProblem& problem);
 /// The design of a problem, as it is exported, under its loads. First triangles are two cells
 /// large.
 judge::Judged judge_design(const BodyProblem& problem, std::span<const Region> regions,
-                           const judge::Loads& loads);
+                           const judge::Loads& loads, const std::function<bool()>& go_on = {});
 
 }  // namespace flexmorph::mmc

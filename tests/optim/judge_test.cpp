@@ -263,6 +263,16 @@ TEST(Judge, IsTheSameBitForBit) {
   EXPECT_EQ(a.largest_stress, b.largest_stress);
 }
 
+TEST(Judge, EndsWhenItIsAskedTo) {
+  int asked = 0;
+  const Settings settings{
+      .tolerance = 1e-5, .size = 0.2, .reach = 0.02, .go_on = [&] { return ++asked < 3; }};
+  const Judged found = judge(kBracket, kUnit, bracket_load(), settings);
+  EXPECT_EQ(found.meshes, 3);
+  EXPECT_FALSE(found.converged);
+  EXPECT_GT(found.compliance, 0);
+}
+
 TEST(Judge, SaysWhatItLacks) {
   EXPECT_THROW(judge(kBeam, kUnit, {}, {.size = 0.5}), Error);
   EXPECT_THROW(judge({}, kUnit, tip_load(), {.size = 0.5}), Error);
