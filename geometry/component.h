@@ -16,7 +16,7 @@ namespace flexmorph {
 /// angle        θ of the axis      [rad]
 /// c1, c2, c3   half-thickness at x = -L, x = +L and x = 0   [m]
 ///
-/// The profile g is the parabola P (26) with x clamped to [-L, L], bounded below by the
+/// The profile g is the parabola P (26), constant well beyond the tips, bounded below by the
 /// minimum half-thickness (see profile()): three bounds on c alone let the parabola undercut
 /// between its supports by up to a quarter.
 struct Component {
@@ -31,21 +31,25 @@ struct Component {
   static Component from_parameters(const double* p);
 };
 
-/// Half-thickness g and its derivatives at one x of the component's frame.
-struct Profile {
-  double g;                     ///< [m]
-  double dg_dx;                 ///< [-], 0 where x is clamped
-  std::array<double, 4> dg_dp;  ///< by L (at fixed x), c1, c2, c3   [-]
+/// Half-thickness g and its derivatives at one x of the component's frame. T is a number, or one
+/// that carries derivatives.
+template <class T>
+struct BasicProfile {
+  T g;                     ///< [m]
+  T dg_dx;                 ///< [-], 0 where x is clamped
+  std::array<T, 4> dg_dp;  ///< by L (at fixed x), c1, c2, c3   [-]
 };
+using Profile = BasicProfile<double>;
 
-/// g(x) of P (26), x clamped to [-L, L], with a C1 lower bound.
+/// g(x) of P (26) with a lower bound, twice continuously differentiable in x and all parameters.
 ///
-///   g < m - d:  m,    |g - m| < d:  m + (g - m + d)² / (4 d),    g > m + d:  g itself
+///   g < m - d:  m,    |g - m| < d:  m + 2 d (t³ - t⁴/2), t = (g - m + d)/(2 d),    else g itself
 ///
 /// m  min_half_thickness > 0   [m]
 /// d  0.1 m: how far around m the bound is rounded
 ///
-/// Outside [-L, L] g is c1 or c2 (bounded), whatever L is: both dg_dx and dg/dL vanish there.
+/// Beyond the tips the parabola goes on to 1.1 L, reached at |x| = 1.2 L; from there on g is
+/// constant, whatever L is.
 Profile profile(const Component& c, double x, double min_half_thickness);
 
 /// Axis-aligned box [m].

@@ -94,9 +94,9 @@ struct Corner {
 /// The outlines: vertices and sides in the order of their coordinates, wherever rings begin.
 class Outlines {
  public:
-  Outlines(std::span<const Region> regions, std::span<const Vec2> domain)
-      : regions_(regions), domain_(domain) {
-    for (const Vec2& p : domain) size_ = std::max(size_, p.cwiseAbs().maxCoeff());
+  Outlines(std::span<const Region> regions, const Region& domain)
+      : regions_(regions), domain_(rings_of(domain)) {
+    for (const Vec2& p : domain.outer) size_ = std::max(size_, p.cwiseAbs().maxCoeff());
     for (const Region& r : regions) {
       add(r.outer);
       for (const auto& hole : r.holes) add(hole);
@@ -119,10 +119,11 @@ class Outlines {
   }
 
   bool on_border(const Vec2& a, const Vec2& b) const {
-    for (size_t i = 0; i < domain_.size(); ++i) {
-      const Vec2 &c = domain_[i], &d = domain_[(i + 1) % domain_.size()];
-      if (near_line(a, c, d) && near_line(b, c, d)) return true;
-    }
+    for (const auto& ring : domain_)
+      for (size_t i = 0; i < ring.size(); ++i) {
+        const Vec2 &c = ring[i], &d = ring[(i + 1) % ring.size()];
+        if (near_line(a, c, d) && near_line(b, c, d)) return true;
+      }
     return false;
   }
   bool on_border(const Vec2& p) const { return on_border(p, p); }
@@ -130,12 +131,13 @@ class Outlines {
   /// Is the point in the domain (counted by crossings)?
   bool within(const Vec2& p) const {
     bool inside = false;
-    for (size_t i = 0; i < domain_.size(); ++i) {
-      const Vec2 &a = domain_[i], &b = domain_[(i + 1) % domain_.size()];
-      if ((a.y() > p.y()) != (b.y() > p.y()) &&
-          p.x() < a.x() + (p.y() - a.y()) * (b.x() - a.x()) / (b.y() - a.y()))
-        inside = !inside;
-    }
+    for (const auto& ring : domain_)
+      for (size_t i = 0; i < ring.size(); ++i) {
+        const Vec2 &a = ring[i], &b = ring[(i + 1) % ring.size()];
+        if ((a.y() > p.y()) != (b.y() > p.y()) &&
+            p.x() < a.x() + (p.y() - a.y()) * (b.x() - a.x()) / (b.y() - a.y()))
+          inside = !inside;
+      }
     return inside;
   }
 
@@ -167,7 +169,7 @@ class Outlines {
   }
 
   std::span<const Region> regions_;
-  std::span<const Vec2> domain_;
+  std::vector<std::vector<Vec2>> domain_;  // rings
   double size_ = 0;
   std::vector<Vec2> points_;
   std::vector<std::pair<size_t, size_t>> sides_;
@@ -390,8 +392,8 @@ class MedialAxis {
 
 }  // namespace
 
-std::vector<NarrowPlace> narrow_places(std::span<const Region> regions,
-                                       std::span<const Vec2> domain, double limit) {
+std::vector<NarrowPlace> narrow_places(std::span<const Region> regions, const Region& domain,
+                                       double limit) {
   const Outlines outlines(regions, domain);
   if (outlines.sides().empty()) return {};
   if (sides_cross(outlines.points(), outlines.sides()))
@@ -399,7 +401,7 @@ std::vector<NarrowPlace> narrow_places(std::span<const Region> regions,
   return MedialAxis<Apart>(outlines, limit).places();
 }
 
-Features smallest_features(std::span<const Region> regions, std::span<const Vec2> domain,
+Features smallest_features(std::span<const Region> regions, const Region& domain,
                            const std::function<bool(const NarrowPlace&)>& counts) {
   const Outlines outlines(regions, domain);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -23,6 +23,14 @@ struct NarrowPlace {
   Vec2 a{0, 0}, b{0, 0};  ///< two contacts
 };
 
+/// Smallest widths of material and of the void between that a design shall have [m]; 0: any.
+struct Widths {
+  double solid = 0, gap = 0;
+  double of(const NarrowPlace& place) const { return place.solid ? solid : gap; }
+  double largest() const { return solid > gap ? solid : gap; }
+  bool any() const { return largest() > 0; }
+};
+
 /// Narrow places of material and void, narrowest first.
 ///
 /// Medial axis of the outlines (CGAL's segment Delaunay graph). Both material and void have necks
@@ -40,15 +48,15 @@ struct NarrowPlace {
 /// @param regions  as unite() returns them
 /// @param domain   what they are clipped to
 /// @param limit    only places narrower than that [m]
-std::vector<NarrowPlace> narrow_places(std::span<const Region> regions,
-                                       std::span<const Vec2> domain, double limit);
+std::vector<NarrowPlace> narrow_places(std::span<const Region> regions, const Region& domain,
+                                       double limit);
 
 /// Smallest widths of material and void; infinite where there are none.
 struct Features {
   double solid, gap;  ///< [m]
 };
 /// @param counts  which places do, if not all; asked of some of them only
-Features smallest_features(std::span<const Region> regions, std::span<const Vec2> domain,
+Features smallest_features(std::span<const Region> regions, const Region& domain,
                            const std::function<bool(const NarrowPlace&)>& counts = {});
 
 /// The same of places that are known: all up to an infinite limit, or some of them.

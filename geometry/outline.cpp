@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -76,12 +77,10 @@ std::vector<Region> unite(std::span<const std::vector<Vec2>> polygons, const Box
   if (!((clip.upper - clip.lower).minCoeff() > 0)) {
     throw Error::input("unite: the box to clip to is empty");
   }
-  const Vec2 &a = clip.lower, &b = clip.upper;
-  return unite(polygons, std::vector<Vec2>{a, {b.x(), a.y()}, b, {a.x(), b.y()}}, {});
+  return unite(polygons, {corners_of(clip), {}}, {});
 }
 
-std::vector<Region> unite(std::span<const std::vector<Vec2>> polygons,
-                          const std::vector<Vec2>& domain,
+std::vector<Region> unite(std::span<const std::vector<Vec2>> polygons, const Region& domain,
                           std::span<const std::vector<Vec2>> voids) {
   std::vector<Polygon> exact;
   exact.reserve(polygons.size());
@@ -90,10 +89,10 @@ std::vector<Region> unite(std::span<const std::vector<Vec2>> polygons,
   }
   CGAL::Polygon_set_2<Exact> set;
   set.join(exact.begin(), exact.end());
-  set.intersection(exact_polygon(domain, polygons.size()));
-  for (std::size_t k = 0; k < voids.size(); ++k) {
-    set.difference(exact_polygon(voids[k], polygons.size() + 1 + k));
-  }
+  std::size_t number = polygons.size();
+  set.intersection(exact_polygon(domain.outer, number++));
+  for (const auto& hole : domain.holes) set.difference(exact_polygon(hole, number++));
+  for (const auto& hole : voids) set.difference(exact_polygon(hole, number++));
 
   std::vector<PolygonWithHoles> pieces;
   set.polygons_with_holes(std::back_inserter(pieces));
@@ -107,6 +106,79 @@ std::vector<Region> unite(std::span<const std::vector<Vec2>> polygons,
     regions.push_back(std::move(region));
   }
   return regions;
+}
+
+std::vector<std::vector<Vec2>> rings_of(const Region& region) {
+  std::vector<std::vector<Vec2>> rings = {region.outer};
+  rings.insert(rings.end(), region.holes.begin(), region.holes.end());
+  return rings;
+}
+
+Region region_of(std::vector<std::vector<Vec2>> rings) {
+  if (rings.empty()) throw Error::input("an outline has one ring or more");
+  const auto larger = [](const auto& a, const auto& b) {
+    return std::abs(signed_area(a)) > std::abs(signed_area(b));
+  };
+  std::stable_sort(rings.begin(), rings.end(), larger);
+  Region out;
+  double left = 2 * std::abs(signed_area(rings[0]));
+  for (auto& ring : rings) {
+    try {
+      exact_polygon(ring, 0);
+    } catch (const Error&) {
+      const Vec2& at = ring.front();
+      throw Error::input("the ring that begins at (" + std::to_string(at.x()) + ", " +
+                         std::to_string(at.y()) + ") m crosses or touches itself");
+    }
+    const double size = signed_area(ring);
+    left -= std::abs(size);
+    const bool outer = out.outer.empty();
+    if ((size > 0) != outer) std::reverse(ring.begin(), ring.end());
+    if (outer) {
+      out.outer = std::move(ring);
+    } else {
+      out.holes.push_back(std::move(ring));
+    }
+  }
+  // Holes that are not within, or in each other, would take another area away.
+  const std::vector<Region> united = unite({&out.outer, 1}, {out.outer, {}}, out.holes);
+  const bool apart = united.size() == 1 && united[0].holes.size() == out.holes.size() &&
+                     std::abs(area(united) - left) <= 1e-9 * area({out.outer, {}});
+  if (!apart)
+    throw Error::input(
+        "an outline is one outer ring with holes in it that keep apart; these rings "
+        "cross, touch or lie elsewhere");
+  return out;
+}
+
+std::vector<Vec2> corners_of(const Box& box) {
+  const Vec2 &a = box.lower, &b = box.upper;
+  return {a, {b.x(), a.y()}, b, {a.x(), b.y()}};
+}
+
+Box bounds_of(std::span<const Vec2> points) {
+  Box box{points.front(), points.front()};
+  for (const Vec2& p : points) {
+    box.lower = box.lower.cwiseMin(p);
+    box.upper = box.upper.cwiseMax(p);
+  }
+  return box;
+}
+
+std::vector<Vec2> circle_within(const Vec2& center, double radius, double tolerance) {
+  if (!(radius > 0 && tolerance > 0))
+    throw Error::input("circle: radius and tolerance are positive");
+  constexpr double kFewest = 8, kMost = 1 << 16;
+  // The middle of a side lies r (1 - cos(π/n)) = 2 r sin²(π/2n) within.
+  const double half = std::asin(std::min(1.0, std::sqrt(0.5 * tolerance / radius)));
+  const int n =
+      static_cast<int>(std::clamp(std::ceil(0.5 * std::numbers::pi / half), kFewest, kMost));
+  std::vector<Vec2> ring;
+  for (int k = 0; k < n; ++k) {
+    const double angle = 2 * std::numbers::pi * k / n;
+    ring.emplace_back(center + radius * Vec2(std::cos(angle), std::sin(angle)));
+  }
+  return ring;
 }
 
 std::vector<Vec2> outline_within(const Component& c, double min_half_thickness, double tolerance) {

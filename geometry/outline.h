@@ -21,10 +21,28 @@ struct Region {
 /// @throws Error(numerical) when a polygon is not simple, has no area or is not finite;
 ///         Error(input) when the box is empty.
 std::vector<Region> unite(std::span<const std::vector<Vec2>> polygons, const Box& clip);
-/// The same, clipped to a simple polygon, with voids taken out.
-std::vector<Region> unite(std::span<const std::vector<Vec2>> polygons,
-                          const std::vector<Vec2>& domain,
+/// The same, clipped to a domain with or without holes, with voids taken out.
+std::vector<Region> unite(std::span<const std::vector<Vec2>> polygons, const Region& domain,
                           std::span<const std::vector<Vec2>> voids);
+
+/// One ring and its holes, in any order and sense.
+/// @throws Error(input) when there is none, a ring crosses itself, or they are not one outer ring
+///         and holes within it that keep apart.
+Region region_of(std::vector<std::vector<Vec2>> rings);
+
+/// All rings of a region, the outer one first.
+std::vector<std::vector<Vec2>> rings_of(const Region& region);
+
+/// Corners of a box, counterclockwise.
+std::vector<Vec2> corners_of(const Box& box);
+
+/// The smallest box that holds points, one or more of them.
+Box bounds_of(std::span<const Vec2> points);
+
+/// A circle as a polygon whose vertices lie on it and whose sides stay within `tolerance` of it
+/// [m], counterclockwise.
+/// @throws Error(input) when radius or tolerance is not positive.
+std::vector<Vec2> circle_within(const Vec2& center, double radius, double tolerance);
 
 /// Outline of a component as a polygon whose vertices lie on it and whose sides stay within
 /// `tolerance` of it [m], counterclockwise.

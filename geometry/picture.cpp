@@ -6,7 +6,6 @@
 #include <string>
 
 #include "geometry/component_frame.h"
-#include "geometry/outline.h"
 
 namespace flexmorph {
 
@@ -53,11 +52,19 @@ class SampleColumn {
     }
   }
 
-  void fill(std::span<const Box> boxes, double X, std::uint8_t value) {
-    for (const Box& box : boxes) {
-      if (X < box.lower.x() || X > box.upper.x()) continue;
-      const IndexRange rows = indices_in({box.lower.y(), box.upper.y()}, y0_, step_, count_);
-      std::fill(covered_.begin() + rows.first, covered_.begin() + rows.end, value);
+  void fill(std::span<const std::vector<Vec2>> polygons, double X, std::uint8_t value) {
+    for (const std::vector<Vec2>& polygon : polygons) {
+      crossings_.clear();
+      for (std::size_t k = 0; k < polygon.size(); ++k) {
+        const Vec2 &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
+        if ((a.x() <= X) == (b.x() <= X)) continue;
+        crossings_.push_back(a.y() + (X - a.x()) * (b.y() - a.y()) / (b.x() - a.x()));
+      }
+      std::sort(crossings_.begin(), crossings_.end());
+      for (std::size_t k = 0; k + 1 < crossings_.size(); k += 2) {
+        const IndexRange rows = indices_in({crossings_[k], crossings_[k + 1]}, y0_, step_, count_);
+        std::fill(covered_.begin() + rows.first, covered_.begin() + rows.end, value);
+      }
     }
   }
 
@@ -75,6 +82,7 @@ class SampleColumn {
   double y0_, step_;
   int count_;
   std::vector<std::uint8_t> covered_;
+  std::vector<double> crossings_;
 };
 
 /// Pieces of material joined over edges, found one by one.
@@ -138,20 +146,30 @@ std::vector<std::vector<int>> ends(const Grid& grid) {
 
 }  // namespace
 
-std::vector<signed char> cells_outside(const Grid& grid, std::span<const Vec2> polygon) {
-  const Region region{{polygon.begin(), polygon.end()}, {}};
-  std::vector<signed char> outside(static_cast<std::size_t>(grid.n_cells()));
+std::vector<int> cells_within(const Grid& grid, const Region& region) {
+  std::vector<int> cells;
+  if (region.outer.empty()) return cells;
+  const Box box = bounds_of(region.outer);
   for (int i = 0; i < grid.nx; ++i) {
     for (int j = 0; j < grid.ny; ++j) {
-      outside[grid.cell(i, j)] = contains(region, grid.cell_center(i, j)) ? 0 : 1;
+      const Vec2 center = grid.cell_center(i, j);
+      const bool near =
+          (center - box.lower).minCoeff() >= 0 && (box.upper - center).minCoeff() >= 0;
+      if (near && contains(region, center)) cells.push_back(grid.cell(i, j));
     }
   }
+  return cells;
+}
+
+std::vector<signed char> cells_outside(const Grid& grid, const Region& domain) {
+  std::vector<signed char> outside(static_cast<std::size_t>(grid.n_cells()), 1);
+  for (const int cell : cells_within(grid, domain)) outside[cell] = 0;
   return outside;
 }
 
 VectorXd area_fractions(const Grid& grid, std::span<const Component> components,
-                        double min_half_thickness, std::span<const Box> solid,
-                        std::span<const Box> empty, int samples) {
+                        double min_half_thickness, std::span<const std::vector<Vec2>> solid,
+                        std::span<const std::vector<Vec2>> empty, int samples) {
   if (samples < 1) {
     throw Error::input("area_fractions: samples = " + std::to_string(samples) +
                        ": at least one to a cell is needed");

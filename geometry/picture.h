@@ -5,18 +5,20 @@
 
 #include "geometry/component.h"
 #include "geometry/grid.h"
+#include "geometry/outline.h"
 
 /// Sharp pictures of a design: what its outlines enclose, cell by cell.
 namespace flexmorph {
 
 /// Sharp picture of a design: area fraction of the true union in every cell.
 ///
-/// Each cell is sampled at `samples` x `samples` midpoints. A sample in a `solid` box is material
-/// whatever else is there; otherwise one in an `empty` box is void whatever the components do.
+/// Each cell is sampled at `samples` x `samples` midpoints. A sample in a `solid` polygon is
+/// material whatever else is there; otherwise one in an `empty` one is void whatever the components
+/// do.
 /// @throws Error(input) when samples < 1.
 VectorXd area_fractions(const Grid& grid, std::span<const Component> components,
-                        double min_half_thickness, std::span<const Box> solid,
-                        std::span<const Box> empty, int samples = 8);
+                        double min_half_thickness, std::span<const std::vector<Vec2>> solid,
+                        std::span<const std::vector<Vec2>> empty, int samples = 8);
 
 /// What hangs together in a sharp picture.
 ///
@@ -32,7 +34,9 @@ struct Connectivity {
 Connectivity connectivity(const Grid& grid, const VectorXd& fractions,
                           std::span<const std::vector<int>> places = {});
 
-/// Cells whose centre lies outside of a simple polygon: 1, the others 0 (n_cells).
-std::vector<signed char> cells_outside(const Grid& grid, std::span<const Vec2> polygon);
+/// Cells whose centre lies in a region or on its boundary, in ascending order.
+std::vector<int> cells_within(const Grid& grid, const Region& region);
+/// Cells whose centre lies outside of a domain, or in its holes: 1, the others 0 (n_cells).
+std::vector<signed char> cells_outside(const Grid& grid, const Region& domain);
 
 }  // namespace flexmorph

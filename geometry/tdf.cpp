@@ -41,12 +41,19 @@ void check(std::span<const Component> components) {
 
 }  // namespace
 
-Heaviside heaviside(double phi, double band, double alpha) {
-  const double t = phi / band;
-  if (t >= 1) return {1, 0};
-  if (t <= -1) return {alpha, 0};
-  const double scale = 0.75 * (1 - alpha);
-  return {scale * (t - t * t * t / 3) + 0.5 * (1 + alpha), scale * (1 - t * t) / band};
+Heaviside heaviside(double phi, const TdfSettings& settings) {
+  const double band = settings.band, alpha = settings.alpha, t = phi / band;
+  if (t >= 1) return {1, 0, 0};
+  if (t <= -1) return {alpha, 0, 0};
+  const double t2 = t * t, middle = 0.5 * (1 + alpha);
+  if (settings.kind == TdfSettings::Kind::paper) {
+    const double scale = 0.75 * (1 - alpha);
+    return {scale * (t - t * t2 / 3) + middle, scale * (1 - t2) / band,
+            -2 * scale * t / (band * band)};
+  }
+  const double scale = (1 - alpha) / 16;
+  return {scale * t * (15 - t2 * (10 - 3 * t2)) + middle, 15 * scale * (1 - t2) * (1 - t2) / band,
+          -60 * scale * t * (1 - t2) / (band * band)};
 }
 
 double component_tdf(const Component& c, const TdfSettings& s, double X, double Y,
@@ -54,8 +61,9 @@ double component_tdf(const Component& c, const TdfSettings& s, double X, double 
   assert(c.half_length > 0 && s.min_half_thickness > 0);
   const ComponentFrame frame(c, s.min_half_thickness);
   const double x = frame.x(X, Y), y = frame.y(X, Y);
-  const Partials d = s.kind == TdfSettings::Kind::paper ? paper_partials(frame, x, y)
-                                                        : distance_partials(frame, x, y);
+  const Partials<double> d = s.kind == TdfSettings::Kind::paper
+                                 ? paper_partials(frame.shape(), x, y)
+                                 : distance_partials(frame.shape(), x, y);
   if (d_parameters != nullptr) {
     d_parameters[0] = frame.sine() * d.y - frame.cosine() * d.x;
     d_parameters[1] = -frame.sine() * d.x - frame.cosine() * d.y;
@@ -70,8 +78,7 @@ double component_tdf(const Component& c, const TdfSettings& s, double X, double 
 
 UnionTdf::UnionTdf(const Grid& grid, TdfSettings settings) : grid_(grid) {
   set_settings(settings);
-  for (VectorXd* v :
-       {&phi_, &h_, &eroded_, &highest_, &at_cut_, &sum_, &chain_, &chain_eroded_, &zero_}) {
+  for (VectorXd* v : {&phi_, &h_, &eroded_, &highest_, &sum_, &chain_, &chain_eroded_, &zero_}) {
     v->setZero(grid.n_nodes());
   }
 }
@@ -151,18 +158,20 @@ void UnionTdf::add_runs(const ComponentFrame& frame) {
   visits_.resize(visits_.size() + visits);
 }
 
-/// Sums of exp(λ (φ_i - highest)), each less its value at the cut; at least one term is 1.
+/// Sums of terms relative to exp(λ highest).
 void UnionTdf::join_smoothly() {
   const double lambda = settings_.sharpness;
-  for (int n = 0; n < grid_.n_nodes(); ++n) at_cut_[n] = std::exp(lambda * (cut_ - highest_[n]));
   sum_.setZero();
+  terms_.resize(visits_.size());
   double* visit = visits_.data();
+  double* own = terms_.data();
   for (const Run& run : runs_) {
     const int first = grid_.node(run.column, run.row);
-    for (int n = first; n < first + run.count; ++n, ++visit) {
-      const bool reached = *visit > cut_;
-      *visit = reached ? std::exp(lambda * (*visit - highest_[n])) : 0.0;
-      if (reached) sum_[n] += *visit - at_cut_[n];
+    for (int n = first; n < first + run.count; ++n, ++visit, ++own) {
+      const Term term = smooth_term(lambda, *visit, cut_, highest_[n]);
+      *own = term.value;
+      *visit = term.slope;
+      sum_[n] += term.value;
     }
   }
   for (int n = 0; n < grid_.n_nodes(); ++n) {
@@ -188,10 +197,10 @@ void UnionTdf::join_by_maximum() {
 
 void UnionTdf::fill_density() {
   for (int n = 0; n < grid_.n_nodes(); ++n) {
-    const Heaviside h = heaviside(phi_[n], settings_.band, settings_.alpha);
+    const Heaviside h = heaviside(phi_[n], settings_);
     h_[n] = h.value;
     chain_[n] = h.slope == 0 ? 0.0 : h.slope / sum_[n];
-    const Heaviside e = heaviside(phi_[n] - settings_.erosion, settings_.band, settings_.alpha);
+    const Heaviside e = heaviside(phi_[n] - settings_.erosion, settings_);
     eroded_[n] = e.value;
     chain_eroded_[n] = e.slope == 0 ? 0.0 : e.slope / sum_[n];
   }
@@ -270,11 +279,11 @@ int UnionTdf::add_points(const ComponentFrame& frame, const Run& run, const doub
 }
 
 /// φ of the union at a node of a run without the component the run belongs to.
-double UnionTdf::taken_out(const Run& run, int k, double visit) const {
+double UnionTdf::taken_out(const Run& run, int k, std::size_t visit) const {
   const int n = grid_.node(run.column, run.row) + k;
-  if (visit == 0) return phi_[n];
+  if (visits_[visit] == 0) return phi_[n];
   if (settings_.kind == TdfSettings::Kind::paper) return cut_;  // the next one below is unknown
-  const double rest = sum_[n] - (visit - at_cut_[n]);
+  const double rest = sum_[n] - terms_[visit];
   // What is left of a sum after its largest term went is round-off below this.
   if (!(rest > 1e-12 * sum_[n])) return cut_;
   return std::max(cut_, highest_[n] + std::log(rest) / settings_.sharpness);
@@ -283,16 +292,15 @@ double UnionTdf::taken_out(const Run& run, int k, double visit) const {
 std::vector<double> UnionTdf::influence(std::span<const signed char> counts) const {
   assert(evaluated_ && counts.size() == static_cast<std::size_t>(grid_.n_nodes()));
   std::vector<double> out(components_.size(), 0.0);
-  const double* visit = visits_.data();
-  std::size_t r = 0;
+  std::size_t r = 0, visit = 0;
   for (std::size_t c = 0; c < components_.size(); ++c) {
-    for (; r < ends_[c]; visit += runs_[r].count, ++r) {
+    for (; r < ends_[c]; visit += static_cast<std::size_t>(runs_[r].count), ++r) {
       const int first = grid_.node(runs_[r].column, runs_[r].row);
       for (int k = 0; k < runs_[r].count; ++k) {
         if (counts[static_cast<std::size_t>(first + k)] == 0) continue;
-        const double phi = taken_out(runs_[r], k, visit[k]);
+        const double phi = taken_out(runs_[r], k, visit + static_cast<std::size_t>(k));
         const auto change = [&](double depth, double now) {
-          return now - heaviside(phi - depth, settings_.band, settings_.alpha).value;
+          return now - heaviside(phi - depth, settings_).value;
         };
         out[c] = std::max(
             {out[c], change(0, h_[first + k]), change(settings_.erosion, eroded_[first + k])});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/SparseCore>
 #include <span>
 #include <vector>
 
@@ -29,13 +30,15 @@ struct TdfSettings {
   double min_half_thickness = 1e-4;  ///< lower bound of every profile [m]
 };
 
-/// H_ε(φ) and dH/dφ, optim/README.md, TDF: 1 above ε, α below -ε, cubic between.
+/// H_ε(φ) and its derivatives by φ, optim/README.md, TDF: 1 above ε, α below -ε. Between, with
+/// t = φ/ε,
 ///
-///   H = 3 (1 - α)/4 (φ/ε - φ³/(3 ε³)) + (1 + α)/2,   |φ| < ε
+///   distance: H = (1 - α)/16 (15 t - 10 t³ + 3 t⁵) + (1 + α)/2, twice continuously differentiable
+///   paper:    H = 3 (1 - α)/4 (t - t³/3) + (1 + α)/2, once
 struct Heaviside {
-  double value, slope;
+  double value, slope, curvature;
 };
-Heaviside heaviside(double phi, double band, double alpha);
+Heaviside heaviside(double phi, const TdfSettings& settings);
 
 /// TDF of one component at one point, with its derivatives by the seven parameters.
 ///
@@ -50,9 +53,12 @@ double component_tdf(const Component& c, const TdfSettings& s, double X, double 
 /// serves one thread at a time: pull_back() uses buffers of its own.
 ///
 /// distance: smooth maximum of Kreisselmeier and Steinhauser over the components that reach a
-/// node, continuous where one comes into reach,
+/// node, twice continuously differentiable where one comes into reach,
 ///
-///   φ = 1/λ log Σ_i (exp(λ φ_i) - exp(λ φ_cut)),   φ >= φ_cut,   φ_cut = -ε - 10/λ
+///   φ = 1/λ log Σ_i S(z_i) exp(λ φ_i),   z_i = λ (φ_i - φ_cut),   φ >= φ_cut = -ε - 10/λ
+///
+/// S = s³ (10 - 15 s + 6 s²), s = z/2, from 0 to 1 where z is: components that are about to leave
+/// the reach lose their weight, which is below exp(-8) of what is in the band.
 ///
 /// paper: φ = max φ_i, φ_cut = -ε - 1; the derivative is that of the first highest component.
 /// Nodes no component reaches have φ = φ_cut and H = α.
@@ -89,6 +95,24 @@ class UnionTdf {
   /// The same for a function of density() only.
   void pull_back(const VectorXd& df_dh, VectorXd& df_dp) const { pull_back(df_dh, zero_, df_dp); }
 
+  /// Second derivatives of a function f of the nodes by the parameters of components (7 N x 7 N),
+  ///
+  ///   Σ_n f_E E' φ_pp + (f_E E'' + f_EE E'²) φ_p φ_pᵀ, and the same of H,
+  ///   φ_pp = Σ_i (J'_i φ_i,pp + λ J''_i φ_i,p φ_i,pᵀ) / Σ J - λ φ_p φ_pᵀ
+  ///
+  /// J = S exp(λ φ_i), ' by z, at the components of the last evaluate(). For `distance` only: a
+  /// plain maximum has none.
+  struct NodeSlopes {
+    VectorXd df_dh, df_deroded, d2f_deroded2;  ///< (n_nodes) each
+  };
+  /// @param slopes  φ_p at the nodes where H or its eroded form change (n_nodes x 7 N), see
+  /// slopes()
+  /// @throws Error(numerical) when the result is not finite.
+  MatrixXd curvature(const NodeSlopes& f, const Eigen::SparseMatrix<double>& slopes) const;
+  Eigen::SparseMatrix<double> slopes() const;
+  /// d(eroded)/dφ (n_nodes).
+  VectorXd eroded_slopes() const;
+
  private:
   struct Run {  // neighbouring nodes of one grid column within the reach of one component
     int column, row, count;
@@ -105,7 +129,7 @@ class UnionTdf {
   void join_by_maximum();
   void fill_density();
   int add_points(const ComponentFrame& frame, const Run& run, const double* visit, int count) const;
-  double taken_out(const Run& run, int k, double visit) const;
+  double taken_out(const Run& run, int k, std::size_t visit) const;
   int add_seeds(const ComponentFrame& frame, const Run& run, const double* visit,
                 const VectorXd& df_dh, const VectorXd& df_deroded, int count) const;
 
@@ -117,8 +141,9 @@ class UnionTdf {
   std::vector<Run> runs_;          // component by component
   std::vector<std::size_t> ends_;  // where the runs of each component end
   std::vector<double> visits_;     // run by run: φ_i, then the weight dφ/dφ_i times sum_
+  std::vector<double> terms_;      // likewise: what they have in sum_
   mutable Scratch scratch_;
-  VectorXd phi_, h_, eroded_, highest_, at_cut_, sum_, zero_;
+  VectorXd phi_, h_, eroded_, highest_, sum_, zero_;
   VectorXd chain_, chain_eroded_;  // dH/dφ / sum_
 };
 

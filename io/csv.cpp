@@ -1,11 +1,10 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 
 #include "geometry/base.h"
+#include "io/files.h"
 #include "io/tables.h"
 
 namespace flexmorph::io {
@@ -66,27 +65,6 @@ size_t add_cells(char* begin, char* line_end, char separator, std::vector<std::s
   }
 }
 
-/// All of a file, also when it grows meanwhile.
-std::string contents_of(const std::string& path) {
-  // A pipe or a device may never end, or never begin.
-  std::error_code code;
-  const auto status = std::filesystem::status(path, code);
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
-    throw Error::input(path + ": a table is read from a regular file, not from a " +
-                       (std::filesystem::is_directory(status) ? "folder" : "pipe or device"));
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw Error::input(path + ": cannot be read");
-  const auto size = std::filesystem::file_size(path, code);
-  std::string out(code ? 0 : size, '\0');
-  for (size_t done = 0;; out.resize(2 * out.size() + 1)) {
-    file.read(out.data() + done, static_cast<std::streamsize>(out.size() - done));
-    done += static_cast<size_t>(file.gcount());
-    if (file && file.peek() != std::ifstream::traits_type::eof()) continue;
-    out.resize(done);
-    return out;
-  }
-}
-
 size_t place_of(const CsvTable& table, const std::string& column) {
   const auto found = std::find(table.columns.begin(), table.columns.end(), column);
   if (found != table.columns.end()) return static_cast<size_t>(found - table.columns.begin());
@@ -135,7 +113,7 @@ std::vector<double> CsvTable::numbers(const std::string& column) const {
 
 CsvTable read_csv(const std::string& path) {
   CsvTable out;
-  out.text_ = std::make_shared<std::string>(contents_of(path));
+  out.text_ = std::make_shared<std::string>(read_regular_file(path, "a table"));
   char *line = out.text_->data(), *const end = line + out.text_->size();
   if (out.text_->starts_with("\xEF\xBB\xBF")) line += 3;  // a byte-order mark
   char separator = ',';

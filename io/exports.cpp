@@ -15,31 +15,64 @@ namespace {
 
 const std::vector<std::string> kColumns = {"X0", "Y0", "half_length", "angle", "c1", "c2", "c3"};
 
-void add_polyline(std::string& out, const std::vector<Vec2>& ring, const char* layer) {
-  const std::string on_layer = std::string("8\n") + layer + "\n";
-  out += "0\nPOLYLINE\n" + on_layer + "66\n1\n10\n0\n20\n0\n30\n0\n70\n1\n";
-  for (const Vec2& p : ring)
-    out += "0\nVERTEX\n" + on_layer + "10\n" + to_text(p.x()) + "\n20\n" + to_text(p.y()) +
-           "\n30\n0\n";
-  out += "0\nSEQEND\n" + on_layer;
-}
+/// Entities of a DXF file.
+class DxfText {
+ public:
+  explicit DxfText(const LengthUnit& unit) : unit_(unit) {}
+
+  void polyline(const std::vector<Vec2>& ring, const std::string& layer) {
+    begin("POLYLINE", layer);
+    text_ += "66\n1\n10\n0\n20\n0\n30\n0\n70\n1\n";
+    for (const Vec2& p : ring) {
+      begin("VERTEX", layer);
+      point(p, 0);
+    }
+    begin("SEQEND", layer);
+  }
+  /// A point, a line, or a polygon.
+  void shape(const std::vector<Vec2>& corners, const std::string& layer) {
+    if (corners.size() > 2) return polyline(corners, layer);
+    begin(corners.size() == 1 ? "POINT" : "LINE", layer);
+    for (size_t k = 0; k < corners.size(); ++k) point(corners[k], static_cast<int>(k));
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  void begin(const char* entity, const std::string& layer) {
+    text_ += std::string("0\n") + entity + "\n8\n" + layer + "\n";
+  }
+  void point(const Vec2& p, int number) {
+    const std::string digit = std::to_string(number) + "\n";
+    text_ += "1" + digit + to_text(p.x() / unit_.metres) + "\n2" + digit +
+             to_text(p.y() / unit_.metres) + "\n3" + digit + "0\n";
+  }
+  const LengthUnit& unit_;
+  std::string text_;
+};
 
 class StlText {
  public:
+  explicit StlText(const LengthUnit& unit) : unit_(unit) {}
+
   void facet(const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3 normal = (b - a).cross(c - a).normalized();
-    text_ += "facet normal" + point(normal) + "\nouter loop\n";
+    text_ += "facet normal" + words(normal) + "\nouter loop\n";
     for (const Vec3* p : {&a, &b, &c}) text_ += "vertex" + point(*p) + "\n";
     text_ += "endloop\nendfacet\n";
   }
-  std::string take() { return "solid design\n" + text_ + "endsolid design\n"; }
+  std::string take() {
+    const std::string name = std::string("design in ") + unit_.name + "\n";
+    return "solid " + name + text_ + "endsolid " + name;
+  }
 
  private:
-  static std::string point(const Vec3& p) {
+  std::string point(const Vec3& p) const { return words(p / unit_.metres); }
+  static std::string words(const Vec3& p) {
     std::string out;
     for (const double each : {p.x(), p.y(), p.z()}) out.append(" ").append(to_text(each));
     return out;
   }
+  const LengthUnit& unit_;
   std::string text_;
 };
 
@@ -56,22 +89,31 @@ void add_walls(StlText& stl, const std::vector<Vec2>& ring, double height) {
 
 }  // namespace
 
-void write_dxf(const std::string& path, std::span<const Region> regions) {
-  std::string out =
-      "0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n0\nENDSEC\n0\nSECTION\n2\nTABLES\n0\nTABLE\n"
-      "2\nLAYER\n70\n2\n";
-  for (const char* layer : {"OUTLINE", "HOLES"})
-    out += std::string("0\nLAYER\n2\n") + layer + "\n70\n0\n62\n7\n6\nCONTINUOUS\n";
+void write_dxf(const std::string& path, std::span<const Region> regions, const LengthUnit& unit,
+               std::span<const DrawingLayer> more) {
+  const bool metric = unit.dxf != kInch.dxf && unit.dxf != find_length_unit("ft")->dxf;
+  std::vector<std::string> layers = {"OUTLINE", "HOLES"};
+  for (const DrawingLayer& layer : more) layers.push_back(layer.name);
+  std::string out = "0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n9\n$INSUNITS\n70\n" +
+                    std::to_string(unit.dxf) + "\n9\n$MEASUREMENT\n70\n" + (metric ? "1" : "0") +
+                    "\n0\nENDSEC\n0\nSECTION\n2\nTABLES\n0\nTABLE\n2\nLAYER\n70\n" +
+                    std::to_string(layers.size()) + "\n";
+  for (const std::string& layer : layers)
+    out += "0\nLAYER\n2\n" + layer + "\n70\n0\n62\n7\n6\nCONTINUOUS\n";
   out += "0\nENDTAB\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n";
+  DxfText entities(unit);
   for (const Region& r : regions) {
-    add_polyline(out, r.outer, "OUTLINE");
-    for (const auto& hole : r.holes) add_polyline(out, hole, "HOLES");
+    entities.polyline(r.outer, "OUTLINE");
+    for (const auto& hole : r.holes) entities.polyline(hole, "HOLES");
   }
-  write_file(path, out + "0\nENDSEC\n0\nEOF\n");
+  for (const DrawingLayer& layer : more)
+    for (const auto& corners : layer.shapes) entities.shape(corners, layer.name);
+  write_file(path, out + entities.text() + "0\nENDSEC\n0\nEOF\n");
 }
 
-void write_stl(const std::string& path, std::span<const Region> regions, double thickness) {
-  StlText stl;
+void write_stl(const std::string& path, std::span<const Region> regions, double thickness,
+               const LengthUnit& unit) {
+  StlText stl(unit);
   for (const Region& r : regions) {
     const Triangulation t = triangulate(r);
     const auto at = [&](int k, double z) {

@@ -6,19 +6,30 @@
 
 #include "geometry/component.h"
 #include "geometry/outline.h"
+#include "io/length_unit.h"
 
 /// Designs for other programs, and components to start from.
 namespace flexmorph::io {
 
-/// DXF (R12, ASCII) in metres: every ring a closed polyline, outer ones on layer OUTLINE, holes on
-/// layer HOLES. Coordinates in full precision.
-/// @throws Error (input) when the file cannot be written.
-void write_dxf(const std::string& path, std::span<const Region> regions);
+/// What else a drawing shows: points, lines, and polygons of three corners or more [m].
+struct DrawingLayer {
+  std::string name;
+  std::vector<std::vector<Vec2>> shapes;
+};
+
+/// DXF (R12, ASCII): every ring a closed polyline, outer ones on layer OUTLINE, holes on layer
+/// HOLES. Coordinates in the unit, which $INSUNITS says ($MEASUREMENT whether it is metric), in
+/// full precision.
+/// @throws Error (numerical) as write_file().
+void write_dxf(const std::string& path, std::span<const Region> regions, const LengthUnit& unit,
+               std::span<const DrawingLayer> more = {});
 
 /// STL (ASCII, full precision; the binary form has 7 digits) of the regions extruded from z = 0 to
-/// `thickness` [m]: closed surfaces whose edges belong to two facets each.
-/// @throws Error (input) when the file cannot be written; Error (numerical) from triangulate().
-void write_stl(const std::string& path, std::span<const Region> regions, double thickness);
+/// `thickness` [m]: closed surfaces whose edges belong to two facets each. STL knows no units: the
+/// name of the solid says which one it is in.
+/// @throws Error (numerical) as write_file(), and from triangulate().
+void write_stl(const std::string& path, std::span<const Region> regions, double thickness,
+               const LengthUnit& unit);
 
 /// components.csv: X0, Y0, half_length, angle, c1, c2, c3 in full precision, one row each.
 void write_components_csv(const std::string& path, std::span<const Component> components);

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <system_error>
 
@@ -83,6 +84,26 @@ std::string to_text(double value, int digits) {
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
                                  std::chars_format::general, digits);
   return {buffer.data(), end.ptr};
+}
+
+std::string read_regular_file(const std::string& path, const std::string& what) {
+  // A pipe or a device may never end, or never begin.
+  std::error_code code;
+  const auto status = std::filesystem::status(path, code);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    throw Error::input(path + ": " + what + " is read from a regular file, not from a " +
+                       (std::filesystem::is_directory(status) ? "folder" : "pipe or device"));
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw Error::input(path + ": cannot be read");
+  const auto size = std::filesystem::file_size(path, code);
+  std::string out(code ? 0 : size, '\0');
+  for (size_t done = 0;; out.resize(2 * out.size() + 1)) {
+    file.read(out.data() + done, static_cast<std::streamsize>(out.size() - done));
+    done += static_cast<size_t>(file.gcount());
+    if (file && file.peek() != std::ifstream::traits_type::eof()) continue;
+    out.resize(done);
+    return out;
+  }
 }
 
 }  // namespace flexmorph::io

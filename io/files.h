@@ -19,6 +19,12 @@ void write_file(const std::string& path, std::string_view contents, Sync sync = 
 /// @throws Error (numerical) likewise: disks of other machines may refuse now what they took.
 void sync_file(const std::string& path);
 
+/// All of a file, also when it grows meanwhile.
+/// @param what  "a table": what it is to be
+/// @throws Error (input) for one that cannot be read, and for folders, pipes and devices, which may
+/// never end.
+std::string read_regular_file(const std::string& path, const std::string& what);
+
 /// Shortest decimal text that reads back to the same number, whatever the locale ("0.1", "1e-05",
 /// "nan", "inf").
 std::string to_text(double value);

@@ -80,6 +80,27 @@ vtkNew<vtkPoints> float_points(int n) {
   return points;
 }
 
+/// Cells of one type, by their nodes.
+template <std::size_t n>
+void write_cells(const std::string& path, vtkPoints* points, int type,
+                 const std::vector<std::array<int, n>>& nodes, std::span<const Field> cell_fields,
+                 std::span<const Field> point_fields) {
+  vtkNew<vtkCellArray> cells;
+  cells->Use32BitStorage();
+  for (const std::array<int, n>& each : nodes) {
+    std::array<vtkIdType, n> ids;
+    std::copy(each.begin(), each.end(), ids.begin());
+    cells->InsertNextCell(n, ids.data());
+  }
+  vtkNew<vtkUnstructuredGrid> grid;
+  grid->SetPoints(points);
+  grid->SetCells(type, cells);
+  add_fields(grid->GetCellData(), cell_fields, static_cast<int>(nodes.size()), path, same_place);
+  add_fields(grid->GetPointData(), point_fields, static_cast<int>(points->GetNumberOfPoints()),
+             path, same_place);
+  write_xml<vtkXMLUnstructuredGridWriter>(path, grid.Get());
+}
+
 /// Dark blue, teal, green, yellow: rising lightness, readable without colour.
 std::array<double, 3> map_color(double x) {
   constexpr std::array<std::array<double, 3>, 5> kStops = {
@@ -117,19 +138,7 @@ void write_quad_mesh(const std::string& path, const QuadMesh& mesh,
     const double* p = &mesh.points[static_cast<size_t>(k) * mesh.dimension];
     points->SetPoint(k, p[0], p[1], mesh.dimension == 3 ? p[2] : 0);
   }
-  vtkNew<vtkCellArray> cells;
-  cells->Use32BitStorage();
-  for (const std::array<int, 4>& quad : mesh.quads) {
-    const std::array<vtkIdType, 4> corners{quad[0], quad[1], quad[2], quad[3]};
-    cells->InsertNextCell(4, corners.data());
-  }
-  vtkNew<vtkUnstructuredGrid> grid;
-  grid->SetPoints(points);
-  grid->SetCells(VTK_QUAD, cells);
-  add_fields(grid->GetCellData(), cell_fields, static_cast<int>(mesh.quads.size()), path,
-             same_place);
-  add_fields(grid->GetPointData(), point_fields, n, path, same_place);
-  write_xml<vtkXMLUnstructuredGridWriter>(path, grid.Get());
+  write_cells(path, points, VTK_QUAD, mesh.quads, cell_fields, point_fields);
 }
 
 void write_part_mesh(const std::string& path, const PartMesh& mesh,
@@ -137,19 +146,7 @@ void write_part_mesh(const std::string& path, const PartMesh& mesh,
   const int n = static_cast<int>(mesh.points.size());
   const auto points = float_points(n);
   for (int k = 0; k < n; ++k) points->SetPoint(k, mesh.point(k).x(), mesh.point(k).y(), 0);
-  vtkNew<vtkCellArray> cells;
-  cells->Use32BitStorage();
-  for (const std::array<int, 6>& t : mesh.triangles) {
-    const std::array<vtkIdType, 6> nodes{t[0], t[1], t[2], t[3], t[4], t[5]};
-    cells->InsertNextCell(6, nodes.data());
-  }
-  vtkNew<vtkUnstructuredGrid> grid;
-  grid->SetPoints(points);
-  grid->SetCells(VTK_QUADRATIC_TRIANGLE, cells);
-  add_fields(grid->GetCellData(), cell_fields, static_cast<int>(mesh.triangles.size()), path,
-             same_place);
-  add_fields(grid->GetPointData(), point_fields, n, path, same_place);
-  write_xml<vtkXMLUnstructuredGridWriter>(path, grid.Get());
+  write_cells(path, points, VTK_QUADRATIC_TRIANGLE, mesh.triangles, cell_fields, point_fields);
 }
 
 void write_outlines(const std::string& path, std::span<const std::vector<Vec2>> outlines,

@@ -68,6 +68,10 @@ class RecordedProblem final : public Problem {
   VectorXd start() const override { return problem_.start(); }
   Response evaluate(const VectorXd& x) override;
   bool acceptable(const VectorXd& x) override;
+  bool has_curvature() const override { return problem_.has_curvature(); }
+  MatrixXd curvature(const VectorXd& x, double sigma, const VectorXd& lambda) override {
+    return problem_.curvature(x, sigma, lambda);
+  }
 
  private:
   Problem& problem_;

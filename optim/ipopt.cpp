@@ -12,14 +12,22 @@
 #include "optim/moving_box.h"
 #include "optim/search.h"
 
-/// Ipopt: interior point method with a filter line search and limited-memory BFGS.
+/// Ipopt: interior point method with a filter line search; second derivatives where the problem has
+/// them, limited-memory BFGS elsewhere.
 ///
 /// Options:
-///   mu_init     first barrier parameter
+///   exact       1: the second derivatives of problems that have them; 0: limited-memory BFGS
+///   mu_init     first barrier parameter; 0 (default): 1e-5 with second derivatives, 1e-3 without
 ///   bound_push  how far the start is moved inside its bounds
 ///   history     vectors of the limited-memory Hessian
 ///   box         half width of a moving box, absolute in x; 0 (default): none
 ///   restart     iterations inside one box
+///
+/// Designs are far from convex: Hessians are indefinite until the last few iterations, and Ipopt
+/// makes them definite by multiples of the unit matrix. With them it keeps to designs that violate
+/// constraints by less than a tenth (steps through a thousandth stick in curved valleys), raises
+/// those multiples by 4, not 8, and keeps its watchdog off (optim/README.md, Second derivatives).
+/// Absolute values of their eigenvalues instead led nowhere sooner.
 ///
 /// The barrier parameter falls monotonically: the adaptive rule and SR1 ended infeasible on the
 /// published short beam. Two solves in two threads of one process crash in Ipopt 3.11.
@@ -42,14 +50,16 @@ struct Halt {};
 struct Constants {
   double mu_init, bound_push, box;
   int history, restart;
+  bool exact;
 };
 
 /// The problem as Ipopt wants to see it, inside one box.
 class Adapter final : public Ipopt::TNLP {
  public:
   Adapter(Search& search, const Point& start, const VectorXd& lower, const VectorXd& upper,
-          int most_evaluations)
+          int most_evaluations, bool curved)
       : search_(search),
+        curved_(curved),
         start_(start.x),
         lower_(lower),
         upper_(upper),
@@ -62,7 +72,7 @@ class Adapter final : public Ipopt::TNLP {
     n = search_.n();
     m = search_.m();
     nnz_jac_g = n * m;
-    nnz_h_lag = 0;
+    nnz_h_lag = curved_ ? n * (n + 1) / 2 : 0;
     index_style = C_STYLE;
     return true;
   }
@@ -115,6 +125,24 @@ class Adapter final : public Ipopt::TNLP {
     return point != nullptr;
   }
 
+  bool eval_h(Index n, const Number* x, bool, Number sigma, Index m, const Number* lambda, bool,
+              Index, Index* row, Index* column, Number* values) override {
+    Index k = 0;
+    if (values == nullptr) {
+      for (Index i = 0; i < n; ++i)
+        for (Index j = 0; j <= i; ++j, ++k) {
+          row[k] = i;
+          column[k] = j;
+        }
+      return true;
+    }
+    const Eigen::Map<const VectorXd> at(x, n);
+    const MatrixXd h = search_.curvature(at, sigma, Eigen::Map<const VectorXd>(lambda, m));
+    for (Index i = 0; i < n; ++i)
+      for (Index j = 0; j <= i; ++j, ++k) values[k] = h(i, j);
+    return true;
+  }
+
   bool intermediate_callback(Ipopt::AlgorithmMode mode, Index iteration, Number, Number, Number,
                              Number, Number, Number, Number, Number, Index,
                              const Ipopt::IpoptData* data,
@@ -128,6 +156,7 @@ class Adapter final : public Ipopt::TNLP {
   const Point* look_at(Index n, const Number* x);
 
   Search& search_;
+  bool curved_;
   VectorXd start_, lower_, upper_;
   int most_evaluations_;
   std::deque<Point> remembered_;  // newest first
@@ -220,13 +249,14 @@ class IpoptOptimizer final : public Optimizer {
  private:
   std::string run(Search& search, const Point& start, const VectorXd& lower,
                   const VectorXd& upper) const;
-  void set(Ipopt::OptionsList& options) const;
+  /// @param curved  with second derivatives
+  void set(Ipopt::OptionsList& options, bool curved) const;
 
   Settings settings_;
   Constants c_;
 };
 
-void IpoptOptimizer::set(Ipopt::OptionsList& options) const {
+void IpoptOptimizer::set(Ipopt::OptionsList& options, bool curved) const {
   const auto check = [](bool accepted, const std::string& name) {
     if (!accepted) throw Error::numerical("ipopt: option " + name + " is not accepted");
   };
@@ -242,10 +272,15 @@ void IpoptOptimizer::set(Ipopt::OptionsList& options) const {
   text("sb", "yes");
   count("print_level", 0);
   text("linear_solver", "mumps");
-  text("hessian_approximation", "limited-memory");
+  text("hessian_approximation", curved ? "exact" : "limited-memory");
+  if (curved) {
+    number("theta_max_fact", 1e-1);
+    number("perturb_inc_fact", 4);
+    count("watchdog_shortened_iter_trigger", 0);
+  }
   count("limited_memory_max_history", c_.history);
   text("mu_strategy", "monotone");
-  number("mu_init", c_.mu_init);
+  number("mu_init", c_.mu_init > 0 ? c_.mu_init : curved ? 1e-5 : 1e-3);
   number("bound_push", c_.bound_push);
   number("bound_frac", std::min(0.5, c_.bound_push));
   number("slack_bound_push", c_.bound_push);
@@ -262,13 +297,14 @@ std::string IpoptOptimizer::run(Search& search, const Point& start, const Vector
                                 const VectorXd& upper) const {
   const Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(false);
   application->RethrowNonIpoptException(true);
-  set(*application->Options());
+  const bool curved = c_.exact && search.has_curvature();
+  set(*application->Options(), curved);
   if (application->Initialize("") != Ipopt::Solve_Succeeded) {  // "": no ipopt.opt is read
     throw Error::numerical("ipopt: it could not be initialized");
   }
   const Ipopt::SmartPtr<Ipopt::TNLP> adapter =
       new Adapter(search, start, lower, upper,
-                  kEvaluationsPerIteration * std::max(2, settings_.max_iterations));
+                  kEvaluationsPerIteration * std::max(2, settings_.max_iterations), curved);
   try {
     std::string why = name_of(application->OptimizeTNLP(adapter));
     if (!search.refusal().empty()) why += "; last refused design: " + search.refusal();
@@ -281,17 +317,22 @@ std::string IpoptOptimizer::run(Search& search, const Point& start, const Vector
 }  // namespace
 
 std::unique_ptr<Optimizer> make_ipopt(const Settings& settings) {
-  const Options o = with_defaults(
-      settings,
-      {{"mu_init", 1e-3}, {"bound_push", 1e-3}, {"history", 6}, {"box", 0}, {"restart", 15}});
-  check_option(settings, "mu_init", o.at("mu_init"), 1e-12, 1e6);
+  const Options o = with_defaults(settings, {{"exact", 1},
+                                             {"mu_init", 0},
+                                             {"bound_push", 1e-3},
+                                             {"history", 6},
+                                             {"box", 0},
+                                             {"restart", 15}});
+  check_option(settings, "exact", o.at("exact"), 0, 1);
+  check_option(settings, "mu_init", o.at("mu_init"), 0, 1e6);
   check_option(settings, "bound_push", o.at("bound_push"), 1e-12, 1e6);
   check_option(settings, "history", o.at("history"), 1, 1000);
   check_option(settings, "box", o.at("box"), 0, 1e9);
   check_option(settings, "restart", o.at("restart"), 2, 1e6);
   return std::make_unique<IpoptOptimizer>(
-      settings, Constants{o.at("mu_init"), o.at("bound_push"), o.at("box"),
-                          static_cast<int>(o.at("history")), static_cast<int>(o.at("restart"))});
+      settings,
+      Constants{o.at("mu_init"), o.at("bound_push"), o.at("box"), static_cast<int>(o.at("history")),
+                static_cast<int>(o.at("restart")), o.at("exact") > 0.5});
 }
 
 }  // namespace flexmorph::optim

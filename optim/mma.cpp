@@ -17,7 +17,9 @@
 /// Options, with the defaults that worked on the published short beam:
 ///   asyinit, asyincr, asydecr  first distance of the asymptotes, its factors per iteration
 ///   asymin, asymax             range of that distance; f * fscale may curve by 8 raa0 / asymin
-///                              before x starts to swing about a minimum inside its bounds
+///                              before x starts to swing about a minimum inside its bounds: with
+///                              0.01 by 8, which for log C is 0.8 and less than it does (4), so
+///                              that KKT residuals rose again once the asymptotes had come near
 ///   albefa                     part of the way to an asymptote that stays forbidden
 ///   raa0                       convexity given to every variable; with 1e-5 (Svanberg's) large
 ///                              subproblems with many near-zero gradients stay unsolved; gcmma
@@ -31,7 +33,7 @@
 namespace flexmorph::optim {
 namespace {
 
-const Options kDefaults = {{"asyinit", 0.1}, {"asyincr", 1.05}, {"asydecr", 0.65}, {"asymin", 0.01},
+const Options kDefaults = {{"asyinit", 0.1}, {"asyincr", 1.05}, {"asydecr", 0.65}, {"asymin", 2e-4},
                            {"asymax", 10},   {"albefa", 0.1},   {"raa0", 0.01},    {"c", 1000},
                            {"fscale", 10},   {"gscale", 1}};
 constexpr int kMostRefusals = 10;     // in a row

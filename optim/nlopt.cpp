@@ -14,13 +14,14 @@
 ///   box      half width of the moving box, absolute in x (default: move_limit for ccsaq, 1.5 times
 ///            as much for mma); 0: no box
 ///   restart  evaluations inside one box
-///   scale    factor of f and g (default: 30 for mma, 10 for ccsaq): NLopt 2.7.1 offers no other say
+///   scale    factor of f and g (default: 30 for mma, 10 for ccsaq): NLopt 2.7.1 offers no other
+///   say
 ///            in its first curvature
 ///
 /// The box of mma is a compromise: with move_limit it ended 6 % above our mma on the plate growing
 /// at 0.5 m/s (1.5 times as much: 4.5 %), with twice as much 1.4 % higher on the short beam (median
-/// of five starts; 1.5 times: 0.5 %). Single designs scatter by a few per cent. ccsaq with move_limit
-/// and 10 stays within 1 % on both plates and 3 % on the short beam (with 30: 4 %).
+/// of five starts; 1.5 times: 0.5 %). Single designs scatter by a few per cent. ccsaq with
+/// move_limit and 10 stays within 1 % on both plates and 3 % on the short beam (with 30: 4 %).
 ///
 /// What the library does not do by itself: an exception or a NaN of the objective ends in a
 /// message-less failure or a NaN result, so the callbacks keep exceptions and end the run; f and

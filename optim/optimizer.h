@@ -30,6 +30,14 @@ using Observer = std::function<bool(const Iterate&)>;
 enum class Stop { converged, iteration_limit, evaluation_limit, observer, stalled, failed };
 std::string to_string(Stop stop);
 
+/// When a search has come to rest: over the last rows the objective has kept within a band, and the
+/// last of them is feasible and nearly meets the KKT conditions.
+struct Rest {
+  int rows = 15;            ///< 0: it never rests
+  double objective = 1e-3;  ///< width of that band; of a logarithm, a part
+  double kkt = 1e-3;        ///< infinite: whatever the residual
+};
+
 struct Settings {
   std::string name = "mma";
   int max_iterations = 300;  ///< iterations, or evaluations for NLopt
@@ -39,6 +47,7 @@ struct Settings {
   double kkt_tolerance = 1e-4;  ///< stop when the KKT residual and ...
   double feasibility = 1e-5;    ///< ... the violation are below these
   double change_tolerance = 0;  ///< stop after 3 iterations with less change (0: off)
+  Rest rest = {};               ///< stop there, too
   double move_limit = 0.05;     ///< largest change of a variable per iteration (mma), box (NLopt)
   /// Settings of one optimizer, by name (see its file for the names); unknown names are errors.
   std::map<std::string, double> options;

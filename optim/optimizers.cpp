@@ -72,6 +72,8 @@ std::unique_ptr<Optimizer> make_optimizer(const Settings& settings) {
   check_setting(settings.kkt_tolerance >= 0, "kkt_tolerance is not negative");
   check_setting(settings.feasibility > 0, "feasibility is positive");
   check_setting(settings.change_tolerance >= 0, "change_tolerance is not negative");
+  check_setting(settings.rest.rows >= 0 && settings.rest.objective >= 0 && settings.rest.kkt >= 0,
+                "rows and tolerances of a rest are not negative");
   check_setting(settings.move_limit > 0 && std::isfinite(settings.move_limit),
                 "move_limit is positive");
   return row->second(settings);

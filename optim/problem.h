@@ -31,6 +31,14 @@ class Problem {
   /// @throws Error (numerical) when the state at x cannot be solved.
   virtual Response evaluate(const VectorXd& x) = 0;
 
+  /// Does it have curvature()?
+  virtual bool has_curvature() const { return false; }
+  /// σ ∇²f + Σ λ_i ∇²g_i at x (n x n, symmetric).
+  /// @throws Error (numerical) as evaluate(); Error (input) where there is none.
+  virtual MatrixXd curvature(const VectorXd& /*x*/, double /*sigma*/, const VectorXd& /*lambda*/) {
+    throw Error::input("optimizer: the problem has no second derivatives");
+  }
+
   /// May this design be an iterate? (A structure that has come apart may not.) Asked after
   /// evaluate() at the same x; an optimizer that can step back does so when the answer is no.
   virtual bool acceptable(const VectorXd&) { return true; }

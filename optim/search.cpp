@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "geometry/cpu_time.h"
 #include "optim/kkt.h"
@@ -148,27 +149,59 @@ bool Search::row(int iteration, const Point& point) {
   mark_ = cpu_seconds();
   inside_problem_ = 0;
 
-  const bool first = previous_row_.size() == 0;
   previous_row_ = point.x;
-  if (!go_on) {
+  objectives_.push_back(point.response.f);
+  if (objectives_.size() > static_cast<size_t>(settings_.rest.rows) + 1) objectives_.pop_front();
+  if (go_on)
+    end_or_go_on(it, point, kkt.lambda.sum());
+  else
     stop(Stop::observer, "those who look on asked for it");
-  } else if (it.kkt <= settings_.kkt_tolerance && it.violation <= settings_.feasibility) {
-    stop(Stop::converged, "KKT residual " + scientific(it.kkt) + " and violation " +
-                              scientific(it.violation) + " are below their tolerances");
-    // An earlier design may be lower only by what the tolerances give away.
-    const double slack =
-        settings_.kkt_tolerance + settings_.feasibility * (1 + 2 * kkt.lambda.sum());
-    if (point.response.f <= best_.point.response.f + slack) best_.point = point;
-  } else if (!first && rests(it.change, it.violation)) {
-    stop(Stop::converged, "three iterations in a row changed no variable by " +
-                              scientific(settings_.change_tolerance) + "; KKT residual " +
-                              scientific(it.kkt));
-  } else if (iteration >= settings_.max_iterations) {
-    stop(Stop::iteration_limit, "limit of " + std::to_string(settings_.max_iterations) +
-                                    " iterations reached; KKT residual " + scientific(it.kkt));
-  }
   stop_when_spent();
   return !stopped_;
+}
+
+/// Stops at a row that is the last one.
+/// @param price  sum of the multipliers there
+void Search::end_or_go_on(const Iterate& it, const Point& point, double price) {
+  const Rest& rest = settings_.rest;
+  const bool met = it.violation <= settings_.feasibility;
+  const std::string residual = "; KKT residual " + scientific(it.kkt);
+  const double change = recent_change();
+  if (it.kkt <= settings_.kkt_tolerance && met) {
+    stop(Stop::converged, "KKT residual " + scientific(it.kkt) + " and violation " +
+                              scientific(it.violation) + " are below their tolerances");
+    // An earlier design may be lower by what the tolerances give away, and by as little as counts
+    // for rest: it is no minimum.
+    keep_last(point, std::max(rest.objective,
+                              settings_.kkt_tolerance + settings_.feasibility * (1 + 2 * price)));
+  } else if (change <= rest.objective && it.kkt <= rest.kkt && met) {
+    stop(Stop::converged, "the objective changed by " + scientific(change) + " over " +
+                              std::to_string(rest.rows) + " iterations" + residual);
+    if (std::isfinite(rest.kkt)) keep_last(point, rest.objective);
+  } else if (rows_ > 1 && rests(it.change, it.violation)) {
+    stop(Stop::converged, "three iterations in a row changed no variable by " +
+                              scientific(settings_.change_tolerance) + residual);
+  } else if (it.iteration >= settings_.max_iterations) {
+    std::string why =
+        "limit of " + std::to_string(settings_.max_iterations) + " iterations reached" + residual;
+    if (std::isfinite(change))
+      why += ", change of the objective over the last " + std::to_string(rest.rows) + " " +
+             scientific(change);
+    stop(Stop::iteration_limit, why);
+  }
+}
+
+/// How far apart the objectives of the last rows are; infinite while these are too few.
+double Search::recent_change() const {
+  const auto rows = static_cast<size_t>(settings_.rest.rows);
+  if (rows == 0 || objectives_.size() <= rows) return std::numeric_limits<double>::infinity();
+  const auto [least, largest] = std::minmax_element(objectives_.begin(), objectives_.end());
+  return *largest - *least;
+}
+
+/// Takes the last row for the best where that is better by no more than `slack`.
+void Search::keep_last(const Point& point, double slack) {
+  if (point.response.f <= best_.point.response.f + slack) best_.point = point;
 }
 
 bool Search::spent() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <string>
 
 #include "optim/optimizer.h"
@@ -43,6 +44,10 @@ class Search {
   /// @param out  valid when `taken`
   Trial evaluate(const VectorXd& x, Response& out);
   int evaluations() const { return evaluations_; }
+  bool has_curvature() const { return problem_.has_curvature(); }
+  MatrixXd curvature(const VectorXd& x, double sigma, const VectorXd& lambda) {
+    return problem_.curvature(x, sigma, lambda);
+  }
   bool spent() const;  ///< all state solves that are allowed are used
   int refused_in_a_row() const { return refused_in_a_row_; }
   const std::string& refusal() const { return refusal_; }  ///< why a trial was not taken, last
@@ -71,6 +76,9 @@ class Search {
   bool better(const Response& response, bool acceptable) const;
   void check(const Response& response) const;
   bool rests(double change, double violation);
+  double recent_change() const;
+  void end_or_go_on(const Iterate& it, const Point& point, double price);
+  void keep_last(const Point& point, double slack);
 
   Problem& problem_;
   const Settings& settings_;
@@ -82,6 +90,7 @@ class Search {
   bool best_is_new_ = false;
   VectorXd last_x_, previous_row_;
   int evaluations_ = 0, rows_ = 0, resting_ = 0, refused_in_a_row_ = 0;
+  std::deque<double> objectives_;         // of the last rows, at most settings_.rest.rows + 1
   double mark_ = 0, inside_problem_ = 0;  // CPU seconds
   std::string refusal_;
 

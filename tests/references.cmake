@@ -11,7 +11,8 @@ cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH root)
 set(folders geometry io fem optim cases tests)
 set(endings h cpp cmake txt sh toml py)
 set(bibliography_file fem/README.md)
-set(foreign cblas.h Time_stamper.h)  # headers of libraries that comments speak of
+# Headers of libraries that comments speak of, and what a run writes.
+set(foreign cblas.h Time_stamper.h paraview.py)
 set(months January February March April May June July August September October November December)
 
 # What documents that are not here are called; folders that words may begin with; how equations,

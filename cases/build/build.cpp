@@ -68,7 +68,7 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
     const Grid& g = d.grid;
     mmc::DesignScale scale;
     scale.half_length = d.half_length;
-    scale.min_thickness = std::max(d.min_thickness, mmc::half_thickness_for(d.min_feature));
+    scale.min_thickness = std::max(d.min_thickness, mmc::half_thickness_for(d.widths.solid));
     scale.max_thickness = std::max({0.3 * g.height, 1.5 * scale.min_thickness, d.half_thickness});
     auto layout = d.start.empty()
                       ? crossing_layout(g.x0, g.y0, g.width, g.height, d.components[0],
@@ -89,12 +89,12 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
                    .stiffness_void = d.stiffness_void,
                    .mass_void = d.mass_void,
                    .compliance = scene.esl ? scene.esl->settings : mmc::ComplianceSettings{},
-                   .domain = scene.domain ? scene.domain->polygon : std::vector<Vec2>{},
+                   .domain = scene.domain ? scene.domain->shape : Region{},
                    .outside = plate.outside,
                    .places = scene.domain ? static_places(scene, g, plate.outside) : Cells{},
                    .drop_every = d.drop_every,
                    .refill = d.refill,
-                   .min_feature = d.min_feature,
+                   .widths = d.widths,
                    .shares_mass = d.shares_mass});
   }
   return out;

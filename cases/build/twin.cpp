@@ -285,8 +285,8 @@ void check_mechanism(const Scene& scene) {
   if (motion.degrees_of_freedom() > 0 || motion.is_indeterminate()) return;
   // Of drives that turn ten thousand times the first turns are enough for a look.
   constexpr int kMostSteps = 4000;
-  for (int k = 1; k <= kLooks && motion.follow(scene.time.end * k / kLooks, kMostSteps); ++k) {
-  }
+  for (int k = 1; k <= kLooks; ++k)
+    if (!motion.follow(scene.time.end * k / kLooks, kMostSteps)) return;
 }
 
 namespace {

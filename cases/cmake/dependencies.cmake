@@ -47,9 +47,16 @@ find_package(PkgConfig QUIET)
 if(PkgConfig_FOUND)
   pkg_check_modules(IPOPT QUIET IMPORTED_TARGET GLOBAL ipopt>=3.11)
   pkg_check_modules(GINAC QUIET IMPORTED_TARGET GLOBAL ginac>=1.8)
+  # Drawings that are read: DXF, paths of SVG, and the XML around them.
+  pkg_check_modules(DXFLIB QUIET IMPORTED_TARGET GLOBAL dxflib>=3.26)
+  pkg_check_modules(GEOM2 QUIET IMPORTED_TARGET GLOBAL 2geom>=1.2)
+  pkg_check_modules(LIBXML QUIET IMPORTED_TARGET GLOBAL libxml-2.0>=2.9)
 endif()
 flexmorph_library(IPOPT 3.11 IPOPT_FOUND)
 flexmorph_library(GINAC 1.8 GINAC_FOUND)
+flexmorph_library(DXFLIB 3.26 DXFLIB_FOUND)
+flexmorph_library(GEOM2 1.2 GEOM2_FOUND)
+flexmorph_library(LIBXML 2.9 LIBXML_FOUND)
 
 # SuiteSparse 5 has neither CMake nor pkg-config files.
 find_path(SUITESPARSE_INCLUDE_DIR umfpack.h PATH_SUFFIXES suitesparse)
@@ -74,6 +81,29 @@ if(SUITESPARSE_FOUND)
   endif()
 endif()
 flexmorph_library(SUITESPARSE 5.12 SUITESPARSE_FOUND)
+
+# Of OpenCASCADE a few libraries: its own package file wants the compiler's flags, and all of them.
+find_path(OCCT_INCLUDE_DIR STEPControl_Writer.hxx PATH_SUFFIXES opencascade)
+set(OCCT_FOUND TRUE)
+add_library(OpenCASCADE::step INTERFACE IMPORTED)
+foreach(library TKSTEP TKSTEPBase TKXSBase TKPrim TKTopAlgo TKBRep TKG3d TKMath TKernel)
+  find_library(OCCT_${library} ${library})
+  if(OCCT_INCLUDE_DIR AND OCCT_${library})
+    target_link_libraries(OpenCASCADE::step INTERFACE ${OCCT_${library}})
+  else()
+    set(OCCT_FOUND FALSE)
+  endif()
+endforeach()
+if(OCCT_FOUND)
+  target_include_directories(OpenCASCADE::step INTERFACE ${OCCT_INCLUDE_DIR})
+  file(STRINGS "${OCCT_INCLUDE_DIR}/Standard_Version.hxx" line
+       REGEX "define OCC_VERSION_COMPLETE +\"")
+  string(REGEX MATCH "[0-9.]+" OCCT_VERSION "${line}")
+  if(OCCT_VERSION VERSION_LESS 7.6)
+    set(OCCT_FOUND FALSE)
+  endif()
+endif()
+flexmorph_library(OCCT 7.6 OCCT_FOUND)
 
 # Of the tests. CalculiX judges exported designs; valijson, headers alone, judges cases by their schema; SUNDIALS judges our integrators; its own package file would ask for PETSc and MPI,
 # which the serial libraries do not need.

@@ -29,6 +29,14 @@ std::string growing_words(const StaticAnalysis& analysis) {
   return analysis.loads_grow ? ", of loads and temperatures" : ", of temperatures";
 }
 
+std::string words_of(const Region& domain) {
+  if (domain.outer.empty()) return "";
+  const size_t n = domain.holes.size();
+  return ", domain a polygon" + (n == 0   ? std::string()
+                                 : n == 1 ? " with a hole"
+                                          : " with " + std::to_string(n) + " holes");
+}
+
 /// A motion through time, or a path of equilibria.
 void describe_course(const Scene& scene, std::ostringstream& out) {
   if (scene.statics) {
@@ -114,10 +122,18 @@ void describe_body(const Body& body, const Mechanism& mechanism, std::ostringstr
                        " elements refreshed per step");
 }
 
+std::string optimizer_words(const Scene& scene) {
+  const auto words = [](const optim::Settings& s) {
+    return s.name + ", at most " + std::to_string(s.max_iterations) + " iterations";
+  };
+  return words(scene.optimizer) + (scene.finish ? ", then " + words(*scene.finish) : "");
+}
+
 std::string thickness_words(const BodyDesign& d) {
   std::string out = "half-thickness of components at least " + io::to_text(d.min_thickness) + " m";
-  if (d.min_feature > 0)
-    out += ", smallest feature of their union at least " + io::to_text(d.min_feature) + " m";
+  if (d.widths.solid > 0)
+    out += ", smallest feature of their union at least " + io::to_text(d.widths.solid) + " m";
+  if (d.widths.gap > 0) out += ", smallest gap at least " + io::to_text(d.widths.gap) + " m";
   return out;
 }
 
@@ -195,8 +211,7 @@ void describe_static(const Scene& scene, std::ostringstream& out, const Machine&
   const Grid& g = d.grid;
   const int components = d.n_components();
   out << row("plate " + domain.name, "at rest, " + std::to_string(g.nx) + " x " +
-                                         std::to_string(g.ny) + " cells" +
-                                         (domain.polygon.empty() ? "" : ", domain a polygon"));
+                                         std::to_string(g.ny) + " cells" + words_of(domain.shape));
   out << row("supports", std::to_string(domain.supports.size()));
   out << row("loads",
              std::to_string(domain.loads.size()) +
@@ -205,8 +220,7 @@ void describe_static(const Scene& scene, std::ostringstream& out, const Machine&
                            std::to_string(components * Component::kParameters) + " variables; " +
                            goal_words(d.goal));
   out << row("", thickness_words(d));
-  out << row("optimizer", scene.optimizer.name + ", at most " +
-                              std::to_string(scene.optimizer.max_iterations) + " iterations");
+  out << row("optimizer", optimizer_words(scene));
   out << figures_text(scene, nullptr, machine);
   out << "\nabsent: not built, costs nothing\n";
   out << row("motion", "no bodies, no joints, no time, no equivalent static loads");
@@ -289,9 +303,8 @@ std::string check_case(const RunOptions& options) {
   for (const Measure& measure : scene.measures) out << row("measured", measure_words(measure));
   for (const BodyDesign& d : scene.designs) describe_design(scene, d, out);
   if (!scene.designs.empty())
-    out << row("optimizer", scene.optimizer.name + ", at most " +
-                                std::to_string(scene.optimizer.max_iterations) + " iterations, " +
-                                std::to_string(scene.cycle.max_cycles) + " cycle(s)");
+    out << row("optimizer", optimizer_words(scene) + ", " + std::to_string(scene.cycle.max_cycles) +
+                                " cycle(s)");
   if (scene.verify)
     out << row("verification", "designed and uniform plate once more, " + scene.verify->words() +
                                    (scene.time.tolerance && scene.verify->step == scene.time.step

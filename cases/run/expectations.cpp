@@ -12,6 +12,9 @@ namespace {
 
 const std::string kLargest = ".largest";
 
+/// None where outlines could not be united.
+Features widths_of(const mmc::BodyOutcome& o) { return o.sharp.features.value_or(Features{0, 0}); }
+
 /// Figures of the first design of a run.
 const std::vector<std::pair<std::string, std::function<double(const mmc::BodyOutcome&)>>> kFigures =
     {
@@ -23,6 +26,9 @@ const std::vector<std::pair<std::string, std::function<double(const mmc::BodyOut
          [](const mmc::BodyOutcome& o) { return o.sharp.compliance / o.uniform_compliance; }},
         {"sharp_ratio",
          [](const mmc::BodyOutcome& o) { return o.sharp.compliance / o.compliance; }},
+        {"min_feature", [](const mmc::BodyOutcome& o) { return widths_of(o).solid; }},
+        {"min_gap", [](const mmc::BodyOutcome& o) { return widths_of(o).gap; }},
+        {"islands", [](const mmc::BodyOutcome& o) { return 1.0 * o.sharp.connectivity.islands; }},
 };
 const std::string kAmplitude = "amplitude";
 

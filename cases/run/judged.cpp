@@ -58,7 +58,8 @@ constexpr double kWithin = 0.99;
 void find_narrow(const mmc::BodyProblem& problem, std::span<const Region> regions,
                  JudgedBody& out) {
   out.cell = std::min(problem.grid.dx(), problem.grid.dy());
-  out.thickness = 2 * problem.stages.back().min_half_thickness;
+  out.thickness = problem.widths.solid > 0 ? problem.widths.solid
+                                           : 2 * problem.stages.back().min_half_thickness;
   // Discs side by side are one place: the narrowest stands for them.
   for (const NarrowPlace& p :
        mmc::narrow_places_of(problem, regions, kWithin * std::max(out.cell, out.thickness))) {
@@ -102,15 +103,15 @@ JudgedBody judge_body(const Scene& scene, const mmc::BodyProblem& problem,
                       RunFolder& folder) {
   JudgedBody out;
   out.body = problem.body;
-  if (loads != nullptr) out.why_not = mmc::cannot_judge(problem, *loads);
-  if (!out.why_not.empty()) return out;
   const double clock = thread_seconds();
   try {
+    const std::vector<Region> regions = mmc::exported_regions(problem);
+    find_narrow(problem, regions, out);
+    if (loads != nullptr) out.why_not = mmc::cannot_judge(problem, *loads);
+    if (!out.why_not.empty()) return out;
     const judge::Loads by_position =
         loads != nullptr ? mmc::loads_by_position(problem, *loads) : judged_loads(scene, problem);
-    const std::vector<Region> regions = mmc::exported_regions(problem);
     const Grid& g = problem.grid;
-    find_narrow(problem, regions, out);
     out.volume = area(regions) / (mmc::plate_of(problem).n_domain_cells() * g.dx() * g.dy());
     out.verdict = mmc::judge_design(problem, regions, by_position, go_on);
     write_meshes(scene, problem, regions, *out.verdict, folder);

@@ -21,12 +21,12 @@ struct JudgedBody {
   std::vector<NarrowPlace> narrow;  ///< what is below, of the exported outline, narrowest first
 };
 
-/// "body 'beam': 3 places of the exported outline are narrower than ...: 0.0014 m at (0.2, 0.1),
-/// ..." of its material and of its gaps; none where there are none.
+/// "body 'beam', its outline: 3 places are narrower than ... m: 0.0014 m at (0.2, 0.1), ..." of its
+/// material and of its gaps; none where there are none.
 std::vector<std::string> narrow_words(const JudgedBody& judged);
 
-/// Judges the design of a problem and writes design.inp, design.msh and design.geo. A judge that
-/// fails says why; the run goes on.
+/// Judges the design of a problem and writes design.inp, .msh, .geo and, where the scene wants
+/// files for ParaView, .vtu. A judge that fails says why; the run goes on.
 /// @param loads  of the motion; null: those of a plate at rest
 /// @param go_on  asked on the way: a verdict of coarser meshes says how far it got
 JudgedBody judge_body(const Scene& scene, const mmc::BodyProblem& problem,

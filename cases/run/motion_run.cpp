@@ -201,7 +201,8 @@ class Recorder {
     out_.loads[d].sets.push_back(std::move(set));
   }
 
-  /// All plates, then all rigid bodies that have a size; their numbers are those of the scene.
+  /// All plates, all rigid bodies that have a size, hubs, point masses; their numbers are those of
+  /// the scene.
   void add_frame(const fem::MotionStep& step) {
     const double t = step.x.t;
     int part = 0;
@@ -215,9 +216,36 @@ class Recorder {
     }
     for (const RigidBody& body : scene_.rigid_bodies) {
       const std::vector<Vec2> corners = drawn_corners(body, step.model, step.x);
-      if (!corners.empty()) folder_.add_rigid_frame(body.name, corners, t, part);
+      if (!corners.empty()) folder_.add_rigid_frame(body.name, rectangle(corners), t, part);
       ++part;
     }
+    for (const Hub& hub : scene_.hubs) {
+      Joint held;  // as one that is welded to the hub
+      held.to = hub.name;
+      const fem::FrameMotion frame = hub_drive(scene_, held)(t);
+      if (const double radius = drawn_radius(scene_, hub); radius > 0)
+        folder_.add_rigid_frame(hub.name, disc_mesh(frame, radius, true), t, part);
+      ++part;
+    }
+    for (const PointMass& mass : scene_.point_masses) add_mass(step, mass, part++);
+  }
+
+  void add_mass(const fem::MotionStep& step, const PointMass& mass, int part) {
+    const Body& body = scene_.body(mass.body);
+    if (body.in_space()) return;
+    const Vec2 end(body.longest(scene_.time.end), body.low() + 0.5 * body.width);
+    fem::FrameMotion frame;
+    frame.origin = fem::point_motion(step.model.body(mass.body), step.x, end).position;
+    folder_.add_rigid_frame(mass.body + "_mass",
+                            disc_mesh(frame, drawn_radius(scene_, mass), false), step.x.t, part);
+  }
+
+  static io::QuadMesh rectangle(std::span<const Vec2> corners) {
+    io::QuadMesh mesh;
+    for (const Vec2& corner : corners)
+      mesh.points.insert(mesh.points.end(), {corner[0], corner[1]});
+    mesh.quads.push_back({0, 1, 2, 3});
+    return mesh;
   }
 
   DesignedSurface designed(const fem::MotionStep& step, const Body& body) const {
@@ -225,7 +253,8 @@ class Recorder {
     const Grid& grid = scene_.designs[d].grid;
     const VectorXd density =
         wishes_.factors.empty() ? VectorXd::Ones(grid.n_cells()) : wishes_.factors[d].mass;
-    return designed_surface(step.model.body(body.name), step.x, grid, density);
+    const Pose& pose = poses_[static_cast<size_t>(&body - scene_.bodies.data())];
+    return designed_surface(step.model.body(body.name), step.x, pose, grid, density);
   }
 
   /// The mechanism as it is now, for a picture.

@@ -81,13 +81,15 @@ io::ReportSection heat_section(const Scene& scene) {
   return out;
 }
 
-io::ReportSection design_section(const RunFolder::DesignPictures& pictures) {
+io::ReportSection design_section(const RunFolder::DesignPictures& pictures, const Output& output) {
   std::vector<std::string> all;
   if (!pictures.start.empty()) all.push_back(pictures.start);
   if (!pictures.result.empty()) all.push_back(pictures.result);
   io::ReportSection out;
   out.heading = "Components of " + pictures.body;
-  out.words = all.size() > 1 ? "At the start and in the end." : "";
+  out.words = all.size() > 1 ? "At the start and in the end. " : "";
+  if (!pictures.result.empty())
+    out.words += std::string("Its files .dxf and .stl are in ") + output.unit.name + ".";
   out.pictures = std::move(all);
   return out;
 }
@@ -152,7 +154,7 @@ void write_report(const Scene& scene, const RunReport& report, RunFolder& folder
     sections.push_back(std::move(section));
   };
   for (const RunFolder::DesignPictures& p : folder.design_pictures())
-    sections.push_back(design_section(p));
+    sections.push_back(design_section(p, scene.output));
   for (const RunFolder::History& h : folder.histories())
     add("convergence_" + h.body, "Convergence of " + h.body, convergence_plot(h));
   if (report.motion) {

@@ -12,6 +12,7 @@ namespace flexmorph::cases {
 struct RunReport {
   std::string status, message;
   std::string lost_frames;         ///< what became of them, in words; mostly nothing
+  std::string missing_exports;     ///< likewise
   std::optional<Failure> failure;  ///< of a run that failed
   int threads = 1, cycles = 0;
   bool resumed = false;  ///< does it go on with what is in its folder?

@@ -227,8 +227,9 @@ Extent extent_of(const Scene& scene) {
   Extent out;
   out.memory.push_back({"the program", "title", kProgram});
   out.disk.push_back({"the report", "title", kReport});
-  for (const BodyDesign& d : scene.designs)
-    out.iterations += 1.0 * scene.optimizer.max_iterations * static_cast<double>(d.band.size());
+  out.iterations = 1.0 * scene.optimizer.max_iterations * static_cast<double>(scene.designs.size());
+  if (scene.finish && out.iterations > 0)
+    out.iterations += 1.0 * mmc::kFinishTries * scene.finish->max_iterations;
   if (!scene.domain) out.iterations *= scene.cycle.max_cycles;
   if (!scene.domain) {
     if (out.iterations > 0) out.motions = scene.verify ? 4 : 2;

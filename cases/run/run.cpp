@@ -18,6 +18,7 @@
 #include "cases/run/expectations.h"
 #include "cases/run/kept_case.h"
 #include "cases/run/motions.h"
+#include "cases/run/paraview_script.h"
 #include "cases/run/path_run.h"
 #include "cases/run/progress.h"
 #include "cases/run/report.h"
@@ -48,9 +49,10 @@ void judge_outlines(const Scene& scene, std::span<const fem::EslSets> loads, Run
                     Progress& progress, RunReport& report) {
   progress.begin("judge");
   for (size_t i = 0; i < report.outcomes.size(); ++i) {
-    report.judged.push_back(
-        judge_body(scene, report.problems[i], loads.empty() ? nullptr : &loads[i], go_on, folder));
-    if (interrupted) throw Interrupted();
+    JudgedBody judged =
+        judge_body(scene, report.problems[i], loads.empty() ? nullptr : &loads[i], go_on, folder);
+    if (interrupted) throw Interrupted();  // no verdict: it was not done
+    report.judged.push_back(std::move(judged));
     progress.say(judged_words(report.judged.back(), report.outcomes[i].sharp.compliance));
   }
 }
@@ -129,9 +131,10 @@ void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress
       progress.say(summary(outcomes[i]) + memory.words());
     }
   };
-  mmc::LoopSettings settings{analysed ? 1 : scene.cycle.max_cycles,
-                             scene.cycle.tolerance,
-                             {scene.output.sharp_every, scene.optimizer, condition, memory.past()}};
+  mmc::LoopSettings settings{
+      analysed ? 1 : scene.cycle.max_cycles,
+      scene.cycle.tolerance,
+      {scene.output.sharp_every, scene.optimizer, condition, memory.past(), scene.finish}};
   observer.verdict = [&](std::span<const mmc::CycleVerdict> verdicts) {
     report.verdicts.assign(verdicts.begin(), verdicts.end());
     folder.write_cycles(verdicts);
@@ -174,8 +177,9 @@ void run_static(const Scene& scene, bool condition, RunFolder& folder, Progress&
     return go_on();
   };
   const mmc::BodyOutcome outcome = mmc::design_body(
-      problem, *loads, 1, {scene.output.sharp_every, scene.optimizer, condition, memory.past()},
-      observe, going);
+      problem, *loads, 1,
+      {scene.output.sharp_every, scene.optimizer, condition, memory.past(), scene.finish}, observe,
+      going);
   report.cycles = 1;
   report.outcomes = {outcome};
   folder.write_static_loads(*scene.domain, outcome);
@@ -229,6 +233,7 @@ void run_scene(const Scene& scene, bool condition, RunFolder& folder, Progress& 
     tell_story(scene, condition, folder, progress, report);
     folder.finish();
     report.lost_frames = folder.lost_frames();
+    report.missing_exports = folder.missing_exports();
   } catch (const std::bad_alloc&) {
     throw Error::numerical(out_of_memory_words(extent_of(scene)));
   }
@@ -291,6 +296,7 @@ int run_case(const RunOptions& options) {
   RunFolder folder(directory, scene, options.threads > 1,
                    options.resume ? RunFolder::Begin::go_on : RunFolder::Begin::anew);
   keep_case(file, options.explain, folder);
+  if (scene.output.vtk) folder.write_text("paraview.py", kParaViewScript);
   end_on_signals();
   Progress progress(options.quiet);
   progress.say(scene.title + " -> " + directory);

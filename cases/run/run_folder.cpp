@@ -147,17 +147,16 @@ void RunFolder::add_surface_frame(const fem::Body& body, const fem::State& x, co
          surface.mesh, surface.energy});
 }
 
-void RunFolder::add_rigid_frame(const std::string& body, std::span<const Vec2> corners, double time,
+void RunFolder::add_rigid_frame(const std::string& name, const io::QuadMesh& mesh, double time,
                                 int part) {
-  io::QuadMesh mesh;
-  for (const Vec2& corner : corners) mesh.points.insert(mesh.points.end(), {corner[0], corner[1]});
-  mesh.quads.push_back({0, 1, 2, 3});
-  write_part(body, mesh, {}, {}, time, part);
+  write_part(name, mesh, {}, {}, time, part);
 }
 
 void RunFolder::add_motion_frame(const std::string& body, const DesignedSurface& surface,
                                  double time, int part) {
-  write_part(body, surface.mesh, {{"density", surface.density}}, {}, time, part);
+  const io::Field points[] = {{"displacement", surface.displacement, 2}};
+  write_part(body, surface.mesh, {{"density", surface.density}, {"strain_energy", surface.energy}},
+             points, time, part);
 }
 
 std::vector<io::SurfaceFrame> RunFolder::shapes(size_t most) const {

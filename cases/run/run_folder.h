@@ -93,6 +93,8 @@ class RunFolder {
   std::vector<std::string> files_of(const std::string& ending) { return folder_.files_of(ending); }
   /// What became of frames for ParaView that could not be written, in words; nothing when all are.
   std::string lost_frames();
+  /// Exports that could not be made, in words; nothing when all are there.
+  const std::string& missing_exports() const { return missing_; }
 
   /// One design iteration: a row of history.csv, and the VTK files the scene asks for.
   void add_iteration(const mmc::IterationReport& report);
@@ -111,16 +113,16 @@ class RunFolder {
   /// within 1 % of the largest.
   void write_static_loads(const Domain& domain, const mmc::BodyOutcome& outcome);
   /// A part of a frame of motion/motion.pvd, which has one file per part and time; the field `body`
-  /// is its number. The deformed body with the density of its design:
+  /// is its number. The deformed body with the density of its design, displacements and strain
+  /// energy per area:
   void add_motion_frame(const std::string& body, const DesignedSurface& surface, double time,
                         int part);
   /// The deformed mid-surface of a body without a design, with displacements and strain energy per
   /// area, a beam with its elastic strain (`heating`: see deformed_surface()):
   void add_surface_frame(const fem::Body& body, const fem::State& x, const Pose& pose, double time,
                          int part, double heating = 1);
-  /// A rigid body, by its corners:
-  void add_rigid_frame(const std::string& body, std::span<const Vec2> corners, double time,
-                       int part);
+  /// What does not deform: rigid bodies, hubs, point masses.
+  void add_rigid_frame(const std::string& name, const io::QuadMesh& mesh, double time, int part);
 
   /// plots/start_<body>.svg: the layout before the first iteration.
   void write_start(const mmc::BodyProblem& problem);
@@ -195,6 +197,7 @@ class RunFolder {
     void remember(Memory& memory) { memory(file, time, part); }
   };
   std::vector<Frame> frames_;
+  std::string missing_;
   int lost_frames_ = 0;  // of the writer, as the next
   std::string why_lost_;
   std::vector<History> histories_;

@@ -2,6 +2,7 @@
 #include "io/exports.h"
 #include "io/files.h"
 #include "io/plots.h"
+#include "io/step.h"
 
 /// Tables and pictures of designs and their loads.
 namespace flexmorph::cases {
@@ -21,6 +22,27 @@ struct Outlines {
   std::string svg() const { return io::outline_svg(regions, frame); }
   std::string picture() const { return io::outline_svg(regions, frame, 5); }
 };
+
+/// A place as a drawing shows it: a point, a line or a box.
+std::vector<Vec2> shape_of(const Place& place) {
+  const Vec2 &a = place.box.lower, &b = place.box.upper;
+  if (a == b) return {a};
+  if ((b - a).minCoeff() == 0) return {a, b};
+  return corners_of(place.box);
+}
+
+/// The domain, and where a plate at rest is held and pulled.
+std::vector<io::DrawingLayer> drawn_besides(const Scene& scene, const mmc::BodyProblem& problem) {
+  std::vector<io::DrawingLayer> out = {{"DOMAIN", rings_of(mmc::domain_of(problem))}};
+  if (!scene.domain) return out;
+  io::DrawingLayer supports{"SUPPORTS", {}}, loads{"LOADS", {}};
+  for (const PlaneSupport& s : scene.domain->supports) supports.shapes.push_back(shape_of(s.place));
+  for (const LoadCase& load : scene.domain->loads)
+    for (const PlaneForce& f : load.forces) loads.shapes.push_back(shape_of(f.place));
+  out.push_back(std::move(supports));
+  out.push_back(std::move(loads));
+  return out;
+}
 
 }  // namespace
 
@@ -77,9 +99,15 @@ void RunFolder::write_design(const mmc::BodyProblem& problem, const mmc::BodyOut
   io::write_components_csv(folder_.file(components_name(scene_, problem.body)), components);
   const Outlines outlines(problem);
   io::write_file(folder_.file("design" + stem + ".svg"), outlines.svg());
-  io::write_dxf(folder_.file("design" + stem + ".dxf"), outlines.regions);
-  io::write_stl(folder_.file("design" + stem + ".stl"), outlines.regions,
-                problem.section.thickness);
+  const io::LengthUnit& unit = scene_.output.unit;
+  const double thickness = problem.section.thickness;
+  io::write_dxf(folder_.file("design" + stem + ".dxf"), outlines.regions, unit,
+                drawn_besides(scene_, problem));
+  io::write_stl(folder_.file("design" + stem + ".stl"), outlines.regions, thickness, unit);
+  // An outline that touches itself is no solid: the other files have it.
+  const std::string name = "design" + stem + ".step";
+  const std::string why = io::write_step(folder_.file(name), outlines.regions, thickness);
+  if (!why.empty()) missing_ += name + " is not there: OpenCASCADE makes no solid of it: " + why;
   if (!scene_.output.plots) return;
   pictures_of(problem.body).result = outlines.picture();
   const auto& sharp = outcome.sharp.fractions;

@@ -34,16 +34,26 @@ void set_condition(Json& out, const std::optional<double>& condition) {
   if (condition && std::isfinite(*condition)) out["condition"] = *condition;
 }
 
+/// Numbers that JSON has none for: "infinite".
+Json finite_or_words(double value) { return std::isfinite(value) ? Json(value) : Json("infinite"); }
+
 Json clean_up_results(const mmc::CleanUp& c) {
   Json out = Json::object();
-  out["min_feature_wanted"] = c.wanted;
-  out["min_feature_before"] = c.before;
+  out["min_feature_wanted"] = c.wanted.solid;
+  out["min_feature_before"] = finite_or_words(c.before.solid);
+  out["min_gap_wanted"] = c.wanted.gap;
+  out["min_gap_before"] = finite_or_words(c.before.gap);
+  out["pieces_before"] = c.pieces_before;
+  out["pieces"] = c.pieces_after;
   out["compliance_before"] = c.compliance_before;
   out["compliance_cost"] = c.compliance_after / c.compliance_before - 1;
   out["patches"] = c.patches;
   out["dropped"] = c.dropped;
+  out["idle"] = c.idle;
+  out["stubs"] = c.stubs;
   out["rounds"] = c.rounds;
   out["reached"] = c.reached();
+  out["given_up"] = c.given_up;
   return out;
 }
 
@@ -55,9 +65,6 @@ std::string objective_words(const mmc::BodyProblem& p) {
     return "natural logarithm of the " + of + ", summed over bodies that share mass";
   return row.full ? of + ", divided by that of the full plate" : "natural logarithm of the " + of;
 }
-
-/// Numbers that JSON has none for: "infinite".
-Json finite_or_words(double value) { return std::isfinite(value) ? Json(value) : Json("infinite"); }
 
 Json judged_results(const JudgedBody& judged, double sharp_compliance) {
   Json out = Json::object();
@@ -340,6 +347,7 @@ std::string run_json(const Scene& scene, const RunReport& report) {
   Json results = Json::array();
   for (size_t i = 0; i < report.outcomes.size(); ++i) results.push_back(body_results(report, i));
   out["results"] = std::move(results);
+  if (!report.outcomes.empty()) out["drawing_unit"] = scene.output.unit.name;
   if (std::optional<Json> shared = shared_mass(report)) out["shared_mass"] = std::move(*shared);
   if (!report.verdicts.empty()) {
     Json cycles = Json::array();

@@ -12,15 +12,17 @@ namespace {
 using Warnings = std::vector<Warning>;
 
 constexpr double kLargestDefect = 0.1;  // of the balance of energy before a motion is warned of
+constexpr double kCellsApart = 0.02;    // sharp compliances from body-fitted ones
 // Compliance of the blurred design over that of the sharp one. Where the start of a design is
 // analysed it is about 2; 10 is no design any more but heavy, soft edges.
 constexpr double kHangingMass = 10;
 
-/// What a row of the goal came to.
+/// What a row of the goal came to. Volumes of mended designs are limited as they are, without blur.
 double found_of(const mmc::ResponseRow& row, const mmc::BodyProblem& p, const mmc::BodyOutcome& o) {
-  if (&row == &mmc::kVolume) return o.volume;
+  const bool sharp = o.clean_up && row.even;
+  if (&row == &mmc::kVolume) return sharp ? o.sharp.volume : o.volume;
   if (&row == &mmc::compliance_row(p.goal)) return o.compliance;
-  return o.further.at(mmc::key_of(row));
+  return (sharp ? o.sharp.further : o.further).at(mmc::key_of(row));
 }
 
 /// Has the optimizer left a design that is not feasible? (One that is analysed as it starts was not
@@ -60,7 +62,8 @@ void add_worse(const mmc::BodyProblem& p, const mmc::BodyOutcome& o, Warnings& o
 }
 
 /// What the judge of outlines has against a design.
-void add_judged(const JudgedBody& judged, Warnings& out) {
+/// @param sharp  its compliance by cells
+void add_judged(const JudgedBody& judged, double sharp, Warnings& out) {
   if (!judged.verdict) {
     out.push_back({"body '" + judged.body + "': no body-fitted compliance: " + judged.why_not});
     return;
@@ -73,9 +76,32 @@ void add_judged(const JudgedBody& judged, Warnings& out) {
   else if (!j.converged)
     out.push_back({"body '" + judged.body + "': the body-fitted compliance has an error of about " +
                    io::to_text(100 * j.error, 2) + " %: its mesh reached its largest size"});
+  const double apart = sharp / j.compliance - 1;
+  if (std::isfinite(j.compliance) && std::abs(apart) > kCellsApart)
+    out.push_back({"body '" + judged.body + "': the cells of the design say a compliance " +
+                   io::to_text(100 * std::abs(apart), 2) + " % " + (apart < 0 ? "below" : "above") +
+                   " the body-fitted one"});
   if (j.left_out > 0)
     out.push_back({"body '" + judged.body + "': " + std::to_string(j.left_out) + " of " +
                    std::to_string(j.pieces) + " pieces are held by nothing"});
+}
+
+/// What mending has left.
+std::string not_mended(const mmc::BodyOutcome& o) {
+  const mmc::CleanUp& c = *o.clean_up;
+  std::string out = "body '" + o.body + "' could not be mended: ";
+  const auto add = [&](const std::string& what, double found, double wanted) {
+    if (found < wanted)
+      out += "its smallest " + what + " is " + io::to_text(found, 4) + " m where " +
+             io::to_text(wanted, 4) + " m was wanted; ";
+  };
+  add("feature", c.after.solid, c.wanted.solid);
+  add("gap", c.after.gap, c.wanted.gap);
+  if (c.pieces_after != 1) out += "it has " + std::to_string(c.pieces_after) + " pieces; ";
+  return out + (c.given_up
+                    ? "repairs would have cost more than a quarter of the compliance, and were "
+                      "taken back: more iterations help"
+                    : "more iterations may help");
 }
 
 void add_designs(const RunReport& report, Warnings& out) {
@@ -84,10 +110,7 @@ void add_designs(const RunReport& report, Warnings& out) {
       out.push_back(
           {"body '" + o.body + "': no piece of material joins what is held and what is loaded",
            true});
-    if (o.clean_up && !o.clean_up->reached())
-      out.push_back({"body '" + o.body + "': the smallest feature is " +
-                     io::to_text(o.clean_up->after, 4) + " m where " +
-                     io::to_text(o.clean_up->wanted, 4) + " m was wanted"});
+    if (o.clean_up && !o.clean_up->reached()) out.push_back({not_mended(o)});
     if (o.sharp.compliance > 1.15 * o.compliance)
       out.push_back({"body '" + o.body +
                      "': the sharp compliance is far above the blurred one: gaps are bridged"});
@@ -105,7 +128,8 @@ void add_designs(const RunReport& report, Warnings& out) {
         add_worse(p, o, out);
       }
   for (const JudgedBody& judged : report.judged) {
-    add_judged(judged, out);
+    for (const mmc::BodyOutcome& o : report.outcomes)
+      if (o.body == judged.body) add_judged(judged, o.sharp.compliance, out);
     for (std::string& words : narrow_words(judged)) out.push_back({std::move(words)});
   }
 }
@@ -158,6 +182,7 @@ Warnings warnings_of(const Scene& scene, const RunReport& report) {
   add_designs(report, out);
   if (report.motion) add_motion(scene, *report.motion, out);
   if (!report.lost_frames.empty()) out.push_back({report.lost_frames});
+  if (!report.missing_exports.empty()) out.push_back({report.missing_exports});
   return out;
 }
 

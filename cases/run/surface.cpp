@@ -1,6 +1,8 @@
 #include "cases/run/surface.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "cases/scene/elements/row.h"
 #include "fem/dynamics/carrier.h"
@@ -16,6 +18,14 @@ struct Cuts {
   std::vector<double> m, n;
 
   size_t element(size_t i, size_t j) const { return i * (n.size() - 1) + j; }
+  /// The element of a material point, the nearest one of a point beside them.
+  size_t element_at(const Vec2& p) const { return element(interval(m, p.x()), interval(n, p.y())); }
+
+ private:
+  static size_t interval(const std::vector<double>& lines, double at) {
+    const auto next = std::upper_bound(lines.begin() + 1, lines.end() - 1, at);
+    return static_cast<size_t>(next - lines.begin()) - 1;
+  }
 };
 
 /// Material coordinates of the points along one direction.
@@ -104,23 +114,64 @@ Surface deformed_surface(const ElementRow& row, const fem::Body& body, const fem
   return out;
 }
 
-DesignedSurface designed_surface(const fem::Body& body, const fem::State& x, const Grid& grid,
-                                 const VectorXd& density) {
+DesignedSurface designed_surface(const fem::Body& body, const fem::State& x, const Pose& pose,
+                                 const Grid& grid, const VectorXd& density) {
+  const Cuts cuts(body);
+  const std::vector<double> energy = energies(body, cuts, x);
   const double root = fem::grid_of(body).line_m(0).value;
   const int first = std::max(0, static_cast<int>(std::ceil((root - grid.x0) / grid.dx() - 1e-6)));
   DesignedSurface out;
   const int ny = grid.ny;
   for (int i = first; i <= grid.nx; ++i)
     for (int j = 0; j <= ny; ++j) {
-      const Vec2 p = fem::point_motion(body, x, grid.node_position(i, j)).position;
-      out.mesh.points.push_back(p.x());
-      out.mesh.points.push_back(p.y());
+      const Vec2 material = grid.node_position(i, j);
+      const Vec2 p = fem::point_motion(body, x, material).position;
+      const Vec3 from = pose.place(material);
+      for (int c = 0; c < 2; ++c) {
+        out.mesh.points.push_back(p[c]);
+        out.displacement.push_back(p[c] - from[c]);
+      }
       if (i == grid.nx || j == ny) continue;
       const int a = (i - first) * (ny + 1) + j;
       out.mesh.quads.push_back({a, a + ny + 1, a + ny + 2, a + 1});
       out.density.push_back(density[grid.cell(i, j)]);
+      out.energy.push_back(energy[cuts.element_at(grid.cell_center(i, j))]);
     }
   return out;
+}
+
+io::QuadMesh disc_mesh(const fem::FrameMotion& frame, double radius, bool notched) {
+  constexpr int kSides = 24;
+  io::QuadMesh out;
+  out.points = {frame.origin.x(), frame.origin.y()};
+  for (int k = 0; k <= kSides; ++k) {
+    // From -x around to -x.
+    const double angle = frame.angle + std::numbers::pi * (2.0 * k / kSides - 1);
+    out.points.push_back(frame.origin.x() + radius * std::cos(angle));
+    out.points.push_back(frame.origin.y() + radius * std::sin(angle));
+  }
+  const int left_out = notched ? 2 : 0;
+  for (int k = 1 + left_out; k + 2 <= kSides + 1 - left_out; k += 2)
+    out.quads.push_back({0, k, k + 1, k + 2});
+  return out;
+}
+
+double drawn_radius(const Scene& scene, const Hub& hub) {
+  double width = 0, length = 0;
+  for (const Joint& j : scene.joints) {
+    if (j.to != hub.name) continue;
+    for (const Body& body : scene.bodies) {
+      if (body.name != j.body) continue;
+      width = std::max(width, body.width);
+      length = std::max(length, body.longest(scene.time.end));
+    }
+  }
+  return width > 0 ? 0.25 * width : 0.02 * length;
+}
+
+double drawn_radius(const Scene& scene, const PointMass& mass) {
+  const Body& body = scene.body(mass.body);
+  return body.width > 0 ? 0.15 * body.width : 0.015 * body.longest(scene.time.end);
 }
 
 std::vector<Vec2> drawn_corners(const RigidBody& body, const fem::Model& model,

@@ -28,11 +28,22 @@ Surface deformed_surface(const ElementRow& row, const fem::Body& body, const fem
 /// Points and quads across, then along, as in a Surface.
 struct DesignedSurface {
   io::QuadMesh mesh;
-  std::vector<double> density;  ///< per quad [-]
+  std::vector<double> density;       ///< per quad [-]
+  std::vector<double> displacement;  ///< per point (2), as in a Surface [m]
+  std::vector<double> energy;        ///< per quad, as in a Surface [J/m^2]
 };
+/// @param pose     as of deformed_surface()
 /// @param density  of the cells of the grid
-DesignedSurface designed_surface(const fem::Body& body, const fem::State& x, const Grid& grid,
-                                 const VectorXd& density);
+DesignedSurface designed_surface(const fem::Body& body, const fem::State& x, const Pose& pose,
+                                 const Grid& grid, const VectorXd& density);
+
+/// A disc at a frame's origin; without the part around its -x, which shows how far it has turned,
+/// where it is notched.
+io::QuadMesh disc_mesh(const fem::FrameMotion& frame, double radius, bool notched);
+/// How large hubs and point masses, which have no size, are drawn: a part of the width of what they
+/// carry, or of its length where that has none [m].
+double drawn_radius(const Scene& scene, const Hub& hub);
+double drawn_radius(const Scene& scene, const PointMass& mass);
 
 /// Corners of the rectangle that a rigid body is drawn as, counterclockwise; none without a size.
 std::vector<Vec2> drawn_corners(const RigidBody& body, const fem::Model& model,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/component.h"
+#include "geometry/feature.h"
 #include "geometry/grid.h"
 #include "geometry/tdf.h"
 #include "optim/mmc/compliance.h"
@@ -30,7 +31,7 @@ struct BodyDesign {
   std::array<int, 2> components{1, 1};  ///< boxes of the initial layout, two components in each
   mmc::Goal goal;                       ///< volumes are fractions, solid regions included
   double min_thickness = 0;             ///< c_min: smallest half-thickness of a component [m]
-  double min_feature = 0;               ///< smallest solid feature of the union [m], 0: as it comes
+  Widths widths;                        ///< what the union is mended to
   double half_length = 0;               ///< of the initial components [m]
   double half_thickness = 0;            ///< of the initial components [m]
   /// Half-widths of the Heaviside band, coarse to fine [cells]; of tdf = "paper" [-].
@@ -44,7 +45,8 @@ struct BodyDesign {
   int drop_every = 25;            ///< iterations between looks for dead components, 0: none
   bool refill = false;            ///< long components are split in place of dropped ones
   bool shares_mass = false;       ///< with the other designs that do: see mmc::SharedProblem
-  std::vector<Box> solid, empty;  ///< a cell belongs to a region that holds its centre [m]
+  /// Polygons; a cell belongs to a region that holds its centre [m].
+  std::vector<std::vector<Vec2>> solid, empty;
 
   int n_components() const {
     return start.empty() ? 2 * components[0] * components[1] : static_cast<int>(start.size());

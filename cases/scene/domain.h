@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/component.h"
+#include "geometry/outline.h"
 
 /// [domain], [[support]], [[load]]: a plate at rest.
 namespace flexmorph::cases {
@@ -36,7 +36,7 @@ struct LoadCase {
 struct Domain {
   std::string name;
   Box bounds;                 ///< of the design mesh [m]
-  std::vector<Vec2> polygon;  ///< the domain within; empty: all of it
+  Region shape;  ///< the domain within; without an outer ring: all of it
   double thickness = 1;       ///< [m]
   double youngs_modulus = 1;  ///< [Pa]
   double poisson_ratio = 0.3;

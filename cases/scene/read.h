@@ -21,6 +21,7 @@ void read_drives(const io::Table& root, Scene& scene);
 std::vector<std::string> overrides_of_drive_files(const io::Table& root);
 std::vector<std::string> overrides_of_reference_files(const io::Table& t);
 std::vector<std::string> overrides_of_start_files(const io::Table& root);
+std::vector<std::string> overrides_of_outline(const io::Table& root);
 
 /// A number, or the name of a drive in its place.
 Law read_law(const io::Table& t, const io::Key& key, const Scene& scene,
@@ -72,6 +73,9 @@ std::vector<BodyLine> read_lines(const io::Table& body_table, const Body& body);
 /// A name that becomes part of column names and file names, so: a letter, then letters, digits,
 /// underscores.
 std::string read_word(const io::Table& t, const io::Key& key);
+
+/// A polygon from x0, y0, x1, y1, ...: counterclockwise; it has an area and does not cross itself.
+std::vector<Vec2> read_polygon(const io::Table& t, const io::Key& key);
 
 /// [domain], [[support]], [[load]]: a plate at rest.
 void read_static(const io::Table& root, Scene& scene);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geometry/base.h"
+#include "io/length_unit.h"
 
 /// What a run shows, and what it must reproduce.
 namespace flexmorph::cases {
@@ -27,6 +28,7 @@ struct Output {
   double motion_every = 0;  ///< time between VTK files of the motion [s], 0: none
   int sharp_every = 25;     ///< iterations between sharp evaluations, 0: the final design only
   bool vtk = true, plots = true;
+  io::LengthUnit unit = io::kMillimetre;  ///< of exported drawings and solids
 };
 
 /// A number the run must reproduce: value with a tolerance, or bounds.

@@ -36,6 +36,11 @@ const io::Key& kVtk =
     io::key("output", "vtk").boolean().otherwise(true).says("Writes files for ParaView.");
 const io::Key& kPlots =
     io::key("output", "plots").boolean().otherwise(true).says("Draws plots for the report.");
+const io::Key& kUnit =
+    io::key("output", "unit")
+        .word("a unit of length", io::length_unit_names())
+        .otherwise("mm")
+        .says("Of design.dxf and .stl, which go to a shop; .step is in mm, all else in m.");
 
 const io::Key& kExpected =
     io::key("expect", "*")
@@ -72,6 +77,7 @@ Output read_output(const io::Table& t) {
   output.sharp_every = t.integer(kSharpEvery);
   output.vtk = t.boolean(kVtk);
   output.plots = t.boolean(kPlots);
+  output.unit = *io::find_length_unit(t.choice(kUnit));
   return output;
 }
 
@@ -188,6 +194,7 @@ std::vector<std::string> overrides_of_files(const io::CaseFile& file) {
   const io::Table root = file.root();
   std::vector<std::string> out = overrides_of_drive_files(root);
   for (std::string& each : overrides_of_start_files(root)) out.push_back(std::move(each));
+  for (std::string& each : overrides_of_outline(root)) out.push_back(std::move(each));
   if (!root.has(tables::kAccuracy)) return out;
   for (std::string& each : overrides_of_reference_files(root.table(tables::kAccuracy)))
     out.push_back(std::move(each));

@@ -3,7 +3,9 @@
 #include "cases/scene/read.h"
 #include "cases/scene/tables.h"
 #include "geometry/outline.h"
+#include "io/drawing.h"
 #include "io/files.h"
+#include "io/length_unit.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -23,12 +25,27 @@ const Key& kName = io::key("domain", "name")
                        .says("What files call it.");
 const Key& kSize = io::key("domain", "size")
                        .numbers(positive("a length, a height", "m"), 2, 2)
-                       .otherwise_as("`polygon` is given")
+                       .otherwise_as("`polygon` or `outline` is given")
                        .says("Length and height of a rectangle that begins at the origin.");
 const Key& kPolygon = io::key("domain", "polygon")
                           .numbers(any_number("x0, y0, x1, y1, ... of a polygon", "m"), 6)
-                          .otherwise_as("`size` is given")
+                          .otherwise_as("`size` or `outline` is given")
                           .says("Or its corners: x0, y0, x1, y1, ...");
+const Key& kOutline =
+    io::key("domain", "outline")
+        .text("a drawing")
+        .otherwise_as("`size` or `polygon` is given")
+        .says("Or a drawing, .dxf or .svg: one closed curve, and others in it that are its holes.");
+const Key& kUnit = io::key("domain", "unit")
+                       .word("a unit of length", io::length_unit_names())
+                       .otherwise_as("as the drawing says")
+                       .when("`outline` is given")
+                       .says("The unit of the drawing's coordinates.");
+const Key& kLayers = io::key("domain", "layers")
+                         .texts("layers of a drawing")
+                         .otherwise_as("all of them")
+                         .when("`outline` is a .dxf file")
+                         .says("The layers that the domain is drawn on.");
 const Key& kThickness = io::key("domain", "thickness")
                             .number(positive("a thickness", "m"))
                             .otherwise(1.0)
@@ -80,38 +97,31 @@ const Key& kForce = io::key("load.force", "force")
                         .numbers(any_number("a force", "N"), 2, 2)
                         .says("In all, spread evenly over the place.");
 
-Box bounds_of(const std::vector<Vec2>& polygon) {
-  Box box{polygon.front(), polygon.front()};
-  for (const Vec2& p : polygon) {
-    box.lower = box.lower.cwiseMin(p);
-    box.upper = box.upper.cwiseMax(p);
+Region read_outline(const Table& t) {
+  io::DrawingSettings settings;
+  if (t.has(kUnit)) settings.unit = io::find_length_unit(t.choice(kUnit))->metres;
+  if (t.has(kLayers)) settings.layers = t.strings(kLayers);
+  const std::string path = t.path_of(kOutline);
+  try {
+    return region_of(io::read_drawing(path, settings));
+  } catch (const Error& error) {
+    const std::string what = error.what();
+    t.fail(kOutline, what.starts_with(path) ? what : path + ": " + what);
   }
-  return box;
 }
 
 void read_shape(const Table& t, Domain& domain) {
-  if (t.has(kSize) == t.has(kPolygon))
-    t.fail("a domain has either a `size` (length, height) or a `polygon`");
+  if (t.has(kSize) + t.has(kPolygon) + t.has(kOutline) != 1)
+    t.fail("a domain has either a `size` (length, height) or a `polygon` or an `outline`");
+  for (const Key* key : {&kUnit, &kLayers})
+    if (t.has(*key) && !t.has(kOutline)) t.fail(*key, "only an `outline` has it");
   if (t.has(kSize)) {
     const std::vector<double> size = t.numbers(kSize);
     domain.bounds = {{0, 0}, {size[0], size[1]}};
     return;
   }
-  const std::vector<double> flat = t.numbers(kPolygon);
-  if (flat.size() < 6 || flat.size() % 2 != 0)
-    t.fail(kPolygon, "three corners or more: x0, y0, x1, y1, x2, y2, ... [m]");
-  constexpr double kFarthest = 1e30;  // a plate of any use, in any unit; products stay finite
-  for (const double x : flat)
-    if (std::abs(x) > kFarthest) t.fail(kPolygon, "coordinates are at most 1e30 m");
-  for (size_t k = 0; k < flat.size(); k += 2) domain.polygon.emplace_back(flat[k], flat[k + 1]);
-  domain.bounds = bounds_of(domain.polygon);
-  if ((domain.bounds.upper - domain.bounds.lower).minCoeff() <= 0)
-    t.fail(kPolygon, "a polygon has an area");
-  try {
-    unite(std::vector<std::vector<Vec2>>{domain.polygon}, domain.bounds);
-  } catch (const Error&) {
-    t.fail(kPolygon, "a polygon does not cross itself");
-  }
+  domain.shape = t.has(kOutline) ? read_outline(t) : Region{read_polygon(t, kPolygon), {}};
+  domain.bounds = bounds_of(domain.shape.outer);
 }
 
 /// Where something holds or pulls: an edge of the domain's bounding box, a point or a box.
@@ -165,6 +175,13 @@ LoadCase read_load(const Table& t, const Domain& domain) {
 }
 
 }  // namespace
+
+std::vector<std::string> overrides_of_outline(const Table& root) {
+  if (!root.has(tables::kDomain)) return {};
+  const Table t = root.table(tables::kDomain);
+  if (!t.has(kOutline) || !t.is_string(kOutline)) return {};
+  return {"domain.outline='" + t.absolute(kOutline) + "'"};
+}
 
 void read_static(const Table& root, Scene& scene) {
   for (const Key* key :

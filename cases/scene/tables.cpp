@@ -78,6 +78,7 @@ const std::vector<std::string>& order() {
                                                   "design.void",
                                                   "optimizer",
                                                   "optimizer.options",
+                                                  "optimizer.finish_options",
                                                   "cycle",
                                                   "verify",
                                                   "output",

@@ -97,7 +97,9 @@ std::string first_unreal(const std::string& folder) {
       continue;
     }
     // Of VTK files the writer itself refuses what is not finite; their base64 is no text.
-    if (ending != ".csv" && ending != ".svg" && ending != ".dxf" && ending != ".stl") continue;
+    if (ending != ".csv" && ending != ".svg" && ending != ".dxf" && ending != ".stl" &&
+        ending != ".step")
+      continue;
     if (const std::string place = unreal_line(file); !place.empty()) return name + place;
   }
   return "";

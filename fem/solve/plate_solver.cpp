@@ -154,6 +154,32 @@ void PlateSolver::cell_energies(const MatrixXd& displacements, const VectorXd& w
   });
 }
 
+void PlateSolver::cell_forces(const VectorXd& displacements,
+                              const Eigen::SparseMatrix<double>& directions,
+                              MatrixXd& forces) const {
+  const Impl& m = *impl_;
+  Eigen::Matrix<double, 8, Eigen::Dynamic> each(8, m.grid.n_cells());
+  m.each_cell([&](int i, int j) {
+    const auto rows = m.matrix->rows_of_cell(i, j);
+    Eigen::Matrix<double, 8, 1> u;
+    for (int k = 0; k < 8; ++k) {
+      const int row = rows[static_cast<std::size_t>(k)];
+      u[k] = row < 0 ? 0.0 : displacements[row];
+    }
+    each.col(m.grid.cell(i, j)).noalias() = m.matrix->cell_stiffness() * u;
+  });
+  forces.setZero(directions.cols(), m.matrix->size());
+  for (Eigen::Index d = 0; d < directions.cols(); ++d)
+    for (Eigen::SparseMatrix<double>::InnerIterator at(directions, d); at; ++at) {
+      const int cell = static_cast<int>(at.row());
+      if (m.inside[static_cast<std::size_t>(cell)] == 0) continue;
+      const auto rows = m.matrix->rows_of_cell(cell / m.grid.ny, cell % m.grid.ny);
+      for (int k = 0; k < 8; ++k)
+        if (const int row = rows[static_cast<std::size_t>(k)]; row >= 0)
+          forces(d, row) += at.value() * each(k, cell);
+    }
+}
+
 void PlateSolver::cell_energies(const MatrixXd& displacements, MatrixXd& energies) const {
   const Impl& m = *impl_;
   const Q4Energy energy(m.section, m.grid.dx(), m.grid.dy());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/SparseCore>
 #include <memory>
 #include <span>
 #include <vector>
@@ -52,6 +53,12 @@ class PlateSolver {
   /// Σ_l w_l u_l . K_cell u_l of full material for every cell (n_cells); 0 outside.
   void cell_energies(const MatrixXd& displacements, const VectorXd& weights,
                      VectorXd& energies) const;
+  /// K_i u, K_i = Σ_c D_ci K_c of full material, for every column of D, in place of the rows of
+  /// `forces` (n_directions x n_unknowns).
+  /// @param displacements  u (n_unknowns)
+  /// @param directions  D (n_cells x n_directions); cells outside of the domain are not read
+  void cell_forces(const VectorXd& displacements, const Eigen::SparseMatrix<double>& directions,
+                   MatrixXd& forces) const;
   /// u_l . K_cell u_l of every load (n_loads x n_cells).
   void cell_energies(const MatrixXd& displacements, MatrixXd& energies) const;
 

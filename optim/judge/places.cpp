@@ -29,15 +29,16 @@ std::optional<Segment> clipped(const Segment& s, const Box& box) {
 
 }  // namespace
 
-Place point_place(const Vec2& point, std::span<const Vec2> border, double reach) {
+Place point_place(const Vec2& point, const Region& border, double reach) {
   Place out;
   out.box = Box{point - Vec2::Constant(reach), point + Vec2::Constant(reach)};
   double near = INFINITY;
-  for (std::size_t k = 0; k < border.size(); ++k) {
-    const Segment side{border[k], border[(k + 1) % border.size()]};
-    near = std::min(near, distance(side, point));
-    if (const auto part = clipped(side, *out.box)) out.lines.push_back(*part);
-  }
+  for (const std::vector<Vec2>& ring : rings_of(border))
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const Segment side{ring[k], ring[(k + 1) % ring.size()]};
+      near = std::min(near, distance(side, point));
+      if (const auto part = clipped(side, *out.box)) out.lines.push_back(*part);
+    }
   // Points are said to a fraction of a cell.
   if (near > 0.5 * reach) out.lines.clear();
   return out;

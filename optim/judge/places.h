@@ -22,8 +22,8 @@ struct Place {
 /// in y; the material in that square where the point is not on the border, or no material is there.
 /// (A point has no limit in two dimensions: its displacement under a force grows with every finer
 /// mesh.)
-/// @param border  polygon   @param reach  [m]
-Place point_place(const Vec2& point, std::span<const Vec2> border, double reach);
+/// @param border  of the domain, with its holes   @param reach  [m]
+Place point_place(const Vec2& point, const Region& border, double reach);
 /// A box, or a line where it has no width: as it is.
 Place box_place(const Box& box);
 

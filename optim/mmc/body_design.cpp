@@ -6,67 +6,19 @@
 #include <optional>
 #include <utility>
 
-#include "optim/mmc/shared_problem.h"
+#include "optim/mmc/designed_parts.h"
+#include "optim/mmc/mended_parts.h"
 #include "optim/mmc/united_connectivity.h"
 #include "optim/search.h"
 
 namespace flexmorph::mmc {
 namespace {
 
-/// With a smallest feature, so many times a part of the iterations follows a clean-up.
-constexpr int kPolishes = 2, kPolishShare = 6;
-
-/// One of the bodies that are designed together.
-struct Part {
-  BodyProblem& problem;
-  LoadResponse& loads;
-  Plate plate;
-  Ersatz ersatz;
-  const TdfSettings* tdf = nullptr;  // of the stage
-  std::optional<Turnover> turnover;  // of the stage
-  BodyOutcome outcome;
-  optim::Stop stopped = optim::Stop::failed;  // the optimizer, last
-  Design next;                                // when a list of components changed: where to go on
-
-  explicit Part(const LoadedBody& body)
-      : problem(body.problem),
-        loads(body.loads),
-        plate(plate_of(problem)),
-        ersatz(ersatz_of(problem)),
-        next(problem.design) {}
-
-  MmcProblem state() const {
-    return {{plate, problem.design, ersatz, loads}, *tdf, problem.goal, problem.places};
-  }
-};
-
-/// The problem of all parts at their designs: that of the only one, or the shared one.
-class Whole {
- public:
-  explicit Whole(const std::vector<Part>& parts) {
-    states.reserve(parts.size());
-    for (const Part& p : parts) states.push_back(p.state());
-    if (parts.size() == 1) return;
-    std::vector<SharedProblem::Part> all;
-    for (size_t k = 0; k < parts.size(); ++k)
-      all.push_back({&states[k], parts[k].plate.full_mass()});
-    shared_.emplace(std::move(all));
-  }
-  Whole(const Whole&) = delete;
-
-  optim::Problem& problem() {
-    if (shared_) return *shared_;
-    return states.front();
-  }
-  VectorXd part_of(const VectorXd& x, size_t k) const {
-    return shared_ ? shared_->part_of(x, k) : x;
-  }
-
-  std::vector<MmcProblem> states;
-
- private:
-  std::optional<SharedProblem> shared_;
-};
+/// Where widths are wanted, so many times a part of the iterations follows a clean-up.
+constexpr int kPolishes = 3, kPolishShare = 8;
+/// Gaps that are narrower than this part of what is wanted are closed before the polishes, which
+/// open the others.
+constexpr double kClosed = 0.5;
 
 /// One cycle's design problem of one body, or of several together.
 class Designer {
@@ -81,7 +33,7 @@ class Designer {
   std::vector<BodyOutcome> go() {
     // Stages share iterations and state solves evenly; polishes after a clean-up have their part.
     const bool cleans = std::any_of(parts_.begin(), parts_.end(),
-                                    [](const Part& p) { return p.problem.min_feature > 0; });
+                                    [](const Part& p) { return p.problem.widths.any(); });
     const int polishes = cleans ? kPolishes : 0;
     const auto share = [&](int total) { return total - polishes * (total / kPolishShare); };
     const int iterations = share(settings_.optimizer.max_iterations);
@@ -89,16 +41,23 @@ class Designer {
     int n_stages = 0;
     for (const Part& p : parts_)
       n_stages = std::max(n_stages, static_cast<int>(p.problem.stages.size()));
+    const int shares = n_stages + (settings_.finish ? 1 : 0);  // of the state solves
     for (int stage = 0; stage < n_stages && going_; ++stage) {
       for (Part& p : parts_) {
         const auto own = static_cast<int>(p.problem.stages.size());
         p.tdf = &p.problem.stages[static_cast<size_t>(stage * own / n_stages)];
       }
       run_stage(iterations * (stage + 1) / n_stages - iterations * stage / n_stages,
-                solves * (stage + 1) / n_stages);
+                solves * (stage + 1) / shares);
     }
     const bool analysed = settings_.optimizer.max_iterations == 0;
-    if (cleans && going_ && !analysed) thicken();
+    if (cleans && going_ && !analysed) mend();
+    if (settings_.finish && going_ && !analysed) {
+      if (cleans)
+        finish_mended(solves);
+      else
+        last_solve(solves);
+    }
     std::vector<BodyOutcome> out;
     for (Part& p : parts_) {
       if (analysed) {
@@ -144,9 +103,20 @@ class Designer {
     if (best) settle(*best);
   }
 
+  /// Components stay as they are in it: what it converges to is what it began with.
+  void last_solve(int solves) {
+    solver_ = &*settings_.finish;
+    drops_ = false;
+    run_stage(solver_->max_iterations, solves);
+    solver_ = &settings_.optimizer;
+    drops_ = true;
+  }
+
   Candidate run(int iterations, int solves) {
-    optim::Settings settings = settings_.optimizer;
+    optim::Settings settings = *solver_;
     settings.max_iterations = iterations;
+    // Who comes last sees to the KKT conditions.
+    if (settings_.finish && drops_) settings.rest.kkt = std::numeric_limits<double>::infinity();
     settings.max_evaluations = solves > 0 ? solves - evaluations_ : 0;
     Whole whole(parts_);
     const auto watch = [&](const optim::Iterate& iterate) { return see(whole, iterate); };
@@ -215,76 +185,93 @@ class Designer {
     return out;
   }
 
-  /// Designs after a clean-up of all bodies that want one.
-  struct Cleaned {
-    std::vector<std::optional<CleanUp>> clean_ups;
-    std::vector<Design> designs;
-    bool reached = true;
-    double compliance = 0;                                       ///< of all sharp designs
-    double thickness = std::numeric_limits<double>::infinity();  ///< least part of what is wanted
-
-    bool better_than(const Cleaned& other) const {
-      if (reached != other.reached) return reached;
-      return reached ? compliance < other.compliance : thickness > other.thickness;
-    }
-  };
-
-  Cleaned clean() {
-    // What the budget leaves goes to the bodies as they have shared it so far.
-    double used = 0, allowed = 0;
-    for (const Part& p : parts_) {
-      used += p.plate.full_mass() * p.outcome.volume;
-      allowed += p.plate.full_mass() * allowed_volume(p.problem.goal).value_or(1);
-    }
-    Cleaned out;
-    for (Part& p : parts_) {
-      std::optional<CleanUp>& done = out.clean_ups.emplace_back();
-      if (p.problem.min_feature > 0) {
-        std::optional<double> volume;
-        if (parts_.size() > 1 && used > 0)
-          volume = std::min(1.0, p.outcome.volume * allowed / used);
-        done = clean_up(p.problem, p.loads, p.problem.min_feature, volume);
-        out.reached = out.reached && done->reached();
-        out.thickness = std::min(out.thickness, done->after / done->wanted);
-        out.compliance += done->compliance_after;
-      } else {
-        const VectorXd fractions = fractions_of(p.problem, p.problem.design.components());
-        out.compliance += judged_compliance(p.problem, p.loads, p.ersatz.sharp(fractions));
-      }
-      out.designs.push_back(p.problem.design);
-    }
-    return out;
-  }
-
-  /// Makes the designs as thick as wanted; then optimizes from there, and does it again: what was
-  /// put over narrow places is shaped as well. The least compliant of the thick ones are kept,
-  /// those of one round together: mass that one body gave, another has.
-  void thicken() {
-    Cleaned best = clean();
-    std::vector<std::optional<CleanUp>> sums = best.clean_ups;
+  /// Makes designs as wide as wanted; then optimizes from there with the widths as constraints, so
+  /// that what was put over narrow places is shaped as well, and does it again. The least compliant
+  /// of the wide ones are kept, those of one round together: mass that one body gave, another has.
+  void mend() {
+    Mended last = repaired(parts_, kClosed);
+    Mended best = last;
+    std::vector<std::optional<CleanUp>> sums = last.clean_ups;
     const int budget = settings_.optimizer.max_evaluations;
     for (int round = 1; round <= kPolishes && going_; ++round) {
+      for (size_t k = 0; k < parts_.size(); ++k) {
+        Part& p = parts_[k];
+        p.widths.reset();
+        const std::optional<CleanUp>& done = last.clean_ups[k];
+        if (done && !done->given_up) p.widths.emplace(p.problem, p.problem.widths);
+        p.follow_sharp_volume();
+      }
       run_stage(settings_.optimizer.max_iterations / kPolishShare,
                 budget - (kPolishes - round) * (budget / kPolishShare));
-      Cleaned next = clean();
-      for (size_t k = 0; k < parts_.size(); ++k) {
-        if (!sums[k]) continue;
-        sums[k]->rounds += next.clean_ups[k]->rounds;
-        sums[k]->patches += next.clean_ups[k]->patches;
-        sums[k]->dropped += next.clean_ups[k]->dropped;
-      }
-      if (next.better_than(best)) best = std::move(next);
+      last = repaired(parts_, 1);
+      for (size_t k = 0; k < parts_.size(); ++k)
+        if (sums[k]) sums[k]->add(*last.clean_ups[k]);
+      if (last.better_than(best)) best = last;
     }
+    for (size_t k = 0; k < parts_.size(); ++k)
+      if (sums[k]) parts_[k].outcome.clean_up = sums[k];
+    deliver(best);
+  }
+
+  /// The last solve of mended designs: without limits of widths, which have no second derivatives.
+  /// What it comes to is looked over, and taken where widths are as wanted all the same; where
+  /// there is something to repair, that is done, and solved once more.
+  void finish_mended(int solves) {
+    const Mended before = as_they_are(parts_);
+    for (int k = 0; k < kFinishTries && going_; ++k) {
+      for (Part& p : parts_) {
+        p.widths.reset();
+        p.follow_sharp_volume();
+      }
+      last_solve(solves);
+      const Mended found = looked_over(parts_);
+      const bool wide = found.reached && !found.changed;
+      if (wide && std::all_of(parts_.begin(), parts_.end(), keeps_volume)) return take(found);
+      if (!wide && k + 1 < kFinishTries) repaired(parts_, 1);
+    }
+    deliver(before);
+    for (Part& p : parts_)
+      p.outcome.stop += "; the last solve made widths too small and was taken back";
+  }
+
+  /// Is the sharp volume what is allowed, or less because more serves nothing?
+  static bool keeps_volume(const Part& p) {
+    constexpr double kOff = 5e-4;
+    const std::optional<double> allowed = allowed_volume(p.problem.goal);
+    const double sharp =
+        fractions_of(p.problem, p.problem.design.components()).sum() / p.ersatz.n_domain_cells();
+    // What the solver saw.
+    const double seen = p.volume_ratio * p.outcome.volume;
+    return !allowed || p.problem.shares_mass || std::abs(sharp - seen) <= kOff * *allowed;
+  }
+
+  void take(const Mended& mended) {
     for (size_t k = 0; k < parts_.size(); ++k) {
       Part& p = parts_[k];
-      p.problem.design = best.designs[k];
-      if (sums[k]) {
-        sums[k]->after = best.clean_ups[k]->after;
-        sums[k]->compliance_after = best.clean_ups[k]->compliance_after;
-        p.outcome.clean_up = sums[k];
-      }
+      p.problem.design = mended.designs[k];
+      if (p.outcome.clean_up) p.outcome.clean_up->end_as(*mended.clean_ups[k]);
       measure(p);
     }
+  }
+
+  /// Takes them with the KKT residual that they have as they are, widths and sharp volume included.
+  void deliver(const Mended& mended) {
+    take(mended);
+    for (size_t k = 0; k < parts_.size(); ++k) {
+      Part& p = parts_[k];
+      p.follow_sharp_volume();
+      p.widths.reset();
+      if (const auto& done = mended.clean_ups[k]; done && !done->given_up)
+        p.widths.emplace(p.problem, p.problem.widths);
+    }
+    Whole whole(parts_);
+    optim::Problem& problem = whole.problem();
+    const VectorXd x = problem.start();
+    // The sharp volume is what is allowed to 2e-4 only, and counts as a limit that is met.
+    constexpr double kActive = 1e-3;
+    const double kkt =
+        optim::kkt_residual(problem.evaluate(x), x, problem.lower(), problem.upper(), kActive);
+    for (Part& p : parts_) p.outcome.kkt = kkt;
   }
 
   bool see(Whole& whole, const optim::Iterate& iterate) {
@@ -299,7 +286,7 @@ class Designer {
   }
 
   void see(Part& p, MmcProblem& state, const optim::Iterate& iterate, bool first) {
-    const bool look = p.problem.drop_every > 0 && iterations_ % p.problem.drop_every == 0;
+    const bool look = drops_ && p.problem.drop_every > 0 && iterations_ % p.problem.drop_every == 0;
     std::span<const ComponentEvent> events;
     p.next = p.problem.design;
     if (look && p.turnover->look(state.components())) {
@@ -363,6 +350,8 @@ class Designer {
   const IterationObserver& observe_;
   int iterations_ = 0, evaluations_ = 0;  // of the cycle
   bool going_ = true, changed_ = false;
+  const optim::Settings* solver_ = &settings_.optimizer;  // of the stage
+  bool drops_ = true;
 };
 
 }  // namespace

@@ -65,11 +65,16 @@ struct Past {
   std::function<bool(const RowOfHistory&)> has_row;
 };
 
+/// A last solve of a mended design is done so many times at most.
+constexpr int kFinishTries = 4;
+
 struct DesignSettings {
   int sharp_every = 25;       ///< iterations between sharp evaluations; 0: only at the end
   optim::Settings optimizer;  ///< max_iterations 0: designs are analysed, at their last band
   bool condition = false;     ///< estimate it at the end (costs a factorization)
   Past* past = nullptr;       ///< where evaluations are kept, and may be known from
+  /// A last solve from what the stages reached, at their last band and without drops.
+  std::optional<optim::Settings> finish = {};
 };
 
 /// Looks on; false stops the run after the current iteration.

@@ -4,17 +4,10 @@
 #include <utility>
 
 #include "geometry/cpu_time.h"
+#include "geometry/part_mesh.h"
 #include "optim/mmc/united_connectivity.h"
 
 namespace flexmorph::mmc {
-namespace {
-
-std::vector<Vec2> corners_of(const Box& b) {
-  return {b.lower, {b.upper.x(), b.lower.y()}, b.upper, {b.lower.x(), b.upper.y()}};
-}
-
-}  // namespace
-
 double judged_compliance(const BodyProblem& problem, LoadResponse& loads,
                          const CellFactors& factors) {
   if (compliance_row(problem.goal).per_load)
@@ -52,31 +45,28 @@ VectorXd fractions_of(const BodyProblem& p, std::span<const Component> component
   return out;
 }
 
-std::vector<Vec2> domain_of(const BodyProblem& p) {
-  if (!p.domain.empty()) return p.domain;
+Region domain_of(const BodyProblem& p) {
+  if (!p.domain.outer.empty()) return p.domain;
   const Grid& g = p.grid;
-  return corners_of({{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}});
+  return {corners_of({{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}}), {}};
 }
 
 std::vector<Region> regions_of(const BodyProblem& p, std::span<const Component> components,
                                double tolerance) {
-  std::vector<std::vector<Vec2>> outlines, voids;
+  std::vector<std::vector<Vec2>> outlines;
   for (const Component& c : components)
     outlines.push_back(outline_within(c, p.stages.back().min_half_thickness, tolerance));
-  for (const Box& b : p.solid) outlines.push_back(corners_of(b));
-  for (const Box& b : p.empty) voids.push_back(corners_of(b));
-  return unite(outlines, domain_of(p), voids);
+  outlines.insert(outlines.end(), p.solid.begin(), p.solid.end());
+  return unite(outlines, domain_of(p), p.empty);
 }
 
 namespace {
 
-/// Is the point on the boundary of the box?
-bool bounds(const Box& box, const Vec2& p, double small) {
-  const auto within = [&](double margin) {
-    return (p.array() > box.lower.array() - margin).all() &&
-           (p.array() < box.upper.array() + margin).all();
-  };
-  return within(small) && !within(-small);
+/// Is the point on the polygon?
+bool bounds(std::span<const Vec2> polygon, const Vec2& p, double small) {
+  for (size_t k = 0; k < polygon.size(); ++k)
+    if (distance({polygon[k], polygon[(k + 1) % polygon.size()]}, p) < small) return true;
+  return false;
 }
 
 /// Cells of the places that must hang together.
@@ -107,13 +97,27 @@ bool touches(const Grid& grid, const Region& region, int cell) {
 
 namespace {
 
-/// Does a passive solid region make the place by itself?
+/// Do passive regions make the place by themselves? Both its contacts are on the outline of one, or
+/// void that is given is on both sides of the material.
 bool is_given(const BodyProblem& problem, const NarrowPlace& place) {
   const double small = 1e-6 * problem.grid.dx();
-  return place.solid &&
-         std::any_of(problem.solid.begin(), problem.solid.end(), [&](const Box& box) {
-           return bounds(box, place.a, small) && bounds(box, place.b, small);
-         });
+  const auto touches = [&](const std::vector<Vec2>& ring, const Vec2& p) {
+    return bounds(ring, p, small);
+  };
+  const auto within = [&](const std::vector<Vec2>& region) {
+    return touches(region, place.a) && touches(region, place.b);
+  };
+  const auto& regions = place.solid ? problem.solid : problem.empty;
+  if (std::any_of(regions.begin(), regions.end(), within)) return true;
+  if (!place.solid) return false;
+  std::vector<std::vector<Vec2>> rings = rings_of(domain_of(problem));
+  rings.insert(rings.end(), problem.empty.begin(), problem.empty.end());
+  const auto ring_at = [&](const Vec2& p) {
+    return std::find_if(rings.begin(), rings.end(),
+                        [&](const std::vector<Vec2>& ring) { return touches(ring, p); });
+  };
+  const auto a = ring_at(place.a), b = ring_at(place.b);
+  return a != rings.end() && b != rings.end() && a != b;
 }
 
 }  // namespace

@@ -21,17 +21,18 @@ struct BodyProblem {
   Grid grid;  ///< design mesh over the body at its longest
   fem::PlaneSection section;
   Design design;
-  std::vector<Box> solid = {}, empty = {};  ///< passive regions
-  std::vector<TdfSettings> stages;          ///< continuation of the band, coarse to fine
+  std::vector<std::vector<Vec2>> solid = {}, empty = {};  ///< passive regions: polygons
+  std::vector<TdfSettings> stages;  ///< continuation of the band, coarse to fine
   Goal goal = {};
   double stiffness_void = 1e-4, mass_void = 1e-3;  ///< in dynamics
   ComplianceSettings compliance = {};
-  std::vector<Vec2> domain = {};              ///< polygon; empty: the whole grid
+  Region domain = {};                         ///< without an outer ring: the whole grid
   std::vector<signed char> outside = {};      ///< cells_outside() of it; empty: none
   std::vector<std::vector<int>> places = {};  ///< cells of loaded and held places; empty: both ends
-  int drop_every = 25;     ///< iterations between looks for dead components; 0: none
-  bool refill = false;     ///< long components are split in place of dropped ones
-  double min_feature = 0;  ///< smallest solid feature of the result [m]; 0: any
+  int drop_every = 25;  ///< iterations between looks for dead components; 0: none
+  bool refill = false;  ///< long components are split in place of dropped ones
+  /// Smallest widths that the result is mended to.
+  Widths widths = {};
   /// Its mass comes from one budget for all bodies that say so: what each is allowed, together.
   bool shares_mass = false;
 };
@@ -49,16 +50,16 @@ VectorXd fractions_of(const BodyProblem& problem, std::span<const Component> com
 /// How far the sides of measured and written outlines may be off the true ones [cells].
 constexpr double kOutlineTolerance = 0.01;
 
-/// The domain as a polygon, counterclockwise [m].
-std::vector<Vec2> domain_of(const BodyProblem& problem);
+/// The domain with its holes [m].
+Region domain_of(const BodyProblem& problem);
 /// Exact union of the components and the solid regions, less the voids, clipped to the domain.
 /// @param tolerance  how far sides may be off the true outlines [m]
 /// @throws Error (numerical) from unite().
 std::vector<Region> regions_of(const BodyProblem& problem, std::span<const Component> components,
                                double tolerance);
 
-/// Narrow places of such a union, less those that passive solid regions make by themselves: no
-/// design can change them.
+/// Narrow places of such a union, less those that passive regions and holes of the domain make
+/// by themselves: no design can change them.
 std::vector<NarrowPlace> narrow_places_of(const BodyProblem& problem,
                                           std::span<const Region> regions, double limit);
 Features features_of(const BodyProblem& problem, std::span<const Region> regions);

@@ -3,9 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
-#include <set>
+#include <span>
 #include <utility>
+
+#include "geometry/part_mesh.h"
+#include "optim/mmc/idle_parts.h"
+#include "optim/mmc/under_repair.h"
 
 namespace flexmorph::mmc {
 namespace {
@@ -15,113 +20,148 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRoom = 1.06;
 /// Half-length of a patch in its half-thicknesses, and its growth when one was not enough.
 constexpr double kPatchLength = 1.4, kPatchGrowth = 1.25;
-constexpr int kMostRounds = 40;
+constexpr int kMostRounds = 20;
+/// A repair that makes the compliance so many times what it was is none: the design is no design
+/// yet, but a lattice on its way.
+constexpr double kDearest = 1.25;
 constexpr int kHalvings = 30;
+/// The sharp volume may be off what is allowed by this part.
+constexpr double kVolumeTolerance = 2e-4;
+/// Outlines and round-off take as much from a width that is wanted.
+constexpr double kWithin = 0.99;
+
+/// What a design is before (or after) it is mended.
+void measure(const UnderRepair& design, Features& features, int& pieces, double& compliance,
+             double& volume) {
+  const std::vector<Region> united = design.regions(design.parts);
+  features = features_of(design.problem(), united);
+  pieces = static_cast<int>(united.size());
+  compliance = design.compliance(design.parts);
+  volume = design.volume(design.parts);
+}
+
+/// What is to be repaired; gaps that only cells bridge when all else is done.
+std::vector<NarrowPlace> places_of(UnderRepair& design) {
+  std::vector<NarrowPlace> out = design.places();
+  if (!out.empty()) return out;
+  design.look_at_energy();
+  return design.torn_gaps();
+}
 
 class Cleaner {
  public:
-  Cleaner(BodyProblem& problem, LoadResponse& loads, double wanted, double max_volume)
+  Cleaner(BodyProblem& problem, LoadResponse& loads, const Widths& wanted, double max_volume)
       : problem_(problem),
-        loads_(loads),
         wanted_(wanted),
         max_volume_(max_volume),
-        ersatz_(ersatz_of(problem)),
-        tdf_(problem.grid, problem.stages.back()),
-        parts_(problem.design.components()),
-        patch_(parts_.size(), false) {}
+        design_(problem, loads, wanted) {}
 
   CleanUp go() {
     CleanUp out;
     out.wanted = wanted_;
-    out.before = features().solid;
-    out.compliance_before = compliance(parts_);
-    const std::vector<Component> start = parts_;
-    double thickest = out.before;
-    std::vector<Component> best = start;
+    measure(design_, out.before, out.pieces_before, out.compliance_before, out.volume_before);
+    dearest_ = kDearest * out.compliance_before;
+    out.idle = drop_idle(design_);
     for (Component& c : parts_)
       for (double* each : {&c.c1, &c.c2, &c.c3})
-        *each = std::max(*each, half_thickness_for(wanted_));
+        *each = std::max(*each, half_thickness_for(wanted_.solid));
     fit_volume();
-    std::vector<NarrowPlace> narrow = places();
-    while (true) {
-      const double now = smallest(narrow);
-      if (now > thickest && fits()) {
-        thickest = now;
+    if (const std::optional<std::vector<Component>> widest = widened(out)) {
+      parts_ = *widest;
+      out.stubs = cut_stubs(design_);
+      give_back(design_.smallest(design_.places()));
+      out.dropped = dropped_;
+      problem_.design = problem_.design.with(parts_);
+    } else {
+      parts_ = problem_.design.components();
+      out.idle = out.patches = 0;
+      out.given_up = true;
+    }
+    measure(design_, out.after, out.pieces_after, out.compliance_after, out.volume_after);
+    return out;
+  }
+
+ private:
+  /// Repairs the components, round after round. Nothing when no state on the way fits and can be
+  /// afforded, else the widest one.
+  std::optional<std::vector<Component>> widened(CleanUp& out) {
+    std::optional<std::vector<Component>> best;
+    double widest = -1;
+    std::vector<NarrowPlace> narrow = places_of(design_);
+    while (affordable()) {
+      const double now = design_.smallest(narrow);
+      if (now > widest && fits()) {
+        widest = now;
         best = parts_;
       }
       if ((narrow.empty() && fits()) || out.rounds == kMostRounds) break;
       ++out.rounds;
       repair(narrow, out);
       fit_volume();
-      narrow = places();
+      narrow = places_of(design_);
     }
-    problem_.design = problem_.design.with(best);
-    parts_ = best;
-    // Without narrow places the smallest feature is what it is.
-    out.dropped = dropped_;
-    out.after = features().solid;
-    out.compliance_after = compliance(parts_);
-    return out;
+    return best;
   }
 
- private:
-  std::vector<Region> regions(const std::vector<Component>& parts) const {
-    return regions_of(problem_, parts, kOutlineTolerance * problem_.grid.dx());
-  }
-  Features features() const { return features_of(problem_, regions(parts_)); }
-
-  /// Narrow material, and narrow slits between pieces that should be one.
-  std::vector<NarrowPlace> places() const {
-    const std::vector<Region> pieces = regions(parts_);
-    // The tolerance of outlines counts twice.
-    const double limit = wanted_ + 2 * kOutlineTolerance * problem_.grid.dx();
-    std::vector<NarrowPlace> out = narrow_places_of(problem_, pieces, limit);
-    std::set<std::pair<size_t, size_t>> parted;  // a bridge is enough for two pieces
-    std::erase_if(out, [&](const NarrowPlace& p) {
-      if (p.solid) return false;
-      // A contact is on an outline, up to rounding: a little further on is material.
-      const auto piece_at = [&](const Vec2& contact) {
-        const Vec2 inside = contact + 1e-6 * (contact - p.center);
-        size_t k = 0;
-        while (k < pieces.size() && !contains(pieces[k], inside)) ++k;
-        return k;
-      };
-      const auto [one, other] = std::minmax({piece_at(p.a), piece_at(p.b)});
-      return one == other || !parted.insert({one, other}).second;
-    });
-    return out;
-  }
-  static double smallest(const std::vector<NarrowPlace>& narrow) {
-    return narrow.empty() ? kInfinity : narrow.front().width;
+  bool affordable() const { return design_.compliance(parts_) <= dearest_; }
+  bool fits() const {
+    return max_volume_ == kInfinity ||
+           design_.volume(parts_) <= max_volume_ * (1 + kVolumeTolerance);
   }
 
-  double volume(const std::vector<Component>& parts) {
-    tdf_.evaluate(parts);
-    ersatz_.factors(tdf_.density(), tdf_.eroded(), factors_);
-    return factors_.mass.sum() / ersatz_.n_domain_cells();
+  /// Gives volume that is left over to all components in equal parts; where that narrows a place,
+  /// to one after the other, those first that are strained most.
+  /// @param narrowest  as design_.smallest() says now
+  void give_back(double narrowest) {
+    if (max_volume_ == kInfinity || !leaves_volume()) return;
+    std::vector<size_t> all(parts_.size());
+    std::iota(all.begin(), all.end(), size_t{0});
+    thicken(all, narrowest);
+    if (!leaves_volume()) return;
+    design_.look_at_energy();
+    const VectorXd fractions = design_.fractions(parts_);
+    std::vector<double> strain;
+    for (const size_t k : all) {
+      const VectorXd own = fractions - design_.fractions(design_.less(k));
+      strain.push_back(own.sum() > 0 ? design_.density().dot(own) / own.sum() : 0);
+    }
+    std::stable_sort(all.begin(), all.end(),
+                     [&](size_t a, size_t b) { return strain[a] > strain[b]; });
+    for (const size_t k : all)
+      if (leaves_volume()) thicken({&k, 1}, narrowest);
   }
-  bool fits() { return max_volume_ == kInfinity || volume(parts_) <= max_volume_ * (1 + 1e-9); }
-
-  double compliance(const std::vector<Component>& parts) {
-    return judged_compliance(problem_, loads_, ersatz_.sharp(fractions_of(problem_, parts)));
+  bool leaves_volume() const {
+    return design_.volume(parts_) < max_volume_ * (1 - kVolumeTolerance);
   }
-  /// Compliance times volume of the sharp design; infinite when it has come apart. (Cells do not
-  /// see slits; what a piece carries through one counts for nothing.)
-  double merit(const std::vector<Component>& parts) {
-    const Connectivity whole = connectivity_of(problem_, regions(parts));
-    if (!whole.connected || whole.islands > islands_) return kInfinity;
-    const VectorXd fractions = fractions_of(problem_, parts);
-    return judged_compliance(problem_, loads_, ersatz_.sharp(fractions)) * fractions.sum();
+  /// Some components, by one factor: up to the volume that is allowed.
+  void thicken(std::span<const size_t> which, double narrowest) {
+    const std::vector<Component> thin = parts_;
+    const auto grow = [&](double factor) {
+      for (const size_t k : which) {
+        parts_[k].c1 = factor * thin[k].c1;
+        parts_[k].c2 = factor * thin[k].c2;
+        parts_[k].c3 = factor * thin[k].c3;
+      }
+    };
+    constexpr double kMost = 1.25;
+    double low = 1, high = kMost;
+    for (int step = 0; step < kHalvings; ++step) {
+      const double middle = 0.5 * (low + high);
+      grow(middle);
+      (design_.volume(parts_) <= max_volume_ ? low : high) = middle;
+    }
+    grow(low);
+    if (design_.smallest(design_.places()) < narrowest) parts_ = thin;
   }
 
   /// Takes volume from what is thicker than needed.
   void fit_volume() {
     if (fits()) return;
-    const double thin = half_thickness_for(wanted_);
+    const double thin = half_thickness_for(wanted_.solid);
     const std::vector<Component> full = parts_;
     const auto thinned = [&](double share) {
       for (size_t k = 0; k < full.size(); ++k) {
-        if (patch_[k]) continue;
+        if (design_.patch[k]) continue;
         const auto thinner = [&](double c) { return std::min(c, thin + share * (c - thin)); };
         parts_[k].c1 = thinner(full[k].c1);
         parts_[k].c2 = thinner(full[k].c2);
@@ -135,7 +175,7 @@ class Cleaner {
       (fits() ? low : high) = middle;
     }
     thinned(low);
-    while (low == 0 && !fits() && drop_least()) continue;
+    while (low == 0 && !fits() && affordable() && drop_least()) continue;
   }
 
   /// Takes out the component whose loss costs least; patches stay, or they would come back.
@@ -144,8 +184,8 @@ class Cleaner {
     double lowest = kInfinity;
     size_t least = 0;
     for (size_t k = 0; k < parts_.size(); ++k) {
-      if (patch_[k]) continue;
-      const double without = merit(less(k));
+      if (design_.patch[k]) continue;
+      const double without = design_.merit(design_.less(k));
       if (!(without < lowest)) continue;
       lowest = without;
       least = k;
@@ -155,22 +195,18 @@ class Cleaner {
     return true;
   }
 
-  std::vector<Component> less(size_t k) const {
-    std::vector<Component> out = parts_;
-    out.erase(out.begin() + static_cast<std::ptrdiff_t>(k));
-    return out;
-  }
   void drop(size_t k) {
-    parts_.erase(parts_.begin() + static_cast<std::ptrdiff_t>(k));
-    patch_.erase(patch_.begin() + static_cast<std::ptrdiff_t>(k));
+    design_.drop(k);
     ++dropped_;
   }
 
   void repair(const std::vector<NarrowPlace>& narrow, CleanUp& out) {
-    islands_ = connectivity_of(problem_, regions(parts_)).islands;
+    design_.count_islands();
     std::vector<Vec2> done;
     for (const NarrowPlace& place : narrow) {
-      const auto near = [&](const Vec2& p) { return (p - place.center).norm() < wanted_; };
+      const auto near = [&](const Vec2& p) {
+        return (p - place.center).norm() < wanted_.largest();
+      };
       if (std::any_of(done.begin(), done.end(), near)) continue;
       done.push_back(place.center);
       const auto tries = std::count_if(patched_.begin(), patched_.end(), near);
@@ -181,25 +217,26 @@ class Cleaner {
   void repair(const NarrowPlace& place, int tries, CleanUp& out) {
     std::vector<Component> patched = parts_;
     patched.push_back(patch(place, std::pow(kPatchGrowth, tries)));
-    double lowest = merit(patched);  // infinite while other slits are open: then nothing is dropped
+    double lowest =
+        design_.merit(patched);  // infinite while other slits are open: then nothing is dropped
     std::optional<size_t> out_of_the_way;
     for (size_t k = 0; k < parts_.size(); ++k) {
-      if (patch_[k] || !meets(parts_[k], place) || parts_.size() == 1) continue;
-      const double without = merit(less(k));
+      if (design_.patch[k] || !meets(parts_[k], place) || parts_.size() == 1) continue;
+      const double without = design_.merit(design_.less(k));
       if (!(without < lowest)) continue;
       lowest = without;
       out_of_the_way = k;
     }
     if (out_of_the_way) return drop(*out_of_the_way);
     parts_ = std::move(patched);
-    patch_.push_back(true);
+    design_.patch.push_back(true);
     patched_.push_back(place.center);
     ++out.patches;
   }
 
   bool meets(const Component& c, const NarrowPlace& place) const {
     return component_tdf(c, problem_.stages.back(), place.center.x(), place.center.y(), nullptr) >
-           -0.25 * wanted_;
+           -0.25 * wanted_.largest();
   }
 
   /// A short component along the material of a narrow place. Where the border is one of its flanks,
@@ -208,7 +245,7 @@ class Cleaner {
     const Vec2 across = place.b - place.a;
     Component c;
     c.center = place.center;
-    double half = 0.5 * kRoom * growth * wanted_;
+    double half = 0.5 * kRoom * growth * wanted_.largest();
     if (!place.solid) {  // over the slit, from piece to piece
       c.angle = std::atan2(across.y(), across.x());
       c.c1 = c.c2 = c.c3 = half;
@@ -227,34 +264,66 @@ class Cleaner {
   }
 
   bool on_border(const Vec2& p) const {
-    const std::vector<Vec2> domain = domain_of(problem_);
     const double small = 1e-6 * problem_.grid.dx();
-    for (size_t i = 0; i < domain.size(); ++i) {
-      const Vec2 &a = domain[i], along = domain[(i + 1) % domain.size()] - a;
-      const double t = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
-      if ((a + t * along - p).norm() < small) return true;
-    }
+    for (const std::vector<Vec2>& ring : rings_of(domain_of(problem_)))
+      for (size_t i = 0; i < ring.size(); ++i)
+        if (distance({ring[i], ring[(i + 1) % ring.size()]}, p) < small) return true;
     return false;
   }
 
   BodyProblem& problem_;
-  LoadResponse& loads_;
-  double wanted_, max_volume_;
-  Ersatz ersatz_;
-  UnionTdf tdf_;
-  CellFactors factors_;
-  std::vector<Component> parts_;
-  std::vector<bool> patch_;
-  std::vector<Vec2> patched_;
-  int islands_ = 0;  // before the repairs of a round
+  Widths wanted_;
+  double max_volume_;
+  UnderRepair design_;
+  std::vector<Component>& parts_ = design_.parts;
+  std::vector<Vec2> patched_;  // where repairs have put parts
   int dropped_ = 0;
+  double dearest_ = kInfinity;  // compliance
 };
 
 }  // namespace
 
 double half_thickness_for(double min_feature) { return 0.5 * kRoom * min_feature; }
 
-CleanUp clean_up(BodyProblem& problem, LoadResponse& loads, double wanted,
+double CleanUp::part_reached() const {
+  const auto part = [](double found, double asked) {
+    return asked > 0 ? found / asked : kInfinity;
+  };
+  return std::min(part(after.solid, wanted.solid), part(after.gap, wanted.gap));
+}
+
+void CleanUp::add(const CleanUp& later) {
+  rounds += later.rounds;
+  patches += later.patches;
+  dropped += later.dropped;
+  idle += later.idle;
+  stubs += later.stubs;
+}
+
+void CleanUp::end_as(const CleanUp& other) {
+  after = other.after;
+  pieces_after = other.pieces_after;
+  compliance_after = other.compliance_after;
+  volume_after = other.volume_after;
+  given_up = other.given_up;
+}
+
+bool CleanUp::reached() const { return pieces_after == 1 && part_reached() >= kWithin; }
+
+CleanUp look_over(const BodyProblem& problem, LoadResponse& loads, const Widths& wanted) {
+  UnderRepair design(problem, loads, wanted);
+  CleanUp out;
+  out.wanted = wanted;
+  measure(design, out.before, out.pieces_before, out.compliance_before, out.volume_before);
+  out.after = out.before;
+  out.pieces_after = out.pieces_before;
+  out.compliance_after = out.compliance_before;
+  out.volume_after = out.volume_before;
+  out.rounds = static_cast<int>(places_of(design).size());
+  return out;
+}
+
+CleanUp clean_up(BodyProblem& problem, LoadResponse& loads, const Widths& wanted,
                  std::optional<double> max_volume) {
   const double by_goal = allowed_volume(problem.goal).value_or(kInfinity);
   return Cleaner(problem, loads, wanted, max_volume.value_or(by_goal)).go();

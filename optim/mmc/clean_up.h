@@ -6,31 +6,46 @@
 
 namespace flexmorph::mmc {
 
-/// What it took to make a design nowhere thinner than wanted, and what it cost.
+/// What it took to mend a design, and what it cost.
 struct CleanUp {
-  double wanted = 0;                                   ///< smallest solid feature [m]
-  double before = 0, after = 0;                        ///< smallest solid features [m]
+  Widths wanted;
+  Features before = {0, 0}, after = {0, 0};            ///< smallest widths [m]
+  int pieces_before = 1, pieces_after = 1;             ///< of the union
   double compliance_before = 0, compliance_after = 0;  ///< of the sharp design
+  double volume_before = 0, volume_after = 0;          ///< likewise
   int rounds = 0, patches = 0, dropped = 0;
-  bool reached() const { return after >= wanted; }
+  int idle = 0;           ///< components that carried nothing, and went
+  int stubs = 0;          ///< ends of components likewise
+  bool given_up = false;  ///< it would have cost too much: the design is as it was
+  bool changed() const { return rounds + idle + stubs > 0; }
+  void add(const CleanUp& later);     ///< its rounds, patches and losses
+  void end_as(const CleanUp& other);  ///< takes over what is after it
+  bool reached() const;
+  /// The least width as a part of what is wanted.
+  double part_reached() const;
 };
 
-/// Makes the union of a design's components as thick as wanted, everywhere.
+/// Makes the union of a design's components, and the void between, as wide as wanted everywhere.
 ///
 /// Bounds on thicknesses do not do that: where components touch by their tips, overlap a little or
-/// are cut by the border, the union is thinner than each of them. Narrow places of the union (see
-/// narrow_places()) are repaired one by one, by whichever costs less in compliance times volume: a
-/// short component over the place, or none of one of those that meet there. Slits that part pieces
-/// of the design, which its cells do not see, are bridged likewise. Volume beyond what is allowed
-/// is then taken from what is thicker than needed, in equal parts; and so on, until no place is
-/// left.
+/// are cut by the border, the union is thinner than each of them. First components go that carry
+/// less than a thousandth of the strain energy. Narrow places of the union (see narrow_places()),
+/// gaps and slits that part pieces of the design, which its cells do not see, are then repaired one
+/// by one, by whichever costs less in compliance times volume: a short component over the place, or
+/// none of one of those that meet there. Volume beyond what is allowed is taken from what is
+/// thicker than needed, in equal parts; and so on, until no place is left. Sharp volume that is
+/// left over is given back to all components in equal parts where that narrows no gap.
 ///
-/// The design of `problem` is left at the result, or where it was when that is thicker.
-/// @param wanted  smallest solid feature [m]
+/// The design of `problem` is left at the result, or where it was when that costs more than a
+/// quarter of the compliance.
 /// @param max_volume  volume fraction it may take; absent: as its goal says
 /// @throws Error (numerical) from statics.
-CleanUp clean_up(BodyProblem& problem, LoadResponse& loads, double wanted,
+CleanUp clean_up(BodyProblem& problem, LoadResponse& loads, const Widths& wanted,
                  std::optional<double> max_volume = {});
+
+/// What a clean-up would find: `after` as `before`, and as many rounds as there are places to
+/// repair.
+CleanUp look_over(const BodyProblem& problem, LoadResponse& loads, const Widths& wanted);
 
 /// Smallest half-thickness of components whose own middle is as thick as wanted, with room for
 /// their round ends and the tolerance of outlines.

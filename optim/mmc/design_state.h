@@ -32,6 +32,8 @@ class DesignState {
   const LoadResponse::Value& value() const { return value_; }
 
   int n_loads() const { return loads_.n_loads(); }
+  LoadResponse& loads() { return loads_; }
+  const LoadResponse& loads() const { return loads_; }
   /// CPU seconds since clear_seconds().
   LoadResponse::Seconds seconds() const { return seconds_; }
   void clear_seconds() { seconds_ = {}; }

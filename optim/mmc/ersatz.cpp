@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <array>
 
+#include "geometry/picture.h"
+
 namespace flexmorph::mmc {
 namespace {
-
-bool inside(const Box& box, const Vec2& p) {
-  return (p.array() >= box.lower.array()).all() && (p.array() <= box.upper.array()).all();
-}
 
 std::array<int, 4> corners(const Grid& g, int i, int j) {
   return {g.node(i, j), g.node(i + 1, j), g.node(i + 1, j + 1), g.node(i, j + 1)};
@@ -16,20 +14,19 @@ std::array<int, 4> corners(const Grid& g, int i, int j) {
 
 }  // namespace
 
-Ersatz::Ersatz(const Grid& grid, double alpha, std::span<const Box> solid,
-               std::span<const Box> empty, std::span<const signed char> outside)
+Ersatz::Ersatz(const Grid& grid, double alpha, std::span<const std::vector<Vec2>> solid,
+               std::span<const std::vector<Vec2>> empty, std::span<const signed char> outside)
     : grid_(grid), alpha_(alpha), fixed_(static_cast<size_t>(grid.n_cells()), 0) {
   n_domain_ = grid.n_cells() - static_cast<int>(std::count(outside.begin(), outside.end(), 1));
-  for (int i = 0; i < grid.nx; ++i)
-    for (int j = 0; j < grid.ny; ++j) {
-      signed char& fixed = fixed_[static_cast<size_t>(grid.cell(i, j))];
-      const Vec2 center = grid.cell_center(i, j);
-      for (const Box& box : empty)
-        if (inside(box, center)) fixed = -1;
-      for (const Box& box : solid)
-        if (inside(box, center)) fixed = 1;
-      if (!outside.empty() && outside[static_cast<size_t>(grid.cell(i, j))]) fixed = -1;
-    }
+  const auto fix = [&](std::span<const std::vector<Vec2>> polygons, signed char value) {
+    for (const std::vector<Vec2>& polygon : polygons)
+      for (const int cell : cells_within(grid, {polygon, {}}))
+        fixed_[static_cast<size_t>(cell)] = value;
+  };
+  fix(empty, -1);
+  fix(solid, 1);
+  for (size_t cell = 0; cell < outside.size(); ++cell)
+    if (outside[cell]) fixed_[cell] = -1;
 }
 
 void Ersatz::factors(const VectorXd& h, const VectorXd& eroded, CellFactors& out) const {
@@ -79,6 +76,31 @@ void Ersatz::pull_back(const VectorXd& eroded, const MatrixXd& d_stiffness, cons
         if (masses) d_h.col(node) += (0.25 / (1 - alpha_)) * d_mass.col(cell);
       }
     }
+}
+
+VectorXd Ersatz::twice(const VectorXd& d_stiffness) const {
+  VectorXd out = VectorXd::Zero(grid_.n_nodes());
+  for (int i = 0; i < grid_.nx; ++i)
+    for (int j = 0; j < grid_.ny; ++j) {
+      const int cell = grid_.cell(i, j);
+      if (fixed_[static_cast<size_t>(cell)] != 0) continue;
+      for (const int node : corners(grid_, i, j)) out[node] += 0.5 * d_stiffness[cell];
+    }
+  return out;
+}
+
+Eigen::SparseMatrix<double> Ersatz::stiffness_slopes(const VectorXd& eroded) const {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int i = 0; i < grid_.nx; ++i)
+    for (int j = 0; j < grid_.ny; ++j) {
+      const int cell = grid_.cell(i, j);
+      if (fixed_[static_cast<size_t>(cell)] != 0) continue;
+      for (const int node : corners(grid_, i, j))
+        entries.emplace_back(cell, node, 0.5 * eroded[node]);
+    }
+  Eigen::SparseMatrix<double> out(grid_.n_cells(), grid_.n_nodes());
+  out.setFromTriplets(entries.begin(), entries.end());
+  return out;
 }
 
 std::vector<signed char> Ersatz::shaped_nodes() const {

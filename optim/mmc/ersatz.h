@@ -1,9 +1,10 @@
 #pragma once
 
+#include <Eigen/SparseCore>
 #include <span>
 
-#include "geometry/component.h"
 #include "geometry/grid.h"
+#include "geometry/outline.h"
 
 namespace flexmorph::mmc {
 
@@ -19,13 +20,13 @@ struct CellFactors {
 /// H = density, E = eroded of UnionTdf. Stiffness comes from the eroded design, because corners
 /// see no gap narrower than a cell: without it optimizers leave slits there, which weigh nothing.
 /// The void keeps α^q of its stiffness and no mass (optim/README.md, Ersatz material). Cells whose
-/// centre lies in a `solid` box are full material, those in an `empty` box void, whatever the
+/// centre lies in a `solid` polygon are full material, those in an `empty` one void, whatever the
 /// components do; solid wins. Cells outside of the domain are void.
 class Ersatz {
  public:
   /// @param outside  cells that do not belong to the domain: 1 (n_cells); empty: all belong to it
-  Ersatz(const Grid& grid, double alpha, std::span<const Box> solid, std::span<const Box> empty,
-         std::span<const signed char> outside = {});
+  Ersatz(const Grid& grid, double alpha, std::span<const std::vector<Vec2>> solid,
+         std::span<const std::vector<Vec2>> empty, std::span<const signed char> outside = {});
 
   int n_domain_cells() const { return n_domain_; }
 
@@ -40,6 +41,13 @@ class Ersatz {
   /// An empty d_mass stands for zeros and leaves d_h empty.
   void pull_back(const VectorXd& eroded, const MatrixXd& d_stiffness, const MatrixXd& d_mass,
                  MatrixXd& d_h, MatrixXd& d_eroded) const;
+
+  /// Second derivatives of a function of the stiffness factors, whose own ones are left out: the
+  /// factors are sums of squares of E, one node's by itself.
+  /// @return d²f/dE² (n_nodes)
+  VectorXd twice(const VectorXd& d_stiffness) const;
+  /// dstiffness/dE (n_cells x n_nodes).
+  Eigen::SparseMatrix<double> stiffness_slopes(const VectorXd& eroded) const;
 
   /// Nodes the components may shape: those of a cell that is not fixed (1 or 0, n_nodes).
   std::vector<signed char> shaped_nodes() const;

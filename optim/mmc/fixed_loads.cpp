@@ -183,6 +183,25 @@ void FixedLoads::evaluate_each(const VectorXd& stiffness, const VectorXd& /*mass
   seconds_ = {factored - start, solved - factored, cpu_seconds() - solved};
 }
 
+MatrixXd FixedLoads::curvature(const VectorXd& stiffness,
+                               const Eigen::SparseMatrix<double>& directions,
+                               const VectorXd& weights) {
+  if (!has_curvature()) return LoadResponse::curvature(stiffness, directions, weights);
+  factorize(stiffness);
+  const MatrixXd& loads = weights.size() > 0 ? loads_ : solved_;
+  const VectorXd& w = weights.size() > 0 ? weights : solved_weights_;
+  u_ = loads;
+  solver_.solve(u_);
+  MatrixXd out = MatrixXd::Zero(directions.cols(), directions.cols()), forces;
+  for (Eigen::Index l = 0; l < loads.rows(); ++l) {
+    if (w[l] == 0) continue;
+    solver_.cell_forces(u_.row(l), directions, forces);
+    solver_.forward(forces);
+    out.selfadjointView<Eigen::Lower>().rankUpdate(forces, 2 * w[l]);
+  }
+  return out.selfadjointView<Eigen::Lower>();
+}
+
 VectorXd FixedLoads::individual(const VectorXd& stiffness, const VectorXd& /*mass*/) {
   factorize(stiffness);
   u_ = loads_;

@@ -41,6 +41,9 @@ class FixedLoads final : public LoadResponse {
 
   void evaluate(const VectorXd& stiffness, const VectorXd& mass, Value& value) override;
   void evaluate_each(const VectorXd& stiffness, const VectorXd& mass, Each& each) override;
+  bool has_curvature() const override { return stretch_.size() == 0; }
+  MatrixXd curvature(const VectorXd& stiffness, const Eigen::SparseMatrix<double>& directions,
+                     const VectorXd& weights) override;
   VectorXd individual(const VectorXd& stiffness, const VectorXd& mass) override;
   VectorXd displacement(const VectorXd& stiffness, const VectorXd& mass, int load) override;
 

@@ -31,6 +31,15 @@ std::optional<double> allowed_volume(const Goal& goal) {
   return least;
 }
 
+Goal blurred(Goal goal, double ratio) {
+  for (Limit& limit : goal.limits) {
+    if (!limit.volume) continue;
+    limit.value /= ratio;
+    *limit.volume /= ratio;
+  }
+  return goal;
+}
+
 bool is_held_back(const Goal& goal) {
   // More material is less compliance and more of everything else.
   const bool wants_more = goal.objective->needs_state();

@@ -42,6 +42,10 @@ std::vector<const ResponseRow*> further_rows(const Goal& goal);
 /// The largest volume fraction that the limits leave; nothing when none speaks of it.
 std::optional<double> allowed_volume(const Goal& goal);
 
+/// The goal of a design whose blurred volume is a part 1 / ratio of its sharp one, for limits that
+/// hold of the sharp one.
+Goal blurred(Goal goal, double ratio);
+
 /// Is there a limit that keeps the objective from being best in a full plate, or an empty one?
 bool is_held_back(const Goal& goal);
 

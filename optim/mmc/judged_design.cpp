@@ -20,7 +20,7 @@ std::string cannot_judge(const BodyProblem& problem, const fem::EslSets& loads) 
 }
 
 judge::Loads loads_by_position(const BodyProblem& problem, const fem::EslSets& loads) {
-  const std::vector<Vec2> border = domain_of(problem);
+  const Region border = domain_of(problem);
   const Grid& g = loads.grid;
   judge::Loads out;
   out.grid = g;

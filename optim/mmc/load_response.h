@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/SparseCore>
+
 #include "geometry/base.h"
 
 namespace flexmorph::mmc {
@@ -34,6 +36,23 @@ class LoadResponse {
   /// The same solves as evaluate(), uncompressed, with one row of energies per load.
   /// @throws Error (numerical) as evaluate().
   virtual void evaluate_each(const VectorXd& stiffness, const VectorXd& mass, Each& each) = 0;
+
+  /// Are there second derivatives?
+  virtual bool has_curvature() const { return false; }
+  /// Second derivatives along directions of the stiffness factors.
+  /// The first one along direction i is -u · K_i u, K_i = Σ_c D_ci K_c, and from K u_i = -K_i u
+  ///
+  ///   C_ij = 2 (L⁻¹ K_i u) · (L⁻¹ K_j u),   K = L Lᵀ
+  ///
+  /// @param directions  D (n_cells x n)
+  /// @param weights  of every load (n_loads); empty: of the weighted sum
+  /// @return Σ w_l C_l,ij (n x n)
+  /// @throws Error (input) where there are none.
+  virtual MatrixXd curvature(const VectorXd& /*stiffness*/,
+                             const Eigen::SparseMatrix<double>& /*directions*/,
+                             const VectorXd& /*weights*/) {
+    throw Error::input("these loads have no second derivatives");
+  }
 
   /// C_l of every load at the given factors (n_loads).
   virtual VectorXd individual(const VectorXd& stiffness, const VectorXd& mass) = 0;

@@ -28,6 +28,7 @@ MmcProblem::MmcProblem(const DesignedPlate& plate, const TdfSettings& tdf, Goal 
       design_(plate.design),
       ersatz_(plate.ersatz),
       state_(plate.loads),
+      shape_(plate.shape),
       tdf_(plate_.grid, tdf),
       goal_(std::move(goal)),
       places_(std::move(places)),
@@ -48,7 +49,8 @@ int MmcProblem::row_of(size_t limit) const {
 }
 
 int MmcProblem::n_constraints() const {
-  return row_of(goal_.limits.size()) + (bounded() ? count(*goal_.objective) : 0);
+  return row_of(goal_.limits.size()) + (bounded() ? count(*goal_.objective) : 0) +
+         (shape_ ? shape_->count() : 0);
 }
 
 VectorXd MmcProblem::lower() const {
@@ -88,7 +90,7 @@ void MmcProblem::solve(const VectorXd& x) {
   volume_ = factors_.mass.sum() / ersatz_.n_domain_cells();
   seconds_tdf_ += cpu_seconds() - clock;
 
-  solved_ = false;  // should it fail
+  solved_ = differentiated_ = false;  // should it fail
   state_.begin();
   const Seen seen{factors_, components_, state_};
   for (Entry& e : entries_) e.response->evaluate(seen, e.values);
@@ -98,7 +100,7 @@ void MmcProblem::solve(const VectorXd& x) {
 void MmcProblem::recall(const VectorXd& x, const VectorXd& memory) {
   x_ = x;
   design_.components(design_part(x), components_);
-  solved_ = false;
+  solved_ = differentiated_ = false;
   if (memory.size() > 0) lowest_ = memory[0];
 }
 
@@ -163,7 +165,7 @@ void MmcProblem::add_objective(optim::Response& out) const {
     out.f = kLogPerUnit * x_[n];
     out.df[n] = kLogPerUnit;
     add_each(e, out.f, first_row, out);
-    out.dg.col(n).tail(e.values.f.size()).setConstant(-kLogPerUnit);
+    out.dg.col(n).segment(first_row, e.values.f.size()).setConstant(-kLogPerUnit);
   } else if (const double f = e.values.f[0]; e.row->full) {
     const double full = e.row->full(plate_);
     out.f = f / full;
@@ -174,18 +176,95 @@ void MmcProblem::add_objective(optim::Response& out) const {
   }
 }
 
+void MmcProblem::add_shape(optim::Response& out) {
+  shape_->evaluate(components_, shape_values_, shape_slopes_);
+  design_.scale_gradients(shape_slopes_);
+  out.g.tail(shape_values_.size()) = shape_values_;
+  out.dg.bottomLeftCorner(shape_slopes_.rows(), shape_slopes_.cols()) = shape_slopes_;
+}
+
 optim::Response MmcProblem::evaluate(const VectorXd& x) {
   solve(x);
   const double clock = cpu_seconds();
   for (Entry& e : entries_) pull_back(e);
+  differentiated_ = true;
   optim::Response out;
   out.df.setZero(n_variables());
   out.g.setZero(n_constraints());
   out.dg.setZero(n_constraints(), n_variables());
   for (size_t k = 0; k < goal_.limits.size(); ++k) add_limit(goal_.limits[k], row_of(k), out);
   add_objective(out);
+  if (shape_) add_shape(out);
   seconds_tdf_ += cpu_seconds() - clock;
   return out;
+}
+
+bool MmcProblem::has_curvature() const {
+  if (shape_) return false;
+  return tdf_.settings().kind == TdfSettings::Kind::distance &&
+         std::all_of(entries_.begin(), entries_.end(), [&](const Entry& e) {
+           return e.row->linear || (e.row->needs_state() && state_.loads().has_curvature());
+         });
+}
+
+/// Adds values of a row, weighted: those of their logarithms where there are any.
+void MmcProblem::add_row(const Entry& e, const VectorXd& weights, bool logarithm,
+                         Lagrangian& out) const {
+  const Eigen::Index n = design_.n_variables();
+  VectorXd w = weights;
+  if (logarithm) {
+    w = weights.cwiseQuotient(e.values.f);
+    for (Eigen::Index l = 0; l < w.size(); ++l) {
+      const VectorXd slope =
+          e.row->per_load ? VectorXd(e.slopes.row(l) / e.values.f[l]) : gradient(e, e.values.f[l]);
+      out.outer.topLeftCorner(n, n) -= weights[l] * slope * slope.transpose();
+    }
+  }
+  if (e.values.d_stiffness.size() > 0) out.d_stiffness += e.values.d_stiffness.transpose() * w;
+  if (e.values.d_mass.size() > 0) out.d_mass += e.values.d_mass.transpose() * w;
+  if (!e.row->needs_state()) return;
+  if (e.row->per_load)
+    out.of_each = out.of_each.size() > 0 ? VectorXd(out.of_each + w) : w;
+  else
+    out.of_sum += w[0];
+}
+
+MatrixXd MmcProblem::curvature(const VectorXd& x, double sigma, const VectorXd& lambda) {
+  if (!differentiated_ || x.size() != x_.size() || x != x_) evaluate(x);
+  const Eigen::Index n = design_.n_variables();
+  Lagrangian sum{zero_, zero_, 0, {}, MatrixXd::Zero(n_variables(), n_variables())};
+  for (size_t k = 0; k < goal_.limits.size(); ++k) {
+    const Limit& limit = goal_.limits[k];
+    const Entry& e = entry(*limit.row);
+    const bool logarithm = limit.row->per_load || limit.row->full == nullptr;
+    const double sign = limit.at_least ? -1 : 1;
+    add_row(e, sign / (logarithm ? 1 : limit.value) * lambda.segment(row_of(k), count(*limit.row)),
+            logarithm, sum);
+  }
+  const Entry& e = entries_.front();
+  if (bounded())
+    add_row(e, lambda.tail(e.values.f.size()), true, sum);
+  else
+    add_row(e, VectorXd::Constant(1, e.row->full ? sigma / e.row->full(plate_) : sigma),
+            e.row->full == nullptr, sum);
+
+  UnionTdf::NodeSlopes f;
+  ersatz_.pull_back(tdf_.eroded(), sum.d_stiffness, sum.d_mass, f.df_dh, f.df_deroded);
+  f.d2f_deroded2 = ersatz_.twice(sum.d_stiffness);
+  const Eigen::SparseMatrix<double> slopes = tdf_.slopes();
+  MatrixXd own = tdf_.curvature(f, slopes);
+  if (sum.of_sum != 0 || sum.of_each.size() > 0) {
+    const Eigen::SparseMatrix<double> directions =
+        ersatz_.stiffness_slopes(tdf_.eroded()) * (tdf_.eroded_slopes().asDiagonal() * slopes);
+    LoadResponse& loads = state_.loads();
+    if (sum.of_sum != 0) own += sum.of_sum * loads.curvature(factors_.stiffness, directions, {});
+    if (sum.of_each.size() > 0) own += loads.curvature(factors_.stiffness, directions, sum.of_each);
+  }
+  design_.scale_gradients(own);
+  own.transposeInPlace();
+  design_.scale_gradients(own);
+  sum.outer.topLeftCorner(n, n) += own;
+  return sum.outer;
 }
 
 void MmcProblem::clear_seconds() {

@@ -10,16 +10,19 @@
 #include "optim/mmc/ersatz.h"
 #include "optim/mmc/goal.h"
 #include "optim/mmc/load_response.h"
+#include "optim/mmc/shape_limits.h"
 #include "optim/problem.h"
 
 namespace flexmorph::mmc {
 
-/// What a design problem is about: `design`, `ersatz` and `loads` live longer than the problem.
+/// What a design problem is about: `design`, `ersatz`, `loads` and `shape` live longer than the
+/// problem.
 struct DesignedPlate {
   const Plate& plate;
   const Design& design;
   const Ersatz& ersatz;
   LoadResponse& loads;
+  ShapeLimits* shape = nullptr;
 };
 
 /// The design problem of one plate under given loads, P (34) in the variables of a Design: a row of
@@ -43,13 +46,16 @@ class MmcProblem final : public optim::Problem {
              std::vector<std::vector<int>> places = {});
 
   int n_variables() const override { return design_.n_variables() + (bounded() ? 1 : 0); }
-  /// Those of the limits in their order, then those of the bound.
+  /// Those of the limits in their order, then those of the bound, then those of the shape.
   int n_constraints() const override;
   VectorXd lower() const override;
   VectorXd upper() const override;
   /// Where the objective is bounded this solves the state: the bound starts at the largest value.
   VectorXd start() const override { return start_; }
   optim::Response evaluate(const VectorXd& x) override;
+  /// Of fixed cold loads and sums over cells, with the TDF `distance`.
+  bool has_curvature() const override;
+  MatrixXd curvature(const VectorXd& x, double sigma, const VectorXd& lambda) override;
   /// Does one piece of material, blurred links included, join all places, or does the design carry
   /// its loads about as well as the best one all the same?
   bool acceptable(const VectorXd& x) override;
@@ -96,15 +102,25 @@ class MmcProblem final : public optim::Problem {
   const Entry& entry(const ResponseRow& row) const;
   void solve(const VectorXd& x);
   void pull_back(Entry& entry);
+  /// What the rows add to the second derivatives of a Lagrangian.
+  struct Lagrangian {
+    VectorXd d_stiffness, d_mass;  ///< of the weighted values, by the factors
+    double of_sum = 0;             ///< weight of the summed compliance
+    VectorXd of_each;              ///< of every load's (n_loads), or empty
+    MatrixXd outer;                ///< of logarithms: - w ∇log f ∇log fᵀ (n x n)
+  };
+  void add_row(const Entry& entry, const VectorXd& weights, bool logarithm, Lagrangian& out) const;
   VectorXd gradient(const Entry& entry, double divisor) const;
   void add_each(const Entry& entry, double bound, int first_row, optim::Response& out) const;
   void add_limit(const Limit& limit, int first_row, optim::Response& out) const;
   void add_objective(optim::Response& out) const;
+  void add_shape(optim::Response& out);
 
   Plate plate_;
   const Design& design_;
   const Ersatz& ersatz_;
   DesignState state_;
+  ShapeLimits* shape_;
   UnionTdf tdf_;
   Goal goal_;
   std::vector<Entry> entries_;  // the objective first
@@ -113,9 +129,10 @@ class MmcProblem final : public optim::Problem {
   std::vector<Component> components_;
   CellFactors factors_;
   VectorXd x_, d_stiffness_, d_mass_, d_h_, d_eroded_, zero_;
-  MatrixXd many_by_h_, many_by_eroded_;
+  MatrixXd many_by_h_, many_by_eroded_, shape_slopes_;
+  VectorXd shape_values_;
   double volume_ = 0, seconds_tdf_ = 0;
-  bool solved_ = false;
+  bool solved_ = false, differentiated_ = false;
   double lowest_ = std::numeric_limits<double>::infinity();  // compliance of acceptable designs
 };
 

@@ -44,6 +44,9 @@ struct ResponseRow {
   /// the logarithm is taken, because values span decades.
   double (*full)(const Plate&) = nullptr;
   bool even = false;  ///< Does every piece of material count alike, so that a limit is a volume?
+  /// Is it a sum over the mass factors of cells? Second derivatives of others are not known, but
+  /// for those that need a state.
+  bool linear = false;
   std::unique_ptr<Response> (*make)(const Plate&) = nullptr;
 
   bool needs_state() const { return !loads.empty(); }  ///< and is less where there is more material

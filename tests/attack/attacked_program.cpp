@@ -54,6 +54,7 @@ std::string complaint(const fs::path& path) {
   if (ending == ".svg") return must_end("</svg>\n");
   if (ending == ".html") return must_end("</html>\n");
   if (ending == ".dxf") return must_end("EOF\n");
+  if (ending == ".step") return must_end("END-ISO-10303-21;\n");
   if (ending == ".toml" && text.empty()) return "is empty";
   return "";
 }

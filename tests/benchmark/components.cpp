@@ -64,7 +64,7 @@ void row(int along, int across) {
         regions = unite(outlines, Box{{0, 0}, {grid.width, grid.height}});
       },
       1);
-  const std::vector<Vec2> domain = {{0, 0}, {grid.width, 0}, {grid.width, grid.height}, {0, 1}};
+  const Region domain{{{0, 0}, {grid.width, 0}, {grid.width, grid.height}, {0, 1}}, {}};
   const double features = milliseconds([&] { smallest_features(regions, domain); }, 1);
   const double triangles = milliseconds(
       [&] {

@@ -65,7 +65,9 @@ TEST(Damped, DesignWithFlowHasTheDissipatedWork) {
   const Ended run = flexmorph(scratch, short_run(damped, kDamped));
   ASSERT_EQ(run.code, kTooFew) << run.err;
   ASSERT_EQ(flexmorph(scratch, short_run(free)).code, kTooFew);
-  expect_dissipation(damped, std::abs(column(free, "energy.defect").back()));
+  // They move with designs of their own, and miss about alike; without the work the balance would
+  // miss five times as much.
+  expect_dissipation(damped, 2 * std::abs(column(free, "energy.defect").back()));
   EXPECT_TRUE(column(free, "energy.dissipated").empty());
   EXPECT_FALSE(
       nlohmann::json::parse(contents_of(free + "/run.json"))["motion"].contains("balance"));

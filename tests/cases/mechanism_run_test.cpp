@@ -206,6 +206,72 @@ TEST(MechanismRun, RigidBodiesAreDrawnAroundTheirCentres) {
   EXPECT_TRUE(cases::drawn_corners(scene.rigid_bodies[1], mechanism.model, x).empty());
 }
 
+// Of a plate in motion: the energies of its cells are that of the plate, wherever its root is;
+// displacements are counted from where it lay.
+TEST(MechanismRun, DesignedPlatesShowTheirEnergyAndDisplacement) {
+  const cases::Scene scene =
+      cases::read_scene(io::CaseFile(std::string(FLEXMORPH_CASES) + "/rotating_plate_v05.toml"));
+  cases::Mechanism mechanism = cases::build_mechanism(scene);
+  const Grid& grid = scene.designs[0].grid;
+  VectorXd density = VectorXd::LinSpaced(grid.n_cells(), 0.2, 1);
+  mechanism.model.set_factors(mechanism.model.bodies()[0], {grid, density, density});
+  fem::State x = fem::start_state(mechanism.model, mechanism.growths, 0, fem::Start::rigid,
+                                  mechanism.motion.placement);
+  const fem::Body& body = mechanism.model.body("plate");
+  const cases::Pose pose = cases::start_pose(scene, scene.body("plate"));
+  mechanism.model.prepare(x);
+  const cases::DesignedSurface rigid = cases::designed_surface(body, x, pose, grid, density);
+  double largest = 0;
+  for (const double u : rigid.displacement) largest = std::max(largest, std::abs(u));
+  EXPECT_LT(largest, 1e-9);
+  // Half as long again in x: whatever is on a line x = 1.5 X moves by 0.5 X.
+  for (int k = 0; k < body.element->n_vectors(); ++k) x.q[body.first_dof + 2 * k] *= 1.5;
+  mechanism.model.prepare(x);
+  const cases::DesignedSurface s = cases::designed_surface(body, x, pose, grid, density);
+  ASSERT_EQ(s.energy.size(), s.mesh.quads.size());
+  ASSERT_EQ(s.displacement.size(), s.mesh.points.size());
+  for (size_t k = 0; k < s.displacement.size(); k += 2) {
+    EXPECT_NEAR(s.displacement[k], s.mesh.points[k] / 3, 1e-9);
+    EXPECT_NEAR(s.displacement[k + 1], 0, 1e-9);
+  }
+  double sum = 0;
+  for (const double each : s.energy) sum += each * grid.dx() * grid.dy();
+  const double whole = mechanism.model.energies(x).strain;
+  EXPECT_GT(whole, 0);
+  EXPECT_NEAR(sum, whole, 1e-9 * whole);
+}
+
+// A disc of 24 sides: its area by its quads; a notch takes a sixth of it, towards -x of its frame.
+TEST(MechanismRun, HubsAreDiscsThatTurn) {
+  fem::FrameMotion frame;
+  frame.origin = Vec2(2, -1);
+  frame.angle = 0.7;
+  const double disc = 24 * 0.5 * 0.09 * std::sin(kPi / 12);
+  for (const bool notched : {false, true}) {
+    const io::QuadMesh mesh = cases::disc_mesh(frame, 0.3, notched);
+    const auto at = [&](int k) {
+      return Vec2(mesh.points[2 * static_cast<size_t>(k)],
+                  mesh.points[2 * static_cast<size_t>(k) + 1]);
+    };
+    double area = 0;
+    Vec2 moment(0, 0);
+    for (const auto& quad : mesh.quads)
+      for (const size_t k : {1u, 2u}) {
+        const Vec2 a = at(quad[k]) - at(quad[0]), b = at(quad[k + 1]) - at(quad[0]);
+        const double piece = 0.5 * (a.x() * b.y() - a.y() * b.x());
+        EXPECT_GT(piece, 0);
+        area += piece;
+        moment += piece * (a + b) / 3;
+      }
+    EXPECT_NEAR(area, notched ? disc * 20 / 24 : disc, 1e-12);
+    if (!notched) {
+      EXPECT_LT(moment.norm(), 1e-12);
+    } else {
+      EXPECT_NEAR(std::atan2(moment.y(), moment.x()), 0.7, 1e-12);
+    }
+  }
+}
+
 // P (36), (37): two designs on moving bars, and what the platform misses of its path.
 TEST(MechanismRun, PlatformShowsItsDesignsAndItsError) {
   const Scratch scratch;
@@ -274,7 +340,8 @@ TEST(MechanismRun, PlatesWithoutADesignAreThereToo) {
   const std::string with = contents_of(folder + "/motion/motion_bar1_00001.vtu"),
                     without = contents_of(folder + "/motion/motion_bar2_00002.vtu");
   EXPECT_TRUE(contains(with, "Name=\"density\""));
-  EXPECT_FALSE(contains(with, "Name=\"strain_energy\""));
+  EXPECT_TRUE(contains(with, "Name=\"strain_energy\""));
+  EXPECT_TRUE(contains(with, "Name=\"displacement\""));
   EXPECT_TRUE(contains(without, "Name=\"strain_energy\""));
   EXPECT_TRUE(contains(without, "Name=\"displacement\""));
   EXPECT_FALSE(contains(without, "Name=\"density\""));

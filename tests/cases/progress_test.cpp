@@ -47,8 +47,8 @@ TEST(ProgressLines, SayPhaseAndHowManyOfHowMany) {
   const std::string out = scratch / "out";
   const Ended ended = test::flexmorph(scratch, test::short_run(out, {"output.vtk=false"}));
   EXPECT_TRUE(ended.code == 0 || ended.code == test::kTooFew) << ended.err;
-  // Six iterations of each of two stages.
-  EXPECT_TRUE(contains(ended.out, "design of plate, cycle 1: iteration 1 of at most 12"));
+  // Of two stages together.
+  EXPECT_TRUE(contains(ended.out, "design of plate, cycle 1: iteration 1 of at most 6"));
   EXPECT_LT(test::lines_of(ended.out).size(), 20u);  // no terminal: a line now and then
   const json run = json::parse(contents_of(out + "/run.json"));
   EXPECT_FALSE(run.contains("failure"));

@@ -83,8 +83,7 @@ TEST_P(ShippedCase, HasTheDataOfThePaper) {
   EXPECT_EQ(d.tdf.min_half_thickness, 0.005);
   // Two columns of cells under the tip mass.
   ASSERT_EQ(d.solid.size(), 1u);
-  EXPECT_NEAR(d.solid[0].upper.x() - d.solid[0].lower.x(), 0.005, 1e-15);
-  EXPECT_DOUBLE_EQ(d.solid[0].upper.y() - d.solid[0].lower.y(), 0.1);
+  EXPECT_NEAR(area({d.solid[0], {}}), 0.005 * 0.1, 1e-16);
   EXPECT_EQ(s.optimizer.name, "mma");
   EXPECT_EQ(s.optimizer.max_iterations, 300);
 }
@@ -106,6 +105,17 @@ TEST(SceneReader, OptionalPartsAreAbsentUntilListed) {
   EXPECT_EQ(more.verify->step, more.time.step);
   EXPECT_DOUBLE_EQ(more.time.spin_up, 0.2);
   EXPECT_EQ(more.optimizer.options.at("asyinit"), 0.1);
+  EXPECT_FALSE(more.finish);
+  EXPECT_EQ(more.optimizer.rest.rows, 15);
+  const Scene last =
+      read("rotating_plate_v01", {"optimizer.finish=ipopt", "optimizer.feasibility=1e-4",
+                                  "optimizer.finish_options.history=9"});
+  EXPECT_EQ(last.finish->name, "ipopt");
+  EXPECT_EQ(last.finish->max_iterations, 1000);
+  EXPECT_EQ(last.finish->kkt_tolerance, 1e-6);
+  EXPECT_EQ(last.finish->feasibility, 1e-4);
+  EXPECT_EQ(last.finish->options.at("history"), 9);
+  EXPECT_EQ(last.finish->rest.rows, 0);  // its own tolerance ends it
   EXPECT_DOUBLE_EQ(more.designs[0].stage(0).band, 3 * 0.0025);
   EXPECT_DOUBLE_EQ(more.designs[0].tdf.band, 1.5 * 0.0025);
   EXPECT_TRUE(more.expect.at("compliance").holds(1.81));
@@ -301,9 +311,17 @@ const Bad kBadInputs[] = {
      "expect.c: a value comes with one tolerance, `relative` or `absolute`"},
     {"option_nobody_knows",
      {"optimizer.options.boxes=0.1", "optimizer.name=ipopt"},
-     "optimizer 'ipopt': option 'boxes' is not known; there are: bound_push, box, history, "
-     "mu_init, "
-     "restart"},
+     "optimizer 'ipopt': option 'boxes' is not known; there are: bound_push, box, exact, history, "
+     "mu_init, restart"},
+    {"unknown_finish",
+     {"optimizer.finish=newton"},
+     "an optimizer is one of 'gcmma', 'ipopt', 'mma', 'nlopt_ccsaq', 'nlopt_mma'"},
+    {"option_of_a_finish_out_of_its_range",
+     {"optimizer.finish_options.history=0", "optimizer.finish=ipopt"},
+     "optimizer 'ipopt': option 'history' = 0: it lies between 1 and 1000"},
+    {"tolerance_of_no_finish",
+     {"optimizer.finish_tolerance=1e-5"},
+     "without `finish` this does nothing"},
     {"option_out_of_its_range",
      {"optimizer.options.asydecr=1.5"},
      "optimizer 'mma': option 'asydecr' = 1.5: it lies between 0.01 and 1"},

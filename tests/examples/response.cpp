@@ -27,6 +27,7 @@ extern const ResponseRow kFirstMoment;
 const ResponseRow kFirstMoment{.name = "first_moment",
                                .words = "first moment about the root",
                                .unit = "kg m",
+                               .linear = true,
                                .make = make_response<FirstMoment>};
 
 }  // namespace flexmorph::mmc

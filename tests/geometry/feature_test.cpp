@@ -44,7 +44,7 @@ Polygon turned(Polygon p, double angle, double scale = 1, const Vec2& shift = {0
 
 Features features(const std::vector<Polygon>& material, const Polygon& domain = kDomain,
                   const std::vector<Polygon>& voids = {}) {
-  return smallest_features(unite(material, domain, voids), domain);
+  return smallest_features(unite(material, {domain, {}}, voids), {domain, {}});
 }
 
 /// A bar of the given half-length and half-thickness with square ends, around a point.
@@ -115,9 +115,9 @@ TEST(SmallestFeature, OfATaperedBarIsItsThinEnd) {
 
 TEST(SmallestFeature, OfARingIsItsWallAndItsHole) {
   const int n = 120;
-  const std::vector<Region> ring = unite(std::vector<Polygon>{circle({0, 0}, 1, n)}, kDomain,
+  const std::vector<Region> ring = unite(std::vector<Polygon>{circle({0, 0}, 1, n)}, {kDomain, {}},
                                          std::vector<Polygon>{circle({0, 0}, 0.7, n)});
-  const Features f = smallest_features(ring, kDomain);
+  const Features f = smallest_features(ring, {kDomain, {}});
   const double sagitta = 1 - std::cos(kPi / n);
   EXPECT_NEAR(f.solid, 0.3, 2 * sagitta);
   EXPECT_NEAR(f.gap, 1.4, 2 * sagitta);
@@ -230,7 +230,7 @@ double distance_to(const Polygon& points, const Vec2& p) {
 // samples whose disc is empty and lies in the material are a neck (or a bar) of about their
 // distance, so that nothing much thinner may have been missed.
 TEST(NarrowPlaces, OfRandomDesignsAgreeWithSampledOutlines) {
-  const Polygon domain = box(0, 0, 2, 1);
+  const Region domain{box(0, 0, 2, 1), {}};
   const double step = 0.01;
   for (unsigned seed = 1; seed <= 8; ++seed) {
     test::RandomComponents random(seed);
@@ -288,7 +288,7 @@ bool same(const std::vector<NarrowPlace>& x, const std::vector<NarrowPlace>& y) 
 
 /// Shapes with many ties, where round-off decides: pairs of crossing bars on a lattice, square, so
 /// that discs have four contacts and places come in equal widths; and a random one.
-std::vector<std::vector<Region>> shapes(const Polygon& domain) {
+std::vector<std::vector<Region>> shapes(const Region& domain) {
   std::vector<Polygon> lattice, outlines;
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 2; ++j)
@@ -303,7 +303,7 @@ std::vector<std::vector<Region>> shapes(const Polygon& domain) {
 
 // Of a design and of what counts in it: the smallest of all its places, which are all looked at.
 TEST(SmallestFeature, IsTheSmallestOfAllPlaces) {
-  const Polygon domain = box(0, 0, 2, 1);
+  const Region domain{box(0, 0, 2, 1), {}};
   for (unsigned seed = 1; seed <= 20; ++seed) {
     test::RandomComponents random(seed);
     std::vector<Polygon> outlines;
@@ -325,7 +325,7 @@ TEST(SmallestFeature, IsTheSmallestOfAllPlaces) {
 // Sides that cross by round-off take rational numbers: a design with a side twice has the places of
 // the one without, and those of the sides themselves.
 TEST(NarrowPlaces, OfSidesThatCross) {
-  const Polygon domain = box(0, 0, 2, 1);
+  const Region domain{box(0, 0, 2, 1), {}};
   const std::vector<Region> apart = {{box(0.1, 0.1, 0.5, 0.9), {}}, {box(0.8, 0.1, 1.5, 0.9), {}}};
   std::vector<Region> crossing = apart;
   crossing.push_back({{{1.6, 0.2}, {1.7, 0.2}, {1.65, 0.2}}, {}});  // no area: its sides overlap
@@ -339,7 +339,7 @@ TEST(NarrowPlaces, OfSidesThatCross) {
 
 // CGAL orders what it made by address unless told otherwise: then no two calls agree.
 TEST(NarrowPlaces, AreTheSameBitForBitWhereverTheHeapPutsThings) {
-  const Polygon domain = box(0, 0, 2, 1);
+  const Region domain{box(0, 0, 2, 1), {}};
   test::ScrambledHeap heap(1);
   for (const std::vector<Region>& regions : shapes(domain)) {
     const std::vector<NarrowPlace> first = narrow_places(regions, domain, 0.2);
@@ -352,7 +352,7 @@ TEST(NarrowPlaces, AreTheSameBitForBitWhereverTheHeapPutsThings) {
 }
 
 TEST(NarrowPlaces, AreTheSameBitForBitWhereverRingsBegin) {
-  const Polygon domain = box(0, 0, 2, 1);
+  const Region domain{box(0, 0, 2, 1), {}};
   std::mt19937 engine(1);
   for (std::vector<Region> regions : shapes(domain)) {
     const std::vector<NarrowPlace> first = narrow_places(regions, domain, 0.2);

@@ -75,10 +75,10 @@ TEST(OutlineWithin, HasTheAreaOfItsSuperellipse) {
 TEST(Unite, ClipsToAPolygonAndTakesVoidsOut) {
   const std::vector<Vec2> L = {{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}};
   const std::vector<std::vector<Vec2>> all = {{{-5, -5}, {5, -5}, {5, 5}, {-5, 5}}};
-  EXPECT_NEAR(area(unite(all, L, {})), 5, 1e-15);
+  EXPECT_NEAR(area(unite(all, {L, {}}, {})), 5, 1e-15);
   const std::vector<std::vector<Vec2>> voids = {
       {{0.25, 0.25}, {0.75, 0.25}, {0.75, 0.75}, {0.25, 0.75}}};
-  const std::vector<Region> with_hole = unite(all, L, voids);
+  const std::vector<Region> with_hole = unite(all, {L, {}}, voids);
   ASSERT_EQ(with_hole.size(), 1u);
   EXPECT_EQ(with_hole[0].holes.size(), 1u);
   EXPECT_NEAR(area(with_hole), 4.75, 1e-15);
@@ -160,6 +160,22 @@ TEST(Triangulate, KnowsInsideFromOutsideWhereRingsTouch) {
     for (int j = 0; j < kSide; ++j)
       sieve.holes.push_back({{i + 0.5, j}, {i, j + 0.5}, {i + 0.5, j + 1}, {i + 1, j + 0.5}});
   EXPECT_NEAR(area_of(triangulate(sieve)), 0.5 * kSide * kSide, 1e-12 * kSide * kSide);
+}
+
+// The polygon of n sides in a circle: area n/2 r² sin(2π/n), its sides r (1 - cos(π/n)) within.
+TEST(Circle, SidesStayWithinTheTolerance) {
+  for (const double r : {1e-3, 0.7, 40.0})
+    for (const double tolerance : {1e-6, 1e-3, 10.0}) {
+      const std::vector<Vec2> ring = circle_within({0.3, -2}, r, tolerance);
+      const auto n = static_cast<double>(ring.size());
+      EXPECT_LE(r * (1 - std::cos(std::numbers::pi / n)), tolerance * (1 + 1e-9));
+      const double fewer = r * (1 - std::cos(std::numbers::pi / (n - 1)));
+      EXPECT_TRUE(n == 8 || fewer > tolerance * (1 - 1e-6));
+      const double exact = 0.5 * n * r * r * std::sin(2 * std::numbers::pi / n);
+      EXPECT_NEAR(area({ring, {}}), exact, 1e-10 * exact);
+    }
+  EXPECT_THROW(circle_within({0, 0}, 0, 1), Error);
+  EXPECT_THROW(circle_within({0, 0}, 1, NAN), Error);
 }
 
 }  // namespace

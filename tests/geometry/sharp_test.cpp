@@ -67,7 +67,8 @@ TEST(AreaFractions, LieWhereTheMaterialIs) {
 TEST(AreaFractions, SolidWinsOverEmptyAndEmptyOverComponents) {
   const Grid grid{.width = 10, .height = 4, .nx = 10, .ny = 4};
   const Component all{.center = {5, 2}, .half_length = 50, .c1 = 40, .c2 = 40, .c3 = 40};
-  const std::vector<Box> solid = {{{8, 0}, {10, 4}}}, empty = {{{4, 0}, {9, 2.5}}};
+  const std::vector<std::vector<Vec2>> solid = {corners_of({{8, 0}, {10, 4}})},
+                                       empty = {corners_of({{4, 0}, {9, 2.5}})};
   const VectorXd fractions = area_fractions(grid, {&all, 1}, 0.01, solid, empty);
   EXPECT_EQ(fractions[grid.cell(3, 0)], 1);    // the component
   EXPECT_EQ(fractions[grid.cell(4, 0)], 0);    // empty
@@ -130,10 +131,34 @@ TEST(Connectivity, NamedPlacesMustBeJoined) {
   EXPECT_TRUE(connectivity(grid, fractions, high).connected);
 }
 
+// Samples are in a triangle, or not, one by one.
+TEST(AreaFractions, OfAPolygonAreThoseOfItsSamples) {
+  const Grid grid{.width = 3, .height = 2, .nx = 3, .ny = 2};
+  const std::vector<std::vector<Vec2>> triangle = {
+      {{0.2017, 0.1033}, {2.9031, 0.4177}, {1.1059, 1.9023}}};
+  const VectorXd fractions = area_fractions(grid, {}, 0.01, triangle, {}, 40);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 2; ++j) {
+      int inside = 0;
+      for (int k = 0; k < 1600; ++k)
+        inside += contains({triangle[0], {}}, {i + (k % 40 + 0.5) / 40, j + (k / 40 + 0.5) / 40});
+      EXPECT_DOUBLE_EQ(fractions[grid.cell(i, j)], inside / 1600.) << i << " " << j;
+    }
+}
+
+TEST(CellsWithin, LeaveOutHoles) {
+  const Grid grid{.width = 10, .height = 10, .nx = 10, .ny = 10};
+  const Region frame{corners_of({{1, 1}, {9, 9}}), {{{3, 3}, {3, 6}, {6, 6}, {6, 3}}}};
+  const std::vector<int> cells = cells_within(grid, frame);
+  EXPECT_EQ(cells.size(), 64u - 9u);
+  EXPECT_EQ(std::count(cells.begin(), cells.end(), grid.cell(4, 4)), 0);
+  EXPECT_EQ(std::count(cells.begin(), cells.end(), grid.cell(1, 1)), 1);
+}
+
 TEST(CellsOutside, OfAnL) {
   const Grid grid{.width = 10, .height = 10, .nx = 10, .ny = 10};
   const std::vector<Vec2> polygon = {{0, 0}, {10, 0}, {10, 4}, {4, 4}, {4, 10}, {0, 10}};
-  const std::vector<signed char> outside = cells_outside(grid, polygon);
+  const std::vector<signed char> outside = cells_outside(grid, {polygon, {}});
   EXPECT_EQ(std::count(outside.begin(), outside.end(), 1), 36);
   EXPECT_EQ(outside[static_cast<size_t>(grid.cell(3, 9))], 0);
   EXPECT_EQ(outside[static_cast<size_t>(grid.cell(4, 4))], 1);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -45,7 +46,8 @@ VectorXd brute_force(const std::vector<Component>& components, const TdfSettings
       for (const Component& c : components) {
         const double each = component_tdf(c, s, at.x(), at.y(), nullptr);
         highest = std::max(highest, each);
-        if (each > cut) sum += std::exp(s.sharpness * each) - std::exp(s.sharpness * cut);
+        const double t = std::clamp(0.5 * s.sharpness * (each - cut), 0.0, 1.0);
+        sum += t * t * t * (10 - 15 * t + 6 * t * t) * std::exp(s.sharpness * each);
       }
       const double smooth = std::max(cut, std::log(sum) / s.sharpness);
       phi[kGrid.node(i, j)] = s.kind == Kind::paper ? highest : smooth;
@@ -69,7 +71,7 @@ TEST_P(EveryUnion, CullingLosesNothing) {
     const VectorXd expected = brute_force(design, s);
     EXPECT_LT((tdf.phi() - expected).cwiseAbs().maxCoeff(), 1e-13) << seed;
     for (int n = 0; n < kGrid.n_nodes(); ++n) {
-      ASSERT_NEAR(tdf.density()[n], heaviside(expected[n], s.band, s.alpha).value, 1e-12);
+      ASSERT_NEAR(tdf.density()[n], heaviside(expected[n], s).value, 1e-12);
     }
   }
 }
@@ -91,8 +93,7 @@ TEST_P(EveryUnion, NodesNoComponentReachesAreVoid) {
   EXPECT_EQ(gradient.norm(), 0);
 }
 
-// max <= KS <= max + log(n)/λ; the lower bound loses what the continuity at the cut takes away,
-// at most n exp(λ (cut - max)) / λ, which is n exp(-10) / λ at the edge of the band.
+// max <= KS <= max + log(n)/λ.
 TEST(SmoothMaximum, StaysBetweenItsBounds) {
   const TdfSettings s = settings(Kind::distance);
   for (unsigned seed = 1; seed <= 5; ++seed) {
@@ -109,7 +110,7 @@ TEST(SmoothMaximum, StaysBetweenItsBounds) {
         }
         if (highest < -s.band) continue;
         const double phi = tdf.phi()[kGrid.node(i, j)];
-        EXPECT_GE(phi, highest - 1.01 * n * std::exp(-10) / s.sharpness);
+        EXPECT_GE(phi, highest - 1e-15);
         EXPECT_LE(phi, highest + std::log(n) / s.sharpness + 1e-15);
       }
     }
@@ -150,6 +151,41 @@ TEST(SmoothMaximum, IsContinuousWhereComponentsComeIntoReach) {
   }
   EXPECT_NEAR(phi[0], -0.9 * s.band, 1e-6);
   EXPECT_NEAR(phi[0], phi[1], 1e-12);
+}
+
+// Two level bars as before, the second one z = λ (φ₂ - φ_cut) above its reach, in and beyond the
+// stretch of 2 over which it gains its weight: the density's second derivative by the second bar's
+// height, small as it is, is that of differences of the first one, from its reach on upwards.
+TEST(SmoothMaximum, BendsOnlyGraduallyWhereComponentsComeIntoReach) {
+  const TdfSettings s = settings(Kind::distance);
+  const double g = 0.1, cut = -s.band - 10 / s.sharpness;
+  const Vec2 node = kGrid.node_position(30, 15);
+  const int at = kGrid.node(30, 15), height = 8;
+  std::vector<Component> bars(2, {.half_length = 5, .c1 = g, .c2 = g, .c3 = g});
+  bars[0].center = node - Vec2(0, g + 0.6 * s.band);
+  VectorXd picked = VectorXd::Zero(kGrid.n_nodes());
+  picked[at] = 1;
+  const VectorXd none = VectorXd::Zero(kGrid.n_nodes());
+  UnionTdf tdf(kGrid, s);
+  const auto slope = [&](double z) {
+    bars[1].center = node + Vec2(0, g - cut - z / s.sharpness);
+    tdf.evaluate(bars);
+    VectorXd out;
+    tdf.pull_back(picked, out);
+    return out[height];
+  };
+  const auto bend = [&](double z) {
+    slope(z);
+    return tdf.curvature({picked, none, none}, tdf.slopes())(height, height);
+  };
+  const double largest = std::abs(bend(3)), h = 1e-4;
+  ASSERT_GT(largest, 0);
+  for (const double z : {0.3, 1.0, 1.7, 3.0})
+    EXPECT_NEAR(bend(z), (slope(z - h) - slope(z + h)) * s.sharpness / (2 * h), 1e-6 * largest)
+        << z;
+  for (const double z : {0.0, 2.0})  // third derivatives of S are below 15: 15 of 2e-6
+    EXPECT_NEAR(bend(z - 1e-6), bend(z + 1e-6), 1e-4 * largest) << z;
+  EXPECT_EQ(slope(-1e-3), 0);
 }
 
 std::vector<Component> moved(const std::vector<Component>& design, const VectorXd& direction,
@@ -294,6 +330,47 @@ TEST(UnionTdf, RefusesWhatIsNotANumber) {
   s.band = 0;
   EXPECT_THROW(tdf.set_settings(s), Error);
   EXPECT_THROW(UnionTdf(kGrid, s), Error);
+}
+
+// f = Σ a H + b E + c E² / 2 of the nodes with random a, b, c: its Hessian against central
+// differences of its gradient. h = 1e-6: truncation is h² of fourth derivatives, 1e-12 / band³.
+TEST(Curvature, MeetsDifferencesOfTheGradient) {
+  TdfSettings s = settings(Kind::distance);
+  s.erosion = 0.4 * kGrid.dx();
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    const std::vector<Component> design = random_design(seed, 6);
+    const Eigen::Index n = 7 * static_cast<Eigen::Index>(design.size());
+    RandomComponents random(100 + seed);
+    VectorXd a(kGrid.n_nodes()), b = a, c = a;
+    for (Eigen::Index k = 0; k < a.size(); ++k) {
+      a[k] = random.uniform(-1, 1);
+      b[k] = random.uniform(-1, 1);
+      c[k] = random.uniform(-1, 1);
+    }
+    UnionTdf tdf(kGrid, s);
+    const auto gradient_at = [&](Eigen::Index q, double step) {
+      std::vector<Component> moved = design;
+      Component& one = moved[static_cast<std::size_t>(q / 7)];
+      auto p = one.parameters();
+      p[static_cast<std::size_t>(q % 7)] += step;
+      one = Component::from_parameters(p.data());
+      tdf.evaluate(moved);
+      VectorXd out;
+      tdf.pull_back(a, b + c.cwiseProduct(tdf.eroded()), out);
+      return out;
+    };
+    const double h = 1e-6;
+    MatrixXd differences(n, n);
+    for (Eigen::Index q = 0; q < n; ++q)
+      differences.col(q) = (gradient_at(q, h) - gradient_at(q, -h)) / (2 * h);
+    tdf.evaluate(design);
+    const Eigen::SparseMatrix<double> slopes = tdf.slopes();
+    const MatrixXd hessian = tdf.curvature({a, b + c.cwiseProduct(tdf.eroded()), c}, slopes);
+    EXPECT_LT((hessian - differences).cwiseAbs().maxCoeff(), 1e-6 * hessian.cwiseAbs().maxCoeff())
+        << seed;
+    EXPECT_LT((hessian - hessian.transpose()).cwiseAbs().maxCoeff(),
+              1e-12 * hessian.cwiseAbs().maxCoeff());
+  }
 }
 
 }  // namespace

@@ -5,14 +5,22 @@
 
 #include <gtest/gtest.h>
 
+#include <BRepCheck_Analyzer.hxx>
+#include <BRepGProp.hxx>
 #include <Eigen/Geometry>
+#include <GProp_GProps.hxx>
+#include <STEPControl_Reader.hxx>
+#include <TopExp_Explorer.hxx>
 #include <array>
 #include <cmath>
 #include <fstream>
 #include <map>
 #include <sstream>
+#include <tuple>
 
+#include "io/drawing.h"
 #include "io/plots.h"
+#include "io/step.h"
 #include "tests/io/scratch.h"
 
 namespace flexmorph::io {
@@ -39,7 +47,7 @@ double ring_area(const std::vector<Vec2>& ring) {
 TEST(Dxf, ClosedPolylinesEncloseTheArea) {
   const Scratch scratch;
   const std::vector<Region> regions = design();
-  write_dxf(scratch / "design.dxf", regions);
+  write_dxf(scratch / "design.dxf", regions, kMetre);
   std::istringstream in(contents_of(scratch / "design.dxf"));
   // Pairs of lines: group code, value.
   std::map<std::string, double> area_of_layer;
@@ -105,7 +113,7 @@ TEST(Stl, IsWatertightAndHasTheVolume) {
   const Scratch scratch;
   const std::vector<Region> regions = design();
   const double thickness = 0.013;
-  write_stl(scratch / "design.stl", regions, thickness);
+  write_stl(scratch / "design.stl", regions, thickness, kMetre);
   std::istringstream in(contents_of(scratch / "design.stl"));
   using Key = std::array<double, 3>;
   std::map<std::pair<Key, Key>, int> edges;
@@ -128,6 +136,96 @@ TEST(Stl, IsWatertightAndHasTheVolume) {
     EXPECT_EQ(edges.count({edge.second, edge.first}), 1u);
   }
   EXPECT_NEAR(volume, area(regions) * thickness, 1e-9 * volume);
+}
+
+// The unit is in the file, and the numbers are in it.
+TEST(Units, OfDxfAndStlAreSaid) {
+  const Scratch scratch;
+  const std::vector<Region> plate = {{corners_of({{0, 0}, {0.254, 0.0508}}), {}}};
+  for (const auto& [unit, code, metric, x] :
+       {std::tuple(kMillimetre, "4", "1", "254"), std::tuple(kInch, "1", "0", "10"),
+        std::tuple(kMetre, "6", "1", "0.254")}) {
+    write_dxf(scratch / "a.dxf", plate, unit,
+              std::vector<DrawingLayer>{{"MARKS", {{{0.0254, 0}}}}});
+    const std::string dxf = contents_of(scratch / "a.dxf");
+    EXPECT_TRUE(contains(dxf, std::string("9\n$INSUNITS\n70\n") + code + "\n"));
+    EXPECT_TRUE(contains(dxf, std::string("9\n$MEASUREMENT\n70\n") + metric + "\n"));
+    EXPECT_TRUE(contains(dxf, std::string("10\n") + x + "\n"));
+    EXPECT_TRUE(contains(dxf, "0\nPOINT\n8\nMARKS\n10\n"));
+    write_stl(scratch / "a.stl", plate, 0.01, unit);
+    const std::string stl = contents_of(scratch / "a.stl");
+    EXPECT_TRUE(stl.starts_with(std::string("solid design in ") + unit.name + "\n"));
+    EXPECT_TRUE(contains(stl, std::string("vertex ") + x + " "));
+  }
+}
+
+// Its own drawing is a domain again, to the rounding of the unit.
+TEST(Dxf, IsADomainAgain) {
+  const Scratch scratch;
+  const std::vector<Region> regions = design();
+  const auto largest =
+      std::max_element(regions.begin(), regions.end(),
+                       [](const auto& a, const auto& b) { return area(a) < area(b); });
+  const std::vector<DrawingLayer> more = {{"DOMAIN", {corners_of({{0, 0}, {0.6, 0.1}})}},
+                                          {"LOADS", {{{0.6, 0.05}}, {{0, 0}, {0, 0.1}}}}};
+  for (const LengthUnit& unit : kLengthUnits) {
+    write_dxf(scratch / "design.dxf", {&*largest, 1}, unit, more);
+    const Region back = region_of(read_drawing(scratch / "design.dxf", {{}, {"OUTLINE", "HOLES"}}));
+    EXPECT_EQ(back.holes.size(), largest->holes.size());
+    // Vertices nearer than a tenth of the tolerance are one.
+    const double near = 0.1 * kDrawingTolerance * 0.6;
+    EXPECT_NEAR(area(back), area(*largest), near * 10) << unit.name;
+    EXPECT_NEAR((bounds_of(back.outer).upper - bounds_of(largest->outer).upper).norm(), 0, near);
+  }
+}
+
+/// A STEP file as OpenCASCADE reads it, in millimetres.
+TopoDS_Shape step_shape(const std::string& path) {
+  STEPControl_Reader reader;
+  EXPECT_EQ(reader.ReadFile(path.c_str()), IFSelect_RetDone);
+  reader.TransferRoots();
+  return reader.OneShape();
+}
+int count(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind) {
+  int n = 0;
+  for (TopExp_Explorer e(shape, kind); e.More(); e.Next()) ++n;
+  return n;
+}
+
+TEST(Step, IsASolidOfTheVolumeAndHasItsFaces) {
+  const Scratch scratch;
+  std::vector<Region> regions = design();
+  regions.push_back({corners_of({{1, 0}, {1.1, 0.1}}), {}});
+  const double thickness = 0.013;
+  int faces = 0;
+  for (const Region& r : regions) {
+    faces += 2;
+    for (const auto& ring : rings_of(r)) faces += static_cast<int>(ring.size());
+  }
+  EXPECT_EQ(write_step(scratch / "design.step", regions, thickness), "");
+  const TopoDS_Shape shape = step_shape(scratch / "design.step");
+  EXPECT_TRUE(BRepCheck_Analyzer(shape).IsValid());
+  EXPECT_EQ(count(shape, TopAbs_SOLID), static_cast<int>(regions.size()));
+  EXPECT_EQ(count(shape, TopAbs_FACE), faces);
+  GProp_GProps properties;
+  BRepGProp::VolumeProperties(shape, properties);
+  const double volume = area(regions) * thickness;
+  EXPECT_NEAR(1e-9 * properties.Mass(), volume, 1e-9 * volume);
+}
+
+// The same design is the same file; the numbers in it are millimetres.
+TEST(Step, IsRepeatableAndInMillimetres) {
+  const Scratch scratch;
+  const std::vector<Region> plate = {{corners_of({{0, 0}, {0.254, 0.0508}}), {}}};
+  write_step(scratch / "a.step", plate, 0.01);
+  write_step(scratch / "b.step", plate, 0.01);
+  const std::string text = contents_of(scratch / "a.step");
+  EXPECT_TRUE(text == contents_of(scratch / "b.step"));
+  EXPECT_TRUE(contains(text, "CARTESIAN_POINT('',(254.,50.8,0.))"));
+  EXPECT_TRUE(contains(text, "SI_UNIT(.MILLI.,.METRE.)"));
+  EXPECT_TRUE(text.ends_with("END-ISO-10303-21;\n"));
+  write_step(scratch / "none.step", {}, 0.01);  // nothing was left of a design
+  EXPECT_TRUE(contains(contents_of(scratch / "none.step"), "END-ISO-10303-21;"));
 }
 
 TEST(ComponentsCsv, ReadsBackBitForBit) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -312,9 +313,80 @@ TEST(Mma, StopsWhenNothingChanges) {
   settings.max_iterations = 500;
   settings.kkt_tolerance = 0;
   settings.change_tolerance = 1e-3;
+  settings.rest.rows = 0;
   const Result result = make_optimizer(settings)->minimize(problem, {});
   EXPECT_EQ(result.stop, Stop::converged);
   EXPECT_TRUE(contains(result.message, "three iterations")) << result.message;
+}
+
+// The logarithm of a compliance curves by 4 or more along some variables. Asymptotes that come as
+// near as 2e-4 follow a minimum of such curvatures inside the bounds; those that keep 0.01 away
+// (8 raa0 / asymin = 8 of 10 f) swing about it.
+TEST(Mma, SettlesAtMinimaThatCurve) {
+  const VectorXd curvature = Eigen::Vector4d(0.5, 4, 10, 30);
+  const VectorXd target = Eigen::Vector4d(0.31, 0.62, 0.47, 0.55);
+  for (const bool near : {true, false}) {
+    Analytic problem(
+        "bowl", VectorXd::Zero(4), VectorXd::Ones(4), VectorXd::Constant(4, 0.5), 0,
+        [&](const VectorXd& x, Response& r) {
+          r.df = curvature.cwiseProduct(x - target);
+          r.f = 0.5 * r.df.dot(x - target);
+        },
+        0);
+    Settings settings = defaults("mma");
+    settings.rest.rows = 0;
+    settings.kkt_tolerance = 1e-4;
+    if (!near) settings.options["asymin"] = 0.01;
+    const Result result = make_optimizer(settings)->minimize(problem, {});
+    EXPECT_EQ(result.stop == Stop::converged, near) << result.message;
+  }
+}
+
+// A rest: the objectives of the last rows lie within a band, the row is feasible and near KKT, and
+// no row before was all of that. Whoever asks for no KKT residual stops no later.
+TEST(Mma, StopsWhereTheObjectiveRests) {
+  Settings settings = defaults("mma");
+  settings.kkt_tolerance = 0;
+  settings.max_iterations = 500;
+  std::array<int, 2> stops{};
+  for (const bool near_kkt : {true, false}) {
+    settings.rest = {6, 1e-3, near_kkt ? 3e-4 : std::numeric_limits<double>::infinity()};
+    Analytic problem = cantilever();
+    std::vector<double> f;
+    std::vector<bool> rests;
+    const Result result = make_optimizer(settings)->minimize(problem, [&](const Iterate& it) {
+      f.push_back(it.response->f);
+      bool now =
+          f.size() > 6 && it.violation <= settings.feasibility && it.kkt <= settings.rest.kkt;
+      for (size_t k = f.size() - std::min<size_t>(f.size(), 7); k < f.size(); ++k)
+        for (size_t l = k; l < f.size(); ++l) now = now && std::abs(f[k] - f[l]) <= 1e-3;
+      rests.push_back(now);
+      return true;
+    });
+    EXPECT_EQ(result.stop, Stop::converged);
+    EXPECT_TRUE(contains(result.message, "over 6 iterations")) << result.message;
+    EXPECT_EQ(std::count(rests.begin(), rests.end(), true), 1);
+    EXPECT_TRUE(rests.back());
+    EXPECT_LE(result.violation, settings.feasibility);
+    if (near_kkt) {
+      EXPECT_LE(result.kkt, settings.rest.kkt);
+    }
+    stops[near_kkt ? 0 : 1] = result.iterations;
+  }
+  EXPECT_LE(stops[1], stops[0]);
+}
+
+// What never rests says by how much not.
+TEST(Mma, SaysHowFarTheObjectiveWasFromRest) {
+  Analytic problem = cantilever();
+  Settings settings = defaults("mma");
+  settings.kkt_tolerance = 0;
+  settings.max_iterations = 12;
+  settings.rest = {5, 0, 0};
+  const Result result = make_optimizer(settings)->minimize(problem, {});
+  EXPECT_EQ(result.stop, Stop::iteration_limit);
+  EXPECT_TRUE(contains(result.message, "change of the objective over the last 5 "))
+      << result.message;
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ TEST(Judge, HoleHasThreeTimesTheStress) {
   const std::vector<Region> plate = {{rectangle(-20, -20, 20, 20), {hole}}};
   Loads loads;
   loads.supports.push_back({loads.add(box_place({{-20, -20}, {-20, 20}})), true, false});
-  const std::vector<Vec2> border = rectangle(-20, -20, 20, 20);
+  const Region border{rectangle(-20, -20, 20, 20), {}};
   loads.supports.push_back({loads.add(point_place({-20, -20}, border, 0.01)), false, true});
   Load load;
   load.forces.push_back({loads.add(box_place({{20, -20}, {20, 20}})), {40, 0}});
@@ -205,7 +205,7 @@ TEST(Judge, LoadsOfOneBodyAreThoseOfMany) {
 }
 
 TEST(Judge, PointsAreSpreadOverACell) {
-  const std::vector<Vec2> border = rectangle(0, 0, kLength, 1);
+  const Region border{rectangle(0, 0, kLength, 1), {}};
   const Place middle = point_place({kLength, 0.5}, border, 0.1);
   ASSERT_EQ(middle.lines.size(), 1u);
   EXPECT_NEAR((middle.lines[0].b - middle.lines[0].a).norm(), 0.2, 1e-15);

@@ -124,7 +124,7 @@ TEST(Design, MovesToWhereItIsSent) {
 
 VectorXd at_nodes(double value) { return VectorXd::Constant(kGrid.n_nodes(), value); }
 
-const std::vector<Box> kEmpty = {{{0.1, -0.02}, {0.2, 0.02}}};
+const std::vector<std::vector<Vec2>> kEmpty = {corners_of({{0.1, -0.02}, {0.2, 0.02}})};
 
 // Stiffness is the square of the eroded density, mass the density above that of the void.
 TEST(Ersatz, OfConstantDensityIsItsPower) {
@@ -144,7 +144,7 @@ TEST(Ersatz, OfConstantDensityIsItsPower) {
 
 TEST(Ersatz, PassiveRegionsAreWhatTheySay) {
   const double alpha = 1e-2;
-  const std::vector<Box> solid = strip();
+  const std::vector<std::vector<Vec2>> solid = strip();
   const Ersatz ersatz(kGrid, alpha, solid, kEmpty);
   CellFactors factors;
   ersatz.factors(at_nodes(0.3), at_nodes(0.3), factors);
@@ -173,7 +173,7 @@ TEST(Ersatz, PassiveRegionsAreWhatTheySay) {
 }
 
 TEST(Ersatz, PullBackAgreesWithDifferences) {
-  const std::vector<Box> solid = strip();
+  const std::vector<std::vector<Vec2>> solid = strip();
   for (unsigned seed = 1; seed <= 3; ++seed) {
     const Ersatz ersatz(kGrid, 1e-2, solid, kEmpty);
     const VectorXd h = random_vector(kGrid.n_nodes(), 0.01, 1, seed);

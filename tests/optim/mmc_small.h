@@ -37,7 +37,7 @@ inline TdfSettings tdf_settings(double band_in_cells = 1.5) {
 }
 
 /// Two columns of cells under the mass at the free end.
-inline std::vector<Box> strip() { return {{{0.58, -0.05}, {0.6, 0.05}}}; }
+inline std::vector<std::vector<Vec2>> strip() { return {corners_of({{0.58, -0.05}, {0.6, 0.05}})}; }
 
 /// 12 x 1 boxes of two crossing components.
 inline std::vector<Component> layout(double half_thickness = 0.008) {

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "optim/gradient_check.h"
@@ -84,6 +86,66 @@ TEST_P(EveryOptimizer, TakesTheSameWayTwice) {
   }
   ASSERT_EQ(first.size(), second.size());
   for (size_t k = 0; k < first.size(); ++k) EXPECT_EQ(first[k], second[k]) << k;  // bit for bit
+}
+
+/// Rosenbrock's valley inside a disc of radius² 1.5: min 100 (y - x²)² + (1 - x)².
+class Valley final : public Analytic {
+ public:
+  Valley()
+      : Analytic(
+            "valley in a disc", VectorXd(Eigen::Vector2d(-2, -2)), VectorXd(Eigen::Vector2d(2, 2)),
+            VectorXd(Eigen::Vector2d(-1, 0.6)), 1,
+            [](const VectorXd& x, Response& r) {
+              const double rise = x[1] - x[0] * x[0];
+              r.f = 100 * rise * rise + (1 - x[0]) * (1 - x[0]);
+              r.df << -400 * x[0] * rise - 2 * (1 - x[0]), 200 * rise;
+              r.g[0] = x.squaredNorm() - 1.5;
+              r.dg << 2 * x[0], 2 * x[1];
+            },
+            0) {}
+  bool has_curvature() const override { return true; }
+  MatrixXd curvature(const VectorXd& x, double sigma, const VectorXd& lambda) override {
+    ++curvatures;
+    MatrixXd out = 2 * lambda[0] * MatrixXd::Identity(2, 2);
+    out(0, 0) += sigma * (1200 * x[0] * x[0] - 400 * x[1] + 2);
+    out(1, 1) += 200 * sigma;
+    out(0, 1) -= 400 * sigma * x[0];
+    out(1, 0) -= 400 * sigma * x[0];
+    return out;
+  }
+  int curvatures = 0;
+};
+
+// On the disc the valley's floor is left for its side: x from Newton's method on the KKT
+// conditions, written out here. Second derivatives are asked for when `exact` says so, and the
+// residual then falls faster than by any factor.
+TEST(Ipopt, ConvergesQuadraticallyWithSecondDerivatives) {
+  Eigen::Vector3d z(0.9, 0.8, 0.1);  // x, y, λ
+  for (int step = 0; step < 20; ++step) {
+    Valley v;
+    const Response r = v.evaluate(z.head<2>());
+    Eigen::Matrix3d K = Eigen::Matrix3d::Zero();
+    K.topLeftCorner<2, 2>() = v.curvature(z.head<2>(), 1, z.tail<1>());
+    K.topRightCorner<2, 1>() = r.dg.transpose();
+    K.bottomLeftCorner<1, 2>() = r.dg;
+    Eigen::Vector3d rest;
+    rest << r.df + r.dg.transpose() * z[2], r.g[0];
+    z -= K.partialPivLu().solve(rest);
+  }
+  ASSERT_GT(z[2], 0);
+  std::array<int, 2> iterations{};
+  for (const int exact : {0, 1}) {
+    Valley valley;
+    Settings settings = for_small_problems("ipopt");
+    settings.kkt_tolerance = 1e-10;
+    settings.options["exact"] = exact;
+    const Result result = make_optimizer(settings)->minimize(valley, {});
+    EXPECT_EQ(result.stop, Stop::converged) << result.message;
+    EXPECT_LT((result.x - z.head<2>()).norm(), 1e-7);
+    EXPECT_EQ(valley.curvatures > 0, exact == 1);
+    iterations[static_cast<size_t>(exact)] = result.iterations;
+  }
+  EXPECT_LT(iterations[1], iterations[0]);
 }
 
 // An optimizer object holds nothing of its last run.

@@ -233,6 +233,7 @@ Settings for_small_problems(const std::string& optimizer) {
   s.max_iterations = 600;
   s.kkt_tolerance = optimizer == "ipopt" ? 1e-8 : 1e-6;  // ipopt has second-order information
   s.feasibility = 1e-7;
+  s.rest.rows = 0;
   s.move_limit = 1;  // the problems are smooth: nothing comes apart by a step of one unit
   // Asymptotes half a unit away reach optima several units away soon; those that may come as near
   // as 1e-4 do not swing about a minimum of large curvature (4 raa0 / asymin is larger).

@@ -25,7 +25,10 @@ from paraview.vtk.numpy_interface import dataset_adapter
 
 DESIGN = {"CellData": {"density", "stiffness_factor", "strain_energy"}, "PointData": {"tdf"}}
 OUTLINES = {"CellData": {"component"}}
-MOTION = {"CellData": {"density", "body"}}
+MOTION = {
+    "CellData": {"density", "strain_energy", "body"},
+    "PointData": {"displacement"},
+}
 FULL_MOTION = {"CellData": {"strain_energy", "body"}, "PointData": {"displacement"}}
 RIGID_MOTION = {"CellData": {"body"}}
 

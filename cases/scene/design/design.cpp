@@ -58,8 +58,14 @@ const Key& kMinFeature =
     io::key("design", "min_feature")
         .number(not_negative("a smallest feature", "m"))
         .word("a smallest feature in words", {"twice_min_thickness"})
-        .otherwise(0.0)
+        .otherwise_as("0; of `mend = true` twice `min_thickness`")
         .says("Smallest solid feature of the union; its price is `clean_up` of run.json.");
+const Key& kMend = io::key("design", "mend")
+                       .boolean()
+                       .otherwise(false)
+                       .says(
+                           "Repairs narrow places, loose pieces and gaps below a cell, which are "
+                           "warned of else.");
 const Key& kHalfLength = io::key("design", "half_length")
                              .number(positive("a half-length", "m"))
                              .otherwise_as("half the diagonal of a box")
@@ -184,13 +190,19 @@ void check_loads(const Table& t, const Scene& scene, const BodyDesign& design) {
   }
 }
 
-/// A width, or the word for that of the thinnest component.
-double read_min_feature(const Table& t, const Body& body, double min_thickness) {
+/// What the union of components is mended to.
+Widths read_widths(const Table& t, const Body& body, const BodyDesign& design) {
+  const bool mend = t.boolean(kMend);
+  const double thick = std::min(2 * design.min_thickness, 0.5 * body.width);
+  Widths out;
+  if (mend) out.gap = std::min(design.grid.dx(), design.grid.dy());
   if (t.is_string(kMinFeature)) {
     t.choice(kMinFeature);
-    return 2 * min_thickness;
+    out.solid = thick;
+  } else {
+    out.solid = t.number(kMinFeature.within(0, 0.5 * body.width), mend ? thick : 0.0);
   }
-  return t.number(kMinFeature.within(0, 0.5 * body.width));
+  return out;
 }
 
 void read_components(const Table& t, const Body& body, BodyDesign& design) {
@@ -202,7 +214,7 @@ void read_components(const Table& t, const Body& body, BodyDesign& design) {
   design.min_thickness =
       t.number(kMinThickness.within(0, 0.5 * body.width), std::min(cell, 0.5 * body.width));
 
-  design.min_feature = read_min_feature(t, body, design.min_thickness);
+  design.widths = read_widths(t, body, design);
 
   const double wide = design.grid.width / boxes[0], high = design.grid.height / boxes[1];
   const double diagonal = std::hypot(wide, high);
@@ -247,7 +259,7 @@ void read_tdf(const Table& t, BodyDesign& design) {
       t.number(paper ? kErosion.measured_in("") : kErosion, paper ? 0.0 : 0.5) * (paper ? 1 : cell);
   design.tdf.alpha = t.number(kAlpha);
   design.tdf.min_half_thickness =
-      std::max(design.min_thickness, mmc::half_thickness_for(design.min_feature));
+      std::max(design.min_thickness, mmc::half_thickness_for(design.widths.solid));
   design.tdf = design.stage(design.band.size() - 1);
   design.stiffness_void = t.number(kStiffnessVoid);
   design.mass_void = t.number(kMassVoid);

@@ -156,7 +156,7 @@ mmc::Plate plate_of(const Scene& scene, const BodyDesign& design) {
   }
   const Domain& d = *scene.domain;
   mmc::Plate out{design.grid, {d.thickness, d.youngs_modulus, d.poisson_ratio, d.density}, {}};
-  if (!d.polygon.empty()) out.outside = cells_outside(design.grid, d.polygon);
+  if (!d.shape.outer.empty()) out.outside = cells_outside(design.grid, d.shape);
   return out;
 }
 

@@ -47,7 +47,9 @@ const Key& kName = io::key("optimizer", "name")
 const Key& kMaxIterations = io::key("optimizer", "max_iterations")
                                 .integer("a number of iterations", 0, 1'000'000)
                                 .otherwise(kSettings.max_iterations)
-                                .says("Iterations of every stage; 0 analyses the start.");
+                                .says(
+                                    "Iterations of all stages together, of the polishes after "
+                                    "repairs as well; 0 analyses the start.");
 const Key& kMaxSolves = io::key("optimizer", "max_solves")
                             .integer("a number of state solves", 0, 100'000'000)
                             .otherwise(kSettings.max_evaluations)
@@ -69,6 +71,22 @@ const Key& kChangeTolerance = io::key("optimizer", "change_tolerance")
                                   .number(not_negative("a tolerance"))
                                   .otherwise(kSettings.change_tolerance)
                                   .says("Or after 3 iterations with less change; 0: never.");
+const Key& kRestIterations = io::key("optimizer", "rest_iterations")
+                                 .integer("a number of iterations", 0, 1'000'000)
+                                 .otherwise(kSettings.rest.rows)
+                                 .says("Or when over so many iterations (0: never) ...");
+const Key& kRestObjective =
+    io::key("optimizer", "rest_objective")
+        .number(not_negative("a part"))
+        .otherwise(kSettings.rest.objective)
+        .says(
+            "... the objective changed by less than this part (a volume: of the full plate), ...");
+const Key& kRestKkt = io::key("optimizer", "rest_kkt")
+                          .number(not_negative("a tolerance"))
+                          .otherwise(kSettings.rest.kkt)
+                          .says(
+                              "... and the KKT residual is below this, which `finish` sees to "
+                              "where there is one.");
 const Key& kOptions = io::key("optimizer", "options")
                           .table()
                           .otherwise_as("none")
@@ -76,6 +94,28 @@ const Key& kOptions = io::key("optimizer", "options")
 const Key& kOption = io::key("optimizer.options", "*")
                          .number(io::any_number("an option"))
                          .says("Its names and ranges are in the file of the optimizer.");
+
+const Key& kFinish = io::key("optimizer", "finish")
+                         .word("an optimizer", optim::optimizer_names)
+                         .otherwise_as("none")
+                         .says(
+                             "Who goes on from the last stage; `ipopt` uses second derivatives "
+                             "where loads are fixed.");
+const Key& kFinishIterations = io::key("optimizer", "finish_iterations")
+                                   .integer("a number of iterations", 1, 1'000'000)
+                                   .otherwise(1000)
+                                   .says("Iterations of `finish`, besides `max_iterations`.");
+const Key& kFinishTolerance = io::key("optimizer", "finish_tolerance")
+                                  .number(not_negative("a tolerance"))
+                                  .otherwise(1e-6)
+                                  .says("`finish` stops when the KKT residual is below this.");
+const Key& kFinishOptions = io::key("optimizer", "finish_options")
+                                .table()
+                                .otherwise_as("none")
+                                .says("Settings of `finish`, as `options`.");
+const Key& kFinishOption = io::key("optimizer.finish_options", "*")
+                               .number(io::any_number("an option"))
+                               .says("Its names and ranges are in the file of the optimizer.");
 
 const Key& kMaxCycles = io::key("cycle", "max_cycles")
                             .integer("a number of cycles", 1, 1000)
@@ -128,6 +168,25 @@ Esl read_esl(const Table& t, const Scene& scene) {
   return esl;
 }
 
+/// The table of options of one optimizer, into `s`, whose other settings are there.
+void read_options(const Table& t, const Key& table, const Key& one, optim::Settings& s) {
+  if (t.has(table)) {
+    const Table options = t.table(table);
+    for (const std::string& key : options.keys()) s.options[key] = options.number(one.named(key));
+  }
+  try {
+    optim::Settings checked = s;
+    checked.max_iterations = std::max(1, s.max_iterations);
+    optim::make_optimizer(checked);  // only it knows its options and their ranges
+  } catch (const Error& error) {
+    const std::string what = error.what();
+    for (const auto& [key, value] : s.options)
+      if (what.find("option '" + key + "'") != std::string::npos)
+        t.table(table).fail(one.named(key), what);
+    t.fail(what);
+  }
+}
+
 optim::Settings read_optimizer(const Table& t) {
   optim::Settings s;
   s.name = t.choice(kName);
@@ -137,25 +196,40 @@ optim::Settings read_optimizer(const Table& t) {
   s.kkt_tolerance = t.number(kKktTolerance);
   s.feasibility = t.number(kFeasibility);
   s.change_tolerance = t.number(kChangeTolerance);
-  if (t.has(kOptions)) {
-    const Table options = t.table(kOptions);
-    for (const std::string& key : options.keys())
-      s.options[key] = options.number(kOption.named(key));
-  }
+  s.rest = {.rows = t.integer(kRestIterations),
+            .objective = t.number(kRestObjective),
+            .kkt = t.number(kRestKkt)};
   // Ipopt's first steps are far longer than a component; in a moving box they are not.
-  if (s.name == "ipopt") s.options.try_emplace("box", 0.1);
-  try {
-    optim::Settings checked = s;
-    checked.max_iterations = std::max(1, s.max_iterations);
-    optim::make_optimizer(checked);  // only it knows its options and their ranges
-  } catch (const Error& error) {
-    const std::string what = error.what();
-    for (const auto& [key, value] : s.options)
-      if (what.find("option '" + key + "'") != std::string::npos)
-        t.table(kOptions).fail(kOption.named(key), what);
-    t.fail(what);
+  // Far from a minimum, Hessians are indefinite and serve less than quasi-Newton ones, whose steps
+  // see more than the ripples of the grid: blurred compliances of the short beam 82.3 and 78.9.
+  if (s.name == "ipopt") {
+    s.options.try_emplace("box", 0.1);
+    s.options.try_emplace("exact", 0);
   }
+  read_options(t, kOptions, kOption, s);
   return s;
+}
+
+std::optional<optim::Settings> read_finish(const Table& t, const optim::Settings& stages) {
+  if (!t.has(kFinish)) {
+    for (const Key* key : {&kFinishIterations, &kFinishTolerance, &kFinishOptions})
+      if (t.has(*key)) t.fail(*key, "without `finish` this does nothing");
+    return {};
+  }
+  optim::Settings s;
+  s.name = t.choice(kFinish);
+  s.max_iterations = t.integer(kFinishIterations);
+  s.move_limit = stages.move_limit;
+  s.kkt_tolerance = t.number(kFinishTolerance);
+  s.feasibility = stages.feasibility;
+  s.rest.rows = 0;
+  read_options(t, kFinishOptions, kFinishOption, s);
+  return s;
+}
+
+void read_optimizers(const Table& t, Scene& scene) {
+  scene.optimizer = read_optimizer(t);
+  scene.finish = read_finish(t, scene.optimizer);
 }
 
 Verify read_verify(const Table& t, const Scene& scene) {
@@ -190,7 +264,7 @@ void read_designs(const Table& root, Scene& scene) {
                     "no other [[design]] has \"shared_mass\" to share with");
   if (scene.domain) {
     if (scene.designs.empty()) root.fail(tables::kDesign, "a static scene has a [[design]]");
-    scene.optimizer = read_optimizer(root.table_or_empty(tables::kOptimizer));
+    read_optimizers(root.table_or_empty(tables::kOptimizer), scene);
     return;
   }
   if (scene.designs.empty()) {
@@ -200,7 +274,7 @@ void read_designs(const Table& root, Scene& scene) {
     return;
   }
   scene.esl = read_esl(root.table(tables::kEsl), scene);
-  scene.optimizer = read_optimizer(root.table_or_empty(tables::kOptimizer));
+  read_optimizers(root.table_or_empty(tables::kOptimizer), scene);
   const Table cycle = root.table_or_empty(tables::kCycle);
   scene.cycle.max_cycles = cycle.integer(kMaxCycles);
   scene.cycle.tolerance = cycle.number(kTolerance);

@@ -1,6 +1,8 @@
 #include "cases/scene/design/keys.h"
 #include "cases/scene/read.h"
+#include "geometry/picture.h"
 #include "io/files.h"
+#include "optim/mmc/body_problem.h"
 
 /// [[design.solid]], [[design.void]].
 namespace flexmorph::cases {
@@ -23,15 +25,29 @@ using io::Table;
 using io::to_text;
 using namespace design_keys;
 
-const io::Choice<bool> kStripChoice(io::shared_key({"design.solid", "design.void"}, "strip")
-                                        .otherwise_as("`box` is given")
-                                        .says("A strip along an end of the domain."),
-                                    "a strip lies along an end: it",
-                                    {{"free_end", true}, {"root", false}});
-const io::Key& kBox = io::shared_key({"design.solid", "design.void"}, "box")
+io::Key& region_key(const char* name) {
+  return io::shared_key({"design.solid", "design.void"}, name);
+}
+
+constexpr const char* kAnother = "another shape is given";
+
+const io::Choice<bool> kStripChoice(
+    region_key("strip").otherwise_as(kAnother).says("A strip along an end of the domain."),
+    "a strip lies along an end: it", {{"free_end", true}, {"root", false}});
+const io::Key& kBox = region_key("box")
                           .numbers(io::any_number("x0, y0, x1, y1 of a box", "m"), 4, 4)
-                          .otherwise_as("`strip` is given")
-                          .says("Or the cells whose centres are in a box: x0, y0, x1, y1.");
+                          .otherwise_as(kAnother)
+                          .says(
+                              "Or a box: x0, y0, x1, y1. Cells whose centres are in it belong to "
+                              "it; outlines have it exactly.");
+const io::Key& kDisc = region_key("disc")
+                           .numbers(io::any_number("x, y, radius of a disc", "m"), 3, 3)
+                           .otherwise_as(kAnother)
+                           .says("Or a disc: x, y, radius.");
+const io::Key& kPolygon = region_key("polygon")
+                              .numbers(io::any_number("x0, y0, x1, y1, ... of a polygon", "m"), 6)
+                              .otherwise_as(kAnother)
+                              .says("Or a polygon: x0, y0, x1, y1, ...");
 
 }  // namespace
 
@@ -48,88 +64,113 @@ const io::Key& kStripCells = io::shared_key({"design.solid", "design.void"}, "ce
 
 namespace {
 
-bool holds(const Box& box, const Vec2& p) {
-  return p.x() >= box.lower.x() && p.x() <= box.upper.x() && p.y() >= box.lower.y() &&
-         p.y() <= box.upper.y();
+using Ring = std::vector<Vec2>;
+
+bool holds(const Ring& ring, const Vec2& p) { return contains({ring, {}}, p); }
+
+/// Cells of the domain that belong to one of the regions: 1 (n_cells).
+std::vector<signed char> cells_in(const mmc::Plate& plate, std::span<const Ring> rings) {
+  std::vector<signed char> in(static_cast<size_t>(plate.grid.n_cells()), 0);
+  for (const Ring& ring : rings)
+    for (const int cell : cells_within(plate.grid, {ring, {}})) in[static_cast<size_t>(cell)] = 1;
+  for (size_t cell = 0; cell < plate.outside.size(); ++cell)
+    if (plate.outside[cell]) in[cell] = 0;
+  return in;
 }
 
-int cells_in(const Grid& grid, const std::vector<Box>& boxes) {
-  int count = 0;
-  for (int i = 0; i < grid.nx; ++i)
-    for (int j = 0; j < grid.ny; ++j)
-      count += std::any_of(boxes.begin(), boxes.end(),
-                           [&](const Box& box) { return holds(box, grid.cell_center(i, j)); });
-  return count;
+auto count(const std::vector<signed char>& cells) {
+  return std::count(cells.begin(), cells.end(), 1);
 }
 
-/// One [[design.solid]] or [[design.void]]: a box, or a strip along an end.
-Box read_region(const Table& t, const Grid& grid) {
-  if (t.has(kBox) == t.has(kStrip)) t.fail("a region has either a `box` or a `strip`");
-  const double left = grid.x0, right = grid.x0 + grid.width;
-  const double bottom = grid.y0, top = grid.y0 + grid.height;
-  if (t.has(kStrip)) {
-    const bool at_end = t.choice(kStripChoice);
-    const double wide = grid.dx() * t.integer(kStripCells.within(1, grid.nx));
-    return at_end ? Box{{right - wide, bottom}, {right, top}}
-                  : Box{{left, bottom}, {left + wide, top}};
-  }
-  if (t.has(kStripCells)) t.fail(kStripCells, "only a strip is as wide as a number of cells");
+Ring read_strip(const Table& t, const Grid& grid) {
+  const Vec2 lower(grid.x0, grid.y0), upper = lower + Vec2(grid.width, grid.height);
+  const bool at_end = t.choice(kStripChoice);
+  const double wide = grid.dx() * t.integer(kStripCells.within(1, grid.nx));
+  return corners_of(at_end ? Box{{upper.x() - wide, lower.y()}, upper}
+                           : Box{lower, {lower.x() + wide, upper.y()}});
+}
+
+Ring read_box(const Table& t) {
   const std::vector<double> b = t.numbers(kBox);
-  Box box{{b[0], b[1]}, {b[2], b[3]}};
   if (b[0] >= b[2] || b[1] >= b[3])
     t.fail(kBox, "x0 < x1 and y0 < y1, in the order x0, y0, x1, y1 [m]");
-  if (cells_in(grid, {box}) == 0)
-    t.fail(kBox, "a box holds the centre of a cell; the domain is [" + to_text(left) + ", " +
-                     to_text(right) + "] x [" + to_text(bottom) + ", " + to_text(top) + "] [m]");
-  return box;
+  return corners_of({{b[0], b[1]}, {b[2], b[3]}});
 }
 
-bool overlap(const Box& a, const Box& b, double margin) {
-  return (a.upper.array() > b.lower.array() + margin).all() &&
-         (b.upper.array() > a.lower.array() + margin).all();
+Ring read_disc(const Table& t, const Grid& grid) {
+  const std::vector<double> d = t.numbers(kDisc);
+  if (d[2] <= 0) t.fail(kDisc, "a radius is positive, in the order x, y, radius [m]");
+  return circle_within({d[0], d[1]}, d[2], mmc::kOutlineTolerance * grid.dx());
+}
+
+/// One [[design.solid]] or [[design.void]].
+Ring read_region(const Table& t, const mmc::Plate& plate) {
+  const Grid& grid = plate.grid;
+  if (t.has(kBox) + t.has(kStrip) + t.has(kDisc) + t.has(kPolygon) != 1)
+    t.fail("a region is one of `box`, `disc`, `polygon`, `strip`");
+  if (t.has(kStrip)) return read_strip(t, grid);
+  if (t.has(kStripCells)) t.fail(kStripCells, "only a strip is as wide as a number of cells");
+  const io::Key& shape = t.has(kBox) ? kBox : t.has(kDisc) ? kDisc : kPolygon;
+  const Ring ring = t.has(kBox)    ? read_box(t)
+                    : t.has(kDisc) ? read_disc(t, grid)
+                                   : read_polygon(t, kPolygon);
+  if (count(cells_in(plate, {&ring, 1})) == 0)
+    t.fail(shape, "a " + shape.name + " holds the centre of a cell; the domain is [" +
+                      to_text(grid.x0) + ", " + to_text(grid.x0 + grid.width) + "] x [" +
+                      to_text(grid.y0) + ", " + to_text(grid.y0 + grid.height) + "] [m]");
+  return ring;
+}
+
+/// Do they share more than round-off leaves along a common border?
+bool overlap(const Ring& a, const Ring& b, const Grid& grid) {
+  return area(unite({&a, 1}, {b, {}}, {})) > 1e-6 * grid.dx() * grid.dy();
+}
+
+/// What sits at the free end needs solid material there: without it the mass would end up in the
+/// void (optim/README.md, Passive regions).
+void check_free_end(const Table& t, const Body& body, const Scene& scene,
+                    const BodyDesign& design) {
+  const Grid& grid = design.grid;
+  const std::string strip =
+      "' needs solid material: [[design.solid]] with strip = \"free_end\", "
+      "cells = 2";
+  const double small = 1e-6 * grid.dx();
+  const Vec2 end(grid.x0 + grid.width, grid.y0 + 0.5 * grid.height);
+  const auto carries = [&](const Ring& ring) {
+    return holds(ring, end - Vec2(2 * grid.dx() - small, grid.dy() - small)) &&
+           holds(ring, end - Vec2(small, -grid.dy() + small));
+  };
+  for (const PointMass& mass : scene.point_masses)
+    if (mass.body == body.name && std::none_of(design.solid.begin(), design.solid.end(), carries))
+      t.fail("the point mass at the free end of '" + body.name + strip);
+  const bool welded = std::any_of(scene.joints.begin(), scene.joints.end(), [&](const Joint& j) {
+    return j.body == body.name && j.edge == "free_end";
+  });
+  const auto in = cells_in({grid, {}, {}}, design.solid);
+  const auto last = std::min(in.size(), static_cast<size_t>(2 * grid.ny));  // two columns
+  if (welded && std::count(in.end() - static_cast<std::ptrdiff_t>(last), in.end(), 1) < 2 * grid.ny)
+    t.fail("the welded free end of '" + body.name + strip);
 }
 
 }  // namespace
 
 void read_regions(const Table& t, const Body& body, const Scene& scene, BodyDesign& design) {
-  const Grid& grid = design.grid;
-  const double small = 1e-6 * grid.dx();
-  for (const Table& region : t.tables(kSolid)) design.solid.push_back(read_region(region, grid));
+  const mmc::Plate plate = plate_of(scene, design);
+  for (const Table& region : t.tables(kSolid)) design.solid.push_back(read_region(region, plate));
   for (const Table& region : t.tables(kVoid)) {
-    design.empty.push_back(read_region(region, grid));
-    for (const Box& solid : design.solid)
-      if (overlap(solid, design.empty.back(), small))
+    design.empty.push_back(read_region(region, plate));
+    for (const Ring& solid : design.solid)
+      if (overlap(solid, design.empty.back(), design.grid))
         region.fail("a region cannot be solid and void at once");
   }
-  const double filled = cells_in(grid, design.solid) / double(grid.n_cells());
+  const double filled =
+      static_cast<double>(count(cells_in(plate, design.solid))) / plate.n_domain_cells();
   if (const auto allowed = mmc::allowed_volume(design.goal); allowed && filled >= *allowed) {
     const std::string words = "the solid regions alone fill " + to_text(filled, 3);
     if (t.has(kMaxVolume)) t.fail(kMaxVolume, words + " of the domain");
     t.fail(words + " of the domain, and " + to_text(*allowed, 3) + " is allowed");
   }
-
-  // Without material under it the mass would end up in the void (optim/README.md, Passive regions).
-  const Vec2 end(grid.x0 + grid.width, grid.y0 + 0.5 * grid.height);
-  const auto carries = [&](const Box& box) {
-    return holds(box, end - Vec2(2 * grid.dx() - small, grid.dy() - small)) &&
-           holds(box, end - Vec2(small, -grid.dy() + small));
-  };
-  for (const PointMass& mass : scene.point_masses)
-    if (mass.body == body.name && std::none_of(design.solid.begin(), design.solid.end(), carries))
-      t.fail("the point mass at the free end of '" + body.name +
-             "' needs solid material: [[design.solid]] with strip = \"free_end\", cells = 2");
-  const bool welded = std::any_of(scene.joints.begin(), scene.joints.end(), [&](const Joint& j) {
-    return j.body == body.name && j.edge == "free_end";
-  });
-  const int strip = 2 * grid.ny;  // cells of the last two columns, each of which must be solid
-  int solid = 0;
-  for (int i = std::max(0, grid.nx - 2); i < grid.nx; ++i)
-    for (int j = 0; j < grid.ny; ++j)
-      solid += std::any_of(design.solid.begin(), design.solid.end(),
-                           [&](const Box& box) { return holds(box, grid.cell_center(i, j)); });
-  if (welded && solid < strip)
-    t.fail("the welded free end of '" + body.name +
-           "' needs solid material: [[design.solid]] with strip = \"free_end\", cells = 2");
+  check_free_end(t, body, scene, design);
 }
 
 }  // namespace flexmorph::cases

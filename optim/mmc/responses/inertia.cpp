@@ -52,6 +52,7 @@ const ResponseRow kInertia{.name = "inertia",
                            .words = "moment of inertia about the root",
                            .unit = "kg m^2",
                            .full = full_inertia,
+                           .linear = true,
                            .make = make_response<Inertia>};
 
 }  // namespace flexmorph::mmc

@@ -31,6 +31,7 @@ const ResponseRow kVolume{.name = "volume",
                           .words = "volume",
                           .full = [](const Plate&) { return 1.0; },
                           .even = true,
+                          .linear = true,
                           .make = [](const Plate& plate) -> std::unique_ptr<Response> {
                             return std::make_unique<Volume>(plate, 1.0);
                           }};
@@ -40,6 +41,7 @@ const ResponseRow kMass{.name = "mass",
                         .unit = "kg",
                         .full = full_mass,
                         .even = true,
+                        .linear = true,
                         .make = [](const Plate& plate) -> std::unique_ptr<Response> {
                           return std::make_unique<Volume>(plate, plate.full_mass());
                         }};

@@ -1,0 +1,29 @@
+#include <algorithm>
+#include <cmath>
+
+#include "cases/scene/read.h"
+#include "geometry/outline.h"
+
+namespace flexmorph::cases {
+
+std::vector<Vec2> read_polygon(const io::Table& t, const io::Key& key) {
+  const std::vector<double> flat = t.numbers(key);
+  if (flat.size() < 6 || flat.size() % 2 != 0)
+    t.fail(key, "three corners or more: x0, y0, x1, y1, x2, y2, ... [m]");
+  constexpr double kFarthest = 1e30;  // a plate of any use, in any unit; products stay finite
+  for (const double x : flat)
+    if (std::abs(x) > kFarthest) t.fail(key, "coordinates are at most 1e30 m");
+  std::vector<Vec2> ring;
+  for (size_t k = 0; k < flat.size(); k += 2) ring.emplace_back(flat[k], flat[k + 1]);
+  const Box box = bounds_of(ring);
+  if ((box.upper - box.lower).minCoeff() <= 0) t.fail(key, "a polygon has an area");
+  try {
+    unite(std::vector<std::vector<Vec2>>{ring}, box);
+  } catch (const Error&) {
+    t.fail(key, "a polygon does not cross itself");
+  }
+  if (area({ring, {}}) < 0) std::reverse(ring.begin(), ring.end());
+  return ring;
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "optim/mmc/body_design.h"
+#include "optim/mmc/shared_problem.h"
+#include "optim/mmc/width_limits.h"
+
+/// Bodies that are designed together, while they are: what body_design.cpp and mended_parts.cpp
+/// share.
+namespace flexmorph::mmc {
+
+/// One of the bodies that are designed together.
+struct Part {
+  BodyProblem& problem;
+  LoadResponse& loads;
+  Plate plate;
+  Ersatz ersatz;
+  const TdfSettings* tdf = nullptr;   // of the stage
+  std::optional<Turnover> turnover;   // of the stage
+  std::optional<WidthLimits> widths;  // limits of the stage, once the design was mended
+  double volume_ratio = 1;            // of the mended design: its sharp volume by the blurred one
+  BodyOutcome outcome;
+  optim::Stop stopped = optim::Stop::failed;  // the optimizer, last
+  Design next;                                // when a list of components changed: where to go on
+
+  explicit Part(const LoadedBody& body)
+      : problem(body.problem),
+        loads(body.loads),
+        plate(plate_of(problem)),
+        ersatz(ersatz_of(problem)),
+        next(problem.design) {}
+
+  MmcProblem state() {
+    return {{plate, problem.design, ersatz, loads, widths ? &*widths : nullptr},
+            *tdf,
+            blurred(problem.goal, volume_ratio),
+            problem.places};
+  }
+  /// Limits of the volume hold of the sharp one of the design as it is.
+  void follow_sharp_volume() {
+    UnionTdf union_tdf(problem.grid, *tdf);
+    const std::vector<Component> components = problem.design.components();
+    union_tdf.evaluate(components);
+    CellFactors factors;
+    ersatz.factors(union_tdf.density(), union_tdf.eroded(), factors);
+    volume_ratio = fractions_of(problem, components).sum() / factors.mass.sum();
+  }
+};
+
+/// The problem of all parts at their designs: that of the only one, or the shared one.
+class Whole {
+ public:
+  explicit Whole(std::vector<Part>& parts) {
+    states.reserve(parts.size());
+    for (Part& p : parts) states.push_back(p.state());
+    if (parts.size() == 1) return;
+    std::vector<SharedProblem::Part> all;
+    for (size_t k = 0; k < parts.size(); ++k)
+      all.push_back({&states[k], parts[k].plate.full_mass()});
+    shared_.emplace(std::move(all));
+  }
+  Whole(const Whole&) = delete;
+
+  optim::Problem& problem() {
+    if (shared_) return *shared_;
+    return states.front();
+  }
+  VectorXd part_of(const VectorXd& x, size_t k) const {
+    return shared_ ? shared_->part_of(x, k) : x;
+  }
+
+  std::vector<MmcProblem> states;
+
+ private:
+  std::optional<SharedProblem> shared_;
+};
+
+}  // namespace flexmorph::mmc

@@ -1,0 +1,117 @@
+#include "optim/mmc/idle_parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace flexmorph::mmc {
+namespace {
+
+constexpr double kIdleDensity = 0.2;
+/// An end that is cut changes by half a cell or more.
+constexpr double kLeastCut = 0.5;
+
+/// Has the area so little energy? Of nothing there is none.
+bool idle(const VectorXd& area, const VectorXd& density) {
+  return density.dot(area) <= kIdleDensity * area.sum();
+}
+
+/// A component from t1 to t2 of its axis, [-1, 1] is all of it: the same profile.
+Component section(const Component& c, double t1, double t2, double min_half_thickness) {
+  const auto half = [&](double t) { return profile(c, t * c.half_length, min_half_thickness).g; };
+  const Vec2 axis(std::cos(c.angle), std::sin(c.angle));
+  const double middle = 0.5 * (t1 + t2);
+  Component out = c;
+  out.center += middle * c.half_length * axis;
+  out.half_length *= 0.5 * (t2 - t1);
+  out.c1 = half(t1);
+  out.c2 = half(t2);
+  out.c3 = half(middle);
+  return out;
+}
+
+/// What a cut may not make worse.
+struct Standing {
+  VectorXd fractions;
+  double narrowest, merit;
+
+  explicit Standing(UnderRepair& design) {
+    design.count_islands();
+    fractions = design.fractions(design.parts);
+    narrowest = design.smallest(design.places());
+    merit = design.merit(design.parts);
+  }
+};
+
+bool cut_stub(UnderRepair& design, size_t k, bool first, const Standing& before) {
+  const double floor = design.problem().stages.back().min_half_thickness;
+  const Component whole = design.parts[k];
+  Component best = whole;
+  double lowest = before.merit;
+  for (const double left : {0.2, 0.4, 0.6, 0.8}) {  // of the component
+    design.parts[k] =
+        first ? section(whole, 1 - 2 * left, 1, floor) : section(whole, -1, 2 * left - 1, floor);
+    const VectorXd lost = before.fractions - design.fractions(design.parts);
+    if (lost.sum() < kLeastCut || !idle(lost, design.density())) continue;
+    const double now = design.merit(design.parts);
+    if (!(now < lowest) || design.smallest(design.places()) < before.narrowest) continue;
+    lowest = now;
+    best = design.parts[k];
+  }
+  design.parts[k] = best;
+  if (!(lowest < before.merit)) return false;
+  // Where the end carried after all, what is left of the cut is bridged by cells only.
+  design.look_at_energy();
+  if (design.torn_gaps().empty()) return true;
+  design.parts[k] = whole;
+  design.look_at_energy();
+  return false;
+}
+
+}  // namespace
+
+int drop_idle(UnderRepair& design) {
+  design.look_at_energy();
+  design.count_islands();
+  const VectorXd fractions = design.fractions(design.parts);
+  std::vector<std::pair<double, size_t>> candidates;
+  for (size_t k = 0; k < design.parts.size(); ++k) {
+    const VectorXd own = fractions - design.fractions(design.less(k));
+    if (idle(own, design.density())) candidates.emplace_back(design.density().dot(own), k);
+  }
+  std::sort(candidates.begin(), candidates.end());
+  std::vector<bool> gone(design.parts.size(), false);
+  std::vector<Component> left = design.parts;
+  double lowest = design.merit(left);
+  int n = 0;
+  for (const auto& [energy, k] : candidates) {
+    gone[k] = true;
+    std::vector<Component> without;
+    for (size_t i = 0; i < design.parts.size(); ++i)
+      if (!gone[i]) without.push_back(design.parts[i]);
+    const double now = design.merit(without);
+    gone[k] = now <= lowest;
+    if (!gone[k]) continue;
+    lowest = now;
+    left = std::move(without);
+    ++n;
+  }
+  design.parts = std::move(left);
+  design.patch.assign(design.parts.size(), false);
+  return n;
+}
+
+int cut_stubs(UnderRepair& design) {
+  design.look_at_energy();
+  Standing now(design);
+  int n = 0;
+  for (size_t k = 0; k < design.parts.size(); ++k)
+    for (const bool first : {true, false}) {
+      if (!cut_stub(design, k, first, now)) continue;
+      now = Standing(design);
+      ++n;
+    }
+  return n;
+}
+
+}  // namespace flexmorph::mmc

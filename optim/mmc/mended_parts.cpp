@@ -1,0 +1,60 @@
+#include "optim/mmc/mended_parts.h"
+
+#include <algorithm>
+
+namespace flexmorph::mmc {
+
+Mended repaired(std::vector<Part>& parts, double gaps) {
+  std::vector<double> volumes;
+  double used = 0, allowed = 0;
+  for (const Part& p : parts) {
+    volumes.push_back(fractions_of(p.problem, p.problem.design.components()).sum() /
+                      p.ersatz.n_domain_cells());
+    used += p.plate.full_mass() * volumes.back();
+    allowed += p.plate.full_mass() * allowed_volume(p.problem.goal).value_or(1);
+  }
+  Mended out;
+  for (size_t k = 0; k < parts.size(); ++k) {
+    Part& p = parts[k];
+    std::optional<CleanUp>& done = out.clean_ups.emplace_back();
+    if (p.problem.widths.any()) {
+      std::optional<double> volume;
+      if (parts.size() > 1 && used > 0) volume = std::min(1.0, volumes[k] * allowed / used);
+      Widths wanted = p.problem.widths;
+      wanted.gap *= gaps;
+      done = clean_up(p.problem, p.loads, wanted, volume);
+      done->wanted = p.problem.widths;
+      out.reached = out.reached && done->reached();
+      out.changed = out.changed || done->changed();
+      out.compliance += done->compliance_after;
+    } else {
+      const VectorXd fractions = fractions_of(p.problem, p.problem.design.components());
+      out.compliance += judged_compliance(p.problem, p.loads, p.ersatz.sharp(fractions));
+    }
+    out.designs.push_back(p.problem.design);
+  }
+  return out;
+}
+
+Mended looked_over(std::vector<Part>& parts) {
+  Mended out = as_they_are(parts);
+  for (size_t k = 0; k < parts.size(); ++k) {
+    Part& p = parts[k];
+    if (!p.problem.widths.any()) continue;
+    out.clean_ups[k] = look_over(p.problem, p.loads, p.problem.widths);
+    out.reached = out.reached && out.clean_ups[k]->reached();
+    out.changed = out.changed || out.clean_ups[k]->changed();
+  }
+  return out;
+}
+
+Mended as_they_are(const std::vector<Part>& parts) {
+  Mended out;
+  for (const Part& p : parts) {
+    out.clean_ups.push_back(p.outcome.clean_up);
+    out.designs.push_back(p.problem.design);
+  }
+  return out;
+}
+
+}  // namespace flexmorph::mmc

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "optim/mmc/designed_parts.h"
+
+namespace flexmorph::mmc {
+
+/// Designs of bodies after a repair of those that want one.
+struct Mended {
+  std::vector<std::optional<CleanUp>> clean_ups;
+  std::vector<Design> designs;
+  bool reached = true, changed = false;
+  double compliance = 0;  ///< of all sharp designs
+
+  bool better_than(const Mended& other) const {
+    return reached != other.reached ? reached : compliance < other.compliance;
+  }
+};
+
+/// Repairs the designs (clean_up()). What a common budget of mass leaves goes to the bodies as they
+/// have shared it so far.
+/// @param gaps  part of the wanted widths of gaps below which they are closed
+Mended repaired(std::vector<Part>& parts, double gaps);
+
+/// The designs as they are, and whether there is something to repair.
+Mended looked_over(std::vector<Part>& parts);
+
+/// The designs as they are, as repaired before.
+Mended as_they_are(const std::vector<Part>& parts);
+
+}  // namespace flexmorph::mmc

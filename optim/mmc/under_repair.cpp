@@ -1,0 +1,150 @@
+#include "optim/mmc/under_repair.h"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <utility>
+
+namespace flexmorph::mmc {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Gaps wider than this are not bridged by cells [cells].
+constexpr double kBridged = 3;
+/// Full material in a gap that loads pass through would have so many times the energy density of
+/// the material around: 10 to 500 times in bars that were cut, about once in idle slits.
+constexpr double kConcentration = 3;
+/// A cut that costs more than this part of the compliance is one through what carries. Bars share
+/// what they carry: cuts of half a hundredth each came to a fifth together.
+constexpr double kCostOfCut = 5e-4;
+/// Cells filled more than this are material that a cut leaves.
+constexpr double kFilled = 0.9;
+/// Outlines and round-off take as much from a gap that is wanted.
+constexpr double kWithin = 0.99;
+
+}  // namespace
+
+UnderRepair::UnderRepair(const BodyProblem& problem, LoadResponse& loads, const Widths& wanted)
+    : parts(problem.design.components()),
+      patch(parts.size(), false),
+      problem_(problem),
+      loads_(loads),
+      wanted_(wanted),
+      ersatz_(ersatz_of(problem)) {}
+
+std::vector<Component> UnderRepair::less(size_t k) const {
+  std::vector<Component> out = parts;
+  out.erase(out.begin() + static_cast<std::ptrdiff_t>(k));
+  return out;
+}
+
+void UnderRepair::drop(size_t k) {
+  parts.erase(parts.begin() + static_cast<std::ptrdiff_t>(k));
+  patch.erase(patch.begin() + static_cast<std::ptrdiff_t>(k));
+}
+
+std::vector<Region> UnderRepair::regions(const std::vector<Component>& of) const {
+  return regions_of(problem_, of, kOutlineTolerance * problem_.grid.dx());
+}
+
+double UnderRepair::volume(const std::vector<Component>& of) const {
+  return fractions(of).sum() / ersatz_.n_domain_cells();
+}
+
+double UnderRepair::compliance(const std::vector<Component>& of) const {
+  return judged_compliance(problem_, loads_, ersatz_.sharp(fractions(of)));
+}
+
+double UnderRepair::merit(const std::vector<Component>& of) const {
+  const Connectivity whole = connectivity_of(problem_, regions(of));
+  if (!whole.connected || whole.islands > islands_) return kInfinity;
+  const VectorXd all = fractions(of);
+  return judged_compliance(problem_, loads_, ersatz_.sharp(all)) * all.sum();
+}
+
+void UnderRepair::count_islands() { islands_ = connectivity_of(problem_, regions(parts)).islands; }
+
+std::vector<NarrowPlace> UnderRepair::places() const {
+  const std::vector<Region> pieces = regions(parts);
+  // The tolerance of outlines counts twice.
+  const double tolerance = 2 * kOutlineTolerance * problem_.grid.dx();
+  std::vector<NarrowPlace> out = narrow_places_of(problem_, pieces, wanted_.largest() + tolerance);
+  std::set<std::pair<size_t, size_t>> parted;  // a bridge is enough for two pieces
+  std::erase_if(out, [&](const NarrowPlace& p) {
+    if (p.solid) return p.width >= wanted_.solid + tolerance;
+    // A contact is on an outline, up to rounding: a little further on is material.
+    const auto piece_at = [&](const Vec2& contact) {
+      const Vec2 inside = contact + 1e-6 * (contact - p.center);
+      size_t k = 0;
+      while (k < pieces.size() && !contains(pieces[k], inside)) ++k;
+      return k;
+    };
+    const auto [one, other] = std::minmax({piece_at(p.a), piece_at(p.b)});
+    if (one == other) return p.width >= kWithin * wanted_.gap;
+    return !parted.insert({one, other}).second;
+  });
+  return out;
+}
+
+double UnderRepair::smallest(const std::vector<NarrowPlace>& narrow) const {
+  double out = kInfinity;
+  for (const NarrowPlace& p : narrow) {
+    const bool wide = !p.solid && p.width >= kWithin * wanted_.gap;  // a slit, or torn
+    out = std::min(out, wide ? 1 + p.width : p.width / (p.solid ? wanted_.solid : wanted_.gap));
+  }
+  return out;
+}
+
+std::vector<NarrowPlace> UnderRepair::torn_gaps() const {
+  if (!(wanted_.gap > 0)) return {};
+  std::vector<NarrowPlace> out =
+      narrow_places_of(problem_, regions(parts), kBridged * problem_.grid.dx());
+  const double whole = compliance(parts);
+  std::erase_if(out, [&](const NarrowPlace& p) {
+    return p.solid || !looks_torn(p) || compliance_cut_at(p) < (1 + kCostOfCut) * whole;
+  });
+  return out;
+}
+
+/// Those with a center within a feature's width of the gap.
+std::vector<int> UnderRepair::cells_around(const NarrowPlace& p) const {
+  const Grid& g = problem_.grid;
+  const double reach = 0.75 * std::max(wanted_.largest(), p.width);
+  std::vector<int> out;
+  for (int i = 0; i < g.nx; ++i)
+    for (int j = 0; j < g.ny; ++j)
+      if ((g.cell_center(i, j) - p.center).norm() < reach) out.push_back(g.cell(i, j));
+  return out;
+}
+
+bool UnderRepair::looks_torn(const NarrowPlace& p) const {
+  double inside = 0, around = 0, area = 0;
+  for (const int cell : cells_around(p)) {
+    if (fractions_[cell] < kFilled) {
+      inside = std::max(inside, density_[cell]);
+    } else {
+      around += density_[cell];
+      area += 1;
+    }
+  }
+  return inside * area > kConcentration * around;
+}
+
+/// With the partly filled cells of the gap as void.
+double UnderRepair::compliance_cut_at(const NarrowPlace& p) const {
+  VectorXd cut = fractions_;
+  for (const int cell : cells_around(p))
+    if (cut[cell] < kFilled) cut[cell] = 0;
+  return judged_compliance(problem_, loads_, ersatz_.sharp(cut));
+}
+
+void UnderRepair::look_at_energy() {
+  fractions_ = fractions(parts);
+  const CellFactors sharp = ersatz_.sharp(fractions_);
+  LoadResponse::Value value;
+  loads_.evaluate(sharp.stiffness, sharp.mass, value);
+  density_ = value.d_stiffness.cwiseAbs();
+  density_ *= fractions_.sum() / fractions_.dot(density_);
+}
+
+}  // namespace flexmorph::mmc

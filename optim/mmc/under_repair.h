@@ -1,0 +1,62 @@
+#pragma once
+
+#include <vector>
+
+#include "optim/mmc/body_problem.h"
+
+namespace flexmorph::mmc {
+
+/// A design that is being mended: its components, and what there is to say about them.
+class UnderRepair {
+ public:
+  UnderRepair(const BodyProblem& problem, LoadResponse& loads, const Widths& wanted);
+
+  const BodyProblem& problem() const { return problem_; }
+  const Widths& wanted() const { return wanted_; }
+
+  std::vector<Component> parts;
+  std::vector<bool> patch;  ///< was the part put there by a repair?
+
+  std::vector<Component> less(size_t k) const;  ///< all parts but one
+  void drop(size_t k);
+
+  /// Exact union.
+  std::vector<Region> regions(const std::vector<Component>& of) const;
+  /// Area fractions of cells.
+  VectorXd fractions(const std::vector<Component>& of) const { return fractions_of(problem_, of); }
+  double volume(const std::vector<Component>& of) const;  ///< sharp, a part of the domain
+  double compliance(const std::vector<Component>& of) const;
+  /// Compliance times volume of the sharp design; infinite when it has come apart into more pieces
+  /// than at the last count_islands(). (Cells do not see slits; what a piece carries through one
+  /// counts for nothing.)
+  double merit(const std::vector<Component>& of) const;
+  void count_islands();
+
+  /// Narrow material and gaps, and slits between pieces that should be one.
+  std::vector<NarrowPlace> places() const;
+  /// Gaps wide enough, but closed by their partly filled cells: without those the design would be
+  /// softer. As of the last look_at_energy().
+  std::vector<NarrowPlace> torn_gaps() const;
+  /// The narrowest as a part of what is wanted, of gaps that are wide enough more than 1; infinite
+  /// for none.
+  double smallest(const std::vector<NarrowPlace>& narrow) const;
+
+  /// Energy of full material in every cell by the mean one of the design (n_cells), as it was at
+  /// the last look_at_energy().
+  const VectorXd& density() const { return density_; }
+  void look_at_energy();
+
+ private:
+  bool looks_torn(const NarrowPlace& p) const;
+  double compliance_cut_at(const NarrowPlace& p) const;
+  std::vector<int> cells_around(const NarrowPlace& p) const;
+
+  const BodyProblem& problem_;
+  LoadResponse& loads_;
+  Widths wanted_;
+  Ersatz ersatz_;
+  int islands_ = 0;
+  VectorXd fractions_, density_;  // at the last look
+};
+
+}  // namespace flexmorph::mmc

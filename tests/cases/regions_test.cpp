@@ -1,0 +1,166 @@
+// Passive regions: outlines have them exactly, cells by their samples; what is none is refused.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "cases/build/build.h"
+#include "tests/cases/scenes.h"
+#include "tests/io/scratch.h"
+
+namespace flexmorph::cases {
+namespace {
+
+/// short_beam (2 x 1 m, 80 x 40 cells) with regions; nothing else, or material everywhere.
+struct Regions {
+  mmc::BodyProblem problem;
+  std::vector<Component> all = {
+      {.center = {1, 0.5}, .half_length = 50, .c1 = 40, .c2 = 40, .c3 = 40}};
+
+  explicit Regions(const Changes& changes)
+      : problem(build_problems(read("short_beam", changes)).front()) {}
+
+  std::vector<Region> exported(std::span<const Component> components) const {
+    return mmc::regions_of(problem, components, tolerance());
+  }
+  double tolerance() const { return mmc::kOutlineTolerance * problem.grid.dx(); }
+  double sharp(std::span<const Component> components) const {
+    const Grid& g = problem.grid;
+    return mmc::fractions_of(problem, components).sum() * g.dx() * g.dy();
+  }
+};
+
+// Sides within t of a circle, and vertices on it: the polygon lacks less than t times the
+// circumference. Samples of an eighth of a cell along it are right or wrong by half of themselves.
+TEST(PassiveRegions, ADiscIsRound) {
+  const double r = 0.2, exact = std::numbers::pi * r * r, around = 2 * std::numbers::pi * r;
+  const Regions solid({"design.solid=[{disc=[0.5, 0.5, 0.2]}]"});
+  const std::vector<Region> disc = solid.exported({});
+  ASSERT_EQ(disc.size(), 1u);
+  EXPECT_LE(area(disc), exact);
+  EXPECT_GE(area(disc), exact - solid.tolerance() * around);
+  for (const Vec2& p : disc[0].outer) EXPECT_NEAR((p - Vec2(0.5, 0.5)).norm(), r, 1e-15);
+  EXPECT_NEAR(solid.sharp({}), exact, 1e-3 * exact);
+
+  const Regions hole({"design.void=[{disc=[0.5, 0.5, 0.2]}]"});
+  const std::vector<Region> rest = hole.exported(hole.all);
+  ASSERT_EQ(rest.size(), 1u);
+  ASSERT_EQ(rest[0].holes.size(), 1u);
+  EXPECT_NEAR(area(rest), 2 - area(disc), 1e-14);
+  EXPECT_NEAR(hole.sharp(hole.all), 2 - exact, 1e-3 * exact);
+}
+
+TEST(PassiveRegions, APolygonHasItsCorners) {
+  // A triangle, clockwise, and half a disc that the border cuts.
+  const Changes regions = {
+      "design.void=[{polygon=[0.3, 0.3, 0.3, 0.9, 1.1, 0.3]}, {disc=[2.0, 0.5, 0.25]}]"};
+  const Regions r(regions);
+  const double triangle = 0.5 * 0.8 * 0.6, half = 0.5 * std::numbers::pi * 0.25 * 0.25;
+  const std::vector<Region> rest = r.exported(r.all);
+  ASSERT_EQ(rest.size(), 1u);
+  ASSERT_EQ(rest[0].holes.size(), 1u);
+  EXPECT_EQ(rest[0].holes[0].size(), 3u);
+  EXPECT_NEAR(area(rest), 2 - triangle - half, r.tolerance() * std::numbers::pi * 0.25);
+  EXPECT_NEAR(r.sharp(r.all), 2 - triangle - half, 1e-3);
+}
+
+TEST(PassiveRegions, CellsWithCentresInThemAreFixed) {
+  const Regions r(
+      {"design.void=[{disc=[0.5, 0.5, 0.2]}]", "design.solid=[{polygon=[1, 0, 2, 0, 2, 1]}]"});
+  const Grid& g = r.problem.grid;
+  mmc::CellFactors factors;
+  const VectorXd half = VectorXd::Constant(g.n_nodes(), 0.5);
+  mmc::ersatz_of(r.problem).factors(half, half, factors);
+  for (int i = 0; i < g.nx; ++i)
+    for (int j = 0; j < g.ny; ++j) {
+      const Vec2 c = g.cell_center(i, j);
+      const double mass = factors.mass[g.cell(i, j)];
+      const double off = std::abs(c.y() - (c.x() - 1));  // of the triangle's long side
+      const double from = (c - Vec2(0.5, 0.5)).norm();
+      const bool free = from > 0.2 && c.y() > c.x() - 1;
+      if (std::abs(from - 0.2) < 1e-3 || off < 1e-9) continue;
+      EXPECT_EQ(mass > 0.1 && mass < 0.9, free) << c.transpose();
+      if (free) continue;
+      EXPECT_EQ(mass, from < 0.2 ? 0 : 1);
+    }
+}
+
+TEST(PassiveRegions, StripsLieAlongBothEnds) {
+  for (const char* kind : {"solid", "void"}) {
+    const std::string name = std::string("design.") + kind;
+    const Regions r({name + "=[{strip=\"root\", cells=4}, {strip=\"free_end\"}]"});
+    const auto& strips = kind[0] == 's' ? r.problem.solid : r.problem.empty;
+    ASSERT_EQ(strips.size(), 2u);
+    EXPECT_NEAR(bounds_of(strips[0]).upper.x(), 0.1, 1e-15);
+    EXPECT_NEAR(bounds_of(strips[1]).lower.x(), 1.95, 1e-15);
+    const bool solid = kind[0] == 's';
+    EXPECT_NEAR(area(solid ? r.exported({}) : r.exported(r.all)), solid ? 0.15 : 1.85, 1e-14);
+  }
+}
+
+// A ligament between two voids, or a slot in material: nothing that a design could change.
+TEST(PassiveRegions, NarrowPlacesOfTheirOwnAreGiven) {
+  const Regions r({"design.void=[{polygon=[0.5, 0.2, 1.5, 0.2, 1.5, 0.23, 0.5, 0.23]}]",
+                   "design.solid=[{box=[0.5, 0.5, 1.5, 0.53]}]"});
+  EXPECT_TRUE(mmc::narrow_places_of(r.problem, r.exported(r.all), 0.05).empty());
+  EXPECT_FALSE(narrow_places(r.exported(r.all), mmc::domain_of(r.problem), 0.05).empty());
+  EXPECT_TRUE(mmc::narrow_places_of(r.problem, r.exported({}), 0.05).empty());
+}
+
+struct Bad {
+  const char* name;
+  const char* region;
+  const char* said;
+};
+class PassiveRegionRefused : public ::testing::TestWithParam<Bad> {};
+TEST_P(PassiveRegionRefused, AndSaysWhy) {
+  for (const std::string kind : {"solid", "void"}) {
+    std::string said;
+    try {
+      read("l_bracket", {"design." + kind + "=[" + GetParam().region + "]"});
+    } catch (const Error& e) {
+      EXPECT_EQ(e.kind(), Error::Kind::input);
+      said = e.what();
+    }
+    EXPECT_TRUE(contains(said, GetParam().said)) << said;
+    EXPECT_TRUE(starts(said, "--set design." + kind)) << said;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(
+    Table, PassiveRegionRefused,
+    ::testing::Values(
+        Bad{"none", "{cells=2}", "a region is one of `box`, `disc`, `polygon`, `strip`"},
+        Bad{"two", "{disc=[0.1, 0.1, 0.1], box=[0, 0, 1, 1]}", "a region is one of"},
+        Bad{"crossing", "{polygon=[0, 0, 0.3, 0.3, 0.3, 0, 0, 0.3]}", "does not cross itself"},
+        Bad{"flat", "{polygon=[0.1, 0.1, 0.2, 0.1, 0.3, 0.1]}", "a polygon has an area"},
+        Bad{"collinear", "{polygon=[0.1, 0.1, 0.2, 0.2, 0.3, 0.3]}", "does not cross itself"},
+        Bad{"two_corners", "{polygon=[0.1, 0.1, 0.2, 0.2]}", "three corners or more"},
+        Bad{"odd", "{polygon=[0.1, 0.1, 0.2, 0.2, 0.1, 0.3, 0.7]}", "three corners or more"},
+        Bad{"no_radius", "{disc=[0.1, 0.1, 0]}", "a radius is positive"},
+        Bad{"negative_radius", "{disc=[0.1, 0.1, -0.1]}", "a radius is positive"},
+        Bad{"nan", "{disc=[0.1, nan, 0.1]}", "disc"},
+        Bad{"disc_of_two", "{disc=[0.1, 0.1]}", "disc"},
+        Bad{"outside", "{disc=[3, 3, 0.1]}", "a disc holds the centre of a cell; the domain is"},
+        // In the bounding box of the bracket, but not in its domain.
+        Bad{"in_the_corner", "{disc=[0.8, 0.8, 0.1]}", "a disc holds the centre of a cell"},
+        Bad{"small", "{disc=[0.1, 0.1, 1e-4]}", "a disc holds the centre of a cell"},
+        Bad{"cells_of_a_disc", "{disc=[0.1, 0.1, 0.1], cells=3}", "only a strip is as wide as"}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+TEST(PassiveRegions, AreNotSolidAndVoid) {
+  const auto both = [](const char* hole) {
+    try {
+      read("short_beam",
+           {"design.solid=[{disc=[0.5, 0.5, 0.2]}]", std::string("design.void=[{") + hole + "}]"});
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_TRUE(contains(both("disc=[0.85, 0.5, 0.2]"), "a region cannot be solid and void at once"));
+  EXPECT_EQ(both("disc=[0.91, 0.5, 0.2]"), "");
+  EXPECT_EQ(both("polygon=[0.7, 0.3, 0.9, 0.3, 0.9, 0.7, 0.7, 0.7]"), "");  // touches
+}
+
+}  // namespace
+}  // namespace flexmorph::cases

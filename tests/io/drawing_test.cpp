@@ -1,0 +1,254 @@
+// Drawings of other programs: a plate of 80 x 50 mm with two holes of 5 and 8 mm radius, said in
+// every way that is read, has its analytic area; what is no outline is refused, and named.
+#include "io/drawing.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "geometry/outline.h"
+#include "tests/io/scratch.h"
+
+namespace flexmorph::io {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+std::string pair(int code, const std::string& value) {
+  return std::to_string(code) + "\n" + value + "\n";
+}
+std::string pair(int code, double value) { return pair(code, std::to_string(value)); }
+
+/// An entity: its codes and numbers one after the other, x of a point before its y.
+std::string entity(const std::string& name, const std::vector<std::pair<int, double>>& values,
+                   const std::string& layer = "0") {
+  std::string out = pair(0, name) + pair(8, layer);
+  for (const auto& [code, value] : values) {
+    const bool whole = code >= 60 && code < 100;
+    out += whole ? pair(code, std::to_string(static_cast<int>(value))) : pair(code, value);
+  }
+  return out;
+}
+
+std::string dxf(const std::string& entities, int unit = 4) {
+  return "0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n" + std::to_string(unit) +
+         "\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n" + entities + "0\nENDSEC\n0\nEOF\n";
+}
+
+std::string line(double x0, double y0, double x1, double y1) {
+  return entity("LINE", {{10, x0}, {20, y0}, {30, 0}, {11, x1}, {21, y1}, {31, 0}});
+}
+std::string circle(double x, double y, double r, const std::string& layer = "0") {
+  return entity("CIRCLE", {{10, x}, {20, y}, {30, 0}, {40, r}}, layer);
+}
+std::string arc(double x, double y, double r, double from, double to) {
+  return entity("ARC", {{10, x}, {20, y}, {30, 0}, {40, r}, {50, from}, {51, to}});
+}
+
+const std::string kFrame =
+    line(0, 0, 80, 0) + line(80, 50, 80, 0) + line(0, 50, 0, 0) + line(0, 50, 80, 50);
+const std::string kHoles = circle(20, 25, 5) + circle(50, 25, 8);
+constexpr double kArea = 80e-3 * 50e-3 - kPi * (25e-6 + 64e-6);
+/// Sides lie within 1e-5 of 80 mm of the circles.
+constexpr double kOff = 2 * kPi * 13e-3 * 80e-3 * kDrawingTolerance;
+
+class Drawings : public ::testing::Test {
+ protected:
+  Region plate(const std::string& name, const std::string& text,
+               const DrawingSettings& settings = {}) const {
+    return region_of(read_drawing(scratch_.write(name, text), settings));
+  }
+  std::string complaint(const std::string& name, const std::string& text,
+                        const DrawingSettings& settings = {}) const {
+    try {
+      plate(name, text, settings);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), Error::Kind::input);
+      return error.what();
+    }
+    return "";
+  }
+  void expect_plate(const Region& r) const {
+    EXPECT_EQ(r.holes.size(), 2u);
+    EXPECT_NEAR(area(r), kArea, kOff);
+    EXPECT_GE(area(r), kArea - 1e-16);  // vertices lie on the circles: holes lack a little
+    const Box box = bounds_of(r.outer);
+    EXPECT_NEAR(box.lower.norm(), 0, 1e-12);
+    EXPECT_NEAR((box.upper - Vec2(0.08, 0.05)).norm(), 0, 1e-12);
+    for (const Vec2& p : r.holes[0]) EXPECT_NEAR((p - Vec2(0.05, 0.025)).norm(), 8e-3, 1e-9);
+    for (const Vec2& p : r.holes[1]) EXPECT_NEAR((p - Vec2(0.02, 0.025)).norm(), 5e-3, 1e-9);
+  }
+
+  Scratch scratch_;
+};
+
+TEST_F(Drawings, LinesOfAnyOrderAndSenseAreJoined) {
+  expect_plate(plate("part.dxf", dxf(kFrame + kHoles)));
+  expect_plate(plate("PART.DXF", dxf(kFrame + kHoles)));
+  // Windows ends lines with two characters.
+  std::string windows;
+  for (const char c : dxf(kFrame + kHoles))
+    windows += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  expect_plate(plate("part.dxf", windows));
+}
+
+TEST_F(Drawings, UnitsAreThoseOfTheFileOrGiven) {
+  const auto width = [&](int code, std::optional<double> unit) {
+    return bounds_of(plate("part.dxf", dxf(kFrame, code), {unit, {}}).outer).upper.x();
+  };
+  EXPECT_NEAR(width(4, {}), 0.08, 1e-15);
+  EXPECT_NEAR(width(6, {}), 80, 1e-12);
+  EXPECT_NEAR(width(1, {}), 80 * 0.0254, 1e-14);
+  EXPECT_NEAR(width(5, {}), 0.8, 1e-15);
+  EXPECT_NEAR(width(0, 1e-3), 0.08, 1e-15);
+  EXPECT_NEAR(width(6, 1e-3), 0.08, 1e-15);
+  EXPECT_TRUE(contains(complaint("part.dxf", dxf(kFrame, 0)), "says no unit of length: `unit`"));
+}
+
+// A half circle has the bulge 1: an arc of 180 degrees counterclockwise.
+TEST_F(Drawings, PolylinesHaveArcs) {
+  const auto vertices = [](double bulge) {
+    return std::vector<std::pair<int, double>>{{90, 4},  {70, 1}, {10, 0},     {20, 0},  {42, 0},
+                                               {10, 60}, {20, 0}, {42, bulge}, {10, 60}, {20, 50},
+                                               {42, 0},  {10, 0}, {20, 50},    {42, 0}};
+  };
+  const double half = 0.5 * kPi * 25e-3 * 25e-3, box = 60e-3 * 50e-3;
+  const Region out = plate("part.dxf", dxf(entity("LWPOLYLINE", vertices(1))));
+  EXPECT_NEAR(area(out), box + half, kPi * 25e-3 * 85e-3 * kDrawingTolerance);
+  EXPECT_NEAR(bounds_of(out.outer).upper.x(), 85e-3, 1e-6);
+  const Region in = plate("part.dxf", dxf(entity("LWPOLYLINE", vertices(-1))));
+  EXPECT_NEAR(area(in), box - half, kPi * 25e-3 * 85e-3 * kDrawingTolerance);
+  // The same of a quarter circle by POLYLINE, and of a chain with an arc that goes backwards.
+  const double quarter = std::tan(kPi / 8);
+  std::string old = entity("POLYLINE", {{66, 1}, {70, 1}});
+  old += entity("VERTEX", {{10, 0}, {20, 0}}) +
+         entity("VERTEX", {{10, 40}, {20, 0}, {42, quarter}}) +
+         entity("VERTEX", {{10, 0}, {20, 40}});
+  const Region fan = plate("part.dxf", dxf(old + entity("SEQEND", {})));
+  EXPECT_NEAR(area(fan), 0.25 * kPi * 16e-4, 0.5 * kPi * 40e-3 * 40e-3 * kDrawingTolerance);
+  const Region chain =
+      plate("part.dxf", dxf(line(40, 0, 0, 0) + arc(0, 0, 40, 0, 90) + line(0, 0, 0, 40)));
+  EXPECT_NEAR(area(chain), 0.25 * kPi * 16e-4, 0.5 * kPi * 40e-3 * 40e-3 * kDrawingTolerance);
+}
+
+TEST_F(Drawings, EllipsesHaveTheirArea) {
+  const std::string ellipse = entity(
+      "ELLIPSE",
+      {{10, 40}, {20, 25}, {30, 0}, {11, 6}, {21, 8}, {31, 0}, {40, 0.5}, {41, 0}, {42, 2 * kPi}});
+  const Region r = plate("part.dxf", dxf(kFrame + ellipse));
+  EXPECT_NEAR(area(r), 4e-3 - kPi * 50e-6, 60e-3 * 80e-3 * kDrawingTolerance);
+}
+
+TEST_F(Drawings, LayersAndBlocksThatAreNotMeantStayOut) {
+  const std::string all = kFrame + circle(20, 25, 5, "HOLES") + circle(50, 25, 8, "HOLES") +
+                          circle(0, 0, 30, "MARKS") + entity("TEXT", {{10, 1}, {20, 1}, {40, 2}});
+  expect_plate(plate("part.dxf", dxf(all), {{}, {"0", "HOLES"}}));
+  EXPECT_TRUE(contains(complaint("part.dxf", dxf(all)), "cross, touch or lie elsewhere"));
+  EXPECT_TRUE(contains(complaint("part.dxf", dxf(all), {{}, {"0", "HOLE"}}),
+                       "nothing is on a layer 'HOLE'"));
+  const std::string block =
+      "0\nSECTION\n2\nBLOCKS\n0\nBLOCK\n8\n0\n2\nbolt\n70\n0\n10\n0\n20\n0\n" + circle(0, 0, 100) +
+      "0\nENDBLK\n8\n0\n0\nENDSEC\n";
+  expect_plate(plate("part.dxf", block + dxf(kFrame + kHoles)));
+}
+
+TEST_F(Drawings, SvgHasPathsAndShapes) {
+  const std::string head =
+      "<?xml version=\"1.0\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"80mm\" "
+      "height=\"50mm\" viewBox=\"10 20 160 100\">";
+  // Two units to a millimetre; y points down.
+  const std::string shapes =
+      head + R"svg(<defs><rect width="1" height="1"/></defs><title>plate</title>
+<rect x="10" y="20" width="160" height="100"/><g transform="translate(10 20)">
+<circle cx="100" cy="50" r="16"/><g transform="scale(2) rotate(90, 20, 25)">
+<ellipse cx="20" cy="25" rx="5" ry="5"/></g></g></svg>)svg";
+  expect_plate(plate("part.svg", shapes));
+  const std::string paths = head + R"svg(<polygon points="10,20 170,20 170,120 10,120"/>
+<path transform="matrix(2 0 0 2 10 20)" d="M 45 25 m -3 0 a 8 8 0 1 0 16 0 a 8 8 0 1 0 -16 0 z
+ M 15,25 A 5 5 0 0 1 25 25 A 5,5,0,0,1,15,25"/></svg>)svg";
+  expect_plate(plate("part.svg", paths));
+  // A parabola (quadratic Bezier) of height 10 over 40: its segment has 2/3 of the rectangle.
+  const std::string curve = head + R"svg(<path d="M 20 60 q 40 -40 80 0 z"/></svg>)svg";
+  EXPECT_NEAR(area(plate("part.svg", curve)), 2. / 3 * 40e-3 * 10e-3, 45e-3 * 40e-3 * 1e-5);
+  // Without a unit; in px.
+  for (const std::string size : {"", "width=\"160\" height=\"100\"", "width=\"100%\""}) {
+    std::string bare = paths;
+    bare.replace(bare.find("width=\"80mm\" height=\"50mm\""), 26, size);
+    EXPECT_TRUE(contains(complaint("part.svg", bare), "says no unit"));
+    expect_plate(plate("part.svg", bare, {0.5e-3, {}}));
+  }
+}
+
+struct Bad {
+  const char* name;
+  std::string file, text;
+  const char* said;
+};
+void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.name; }
+class DrawingRefused : public Drawings, public ::testing::WithParamInterface<Bad> {};
+TEST_P(DrawingRefused, AndSaysWhy) {
+  const std::string said = complaint(GetParam().file, GetParam().text);
+  EXPECT_TRUE(contains(said, GetParam().said));
+}
+const std::string kSvg = "<svg width=\"1mm\" viewBox=\"0 0 1 1\">";
+INSTANTIATE_TEST_SUITE_P(
+    Table, DrawingRefused,
+    ::testing::Values(
+        Bad{"open", "a.dxf", dxf(line(0, 0, 1, 0) + line(1, 0, 1, 1)), "a curve is open: it ends"},
+        Bad{"three_ends", "a.dxf", dxf(kFrame + line(80, 0, 9, 9) + line(9, 9, 0, 0)),
+            "more than two curves meet"},
+        Bad{"crossing", "a.dxf", dxf(kFrame + circle(0, 0, 20)), "cross, touch or lie elsewhere"},
+        Bad{"apart", "a.dxf", dxf(circle(0, 0, 20) + circle(50, 0, 5)), "lie elsewhere"},
+        Bad{"nested", "a.dxf", dxf(kFrame + circle(40, 25, 20) + circle(40, 25, 10)), "elsewhere"},
+        Bad{"twice", "a.dxf", dxf(kFrame + kHoles + circle(20, 25, 5)), "lie elsewhere"},
+        Bad{"itself", "a.dxf",
+            dxf(line(0, 0, 1, 1) + line(1, 1, 1, 0) + line(1, 0, 0, 1) + line(0, 1, 0, 0)),
+            "crosses or touches itself"},
+        Bad{"no_curve", "a.dxf", dxf(""), "no closed curve is in it"},
+        Bad{"a_point", "a.dxf", dxf(circle(1, 1, 0)), "has no area"},
+        Bad{"insert", "a.dxf", dxf(pair(0, "INSERT") + pair(8, "0") + pair(2, "bolt")), "INSERT"},
+        Bad{"no_dxf", "a.dxf", "hello", "this is no DXF file"},
+        Bad{"empty", "a.dxf", "", "this is no DXF file"},
+        Bad{"far", "a.dxf", dxf(circle(1e33, 0, 1)), "not a number below 1e30"},
+        Bad{"other", "a.step", "ISO-10303-21;", "a drawing is a .dxf or .svg file"},
+        Bad{"no_xml", "a.svg", "<svg><path", "this is no XML"},
+        Bad{"no_svg", "a.svg", "<html/>", "this is no SVG file"},
+        Bad{"nothing", "a.svg", kSvg + "</svg>", "no closed curve is in it"},
+        Bad{"open_path", "a.svg", kSvg + "<path d='M 0 0 L 1 0 L 1 1'/></svg>", "a curve is open"},
+        Bad{"bad_path", "a.svg", kSvg + "<path d='M 0 0 K 1 0'/></svg>", "path: "},
+        Bad{"bad_number", "a.svg", kSvg + "<polygon points='0 0 1 x'/></svg>", "'x' is no number"},
+        Bad{"bad_turn", "a.svg", kSvg + "<g transform='turn(3)'></g></svg>", "transform 'turn'"},
+        Bad{"use", "a.svg", kSvg + "<use href='#a'/></svg>", "use: copies"},
+        Bad{"percent", "a.svg", kSvg + "<rect width='50%' height='1'/></svg>", "units of the page"},
+        Bad{"box", "a.svg", "<svg viewBox='0 0 1'/>", "viewBox"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST_F(Drawings, AreRegularFiles) {
+  EXPECT_TRUE(contains(
+      [&] {
+        try {
+          read_drawing(scratch_ / "none.dxf", {});
+        } catch (const Error& error) {
+          return std::string(error.what());
+        }
+        return std::string();
+      }(),
+      "none.dxf: cannot be read"));
+  ASSERT_EQ(mkfifo((scratch_ / "pipe.dxf").c_str(), 0600), 0);
+  EXPECT_THROW(read_drawing(scratch_ / "pipe.dxf", {}), Error);
+}
+
+// Entities that call for each other without end are XML, too.
+TEST_F(Drawings, DoNotGrowWhenTheyAreRead) {
+  std::string text = "<!DOCTYPE svg [<!ENTITY a0 \"1 1 \">";
+  for (int k = 1; k < 30; ++k)
+    text += "<!ENTITY a" + std::to_string(k) + " \"&a" + std::to_string(k - 1) + ";&a" +
+            std::to_string(k - 1) + ";\">";
+  text += "]><svg width=\"1mm\"><polygon points=\"&a29;\"/></svg>";
+  EXPECT_NE(complaint("bomb.svg", text), "");
+}
+
+}  // namespace
+}  // namespace flexmorph::io
