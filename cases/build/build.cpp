@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "cases/build/static_conditions.h"
 #include "cases/build/twin.h"
 
 namespace flexmorph::cases {
@@ -74,14 +75,18 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
                       ? crossing_layout(g.x0, g.y0, g.width, g.height, d.components[0],
                                         d.components[1], d.half_thickness, d.half_length)
                       : d.start;
-    shake(layout, d.jitter, d.seed);
     std::vector<TdfSettings> stages;
     for (size_t i = 0; i < d.band.size(); ++i) stages.push_back(d.stage(i));
     const mmc::Plate plate = plate_of(scene, d);
+    mmc::Symmetry symmetry;
+    if (d.symmetric) symmetry = symmetry_of(scene, d, plate.outside);
+    if (!mmc::is_symmetric(layout, symmetry)) symmetry = {};
+    layout = mmc::one_side(layout, symmetry);
+    shake(layout, d.jitter, d.seed);
     out.push_back({.body = d.body,
                    .grid = g,
                    .section = plate.section,
-                   .design = mmc::Design(g, layout, scale),
+                   .design = mmc::Design(g, layout, scale, symmetry),
                    .solid = d.solid,
                    .empty = d.empty,
                    .stages = stages,

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "cases/build/build.h"
+#include "cases/build/static_conditions.h"
 #include "io/files.h"
-#include "optim/mmc/fixed_loads.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -94,37 +94,41 @@ std::vector<std::vector<int>> static_places(const Scene& scene, const Grid& grid
   return places;
 }
 
-std::unique_ptr<mmc::LoadResponse> build_static_loads(const Scene& scene,
-                                                      const mmc::BodyProblem& problem) {
+StaticConditions static_conditions(const Scene& scene, const Grid& grid,
+                                   std::span<const signed char> outside) {
   const Domain& domain = *scene.domain;
-  const Grid& grid = problem.grid;
-  const NodeFinder find(scene, grid, problem.outside);
-  std::vector<fem::HeldUnknown> held;
+  const NodeFinder find(scene, grid, outside);
+  StaticConditions out;
   for (size_t s = 0; s < domain.supports.size(); ++s) {
     const PlaneSupport& support = domain.supports[s];
     for (const int node : find.at(support.place, support_path(s)).nodes) {
-      if (support.x) held.push_back({node, 0});
-      if (support.y) held.push_back({node, 1});
+      if (support.x) out.held.push_back({node, 0});
+      if (support.y) out.held.push_back({node, 1});
     }
   }
-  std::vector<mmc::LoadCase> loads;
   for (size_t l = 0; l < domain.loads.size(); ++l) {
-    mmc::LoadCase& out = loads.emplace_back();
-    out.name = domain.loads[l].name;
-    out.weight = domain.loads[l].weight;
+    mmc::LoadCase& load = out.loads.emplace_back();
+    load.name = domain.loads[l].name;
+    load.weight = domain.loads[l].weight;
     for (size_t f = 0; f < domain.loads[l].forces.size(); ++f) {
       const PlaneForce& force = domain.loads[l].forces[f];
       const PlaceNodes place = find.at(force.place, force_path(l, f));
       for (size_t k = 0; k < place.nodes.size(); ++k)
-        out.forces.push_back({place.nodes[k], place.shares[k] * force.force});
+        load.forces.push_back({place.nodes[k], place.shares[k] * force.force});
     }
   }
+  return out;
+}
+
+std::unique_ptr<mmc::LoadResponse> build_static_loads(const Scene& scene,
+                                                      const mmc::BodyProblem& problem) {
+  const StaticConditions conditions = static_conditions(scene, problem.grid, problem.outside);
   // Rows with a value per load solve every load as it is.
   const std::vector<const mmc::ResponseRow*> rows = mmc::rows_of(problem.goal);
   const bool compress = std::none_of(rows.begin(), rows.end(),
                                      [](const mmc::ResponseRow* row) { return row->per_load; });
-  return std::make_unique<mmc::FixedLoads>(grid, problem.section, problem.outside, held, loads,
-                                           compress);
+  return std::make_unique<mmc::FixedLoads>(problem.grid, problem.section, problem.outside,
+                                           conditions.held, conditions.loads, compress);
 }
 
 }  // namespace flexmorph::cases

@@ -16,6 +16,8 @@ namespace {
 
 /// Where widths are wanted, so many times a part of the iterations follows a clean-up.
 constexpr int kPolishes = 3, kPolishShare = 8;
+/// Fewer iterations than this do not shape anything: short runs are repaired and left.
+constexpr int kLeastPolish = 5;
 /// Gaps that are narrower than this part of what is wanted are closed before the polishes, which
 /// open the others.
 constexpr double kClosed = 0.5;
@@ -34,7 +36,8 @@ class Designer {
     // Stages share iterations and state solves evenly; polishes after a clean-up have their part.
     const bool cleans = std::any_of(parts_.begin(), parts_.end(),
                                     [](const Part& p) { return p.problem.widths.any(); });
-    const int polishes = cleans ? kPolishes : 0;
+    const bool shapes = settings_.optimizer.max_iterations / kPolishShare >= kLeastPolish;
+    const int polishes = cleans && shapes ? kPolishes : 0;
     const auto share = [&](int total) { return total - polishes * (total / kPolishShare); };
     const int iterations = share(settings_.optimizer.max_iterations);
     const int solves = share(settings_.optimizer.max_evaluations);
@@ -51,7 +54,7 @@ class Designer {
                 solves * (stage + 1) / shares);
     }
     const bool analysed = settings_.optimizer.max_iterations == 0;
-    if (cleans && going_ && !analysed) mend();
+    if (cleans && going_ && !analysed) mend(polishes);
     if (settings_.finish && going_ && !analysed) {
       if (cleans)
         finish_mended(solves);
@@ -85,7 +88,8 @@ class Designer {
   void run_stage(int left, int solves) {
     for (Part& p : parts_)
       p.turnover.emplace(p.problem.grid, *p.tdf, p.ersatz,
-                         p.problem.refill ? p.problem.design.shortest() : 0);
+                         p.problem.refill ? p.problem.design.shortest() : 0,
+                         p.problem.design.n_images());
     std::optional<Candidate> best;
     while (left > 0 && going_ && (solves == 0 || evaluations_ < solves)) {
       Candidate found = run(left, solves);
@@ -188,12 +192,13 @@ class Designer {
   /// Makes designs as wide as wanted; then optimizes from there with the widths as constraints, so
   /// that what was put over narrow places is shaped as well, and does it again. The least compliant
   /// of the wide ones are kept, those of one round together: mass that one body gave, another has.
-  void mend() {
-    Mended last = repaired(parts_, kClosed);
+  void mend(int polishes) {
+    for (Part& p : parts_) p.problem.design = p.problem.design.without_symmetry();
+    Mended last = repaired(parts_, polishes > 0 ? kClosed : 1);
     Mended best = last;
     std::vector<std::optional<CleanUp>> sums = last.clean_ups;
     const int budget = settings_.optimizer.max_evaluations;
-    for (int round = 1; round <= kPolishes && going_; ++round) {
+    for (int round = 1; round <= polishes && going_; ++round) {
       for (size_t k = 0; k < parts_.size(); ++k) {
         Part& p = parts_[k];
         p.widths.reset();
@@ -202,7 +207,7 @@ class Designer {
         p.follow_sharp_volume();
       }
       run_stage(settings_.optimizer.max_iterations / kPolishShare,
-                budget - (kPolishes - round) * (budget / kPolishShare));
+                budget - (polishes - round) * (budget / kPolishShare));
       last = repaired(parts_, 1);
       for (size_t k = 0; k < parts_.size(); ++k)
         if (sums[k]) sums[k]->add(*last.clean_ups[k]);

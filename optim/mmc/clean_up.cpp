@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
+
+#include <boost/math/tools/toms748_solve.hpp>
 
 #include "geometry/part_mesh.h"
 #include "optim/mmc/idle_parts.h"
@@ -24,7 +27,8 @@ constexpr int kMostRounds = 20;
 /// A repair that makes the compliance so many times what it was is none: the design is no design
 /// yet, but a lattice on its way.
 constexpr double kDearest = 1.25;
-constexpr int kHalvings = 30;
+/// Thicknesses that fit a volume are found to this part of the range they are looked for in.
+constexpr double kFound = 1e-6;
 /// The sharp volume may be off what is allowed by this part.
 constexpr double kVolumeTolerance = 2e-4;
 /// Outlines and round-off take as much from a width that is wanted.
@@ -144,13 +148,8 @@ class Cleaner {
       }
     };
     constexpr double kMost = 1.25;
-    double low = 1, high = kMost;
-    for (int step = 0; step < kHalvings; ++step) {
-      const double middle = 0.5 * (low + high);
-      grow(middle);
-      (design_.volume(parts_) <= max_volume_ ? low : high) = middle;
-    }
-    grow(low);
+    const double most = largest_that_fits(1, kMost, max_volume_, grow).value_or(1);
+    grow(most);
     if (design_.smallest(design_.places()) < narrowest) parts_ = thin;
   }
 
@@ -168,14 +167,31 @@ class Cleaner {
         parts_[k].c3 = thinner(full[k].c3);
       }
     };
-    double low = 0, high = 1;
-    for (int step = 0; step < kHalvings; ++step) {
-      const double middle = 0.5 * (low + high);
-      thinned(middle);
-      (fits() ? low : high) = middle;
-    }
-    thinned(low);
-    while (low == 0 && !fits() && affordable() && drop_least()) continue;
+    const std::optional<double> share =
+        largest_that_fits(0, 1, max_volume_ * (1 + kVolumeTolerance), thinned);
+    thinned(share.value_or(0));
+    if (share) return;
+    while (!fits() && affordable() && drop_least()) continue;
+  }
+
+  /// The largest number between two by which components take no more than a volume; nothing when
+  /// the least takes more.
+  /// @param set  makes them so
+  template <typename Setter>
+  std::optional<double> largest_that_fits(double least, double most, double allowed,
+                                          const Setter& set) {
+    const auto beyond = [&](double x) {
+      set(x);
+      return design_.volume(parts_) - allowed;
+    };
+    const double at_least = beyond(least), at_most = beyond(most);
+    if (at_least > 0) return {};
+    if (at_most <= 0) return most;
+    if (at_least == 0) return least;
+    std::uintmax_t tries = 30;
+    const auto close = [&](double a, double b) { return b - a <= kFound * (most - least); };
+    return boost::math::tools::toms748_solve(beyond, least, most, at_least, at_most, close, tries)
+        .first;
   }
 
   /// Takes out the component whose loss costs least; patches stay, or they would come back.
@@ -202,6 +218,7 @@ class Cleaner {
 
   void repair(const std::vector<NarrowPlace>& narrow, CleanUp& out) {
     design_.count_islands();
+    design_.look_at_energy();
     std::vector<Vec2> done;
     for (const NarrowPlace& place : narrow) {
       const auto near = [&](const Vec2& p) {
@@ -222,6 +239,7 @@ class Cleaner {
     std::optional<size_t> out_of_the_way;
     for (size_t k = 0; k < parts_.size(); ++k) {
       if (design_.patch[k] || !meets(parts_[k], place) || parts_.size() == 1) continue;
+      if (design_.least_merit_without(k) >= lowest) continue;
       const double without = design_.merit(design_.less(k));
       if (!(without < lowest)) continue;
       lowest = without;

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <vector>
+
+#include <Eigen/SparseCore>
 
 #include "geometry/component.h"
 #include "geometry/grid.h"
@@ -14,6 +17,19 @@ struct DesignScale {
   double max_thickness = 0.03;   ///< upper bound of c1, c2, c3 [m]
 };
 
+/// Lines that a design is its own mirror image in.
+struct Symmetry {
+  std::optional<double> x, y;  ///< of the vertical line, of the horizontal one [m]
+  bool any() const { return x || y; }
+};
+
+/// The components of the lower (left) side; what lies on the other one is taken for an image. Of two
+/// that are one another's images there is one.
+std::vector<Component> one_side(const std::vector<Component>& all, const Symmetry& symmetry);
+
+/// Is the image of every component one of them?
+bool is_symmetric(const std::vector<Component>& all, const Symmetry& symmetry);
+
 /// Components <-> scaled design vector (7 per component, order of P (27)).
 ///
 ///   X0, Y0, L in 2 half_length (a component's size), θ in π, c1..c3 in half_length
@@ -23,15 +39,30 @@ struct DesignScale {
 /// Components). Bounds: centres inside the domain, L up to eight times its start and never below
 /// c_min (a component shorter than thick is a thin one the other way round), θ within a turn of its
 /// start.
+///
+/// A symmetric design has variables of the components of one side only; the others are their images
+/// and follow them in the list, in the same order.
 class Design {
  public:
-  Design(const Grid& domain, std::vector<Component> start, const DesignScale& scale);
+  /// @param start  one_side() of it
+  Design(const Grid& domain, const std::vector<Component>& start, const DesignScale& scale,
+         const Symmetry& symmetry = {});
 
-  /// The same domain and sizes with other components; bounds widen where they lie outside of them.
-  Design with(std::vector<Component> components) const;
+  /// The same domain, sizes and symmetry with other components; bounds widen where they lie outside
+  /// of them.
+  Design with(const std::vector<Component>& components) const;
+  /// The same components, each for itself.
+  Design without_symmetry() const;
+  const Symmetry& symmetry() const { return symmetry_; }
 
   double shortest() const;  ///< lower bound of a half-length [m]
-  int n_components() const { return n_variables() / Component::kParameters; }
+  /// Images included.
+  int n_components() const {
+    return static_cast<int>(to_parameters_.rows()) / Component::kParameters;
+  }
+  size_t n_images() const {
+    return static_cast<size_t>((symmetry_.x ? 2 : 1) * (symmetry_.y ? 2 : 1));
+  }
   int n_variables() const { return static_cast<int>(x_.size()); }
   const VectorXd& x() const { return x_; }
   const VectorXd& lower() const { return lower_; }
@@ -42,7 +73,8 @@ class Design {
   void components(const VectorXd& x, std::vector<Component>& out) const;
   std::vector<Component> components() const;
 
-  /// Gradient by parameters (7 N) -> gradient by x, in place.
+  /// Gradient by parameters (7 N) -> gradient by x, in place, of another length where there are
+  /// images.
   void scale_gradient(VectorXd& g) const;
   void scale_gradients(MatrixXd& rows) const;  ///< the same for rows of gradients (n x 7 N)
 
@@ -50,9 +82,14 @@ class Design {
   double move_to(const VectorXd& x);
 
  private:
+  void add_images(Eigen::Index n, const VectorXd& unit);
+
   Grid domain_;
   DesignScale scale_;
-  VectorXd x_, lower_, upper_, unit_;  // unit: parameter per unit of x
+  Symmetry symmetry_;
+  VectorXd x_, lower_, upper_;
+  Eigen::SparseMatrix<double> to_parameters_;  // 7 N x variables
+  VectorXd offset_;                            // parameters of x = 0
 };
 
 }  // namespace flexmorph::mmc

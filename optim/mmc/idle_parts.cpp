@@ -48,11 +48,12 @@ bool cut_stub(UnderRepair& design, size_t k, bool first, const Standing& before)
   const Component whole = design.parts[k];
   Component best = whole;
   double lowest = before.merit;
-  for (const double left : {0.2, 0.4, 0.6, 0.8}) {  // of the component
+  for (const double left : {0.8, 0.6, 0.4, 0.2}) {  // of the component
     design.parts[k] =
         first ? section(whole, 1 - 2 * left, 1, floor) : section(whole, -1, 2 * left - 1, floor);
     const VectorXd lost = before.fractions - design.fractions(design.parts);
-    if (lost.sum() < kLeastCut || !idle(lost, design.density())) continue;
+    if (lost.sum() < kLeastCut) continue;
+    if (!idle(lost, design.density())) break;  // from the tip on
     const double now = design.merit(design.parts);
     if (!(now < lowest) || design.smallest(design.places()) < before.narrowest) continue;
     lowest = now;

@@ -46,45 +46,79 @@ std::vector<Component> split(const Component& c, double min_half_thickness) {
 }
 
 Turnover::Turnover(const Grid& grid, const TdfSettings& tdf, const Ersatz& ersatz,
-                   double min_half_length)
-    : tdf_(grid, tdf), shaped_(ersatz.shaped_nodes()), min_half_length_(min_half_length) {}
+                   double min_half_length, size_t images)
+    : tdf_(grid, tdf),
+      shaped_(ersatz.shaped_nodes()),
+      min_half_length_(min_half_length),
+      images_(images) {}
 
-bool Turnover::outside(const Component& c) {
-  tdf_.evaluate({&c, 1});
-  return tdf_.influence(shaped_).front() <= kTrace;
+/// In the order of Design: images after all that they are images of.
+std::vector<Component> Turnover::listed(const std::vector<Group>& groups) const {
+  std::vector<Component> out;
+  for (size_t k = 0; k < images_; ++k)
+    for (const Group& group : groups) out.push_back(group[k]);
+  return out;
+}
+
+bool Turnover::outside(const Group& group) {
+  tdf_.evaluate(group);
+  const std::vector<double> influence = tdf_.influence(shaped_);
+  return std::all_of(influence.begin(), influence.end(), [](double i) { return i <= kTrace; });
+}
+
+/// Are all images of a component without a trace, also when all are gone? (On the line of symmetry
+/// they hide each other.)
+/// @param influence  of listed(groups_)
+bool Turnover::hidden(size_t c, const std::vector<double>& influence) {
+  for (size_t k = 0; k < images_; ++k)
+    if (influence[k * groups_.size() + c] > kTrace) return false;
+  if (images_ == 1) return true;
+  const VectorXd before = tdf_.density();
+  std::vector<Group> others = groups_;
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(c));
+  tdf_.evaluate(listed(others));
+  return (tdf_.density() - before).cwiseAbs().maxCoeff() <= kTrace;
 }
 
 /// Takes out one after the other: two that hide each other must not both go.
 void Turnover::drop(std::vector<int>& places, const std::vector<bool>& suspects) {
-  for (bool found = true; found && next_.size() > 1;) {
+  for (bool found = true; found && groups_.size() > 1;) {
     found = false;
-    tdf_.evaluate(next_);
+    tdf_.evaluate(listed(groups_));
     const std::vector<double> influence = tdf_.influence(shaped_);
-    for (size_t c = 0; c < next_.size() && !found; ++c) {
-      if (influence[c] > kTrace || !suspects[static_cast<size_t>(places[c])]) continue;
+    for (size_t c = 0; c < groups_.size() && !found; ++c) {
+      if (!suspects[static_cast<size_t>(places[c])] || !hidden(c, influence)) continue;
       const auto kind =
-          outside(next_[c]) ? ComponentEvent::Kind::outside : ComponentEvent::Kind::hidden;
-      events_.push_back({kind, places[c], static_cast<int>(next_.size()) - 1});
-      next_.erase(next_.begin() + static_cast<std::ptrdiff_t>(c));
+          outside(groups_[c]) ? ComponentEvent::Kind::outside : ComponentEvent::Kind::hidden;
+      groups_.erase(groups_.begin() + static_cast<std::ptrdiff_t>(c));
+      events_.push_back({kind, places[c], static_cast<int>(groups_.size() * images_)});
       places.erase(places.begin() + static_cast<std::ptrdiff_t>(c));
       found = true;
     }
   }
 }
 
-/// Splits the longest components until there are `count` again.
-void Turnover::refill(int count) {
+/// Splits the longest components until there are `count` again, images not counted.
+void Turnover::refill(size_t count) {
   const double thinnest = tdf_.settings().min_half_thickness;
-  while (min_half_length_ > 0 && static_cast<int>(next_.size()) < count) {
+  while (min_half_length_ > 0 && groups_.size() < count) {
     const auto longest = std::max_element(
-        next_.begin(), next_.end(),
-        [](const Component& a, const Component& b) { return a.half_length < b.half_length; });
-    const std::vector<Component> halves = split(*longest, thinnest);
-    if (halves.front().half_length < min_half_length_) return;
-    const int place = static_cast<int>(longest - next_.begin());
-    *longest = halves[0];
-    next_.push_back(halves[1]);
-    events_.push_back({ComponentEvent::Kind::split, place, static_cast<int>(next_.size())});
+        groups_.begin(), groups_.end(), [](const Group& a, const Group& b) {
+          return a.front().half_length < b.front().half_length;
+        });
+    Group others;
+    Group halved;
+    for (const Component& c : *longest) {
+      const std::vector<Component> halves = split(c, thinnest);
+      halved.push_back(halves[0]);
+      others.push_back(halves[1]);
+    }
+    if (halved.front().half_length < min_half_length_) return;
+    const int place = static_cast<int>(longest - groups_.begin());
+    *longest = halved;
+    groups_.push_back(others);
+    events_.push_back(
+        {ComponentEvent::Kind::split, place, static_cast<int>(groups_.size() * images_)});
   }
 }
 
@@ -93,19 +127,24 @@ bool Turnover::look(const std::vector<Component>& components) {
   next_ = components;
   tdf_.evaluate(components);
   const std::vector<double> influence = tdf_.influence(shaped_);
-  std::vector<bool> dead(components.size());
-  for (size_t c = 0; c < dead.size(); ++c) dead[c] = influence[c] <= kTrace;
+  const size_t n = components.size() / images_;
+  std::vector<bool> dead(n, true);
+  for (size_t c = 0; c < components.size(); ++c)
+    if (influence[c] > kTrace) dead[c % n] = false;
   const bool comparable = dead_.size() == dead.size();
   dead_.swap(dead);
   if (!comparable) return false;
-  std::vector<bool> suspects(dead.size());
-  for (size_t c = 0; c < dead.size(); ++c) suspects[c] = dead[c] && dead_[c];
+  std::vector<bool> suspects(n);
+  for (size_t c = 0; c < n; ++c) suspects[c] = dead[c] && dead_[c];
   if (std::none_of(suspects.begin(), suspects.end(), [](bool s) { return s; })) return false;
-  std::vector<int> places(components.size());
+  groups_.assign(n, {});
+  for (size_t c = 0; c < components.size(); ++c) groups_[c % n].push_back(components[c]);
+  std::vector<int> places(n);
   std::iota(places.begin(), places.end(), 0);
   drop(places, suspects);
   if (events_.empty()) return false;
-  refill(static_cast<int>(components.size()));
+  refill(n);
+  next_ = listed(groups_);
   dead_.clear();
   return true;
 }

@@ -31,7 +31,10 @@ std::vector<Component> split(const Component& c, double min_half_thickness);
 class Turnover {
  public:
   /// @param min_half_length  of the halves of a component that is split; 0: none is split
-  Turnover(const Grid& grid, const TdfSettings& tdf, const Ersatz& ersatz, double min_half_length);
+  /// @param images  of symmetric designs (Design): so many blocks of components are one another's
+  ///                images, and go or are split together
+  Turnover(const Grid& grid, const TdfSettings& tdf, const Ersatz& ersatz, double min_half_length,
+           size_t images = 1);
 
   /// One look at a design. A component goes when it was dead at the last look as well: a passing
   /// overlap is no death.
@@ -42,13 +45,19 @@ class Turnover {
   const std::vector<ComponentEvent>& events() const { return events_; }
 
  private:
-  bool outside(const Component& c);
+  /// A component and its images.
+  using Group = std::vector<Component>;
+  bool outside(const Group& group);
+  bool hidden(size_t c, const std::vector<double>& influence);
   void drop(std::vector<int>& places, const std::vector<bool>& suspects);
-  void refill(int count);
+  void refill(size_t count);
+  std::vector<Component> listed(const std::vector<Group>& groups) const;
 
   UnionTdf tdf_;
   std::vector<signed char> shaped_;
   double min_half_length_;
+  size_t images_;
+  std::vector<Group> groups_;  // of next_
   std::vector<bool> dead_;  // at the last look
   std::vector<Component> next_;
   std::vector<ComponentEvent> events_;

@@ -64,6 +64,12 @@ double UnderRepair::merit(const std::vector<Component>& of) const {
 
 void UnderRepair::count_islands() { islands_ = connectivity_of(problem_, regions(parts)).islands; }
 
+double UnderRepair::least_merit_without(size_t k) const {
+  const VectorXd own = fractions(parts) - fractions(less(k));
+  const double all = fractions_.sum();
+  return compliance_ * (1 + density_.dot(own) / all) * (all - own.sum());
+}
+
 std::vector<NarrowPlace> UnderRepair::places() const {
   const std::vector<Region> pieces = regions(parts);
   // The tolerance of outlines counts twice.
@@ -143,6 +149,7 @@ void UnderRepair::look_at_energy() {
   const CellFactors sharp = ersatz_.sharp(fractions_);
   LoadResponse::Value value;
   loads_.evaluate(sharp.stiffness, sharp.mass, value);
+  compliance_ = judged_compliance(problem_, loads_, sharp);
   density_ = value.d_stiffness.cwiseAbs();
   density_ *= fractions_.sum() / fractions_.dot(density_);
 }

@@ -31,6 +31,9 @@ class UnderRepair {
   /// counts for nothing.)
   double merit(const std::vector<Component>& of) const;
   void count_islands();
+  /// A bound of merit(less(k)) from below, without a state: compliance is convex in the stiffness
+  /// of cells, and first-order in what the part has alone. As of the last look_at_energy().
+  double least_merit_without(size_t k) const;
 
   /// Narrow material and gaps, and slits between pieces that should be one.
   std::vector<NarrowPlace> places() const;
@@ -56,7 +59,8 @@ class UnderRepair {
   Widths wanted_;
   Ersatz ersatz_;
   int islands_ = 0;
-  VectorXd fractions_, density_;  // at the last look
+  double compliance_ = 0;         // at the last look
+  VectorXd fractions_, density_;  // likewise
 };
 
 }  // namespace flexmorph::mmc

@@ -58,14 +58,14 @@ const Key& kMinFeature =
     io::key("design", "min_feature")
         .number(not_negative("a smallest feature", "m"))
         .word("a smallest feature in words", {"twice_min_thickness"})
-        .otherwise_as("0; of `mend = true` twice `min_thickness`")
+        .otherwise_as("twice `min_thickness`; 0 of `mend = false`")
         .says("Smallest solid feature of the union; its price is `clean_up` of run.json.");
 const Key& kMend = io::key("design", "mend")
                        .boolean()
-                       .otherwise(false)
+                       .otherwise(true)
                        .says(
-                           "Repairs narrow places, loose pieces and gaps below a cell, which are "
-                           "warned of else.");
+                           "Repairs narrow places, loose pieces and gaps below a cell; `false` "
+                           "warns of them.");
 const Key& kHalfLength = io::key("design", "half_length")
                              .number(positive("a half-length", "m"))
                              .otherwise_as("half the diagonal of a box")
@@ -86,6 +86,11 @@ const Key& kSeed = io::key("design", "seed")
                        .integer("a seed", 0, 1'000'000'000)
                        .otherwise(1)
                        .says("Of the jitter.");
+const io::Choice<bool> kSymmetry(
+    io::key("design", "symmetry")
+        .otherwise("auto")
+        .says("Designs are symmetric where domain, regions, supports, loads and start are."),
+    "a symmetry", {{"auto", true}, {"none", false}});
 const Key& kDropEvery =
     io::key("design", "drop_every")
         .integer("a number of iterations", 0, 1'000'000)
@@ -243,6 +248,7 @@ void read_components(const Table& t, const Body& body, BodyDesign& design) {
   }
   design.jitter = t.number(kJitter);
   design.seed = t.integer(kSeed);
+  design.symmetric = t.choice(kSymmetry);
   design.drop_every = t.integer(kDropEvery);
   design.refill = t.boolean(kRefill);
 }
