@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstdint>
 #include <string>
 
@@ -170,15 +171,29 @@ std::vector<signed char> cells_outside(const Grid& grid, const Region& domain) {
 VectorXd area_fractions(const Grid& grid, std::span<const Component> components,
                         double min_half_thickness, std::span<const std::vector<Vec2>> solid,
                         std::span<const std::vector<Vec2>> empty, int samples) {
+  VectorXd fractions(grid.n_cells());
+  update_area_fractions(grid, components, min_half_thickness, solid, empty, grid.x0,
+                        grid.x0 + grid.width, fractions, samples);
+  return fractions;
+}
+
+void update_area_fractions(const Grid& grid, std::span<const Component> components,
+                           double min_half_thickness, std::span<const std::vector<Vec2>> solid,
+                           std::span<const std::vector<Vec2>> empty, double left, double right,
+                           VectorXd& fractions, int samples) {
   if (samples < 1) {
     throw Error::input("area_fractions: samples = " + std::to_string(samples) +
                        ": at least one to a cell is needed");
   }
   const std::vector<Stencil> all = stencils(components, min_half_thickness);
   const double dx = grid.dx() / samples, dy = grid.dy() / samples;
+  const auto column_at = [&](double X) {
+    return std::clamp(static_cast<int>(std::floor((X - grid.x0) / grid.dx())), 0, grid.nx - 1);
+  };
+  const int first = column_at(left), last = column_at(right);
+  fractions.segment(grid.cell(first, 0), (last - first + 1) * grid.ny).setZero();
   SampleColumn column(grid.y0 + 0.5 * dy, dy, grid.ny * samples);
-  VectorXd fractions = VectorXd::Zero(grid.n_cells());
-  for (int i = 0; i < grid.nx * samples; ++i) {
+  for (int i = first * samples; i < (last + 1) * samples; ++i) {
     const double X = grid.x0 + (i + 0.5) * dx;
     column.clear();
     for (const Stencil& s : all) {
@@ -188,7 +203,7 @@ VectorXd area_fractions(const Grid& grid, std::span<const Component> components,
     column.fill(solid, X, 1);
     column.add_to(fractions.data() + grid.cell(i / samples, 0), samples);
   }
-  return fractions / (samples * samples);
+  fractions.segment(grid.cell(first, 0), (last - first + 1) * grid.ny) /= samples * samples;
 }
 
 Connectivity connectivity(const Grid& grid, const VectorXd& fractions,

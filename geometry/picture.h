@@ -20,6 +20,13 @@ VectorXd area_fractions(const Grid& grid, std::span<const Component> components,
                         double min_half_thickness, std::span<const std::vector<Vec2>> solid,
                         std::span<const std::vector<Vec2>> empty, int samples = 8);
 
+/// Samples columns of cells anew where components have changed: all others are as they were.
+/// @param left, right  between which they have [m]
+void update_area_fractions(const Grid& grid, std::span<const Component> components,
+                           double min_half_thickness, std::span<const std::vector<Vec2>> solid,
+                           std::span<const std::vector<Vec2>> empty, double left, double right,
+                           VectorXd& fractions, int samples = 8);
+
 /// What hangs together in a sharp picture.
 ///
 /// Cells with fraction >= 0.5 are material; those that share an edge (not only a corner) belong

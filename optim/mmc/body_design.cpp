@@ -208,7 +208,7 @@ class Designer {
       }
       run_stage(settings_.optimizer.max_iterations / kPolishShare,
                 budget - (polishes - round) * (budget / kPolishShare));
-      last = repaired(parts_, 1);
+      last = repaired(parts_, 1, round == polishes);
       for (size_t k = 0; k < parts_.size(); ++k)
         if (sums[k]) sums[k]->add(*last.clean_ups[k]);
       if (last.better_than(best)) best = last;

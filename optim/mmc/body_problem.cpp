@@ -1,6 +1,7 @@
 #include "optim/mmc/body_problem.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "geometry/cpu_time.h"
@@ -37,12 +38,34 @@ Ersatz ersatz_of(const BodyProblem& p) {
   return {p.grid, p.stages.back().alpha, p.solid, p.empty, p.outside};
 }
 
+namespace {
+
+void leave_out(const std::vector<signed char>& outside, VectorXd& fractions) {
+  for (size_t c = 0; c < outside.size(); ++c)
+    if (outside[c]) fractions[static_cast<Eigen::Index>(c)] = 0;
+}
+
+}  // namespace
+
 VectorXd fractions_of(const BodyProblem& p, std::span<const Component> components) {
   VectorXd out =
       area_fractions(p.grid, components, p.stages.back().min_half_thickness, p.solid, p.empty);
-  for (size_t c = 0; c < p.outside.size(); ++c)
-    if (p.outside[c]) out[static_cast<Eigen::Index>(c)] = 0;
+  leave_out(p.outside, out);
   return out;
+}
+
+void update_fractions(const BodyProblem& p, std::span<const Component> components,
+                      std::span<const Component> changed, VectorXd& fractions) {
+  if (changed.empty()) return;
+  const double floor = p.stages.back().min_half_thickness;
+  double left = std::numeric_limits<double>::infinity(), right = -left;
+  for (const Component& c : changed) {
+    const Box box = bounding_box(c, floor, 0);
+    left = std::min(left, box.lower.x());
+    right = std::max(right, box.upper.x());
+  }
+  update_area_fractions(p.grid, components, floor, p.solid, p.empty, left, right, fractions);
+  leave_out(p.outside, fractions);
 }
 
 Region domain_of(const BodyProblem& p) {

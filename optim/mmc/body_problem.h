@@ -46,6 +46,10 @@ double full_mass_of(const BodyProblem& problem);
 Ersatz ersatz_of(const BodyProblem& problem);
 /// Area fractions of true material (n_cells), 0 outside of the domain.
 VectorXd fractions_of(const BodyProblem& problem, std::span<const Component> components);
+/// The same from those of other components, which differ by `changed` ones only: the work is
+/// proportional to their extent along x.
+void update_fractions(const BodyProblem& problem, std::span<const Component> components,
+                      std::span<const Component> changed, VectorXd& fractions);
 
 /// How far the sides of measured and written outlines may be off the true ones [cells].
 constexpr double kOutlineTolerance = 0.01;

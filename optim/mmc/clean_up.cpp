@@ -60,7 +60,7 @@ class Cleaner {
         max_volume_(max_volume),
         design_(problem, loads, wanted) {}
 
-  CleanUp go() {
+  CleanUp go(bool trims) {
     CleanUp out;
     out.wanted = wanted_;
     measure(design_, out.before, out.pieces_before, out.compliance_before, out.volume_before);
@@ -72,7 +72,7 @@ class Cleaner {
     fit_volume();
     if (const std::optional<std::vector<Component>> widest = widened(out)) {
       parts_ = *widest;
-      out.stubs = cut_stubs(design_);
+      if (trims) out.stubs = cut_stubs(design_);
       give_back(design_.smallest(design_.places()));
       out.dropped = dropped_;
       problem_.design = problem_.design.with(parts_);
@@ -201,7 +201,7 @@ class Cleaner {
     size_t least = 0;
     for (size_t k = 0; k < parts_.size(); ++k) {
       if (design_.patch[k]) continue;
-      const double without = design_.merit(design_.less(k));
+      const double without = design_.merit(design_.less(k), lowest);
       if (!(without < lowest)) continue;
       lowest = without;
       least = k;
@@ -240,7 +240,7 @@ class Cleaner {
     for (size_t k = 0; k < parts_.size(); ++k) {
       if (design_.patch[k] || !meets(parts_[k], place) || parts_.size() == 1) continue;
       if (design_.least_merit_without(k) >= lowest) continue;
-      const double without = design_.merit(design_.less(k));
+      const double without = design_.merit(design_.less(k), lowest);
       if (!(without < lowest)) continue;
       lowest = without;
       out_of_the_way = k;
@@ -342,9 +342,9 @@ CleanUp look_over(const BodyProblem& problem, LoadResponse& loads, const Widths&
 }
 
 CleanUp clean_up(BodyProblem& problem, LoadResponse& loads, const Widths& wanted,
-                 std::optional<double> max_volume) {
+                 std::optional<double> max_volume, bool trims) {
   const double by_goal = allowed_volume(problem.goal).value_or(kInfinity);
-  return Cleaner(problem, loads, wanted, max_volume.value_or(by_goal)).go();
+  return Cleaner(problem, loads, wanted, max_volume.value_or(by_goal)).go(trims);
 }
 
 }  // namespace flexmorph::mmc

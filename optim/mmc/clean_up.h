@@ -39,9 +39,10 @@ struct CleanUp {
 /// The design of `problem` is left at the result, or where it was when that costs more than a
 /// quarter of the compliance.
 /// @param max_volume  volume fraction it may take; absent: as its goal says
+/// @param trims  do idle ends of components go? It is half of the work.
 /// @throws Error (numerical) from statics.
 CleanUp clean_up(BodyProblem& problem, LoadResponse& loads, const Widths& wanted,
-                 std::optional<double> max_volume = {});
+                 std::optional<double> max_volume = {}, bool trims = true);
 
 /// What a clean-up would find: `after` as `before`, and as many rounds as there are places to
 /// repair.

@@ -2,14 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace flexmorph::mmc {
 namespace {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kIdleDensity = 0.2;
 /// An end that is cut changes by half a cell or more.
 constexpr double kLeastCut = 0.5;
+
+/// Is there anything so idle under the component? If not, nothing of it is idle, whatever else is
+/// there; and it is asked of one component, not of all.
+bool may_be_idle(const Component& c, const UnderRepair& design) {
+  const VectorXd own = fractions_of(design.problem(), {&c, 1});
+  return (own.array() > 0 && design.density().array() <= kIdleDensity).any();
+}
 
 /// Has the area so little energy? Of nothing there is none.
 bool idle(const VectorXd& area, const VectorXd& density) {
@@ -43,29 +52,35 @@ struct Standing {
   }
 };
 
+/// The longest idle end that may go.
 bool cut_stub(UnderRepair& design, size_t k, bool first, const Standing& before) {
   const double floor = design.problem().stages.back().min_half_thickness;
   const Component whole = design.parts[k];
-  Component best = whole;
-  double lowest = before.merit;
-  for (const double left : {0.8, 0.6, 0.4, 0.2}) {  // of the component
-    design.parts[k] =
-        first ? section(whole, 1 - 2 * left, 1, floor) : section(whole, -1, 2 * left - 1, floor);
+  const auto part = [&](double from, double to) {  // of the component, from that end
+    return first ? section(whole, 2 * from - 1, 2 * to - 1, floor)
+                 : section(whole, 1 - 2 * to, 1 - 2 * from, floor);
+  };
+  std::vector<Component> shorter;  // ever more
+  for (const double left : {0.8, 0.6, 0.4, 0.2}) {
+    if (!may_be_idle(part(0, 1 - left), design)) break;
+    design.parts[k] = part(1 - left, 1);
     const VectorXd lost = before.fractions - design.fractions(design.parts);
     if (lost.sum() < kLeastCut) continue;
     if (!idle(lost, design.density())) break;  // from the tip on
-    const double now = design.merit(design.parts);
-    if (!(now < lowest) || design.smallest(design.places()) < before.narrowest) continue;
-    lowest = now;
-    best = design.parts[k];
+    shorter.push_back(design.parts[k]);
   }
-  design.parts[k] = best;
-  if (!(lowest < before.merit)) return false;
-  // Where the end carried after all, what is left of the cut is bridged by cells only.
-  design.look_at_energy();
-  if (design.torn_gaps().empty()) return true;
+  for (auto cut = shorter.rbegin(); cut != shorter.rend(); ++cut) {
+    design.parts[k] = *cut;
+    if (design.merit(design.parts, before.merit) == kInfinity ||
+        design.smallest(design.places()) < before.narrowest)
+      continue;
+    // Where the end carried after all, what is left of the cut is bridged by cells only.
+    design.look_at_energy();
+    if (design.torn_gaps().empty()) return true;
+    break;
+  }
   design.parts[k] = whole;
-  design.look_at_energy();
+  if (!shorter.empty()) design.look_at_energy();
   return false;
 }
 
@@ -90,7 +105,7 @@ int drop_idle(UnderRepair& design) {
     std::vector<Component> without;
     for (size_t i = 0; i < design.parts.size(); ++i)
       if (!gone[i]) without.push_back(design.parts[i]);
-    const double now = design.merit(without);
+    const double now = design.merit(without, std::nextafter(lowest, kInfinity));
     gone[k] = now <= lowest;
     if (!gone[k]) continue;
     lowest = now;
@@ -109,7 +124,8 @@ int cut_stubs(UnderRepair& design) {
   for (size_t k = 0; k < design.parts.size(); ++k)
     for (const bool first : {true, false}) {
       if (!cut_stub(design, k, first, now)) continue;
-      now = Standing(design);
+      now.fractions = design.fractions(design.parts);
+      now.merit = design.merit(design.parts);
       ++n;
     }
   return n;

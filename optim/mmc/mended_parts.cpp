@@ -4,7 +4,7 @@
 
 namespace flexmorph::mmc {
 
-Mended repaired(std::vector<Part>& parts, double gaps) {
+Mended repaired(std::vector<Part>& parts, double gaps, bool trims) {
   std::vector<double> volumes;
   double used = 0, allowed = 0;
   for (const Part& p : parts) {
@@ -22,7 +22,7 @@ Mended repaired(std::vector<Part>& parts, double gaps) {
       if (parts.size() > 1 && used > 0) volume = std::min(1.0, volumes[k] * allowed / used);
       Widths wanted = p.problem.widths;
       wanted.gap *= gaps;
-      done = clean_up(p.problem, p.loads, wanted, volume);
+      done = clean_up(p.problem, p.loads, wanted, volume, trims);
       done->wanted = p.problem.widths;
       out.reached = out.reached && done->reached();
       out.changed = out.changed || done->changed();

@@ -22,7 +22,8 @@ struct Mended {
 /// Repairs the designs (clean_up()). What a common budget of mass leaves goes to the bodies as they
 /// have shared it so far.
 /// @param gaps  part of the wanted widths of gaps below which they are closed
-Mended repaired(std::vector<Part>& parts, double gaps);
+/// @param trims  see clean_up()
+Mended repaired(std::vector<Part>& parts, double gaps, bool trims = true);
 
 /// The designs as they are, and whether there is something to repair.
 Mended looked_over(std::vector<Part>& parts);

@@ -19,8 +19,26 @@ constexpr double kConcentration = 3;
 constexpr double kCostOfCut = 5e-4;
 /// Cells filled more than this are material that a cut leaves.
 constexpr double kFilled = 0.9;
+/// Lists of components that are remembered: that under repair, and what it is compared to.
+constexpr size_t kKnown = 3;
 /// Outlines and round-off take as much from a gap that is wanted.
 constexpr double kWithin = 0.99;
+
+bool same(const Component& a, const Component& b) { return a.parameters() == b.parameters(); }
+
+/// Those of one list that the other one does not have, and the other way round.
+std::vector<Component> only_in_one(const std::vector<Component>& a,
+                                   const std::vector<Component>& b) {
+  std::vector<Component> out;
+  const auto add = [&](const std::vector<Component>& from, const std::vector<Component>& to) {
+    for (const Component& c : from)
+      if (std::none_of(to.begin(), to.end(), [&](const Component& o) { return same(c, o); }))
+        out.push_back(c);
+  };
+  add(a, b);
+  add(b, a);
+  return out;
+}
 
 }  // namespace
 
@@ -43,8 +61,31 @@ void UnderRepair::drop(size_t k) {
   patch.erase(patch.begin() + static_cast<std::ptrdiff_t>(k));
 }
 
+UnderRepair::Known& UnderRepair::known(const std::vector<Component>& of) const {
+  for (Known& k : known_)
+    if (std::equal(k.of.begin(), k.of.end(), of.begin(), of.end(), same)) return k;
+  if (known_.size() == kKnown) known_.pop_back();
+  return known_.emplace_front(Known{of, {}, {}});
+}
+
 std::vector<Region> UnderRepair::regions(const std::vector<Component>& of) const {
-  return regions_of(problem_, of, kOutlineTolerance * problem_.grid.dx());
+  Known& k = known(of);
+  if (!k.regions) k.regions = regions_of(problem_, of, kOutlineTolerance * problem_.grid.dx());
+  return *k.regions;
+}
+
+VectorXd UnderRepair::fractions(const std::vector<Component>& of) const {
+  Known& k = known(of);
+  if (k.fractions) return *k.fractions;
+  for (const Known& other : known_) {
+    if (!other.fractions) continue;
+    std::vector<Component> changed = only_in_one(of, other.of);
+    k.fractions = other.fractions;
+    update_fractions(problem_, of, changed, *k.fractions);
+    return *k.fractions;
+  }
+  k.fractions = fractions_of(problem_, of);
+  return *k.fractions;
 }
 
 double UnderRepair::volume(const std::vector<Component>& of) const {
@@ -55,11 +96,12 @@ double UnderRepair::compliance(const std::vector<Component>& of) const {
   return judged_compliance(problem_, loads_, ersatz_.sharp(fractions(of)));
 }
 
-double UnderRepair::merit(const std::vector<Component>& of) const {
-  const Connectivity whole = connectivity_of(problem_, regions(of));
-  if (!whole.connected || whole.islands > islands_) return kInfinity;
+double UnderRepair::merit(const std::vector<Component>& of, double below) const {
   const VectorXd all = fractions(of);
-  return judged_compliance(problem_, loads_, ersatz_.sharp(all)) * all.sum();
+  const double out = judged_compliance(problem_, loads_, ersatz_.sharp(all)) * all.sum();
+  if (!(out < below)) return kInfinity;  // before the union is asked for
+  const Connectivity whole = connectivity_of(problem_, regions(of));
+  return whole.connected && whole.islands <= islands_ ? out : kInfinity;
 }
 
 void UnderRepair::count_islands() { islands_ = connectivity_of(problem_, regions(parts)).islands; }

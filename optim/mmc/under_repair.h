@@ -1,5 +1,8 @@
 #pragma once
 
+#include <deque>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "optim/mmc/body_problem.h"
@@ -20,16 +23,18 @@ class UnderRepair {
   std::vector<Component> less(size_t k) const;  ///< all parts but one
   void drop(size_t k);
 
-  /// Exact union.
+  /// Exact union. Lists that were asked for last are known: questions come in a row.
   std::vector<Region> regions(const std::vector<Component>& of) const;
   /// Area fractions of cells.
-  VectorXd fractions(const std::vector<Component>& of) const { return fractions_of(problem_, of); }
+  VectorXd fractions(const std::vector<Component>& of) const;
   double volume(const std::vector<Component>& of) const;  ///< sharp, a part of the domain
   double compliance(const std::vector<Component>& of) const;
   /// Compliance times volume of the sharp design; infinite when it has come apart into more pieces
   /// than at the last count_islands(). (Cells do not see slits; what a piece carries through one
   /// counts for nothing.)
-  double merit(const std::vector<Component>& of) const;
+  /// @param below  a merit that is no less than this may come back infinite
+  double merit(const std::vector<Component>& of,
+               double below = std::numeric_limits<double>::infinity()) const;
   void count_islands();
   /// A bound of merit(less(k)) from below, without a state: compliance is convex in the stiffness
   /// of cells, and first-order in what the part has alone. As of the last look_at_energy().
@@ -54,8 +59,17 @@ class UnderRepair {
   double compliance_cut_at(const NarrowPlace& p) const;
   std::vector<int> cells_around(const NarrowPlace& p) const;
 
+  /// What is known of a list of components.
+  struct Known {
+    std::vector<Component> of;
+    std::optional<std::vector<Region>> regions;
+    std::optional<VectorXd> fractions;
+  };
+  Known& known(const std::vector<Component>& of) const;
+
   const BodyProblem& problem_;
   LoadResponse& loads_;
+  mutable std::deque<Known> known_;  // newest first
   Widths wanted_;
   Ersatz ersatz_;
   int islands_ = 0;
