@@ -18,8 +18,8 @@ struct StaticConditions {
 StaticConditions static_conditions(const Scene& scene, const Grid& grid,
                                    std::span<const signed char> outside);
 /// The middle lines of a static scene's grid that its domain, regions, supports and loads are
-/// symmetric to; a load case may be another one's image, or the image of its opposite. Nothing for a
-/// scene that moves.
+/// symmetric to; a load case may be another one's image, or the image of its opposite. Nothing for
+/// a scene that moves.
 mmc::Symmetry symmetry_of(const Scene& scene, const BodyDesign& design,
                           std::span<const signed char> outside);
 }  // namespace flexmorph::cases

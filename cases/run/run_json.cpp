@@ -51,6 +51,8 @@ Json clean_up_results(const mmc::CleanUp& c) {
   out["dropped"] = c.dropped;
   out["idle"] = c.idle;
   out["stubs"] = c.stubs;
+  out["joined"] = c.joined;
+  out["born"] = c.born;
   out["rounds"] = c.rounds;
   out["reached"] = c.reached();
   out["given_up"] = c.given_up;

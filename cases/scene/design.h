@@ -9,6 +9,7 @@
 #include "geometry/feature.h"
 #include "geometry/grid.h"
 #include "geometry/tdf.h"
+#include "optim/mmc/body_design.h"
 #include "optim/mmc/compliance.h"
 #include "optim/mmc/goal.h"
 
@@ -31,21 +32,22 @@ struct BodyDesign {
   std::array<int, 2> components{1, 1};  ///< boxes of the initial layout, two components in each
   mmc::Goal goal;                       ///< volumes are fractions, solid regions included
   double min_thickness = 0;             ///< c_min: smallest half-thickness of a component [m]
-  Widths widths;                        ///< what the union is mended to
-  double half_length = 0;               ///< of the initial components [m]
-  double half_thickness = 0;            ///< of the initial components [m]
+  Widths widths;                        ///< what the union is mended to ...
+  int mend_from = mmc::kFewestMendedIterations;  ///< ... in runs of so many iterations or more
+  double half_length = 0;                        ///< of the initial components [m]
+  double half_thickness = 0;                     ///< of the initial components [m]
   /// Half-widths of the Heaviside band, coarse to fine [cells]; of tdf = "paper" [-].
   std::vector<double> band;
-  TdfSettings tdf;                ///< in metres, with the band of the last, finest stage
-  double stiffness_void = 1e-4;   ///< stiffness factor of the void in dynamics [-]
-  double mass_void = 1e-3;        ///< mass factor of the void in dynamics [-]
-  std::vector<Component> start;   ///< empty: boxes of two crossing components
-  double jitter = 0;              ///< of the initial components, in parts of their sizes [-]
-  int seed = 1;                   ///< of the jitter
-  bool symmetric = true;          ///< where the scene is, and the start
-  int drop_every = 25;            ///< iterations between looks for dead components, 0: none
-  bool refill = false;            ///< long components are split in place of dropped ones
-  bool shares_mass = false;       ///< with the other designs that do: see mmc::SharedProblem
+  TdfSettings tdf;               ///< in metres, with the band of the last, finest stage
+  double stiffness_void = 1e-4;  ///< stiffness factor of the void in dynamics [-]
+  double mass_void = 1e-3;       ///< mass factor of the void in dynamics [-]
+  std::vector<Component> start;  ///< empty: boxes of two crossing components
+  double jitter = 0;             ///< of the initial components, in parts of their sizes [-]
+  int seed = 1;                  ///< of the jitter
+  bool symmetric = true;         ///< where the scene is, and the start
+  int drop_every = 25;           ///< iterations between looks for dead components, 0: none
+  bool refill = false;           ///< long components are split in place of dropped ones
+  bool shares_mass = false;      ///< with the other designs that do: see mmc::SharedProblem
   /// Polygons; a cell belongs to a region that holds its centre [m].
   std::vector<std::vector<Vec2>> solid, empty;
 

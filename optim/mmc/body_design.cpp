@@ -16,8 +16,6 @@ namespace {
 
 /// Where widths are wanted, so many times a part of the iterations follows a clean-up.
 constexpr int kPolishes = 3, kPolishShare = 8;
-/// Fewer iterations than this do not shape anything: short runs are repaired and left.
-constexpr int kLeastPolish = 5;
 /// Gaps that are narrower than this part of what is wanted are closed before the polishes, which
 /// open the others.
 constexpr double kClosed = 0.5;
@@ -36,7 +34,7 @@ class Designer {
     // Stages share iterations and state solves evenly; polishes after a clean-up have their part.
     const bool cleans = std::any_of(parts_.begin(), parts_.end(),
                                     [](const Part& p) { return p.problem.widths.any(); });
-    const bool shapes = settings_.optimizer.max_iterations / kPolishShare >= kLeastPolish;
+    const bool shapes = settings_.optimizer.max_iterations >= kFewestMendedIterations;
     const int polishes = cleans && shapes ? kPolishes : 0;
     const auto share = [&](int total) { return total - polishes * (total / kPolishShare); };
     const int iterations = share(settings_.optimizer.max_iterations);
@@ -194,9 +192,13 @@ class Designer {
   /// of the wide ones are kept, those of one round together: mass that one body gave, another has.
   void mend(int polishes) {
     for (Part& p : parts_) p.problem.design = p.problem.design.without_symmetry();
+    std::vector<CleanUp> renewals(parts_.size());
+    if (polishes > 0) renewals = renewed(parts_);
     Mended last = repaired(parts_, polishes > 0 ? kClosed : 1);
     Mended best = last;
     std::vector<std::optional<CleanUp>> sums = last.clean_ups;
+    for (size_t k = 0; k < parts_.size(); ++k)
+      if (sums[k]) sums[k]->add(renewals[k]);
     const int budget = settings_.optimizer.max_evaluations;
     for (int round = 1; round <= polishes && going_; ++round) {
       for (size_t k = 0; k < parts_.size(); ++k) {

@@ -65,6 +65,10 @@ struct Past {
   std::function<bool(const RowOfHistory&)> has_row;
 };
 
+/// What fewer iterations come to is no design yet: as a lattice on its way it is repaired at a high
+/// price, if at all, and only where that is asked for.
+constexpr int kFewestMendedIterations = 40;
+
 /// A last solve of a mended design is done so many times at most.
 constexpr int kFinishTries = 4;
 

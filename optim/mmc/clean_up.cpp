@@ -1,6 +1,7 @@
 #include "optim/mmc/clean_up.h"
 
 #include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -8,8 +9,6 @@
 #include <optional>
 #include <span>
 #include <utility>
-
-#include <boost/math/tools/toms748_solve.hpp>
 
 #include "geometry/part_mesh.h"
 #include "optim/mmc/idle_parts.h"
@@ -316,6 +315,8 @@ void CleanUp::add(const CleanUp& later) {
   dropped += later.dropped;
   idle += later.idle;
   stubs += later.stubs;
+  joined += later.joined;
+  born += later.born;
 }
 
 void CleanUp::end_as(const CleanUp& other) {

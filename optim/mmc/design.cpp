@@ -70,17 +70,15 @@ bool on_own_side(const Component& c, const Symmetry& symmetry) {
 }  // namespace
 
 std::vector<Component> one_side(const std::vector<Component>& all, const Symmetry& symmetry) {
+  if (!symmetry.any()) return all;
   const std::vector<Image> images = images_of(symmetry);
   std::vector<Component> out;
   for (const Component& c : all) {
-    const auto image = std::find_if(images.begin(), images.end(), [&](const Image& i) {
-      return on_own_side(i.of(c), symmetry);
-    });
-    const bool is_image = image != images.begin();
-    const Component own = is_image && image != images.end() ? image->of(c) : c;
+    const auto image = std::find_if(images.begin(), images.end(),
+                                    [&](const Image& i) { return on_own_side(i.of(c), symmetry); });
+    const Component own = image != images.end() ? image->of(c) : c;
     const bool known = std::any_of(out.begin(), out.end(), [&](const Component& other) {
-      return (is_image && same(other, own)) ||
-             std::any_of(images.begin() + 1, images.end(),
+      return std::any_of(images.begin(), images.end(),
                          [&](const Image& i) { return same(i.of(other), own); });
     });
     if (!known) out.push_back(own);
@@ -161,17 +159,14 @@ Design Design::with(const std::vector<Component>& components) const {
   return out;
 }
 
-Design Design::without_symmetry() const {
-  return Design(domain_, {}, scale_).with(components());
-}
+Design Design::without_symmetry() const { return Design(domain_, {}, scale_).with(components()); }
 
 double Design::shortest() const { return std::max(0.6 * scale_.half_length, scale_.min_thickness); }
 
 void Design::components(const VectorXd& x, std::vector<Component>& out) const {
   const VectorXd p = to_parameters_ * x + offset_;
   out.resize(static_cast<size_t>(p.size() / kN));
-  for (size_t c = 0; c < out.size(); ++c)
-    out[c] = Component::from_parameters(p.data() + c * kN);
+  for (size_t c = 0; c < out.size(); ++c) out[c] = Component::from_parameters(p.data() + c * kN);
 }
 
 std::vector<Component> Design::components() const {

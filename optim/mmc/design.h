@@ -1,9 +1,8 @@
 #pragma once
 
+#include <Eigen/SparseCore>
 #include <optional>
 #include <vector>
-
-#include <Eigen/SparseCore>
 
 #include "geometry/component.h"
 #include "geometry/grid.h"
@@ -23,8 +22,8 @@ struct Symmetry {
   bool any() const { return x || y; }
 };
 
-/// The components of the lower (left) side; what lies on the other one is taken for an image. Of two
-/// that are one another's images there is one.
+/// The components of the lower (left) side; what lies on the other one is taken for an image. Of
+/// two that are one another's images there is one.
 std::vector<Component> one_side(const std::vector<Component>& all, const Symmetry& symmetry);
 
 /// Is the image of every component one of them?

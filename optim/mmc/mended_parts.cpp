@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "optim/mmc/renewed_parts.h"
+
 namespace flexmorph::mmc {
 
 Mended repaired(std::vector<Part>& parts, double gaps, bool trims) {
@@ -32,6 +34,19 @@ Mended repaired(std::vector<Part>& parts, double gaps, bool trims) {
       out.compliance += judged_compliance(p.problem, p.loads, p.ersatz.sharp(fractions));
     }
     out.designs.push_back(p.problem.design);
+  }
+  return out;
+}
+
+std::vector<CleanUp> renewed(std::vector<Part>& parts) {
+  std::vector<CleanUp> out(parts.size());
+  for (size_t k = 0; k < parts.size(); ++k) {
+    BodyProblem& problem = parts[k].problem;
+    if (!problem.widths.any()) continue;
+    UnderRepair design(problem, parts[k].loads, problem.widths);
+    out[k].born = bear_parts(design);
+    out[k].joined = join_parts(design);
+    if (out[k].born + out[k].joined > 0) problem.design = problem.design.with(design.parts);
   }
   return out;
 }

@@ -25,6 +25,11 @@ struct Mended {
 /// @param trims  see clean_up()
 Mended repaired(std::vector<Part>& parts, double gaps, bool trims = true);
 
+/// Joins components that lie end to end, and puts bars where they are missed (renewed_parts.h), in
+/// designs that are to be repaired. The designs are then shaped, and repaired.
+/// @return what came and went, of each design
+std::vector<CleanUp> renewed(std::vector<Part>& parts);
+
 /// The designs as they are, and whether there is something to repair.
 Mended looked_over(std::vector<Part>& parts);
 

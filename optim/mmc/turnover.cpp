@@ -102,8 +102,8 @@ void Turnover::drop(std::vector<int>& places, const std::vector<bool>& suspects)
 void Turnover::refill(size_t count) {
   const double thinnest = tdf_.settings().min_half_thickness;
   while (min_half_length_ > 0 && groups_.size() < count) {
-    const auto longest = std::max_element(
-        groups_.begin(), groups_.end(), [](const Group& a, const Group& b) {
+    const auto longest =
+        std::max_element(groups_.begin(), groups_.end(), [](const Group& a, const Group& b) {
           return a.front().half_length < b.front().half_length;
         });
     Group others;

@@ -58,7 +58,7 @@ class Turnover {
   double min_half_length_;
   size_t images_;
   std::vector<Group> groups_;  // of next_
-  std::vector<bool> dead_;  // at the last look
+  std::vector<bool> dead_;     // at the last look
   std::vector<Component> next_;
   std::vector<ComponentEvent> events_;
 };

@@ -186,6 +186,15 @@ double UnderRepair::compliance_cut_at(const NarrowPlace& p) const {
   return judged_compliance(problem_, loads_, ersatz_.sharp(cut));
 }
 
+std::vector<VectorXd> UnderRepair::displacements(int most) const {
+  const CellFactors sharp = ersatz_.sharp(fractions(parts));
+  std::vector<VectorXd> out;
+  const int every = (loads_.n_loads() + most - 1) / most;
+  for (int l = loads_.n_loads() - 1; l >= 0; l -= every)
+    out.push_back(loads_.displacement(sharp.stiffness, sharp.mass, l));
+  return out;
+}
+
 void UnderRepair::look_at_energy() {
   fractions_ = fractions(parts);
   const CellFactors sharp = ersatz_.sharp(fractions_);

@@ -53,6 +53,8 @@ class UnderRepair {
   /// the last look_at_energy().
   const VectorXd& density() const { return density_; }
   void look_at_energy();
+  /// Of so many loads at most, evenly taken (2 n_nodes each) [m].
+  std::vector<VectorXd> displacements(int most) const;
 
  private:
   bool looks_torn(const NarrowPlace& p) const;

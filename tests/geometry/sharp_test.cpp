@@ -53,6 +53,25 @@ TEST(AreaFractions, OfFineSamplesAgreeWithTheExactUnion) {
   }
 }
 
+// Where one component comes, goes or moves, only the columns that it touches are looked at again.
+TEST(AreaFractions, AreUpdatedBitForBit) {
+  const Grid grid{.x0 = 0, .y0 = 0, .width = 2, .height = 1, .nx = 40, .ny = 20};
+  test::RandomComponents random(3);
+  std::vector<Component> design = random.several(12, 2, 1);
+  const std::vector<std::vector<Vec2>> solid = {{{1.9, 0.1}, {2, 0.1}, {2, 0.4}, {1.9, 0.4}}};
+  VectorXd fractions = area_fractions(grid, design, 0.03, solid, {});
+  for (Component& c : design) {
+    const Box before = bounding_box(c, 0.03, 0);
+    c.center.x() += 0.1;
+    c.angle += 0.2;
+    const Box after = bounding_box(c, 0.03, 0);
+    update_area_fractions(grid, design, 0.03, solid, {},
+                          std::min(before.lower.x(), after.lower.x()),
+                          std::max(before.upper.x(), after.upper.x()), fractions);
+    EXPECT_EQ(fractions, area_fractions(grid, design, 0.03, solid, {}));
+  }
+}
+
 TEST(AreaFractions, LieWhereTheMaterialIs) {
   const Grid grid{.width = 10, .height = 4, .nx = 10, .ny = 4};
   const Component bar{.center = {5, 1.25}, .half_length = 50, .c1 = 0.75, .c2 = 0.75, .c3 = 0.75};

@@ -122,6 +122,60 @@ TEST(Design, MovesToWhereItIsSent) {
   EXPECT_EQ(design.move_to(x), 0);
 }
 
+// Images move with what they are images of; areas are the same on both sides.
+TEST(Symmetry, OfDesignsIsKeptByTheirVariables) {
+  const double y = kGrid.y0 + 0.5 * kGrid.height, x = kGrid.x0 + 0.5 * kGrid.width;
+  for (const Symmetry& symmetry : {Symmetry{{}, y}, Symmetry{x, {}}, Symmetry{x, y}}) {
+    const Design all(kGrid, layout(), kScale);
+    ASSERT_TRUE(is_symmetric(all.components(), symmetry));
+    Design design(kGrid, one_side(layout(), symmetry), kScale, symmetry);
+    EXPECT_EQ(design.n_variables() * static_cast<int>(design.n_images()),
+              Component::kParameters * design.n_components());
+    EXPECT_EQ(design.n_components(), all.n_components());
+    const VectorXd moved = design.x() + 0.01 * random_vector(design.n_variables(), -1, 1, 5);
+    design.move_to(moved);
+    EXPECT_TRUE(is_symmetric(design.components(), symmetry));
+    EXPECT_FALSE(is_symmetric(random_layout(1), symmetry));
+    const VectorXd area = area_fractions(kGrid, design.components(), 0.005, {}, {});
+    double apart = 0;
+    for (int i = 0; i < kGrid.nx; ++i)
+      for (int j = 0; j < kGrid.ny; ++j)
+        apart = std::max(apart, std::abs(area[kGrid.cell(i, j)] -
+                                         area[kGrid.cell(symmetry.x ? kGrid.nx - 1 - i : i,
+                                                         symmetry.y ? kGrid.ny - 1 - j : j)]));
+    EXPECT_LT(apart, 0.05);  // samples on outlines
+    // The list without symmetry is the same; with() may take an image for what it is one of.
+    EXPECT_EQ(design.without_symmetry().n_components(), design.n_components());
+    const Design again = design.with(design.components());
+    EXPECT_EQ(again.n_components(), design.n_components());
+    const VectorXd same = area_fractions(kGrid, again.components(), 0.005, {}, {});
+    EXPECT_LT((same - area).cwiseAbs().maxCoeff(), 0.05);
+  }
+}
+
+TEST(Symmetry, GradientsOfImagesAreAdded) {
+  const double y = kGrid.y0 + 0.5 * kGrid.height;
+  const Symmetry symmetry{kGrid.x0 + 0.5 * kGrid.width, y};
+  const Design design(kGrid, one_side(layout(), symmetry), kScale, symmetry);
+  const auto all = static_cast<Eigen::Index>(Component::kParameters * design.n_components());
+  const VectorXd weight = random_vector(all, -1, 1, 3);
+  const VectorXd along = random_vector(design.n_variables(), -1, 1, 4);
+  const auto f = [&](const VectorXd& x) {
+    std::vector<Component> components;
+    design.components(x, components);
+    return weight.dot(parameters_of(components).array().sin().matrix());
+  };
+  VectorXd gradient = weight.array() * parameters_of(design.components()).array().cos();
+  MatrixXd rows = gradient.transpose();
+  design.scale_gradient(gradient);
+  ASSERT_EQ(gradient.size(), design.n_variables());
+  const double slope =
+      testing::first_difference([&](double h) { return f(design.x() + h * along); }, 1e-3);
+  EXPECT_NEAR(gradient.dot(along), slope, 1e-11 * gradient.cwiseAbs().sum());
+  design.scale_gradients(rows);
+  EXPECT_LT((rows.transpose() - gradient).cwiseAbs().maxCoeff(), 1e-15 * gradient.norm() + 1e-15);
+}
+
 VectorXd at_nodes(double value) { return VectorXd::Constant(kGrid.n_nodes(), value); }
 
 const std::vector<std::vector<Vec2>> kEmpty = {corners_of({{0.1, -0.02}, {0.2, 0.02}})};

@@ -118,5 +118,25 @@ TEST(BodyDesign, GoesOnWithoutADeadComponent) {
   EXPECT_EQ(outcome.iterations, 20);
 }
 
+// A bar on the line of symmetry lies under its own image: that is no reason to drop both.
+TEST(Turnover, ComponentsGoWithTheirImages) {
+  const Symmetry symmetry{{}, kGrid.y0 + 0.5 * kGrid.height};
+  const double y = *symmetry.y;
+  const Design design(kGrid,
+                      {bar(0.3, 0.25, 0.012, y), bar(0.15, 0.12, 0.03, y - 0.015),
+                       bar(0.15, 0.05, 0.01, y - 0.015)},
+                      kScale, symmetry);
+  ASSERT_EQ(design.n_components(), 6);
+  Turnover looks(kGrid, tdf_settings(), Ersatz(kGrid, tdf_settings().alpha, {}, {}), 0, 2);
+  EXPECT_FALSE(looks.look(design.components()));
+  ASSERT_TRUE(looks.look(design.components()));
+  ASSERT_EQ(looks.events().size(), 1U);
+  EXPECT_EQ(looks.events()[0].component, 2);
+  EXPECT_EQ(looks.events()[0].n_components, 4);
+  const Design next = design.with(looks.next());
+  EXPECT_EQ(next.n_components(), 4);
+  EXPECT_TRUE(is_symmetric(next.components(), symmetry));
+}
+
 }  // namespace
 }  // namespace flexmorph::mmc::test

@@ -62,7 +62,7 @@ const Key& kMinFeature =
         .says("Smallest solid feature of the union; its price is `clean_up` of run.json.");
 const Key& kMend = io::key("design", "mend")
                        .boolean()
-                       .otherwise(true)
+                       .otherwise_as("true from 40 iterations on")
                        .says(
                            "Repairs narrow places, loose pieces and gaps below a cell; `false` "
                            "warns of them.");
@@ -197,7 +197,7 @@ void check_loads(const Table& t, const Scene& scene, const BodyDesign& design) {
 
 /// What the union of components is mended to.
 Widths read_widths(const Table& t, const Body& body, const BodyDesign& design) {
-  const bool mend = t.boolean(kMend);
+  const bool mend = t.boolean(kMend, true);
   const double thick = std::min(2 * design.min_thickness, 0.5 * body.width);
   Widths out;
   if (mend) out.gap = std::min(design.grid.dx(), design.grid.dy());
@@ -220,6 +220,7 @@ void read_components(const Table& t, const Body& body, BodyDesign& design) {
       t.number(kMinThickness.within(0, 0.5 * body.width), std::min(cell, 0.5 * body.width));
 
   design.widths = read_widths(t, body, design);
+  if (t.has(kMend) || t.has(kMinFeature)) design.mend_from = 1;
 
   const double wide = design.grid.width / boxes[0], high = design.grid.height / boxes[1];
   const double diagonal = std::hypot(wide, high);
