@@ -99,7 +99,7 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
                    .places = scene.domain ? static_places(scene, g, plate.outside) : Cells{},
                    .drop_every = d.drop_every,
                    .refill = d.refill,
-                   .widths = scene.mends(d) ? d.widths : Widths{},
+                   .widths = d.widths,
                    .shares_mass = d.shares_mass});
   }
   return out;

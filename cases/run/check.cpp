@@ -129,9 +129,8 @@ std::string optimizer_words(const Scene& scene) {
   return words(scene.optimizer) + (scene.finish ? ", then " + words(*scene.finish) : "");
 }
 
-std::string thickness_words(const Scene& scene, const BodyDesign& d) {
+std::string thickness_words(const BodyDesign& d) {
   std::string out = "half-thickness of components at least " + io::to_text(d.min_thickness) + " m";
-  if (!scene.mends(d)) return out;
   if (d.widths.solid > 0)
     out += ", smallest feature of their union at least " + io::to_text(d.widths.solid) + " m";
   if (d.widths.gap > 0) out += ", smallest gap at least " + io::to_text(d.widths.gap) + " m";
@@ -198,7 +197,7 @@ void describe_design(const Scene& scene, const BodyDesign& d, std::ostringstream
                                         " static unknowns");
   out << row("", std::to_string(loads) + " loads, " + limit_words(d.goal) +
                      (d.shares_mass ? " on average, mass is shared, " : ", ") +
-                     thickness_words(scene, d));
+                     thickness_words(d));
   out << row("", "factor about " + io::to_text(8e-6 * factor, 3) + " MB, loads and displacements " +
                      io::to_text(8e-6 * 3.0 * n * loads, 3) + " MB; an iteration about " +
                      io::to_text(1e-9 * factor * (2 * g.ny + 5 + 3.0 * loads), 2) + " Gflop");
@@ -221,7 +220,7 @@ void describe_static(const Scene& scene, std::ostringstream& out, const Machine&
   out << row("design", std::to_string(components) + " components, " +
                            std::to_string(components * Component::kParameters) + " variables; " +
                            goal_words(d.goal));
-  out << row("", thickness_words(scene, d));
+  out << row("", thickness_words(d));
   out << row("optimizer", optimizer_words(scene));
   out << figures_text(scene, nullptr, machine);
   out << "\nabsent: not built, costs nothing\n";

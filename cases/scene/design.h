@@ -9,7 +9,6 @@
 #include "geometry/feature.h"
 #include "geometry/grid.h"
 #include "geometry/tdf.h"
-#include "optim/mmc/body_design.h"
 #include "optim/mmc/compliance.h"
 #include "optim/mmc/goal.h"
 
@@ -32,8 +31,7 @@ struct BodyDesign {
   std::array<int, 2> components{1, 1};  ///< boxes of the initial layout, two components in each
   mmc::Goal goal;                       ///< volumes are fractions, solid regions included
   double min_thickness = 0;             ///< c_min: smallest half-thickness of a component [m]
-  Widths widths;                        ///< what the union is mended to ...
-  int mend_from = mmc::kFewestMendedIterations;  ///< ... in runs of so many iterations or more
+  Widths widths;                        ///< what the union is mended to
   double half_length = 0;                        ///< of the initial components [m]
   double half_thickness = 0;                     ///< of the initial components [m]
   /// Half-widths of the Heaviside band, coarse to fine [cells]; of tdf = "paper" [-].

@@ -54,10 +54,6 @@ struct Scene {
   std::map<std::string, Expectation> expect;  ///< by name of the result
   std::optional<io::CaseFile> file;           ///< where it comes from, for messages; none: made
 
-  /// Does a run of it mend the design?
-  bool mends(const BodyDesign& design) const {
-    return optimizer.max_iterations >= design.mend_from;
-  }
   const Body& body(const std::string& name) const;  ///< name resolves: checked when read
   /// A law in time; drives that follow from a trajectory: after follow_trajectory().
   std::function<fem::Motion(double)> motion_of(const Law& law) const;

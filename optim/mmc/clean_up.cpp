@@ -26,6 +26,8 @@ constexpr int kMostRounds = 20;
 /// A repair that makes the compliance so many times what it was is none: the design is no design
 /// yet, but a lattice on its way.
 constexpr double kDearest = 1.25;
+/// Volume that is left over is offered to all components so many times.
+constexpr int kPasses = 4;
 /// Thicknesses that fit a volume are found to this part of the range they are looked for in.
 constexpr double kFound = 1e-6;
 /// The sharp volume may be off what is allowed by this part.
@@ -130,8 +132,9 @@ class Cleaner {
     }
     std::stable_sort(all.begin(), all.end(),
                      [&](size_t a, size_t b) { return strain[a] > strain[b]; });
-    for (const size_t k : all)
-      if (leaves_volume()) thicken({&k, 1}, narrowest);
+    for (int pass = 0; pass < kPasses; ++pass)
+      for (const size_t k : all)
+        if (leaves_volume()) thicken({&k, 1}, narrowest);
   }
   bool leaves_volume() const {
     return design_.volume(parts_) < max_volume_ * (1 - kVolumeTolerance);

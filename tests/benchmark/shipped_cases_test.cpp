@@ -23,13 +23,18 @@ void PrintTo(const Choice& choice, std::ostream* out) {
 
 class ShippedCase : public ::testing::TestWithParam<Choice> {
  protected:
+  /// Mended as shipped; other optimizers are looked at by what they come to themselves, which takes
+  /// a third of the time.
+  bool own() const { return GetParam().optimizer == "mma"; }
+
   /// Runs the case. @return its run.json
   nlohmann::json run() const {
     const Scratch scratch;
     const std::string folder = scratch / "out";
     const std::string command =
         std::string(FLEXMORPH_PROGRAM) + " run " + GetParam().plate + " -o '" + folder +
-        "' --quiet --set optimizer.name=" + GetParam().optimizer + " --set output.vtk=false";
+        "' --quiet --set optimizer.name=" + GetParam().optimizer + " --set output.vtk=false" +
+        (own() ? "" : " --set design.mend=false");
     const int status = std::system(command.c_str());
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << command;
     return nlohmann::json::parse(contents_of(folder + "/run.json"));
@@ -52,17 +57,21 @@ TEST_P(ShippedCase, EndsWithAGoodDesign) {
     EXPECT_TRUE(result.at(key).is_number()) << key;
     return result.at(key).get<double>();
   };
-  EXPECT_NEAR(value("sharp_volume"), 0.5, 0.0005);
+  if (own())
+    EXPECT_NEAR(value("sharp_volume"), 0.5, 0.0005);
+  else
+    EXPECT_LE(value("volume"), 0.5 + 1e-4);
   EXPECT_NEAR(value("sharp_volume") / value("volume"), 1, 0.02);
   EXPECT_LE(value("sharp_compliance") / value("compliance"), 1.15);
   EXPECT_TRUE(result.at("connected").get<bool>());
-  EXPECT_EQ(value("islands"), 0);
   EXPECT_GE(value("thinnest_component"), 0.005 - 1e-12);  // c_min of both cases
-  EXPECT_GE(value("min_feature"), 0.99 * 0.01);
-  EXPECT_GE(value("min_gap"), 0.99 * 0.0025);  // a cell
+  if (own()) {
+    EXPECT_EQ(value("islands"), 0);
+    EXPECT_GE(value("min_feature"), 0.99 * 0.01);
+    EXPECT_GE(value("min_gap"), 0.99 * 0.0025);  // a cell
+  }
 
-  const bool own = GetParam().optimizer == "mma";
-  EXPECT_LE(value("sharp_compliance") / value("uniform_compliance"), own ? 0.72 : 0.76);
+  EXPECT_LE(value("sharp_compliance") / value("uniform_compliance"), 0.72);
   EXPECT_LE(value("scene_mesh_amplitude") / value("scene_mesh_uniform_amplitude"), 0.75);
   EXPECT_LE(value("dynamic_amplitude") / value("uniform_dynamic_amplitude"), 0.75);  // finer mesh
 }

@@ -7,6 +7,7 @@
 #include "cases/scene/tables.h"
 #include "io/exports.h"
 #include "io/files.h"
+#include "optim/mmc/body_design.h"
 #include "optim/mmc/clean_up.h"
 
 namespace flexmorph::cases {
@@ -196,8 +197,12 @@ void check_loads(const Table& t, const Scene& scene, const BodyDesign& design) {
 }
 
 /// What the union of components is mended to.
-Widths read_widths(const Table& t, const Body& body, const BodyDesign& design) {
-  const bool mend = t.boolean(kMend, true);
+Widths read_widths(const Table& t, const Body& body, const Scene& scene,
+                   const BodyDesign& design) {
+  // Designs that are only analysed were mended, most of them.
+  const int iterations = scene.optimizer.max_iterations;
+  const bool mend =
+      t.boolean(kMend, iterations == 0 || iterations >= mmc::kFewestMendedIterations);
   const double thick = std::min(2 * design.min_thickness, 0.5 * body.width);
   Widths out;
   if (mend) out.gap = std::min(design.grid.dx(), design.grid.dy());
@@ -210,7 +215,7 @@ Widths read_widths(const Table& t, const Body& body, const BodyDesign& design) {
   return out;
 }
 
-void read_components(const Table& t, const Body& body, BodyDesign& design) {
+void read_components(const Table& t, const Body& body, const Scene& scene, BodyDesign& design) {
   const double cell = design.grid.dx();
   const std::vector<int> boxes = t.integers(kComponents);
   design.components = {boxes[0], boxes[1]};
@@ -219,8 +224,7 @@ void read_components(const Table& t, const Body& body, BodyDesign& design) {
   design.min_thickness =
       t.number(kMinThickness.within(0, 0.5 * body.width), std::min(cell, 0.5 * body.width));
 
-  design.widths = read_widths(t, body, design);
-  if (t.has(kMend) || t.has(kMinFeature)) design.mend_from = 1;
+  design.widths = read_widths(t, body, scene, design);
 
   const double wide = design.grid.width / boxes[0], high = design.grid.height / boxes[1];
   const double diagonal = std::hypot(wide, high);
@@ -290,7 +294,7 @@ BodyDesign read_static_design(const Table& t, const Scene& scene) {
   design.grid.y0 = domain.bounds.lower.y();
   design.goal = read_goal(t, plate_of(scene, design));
   read_coupling(t, design);
-  read_components(t, body, design);
+  read_components(t, body, scene, design);
   read_tdf(t, design);
   read_regions(t, body, scene, design);
   return design;
@@ -332,7 +336,7 @@ BodyDesign read_design(const Table& t, const Scene& scene) {
   design.grid = read_grid(t, body, scene.time.end);
   design.goal = read_goal(t, plate_of(scene, design));
   read_coupling(t, design);
-  read_components(t, body, design);
+  read_components(t, body, scene, design);
   read_tdf(t, design);
   read_regions(t, body, scene, design);
   check_loads(t, scene, design);

@@ -254,6 +254,8 @@ Verify read_verify(const Table& t, const Scene& scene) {
 }  // namespace
 
 void read_designs(const Table& root, Scene& scene) {
+  if (root.has(tables::kDesign))  // designs ask how many iterations there are
+    read_optimizers(root.table_or_empty(tables::kOptimizer), scene);
   std::vector<Table> sharing;
   for (const Table& t : root.tables(tables::kDesign)) {
     scene.designs.push_back(read_design(t, scene));
@@ -264,7 +266,6 @@ void read_designs(const Table& root, Scene& scene) {
                     "no other [[design]] has \"shared_mass\" to share with");
   if (scene.domain) {
     if (scene.designs.empty()) root.fail(tables::kDesign, "a static scene has a [[design]]");
-    read_optimizers(root.table_or_empty(tables::kOptimizer), scene);
     return;
   }
   if (scene.designs.empty()) {
@@ -274,7 +275,6 @@ void read_designs(const Table& root, Scene& scene) {
     return;
   }
   scene.esl = read_esl(root.table(tables::kEsl), scene);
-  read_optimizers(root.table_or_empty(tables::kOptimizer), scene);
   const Table cycle = root.table_or_empty(tables::kCycle);
   scene.cycle.max_cycles = cycle.integer(kMaxCycles);
   scene.cycle.tolerance = cycle.number(kTolerance);
