@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <sstream>
 
 #include "geometry/picture.h"
@@ -17,12 +18,11 @@ namespace flexmorph::benchmark {
 namespace {
 
 constexpr double kVolume = 0.4;
-/// Of the measure's best run: 4 x 320 iterations, the radius of W from 2 to 1/2
+/// Of the best run that is published: 4 x 320 iterations, the radius of W from 2 to 1/2
 /// (docs of github.com/SimoneConiglio/generalized_geometry_projection, the authors' later program).
 constexpr double kPublished = 73.52;
 
-/// Cells are a quarter of the measure's elements. What the measure calls 0.4 is more by area:
-/// elements that one bar fills by half have 0.31 there, in stiffness and density alike.
+/// Cells are a quarter of the measure's elements.
 constexpr const char* kCase = R"(
 title = "Short cantilever of generalized geometry projection"
 [domain]
@@ -42,8 +42,6 @@ force = [0.0, -1.0]
 [[design]]
 cell = 0.25
 components = [3, 3]
-start = "bars.csv"
-max_volume = 0.42
 min_thickness = 0.5
 band = [2.5, 1.5]
 erosion = 0.0
@@ -51,18 +49,40 @@ erosion = 0.0
 name = "mma"
 max_iterations = 320
 )";
+/// The published start, disturbed (other seeds end up to 2 % higher); then what it came to,
+/// with more material: elements that one bar fills by half have 0.31 in the measure, in stiffness
+/// and density alike, so that what it calls 0.4 is more by area.
+const std::vector<std::string> kFirst = {"design.jitter=0.1", "design.seed=1",
+                                         "design.max_volume=0.4"};
+const std::vector<std::string> kSecond = {"design.max_volume=0.425"};
 
 /// Two crossed bars at nine places, as long and thick as the published ones.
-std::string published_bars() {
-  std::ostringstream out;
-  out.precision(17);
-  out << "X0,Y0,half_length,angle,c1,c2,c3\n";
+std::vector<Component> published_bars() {
+  std::vector<Component> out;
   const double half = std::hypot(60 / 3., 30 / 3.) + 1, angle = std::atan2(30, 60);
   for (const double sign : {1., -1.})
     for (const double x : {0., 30., 60.})
-      for (const double y : {0., 15., 30.})
-        out << x << ',' << y << ',' << half << ',' << sign * angle << ",1,1,1\n";
+      for (const double y : {0., 15., 30.}) out.push_back({{x, y}, half, sign * angle, 1, 1, 1});
+  return out;
+}
+
+std::string csv(std::span<const Component> components) {
+  std::ostringstream out;
+  out.precision(17);
+  out << "X0,Y0,half_length,angle,c1,c2,c3\n";
+  for (const Component& c : components) {
+    const auto values = c.parameters();
+    for (std::size_t k = 0; k < values.size(); ++k)
+      out << values[k] << (k + 1 < values.size() ? ',' : '\n');
+  }
   return out.str();
+}
+
+/// The case from a start.
+std::unique_ptr<ComparedCase> case_from(const Scratch& scratch, std::span<const Component> start,
+                                        std::vector<std::string> changes) {
+  changes.push_back("design.start='" + scratch.write("bars.csv", csv(start)) + "'");
+  return std::make_unique<ComparedCase>(scratch.write("cantilever.toml", kCase), changes);
 }
 
 /// How elements are made of a design.
@@ -111,13 +131,14 @@ Measured measured(const std::vector<Component>& components, double min_half_thic
 
 TEST(EighteenBars, InThePublishedMeasure) {
   const Scratch scratch;
-  scratch.write("bars.csv", published_bars());
-  ComparedCase of(scratch.write("cantilever.toml", kCase));
-  const ComparedDesign own = design_by_components(of);
-  std::printf("body-fitted %.4g at volume %.4f, %d components, CPU %.1f s\n",
-              own.verdict.compliance, own.volume, of.problem.design.n_components(), own.seconds);
-  const std::vector<Component> components = of.problem.design.components();
-  const double least = of.problem.stages.back().min_half_thickness;
+  const auto first = case_from(scratch, published_bars(), kFirst);
+  const ComparedDesign early = design_by_components(*first);
+  const auto second = case_from(scratch, first->problem.design.components(), kSecond);
+  const ComparedDesign own = design_by_components(*second);
+  const std::vector<Component> components = second->problem.design.components();
+  std::printf("body-fitted %.4g at volume %.4f, %zu components, CPU %.1f s\n",
+              own.verdict.compliance, own.volume, components.size(), early.seconds + own.seconds);
+  const double least = second->problem.stages.back().min_half_thickness;
   for (const auto& [name, how] : {std::pair{"each component", Elements::each_component},
                                   std::pair{"their union", Elements::their_union},
                                   std::pair{"area fractions", Elements::area_fractions}}) {
