@@ -102,6 +102,7 @@ bool join(UnderRepair& design, size_t i, double& merit, double most) {
             joined(design.parts[i], i_first, design.parts[j], j_first, floor);
         if (!one) continue;
         const double area = fractions_of(problem, {&*one, 1}).sum();
+        if (area == 0) continue;  // outside
         const double more = design.fractions(replaced(design, i, j, *one)).sum() - before.sum();
         // What fills notches is taken off the thickness.
         for (double* c : {&one->c1, &one->c2, &one->c3})
