@@ -196,8 +196,7 @@ void describe_design(const Scene& scene, const BodyDesign& d, std::ostringstream
                                         std::to_string(g.ny) + " cells, " + std::to_string(n) +
                                         " static unknowns");
   out << row("", std::to_string(loads) + " loads, " + limit_words(d.goal) +
-                     (d.shares_mass ? " on average, mass is shared, " : ", ") +
-                     thickness_words(d));
+                     (d.shares_mass ? " on average, mass is shared, " : ", ") + thickness_words(d));
   out << row("", "factor about " + io::to_text(8e-6 * factor, 3) + " MB, loads and displacements " +
                      io::to_text(8e-6 * 3.0 * n * loads, 3) + " MB; an iteration about " +
                      io::to_text(1e-9 * factor * (2 * g.ny + 5 + 3.0 * loads), 2) + " Gflop");

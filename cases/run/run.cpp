@@ -134,7 +134,7 @@ void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress
   mmc::LoopSettings settings{
       analysed ? 1 : scene.cycle.max_cycles,
       scene.cycle.tolerance,
-      {scene.output.sharp_every, scene.optimizer, condition, memory.past(), scene.finish}};
+      {scene.output.sharp_every, scene.optimizer, condition, memory.past(), scene.finish, go_on}};
   observer.verdict = [&](std::span<const mmc::CycleVerdict> verdicts) {
     report.verdicts.assign(verdicts.begin(), verdicts.end());
     folder.write_cycles(verdicts);
@@ -178,8 +178,8 @@ void run_static(const Scene& scene, bool condition, RunFolder& folder, Progress&
   };
   const mmc::BodyOutcome outcome = mmc::design_body(
       problem, *loads, 1,
-      {scene.output.sharp_every, scene.optimizer, condition, memory.past(), scene.finish}, observe,
-      going);
+      {scene.output.sharp_every, scene.optimizer, condition, memory.past(), scene.finish, go_on},
+      observe, going);
   report.cycles = 1;
   report.outcomes = {outcome};
   folder.write_static_loads(*scene.domain, outcome);

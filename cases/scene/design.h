@@ -32,8 +32,8 @@ struct BodyDesign {
   mmc::Goal goal;                       ///< volumes are fractions, solid regions included
   double min_thickness = 0;             ///< c_min: smallest half-thickness of a component [m]
   Widths widths;                        ///< what the union is mended to
-  double half_length = 0;                        ///< of the initial components [m]
-  double half_thickness = 0;                     ///< of the initial components [m]
+  double half_length = 0;               ///< of the initial components [m]
+  double half_thickness = 0;            ///< of the initial components [m]
   /// Half-widths of the Heaviside band, coarse to fine [cells]; of tdf = "paper" [-].
   std::vector<double> band;
   TdfSettings tdf;               ///< in metres, with the band of the last, finest stage

@@ -193,8 +193,8 @@ class Designer {
   void mend(int polishes) {
     for (Part& p : parts_) p.problem.design = p.problem.design.without_symmetry();
     std::vector<CleanUp> renewals(parts_.size());
-    if (polishes > 0) renewals = renewed(parts_);
-    Mended last = repaired(parts_, polishes > 0 ? kClosed : 1);
+    if (polishes > 0) renewals = renewed(parts_, settings_.go_on);
+    Mended last = repaired_all(polishes > 0 ? kClosed : 1, true);
     Mended best = last;
     std::vector<std::optional<CleanUp>> sums = last.clean_ups;
     for (size_t k = 0; k < parts_.size(); ++k)
@@ -210,7 +210,7 @@ class Designer {
       }
       run_stage(settings_.optimizer.max_iterations / kPolishShare,
                 budget - (polishes - round) * (budget / kPolishShare));
-      last = repaired(parts_, 1, round == polishes);
+      last = repaired_all(1, round == polishes);
       for (size_t k = 0; k < parts_.size(); ++k)
         if (sums[k]) sums[k]->add(*last.clean_ups[k]);
       if (last.better_than(best)) best = last;
@@ -218,6 +218,12 @@ class Designer {
     for (size_t k = 0; k < parts_.size(); ++k)
       if (sums[k]) parts_[k].outcome.clean_up = sums[k];
     deliver(best);
+  }
+
+  Mended repaired_all(double gaps, bool trims) {
+    Mended out = repaired(parts_, gaps, trims, settings_.go_on);
+    if (settings_.go_on && !settings_.go_on()) going_ = false;
+    return out;
   }
 
   /// The last solve of mended designs: without limits of widths, which have no second derivatives.
@@ -234,7 +240,7 @@ class Designer {
       const Mended found = looked_over(parts_);
       const bool wide = found.reached && !found.changed;
       if (wide && std::all_of(parts_.begin(), parts_.end(), keeps_volume)) return take(found);
-      if (!wide && k + 1 < kFinishTries) repaired(parts_, 1);
+      if (!wide && k + 1 < kFinishTries) repaired_all(1, true);
     }
     deliver(before);
     for (Part& p : parts_)

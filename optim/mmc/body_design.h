@@ -79,6 +79,8 @@ struct DesignSettings {
   Past* past = nullptr;       ///< where evaluations are kept, and may be known from
   /// A last solve from what the stages reached, at their last band and without drops.
   std::optional<optim::Settings> finish = {};
+  /// Asked while designs are repaired, as the observer is while they are optimized. Empty: go on.
+  std::function<bool()> go_on = {};
 };
 
 /// Looks on; false stops the run after the current iteration.

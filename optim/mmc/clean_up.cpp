@@ -55,11 +55,12 @@ std::vector<NarrowPlace> places_of(UnderRepair& design) {
 
 class Cleaner {
  public:
-  Cleaner(BodyProblem& problem, LoadResponse& loads, const Widths& wanted, double max_volume)
+  Cleaner(BodyProblem& problem, LoadResponse& loads, const Widths& wanted, double max_volume,
+          const std::function<bool()>& go_on)
       : problem_(problem),
         wanted_(wanted),
         max_volume_(max_volume),
-        design_(problem, loads, wanted) {}
+        design_(problem, loads, wanted, go_on) {}
 
   CleanUp go(bool trims) {
     CleanUp out;
@@ -71,7 +72,8 @@ class Cleaner {
       for (double* each : {&c.c1, &c.c2, &c.c3})
         *each = std::max(*each, half_thickness_for(wanted_.solid));
     fit_volume();
-    if (const std::optional<std::vector<Component>> widest = widened(out)) {
+    const std::optional<std::vector<Component>> widest = widened(out);
+    if (widest && design_.goes_on()) {
       parts_ = *widest;
       if (trims) out.stubs = cut_stubs(design_);
       give_back(design_.smallest(design_.places()));
@@ -93,7 +95,7 @@ class Cleaner {
     std::optional<std::vector<Component>> best;
     double widest = -1;
     std::vector<NarrowPlace> narrow = places_of(design_);
-    while (affordable()) {
+    while (affordable() && design_.goes_on()) {
       const double now = design_.smallest(narrow);
       if (now > widest && fits()) {
         widest = now;
@@ -134,7 +136,7 @@ class Cleaner {
                      [&](size_t a, size_t b) { return strain[a] > strain[b]; });
     for (int pass = 0; pass < kPasses; ++pass)
       for (const size_t k : all)
-        if (leaves_volume()) thicken({&k, 1}, narrowest);
+        if (leaves_volume() && design_.goes_on()) thicken({&k, 1}, narrowest);
   }
   bool leaves_volume() const {
     return design_.volume(parts_) < max_volume_ * (1 - kVolumeTolerance);
@@ -346,9 +348,10 @@ CleanUp look_over(const BodyProblem& problem, LoadResponse& loads, const Widths&
 }
 
 CleanUp clean_up(BodyProblem& problem, LoadResponse& loads, const Widths& wanted,
-                 std::optional<double> max_volume, bool trims) {
+                 const RepairWishes& wishes) {
   const double by_goal = allowed_volume(problem.goal).value_or(kInfinity);
-  return Cleaner(problem, loads, wanted, max_volume.value_or(by_goal)).go(trims);
+  return Cleaner(problem, loads, wanted, wishes.max_volume.value_or(by_goal), wishes.go_on)
+      .go(wishes.trims);
 }
 
 }  // namespace flexmorph::mmc

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "optim/mmc/body_problem.h"
@@ -27,6 +28,14 @@ struct CleanUp {
   double part_reached() const;
 };
 
+struct RepairWishes {
+  std::optional<double> max_volume = {};  ///< volume fraction it may take; absent: as the goal says
+  bool trims = true;                      ///< do idle ends of components go? It is half of the work
+  /// Asked on the way; when false comes the design is left where it was, as given up. Empty: it
+  /// does.
+  std::function<bool()> go_on = {};
+};
+
 /// Makes the union of a design's components, and the void between, as wide as wanted everywhere.
 ///
 /// Bounds on thicknesses do not do that: where components touch by their tips, overlap a little or
@@ -40,11 +49,9 @@ struct CleanUp {
 ///
 /// The design of `problem` is left at the result, or where it was when that costs more than a
 /// quarter of the compliance.
-/// @param max_volume  volume fraction it may take; absent: as its goal says
-/// @param trims  do idle ends of components go? It is half of the work.
 /// @throws Error (numerical) from statics.
 CleanUp clean_up(BodyProblem& problem, LoadResponse& loads, const Widths& wanted,
-                 std::optional<double> max_volume = {}, bool trims = true);
+                 const RepairWishes& wishes = {});
 
 /// What a clean-up would find: `after` as `before`, and as many rounds as there are places to
 /// repair.

@@ -101,6 +101,7 @@ int drop_idle(UnderRepair& design) {
   double lowest = design.merit(left);
   int n = 0;
   for (const auto& [energy, k] : candidates) {
+    if (!design.goes_on()) break;
     gone[k] = true;
     std::vector<Component> without;
     for (size_t i = 0; i < design.parts.size(); ++i)
@@ -123,6 +124,7 @@ int cut_stubs(UnderRepair& design) {
   int n = 0;
   for (size_t k = 0; k < design.parts.size(); ++k)
     for (const bool first : {true, false}) {
+      if (!design.goes_on()) return n;
       if (!cut_stub(design, k, first, now)) continue;
       now.fractions = design.fractions(design.parts);
       now.merit = design.merit(design.parts);

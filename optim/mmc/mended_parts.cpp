@@ -6,7 +6,8 @@
 
 namespace flexmorph::mmc {
 
-Mended repaired(std::vector<Part>& parts, double gaps, bool trims) {
+Mended repaired(std::vector<Part>& parts, double gaps, bool trims,
+                const std::function<bool()>& go_on) {
   std::vector<double> volumes;
   double used = 0, allowed = 0;
   for (const Part& p : parts) {
@@ -20,11 +21,12 @@ Mended repaired(std::vector<Part>& parts, double gaps, bool trims) {
     Part& p = parts[k];
     std::optional<CleanUp>& done = out.clean_ups.emplace_back();
     if (p.problem.widths.any()) {
-      std::optional<double> volume;
-      if (parts.size() > 1 && used > 0) volume = std::min(1.0, volumes[k] * allowed / used);
+      RepairWishes wishes{.trims = trims, .go_on = go_on};
+      if (parts.size() > 1 && used > 0)
+        wishes.max_volume = std::min(1.0, volumes[k] * allowed / used);
       Widths wanted = p.problem.widths;
       wanted.gap *= gaps;
-      done = clean_up(p.problem, p.loads, wanted, volume, trims);
+      done = clean_up(p.problem, p.loads, wanted, wishes);
       done->wanted = p.problem.widths;
       out.reached = out.reached && done->reached();
       out.changed = out.changed || done->changed();
@@ -38,12 +40,12 @@ Mended repaired(std::vector<Part>& parts, double gaps, bool trims) {
   return out;
 }
 
-std::vector<CleanUp> renewed(std::vector<Part>& parts) {
+std::vector<CleanUp> renewed(std::vector<Part>& parts, const std::function<bool()>& go_on) {
   std::vector<CleanUp> out(parts.size());
   for (size_t k = 0; k < parts.size(); ++k) {
     BodyProblem& problem = parts[k].problem;
     if (!problem.widths.any()) continue;
-    UnderRepair design(problem, parts[k].loads, problem.widths);
+    UnderRepair design(problem, parts[k].loads, problem.widths, go_on);
     out[k].born = bear_parts(design);
     out[k].joined = join_parts(design);
     if (out[k].born + out[k].joined > 0) problem.design = problem.design.with(design.parts);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -22,13 +23,14 @@ struct Mended {
 /// Repairs the designs (clean_up()). What a common budget of mass leaves goes to the bodies as they
 /// have shared it so far.
 /// @param gaps  part of the wanted widths of gaps below which they are closed
-/// @param trims  see clean_up()
-Mended repaired(std::vector<Part>& parts, double gaps, bool trims = true);
+/// @param trims, go_on  see RepairWishes
+Mended repaired(std::vector<Part>& parts, double gaps, bool trims,
+                const std::function<bool()>& go_on);
 
 /// Joins components that lie end to end, and puts bars where they are missed (renewed_parts.h), in
 /// designs that are to be repaired. The designs are then shaped, and repaired.
 /// @return what came and went, of each design
-std::vector<CleanUp> renewed(std::vector<Part>& parts);
+std::vector<CleanUp> renewed(std::vector<Part>& parts, const std::function<bool()>& go_on);
 
 /// The designs as they are, and whether there is something to repair.
 Mended looked_over(std::vector<Part>& parts);

@@ -249,7 +249,7 @@ int join_parts(UnderRepair& design) {
   const double most = merit * (1 + kPriceOfAll);
   int n = 0;
   for (size_t i = 0; i < design.parts.size(); ++i)
-    while (i < design.parts.size() && join(design, i, merit, most)) ++n;
+    while (design.goes_on() && i < design.parts.size() && join(design, i, merit, most)) ++n;
   return n;
 }
 
@@ -257,7 +257,7 @@ int bear_parts(UnderRepair& design) {
   design.count_islands();
   double merit = design.merit(design.parts);
   int n = 0;
-  while (n < kMostBars && bear_part(design, merit)) ++n;
+  while (design.goes_on() && n < kMostBars && bear_part(design, merit)) ++n;
   return n;
 }
 

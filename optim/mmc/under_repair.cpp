@@ -42,11 +42,13 @@ std::vector<Component> only_in_one(const std::vector<Component>& a,
 
 }  // namespace
 
-UnderRepair::UnderRepair(const BodyProblem& problem, LoadResponse& loads, const Widths& wanted)
+UnderRepair::UnderRepair(const BodyProblem& problem, LoadResponse& loads, const Widths& wanted,
+                         std::function<bool()> go_on)
     : parts(problem.design.components()),
       patch(parts.size(), false),
       problem_(problem),
       loads_(loads),
+      go_on_(std::move(go_on)),
       wanted_(wanted),
       ersatz_(ersatz_of(problem)) {}
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -12,7 +13,12 @@ namespace flexmorph::mmc {
 /// A design that is being mended: its components, and what there is to say about them.
 class UnderRepair {
  public:
-  UnderRepair(const BodyProblem& problem, LoadResponse& loads, const Widths& wanted);
+  /// @param go_on  asked between the steps of a repair, which may take a minute together; empty:
+  ///               it does
+  UnderRepair(const BodyProblem& problem, LoadResponse& loads, const Widths& wanted,
+              std::function<bool()> go_on = {});
+
+  bool goes_on() const { return !go_on_ || go_on_(); }
 
   const BodyProblem& problem() const { return problem_; }
   const Widths& wanted() const { return wanted_; }
@@ -71,6 +77,7 @@ class UnderRepair {
 
   const BodyProblem& problem_;
   LoadResponse& loads_;
+  std::function<bool()> go_on_;
   mutable std::deque<Known> known_;  // newest first
   Widths wanted_;
   Ersatz ersatz_;

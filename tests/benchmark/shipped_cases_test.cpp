@@ -23,18 +23,14 @@ void PrintTo(const Choice& choice, std::ostream* out) {
 
 class ShippedCase : public ::testing::TestWithParam<Choice> {
  protected:
-  /// Mended as shipped; other optimizers are looked at by what they come to themselves, which takes
-  /// a third of the time.
-  bool own() const { return GetParam().optimizer == "mma"; }
-
   /// Runs the case. @return its run.json
-  nlohmann::json run() const {
+  nlohmann::json run(const std::string& changes = "") const {
     const Scratch scratch;
     const std::string folder = scratch / "out";
-    const std::string command =
-        std::string(FLEXMORPH_PROGRAM) + " run " + GetParam().plate + " -o '" + folder +
-        "' --quiet --set optimizer.name=" + GetParam().optimizer + " --set output.vtk=false" +
-        (own() ? "" : " --set design.mend=false");
+    const std::string command = std::string(FLEXMORPH_PROGRAM) + " run " + GetParam().plate +
+                                " -o '" + folder +
+                                "' --quiet --set optimizer.name=" + GetParam().optimizer +
+                                " --set output.vtk=false" + changes;
     const int status = std::system(command.c_str());
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << command;
     return nlohmann::json::parse(contents_of(folder + "/run.json"));
@@ -51,29 +47,47 @@ INSTANTIATE_TEST_SUITE_P(Cases, ShippedCase, ::testing::ValuesIn(choices()), [](
   return test.param.plate + "_" + test.param.optimizer;
 });
 
+// As the paper's designs are: not mended.
 TEST_P(ShippedCase, EndsWithAGoodDesign) {
-  const nlohmann::json result = run()["results"].at(0);
+  const nlohmann::json result = run(" --set design.mend=false")["results"].at(0);
   const auto value = [&](const char* key) {
     EXPECT_TRUE(result.at(key).is_number()) << key;
     return result.at(key).get<double>();
   };
-  if (own())
-    EXPECT_NEAR(value("sharp_volume"), 0.5, 0.0005);
-  else
-    EXPECT_LE(value("volume"), 0.5 + 1e-4);
-  EXPECT_NEAR(value("sharp_volume") / value("volume"), 1, 0.02);
+  const double volume = value("volume"), sharp_volume = value("sharp_volume");
+  EXPECT_LE(volume, 0.5 + 1e-4);
+  EXPECT_NEAR(sharp_volume / volume, 1, 0.02);
   EXPECT_LE(value("sharp_compliance") / value("compliance"), 1.15);
   EXPECT_TRUE(result.at("connected").get<bool>());
   EXPECT_GE(value("thinnest_component"), 0.005 - 1e-12);  // c_min of both cases
-  if (own()) {
-    EXPECT_EQ(value("islands"), 0);
-    EXPECT_GE(value("min_feature"), 0.99 * 0.01);
-    EXPECT_GE(value("min_gap"), 0.99 * 0.0025);  // a cell
-  }
 
-  EXPECT_LE(value("sharp_compliance") / value("uniform_compliance"), 0.72);
+  const bool own = GetParam().optimizer == "mma";
+  EXPECT_LE(value("sharp_compliance") / value("uniform_compliance"), own ? 0.68 : 0.72);
   EXPECT_LE(value("scene_mesh_amplitude") / value("scene_mesh_uniform_amplitude"), 0.75);
   EXPECT_LE(value("dynamic_amplitude") / value("uniform_dynamic_amplitude"), 0.75);  // finer mesh
+}
+
+/// As shipped: in one piece, no place thinner than 2 c_min, no gap below a cell, and all of the
+/// volume. That has its price in compliance, and in the swing of the tip.
+class MendedCase : public ShippedCase {};
+INSTANTIATE_TEST_SUITE_P(Cases, MendedCase,
+                         ::testing::Values(Choice{"rotating_plate_v01", "mma"},
+                                           Choice{"rotating_plate_v05", "mma"}),
+                         [](const auto& test) { return test.param.plate; });
+
+TEST_P(MendedCase, EndsWithADesignThatCanBeBuilt) {
+  const nlohmann::json json = run(), result = json["results"].at(0);
+  const auto value = [&](const char* key) { return result.at(key).get<double>(); };
+  for (const auto& [name, expected] : json["expect"].items())
+    EXPECT_TRUE(expected["holds"].get<bool>()) << name << ": " << expected;
+  EXPECT_NEAR(value("sharp_volume"), 0.5, 0.0005);
+  EXPECT_EQ(value("islands"), 0);
+  EXPECT_GE(value("min_feature"), 0.99 * 0.01);
+  if (result.at("min_gap").is_number()) {
+    EXPECT_GE(value("min_gap"), 0.99 * 0.0025);  // a cell
+  }
+  EXPECT_LE(value("sharp_compliance") / value("uniform_compliance"), 0.72);
+  EXPECT_LE(value("dynamic_amplitude") / value("uniform_dynamic_amplitude"), 0.85);  // finer mesh
 }
 
 /// Mechanisms whose loads do not come from a hub that turns evenly.

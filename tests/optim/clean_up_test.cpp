@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include "optim/mmc/body_design.h"
-#include "optim/mmc/fixed_loads.h"
 #include "tests/geometry/scrambled_heap.h"
 #include "tests/optim/mmc_small.h"
 
@@ -15,20 +14,6 @@ namespace {
 
 constexpr double kWanted = 0.018;  // thinner than the strip of two cells
 constexpr Widths kWidths{kWanted, 0};
-
-Component bar(const Vec2& from, const Vec2& to, double half_thickness) {
-  const Vec2 along = to - from;
-  return {0.5 * (from + to), 0.5 * along.norm(), std::atan2(along.y(), along.x()),
-          half_thickness,    half_thickness,     half_thickness};
-}
-
-FixedLoads tip_load() {
-  std::vector<fem::HeldUnknown> held;
-  for (int j = 0; j <= kGrid.ny; ++j)
-    for (int c = 0; c < 2; ++c) held.push_back({kGrid.node(0, j), c});
-  const std::vector<LoadCase> loads = {{"tip", 1, {{kGrid.node(60, 5), Vec2(0, 1)}}}};
-  return {kGrid, kSection, {}, held, loads, false};
-}
 
 BodyProblem problem_of(const std::vector<Component>& components, double max_volume) {
   DesignScale scale = kScale;
@@ -133,6 +118,23 @@ TEST(CleanUp, ClosesACutThroughWhatCarries) {
   EXPECT_EQ(done.pieces_before, 2);  // the strip at the end hangs on the second bar
   EXPECT_EQ(done.pieces_after, 1);
   EXPECT_TRUE(done.reached());
+}
+
+// A run that is to end does not wait for a repair, and takes nothing half done.
+TEST(CleanUp, LeavesTheDesignWhereItWasWhenItIsToStop) {
+  BodyProblem problem =
+      problem_of({bar({-0.1, 0}, {0.295, 0}, 0.02), bar({0.306, 0}, {0.7, 0}, 0.02)}, 0.9);
+  const VectorXd before = problem.design.x();
+  FixedLoads loads = tip_load();
+  for (const int steps : {0, 1}) {
+    int asked = 0;
+    const CleanUp done = clean_up(problem, loads, {kWanted, kGrid.dx()},
+                                  {.go_on = [&] { return asked++ < steps; }});
+    EXPECT_GT(asked, 0);
+    EXPECT_TRUE(done.given_up);
+    EXPECT_EQ(problem.design.x(), before);
+    EXPECT_EQ(done.pieces_after, done.pieces_before);
+  }
 }
 
 TEST(CleanUp, TakesOutWhatCarriesNothing) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "optim/mmc/esl_loop.h"
+#include "optim/mmc/fixed_loads.h"
 #include "tests/support/disturbance.h"
 
 /// A plate small enough for tests: 60 x 10 cells, 24 components, a few loads.
@@ -58,6 +59,22 @@ inline std::vector<Component> random_layout(unsigned seed, double amount = 1) {
     for (double* thickness : {&c.c1, &c.c2, &c.c3}) *thickness += 0.003 * uniform(engine);
   }
   return all;
+}
+
+/// From tip to tip.
+inline Component bar(const Vec2& from, const Vec2& to, double half_thickness) {
+  const Vec2 along = to - from;
+  return {0.5 * (from + to), 0.5 * along.norm(), std::atan2(along.y(), along.x()),
+          half_thickness,    half_thickness,     half_thickness};
+}
+
+/// Held at its left edge, a unit force upwards at the middle of the right one.
+inline FixedLoads tip_load() {
+  std::vector<fem::HeldUnknown> held;
+  for (int j = 0; j <= kGrid.ny; ++j)
+    for (int c = 0; c < 2; ++c) held.push_back({kGrid.node(0, j), c});
+  const std::vector<LoadCase> loads = {{"tip", 1, {{kGrid.node(60, 5), Vec2(0, 1)}}}};
+  return {kGrid, kSection, {}, held, loads, false};
 }
 
 /// The small plate with a solid strip.

@@ -4,27 +4,12 @@
 
 #include <gtest/gtest.h>
 
-#include "optim/mmc/fixed_loads.h"
 #include "tests/optim/mmc_small.h"
 
 namespace flexmorph::mmc::test {
 namespace {
 
 constexpr Widths kWidths{0.018, 0};
-
-Component bar(const Vec2& from, const Vec2& to, double half_thickness) {
-  const Vec2 along = to - from;
-  return {0.5 * (from + to), 0.5 * along.norm(), std::atan2(along.y(), along.x()),
-          half_thickness,    half_thickness,     half_thickness};
-}
-
-FixedLoads tip_load() {
-  std::vector<fem::HeldUnknown> held;
-  for (int j = 0; j <= kGrid.ny; ++j)
-    for (int c = 0; c < 2; ++c) held.push_back({kGrid.node(0, j), c});
-  const std::vector<LoadCase> loads = {{"tip", 1, {{kGrid.node(60, 5), Vec2(0, 1)}}}};
-  return {kGrid, kSection, {}, held, loads, false};
-}
 
 BodyProblem problem_of(const std::vector<Component>& components) {
   DesignScale scale = kScale;

@@ -197,12 +197,10 @@ void check_loads(const Table& t, const Scene& scene, const BodyDesign& design) {
 }
 
 /// What the union of components is mended to.
-Widths read_widths(const Table& t, const Body& body, const Scene& scene,
-                   const BodyDesign& design) {
+Widths read_widths(const Table& t, const Body& body, const Scene& scene, const BodyDesign& design) {
   // Designs that are only analysed were mended, most of them.
   const int iterations = scene.optimizer.max_iterations;
-  const bool mend =
-      t.boolean(kMend, iterations == 0 || iterations >= mmc::kFewestMendedIterations);
+  const bool mend = t.boolean(kMend, iterations == 0 || iterations >= mmc::kFewestMendedIterations);
   const double thick = std::min(2 * design.min_thickness, 0.5 * body.width);
   Widths out;
   if (mend) out.gap = std::min(design.grid.dx(), design.grid.dy());
