@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 namespace flexmorph::mmc {
@@ -67,32 +68,52 @@ bool on_own_side(const Component& c, const Symmetry& symmetry) {
          !(symmetry.y && c.center.y() > *symmetry.y + small);
 }
 
+/// Components by their place, so that many are compared with a few each.
+class ByPlace {
+ public:
+  void add(const Component& c) { all_.emplace(key(c), c); }
+  bool has(const Component& wanted) const {
+    const double reach = 2 * kSame * wanted.half_length;
+    const auto end = all_.upper_bound(key(wanted) + reach);
+    return std::any_of(all_.lower_bound(key(wanted) - reach), end,
+                       [&](const auto& known) { return same(wanted, known.second); });
+  }
+
+ private:
+  /// Along a line that rows and columns of layouts are no normals of.
+  static double key(const Component& c) {
+    constexpr double kSlope = 0.6180339887;
+    return c.center.x() + kSlope * c.center.y();
+  }
+
+  std::multimap<double, Component> all_;
+};
+
 }  // namespace
 
 std::vector<Component> one_side(const std::vector<Component>& all, const Symmetry& symmetry) {
   if (!symmetry.any()) return all;
   const std::vector<Image> images = images_of(symmetry);
   std::vector<Component> out;
+  ByPlace known;
   for (const Component& c : all) {
     const auto image = std::find_if(images.begin(), images.end(),
                                     [&](const Image& i) { return on_own_side(i.of(c), symmetry); });
     const Component own = image != images.end() ? image->of(c) : c;
-    const bool known = std::any_of(out.begin(), out.end(), [&](const Component& other) {
-      return std::any_of(images.begin(), images.end(),
-                         [&](const Image& i) { return same(i.of(other), own); });
-    });
-    if (!known) out.push_back(own);
+    if (known.has(own)) continue;
+    out.push_back(own);
+    for (const Image& i : images) known.add(i.of(own));
   }
   return out;
 }
 
 bool is_symmetric(const std::vector<Component>& all, const Symmetry& symmetry) {
   const std::vector<Image> images = images_of(symmetry);
+  ByPlace known;
+  for (const Component& c : all) known.add(c);
   return std::all_of(images.begin() + 1, images.end(), [&](const Image& image) {
-    return std::all_of(all.begin(), all.end(), [&](const Component& c) {
-      return std::any_of(all.begin(), all.end(),
-                         [&](const Component& other) { return same(image.of(c), other); });
-    });
+    return std::all_of(all.begin(), all.end(),
+                       [&](const Component& c) { return known.has(image.of(c)); });
   });
 }
 

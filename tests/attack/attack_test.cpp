@@ -157,6 +157,7 @@ TEST(Found, InputsAreReadOrRefusedInASecond) {
       {"short_beam", "domain.size=[1e3, 1.0]"},
       {"short_beam", "domain.size=[2.0, 1e3]"},
       {"bridge", "domain.size=[1e3, 1.0]"},
+      {"short_beam", "design.components=[6, 1000]"},
       {"heated_boom_held", "hub.angular_velocity=100000"},
       {"motion_platform",
        "drive.1.formula='0.5*sin(pi - (-100000*pi*(t - 1/2)^3 + 3/2*pi*t - pi/4)) + 0.4'"}};
