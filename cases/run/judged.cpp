@@ -12,7 +12,7 @@
 namespace flexmorph::cases {
 namespace {
 
-/// Displacement and stress of the first load that is carried.
+/// Displacement and stress of the worst load.
 void write_fields(const std::string& path, const judge::Judged& j) {
   const auto n = j.mesh.points.size();
   std::vector<double> mises(n);
@@ -107,7 +107,7 @@ JudgedBody judge_body(const Scene& scene, const mmc::BodyProblem& problem,
   try {
     const std::vector<Region> regions = mmc::exported_regions(problem);
     find_narrow(problem, regions, out);
-    if (loads != nullptr) out.why_not = mmc::cannot_judge(problem, *loads);
+    if (loads != nullptr) out.why_not = mmc::cannot_judge(problem);
     if (!out.why_not.empty()) return out;
     const judge::Loads by_position =
         loads != nullptr ? mmc::loads_by_position(problem, *loads) : judged_loads(scene, problem);
@@ -138,6 +138,7 @@ std::string judged_words(const JudgedBody& judged, double sharp_compliance) {
       io::to_text(std::abs(apart), 2) + (apart < 0 ? " % less" : " % more") + "; largest stress " +
       io::to_text(j.largest_stress, 4) + " Pa at (" + io::to_text(j.largest_at.x(), 4) + ", " +
       io::to_text(j.largest_at.y(), 4) + ") m";
+  if (j.carried.empty()) out += "; springs hold its far edge, so there is no design.inp";
   if (j.left_out > 0)
     out += "; " + std::to_string(j.left_out) + " of " + std::to_string(j.pieces) +
            " pieces are held by nothing";

@@ -25,9 +25,10 @@ struct Lists {
   }
 };
 
-/// Which nodes share a triangle with each of the nodes, itself included, ascending.
+/// Which nodes share a triangle or a spring with each of the nodes, itself included, ascending.
 Lists neighbours(const PartMesh& mesh, const std::vector<char>& used,
-                 const std::vector<signed char>& left_out) {
+                 const TrianglePlateSupports& supports) {
+  const std::vector<signed char>& left_out = supports.left_out;
   const std::size_t n = mesh.points.size();
   std::vector<std::vector<int>> around(n);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -36,6 +37,10 @@ Lists neighbours(const PartMesh& mesh, const std::vector<char>& used,
       for (const int b : mesh.triangles[t])
         if (used[static_cast<std::size_t>(a)] && used[static_cast<std::size_t>(b)])
           around[static_cast<std::size_t>(a)].push_back(b);
+  }
+  for (const NodeSpring& s : supports.springs) {
+    around[static_cast<std::size_t>(s.a)].push_back(s.b);
+    around[static_cast<std::size_t>(s.b)].push_back(s.a);
   }
   Lists out{{0}, {}};
   for (std::vector<int>& each : around) {
@@ -93,6 +98,8 @@ struct TrianglePlate::Impl {
   void number();
   void find_pattern(const Lists& graph, const std::vector<int>& order);
   void assemble();
+  /// Of the entry of K that belongs to two unknowns; nothing of those above the diagonal, or held.
+  void add(std::span<double> values, int row, int column, double value) const;
 };
 
 void TrianglePlate::Impl::find_clamps() {
@@ -115,7 +122,7 @@ void TrianglePlate::Impl::number() {
   for (const HeldUnknown& h : supports.held)
     held[static_cast<std::size_t>(2 * h.node + h.component)] = 1;
 
-  const Lists graph = neighbours(mesh, used, supports.left_out);
+  const Lists graph = neighbours(mesh, used, supports);
   std::vector<int> groups = first_clamps;
   for (std::size_t k = 0; k < n; ++k) groups[k] = std::min(groups[k], n_clamps());
   // Numbers of groups that have no nodes would cost CAMD's checks nothing, but need no gaps.
@@ -162,16 +169,24 @@ void TrianglePlate::Impl::assemble() {
     for (std::size_t a = 0; a < 12; ++a)
       unknowns[a] = rows[2 * static_cast<std::size_t>(mesh.triangles[t][a / 2]) + a % 2];
     for (std::size_t a = 0; a < 12; ++a)
-      for (std::size_t b = 0; b < 12; ++b) {
-        const int row = unknowns[a], column = unknowns[b];
-        if (column < 0 || row < column) continue;
-        const int *begin = entries.data() + starts[static_cast<std::size_t>(column)],
-                  *end = entries.data() + starts[static_cast<std::size_t>(column) + 1];
-        const auto at =
-            static_cast<std::size_t>(std::lower_bound(begin, end, row) - entries.data());
-        values[at] += k(static_cast<int>(a), static_cast<int>(b));
-      }
+      for (std::size_t b = 0; b < 12; ++b)
+        add(values, unknowns[a], unknowns[b], k(static_cast<int>(a), static_cast<int>(b)));
   }
+  for (const NodeSpring& s : supports.springs) {
+    const int a = rows[2 * static_cast<std::size_t>(s.a) + static_cast<std::size_t>(s.component)],
+              b = rows[2 * static_cast<std::size_t>(s.b) + static_cast<std::size_t>(s.component)];
+    add(values, a, a, s.stiffness);
+    add(values, b, b, s.stiffness);
+    add(values, std::max(a, b), std::min(a, b), -s.stiffness);
+  }
+}
+
+void TrianglePlate::Impl::add(std::span<double> values, int row, int column, double value) const {
+  if (column < 0 || row < column) return;
+  const int *begin = entries.data() + starts[static_cast<std::size_t>(column)],
+            *end = entries.data() + starts[static_cast<std::size_t>(column) + 1];
+  const auto at = static_cast<std::size_t>(std::lower_bound(begin, end, row) - entries.data());
+  values[at] += value;
 }
 
 TrianglePlate::TrianglePlate(const PartMesh& mesh, const PlaneSection& section,

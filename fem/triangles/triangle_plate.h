@@ -10,7 +10,13 @@
 
 namespace flexmorph::fem {
 
-/// Which displacements of a mesh are unknown, and when.
+/// Between two nodes that take part: 1/2 k (w_b - w_a)² of one component.
+struct NodeSpring {
+  int a = 0, b = 0, component = 0;
+  double stiffness = 0;  ///< k [N/m]
+};
+
+/// Which displacements of a mesh are unknown, and when; what is between them besides triangles.
 struct TrianglePlateSupports {
   std::vector<HeldUnknown> held = {};  ///< always
   /// Lines x = const, from the free end (largest x) to the root: of a load with clamp k nodes on
@@ -19,6 +25,7 @@ struct TrianglePlateSupports {
   double small = 0;  ///< nodes that near to a clamp are on it [m]
   /// Triangles that do not take part (1); empty: all do.
   std::vector<signed char> left_out = {};
+  std::vector<NodeSpring> springs = {};  ///< between nodes in front of all clamps
 };
 
 /// Linear static analysis of a plane-stress part of six-node triangles, for many loads at once.

@@ -146,7 +146,9 @@ LargestStress Judge::largest_of(const LoadedMesh& mesh, int row, const MatrixXd&
   const std::optional<double>& clamp = loads_.loads[static_cast<std::size_t>(load)].clamp;
   LargestStress out;
   for (std::size_t k = 0; k < m.points.size(); ++k) {
-    if (!counts[k] || (clamp && m.points[k].x() < *clamp + settings_.reach)) continue;
+    const double x = m.points[k].x();
+    if (!counts[k] || (clamp && x < *clamp + settings_.reach)) continue;
+    if (loads_.held_edge && x > loads_.held_edge->x - settings_.reach) continue;
     const double value = fem::von_mises(stress.col(static_cast<Eigen::Index>(k)));
     if (value > out.value) out = {value, m.points[k]};
   }
@@ -168,6 +170,7 @@ Look Judge::look(LoadedMesh& mesh) const {
   const MatrixXd given = mesh.prescribed();
   const fem::RecoveredStress recovery(mesh.plate());
   const std::vector<char> counts = away_from_places(mesh);
+  const VectorXd edge = mesh.edge_energies(u);
   const Eigen::Index n = u.rows();
   Look out;
   out.compliances = out.errors = VectorXd::Zero(n);
@@ -184,15 +187,16 @@ Look Judge::look(LoadedMesh& mesh) const {
     look_at_stress(mesh, found, first, counts, out);
     for (Eigen::Index l = 0; l < count; ++l) {
       const int load = mesh.order()[static_cast<std::size_t>(first + l)];
-      out.compliances[first + l] = found.energies[l];
+      const double compliance = found.energies[l] + edge[first + l];
+      out.compliances[first + l] = compliance;
       out.errors[first + l] = found.errors[l];
       const double weight = loads_.worst ? 1 : loads_.loads[static_cast<std::size_t>(load)].weight;
       out.by_triangle += weight * found.by_triangle.row(l).transpose();
       if (!loads_.worst) {
-        out.compliance += weight * found.energies[l];
+        out.compliance += weight * compliance;
         out.error += weight * found.errors[l];
       }
-      if (first + l > 0 && !(found.energies[l] > out.compliances[out.worst_row])) continue;
+      if (first + l > 0 && !(compliance > out.compliances[out.worst_row])) continue;
       out.worst_row = static_cast<int>(first + l);
       out.stress = found.averaged.middleRows(3 * l, 3);
     }
@@ -231,7 +235,7 @@ void Judge::keep(const LoadedMesh& mesh, Look& now, double error, int meshes) {
   out_.carried.clear();
   const bool clamped = std::any_of(loads_.loads.begin(), loads_.loads.end(),
                                    [](const Load& l) { return l.clamp.has_value(); });
-  for (std::size_t row = 0; row < n; ++row) {
+  for (std::size_t row = 0; row < n && !loads_.held_edge; ++row) {
     if (clamped && static_cast<int>(row) != now.worst_row) continue;
     CarriedLoad& each = out_.carried.emplace_back();
     each.load = mesh.order()[row];

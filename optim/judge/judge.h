@@ -33,7 +33,7 @@ struct CarriedLoad {
   std::vector<fem::NodalForce> forces;  ///< consistent [N]
 };
 
-/// The largest von Mises stress of one load, away from places and its clamp.
+/// The largest von Mises stress of one load, away from places, its clamp and a held edge.
 struct LargestStress {
   double value = 0;  ///< [Pa]
   Vec2 at{0, 0};     ///< [m]
@@ -54,11 +54,11 @@ struct Judged {
   int meshes = 0;                ///< that were solved
   PartMesh mesh;                 ///< the last one
   std::vector<signed char> triangles_left_out;
-  MatrixXd stress;  ///< averaged at nodes, of the first load of `carried` (3 x n_nodes): σ₁₁, σ₂₂,
-                    ///< σ₁₂ [Pa]
+  MatrixXd stress;  ///< averaged at nodes, of the worst load (3 x n_nodes): σ₁₁, σ₂₂, σ₁₂ [Pa]
   VectorXd displacement;  ///< of nodes under that load (2 n_nodes) [m]; of what is left out: 0
   LargestStress carried_stress;      ///< of that load
-  std::vector<CarriedLoad> carried;  ///< all loads; where they have clamps the worst one
+  /// All loads; where they have clamps the worst one; none where springs hold an edge.
+  std::vector<CarriedLoad> carried;
   double seconds = 0;                ///< CPU
 };
 

@@ -118,9 +118,11 @@ LoadedMesh::LoadedMesh(const PartMesh& mesh, const fem::PlaneSection& section, c
   sort_loads();
   find_places();
   leave_out_loose_pieces();
+  find_edge();
   if (loose_load_ < 0)
     plate_ = std::make_unique<fem::TrianglePlate>(
-        mesh_, section_, fem::TrianglePlateSupports{held_, clamp_lines_, small_, left_out_});
+        mesh_, section_,
+        fem::TrianglePlateSupports{held_, clamp_lines_, small_, left_out_, springs_});
 }
 
 /// Clamps from the largest x on.
@@ -244,6 +246,56 @@ void LoadedMesh::leave_out_loose_pieces() {
         loose_load_ = static_cast<int>(l);
 }
 
+/// Springs k Δy between neighbours on the edge. Straight in x, however it is turned: of elongations
+/// Δx - s Δy, s the slope from the first node to the last one, the part with s is a spring of
+/// negative stiffness between these two.
+void LoadedMesh::find_edge() {
+  if (!loads_.held_edge) return;
+  std::vector<char> carries(mesh_.points.size(), 0);
+  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
+    for (const int node : mesh_.triangles[t])
+      if (left_out_[t] == 0) carries[static_cast<std::size_t>(node)] = 1;
+  for (std::size_t k = 0; k < mesh_.points.size(); ++k)
+    if (carries[k] && std::abs(mesh_.points[k].x() - loads_.held_edge->x) <= small_)
+      edge_.push_back(static_cast<int>(k));
+  std::sort(edge_.begin(), edge_.end(),
+            [&](int a, int b) { return mesh_.point(a).y() < mesh_.point(b).y(); });
+  if (edge_.size() < 2) return edge_.clear();
+  const double stiffness = loads_.held_edge->stiffness;
+  const auto height = [&](int a, int b) { return mesh_.point(b).y() - mesh_.point(a).y(); };
+  for (std::size_t k = 1; k < edge_.size(); ++k)
+    for (const int c : {0, 1})
+      springs_.push_back({edge_[k - 1], edge_[k], c, stiffness / height(edge_[k - 1], edge_[k])});
+  springs_.push_back(
+      {edge_.front(), edge_.back(), 0, -stiffness / height(edge_.front(), edge_.back())});
+}
+
+double LoadedMesh::held_end_stretch(std::size_t row) const {
+  return edge_.empty() ? 0 : loads_.loads[static_cast<std::size_t>(order_[row])].held_end_stretch;
+}
+
+/// Elongations across are Δw + g_e Δy.
+VectorXd LoadedMesh::edge_energies(const MatrixXd& u) const {
+  VectorXd out = VectorXd::Zero(u.rows());
+  const auto difference = [&](int a, int b, int c) -> VectorXd {
+    const int at_a = plate_->row(a, c), at_b = plate_->row(b, c);
+    VectorXd d = VectorXd::Zero(u.rows());
+    if (at_b >= 0) d += u.col(at_b);
+    if (at_a >= 0) d -= u.col(at_a);
+    return d;
+  };
+  for (const fem::NodeSpring& s : springs_)
+    out += s.stiffness * difference(s.a, s.b, s.component).cwiseAbs2();
+  if (edge_.empty()) return out;
+  const VectorXd across = difference(edge_.front(), edge_.back(), 1);
+  const double height = mesh_.point(edge_.back()).y() - mesh_.point(edge_.front()).y();
+  for (Eigen::Index l = 0; l < u.rows(); ++l) {
+    const double g = held_end_stretch(static_cast<std::size_t>(l));
+    out[l] += loads_.held_edge->stiffness * g * (2 * across[l] + g * height);
+  }
+  return out;
+}
+
 /// -ρ a of all material that takes part, for these rows: (n x 2 n_nodes).
 void LoadedMesh::add_inertia(std::span<const int> rows, MatrixXd& at_nodes) const {
   const Grid& g = loads_.grid;
@@ -332,6 +384,13 @@ MatrixXd LoadedMesh::forces() const {
         for (int c = 0; c < 2; ++c)
           if (const int row = plate_->row(node, c); row >= 0)
             out(static_cast<Eigen::Index>(l), row) += share * f.force[c];
+  for (std::size_t l = 0; l < n; ++l) {
+    const double g = held_end_stretch(l);
+    if (g == 0) continue;
+    const double force = loads_.held_edge->stiffness * g;
+    out(static_cast<Eigen::Index>(l), plate_->row(edge_.front(), 1)) += force;
+    out(static_cast<Eigen::Index>(l), plate_->row(edge_.back(), 1)) -= force;
+  }
   if (given.size() == 0) return out;
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
     if (left_out_[t] != 0) continue;

@@ -42,11 +42,16 @@ class LoadedMesh {
   /// Forces at all nodes of a row (2 n_nodes), those at held ones included.
   VectorXd nodal_forces(int row) const;
   std::vector<fem::HeldUnknown> held(int row) const;
+  /// Twice the energy of what keeps Loads::held_edge [J].
+  /// @param u  (n_loads x n_unknowns)   @return (n_loads); zero without an edge
+  VectorXd edge_energies(const MatrixXd& u) const;
 
  private:
   void sort_loads();
   void find_places();
   void leave_out_loose_pieces();
+  void find_edge();
+  double held_end_stretch(std::size_t row) const;
   bool is_held(int piece) const;
   void add_inertia(std::span<const int> rows, MatrixXd& at_nodes) const;
 
@@ -59,6 +64,8 @@ class LoadedMesh {
   std::vector<double> clamp_lines_;
   std::vector<PlaceNodes> at_places_;
   std::vector<fem::HeldUnknown> held_;
+  std::vector<int> edge_;  // nodes on the held edge that take part, upwards
+  std::vector<fem::NodeSpring> springs_;
   std::vector<signed char> left_out_;
   int pieces_left_out_ = 0, loose_load_ = -1;
   std::unique_ptr<fem::TrianglePlate> plate_;

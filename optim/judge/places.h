@@ -48,13 +48,23 @@ struct Load {
   const VectorXd* acceleration = nullptr;
   /// The clamp prescribes u = -g (0, y), see fem::EslSet::held_stretch; the compliance is uᵀ K u.
   double held_stretch = 0;
+  /// The same across Loads::held_edge, see fem::EslSet::held_end_stretch.
+  double held_end_stretch = 0;
+};
+
+/// What keeps the material on a line x = const straight and as wide as it is, wherever it goes:
+/// springs between neighbours in y, whatever is between them, as of HeldExpansion.
+struct HeldEdge {
+  double x = 0;          ///< [m]
+  double stiffness = 0;  ///< times the distance of two neighbours: k Δy [N]
 };
 
 struct Loads {
   std::vector<Place> places;
   std::vector<Support> supports;
   std::vector<Load> loads;
-  Grid grid;           ///< of accelerations
+  std::optional<HeldEdge> held_edge = {};  ///< in front of all clamps; of all loads
+  Grid grid;                               ///< of accelerations
   bool worst = false;  ///< What counts is the largest compliance, not the weighted sum.
 
   int add(Place place);  ///< @return its number

@@ -3,19 +3,18 @@
 #include <algorithm>
 #include <map>
 
+#include "optim/mmc/held_expansion.h"
+
 namespace flexmorph::mmc {
 
 double point_reach(const BodyProblem& problem) {
   return std::max(problem.grid.dx(), problem.grid.dy());
 }
 
-std::string cannot_judge(const BodyProblem& problem, const fem::EslSets& loads) {
+std::string cannot_judge(const BodyProblem& problem) {
   if (problem.compliance.loads != LoadDefinition::inertia)
     return "its loads are forces at the corners of cells: only esl.definition = \"inertia\" is "
            "carried over to an outline";
-  const bool held_end = std::any_of(loads.sets.begin(), loads.sets.end(),
-                                    [](const fem::EslSet& s) { return s.held_end_stretch != 0; });
-  if (held_end) return "its far edge is held while the body is hot";
   return "";
 }
 
@@ -25,6 +24,8 @@ judge::Loads loads_by_position(const BodyProblem& problem, const fem::EslSets& l
   judge::Loads out;
   out.grid = g;
   out.worst = compliance_row(problem.goal).per_load;
+  if (const double edge = edge_stiffness(loads, problem.section); edge > 0)
+    out.held_edge = {g.x0 + g.width, edge * g.dy()};
   std::map<int, int> places;  // of nodes
   for (std::size_t l = 0; l < loads.sets.size(); ++l) {
     const fem::EslSet& set = loads.sets[l];
@@ -34,6 +35,7 @@ judge::Loads loads_by_position(const BodyProblem& problem, const fem::EslSets& l
     load.clamp = g.node_position(set.root_column, 0).x();
     load.acceleration = &set.acceleration;
     load.held_stretch = set.held_stretch;
+    load.held_end_stretch = set.held_end_stretch;
     for (const fem::NodalForce& f : set.forces) {
       const int i = f.node / (g.ny + 1), j = f.node % (g.ny + 1);
       if (i <= set.root_column) continue;  // it goes straight into the hub

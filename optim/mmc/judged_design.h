@@ -11,9 +11,8 @@ namespace flexmorph::mmc {
 double point_reach(const BodyProblem& problem);
 
 /// Why the loads of a motion cannot be carried over to the outline of a design; empty: they can.
-/// Loads of the definitions `frozen` and `stiffness` are forces at the corners of cells, and
-/// springs at a far edge that is held hot are those of the cells, too.
-std::string cannot_judge(const BodyProblem& problem, const fem::EslSets& loads);
+/// Loads of the definitions `frozen` and `stiffness` are forces at the corners of cells.
+std::string cannot_judge(const BodyProblem& problem);
 
 /// Equivalent static loads by position: the line of the root as the clamp of each load, the
 /// acceleration field on all material in front of it, concentrated forces as points.

@@ -236,6 +236,35 @@ TEST(Judge, PiecesThatNothingHoldsAreLeftOut) {
   EXPECT_NEAR(found.area, kLength + 1, 1e-12);
 }
 
+// What is hot and held at the root of a part, with its far edge cold and held, is the mirror image
+// of what is hot and held at its far edge: a rigid motion apart. One is prescribed, the other one
+// is done by springs, over the gap between two legs as well.
+TEST(Judge, HeldEdgeIsTheMirrorOfAHotClamp) {
+  constexpr double kHot = 2e-3, kEnd = 2;
+  const std::vector<Vec2> outer = {{0, -0.5}, {1, -0.4}, {kEnd, -0.6}, {kEnd, 0.3}, {1, 0.5},
+                                   {0, 0.4},  {0, 0.2},  {0.7, 0.1},   {0.7, -0.2}, {0, -0.3}};
+  std::vector<Vec2> mirrored(outer.rbegin(), outer.rend());
+  for (Vec2& p : mirrored) p.x() = kEnd - p.x();
+  const fem::PlaneSection section{1, 7, 0.3, 0};
+  const auto compliance = [&](const std::vector<Vec2>& part, double root, double end) {
+    Loads loads;
+    Load load;
+    load.clamp = 0;
+    load.held_stretch = root;
+    load.held_end_stretch = end;
+    loads.loads.push_back(load);
+    loads.held_edge = {kEnd, 1e4 * section.youngs_modulus * section.thickness};
+    const Judged found =
+        judge(std::vector<Region>{{part, {}}}, section, loads,
+              {.tolerance = 5e-4, .size = 0.1, .reach = 0.05, .most_triangles = 40000});
+    EXPECT_TRUE(found.carried.empty());
+    return found.compliance;
+  };
+  const double hot_root = compliance(outer, kHot, 0), hot_end = compliance(mirrored, 0, kHot);
+  EXPECT_GT(hot_root, 0);
+  EXPECT_NEAR(hot_end, hot_root, 2e-3 * hot_root);
+}
+
 // A piece that could turn about its only hold is not held.
 TEST(Judge, LoadsOnLoosePiecesMakeTheComplianceInfinite) {
   const std::vector<Region> parts = {{rectangle(0, 0, 3, 1), {}}, {rectangle(4, 0, 8, 1), {}}};

@@ -10,6 +10,7 @@
 
 #include "optim/gradient_check.h"
 #include "optim/mmc/held_expansion.h"
+#include "optim/mmc/judged_design.h"
 #include "tests/optim/mmc_hot.h"
 #include "tests/support/errors.h"
 
@@ -127,6 +128,41 @@ TEST(HeldEnd, EnergiesAreThoseOfARigidEdge) {
       for (const bool compress : {false, true})
         expect_rigid(loads, random_factors(loads.grid, smallest, 1), m, compress);
   }
+}
+
+/// Loads that are smooth, of a grid `fine` times as fine as 60 x 20.
+fem::EslSets smooth_loads(int fine) {
+  fem::EslSets loads = few_loads(60 * fine, 20 * fine);
+  const Grid& g = loads.grid;
+  for (fem::EslSet& set : loads.sets) {
+    set.root_column *= fine;
+    set.forces.clear();
+    for (int node = 0; node < g.n_nodes(); ++node)
+      set.acceleration.segment<2>(2 * node) =
+          -100 * g.node_position(node / (g.ny + 1), node % (g.ny + 1)) + Vec2(0, 5);
+  }
+  return loads;
+}
+
+// The judge's triangles hold the far edge of a full plate as its cells do. Energies of cells are
+// too large by half as much when there are twice as many: corners where what is held meets what is
+// free.
+TEST(HeldEnd, IsJudgedAsCellsSay) {
+  const fem::EslSets coarse = smooth_loads(1), fine = smooth_loads(2);
+  BodyProblem problem = body_of(Design(kGrid, layout(), kScale), {tdf_settings()});
+  const Grid& g = problem.grid = fine.grid;
+  problem.solid = {corners_of({{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}})};
+  ASSERT_EQ(cannot_judge(problem), "");
+  const judge::Judged judged =
+      judge_design(problem, exported_regions(problem), loads_by_position(problem, fine));
+  const auto cells = [](const fem::EslSets& loads) -> VectorXd {
+    const VectorXd ones = VectorXd::Ones(loads.grid.n_cells());
+    return Compliance(loads, kSection, {}, ones, ones).individual(ones, ones);
+  };
+  const double sharpened = std::pow(2, 2 * 0.758) - 1;
+  const VectorXd limit = cells(fine) - (cells(coarse) - cells(fine)) / sharpened;
+  for (Eigen::Index l = 0; l < limit.size(); ++l)
+    EXPECT_NEAR(judged.compliances[static_cast<size_t>(l)], limit[l], 0.005 * limit[l]) << l;
 }
 
 // Heat that is held is relieved where material goes; f is linear in all of k but for the springs.
