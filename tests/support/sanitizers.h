@@ -2,18 +2,35 @@
 
 namespace flexmorph::testing {
 
+#if defined(__SANITIZE_THREAD__)
+#define FLEXMORPH_SANITIZES_THREADS 1
+#elif defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define FLEXMORPH_SANITIZES_THREADS 1
+#endif
+#endif
+#if defined(__SANITIZE_ADDRESS__)
+#define FLEXMORPH_SANITIZES_ADDRESSES 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define FLEXMORPH_SANITIZES_ADDRESSES 1
+#endif
+#endif
+
+/// Is this a build with the thread sanitizer? Its shadow memory are files, which a limit on the
+/// size of files cuts short.
+#if defined(FLEXMORPH_SANITIZES_THREADS)
+constexpr bool kThreadSanitized = true;
+#else
+constexpr bool kThreadSanitized = false;
+#endif
+
 /// Is this a build with a sanitizer? It maps terabytes of shadow memory, so that no address space
 /// can be limited, and takes many times as long.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#if defined(FLEXMORPH_SANITIZES_ADDRESSES)
 constexpr bool kSanitized = true;
 #else
-constexpr bool kSanitized = false;
-#endif
-#else
-constexpr bool kSanitized = false;
+constexpr bool kSanitized = kThreadSanitized;
 #endif
 
 }  // namespace flexmorph::testing
