@@ -15,7 +15,7 @@ namespace flexmorph::io {
 namespace {
 
 std::string html_table(const std::vector<std::vector<std::string>>& rows) {
-  std::string out = "<table>\n";
+  std::string out = "<div class=\"wide\"><table>\n";
   for (size_t i = 0; i < rows.size(); ++i) {
     const std::string tag = i == 0 ? "th" : "td";
     out += "<tr>";
@@ -23,7 +23,7 @@ std::string html_table(const std::vector<std::vector<std::string>>& rows) {
       out += "<" + tag + ">" + xml_escaped(cell) + "</" + tag + ">";
     out += "</tr>\n";
   }
-  return out + "</table>\n";
+  return out + "</table></div>\n";
 }
 
 }  // namespace
@@ -105,7 +105,8 @@ void CsvWriter::write(const std::string& line) {
 
 std::string report_html(const std::string& title, std::span<const ReportSection> sections) {
   std::string out =
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>" +
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +
       xml_escaped(title) +
       "</title>\n<style>\n"
       "body { font: 15px/1.5 sans-serif; color: #222; max-width: 60em; margin: 2em auto; "
@@ -113,6 +114,7 @@ std::string report_html(const std::string& title, std::span<const ReportSection>
       "h1 { font-size: 1.5em; } h2 { font-size: 1.15em; margin-top: 2em; }\n"
       "table { border-collapse: collapse; } th, td { padding: .2em .9em .2em 0; text-align: left; "
       "border-bottom: 1px solid #ddd; font-variant-numeric: tabular-nums; }\n"
+      ".wide { overflow-x: auto; }\n"
       ".warning { border-left: .3em solid #d80; padding-left: .8em; }\n"
       "svg { max-width: 100%; height: auto; display: block; margin: 1em 0; }\n"
       "</style>\n</head>\n<body>\n<h1>" +

@@ -5,11 +5,9 @@
 #include <vtkFloatArray.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
-#include <vtkPNGWriter.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
-#include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLImageDataWriter.h>
 #include <vtkXMLPolyDataWriter.h>
@@ -20,6 +18,7 @@
 
 #include "geometry/plain_numbers.h"
 #include "io/files.h"
+#include "io/png.h"
 #include "io/tables.h"
 
 namespace flexmorph::io {
@@ -99,18 +98,6 @@ void write_cells(const std::string& path, vtkPoints* points, int type,
   add_fields(grid->GetPointData(), point_fields, static_cast<int>(points->GetNumberOfPoints()),
              path, same_place);
   write_xml<vtkXMLUnstructuredGridWriter>(path, grid.Get());
-}
-
-/// Dark blue, teal, green, yellow: rising lightness, readable without colour.
-std::array<double, 3> map_color(double x) {
-  constexpr std::array<std::array<double, 3>, 5> kStops = {
-      {{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}}};
-  const double at = x * (kStops.size() - 1);
-  const size_t i = std::min(static_cast<size_t>(at), kStops.size() - 2);
-  std::array<double, 3> color{};
-  for (size_t k = 0; k < 3; ++k)
-    color[k] = kStops[i][k] + (at - static_cast<double>(i)) * (kStops[i + 1][k] - kStops[i][k]);
-  return color;
 }
 
 }  // namespace
@@ -208,32 +195,21 @@ void write_png(const std::string& path, const Grid& grid, std::span<const double
                            std::to_string(grid.n_cells()) + " cells");
   const int n = picture.pixels_per_cell;
   const bool grey = picture.colors == Picture::Colors::grey;
-  vtkNew<vtkImageData> image;
-  image->SetDimensions(grid.nx * n, grid.ny * n, 1);
-  image->AllocateScalars(VTK_UNSIGNED_CHAR, grey ? 1 : 3);
-  auto* pixel = static_cast<unsigned char*>(image->GetScalarPointer());
-  for (int y = 0; y < grid.ny * n; ++y) {  // VTK's first row is the lowest
+  Pixels pixels{grid.nx * n, grid.ny * n, grey ? 1 : 3};
+  for (int y = grid.ny * n - 1; y >= 0; --y)
     for (int x = 0; x < grid.nx * n; ++x) {
       const double value = cell_values[grid.cell(x / n, y / n)];
       if (!std::isfinite(value)) throw Error::numerical(path + ": a value is not finite");
       const double share =
           std::clamp((value - picture.lower) / (picture.upper - picture.lower), 0.0, 1.0);
       if (grey) {
-        *pixel++ = static_cast<unsigned char>(std::lround(255 * (1 - share)));
+        pixels.values.push_back(static_cast<unsigned char>(std::lround(255 * (1 - share))));
       } else {
-        for (const double c : map_color(share))
-          *pixel++ = static_cast<unsigned char>(std::lround(c));
+        const auto color = map_color(share);
+        pixels.values.insert(pixels.values.end(), color.begin(), color.end());
       }
     }
-  }
-  vtkNew<vtkPNGWriter> writer;
-  writer->SetInputData(image);
-  writer->WriteToMemoryOn();
-  writer->Write();
-  vtkUnsignedCharArray* bytes = writer->GetResult();
-  if (!bytes) throw Error::numerical(path + ": VTK could not encode the picture");
-  write_file(path, {reinterpret_cast<const char*>(bytes->GetPointer(0)),
-                    static_cast<size_t>(bytes->GetNumberOfValues())});
+  write_file(path, png(pixels));
 }
 
 }  // namespace flexmorph::io

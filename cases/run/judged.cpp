@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "cases/build/judged_loads.h"
-#include "fem/triangles/t6.h"
+#include "cases/run/plots/stress.h"
 #include "geometry/cpu_time.h"
 #include "io/files.h"
 #include "io/mesh_exports.h"
@@ -14,10 +14,7 @@ namespace {
 
 /// Displacement and stress of the worst load.
 void write_fields(const std::string& path, const judge::Judged& j) {
-  const auto n = j.mesh.points.size();
-  std::vector<double> mises(n);
-  for (std::size_t k = 0; k < n; ++k)
-    mises[k] = fem::von_mises(j.stress.col(static_cast<Eigen::Index>(k)));
+  const std::vector<double> mises = mises_of(j);
   std::vector<double> piece(j.mesh.piece.begin(), j.mesh.piece.end());
   const auto view = [](const auto& values) {
     return std::span<const double>(values.data(), static_cast<std::size_t>(values.size()));

@@ -6,6 +6,7 @@
 #include "cases/run/plots/measured.h"
 #include "cases/run/plots/mechanism.h"
 #include "cases/run/plots/run.h"
+#include "cases/run/plots/stress.h"
 #include "cases/run/run_json.h"
 #include "cases/run/run_warnings.h"
 #include "cases/scene/design/goal.h"
@@ -24,6 +25,14 @@ std::array<std::string, 3> judged_cells(const RunReport& report, const std::stri
       return {io::to_text(j.verdict->compliance, 6), io::to_text(100 * j.verdict->error, 2) + " %",
               io::to_text(j.volume, 5)};
   return {};
+}
+
+/// Columns as rows: many figures of few bodies.
+std::vector<std::vector<std::string>> turned(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::vector<std::string>> out(rows.front().size());
+  for (size_t k = 0; k < out.size(); ++k)
+    for (const std::vector<std::string>& row : rows) out[k].push_back(row[k]);
+  return out;
 }
 
 io::ReportSection results_section(const Scene& scene, const RunReport& report) {
@@ -55,6 +64,7 @@ io::ReportSection results_section(const Scene& scene, const RunReport& report) {
            {&report.outcomes[i].further, &report.outcomes[i].sharp.further})
         out.rows[i + 1].push_back(figures->contains(name) ? io::to_text(figures->at(name), 6) : "");
   }
+  out.rows = turned(out.rows);
   return out;
 }
 
@@ -155,6 +165,8 @@ void write_report(const Scene& scene, const RunReport& report, RunFolder& folder
   };
   for (const RunFolder::DesignPictures& p : folder.design_pictures())
     sections.push_back(design_section(p, scene.output));
+  for (const JudgedBody& j : report.judged)
+    add("stress_" + j.body, "Stress of " + j.body, stress_plot(j));
   for (const RunFolder::History& h : folder.histories())
     add("convergence_" + h.body, "Convergence of " + h.body, convergence_plot(h));
   if (report.motion) {

@@ -232,6 +232,8 @@ void Judge::keep(const LoadedMesh& mesh, Look& now, double error, int meshes) {
   out_.stress = std::move(now.stress);
   out_.displacement = std::move(now.displacement);
   out_.carried_stress = now.worst_stress;
+  const int worst = mesh.order()[static_cast<std::size_t>(now.worst_row)];
+  out_.shown_load = loads_.loads[static_cast<std::size_t>(worst)].name;
   out_.carried.clear();
   const bool clamped = std::any_of(loads_.loads.begin(), loads_.loads.end(),
                                    [](const Load& l) { return l.clamp.has_value(); });
@@ -254,7 +256,6 @@ void Judge::keep(const LoadedMesh& mesh, Look& now, double error, int meshes) {
   // The stress that is kept belongs to the worst one.
   std::stable_sort(out_.carried.begin(), out_.carried.end(),
                    [&](const CarriedLoad& a, const CarriedLoad& b) {
-                     const int worst = mesh.order()[static_cast<std::size_t>(now.worst_row)];
                      return (a.load == worst) > (b.load == worst);
                    });
 }

@@ -57,6 +57,7 @@ struct Judged {
   MatrixXd stress;  ///< averaged at nodes, of the worst load (3 x n_nodes): σ₁₁, σ₂₂, σ₁₂ [Pa]
   VectorXd displacement;  ///< of nodes under that load (2 n_nodes) [m]; of what is left out: 0
   LargestStress carried_stress;      ///< of that load
+  std::string shown_load;            ///< its name
   /// All loads; where they have clamps the worst one; none where springs hold an edge.
   std::vector<CarriedLoad> carried;
   double seconds = 0;                ///< CPU
