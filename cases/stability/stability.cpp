@@ -10,6 +10,7 @@
 #include "cases/run/run.h"
 #include "cases/stability/report.h"
 #include "cases/study/study.h"
+#include "geometry/sanitizers.h"
 #include "io/files.h"
 #include "io/json.h"
 #include "io/output_folder.h"
@@ -171,7 +172,7 @@ class Check {
     }
     ChildLimits limits;
     limits.seconds = options_.timeout;
-    limits.memory = 4e9;
+    if (!kSanitized) limits.memory = 4e9;
     const auto begin = std::chrono::steady_clock::now();
     size_t done = 0;
     const auto ended = [&](size_t i, const Ending& ending) {

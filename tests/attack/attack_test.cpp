@@ -16,6 +16,7 @@
 #include "cases/build/build.h"
 #include "cases/run/run.h"
 #include "cases/scene/scene.h"
+#include "geometry/sanitizers.h"
 #include "io/exports.h"
 #include "io/formula.h"
 #include "io/smooth_table.h"
@@ -23,7 +24,6 @@
 #include "tests/attack/attacked_program.h"
 #include "tests/attack/mutations.h"
 #include "tests/io/scratch.h"
-#include "tests/support/sanitizers.h"
 
 namespace flexmorph {
 namespace {
@@ -31,7 +31,7 @@ namespace {
 using testing::Mutations;
 using testing::number_of;
 
-constexpr double kSlow = testing::kSanitized ? 50 : 1;
+constexpr double kSlow = kSanitized ? 50 : 1;
 constexpr double kLongest = 1 * kSlow;  // of processor time, for one input [s]
 // And for each element that it asks for: they are built   [s].
 constexpr double kPerElement = 200e-6 * kSlow;

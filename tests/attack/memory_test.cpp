@@ -11,9 +11,9 @@
 #include <map>
 
 #include "fem/solve/blas_room.h"
+#include "geometry/sanitizers.h"
 #include "tests/attack/attacked_program.h"
 #include "tests/io/scratch.h"
-#include "tests/support/sanitizers.h"
 
 extern "C" void* blas_memory_alloc(int purpose);  // of OpenBLAS
 extern "C" void blas_memory_free(void* buffer);
@@ -50,7 +50,7 @@ std::vector<Large> large_runs() {
 }
 
 TEST(Memory, EndsWithASentence) {
-  if (testing::kSanitized) GTEST_SKIP() << "sanitizers map terabytes";
+  if (kSanitized) GTEST_SKIP() << "sanitizers map terabytes";
   const Scratch scratch;
   const size_t n = testing::number_of("FLEXMORPH_LIMITS", 3);
   ASSERT_GT(n, 1u);

@@ -19,20 +19,21 @@
 #include <thread>
 
 #include "cases/run/run.h"
+#include "geometry/sanitizers.h"
 #include "io/files.h"
 #include "tests/attack/attacked_program.h"
 #include "tests/attack/mutations.h"
 #include "tests/io/scratch.h"
-#include "tests/support/sanitizers.h"
 
 namespace flexmorph {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kOwn = 1;  // processor time a run may take before it is asked to end [s]
+// Processor time a run may take before it is asked to end [s].
+constexpr double kOwn = kSanitized ? 20 : 1;
 // ... and that its step or iteration may take then: a second, and what a busy machine adds.
-constexpr double kMore = testing::kSanitized ? 100 : 2;
+constexpr double kMore = kSanitized ? 100 : 2;
 // For each component that is asked for: exact unions and their narrow places are a millisecond
 // each.
 constexpr double kPerComponent = 2e-3;
@@ -96,7 +97,7 @@ std::string nudged(std::string text, testing::Mutations& random) {
 [[noreturn]] void run_and_exit(const std::string& file, const std::string& folder) {
   const rlimit none{0, 0}, memory{static_cast<rlim_t>(kMemory), static_cast<rlim_t>(kMemory)};
   setrlimit(RLIMIT_CORE, &none);
-  if (!testing::kSanitized) setrlimit(RLIMIT_AS, &memory);
+  if (!kSanitized) setrlimit(RLIMIT_AS, &memory);
   if (!std::freopen("/dev/null", "w", stdout)) _exit(126);
   const std::string words = fs::path(folder).parent_path() / "words";
   if (!std::freopen(words.c_str(), "w", stderr)) _exit(126);

@@ -13,9 +13,9 @@
 #include <sstream>
 
 #include "cases/run/ready.h"
+#include "geometry/sanitizers.h"
 #include "tests/attack/attacked_program.h"
 #include "tests/io/scratch.h"
-#include "tests/support/sanitizers.h"
 
 namespace flexmorph {
 namespace {
@@ -105,7 +105,7 @@ Watched watch(const Scratch& scratch, const Words& words, const std::string& fol
   const std::string log = scratch / "calls";
   Words all = {"strace", "-f", "-y", "-s", "4096", "-o", log, "-e", kCalls};
   // Two cannot trace one process.
-  if (testing::kSanitized) all.insert(all.end(), {"-E", "ASAN_OPTIONS=detect_leaks=0"});
+  if (kSanitized) all.insert(all.end(), {"-E", "ASAN_OPTIONS=detect_leaks=0"});
   all.emplace_back(FLEXMORPH_PROGRAM);
   all.insert(all.end(), words.begin(), words.end());
   all.insert(all.end(), {"-o", folder, "--quiet"});

@@ -6,9 +6,9 @@
 #include <thread>
 
 #include "cases/study/study.h"
+#include "geometry/sanitizers.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"
-#include "tests/support/sanitizers.h"
 
 namespace flexmorph::test {
 namespace {
@@ -181,7 +181,7 @@ TEST(RunFolders, AreFinishedWhenNobodyListens) {
 
 // Files of 20 kB at most, as on a disk that fills up: the table ends with a whole row.
 TEST(RunFolders, OnAFullDiskHoldWholeRows) {
-  if (testing::kThreadSanitized) GTEST_SKIP() << "the sanitizer has files of its own";
+  if (kThreadSanitized) GTEST_SKIP() << "the sanitizer has files of its own";
   const Scratch scratch;
   const std::string folder = scratch / "out", path = scratch.write("case.toml", pendulum("1e-3"));
   const std::string err = scratch / "err";

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace flexmorph::testing {
+namespace flexmorph {
 
 #if defined(__SANITIZE_THREAD__)
 #define FLEXMORPH_SANITIZES_THREADS 1
@@ -33,4 +33,4 @@ constexpr bool kSanitized = true;
 constexpr bool kSanitized = kThreadSanitized;
 #endif
 
-}  // namespace flexmorph::testing
+}  // namespace flexmorph
