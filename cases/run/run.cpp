@@ -275,7 +275,8 @@ std::optional<int> finished_with(const std::string& directory, const RunOptions&
   const std::string status = run.value("status", "");
   if (!status.starts_with("done")) return {};
   bool missed = status != "done";  // of no use
-  for (const auto& [name, expected] : run.value("expect", nlohmann::json::object()).items())
+  const nlohmann::json expect = run.value("expect", nlohmann::json::object());
+  for (const auto& [name, expected] : expect.items())
     missed = missed || (!is_another_case(options.overrides) && !expected.value("holds", true));
   return missed ? kMissed : 0;
 }
