@@ -7,9 +7,11 @@
 #include <csignal>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <thread>
 
 #include "tests/attack/attacked_program.h"
+#include "tests/attack/children.h"
 #include "tests/attack/mutations.h"
 #include "tests/io/scratch.h"
 
@@ -189,13 +191,15 @@ TEST(Disk, FoldersOfTheLivingAreTheirs) {
     if (study) first.words.back() = "time.step=2e-6,3e-6";
     if (!study) first = kinds(pendulum).front();
     const std::string folder = scratch / ("run of " + std::string(kind.name));
-    Attacked process(command(first, folder), scratch / "");
-    wait_for(folder + (study ? "/step=2e-6/motion.csv" : "/motion.csv"), 500, process);
-    kill(process.pid(), SIGSTOP);  // it lives however fast the machine is
+    std::optional<Attacked> process(std::in_place, command(first, folder), scratch / "");
+    wait_for(folder + (study ? "/step=2e-6/motion.csv" : "/motion.csv"), 500, *process);
+    kill(process->pid(), SIGSTOP);  // it lives however fast the machine is
     const End end = Attacked(command(kind, folder), scratch / "second").end();
     EXPECT_EQ(refused(end, kind.name), 2);
     EXPECT_TRUE(contains(end.words, "is filling it")) << end.words;
-    EXPECT_TRUE(process.lives());
+    EXPECT_TRUE(process->lives());
+    process.reset();
+    testing::wait_for_children(folder);  // before their files are removed
   }
 }
 

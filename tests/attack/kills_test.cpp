@@ -14,7 +14,7 @@
 #include <random>
 #include <thread>
 
-#include "io/output_folder.h"
+#include "tests/attack/children.h"
 #include "tests/cases/resumed.h"
 
 namespace flexmorph::test {
@@ -78,16 +78,6 @@ struct Victim {
   }
 };
 
-/// Children of a killed study end with it, a moment later.
-void wait_for_children(const std::string& folder) {
-  for (bool lives = true; lives;) {
-    lives = false;
-    for (const auto& entry : fs::directory_iterator(folder))
-      lives = lives || (entry.is_directory() && io::is_being_filled(entry.path().string()));
-    if (lives) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-}
-
 /// @returns kills
 int kill_and_resume(const Victim& v, int kills, std::mt19937& engine) {
   const Scratch scratch;
@@ -108,7 +98,7 @@ int kill_and_resume(const Victim& v, int kills, std::mt19937& engine) {
       const Ended ended = end_of(scratch, run);
       killed = ended.code == -1;
       n += killed;
-      if (killed && v.is_study() && fs::exists(folder)) wait_for_children(folder);
+      if (killed && v.is_study() && fs::exists(folder)) testing::wait_for_children(folder);
       expect_readable(folder);
       if (!killed) {
         EXPECT_EQ(ended.code, code) << v.name << " " << ended.err;
