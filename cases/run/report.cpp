@@ -166,7 +166,7 @@ void write_report(const Scene& scene, const RunReport& report, RunFolder& folder
   for (const RunFolder::DesignPictures& p : folder.design_pictures())
     sections.push_back(design_section(p, scene.output));
   for (const JudgedBody& j : report.judged)
-    add("stress_" + j.body, "Stress of " + j.body, stress_plot(j));
+    if (scene.output.plots) add("stress_" + j.body, "Stress of " + j.body, stress_plot(j));
   for (const RunFolder::History& h : folder.histories())
     add("convergence_" + h.body, "Convergence of " + h.body, convergence_plot(h));
   if (report.motion) {
