@@ -62,7 +62,9 @@ CLI::App* add_sweep(CLI::App& app, SweepOptions& options) {
   CLI::App* command =
       app.add_subcommand("sweep", "runs a case with every combination of values and collects");
   add_study(*command, options.study);
-  command->add_option("--vary", options.vary, "KEY=V1,V2,...; several make combinations")
+  command
+      ->add_option("--vary", options.vary,
+                   "KEY=V1,V2,... (case=A,B: whole cases); several make combinations")
       ->take_all()
       ->allow_extra_args(false);
   command->add_option("--index", options.index, "only this variant, from 1 (job arrays)")

@@ -24,6 +24,10 @@ std::vector<std::string> overrides_of(const StudyOptions& options, const Variant
   return all;
 }
 
+const std::string& case_name_of(const StudyOptions& options, const Variant& variant) {
+  return variant.case_name.empty() ? options.case_name : variant.case_name;
+}
+
 bool finished(const StudyOptions& options, const Variant& variant, const VariantResult& result) {
   return result.done() && keeps_case(folder_of(options, variant), case_of(options, variant));
 }
@@ -33,7 +37,7 @@ Child child_of(const StudyOptions& options, const Variant& variant) {
   const std::string folder = folder_of(options, variant);
   Child out;
   out.log = folder + ".log";
-  out.words = {"run",       options.case_name,           "-o", folder, "--quiet",
+  out.words = {"run",       case_name_of(options, variant), "-o", folder, "--quiet",
                "--threads", io::to_text(options.threads)};
   // What was killed goes on; what was changed begins anew, beside it.
   if (keeps_case(folder, case_of(options, variant))) out.words.emplace_back("--resume");
@@ -91,7 +95,7 @@ std::string last_words(const std::string& words) {
 }
 
 io::CaseFile case_of(const StudyOptions& options, const Variant& variant) {
-  return io::CaseFile(find_case(options.case_name), overrides_of(options, variant));
+  return io::CaseFile(find_case(case_name_of(options, variant)), overrides_of(options, variant));
 }
 
 void check_variants(const StudyOptions& options, std::span<const Variant> variants) {

@@ -26,6 +26,7 @@ struct StudyOptions {
 struct Variant {
   std::string name;                    ///< of its folder
   std::vector<std::string> overrides;  ///< of its own, after those of the study
+  std::string case_name = {};          ///< empty: that of the study
 };
 
 /// One designed body of a run: results of run.json and columns of history.csv.

@@ -9,18 +9,15 @@
 
 #include "cases/run/run.h"
 #include "cases/scene/scene.h"
-#include "cases/study/compare_report.h"
 #include "cases/study/sweep_motion.h"
+#include "cases/study/sweep_plan.h"
 #include "io/plots.h"
-#include "io/sheet.h"
 #include "io/tables.h"
 
 namespace flexmorph::cases {
 namespace {
 
 constexpr size_t kMostVariants = 10'000;
-
-std::string last_part(const std::string& key) { return key.substr(key.rfind('.') + 1); }
 
 std::string trimmed(const std::string& text) {
   const size_t first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
@@ -40,210 +37,18 @@ std::string plain(const std::string& value) {
   return out;
 }
 
-/// A sweep as it was planned.
-struct Sweep {
-  std::string case_name;
-  std::vector<Varied> varied;
-  std::vector<Variant> variants;
-  std::vector<mmc::Goal> goals;  // of every designed body of every variant: they may be varied
-  Motions reference;             // of scenes without a design
-
-  size_t n_bodies() const { return goals.size() / variants.size(); }
-  std::string value(size_t variant, size_t key) const {
-    return variants[variant].overrides[key].substr(varied[key].key.size() + 1);
-  }
-  double figure(size_t variant, const BodyResult& result, size_t body) const {
-    return figure_of(result, goals.at(variant * n_bodies() + body));
-  }
-};
-
-/// A row per variant and designed body.
-std::vector<std::vector<std::string>> table_of(const Sweep& sweep,
-                                               std::span<const VariantResult> runs) {
-  std::vector<std::vector<std::string>> rows(1);
-  for (const Varied& v : sweep.varied) rows[0].push_back(v.key);
-  const bool several = sweep.n_bodies() > 1;
-  if (several) rows[0].emplace_back("body");
-  for (const char* name :
-       {"status", "compliance", "volume", "sharp compliance", "sharp volume",
-        "body-fitted compliance", "figure", "sharp/uniform", "connected", "smallest feature",
-        "components", "peaks", "kkt", "iterations", "solves", "CPU s", "stopped by"})
-    rows[0].emplace_back(name);
-  for (size_t k = 0; k < runs.size(); ++k) {
-    std::vector<std::string> head;
-    for (size_t v = 0; v < sweep.varied.size(); ++v) head.push_back(sweep.value(k, v));
-    for (size_t i = 0; i < runs[k].bodies.size(); ++i) {
-      const BodyResult& b = runs[k].bodies[i];
-      std::vector<std::string>& row = rows.emplace_back(head);
-      if (several) row.push_back(b.body);
-      row.insert(row.end(),
-                 {runs[k].words(), io::to_text(b.compliance, 5), io::to_text(b.volume, 5),
-                  io::to_text(b.sharp_compliance, 5), io::to_text(b.sharp_volume, 5),
-                  io::to_text(b.body_fitted, 5), io::to_text(sweep.figure(k, b, i), 5),
-                  io::to_text(b.sharp_compliance / b.uniform_compliance, 4),
-                  b.connected ? "yes" : "no", b.min_feature ? io::to_text(*b.min_feature, 4) : "-",
-                  io::to_text(b.components), io::to_text(b.peaks), io::to_text(b.kkt, 2),
-                  io::to_text(b.iterations), io::to_text(b.solves),
-                  io::to_text(runs[k].seconds_cpu, 3), b.stop.substr(0, b.stop.find(':'))});
-    }
-    if (!runs[k].bodies.empty()) continue;
-    std::vector<std::string>& row = rows.emplace_back(head);
-    if (several) row.emplace_back("");
-    row.push_back(runs[k].words() + (runs[k].message.empty() ? "" : ": " + runs[k].message));
-    row.resize(rows[0].size());
-  }
-  return rows;
-}
-
-void write_csv(const Sweep& sweep, std::span<const VariantResult> runs, const std::string& path) {
-  std::vector<std::string> columns = {"variant"};
-  for (const Varied& v : sweep.varied) columns.push_back(v.key);
-  for (const char* name : {"status",
-                           "body",
-                           "compliance",
-                           "volume",
-                           "sharp_compliance",
-                           "sharp_volume",
-                           "body_fitted",
-                           "body_fitted_error",
-                           "body_fitted_volume",
-                           "figure",
-                           "uniform_compliance",
-                           "kkt",
-                           "connected",
-                           "min_feature",
-                           "components",
-                           "peaks",
-                           "disconnected",
-                           "iterations",
-                           "state_solves",
-                           "seconds_cpu",
-                           "converged",
-                           "stop",
-                           "message"})
-    columns.emplace_back(name);
-  io::CsvWriter csv(path, columns);
-  for (size_t k = 0; k < runs.size(); ++k) {
-    std::vector<io::Cell> head = {runs[k].name};
-    for (size_t v = 0; v < sweep.varied.size(); ++v) head.emplace_back(sweep.value(k, v));
-    head.emplace_back(runs[k].status);
-    for (size_t i = 0; i < runs[k].bodies.size(); ++i) {
-      const BodyResult& b = runs[k].bodies[i];
-      std::vector<io::Cell> row = head;
-      for (const io::Cell& cell :
-           std::initializer_list<io::Cell>{b.body,
-                                           b.compliance,
-                                           b.volume,
-                                           b.sharp_compliance,
-                                           b.sharp_volume,
-                                           b.body_fitted,
-                                           b.body_fitted_error,
-                                           b.body_fitted_volume,
-                                           sweep.figure(k, b, i),
-                                           b.uniform_compliance,
-                                           b.kkt,
-                                           b.connected,
-                                           b.min_feature ? io::Cell(*b.min_feature) : io::Cell(),
-                                           b.components,
-                                           b.peaks,
-                                           b.disconnected,
-                                           b.iterations,
-                                           b.solves,
-                                           runs[k].seconds_cpu,
-                                           b.converged(),
-                                           b.stop,
-                                           runs[k].message})
-        row.push_back(cell);
-      csv.row(row);
-    }
-    if (!runs[k].bodies.empty()) continue;
-    head.resize(columns.size());
-    head.back() = runs[k].message;
-    csv.row(head);
-  }
-}
-
-std::string history_picture(const BodyResult& b, double lowest, double highest) {
-  io::Figure figure;
-  figure.width = 560;
-  figure.panel_height = 300;
-  io::Panel panel;
-  panel.x.label = "iteration";
-  panel.y = {"compliance [J]", true, lowest, highest};
-  std::vector<double> iteration(b.history_compliance.size());
-  for (size_t i = 0; i < iteration.size(); ++i) iteration[i] = static_cast<double>(i + 1);
-  panel.curves.push_back({"blurred", iteration, b.history_compliance});
-  // A design that came apart is far above the frame: the legend says so.
-  const auto above = std::count_if(b.sharp_history.begin(), b.sharp_history.end(),
-                                   [&](double c) { return c > highest; });
-  const std::string name = above > 0 ? "sharp (" + std::to_string(above) + " above)" : "sharp";
-  panel.curves.push_back({name, b.sharp_iteration, b.sharp_history, false, true});
-  figure.panels = {panel};
-  return io::plot_svg(figure);
-}
-
-/// Smallest and largest compliance, blurred or sharp, of the histories of one body.
-std::pair<double, double> range_of(std::span<const VariantResult> runs, size_t body) {
-  double lowest = INFINITY, highest = 0;
-  for (const VariantResult& run : runs) {
-    if (body >= run.bodies.size()) continue;
-    const BodyResult& b = run.bodies[body];
-    for (const std::vector<double>* history : {&b.history_compliance, &b.sharp_history})
-      for (const double c : *history) {
-        if (!(c > 0)) continue;
-        lowest = std::min(lowest, c);
-        highest = std::max(highest, c);
-      }
-  }
-  return {lowest, highest};
-}
-
-/// What is varied, and its values.
-std::string title_of(const Sweep& sweep, size_t variant) {
-  std::string out;
-  for (size_t v = 0; v < sweep.varied.size(); ++v)
-    out += (v > 0 ? ", " : "") + last_part(sweep.varied[v].key) + " = " + sweep.value(variant, v);
-  return out;
-}
-
-/// Designs above their histories, those of a body on the same axis: P Figs. 15-22 on one page.
-std::string sheet_of(const Sweep& sweep, std::span<const VariantResult> runs) {
-  std::vector<io::SheetEntry> entries;
-  for (size_t k = 0; k < runs.size(); ++k) {
-    const VariantResult& run = runs[k];
-    io::SheetEntry entry;
-    entry.title = title_of(sweep, k);
-    if (!run.done())
-      entry.title += " (" + run.status + ")";
-    else if (!run.converged())
-      entry.title += " (NOT CONVERGED)";
-    for (size_t i = 0; i < run.bodies.size(); ++i) {
-      const std::string stem = run.bodies.size() > 1 ? "/design_" + run.bodies[i].body : "/design";
-      const std::string design = text_of(run.directory + stem + ".svg");
-      if (!design.empty()) entry.pictures.push_back(design);
-      const auto [lowest, highest] = range_of(runs, i);
-      entry.pictures.push_back(
-          history_picture(run.bodies[i], 0.9 * lowest, std::min(highest, 30 * lowest)));
-    }
-    entries.push_back(std::move(entry));
-  }
-  const size_t last = sweep.varied.back().values.size();
-  // Variants that differ in the last key stand side by side, where they fit on a page.
-  return io::contact_sheet(sweep.case_name, entries,
-                           sweep.varied.size() > 1 && last <= 6 ? static_cast<int>(last) : 4);
-}
-
 std::vector<Motions> motions_of(const Sweep& sweep, std::span<const VariantResult> runs) {
   std::vector<Motions> out;
   for (size_t k = 0; k < runs.size(); ++k)
-    out.push_back(read_motions(runs[k].directory, title_of(sweep, k)));
+    out.push_back(read_motions(runs[k].directory, sweep.title_of(k)));
   return out;
 }
 
 /// The table on the terminal, designs or motions.
 std::vector<std::vector<std::string>> summary_of(const Sweep& sweep,
                                                  std::span<const VariantResult> runs) {
-  return sweep.goals.empty() ? motion_table(motions_of(sweep, runs), runs) : table_of(sweep, runs);
+  return sweep.goals.empty() ? motion_table(motions_of(sweep, runs), runs)
+                             : design_table(sweep, runs);
 }
 
 std::optional<double> number_of(const std::string& text) {
@@ -265,9 +70,7 @@ std::string ends_picture(const Sweep& sweep, std::span<const Motions> motions) {
     const std::optional<double> number = number_of(sweep.value(k, last));
     if (!number) return "";
     numbers.push_back(*number);
-    std::string& curve = curves.emplace_back();
-    for (size_t v = 0; v < last; ++v)
-      curve += (v > 0 ? ", " : "") + last_part(sweep.varied[v].key) + " = " + sweep.value(k, v);
+    curves.push_back(sweep.title_of(k, last));
   }
   const io::Figure figure =
       final_figure(sweep.case_name, sweep.varied[last].key, motions, numbers, curves);
@@ -291,15 +94,10 @@ void write_motions(const Sweep& sweep, std::span<const VariantResult> runs,
 void write_all(const Sweep& sweep, std::span<const VariantResult> runs,
                const std::string& directory) {
   const std::string stem = directory + "/sweep";
-  if (sweep.goals.empty()) return write_motions(sweep, runs, stem);
-  write_csv(sweep, runs, stem + ".csv");
-  io::write_file(
-      stem + ".md",
-      "# " + sweep.case_name + "\n\n" + io::markdown_table(table_of(sweep, runs)) +
-          "\nFigure: sharp compliance x sharp volume / volume allowed (what is minimized, "
-          "of the sharp design, where that is no compliance).\n" +
-          convergence_note(runs));
-  io::write_file(stem + ".svg", sheet_of(sweep, runs));
+  if (sweep.goals.empty())
+    write_motions(sweep, runs, stem);
+  else
+    write_designs(sweep, runs, stem);
 }
 
 /// Goals of the designs of all variants. @throws Error (input) when some have more designs than
@@ -365,15 +163,14 @@ std::vector<Variant> combinations(const std::vector<Varied>& varied) {
   std::vector<Variant> out;
   for (size_t k = 0; k < count; ++k) {
     Variant v;
-    v.overrides.resize(varied.size());
-    size_t rest = k;
-    for (size_t i = varied.size(); i-- > 0;) {
-      const std::string& value = varied[i].values[rest % varied[i].values.size()];
-      rest /= varied[i].values.size();
-      v.overrides[i] = varied[i].key + "=" + value;
-    }
+    size_t stride = count;
     for (size_t i = 0; i < varied.size(); ++i) {
-      const std::string value = v.overrides[i].substr(varied[i].key.size() + 1);
+      stride /= varied[i].values.size();
+      const std::string& value = varied[i].values[k / stride % varied[i].values.size()];
+      if (varied[i].key == "case")
+        v.case_name = value;
+      else
+        v.overrides.push_back(varied[i].key + "=" + value);
       if (i > 0) v.name += ",";
       v.name.append(last_part(varied[i].key)).append("=").append(plain(value));
     }
@@ -397,8 +194,9 @@ int sweep_case(const SweepOptions& options) {
   if (options.list) {
     for (int k = 0; k < count; ++k) {
       std::printf("%d", k + 1);
-      for (const std::string& each : sweep.variants[static_cast<size_t>(k)].overrides)
-        std::printf(" %s", each.c_str());
+      const Variant& one = sweep.variants[static_cast<size_t>(k)];
+      if (!one.case_name.empty()) std::printf(" case=%s", one.case_name.c_str());
+      for (const std::string& each : one.overrides) std::printf(" %s", each.c_str());
       std::printf("\n");
     }
     return 0;

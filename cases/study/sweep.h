@@ -12,7 +12,7 @@ struct SweepOptions {
   std::string reference;          ///< CSV with columns of motion.csv, drawn as points; or empty
 };
 
-/// One key and its values.
+/// One key and its values. Those of "case" are cases: each takes the place of the study's.
 struct Varied {
   std::string key;
   std::vector<std::string> values;

@@ -17,6 +17,13 @@ Motions columns_of(const std::string& path, const std::string& label) {
   return out;
 }
 
+Motions first_of(std::initializer_list<const char*> names, const std::string& directory,
+                 const std::string& label) {
+  for (const char* name : names)
+    if (std::filesystem::exists(directory + name)) return columns_of(directory + name, label);
+  return {label, {}, {}};
+}
+
 /// By more than rounding; what is zero but for rounding is far below 1e-18 of any unit.
 bool varies(const std::vector<double>& y) {
   const auto [low, high] = std::minmax_element(y.begin(), y.end());
@@ -33,9 +40,11 @@ const std::vector<double>* Motions::column(const std::string& name) const {
 }
 
 Motions read_motions(const std::string& directory, const std::string& label) {
-  for (const char* name : {"/motion.csv", "/path.csv"})
-    if (std::filesystem::exists(directory + name)) return columns_of(directory + name, label);
-  return {label, {}, {}};
+  return first_of({"/motion.csv", "/path.csv"}, directory, label);
+}
+
+Motions read_design_motion(const std::string& directory) {
+  return first_of({"/motion_verified.csv", "/motion.csv"}, directory, "");
 }
 
 Motions read_reference(const std::string& path) {

@@ -22,6 +22,9 @@ struct Motions {
 };
 /// Of a run folder. @throws Error (input) when a file cannot be parsed.
 Motions read_motions(const std::string& directory, const std::string& label);
+/// Of the motion of a designed run: that which verifies the design where there is one.
+/// @throws Error (input) when a file cannot be parsed.
+Motions read_design_motion(const std::string& directory);
 /// Of a file of the same form. @throws Error (input) when it cannot be read.
 Motions read_reference(const std::string& path);
 

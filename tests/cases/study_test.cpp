@@ -109,6 +109,16 @@ TEST(Combinations, TheLastKeyRunsFastest) {
   EXPECT_THROW(combinations({{"a", {"1", "1"}}}), Error);
 }
 
+TEST(Combinations, AreOfCasesToo) {
+  const auto all = combinations({{"case", {"mbb", "other/my_arm.toml"}}, {"a.b", {"1", "2"}}});
+  ASSERT_EQ(all.size(), 4U);
+  EXPECT_EQ(all[1].name, "case=mbb,b=2");
+  EXPECT_EQ(all[1].case_name, "mbb");
+  EXPECT_EQ(all[1].overrides, (Words{"a.b=2"}));
+  EXPECT_EQ(all[2].name, "case=other_my_arm.toml,b=1");
+  EXPECT_EQ(all[2].case_name, "other/my_arm.toml");
+}
+
 /// A static case of a few hundredths of a second.
 Words small(const std::string& command, const std::string& folder, const Words& more) {
   Words out = {command, "short_beam",       "-o",    folder,
@@ -154,6 +164,35 @@ TEST(Sweep, RunsCollectsAndSkips) {
   Words other = vary;
   other.insert(other.end(), {"--set", "design.max_volume=0.5"});
   EXPECT_EQ(lines_with(test::flexmorph(scratch, small("sweep", folder, other)).out, "started"), 4U);
+}
+
+TEST(Sweep, PutsCasesAndDeflectionsOnOnePage) {
+  const Scratch scratch;
+  const std::string folder = scratch / "sweep", other = scratch / "shorter.toml";
+  std::string changed = contents_of(FLEXMORPH_SHORT_CASE);
+  changed.replace(changed.find("end = 0.12"), 10, "end = 0.10");
+  io::write_file(other, changed);
+  const Words words = {"sweep",  FLEXMORPH_SHORT_CASE,
+                       "-o",     folder,
+                       "--set",  "optimizer.max_iterations=2",
+                       "--vary", "case=" FLEXMORPH_SHORT_CASE "," + other,
+                       "--vary", "design.min_thickness=0.005,0.008"};
+  const Ended ended = test::flexmorph(scratch, words);
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const io::CsvTable table = io::read_csv(folder + "/sweep.csv");
+  const std::vector<std::string> variants = table.texts("variant");
+  const std::vector<double> largest = table.numbers("largest_tip_deflection");
+  ASSERT_EQ(variants.size(), 4U);
+  for (size_t k = 0; k < variants.size(); ++k) {
+    const io::CsvTable motion = io::read_csv(folder + "/" + variants[k] + "/motion.csv");
+    double expected = 0;
+    for (const double y : motion.numbers("plate.tip_deflection"))
+      expected = std::max(expected, std::abs(y));
+    EXPECT_EQ(largest[k], expected);
+    EXPECT_NEAR(motion.numbers("plate.length").back(), k < 2 ? 0.56 : 0.55, 1e-12);
+  }
+  // A picture of deflections for either case, both thicknesses in each.
+  EXPECT_EQ(lines_with(contents_of(folder + "/sweep.svg"), "tip deflection [m]"), 2U);
 }
 
 TEST(Sweep, RunsOneByItsIndexAndListsThem) {
