@@ -42,6 +42,9 @@ std::vector<fem::AttachedForce> applied_forces(const Scene& scene, const std::st
 
 namespace {
 
+/// Jitter of further starts, at least.
+constexpr double kFurtherJitter = 0.1;
+
 /// Moves every component at random: places and lengths by up to `jitter` of the half-length, angles
 /// of a radian, half-thicknesses of themselves. The same seed gives the same start.
 void shake(std::vector<Component>& components, double jitter, int seed) {
@@ -82,11 +85,19 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
     if (d.symmetric) symmetry = symmetry_of(scene, d, plate.outside);
     if (!mmc::is_symmetric(layout, symmetry)) symmetry = {};
     layout = mmc::one_side(layout, symmetry);
+    std::vector<mmc::Design> further;
+    for (int k = 1; k < d.starts; ++k) {
+      std::vector<Component> moved = layout;
+      // Far from the seeds that a study would count through.
+      shake(moved, std::max(d.jitter, kFurtherJitter), d.seed + 1'000'003 * k);
+      further.emplace_back(g, moved, scale, symmetry);
+    }
     shake(layout, d.jitter, d.seed);
     out.push_back({.body = d.body,
                    .grid = g,
                    .section = plate.section,
                    .design = mmc::Design(g, layout, scale, symmetry),
+                   .further_starts = std::move(further),
                    .solid = d.solid,
                    .empty = d.empty,
                    .stages = stages,

@@ -231,6 +231,8 @@ Extent extent_of(const Scene& scene) {
   if (scene.finish && out.iterations > 0)
     out.iterations += 1.0 * mmc::kFinishTries * scene.finish->max_iterations;
   if (!scene.domain) out.iterations *= scene.cycle.max_cycles;
+  for (const BodyDesign& d : scene.designs)
+    out.iterations += 1.0 * (d.starts - 1) * scene.optimizer.max_iterations;
   if (!scene.domain) {
     if (out.iterations > 0) out.motions = scene.verify ? 4 : 2;
     add_course(scene, out);

@@ -54,6 +54,7 @@ Json clean_up_results(const mmc::CleanUp& c) {
   out["joined"] = c.joined;
   out["born"] = c.born;
   out["rounds"] = c.rounds;
+  out["torn_gaps"] = c.torn;
   out["reached"] = c.reached();
   out["given_up"] = c.given_up;
   return out;
@@ -142,6 +143,7 @@ Json body_results(const RunReport& report, size_t i) {
   out["scaled_objective"] = objective_words(report.problems[i]);
   out["cycles"] = report.cycles;
   out["iterations"] = o.iterations;
+  out["start"] = o.start;
   out["state_solves"] = o.evaluations;
   out["kkt"] = o.kkt;
   out["factorizations"] = o.factorizations;

@@ -42,6 +42,7 @@ struct BodyDesign {
   std::vector<Component> start;  ///< empty: boxes of two crossing components
   double jitter = 0;             ///< of the initial components, in parts of their sizes [-]
   int seed = 1;                  ///< of the jitter
+  int starts = 1;                ///< this one, and others that are jittered
   bool symmetric = true;         ///< where the scene is, and the start
   int drop_every = 25;           ///< iterations between looks for dead components, 0: none
   bool refill = false;           ///< long components are split in place of dropped ones

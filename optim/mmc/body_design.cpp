@@ -39,19 +39,8 @@ class Designer {
     const auto share = [&](int total) { return total - polishes * (total / kPolishShare); };
     const int iterations = share(settings_.optimizer.max_iterations);
     const int solves = share(settings_.optimizer.max_evaluations);
-    int n_stages = 0;
-    for (const Part& p : parts_)
-      n_stages = std::max(n_stages, static_cast<int>(p.problem.stages.size()));
-    const int shares = n_stages + (settings_.finish ? 1 : 0);  // of the state solves
-    for (int stage = 0; stage < n_stages && going_; ++stage) {
-      for (Part& p : parts_) {
-        const auto own = static_cast<int>(p.problem.stages.size());
-        p.tdf = &p.problem.stages[static_cast<size_t>(stage * own / n_stages)];
-      }
-      run_stage(iterations * (stage + 1) / n_stages - iterations * stage / n_stages,
-                solves * (stage + 1) / shares);
-    }
     const bool analysed = settings_.optimizer.max_iterations == 0;
+    run_starts(analysed ? 1 : n_starts(), iterations, solves);
     if (cleans && going_ && !analysed) mend(polishes);
     if (settings_.finish && going_ && !analysed) {
       if (cleans)
@@ -73,6 +62,13 @@ class Designer {
   bool stopped() const { return !going_; }  ///< by the observer
 
  private:
+  size_t n_starts() const {
+    size_t out = 1;
+    for (const Part& p : parts_)
+      if (cycle_ == 1) out = std::max(out, 1 + p.problem.further_starts.size());
+    return out;
+  }
+
   /// The best designs of one run of the optimizer.
   struct Candidate {
     std::vector<Design> designs;
@@ -81,9 +77,61 @@ class Designer {
     bool newest = true;  ///< do they belong to the last run?
   };
 
+  /// All stages from every start, of which the best is taken: what they come to at the last band
+  /// says which layout is best after mending, what they come to at the first one does not.
+  /// @param iterations  of each start
+  /// @param solves      of all starts, and of the last solve
+  void run_starts(size_t n_starts, int iterations, int solves) {
+    std::vector<Design> first;
+    for (const Part& p : parts_) first.push_back(p.problem.design);
+    const int shares = static_cast<int>(n_starts) * n_stages() + (settings_.finish ? 1 : 0);
+    std::optional<Candidate> best;
+    int used = 0;
+    for (size_t start = 0; start < n_starts && going_; ++start) {
+      for (size_t k = 0; k < parts_.size(); ++k) {
+        const std::vector<Design>& further = parts_[k].problem.further_starts;
+        parts_[k].problem.design =
+            start == 0 || further.empty() ? first[k] : further[std::min(start, further.size()) - 1];
+      }
+      std::optional<Candidate> found = run_stages(iterations, solves, used, shares);
+      // One that was stopped on its way, or had no solves left, compares with none.
+      const bool newest = found && (!best || (going_ && better(found->result, best->result)));
+      if (newest) best = std::move(found);
+      if (best) best->newest = newest;
+      for (Part& p : parts_)
+        if (newest) p.outcome.start = static_cast<int>(start) + 1;
+    }
+    if (best && !best->newest) settle(*best);
+  }
+
+  int n_stages() const {
+    size_t out = 0;
+    for (const Part& p : parts_) out = std::max(out, p.problem.stages.size());
+    return static_cast<int>(out);
+  }
+
+  /// From coarse to fine bands.
+  /// @param used  stages that had their share of the solves; counted on
+  /// @return the best of the last stage; none where no iteration was left for it
+  std::optional<Candidate> run_stages(int iterations, int solves, int& used, int shares) {
+    std::optional<Candidate> out;
+    const int n = n_stages();
+    for (int stage = 0; stage < n && going_; ++stage) {
+      for (Part& p : parts_) {
+        const auto own = static_cast<int>(p.problem.stages.size());
+        p.tdf = &p.problem.stages[static_cast<size_t>(stage * own / n)];
+      }
+      ++used;
+      out =
+          run_stage(iterations * (stage + 1) / n - iterations * stage / n, solves * used / shares);
+    }
+    return out;
+  }
+
   /// A stage of the bands: runs of the optimizer, a new one whenever a list of components changed.
   /// @param solves  state solves of the cycle after which it ends; 0: no limit
-  void run_stage(int left, int solves) {
+  /// @return its best designs, which are those of the parts now; none without an iteration
+  std::optional<Candidate> run_stage(int left, int solves) {
     for (Part& p : parts_)
       p.turnover.emplace(p.problem.grid, *p.tdf, p.ersatz,
                          p.problem.refill ? p.problem.design.shortest() : 0,
@@ -103,6 +151,7 @@ class Designer {
       for (Part& p : parts_) p.problem.design = p.next;
     }
     if (best) settle(*best);
+    return best;
   }
 
   /// Components stay as they are in it: what it converges to is what it began with.

@@ -41,6 +41,7 @@ struct BodyOutcome {
   double uniform_compliance = 0;  ///< same loads, uniform material of the same volume
   double kkt = 0, change = 0;
   int iterations = 0, evaluations = 0, n_loads = 0, n_right_hand_sides = 0;
+  int start = 1;  ///< whose design it is, of the problem's starts
   int factorizations = 0;
   std::optional<double> condition;  ///< of the stiffness of the sharp design, when asked for
   std::string stop;                 ///< why the optimizer stopped

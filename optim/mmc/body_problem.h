@@ -21,6 +21,7 @@ struct BodyProblem {
   Grid grid;  ///< design mesh over the body at its longest
   fem::PlaneSection section;
   Design design;
+  std::vector<Design> further_starts = {};                ///< of the first cycle, besides `design`
   std::vector<std::vector<Vec2>> solid = {}, empty = {};  ///< passive regions: polygons
   std::vector<TdfSettings> stages;  ///< continuation of the band, coarse to fine
   Goal goal = {};

@@ -45,6 +45,11 @@ void measure(const UnderRepair& design, Features& features, int& pieces, double&
   volume = design.volume(design.parts);
 }
 
+int torn_gaps_of(UnderRepair& design) {
+  design.look_at_energy();
+  return static_cast<int>(design.torn_gaps().size());
+}
+
 /// What is to be repaired; gaps that only cells bridge when all else is done.
 std::vector<NarrowPlace> places_of(UnderRepair& design) {
   std::vector<NarrowPlace> out = design.places();
@@ -85,6 +90,7 @@ class Cleaner {
       out.given_up = true;
     }
     measure(design_, out.after, out.pieces_after, out.compliance_after, out.volume_after);
+    out.torn = torn_gaps_of(design_);
     return out;
   }
 
@@ -329,10 +335,13 @@ void CleanUp::end_as(const CleanUp& other) {
   pieces_after = other.pieces_after;
   compliance_after = other.compliance_after;
   volume_after = other.volume_after;
+  torn = other.torn;
   given_up = other.given_up;
 }
 
-bool CleanUp::reached() const { return pieces_after == 1 && part_reached() >= kWithin; }
+bool CleanUp::reached() const {
+  return pieces_after == 1 && torn == 0 && part_reached() >= kWithin;
+}
 
 CleanUp look_over(const BodyProblem& problem, LoadResponse& loads, const Widths& wanted) {
   UnderRepair design(problem, loads, wanted);
@@ -344,6 +353,7 @@ CleanUp look_over(const BodyProblem& problem, LoadResponse& loads, const Widths&
   out.compliance_after = out.compliance_before;
   out.volume_after = out.volume_before;
   out.rounds = static_cast<int>(places_of(design).size());
+  out.torn = torn_gaps_of(design);
   return out;
 }
 

@@ -19,6 +19,7 @@ struct CleanUp {
   int stubs = 0;          ///< ends of components likewise
   int joined = 0;         ///< components that went because others took their place, end to end
   int born = 0;           ///< bars across the void that came
+  int torn = 0;           ///< gaps that only cells bridge, and are left (see UnderRepair)
   bool given_up = false;  ///< it would have cost too much: the design is as it was
   bool changed() const { return rounds + idle + stubs > 0; }
   void add(const CleanUp& later);     ///< its rounds, patches and losses

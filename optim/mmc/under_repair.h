@@ -66,6 +66,7 @@ class UnderRepair {
   bool looks_torn(const NarrowPlace& p) const;
   double compliance_cut_at(const NarrowPlace& p) const;
   std::vector<int> cells_around(const NarrowPlace& p) const;
+  std::vector<int> cells_between(const NarrowPlace& p) const;
 
   /// What is known of a list of components.
   struct Known {

@@ -120,6 +120,60 @@ TEST(CleanUp, ClosesACutThroughWhatCarries) {
   EXPECT_TRUE(done.reached());
 }
 
+/// The small plate's cells, or such as are finer, under the load at its tip.
+double compliance_on(int finer, BodyProblem problem) {
+  Grid& g = problem.grid;
+  g.nx *= finer;
+  g.ny *= finer;
+  std::vector<fem::HeldUnknown> held;
+  for (int j = 0; j <= g.ny; ++j)
+    for (int c = 0; c < 2; ++c) held.push_back({g.node(0, j), c});
+  const std::vector<LoadCase> load = {{"tip", 1, {{g.node(g.nx, g.ny / 2), Vec2(0, 1)}}}};
+  FixedLoads loads(g, kSection, {}, held, load, false);
+  const VectorXd fractions = fractions_of(problem, problem.design.components());
+  return judged_compliance(problem, loads, ersatz_of(problem).sharp(fractions));
+}
+
+// Both parts of a slanted bar that is cut hang on flanges: the union is one piece, and cells bridge
+// the cut, whose sides fill none of them. Cells of a quarter of their size do not.
+TEST(CleanUp, ClosesACutThroughASlantedBarThatFillsNoCell) {
+  constexpr double kBar = 0.012;
+  for (const double gap : {0.0, 0.0106, 0.012, 0.016})
+    for (const double half : {0.0075, 0.009, 0.0106}) {
+      SCOPED_TRACE(std::to_string(gap) + " " + std::to_string(half));
+      std::vector<Component> parts = {
+          bar({-0.1, -0.042}, {0.62, -0.042}, 0.008), bar({-0.1, 0.042}, {0.62, 0.042}, 0.008),
+          bar({0.03, -0.042}, {0.15, 0.042}, half),   bar({0.27, -0.042}, {0.39, 0.042}, half),
+          bar({0.39, 0.042}, {0.51, -0.042}, half),   bar({0.51, -0.042}, {0.6, 0.03}, half)};
+      const Vec2 top(0.15, 0.042), low(0.27, -0.042), middle = 0.5 * (top + low),
+                                                      along = (low - top).normalized();
+      if (gap > 0) {
+        parts.push_back(bar(top, middle - 0.5 * gap * along, half));
+        parts.push_back(bar(middle + 0.5 * gap * along, low, half));
+      } else {
+        parts.push_back(bar(top, low, half));
+      }
+      BodyProblem problem = problem_of(parts, 1);
+      problem.goal.limits.clear();
+      FixedLoads loads = tip_load();
+      const Widths wanted{kBar, kGrid.dx()};
+      const CleanUp found = look_over(problem, loads, wanted);
+      EXPECT_EQ(found.pieces_after, 1);
+      if (gap == 0) {
+        EXPECT_EQ(found.torn, 0);
+        EXPECT_TRUE(found.reached());
+        continue;
+      }
+      EXPECT_GE(found.torn, 1);
+      EXPECT_FALSE(found.reached());
+      EXPECT_GT(compliance_on(4, problem), 1.7 * compliance_on(1, problem));
+      const CleanUp done = clean_up(problem, loads, wanted);
+      EXPECT_EQ(done.torn, 0);
+      EXPECT_TRUE(done.reached());
+      EXPECT_LT(compliance_on(4, problem), 1.04 * compliance_on(1, problem));
+    }
+}
+
 // A run that is to end does not wait for a repair, and takes nothing half done.
 TEST(CleanUp, LeavesTheDesignWhereItWasWhenItIsToStop) {
   BodyProblem problem =
@@ -128,8 +182,8 @@ TEST(CleanUp, LeavesTheDesignWhereItWasWhenItIsToStop) {
   FixedLoads loads = tip_load();
   for (const int steps : {0, 1}) {
     int asked = 0;
-    const CleanUp done = clean_up(problem, loads, {kWanted, kGrid.dx()},
-                                  {.go_on = [&] { return asked++ < steps; }});
+    const CleanUp done =
+        clean_up(problem, loads, {kWanted, kGrid.dx()}, {.go_on = [&] { return asked++ < steps; }});
     EXPECT_GT(asked, 0);
     EXPECT_TRUE(done.given_up);
     EXPECT_EQ(problem.design.x(), before);

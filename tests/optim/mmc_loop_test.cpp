@@ -158,6 +158,44 @@ TEST(EslLoop, EveryStageHasItsBandAndItsShare) {
   EXPECT_EQ(per_band, (std::vector<int>{0, 4, 3, 3}));
 }
 
+// What comes of the best of several starts is what comes of that start alone.
+TEST(EslLoop, TakesTheBestOfItsStarts) {
+  const auto simulate = [](std::span<const fem::Factors>) {
+    return std::vector<fem::EslSets>{turning_plate(2)};
+  };
+  std::vector<int> bands;
+  LoopObserver observer;
+  observer.iteration = [&](const IterationReport& r) {
+    bands.push_back(static_cast<int>(std::lround(r.state.band() / kGrid.dx())));
+    return true;
+  };
+  const std::vector<Design> starts = {Design(kGrid, random_layout(1, 2), kScale),
+                                      Design(kGrid, layout(), kScale),
+                                      Design(kGrid, random_layout(3, 2), kScale)};
+  std::vector<BodyOutcome> alone;
+  for (const Design& start : starts) {
+    std::vector<BodyProblem> problems = one_body();
+    problems[0].design = start;
+    alone.push_back(esl_loop(problems, simulate, quick(20), {})[0]);
+  }
+  size_t best = 0;
+  for (size_t k = 1; k < alone.size(); ++k)
+    if (alone[k].compliance < alone[best].compliance) best = k;
+  for (const size_t first : {size_t(0), size_t(1), size_t(2)}) {
+    std::vector<BodyProblem> problems = one_body();
+    problems[0].design = starts[first];
+    problems[0].further_starts = {starts[(first + 1) % 3], starts[(first + 2) % 3]};
+    bands.clear();
+    const BodyOutcome found = esl_loop(problems, simulate, quick(20), observer)[0];
+    EXPECT_EQ(static_cast<size_t>(found.start), (best + 3 - first) % 3 + 1);
+    EXPECT_EQ(found.compliance, alone[best].compliance);
+    EXPECT_EQ(found.sharp.compliance, alone[best].sharp.compliance);
+    EXPECT_EQ(found.iterations, 60);
+    ASSERT_EQ(bands.size(), 60U);
+    for (size_t k = 0; k < bands.size(); ++k) EXPECT_EQ(bands[k], k % 20 < 10 ? 2 : 1) << k;
+  }
+}
+
 // The loads answer to the design: after the first cycle they no longer change, so the third one
 // finds little to do and the loop ends long before its limit.
 TEST(EslLoop, EndsWhenTheDesignRests) {

@@ -87,6 +87,13 @@ const Key& kSeed = io::key("design", "seed")
                        .integer("a seed", 0, 1'000'000'000)
                        .otherwise(1)
                        .says("Of the jitter.");
+const Key& kStarts =
+    io::key("design", "starts")
+        .integer("a number of starts", 1, 100)
+        .otherwise(1)
+        .says(
+            "The first cycle goes through all bands from so many, the further ones jittered by "
+            "0.1 or `jitter`, and takes the best; each costs as many iterations once more.");
 const io::Choice<bool> kSymmetry(
     io::key("design", "symmetry")
         .otherwise("auto")
@@ -251,6 +258,7 @@ void read_components(const Table& t, const Body& body, const Scene& scene, BodyD
   }
   design.jitter = t.number(kJitter);
   design.seed = t.integer(kSeed);
+  design.starts = t.integer(kStarts);
   design.symmetric = t.choice(kSymmetry);
   design.drop_every = t.integer(kDropEvery);
   design.refill = t.boolean(kRefill);
