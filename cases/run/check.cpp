@@ -184,15 +184,19 @@ void describe_mechanism(const Scene& scene, std::ostringstream& out) {
                                "; drives that follow: " + (drives.empty() ? "none" : drives));
 }
 
+std::string components_words(const BodyDesign& d) {
+  const int components = d.n_components();
+  return std::to_string(components) + " components, " +
+         std::to_string(components * Component::kParameters) + " variables" +
+         (d.starts > 1 ? ", the best of " + std::to_string(d.starts) + " starts" : "");
+}
+
 void describe_design(const Scene& scene, const BodyDesign& d, std::ostringstream& out) {
   const Grid& g = d.grid;
-  const int components = d.n_components();
   const int n = 2 * g.nx * (g.ny + 1), loads = scene.esl->count(scene.time.end);
   // Natural order from the free end: a band of ny + 2 nodes.
   const double factor = static_cast<double>(n) * (2 * g.ny + 5);
-  out << row("design of " + d.body, std::to_string(components) + " components, " +
-                                        std::to_string(components * Component::kParameters) +
-                                        " variables, " + std::to_string(g.nx) + " x " +
+  out << row("design of " + d.body, components_words(d) + ", " + std::to_string(g.nx) + " x " +
                                         std::to_string(g.ny) + " cells, " + std::to_string(n) +
                                         " static unknowns");
   out << row("", std::to_string(loads) + " loads, " + limit_words(d.goal) +
@@ -209,16 +213,13 @@ void describe_static(const Scene& scene, std::ostringstream& out, const Machine&
   if (problem.grid.n_cells() <= kMostBuilt) loads = build_static_loads(scene, problem);
   const BodyDesign& d = scene.designs.front();
   const Grid& g = d.grid;
-  const int components = d.n_components();
   out << row("plate " + domain.name, "at rest, " + std::to_string(g.nx) + " x " +
                                          std::to_string(g.ny) + " cells" + words_of(domain.shape));
   out << row("supports", std::to_string(domain.supports.size()));
   out << row("loads",
              std::to_string(domain.loads.size()) +
                  (loads ? ", solved as " + std::to_string(loads->n_right_hand_sides()) : ""));
-  out << row("design", std::to_string(components) + " components, " +
-                           std::to_string(components * Component::kParameters) + " variables; " +
-                           goal_words(d.goal));
+  out << row("design", components_words(d) + "; " + goal_words(d.goal));
   out << row("", thickness_words(d));
   out << row("optimizer", optimizer_words(scene));
   out << figures_text(scene, nullptr, machine);

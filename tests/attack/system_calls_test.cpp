@@ -2,7 +2,7 @@
 // folder, and what a user keeps in it is there afterwards, byte for byte.
 //
 //   FLEXMORPH_WATCHED=all build/tests/attack/attack_tests --gtest_filter='SystemCalls.*'
-//   all shipped cases, shortened; by default four commands
+//   all shipped cases, shortened, and studies; a name: that one; by default four commands
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -167,11 +167,14 @@ std::vector<Command> commands() {
       {"a comparison",
        {"compare", "short_beam", "--optimizers", "mma,gcmma", "--starts", "1", "--budget", "3"},
        true}};
-  if (!std::getenv("FLEXMORPH_WATCHED")) return out;
+  const char* watched = std::getenv("FLEXMORPH_WATCHED");
+  if (!watched) return out;
   for (const std::string& name : cases::shipped_cases()) out.push_back({name, short_words(name)});
   out.push_back(
       {"accuracy", {"accuracy", "cantilever_roll_up", "--budget", "5s", "--no-verify"}, true});
-  out.push_back({"stability", {"stability", "plate_pendulum", "--suites", "extreme"}, true});
+  out.push_back({"stability", {"stability", "plate_pendulum", "--suites", "step"}, true});
+  if (watched != std::string("all"))
+    std::erase_if(out, [&](const Command& c) { return c.name != watched; });
   return out;
 }
 

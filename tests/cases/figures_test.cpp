@@ -128,7 +128,8 @@ TEST(Figures, WrongUnitsAreOutOfTheOrdinary) {
            {"four_bar", "body.length=0.004", "nearly rigid"},
            {"slider_crank_heated", "drive.formula=\"180*t\"", "360 rad, 57.3 turns"}}) {
     Changes changes = {row.change};
-    for (const char* part : {"design=", "esl=", "optimizer=", "accuracy=", "expect=", "observe="})
+    for (const char* part :
+         {"design=", "esl=", "optimizer=", "cycle=", "accuracy=", "expect=", "observe="})
       changes.emplace_back(part);
     bool found = false;
     std::string all;

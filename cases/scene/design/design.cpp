@@ -91,9 +91,7 @@ const Key& kStarts =
     io::key("design", "starts")
         .integer("a number of starts", 1, 100)
         .otherwise(1)
-        .says(
-            "The first cycle goes through all bands from so many, the further ones jittered by "
-            "0.1 or `jitter`, and takes the best; each costs as many iterations once more.");
+        .says("The best of so many, further ones jittered, is mended; each has all iterations.");
 const io::Choice<bool> kSymmetry(
     io::key("design", "symmetry")
         .otherwise("auto")
