@@ -58,6 +58,14 @@ struct Page {
   }
 };
 
+/// The size of letters [px] in which a title is at most as wide as a column: bold ones of the
+/// common fonts are 0.65 of their size, on average.
+int fitting(const std::string& title) {
+  constexpr double kMost = 14, kLeast = 7, kLetter = 0.65;
+  const double size = kColumn / (kLetter * static_cast<double>(std::max<size_t>(1, title.size())));
+  return static_cast<int>(std::clamp(size, kLeast, kMost));
+}
+
 std::string words(double x, double y, const std::string& content, int size) {
   return "<text x=\"" + to_text(x) + "\" y=\"" + to_text(y) + "\" font-size=\"" + to_text(size) +
          "\" font-weight=\"bold\">" + xml_escaped(content) + "</text>\n";
@@ -74,7 +82,7 @@ std::string contact_sheet(const std::string& title, std::span<const SheetEntry> 
     double lowest = top;
     for (size_t k = first; k < std::min(first + n, entries.size()); ++k) {
       const double x = kGap + static_cast<double>(k - first) * (kColumn + kGap);
-      body += words(x, top + 17, entries[k].title, 14);
+      body += words(x, top + 17, entries[k].title, fitting(entries[k].title));
       double y = top + kTitle;
       for (const std::string& picture : entries[k].pictures) {
         const Page page(picture);

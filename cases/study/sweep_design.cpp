@@ -120,12 +120,14 @@ std::string history_picture(const BodyResult& b, double lowest, double highest) 
   return io::plot_svg(figure);
 }
 
-/// Smallest and largest compliance, blurred or sharp, of the histories of one body.
-std::pair<double, double> range_of(std::span<const VariantResult> runs, size_t body) {
+/// Smallest and largest compliance, blurred or sharp, of the histories of one body in the runs of
+/// one case.
+std::pair<double, double> range_of(const Sweep& sweep, std::span<const VariantResult> runs,
+                                   const std::string& case_name, size_t body) {
   double lowest = INFINITY, highest = 0;
-  for (const VariantResult& run : runs) {
-    if (body >= run.bodies.size()) continue;
-    const BodyResult& b = run.bodies[body];
+  for (size_t k = 0; k < runs.size(); ++k) {
+    if (sweep.variants[k].case_name != case_name || body >= runs[k].bodies.size()) continue;
+    const BodyResult& b = runs[k].bodies[body];
     for (const std::vector<double>* history : {&b.history_compliance, &b.sharp_history})
       for (const double c : *history) {
         if (!(c > 0)) continue;
@@ -159,8 +161,8 @@ std::string deflection_picture(const Sweep& sweep, std::span<const VariantResult
   return io::plot_svg(figure);
 }
 
-/// Designs above their histories, those of a body on the same axis, and below them deflections:
-/// P Figs. 13 to 23 on one page.
+/// Designs above their histories, those of a body and case on the same axis, and below them
+/// deflections: P Figs. 13 to 23 on one page.
 std::string sheet_of(const Sweep& sweep, std::span<const VariantResult> runs) {
   std::vector<io::SheetEntry> entries;
   for (size_t k = 0; k < runs.size(); ++k) {
@@ -175,7 +177,7 @@ std::string sheet_of(const Sweep& sweep, std::span<const VariantResult> runs) {
       const std::string stem = run.bodies.size() > 1 ? "/design_" + run.bodies[i].body : "/design";
       const std::string design = text_of(run.directory + stem + ".svg");
       if (!design.empty()) entry.pictures.push_back(design);
-      const auto [lowest, highest] = range_of(runs, i);
+      const auto [lowest, highest] = range_of(sweep, runs, sweep.variants[k].case_name, i);
       entry.pictures.push_back(
           history_picture(run.bodies[i], 0.9 * lowest, std::min(highest, 30 * lowest)));
     }
