@@ -135,7 +135,10 @@ std::vector<std::pair<std::string, double>> phases_of(const RunReport& report,
       for (const mmc::BodyOutcome& o : report.outcomes) seconds += o.sharp.seconds_outlines;
   double judge = 0;
   for (const JudgedBody& j : report.judged) judge += j.seconds;
+  out.emplace_back("mending", report.seconds_mending);
+  out.emplace_back("motion", report.seconds_motion);
   out.emplace_back("judge", judge);
+  out.emplace_back("verification", report.seconds_verification);
   return out;
 }
 

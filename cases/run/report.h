@@ -18,6 +18,9 @@ struct RunReport {
   bool resumed = false;  ///< does it go on with what is in its folder?
   double seconds_wall = 0, seconds_cpu = 0, peak_memory_bytes = 0;
   std::vector<std::pair<std::string, double>> phases;  ///< CPU seconds of designs (phases_of())
+  /// CPU seconds of this process: repairs of designs; motions whose loads they are for; motions
+  /// with the final designs and with uniform material.
+  double seconds_mending = 0, seconds_motion = 0, seconds_verification = 0;
   std::vector<mmc::BodyProblem> problems;
   std::vector<mmc::BodyOutcome> outcomes;
   std::vector<JudgedBody> judged;  ///< final designs, in the order of the outcomes; or none yet
@@ -27,8 +30,8 @@ struct RunReport {
   std::optional<MotionRecord> verified, verified_uniform;  ///< the same on the finer mesh
 };
 
-/// CPU seconds of iterations, outlines of final designs and their judge, by phase; empty without
-/// designs.
+/// CPU seconds of iterations, outlines of final designs, their repairs and judge, and of motions,
+/// by phase; empty without designs.
 std::vector<std::pair<std::string, double>> phases_of(const RunReport& report,
                                                       const RunFolder& folder);
 

@@ -102,7 +102,9 @@ void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress
     // Of all cycles, until the run is done: their designs come back from their evaluations.
     keep_going(wishes, report, progress, "motion_" + io::to_text(++n_motions) + ".csv");
     progress.begin(wishes.phase);
+    const double begin = cpu_seconds();
     MotionOutcome motion = run_motion(scene, wishes, folder);
+    report.seconds_motion += cpu_seconds() - begin;
     progress.say("motion: " + std::to_string(motion.record.result.counts.steps) + " steps, " +
                  std::to_string(motion.record.result.events.size()) + " changes of the mesh, " +
                  "largest tip deflection " + io::to_text(motion.record.amplitude.at(0), 4) + " m");
@@ -125,6 +127,7 @@ void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress
   observer.cycle = [&](int cycle, std::span<const mmc::BodyOutcome> outcomes) {
     report.cycles = cycle;
     report.outcomes.assign(outcomes.begin(), outcomes.end());
+    for (const mmc::BodyOutcome& o : outcomes) report.seconds_mending += o.seconds_mending;
     for (size_t i = 0; i < outcomes.size(); ++i) {
       folder.write_loads(outcomes[i].body, loads[i], &outcomes[i]);
       folder.write_design(report.problems[i], outcomes[i]);
@@ -155,7 +158,9 @@ void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress
   }
 
   if (!analysed) judge_outlines(scene, loads, folder, progress, report);
+  const double begin = cpu_seconds();
   if (!analysed) judge_by_motion(scene, condition, go_on, folder, progress, report);
+  report.seconds_verification = cpu_seconds() - begin;
   memory.forget();
   forget_motions(folder);
 }
@@ -182,6 +187,7 @@ void run_static(const Scene& scene, bool condition, RunFolder& folder, Progress&
       observe, going);
   report.cycles = 1;
   report.outcomes = {outcome};
+  report.seconds_mending = outcome.seconds_mending;
   folder.write_static_loads(*scene.domain, outcome);
   folder.write_design(problem, outcome);
   progress.say(summary(outcome) + memory.words());

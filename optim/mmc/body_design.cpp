@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "geometry/cpu_time.h"
 #include "optim/mmc/designed_parts.h"
 #include "optim/mmc/mended_parts.h"
 #include "optim/mmc/united_connectivity.h"
@@ -49,6 +50,7 @@ class Designer {
         last_solve(solves);
     }
     std::vector<BodyOutcome> out;
+    parts_.front().outcome.seconds_mending = mending_;
     for (Part& p : parts_) {
       if (analysed) {
         measure(p);
@@ -242,7 +244,10 @@ class Designer {
   void mend(int polishes) {
     for (Part& p : parts_) p.problem.design = p.problem.design.without_symmetry();
     std::vector<CleanUp> renewals(parts_.size());
-    if (polishes > 0) renewals = renewed(parts_, settings_.go_on);
+    if (polishes > 0) {
+      const Mending timed(*this);
+      renewals = renewed(parts_, settings_.go_on);
+    }
     Mended last = repaired_all(polishes > 0 ? kClosed : 1, true);
     Mended best = last;
     std::vector<std::optional<CleanUp>> sums = last.clean_ups;
@@ -269,7 +274,21 @@ class Designer {
     deliver(best);
   }
 
+  /// Adds the CPU time of its scope to that of repairs.
+  class Mending {
+   public:
+    explicit Mending(Designer& designer) : sum_(designer.mending_) {}
+    ~Mending() { sum_ += cpu_seconds() - begin_; }
+    Mending(const Mending&) = delete;
+    Mending& operator=(const Mending&) = delete;
+
+   private:
+    double& sum_;
+    double begin_ = cpu_seconds();
+  };
+
   Mended repaired_all(double gaps, bool trims) {
+    const Mending timed(*this);
     Mended out = repaired(parts_, gaps, trims, settings_.go_on);
     if (settings_.go_on && !settings_.go_on()) going_ = false;
     return out;
@@ -411,6 +430,7 @@ class Designer {
   const DesignSettings& settings_;
   const IterationObserver& observe_;
   int iterations_ = 0, evaluations_ = 0;  // of the cycle
+  double mending_ = 0;                    // CPU seconds
   bool going_ = true, changed_ = false;
   const optim::Settings* solver_ = &settings_.optimizer;  // of the stage
   bool drops_ = true;

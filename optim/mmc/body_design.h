@@ -49,7 +49,8 @@ struct BodyOutcome {
   std::optional<CleanUp> clean_up;       ///< when a smallest feature was wanted
   std::vector<double> load_compliances;  ///< F_i . u_i of the sharp design
   std::vector<double> energy_ratios;     ///< ½ F_i . u_i of the starting design / strain energy
-  double design_change = 0;  ///< see esl_loop(): between the designs before and after the cycle
+  double seconds_mending = 0;  ///< CPU seconds of repairs; those of bodies together are the first's
+  double design_change = 0;    ///< see esl_loop(): between the designs before and after the cycle
 };
 
 /// A row of the history that an earlier run may have written.

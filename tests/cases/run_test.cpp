@@ -82,6 +82,12 @@ void expect_run_json(const nlohmann::json& run) {
   EXPECT_EQ(run["status"], "done, not usable");
   EXPECT_EQ(run["threads"], 1);
   EXPECT_GT(run["peak_memory_bytes"].get<double>(), 1e6);
+  double phases = 0;  // they are parts of the whole
+  for (const char* name : {"solve", "output", "mending", "motion", "judge", "verification"}) {
+    ASSERT_TRUE(run["seconds_by_phase"].contains(std::string("seconds_") + name)) << name;
+    phases += run["seconds_by_phase"][std::string("seconds_") + name].get<double>();
+  }
+  EXPECT_LE(phases, run["seconds_cpu"].get<double>());
   ASSERT_EQ(run["results"].size(), 1u);
   const nlohmann::json& plate = run["results"][0];
   for (const char* key : {"compliance", "volume", "sharp_compliance", "sharp_volume",
