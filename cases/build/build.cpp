@@ -63,6 +63,15 @@ void shake(std::vector<Component>& components, double jitter, int seed) {
   }
 }
 
+/// Edges that hold a plate at rest; of a moving one its root line at the longest.
+std::vector<Segment> held_lines(const Scene& scene, const Grid& grid) {
+  if (!scene.domain) return {{{grid.x0, grid.y0}, {grid.x0, grid.y0 + grid.height}}};
+  std::vector<Segment> out;
+  for (const PlaneSupport& s : scene.domain->supports)
+    if (s.place.kind == Place::Kind::edge) out.push_back({s.place.box.lower, s.place.box.upper});
+  return out;
+}
+
 }  // namespace
 
 std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
@@ -108,6 +117,7 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
                    .domain = scene.domain ? scene.domain->shape : Region{},
                    .outside = plate.outside,
                    .places = scene.domain ? static_places(scene, g, plate.outside) : Cells{},
+                   .held = held_lines(scene, g),
                    .drop_every = d.drop_every,
                    .refill = d.refill,
                    .widths = d.widths,

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "geometry/cpu_time.h"
+#include "geometry/line_gaps.h"
 #include "geometry/part_mesh.h"
 #include "optim/mmc/united_connectivity.h"
 
@@ -143,18 +144,43 @@ bool is_given(const BodyProblem& problem, const NarrowPlace& place) {
   return a != rings.end() && b != rings.end() && a != b;
 }
 
+/// Gaps to held lines, but those that a passive region leaves.
+std::vector<NarrowPlace> held_gaps(const BodyProblem& problem, std::span<const Region> regions,
+                                   double limit) {
+  std::vector<NarrowPlace> out = line_gaps(regions, problem.held, limit);
+  const double small = 1e-6 * problem.grid.dx();
+  const auto ends = [&](const std::vector<Vec2>& region, const Vec2& p) {
+    return bounds(region, p, small);
+  };
+  std::erase_if(out, [&](const NarrowPlace& gap) {
+    const auto any = [&](const std::vector<std::vector<Vec2>>& of) {
+      return std::any_of(of.begin(), of.end(), [&](const auto& r) { return ends(r, gap.b); });
+    };
+    return any(problem.solid) || any(problem.empty) || !contains(domain_of(problem), gap.a);
+  });
+  return out;
+}
+
 }  // namespace
 
 std::vector<NarrowPlace> narrow_places_of(const BodyProblem& problem,
                                           std::span<const Region> regions, double limit) {
   std::vector<NarrowPlace> out = narrow_places(regions, domain_of(problem), limit);
   std::erase_if(out, [&](const NarrowPlace& place) { return is_given(problem, place); });
+  const std::vector<NarrowPlace> to_held = held_gaps(problem, regions, limit);
+  out.insert(out.end(), to_held.begin(), to_held.end());
+  std::stable_sort(out.begin(), out.end(),
+                   [](const NarrowPlace& x, const NarrowPlace& y) { return x.width < y.width; });
   return out;
 }
 
 Features features_of(const BodyProblem& problem, std::span<const Region> regions) {
-  return smallest_features(regions, domain_of(problem),
-                           [&](const NarrowPlace& place) { return !is_given(problem, place); });
+  Features out = smallest_features(regions, domain_of(problem), [&](const NarrowPlace& place) {
+    return !is_given(problem, place);
+  });
+  for (const NarrowPlace& gap : held_gaps(problem, regions, out.gap))
+    out.gap = std::min(out.gap, gap.width);
+  return out;
 }
 
 Connectivity connectivity_of(const BodyProblem& problem, std::span<const Region> regions) {

@@ -9,6 +9,7 @@
 #include "fem/element.h"
 #include "geometry/feature.h"
 #include "geometry/outline.h"
+#include "geometry/part_mesh.h"
 #include "geometry/picture.h"
 #include "optim/mmc/compliance.h"
 #include "optim/mmc/mmc_problem.h"
@@ -30,6 +31,7 @@ struct BodyProblem {
   Region domain = {};                         ///< without an outer ring: the whole grid
   std::vector<signed char> outside = {};      ///< cells_outside() of it; empty: none
   std::vector<std::vector<int>> places = {};  ///< cells of loaded and held places; empty: both ends
+  std::vector<Segment> held = {};  ///< lines of the border that hold what touches them
   int drop_every = 25;  ///< iterations between looks for dead components; 0: none
   bool refill = false;  ///< long components are split in place of dropped ones
   /// Smallest widths that the result is mended to.
@@ -63,8 +65,8 @@ Region domain_of(const BodyProblem& problem);
 std::vector<Region> regions_of(const BodyProblem& problem, std::span<const Component> components,
                                double tolerance);
 
-/// Narrow places of such a union, less those that passive regions and holes of the domain make
-/// by themselves: no design can change them.
+/// Narrow places of such a union, gaps to what holds it among them, less those that passive regions
+/// and holes of the domain make by themselves: no design can change them.
 std::vector<NarrowPlace> narrow_places_of(const BodyProblem& problem,
                                           std::span<const Region> regions, double limit);
 Features features_of(const BodyProblem& problem, std::span<const Region> regions);

@@ -136,7 +136,7 @@ std::vector<NarrowPlace> UnderRepair::places() const {
       return k;
     };
     const auto [one, other] = std::minmax({piece_at(p.a), piece_at(p.b)});
-    if (one == other) return p.width >= kWithin * wanted_.gap;
+    if (one == other || other == pieces.size()) return p.width >= kWithin * wanted_.gap;
     return !parted.insert({one, other}).second;
   });
   return out;

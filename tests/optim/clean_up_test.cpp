@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/line_gaps.h"
 #include "optim/mmc/body_design.h"
 #include "tests/geometry/scrambled_heap.h"
 #include "tests/optim/mmc_small.h"
@@ -172,6 +173,41 @@ TEST(CleanUp, ClosesACutThroughASlantedBarThatFillsNoCell) {
       EXPECT_TRUE(done.reached());
       EXPECT_LT(compliance_on(4, problem), 1.04 * compliance_on(1, problem));
     }
+}
+
+// The cells in front of the line that holds bridge what ends short of it. Of two flanges both are
+// needed.
+TEST(CleanUp, ClosesACutBeforeTheLineThatHolds) {
+  for (const double short_of : {0.00006, 0.004, 0.008}) {
+    SCOPED_TRACE(short_of);
+    std::vector<Component> parts = {bar({-0.1, -0.03}, {0.62, -0.03}, 0.012),
+                                    bar({short_of, 0.03}, {0.62, 0.03}, 0.012)};
+    for (const double x : {0.1, 0.3, 0.5}) {
+      parts.push_back(bar({x, -0.03}, {x + 0.1, 0.03}, 0.009));
+      parts.push_back(bar({x + 0.1, 0.03}, {x + 0.2, -0.03}, 0.009));
+    }
+    BodyProblem problem = problem_of(parts, 1);
+    problem.goal.limits.clear();
+    parts[1] = bar({-0.1, 0.03}, {0.62, 0.03}, 0.012);
+    const double uncut = compliance_on(4, problem_of(parts, 1));
+    problem.held = {{{kGrid.x0, kGrid.y0}, {kGrid.x0, kGrid.y0 + kGrid.height}}};
+    const auto to_root = [&] {
+      const auto outline = regions_of(problem, problem.design.components(), 5e-3 * kGrid.dx());
+      return line_gaps(outline, problem.held, 3 * kGrid.dx());
+    };
+    ASSERT_EQ(to_root().size(), 1u);
+    EXPECT_NEAR(to_root().front().width, short_of, 1e-4);
+    FixedLoads loads = tip_load();
+    const Widths wanted{kWanted, kGrid.dx()};
+    EXPECT_FALSE(look_over(problem, loads, wanted).reached());
+    if (short_of > kGrid.dx() / 4) {
+      EXPECT_GT(compliance_on(4, problem), 1.5 * uncut);
+    }
+    const CleanUp done = clean_up(problem, loads, wanted);
+    EXPECT_TRUE(done.reached());
+    EXPECT_TRUE(to_root().empty());
+    EXPECT_LT(compliance_on(4, problem), 1.07 * uncut);  // what came is thinner than the bar
+  }
 }
 
 // A run that is to end does not wait for a repair, and takes nothing half done.
