@@ -14,9 +14,7 @@ double judged_compliance(const BodyProblem& problem, LoadResponse& loads,
                          const CellFactors& factors) {
   if (compliance_row(problem.goal).per_load)
     return loads.individual(factors.stiffness, factors.mass).maxCoeff();
-  LoadResponse::Value value;
-  loads.evaluate(factors.stiffness, factors.mass, value);
-  return value.f;
+  return loads.sum(factors.stiffness, factors.mass);
 }
 
 Figures further_values(const BodyProblem& problem, std::span<const Component> components,

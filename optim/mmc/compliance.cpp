@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -81,6 +82,9 @@ struct Compliance::Impl {
   void keep_outside(MatrixXd& field, std::span<const int> columns, bool keep_root_line) const;
   void compress(double tolerance);
   void solve_all();
+  Eigen::Index rows_before(int column) const;
+  double plain_sum() const;
+  double mixed_sum() const;
   void solve_single(int load, const VectorXd& mass, MatrixXd& u);
 };
 
@@ -201,6 +205,42 @@ void Compliance::Impl::solve_all() {
   }
 }
 
+/// Unknowns of the plate clamped at a column of nodes.
+Eigen::Index Compliance::Impl::rows_before(int column) const {
+  const Grid& g = solver.grid();
+  return Eigen::Index{2} * (g.ny + 1) * (g.nx - column);
+}
+
+/// Σ w_i |y_i|² of the rows before each clamp; F holds y = L⁻¹ F.
+double Compliance::Impl::plain_sum() const {
+  double out = 0;
+  for (Eigen::Index l = 0; l < F.rows(); ++l) {
+    const Eigen::Index rows = rows_before(solved_columns[static_cast<std::size_t>(l)]);
+    out += solved_weights(l) * F.row(l).head(rows).squaredNorm();
+  }
+  return out;
+}
+
+/// The same of y_i = Σ_k mix_ik y_k: Σ_i w_i mix_iᵀ (Y Yᵀ) mix_i with the rows before clamp i.
+double Compliance::Impl::mixed_sum() const {
+  std::vector<Eigen::Index> order(solved_columns.size());
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  const auto column = [&](Eigen::Index l) { return solved_columns[static_cast<std::size_t>(l)]; };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](auto a, auto b) { return column(a) > column(b); });
+  MatrixXd gram = MatrixXd::Zero(F.rows(), F.rows());
+  Eigen::Index done = 0;
+  double out = 0;
+  for (const Eigen::Index l : order) {
+    const Eigen::Index rows = rows_before(column(l));
+    const auto more = F.middleCols(done, rows - done);
+    if (rows > done) gram.noalias() += more * more.transpose();
+    done = rows;
+    out += weights(l) * mix.row(l).dot(mix.row(l) * gram);
+  }
+  return out;
+}
+
 Compliance::Compliance(const fem::EslSets& loads, const fem::PlaneSection& section,
                        const ComplianceSettings& settings, const VectorXd& stiffness0,
                        const VectorXd& mass0) {
@@ -255,6 +295,17 @@ void Compliance::evaluate(const VectorXd& stiffness, const VectorXd& mass, Value
     throw Error::numerical("compliance: the objective or its derivative is not finite");
   }
   m.seconds = {factored - start, solved - factored, cpu_seconds() - solved};
+}
+
+double Compliance::sum(const VectorXd& stiffness, const VectorXd& mass) {
+  Impl& m = *impl_;
+  if (m.held) return LoadResponse::sum(stiffness, mass);
+  m.factorize(stiffness);
+  m.inertia.forces(m.solved(), mass, m.F);
+  m.solver.forward(m.F);
+  const double out = m.path == Path::mixed ? m.mixed_sum() : m.plain_sum();
+  if (!std::isfinite(out)) throw Error::numerical("compliance: the objective is not finite");
+  return out;
 }
 
 void Compliance::evaluate_each(const VectorXd& stiffness, const VectorXd& mass, Each& each) {

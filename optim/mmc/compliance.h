@@ -53,6 +53,9 @@ class Compliance final : public LoadResponse {
 
   /// Cells inside the hub of every load get derivative 0.
   void evaluate(const VectorXd& stiffness, const VectorXd& mass, Value& value) override;
+  /// F_i . K_i⁻¹ F_i = |L_i⁻¹ F_i|², where L_i, of the plate clamped as load i has it, is a leading
+  /// block of L: forward substitutions only.
+  double sum(const VectorXd& stiffness, const VectorXd& mass) override;
   /// Never compressed.
   void evaluate_each(const VectorXd& stiffness, const VectorXd& mass, Each& each) override;
   VectorXd individual(const VectorXd& stiffness, const VectorXd& mass) override;

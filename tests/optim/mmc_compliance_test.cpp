@@ -267,6 +267,8 @@ TEST_P(EveryLoadDefinition, CompressionChangesNothing) {
     EXPECT_NEAR(a.f, b.f, 1e-8 * a.f);
     EXPECT_LT((a.d_stiffness - b.d_stiffness).norm(), 1e-8 * a.d_stiffness.norm());
     EXPECT_LE((a.d_mass - b.d_mass).norm(), 1e-8 * a.d_mass.norm());
+    EXPECT_NEAR(all.sum(k, m), a.f, 1e-8 * a.f);
+    EXPECT_NEAR(few.sum(k, m), a.f, 1e-8 * a.f);
     const VectorXd individual = few.individual(k, m);
     double sum = 0;
     for (int l = 0; l < 40; ++l) {
@@ -308,6 +310,7 @@ TEST(Compression, OneRootColumnNeedsFewSolves) {
   all.evaluate(design.stiffness(0), design.mass(0), a);
   few.evaluate(design.stiffness(0), design.mass(0), b);
   EXPECT_NEAR(a.f, b.f, 1e-8 * a.f);
+  EXPECT_NEAR(few.sum(design.stiffness(0), design.mass(0)), a.f, 1e-8 * a.f);
   EXPECT_LT((a.d_mass - b.d_mass).norm(), 1e-8 * a.d_mass.norm());
 }
 
@@ -340,6 +343,7 @@ TEST(Compression, OrderAndZeroWeightsDoNotMatter) {
   few.evaluate(design.stiffness(0), design.mass(0), shuffled);
   EXPECT_LT(few.n_right_hand_sides(), 10);
   EXPECT_NEAR(sorted.f, shuffled.f, 1e-9 * sorted.f);
+  EXPECT_NEAR(few.sum(design.stiffness(0), design.mass(0)), sorted.f, 1e-9 * sorted.f);
   EXPECT_LT((sorted.d_stiffness - shuffled.d_stiffness).norm(), 1e-9 * sorted.d_stiffness.norm());
   EXPECT_LT((sorted.d_mass - shuffled.d_mass).norm(), 1e-9 * sorted.d_mass.norm());
 }
