@@ -146,7 +146,7 @@ void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress
     progress.say("cycle " + std::to_string(v.cycle) + ": compliance of all bodies " +
                  io::to_text(v.objective, 5) + ", strain energy over time " +
                  io::to_text(v.strain_energy_integral, 5) + " J s" +
-                 (v.best ? ", the least so far" : ""));
+                 (v.best ? ", the least so far" : ", no less than before: the last one"));
   };
   const std::vector<mmc::BodyOutcome> best =
       mmc::esl_loop(report.problems, simulate, settings, observer);

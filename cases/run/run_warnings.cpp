@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "cases/build/build.h"
 #include "io/files.h"
@@ -136,6 +137,27 @@ void add_designs(const RunReport& report, Warnings& out) {
   }
 }
 
+/// Cycles that ended at their limit, while they still changed the designs and made the motion
+/// better.
+void add_cycles(const Cycle& cycle, std::span<const mmc::CycleVerdict> verdicts, Warnings& out) {
+  if (verdicts.size() < 2 || static_cast<int>(verdicts.size()) < cycle.max_cycles ||
+      !verdicts.back().best)
+    return;
+  const auto sum = [](const mmc::CycleVerdict& v) {
+    double all = 0;
+    for (const mmc::BodyVerdict& b : v.bodies) all += b.sharp_compliance;
+    return all;
+  };
+  const double before = sum(verdicts[verdicts.size() - 2]);
+  const double change = std::abs(sum(verdicts.back()) - before) / before;
+  if (change > cycle.tolerance)
+    out.push_back(
+        {"cycle.max_cycles = " + std::to_string(cycle.max_cycles) +
+         " ended the cycles while they still made the motion better: the last one changed "
+         "sharp compliances by " +
+         io::to_text(100 * change, 2) + " %"});
+}
+
 /// Of bodies whose temperature jumps on the way; nothing where none does.
 std::string jump_words(const Scene& scene) {
   std::string jumps;
@@ -182,6 +204,7 @@ void add_motion(const Scene& scene, const MotionRecord& motion, Warnings& out) {
 Warnings warnings_of(const Scene& scene, const RunReport& report) {
   Warnings out;
   add_designs(report, out);
+  add_cycles(scene.cycle, report.verdicts, out);
   if (report.motion) add_motion(scene, *report.motion, out);
   if (!report.lost_frames.empty()) out.push_back({report.lost_frames});
   if (!report.missing_exports.empty()) out.push_back({report.missing_exports});

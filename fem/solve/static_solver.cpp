@@ -242,6 +242,15 @@ void StaticSolver::forward(MatrixXd& loads) const {
   m.matrix->factor().forward(loads, m.all_active);
 }
 
+void StaticSolver::forward(MatrixXd& loads, std::span<const int> root_columns) const {
+  const Impl& m = *impl_;
+  m.check_roots(root_columns, loads.rows());
+  const bool reorder = m.arrange(root_columns);
+  if (reorder) m.to_order(loads);
+  m.matrix->factor().forward(loads, m.active);
+  if (reorder) m.from_order(loads);
+}
+
 void StaticSolver::cell_energies(const MatrixXd& displacements, const VectorXd& weights,
                                  VectorXd& energies, std::span<const int> root_columns) const {
   const Impl& m = *impl_;

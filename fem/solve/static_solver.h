@@ -63,6 +63,8 @@ class StaticSolver {
 
   /// L⁻¹ loads, in place, of the plate clamped at column first_root: |L⁻¹ F|² = F . K⁻¹ F.
   void forward(MatrixXd& loads) const;
+  /// The same up to the clamp of each load: what comes back on and behind it means nothing.
+  void forward(MatrixXd& loads, std::span<const int> root_columns) const;
 
   /// u . K_cell u of full material for every cell, summed over loads with weights (n_cells).
   /// @param root_columns  when given, displacements are known to be zero on and behind them, and

@@ -213,12 +213,14 @@ Eigen::Index Compliance::Impl::rows_before(int column) const {
 
 /// Σ w_i |y_i|² of the rows before each clamp; F holds y = L⁻¹ F.
 double Compliance::Impl::plain_sum() const {
-  double out = 0;
-  for (Eigen::Index l = 0; l < F.rows(); ++l) {
-    const Eigen::Index rows = rows_before(solved_columns[static_cast<std::size_t>(l)]);
-    out += solved_weights(l) * F.row(l).head(rows).squaredNorm();
+  const Eigen::Index rows = rows_before(solver.grid().nx - 1);  // of a column of nodes
+  VectorXd each = VectorXd::Zero(F.rows());
+  for (int i = solver.grid().nx; i > 0 && solver.row(i, 0) >= 0; --i) {
+    const VectorXd here = F.middleCols(solver.row(i, 0), rows).rowwise().squaredNorm();
+    for (Eigen::Index l = 0; l < each.size(); ++l)
+      if (i > solved_columns[static_cast<std::size_t>(l)]) each(l) += here(l);
   }
-  return out;
+  return solved_weights.dot(each);
 }
 
 /// The same of y_i = Σ_k mix_ik y_k: Σ_i w_i mix_iᵀ (Y Yᵀ) mix_i with the rows before clamp i.
@@ -302,7 +304,11 @@ double Compliance::sum(const VectorXd& stiffness, const VectorXd& mass) {
   if (m.held) return LoadResponse::sum(stiffness, mass);
   m.factorize(stiffness);
   m.inertia.forces(m.solved(), mass, m.F);
-  m.solver.forward(m.F);
+  if (m.path == Path::mixed) {
+    m.solver.forward(m.F);
+  } else {
+    m.solver.forward(m.F, m.solved_columns);
+  }
   const double out = m.path == Path::mixed ? m.mixed_sum() : m.plain_sum();
   if (!std::isfinite(out)) throw Error::numerical("compliance: the objective is not finite");
   return out;

@@ -140,6 +140,7 @@ class Verdicts {
     return outcomes_[best_];
   }
   const std::vector<CycleVerdict>& all() const { return verdicts_; }
+  bool last_is_best() const { return best_ + 1 == verdicts_.size(); }
 
  private:
   std::vector<CycleVerdict> verdicts_;
@@ -160,7 +161,10 @@ std::vector<BodyOutcome> esl_loop(std::vector<BodyProblem>& problems, const Simu
   std::vector<BodyOutcome> outcome;
   for (int cycle = 1; cycle <= settings.max_cycles; ++cycle) {
     const std::vector<fem::EslSets> loads = move(problems, simulate);
-    if (cycle > 1) judge(loads);
+    if (cycle > 1) {
+      judge(loads);
+      if (!verdicts.last_is_best()) return verdicts.take_best(problems);
+    }
     if (observer.loads) observer.loads(cycle, loads);
 
     const std::vector<BodyOutcome> before = std::move(outcome);

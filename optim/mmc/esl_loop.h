@@ -52,8 +52,8 @@ struct LoopObserver {
   std::function<void(std::span<const CycleVerdict>)> verdict;
 };
 
-/// dynamics -> ESL -> design problem -> dynamics ..., until the designs rest (optim/README.md,
-/// Cycles). Bodies that share mass are one design problem, the others have one each. The designs of
+/// dynamics -> ESL -> design problem -> dynamics ..., until the designs rest, or a cycle makes the
+/// motion no better (optim/README.md, Cycles). Bodies that share mass are one design problem, the others have one each. The designs of
 /// `problems` are left at the result, that of the best cycle, and the outcomes belong to it.
 /// @throws Error (numerical) from dynamics or statics; rows reported before it stand.
 std::vector<BodyOutcome> esl_loop(std::vector<BodyProblem>& problems, const Simulate& simulate,

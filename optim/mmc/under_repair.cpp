@@ -125,6 +125,11 @@ std::vector<NarrowPlace> UnderRepair::places() const {
   // The tolerance of outlines counts twice.
   const double tolerance = 2 * kOutlineTolerance * problem_.grid.dx();
   std::vector<NarrowPlace> out = narrow_places_of(problem_, pieces, wanted_.largest() + tolerance);
+  const auto ends_at_held = [&](const NarrowPlace& p) {
+    return std::any_of(problem_.held.begin(), problem_.held.end(), [&](const Segment& line) {
+      return distance(line, p.a) < 1e-6 * problem_.grid.dx();
+    });
+  };
   std::set<std::pair<size_t, size_t>> parted;  // a bridge is enough for two pieces
   std::erase_if(out, [&](const NarrowPlace& p) {
     if (p.solid) return p.width >= wanted_.solid + tolerance;
@@ -136,7 +141,7 @@ std::vector<NarrowPlace> UnderRepair::places() const {
       return k;
     };
     const auto [one, other] = std::minmax({piece_at(p.a), piece_at(p.b)});
-    if (one == other || other == pieces.size()) return p.width >= kWithin * wanted_.gap;
+    if (one == other || ends_at_held(p)) return p.width >= kWithin * wanted_.gap;
     return !parted.insert({one, other}).second;
   });
   return out;

@@ -156,7 +156,8 @@ TEST(Starts, OfMotionsShorterThanADifference) {
   const Scratch scratch;
   const Ended ended =
       run(scratch, "motion_platform",
-          lean({"design=", "optimizer=", "esl=", "verify=", "time.step=1e-6", "time.end=1e-5"}));
+          lean({"design=", "optimizer=", "esl=", "verify=", "cycle=", "time.step=1e-6",
+                "time.end=1e-5"}));
   EXPECT_EQ(ended.code, 0) << ended.err;
   EXPECT_LT(run_of(scratch)["motion"]["velocity_drift"].get<double>(), 1e-6);
 }
