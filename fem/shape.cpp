@@ -8,8 +8,15 @@ namespace flexmorph::fem {
 namespace {
 
 /// Coefficients of H1..H4 on the unit interval.
-Eigen::Matrix4d unit_hermite() {
+Eigen::Matrix4d unit_functions(Hermite::Degree degree) {
   Eigen::Matrix4d h;
+  if (degree == Hermite::Degree::linear) {
+    h.setZero();
+    h(0, 0) = 1;
+    h(0, 1) = -1;
+    h(2, 1) = 1;
+    return h;
+  }
   h << 1, 0, -3, 2,  //
       0, 1, -2, 1,   //
       0, 0, 3, -2,   //
@@ -35,7 +42,7 @@ Eigen::Matrix4d derivative(const Eigen::Matrix4d& p) {
   return out;
 }
 
-Hermite::Hermite(const Motion& x1, const Motion& x2)
+Hermite::Hermite(const Motion& x1, const Motion& x2, Degree degree)
     : start(x1.value), length(x2.value - x1.value) {
   const double a = length;
   const double a_dot = x2.rate - x1.rate;
@@ -45,7 +52,7 @@ Hermite::Hermite(const Motion& x1, const Motion& x2)
   const double w0 = -x1.acceleration / a - 2 * u0 * a_dot / a;
   const double w1 = -a_ddot / a - 2 * u1 * a_dot / a;
 
-  const Eigen::Matrix4d h = unit_hermite();
+  const Eigen::Matrix4d h = unit_functions(degree);
   const Eigen::Matrix4d dh = derivative(h);
   const Eigen::Matrix4d ddh = derivative(dh);
   const Eigen::Matrix4d h_dot = times_linear(dh, u0, u1);

@@ -19,12 +19,15 @@ struct Motion {
 ///
 /// All three are cubic polynomials in s, because ṡ = -(ẋ1 + s ȧ)/a is linear in s: row i of each
 /// matrix holds the coefficients of function i (s⁰, s¹, s², s³). Functions 0 and 2 interpolate the
-/// value at the ends, 1 and 3 the derivative by X (P (3) in one direction).
+/// value at the ends, 1 and 3 the derivative by X (P (3) in one direction). Linear ones are
+/// (1 - s, 0, s, 0).
 struct Hermite {
+  enum class Degree { linear = 1, cubic = 3 };
+
   double start = 0, length = 1;  ///< x1 and a [m]
   Eigen::Matrix4d value, rate, acceleration;
 
-  Hermite(const Motion& x1, const Motion& x2);
+  Hermite(const Motion& x1, const Motion& x2, Degree degree = Degree::cubic);
 };
 
 /// Derivative by s of polynomials given by rows of coefficients.

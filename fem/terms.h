@@ -44,6 +44,7 @@ struct TermRow {
   bool moves = false;                  ///< does a body that moves need its role?
   bool designable = false;             ///< is it what a designed body is made of?
   bool acts_on_elastic = false;        ///< is there nothing to it without an elastic term?
+  bool on_cells = false;               ///< does it know plates of cells (q4)?
   bool free_lines = true;              ///< does it know free material lines?
   std::vector<TermKey> keys;           ///< that it reads
   std::vector<std::string> columns;    ///< that it writes to motion.csv

@@ -43,6 +43,7 @@ struct MeshChoice {
   std::optional<std::array<int, 2>> elements;
   int refine = 1;  ///< parts of every element in each direction
   std::optional<double> step;
+  int cells = 0;  ///< designed bodies move on their design's cells, each in so many parts each way
 };
 
 /// Scene -> model, joints and integrator settings. Stops for loads and output are left empty. The

@@ -119,7 +119,11 @@ void add_frame(const Scene& scene, const Joint& joint, double finer, Mechanism& 
   if (joint.edge == "free_end" || !body.row->lines) return;
   constexpr double kNever = std::numeric_limits<double>::infinity();
   fem::Growth growth{joint.body, carrier, kNever, 0, joint.line, slide_of(scene, joint)};
-  if (body.flow) {
+  if (body.flow && body.on_cells()) {
+    growth.cell = finer * body.cell_length();
+    growth.max_length = kLongestCell * growth.cell;
+    growth.min_length = kShortestCell * growth.cell;
+  } else if (body.flow) {
     growth.max_length = finer * body.flow->max_length;
     growth.min_length = finer * body.flow->min_length;
   } else if (body.mesh_changes()) {
@@ -304,7 +308,25 @@ double stress_round_off(const Scene& scene) {
   return out;
 }
 
+/// The scene with its designed bodies on the cells of their designs.
+Scene on_cells(Scene scene, int parts) {
+  for (const BodyDesign& design : scene.designs)
+    for (Body& body : scene.bodies) {
+      if (body.name != design.body) continue;
+      body.shape = "q4";
+      body.cell = design.grid.dx() / parts;
+      body.elements = {static_cast<int>(std::lround(body.length / body.cell)),
+                       parts * design.grid.ny};
+    }
+  return scene;
+}
+
 Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh) {
+  if (mesh.cells > 0) {
+    MeshChoice other = mesh;
+    other.cells = 0;
+    return build_mechanism(on_cells(scene, mesh.cells), other);
+  }
   Mechanism out;
   const auto elements = [&](const Body& body) {
     const std::array<int, 2> count = mesh.elements.value_or(body.elements);

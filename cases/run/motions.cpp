@@ -112,7 +112,8 @@ void judge_by_motion(const Scene& scene, bool condition, std::function<bool()> g
     progress.say("verification on " + scene.verify->words());
     // A finer mesh, and in all likelihood shorter steps.
     constexpr double kFiner = 4;
-    wishes.mesh = {scene.verify->mesh, scene.verify->refine, scene.verify->step};
+    wishes.mesh = {scene.verify->mesh, scene.verify->refine, scene.verify->step,
+                   scene.verify->cells};
     wishes.balance = false;
     wishes.table = "motion_verified_uniform.csv";
     motions.add("verification with uniform material", kFiner, wishes, report.verified_uniform);

@@ -43,14 +43,15 @@ std::array<double, 2> elements_of(const Scene& scene, const Body& body, double f
   double along = body.elements[0];
   if (body.flow) {
     const double grown = body.longest(scene.time.end) - body.length;
-    along += std::max(0.0, grown / (0.75 * body.flow->max_length));
+    along += std::max(
+        0.0, grown / (body.on_cells() ? body.cell_length() : 0.75 * body.flow->max_length));
   }
   return {finer * along, body.row->across ? finer * body.elements[1] : 0};
 }
 
 /// Unknowns at a node of a body: its position and slopes.
 double node_unknowns(const Body& body) {
-  const double vectors = !body.row->across ? 2 : body.shape == "h12" ? 3 : 4;
+  const double vectors = !body.row->across ? 2 : body.on_cells() ? 1 : body.shape == "h12" ? 3 : 4;
   return vectors * body.dim();
 }
 

@@ -68,8 +68,9 @@ struct Body {
   double poisson_ratio = 0;               ///< [-]
   std::map<std::string, double> numbers;  ///< that its terms read, by key
   std::array<int, 2> elements{1, 1};      ///< along the length at the start, across the width
-  std::optional<Flow> flow;               ///< absent: no material flows
-  std::vector<BodyLine> lines;            ///< by index
+  double cell = 0;           ///< of the shape set q4: length of its cells [m]; 0: of its elements
+  std::optional<Flow> flow;  ///< absent: no material flows
+  std::vector<BodyLine> lines;   ///< by index
   std::optional<Vec2> position;  ///< of the middle of the root at the start, where given [m]
   double angle = 0;              ///< of its axis, with `position` [rad]
   double arc = 0;  ///< angle that the axis of an undeformed beam turns by, an arc of a circle [rad]
@@ -79,6 +80,10 @@ struct Body {
   fem::Motion length_motion(double time) const;
   double longest(double end) const;   ///< in [0, end], the time of the run
   double shortest(double end) const;  ///< likewise
+  /// Are its elements cells? Those in front of a root that moves lie where they lie when the body
+  /// is longest.
+  bool on_cells() const { return shape == "q4"; }
+  double cell_length() const { return cell > 0 ? cell : length / elements[0]; }
   bool in_space() const { return space == "space"; }
   int dim() const { return in_space() ? 3 : 2; }
   double low() const { return in_space() ? 0 : -0.5 * width; }  ///< where Y begins [m]
@@ -102,6 +107,10 @@ struct Body {
   /// Material coordinates of the m-lines at the start, the first at `root` [m].
   std::vector<double> start_lines(double root, int count) const;
 };
+
+/// Of a mesh of cells: length of the element at a moving root, in cells, when a line comes or goes.
+/// A line comes where it lies in the design, so that 0.3 of a cell is left at the root.
+inline constexpr double kLongestCell = 1.3, kShortestCell = 0.25;
 
 struct PointMass {
   std::string body;

@@ -67,6 +67,7 @@ const io::Key& kLength = io::key("body.flow", "length")
                              .says("The drive of the length outside of the hub.");
 const io::Key& kMaxLength = io::key("body.flow", "max_length")
                                 .number(positive("a length", "m"))
+                                .when("`shape` is not \"q4\"")
                                 .says("A longer element at the root is split in the middle.");
 const io::Key& kMinLength =
     io::key("body.flow", "min_length")

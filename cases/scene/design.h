@@ -73,7 +73,8 @@ struct Cycle {
 struct Verify {
   std::optional<std::array<int, 2>> mesh;  ///< elements along the length at the start, and across
   int refine = 1;                          ///< or so many times those of every body
-  double step = 0;                         ///< [s]
+  int cells = 0;    ///< or the cells of the designs, each in so many parts each way; 0: not these
+  double step = 0;  ///< [s]
 
   std::string words() const;  ///< "20 x 4 elements"
 };

@@ -191,6 +191,7 @@ double extreme(const std::function<fem::Motion(double)>& motion, double a, doubl
 /// not be short enough to be merged again, nor a merged element long enough to be split.
 void check_limits(const Table& t, const Body& body, double end) {
   const Flow& flow = *body.flow;
+  if (body.on_cells()) return;  // they are as long as they are
   const double element = body.length / body.elements[0];
   const double shortest = body.shortest(end);
   if (element > flow.max_length * (1 + 1e-9))

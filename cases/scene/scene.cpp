@@ -165,6 +165,8 @@ void Scene::refuse(const std::string& key_path, const std::string& why) const {
 }
 
 std::string Verify::words() const {
+  if (cells == 1) return "the cells of the designs";
+  if (cells > 1) return std::to_string(cells) + " x " + std::to_string(cells) + " parts of cells";
   if (!mesh) return std::to_string(refine) + " times the elements in each direction";
   return std::to_string((*mesh)[0]) + " x " + std::to_string((*mesh)[1]) + " elements";
 }

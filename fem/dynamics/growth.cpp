@@ -65,7 +65,7 @@ NextChange next_change(const Body& body, const Growth& growth, double t, double 
   };
   const bool may_merge =
       plate.n_m() > 1 && !first.drive &&
-      growth.min_length + plate.lines_m()[2].value - first.value < 0.9 * growth.max_length;
+      growth.min_length + plate.lines_m()[2].value - first.value < growth.merged_below();
   // Positive once the limit is passed.
   const auto passed = [&](double at) {
     const double above = length(at) - growth.max_length;
@@ -95,19 +95,18 @@ std::optional<MeshChange> change_due(const Body& body, const Growth& growth) {
   const double length = plate.line_m(1).value - plate.line_m(0).value;
   if (length > growth.max_length) return MeshChange::insertion;
   const bool may_merge = plate.n_m() > 1 && !plate.lines_m()[1].free && !plate.lines_m()[1].drive &&
-                         plate.line_m(2).value - plate.line_m(0).value < 0.9 * growth.max_length;
+                         plate.line_m(2).value - plate.line_m(0).value < growth.merged_below();
   if (length < growth.min_length && may_merge) return MeshChange::removal;
   return {};
 }
 
-MeshMap change_mesh(Workspace& model, Body& body, MeshChange change, State& x) {
+MeshMap change_mesh(Workspace& model, Body& body, MeshChange change, State& x, double cell) {
   model.prepare(x);
-  MeshMap map(body, change, model.n_dofs());
+  MeshMap map(body, change, model.n_dofs(), cell);
   const LineGrid& old = grid_of(body);
-  std::unique_ptr<LineGrid> next =
-      change == MeshChange::insertion
-          ? old.with_line(0, 0.5 * (old.line_m(0).value + old.line_m(1).value))
-          : old.without_line(1);
+  std::unique_ptr<LineGrid> next = change == MeshChange::insertion
+                                       ? old.with_line(0, inserted_line(old, cell))
+                                       : old.without_line(1);
   model.set_element(body, std::move(next));
   map.carry(x);
   model.prepare(x);

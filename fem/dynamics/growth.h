@@ -20,6 +20,11 @@ struct Growth {
   double min_length = 0.03;  ///< a shorter one is merged with its neighbour [m]
   int line = 0;              ///< the m-line that is welded: 0 is the root
   double slide = 0;          ///< rate at the start of that line, where it is free [m/s]
+  double cell =
+      0;  ///< lines come so far behind the first one, and not in the middle; 0: they do [m]
+
+  /// The longest element that a removal may leave, so that no insertion follows it at once [m].
+  double merged_below() const { return cell > 0 ? max_length : 0.9 * max_length; }
 };
 
 /// The material lines of a body. @throws Error (input) when the body has other elements.
@@ -41,8 +46,8 @@ PointMotion point_motion(const Body& body, const State& x, const Vec2& material)
 Vec3 point_position(const Body& body, const State& x, const Vec2& material);
 
 /// When the boundary element next leaves [min_length, max_length] in (t, end], and how; t =
-/// infinity when it does not. A removal needs a merged element below 0.9 max_length (else the pair
-/// would chatter: fem/README.md, Insertion and removal).
+/// infinity when it does not. A removal needs a merged element below Growth::merged_below() (else
+/// the pair would chatter: fem/README.md, Insertion and removal).
 struct NextChange {
   double t;
   MeshChange change;
@@ -51,9 +56,9 @@ NextChange next_change(const Body& body, const Growth& growth, double t, double 
 
 /// The change that the boundary element of a *free* root line asks for where the line is now: split
 /// when longer than max_length, merged when shorter than min_length and the merged element stays
-/// below 0.9 max_length. Where the line will be is not known beforehand, so that there is no time
-/// to land on: the change is executed at the end of the step in which the limit was passed. A split
-/// does not alter the field (h16), whenever it comes.
+/// below Growth::merged_below(). Where the line will be is not known beforehand, so that there is
+/// no time to land on: the change is executed at the end of the step in which the limit was passed.
+/// A split does not alter the field (h16), whenever it comes.
 ///
 /// Nothing where the welded line is not the root, or is not free. Joints of the body at "line 3"
 /// and the like do not follow the change: such models have no limits.
@@ -70,6 +75,7 @@ std::optional<MeshChange> change_due(const Body& body, const Growth& growth);
 /// @returns what was done to the vectors of the state.
 ///
 /// Source: P Fig. 3, 4; fem/README.md, Insertion and removal.
-MeshMap change_mesh(Workspace& model, Body& body, MeshChange change, State& x);
+/// @param cell  Growth::cell
+MeshMap change_mesh(Workspace& model, Body& body, MeshChange change, State& x, double cell = 0);
 
 }  // namespace flexmorph::fem

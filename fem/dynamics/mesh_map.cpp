@@ -15,7 +15,12 @@ const LineGrid& lines_of(const Body& body) {
 
 }  // namespace
 
-MeshMap::MeshMap(const Body& body, MeshChange change, int n_dofs) : n_before_(n_dofs) {
+double inserted_line(const LineGrid& lines, double cell) {
+  const double first = lines.line_m(1).value;
+  return cell > 0 ? first - cell : 0.5 * (lines.line_m(0).value + first);
+}
+
+MeshMap::MeshMap(const Body& body, MeshChange change, int n_dofs, double cell) : n_before_(n_dofs) {
   const LineGrid& plate = lines_of(body);
   dim_ = plate.dim();
   per_node_ = plate.per_node();
@@ -26,9 +31,11 @@ MeshMap::MeshMap(const Body& body, MeshChange change, int n_dofs) : n_before_(n_
     return;
   }
   added_ = column;
+  const double root = plate.line_m(0).value;
+  const double s = (inserted_line(plate, cell) - root) / (plate.line_m(1).value - root);
   for (int j = 0; j <= plate.n_n(); ++j)
     nodes_.push_back(
-        make_node(body, plate, plate.element(0, std::max(0, j - 1)), 0.5, j == 0 ? 0.0 : 1.0));
+        make_node(body, plate, plate.element(0, std::max(0, j - 1)), s, j == 0 ? 0.0 : 1.0));
 }
 
 MeshMap::Node MeshMap::make_node(const Body& body, const LineGrid& plate, int e, double s,

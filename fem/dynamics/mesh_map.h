@@ -11,6 +11,10 @@ namespace flexmorph::fem {
 /// A line of nodes next to the root comes or goes.
 enum class MeshChange { insertion, removal };
 
+/// Where an insertion puts the new line: a cell behind the first one, or in the middle of the
+/// element at the root where there are no cells (0).
+double inserted_line(const LineGrid& lines, double cell);
+
 /// What a change of a body's mesh does to the vectors of the model, between the n unknowns before
 /// and the n' after it:
 ///
@@ -39,8 +43,9 @@ class MeshMap {
   MeshMap() = default;
   /// Of the change next to the root of a body, its lines where they are now.
   /// @param n_dofs  of the model
+  /// @param cell    see inserted_line()
   /// @throws Error (input) when the body has other elements.
-  MeshMap(const Body& body, MeshChange change, int n_dofs);
+  MeshMap(const Body& body, MeshChange change, int n_dofs, double cell = 0);
 
   int n_before() const { return n_before_; }
   int n_after() const { return n_before_ + added_ - removed_; }

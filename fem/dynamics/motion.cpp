@@ -365,7 +365,7 @@ class Run {
     event.momentum_before = momentum_in_space(model_, x_);
     const Vec3 tip_before = point_position(*body, x_, tip);
     const State before = x_;
-    MeshMap map = change_mesh(model_, *body, change, x_);
+    MeshMap map = change_mesh(model_, *body, change, x_, growth.cell);
     integrator_->change_mesh(map, before);
     event.after = model_.energies(x_);
     event.momentum_after = momentum_in_space(model_, x_);

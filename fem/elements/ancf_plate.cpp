@@ -51,6 +51,18 @@ Motion motion_of(const MaterialLine& line, double t) {
   return line.drive ? line.drive(t) : Motion{line.value, 0, 0};
 }
 
+int vectors_per_node(AncfPlate::ShapeSet shapes) {
+  switch (shapes) {
+    case AncfPlate::ShapeSet::q4:
+      return 1;
+    case AncfPlate::ShapeSet::h12:
+      return 3;
+    case AncfPlate::ShapeSet::h16:
+      return 4;
+  }
+  return 0;
+}
+
 /// Parts of [start, start + length] cut by the cells of one grid direction, as local intervals.
 struct Part {
   int cell;
@@ -80,7 +92,7 @@ std::vector<Part> parts(double start, double length, double grid_start, double c
 AncfPlate::AncfPlate(int dim, ShapeSet shapes, std::vector<MaterialLine> m,
                      std::vector<MaterialLine> n, double t)
     : dim_(dim),
-      per_node_(shapes == ShapeSet::h16 ? 4 : 3),
+      per_node_(vectors_per_node(shapes)),
       shapes_(shapes),
       m_(std::move(m)),
       n_(std::move(n)) {
@@ -96,6 +108,7 @@ AncfPlate::AncfPlate(int dim, ShapeSet shapes, std::vector<MaterialLine> m,
 
 void AncfPlate::move_to(double t) {
   t_ = t;
+  const auto degree = shapes_ == ShapeSet::q4 ? Hermite::Degree::linear : Hermite::Degree::cubic;
   size_t next_free = 0;
   const auto place = [&](const std::vector<MaterialLine>& lines, std::vector<Motion>& at,
                          std::vector<Hermite>& hermite) {
@@ -107,7 +120,7 @@ void AncfPlate::move_to(double t) {
       if (!(at[i + 1].value > at[i].value))
         throw Error::numerical("ancf_plate: material lines " + std::to_string(i) + " and " +
                                std::to_string(i + 1) + " cross at t = " + std::to_string(t));
-      hermite.emplace_back(at[i], at[i + 1]);
+      hermite.emplace_back(at[i], at[i + 1], degree);
     }
   };
   place(m_, at_m_, hermite_m_);
@@ -135,6 +148,7 @@ MatrixXd AncfPlate::reference() const {
       const int first = per_node_ * node(i, j);
       q(first, 0) = line_m(i).value;
       q(first, 1) = line_n(j).value;
+      if (per_node_ == 1) continue;
       q(first + 1, 0) = 1;
       q(first + 2, 1) = 1;
     }
@@ -143,9 +157,10 @@ MatrixXd AncfPlate::reference() const {
 
 NodeVectors AncfPlate::vectors_of(int i, int j) const {
   const int first = per_node_ * node(i, j);
+  const bool slopes = per_node_ > 1;
   return {first,
-          first + 1,
-          first + 2,
+          slopes ? first + 1 : -1,
+          slopes ? first + 2 : -1,
           shapes_ == ShapeSet::h16 ? first + 3 : -1,
           Vec2(line_m(i).value, line_n(j).value),
           m_[static_cast<size_t>(i)].drive || n_[static_cast<size_t>(j)].drive};

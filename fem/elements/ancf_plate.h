@@ -9,13 +9,14 @@ namespace flexmorph::fem {
 ///   r(X, t) = Σ_k N_k(ξ, η) q_k,   node unknowns r, r_m, r_n and, for h16, r_mn
 ///
 /// h16 = all 16 products of cubic Hermite functions (Bogner-Fox-Schmit); h12 = P (3), without the
-/// mixed derivative. With driven lines (ALE-ANCF) material flows through the mesh and the shape
+/// mixed derivative; q4 = the products of linear functions, node unknown r alone: one element a
+/// cell of a design. With driven lines (ALE-ANCF) material flows through the mesh and the shape
 /// functions get rates; without them nothing of that is computed.
 ///
 /// Source: P (1)-(5); Hyldahl et al. (2013); h16: fem/README.md, Plate element.
 class AncfPlate final : public LineGrid {
  public:
-  enum class ShapeSet { h12, h16 };
+  enum class ShapeSet { h12, h16, q4 };
 
   /// The plate at time t.
   /// @throws Error unless there are two lines each way, increasing at that time.

@@ -18,6 +18,8 @@ void AncfPlate::number_free_lines() {
   const auto number = [&](const std::vector<MaterialLine>& lines) {
     std::vector<int> out;
     for (const MaterialLine& line : lines) {
+      if (line.free && shapes_ == ShapeSet::q4)
+        throw Error::input("ancf_plate: no line of a mesh of cells (q4) is free");
       if (line.free && line.drive) throw Error::input("ancf_plate: a driven line is not free");
       out.push_back(line.free ? static_cast<int>(free_.size()) : -1);
       if (line.free) free_.push_back({line.value, 0, 0});

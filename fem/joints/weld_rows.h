@@ -42,6 +42,7 @@ inline WeldRows weld_rows(const Element& element, const std::vector<NodeVectors>
   WeldRows out;
   for (const NodeVectors& node : nodes) {
     out.fixed.push_back({node.r, 1, {0, beam ? 0 : node.material.y()}});
+    if (node.r_n < 0) continue;  // a plate of cells: straight as its nodes are
     if (mode == WeldMode::partial)
       out.along.push_back({node.r_n, across(r_n)});
     else

@@ -19,7 +19,8 @@
 /// others it falls into four blocks, a quarter of the operations.
 namespace flexmorph::fem::gram {
 
-/// Numbering for elements with kKinds vectors at each of four nodes: 3 (r, r_m, r_n) or 4 (r_mn).
+/// Numbering for elements with kKinds vectors at each of four nodes: 1 (r), 3 (r, r_m, r_n) or 4
+/// (r_mn).
 ///
 /// Class of a vector: 1 if odd along m, plus 2 if odd along n; of a pair: that of its product. The
 /// even-even vector of the positions is a translation, which strains nothing: it is left out.
@@ -169,7 +170,7 @@ inline void multiply_block(W w, const V* g, V* s) {
 }
 template <int m, class V>
 inline void multiply_block(Shared w, const V* g, V* s) {
-  constexpr int kRows = m % 7 == 0 ? 7 : m % 6 == 0 ? 6 : 5;
+  constexpr int kRows = m % 7 == 0 ? 7 : m % 6 == 0 ? 6 : m % 5 == 0 ? 5 : m;
   static_assert(m % kRows == 0);
   for (int r = 0; r < m; r += kRows) {
     V sum[kRows] = {};
@@ -201,20 +202,11 @@ template <int kKinds, Coupling coupling, class V, class W>
   }
 }
 
-/// Adds F (4 kKinds x dim) of the stress s to the nodal force.
+/// Adds the force (n x dim) at the vectors to that at the nodes (4 kKinds x dim).
 template <int kKinds, int kDim, class V>
-inline void add_force(const V* s, const V* p, V* force) {
+inline void add_to_nodes(const V* f, V* force) {
   using N = Numbering<kKinds>;
   constexpr int kNode = kKinds * kDim;
-  V f[N::n * kDim];
-  for (int k = 0; k < N::n; ++k) {
-    V sum[kDim] = {};
-    for (int l = 0; l < N::n; ++l) {
-      const V skl = s[N::tables.pair[static_cast<std::size_t>(k)][static_cast<std::size_t>(l)]];
-      for (int c = 0; c < kDim; ++c) sum[c] += skl * p[l * kDim + c];
-    }
-    for (int c = 0; c < kDim; ++c) f[k * kDim + c] = 0.25 * sum[c];
-  }
   for (int kind = 0; kind < kKinds; ++kind)
     for (int c = 0; c < kDim; ++c) {
       V part[4] = {};
@@ -227,6 +219,22 @@ inline void add_force(const V* s, const V* p, V* force) {
       for (int corner = 0; corner < 4; ++corner)
         force[corner * kNode + kind * kDim + c] += x[corner];
     }
+}
+
+/// Adds F (4 kKinds x dim) of the stress s to the nodal force.
+template <int kKinds, int kDim, class V>
+inline void add_force(const V* s, const V* p, V* force) {
+  using N = Numbering<kKinds>;
+  V f[N::n * kDim];
+  for (int k = 0; k < N::n; ++k) {
+    V sum[kDim] = {};
+    for (int l = 0; l < N::n; ++l) {
+      const V skl = s[N::tables.pair[static_cast<std::size_t>(k)][static_cast<std::size_t>(l)]];
+      for (int c = 0; c < kDim; ++c) sum[c] += skl * p[l * kDim + c];
+    }
+    for (int c = 0; c < kDim; ++c) f[k * kDim + c] = 0.25 * sum[c];
+  }
+  add_to_nodes<kKinds, kDim>(f, force);
 }
 
 /// Pairs (k, j), k of class a and j of class b >= a: T = rows of W D(right), then D(left)ᵀ T into
@@ -289,14 +297,12 @@ inline void add_pairs(W w, const V* left, const V* right, V* stiffness) {
     for (int j = jFirst; j < jEnd; ++j) gather(j, kFirst, kEnd);
 }
 
-/// Adds weight (S ⊗ 1 + D(left)ᵀ W D(right)) to the nodal tangent (4 kKinds dim)², by columns.
-template <int kKinds, int kDim, Coupling coupling, bool kSymmetric = true, class V, class W>
-[[gnu::noinline]] void add_tangent(W w, const V* s, const V* left, const V* right, double weight,
-                                   V* tangent) {
+/// S ⊗ 1 + D(left)ᵀ W D(right) at the vectors: dim x dim blocks k <= l of them, or all.
+template <int kKinds, int kDim, Coupling coupling, bool kSymmetric, class V, class W>
+inline void stiffness_of(W w, const V* s, const V* left, const V* right, V* stiffness) {
   using N = Numbering<kKinds>;
   constexpr auto& t = N::tables;
   constexpr int n = N::n, kSquare = kDim * kDim;
-  V stiffness[n * n * kSquare];  // blocks k <= l, or all
   for (int k = 0; k < n; ++k)
     for (int l = kSymmetric ? k : 0; l < n; ++l)
       for (int x = 0; x < kDim; ++x)
@@ -306,7 +312,8 @@ template <int kKinds, int kDim, Coupling coupling, bool kSymmetric = true, class
 
   const auto block = [&]<int c>() {
     const auto part = [&]<int a>() {
-      if constexpr ((a ^ c) >= a)
+      // Positions alone have no vector of the class that is even both ways.
+      if constexpr ((a ^ c) >= a && N::first[a] < N::first[a + 1])
         add_pairs<kKinds, kDim, coupling, a, (a ^ c), kSymmetric>(w, left, right, stiffness);
     };
     part.template operator()<0>();
@@ -319,8 +326,14 @@ template <int kKinds, int kDim, Coupling coupling, bool kSymmetric = true, class
   block.template operator()<1>();
   block.template operator()<2>();
   block.template operator()<3>();
+}
 
-  // To nodes: of two kinds, four classes by four classes become four corners by four corners.
+/// Adds weight times the stiffness at the vectors to the nodal tangent (4 kKinds dim)², by columns:
+/// of two kinds, four classes by four classes become four corners by four corners.
+template <int kKinds, int kDim, bool kSymmetric, class V>
+inline void add_to_nodes(const V* stiffness, double weight, V* tangent) {
+  using N = Numbering<kKinds>;
+  constexpr int n = N::n, kSquare = kDim * kDim;
   constexpr int kNode = kKinds * kDim, kLocal = 4 * kNode;
   const double scale = weight / 16;
   for (int kind = 0; kind < kKinds; ++kind)
@@ -357,6 +370,16 @@ template <int kKinds, int kDim, Coupling coupling, bool kSymmetric = true, class
             }
           }
         }
+}
+
+/// Adds weight (S ⊗ 1 + D(left)ᵀ W D(right)) to the nodal tangent (4 kKinds dim)², by columns.
+template <int kKinds, int kDim, Coupling coupling, bool kSymmetric = true, class V, class W>
+[[gnu::noinline]] void add_tangent(W w, const V* s, const V* left, const V* right, double weight,
+                                   V* tangent) {
+  constexpr int n = Numbering<kKinds>::n;
+  V stiffness[n * n * kDim * kDim];
+  stiffness_of<kKinds, kDim, coupling, kSymmetric>(w, s, left, right, stiffness);
+  add_to_nodes<kKinds, kDim, kSymmetric>(stiffness, weight, tangent);
 }
 
 }  // namespace flexmorph::fem::gram

@@ -220,6 +220,7 @@ const TermRow& inertia_row() {
       .places = {TermPlace::plane, TermPlace::space, TermPlace::beam},
       .required_in = {},
       .moves = true,
+      .on_cells = true,
       .keys = {},
       .columns = {},
       .make = [](const TermData& data) { return make_inertia(data.section); }};

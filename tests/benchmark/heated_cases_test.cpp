@@ -1,4 +1,5 @@
-// The shipped cases with heat, as they are: what they expect of themselves holds.
+// The shipped cases with heat, as they are, but for one cycle of each design: what they expect of
+// themselves holds.
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -22,8 +23,10 @@ INSTANTIATE_TEST_SUITE_P(Cases, HeatedCase,
 TEST_P(HeatedCase, EndsAsItExpects) {
   const Scratch scratch;
   const std::string folder = scratch / "out";
+  const std::string one_cycle = " --set cycle.max_cycles=1";
   const std::string command = std::string(FLEXMORPH_PROGRAM) + " run " + GetParam() + " -o '" +
-                              folder + "' --quiet --set output.vtk=false";
+                              folder + "' --quiet --set output.vtk=false" +
+                              (GetParam().starts_with("heated_boom") ? one_cycle : "");
   const int status = std::system(command.c_str());
   ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << command;
   const nlohmann::json json = nlohmann::json::parse(contents_of(folder + "/run.json"));

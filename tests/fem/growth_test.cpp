@@ -66,9 +66,16 @@ Jump jump_of(const RotatingPlate& p, testing::Scene& scene, State& x, MeshChange
           jump.acceleration / largest.acceleration.norm()};
 }
 
-// The two halves of a bicubic are bicubic.
-TEST(Insertion, LeavesTheFieldsOfCompleteShapesUnchanged) {
+// The two halves of a bicubic are bicubic, and those of a bilinear field bilinear.
+class CompleteShapes : public ::testing::TestWithParam<ShapeSet> {};
+INSTANTIATE_TEST_SUITE_P(Sets, CompleteShapes, ::testing::Values(ShapeSet::h16, ShapeSet::q4),
+                         [](const auto& set) {
+                           return std::string(set.param == ShapeSet::q4 ? "q4" : "h16");
+                         });
+
+TEST_P(CompleteShapes, HaveFieldsThatAnInsertionLeavesUnchanged) {
   RotatingPlate p;
+  p.shapes = GetParam();
   p.speed = 0.5;
   p.factors = testing::chequered(p);
   testing::Scene scene = testing::make_scene(p);
@@ -103,7 +110,7 @@ TEST(Insertion, OfIncompleteShapesJumpsByTheMixedDerivative) {
 TEST(Removal, UndoesAnInsertion) {
   RotatingPlate p;
   p.speed = 0.5;
-  for (const ShapeSet shapes : {ShapeSet::h12, ShapeSet::h16}) {
+  for (const ShapeSet shapes : {ShapeSet::h12, ShapeSet::h16, ShapeSet::q4}) {
     p.shapes = shapes;
     testing::Scene scene = testing::make_scene(p);
     State x = some_state(scene, 0.1);
@@ -141,6 +148,44 @@ TEST(Insertion, DoesNotTouchOtherBodies) {
   const auto rest = old.q.size() - first - size;
   EXPECT_EQ((x.q.tail(rest) - old.q.tail(rest)).norm(), 0);
   EXPECT_EQ(x.q.size() - old.q.size(), size / (p.nx + 1));
+}
+
+// Lines of cells come and go where they lie in the design, out and back: the element at the root is
+// never longer than 1.3 cells nor shorter than a quarter, and every line goes once for each time it
+// comes.
+TEST(NextChange, OfCellsKeepsToTheirLines) {
+  RotatingPlate p;
+  p.shapes = ShapeSet::q4;
+  p.nx = 10;
+  const double cell = p.length / p.nx;
+  for (const double speed : {0.5, -0.3}) {
+    p.speed = speed;
+    testing::Scene scene = testing::make_scene(p);
+    Body& body = scene.model.bodies()[0];
+    Growth growth = scene.growths[0];
+    growth.cell = cell;
+    growth.max_length = 1.3 * cell;
+    growth.min_length = 0.25 * cell;
+    double t = 0;
+    int changes = 0;
+    for (NextChange next = next_change(body, growth, t, 1, 1e-3); next.t < 1;
+         next = next_change(body, growth, t, 1, 1e-3)) {
+      EXPECT_GT(next.t, t);
+      t = next.t;
+      EXPECT_EQ(next.change, speed > 0 ? MeshChange::insertion : MeshChange::removal);
+      scene.model.prepare(t);
+      State x = some_state(scene, t);
+      change_mesh(scene.model, body, next.change, x, growth.cell);
+      ++changes;
+      const LineGrid& lines = grid_of(body);
+      for (int i = 1; i <= lines.n_m(); ++i) {
+        const double from_end = (lines.line_m(lines.n_m()).value - lines.line_m(i).value) / cell;
+        EXPECT_NEAR(from_end, lines.n_m() - i, 1e-9);
+      }
+    }
+    // Ten cells come out, six go in.
+    EXPECT_EQ(changes, speed > 0 ? 10 : 6);
+  }
 }
 
 TEST(NextChange, MeetsTheLimitAtItsTime) {

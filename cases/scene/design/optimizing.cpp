@@ -130,6 +130,11 @@ const Key& kRefine = io::key("verify", "refine")
                          .integer("a number of parts of an element", 2, 100)
                          .otherwise_as("`mesh` is given")
                          .says("So many times the elements in each direction.");
+const Key& kCells =
+    io::key("verify", "cells")
+        .integer("a number of parts of a cell", 1, 8)
+        .otherwise_as("`mesh` or `refine` is given")
+        .says("Designed bodies move on the cells of their designs, in so many parts.");
 const Key& kMesh = io::key("verify", "mesh")
                        .integers("a number of elements", 1, 10'000, 2, 2)
                        .otherwise_as("`refine` is given")
@@ -232,19 +237,38 @@ void read_optimizers(const Table& t, Scene& scene) {
   scene.finish = read_finish(t, scene.optimizer);
 }
 
+/// What a body on cells cannot be.
+void check_on_cells(const Table& t, const Scene& scene, const Body& body) {
+  const std::string name = "'" + body.name + "' ";
+  if (body.in_space()) t.fail(kCells, name + "lives in space: cells cannot bend out of the plane");
+  if (body.has_free_lines() || !body.lines.empty())
+    t.fail(kCells, name + "has lines of its own ([[body.line]]): cells have those of the design");
+  for (const std::string& term : body.terms)
+    if (!fem::term_row(term).on_cells)
+      t.fail(kCells, "the term \"" + term + "\" of " + name + "does not know cells");
+  if (scene.has_heat()) t.fail(kCells, "heat does not know cells");
+  if (scene.time.integrator == "energy_momentum")
+    t.fail(kCells, "void on cells has no discrete gradient for \"energy_momentum\"");
+}
+
 Verify read_verify(const Table& t, const Scene& scene) {
   Verify verify;
-  if (t.has(kRefine)) verify.refine = t.integer(kRefine);
-  if (t.has(kRefine) && t.has(kMesh)) t.fail(kRefine, "a finer run has a `mesh` or `refine`");
-  std::vector<int> mesh;
-  if (!t.has(kRefine)) {
-    mesh = t.integers(kMesh);
+  if (t.has(kRefine) + t.has(kMesh) + t.has(kCells) > 1)
+    t.fail(t.has(kRefine) ? kRefine : kCells, "a finer run has a `mesh`, `refine` or `cells`");
+  if (t.has(kRefine)) {
+    verify.refine = t.integer(kRefine);
+  } else if (t.has(kCells)) {
+    verify.cells = t.integer(kCells);
+  } else {
+    const std::vector<int> mesh = t.integers(kMesh);
     verify.mesh = {mesh[0], mesh[1]};
   }
   for (const BodyDesign& design : scene.designs) {
     const Body& body = scene.body(design.body);
-    if (verify.mesh && (mesh[0] < body.elements[0] || mesh[1] < body.elements[1]))
+    if (verify.mesh &&
+        ((*verify.mesh)[0] < body.elements[0] || (*verify.mesh)[1] < body.elements[1]))
       t.fail(kMesh, "a finer mesh than the elements of '" + body.name + "'");
+    if (verify.cells > 0) check_on_cells(t, scene, body);
   }
   verify.step = t.number(kStep, scene.time.step);
   if (verify.step > scene.time.end) t.fail(kStep, "a time step is no longer than time.end [s]");

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "cases/scene/body_keys.h"
 #include "cases/scene/elements/row.h"
 #include "cases/scene/joints/reading.h"
@@ -16,7 +18,7 @@ using io::to_text;
 constexpr int kMostElements = 100'000;
 
 const std::vector<std::string>& plate_shapes() {
-  static const std::vector<std::string> kNames{"h16", "h12"};
+  static const std::vector<std::string> kNames{"h16", "h12", "q4"};
   return kNames;
 }
 
@@ -25,7 +27,7 @@ const io::Key& kShape =
         .word("a shape set", plate_shapes)
         .otherwise("h16")
         .when("plates")
-        .says("Shape functions; `h12` leaves out the mixed slopes, and is too stiff in twist.");
+        .says("Shape functions; `h12` has no mixed slopes: too stiff in twist; `q4`: cells.");
 const io::Key& kSpace = io::key("body", "space")
                             .word("a space", {"plane", "space"})
                             .otherwise("plane")
@@ -38,7 +40,7 @@ const io::Key& kElements = io::key("body", "elements")
                                .integers("a number of elements", 1, kMostElements, 2, 2)
                                .when("plates")
                                .says("Elements along the length at the start, and across.");
-Flow read_flow(const Table& t, const Scene& scene) {
+Flow read_flow(const Table& t, const Scene& scene, bool on_cells) {
   Flow flow;
   if (t.has(flow_keys::kLength)) {
     if (t.has(flow_keys::kSpeed))
@@ -46,6 +48,11 @@ Flow read_flow(const Table& t, const Scene& scene) {
     flow.length.drive = t.choice(flow_keys::kLength, names_of(scene.drives));
   } else {
     flow.speed = t.number(flow_keys::kSpeed);
+  }
+  if (on_cells) {
+    for (const Key* limit : {&flow_keys::kMaxLength, &flow_keys::kMinLength})
+      if (t.has(*limit)) t.fail(*limit, "cells (shape \"q4\") have no limits of their own");
+    return flow;
   }
   flow.max_length = t.number(flow_keys::kMaxLength);
   flow.min_length = t.number(flow_keys::kMinLength, 0.3 * flow.max_length);
@@ -58,6 +65,8 @@ void read_sheet(const Table& t, const Scene& scene, bool has_density, Body& body
   body.space = t.choice(kSpace);
   if (!scene.bodies.empty() && scene.bodies.front().space != body.space)
     t.fail(kSpace, "all bodies of a scene live in the plane, or all in space");
+  if (body.on_cells() && body.in_space())
+    t.fail(kShape, "cells (\"q4\") live in the plane: they cannot bend out of it");
   if (scene.is_mechanism() && body.in_space())
     t.fail(kSpace, "rigid bodies live in the plane: in their scenes plates do, too");
   read_terms(t, scene, body);
@@ -71,12 +80,16 @@ void read_sheet(const Table& t, const Scene& scene, bool has_density, Body& body
   body.elements = {elements[0], elements[1]};
   if (1.0 * elements[0] * elements[1] > kMostElements)
     t.fail(kElements, "at most " + to_text(kMostElements) + " elements");
+  if (!body.on_cells()) return;
+  for (const std::string& term : body.terms)
+    if (!fem::term_row(term).on_cells)
+      t.fail(kTerms, "\"" + term + "\" does not know cells (shape \"q4\")");
 }
 
 void read_mesh(const Table& t, Body& body) {
   body.lines = read_lines(t, body);
   for (const std::string& term : body.terms)
-    if (body.has_free_lines() && !fem::term_row(term).free_lines)
+    if (body.has_free_lines() && (!fem::term_row(term).free_lines || body.on_cells()))
       t.fail(kTerms, "\"" + term + "\" does not know free material lines ([[body.line]])");
 }
 
@@ -88,16 +101,32 @@ void read_plate(const Table& t, const Scene& scene, bool has_density, Body& body
 
 void read_flowing_plate(const Table& t, const Scene& scene, bool has_density, Body& body) {
   read_sheet(t, scene, has_density, body);
-  body.flow = read_flow(t.table(kFlow), scene);
+  body.flow = read_flow(t.table(kFlow), scene, body.on_cells());
   if (scene.statics) t.fail(kElement, "in a [static] analysis no material flows");
   read_mesh(t, body);
+}
+
+/// Lines of cells from the free end to a root that lies among them: it has a quarter of a cell in
+/// front of it at least.
+std::vector<double> cell_lines(double root, double longest, double cell) {
+  std::vector<double> out;
+  for (int k = 0; longest - k * cell > root + kShortestCell * cell; ++k)
+    out.push_back(longest - k * cell);
+  out.push_back(root);
+  std::reverse(out.begin(), out.end());
+  return out;
 }
 
 std::unique_ptr<fem::Element> make_plate(const Body& body, double end,
                                          const std::array<int, 2>& count) {
   const double longest = body.longest(end);
   std::vector<fem::MaterialLine> m, n;
-  for (const double at : body.start_lines(longest - body.length, count[0])) m.push_back({at, {}});
+  const double root = longest - body.length;
+  const bool among_cells = body.on_cells() && body.flow;
+  const double cell = body.cell_length() * body.elements[0] / count[0];
+  for (const double at :
+       among_cells ? cell_lines(root, longest, cell) : body.start_lines(root, count[0]))
+    m.push_back({at, {}});
   for (const BodyLine& line : body.lines) m[static_cast<size_t>(line.index)].free = line.free;
   if (body.flow && body.flow->motion)
     m[0].drive = [longest, length = body.flow->motion](double t) {
@@ -109,8 +138,10 @@ std::unique_ptr<fem::Element> make_plate(const Body& body, double end,
       return fem::Motion{longest - length - speed * t, -speed, 0};
     };
   for (int j = 0; j <= count[1]; ++j) n.push_back({body.low() + body.width * j / count[1], {}});
-  const auto shapes =
-      body.shape == "h12" ? fem::AncfPlate::ShapeSet::h12 : fem::AncfPlate::ShapeSet::h16;
+  using Shapes = fem::AncfPlate::ShapeSet;
+  const Shapes shapes = body.shape == "h12"  ? Shapes::h12
+                        : body.shape == "q4" ? Shapes::q4
+                                             : Shapes::h16;
   return std::make_unique<fem::AncfPlate>(body.dim(), shapes, std::move(m), std::move(n));
 }
 

@@ -118,9 +118,12 @@ class Membrane : public ::testing::TestWithParam<Case> {
 };
 INSTANTIATE_TEST_SUITE_P(Shapes, Membrane,
                          ::testing::Values(Case{ShapeSet::h12, false}, Case{ShapeSet::h16, false},
-                                           Case{ShapeSet::h12, true}, Case{ShapeSet::h16, true}),
+                                           Case{ShapeSet::h12, true}, Case{ShapeSet::h16, true},
+                                           Case{ShapeSet::q4, false}, Case{ShapeSet::q4, true}),
                          [](const auto& c) {
-                           return std::string(c.param.shapes == ShapeSet::h12 ? "h12" : "h16") +
+                           return std::string(c.param.shapes == ShapeSet::h12   ? "h12"
+                                              : c.param.shapes == ShapeSet::h16 ? "h16"
+                                                                                : "q4") +
                                   (c.param.designed ? "_designed" : "_uniform");
                          });
 
