@@ -99,7 +99,8 @@ std::string not_mended(const mmc::BodyOutcome& o) {
   add("feature", c.after.solid, c.wanted.solid);
   add("gap", c.after.gap, c.wanted.gap);
   if (c.torn > 0)
-    out += "loads pass through " + std::to_string(c.torn) + " of its gaps, by its cells only; ";
+    out += "loads pass through " + std::to_string(c.torn) +
+           " of its gaps, by its cells only, or would pass to what holds it; ";
   if (c.pieces_after != 1) out += "it has " + std::to_string(c.pieces_after) + " pieces; ";
   return out + (c.given_up
                     ? "repairs would have cost more than a quarter of the compliance, and were "

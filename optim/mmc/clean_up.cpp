@@ -72,6 +72,11 @@ class Cleaner {
     out.wanted = wanted_;
     measure(design_, out.before, out.pieces_before, out.compliance_before, out.volume_before);
     dearest_ = kDearest * out.compliance_before;
+    design_.look_at_energy();
+    if (const std::vector<NarrowPlace> cuts = design_.cuts_from_held(); !cuts.empty()) {
+      ++out.rounds;
+      repair(cuts, out);
+    }
     out.idle = drop_idle(design_);
     for (Component& c : parts_)
       for (double* each : {&c.c1, &c.c2, &c.c3})

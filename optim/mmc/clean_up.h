@@ -15,11 +15,11 @@ struct CleanUp {
   double compliance_before = 0, compliance_after = 0;  ///< of the sharp design
   double volume_before = 0, volume_after = 0;          ///< likewise
   int rounds = 0, patches = 0, dropped = 0;
-  int idle = 0;           ///< components that carried nothing, and went
-  int stubs = 0;          ///< ends of components likewise
-  int joined = 0;         ///< components that went because others took their place, end to end
-  int born = 0;           ///< bars across the void that came
-  int torn = 0;           ///< gaps that only cells bridge, and are left (see UnderRepair)
+  int idle = 0;    ///< components that carried nothing, and went
+  int stubs = 0;   ///< ends of components likewise
+  int joined = 0;  ///< components that went because others took their place, end to end
+  int born = 0;    ///< bars across the void that came
+  int torn = 0;  ///< gaps that only cells bridge, or that part it from what holds it, and are left
   bool given_up = false;  ///< it would have cost too much: the design is as it was
   bool changed() const { return rounds + idle + stubs > 0; }
   void add(const CleanUp& later);     ///< its rounds, patches and losses

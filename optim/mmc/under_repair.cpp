@@ -125,11 +125,6 @@ std::vector<NarrowPlace> UnderRepair::places() const {
   // The tolerance of outlines counts twice.
   const double tolerance = 2 * kOutlineTolerance * problem_.grid.dx();
   std::vector<NarrowPlace> out = narrow_places_of(problem_, pieces, wanted_.largest() + tolerance);
-  const auto ends_at_held = [&](const NarrowPlace& p) {
-    return std::any_of(problem_.held.begin(), problem_.held.end(), [&](const Segment& line) {
-      return distance(line, p.a) < 1e-6 * problem_.grid.dx();
-    });
-  };
   std::set<std::pair<size_t, size_t>> parted;  // a bridge is enough for two pieces
   std::erase_if(out, [&](const NarrowPlace& p) {
     if (p.solid) return p.width >= wanted_.solid + tolerance;
@@ -145,6 +140,12 @@ std::vector<NarrowPlace> UnderRepair::places() const {
     return !parted.insert({one, other}).second;
   });
   return out;
+}
+
+bool UnderRepair::ends_at_held(const NarrowPlace& p) const {
+  return std::any_of(problem_.held.begin(), problem_.held.end(), [&](const Segment& line) {
+    return distance(line, p.a) < 1e-6 * problem_.grid.dx();
+  });
 }
 
 double UnderRepair::smallest(const std::vector<NarrowPlace>& narrow) const {
@@ -163,10 +164,24 @@ std::vector<NarrowPlace> UnderRepair::torn_gaps() const {
   const double whole = compliance(parts);
   std::erase_if(out, [&](const NarrowPlace& p) {
     if (p.solid) return true;
+    if (is_cut_from_held(p, whole)) return false;
     if (p.width > kGlued * problem_.grid.dx() && !looks_torn(p)) return true;
     return compliance_cut_at(p) < (1 + kCostOfCut) * whole;
   });
   return out;
+}
+
+std::vector<NarrowPlace> UnderRepair::cuts_from_held() const {
+  if (problem_.held.empty() || !(wanted_.gap > 0)) return {};
+  std::vector<NarrowPlace> out =
+      narrow_places_of(problem_, regions(parts), kBridged * problem_.grid.dx());
+  const double whole = compliance(parts);
+  std::erase_if(out, [&](const NarrowPlace& p) { return p.solid || !is_cut_from_held(p, whole); });
+  return out;
+}
+
+bool UnderRepair::is_cut_from_held(const NarrowPlace& p, double whole) const {
+  return ends_at_held(p) && whole > (1 + kCostOfCut) * compliance_filled_at(p);
 }
 
 /// Those with a center within a feature's width of the gap, or within that of two cells.
@@ -211,6 +226,20 @@ double UnderRepair::compliance_cut_at(const NarrowPlace& p) const {
   VectorXd cut = fractions_;
   for (const int cell : cells_between(p)) cut[cell] = 0;
   return judged_compliance(problem_, loads_, ersatz_.sharp(cut));
+}
+
+/// With full material from contact to contact.
+double UnderRepair::compliance_filled_at(const NarrowPlace& p) const {
+  const Grid& g = problem_.grid;
+  const Vec2 across = (p.b - p.a).normalized(), along(-across.y(), across.x());
+  VectorXd filled = fractions_;
+  for (const int cell : cells_around(p)) {
+    const Vec2 from = g.cell_center(cell / g.ny, cell % g.ny) - p.center;
+    if (std::abs(from.dot(across)) <= 0.5 * p.width + kLayer * g.dx() &&
+        std::abs(from.dot(along)) <= 0.5 * std::max(wanted_.solid, g.dx()))
+      filled[cell] = 1;
+  }
+  return judged_compliance(problem_, loads_, ersatz_.sharp(filled));
 }
 
 std::vector<VectorXd> UnderRepair::displacements(int most) const {

@@ -49,8 +49,11 @@ class UnderRepair {
   /// Narrow material and gaps, and slits between pieces that should be one.
   std::vector<NarrowPlace> places() const;
   /// Gaps wide enough, but closed by their partly filled cells: without those the design would be
-  /// softer. As of the last look_at_energy().
+  /// softer; and gaps to what holds it that would make it stiffer when closed. As of the last
+  /// look_at_energy().
   std::vector<NarrowPlace> torn_gaps() const;
+  /// Of these the gaps to what holds it. What they cut off seems idle.
+  std::vector<NarrowPlace> cuts_from_held() const;
   /// The narrowest as a part of what is wanted, of gaps that are wide enough more than 1; infinite
   /// for none.
   double smallest(const std::vector<NarrowPlace>& narrow) const;
@@ -65,6 +68,10 @@ class UnderRepair {
  private:
   bool looks_torn(const NarrowPlace& p) const;
   double compliance_cut_at(const NarrowPlace& p) const;
+  double compliance_filled_at(const NarrowPlace& p) const;
+  bool ends_at_held(const NarrowPlace& p) const;
+  /// @param whole  compliance as it is
+  bool is_cut_from_held(const NarrowPlace& p, double whole) const;
   std::vector<int> cells_around(const NarrowPlace& p) const;
   std::vector<int> cells_between(const NarrowPlace& p) const;
 
