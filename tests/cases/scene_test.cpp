@@ -301,7 +301,7 @@ const Bad kBadInputs[] = {
      {"body.shape=\"q4\"", "body.space=\"space\""},
      "cells (\"q4\") live in the plane: they cannot bend out of it"},
     {"assumed_strains_of_cells",
-     {"body.shape=\"q4\"", "body.terms=[\"inertia\", \"membrane_assumed\"]"},
+     {"body.terms=[\"inertia\", \"membrane_assumed\"]", "body.shape=\"q4\""},
      "\"membrane_assumed\" does not know cells (shape \"q4\")"},
     {"coarse_verification", {"verify.mesh=[5, 2]"}, "a finer mesh than the elements of 'plate'"},
     {"body_named_energy", {"body.name=energy"}, "'energy' names columns of motion.csv already"},
