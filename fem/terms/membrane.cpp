@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <memory>
 
 #include "fem/terms.h"
@@ -9,7 +8,7 @@
 #include "fem/terms/membrane_invariant.h"
 #include "fem/terms/sampling.h"
 #include "fem/terms/strain_flow.h"
-#include "fem/terms/turned_cell.h"
+#include "fem/terms/void_cells.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -34,7 +33,7 @@ using gram::Coupling;
 /// Elements of a mesh are evaluated eight at a time, see Batch.
 ///
 /// Cells of a design (shape set q4) that are nearly empty have small strains in a frame that turns
-/// with them instead, see turned_cell.h and solid_part().
+/// with them instead, see void_cells.h.
 ///
 /// Replaces P (11)-(15) and the tensors of the appendix; fem/README.md, Gram form.
 class Membrane final : public ElasticTerm {
@@ -80,9 +79,8 @@ class Membrane final : public ElasticTerm {
   void add_force(int e, const Local& x, LocalRows& force) const override {
     evaluate(e, x, [&]<int kKinds, int kDim, Coupling>(double* s, const double* p, auto) {
       if constexpr (kKinds == 1) {
-        if (const BatchData& batch = of(e); batch.has_void()) {
-          add_void_force(Lane{e % kLanes}, batch, p, s, force.data());
-        }
+        if (const VoidCells& cells = of(e).cells; cells.any())
+          cells.add_force(VoidCells::Lane{e % kLanes}, p, s, force.data());
       }
       gram::add_force<kKinds, kDim>(s, p, force.data());
     });
@@ -96,9 +94,9 @@ class Membrane final : public ElasticTerm {
         e, x,
         [&]<int kKinds, int kDim, Coupling coupling>(const double* s, const double* p, auto w_e) {
           if constexpr (kKinds == 1) {
-            if (const BatchData& batch = of(e); batch.has_void())
-              return add_void_tangent<coupling>(Lane{e % kLanes}, batch, w_e, s, p, w.q,
-                                                tangent.data());
+            if (const VoidCells& cells = of(e).cells; cells.any())
+              return cells.add_tangent<coupling>(VoidCells::Lane{e % kLanes}, w_e, s, p, w.q,
+                                                 tangent.data());
           }
           gram::add_tangent<kKinds, kDim, coupling, false>(w_e, s, p, p, w.q, tangent.data());
         });
@@ -107,8 +105,8 @@ class Membrane final : public ElasticTerm {
   void add_forces(const Batch& x, Lanes* force) const override {
     evaluate(x, [&]<int kKinds, int kDim, Coupling>(Lanes* s, const Lanes* p, auto) {
       if constexpr (kKinds == 1) {
-        if (const BatchData& batch = of(x.first); batch.has_void())
-          add_void_force(AllLanes{}, batch, p, s, force);
+        if (const VoidCells& cells = of(x.first).cells; cells.any())
+          cells.add_force(VoidCells::AllLanes{}, p, s, force);
       }
       gram::add_force<kKinds, kDim>(s, p, force);
     });
@@ -119,8 +117,8 @@ class Membrane final : public ElasticTerm {
     evaluate(x, [&]<int kKinds, int kDim, Coupling coupling>(const Lanes* s, const Lanes* p,
                                                              auto invariant) {
       if constexpr (kKinds == 1) {
-        if (const BatchData& batch = of(x.first); batch.has_void())
-          return add_void_tangent<coupling>(AllLanes{}, batch, invariant, s, p, w.q, tangent);
+        if (const VoidCells& cells = of(x.first).cells; cells.any())
+          return cells.add_tangent<coupling>(VoidCells::AllLanes{}, invariant, s, p, w.q, tangent);
       }
       gram::add_tangent<kKinds, kDim, coupling>(invariant, s, p, p, w.q, tangent);
     });
@@ -177,64 +175,10 @@ class Membrane final : public ElasticTerm {
     Packed shared;                 // squares; where all elements have the same W
     std::vector<Lanes> different;  // packed; where they do not
     std::vector<Lanes> reference;  // g°
-    // Of cells that are nearly empty; nothing where none of them is.
-    std::vector<Lanes> turned;        // K of turned_cell.h
-    std::vector<Lanes> undeformed{};  // P
-    Lanes solid{};                    // solid_part()
-    bool has_void() const { return !turned.empty(); }
+    VoidCells cells;               // of the shape set q4
   };
 
   const BatchData& of(int e) const { return batches_[static_cast<size_t>(e / kLanes)]; }
-
-  /// The part of a cell's energy that is St. Venant-Kirchhoff: from 0 to 1 around a stiffness
-  /// factor of 0.01, with two continuous derivatives.
-  static double solid_part(double factor) {
-    constexpr double kVoid = 1e-3, kMaterial = 1e-1;
-    const double x = std::clamp(std::log(factor / kVoid) / std::log(kMaterial / kVoid), 0.0, 1.0);
-    return x * x * x * (10 + x * (6 * x - 15));
-  }
-
-  /// One of eight cells, or all of them.
-  struct Lane {
-    using V = double;
-    int lane;
-    double operator()(const Lanes& x) const { return x[lane]; }
-  };
-  struct AllLanes {
-    using V = Lanes;
-    const Lanes& operator()(const Lanes& x) const { return x; }
-  };
-
-  template <class Pick, class V = typename Pick::V>
-  static turned_cell::State<V> turned_state(const Pick& pick, const BatchData& batch, const V* p,
-                                            V* stiffness) {
-    V undeformed[turned_cell::kSize];
-    for (size_t k = 0; k < batch.turned.size(); ++k) stiffness[k] = pick(batch.turned[k]);
-    for (size_t k = 0; k < batch.undeformed.size(); ++k) undeformed[k] = pick(batch.undeformed[k]);
-    return turned_cell::state_of<V>(stiffness, p, undeformed);
-  }
-
-  /// Adds the force of the part that is void, and leaves in s what the other part has.
-  template <class Pick, class V = typename Pick::V>
-  static void add_void_force(const Pick& pick, const BatchData& batch, const V* p, V* s, V* force) {
-    V stiffness[turned_cell::kSize * turned_cell::kSize], f[turned_cell::kSize] = {};
-    const V solid = pick(batch.solid);
-    turned_cell::add_force<V>(turned_state(pick, batch, p, stiffness), 0.25 * (1.0 - solid), f);
-    gram::add_to_nodes<1, 2>(f, force);
-    for (int k = 0; k < gram::Numbering<1>::n_pairs; ++k) s[k] *= solid;
-  }
-
-  template <Coupling coupling, class Pick, class W, class V = typename Pick::V>
-  static void add_void_tangent(const Pick& pick, const BatchData& batch, W w, const V* s,
-                               const V* p, double weight, V* tangent) {
-    V stiffness[turned_cell::kSize * turned_cell::kSize], sum[turned_cell::kVectors * 12] = {};
-    const V solid = pick(batch.solid);
-    gram::stiffness_of<1, 2, coupling, true>(w, s, p, p, sum);
-    for (V& each : sum) each *= solid;
-    const auto state = turned_state(pick, batch, p, stiffness);
-    turned_cell::add_stiffness<V>(stiffness, state, 1.0 - solid, sum);
-    gram::add_to_nodes<1, 2, true>(sum, weight, tangent);
-  }
 
   double energy_at(int e, const Local& x) const override {
     double energy = 0;
@@ -245,11 +189,7 @@ class Membrane final : public ElasticTerm {
       for (size_t k = 0; k < batch.reference.size(); ++k)
         energy += 0.5 * s[k] * (g[k] - batch.reference[k][e % kLanes]);
       if constexpr (kKinds == 1) {
-        if (!batch.has_void()) return;
-        double stiffness[turned_cell::kSize * turned_cell::kSize];
-        const Lane lane{e % kLanes};
-        const double solid = lane(batch.solid);
-        energy = solid * energy + (1 - solid) * turned_state(lane, batch, p, stiffness).energy;
+        if (batch.cells.any()) energy = batch.cells.energy(e % kLanes, p, energy);
       }
     });
     return energy;
@@ -372,7 +312,7 @@ class Membrane final : public ElasticTerm {
       if ((all || element.moving(first + lane)) && !is_free(first + lane)) {
         w[static_cast<size_t>(lane)] = integrate(element, first + lane, factors);
         set_reference(element, first + lane, reference, out);
-        if (kinds_ == 1) set_void(element, first + lane, reference, factors, out);
+        if (kinds_ == 1 && !factors.uniform()) set_cell(element, first + lane, reference, out);
       }
     // A W that some elements share today and not tomorrow is not shared.
     const bool alike =
@@ -391,48 +331,17 @@ class Membrane final : public ElasticTerm {
       if (!alike)
         for (Lanes& x : out.different) x[lane] = x[count - 1];
       for (Lanes& x : out.reference) x[lane] = x[count - 1];
-      for (Lanes& x : out.undeformed) x[lane] = x[count - 1];
-      out.solid[lane] = out.solid[count - 1];
     }
-    if (kinds_ == 1) set_turned(out);
+    if (coupling_ != Coupling::all || kinds_ != 1) return;
+    out.cells.fill(count);
+    out.cells.set_stiffness(out.different);
   }
 
-  /// The shape of a cell, and how solid it is: by its mean factor (table_ is of this element).
-  void set_void(const Element& element, int e, const MatrixXd& reference, const Factors& factors,
-                BatchData& out) {
-    const int lane = e % kLanes;
-    if (factors.uniform()) {
-      out.solid[lane] = 1;
-      return;
-    }
+  /// Of an element whose products are in table_: its mean factor says how solid it is.
+  void set_cell(const Element& element, int e, const MatrixXd& reference, BatchData& out) {
     const auto numbers = element.vectors(e);
-    const auto corner = [&](size_t k) -> Vec2 { return reference.row(numbers[k]).head<2>(); };
-    const Vec2 size = corner(2) - corner(0);
-    out.undeformed.resize(turned_cell::kSize);
-    out.undeformed[0][lane] = 0.5 * size.x();
-    out.undeformed[3][lane] = 0.5 * size.y();
-    out.solid[lane] = solid_part(table_.weight.sum() / (size.x() * size.y()));
-  }
-
-  /// K = Dᵀ W D at P, which is the tangent of the undeformed cell.
-  void set_turned(BatchData& out) {
-    out.turned.clear();
-    bool all_solid = true;
-    for (int lane = 0; lane < kLanes; ++lane) all_solid &= out.solid[lane] >= 1;
-    if (all_solid) return;
-    constexpr int n = turned_cell::kVectors, size = turned_cell::kSize;
-    Lanes blocks[n * n * 4] = {};
-    const Lanes none[gram::Numbering<1>::n_pairs] = {};
-    gram::stiffness_of<1, 2, Coupling::all, true>(gram::Different{out.different.data()}, none,
-                                                  out.undeformed.data(), out.undeformed.data(),
-                                                  blocks);
-    out.turned.resize(size * size);
-    for (int i = 0; i < size; ++i)
-      for (int j = 0; j < size; ++j) {
-        const int k = std::min(i / 2, j / 2), l = std::max(i / 2, j / 2);
-        const int x = i / 2 <= j / 2 ? i % 2 : j % 2, c = i / 2 <= j / 2 ? j % 2 : i % 2;
-        out.turned[static_cast<size_t>(i * size + j)] = blocks[(k * n + l) * 4 + x * 2 + c];
-      }
+    const Vec2 size = (reference.row(numbers[2]) - reference.row(numbers[0])).head<2>();
+    out.cells.set(e % kLanes, size, table_.weight.sum() / (size.x() * size.y()));
   }
 
   void set_reference(const Element& element, int e, const MatrixXd& reference, BatchData& out) {

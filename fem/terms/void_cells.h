@@ -1,0 +1,117 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "fem/terms/gram.h"
+#include "fem/terms/turned_cell.h"
+
+/// Cells of a design, eight side by side, of which some are nearly empty: their energy passes from
+/// that of St. Venant and Kirchhoff to that of small strains in a turning frame (turned_cell.h).
+namespace flexmorph::fem {
+
+class VoidCells {
+ public:
+  /// One of eight cells, or all of them.
+  struct Lane {
+    using V = double;
+    int lane;
+    double operator()(const Lanes& x) const { return x[lane]; }
+  };
+  struct AllLanes {
+    using V = Lanes;
+    const Lanes& operator()(const Lanes& x) const { return x; }
+  };
+
+  /// Is there any?
+  bool any() const { return !stiffness_.empty(); }
+
+  /// The part of a cell's energy that is St. Venant-Kirchhoff: from 0 to 1 around a stiffness
+  /// factor of 0.01, with two continuous derivatives.
+  static double solid_part(double factor) {
+    constexpr double kVoid = 1e-3, kMaterial = 1e-1;
+    const double x = std::clamp(std::log(factor / kVoid) / std::log(kMaterial / kVoid), 0.0, 1.0);
+    return x * x * x * (10 + x * (6 * x - 15));
+  }
+
+  /// @param size  of the undeformed cell [m]   @param factor  its mean stiffness factor
+  void set(int lane, const Vec2& size, double factor) {
+    undeformed_.resize(turned_cell::kSize);
+    undeformed_[0][lane] = 0.5 * size.x();
+    undeformed_[3][lane] = 0.5 * size.y();
+    solid_[lane] = solid_part(factor);
+  }
+  /// Lanes from `count` on become that before.
+  void fill(int count) {
+    for (int lane = count; lane < kLanes; ++lane) {
+      for (Lanes& x : undeformed_) x[lane] = x[count - 1];
+      solid_[lane] = solid_[count - 1];
+    }
+  }
+  /// K = Dᵀ W D at the undeformed cells, where W is that of all pairs: their tangent at rest.
+  void set_stiffness(const std::vector<Lanes>& w) {
+    stiffness_.clear();
+    bool all_solid = true;
+    for (int lane = 0; lane < kLanes; ++lane) all_solid &= solid_[lane] >= 1;
+    if (all_solid || undeformed_.empty()) return;
+    constexpr int n = turned_cell::kVectors, size = turned_cell::kSize;
+    Lanes blocks[n * n * 4] = {};
+    const Lanes none[gram::Numbering<1>::n_pairs] = {};
+    gram::stiffness_of<1, 2, gram::Coupling::all, true>(
+        gram::Different{w.data()}, none, undeformed_.data(), undeformed_.data(), blocks);
+    stiffness_.resize(size * size);
+    for (int i = 0; i < size; ++i)
+      for (int j = 0; j < size; ++j) {
+        const int k = std::min(i / 2, j / 2), l = std::max(i / 2, j / 2);
+        const int x = i / 2 <= j / 2 ? i % 2 : j % 2, c = i / 2 <= j / 2 ? j % 2 : i % 2;
+        stiffness_[static_cast<std::size_t>(i * size + j)] = blocks[(k * n + l) * 4 + x * 2 + c];
+      }
+  }
+
+  /// Adds the force of the part that is void to the nodes, and leaves in the stress s what the
+  /// other part has.
+  template <class Pick, class V = typename Pick::V>
+  void add_force(const Pick& pick, const V* p, V* s, V* force) const {
+    V stiffness[turned_cell::kSize * turned_cell::kSize], f[turned_cell::kSize] = {};
+    const V solid = pick(solid_);
+    turned_cell::add_force<V>(state(pick, p, stiffness), 0.25 * (1.0 - solid), f);
+    gram::add_to_nodes<1, 2>(f, force);
+    for (int k = 0; k < gram::Numbering<1>::n_pairs; ++k) s[k] *= solid;
+  }
+
+  /// Adds the tangent of both parts to the nodes.
+  template <gram::Coupling coupling, class Pick, class W, class V = typename Pick::V>
+  void add_tangent(const Pick& pick, W w, const V* s, const V* p, double weight, V* tangent) const {
+    V stiffness[turned_cell::kSize * turned_cell::kSize], sum[turned_cell::kVectors * 12] = {};
+    const V solid = pick(solid_);
+    gram::stiffness_of<1, 2, coupling, true>(w, s, p, p, sum);
+    for (V& each : sum) each *= solid;
+    const auto at = state(pick, p, stiffness);
+    turned_cell::add_stiffness<V>(stiffness, at, 1.0 - solid, sum);
+    gram::add_to_nodes<1, 2, true>(sum, weight, tangent);
+  }
+
+  /// @param energy  of St. Venant and Kirchhoff
+  double energy(int lane, const double* p, double energy) const {
+    double stiffness[turned_cell::kSize * turned_cell::kSize];
+    const Lane pick{lane};
+    const double solid = pick(solid_);
+    return solid * energy + (1 - solid) * state(pick, p, stiffness).energy;
+  }
+
+ private:
+  template <class Pick, class V = typename Pick::V>
+  turned_cell::State<V> state(const Pick& pick, const V* p, V* stiffness) const {
+    V undeformed[turned_cell::kSize];
+    for (std::size_t k = 0; k < stiffness_.size(); ++k) stiffness[k] = pick(stiffness_[k]);
+    for (std::size_t k = 0; k < undeformed_.size(); ++k) undeformed[k] = pick(undeformed_[k]);
+    return turned_cell::state_of<V>(stiffness, p, undeformed);
+  }
+
+  std::vector<Lanes> stiffness_;   // K of turned_cell.h; nothing where all are solid
+  std::vector<Lanes> undeformed_;  // P
+  Lanes solid_{};                  // solid_part()
+};
+
+}  // namespace flexmorph::fem
