@@ -47,6 +47,15 @@ TEST(HeatedBoom, ScenesAreBuilt) {
   EXPECT_EQ(build_mechanism(cosine).motion.kinks, (std::vector<double>{0.113, 0.613}));
 }
 
+TEST(HeatedBoom, IsNotMadeOfCells) {
+  try {
+    read("heated_boom", {"body.shape=\"q4\"", "body.flow.max_length="});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_TRUE(std::string(error.what()).ends_with("heat does not know cells")) << error.what();
+  }
+}
+
 // Without a temperature, or without expansion: rotating_plate_v05, but for the order of sums.
 TEST(HeatedBoom, WithoutTemperatureIsTheColdBoom) {
   const Changes both = quick({"time.end=0.12", "time.step=2e-3", "esl.every=0.02"});

@@ -237,6 +237,10 @@ void read_optimizers(const Table& t, Scene& scene) {
   scene.finish = read_finish(t, scene.optimizer);
 }
 
+constexpr const char* kNoHeat = "heat does not know cells";
+constexpr const char* kNoDiscreteGradient =
+    "void on cells has no discrete gradient for \"energy_momentum\"";
+
 /// What a body on cells cannot be.
 void check_on_cells(const Table& t, const Scene& scene, const Body& body) {
   const std::string name = "'" + body.name + "' ";
@@ -246,9 +250,8 @@ void check_on_cells(const Table& t, const Scene& scene, const Body& body) {
   for (const std::string& term : body.terms)
     if (!fem::term_row(term).on_cells)
       t.fail(kCells, "the term \"" + term + "\" of " + name + "does not know cells");
-  if (scene.has_heat()) t.fail(kCells, "heat does not know cells");
-  if (scene.time.integrator == "energy_momentum")
-    t.fail(kCells, "void on cells has no discrete gradient for \"energy_momentum\"");
+  if (scene.has_heat()) t.fail(kCells, kNoHeat);
+  if (scene.time.integrator == "energy_momentum") t.fail(kCells, kNoDiscreteGradient);
 }
 
 Verify read_verify(const Table& t, const Scene& scene) {
@@ -278,6 +281,12 @@ Verify read_verify(const Table& t, const Scene& scene) {
 }  // namespace
 
 void read_designs(const Table& root, Scene& scene) {
+  for (const Body& body : scene.bodies) {
+    if (!body.on_cells()) continue;
+    if (scene.time.integrator == "energy_momentum")
+      scene.refuse("time.integrator", kNoDiscreteGradient);
+    if (body.heat) scene.refuse("body.heat", kNoHeat);
+  }
   if (root.has(tables::kDesign))  // designs ask how many iterations there are
     read_optimizers(root.table_or_empty(tables::kOptimizer), scene);
   std::vector<Table> sharing;
