@@ -29,6 +29,7 @@ struct UnsymmetricSolver::Impl {
     if (numeric) umfpack_di_free_numeric(&numeric);
   }
   void analyze(const SparseMatrix& a, const double* values);
+  void solve(const SparseMatrix& a, const VectorXd& b, VectorXd& x, bool refine, bool transposed);
 };
 
 UnsymmetricSolver::UnsymmetricSolver() : impl_(std::make_unique<Impl>()) {}
@@ -81,19 +82,32 @@ void UnsymmetricSolver::factorize(const SparseMatrix& a, double miss) {
 
 void UnsymmetricSolver::solve(const SparseMatrix& a, const VectorXd& b, VectorXd& x,
                               bool refine) const {
-  if (impl_->is_cholesky) {
-    impl_->cholesky.solve(b, x);
+  impl_->solve(a, b, x, refine, false);
+}
+
+void UnsymmetricSolver::solve_transposed(const SparseMatrix& a, const VectorXd& b, VectorXd& x,
+                                         bool refine) const {
+  impl_->solve(a, b, x, refine, true);
+}
+
+void UnsymmetricSolver::Impl::solve(const SparseMatrix& a, const VectorXd& b, VectorXd& x,
+                                    bool refine, bool transposed) {
+  if (is_cholesky) {  // of a symmetric matrix
+    cholesky.solve(b, x);
     if (!refine) return;
-    impl_->remainder = b;
-    impl_->remainder.noalias() -= a * x;
-    impl_->cholesky.solve(impl_->remainder, impl_->correction);
-    x += impl_->correction;
+    remainder = b;
+    if (transposed)
+      remainder.noalias() -= a.transpose() * x;
+    else
+      remainder.noalias() -= a * x;
+    cholesky.solve(remainder, correction);
+    x += correction;
     return;
   }
   x.resize(b.size());
-  impl_->control[UMFPACK_IRSTEP] = refine ? 1 : 0;
-  check(umfpack_di_solve(UMFPACK_A, a.outerIndexPtr(), a.innerIndexPtr(), a.valuePtr(), x.data(),
-                         b.data(), impl_->numeric, impl_->control, nullptr),
+  control[UMFPACK_IRSTEP] = refine ? 1 : 0;
+  check(umfpack_di_solve(transposed ? UMFPACK_At : UMFPACK_A, a.outerIndexPtr(), a.innerIndexPtr(),
+                         a.valuePtr(), x.data(), b.data(), numeric, control, nullptr),
         "solution");
 }
 

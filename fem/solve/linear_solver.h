@@ -34,6 +34,9 @@ class UnsymmetricSolver {
   /// x = A⁻¹ b with the matrix of the last factorize(), which must still exist.
   /// @param refine  one step of iterative refinement; an outer iteration does not need it.
   void solve(const SparseMatrix& a, const VectorXd& b, VectorXd& x, bool refine = true) const;
+  /// x = A⁻ᵀ b with the same factors.
+  void solve_transposed(const SparseMatrix& a, const VectorXd& b, VectorXd& x,
+                        bool refine = true) const;
 
   /// What analysis and factors came from: put back, they are made anew, the same bit for bit.
   /// @param a  the matrix of the last factorize(), or analyze() after it

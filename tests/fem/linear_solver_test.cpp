@@ -50,6 +50,10 @@ void expect_solved(UnsymmetricSolver& solver, const SparseMatrix& a, bool refine
   // Condition below 1e3: thirteen digits.
   EXPECT_LT((x - expected).norm(), 1e-12 * expected.norm());
   EXPECT_LT((a * x - b).norm(), 1e-13 * b.norm());
+  const VectorXd transposed = MatrixXd(a).transpose().fullPivLu().solve(b);
+  solver.solve_transposed(a, b, x, refine);
+  EXPECT_LT((x - transposed).norm(), 1e-12 * transposed.norm());
+  EXPECT_LT((a.transpose() * x - b).norm(), 1e-13 * b.norm());
 }
 
 // A block of columns of a factor against the same columns of a whole dense triangle: widths that
