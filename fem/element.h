@@ -29,6 +29,16 @@ struct Factors {
   bool uniform() const { return stiffness.size() == 0; }
 };
 
+/// Derivatives of a number by the factors of a body's cells (n_cells each).
+struct FactorSlopes {
+  VectorXd stiffness, mass;
+
+  void set_zero(Eigen::Index n_cells) {
+    stiffness.setZero(n_cells);
+    mass.setZero(n_cells);
+  }
+};
+
 /// Shape functions at quadrature points, a row per point and a column per function. Filled as far
 /// as asked for: N always, the others on demand (their size is zero otherwise).
 struct ShapeTable {
@@ -140,6 +150,22 @@ class Element {
   /// is constant in every design cell.
   virtual void tabulate(int e, int degree, Tabulate what, const Factors& factors, FactorKind kind,
                         ShapeTable& out) const = 0;
+
+  /// Adds, for every cell of a grid, the integral over its part of element e of a function that is
+  /// given at the points of tabulate() with factors: the derivative of Σ weight · value by the
+  /// factor of that cell. Nothing where elements are not cut by cells.
+  /// @param values  (n_points)   @param out  (n_cells)
+  virtual void add_cell_integrals(int /*e*/, int /*degree*/, const VectorXd& /*values*/,
+                                  const Grid& /*grid*/, VectorXd& /*out*/) const {}
+  /// Cells that element e lies in: columns [i0, i1) and rows [j0, j1). None where elements are not
+  /// cut by cells.
+  struct CellRange {
+    int i0 = 0, i1 = 0, j0 = 0, j1 = 0;
+    double area = 0;  ///< of the element [m²]
+    /// Is it one?
+    bool single() const { return i1 - i0 == 1 && j1 - j0 == 1; }
+  };
+  virtual CellRange cells(int /*e*/, const Grid& /*grid*/) const { return {}; }
 
   /// The points of tabulate() for an element whose shape functions are products of functions of one
   /// coordinate: integrals of their products are then sums over one direction after the other.

@@ -110,6 +110,18 @@ class Term {
   virtual void add_free_tangent(int e, const Local& x, const Weights& w,
                                 FreeTangent& tangent) const;
 
+  /// Adds ψ · ∂f/∂κ_c by the factors κ_c of all cells of the body, f the force of one element as
+  /// add_force() adds it. Nothing where a term does not see factors. Only called where there are
+  /// some, for elements without free lines; lines are where the last prepare() found them.
+  /// @param psi  (n_shapes x dim)
+  virtual void add_factor_slopes(int /*e*/, const Local& /*x*/, const LocalRows& /*psi*/,
+                                 FactorSlopes& /*out*/) const {}
+  /// Adds weight ∂U/∂κ_c, U the strain energy of one element.
+  virtual void add_energy_slopes(int /*e*/, const Local& /*x*/, double /*weight*/,
+                                 FactorSlopes& /*out*/) const {}
+  /// Is its force the gradient of its strain energy by the unknowns, and nothing else?
+  virtual bool is_elastic() const { return false; }
+
   /// Energies of one element [J]; zero where a term has none.
   virtual Energies energies(int, const Local&) const { return {}; }
   double kinetic_energy(int e, const Local& x) const { return energies(e, x).kinetic; }

@@ -119,6 +119,18 @@ class Workspace : public Model {
   double heat_power(const State& x);
   /// Power that all terms turn into heat, see Term::dissipation() [W].
   double dissipation(const State& x);
+  /// What derivatives by factors are added to: zeros of every designed body, nothing of others.
+  std::vector<FactorSlopes> no_slopes() const;
+  /// Adds ψ · ∂F/∂κ, F of force(), by the factors of every body, see Term::add_factor_slopes().
+  /// @param psi  (n_dofs)   @param out  as no_slopes()
+  void add_factor_slopes(const State& x, const VectorXd& psi, std::vector<FactorSlopes>& out);
+  /// Strain energy of all bodies, without that of links [J].
+  double strain_energy(const State& x);
+  /// Adds its derivatives, times weight. @param by_q  (n_dofs)   @param by_factors  as no_slopes()
+  void add_strain_slopes(const State& x, double weight, VectorXd& by_q,
+                         std::vector<FactorSlopes>& by_factors);
+  /// (Φ_qᵀ λ)_q times a vector (n_dofs).
+  VectorXd constraint_curvature(const State& x, const VectorXd& lambda, const VectorXd& along);
   /// Smallest area ratio |r_m x r_n| over all elements (sampled at 3 x 3 points): a collapse of the
   /// St. Venant-Kirchhoff material shows here before Newton fails.
   double smallest_area_ratio(const State& x);

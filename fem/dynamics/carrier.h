@@ -25,6 +25,8 @@ class Carrier {
 
   const std::string& body() const { return body_; }  ///< empty where driven
   const FrameDrive& drive() const { return drive_; }
+  const Vec2& point() const { return point_; }  ///< in the axes of the body
+  double angle() const { return angle_; }
   FrameMotion at(const Model& model, const State& x) const;
 
  private:

@@ -13,15 +13,22 @@ constexpr double kSmooth = 1.2;
 
 }  // namespace
 
+AlphaScheme::AlphaScheme(double rho) {
+  if (!(rho >= 0 && rho <= 1)) throw Error::input("generalized_alpha: rho_inf lies in [0, 1]");
+  alpha_m = (2 * rho - 1) / (rho + 1);
+  alpha_f = rho / (rho + 1);
+  gamma = 0.5 + alpha_f - alpha_m;
+  beta = 0.25 * (gamma + 0.5) * (gamma + 0.5);
+}
+
 GeneralizedAlpha::GeneralizedAlpha(Workspace& model, const AlphaSettings& settings)
     : StepSolver(model, settings, "generalized_alpha",
-                 "A smaller time.step or a smaller rho_inf often helps.") {
-  const double rho = settings.rho_inf;
-  if (!(rho >= 0 && rho <= 1)) throw Error::input("generalized_alpha: rho_inf lies in [0, 1]");
-  alpha_m_ = (2 * rho - 1) / (rho + 1);
-  alpha_f_ = rho / (rho + 1);
-  gamma_ = 0.5 + alpha_f_ - alpha_m_;
-  beta_ = 0.25 * (gamma_ + 0.5) * (gamma_ + 0.5);
+                 "A smaller time.step or a smaller rho_inf often helps."),
+      scheme_(settings.rho_inf) {
+  alpha_m_ = scheme_.alpha_m;
+  alpha_f_ = scheme_.alpha_f;
+  gamma_ = scheme_.gamma;
+  beta_ = scheme_.beta;
 }
 
 void GeneralizedAlpha::begin(const State& x, double h) {
@@ -69,10 +76,6 @@ void GeneralizedAlpha::set_start(const State& x) {
   error_ = change_;
   filter(error_, balance_);
   start_v_ += change_ - error_;
-}
-
-Weights GeneralizedAlpha::weights() const {
-  return {1, gamma_ / (h_ * beta_), (1 - alpha_m_) / (h_ * h_ * beta_ * (1 - alpha_f_))};
 }
 
 void GeneralizedAlpha::residual(VectorXd& force, VectorXd& constraint) {

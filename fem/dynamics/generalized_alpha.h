@@ -4,6 +4,18 @@
 
 namespace flexmorph::fem {
 
+/// Coefficients of the scheme by its spectral radius at infinite frequency.
+struct AlphaScheme {
+  double alpha_m, alpha_f, beta, gamma;
+
+  /// @throws Error (input) when rho is outside [0, 1].
+  explicit AlphaScheme(double rho);
+  /// Derivatives of (q, q̇, q̈) by q at the end of a step of size h.
+  Weights weights(double h) const {
+    return {1, gamma / (h * beta), (1 - alpha_m) / (h * h * beta * (1 - alpha_f))};
+  }
+};
+
 /// Generalized-alpha for index-3 equations of motion, Arnold & Brüls (2007).
 ///
 ///   (1 - α_m) a_{n+1} + α_m a_n = (1 - α_f) q̈_{n+1} + α_f q̈_n
@@ -77,9 +89,9 @@ class GeneralizedAlpha final : public StepSolver {
   /// Velocity and algorithmic acceleration that the step starts from.
   void set_start(const State& x);
   void keep_jerk();
-  /// Derivatives of (q, q̇, q̈) by q at the end of the step.
-  Weights weights() const;
+  Weights weights() const { return scheme_.weights(h_); }
 
+  AlphaScheme scheme_;
   double alpha_m_, alpha_f_, beta_, gamma_;
   double h_ = 0;
   VectorXd alpha_;                  // of the last accepted step

@@ -41,12 +41,13 @@ class Run {
       go_on();
     const double tiny = kTiny * settings_.step;
     const auto all = landings();
-    for (; next_landing_ < all.size(); ++next_landing_) {
+    for (; next_landing_ < all.size() && !is_enough(); ++next_landing_) {
       const auto& [stop, seen] = all[next_landing_];
       if (!leg_.open && (stop <= x_.t + tiny || stop > settings_.end + tiny)) continue;
-      while (leg_.open || x_.t < stop - tiny) to_next_event(std::min(stop, settings_.end), seen);
+      while (!is_enough() && (leg_.open || x_.t < stop - tiny))
+        to_next_event(std::min(stop, settings_.end), seen);
     }
-    between_steps();
+    if (!is_enough()) between_steps();
     result_.final = x_;
     result_.counts = integrator_->counts();
     result_.energy_defect = balance_.relative();
@@ -79,7 +80,10 @@ class Run {
   void go_on() {
     Memory memory(settings_.memory);
     remember(memory);
+    if (settings_.keep == Keep::steps) keep(x_, false);
   }
+
+  bool is_enough() const { return x_.t >= settings_.until - kTiny * settings_.step; }
 
   /// All that the next steps depend on, or that is told of the motion at its end.
   void remember(Memory& memory) {
@@ -191,6 +195,7 @@ class Run {
       adaptive_steps_to(leg_.end, leg_.is_stop);
     else
       equal_steps();
+    if (is_enough()) return;
     leg_.open = false;
     const bool at_end = leg_.end >= settings_.end - kTiny * settings_.step;
     if (leg_.changing >= 0 && !at_end)
@@ -201,7 +206,7 @@ class Run {
   void equal_steps() {
     const double begin = leg_.begin, end = leg_.end;
     const int n = leg_.steps;
-    while (leg_.done < n) {
+    while (leg_.done < n && !is_enough()) {
       const int k = ++leg_.done;
       const double t = k == n ? end : begin + (end - begin) * k / n;
       double last = x_.t;
@@ -212,6 +217,7 @@ class Run {
           last = x.t;
         });
       });
+      if (is_enough()) return;
       if (t < settings_.end - kTiny * settings_.step) changes_due();
       between_steps();
     }
@@ -365,6 +371,9 @@ class Run {
     event.momentum_before = momentum_in_space(model_, x_);
     const Vec3 tip_before = point_position(*body, x_, tip);
     const State before = x_;
+    const LineGrid& lines = grid_of(*body);
+    const double line =
+        change == MeshChange::insertion ? inserted_line(lines, growth.cell) : lines.line_m(1).value;
     MeshMap map = change_mesh(model_, *body, change, x_, growth.cell);
     integrator_->change_mesh(map, before);
     event.after = model_.energies(x_);
@@ -376,7 +385,7 @@ class Run {
     if (settings_.keep == Keep::nothing) return;
     Trajectory& kept = result_.trajectory;
     kept.changes.push_back(
-        {event.time, event.body, change, kept.points.size() - 1, std::move(map)});
+        {event.time, event.body, change, kept.points.size() - 1, line, std::move(map)});
     if (settings_.keep == Keep::steps) kept.points.push_back({x_, false});
   }
 

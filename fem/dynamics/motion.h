@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -44,6 +45,9 @@ struct MotionSettings {
   /// Where the motion goes on: what a TakeDown gave in the same motion of the same model; empty: it
   /// begins. All that follows is the same bit for bit, whenever and however often it was taken.
   std::string memory;
+  /// The motion stops at the end of the first step at or behind this time, before what follows
+  /// there (a change of a mesh): a part of a motion. Not with adaptive steps [s].
+  double until = std::numeric_limits<double>::infinity();
   /// Called at the end of every step (not of the parts that Newton's method cut it into) and of the
   /// motion; may throw. Not with a trajectory that is kept.
   std::function<void(const TakeDown&)> between_steps;

@@ -1,8 +1,7 @@
-#include "fem/dynamics/start.h"
-
 #include <algorithm>
 #include <cmath>
 
+#include "fem/dynamics/start_parts.h"
 #include "fem/solve/statics.h"
 
 namespace flexmorph::fem {
@@ -85,7 +84,10 @@ void carry_in_hub(const Model& model, const Growth& growth, State& x) {
   x.v[scalar] = growth.slide;
 }
 
-/// The whole model as rigid, extending bodies; its lines are where they are at x.t.
+}  // namespace
+
+namespace start {
+
 State rigid_state(const Model& model, std::span<const Growth> growths, const Placement& placement,
                   double t) {
   State x = model.reference();
@@ -108,49 +110,120 @@ State rigid_state(const Model& model, std::span<const Growth> growths, const Pla
   return x;
 }
 
-/// The same model with the lines of all plates frozen where they are at `lines`, for statics.
-void freeze(Workspace& model, std::span<const Growth> growths, double lines) {
-  for (const Growth& g : growths) {
-    Body& body = body_named(model, g.body);
-    const std::unique_ptr<LineGrid> mesh = grid_of(body).copy();
+bool rides_in_hubs(std::span<const Growth> growths, const Placement& placement) {
+  return !placement && std::all_of(growths.begin(), growths.end(),
+                                   [](const Growth& g) { return g.hub.body().empty(); });
+}
+
+InHubs::InHubs(Workspace& model, std::span<const Growth> growths, double t)
+    : model_(model), growths_(growths), t_(t) {
+  for (const Growth& g : growths_) moving_.push_back(grid_of(model_.body(g.body)).copy());
+}
+
+InHubs::~InHubs() {
+  for (size_t i = 0; i < growths_.size(); ++i)
+    model_.set_element(body_named(model_, growths_[i].body), moving_[i]->copy());
+  model_.move_lines(t_);
+}
+
+State InHubs::at(double lines) {
+  for (size_t i = 0; i < growths_.size(); ++i) {
+    const std::unique_ptr<LineGrid> mesh = moving_[i]->copy();
     mesh->move_to(lines);
-    model.set_element(body, mesh->frozen());
+    model_.set_element(body_named(model_, growths_[i].body), mesh->frozen());
+  }
+  State s = rigid_state(model_, growths_, {}, t_);
+  spin_.setZero(model_.n_dofs());
+  center_.setZero(model_.n_dofs());
+  for (const Growth& g : growths_) {
+    const Body& body = model_.body(g.body);
+    const FrameMotion hub = g.hub.at(model_, s);
+    for (int k = 0; k < body.element->n_vectors(); ++k) {
+      const int at = body.first_dof + body.element->dim() * k;
+      spin_.segment<2>(at).setConstant(hub.angle_rate * hub.angle_rate);
+      if (body.element->is_position(k)) center_.segment<2>(at) = hub.origin;
+    }
+  }
+  s.v.setZero();
+  solve_rotating_equilibrium(model_, spin_, center_, s);
+  return s;
+}
+
+void InHubs::add_turn(const VectorXd& change, VectorXd& rate, bool transposed) const {
+  for (const Growth& g : growths_) {
+    const Body& body = model_.body(g.body);
+    State now;
+    now.t = t_;
+    const double w = g.hub.at(model_, now).angle_rate * (transposed ? -1 : 1);
+    for (int k = 0; k < body.element->n_vectors(); ++k) {
+      const int at = body.first_dof + body.element->dim() * k;
+      rate.segment<2>(at) += w * kQuarter * change.segment<2>(at);
+    }
   }
 }
 
-/// Static equilibrium under centrifugal forces: q̈ = -ω² (q - origin), lines frozen. Its rate as
-/// the body grows comes from equilibria a little earlier and later.
+std::vector<double> spins(const Model& model, const State& rigid) {
+  std::vector<double> out;
+  for (const Body& body : model.bodies()) {
+    const int dim = body.element->dim(), n = body.element->n_vectors();
+    int axis = 0;  // a vector that turns with the body
+    while (axis + 1 < n && body.element->is_position(axis)) ++axis;
+    if (body.element->is_position(axis)) {  // there is none: from a place to another one
+      const int at = body.first_dof, to = at + dim * axis;
+      const Vec2 u = (rigid.q.segment<2>(to) - rigid.q.segment<2>(at)),
+                 rate = rigid.v.segment<2>(to) - rigid.v.segment<2>(at);
+      out.push_back((kQuarter * u).dot(rate) / u.squaredNorm());
+      continue;
+    }
+    const int turned = body.first_dof + dim * axis;
+    const Vec2 u = rigid.q.segment<2>(turned), rate = rigid.v.segment<2>(turned);
+    out.push_back((kQuarter * u).dot(rate) / u.squaredNorm());
+  }
+  return out;
+}
+
+void add_turns(const Model& model, const std::vector<double>& spins, const VectorXd& change,
+               double sign, VectorXd& rate) {
+  for (size_t b = 0; b < spins.size(); ++b) {
+    const Body& body = model.bodies()[b];
+    for (int k = 0; k < body.element->n_vectors(); ++k) {
+      const int at = body.first_dof + body.element->dim() * k;
+      rate.segment<2>(at) += sign * spins[b] * kQuarter * change.segment<2>(at);
+    }
+  }
+}
+
+State carried_equilibrium(Workspace& model, std::span<const Growth> growths,
+                          const Placement& placement, double t) {
+  constexpr int kPasses = 50;
+  model.move_lines(t);
+  State s = rigid_state(model, growths, placement, t);
+  const State rigid = s;
+  solve_carried_equilibrium(model, s);
+  VectorXd last = rigid.q;
+  for (int pass = 0; pass < kPasses && model.dissipation(s) > 0 &&
+                     (s.q - last).norm() > 1e-10 * (s.q - rigid.q).norm();
+       ++pass) {
+    last = s.q;
+    s.v = rigid.v;
+    add_turns(model, spins(model, rigid), s.q - rigid.q, 1, s.v);
+    solve_carried_equilibrium(model, s);
+  }
+  return s;
+}
+
+namespace {
+
+/// Its rate as the body grows comes from equilibria a little earlier and later.
 void stretch_in_hubs(Workspace& model, std::span<const Growth> growths, double delta, State& x) {
   const double t = x.t;
-  std::vector<std::unique_ptr<LineGrid>> moving;
-  for (const Growth& g : growths) moving.push_back(grid_of(model.body(g.body)).copy());
-  const auto restore = [&] {
-    for (size_t i = 0; i < growths.size(); ++i)
-      model.set_element(body_named(model, growths[i].body), moving[i]->copy());
-  };
-  const auto equilibrium = [&](double lines) {
-    restore();
-    freeze(model, growths, lines);
-    State s = rigid_state(model, growths, {}, t);
-    VectorXd spin(model.n_dofs()), center = VectorXd::Zero(model.n_dofs());
-    spin.setZero();
-    for (const Growth& g : growths) {
-      const Body& body = model.body(g.body);
-      const FrameMotion hub = g.hub.at(model, s);
-      for (int k = 0; k < body.element->n_vectors(); ++k) {
-        const int at = body.first_dof + body.element->dim() * k;
-        spin.segment<2>(at).setConstant(hub.angle_rate * hub.angle_rate);
-        if (body.element->is_position(k)) center.segment<2>(at) = hub.origin;
-      }
-    }
-    s.v.setZero();
-    solve_rotating_equilibrium(model, spin, center, s);
-    return s.q;
-  };
-  const VectorXd q = equilibrium(t), later = equilibrium(t + delta),
-                 earlier = equilibrium(t - delta);
-  restore();
-  model.move_lines(t);
+  VectorXd q, later, earlier;
+  {
+    InHubs stretched(model, growths, t);
+    q = stretched.at(t).q;
+    later = stretched.at(t + delta).q;
+    earlier = stretched.at(t - delta).q;
+  }
   x.q = q;
   for (const Growth& g : growths) {
     const Body& body = model.body(g.body);
@@ -167,70 +240,36 @@ void stretch_in_hubs(Workspace& model, std::span<const Growth> growths, double d
   }
 }
 
-/// Velocities of the bodies of a rigid state when they are strained to q and turn as they are.
-VectorXd turning(const Model& model, const State& rigid, const VectorXd& q) {
-  VectorXd v = rigid.v;
-  for (const Body& body : model.bodies()) {
-    const int dim = body.element->dim(), n = body.element->n_vectors();
-    int axis = 0;  // a vector that turns with the body
-    while (axis + 1 < n && body.element->is_position(axis)) ++axis;
-    const int turned = body.first_dof + dim * axis;
-    const Vec2 u = rigid.q.segment<2>(turned), rate = rigid.v.segment<2>(turned);
-    const double spin = (kQuarter * u).dot(rate) / u.squaredNorm();
-    for (int k = 0; k < n; ++k) {
-      const int at = body.first_dof + dim * k;
-      v.segment<2>(at) += spin * kQuarter * (q - rigid.q).segment<2>(at);
-    }
-  }
-  return v;
-}
-
-/// Static equilibrium under the inertia forces of the rigid motion; its rate from equilibria a
-/// little later (what drives a mechanism need not be defined before its start). A strained body
-/// turns as a rigid one, so that its material does not damp that: with the velocities of the
-/// undeformed body it would.
+/// The rate comes from equilibria a little later (what drives a mechanism need not be defined
+/// before its start).
 void stretch_mechanism(Workspace& model, std::span<const Growth> growths,
                        const Placement& placement, double delta, State& x) {
-  constexpr int kPasses = 50;
-  const auto strain = [&](double t) {
-    model.move_lines(t);
-    State s = rigid_state(model, growths, placement, t);
-    const State rigid = s;
-    solve_carried_equilibrium(model, s);
-    VectorXd last = rigid.q;
-    for (int pass = 0; pass < kPasses && model.dissipation(s) > 0 &&
-                       (s.q - last).norm() > 1e-10 * (s.q - rigid.q).norm();
-         ++pass) {
-      last = s.q;
-      s.v = turning(model, rigid, s.q);
-      solve_carried_equilibrium(model, s);
-    }
-    return VectorXd(s.q - rigid.q);
-  };
   const double t = x.t;
+  const auto strain = [&](double at) {
+    const VectorXd q = carried_equilibrium(model, growths, placement, at).q;
+    return VectorXd(q - rigid_state(model, growths, placement, at).q);
+  };
   const VectorXd later = strain(t + delta), last = strain(t + 2 * delta), now = strain(t);
   x.q += now;
-  x.v += (4 * later - 3 * now - last) / (2 * delta);
+  x.v += (kForward[1] * later + kForward[0] * now + kForward[2] * last) / (2 * delta);
 }
 
 }  // namespace
+}  // namespace start
 
-State start_state(Workspace& model, std::span<const Growth> growths, double t, Start start,
+State start_state(Workspace& model, std::span<const Growth> growths, double t, Start kind,
                   const Placement& placement, double delta) {
   model.move_lines(t);
-  State x = rigid_state(model, growths, placement, t);
-  if (start == Start::rigid) return x;
-  if (start == Start::settled) {
+  State x = start::rigid_state(model, growths, placement, t);
+  if (kind == Start::rigid) return x;
+  if (kind == Start::settled) {
     solve_resting_equilibrium(model, x);
     return x;
   }
-  const bool in_hubs =
-      !placement && std::all_of(growths.begin(), growths.end(),
-                                [](const Growth& g) { return g.hub.body().empty(); });
-  if (in_hubs)
-    stretch_in_hubs(model, growths, delta, x);
+  if (start::rides_in_hubs(growths, placement))
+    start::stretch_in_hubs(model, growths, delta, x);
   else
-    stretch_mechanism(model, growths, placement, delta, x);
+    start::stretch_mechanism(model, growths, placement, delta, x);
   return x;
 }
 

@@ -31,7 +31,7 @@ using Placement = std::function<std::vector<Placed>(double t)>;
 /// @param delta  δ [s] of the difference that gives the rate of the prestretched shape; lines move
 ///        to t ± 2 δ for it, so that motions shorter than that need a smaller one
 /// @throws Error (numerical) when the static equilibrium is not found.
-State start_state(Workspace& model, std::span<const Growth> growths, double t, Start start,
+State start_state(Workspace& model, std::span<const Growth> growths, double t, Start kind,
                   const Placement& placement = {}, double delta = 1e-4);
 
 }  // namespace flexmorph::fem

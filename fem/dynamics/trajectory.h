@@ -30,6 +30,7 @@ struct Trajectory {
     std::string body;
     MeshChange change = MeshChange::insertion;
     size_t after = 0;  ///< last point kept before it
+    double line = 0;   ///< place of the line that came or went [m]
     MeshMap map;
   };
 

@@ -69,14 +69,21 @@ struct Part {
   double lower, upper;  // in [0, 1]
 };
 
-std::vector<Part> parts(double start, double length, double grid_start, double cell, int n_cells) {
+/// First and last of the cells that an interval lies in.
+std::array<int, 2> cell_range(double start, double length, double grid_start, double cell,
+                              int n_cells) {
   const auto index = [&](double x) {
     return std::clamp(static_cast<int>(std::floor((x - grid_start) / cell)), 0, n_cells - 1);
   };
   // A thousandth of a billionth of a cell: cut lines that coincide up to round-off are one line.
   const double tiny = 1e-12 * cell;
+  return {index(start + tiny), index(start + length - tiny)};
+}
+
+std::vector<Part> parts(double start, double length, double grid_start, double cell, int n_cells) {
+  const auto [first, last] = cell_range(start, length, grid_start, cell, n_cells);
   std::vector<Part> out;
-  for (int c = index(start + tiny); c <= index(start + length - tiny); ++c) {
+  for (int c = first; c <= last; ++c) {
     const double lower = c == 0 ? start : std::max(start, grid_start + c * cell);
     const double upper =
         c == n_cells - 1 ? start + length : std::min(start + length, grid_start + (c + 1) * cell);
@@ -278,6 +285,14 @@ bool weighted(const Factors& factors, FactorKind kind) {
   return kind != FactorKind::none && !factors.uniform();
 }
 
+/// Integrals of Lagrange's polynomials at n Gauss points over parts of an interval (parts x n).
+MatrixXd integrals(const std::vector<Part>& parts, int n) {
+  MatrixXd out(parts.size(), n);
+  for (size_t i = 0; i < parts.size(); ++i)
+    out.row(static_cast<Eigen::Index>(i)) = lagrange_integrals(n, parts[i].lower, parts[i].upper);
+  return out;
+}
+
 /// Points per direction for integrands of a degree: with a stepwise factor the weights are
 /// interpolatory, exact up to degree n - 1 only. Sixteen are the most there are (gauss()); only
 /// what is rational, and has no degree, asks for more.
@@ -300,16 +315,38 @@ MatrixXd AncfPlate::weights(int e, int n, const Factors& factors, FactorKind kin
   const VectorXd& field = kind == FactorKind::stiffness ? factors.stiffness : factors.mass;
   const std::vector<Part> pm = parts(hm.start, hm.length, grid.x0, grid.dx(), grid.nx);
   const std::vector<Part> pn = parts(hn.start, hn.length, grid.y0, grid.dy(), grid.ny);
-  MatrixXd along(pm.size(), n), across(pn.size(), n), cells(pm.size(), pn.size());
-  for (size_t i = 0; i < pm.size(); ++i) {
-    along.row(static_cast<Eigen::Index>(i)) = lagrange_integrals(n, pm[i].lower, pm[i].upper);
+  MatrixXd cells(pm.size(), pn.size());
+  for (size_t i = 0; i < pm.size(); ++i)
     for (size_t j = 0; j < pn.size(); ++j)
       cells(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
           field[grid.cell(pm[i].cell, pn[j].cell)];
-  }
-  for (size_t j = 0; j < pn.size(); ++j)
-    across.row(static_cast<Eigen::Index>(j)) = lagrange_integrals(n, pn[j].lower, pn[j].upper);
-  return area * along.transpose() * cells * across;
+  return area * integrals(pm, n).transpose() * cells * integrals(pn, n);
+}
+
+void AncfPlate::add_cell_integrals(int e, int degree, const VectorXd& values, const Grid& grid,
+                                   VectorXd& out) const {
+  const int n = n_points(degree, true);
+  const Hermite& hm = hermite_m_[static_cast<size_t>(e / n_n())];
+  const Hermite& hn = hermite_n_[static_cast<size_t>(e % n_n())];
+  const std::vector<Part> pm = parts(hm.start, hm.length, grid.x0, grid.dx(), grid.nx);
+  const std::vector<Part> pn = parts(hn.start, hn.length, grid.y0, grid.dy(), grid.ny);
+  // Points are numbered along m first.
+  const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>
+      points(values.data(), n, n);
+  const MatrixXd cells =
+      hm.length * hn.length * integrals(pm, n) * points * integrals(pn, n).transpose();
+  for (size_t i = 0; i < pm.size(); ++i)
+    for (size_t j = 0; j < pn.size(); ++j)
+      out[grid.cell(pm[i].cell, pn[j].cell)] +=
+          cells(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+}
+
+Element::CellRange AncfPlate::cells(int e, const Grid& grid) const {
+  const Hermite& hm = hermite_m_[static_cast<size_t>(e / n_n())];
+  const Hermite& hn = hermite_n_[static_cast<size_t>(e % n_n())];
+  const auto [i0, i1] = cell_range(hm.start, hm.length, grid.x0, grid.dx(), grid.nx);
+  const auto [j0, j1] = cell_range(hn.start, hn.length, grid.y0, grid.dy(), grid.ny);
+  return {i0, i1 + 1, j0, j1 + 1, hm.length * hn.length};
 }
 
 void AncfPlate::tabulate(int e, int degree, Tabulate what, const Factors& factors, FactorKind kind,

@@ -44,6 +44,9 @@ class AncfPlate final : public LineGrid {
                 ShapeTable& out) const override;
   bool tabulate_products(int e, int degree, const Factors& factors, FactorKind kind,
                          ProductTable& out) const override;
+  void add_cell_integrals(int e, int degree, const VectorXd& values, const Grid& grid,
+                          VectorXd& out) const override;
+  CellRange cells(int e, const Grid& grid) const override;
   int locate(const Vec2& material, Tabulate what, ShapeTable& out) const override;
 
   int per_node() const override { return per_node_; }

@@ -78,15 +78,15 @@ void solve_carried_equilibrium(Workspace& model, State& x) {
 }
 
 void solve_resting_equilibrium(Workspace& model, State& x) {
-  constexpr double kFirst = 1e4, kLast = 1e-2;  // κ [1/s²]
+  constexpr double kFirst = 1e4;  // κ [1/s²]
   const VectorXd start = x.q;
   double hold = 10 * kFirst;
   x.v.setZero();
   // a = κ (q - q₀): its inertia force is that of the hold.
   const auto accelerate = [&](State& s) {
-    hold = std::max(0.1 * hold, kLast);
+    hold = std::max(0.1 * hold, kLastHold);
     s.a = hold * (s.q - start);
-    return hold == kLast;
+    return hold == kLastHold;
   };
   const auto soften = [&](const State& s, const Constraints& c, SparseMatrix& kkt) {
     model.kkt(s, c, {1, 0, hold}, 1, kkt);

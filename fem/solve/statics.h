@@ -34,6 +34,8 @@ void solve_carried_equilibrium(Workspace& model, State& x);
 /// @param x  in: near the equilibrium; out: q and λ of it, v = a = 0.
 /// @throws Error (numerical) likewise.
 void solve_resting_equilibrium(Workspace& model, State& x);
+/// κ of its last iterations [1/s²].
+inline constexpr double kLastHold = 1e-2;
 
 /// Small displacements of a linear analysis: one Newton step from x under the loads as they are
 /// (n_dofs). x is an equilibrium without loads, for instance the reference.

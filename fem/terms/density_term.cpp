@@ -94,6 +94,51 @@ double ElasticTerm::flow_power(int e, const Local& x) const {
   return out;
 }
 
+namespace {
+
+/// The strains of an element at the points that cells are integrated at, in field().
+StrainTable& strains_at_points(const StrainSampling& sampling, const StrainMeasure& measure,
+                               const StrainSource& from, int e, const LocalRows& q) {
+  static thread_local StrainTable table;
+  if (!sampling.is_pointwise())
+    throw Error::input("assumed strains have no derivatives by the factors of cells");
+  sampling.tabulate(from, e, table);
+  table.rate.clear();  // at fixed points
+  field().set(measure, table, q);
+  return table;
+}
+
+}  // namespace
+
+void ElasticTerm::add_factor_slopes(int e, const Local& x, const LocalRows& psi,
+                                    FactorSlopes& out) const {
+  const StrainSource from{*element_, *factors_, {}};
+  StrainVector s;
+  for (const ElasticPart& part : parts_) {
+    strains_at_points(*part.sampling, part.density->strain(), from, e, x.q);
+    StrainField& at = field();
+    at.set_rate(x.q, psi);
+    VectorXd values(at.strain().cols());
+    for (Eigen::Index p = 0; p < values.size(); ++p) {
+      part.density->of_strain(at.strain().col(p), &s, nullptr);
+      values[p] = s.dot(at.rate().col(p));
+    }
+    element_->add_cell_integrals(e, part.sampling->degree(), values, factors_->grid, out.stiffness);
+  }
+}
+
+void ElasticTerm::add_energy_slopes(int e, const Local& x, double weight, FactorSlopes& out) const {
+  const StrainSource from{*element_, *factors_, {}};
+  for (const ElasticPart& part : parts_) {
+    strains_at_points(*part.sampling, part.density->strain(), from, e, x.q);
+    const MatrixXd& strain = field().strain();
+    VectorXd values(strain.cols());
+    for (Eigen::Index p = 0; p < values.size(); ++p)
+      values[p] = weight * part.density->of_strain(strain.col(p), nullptr, nullptr);
+    element_->add_cell_integrals(e, part.sampling->degree(), values, factors_->grid, out.stiffness);
+  }
+}
+
 void ElasticTerm::add_line_energy(std::span<const ShapeTable> line, const Local& x,
                                   LineEnergy& out) const {
   for (const ElasticPart& part : parts_) {
@@ -213,6 +258,8 @@ class Dissipative final : public StrainTerm {
   void prepare(const Element& element, const Factors& factors, bool all) override {
     if (element.n_scalars() > 0)
       throw Error::input("term '" + name_ + "' does not know free material lines");
+    element_ = &element;
+    factors_ = &factors;
     tables_.prepare(element, factors, all, samplings_of(parts_));
   }
 
@@ -251,6 +298,31 @@ class Dissipative final : public StrainTerm {
   void add_mean_tangent(int e, const LocalStep& x, const Weights& w,
                         LocalTangent& tangent) const override {
     add_tangent(e, x.mean, w, tangent);
+  }
+
+  void add_factor_slopes(int e, const Local& x, const LocalRows& psi,
+                         FactorSlopes& out) const override {
+    const StrainSource from{*element_, *factors_, {}};
+    StrainVector s;
+    for (const DissipativePart& part : parts_) {
+      if (!part.sampling->is_pointwise())
+        throw Error::input("assumed strains have no derivatives by the factors of cells");
+      StrainTable table;
+      part.sampling->tabulate(from, e, table);
+      StrainField& at = field();
+      at.set(part.density->strain(), table, x.q);
+      at.set_rate(x.q, x.v);
+      MatrixXd stress(at.strain().rows(), at.strain().cols());
+      for (Eigen::Index p = 0; p < stress.cols(); ++p) {
+        part.density->stress(at.strain().col(p), at.rate().col(p), s, nullptr, nullptr);
+        stress.col(p) = s;
+      }
+      table.rate.clear();
+      at.set_rate(x.q, psi);
+      const VectorXd values = stress.cwiseProduct(at.rate()).colwise().sum().transpose();
+      element_->add_cell_integrals(e, part.sampling->degree(), values, factors_->grid,
+                                   out.stiffness);
+    }
   }
 
   double dissipation(int e, const Local& x) const override {
@@ -306,6 +378,8 @@ class Dissipative final : public StrainTerm {
 
   std::string name_;
   std::vector<DissipativePart> parts_;
+  const Element* element_ = nullptr;
+  const Factors* factors_ = nullptr;
   StrainTables tables_;
 };
 

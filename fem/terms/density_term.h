@@ -20,6 +20,10 @@ class ElasticTerm : public StrainTerm {
   void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override;
   void add_mean_tangent(int e, const LocalStep& x, const Weights& w,
                         LocalTangent& tangent) const override;
+  void add_factor_slopes(int e, const Local& x, const LocalRows& psi,
+                         FactorSlopes& out) const override;
+  void add_energy_slopes(int e, const Local& x, double weight, FactorSlopes& out) const override;
+  bool is_elastic() const final { return true; }
   /// energy_at(), or that of FreeElastic next to free lines.
   Energies energies(int e, const Local& x) const final;
   double flow_power(int e, const Local& x) const override;

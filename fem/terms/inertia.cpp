@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "fem/terms.h"
 #include "fem/terms/free_work.h"
@@ -24,7 +25,9 @@ class Inertia final : public Term {
   /// Made anew: what is prepared would only be prepared again.
   std::unique_ptr<Term> clone() const override { return make_inertia(section_); }
   void prepare(const Element& element, const Factors& factors, bool all) override {
-    free_.prepare(element, 6, Tabulate::position, factors);
+    element_ = &element;
+    factors_ = &factors;
+    free_.prepare(element, kDegree, Tabulate::position, factors);
     matrices_.resize(static_cast<size_t>(element.n_elements()));
     for (int e = 0; e < element.n_elements(); ++e)
       if ((all || element.moving(e)) && !free_.has(e)) integrate(element, e, factors);
@@ -106,6 +109,21 @@ class Inertia final : public Term {
     return {.kinetic = 0.5 * twice};
   }
 
+  void add_factor_slopes(int e, const Local& x, const LocalRows& psi,
+                         FactorSlopes& out) const override {
+    const Element::CellRange at = element_->cells(e, factors_->grid);
+    if (x.q.rows() == 4 && at.single() && !element_->moving(e)) {
+      out.mass[factors_->grid.cell(at.i0, at.j0)] += bilinear_slope(at.area, x, psi);
+      return;
+    }
+    static thread_local ShapeTable t;
+    element_->tabulate(e, kDegree, Tabulate::position_rates, *factors_, FactorKind::mass, t);
+    MatrixXd acceleration = t.N * x.a;
+    if (t.N_t.size() > 0) acceleration += 2 * t.N_t * x.v + t.N_tt * x.q;
+    const VectorXd values = area_density_ * (t.N * psi).cwiseProduct(acceleration).rowwise().sum();
+    element_->add_cell_integrals(e, kDegree, values, factors_->grid, out.mass);
+  }
+
   /// ∫ ρh ṙ dA.
   Vec3 momentum(int e, const Local& x) const override {
     if (free_.has(e)) return of_free_.momentum(free_.of(e), x);
@@ -181,7 +199,7 @@ class Inertia final : public Term {
   }
 
   void integrate(const Element& element, int e, const Factors& factors) {
-    element.tabulate(e, 6, Tabulate::position_rates, factors, FactorKind::mass, table_);
+    element.tabulate(e, kDegree, Tabulate::position_rates, factors, FactorKind::mass, table_);
     Matrices& m = matrices_[static_cast<size_t>(e)];
     m.flows = element.moving(e);
     weighted_.noalias() = (area_density_ * table_.weight).asDiagonal() * table_.N;
@@ -196,6 +214,21 @@ class Inertia final : public Term {
     m.rate_transport.noalias() = weighted_.transpose() * table_.N_tt;
   }
 
+  /// ψ · M a of a full bilinear cell, M = ρh A/36 [4 2 1 2; ...] with corners in turn around it.
+  double bilinear_slope(double area, const Local& x, const LocalRows& psi) const {
+    double sum = 0;
+    for (Eigen::Index k = 0; k < 4; ++k)
+      for (Eigen::Index l = 0; l < 4; ++l) {
+        const int apart = static_cast<int>(std::abs(k - l));
+        const double share = apart == 0 ? 4 : apart == 2 ? 1 : 2;
+        sum += share * psi.row(k).dot(x.a.row(l));
+      }
+    return area_density_ * area / 36 * sum;
+  }
+
+  static constexpr int kDegree = 6;  // of N Nᵀ
+  const Element* element_ = nullptr;
+  const Factors* factors_ = nullptr;
   PlaneSection section_;
   double area_density_;
   FreeInertia of_free_;

@@ -15,13 +15,15 @@ class Gravity final : public Term {
 
   std::unique_ptr<Term> clone() const override { return std::make_unique<Gravity>(*this); }
   void prepare(const Element& element, const Factors& factors, bool all) override {
+    element_ = &element;
+    factors_ = &factors;
     free_.prepare(element, 6, Tabulate::position, factors);
     mass_.resize(static_cast<size_t>(element.n_elements()));
     rate_.resize(mass_.size());
     ShapeTable table;
     for (int e = 0; e < element.n_elements(); ++e) {
       if ((!all && !element.moving(e)) || free_.has(e)) continue;
-      element.tabulate(e, 3, Tabulate::position_rates, factors, FactorKind::mass, table);
+      element.tabulate(e, kDegree, Tabulate::position_rates, factors, FactorKind::mass, table);
       mass_[static_cast<size_t>(e)] = area_density_ * table.N.transpose() * table.weight;
       rate_[static_cast<size_t>(e)] =
           element.moving(e) ? VectorXd(area_density_ * table.N_t.transpose() * table.weight)
@@ -55,6 +57,19 @@ class Gravity final : public Term {
   }
   void add_mean_tangent(int, const LocalStep&, const Weights&, LocalTangent&) const override {}
   std::string name() const override { return "gravity"; }
+  void add_factor_slopes(int e, const Local&, const LocalRows& psi,
+                         FactorSlopes& out) const override {
+    const Element::CellRange at = element_->cells(e, factors_->grid);
+    if (psi.rows() == 4 && at.single()) {  // bilinear: a quarter of its weight at each corner
+      out.mass[factors_->grid.cell(at.i0, at.j0)] -=
+          0.25 * factor_ * area_density_ * at.area * psi.colwise().sum().dot(gravity_);
+      return;
+    }
+    static thread_local ShapeTable t;
+    element_->tabulate(e, kDegree, Tabulate::position, *factors_, FactorKind::mass, t);
+    const VectorXd values = -factor_ * area_density_ * t.N * (psi * gravity_);
+    element_->add_cell_integrals(e, kDegree, values, factors_->grid, out.mass);
+  }
   Energies energies(int e, const Local& x) const override {
     if (free_.has(e)) return {.potential = of_free_.potential_energy(free_.of(e), x)};
     return {.potential = -factor_ * mass_[static_cast<size_t>(e)].dot(x.q * gravity_)};
@@ -74,6 +89,9 @@ class Gravity final : public Term {
   }
 
  private:
+  static constexpr int kDegree = 3;  // of N
+  const Element* element_ = nullptr;
+  const Factors* factors_ = nullptr;
   double area_density_, factor_ = 1;
   VectorXd gravity_;
   FreeInertia of_free_;

@@ -158,6 +158,20 @@ class Membrane final : public ElasticTerm {
                : ElasticTerm::flow_power(e, x);
   }
 
+  void add_factor_slopes(int e, const Local& x, const LocalRows& psi,
+                         FactorSlopes& out) const override {
+    if (kinds_ == 1)
+      add_cell_slopes(e, x.q.data(), psi.data(), 1, out.stiffness);
+    else
+      ElasticTerm::add_factor_slopes(e, x, psi, out);
+  }
+  void add_energy_slopes(int e, const Local& x, double weight, FactorSlopes& out) const override {
+    if (kinds_ == 1)
+      add_cell_slopes(e, x.q.data(), nullptr, weight, out.stiffness);
+    else
+      ElasticTerm::add_energy_slopes(e, x, weight, out);
+  }
+
   void add_line_energy(std::span<const ShapeTable> line, const Local& x,
                        LineEnergy& out) const override {
     if (strains_ == Strains::assumed)
@@ -169,6 +183,7 @@ class Membrane final : public ElasticTerm {
  private:
   static constexpr int kMaxPairs = gram::Numbering<4>::n_pairs;
   static constexpr int kMaxVectors = gram::Numbering<4>::n;
+  static constexpr int kCellDegree = 4;  // of the strains' products, with one vector at a node
   using Packed = std::shared_ptr<const std::vector<double>>;
 
   struct BatchData {
@@ -193,6 +208,84 @@ class Membrane final : public ElasticTerm {
       }
     });
     return energy;
+  }
+
+  /// Work of a cell's force on ψ, or its energy, with all of it solid and with all of it void.
+  struct Shares {
+    double solid = 0, empty = 0;
+  };
+
+  /// @param w  W of lane w.lane   @param psi  by nodes; null: energies
+  static Shares shares(const gram::OneOf& w, const VoidCells& cells, const BatchData& batch,
+                       int lane, const double* q, const double* psi) {
+    using N = gram::Numbering<1>;
+    double p[2 * N::n], d[2 * N::n], g[N::n_pairs], s[N::n_pairs];
+    gram::vectors<1, 2>(q, p);
+    gram::products<1, 2>(p, g);
+    for (size_t k = 0; k < N::n_pairs; ++k) g[k] -= batch.reference[k][lane];
+    gram::multiply<1, Coupling::all>(w, g, s);
+    Shares out;
+    if (psi) gram::vectors<1, 2>(psi, d);
+    for (size_t k = 0; k < N::n_pairs; ++k) {
+      const int i = 2 * N::tables.i[k], j = 2 * N::tables.j[k];
+      double change = g[k] / 2;
+      if (psi) {
+        change = p[i] * d[j] + p[i + 1] * d[j + 1];
+        if (i != j) change += d[i] * p[j] + d[i + 1] * p[j + 1];
+      }
+      out.solid += s[k] * change;
+    }
+    if (cells.any()) out.empty = cells.small_strains(w.lane, p, psi ? d : nullptr);
+    return out;
+  }
+
+  /// U = γ(κ̄) U_solid + (1 - γ(κ̄)) U_empty, both linear in the factors, κ̄ the mean one.
+  void add_cell_slopes(int e, const double* q, const double* psi, double weight,
+                       VectorXd& out) const {
+    const BatchData& batch = of(e);
+    const int lane = e % kLanes;
+    const VoidCells& cells = batch.cells;
+    const Grid& grid = factors().grid;
+    const double factor = cells.factor(lane), solid = VoidCells::solid_part(factor),
+                 slope = VoidCells::solid_slope(factor);
+    const Shares all = shares({batch.different.data(), lane}, cells, batch, lane, q, psi);
+    const Element::CellRange at = element().cells(e, grid);
+    if (at.single() && factor > 0) {
+      out[grid.cell(at.i0, at.j0)] += weight * ((solid / factor + slope) * all.solid +
+                                                ((1 - solid) / factor - slope) * all.empty);
+      return;
+    }
+    for (int i = at.i0; i < at.i1; ++i)
+      for (int j = at.j0; j < at.j1; ++j) {
+        CellPart part = part_in(e, grid.cell(i, j), cells.size(lane));
+        const Shares own = shares({part.w.data(), 0}, part.cells, batch, lane, q, psi);
+        out[grid.cell(i, j)] += weight * (solid * own.solid + (1 - solid) * own.empty +
+                                          slope * part.share * (all.solid - all.empty));
+      }
+  }
+
+  /// What full material of one cell is in an element: its W, and its part of the area.
+  struct CellPart {
+    std::vector<Lanes> w;
+    VoidCells cells;
+    double share = 0;
+  };
+  CellPart part_in(int e, int cell, const Vec2& size) const {
+    static thread_local Factors only;
+    only.grid = factors().grid;
+    only.stiffness.setZero(factors().stiffness.size());
+    only.stiffness[cell] = 1;
+    ProductTable table;
+    element().tabulate_products(e, kCellDegree, only, FactorKind::stiffness, table);
+    CellPart out;
+    out.share = table.weight.sum() / size.prod();
+    for (const double x : membrane_invariant(even_and_odd(table, function_m_, function_n_), pairs_,
+                                             elasticity_, strains_))
+      out.w.push_back(Lanes{} + x);
+    out.cells.set(0, size, 0);
+    out.cells.fill(1);
+    out.cells.set_stiffness(out.w);
+    return out;
   }
 
   /// Tables of gram.h that integrate() needs, and the functions of one coordinate in every vector.
@@ -366,7 +459,8 @@ class Membrane final : public ElasticTerm {
   /// W of an element, packed; that of its neighbour where size and material are the same.
   Packed integrate(const Element& element, int e, const Factors& factors) {
     std::swap(previous_, table_);
-    if (!element.tabulate_products(e, kinds_ == 1 ? 4 : 12, factors, FactorKind::stiffness, table_))
+    const int degree = kinds_ == 1 ? kCellDegree : 12;
+    if (!element.tabulate_products(e, degree, factors, FactorKind::stiffness, table_))
       throw Error::input("term 'membrane' needs shape functions that are products along m and n");
     const auto equal = [](const MatrixXd& x, const MatrixXd& y) {
       return x.rows() == y.rows() && x.cols() == y.cols() && x.isApprox(y, 1e-13);

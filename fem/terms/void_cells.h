@@ -30,9 +30,16 @@ class VoidCells {
   /// The part of a cell's energy that is St. Venant-Kirchhoff: from 0 to 1 around a stiffness
   /// factor of 0.01, with two continuous derivatives.
   static double solid_part(double factor) {
-    constexpr double kVoid = 1e-3, kMaterial = 1e-1;
+    if (!(factor > 0)) return 0;
     const double x = std::clamp(std::log(factor / kVoid) / std::log(kMaterial / kVoid), 0.0, 1.0);
     return x * x * x * (10 + x * (6 * x - 15));
+  }
+
+  /// Its derivative by the factor.
+  static double solid_slope(double factor) {
+    if (!(factor > 0)) return 0;
+    const double decades = std::log(kMaterial / kVoid), x = std::log(factor / kVoid) / decades;
+    return x <= 0 || x >= 1 ? 0 : 30 * x * x * (1 - x) * (1 - x) / (factor * decades);
   }
 
   /// @param size  of the undeformed cell [m]   @param factor  its mean stiffness factor
@@ -40,8 +47,11 @@ class VoidCells {
     undeformed_.resize(turned_cell::kSize);
     undeformed_[0][lane] = 0.5 * size.x();
     undeformed_[3][lane] = 0.5 * size.y();
+    factor_[lane] = factor;
     solid_[lane] = solid_part(factor);
   }
+  double factor(int lane) const { return factor_[lane]; }
+  Vec2 size(int lane) const { return {2 * undeformed_[0][lane], 2 * undeformed_[3][lane]}; }
   /// Lanes from `count` on become that before.
   void fill(int count) {
     for (int lane = count; lane < kLanes; ++lane) {
@@ -92,6 +102,18 @@ class VoidCells {
     gram::add_to_nodes<1, 2, true>(sum, weight, tangent);
   }
 
+  /// What small strains alone make of a cell, whatever part of it is void: work of their force on
+  /// ψ, by vectors (kSize) as p is; its energy where there is no ψ.
+  double small_strains(int lane, const double* p, const double* psi) const {
+    double stiffness[turned_cell::kSize * turned_cell::kSize];
+    const auto at = state(Lane{lane}, p, stiffness);
+    if (!psi) return at.energy;
+    double force[turned_cell::kSize] = {}, work = 0;
+    turned_cell::add_force<double>(at, 1.0, force);
+    for (int k = 0; k < turned_cell::kSize; ++k) work += force[k] * psi[k];
+    return work;
+  }
+
   /// @param energy  of St. Venant and Kirchhoff
   double energy(int lane, const double* p, double energy) const {
     double stiffness[turned_cell::kSize * turned_cell::kSize];
@@ -109,9 +131,11 @@ class VoidCells {
     return turned_cell::state_of<V>(stiffness, p, undeformed);
   }
 
+  static constexpr double kVoid = 1e-3, kMaterial = 1e-1;  // factors
+
   std::vector<Lanes> stiffness_;   // K of turned_cell.h; nothing where all are solid
   std::vector<Lanes> undeformed_;  // P
-  Lanes solid_{};                  // solid_part()
+  Lanes solid_{}, factor_{};       // solid_part() of it
 };
 
 }  // namespace flexmorph::fem

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "fem/solve/linear_solver.h"
+#include "fem/workspace.h"
+
+namespace flexmorph::fem {
+
+/// The iteration matrices of a motion, transposed, at one state after the other:
+///
+///   J = [ scale (w.q (F + Φ_qᵀ λ)_q + w.v F_v + w.a M)   Φ_qᵀ ]
+///       [ Φ_q                                            0    ]
+///
+/// A factor is kept for later matrices while it lets the residual fall fast; solutions meet the
+/// matrix that was set last.
+class TransposedSystem {
+ public:
+  /// @param model  lives longer
+  explicit TransposedSystem(Workspace& model) : model_(model) {}
+
+  /// Puts J at x together. Accelerations are not looked at: forces are linear in them.
+  /// @param spin  ω² of every unknown, whose M ω² is taken off (n_dofs), or empty
+  void set(const State& x, const Weights& w, double scale, const VectorXd& spin = {});
+
+  /// Jᵀ (ψ, χ) = (seed, rows).
+  /// @param seed  (n_dofs)   @param rows  (n_constraints)
+  /// @throws Error (numerical) where J is singular.
+  void solve(const VectorXd& seed, const VectorXd& rows, VectorXd& psi, VectorXd& chi);
+
+  /// F_vᵀ ψ and Mᵀ ψ at the last set().
+  VectorXd by_velocity(const State& x, const VectorXd& psi);
+  VectorXd by_acceleration(const State& x, const VectorXd& psi);
+  /// (F + Φ_qᵀ λ)_qᵀ ψ there.
+  VectorXd by_position(const State& x, const VectorXd& psi);
+  const Constraints& constraints() const { return constraints_; }
+  /// Φ_qᵀ χ there.
+  VectorXd by_rows(const VectorXd& chi) const;
+
+  int factorizations() const { return factorizations_; }
+  int iterations() const { return iterations_; }
+
+ private:
+  VectorXd part(const State& x, const Weights& w, const VectorXd& psi);
+  void factorize();
+
+  Workspace& model_;
+  UnsymmetricSolver solver_;
+  Constraints constraints_;
+  SparseMatrix matrix_, factored_, part_;
+  VectorXd scales_, right_, rest_, found_, correction_;
+  int version_ = -1;
+  bool is_factored_ = false;
+  int factorizations_ = 0, iterations_ = 0;
+};
+
+}  // namespace flexmorph::fem
