@@ -12,6 +12,7 @@
 #include "cases/accuracy/accuracy.h"
 #include "cases/keys/book.h"
 #include "cases/keys/completion.h"
+#include "cases/run/corrections.h"
 #include "cases/run/run.h"
 #include "cases/run/version.h"
 #include "cases/stability/stability.h"
@@ -213,6 +214,14 @@ int parse_and_run(int argc, char** argv) {
   CLI::App* accuracy = add_accuracy(app, accuracy_options);
   StabilityOptions stability_options;
   CLI::App* stability = add_stability(app, stability_options);
+  CertifyOptions certify_options;
+  CLI::App* certify =
+      app.add_subcommand("certify", "what the motion itself says of the designs of a finished run");
+  certify->add_option("run", certify_options.directory, "folder of the run")->required();
+  certify->add_option("--set", certify_options.overrides, "KEY=VALUE, changes the case")
+      ->take_all()
+      ->allow_extra_args(false);
+  certify->add_flag("--quiet", certify_options.quiet, "only the certificate");
   CLI::App* cases = app.add_subcommand("cases", "lists the shipped cases");
   KeysOptions keys_options;
   CLI::App* keys = add_keys(app, keys_options);
@@ -238,6 +247,7 @@ int parse_and_run(int argc, char** argv) {
   if (*sweep) return sweep_case(sweep_options);
   if (*accuracy) return accuracy_case(accuracy_options);
   if (*stability) return check_stability(stability_options);
+  if (*certify) return certify_run(certify_options);
   if (*help) std::fputs(all_help.c_str(), stdout);
   if (*keys) print_keys(keys_options);
   if (*completion) std::fputs(completion_script(shell, command_words(app)).c_str(), stdout);

@@ -111,6 +111,7 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
                    .empty = d.empty,
                    .stages = stages,
                    .goal = d.goal,
+                   .motion_goal = d.motion_goal,
                    .stiffness_void = d.stiffness_void,
                    .mass_void = d.mass_void,
                    .compliance = scene.esl ? scene.esl->settings : mmc::ComplianceSettings{},

@@ -44,6 +44,7 @@ struct MeshChoice {
   int refine = 1;  ///< parts of every element in each direction
   std::optional<double> step;
   int cells = 0;  ///< designed bodies move on their design's cells, each in so many parts each way
+  int coarse = 1;  ///< or on cells that are so many of them each way
 };
 
 /// Scene -> model, joints and integrator settings. Stops for loads and output are left empty. The

@@ -309,14 +309,14 @@ double stress_round_off(const Scene& scene) {
 }
 
 /// The scene with its designed bodies on the cells of their designs.
-Scene on_cells(Scene scene, int parts) {
+Scene on_cells(Scene scene, int parts, int coarse) {
   for (const BodyDesign& design : scene.designs)
     for (Body& body : scene.bodies) {
       if (body.name != design.body) continue;
       body.shape = "q4";
-      body.cell = design.grid.dx() / parts;
+      body.cell = coarse * design.grid.dx() / parts;
       body.elements = {static_cast<int>(std::lround(body.length / body.cell)),
-                       parts * design.grid.ny};
+                       parts * design.grid.ny / coarse};
     }
   return scene;
 }
@@ -325,7 +325,7 @@ Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh) {
   if (mesh.cells > 0) {
     MeshChoice other = mesh;
     other.cells = 0;
-    return build_mechanism(on_cells(scene, mesh.cells), other);
+    return build_mechanism(on_cells(scene, mesh.cells, mesh.coarse), other);
   }
   Mechanism out;
   const auto elements = [&](const Body& body) {

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "cases/run/corrections.h"
 #include "cases/run/expectations.h"
 #include "cases/run/plots/measured.h"
 #include "cases/run/plots/mechanism.h"
@@ -11,6 +12,7 @@
 #include "cases/run/run_warnings.h"
 #include "cases/scene/design/goal.h"
 #include "cases/scene/heat/heat.h"
+#include "io/case_parser.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
@@ -124,6 +126,32 @@ io::ReportSection cycles_section(const RunReport& report) {
   return out;
 }
 
+/// Cycles of the motion itself.
+io::ReportSection corrections_section(const RunReport& report) {
+  io::ReportSection out;
+  out.heading = "Cycles of the motion itself";
+  out.rows.push_back({"cycle", "J", "KKT residual", "trust region", "predicted fall", "actual fall",
+                      "taken", "motions", "CPU [s]"});
+  for (const mmc::CorrectedCycle& c : report.corrections)
+    out.rows.push_back({io::to_text(c.cycle), io::to_text(c.value, 6), io::to_text(c.kkt, 3),
+                        io::to_text(c.radius, 3), io::to_text(c.predicted, 3),
+                        io::to_text(c.actual, 3), c.accepted ? "yes" : "", io::to_text(c.motions),
+                        io::to_text(c.seconds, 4)});
+  return out;
+}
+
+io::ReportSection certificate_section(const RunReport& report, const RunFolder& folder) {
+  io::ReportSection out;
+  out.heading = "Certificate of the motion";
+  out.words =
+      certificate_words(*report.certificate) + ". Arrows: where the motion would move material.";
+  for (const mmc::MotionCertificate::Body& body : report.certificate->bodies)
+    out.pictures.push_back(io::read_text(folder.path() + "/certificate" +
+                                         (report.problems.size() > 1 ? "_" + body.body : "") +
+                                         ".svg"));
+  return out;
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, double>> phases_of(const RunReport& report,
@@ -158,6 +186,8 @@ void write_report(const Scene& scene, const RunReport& report, RunFolder& folder
   if (scene.has_heat()) sections.push_back(heat_section(scene));
   if (!report.outcomes.empty()) sections.push_back(results_section(scene, report));
   if (!report.verdicts.empty()) sections.push_back(cycles_section(report));
+  if (!report.corrections.empty()) sections.push_back(corrections_section(report));
+  if (report.certificate) sections.push_back(certificate_section(report, folder));
   const auto add = [&](const std::string& name, const std::string& heading, std::string svg) {
     if (!scene.output.plots || svg.empty()) return;
     folder.write_text("plots/" + name + ".svg", svg);

@@ -24,7 +24,9 @@ struct RunReport {
   std::vector<mmc::BodyProblem> problems;
   std::vector<mmc::BodyOutcome> outcomes;
   std::vector<JudgedBody> judged;  ///< final designs, in the order of the outcomes; or none yet
-  std::vector<mmc::CycleVerdict> verdicts;                 ///< of a run of several cycles
+  std::vector<mmc::CycleVerdict> verdicts;       ///< of a run of several cycles
+  std::vector<mmc::CorrectedCycle> corrections;  ///< the design they begin with, then every cycle
+  std::optional<mmc::MotionCertificate> certificate;
   std::optional<PathRecord> path;                          ///< of a [static] analysis
   std::optional<MotionRecord> motion, uniform_motion;      ///< of the design; of uniform material
   std::optional<MotionRecord> verified, verified_uniform;  ///< the same on the finer mesh

@@ -15,6 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cases/build/twin.h"
+#include "cases/run/corrections.h"
 #include "cases/run/expectations.h"
 #include "cases/run/kept_case.h"
 #include "cases/run/motions.h"
@@ -140,7 +141,7 @@ void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress
       {scene.output.sharp_every, scene.optimizer, condition, memory.past(), scene.finish, go_on}};
   observer.verdict = [&](std::span<const mmc::CycleVerdict> verdicts) {
     report.verdicts.assign(verdicts.begin(), verdicts.end());
-    folder.write_cycles(verdicts);
+    folder.write_cycles(verdicts, {});
     const mmc::CycleVerdict& v = verdicts.back();
     if (v.best) best_loads = loads;  // the next cycle has others
     progress.say("cycle " + std::to_string(v.cycle) + ": compliance of all bodies " +
@@ -157,10 +158,15 @@ void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress
     for (size_t i = 0; i < best.size(); ++i) folder.write_design(report.problems[i], best[i]);
   }
 
-  if (!analysed) judge_outlines(scene, loads, folder, progress, report);
+  const bool corrected = scene.cycle.correction.kind != mmc::Correction::none;
+  if (corrected) correct_by_motion(scene, simulate, go_on, loads, folder, progress, report);
+  const bool is_new = !analysed || corrected;
+  if (is_new) judge_outlines(scene, loads, folder, progress, report);
   const double begin = cpu_seconds();
-  if (!analysed) judge_by_motion(scene, condition, go_on, folder, progress, report);
+  if (is_new) judge_by_motion(scene, condition, go_on, folder, progress, report);
   report.seconds_verification = cpu_seconds() - begin;
+  if (scene.certify)
+    certify_by_motion(scene, *scene.certify, loads, go_on, folder, progress, report);
   memory.forget();
   forget_motions(folder);
 }

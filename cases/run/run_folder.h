@@ -16,6 +16,7 @@
 #include "io/surfaces.h"
 #include "io/tables.h"
 #include "io/vtk.h"
+#include "optim/mmc/corrected_cycles.h"
 #include "optim/mmc/esl_loop.h"
 
 namespace flexmorph::cases {
@@ -128,8 +129,11 @@ class RunFolder {
   void write_start(const mmc::BodyProblem& problem);
   /// Outlines, pictures and tables of a final design.
   void write_design(const mmc::BodyProblem& problem, const mmc::BodyOutcome& outcome);
-  /// cycles.csv, anew: one row per cycle and body.
-  void write_cycles(std::span<const mmc::CycleVerdict> cycles);
+  /// <name>.svg, of several designs <name>_<body>.svg: a design as it is now.
+  void keep_outline(const mmc::BodyProblem& problem, const std::string& name);
+  /// cycles.csv, anew: one row per cycle and body, then one per corrected cycle.
+  void write_cycles(std::span<const mmc::CycleVerdict> cycles,
+                    std::span<const mmc::CorrectedCycle> corrected);
   void write_text(const std::string& name, const std::string& text);
 
   /// What the iterations of all designs took, of earlier runs that this one goes on with too:

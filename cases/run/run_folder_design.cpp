@@ -115,15 +115,41 @@ void RunFolder::write_design(const mmc::BodyProblem& problem, const mmc::BodyOut
                 {sharp.data(), static_cast<size_t>(sharp.size())});
 }
 
-void RunFolder::write_cycles(std::span<const mmc::CycleVerdict> cycles) {
-  const std::vector<std::string> columns = {
+void RunFolder::keep_outline(const mmc::BodyProblem& problem, const std::string& name) {
+  const std::string stem = scene_.designs.size() > 1 ? "_" + problem.body : "";
+  io::write_file(folder_.file(name + stem + ".svg"), Outlines(problem).svg());
+}
+
+void RunFolder::write_cycles(std::span<const mmc::CycleVerdict> cycles,
+                             std::span<const mmc::CorrectedCycle> corrected) {
+  std::vector<std::string> columns = {
       "cycle", "body", "compliance", "sharp_compliance", "design_change", "strain_energy_integral",
       "best"};
+  const size_t n = columns.size();
+  if (!corrected.empty())
+    for (const char* name : {"objective", "kkt", "angle", "radius", "predicted", "actual",
+                             "accepted", "motions", "seconds"})
+      columns.emplace_back(name);
   io::CsvWriter csv(folder_.file("cycles.csv"), columns);
   for (const mmc::CycleVerdict& c : cycles)
-    for (const mmc::BodyVerdict& b : c.bodies)
-      csv.row({c.cycle, b.body, b.compliance, b.sharp_compliance, b.design_change,
-               c.strain_energy_integral, c.best});
+    for (const mmc::BodyVerdict& b : c.bodies) {
+      std::vector<io::Cell> row = {c.cycle,         b.body,
+                                   b.compliance,    b.sharp_compliance,
+                                   b.design_change, c.strain_energy_integral,
+                                   c.best};
+      row.resize(columns.size());
+      csv.row(row);
+    }
+  for (const mmc::CorrectedCycle& c : corrected) {
+    std::vector<io::Cell> row(n);
+    row[0] = c.cycle;
+    row[1] = "of the motion";
+    for (const io::Cell& cell : {io::Cell(c.value), io::Cell(c.kkt), io::Cell(c.angle),
+                                 io::Cell(c.radius), io::Cell(c.predicted), io::Cell(c.actual),
+                                 io::Cell(c.accepted), io::Cell(c.motions), io::Cell(c.seconds)})
+      row.push_back(cell);
+    csv.row(row);
+  }
 }
 
 }  // namespace flexmorph::cases

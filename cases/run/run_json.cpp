@@ -273,6 +273,34 @@ Json cycle_results(const mmc::CycleVerdict& v) {
   return out;
 }
 
+Json corrected_results(const mmc::CorrectedCycle& c) {
+  Json out = Json::object();
+  out["cycle"] = c.cycle;
+  out["objective"] = c.value;
+  out["kkt"] = c.kkt;
+  out["angle"] = c.angle;
+  out["radius"] = c.radius;
+  out["predicted"] = c.predicted;
+  out["actual"] = std::isfinite(c.actual) ? Json(c.actual) : Json();
+  out["accepted"] = c.accepted;
+  out["motions"] = c.motions;
+  out["seconds"] = c.seconds;
+  return out;
+}
+
+Json certificate_results(const mmc::MotionCertificate& c) {
+  Json out = Json::object();
+  out["objective"] = c.objective;
+  out["value"] = c.value;
+  out["sharp_value"] = c.sharp_value;
+  out["kkt"] = c.kkt;
+  out["angle"] = c.angle;
+  out["left"] = c.left;
+  out["move_limit"] = c.move_limit;
+  out["seconds"] = c.seconds;
+  return out;
+}
+
 Json heat_results(const Scene& scene) {
   Json out = Json::array();
   for (const Body& body : scene.bodies) {
@@ -323,6 +351,10 @@ Json failure_results(const Failure& f) {
 
 }  // namespace
 
+std::string certificate_json(const mmc::MotionCertificate& certificate) {
+  return certificate_results(certificate).dump();
+}
+
 std::string run_json(const Scene& scene, const RunReport& report) {
   Json out = Json::object();
   out["case"] = scene.name;
@@ -358,6 +390,12 @@ std::string run_json(const Scene& scene, const RunReport& report) {
     for (const mmc::CycleVerdict& v : report.verdicts) cycles.push_back(cycle_results(v));
     out["cycles"] = std::move(cycles);
   }
+  if (!report.corrections.empty()) {
+    Json cycles = Json::array();
+    for (const mmc::CorrectedCycle& c : report.corrections) cycles.push_back(corrected_results(c));
+    out["corrected_cycles"] = std::move(cycles);
+  }
+  if (report.certificate) out["certificate"] = certificate_results(*report.certificate);
   if (scene.has_heat()) out["heat"] = heat_results(scene);
   if (report.motion) out["motion"] = motion_results(scene, report);
   if (report.path) out["static"] = path_results(*report.path);

@@ -10,6 +10,7 @@
 #include "geometry/grid.h"
 #include "geometry/tdf.h"
 #include "optim/mmc/compliance.h"
+#include "optim/mmc/corrected_cycles.h"
 #include "optim/mmc/goal.h"
 
 /// [[design]], and what goes on around it.
@@ -30,6 +31,8 @@ struct BodyDesign {
   Grid grid;                            ///< X from the root (0) to the free end, Y across [m]
   std::array<int, 2> components{1, 1};  ///< boxes of the initial layout, two components in each
   mmc::Goal goal;                       ///< volumes are fractions, solid regions included
+  mmc::Goal motion_goal;                ///< of the motion itself, see Cycle::correct
+  bool asks_motion = false;             ///< does the case name numbers of the motion?
   double min_thickness = 0;             ///< c_min: smallest half-thickness of a component [m]
   Widths widths;                        ///< what the union is mended to
   double half_length = 0;               ///< of the initial components [m]
@@ -66,6 +69,18 @@ mmc::Plate plate_of(const Scene& scene, const BodyDesign& design);
 struct Cycle {
   int max_cycles = 1;
   double tolerance = 0.01;  ///< stop when the objective changes by less between cycles [-]
+  /// What follows the cycles of equivalent static loads: see mmc::correct_designs().
+  mmc::CorrectionSettings correction;
+  double cell = 0;      ///< of the motions that correct [m]; 0: the designs' own
+  double step = 0;      ///< of them [s]
+  int checkpoints = 0;  ///< see fem::GradientSettings
+};
+
+/// What the motion itself says of the final designs, see mmc::MotionCertificate.
+struct Certify {
+  double cell = 0;      ///< of its motion [m]; 0: the designs' own
+  double step = 0;      ///< [s]
+  int checkpoints = 0;  ///< see fem::GradientSettings
 };
 
 /// One more dynamic run of the final design on a finer mesh; the limits of flowing elements

@@ -219,8 +219,9 @@ void read_span(const Table& root, Scene& scene) {
     scene.time = read_time(root.table(tables::kTime));
     return;
   }
-  for (const Key* key : {&tables::kTime, &tables::kDrive, &tables::kConstants, &tables::kEsl,
-                         &tables::kDesign, &tables::kOptimizer, &tables::kCycle, &tables::kVerify})
+  for (const Key* key :
+       {&tables::kTime, &tables::kDrive, &tables::kConstants, &tables::kEsl, &tables::kDesign,
+        &tables::kOptimizer, &tables::kCycle, &tables::kVerify, &tables::kCertificate})
     if (root.has(*key))
       root.fail(*key, "a scene with a [static] analysis has no '" + key->name + "'");
   scene.statics = read_analysis(root.table(tables::kStatic));

@@ -89,6 +89,9 @@ void read_regions(const io::Table& t, const Body& body, const Scene& scene, Body
 /// [[design]], [esl], [optimizer], [cycle], [verify]; needs what read_motion() read.
 void read_designs(const io::Table& root, Scene& scene);
 
+/// What [cycle] says of cycles that correct designs, and [certificate]; needs the designs.
+void read_correction(const io::Table& root, Scene& scene);
+
 /// Is the ratio a whole number, up to the rounding of decimal input?
 bool is_whole(double ratio);
 

@@ -49,6 +49,7 @@ struct Scene {
   std::optional<optim::Settings> finish;  ///< who solves last, from what it reached
   Cycle cycle;
   std::optional<Verify> verify;
+  std::optional<Certify> certify;
   Output output;
   std::optional<Accuracy> accuracy;           ///< for the command of that name; no run needs it
   std::map<std::string, Expectation> expect;  ///< by name of the result

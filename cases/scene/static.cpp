@@ -186,7 +186,7 @@ std::vector<std::string> overrides_of_outline(const Table& root) {
 void read_static(const Table& root, Scene& scene) {
   for (const Key* key :
        {&tables::kTime, &tables::kBody, &tables::kHub, &tables::kJoint, &tables::kPointMass,
-        &tables::kEsl, &tables::kCycle, &tables::kVerify, &tables::kGravity})
+        &tables::kEsl, &tables::kCycle, &tables::kVerify, &tables::kCertificate, &tables::kGravity})
     if (root.has(*key))
       root.fail(*key, "a scene with a [domain] rests: it has no '" + key->name + "'");
   const Table t = root.table(tables::kDomain);

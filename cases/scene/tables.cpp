@@ -45,6 +45,8 @@ const io::Key& kOptimizer = one("optimizer", kDefaults).says("Who solves the des
 const io::Key& kCycle =
     one("cycle", kDefaults).says("How often the design is taken back into the motion.");
 const io::Key& kVerify = one("verify").says("The final design moves once more, on a finer mesh.");
+const io::Key& kCertificate =
+    one("certificate").says("What the motion itself says of final designs, by its exact gradient.");
 const io::Key& kOutput = one("output", kDefaults).says("What a run writes.");
 const io::Key& kAccuracy = one("accuracy").says("What `flexmorph accuracy` measures.");
 const io::Key& kExpect = one("expect").says("Numbers that a run must come to, by their names.");
@@ -81,6 +83,7 @@ const std::vector<std::string>& order() {
                                                   "optimizer.finish_options",
                                                   "cycle",
                                                   "verify",
+                                                  "certificate",
                                                   "output",
                                                   "accuracy",
                                                   "accuracy.reference",

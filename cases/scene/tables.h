@@ -10,7 +10,7 @@ namespace flexmorph::cases::tables {
 
 extern const io::Key &kConstants, &kTime, &kStatic, &kDrive, &kHub, &kRigidBody, &kBody, &kJoint,
     &kSpring, &kTrajectory, &kPointMass, &kLoad, &kObserve, &kMeasure, &kDomain, &kSupport, &kEsl,
-    &kDesign, &kOptimizer, &kCycle, &kVerify, &kOutput, &kAccuracy, &kExpect;
+    &kDesign, &kOptimizer, &kCycle, &kVerify, &kCertificate, &kOutput, &kAccuracy, &kExpect;
 extern const io::Key& kGravity;  // no table, but at the top, too
 
 /// All tables ("" is the file itself, "body.flow" a table in a table), as people read about them.

@@ -9,7 +9,6 @@
 #include "geometry/cpu_time.h"
 #include "optim/mmc/designed_parts.h"
 #include "optim/mmc/mended_parts.h"
-#include "optim/mmc/united_connectivity.h"
 #include "optim/search.h"
 
 namespace flexmorph::mmc {
@@ -211,33 +210,6 @@ class Designer {
     }
   }
 
-  /// Blurred figures of a design.
-  static void measure(Part& p) {
-    MmcProblem state = p.state();
-    state.evaluate(state.start());
-    // A goal without a compliance has never asked for one.
-    p.outcome.compliance = std::isfinite(state.compliance())
-                               ? state.compliance()
-                               : judged_compliance(p.problem, p.loads, state.factors());
-    p.outcome.volume = state.volume();
-    for (const ResponseRow* row : further_rows(p.problem.goal))
-      p.outcome.further[key_of(*row)] = state.values(*row)->maxCoeff();
-  }
-
-  /// The sharp design by its cells, without the widths of its outlines, which cost more than an
-  /// analysis does. What hangs together shows in the outlines here, too.
-  static SharpDesign without_outlines(const Part& p) {
-    SharpDesign out;
-    out.fractions = fractions_of(p.problem, p.problem.design.components());
-    out.volume = out.fractions.sum() / p.ersatz.n_domain_cells();
-    const CellFactors sharp = p.ersatz.sharp(out.fractions);
-    const std::vector<Component> components = p.problem.design.components();
-    out.compliance = judged_compliance(p.problem, p.loads, sharp);
-    out.further = further_values(p.problem, components, p.loads, sharp);
-    out.connectivity = united_connectivity(p.problem, components, out.fractions);
-    return out;
-  }
-
   /// Makes designs as wide as wanted; then optimizes from there with the widths as constraints, so
   /// that what was put over narrow places is shaped as well, and does it again. The least compliant
   /// of the wide ones are kept, those of one round together: mass that one body gave, another has.
@@ -411,18 +383,7 @@ class Designer {
              (p.stopped == optim::Stop::iteration_limit || p.stopped == optim::Stop::observer))
       out.stop = "iteration limit: " + std::to_string(iterations_) + " iterations, KKT residual " +
                  optim::scientific(out.kkt);
-    out.sharp = analysed ? without_outlines(p)
-                         : sharp_design(p.problem, p.problem.design.components(), p.loads);
-    const CellFactors sharp = p.ersatz.sharp(out.sharp.fractions);
-    const VectorXd each = p.loads.individual(sharp.stiffness, sharp.mass);
-    out.load_compliances.assign(each.data(), each.data() + each.size());
-    out.worst_compliance = each.maxCoeff();
-    if (settings_.condition) out.condition = p.loads.condition();
-    // The paper's comparison: the volume that was allowed (or came out), spread evenly.
-    const double volume = allowed_volume(p.problem.goal).value_or(out.sharp.volume);
-    const VectorXd even = VectorXd::Constant(p.problem.grid.n_cells(), volume);
-    out.uniform_compliance = judged_compliance(p.problem, p.loads, {even, even});
-    out.factorizations = p.loads.factorizations();
+    finish_outcome(p, analysed, settings_.condition);
   }
 
   std::vector<Part> parts_;

@@ -24,14 +24,15 @@ struct BodyProblem {
   Design design;
   std::vector<Design> further_starts = {};                ///< of the first cycle, besides `design`
   std::vector<std::vector<Vec2>> solid = {}, empty = {};  ///< passive regions: polygons
-  std::vector<TdfSettings> stages;  ///< continuation of the band, coarse to fine
-  Goal goal = {};
+  std::vector<TdfSettings> stages;                 ///< continuation of the band, coarse to fine
+  Goal goal = {};                                  ///< of equivalent static loads
+  Goal motion_goal = {};                           ///< of the motion itself
   double stiffness_void = 1e-4, mass_void = 1e-3;  ///< in dynamics
   ComplianceSettings compliance = {};
   Region domain = {};                         ///< without an outer ring: the whole grid
   std::vector<signed char> outside = {};      ///< cells_outside() of it; empty: none
   std::vector<std::vector<int>> places = {};  ///< cells of loaded and held places; empty: both ends
-  std::vector<Segment> held = {};  ///< lines of the border that hold what touches them
+  std::vector<Segment> held = {};             ///< lines of the border that hold what touches them
   int drop_every = 25;  ///< iterations between looks for dead components; 0: none
   bool refill = false;  ///< long components are split in place of dropped ones
   /// Smallest widths that the result is mended to.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "optim/mmc/body_design.h"
+#include "optim/mmc/motion_response.h"
 #include "optim/mmc/shared_problem.h"
 #include "optim/mmc/width_limits.h"
 
@@ -33,10 +34,12 @@ struct Part {
         ersatz(ersatz_of(problem)),
         next(problem.design) {}
 
-  MmcProblem state() {
-    return {{plate, problem.design, ersatz, loads, widths ? &*widths : nullptr},
+  MmcProblem state() { return state(problem.goal, nullptr); }
+  /// With another goal, which may ask for the motion.
+  MmcProblem state(const Goal& goal, const MotionSeat* seat) {
+    return {{plate, problem.design, ersatz, loads, widths ? &*widths : nullptr, seat},
             *tdf,
-            blurred(problem.goal, volume_ratio),
+            blurred(goal, volume_ratio),
             problem.places};
   }
   /// Limits of the volume hold of the sharp one of the design as it is.
@@ -50,16 +53,27 @@ struct Part {
   }
 };
 
+/// Blurred figures of a design, into its outcome.
+void measure(Part& p);
+/// The sharp design of an outcome, and its figures under the loads.
+/// @param analysed  a design as it starts: without the widths of its outlines
+void finish_outcome(Part& p, bool analysed, bool condition);
+
 /// The problem of all parts at their designs: that of the only one, or the shared one.
 class Whole {
  public:
-  explicit Whole(std::vector<Part>& parts) {
+  /// @param motion  where the bodies of a mechanism are designed for its motion; lives longer
+  explicit Whole(std::vector<Part>& parts, MotionState* motion = nullptr) {
     states.reserve(parts.size());
-    for (Part& p : parts) states.push_back(p.state());
+    seats_.reserve(parts.size());
+    for (Part& p : parts) {
+      seats_.push_back({motion, seats_.size()});
+      states.push_back(motion ? p.state(p.problem.motion_goal, &seats_.back()) : p.state());
+    }
     if (parts.size() == 1) return;
     std::vector<SharedProblem::Part> all;
     for (size_t k = 0; k < parts.size(); ++k)
-      all.push_back({&states[k], parts[k].plate.full_mass()});
+      all.push_back({&states[k], parts[k].plate.full_mass(), parts[k].problem.shares_mass});
     shared_.emplace(std::move(all));
   }
   Whole(const Whole&) = delete;
@@ -75,6 +89,7 @@ class Whole {
   std::vector<MmcProblem> states;
 
  private:
+  std::vector<MotionSeat> seats_;
   std::optional<SharedProblem> shared_;
 };
 

@@ -42,10 +42,27 @@ Goal blurred(Goal goal, double ratio) {
 
 bool is_held_back(const Goal& goal) {
   // More material is less compliance and more of everything else.
-  const bool wants_more = goal.objective->needs_state();
+  const bool wants_more = goal.objective->falls_with_material();
   return std::any_of(goal.limits.begin(), goal.limits.end(), [&](const Limit& limit) {
-    return wants_more == (limit.row->needs_state() == limit.at_least);
+    return wants_more == (limit.row->falls_with_material() == limit.at_least);
   });
+}
+
+bool has_motion(const Goal& goal) {
+  const auto rows = rows_of(goal);
+  return std::any_of(rows.begin(), rows.end(), [](const ResponseRow* r) { return r->of_motion; });
+}
+
+Goal goal_of_loads(Goal goal) {
+  if (goal.objective->of_motion) goal.objective = &kComplianceSum;
+  std::erase_if(goal.limits, [](const Limit& limit) { return limit.row->of_motion; });
+  return goal;
+}
+
+Goal goal_of_motion(Goal goal) {
+  if (goal.objective->needs_state()) goal.objective = &kStrainEnergy;
+  std::erase_if(goal.limits, [](const Limit& limit) { return limit.row->needs_state(); });
+  return goal;
 }
 
 }  // namespace flexmorph::mmc

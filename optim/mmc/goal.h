@@ -46,6 +46,15 @@ std::optional<double> allowed_volume(const Goal& goal);
 /// hold of the sharp one.
 Goal blurred(Goal goal, double ratio);
 
+/// Does it ask for numbers of the motion?
+bool has_motion(const Goal& goal);
+/// What equivalent static loads make of a goal: for numbers of the motion the compliance stands,
+/// and nothing for limits on them.
+Goal goal_of_loads(Goal goal);
+/// What the motion itself makes of it: the strain energy stands for the compliance, and nothing for
+/// limits on that.
+Goal goal_of_motion(Goal goal);
+
 /// Is there a limit that keeps the objective from being best in a full plate, or an empty one?
 bool is_held_back(const Goal& goal);
 

@@ -7,6 +7,7 @@
 
 #include "geometry/cpu_time.h"
 #include "geometry/picture.h"
+#include "optim/mmc/motion_response.h"
 
 namespace flexmorph::mmc {
 
@@ -29,6 +30,7 @@ MmcProblem::MmcProblem(const DesignedPlate& plate, const TdfSettings& tdf, Goal 
       ersatz_(plate.ersatz),
       state_(plate.loads),
       shape_(plate.shape),
+      motion_(plate.motion),
       tdf_(plate_.grid, tdf),
       goal_(std::move(goal)),
       places_(std::move(places)),
@@ -80,8 +82,7 @@ std::optional<VectorXd> MmcProblem::values(const ResponseRow& row) const {
   return {};
 }
 
-/// Fills what the last design was seen to be: factors, volume, values of all rows.
-void MmcProblem::solve(const VectorXd& x) {
+void MmcProblem::look(const VectorXd& x) {
   const double clock = cpu_seconds();
   x_ = x;
   design_.components(design_part(x), components_);
@@ -89,10 +90,15 @@ void MmcProblem::solve(const VectorXd& x) {
   ersatz_.factors(tdf_.density(), tdf_.eroded(), factors_);
   volume_ = factors_.mass.sum() / ersatz_.n_domain_cells();
   seconds_tdf_ += cpu_seconds() - clock;
+  solved_ = differentiated_ = false;
+  if (motion_) motion_->state->announce(motion_->body, factors_);
+}
 
-  solved_ = differentiated_ = false;  // should it fail
+/// Fills what the last design was seen to be: factors, volume, values of all rows.
+void MmcProblem::solve(const VectorXd& x) {
+  look(x);
   state_.begin();
-  const Seen seen{factors_, components_, state_};
+  const Seen seen{factors_, components_, state_, motion_};
   for (Entry& e : entries_) e.response->evaluate(seen, e.values);
   solved_ = true;
 }

@@ -23,6 +23,7 @@ struct DesignedPlate {
   const Ersatz& ersatz;
   LoadResponse& loads;
   ShapeLimits* shape = nullptr;
+  const MotionSeat* motion = nullptr;  ///< where rows of the goal ask for it
 };
 
 /// The design problem of one plate under given loads, P (34) in the variables of a Design: a row of
@@ -63,6 +64,12 @@ class MmcProblem final : public optim::Problem {
   VectorXd memory() const override { return VectorXd::Constant(1, lowest_); }
   /// Components are those of x; values and factors are not known until evaluate().
   void recall(const VectorXd& x, const VectorXd& memory) override;
+  /// The factors of a design alone, as far as the motion of the mechanism asks for them.
+  void look(const VectorXd& x);
+  /// Derivatives of the objective by the parameters of all components, images included (7 N), after
+  /// evaluate().
+  const VectorXd& objective_slopes() const { return entries_.front().slope; }
+
   bool is_solved() const { return solved_; }  ///< are values those of x()?
 
   const Goal& goal() const { return goal_; }
@@ -121,6 +128,7 @@ class MmcProblem final : public optim::Problem {
   const Ersatz& ersatz_;
   DesignState state_;
   ShapeLimits* shape_;
+  const MotionSeat* motion_;
   UnionTdf tdf_;
   Goal goal_;
   std::vector<Entry> entries_;  // the objective first

@@ -13,11 +13,14 @@
 
 namespace flexmorph::mmc {
 
+struct MotionSeat;
+
 /// A design as responses see it.
 struct Seen {
   const CellFactors& factors;
   std::span<const Component> components;
-  DesignState& state;  ///< solved when asked
+  DesignState& state;                  ///< solved when asked
+  const MotionSeat* motion = nullptr;  ///< moved when asked, where there is a mechanism
 };
 
 /// What makes a design good or allowed: its values, and their derivatives by the factors of the
@@ -47,9 +50,13 @@ struct ResponseRow {
   /// Is it a sum over the mass factors of cells? Second derivatives of others are not known, but
   /// for those that need a state.
   bool linear = false;
+  /// Is it a number of the motion of the mechanism (motion_response.h)? And of this body of it?
+  bool of_motion = false, of_body = false;
   std::unique_ptr<Response> (*make)(const Plate&) = nullptr;
 
-  bool needs_state() const { return !loads.empty(); }  ///< and is less where there is more material
+  bool needs_state() const { return !loads.empty(); }
+  /// Is it less where there is more material?
+  bool falls_with_material() const { return needs_state() || of_motion; }
 };
 
 /// What `make` is of a response that is made of a plate, or of nothing.

@@ -20,18 +20,25 @@ SharedProblem::SharedProblem(std::vector<Part> parts) : parts_(std::move(parts))
   for (size_t b = 0; b < parts_.size(); ++b) {
     const MmcProblem& part = *parts_[b].problem;
     const Goal& goal = part.goal();
-    if (goal.objective != &kComplianceSum)
+    of_motion_ = goal.objective->of_motion;
+    if (goal.objective != &kComplianceSum && !of_motion_)
       throw Error::input("shared mass: every body minimizes the sum of its compliances");
+    first_.push_back(first_.back() + part.n_variables());
+    n_constraints_ += part.n_constraints();
+    shares_[static_cast<Eigen::Index>(b)] = 0;
+    budget_.push_back(-1);
+    if (!parts_[b].shares) continue;
     if (!(parts_[b].full_mass > 0) || !std::isfinite(parts_[b].full_mass))
       throw Error::input("shared mass: the mass of full body " + std::to_string(b + 1) + " is " +
                          std::to_string(parts_[b].full_mass) + " kg; it is positive");
     const size_t limit = shared_limit(goal);
     shares_[static_cast<Eigen::Index>(b)] = parts_[b].full_mass * *goal.limits[limit].volume;
-    budget_.push_back(part.row_of(limit));
-    n_constraints_ += part.n_constraints() - 1;
-    first_.push_back(first_.back() + part.n_variables());
+    budget_.back() = part.row_of(limit);
+    --n_constraints_;
   }
+  if (shares_.sum() == 0) return;
   shares_ /= shares_.sum();
+  ++n_constraints_;
 }
 
 template <class Of>
@@ -58,14 +65,21 @@ optim::Response SharedProblem::evaluate(const VectorXd& x) {
   out.g.setZero(n_constraints());
   out.dg.setZero(n_constraints(), n_variables());
   double sum = 0;
-  int row = 1;
+  int row = shares_.sum() > 0 ? 1 : 0;
+  if (of_motion_)  // which is moved once
+    for (size_t b = 0; b < parts_.size(); ++b) parts_[b].problem->look(part_of(x, b));
   for (size_t b = 0; b < parts_.size(); ++b) {
     MmcProblem& part = *parts_[b].problem;
     const optim::Response own = part.evaluate(part_of(x, b));
     const int first = first_[b], n = first_[b + 1] - first;
     const double share = shares_[static_cast<Eigen::Index>(b)];
-    sum += part.compliance();
-    out.df.segment(first, n) = part.compliance() * own.df;
+    if (of_motion_) {
+      out.f = own.f;
+      out.df.segment(first, n) = own.df;
+    } else {
+      sum += part.compliance();
+      out.df.segment(first, n) = part.compliance() * own.df;
+    }
     for (int k = 0; k < part.n_constraints(); ++k) {
       if (k == budget_[b]) {
         out.g[0] += share * own.g[k];
@@ -76,6 +90,7 @@ optim::Response SharedProblem::evaluate(const VectorXd& x) {
       }
     }
   }
+  if (of_motion_) return out;
   out.f = std::log(sum);
   out.df /= sum;
   return out;

@@ -15,7 +15,9 @@ namespace flexmorph::mmc {
 /// m_b  its mass when its domain is full, ρ c A [kg]
 ///
 /// and to all other limits of the bodies, each that of its own. The budget is made of the one limit
-/// of each body that is a volume (Limit::volume): of volume or of mass.
+/// of each body that is a volume (Limit::volume): of volume or of mass. Bodies may also keep all of
+/// their limits to themselves, and have but the objective in common: the sum of their compliances,
+/// or a number of the motion of the mechanism that they are parts of.
 ///
 /// The variables are those of all bodies, one body after the other, each with its own scales and
 /// bounds. A body sees the others through the two sums only: values and gradients are made of the
@@ -25,9 +27,10 @@ class SharedProblem final : public optim::Problem {
   struct Part {
     MmcProblem* problem = nullptr;  ///< lives longer; minimizes the sum of its compliances
     double full_mass = 0;           ///< m_b [kg]
+    bool shares = true;             ///< the budget
   };
-  /// @throws Error (input) for no parts, masses that are not positive, other objectives, and not
-  ///         just one limit of volume.
+  /// @throws Error (input) for no parts, masses that are not positive, other objectives, and, of
+  ///         who shares, not just one limit of volume.
   explicit SharedProblem(std::vector<Part> parts);
 
   int n_variables() const override { return first_.back(); }
@@ -55,9 +58,10 @@ class SharedProblem final : public optim::Problem {
 
   std::vector<Part> parts_;
   std::vector<int> first_;   // variables of each body, and the end
-  std::vector<int> budget_;  // its constraint in each body
-  int n_constraints_ = 1;
-  VectorXd shares_;  // s_b of the budget
+  std::vector<int> budget_;  // its constraint in each body; -1: not of this one
+  int n_constraints_ = 0;
+  bool of_motion_ = false;  // the objective
+  VectorXd shares_;         // s_b of the budget
 };
 
 /// The limit of a goal that a budget is made of.

@@ -297,11 +297,24 @@ BodyDesign read_static_design(const Table& t, const Scene& scene) {
   design.grid.x0 = domain.bounds.lower.x();
   design.grid.y0 = domain.bounds.lower.y();
   design.goal = read_goal(t, plate_of(scene, design));
+  if (mmc::has_motion(design.goal)) t.fail("a plate at rest has no motion to minimize or to limit");
   read_coupling(t, design);
   read_components(t, body, scene, design);
   read_tdf(t, design);
   read_regions(t, body, scene, design);
   return design;
+}
+
+/// What is asked of the loads, and what of the motion itself.
+void read_goals(const Table& t, const Scene& scene, BodyDesign& design) {
+  const mmc::Goal goal = read_goal(t, plate_of(scene, design));
+  design.motion_goal = mmc::goal_of_motion(goal);
+  design.asks_motion = mmc::has_motion(goal);
+  design.goal = mmc::goal_of_loads(goal);
+  if (!mmc::is_held_back(design.goal))
+    t.fail(
+        "limits of the motion come after a design for loads, which needs one of its own: a "
+        "largest compliance");
 }
 
 }  // namespace
@@ -338,7 +351,7 @@ BodyDesign read_design(const Table& t, const Scene& scene) {
     t.fail(kBody, "a designed body has the term \"membrane\"");
 
   design.grid = read_grid(t, body, scene.time.end);
-  design.goal = read_goal(t, plate_of(scene, design));
+  read_goals(t, scene, design);
   read_coupling(t, design);
   read_components(t, body, scene, design);
   read_tdf(t, design);

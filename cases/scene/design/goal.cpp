@@ -119,7 +119,7 @@ void read_constraint(const Table& t, const std::string& design_loads, const mmc:
   if (const auto rows = mmc::rows_of(goal); std::find(rows.begin(), rows.end(), &row) != rows.end())
     t.fail(kResponse, "the " + std::string(row.words) + " has a limit already");
   if (!t.has(kAtMost) && !t.has(kAtLeast)) t.fail("a constraint has `at_most`, `at_least` or both");
-  if (t.has(kAtLeast) && row.needs_state())
+  if (t.has(kAtLeast) && row.falls_with_material())
     t.fail(kAtLeast, "only " + names_of_rows(false) + " has a lower limit");
   for (const Key* key : {&kAtMost, &kAtLeast})
     if (t.has(*key)) read_limit(t, key->called(noun_of(row)), row, plate, goal);
@@ -132,7 +132,7 @@ void read_constraint(const Table& t, const std::string& design_loads, const mmc:
 void read_shorthand(const Table& t, const std::string& loads, const mmc::Plate& plate,
                     mmc::Goal& goal) {
   const bool wanted = t.tables(kConstraint).empty();
-  const bool stiffest = goal.objective->needs_state();
+  const bool stiffest = goal.objective->falls_with_material();
   const Key& refused = stiffest ? kMaxCompliance : kMaxVolume;
   if (stiffest && (wanted || t.has(kMaxVolume)))
     read_limit(t, kMaxVolume, mmc::kVolume, plate, goal);

@@ -302,7 +302,8 @@ void read_designs(const Table& root, Scene& scene) {
     return;
   }
   if (scene.designs.empty()) {
-    for (const Key* key : {&tables::kOptimizer, &tables::kCycle, &tables::kVerify})
+    for (const Key* key :
+         {&tables::kOptimizer, &tables::kCycle, &tables::kVerify, &tables::kCertificate})
       if (root.has(*key)) root.table(*key).fail("without a [[design]] this does nothing");
     if (root.has(tables::kEsl)) scene.esl = read_esl(root.table(tables::kEsl), scene);
     return;
@@ -312,6 +313,7 @@ void read_designs(const Table& root, Scene& scene) {
   scene.cycle.max_cycles = cycle.integer(kMaxCycles);
   scene.cycle.tolerance = cycle.number(kTolerance);
   if (root.has(tables::kVerify)) scene.verify = read_verify(root.table(tables::kVerify), scene);
+  read_correction(root, scene);
 }
 
 }  // namespace flexmorph::cases

@@ -5,10 +5,12 @@
 
 namespace flexmorph::mmc {
 
-extern const ResponseRow kInertia;
+extern const ResponseRow kInertia, kDeflection, kTrajectoryError, kJointForce;
 
 std::span<const ResponseRow* const> responses() {
-  static const std::array kRows = {&kComplianceSum, &kComplianceWorst, &kVolume, &kMass, &kInertia};
+  static const std::array kRows = {&kComplianceSum, &kComplianceWorst, &kVolume,
+                                   &kMass,          &kInertia,         &kStrainEnergy,
+                                   &kDeflection,    &kTrajectoryError, &kJointForce};
   return kRows;
 }
 

@@ -1,0 +1,182 @@
+#include "cases/run/corrections.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "cases/build/scene_motion.h"
+#include "io/files.h"
+#include "io/plots.h"
+#include "io/tables.h"
+
+namespace flexmorph::cases {
+namespace {
+
+double degrees(double angle) { return angle * 180 / std::numbers::pi; }
+
+/// Static problems of all designs under loads that they keep.
+class LoadsOfDesigns {
+ public:
+  explicit LoadsOfDesigns(std::vector<fem::EslSets> loads) : loads_(std::move(loads)) {}
+  std::vector<std::unique_ptr<mmc::LoadResponse>> of(
+      const std::vector<mmc::BodyProblem>& problems) const {
+    std::vector<std::unique_ptr<mmc::LoadResponse>> out;
+    for (size_t k = 0; k < problems.size(); ++k) {
+      const mmc::BodyProblem& p = problems[k];
+      const mmc::CellFactors factors =
+          mmc::ersatz_of(p).sharp(mmc::fractions_of(p, p.design.components()));
+      out.push_back(std::make_unique<mmc::Compliance>(loads_[k], p.section, p.compliance,
+                                                      factors.stiffness, factors.mass));
+    }
+    return out;
+  }
+  std::vector<fem::EslSets>& sets() { return loads_; }
+
+ private:
+  std::vector<fem::EslSets> loads_;
+};
+
+/// Where the motion would move material: an arrow from the centre of every component, the longest
+/// of them a twentieth of the picture.
+std::string picture_of(const mmc::BodyProblem& problem,
+                       const mmc::MotionCertificate::Body& certified) {
+  const Grid& g = problem.grid;
+  const Box frame{{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}};
+  std::string svg = io::outline_svg(
+      mmc::regions_of(problem, problem.design.components(), 0.05 * g.dx()), frame, 5);
+  double longest = 0;
+  const auto pull = [&](size_t c) {
+    return Vec2(-certified.slopes.segment<2>(static_cast<Eigen::Index>(7 * c)));
+  };
+  for (size_t c = 0; c < certified.components.size(); ++c)
+    longest = std::max(longest, pull(c).norm());
+  if (longest == 0) return svg;
+  const double size = std::max(g.width, g.height), scale = 0.05 * size / longest,
+               line = 0.0025 * size;
+  std::string arrows;
+  for (size_t c = 0; c < certified.components.size(); ++c) {
+    const Vec2 from = certified.components[c].center, along = scale * pull(c), to = from + along;
+    if (along.norm() < 2 * line) continue;
+    const Vec2 back = 0.3 * along, side = 0.12 * Vec2(-along.y(), along.x());
+    const auto at = [](const Vec2& p) {
+      return io::to_text(p.x(), 6) + " " + io::to_text(p.y(), 6);
+    };
+    arrows += "M" + at(from) + "L" + at(to) + "M" + at(to - back + side) + "L" + at(to) + "L" +
+              at(to - back - side);
+  }
+  const std::string path = "<path fill=\"none\" stroke=\"#f08020\" stroke-width=\"" +
+                           io::to_text(line, 3) + "\" d=\"" + arrows + "\"/>\n";
+  return svg.insert(svg.rfind("</g>"), path);
+}
+
+void write_certificate(const Scene& scene, const mmc::MotionCertificate& certificate,
+                       const std::vector<mmc::BodyProblem>& problems, RunFolder& folder) {
+  static const std::vector<std::string> kColumns = {
+      "component", "x", "y", "by_x", "by_y", "by_length", "by_angle", "by_c1", "by_c2", "by_c3"};
+  for (size_t b = 0; b < certificate.bodies.size(); ++b) {
+    const mmc::MotionCertificate::Body& body = certificate.bodies[b];
+    const std::string stem = "certificate" + (scene.designs.size() > 1 ? "_" + body.body : "");
+    io::CsvWriter csv(folder.file(stem + ".csv"), kColumns);
+    for (size_t c = 0; c < body.components.size(); ++c) {
+      std::vector<io::Cell> row = {static_cast<int>(c + 1), body.components[c].center.x(),
+                                   body.components[c].center.y()};
+      for (Eigen::Index k = 0; k < Component::kParameters; ++k)
+        row.emplace_back(body.slopes[Component::kParameters * static_cast<Eigen::Index>(c) + k]);
+      csv.row(row);
+    }
+    folder.write_text(stem + ".svg", picture_of(problems[b], body));
+  }
+}
+
+}  // namespace
+
+std::string certificate_words(const mmc::MotionCertificate& c) {
+  return c.objective + " " + io::to_text(c.value, 5) + " (sharp " + io::to_text(c.sharp_value, 5) +
+         "), KKT residual " + io::to_text(c.kkt, 3) + ", gradients of motion and loads " +
+         io::to_text(degrees(c.angle), 3) + " degrees apart, at most " +
+         io::to_text(100 * c.left, 3) + " % left within a move of " + io::to_text(c.move_limit, 3);
+}
+
+std::string corrected_words(const mmc::CorrectedCycle& c) {
+  std::string out = "cycle " + std::to_string(c.cycle) + " of the motion: J " +
+                    io::to_text(c.value, 6) + ", KKT residual " + io::to_text(c.kkt, 3);
+  if (c.cycle == 0)
+    return out + ", gradients of motion and loads " + io::to_text(degrees(c.angle), 3) +
+           " degrees apart";
+  if (c.predicted != 0)
+    out += ", within " + io::to_text(c.radius, 3) + " predicted " +
+           io::to_text(100 * c.predicted, 3) + " % less, found " + io::to_text(100 * c.actual, 3) +
+           " %";
+  return out + (c.accepted ? "" : ", not taken");
+}
+
+void correct_by_motion(const Scene& scene, const MotionLoads& simulate,
+                       const std::function<bool()>& go_on, std::vector<fem::EslSets>& loads,
+                       RunFolder& folder, Progress& progress, RunReport& report) {
+  progress.begin("corrected cycles");
+  SceneMotion motion(scene, {scene.cycle.cell, scene.cycle.step, scene.cycle.checkpoints}, go_on);
+  for (const mmc::BodyProblem& problem : report.problems)
+    folder.keep_outline(problem, "design_esl");
+  std::unique_ptr<LoadsOfDesigns> current;
+  const mmc::LoadsAt loads_at = [&] {
+    std::vector<fem::Factors> factors;
+    for (const mmc::BodyProblem& p : report.problems)
+      factors.push_back(mmc::dynamic_factors(p, p.design.components()));
+    current = std::make_unique<LoadsOfDesigns>(simulate(factors));
+    progress.begin("corrected cycles");
+    return current->of(report.problems);
+  };
+  const mmc::SeeCycle see = [&](const mmc::CorrectedCycle& cycle) {
+    report.corrections.push_back(cycle);
+    folder.write_cycles(report.verdicts, report.corrections);
+    progress.say(corrected_words(cycle));
+    return go_on();
+  };
+  try {
+    std::vector<mmc::BodyOutcome> found =
+        mmc::correct_designs(report.problems, loads_at, motion, scene.cycle.correction, see, go_on);
+    for (size_t k = 0; k < found.size(); ++k) {
+      mmc::BodyOutcome& before = report.outcomes[k];
+      found[k].iterations = before.iterations;
+      found[k].evaluations = before.evaluations;
+      found[k].stop =
+          before.stop + "; then corrected by " + std::to_string(motion.motions()) + " motions";
+      if (!found[k].clean_up) found[k].clean_up = before.clean_up;
+      found[k].energy_ratios.assign(current->sets()[k].sets.size(), 0);
+      for (size_t l = 0; l < found[k].energy_ratios.size(); ++l)
+        found[k].energy_ratios[l] =
+            0.5 * found[k].load_compliances[l] / current->sets()[k].sets[l].strain_energy;
+      before = std::move(found[k]);
+    }
+  } catch (const StoppedMotion&) {
+    throw Interrupted();
+  }
+  if (!go_on()) throw Interrupted();
+  loads = std::move(current->sets());
+  for (size_t i = 0; i < report.outcomes.size(); ++i) {
+    folder.write_loads(report.outcomes[i].body, loads[i], &report.outcomes[i]);
+    folder.write_design(report.problems[i], report.outcomes[i]);
+  }
+}
+
+void certify_by_motion(const Scene& scene, const Certify& wishes,
+                       std::span<const fem::EslSets> loads, const std::function<bool()>& go_on,
+                       RunFolder& folder, Progress& progress, RunReport& report) {
+  progress.begin("certificate");
+  SceneMotion motion(scene, {wishes.cell, wishes.step, wishes.checkpoints}, go_on);
+  const LoadsOfDesigns kept({loads.begin(), loads.end()});
+  std::vector<std::unique_ptr<mmc::LoadResponse>> responses = kept.of(report.problems);
+  // With copies: certifying leaves the designs as they are.
+  std::vector<mmc::BodyProblem> problems = report.problems;
+  std::vector<mmc::LoadedBody> bodies;
+  for (size_t k = 0; k < problems.size(); ++k) bodies.push_back({problems[k], *responses[k]});
+  std::vector<mmc::Part> parts = mmc::parts_at_end(bodies);
+  try {
+    report.certificate = mmc::certify(parts, motion, scene.optimizer.move_limit);
+  } catch (const StoppedMotion&) {
+    throw Interrupted();
+  }
+  write_certificate(scene, *report.certificate, problems, folder);
+  progress.say("certificate: " + certificate_words(*report.certificate));
+}
+
+}  // namespace flexmorph::cases

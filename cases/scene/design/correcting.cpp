@@ -1,0 +1,164 @@
+#include <cmath>
+
+#include "cases/scene/read.h"
+#include "cases/scene/tables.h"
+#include "io/files.h"
+
+/// What follows the cycles of equivalent static loads: corrected cycles, and the certificate.
+namespace flexmorph::cases {
+namespace {
+
+using io::Key;
+using io::positive;
+using io::Table;
+using io::to_text;
+using mmc::Correction;
+
+const io::Choice<Correction> kCorrect(
+    io::key("cycle", "correct")
+        .otherwise("none")
+        .says("Cycles with the gradient of the motion, or the optimizer on the motion itself."),
+    "a correction",
+    {{"none", Correction::none},
+     {"first_order", Correction::first_order},
+     {"direct", Correction::direct}});
+const Key& kCorrections = io::key("cycle", "corrections")
+                              .integer("a number of cycles", 1, 100'000)
+                              .otherwise(mmc::CorrectionSettings().max_cycles)
+                              .says("Corrected cycles at most, or iterations of `direct`.");
+const Key& kKktPart = io::key("cycle", "kkt_part")
+                          .number(io::between("a part", "", 0, 1))
+                          .otherwise(mmc::CorrectionSettings().kkt_part)
+                          .says("They end at this part of the first KKT residual of the motion.");
+const Key& kRadius = io::key("cycle", "radius")
+                         .number(positive("a radius"))
+                         .otherwise(mmc::CorrectionSettings().radius)
+                         .says("First trust region of corrected cycles, of scaled variables.");
+const Key& kInner = io::key("cycle", "inner_iterations")
+                        .integer("a number of iterations", 1, 100'000)
+                        .otherwise(mmc::CorrectionSettings().inner_iterations)
+                        .says("Iterations of a corrected cycle on its static problem.");
+
+/// The keys of a motion with its gradient; a table has its own set.
+struct MotionKeys {
+  const Key &cell, &step, &checkpoints;
+};
+const MotionKeys kOfCycle = {
+    io::key("cycle", "cell")
+        .number(positive("the size of a cell", "m"))
+        .otherwise_as("those of the designs")
+        .says("Cells of the motions that correct; whole numbers of the designs' cells."),
+    io::key("cycle", "step")
+        .number(positive("a time step", "s"))
+        .otherwise_as("`time.step`")
+        .says("Their time step."),
+    io::key("cycle", "checkpoints")
+        .integer("a number of parts", 0, 10'000)
+        .otherwise(0)
+        .says("Parts whose states are kept one at a time: less memory, a motion more; 0: all.")};
+const MotionKeys kOfCertificate = {
+    io::key("certificate", "cell")
+        .number(positive("the size of a cell", "m"))
+        .otherwise_as("those of the designs")
+        .says("Cells of its motion; whole numbers of the designs' cells."),
+    io::key("certificate", "step")
+        .number(positive("a time step", "s"))
+        .otherwise_as("`time.step`")
+        .says("Its time step."),
+    io::key("certificate", "checkpoints")
+        .integer("a number of parts", 0, 10'000)
+        .otherwise(0)
+        .says("Parts whose states are kept one at a time: less memory, a motion more; 0: all.")};
+
+/// Why the scene has no exact gradient; empty: it has one.
+std::string no_gradient_because(const Scene& scene) {
+  const TimeSpan& time = scene.time;
+  if (time.tolerance) return "steps that adapt depend on the design (time.tolerance)";
+  if (time.integrator != "generalized_alpha")
+    return "\"" + time.integrator + "\" has none, \"generalized_alpha\" does (time.integrator)";
+  if (scene.in_space()) return "bodies in space have none";
+  if (scene.has_free_lines())
+    return "when meshes with free lines change depends on the design ([[body.line]])";
+  if (scene.has_heat()) return "it is not derived for heat ([body.heat])";
+  for (const BodyDesign& design : scene.designs) {
+    const Body& body = scene.body(design.body);
+    if (!body.lines.empty()) return "'" + body.name + "' has lines of its own ([[body.line]])";
+    for (const std::string& term : body.terms)
+      if (!fem::term_row(term).on_cells) return "the term \"" + term + "\" does not know cells";
+  }
+  return {};
+}
+
+/// Cell, step and checkpoints of a motion with its gradient.
+template <class To>
+void read_motion_keys(const Table& t, const MotionKeys& keys, const Scene& scene, To& out) {
+  out.step = t.number(keys.step, scene.time.step);
+  if (out.step > scene.time.end) t.fail(keys.step, "a time step is no longer than time.end [s]");
+  out.checkpoints = t.integer(keys.checkpoints);
+  if (!t.has(keys.cell)) return;
+  out.cell = t.number(keys.cell);
+  for (const BodyDesign& design : scene.designs) {
+    const Body& body = scene.body(design.body);
+    const double parts = out.cell / design.grid.dx();
+    for (const double lengths : {parts, design.grid.width / out.cell, design.grid.height / out.cell,
+                                 body.length / out.cell})
+      if (!is_whole(lengths) || lengths < 0.5)
+        t.fail(keys.cell, "a whole number of cells of '" + body.name + "' (" +
+                              to_text(design.grid.dx()) +
+                              " m), which divides its lengths and its width");
+  }
+}
+
+/// Goals that ask for what the scene does not have.
+void check_goals(const Table& cycle, const Scene& scene, bool corrects) {
+  for (const BodyDesign& design : scene.designs) {
+    const auto rows = mmc::rows_of(design.motion_goal);
+    const auto has = [&](const char* name) {
+      return std::any_of(rows.begin(), rows.end(),
+                         [&](const mmc::ResponseRow* r) { return r->name == name; });
+    };
+    if (has("trajectory_error") && !scene.trajectory)
+      cycle.fail("\"trajectory_error\" needs a [trajectory]");
+    const auto is_limit = [](const mmc::Limit& l) { return l.row->of_motion; };
+    const auto& limits = design.motion_goal.limits;
+    if (scene.designs.size() > 1 && std::any_of(limits.begin(), limits.end(), is_limit))
+      cycle.fail("limits of the motion are for scenes with one [[design]]");
+    if (corrects && design.goal.objective->per_load)
+      cycle.fail(kCorrect, "cycles are corrected for sums of loads: design.loads = \"sum\"");
+  }
+}
+
+}  // namespace
+
+void read_correction(const Table& root, Scene& scene) {
+  const Table cycle = root.table_or_empty(tables::kCycle);
+  mmc::CorrectionSettings& s = scene.cycle.correction;
+  s.kind = cycle.choice(kCorrect);
+  s.max_cycles = cycle.integer(kCorrections);
+  s.kkt_part = cycle.number(kKktPart);
+  s.radius = cycle.number(kRadius);
+  s.inner_iterations = cycle.integer(kInner);
+  s.optimizer = scene.optimizer;
+  s.optimizer.rest.rows = 0;
+  const bool corrects = s.kind != Correction::none;
+  const std::string why = no_gradient_because(scene);
+  if (corrects && !why.empty()) cycle.fail(kCorrect, "there is no exact gradient: " + why);
+  if (corrects) {
+    read_motion_keys(cycle, kOfCycle, scene, scene.cycle);
+  } else {
+    for (const Key* key : {&kCorrections, &kKktPart, &kRadius, &kInner, &kOfCycle.cell,
+                           &kOfCycle.step, &kOfCycle.checkpoints})
+      if (cycle.has(*key)) cycle.fail(*key, "without `correct` this does nothing");
+    for (const BodyDesign& design : scene.designs)
+      if (design.asks_motion)
+        cycle.fail(kCorrect, "[[design]] '" + design.body +
+                                 "' asks for numbers of the motion: \"first_order\" or \"direct\"");
+  }
+  check_goals(cycle, scene, corrects);
+  if (!root.has(tables::kCertificate)) return;
+  const Table t = root.table(tables::kCertificate);
+  if (!why.empty()) t.fail("there is no exact gradient: " + why);
+  read_motion_keys(t, kOfCertificate, scene, scene.certify.emplace());
+}
+
+}  // namespace flexmorph::cases

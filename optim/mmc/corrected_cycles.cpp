@@ -1,0 +1,259 @@
+#include "optim/mmc/corrected_cycles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geometry/cpu_time.h"
+#include "optim/kkt.h"
+#include "optim/mmc/mended_parts.h"
+
+namespace flexmorph::mmc {
+namespace {
+
+constexpr double kActive = 1e-3;  // as of certify()
+
+/// The static problem with the gradient of the motion at one design, in a trust region around it.
+class Corrected final : public optim::Problem {
+ public:
+  /// What the motion says at that design.
+  struct Seen {
+    VectorXd correction;  ///< ∇log J - ∇log C
+    VectorXd limits;      ///< its limits, <= 0 (m)
+    MatrixXd slopes;      ///< their gradients (m x n)
+  };
+  Corrected(optim::Problem& loaded, const VectorXd& x, double log_compliance, Seen seen,
+            double radius)
+      : loaded_(loaded),
+        x_(x),
+        log_compliance_(log_compliance),
+        seen_(std::move(seen)),
+        radius_(radius) {}
+
+  int n_variables() const override { return loaded_.n_variables(); }
+  /// Those of the static problem, then the limits of the motion, which are linear here.
+  int n_constraints() const override {
+    return loaded_.n_constraints() + static_cast<int>(seen_.limits.size());
+  }
+  VectorXd lower() const override {
+    return loaded_.lower().cwiseMax((x_.array() - radius_).matrix());
+  }
+  VectorXd upper() const override {
+    return loaded_.upper().cwiseMin((x_.array() + radius_).matrix());
+  }
+  VectorXd start() const override { return x_; }
+  optim::Response evaluate(const VectorXd& x) override {
+    optim::Response out = loaded_.evaluate(x);
+    const double part = std::exp(out.f - log_compliance_);
+    out.f = part + seen_.correction.dot(x - x_);
+    out.df = part * out.df + seen_.correction;
+    const Eigen::Index m = out.g.size(), more = seen_.limits.size();
+    out.g.conservativeResize(m + more);
+    out.g.tail(more) = seen_.limits + seen_.slopes * (x - x_);
+    out.dg.conservativeResize(m + more, x.size());
+    out.dg.bottomRows(more) = seen_.slopes;
+    return out;
+  }
+  bool acceptable(const VectorXd& x) override { return loaded_.acceptable(x); }
+  VectorXd memory() const override { return loaded_.memory(); }
+  void recall(const VectorXd& x, const VectorXd& memory) override { loaded_.recall(x, memory); }
+
+ private:
+  optim::Problem& loaded_;
+  VectorXd x_;
+  double log_compliance_;
+  Seen seen_;
+  double radius_;
+};
+
+/// Designs on their way to an optimum of their motion.
+class Corrector {
+ public:
+  Corrector(std::vector<BodyProblem>& problems, const LoadsAt& loads, MotionResponse& motion,
+            const CorrectionSettings& settings, const SeeCycle& see)
+      : problems_(problems), loads_at_(loads), motion_(motion), settings_(settings), see_(see) {}
+
+  void go() {
+    renew_loads();
+    const double first = look().kkt;
+    radius_ = settings_.radius;
+    for (int cycle = 1; cycle <= settings_.max_cycles && going_; ++cycle) {
+      if (now_.kkt <= settings_.kkt_part * first || radius_ < settings_.smallest_radius) break;
+      if (step(cycle)) renew_loads();
+    }
+  }
+
+  /// The optimizer on J: every iteration a motion and its adjoint.
+  void go_directly() {
+    renew_loads();
+    look();
+    MotionState state = motion_state_of(parts_, motion_);
+    Whole moved(parts_, &state);
+    optim::Settings settings = settings_.optimizer;
+    settings.max_iterations = settings_.max_cycles;
+    settings.max_evaluations = 0;
+    settings.kkt_tolerance = settings_.kkt_part * now_.kkt;
+    VectorXd best = moved.problem().start();
+    double least = now_.value;
+    const auto watch = [&](const optim::Iterate& iterate) {
+      now_.cycle = iterate.iteration;
+      now_.value = std::exp(iterate.response->f);
+      now_.kkt = iterate.kkt;
+      now_.predicted = now_.actual = 0;
+      now_.accepted = iterate.violation <= kActive;
+      if (now_.accepted && now_.value < least) {
+        least = now_.value;
+        best = *iterate.x;
+      }
+      return report();
+    };
+    optim::make_optimizer(settings)->minimize(moved.problem(), watch);
+    move_to(moved, best);
+  }
+
+  /// Narrow places that came up on the way are repaired; figures of the result.
+  std::vector<BodyOutcome> outcomes(const std::function<bool()>& go_on) {
+    for (Part& p : parts_) p.widths.reset();
+    const bool wanted = std::any_of(parts_.begin(), parts_.end(),
+                                    [](const Part& p) { return p.problem.widths.any(); });
+    if (wanted) {
+      const Mended mended = repaired(parts_, 1, true, go_on);
+      for (size_t k = 0; k < parts_.size(); ++k) {
+        parts_[k].problem.design = mended.designs[k];
+        parts_[k].outcome.clean_up = mended.clean_ups[k];
+      }
+    }
+    std::vector<BodyOutcome> out;
+    for (Part& p : parts_) {
+      p.follow_sharp_volume();
+      measure(p);
+      p.outcome.body = p.problem.body;
+      p.outcome.n_loads = p.loads.n_loads();
+      p.outcome.n_right_hand_sides = p.loads.n_right_hand_sides();
+      p.outcome.kkt = now_.kkt;
+      finish_outcome(p, false, false);
+      out.push_back(std::move(p.outcome));
+    }
+    return out;
+  }
+
+ private:
+  /// Static problems at the designs as they are.
+  void renew_loads() {
+    responses_ = loads_at_();
+    std::vector<LoadedBody> bodies;
+    for (size_t k = 0; k < problems_.size(); ++k) bodies.push_back({problems_[k], *responses_[k]});
+    parts_.clear();
+    for (Part& p : parts_at_end(bodies)) parts_.push_back(std::move(p));
+  }
+
+  /// J and its gradient where the designs are.
+  const CorrectedCycle& look() {
+    MotionState state = motion_state_of(parts_, motion_);
+    Whole moved(parts_, &state), loaded(parts_);
+    take(moved.problem().start(), moved.problem().evaluate(moved.problem().start()), moved, loaded);
+    now_.radius = settings_.radius;
+    report();
+    return now_;
+  }
+
+  void take(const VectorXd& x, const optim::Response& r, Whole& moved, Whole& loaded) {
+    here_ = r;
+    now_.value = std::exp(r.f);
+    now_.kkt =
+        optim::kkt_point(r, x, moved.problem().lower(), moved.problem().upper(), kActive).residual;
+    const VectorXd of_loads = loaded.problem().evaluate(x).df;
+    const double sizes = r.df.norm() * of_loads.norm();
+    now_.angle = sizes > 0 ? std::acos(std::clamp(r.df.dot(of_loads) / sizes, -1.0, 1.0)) : 0;
+  }
+
+  /// The limits of the motion; of one body.
+  std::vector<int> limit_rows(Whole& moved) const {
+    std::vector<int> out;
+    const std::vector<Limit>& limits = parts_.front().problem.motion_goal.limits;
+    for (size_t k = 0; k < limits.size(); ++k)
+      if (limits[k].row->of_motion) out.push_back(moved.states.front().row_of(k));
+    return out;
+  }
+
+  bool report() {
+    now_.motions = motion_.motions();
+    now_.seconds = cpu_seconds() - begin_;
+    if (see_ && !see_(now_)) going_ = false;
+    return going_;
+  }
+
+  void move_to(Whole& whole, const VectorXd& x) {
+    for (size_t k = 0; k < parts_.size(); ++k)
+      parts_[k].problem.design.move_to(whole.states[k].design_part(whole.part_of(x, k)));
+  }
+
+  /// One cycle of first order. @return was its design taken?
+  bool step(int cycle) {
+    constexpr double kTaken = 0.1, kGood = 0.75, kPoor = 0.25;
+    MotionState state = motion_state_of(parts_, motion_);
+    Whole moved(parts_, &state), loaded(parts_);
+    const VectorXd x = loaded.problem().start();
+    const optim::Response here = loaded.problem().evaluate(x);
+    const std::vector<int> limits = limit_rows(moved);
+    Corrected problem(loaded.problem(), x, here.f,
+                      {here_.df - here.df, here_.g(limits), here_.dg(limits, Eigen::all)}, radius_);
+    optim::Settings inner = settings_.optimizer;
+    inner.max_iterations = settings_.inner_iterations;
+    inner.max_evaluations = 0;
+    inner.move_limit = std::min(inner.move_limit, radius_);
+    inner.kkt_tolerance = std::min(inner.kkt_tolerance, 0.1 * now_.kkt);
+    const optim::Result found = optim::make_optimizer(inner)->minimize(problem, {});
+    now_.cycle = cycle;
+    now_.radius = radius_;
+    now_.predicted = 1 - found.response.f;
+    now_.actual = -std::numeric_limits<double>::infinity();
+    optim::Response there;
+    try {
+      there = moved.problem().evaluate(found.x);
+      now_.actual = 1 - std::exp(there.f - here_.f);
+    } catch (const Error& error) {
+      if (error.kind() != Error::Kind::numerical) throw;
+    }
+    const double ratio = now_.predicted > 0 ? now_.actual / now_.predicted : -1;
+    const bool at_edge = (found.x - x).lpNorm<Eigen::Infinity>() > 0.99 * radius_;
+    now_.accepted = ratio >= kTaken;
+    if (ratio < kPoor)
+      radius_ *= 0.5;
+    else if (ratio > kGood && at_edge)
+      radius_ *= 2;
+    if (now_.accepted) {
+      take(found.x, there, moved, loaded);
+      move_to(loaded, found.x);
+    }
+    report();
+    return now_.accepted;
+  }
+
+  std::vector<BodyProblem>& problems_;
+  const LoadsAt& loads_at_;
+  MotionResponse& motion_;
+  const CorrectionSettings& settings_;
+  const SeeCycle& see_;
+  std::vector<std::unique_ptr<LoadResponse>> responses_;
+  std::vector<Part> parts_;
+  CorrectedCycle now_;
+  optim::Response here_;  // of the motion, at the design
+  double radius_ = 0, begin_ = cpu_seconds();
+  bool going_ = true;
+};
+
+}  // namespace
+
+std::vector<BodyOutcome> correct_designs(std::vector<BodyProblem>& problems, const LoadsAt& loads,
+                                         MotionResponse& motion, const CorrectionSettings& settings,
+                                         const SeeCycle& see, const std::function<bool()>& go_on) {
+  Corrector corrector(problems, loads, motion, settings, see);
+  if (settings.kind == Correction::direct)
+    corrector.go_directly();
+  else
+    corrector.go();
+  return corrector.outcomes(go_on);
+}
+
+}  // namespace flexmorph::mmc

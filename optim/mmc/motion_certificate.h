@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "optim/mmc/designed_parts.h"
+
+namespace flexmorph::mmc {
+
+/// What the motion itself says of a design that equivalent static loads have made. With J a number
+/// of the motion (goal_of_motion()) and C the compliance, both of the blurred design of the last
+/// stage:
+struct MotionCertificate {
+  std::string objective;   ///< "strain energy in motion"
+  double value = 0;        ///< J
+  double sharp_value = 0;  ///< of what the outlines enclose
+  double kkt = 0;          ///< KKT residual of log J under the limits of the design
+  double angle = 0;        ///< between the gradients of J and C by the scaled variables [rad]
+  /// How far J can fall at most within the move limit, to first order, as a part of itself: of the
+  /// linear problem's dual at the multipliers of `kkt`.
+  double left = 0;
+  double move_limit = 0;
+  double seconds = 0;  ///< CPU
+
+  /// Where the motion would move material.
+  struct Body {
+    std::string body;
+    std::vector<Component> components;
+    VectorXd slopes;  ///< ∂ log J / ∂ parameters, 7 of every component [1/m, 1/rad]
+  };
+  std::vector<Body> bodies;
+};
+
+/// @param parts   at their designs and the band of their last stage
+/// @param motion  of the mechanism they are parts of
+/// @throws Error (numerical) from the motion or statics.
+MotionCertificate certify(std::vector<Part>& parts, MotionResponse& motion, double move_limit);
+
+/// The state of the motion for these parts.
+MotionState motion_state_of(const std::vector<Part>& parts, MotionResponse& motion);
+
+/// The first-order bound of MotionCertificate::left.
+/// @param lambda  multipliers, >= 0
+double left_within(const optim::Response& r, const VectorXd& x, const VectorXd& lower,
+                   const VectorXd& upper, const VectorXd& lambda, double move_limit);
+
+/// Designed bodies under their loads, at their last stage and as they were mended: their widths are
+/// limits, their volumes those of the sharp designs.
+std::vector<Part> parts_at_end(std::span<const LoadedBody> bodies);
+
+}  // namespace flexmorph::mmc
