@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "fem/solve/bordered_cholesky.h"
 #include "fem/solve/saddle_cholesky.h"
 
 extern "C" char* openblas_get_corename();  // cblas.h of other vendors has no such call
@@ -18,6 +19,8 @@ struct UnsymmetricSolver::Impl {
   double miss = 0;    // of the last factorization
   SaddleCholesky cholesky;
   bool may_cholesky = false, is_cholesky = false;
+  BorderedCholesky bordered;
+  bool may_border = false, is_bordered = false;
   VectorXd remainder, correction;
 
   Impl() { umfpack_di_defaults(control); }
@@ -64,7 +67,9 @@ void UnsymmetricSolver::analyze(const SparseMatrix& a) {
   if (impl_->symbolic) umfpack_di_free_symbolic(&impl_->symbolic);
   impl_->analysed.resize(0);
   impl_->is_cholesky = false;
+  impl_->is_bordered = false;
   impl_->may_cholesky = impl_->cholesky.analyze(a);
+  impl_->may_border = impl_->bordered.analyze(a);
 }
 
 void UnsymmetricSolver::factorize(const SparseMatrix& a, double miss) {
@@ -73,7 +78,8 @@ void UnsymmetricSolver::factorize(const SparseMatrix& a, double miss) {
   impl_->miss = miss;
   impl_->is_cholesky = impl_->may_cholesky && impl_->cholesky.factorize(a, miss);
   impl_->release_numeric();
-  if (impl_->is_cholesky) return;
+  impl_->is_bordered = !impl_->is_cholesky && impl_->may_border && impl_->bordered.factorize(a);
+  if (impl_->is_cholesky || impl_->is_bordered) return;
   if (!impl_->symbolic) impl_->analyze(a, a.valuePtr());
   check(umfpack_di_numeric(a.outerIndexPtr(), a.innerIndexPtr(), a.valuePtr(), impl_->symbolic,
                            &impl_->numeric, impl_->control, nullptr),
@@ -92,15 +98,21 @@ void UnsymmetricSolver::solve_transposed(const SparseMatrix& a, const VectorXd& 
 
 void UnsymmetricSolver::Impl::solve(const SparseMatrix& a, const VectorXd& b, VectorXd& x,
                                     bool refine, bool transposed) {
-  if (is_cholesky) {  // of a symmetric matrix
-    cholesky.solve(b, x);
+  if (is_cholesky || is_bordered) {
+    const auto once = [&](const VectorXd& right, VectorXd& out) {
+      if (is_bordered)
+        bordered.solve(right, out, transposed);
+      else
+        cholesky.solve(right, out);  // of a symmetric matrix
+    };
+    once(b, x);
     if (!refine) return;
     remainder = b;
     if (transposed)
       remainder.noalias() -= a.transpose() * x;
     else
       remainder.noalias() -= a * x;
-    cholesky.solve(remainder, correction);
+    once(remainder, correction);
     x += correction;
     return;
   }
@@ -112,13 +124,14 @@ void UnsymmetricSolver::Impl::solve(const SparseMatrix& a, const VectorXd& b, Ve
 }
 
 void UnsymmetricSolver::remember(Memory& memory, const SparseMatrix& a) {
-  bool is_factored = impl_->is_cholesky || impl_->numeric != nullptr;
+  bool is_factored = impl_->is_cholesky || impl_->is_bordered || impl_->numeric != nullptr;
   bool refused = impl_->cholesky.is_refused();
   VectorXd values = impl_->analysed;
   double miss = impl_->miss;
   memory(is_factored, refused, values, miss);
+  if (memory.puts_back()) analyze(a);
+  impl_->bordered.remember(memory);
   if (!memory.puts_back()) return;
-  analyze(a);
   impl_->cholesky.set_refused(refused);
   if (values.size() > 0 && values.size() == a.nonZeros()) impl_->analyze(a, values.data());
   if (is_factored) factorize(a, miss);

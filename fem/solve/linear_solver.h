@@ -14,9 +14,10 @@ namespace flexmorph::fem {
 ///   [ Φ_q  0  ]    in any order: rows of Φ_q are those without an entry on the diagonal.
 ///
 /// Where the matrix is symmetric, A positive definite and Φ_q of few rows, by the supernodal
-/// Cholesky factor of A (CHOLMOD) and the Schur complement of the constraints. All others by
-/// UMFPACK, at three to five times the cost. The pattern is analysed once; which of the two it is
-/// shows at every factorization anew.
+/// Cholesky factor of A (CHOLMOD) and the Schur complement of the constraints. Large ones that are
+/// so but for a border (many constraints, material that flows near a joint) by BorderedCholesky.
+/// All others by UMFPACK, at three to five times the cost. The pattern is analysed once; which of
+/// them it is shows at every factorization anew.
 class UnsymmetricSolver {
  public:
   UnsymmetricSolver();
@@ -42,7 +43,7 @@ class UnsymmetricSolver {
   /// @param a  the matrix of the last factorize(), or analyze() after it
   void remember(Memory& memory, const SparseMatrix& a);
 
-  /// Was the last factor that of Cholesky?
+  /// Was the last factor that of Cholesky without a border?
   bool is_cholesky() const;
 
  private:

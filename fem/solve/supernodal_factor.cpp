@@ -3,28 +3,19 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <utility>
 
-#include "fem/solve/condition.h"
 #include "fem/solve/dense_blocks.h"
-#include "fem/solve/supernodes.h"
+#include "fem/solve/multifrontal.h"
 
 namespace flexmorph::fem {
 
 namespace {
 
-using dense::cholesky;
-using dense::Dense;
 using dense::pull_below;
 using dense::push_below;
 using dense::solve_triangle;
-
-// Part of its diagonal entry that a pivot keeps at least: less is cancellation of all digits, as of
-// a plate that is cut off from its root and floats. (A plate that hangs on a void of factor 1e-9
-// keeps about 1e-9.)
-constexpr double kSmallestPivot = 1e-12;
 
 /// Loads [first, first + count) whose active block reaches beyond `column`.
 struct LoadRange {
@@ -88,12 +79,7 @@ void each_share(Eigen::Index n_loads, const Use& use) {
 }  // namespace
 
 struct SupernodalFactor::Impl {
-  std::vector<int> starts;
-  std::vector<double> values;  // of K
-  Supernodes blocks;
-  std::vector<double> factor;    // of L, block by block
-  std::vector<double> stack;     // updates that wait for their parent
-  std::vector<int> waiting;      // blocks whose updates are on the stack
+  Multifrontal front;
   std::vector<char> contiguous;  // by supernode: its rows below the diagonal block are a range
   mutable MatrixXd gathered;     // (rows below x n_loads), room for supernodes that are not
   int most_below = 0;
@@ -109,24 +95,19 @@ struct SupernodalFactor::Impl {
     const double* rectangle() const { return block + width(); }
   };
 
-  int n_supernodes() const { return blocks.n_blocks(); }
+  Impl(std::vector<int> starts, std::vector<int> rows)
+      : front(std::move(starts), std::move(rows)) {}
+
+  int n_supernodes() const { return front.blocks().n_blocks(); }
 
   Supernode supernode(int s) const {
     const auto at = static_cast<std::size_t>(s);
-    return {blocks.first[at],
-            blocks.first[at + 1],
-            blocks.height(s),
-            blocks.n_below(s),
-            factor.data() + blocks.offset[at],
-            blocks.below(s),
-            contiguous[at] != 0};
+    const Supernodes& blocks = front.blocks();
+    return {blocks.first[at], blocks.first[at + 1], blocks.height(s),   blocks.n_below(s),
+            front.block(s),   blocks.below(s),      contiguous[at] != 0};
   }
 
   void find_ranges();
-  void fill_block(int s, double* block);
-  void add_update(int child, const double* update, int parent, double* block, double* own) const;
-  int factorize_block(int s, double* block, double keep, double* own) const;
-  int smallest_pivot(int s) const;
   void forward(int s, MatrixXd& x, std::span<const int> active, int tail,
                const LoadRange& mine) const;
   void backward(int s, MatrixXd& x, std::span<const int> active, const Fill& fill,
@@ -142,8 +123,8 @@ struct SupernodalFactor::Impl {
 void SupernodalFactor::Impl::find_ranges() {
   contiguous.resize(static_cast<std::size_t>(n_supernodes()));
   for (int s = 0; s < n_supernodes(); ++s) {
-    const int n = blocks.n_below(s);
-    const int* below = blocks.below(s);
+    const int n = front.blocks().n_below(s);
+    const int* below = front.blocks().below(s);
     const bool range = n == 0 || below[n - 1] - below[0] == n - 1;
     contiguous[static_cast<std::size_t>(s)] = range;
     if (!range) most_below = std::max(most_below, n);
@@ -151,136 +132,18 @@ void SupernodalFactor::Impl::find_ranges() {
 }
 
 SupernodalFactor::SupernodalFactor(std::vector<int> starts, std::vector<int> rows)
-    : impl_(std::make_unique<Impl>()) {
-  Impl& m = *impl_;
-  m.blocks = find_supernodes(starts, rows);
-  m.starts = std::move(starts);
-  m.values.assign(rows.size(), 0.0);
-  m.factor.assign(m.blocks.offset.back(), 0.0);
-  m.stack.assign(m.blocks.deepest_stack, 0.0);
-  m.find_ranges();
+    : impl_(std::make_unique<Impl>(std::move(starts), std::move(rows))) {
+  impl_->find_ranges();
 }
 
 SupernodalFactor::~SupernodalFactor() = default;
 SupernodalFactor::SupernodalFactor(SupernodalFactor&&) noexcept = default;
 
-int SupernodalFactor::size() const { return static_cast<int>(impl_->starts.size()) - 1; }
-std::span<double> SupernodalFactor::values() { return impl_->values; }
+int SupernodalFactor::size() const { return impl_->front.size(); }
+std::span<double> SupernodalFactor::values() { return impl_->front.values(); }
+int SupernodalFactor::factorize() { return impl_->front.factorize(); }
 
-double SupernodalFactor::condition() const {
-  const Impl& m = *impl_;
-  std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(2 * m.values.size());
-  for (int s = 0; s < m.n_supernodes(); ++s) {
-    const Impl::Supernode block = m.supernode(s);
-    const std::size_t begin = m.blocks.offset[static_cast<std::size_t>(s)];
-    for (int c = block.first; c < block.last; ++c)
-      for (int k = m.starts[static_cast<std::size_t>(c)];
-           k < m.starts[static_cast<std::size_t>(c) + 1]; ++k) {
-        const auto at = static_cast<std::size_t>(k);
-        const auto row =
-            static_cast<int>((m.blocks.place[at] - begin) % static_cast<std::size_t>(block.height));
-        const int i = row < block.width() ? block.first + row : block.below[row - block.width()];
-        entries.emplace_back(i, c, m.values[at]);
-        if (i != c) entries.emplace_back(c, i, m.values[at]);
-      }
-  }
-  SparseMatrix full(size(), size());
-  full.setFromTriplets(entries.begin(), entries.end());
-  return condition_estimate(std::move(full));
-}
-
-/// Entries of K in the columns of a block.
-void SupernodalFactor::Impl::fill_block(int s, double* block) {
-  const auto at = static_cast<std::size_t>(s);
-  std::fill(block, factor.data() + blocks.offset[at + 1], 0.0);
-  const auto begin = static_cast<std::size_t>(starts[static_cast<std::size_t>(blocks.first[at])]);
-  const auto end = static_cast<std::size_t>(starts[static_cast<std::size_t>(blocks.first[at + 1])]);
-  for (std::size_t k = begin; k < end; ++k) factor[blocks.place[k]] = values[k];
-}
-
-/// Adds the update of a child to its parent: to the block and to the parent's own update.
-void SupernodalFactor::Impl::add_update(int child, const double* update, int parent, double* block,
-                                        double* own) const {
-  const int n = blocks.n_below(child), width = blocks.width(parent), height = blocks.height(parent);
-  const std::ptrdiff_t own_ld = height - width;
-  const auto begin =
-      static_cast<std::ptrdiff_t>(blocks.row_starts[static_cast<std::size_t>(child)]);
-  const int* to = blocks.in_parent.data() + begin;
-  const int* run_end = blocks.run_end.data() + begin;
-  for (int c = 0; c < n; ++c, update += n) {
-    double* column = to[c] < width ? block + static_cast<std::ptrdiff_t>(to[c]) * height
-                                   : own + (to[c] - width) * own_ld - width;
-    for (int r = c; r < n; r = run_end[r]) {
-      double* __restrict y = column + to[r] - r;
-      const double* __restrict x = update;
-      for (int k = r; k < run_end[r]; ++k) y[k] += x[k];
-    }
-  }
-}
-
-/// L of a block whose updates are all in, and what it takes from the rows below:
-/// own <- keep * own - L_below L_belowᵀ (lower triangle).
-/// @return the column of the block that fails, or -1.
-int SupernodalFactor::Impl::factorize_block(int s, double* block, double keep, double* own) const {
-  const int width = blocks.width(s), height = blocks.height(s), n_below = height - width;
-  const Eigen::Index failed = cholesky(Dense(block, width, width, Eigen::OuterStride<>(height)));
-  if (failed >= 0) return static_cast<int>(failed);
-  if (n_below == 0) return -1;
-  cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, n_below, width, 1,
-              block, height, block + width, height);
-  cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, n_below, width, -1, block + width, height,
-              keep, own, n_below);
-  return -1;
-}
-
-/// The column of a factored block whose pivot is too small or not finite, or -1.
-int SupernodalFactor::Impl::smallest_pivot(int s) const {
-  const Supernode node = supernode(s);
-  for (int k = 0; k < node.width(); ++k) {
-    const double pivot = node.block[static_cast<std::ptrdiff_t>(k) * (node.height + 1)];
-    const double diagonal = values[static_cast<std::size_t>(
-        starts[static_cast<std::size_t>(node.first) + static_cast<std::size_t>(k)])];
-    if (!(pivot * pivot > kSmallestPivot * diagonal) || !std::isfinite(pivot)) return k;
-  }
-  return -1;
-}
-
-int SupernodalFactor::factorize() {
-  Impl& m = *impl_;
-  const Supernodes& b = m.blocks;
-  m.waiting.clear();
-  std::size_t top = 0;  // of the stack
-  for (const int s : b.order) {
-    double* block = m.factor.data() + b.offset[static_cast<std::size_t>(s)];
-    const auto n_below = static_cast<std::size_t>(b.n_below(s)), size = n_below * n_below;
-    double* own = m.stack.data() + top;
-    m.fill_block(s, block);
-    const auto has_child = [&] {
-      return !m.waiting.empty() && b.parent[static_cast<std::size_t>(m.waiting.back())] == s;
-    };
-    const double keep = has_child() ? 1 : 0;
-    for (std::size_t c = 0; keep != 0 && c < n_below; ++c)
-      std::fill(own + c * n_below + c, own + (c + 1) * n_below, 0.0);
-    std::size_t bottom = top;
-    while (has_child()) {
-      const int child = m.waiting.back();
-      const auto n = static_cast<std::size_t>(b.n_below(child));
-      bottom -= n * n;
-      m.add_update(child, m.stack.data() + bottom, s, block, own);
-      m.waiting.pop_back();
-    }
-    int failed = m.factorize_block(s, block, keep, own);
-    if (failed < 0) failed = m.smallest_pivot(s);
-    if (failed >= 0) return b.first[static_cast<std::size_t>(s)] + failed;
-    double* home = m.stack.data() + bottom;
-    for (std::size_t c = 0; bottom != top && c < n_below; ++c)  // the lower triangle
-      std::copy(own + c * n_below + c, own + (c + 1) * n_below, home + c * n_below + c);
-    top = bottom + size;
-    if (size > 0) m.waiting.push_back(s);
-  }
-  return -1;
-}
+double SupernodalFactor::condition() const { return impl_->front.condition(); }
 
 void SupernodalFactor::forward(MatrixXd& x, std::span<const int> active, int tail) const {
   const Impl& m = *impl_;

@@ -3,6 +3,7 @@
 #include <cholmod.h>
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 #include <utility>
 
@@ -33,6 +34,17 @@ struct Analysis {
 };
 
 void Analysis::run(std::span<const int> starts, std::span<const int> rows) {
+  const auto n = static_cast<int>(starts.size()) - 1;
+  if (std::any_of(rows.begin(), rows.end(), [n](int row) { return row >= n; })) {
+    std::vector<int> inner_starts = {0}, inner;  // without the border
+    for (std::size_t c = 0; c + 1 < starts.size(); ++c) {
+      std::copy_if(rows.begin() + starts[c], rows.begin() + starts[c + 1],
+                   std::back_inserter(inner), [n](int row) { return row < n; });
+      inner_starts.push_back(static_cast<int>(inner.size()));
+    }
+    run(inner_starts, inner);
+    return;
+  }
   cholmod_sparse pattern{};
   pattern.nrow = pattern.ncol = starts.size() - 1;
   pattern.nzmax = rows.size();
@@ -69,14 +81,51 @@ int place_in(const Supernodes& b, int s, int row) {
   return width + static_cast<int>(std::lower_bound(begin, begin + b.n_below(s), row) - begin);
 }
 
+/// Rows of the border: those of its own columns, and of the blocks that come before it in its tree.
+std::vector<std::vector<int>> border_rows(const Supernodes& b, std::span<const int> starts,
+                                          std::span<const int> rows,
+                                          std::span<const int> block_of_column) {
+  const int n = static_cast<int>(starts.size()) - 1;
+  std::vector<std::vector<int>> out(b.first.size() - 1);
+  for (std::size_t s = 0; s + 1 < b.first.size(); ++s) {
+    std::vector<int>& own = out[s];
+    for (auto k = static_cast<std::size_t>(starts[static_cast<std::size_t>(b.first[s])]);
+         k < static_cast<std::size_t>(starts[static_cast<std::size_t>(b.first[s + 1])]); ++k)
+      if (rows[k] >= n) own.push_back(rows[k]);
+    std::sort(own.begin(), own.end());
+    own.erase(std::unique(own.begin(), own.end()), own.end());
+    // Blocks follow their children in the numbers, too.
+    const auto below = static_cast<std::size_t>(b.row_starts[s]);
+    if (own.empty() || below == static_cast<std::size_t>(b.row_starts[s + 1])) continue;
+    const int parent = block_of_column[static_cast<std::size_t>(b.rows[below])];
+    std::vector<int>& further = out[static_cast<std::size_t>(parent)];
+    further.insert(further.end(), own.begin(), own.end());
+  }
+  return out;
+}
+
+/// Gives the blocks the rows that they have in the border.
+void append_border(Supernodes& b, const std::vector<std::vector<int>>& border) {
+  std::vector<int> rows, row_starts = {0};
+  b.offset = {0};
+  for (std::size_t s = 0; s < border.size(); ++s) {
+    rows.insert(rows.end(), b.rows.begin() + b.row_starts[s], b.rows.begin() + b.row_starts[s + 1]);
+    rows.insert(rows.end(), border[s].begin(), border[s].end());
+    const auto width = static_cast<std::size_t>(b.first[s + 1] - b.first[s]),
+               n_below = rows.size() - static_cast<std::size_t>(row_starts.back());
+    row_starts.push_back(static_cast<int>(rows.size()));
+    b.offset.push_back(b.offset.back() + width * (width + n_below));
+  }
+  b.rows = std::move(rows);
+  b.row_starts = std::move(row_starts);
+}
+
 void link_to_parents(Supernodes& b, std::span<const int> block_of_column) {
-  const auto n = static_cast<std::size_t>(b.first.size() - 1);
-  b.parent.assign(n, -1);
   b.in_parent.resize(b.rows.size());
   b.run_end.resize(b.rows.size());
   for (int s = 0; s < b.n_blocks(); ++s) {
     const int n_below = b.n_below(s);
-    if (n_below == 0) continue;
+    if (n_below == 0 || b.below(s)[0] >= static_cast<int>(block_of_column.size())) continue;
     const int parent = block_of_column[static_cast<std::size_t>(b.below(s)[0])];
     b.parent[static_cast<std::size_t>(s)] = parent;
     const auto begin = static_cast<std::size_t>(b.row_starts[static_cast<std::size_t>(s)]);
@@ -121,10 +170,11 @@ void measure_stack(Supernodes& b) {
   for (const int s : b.order) {
     const auto n_below = static_cast<std::size_t>(b.n_below(s)), update = n_below * n_below;
     b.deepest_stack = std::max(b.deepest_stack, stack + update);
-    stack += update;
     stack -= of_children[static_cast<std::size_t>(s)];
     const int parent = b.parent[static_cast<std::size_t>(s)];
-    if (parent >= 0) of_children[static_cast<std::size_t>(parent)] += update;
+    if (parent < 0) continue;  // an update of the border does not wait
+    stack += update;
+    of_children[static_cast<std::size_t>(parent)] += update;
   }
 }
 
@@ -141,17 +191,16 @@ Supernodes find_supernodes(std::span<const int> starts, std::span<const int> row
   Supernodes b;
   b.first.assign(super, super + n_blocks + 1);
   b.row_starts = {0};
-  b.offset = {0};
   std::vector<int> block_of_column(starts.size() - 1);
   for (std::size_t s = 0; s < n_blocks; ++s) {
     const int width = super[s + 1] - super[s];
     b.rows.insert(b.rows.end(), s_rows + pi[s] + width, s_rows + pi[s + 1]);
     b.row_starts.push_back(static_cast<int>(b.rows.size()));
-    b.offset.push_back(b.offset.back() + static_cast<std::size_t>(width) *
-                                             static_cast<std::size_t>(pi[s + 1] - pi[s]));
     std::fill(block_of_column.begin() + super[s], block_of_column.begin() + super[s + 1],
               static_cast<int>(s));
   }
+  b.parent.assign(n_blocks, -1);
+  append_border(b, border_rows(b, starts, rows, block_of_column));
   link_to_parents(b, block_of_column);
   order_families(b);
   measure_stack(b);

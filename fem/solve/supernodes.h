@@ -19,7 +19,8 @@ struct Supernodes {
   std::vector<int> rows;            ///< rows below the triangles
   std::vector<int> in_parent;       ///< place of each of `rows` among the rows of the parent
   std::vector<int> run_end;         ///< rows from each to here are neighbours in the parent too
-  std::vector<int> parent;          ///< block of the first row below, -1: none (n_blocks)
+  std::vector<int> parent;          ///< block of the first row below, -1: none (n_blocks),
+                                    ///< or in the border
   std::vector<int> order;           ///< children before parents, each next to its family
   std::vector<std::size_t> place;   ///< of every entry of the matrix among the values
   std::size_t deepest_stack = 0;    ///< most numbers that updates take when computed in `order`
@@ -36,7 +37,8 @@ struct Supernodes {
 
 /// Analysis by CHOLMOD in the given order of the unknowns.
 ///
-/// @param starts, rows  lower triangle by compressed columns, rows ascending, diagonal first
+/// @param starts, rows  lower triangle by compressed columns, rows ascending, diagonal first; rows
+///                      beyond the columns belong to a border that is not eliminated
 /// @throws Error (numerical) when CHOLMOD cannot, for lack of memory say.
 Supernodes find_supernodes(std::span<const int> starts, std::span<const int> rows);
 

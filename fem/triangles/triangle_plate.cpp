@@ -1,13 +1,12 @@
 #include "fem/triangles/triangle_plate.h"
 
-#include <cholmod.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "fem/solve/fill_order.h"
 #include "fem/solve/supernodal_factor.h"
 #include "fem/triangles/t6.h"
 
@@ -50,29 +49,6 @@ Lists neighbours(const PartMesh& mesh, const std::vector<char>& used,
     out.starts.push_back(static_cast<int>(out.numbers.size()));
   }
   return out;
-}
-
-/// Nodes in an order of little fill in which groups ascend.
-std::vector<int> fill_reducing_order(const Lists& graph, std::vector<int> groups) {
-  const std::size_t n = groups.size();
-  cholmod_common common;
-  cholmod_start(&common);
-  common.print = 0;
-  cholmod_sparse pattern{};
-  pattern.nrow = pattern.ncol = n;
-  pattern.nzmax = graph.numbers.size();
-  pattern.p = const_cast<int*>(graph.starts.data());  // read only: CHOLMOD is not declared so
-  pattern.i = const_cast<int*>(graph.numbers.data());
-  pattern.stype = 1;
-  pattern.itype = CHOLMOD_INT;
-  pattern.xtype = CHOLMOD_PATTERN;
-  pattern.dtype = CHOLMOD_DOUBLE;
-  pattern.sorted = pattern.packed = 1;
-  std::vector<int> order(n);
-  const bool done = cholmod_camd(&pattern, nullptr, 0, groups.data(), order.data(), &common) != 0;
-  cholmod_finish(&common);
-  if (!done) throw Error::numerical("triangles: CHOLMOD could not order the nodes");
-  return order;
 }
 
 }  // namespace
@@ -126,7 +102,7 @@ void TrianglePlate::Impl::number() {
   std::vector<int> groups = first_clamps;
   for (std::size_t k = 0; k < n; ++k) groups[k] = std::min(groups[k], n_clamps());
   // Numbers of groups that have no nodes would cost CAMD's checks nothing, but need no gaps.
-  const std::vector<int> order = fill_reducing_order(graph, groups);
+  const std::vector<int> order = fill_order(graph.starts, graph.numbers, groups);
   rows.assign(2 * n, -1);
   active.assign(static_cast<std::size_t>(n_clamps()), 0);
   int next = 0;

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+
+#include "fem/dofs.h"
+#include "geometry/memory.h"
+
+namespace flexmorph::fem {
+
+/// Large matrices that are symmetric and positive definite but for a few of their unknowns,
+///
+///   [ A  Eᵀ ]   A (n x n) symmetric, positive definite, E (m x n), D (m x m) any, n >> m:
+///   [ E  D  ]   Multifrontal factor A = L Lᵀ, dense LU factor of S = D - E A⁻¹ Eᵀ.
+///
+/// The border is found from the matrix: constraint rows (those without an entry on the diagonal),
+/// the unknowns they act on with their neighbours, so that A is held, and all unknowns i and j with
+/// a_ij ≠ a_ji, as where material flows through the mesh near a joint. It grows when a matrix asks
+/// for more, and the order of the others, of little fill, ends beside it.
+class BorderedCholesky {
+ public:
+  BorderedCholesky();
+  ~BorderedCholesky();
+
+  /// @returns whether the pattern is symmetric, large, and of few constraints; if not, factorize()
+  ///          must not be called.
+  bool analyze(const SparseMatrix& a);
+  /// @returns false, and nothing can be solved, when the border is too large, the rest not positive
+  ///          definite, or S too near to singular to be trusted.
+  bool factorize(const SparseMatrix& a);
+  /// The same with the factor L that is there: D is that of a, A and E stay what they were.
+  /// @param a  with the pattern of the last factorize(), which succeeded
+  bool factorize_border(const SparseMatrix& a);
+  /// x = a⁻¹ b (n + m), or a⁻ᵀ b.
+  void solve(const VectorXd& b, VectorXd& x, bool transposed = false);
+
+  /// The border as it has grown; after analyze().
+  void remember(Memory& memory);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace flexmorph::fem
