@@ -90,6 +90,12 @@ class Workspace : public Model {
   /// with pattern_version() only.
   void kkt(const State& x, const Constraints& c, const Weights& w, double scale, SparseMatrix& out);
 
+  /// The same of the entries whose row and column are chosen (n_dofs + n_constraints); all others
+  /// stay what they are.
+  /// @param out  what kkt() made of this pattern_version()
+  void renew_kkt(const State& x, const Constraints& c, const Weights& w, double scale,
+                 const std::vector<char>& chosen, SparseMatrix& out);
+
   /// Mean force of a step from q₀ to q₁ that keeps the energy, see Term::add_mean_force(); mean:
   /// the mean state.
   /// @throws Error (input) when a term has none.
@@ -161,6 +167,11 @@ class Workspace : public Model {
   void add_single_force(const Single& single, const State& x, VectorXd& out) const;
   void add_single_tangent(const Single& single, const State& x, const Weights& w, double scale,
                           double* values) const;
+  /// Entries of the tangent of a batch, or a single, among the chosen unknowns.
+  void renew_batch(const BatchPlaces& places, const State& x, const Weights& w, double scale,
+                   const std::vector<char>& chosen, double* values) const;
+  void renew_single(const Single& single, const State& x, const Weights& w, double scale,
+                    const std::vector<char>& chosen, double* values) const;
   /// Of the tangents of all elements; values do not count.
   std::vector<Eigen::Triplet<double>> element_entries() const;
   void build_pattern();

@@ -42,6 +42,7 @@ class EnergyMomentum final : public StepSolver {
   void residual(VectorXd& force, VectorXd& constraint) override;
   void tangent(SparseMatrix& out) override;
   void correct(const VectorXd& dq, const VectorXd& dlambda) override;
+  const VectorXd& iterate() const override { return end_.q; }
   /// The work of a residual over the step counts, so the step does.
   double resolved() const override { return std::min(displacement(step_), size()); }
   void finish(State& x) override;

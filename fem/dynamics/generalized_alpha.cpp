@@ -89,6 +89,11 @@ void GeneralizedAlpha::tangent(SparseMatrix& out) {
   model().kkt(next_, constraints_, weights(), scale(), out);
 }
 
+bool GeneralizedAlpha::renew_tangent(const std::vector<char>& chosen, SparseMatrix& out) {
+  model().renew_kkt(next_, constraints_, weights(), scale(), chosen, out);
+  return true;
+}
+
 void GeneralizedAlpha::correct(const VectorXd& dq, const VectorXd& dlambda) {
   const Weights w = weights();
   next_.q += dq;

@@ -77,6 +77,8 @@ class GeneralizedAlpha final : public StepSolver {
   void residual(VectorXd& force, VectorXd& constraint) override;
   void tangent(SparseMatrix& out) override;
   void correct(const VectorXd& dq, const VectorXd& dlambda) override;
+  bool renew_tangent(const std::vector<char>& chosen, SparseMatrix& out) override;
+  const VectorXd& iterate() const override { return next_.q; }
   double local_error(const State& x, double allowed) override;
   /// e becomes what Newton's method would make of A_M e, at the iterate.
   /// @param balance  the residual there; empty: zero

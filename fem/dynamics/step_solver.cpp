@@ -31,14 +31,22 @@ void StepSolver::set_scales() {
   scaled_version_ = model_.pattern_version();
 }
 
-void StepSolver::factorize(double miss) {
-  set_scales();
-  // Unknown i is solved as the displacement scales_i Δq_i; its equation as a virtual work on it.
-  for (int column = 0; column < kkt_.cols(); ++column)
+/// Unknown i is solved as the displacement scales_i Δq_i; its equation as a virtual work on it.
+void StepSolver::scale_kkt(const std::vector<char>& chosen) {
+  const auto is_chosen = [&](int k) { return chosen.empty() || chosen[static_cast<size_t>(k)]; };
+  for (int column = 0; column < kkt_.cols(); ++column) {
+    if (!is_chosen(column)) continue;
     for (SparseMatrix::InnerIterator entry(kkt_, column); entry; ++entry) {
+      if (!is_chosen(static_cast<int>(entry.row()))) continue;
       if (column < model_.n_dofs()) entry.valueRef() /= scales_[column];
       if (entry.row() < model_.n_dofs()) entry.valueRef() /= scales_[entry.row()];
     }
+  }
+}
+
+void StepSolver::factorize(double miss) {
+  set_scales();
+  scale_kkt({});
   if (analysed_version_ != model_.pattern_version()) {
     solver_.analyze(kkt_);
     analysed_version_ = model_.pattern_version();
@@ -49,7 +57,7 @@ void StepSolver::factorize(double miss) {
 
 std::optional<double> StepSolver::condition() const {
   if (counts_.factorizations == 0) return {};
-  return condition_estimate(kkt_);
+  return condition_estimate(solver_.as_solved(kkt_));
 }
 
 void StepSolver::factorize_here(double h) {
@@ -58,6 +66,15 @@ void StepSolver::factorize_here(double h) {
   tangent(kkt_);
   factorize(kMiss);
   factored_h_ = h;
+  if (!solver_.border().empty()) turns_.begin(model_, iterate());
+}
+
+void StepSolver::renew_border() {
+  const std::vector<char>& border = solver_.border();
+  if (border.empty() || !renew_tangent(border, kkt_)) return;
+  scale_kkt(border);
+  turns_.follow(model_, iterate());
+  if (!solver_.renew_border(kkt_, turns_.turns(model_))) factored_h_ = 0;
 }
 
 void StepSolver::solve_mass(const State& x, const VectorXd& force, const VectorXd& constraint) {
@@ -157,6 +174,10 @@ TriedStep StepSolver::try_step(State& x, double h, double allowed) {
   return out;
 }
 
+bool StepSolver::is_kept(double h) const {
+  return std::abs(factored_h_ / h - 1) <= 1e-6 && analysed_version_ == model_.pattern_version();
+}
+
 bool StepSolver::newton(double h) {
   // A kept tangent that contracts less, or takes longer, is replaced.
   constexpr double kContraction = 0.2;
@@ -170,7 +191,8 @@ bool StepSolver::newton(double h) {
   fresh_iterations_ = 0;
   for (int iteration = 1; iteration <= settings_.max_iterations; ++iteration) {
     residual(force_, constraint_);
-    if (std::abs(factored_h_ / h - 1) > 1e-6 || analysed_version_ != model_.pattern_version()) {
+    if (iteration == 1 && is_kept(h)) renew_border();
+    if (!is_kept(h)) {
       factorize_here(h);
       fresh = true;
     }
@@ -216,7 +238,7 @@ void StepSolver::give_up(const State& x, double h, int failures) const {
 void StepSolver::remember(Memory& memory) {
   const int now = model_.pattern_version();
   // Scales are those of the lines where they were, and the kept tangent is that of an earlier step.
-  memory(counts_, scales_, size_, kkt_, factored_h_, failures_);
+  memory(counts_, scales_, size_, kkt_, factored_h_, failures_, turns_);
   memory.up_to_date(scaled_version_, now);
   if (memory.up_to_date(analysed_version_, now)) solver_.remember(memory, kkt_);
 }

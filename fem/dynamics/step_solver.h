@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fem/dynamics/body_turns.h"
 #include "fem/dynamics/integrator.h"
 #include "fem/solve/linear_solver.h"
 
@@ -37,6 +38,13 @@ class StepSolver : public Integrator {
   virtual void tangent(SparseMatrix& out) = 0;
   /// @param dq  correction of the unknowns at the end of the step
   virtual void correct(const VectorXd& dq, const VectorXd& dlambda) = 0;
+  /// Entries of the tangent whose row and column are chosen (n_dofs + n_constraints), the others
+  /// left as they are. @returns false, and nothing is done, of a scheme that cannot.
+  virtual bool renew_tangent(const std::vector<char>& /*chosen*/, SparseMatrix& /*out*/) {
+    return false;
+  }
+  /// Positions at the iterate.
+  virtual const VectorXd& iterate() const = 0;
   /// What a correction is small against [m].
   virtual double resolved() const { return size_; }
   /// Local error of the converged step that began at x, relative to size(); before finish().
@@ -74,6 +82,13 @@ class StepSolver : public Integrator {
   /// it is not looked at).
   TriedStep solve_step(State& x, double h, double allowed);
   bool newton(double h);
+  /// Are there factors for a step h, of the mesh as it is?
+  bool is_kept(double h) const;
+  /// Where the kept factors have a border, it becomes that of the iterate, and the rest turns with
+  /// the bodies.
+  void renew_border();
+  /// Entries of kkt_ among the chosen (none: all) become those of displacements and work on them.
+  void scale_kkt(const std::vector<char>& chosen);
   /// finish() of a converged step; false, and x is what it was, where Newton's method has gone
   /// astray: to a solution with material turned inside out, which only steps find that need large
   /// corrections. Others are not looked at.
@@ -91,6 +106,7 @@ class StepSolver : public Integrator {
   int analysed_version_ = -1;
   double largest_correction_ = 0;  // of the last newton(), relative to size_
   State before_;                   // a step that is looked at
+  BodyTurns turns_;                // since the last factorize_here()
   double factored_h_ = 0;          // step the kept factorization belongs to; 0: none
   VectorXd scales_;                // displacement per unit of each unknown
   double size_ = 1;

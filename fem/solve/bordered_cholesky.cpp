@@ -28,6 +28,16 @@ constexpr double kTrusted = 1e-13;
 
 size_t at(int k) { return static_cast<size_t>(k); }
 
+/// (x, y) becomes (c x - s y, s x + c y), entry by entry.
+template <class X, class Y>
+void turn_pair(X&& x, Y&& y, double cosine, double sine) {
+  for (Eigen::Index k = 0; k < x.size(); ++k) {
+    const double old = x[k];
+    x[k] = cosine * old - sine * y[k];
+    y[k] = sine * old + cosine * y[k];
+  }
+}
+
 }  // namespace
 
 struct BorderedCholesky::Impl {
@@ -45,8 +55,13 @@ struct BorderedCholesky::Impl {
   std::vector<int> places;  // in the matrix, of the values of the factor
   std::vector<BorderEntry> border_entries;
   std::optional<Multifrontal> factor;  // none: to be analysed
-  MatrixXd updates, schur;
+  MatrixXd updates, unturned, schur;   // -X Xᵀ, S of a, S as it is solved, rows scaled
   VectorXd row_scales;
+  struct Turn {
+    int x, y;  // places of the entries of a vector
+    double cosine, sine;
+  };
+  std::vector<Turn> turns;
   Eigen::PartialPivLU<MatrixXd> schur_factor;
   VectorXd permuted, block, tail, swapped;
 
@@ -61,6 +76,15 @@ struct BorderedCholesky::Impl {
   void forward();
   void backward();
   void solve_border(bool transposed);
+  /// Vectors from a place on become Q x (1), or Qᵀ x (-1).
+  void turn_places(int from, double way) {
+    for (const Turn& t : turns) {
+      if (t.x < from) continue;
+      const double x = permuted[t.x], y = permuted[t.y], s = way * t.sine;
+      permuted[t.x] = t.cosine * x - s * y;
+      permuted[t.y] = s * x + t.cosine * y;
+    }
+  }
 };
 
 BorderedCholesky::BorderedCholesky() : impl_(std::make_unique<Impl>()) {}
@@ -217,13 +241,25 @@ bool BorderedCholesky::factorize(const SparseMatrix& a) {
   const double* entries = a.valuePtr();
   const auto values = s.factor->values();
   for (size_t k = 0; k < values.size(); ++k) values[k] = entries[s.places[k]];
-  return s.factor->factorize(&s.updates) < 0 && factorize_border(a);
+  return s.factor->factorize(&s.updates) < 0 && renew_border(a, {});
 }
 
-bool BorderedCholesky::factorize_border(const SparseMatrix& a) {
+const std::vector<char>& BorderedCholesky::border() const { return impl_->in_border; }
+
+bool BorderedCholesky::renew_border(const SparseMatrix& a, std::span<const TurnedVectors> turns) {
   Impl& s = *impl_;
-  if (s.n_border() == 0) return true;
   s.schur = s.updates.selfadjointView<Eigen::Lower>();
+  s.turns.clear();
+  for (const TurnedVectors& t : turns)
+    for (int k = t.first; k < t.last; k += 2) {
+      if (s.in_border[at(k)] != s.in_border[at(k + 1)]) return false;
+      s.turns.push_back({s.number[at(k)], s.number[at(k + 1)], t.cosine, t.sine});
+      if (!s.in_border[at(k)]) continue;
+      const int x = s.number[at(k)] - s.n_inner, y = s.number[at(k + 1)] - s.n_inner;
+      turn_pair(s.schur.row(x), s.schur.row(y), t.cosine, t.sine);
+      turn_pair(s.schur.col(x), s.schur.col(y), t.cosine, t.sine);
+    }
+  if (s.n_border() == 0) return true;
   for (const Impl::BorderEntry& e : s.border_entries)
     s.schur(e.row, e.column) += a.valuePtr()[e.place];
   s.row_scales = s.schur.cwiseAbs().rowwise().maxCoeff().cwiseInverse();
@@ -278,17 +314,21 @@ void BorderedCholesky::Impl::solve_border(bool transposed) {
 }
 
 void BorderedCholesky::solve(const VectorXd& b, VectorXd& x, bool transposed) {
-  //   L y = b_A,   S x_D = b_D - X y,   Lᵀ x_A = y - Xᵀ x_D
+  //   L y = b_A,   S x_D = b_D - X y,   Lᵀ x_A = y - Xᵀ x_D, y and x_A before they turn
   Impl& s = *impl_;
   const int n = s.n, m = s.n_border();
   for (int k = 0; k < n; ++k) s.permuted[k] = b[s.order[at(k)]];
+  s.turn_places(0, -1);
   s.forward();
   if (m > 0) {
+    s.turn_places(s.n_inner, 1);
     s.tail = s.permuted.tail(m);
     s.solve_border(transposed);
     s.permuted.tail(m) = s.tail;
+    s.turn_places(s.n_inner, -1);
   }
   s.backward();
+  s.turn_places(0, 1);
   x.resize(n);
   for (int k = 0; k < n; ++k) x[s.order[at(k)]] = s.permuted[k];
 }

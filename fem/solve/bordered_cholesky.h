@@ -1,8 +1,11 @@
 #pragma once
 
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "fem/dofs.h"
+#include "fem/solve/turned_vectors.h"
 #include "geometry/memory.h"
 
 namespace flexmorph::fem {
@@ -27,9 +30,16 @@ class BorderedCholesky {
   /// @returns false, and nothing can be solved, when the border is too large, the rest not positive
   ///          definite, or S too near to singular to be trusted.
   bool factorize(const SparseMatrix& a);
-  /// The same with the factor L that is there: D is that of a, A and E stay what they were.
-  /// @param a  with the pattern of the last factorize(), which succeeded
-  bool factorize_border(const SparseMatrix& a);
+  /// Which unknowns belong to the border (n + m).
+  const std::vector<char>& border() const;
+  /// L stays that of the last factorize(), which succeeded, but turns: from here on solved is
+  ///
+  ///   [ Q A Qᵀ   Q Eᵀ Rᵀ ]   Q, R the turns of the unknowns of A and of the border since then,
+  ///   [ R E Qᵀ   D       ]   D that of a as it is now.
+  ///
+  /// @returns false, and nothing can be solved, where the border parts the entries of a vector, or
+  ///          S is too near to singular.
+  bool renew_border(const SparseMatrix& a, std::span<const TurnedVectors> turns);
   /// x = a⁻¹ b (n + m), or a⁻ᵀ b.
   void solve(const VectorXd& b, VectorXd& x, bool transposed = false);
 

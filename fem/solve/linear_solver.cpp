@@ -3,6 +3,7 @@
 #include <umfpack.h>
 
 #include <string>
+#include <utility>
 
 #include "fem/solve/bordered_cholesky.h"
 #include "fem/solve/saddle_cholesky.h"
@@ -18,9 +19,10 @@ struct UnsymmetricSolver::Impl {
   VectorXd analysed;  // values of the matrix that UMFPACK analysed; empty: none
   double miss = 0;    // of the last factorization
   SaddleCholesky cholesky;
-  bool may_cholesky = false, is_cholesky = false;
+  bool tried_cholesky = false, may_cholesky = false, is_cholesky = false;
   BorderedCholesky bordered;
   bool may_border = false, is_bordered = false;
+  std::vector<TurnedVectors> turns;  // since the last factorization
   VectorXd remainder, correction;
 
   Impl() { umfpack_di_defaults(control); }
@@ -32,6 +34,9 @@ struct UnsymmetricSolver::Impl {
     if (numeric) umfpack_di_free_numeric(&numeric);
   }
   void analyze(const SparseMatrix& a, const double* values);
+  void try_cholesky(const SparseMatrix& a) {
+    if (!std::exchange(tried_cholesky, true)) may_cholesky = cholesky.analyze(a);
+  }
   void solve(const SparseMatrix& a, const VectorXd& b, VectorXd& x, bool refine, bool transposed);
 };
 
@@ -68,7 +73,7 @@ void UnsymmetricSolver::analyze(const SparseMatrix& a) {
   impl_->analysed.resize(0);
   impl_->is_cholesky = false;
   impl_->is_bordered = false;
-  impl_->may_cholesky = impl_->cholesky.analyze(a);
+  impl_->tried_cholesky = impl_->may_cholesky = false;  // analysed when it is needed, too
   impl_->may_border = impl_->bordered.analyze(a);
 }
 
@@ -76,10 +81,14 @@ void UnsymmetricSolver::factorize(const SparseMatrix& a, double miss) {
   if (!Eigen::Map<const VectorXd>(a.valuePtr(), a.nonZeros()).allFinite())
     throw Error::numerical("linear solver: the matrix holds numbers that are not finite");
   impl_->miss = miss;
-  impl_->is_cholesky = impl_->may_cholesky && impl_->cholesky.factorize(a, miss);
+  impl_->turns.clear();
   impl_->release_numeric();
-  impl_->is_bordered = !impl_->is_cholesky && impl_->may_border && impl_->bordered.factorize(a);
-  if (impl_->is_cholesky || impl_->is_bordered) return;
+  impl_->is_cholesky = false;
+  impl_->is_bordered = impl_->may_border && impl_->bordered.factorize(a);
+  if (impl_->is_bordered) return;
+  impl_->try_cholesky(a);
+  impl_->is_cholesky = impl_->may_cholesky && impl_->cholesky.factorize(a, miss);
+  if (impl_->is_cholesky) return;
   if (!impl_->symbolic) impl_->analyze(a, a.valuePtr());
   check(umfpack_di_numeric(a.outerIndexPtr(), a.innerIndexPtr(), a.valuePtr(), impl_->symbolic,
                            &impl_->numeric, impl_->control, nullptr),
@@ -106,7 +115,7 @@ void UnsymmetricSolver::Impl::solve(const SparseMatrix& a, const VectorXd& b, Ve
         cholesky.solve(right, out);  // of a symmetric matrix
     };
     once(b, x);
-    if (!refine) return;
+    if (!refine || !turns.empty()) return;
     remainder = b;
     if (transposed)
       remainder.noalias() -= a.transpose() * x;
@@ -123,18 +132,57 @@ void UnsymmetricSolver::Impl::solve(const SparseMatrix& a, const VectorXd& b, Ve
         "solution");
 }
 
+const std::vector<char>& UnsymmetricSolver::border() const {
+  static const std::vector<char> kNone;
+  return impl_->is_bordered ? impl_->bordered.border() : kNone;
+}
+
+bool UnsymmetricSolver::renew_border(const SparseMatrix& a, std::vector<TurnedVectors> turns) {
+  impl_->is_bordered = impl_->is_bordered && impl_->bordered.renew_border(a, turns);
+  impl_->turns = std::move(turns);
+  return impl_->is_bordered;
+}
+
+SparseMatrix UnsymmetricSolver::as_solved(const SparseMatrix& a) const {
+  if (impl_->turns.empty()) return a;
+  std::vector<Eigen::Triplet<double>> q;
+  std::vector<char> turned(static_cast<size_t>(a.rows()), 0);
+  for (const TurnedVectors& t : impl_->turns)
+    for (int k = t.first; k < t.last; k += 2) {
+      q.emplace_back(k, k, t.cosine);
+      q.emplace_back(k, k + 1, -t.sine);
+      q.emplace_back(k + 1, k, t.sine);
+      q.emplace_back(k + 1, k + 1, t.cosine);
+      turned[static_cast<size_t>(k)] = turned[static_cast<size_t>(k + 1)] = 1;
+    }
+  for (int k = 0; k < a.rows(); ++k)
+    if (!turned[static_cast<size_t>(k)]) q.emplace_back(k, k, 1.0);
+  SparseMatrix turn(a.rows(), a.cols()), inner = a, among = a;
+  turn.setFromTriplets(q.begin(), q.end());
+  const std::vector<char>& at = border();
+  const auto in_border = [&](Eigen::Index row, Eigen::Index column, double) {
+    return at[static_cast<size_t>(row)] && at[static_cast<size_t>(column)];
+  };
+  among.prune(in_border);
+  inner.prune([&](auto row, auto column, double x) { return !in_border(row, column, x); });
+  return SparseMatrix(turn * inner) * SparseMatrix(turn.transpose()) + among;
+}
+
 void UnsymmetricSolver::remember(Memory& memory, const SparseMatrix& a) {
   bool is_factored = impl_->is_cholesky || impl_->is_bordered || impl_->numeric != nullptr;
-  bool refused = impl_->cholesky.is_refused();
+  bool tried = impl_->tried_cholesky, refused = impl_->cholesky.is_refused();
   VectorXd values = impl_->analysed;
   double miss = impl_->miss;
-  memory(is_factored, refused, values, miss);
+  std::vector<TurnedVectors> turns = impl_->turns;
+  memory(is_factored, tried, refused, values, miss, turns);
   if (memory.puts_back()) analyze(a);
   impl_->bordered.remember(memory);
   if (!memory.puts_back()) return;
+  if (tried) impl_->try_cholesky(a);
   impl_->cholesky.set_refused(refused);
   if (values.size() > 0 && values.size() == a.nonZeros()) impl_->analyze(a, values.data());
   if (is_factored) factorize(a, miss);
+  if (!turns.empty()) renew_border(a, std::move(turns));
 }
 
 bool UnsymmetricSolver::is_cholesky() const { return impl_->is_cholesky; }

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "fem/dofs.h"
+#include "fem/solve/turned_vectors.h"
 #include "geometry/memory.h"
 
 namespace flexmorph::fem {
@@ -13,11 +16,11 @@ namespace flexmorph::fem {
 ///   [ A  Φ_qᵀ ]
 ///   [ Φ_q  0  ]    in any order: rows of Φ_q are those without an entry on the diagonal.
 ///
-/// Where the matrix is symmetric, A positive definite and Φ_q of few rows, by the supernodal
-/// Cholesky factor of A (CHOLMOD) and the Schur complement of the constraints. Large ones that are
-/// so but for a border (many constraints, material that flows near a joint) by BorderedCholesky.
-/// All others by UMFPACK, at three to five times the cost. The pattern is analysed once; which of
-/// them it is shows at every factorization anew.
+/// Large ones that are symmetric and positive definite but for a border (constraints, material that
+/// flows near a joint) by BorderedCholesky. Smaller ones that are symmetric, A positive definite
+/// and Φ_q of few rows, by the supernodal Cholesky factor of A (CHOLMOD) and the Schur complement
+/// of the constraints. All others by UMFPACK, at three to five times the cost. The pattern is
+/// analysed once; which of them it is shows at every factorization anew.
 class UnsymmetricSolver {
  public:
   UnsymmetricSolver();
@@ -38,6 +41,17 @@ class UnsymmetricSolver {
   /// x = A⁻ᵀ b with the same factors.
   void solve_transposed(const SparseMatrix& a, const VectorXd& b, VectorXd& x,
                         bool refine = true) const;
+
+  /// Which unknowns belong to the border of the last factor; none where it has no border.
+  const std::vector<char>& border() const;
+  /// The factor of what does not belong to the border is kept but turns with the vectors, entries
+  /// among the border are those of a now. From here on there is no refinement.
+  /// @param a      elsewhere that of the last factorize()
+  /// @param turns  since then; vectors that are not named stay
+  /// @returns false, and the next call must be factorize(), where that cannot be solved.
+  bool renew_border(const SparseMatrix& a, std::vector<TurnedVectors> turns);
+  /// The matrix that solve() solves: that of the last factorize(), or renew_border().
+  SparseMatrix as_solved(const SparseMatrix& a) const;
 
   /// What analysis and factors came from: put back, they are made anew, the same bit for bit.
   /// @param a  the matrix of the last factorize(), or analyze() after it

@@ -116,11 +116,23 @@ TEST_P(MotionMemory, GoesOnBitForBit) {
 const Changes kRetracting = {"time.end=0.35", "body.0.flow.speed=-0.5",
                              "body.0.flow.min_length=0.03"};
 
+// Large enough for a factor with a border, which is kept between the lines that come.
+const Changes kOnCells = {"time.end=0.03",
+                          "body.0.shape=q4",
+                          "body.0.elements=[60, 12]",
+                          "body.0.flow.max_length=",
+                          "design=",
+                          "optimizer=",
+                          "esl=",
+                          "verify=",
+                          "cycle="};
+
 INSTANTIATE_TEST_SUITE_P(
     Cases, MotionMemory,
     ::testing::Values(
         Case{"growing", "rotating_plate_v05", {"time.end=0.3"}, 7, 1},
         Case{"growing_h12", "rotating_plate_v05", {"time.end=0.3", "body.0.shape=h12"}, 7, 1},
+        Case{"growing_cells", "rotating_plate_v05", kOnCells, 3, 2},
         Case{"retracting", "rotating_plate_v05", kRetracting, 9, 1},
         Case{"growing_adaptive",
              "rotating_plate_v05",

@@ -154,18 +154,68 @@ TEST(BorderedCholesky, WidensItsBorderAndKeepsItsAnalysis) {
   }
 }
 
-// New values of the constraints and of the root, on the factor of the rest.
-TEST(BorderedCholesky, FactorsTheBorderAlone) {
-  SparseMatrix a = Strip{}.matrix();
-  BorderedCholesky solver;
-  ASSERT_TRUE(solver.analyze(a));
-  ASSERT_TRUE(solver.factorize(a));
-  const int last = static_cast<int>(a.rows()) - 1;
-  a.coeffRef(last, Strip{}.node(49, 0) + 1) = 0.8;
-  a.coeffRef(Strip{}.node(49, 0) + 1, last) = 1.1;
+/// Q m Qᵀ but for what is among the border; that is what it is in m.
+MatrixXd turned(const MatrixXd& m, const std::vector<char>& border, const TurnedVectors& turn) {
+  MatrixXd q = MatrixXd::Identity(m.rows(), m.cols());
+  for (int k = turn.first; k < turn.last; k += 2)
+    q.block<2, 2>(k, k) << turn.cosine, -turn.sine, turn.sine, turn.cosine;
+  MatrixXd out = q * m * q.transpose();
+  for (int i = 0; i < m.rows(); ++i)
+    for (int j = 0; j < m.cols(); ++j)
+      if (border[static_cast<size_t>(i)] && border[static_cast<size_t>(j)]) out(i, j) = m(i, j);
+  return out;
+}
+
+// The strip turns by more than a right angle, constraints and the root have other values: the
+// factor of the rest is kept. Put back, it is the same bit for bit.
+TEST(BorderedCholesky, TurnsAndRenewsItsBorder) {
+  const Strip strip;
+  SparseMatrix a = strip.matrix();
+  UnsymmetricSolver solver;
+  solver.analyze(a);
+  solver.factorize(a);
+  const std::vector<char> border = solver.border();
+  ASSERT_EQ(border.size(), static_cast<size_t>(a.rows()));
+  const int last = static_cast<int>(a.rows()) - 1, tip = strip.node(strip.nx - 1, 0);
+  a.coeffRef(last, tip + 1) = 0.8;
+  a.coeffRef(tip + 1, last) = 1.1;
   a.coeffRef(0, 2) += 0.1;
-  ASSERT_TRUE(solver.factorize_border(a));
-  expect_solved(solver, a);
+  const TurnedVectors turn{0, 2 * strip.nx * strip.ny, std::cos(1.9), std::sin(1.9)};
+  ASSERT_TRUE(solver.renew_border(a, {turn}));
+  const MatrixXd whole = turned(MatrixXd(a), border, turn);
+  EXPECT_LT((MatrixXd(solver.as_solved(a)) - whole).norm(), 1e-13 * whole.norm());
+  const VectorXd b = some(a.rows()), expected = whole.partialPivLu().solve(b),
+                 transposed = whole.transpose().partialPivLu().solve(b);
+  VectorXd x, y;
+  solver.solve_transposed(a, b, x);
+  EXPECT_LT((x - transposed).norm(), 1e-10 * transposed.norm());
+  solver.solve(a, b, x);
+  EXPECT_LT((x - expected).norm(), 1e-10 * expected.norm());
+
+  Memory taken;
+  solver.remember(taken, a);
+  Memory put(taken.bytes());
+  UnsymmetricSolver again;
+  again.remember(put, a);
+  again.solve(a, b, y);
+  EXPECT_EQ(x, y);
+  // What is factored anew has not turned.
+  solver.factorize(a);
+  solver.solve(a, b, x);
+  EXPECT_LT((a * x - b).norm(), 1e-12 * b.norm());
+}
+
+// A vector of which one entry belongs to the border cannot turn with the rest.
+TEST(BorderedCholesky, DoesNotTurnWhatTheBorderParts) {
+  const Strip strip;
+  const SparseMatrix a = strip.matrix();
+  UnsymmetricSolver solver;
+  solver.analyze(a);
+  solver.factorize(a);
+  EXPECT_FALSE(solver.renew_border(a, {{1, 2 * strip.nx * strip.ny - 1, 0, 1}}));
+  EXPECT_TRUE(solver.border().empty());
+  solver.factorize(a);
+  EXPECT_FALSE(solver.border().empty());
 }
 
 TEST(BorderedCholesky, RefusesWhatIsTooSmallUnsymmetricOrNotDefinite) {
