@@ -18,9 +18,9 @@ namespace {
 
 /// Below, UMFPACK is as fast.
 constexpr int kFewest = 1500;
-/// The largest border, and its part of all unknowns: its dense factor grows with its cube.
-constexpr int kMostBorder = 1200;
-constexpr double kMostOfAll = 0.2;
+/// The largest border against the square root of all unknowns, which is about what one edge of a
+/// square plate has: its dense factor then costs about what that of the rest does.
+constexpr double kMostBorder = 4;
 /// Entries that differ by less, relative to the largest, are equal: round-off of the elements.
 constexpr double kSymmetry = 1e-13;
 /// Reciprocal condition of S, rows scaled, below which UMFPACK is asked.
@@ -101,7 +101,7 @@ bool BorderedCholesky::analyze(const SparseMatrix& a) {
 
 bool BorderedCholesky::Impl::is_small_enough() const {
   const auto size = std::count(in_border.begin(), in_border.end(), 1);
-  return size <= kMostBorder && static_cast<double>(size) <= kMostOfAll * n;
+  return static_cast<double>(size) <= kMostBorder * std::sqrt(n);
 }
 
 /// Both places of what is below the diagonal; false for a pattern without symmetry.

@@ -102,10 +102,14 @@ class Inertia final : public Term {
   Energies energies(int e, const Local& x) const override {
     if (free_.has(e)) return {.kinetic = of_free_.kinetic_energy(free_.of(e), x)};
     const Matrices& m = matrices_[static_cast<size_t>(e)];
-    double twice = x.v.cwiseProduct(m.mass * x.v).sum();
-    if (m.flows)
-      twice +=
-          x.v.cwiseProduct(m.convection * x.q).sum() + x.q.cwiseProduct(m.rate_product * x.q).sum();
+    LocalRows product = m.mass.lazyProduct(x.v);
+    double twice = x.v.cwiseProduct(product).sum();
+    if (m.flows) {
+      product.noalias() = m.convection * x.q;
+      twice += x.v.cwiseProduct(product).sum();
+      product.noalias() = m.rate_product * x.q;
+      twice += x.q.cwiseProduct(product).sum();
+    }
     return {.kinetic = 0.5 * twice};
   }
 

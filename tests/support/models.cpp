@@ -172,7 +172,10 @@ Scene make_scene(const RotatingPlate& p) {
   if (!p.factors.uniform()) scene.model.set_factors(body, p.factors);
   // P 4.2: 0.1 and 0.05 m for 0.05 m elements; a smaller lower limit does not chatter.
   const double size = p.length / p.nx;
-  scene.growths.push_back({"plate", hub, 2 * size, 0.6 * size});
+  if (p.shapes == ShapeSet::q4)
+    scene.growths.push_back({"plate", hub, 1.3 * size, 0.25 * size, 0, 0, size});
+  else
+    scene.growths.push_back({"plate", hub, 2 * size, 0.6 * size});
   return scene;
 }
 
