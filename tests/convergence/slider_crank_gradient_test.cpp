@@ -170,12 +170,22 @@ TEST(SliderCrank, HasThePublishedSensitivities) {
   }
 }
 
-// The adjoint derives the steps that were made, however long they are.
+// The adjoint derives the steps that were made, however long they are; also with links that follow
+// turns: the crank goes round.
 TEST(SliderCrank, HasTheGradientThatDifferencesSay) {
-  constexpr double kStep = 0.02;
-  const Vec3 found = SliderCrank(kStiffness, kDamping, kStep).gradient();
-  const auto by_k = [&](double d) { return SliderCrank(kStiffness + d, kDamping, kStep).value(); };
-  const auto by_c = [&](double d) { return SliderCrank(kStiffness, kDamping + d, kStep).value(); };
+  const auto make = [](double k, double c) {
+    SliderCrank out(k, c, 0.02);
+    out.model.add_link(make_torsion_spring("torsion", {}, {.body = "crank"},
+                                           {.stiffness = 0.05, .damping = 0.1, .rest_angle = 1.5}));
+    out.model.add_link(make_torque("motor", {.body = "crank"}, 2));
+    return out;
+  };
+  SliderCrank moved = make(kStiffness, kDamping);
+  const State end = integrate(moved.model, {}, moved.settings, [](const MotionStep&) {}).final;
+  EXPECT_GT(end.turned[0], std::numbers::pi / 2 + 2 * std::numbers::pi);
+  const Vec3 found = make(kStiffness, kDamping).gradient();
+  const auto by_k = [&](double d) { return make(kStiffness + d, kDamping).value(); };
+  const auto by_c = [&](double d) { return make(kStiffness, kDamping + d).value(); };
   const double dk = testing::first_difference(by_k, 3e-3),
                dc = testing::first_difference(by_c, 3e-3);
   EXPECT_EQ(found[0], by_k(0));
