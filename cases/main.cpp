@@ -17,6 +17,7 @@
 #include "cases/run/version.h"
 #include "cases/stability/stability.h"
 #include "cases/study/compare.h"
+#include "cases/study/compare_cycles.h"
 #include "cases/study/sweep.h"
 #include "geometry/plain_numbers.h"
 #include "geometry/processor.h"
@@ -44,11 +45,15 @@ void add_study(CLI::App& command, StudyOptions& study) {
   command.add_flag("--quiet", study.quiet, "no progress");
 }
 
-CLI::App* add_compare(CLI::App& app, CompareOptions& options) {
+CLI::App* add_compare(CLI::App& app, CompareOptions& options, std::vector<std::string>& cycles) {
   CLI::App* command = app.add_subcommand(
       "compare", "runs a case with several optimizers from the same starts and compares them");
   add_study(*command, options.study);
   command->add_option("--optimizers", options.optimizers, "names, with commas (default: all)")
+      ->delimiter(',');
+  command
+      ->add_option("--cycles", cycles,
+                   "instead of optimizers: esl, corrected, direct (which see the motion itself)")
       ->delimiter(',');
   command->add_option("--starts", options.starts, "the case's own start and jittered ones")
       ->check(CLI::Range(1, 10000));
@@ -207,7 +212,8 @@ int parse_and_run(int argc, char** argv) {
   add_case(*check, options.case_name, options.overrides);
   check->add_flag("--explain", options.explain, "prints the case with all its defaults instead");
   CompareOptions compare_options;
-  CLI::App* compare = add_compare(app, compare_options);
+  std::vector<std::string> compared_cycles;
+  CLI::App* compare = add_compare(app, compare_options, compared_cycles);
   SweepOptions sweep_options;
   CLI::App* sweep = add_sweep(app, sweep_options);
   AccuracyOptions accuracy_options;
@@ -243,6 +249,8 @@ int parse_and_run(int argc, char** argv) {
   }
   flexmorph::settle_processor(*run ? options.threads : 1, argv);
   if (*run) return run_case(options);
+  if (*compare && !compared_cycles.empty())
+    return compare_cycles({compare_options.study, compared_cycles});
   if (*compare) return compare_case(compare_options);
   if (*sweep) return sweep_case(sweep_options);
   if (*accuracy) return accuracy_case(accuracy_options);

@@ -109,21 +109,57 @@ std::string corrected_words(const mmc::CorrectedCycle& c) {
   return out + (c.accepted ? "" : ", not taken");
 }
 
-void correct_by_motion(const Scene& scene, const MotionLoads& simulate,
-                       const std::function<bool()>& go_on, std::vector<fem::EslSets>& loads,
-                       RunFolder& folder, Progress& progress, RunReport& report) {
+namespace {
+
+/// The loads of the motion with the designs of these problems, on their grids.
+LoadsOfDesigns loads_of(const Scene& scene, const std::vector<mmc::BodyProblem>& problems,
+                        const std::function<bool()>& go_on, RunFolder& folder) {
+  MotionWishes wishes;
+  for (const mmc::BodyProblem& p : problems)
+    wishes.factors.push_back(mmc::dynamic_factors(p, p.design.components()));
+  wishes.loads = true;
+  wishes.balance = false;
+  wishes.go_on = go_on;
+  wishes.table = "motion_corrected.csv";
+  return LoadsOfDesigns(run_motion(scene, wishes, folder).loads);
+}
+
+/// The scene with designs on cells of another size; their bands are as many of them.
+Scene with_cells(Scene scene, double cell) {
+  for (BodyDesign& d : scene.designs) {
+    const auto n = static_cast<int>(std::lround(cell / d.grid.dx()));
+    if (cell <= 0 || n == 1) continue;
+    d.grid.nx /= n;
+    d.grid.ny /= n;
+    d.tdf.sharpness /= n;
+    d.tdf.erosion *= n;
+    d.tdf = d.stage(d.band.size() - 1);
+  }
+  return scene;
+}
+
+/// Corrected designs of other problems, on their own grids.
+void take_designs(const std::vector<mmc::BodyProblem>& from, std::vector<mmc::BodyProblem>& to) {
+  for (size_t k = 0; k < to.size(); ++k)
+    to[k].design = to[k].design.without_symmetry().with(from[k].design.components());
+}
+
+}  // namespace
+
+void correct_by_motion(const Scene& scene, const std::function<bool()>& go_on,
+                       std::vector<fem::EslSets>& loads, RunFolder& folder, Progress& progress,
+                       RunReport& report) {
   progress.begin("corrected cycles");
-  SceneMotion motion(scene, {scene.cycle.cell, scene.cycle.step, scene.cycle.checkpoints}, go_on);
+  const Scene coarse = with_cells(scene, scene.cycle.cell);
+  SceneMotion motion(coarse, {0, scene.cycle.step, scene.cycle.checkpoints}, go_on);
   for (const mmc::BodyProblem& problem : report.problems)
     folder.keep_outline(problem, "design_esl");
-  std::unique_ptr<LoadsOfDesigns> current;
+  std::vector<mmc::BodyProblem> problems = build_problems(coarse);
+  take_designs(report.problems, problems);
+  std::optional<LoadsOfDesigns> current;
   const mmc::LoadsAt loads_at = [&] {
-    std::vector<fem::Factors> factors;
-    for (const mmc::BodyProblem& p : report.problems)
-      factors.push_back(mmc::dynamic_factors(p, p.design.components()));
-    current = std::make_unique<LoadsOfDesigns>(simulate(factors));
-    progress.begin("corrected cycles");
-    return current->of(report.problems);
+    current.emplace(loads_of(coarse, problems, go_on, folder));
+    return current->of(problems);
   };
   const mmc::SeeCycle see = [&](const mmc::CorrectedCycle& cycle) {
     report.corrections.push_back(cycle);
@@ -132,29 +168,34 @@ void correct_by_motion(const Scene& scene, const MotionLoads& simulate,
     return go_on();
   };
   try {
-    std::vector<mmc::BodyOutcome> found =
-        mmc::correct_designs(report.problems, loads_at, motion, scene.cycle.correction, see, go_on);
-    for (size_t k = 0; k < found.size(); ++k) {
-      mmc::BodyOutcome& before = report.outcomes[k];
-      found[k].iterations = before.iterations;
-      found[k].evaluations = before.evaluations;
-      found[k].stop =
-          before.stop + "; then corrected by " + std::to_string(motion.motions()) + " motions";
-      if (!found[k].clean_up) found[k].clean_up = before.clean_up;
-      found[k].energy_ratios.assign(current->sets()[k].sets.size(), 0);
-      for (size_t l = 0; l < found[k].energy_ratios.size(); ++l)
-        found[k].energy_ratios[l] =
-            0.5 * found[k].load_compliances[l] / current->sets()[k].sets[l].strain_energy;
-      before = std::move(found[k]);
-    }
+    mmc::correct_designs(problems, loads_at, motion, scene.cycle.correction, see);
   } catch (const StoppedMotion&) {
     throw Interrupted();
   }
   if (!go_on()) throw Interrupted();
-  loads = std::move(current->sets());
-  for (size_t i = 0; i < report.outcomes.size(); ++i) {
-    folder.write_loads(report.outcomes[i].body, loads[i], &report.outcomes[i]);
-    folder.write_design(report.problems[i], report.outcomes[i]);
+  take_designs(problems, report.problems);
+  LoadsOfDesigns last = loads_of(scene, report.problems, go_on, folder);
+  const std::vector<std::unique_ptr<mmc::LoadResponse>> responses = last.of(report.problems);
+  std::vector<mmc::LoadedBody> bodies;
+  for (size_t k = 0; k < responses.size(); ++k)
+    bodies.push_back({report.problems[k], *responses[k]});
+  std::vector<mmc::BodyOutcome> found = mmc::outcomes_of_corrected(bodies, go_on);
+  if (!go_on()) throw Interrupted();
+  loads = std::move(last.sets());
+  for (size_t k = 0; k < found.size(); ++k) {
+    mmc::BodyOutcome& before = report.outcomes[k];
+    found[k].iterations = before.iterations;
+    found[k].evaluations = before.evaluations;
+    found[k].kkt = before.kkt;
+    found[k].stop =
+        before.stop + "; then corrected by " + std::to_string(motion.motions()) + " motions";
+    if (!found[k].clean_up) found[k].clean_up = before.clean_up;
+    for (size_t l = 0; l < loads[k].sets.size(); ++l)
+      found[k].energy_ratios.push_back(0.5 * found[k].load_compliances[l] /
+                                       loads[k].sets[l].strain_energy);
+    before = std::move(found[k]);
+    folder.write_loads(before.body, loads[k], &before);
+    folder.write_design(report.problems[k], before);
   }
 }
 

@@ -7,15 +7,13 @@
 /// What the motion itself does to designs and says of them: corrected cycles, the certificate.
 namespace flexmorph::cases {
 
-/// The motion whose loads are taken, at factors of all designs.
-using MotionLoads = std::function<std::vector<fem::EslSets>(std::span<const fem::Factors>)>;
-
 /// Corrects the designs of the report (Cycle::correction); its outcomes, and the loads, are then
-/// those of the result. The design before is kept as a drawing. Writes cycles.csv as it goes.
+/// those of the result. The design before is kept as a drawing. Writes cycles.csv as it goes. With
+/// Cycle::cell designs, too, are on these cells meanwhile.
 /// @throws Interrupted; as mmc::correct_designs()
-void correct_by_motion(const Scene& scene, const MotionLoads& simulate,
-                       const std::function<bool()>& go_on, std::vector<fem::EslSets>& loads,
-                       RunFolder& folder, Progress& progress, RunReport& report);
+void correct_by_motion(const Scene& scene, const std::function<bool()>& go_on,
+                       std::vector<fem::EslSets>& loads, RunFolder& folder, Progress& progress,
+                       RunReport& report);
 
 /// The certificate of the designs of the report under these loads: into the report, and for every
 /// body into certificate.csv (of several bodies certificate_<body>.csv) and a picture.

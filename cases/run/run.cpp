@@ -159,7 +159,7 @@ void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress
   }
 
   const bool corrected = scene.cycle.correction.kind != mmc::Correction::none;
-  if (corrected) correct_by_motion(scene, simulate, go_on, loads, folder, progress, report);
+  if (corrected) correct_by_motion(scene, go_on, loads, folder, progress, report);
   const bool is_new = !analysed || corrected;
   if (is_new) judge_outlines(scene, loads, folder, progress, report);
   const double begin = cpu_seconds();

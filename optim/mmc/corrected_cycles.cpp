@@ -1,8 +1,11 @@
 #include "optim/mmc/corrected_cycles.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
+#include <utility>
 
 #include "geometry/cpu_time.h"
 #include "optim/kkt.h"
@@ -19,6 +22,7 @@ class Corrected final : public optim::Problem {
   /// What the motion says at that design.
   struct Seen {
     VectorXd correction;  ///< ∇log J - ∇log C
+    MatrixXd root;        ///< R of the curvature R Rᵀ that C lacks (n x rank)
     VectorXd limits;      ///< its limits, <= 0 (m)
     MatrixXd slopes;      ///< their gradients (m x n)
   };
@@ -45,8 +49,9 @@ class Corrected final : public optim::Problem {
   optim::Response evaluate(const VectorXd& x) override {
     optim::Response out = loaded_.evaluate(x);
     const double part = std::exp(out.f - log_compliance_);
-    out.f = part + seen_.correction.dot(x - x_);
-    out.df = part * out.df + seen_.correction;
+    const VectorXd bent = seen_.root.transpose() * (x - x_);
+    out.f = part + seen_.correction.dot(x - x_) + 0.5 * bent.squaredNorm();
+    out.df = part * out.df + seen_.correction + seen_.root * bent;
     const Eigen::Index m = out.g.size(), more = seen_.limits.size();
     out.g.conservativeResize(m + more);
     out.g.tail(more) = seen_.limits + seen_.slopes * (x - x_);
@@ -66,12 +71,54 @@ class Corrected final : public optim::Problem {
   double radius_;
 };
 
+/// The positive part of a symmetric rank-one matrix, from the last differences of designs and of
+/// gradients.
+class Secants {
+ public:
+  explicit Secants(int most) : most_(static_cast<size_t>(most)) {}
+
+  void add(const VectorXd& step, const VectorXd& change) {
+    if (most_ == 0 || !(step.norm() > 0) || !change.allFinite()) return;
+    pairs_.emplace_back(step, change);
+    if (pairs_.size() > most_) pairs_.pop_front();
+  }
+  /// R of R Rᵀ (n x rank).
+  MatrixXd root(Eigen::Index n) const {
+    const auto m = static_cast<Eigen::Index>(pairs_.size());
+    MatrixXd S(n, m), Y(n, m);
+    for (Eigen::Index k = 0; k < m; ++k) {
+      S.col(k) = pairs_[static_cast<size_t>(k)].first;
+      Y.col(k) = pairs_[static_cast<size_t>(k)].second;
+    }
+    const MatrixXd product = S.transpose() * Y;
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(0.5 * (product + product.transpose()));
+    MatrixXd out(n, 0);
+    for (Eigen::Index k = 0; k < m; ++k) {
+      constexpr double kNone = 1e-8;  // of the largest: no curvature is known there
+      const double value = eigen.eigenvalues()[k];
+      if (!(value > kNone * eigen.eigenvalues().cwiseAbs().maxCoeff())) continue;
+      out.conservativeResize(n, out.cols() + 1);
+      out.col(out.cols() - 1) = Y * eigen.eigenvectors().col(k) / std::sqrt(value);
+    }
+    return out;
+  }
+
+ private:
+  size_t most_;
+  std::deque<std::pair<VectorXd, VectorXd>> pairs_;
+};
+
 /// Designs on their way to an optimum of their motion.
 class Corrector {
  public:
   Corrector(std::vector<BodyProblem>& problems, const LoadsAt& loads, MotionResponse& motion,
             const CorrectionSettings& settings, const SeeCycle& see)
-      : problems_(problems), loads_at_(loads), motion_(motion), settings_(settings), see_(see) {}
+      : problems_(problems),
+        loads_at_(loads),
+        motion_(motion),
+        settings_(settings),
+        see_(see),
+        secants_(settings.secants) {}
 
   void go() {
     renew_loads();
@@ -87,6 +134,7 @@ class Corrector {
   void go_directly() {
     renew_loads();
     look();
+    if (settings_.max_cycles == 0) return;
     MotionState state = motion_state_of(parts_, motion_);
     Whole moved(parts_, &state);
     optim::Settings settings = settings_.optimizer;
@@ -109,32 +157,6 @@ class Corrector {
     };
     optim::make_optimizer(settings)->minimize(moved.problem(), watch);
     move_to(moved, best);
-  }
-
-  /// Narrow places that came up on the way are repaired; figures of the result.
-  std::vector<BodyOutcome> outcomes(const std::function<bool()>& go_on) {
-    for (Part& p : parts_) p.widths.reset();
-    const bool wanted = std::any_of(parts_.begin(), parts_.end(),
-                                    [](const Part& p) { return p.problem.widths.any(); });
-    if (wanted) {
-      const Mended mended = repaired(parts_, 1, true, go_on);
-      for (size_t k = 0; k < parts_.size(); ++k) {
-        parts_[k].problem.design = mended.designs[k];
-        parts_[k].outcome.clean_up = mended.clean_ups[k];
-      }
-    }
-    std::vector<BodyOutcome> out;
-    for (Part& p : parts_) {
-      p.follow_sharp_volume();
-      measure(p);
-      p.outcome.body = p.problem.body;
-      p.outcome.n_loads = p.loads.n_loads();
-      p.outcome.n_right_hand_sides = p.loads.n_right_hand_sides();
-      p.outcome.kkt = now_.kkt;
-      finish_outcome(p, false, false);
-      out.push_back(std::move(p.outcome));
-    }
-    return out;
   }
 
  private:
@@ -197,7 +219,9 @@ class Corrector {
     const optim::Response here = loaded.problem().evaluate(x);
     const std::vector<int> limits = limit_rows(moved);
     Corrected problem(loaded.problem(), x, here.f,
-                      {here_.df - here.df, here_.g(limits), here_.dg(limits, Eigen::all)}, radius_);
+                      {here_.df - here.df, secants_.root(x.size()), here_.g(limits),
+                       here_.dg(limits, Eigen::all)},
+                      radius_);
     optim::Settings inner = settings_.optimizer;
     inner.max_iterations = settings_.inner_iterations;
     inner.max_evaluations = 0;
@@ -212,6 +236,10 @@ class Corrector {
     try {
       there = moved.problem().evaluate(found.x);
       now_.actual = 1 - std::exp(there.f - here_.f);
+      const optim::Response loaded_there = loaded.problem().evaluate(found.x);
+      secants_.add(found.x - x,
+                   std::exp(there.f - here_.f) * there.df - here_.df -
+                       (std::exp(loaded_there.f - here.f) * loaded_there.df - here.df));
     } catch (const Error& error) {
       if (error.kind() != Error::Kind::numerical) throw;
     }
@@ -238,6 +266,7 @@ class Corrector {
   std::vector<std::unique_ptr<LoadResponse>> responses_;
   std::vector<Part> parts_;
   CorrectedCycle now_;
+  Secants secants_;
   optim::Response here_;  // of the motion, at the design
   double radius_ = 0, begin_ = cpu_seconds();
   bool going_ = true;
@@ -245,15 +274,40 @@ class Corrector {
 
 }  // namespace
 
-std::vector<BodyOutcome> correct_designs(std::vector<BodyProblem>& problems, const LoadsAt& loads,
-                                         MotionResponse& motion, const CorrectionSettings& settings,
-                                         const SeeCycle& see, const std::function<bool()>& go_on) {
+void correct_designs(std::vector<BodyProblem>& problems, const LoadsAt& loads,
+                     MotionResponse& motion, const CorrectionSettings& settings,
+                     const SeeCycle& see) {
   Corrector corrector(problems, loads, motion, settings, see);
   if (settings.kind == Correction::direct)
     corrector.go_directly();
   else
     corrector.go();
-  return corrector.outcomes(go_on);
+}
+
+std::vector<BodyOutcome> outcomes_of_corrected(std::span<const LoadedBody> bodies,
+                                               const std::function<bool()>& go_on) {
+  std::vector<Part> parts = parts_at_end(bodies);
+  for (Part& p : parts) p.widths.reset();
+  const bool wanted =
+      std::any_of(parts.begin(), parts.end(), [](const Part& p) { return p.problem.widths.any(); });
+  if (wanted) {
+    const Mended mended = repaired(parts, 1, true, go_on);
+    for (size_t k = 0; k < parts.size(); ++k) {
+      parts[k].problem.design = mended.designs[k];
+      parts[k].outcome.clean_up = mended.clean_ups[k];
+    }
+  }
+  std::vector<BodyOutcome> out;
+  for (Part& p : parts) {
+    p.follow_sharp_volume();
+    measure(p);
+    p.outcome.body = p.problem.body;
+    p.outcome.n_loads = p.loads.n_loads();
+    p.outcome.n_right_hand_sides = p.loads.n_right_hand_sides();
+    finish_outcome(p, false, false);
+    out.push_back(std::move(p.outcome));
+  }
+  return out;
 }
 
 }  // namespace flexmorph::mmc

@@ -21,6 +21,7 @@ struct CorrectionSettings {
   int inner_iterations = 40;  ///< of a cycle's static problem
   double radius = 0.05;       ///< of the first cycle's trust region, of scaled variables
   double smallest_radius = 1e-4;
+  int secants = 10;           ///< pairs of designs that curvature is learned from; 0: none
   double kkt_part = 1e-2;     ///< it has converged at this part of the first KKT residual
   optim::Settings optimizer;  ///< of the static problems, or of the motion
 };
@@ -51,17 +52,22 @@ using SeeCycle = std::function<bool(const CorrectedCycle&)>;
 /// under the limits of the design, C the objective of the static problem: s C(x) plus what is wrong
 /// with its gradient, s = J_k / C_k, by s C_k. x is taken when J falls by a tenth of what was
 /// predicted; Δ grows or is halved by the ratio. A fixed point at which Δ is not active is a KKT
-/// point of J. Components neither come nor go, bands are those of the last stage; narrow places
-/// that are left are repaired at the end.
+/// point of J. Components neither come nor go, bands are those of the last stage.
 ///
-/// The designs of the problems are left at the best J. @return outcomes of these, as
-/// design_bodies()
+/// What the loads do not see of the curvature of J (vibrations whose phase the design shifts) is
+/// learned: ½ |Rᵀ(x - x_k)|² is added, R Rᵀ the positive part of the symmetric rank-one matrix
+/// Y (SᵀY)⁻¹ Yᵀ of the differences S of designs tried and Y of the gradients' error there.
+///
+/// The designs of the problems are left at the best J.
 /// @throws Error (numerical) where the first motion fails; later ones are refused as designs.
 ///
-/// Source: Alexandrov et al. (1998); Stolpe et al. (2018);
-/// optim/README.md, Corrected cycles.
-std::vector<BodyOutcome> correct_designs(std::vector<BodyProblem>& problems, const LoadsAt& loads,
-                                         MotionResponse& motion, const CorrectionSettings& settings,
-                                         const SeeCycle& see, const std::function<bool()>& go_on);
+/// Source: Alexandrov et al. (1998); Stolpe et al. (2018); optim/README.md, Corrected cycles.
+void correct_designs(std::vector<BodyProblem>& problems, const LoadsAt& loads,
+                     MotionResponse& motion, const CorrectionSettings& settings,
+                     const SeeCycle& see);
+
+/// Designs that were corrected, repaired where they became narrow, and their outcomes under loads.
+std::vector<BodyOutcome> outcomes_of_corrected(std::span<const LoadedBody> bodies,
+                                               const std::function<bool()>& go_on);
 
 }  // namespace flexmorph::mmc

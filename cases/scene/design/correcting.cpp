@@ -23,9 +23,9 @@ const io::Choice<Correction> kCorrect(
      {"first_order", Correction::first_order},
      {"direct", Correction::direct}});
 const Key& kCorrections = io::key("cycle", "corrections")
-                              .integer("a number of cycles", 1, 100'000)
+                              .integer("a number of cycles", 0, 100'000)
                               .otherwise(mmc::CorrectionSettings().max_cycles)
-                              .says("Corrected cycles at most, or iterations of `direct`.");
+                              .says("Corrected cycles at most, or iterations of `direct`; 0: J is measured.");
 const Key& kKktPart = io::key("cycle", "kkt_part")
                           .number(io::between("a part", "", 0, 1))
                           .otherwise(mmc::CorrectionSettings().kkt_part)
@@ -38,6 +38,11 @@ const Key& kInner = io::key("cycle", "inner_iterations")
                         .integer("a number of iterations", 1, 100'000)
                         .otherwise(mmc::CorrectionSettings().inner_iterations)
                         .says("Iterations of a corrected cycle on its static problem.");
+
+const Key& kSecants = io::key("cycle", "secants")
+                          .integer("a number of pairs", 0, 1000)
+                          .otherwise(mmc::CorrectionSettings().secants)
+                          .says("Pairs of tried designs whose gradients teach curvature; 0: none.");
 
 /// The keys of a motion with its gradient; a table has its own set.
 struct MotionKeys {
@@ -138,6 +143,7 @@ void read_correction(const Table& root, Scene& scene) {
   s.kkt_part = cycle.number(kKktPart);
   s.radius = cycle.number(kRadius);
   s.inner_iterations = cycle.integer(kInner);
+  s.secants = cycle.integer(kSecants);
   s.optimizer = scene.optimizer;
   s.optimizer.rest.rows = 0;
   const bool corrects = s.kind != Correction::none;
@@ -146,7 +152,7 @@ void read_correction(const Table& root, Scene& scene) {
   if (corrects) {
     read_motion_keys(cycle, kOfCycle, scene, scene.cycle);
   } else {
-    for (const Key* key : {&kCorrections, &kKktPart, &kRadius, &kInner, &kOfCycle.cell,
+    for (const Key* key : {&kCorrections, &kKktPart, &kRadius, &kInner, &kSecants, &kOfCycle.cell,
                            &kOfCycle.step, &kOfCycle.checkpoints})
       if (cycle.has(*key)) cycle.fail(*key, "without `correct` this does nothing");
     for (const BodyDesign& design : scene.designs)

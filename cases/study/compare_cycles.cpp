@@ -1,0 +1,132 @@
+#include "cases/study/compare_cycles.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "cases/build/build.h"
+#include "cases/run/run.h"
+#include "io/plots.h"
+#include "io/tables.h"
+
+namespace flexmorph::cases {
+namespace {
+
+struct Way {
+  const char* name;
+  std::vector<std::string> changes;
+};
+/// Plain cycles are corrected ones that end where they begin: J is measured there, too.
+const Way kWays[] = {{"esl", {"cycle.correct=first_order", "cycle.corrections=0"}},
+                     {"corrected", {"cycle.correct=first_order"}},
+                     {"direct", {"cycle.correct=direct"}}};
+
+const Way& way_called(const std::string& name) {
+  const auto found = std::find_if(std::begin(kWays), std::end(kWays),
+                                  [&](const Way& w) { return w.name == name; });
+  if (found == std::end(kWays))
+    throw Error::input("compare: --cycles: '" + name +
+                       "' is unknown; there are esl, corrected, direct");
+  return *found;
+}
+
+/// What became of a way.
+struct Result {
+  std::string name;
+  nlohmann::json run;
+
+  double number(const char* table, const char* key) const {
+    return run.contains(table) ? run[table].value(key, 0.0) : 0.0;
+  }
+  /// J over CPU seconds, the design for loads at zero.
+  io::Curve curve() const {
+    io::Curve out{.name = name, .markers = true};
+    double least = 1e300;
+    for (const auto& cycle : run.value("corrected_cycles", nlohmann::json::array())) {
+      if (cycle.value("accepted", false)) least = std::min(least, cycle.value("objective", least));
+      out.x.push_back(cycle.value("seconds", 0.0));
+      out.y.push_back(least);
+    }
+    return out;
+  }
+};
+
+std::vector<std::vector<std::string>> table_of(const std::vector<Result>& results) {
+  std::vector<std::vector<std::string>> out = {{"cycles", "status", "J", "sharp J", "KKT residual",
+                                                "left [%]", "motions", "CPU of correcting [s]",
+                                                "CPU of the run [s]"}};
+  for (const Result& r : results) {
+    const auto cycles = r.run.value("corrected_cycles", nlohmann::json::array());
+    const auto last = [&](const char* key) {
+      return cycles.empty() ? 0.0 : cycles.back().value(key, 0.0);
+    };
+    out.push_back(
+        {r.name, r.run.value("status", "missing"), io::to_text(r.number("certificate", "value"), 6),
+         io::to_text(r.number("certificate", "sharp_value"), 6),
+         io::to_text(r.number("certificate", "kkt"), 3),
+         io::to_text(100 * r.number("certificate", "left"), 3), io::to_text(last("motions")),
+         io::to_text(last("seconds"), 4), io::to_text(r.run.value("seconds_cpu", 0.0), 4)});
+  }
+  return out;
+}
+
+void write(const std::vector<Result>& results, const std::string& directory,
+           const std::string& name) {
+  const auto rows = table_of(results);
+  std::string csv;
+  for (const std::vector<std::string>& row : rows) {
+    for (size_t k = 0; k < row.size(); ++k) csv += (k ? "," : "") + row[k];
+    csv += "\n";
+  }
+  io::write_file(directory + "/compare.csv", csv);
+  io::write_file(directory + "/compare.md",
+                 "# " + name + "\n\n" + io::markdown_table(rows) +
+                     "\nJ, its KKT residual and what is left within the move limit are those of "
+                     "the certificate, of the same motion for all. CPU of correcting: without the "
+                     "design for loads they all begin with.\n");
+  io::Figure figure{.title = name,
+                    .panels = {{.x = {.label = "CPU time of correcting [s]"},
+                                .y = {.label = "J, the least so far"}}}};
+  for (const Result& r : results)
+    if (io::Curve curve = r.curve(); !curve.x.empty())
+      figure.panels.front().curves.push_back(std::move(curve));
+  if (!figure.panels.front().curves.empty())
+    io::write_file(directory + "/compare.svg", io::plot_svg(figure));
+}
+
+}  // namespace
+
+int compare_cycles(const CompareCyclesOptions& wanted) {
+  CompareCyclesOptions options = wanted;
+  StudyOptions& study = options.study;
+  const Scene scene = read_scene(io::CaseFile(find_case(study.case_name), study.overrides));
+  if (scene.designs.empty() || scene.domain)
+    throw Error::input("case '" + scene.name +
+                       "' has no design that moves: there are no cycles to compare");
+  if (study.directory.empty()) study.directory = "runs/compare_cycles_" + scene.name;
+  study.overrides.insert(study.overrides.begin(), "output.vtk=false");
+  if (!scene.certify) study.overrides.emplace_back("certificate.checkpoints=0");
+  std::vector<Variant> variants;
+  for (const std::string& name : options.ways) {
+    const Way& way = way_called(name);
+    variants.push_back({way.name, way.changes});
+  }
+  check_variants(study, variants);
+  const auto results_of = [&] {
+    std::vector<Result> out;
+    for (const Variant& v : variants) {
+      const std::string text = text_of(folder_of(study, v) + "/run.json");
+      out.push_back(
+          {v.name, text.empty() ? nlohmann::json::object() : nlohmann::json::parse(text)});
+    }
+    return out;
+  };
+  const StudyOutcome outcome = run_variants(study, variants, [&](std::span<const VariantResult>) {
+    write(results_of(), study.directory, scene.title);
+  });
+  std::fputs(io::aligned_table(table_of(results_of())).c_str(), stdout);
+  std::printf("%s/compare.md, .csv, .svg\n", study.directory.c_str());
+  return outcome.exit_code;
+}
+
+}  // namespace flexmorph::cases
