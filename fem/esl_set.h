@@ -31,7 +31,7 @@ struct EslSet {
   /// outside never see it, and keeps the rank of all loads together small.
   VectorXd acceleration;
   std::vector<NodalForce> forces;  ///< concentrated forces: -m a of point masses, applied loads
-  double strain_energy = 0;    ///< of the dynamic run at that time [J], to compare 1/2 w.K w with
+  double strain_energy = 0;    ///< of the body in the motion at that time [J]; beside it 1/2 w.K w
   double thermal_stretch = 0;  ///< a_i = α ΔT: free, the body is 1 + a_i times as large [-]
   /// What is missing of it across the root line: a_i where that cannot grow, 0 where it is free to.
   double held_stretch = 0;
@@ -43,7 +43,8 @@ struct EslSet {
 struct EslSets {
   Grid grid;  ///< design mesh over the longest extent, root side at x0
   std::vector<EslSet> sets;
-  /// ∫ U dt of the motion the loads come from, all bodies [J s]: what a cycle is judged by.
+  /// ∫ U dt of the motion the loads come from, all bodies [J s]: what a cycle is judged by where no
+  /// other motion does.
   double strain_energy_integral = 0;
 };
 

@@ -173,24 +173,34 @@ Wrench Workspace::joint_wrench(size_t joint, const std::string& name, const Vec3
   return out;
 }
 
+void Workspace::add_energies(const State& x, const Body& body, Energies& out) {
+  Local local;
+  for (int e = 0; e < body.element->n_elements(); ++e) {
+    gather(body, e, x, local);
+    for (const auto& term : body.terms) {
+      const Energies of_term = term->energies(e, local);
+      out.kinetic += of_term.kinetic;
+      out.strain += of_term.strain;
+      out.potential += of_term.potential;
+    }
+  }
+}
+
 Energies Workspace::energies(const State& x) {
   prepare(x);
   Energies out;
-  Local local;
-  for (const Body& b : bodies_)
-    for (int e = 0; e < b.element->n_elements(); ++e) {
-      gather(b, e, x, local);
-      for (const auto& term : b.terms) {
-        const Energies of_term = term->energies(e, local);
-        out.kinetic += of_term.kinetic;
-        out.strain += of_term.strain;
-        out.potential += of_term.potential;
-      }
-    }
+  for (const Body& b : bodies_) add_energies(x, b, out);
   for (const auto& link : links_) {
     out.strain += link->strain_energy(x);
     out.potential += link->potential_energy(x);
   }
+  return out;
+}
+
+Energies Workspace::energies(const State& x, const Body& body) {
+  prepare(x);
+  Energies out;
+  add_energies(x, body, out);
   return out;
 }
 

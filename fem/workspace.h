@@ -112,6 +112,8 @@ class Workspace : public Model {
   PlaceMotion place_motion(const MarkerPlace& place, const State& x) const;
 
   Energies energies(const State& x);
+  /// Of one of its bodies.
+  Energies energies(const State& x, const Body& body);
   /// Linear momentum of the bodies' own mass [kg m/s], see Term::momentum(); z = 0 in the plane.
   Vec3 momentum(const State& x);
   /// Lets links that count turns go on from this state: to be called after every accepted step.
@@ -177,6 +179,7 @@ class Workspace : public Model {
   void build_pattern();
   void joint_stiffness(const State& x, std::vector<Eigen::Triplet<double>>& out) const;
   static void gather(const Body& body, int e, const State& x, Local& local);
+  static void add_energies(const State& x, const Body& body, Energies& out);
   static void gather(const Body& body, int e, const State& mean, const VectorXd& q0,
                      const VectorXd& q1, LocalStep& step);
   /// Calls f(batch, its places) for all batches, one colour after the other, by one thread for

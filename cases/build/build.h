@@ -47,6 +47,10 @@ struct MeshChoice {
   int coarse = 1;  ///< or on cells that are so many of them each way
 };
 
+/// The scene with its designed bodies on the cells of their designs, each in so many parts each
+/// way.
+Scene on_cells(Scene scene, int parts);
+
 /// Scene -> model, joints and integrator settings. Stops for loads and output are left empty. The
 /// model of a [static] analysis has the same bodies, joints and loads.
 /// @throws Error (input) for combinations the tables of elements, terms and joints do not have.

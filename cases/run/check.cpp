@@ -307,7 +307,10 @@ std::string check_case(const RunOptions& options) {
     out << row("optimizer", optimizer_words(scene) + ", " + std::to_string(scene.cycle.max_cycles) +
                                 " cycle(s)");
   if (scene.verify)
-    out << row("verification", "designed and uniform plate once more, " + scene.verify->words() +
+    out << row("verification", (scene.judges_on_cells() && scene.cycle.max_cycles > 1
+                                    ? "designs of all cycles and uniform plate, "
+                                    : "designed and uniform plate once more, ") +
+                                   scene.verify->words() +
                                    (scene.time.tolerance && scene.verify->step == scene.time.step
                                         ? ", adaptive steps"
                                         : ", step " + io::to_text(scene.verify->step) + " s"));

@@ -76,6 +76,27 @@ double design_operations(const Scene& scene, const BodyDesign& d) {
   return n * band * (band + 3 * loads);
 }
 
+namespace {
+
+/// Of motions on the cells of the designs: one a cycle, at most, and that with uniform material.
+double cells_seconds(const Scene& scene, const Extent& extent) {
+  const Scene cells = on_cells(scene, scene.verify->cells);
+  double step = 0;
+  for (const BodyDesign& d : cells.designs) {
+    const Body& body = cells.body(d.body);
+    const auto one = body.row->make(body, cells.time.end, {1, 1});  // a few cells, not all
+    const ElementOperations each = body.row->operations(body, *one);
+    const double along = 0.5 * (body.length + body.longest(cells.time.end)) / body.cell,
+                 across = body.elements[1], band = (std::min(along, across) + 2) * body.dim(),
+                 tangents = body.flow ? kTangentsOfFlow : kTangents;
+    step += along * across * (kForces * each.force + tangents * each.tangent);
+    step += along * across * body.dim() * band * (tangents * kFactor * band + 4 * kSolutions);
+  }
+  return extent.steps * step * (scene.cycle.max_cycles + 1) / kMotionRate;
+}
+
+}  // namespace
+
 double expected_seconds(const Scene& scene, const Mechanism* mechanism) {
   const Extent extent = extent_of(scene);
   double out = kStart;
@@ -84,10 +105,12 @@ double expected_seconds(const Scene& scene, const Mechanism* mechanism) {
                             ? kRigid * 1e2
                             : step_operations(scene, *mechanism).total();
     // A finer mesh in the two motions of the verification; one motion per cycle for the loads.
-    const double finer =
-        scene.verify ? scene.verify->mesh ? 4 : std::pow(scene.verify->refine, 2) : 0;
+    const double finer = !scene.verify || scene.judges_on_cells() ? 0
+                         : scene.verify->mesh                     ? 4
+                                              : std::pow(scene.verify->refine, 2);
     const double cycles = extent.iterations > 0 ? scene.cycle.max_cycles + 2 : 1;
     out += extent.steps * step * (cycles + 2 * finer) / kMotionRate;
+    if (scene.judges_on_cells()) out += cells_seconds(scene, extent);
     out += extent.frames * kFrameSeconds * static_cast<double>(scene.bodies.size());
   }
   for (const BodyDesign& d : scene.designs) {

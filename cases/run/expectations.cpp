@@ -30,7 +30,7 @@ const std::vector<std::pair<std::string, std::function<double(const mmc::BodyOut
         {"min_gap", [](const mmc::BodyOutcome& o) { return widths_of(o).gap; }},
         {"islands", [](const mmc::BodyOutcome& o) { return 1.0 * o.sharp.connectivity.islands; }},
 };
-const std::string kAmplitude = "amplitude";
+const std::string kAmplitude = "amplitude", kDefect = "energy.defect";
 
 /// Figures of what else its goal speaks of.
 std::vector<std::pair<const mmc::Figures*, std::string>> further_of(const mmc::BodyOutcome& o) {
@@ -73,10 +73,13 @@ std::optional<double> find(const RunReport& report, const std::string& name) {
     for (const auto& [figures, prefix] : further_of(report.outcomes.front()))
       for (const auto& [figure, value] : *figures)
         if (prefix + figure == name) return value;
-  if (report.motion) {
-    if (name == kAmplitude && !report.motion->amplitude.empty()) return report.motion->amplitude[0];
-    if (const auto found = value_of(*report.motion, name)) return found;
+  // What a design is judged by; the balance of energy is kept by the motion on the scene's mesh.
+  if (const auto& judging = report.judging(); judging && !name.starts_with(kDefect)) {
+    if (name == kAmplitude && !judging->amplitude.empty()) return judging->amplitude[0];
+    if (const auto found = value_of(*judging, name)) return found;
   }
+  if (report.motion)
+    if (const auto found = value_of(*report.motion, name)) return found;
   if (report.path) return value_of(*report.path, name);
   return {};
 }

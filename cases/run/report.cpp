@@ -107,9 +107,12 @@ io::ReportSection design_section(const RunFolder::DesignPictures& pictures, cons
 }
 
 /// Cycles beside each other: did the motion get better, and not only the loads' compliance?
-io::ReportSection cycles_section(const RunReport& report) {
+io::ReportSection cycles_section(const Scene& scene, const RunReport& report) {
   io::ReportSection out;
   out.heading = "Cycles";
+  out.words = "Judged by the motion on " +
+              (scene.judges_on_cells() ? scene.verify->words() : std::string("the scene's mesh")) +
+              ".";
   out.rows.push_back({"cycle", "compliance of all [J]", "strain energy over time [J s]", "best"});
   std::vector<std::string>& header = out.rows.front();
   for (const mmc::BodyVerdict& b : report.verdicts.front().bodies)
@@ -185,7 +188,7 @@ void write_report(const Scene& scene, const RunReport& report, RunFolder& folder
     sections.push_back(expect_section(scene, report));
   if (scene.has_heat()) sections.push_back(heat_section(scene));
   if (!report.outcomes.empty()) sections.push_back(results_section(scene, report));
-  if (!report.verdicts.empty()) sections.push_back(cycles_section(report));
+  if (!report.verdicts.empty()) sections.push_back(cycles_section(scene, report));
   if (!report.corrections.empty()) sections.push_back(corrections_section(report));
   if (report.certificate) sections.push_back(certificate_section(report, folder));
   const auto add = [&](const std::string& name, const std::string& heading, std::string svg) {
@@ -214,7 +217,7 @@ void write_report(const Scene& scene, const RunReport& report, RunFolder& folder
       add("mechanism", "Mechanism in motion", moments_plot(*report.motion));
       if (scene.trajectory)
         add("error_" + scene.trajectory->body, "Error of " + scene.trajectory->body,
-            error_plot(scene, *report.motion, report.uniform_motion));
+            error_plot(scene, *report.judging(), report.judging_uniform()));
     }
     add("joint_forces", "Joint forces", joint_forces_plot(scene, *report.motion));
     add("energies", "Energies of the motion", energy_plot(scene, *report.motion));
@@ -224,7 +227,9 @@ void write_report(const Scene& scene, const RunReport& report, RunFolder& folder
     add("shapes", "Deformed shapes",
         io::surfaces_svg("Deformed shapes, light: strain energy", shapes));
   if (report.verified)
-    add("deflection_verified", "Tip deflection on the finer mesh",
+    add("deflection_verified",
+        "Tip deflection on " +
+            (scene.verify ? scene.verify->words() : std::string("the finer mesh")),
         deflection_plot(*report.verified, report.verified_uniform));
   folder.write_text("report.html", io::report_html(scene.title, sections));
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "cases/run/failure.h"
@@ -7,6 +8,24 @@
 #include "cases/run/run_folder.h"
 
 namespace flexmorph::cases {
+
+/// Static energy of a sharp design under its own loads beside the strain energy of the motion with
+/// it, load by load: coarse elements bridge what the cells of a design show (fem/README.md, Cells).
+struct EnergyComparison {
+  static constexpr double kApart = 0.2;  ///< of what a load's energies may be apart
+  /// Loads with less than this part of the largest energy say nothing: a swing passes through rest.
+  static constexpr double kLeast = 0.01;
+
+  std::string body;
+  int compared = 0, apart = 0;  ///< loads, and those that are further apart than kApart
+  double ratio = 1, time = 0;  ///< static energy over that of the motion, furthest from 1; when [s]
+
+  void add(double at, double found) {
+    ++compared;
+    if (std::abs(found - 1) > kApart) ++apart;
+    if (std::abs(found - 1) > std::abs(ratio - 1)) ratio = found, time = at;
+  }
+};
 
 /// Everything a run knows at its end (or at its failure).
 struct RunReport {
@@ -29,7 +48,14 @@ struct RunReport {
   std::optional<mmc::MotionCertificate> certificate;
   std::optional<PathRecord> path;                          ///< of a [static] analysis
   std::optional<MotionRecord> motion, uniform_motion;      ///< of the design; of uniform material
-  std::optional<MotionRecord> verified, verified_uniform;  ///< the same on the finer mesh
+  std::optional<MotionRecord> verified, verified_uniform;  ///< the same on the finer mesh or cells
+  std::vector<EnergyComparison> energies;  ///< of final designs that no motion on cells judges
+
+  /// The motion that designs are judged by: the verification where there is one.
+  const std::optional<MotionRecord>& judging() const { return verified ? verified : motion; }
+  const std::optional<MotionRecord>& judging_uniform() const {
+    return verified ? verified_uniform : uniform_motion;
+  }
 };
 
 /// CPU seconds of iterations, outlines of final designs, their repairs and judge, and of motions,

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <limits>
 
+#include "cases/build/build.h"
 #include "cases/scene/elements/row.h"
 #include "io/files.h"
 
@@ -141,7 +142,12 @@ void add_motions(const Scene& scene, Extent& out) {
     if (body.heat && body.heat->force)
       out.memory.push_back({"the thermal force of '" + body.name + "'",
                             "body." + body.name + ".elements", thermal_bytes(scene, body)});
-  if (const double finer = finest(scene); finer > 1) {
+  if (scene.judges_on_cells()) {
+    const Scene cells = on_cells(scene, scene.verify->cells);
+    double bytes = 0;
+    for (const Body& body : cells.bodies) bytes += moving_bytes(cells, body, 1);
+    out.memory.push_back({"the verification", "verify.cells", bytes});
+  } else if (const double finer = finest(scene); finer > 1) {
     double bytes = 0;
     for (const Body& body : scene.bodies) bytes += moving_bytes(scene, body, finer);
     out.memory.push_back(

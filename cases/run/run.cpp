@@ -89,29 +89,8 @@ void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress
   report.problems = build_problems(scene);
   for (const mmc::BodyProblem& problem : report.problems) folder.write_start(problem);
   const double most = extent_of(scene).iterations;
-  const bool analysed = scene.optimizer.max_iterations == 0;  // as they start: one motion says all
-  int n_motions = 0;
-  const auto simulate = [&](std::span<const fem::Factors> factors) {
-    MotionWishes wishes;
-    wishes.factors.assign(factors.begin(), factors.end());
-    wishes.loads = true;
-    wishes.condition = condition && analysed;
-    wishes.go_on = go_on;
-    if (!report.motion && report.cycles == 0)
-      wishes.say = [&](const std::string& words) { progress.say(words); };
-    wishes.way = way_of(progress, scene, wishes.phase);
-    // Of all cycles, until the run is done: their designs come back from their evaluations.
-    keep_going(wishes, report, progress, "motion_" + io::to_text(++n_motions) + ".csv");
-    progress.begin(wishes.phase);
-    const double begin = cpu_seconds();
-    MotionOutcome motion = run_motion(scene, wishes, folder);
-    report.seconds_motion += cpu_seconds() - begin;
-    progress.say("motion: " + std::to_string(motion.record.result.counts.steps) + " steps, " +
-                 std::to_string(motion.record.result.events.size()) + " changes of the mesh, " +
-                 "largest tip deflection " + io::to_text(motion.record.amplitude.at(0), 4) + " m");
-    if (analysed) report.motion = motion.record;
-    return std::move(motion.loads);
-  };
+  const bool analysed = scene.optimizer.max_iterations == 0;
+  CycleMotions motions(scene, condition, go_on, folder, progress, report);
   Memory memory(folder);
   std::vector<fem::EslSets> loads, best_loads;
   mmc::LoopObserver observer;
@@ -138,19 +117,25 @@ void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress
   mmc::LoopSettings settings{
       analysed ? 1 : scene.cycle.max_cycles,
       scene.cycle.tolerance,
-      {scene.output.sharp_every, scene.optimizer, condition, memory.past(), scene.finish, go_on}};
+      {scene.output.sharp_every, scene.optimizer, condition, memory.past(), scene.finish, go_on},
+      motions.judge()};
   observer.verdict = [&](std::span<const mmc::CycleVerdict> verdicts) {
     report.verdicts.assign(verdicts.begin(), verdicts.end());
     folder.write_cycles(verdicts, {});
     const mmc::CycleVerdict& v = verdicts.back();
-    if (v.best) best_loads = loads;  // the next cycle has others
+    if (v.best) {
+      best_loads = loads;  // the next cycle has others
+      motions.keep_judged();
+    }
     progress.say("cycle " + std::to_string(v.cycle) + ": compliance of all bodies " +
                  io::to_text(v.objective, 5) + ", strain energy over time " +
                  io::to_text(v.strain_energy_integral, 5) + " J s" +
                  (v.best ? ", the least so far" : ", no less than before: the last one"));
   };
-  const std::vector<mmc::BodyOutcome> best =
-      mmc::esl_loop(report.problems, simulate, settings, observer);
+  const std::vector<mmc::BodyOutcome> best = mmc::esl_loop(
+      report.problems,
+      [&](std::span<const fem::Factors> factors) { return motions.loads(factors); }, settings,
+      observer);
   if (interrupted) throw Interrupted();
   if (!report.verdicts.empty()) {
     report.outcomes = best;
@@ -159,9 +144,13 @@ void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress
   }
 
   const bool corrected = scene.cycle.correction.kind != mmc::Correction::none;
-  if (corrected) correct_by_motion(scene, go_on, loads, folder, progress, report);
+  if (corrected) {
+    correct_by_motion(scene, go_on, loads, folder, progress, report);
+    report.verified.reset();  // of the design before
+  }
   const bool is_new = !analysed || corrected;
   if (is_new) judge_outlines(scene, loads, folder, progress, report);
+  if (analysed && !corrected) report.energies = compared_energies(report.problems, loads);
   const double begin = cpu_seconds();
   if (is_new) judge_by_motion(scene, condition, go_on, folder, progress, report);
   report.seconds_verification = cpu_seconds() - begin;

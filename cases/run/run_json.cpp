@@ -104,6 +104,15 @@ Json judged_results(const JudgedBody& judged, double sharp_compliance) {
   return out;
 }
 
+Json energy_results(const EnergyComparison& e) {
+  Json out = Json::object();
+  out["loads_compared"] = e.compared;
+  out["loads_apart"] = e.apart;
+  out["worst_static_over_motion"] = e.ratio;
+  out["worst_time"] = e.time;
+  return out;
+}
+
 Json body_results(const RunReport& report, size_t i) {
   const mmc::BodyOutcome& o = report.outcomes[i];
   Json out = Json::object();
@@ -134,12 +143,12 @@ Json body_results(const RunReport& report, size_t i) {
     const auto found = std::find(motion->bodies.begin(), motion->bodies.end(), o.body);
     return Json(motion->amplitude.at(static_cast<size_t>(found - motion->bodies.begin())));
   };
-  const bool finer = report.verified.has_value();
-  out["dynamic_amplitude"] = amplitude(finer ? report.verified : report.motion);
-  out["uniform_dynamic_amplitude"] =
-      amplitude(finer ? report.verified_uniform : report.uniform_motion);
+  out["dynamic_amplitude"] = amplitude(report.judging());
+  out["uniform_dynamic_amplitude"] = amplitude(report.judging_uniform());
   out["scene_mesh_amplitude"] = amplitude(report.motion);
   out["scene_mesh_uniform_amplitude"] = amplitude(report.uniform_motion);
+  for (const EnergyComparison& e : report.energies)
+    if (e.body == o.body) out["energies"] = energy_results(e);
   out["scaled_objective"] = objective_words(report.problems[i]);
   out["cycles"] = report.cycles;
   out["iterations"] = o.iterations;
@@ -196,8 +205,9 @@ Json trajectory_errors(const Scene& scene, const RunReport& report) {
       out[prefix + quantity + "_time"] = error.time;
     }
   };
-  add("", *report.motion);
-  if (report.uniform_motion) add("uniform_", *report.uniform_motion);
+  add("", *report.judging());
+  if (report.judging_uniform()) add("uniform_", *report.judging_uniform());
+  if (report.verified) add("scene_mesh_", *report.motion);
   return out;
 }
 
@@ -205,6 +215,14 @@ Json motion_results(const Scene& scene, const RunReport& report) {
   const MotionRecord& motion = *report.motion;
   const fem::MotionResult& r = motion.result;
   Json out = Json::object();
+  // Of final designs: what judges them, and what is like it.
+  if (!report.outcomes.empty()) {
+    out["judged_on"] = scene.verify && report.verified ? scene.verify->words() : "the scene's mesh";
+    out["strain_energy_integral"] = report.judging()->strain_integral;
+    if (report.judging_uniform())
+      out["uniform_strain_energy_integral"] = report.judging_uniform()->strain_integral;
+    if (report.verified) out["scene_mesh_strain_energy_integral"] = motion.strain_integral;
+  }
   out["steps"] = r.counts.steps;
   out["newton_iterations"] = r.counts.newton;
   out["factorizations"] = r.counts.factorizations;

@@ -159,6 +159,20 @@ void add_cycles(const Cycle& cycle, std::span<const mmc::CycleVerdict> verdicts,
          io::to_text(100 * change, 2) + " %"});
 }
 
+/// Designs whose static energies are far from those of a motion that is all that judges them.
+void add_energies(const RunReport& report, Warnings& out) {
+  for (const EnergyComparison& e : report.energies)
+    if (e.apart > 0)
+      out.push_back(
+          {"body '" + e.body + "': at " + std::to_string(e.apart) + " of " +
+           std::to_string(e.compared) + " loads the static energy of its cells is more than " +
+           io::to_text(100 * EnergyComparison::kApart, 2) +
+           " % off the strain energy of its motion, at t = " + io::to_text(e.time, 4) + " s " +
+           io::to_text(e.ratio, 3) +
+           " times as much: elements of the motion bridge what is cut or thin, or deflections are "
+           "large; [verify] cells = 1 moves the cells themselves"});
+}
+
 /// Of bodies whose temperature jumps on the way; nothing where none does.
 std::string jump_words(const Scene& scene) {
   std::string jumps;
@@ -206,6 +220,7 @@ Warnings warnings_of(const Scene& scene, const RunReport& report) {
   Warnings out;
   add_designs(report, out);
   add_cycles(scene.cycle, report.verdicts, out);
+  add_energies(report, out);
   if (report.motion) add_motion(scene, *report.motion, out);
   if (!report.lost_frames.empty()) out.push_back({report.lost_frames});
   if (!report.missing_exports.empty()) out.push_back({report.missing_exports});

@@ -63,6 +63,8 @@ struct Scene {
   bool in_space() const { return !bodies.empty() && bodies.front().in_space(); }  ///< all, or none
   bool has_free_lines() const;
   bool has_heat() const;
+  /// Are designs judged by motions on their cells?
+  bool judges_on_cells() const { return verify && verify->cells > 0; }
   /// @param key_path  see io::CaseFile::where(): "body.plate.elements"
   /// @throws Error (input): "<file:line:column>: <path> = <value>: <why>"
   [[noreturn]] void refuse(const std::string& key_path, const std::string& why) const;

@@ -44,7 +44,8 @@ const io::Key& kDesign = many("design").says("The design of a body.");
 const io::Key& kOptimizer = one("optimizer", kDefaults).says("Who solves the design problem.");
 const io::Key& kCycle =
     one("cycle", kDefaults).says("How often the design is taken back into the motion.");
-const io::Key& kVerify = one("verify").says("The final design moves once more, on a finer mesh.");
+const io::Key& kVerify =
+    one("verify").says("The final design moves once more, on a finer mesh or on its cells.");
 const io::Key& kCertificate =
     one("certificate").says("What the motion itself says of final designs, by its exact gradient.");
 const io::Key& kOutput = one("output", kDefaults).says("What a run writes.");

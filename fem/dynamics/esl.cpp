@@ -200,7 +200,7 @@ EslSet equivalent_static_load(Workspace& model, const State& x, const Growth& gr
       out.held_end_stretch = (1 - part_of_growth(growth, hot->stretch)) * hot->stretch;
     }
   }
-  out.strain_energy = model.energies(x).strain;
+  out.strain_energy = model.energies(x, model.body(growth.body)).strain;
   return out;
 }
 

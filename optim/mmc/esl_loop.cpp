@@ -103,11 +103,10 @@ bool rests(std::span<const BodyOutcome> now, std::span<const BodyOutcome> before
   return std::abs(sum(now) - sum(before)) <= tolerance * sum(before);
 }
 
-std::vector<fem::EslSets> move(const std::vector<BodyProblem>& problems, const Simulate& simulate) {
-  std::vector<fem::Factors> factors;
-  for (const BodyProblem& p : problems)
-    factors.push_back(dynamic_factors(p, p.design.components()));
-  return simulate(factors);
+std::vector<fem::Factors> factors_of(const std::vector<BodyProblem>& problems) {
+  std::vector<fem::Factors> out;
+  for (const BodyProblem& p : problems) out.push_back(dynamic_factors(p, p.design.components()));
+  return out;
 }
 
 /// Designs and outcomes of the cycles so far, and which one is best.
@@ -125,10 +124,10 @@ class Verdicts {
     auto& designs = designs_.emplace_back();
     for (const BodyProblem& p : problems) designs.push_back(p.design);
   }
-  /// The motion with the designs of the last cycle added.
-  void judge(const std::vector<fem::EslSets>& motion) {
+  /// @param strain_energy_integral  of a motion with the designs of the last cycle added
+  void judge(double strain_energy_integral) {
     CycleVerdict& last = verdicts_.back();
-    last.strain_energy_integral = motion.front().strain_energy_integral;
+    last.strain_energy_integral = strain_energy_integral;
     const size_t now = verdicts_.size() - 1;
     if (now > 0 && !(last.strain_energy_integral < verdicts_[best_].strain_energy_integral)) return;
     verdicts_[best_].best = false;
@@ -154,17 +153,19 @@ class Verdicts {
 std::vector<BodyOutcome> esl_loop(std::vector<BodyProblem>& problems, const Simulate& simulate,
                                   const LoopSettings& settings, const LoopObserver& observer) {
   Verdicts verdicts;
-  const auto judge = [&](const std::vector<fem::EslSets>& motion) {
-    verdicts.judge(motion);
+  const auto judge = [&](double strain_energy_integral) {
+    verdicts.judge(strain_energy_integral);
     if (observer.verdict) observer.verdict(verdicts.all());
+    return verdicts.last_is_best();
   };
   std::vector<BodyOutcome> outcome;
   for (int cycle = 1; cycle <= settings.max_cycles; ++cycle) {
-    const std::vector<fem::EslSets> loads = move(problems, simulate);
-    if (cycle > 1) {
-      judge(loads);
-      if (!verdicts.last_is_best()) return verdicts.take_best(problems);
-    }
+    const std::vector<fem::Factors> factors = factors_of(problems);
+    if (cycle > 1 && settings.judge && !judge(settings.judge(factors)))
+      return verdicts.take_best(problems);
+    const std::vector<fem::EslSets> loads = simulate(factors);
+    if (cycle > 1 && !settings.judge && !judge(loads.front().strain_energy_integral))
+      return verdicts.take_best(problems);
     if (observer.loads) observer.loads(cycle, loads);
 
     const std::vector<BodyOutcome> before = std::move(outcome);
@@ -177,7 +178,9 @@ std::vector<BodyOutcome> esl_loop(std::vector<BodyProblem>& problems, const Simu
     if (rests(outcome, before, settings.tolerance)) break;
   }
   if (verdicts.all().size() < 2) return outcome;
-  judge(move(problems, simulate));
+  const std::vector<fem::Factors> factors = factors_of(problems);
+  judge(settings.judge ? settings.judge(factors)
+                       : simulate(factors).front().strain_energy_integral);
   return verdicts.take_best(problems);
 }
 

@@ -13,6 +13,10 @@ namespace flexmorph::mmc {
 /// Motion of the whole scene with these factors (one per problem) -> loads of every body.
 using Simulate = std::function<std::vector<fem::EslSets>(std::span<const fem::Factors>)>;
 
+/// ∫ U dt [J s] of another motion with these factors that judges designs better than the one loads
+/// come from (fem/README.md, Cells).
+using Judge = std::function<double(std::span<const fem::Factors>)>;
+
 /// What a cycle made of one body.
 struct BodyVerdict {
   std::string body;
@@ -23,7 +27,8 @@ struct BodyVerdict {
   double design_change = 0;
 };
 
-/// A cycle as a whole, judged by the motion with its designs.
+/// A cycle as a whole, judged by a motion with its designs: that of LoopSettings::judge, or else
+/// the one that makes loads.
 struct CycleVerdict {
   int cycle = 1;
   double objective = 0;             ///< Σ compliance of the bodies [J]
@@ -38,6 +43,7 @@ struct LoopSettings {
   double tolerance =
       0.01;  ///< stop when the sum of sharp compliances changes by less between cycles
   DesignSettings design;
+  Judge judge = {};  ///< of cycles where there are several; empty: the motion that makes loads
 };
 
 /// Looks on; false stops the run after the current iteration: the outcomes of that cycle are then
@@ -53,8 +59,9 @@ struct LoopObserver {
 };
 
 /// dynamics -> ESL -> design problem -> dynamics ..., until the designs rest, or a cycle makes the
-/// motion no better (optim/README.md, Cycles). Bodies that share mass are one design problem, the others have one each. The designs of
-/// `problems` are left at the result, that of the best cycle, and the outcomes belong to it.
+/// motion no better (optim/README.md, Cycles). Bodies that share mass are one design problem, the
+/// others have one each. The designs of `problems` are left at the result, that of the best cycle,
+/// and the outcomes belong to it.
 /// @throws Error (numerical) from dynamics or statics; rows reported before it stand.
 std::vector<BodyOutcome> esl_loop(std::vector<BodyProblem>& problems, const Simulate& simulate,
                                   const LoopSettings& settings, const LoopObserver& observer);

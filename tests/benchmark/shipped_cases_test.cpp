@@ -27,10 +27,13 @@ class ShippedCase : public ::testing::TestWithParam<Choice> {
   nlohmann::json run(const std::string& changes = "") const {
     const Scratch scratch;
     const std::string folder = scratch / "out";
+    // Motions on 400 x 40 cells, which judge the cases as shipped, take minutes each.
+    const bool plate = GetParam().plate.starts_with("rotating");
+    const std::string verify = plate ? "'verify={mesh=[20, 4]}'" : "verify=";
     const std::string command = std::string(FLEXMORPH_PROGRAM) + " run " + GetParam().plate +
                                 " -o '" + folder +
                                 "' --quiet --set optimizer.name=" + GetParam().optimizer +
-                                " --set output.vtk=false" + changes;
+                                " --set output.vtk=false --set " + verify + changes;
     const int status = std::system(command.c_str());
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << command;
     return nlohmann::json::parse(contents_of(folder + "/run.json"));
@@ -109,9 +112,11 @@ TEST_P(ShippedMechanism, EndsWithAGoodDesignAndWhereItIsExpected) {
   EXPECT_GE(json["expect"].size(), 5u);
   for (const auto& [name, expected] : json["expect"].items())
     EXPECT_TRUE(expected["holds"].get<bool>()) << name << ": " << expected;
-  // How far the judge is from the cells is said; nothing else is.
+  // How far the judge is from the cells is said, and what coarse elements bridge; nothing else is.
   for (const std::string warning : json["warnings"])
-    EXPECT_NE(warning.find("': the cells of the design say"), std::string::npos) << warning;
+    EXPECT_TRUE(warning.find("': the cells of the design say") != std::string::npos ||
+                warning.find("elements of the motion bridge") != std::string::npos)
+        << warning;
 }
 
 }  // namespace

@@ -146,7 +146,7 @@ TEST(Accuracy, RecommendsMeshesThatTheWholeCaseTakes) {
   const Ended ended = accuracy(
       scratch, "rotating_plate_v05", folder,
       {"--ladders", "elements", "--budget", "600s", "--quiet", "--set", "accuracy.at=0.05", "--set",
-       "accuracy.scale=2.5e-3", "--set", "verify.mesh=[11, 3]", "--set", "time.step=5e-3"});
+       "accuracy.scale=2.5e-3", "--set", "verify={mesh=[11, 3]}", "--set", "time.step=5e-3"});
   ASSERT_EQ(ended.code, 0) << ended.err;
   const std::string file = folder + "/rotating_plate_v05_1pct.toml";
   ASSERT_TRUE(std::filesystem::exists(file)) << ended.out;

@@ -129,7 +129,7 @@ TEST(Figures, WrongUnitsAreOutOfTheOrdinary) {
            {"slider_crank_heated", "drive.formula=\"180*t\"", "360 rad, 57.3 turns"}}) {
     Changes changes = {row.change};
     for (const char* part :
-         {"design=", "esl=", "optimizer=", "cycle=", "accuracy=", "expect=", "observe="})
+         {"design=", "esl=", "optimizer=", "cycle=", "verify=", "accuracy=", "expect=", "observe="})
       changes.emplace_back(part);
     bool found = false;
     std::string all;

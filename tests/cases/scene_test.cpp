@@ -97,7 +97,7 @@ TEST(SceneReader, OptionalPartsAreAbsentUntilListed) {
   EXPECT_TRUE(s.designs[0].empty.empty());
   const Scene more =
       read("rotating_plate_v01",
-           {"gravity=[0, -9.81]", "verify.mesh=[40, 8]", "time.start=hub_at_rest",
+           {"gravity=[0, -9.81]", "verify={mesh=[40, 8]}", "time.start=hub_at_rest",
             "optimizer.options.asyinit=0.1", "design.band=[3, 2, 1.5]",
             "expect.compliance={value=2.0, relative=0.1}", "expect.volume={at_most=0.5001}"});
   EXPECT_EQ(*more.gravity, Vec2(0, -9.81));
@@ -310,7 +310,7 @@ const Bad kBadInputs[] = {
      {"load=[{type='point', body='plate', point=[0.6, 0.0011], force=[0, 1]}]"},
      "a force on a designed body acts at a node of its design mesh"},
     {"two_verifications", {"verify.refine=2"}, "a finer run has a `mesh`, `refine` or `cells`"},
-    {"mesh_and_cells", {"verify.cells=1"}, "a finer run has a `mesh`, `refine` or `cells`"},
+    {"mesh_and_cells", {"verify.mesh=[20, 4]"}, "a finer run has a `mesh`, `refine` or `cells`"},
     {"cells_without_a_gradient",
      {"verify={cells=1}", "time.integrator=\"energy_momentum\""},
      "void on cells has no discrete gradient for \"energy_momentum\""},
@@ -326,7 +326,7 @@ const Bad kBadInputs[] = {
     {"assumed_strains_of_cells",
      {"body.terms=[\"inertia\", \"membrane_assumed\"]", "body.shape=\"q4\""},
      "\"membrane_assumed\" does not know cells (shape \"q4\")"},
-    {"coarse_verification", {"verify.mesh=[5, 2]"}, "a finer mesh than the elements of 'plate'"},
+    {"coarse_verification", {"verify={mesh=[5, 2]}"}, "a finer mesh than the elements of 'plate'"},
     {"body_named_energy", {"body.name=energy"}, "'energy' names columns of motion.csv already"},
     {"body_named_hub", {"body.name=hub"}, "there is another 'hub'"},
     {"body_with_a_blank",

@@ -187,8 +187,9 @@ TEST(Starts, AreTheSameBitForBit) {
   const Scratch scratch;
   std::string first;
   for (int k = 0; k < 6; ++k) {
-    const Ended ended = run(scratch, "four_bar",
-                            lean({"design=", "optimizer=", "esl=", "cycle=", "time.end=2e-3"}));
+    const Ended ended =
+        run(scratch, "four_bar",
+            lean({"design=", "optimizer=", "esl=", "cycle=", "verify=", "time.end=2e-3"}));
     ASSERT_EQ(ended.code, 0) << ended.err;
     const std::string table = contents_of(scratch / "run" + "/motion.csv");
     if (k == 0) first = table;

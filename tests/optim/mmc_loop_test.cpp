@@ -276,6 +276,55 @@ TEST(EslLoop, EndsWhenACycleDoesNotPay) {
   EXPECT_NE(sharp[1], sharp[2]);
 }
 
+// Where another motion judges, that of the loads has no say, and is not made where nothing follows.
+TEST(EslLoop, IsJudgedByAnotherMotion) {
+  std::vector<BodyProblem> problems = one_body({1.5});
+  LoopSettings settings = quick(5);
+  settings.max_cycles = 12;
+  settings.tolerance = 0;
+  const double integral[] = {3, 2, 2.5};
+  int calls = 0, judged = 0;
+  VectorXd seen;
+  const auto simulate = [&](std::span<const fem::Factors> factors) {
+    EXPECT_EQ(calls == 0, judged == 0);
+    if (judged > 0) {
+      EXPECT_EQ(factors[0].stiffness, seen);
+    }
+    std::vector<fem::EslSets> out{turning_plate(2)};
+    out[0].strain_energy_integral = ++calls;  // ever worse
+    return out;
+  };
+  settings.judge = [&](std::span<const fem::Factors> factors) {
+    seen = factors[0].stiffness;
+    return integral[judged++];
+  };
+  std::vector<double> sharp;
+  std::vector<CycleVerdict> verdicts;
+  LoopObserver observer;
+  observer.cycle = [&](int, std::span<const BodyOutcome> outcomes) {
+    sharp.push_back(outcomes[0].sharp.compliance);
+  };
+  observer.verdict = [&](std::span<const CycleVerdict> all) {
+    verdicts.assign(all.begin(), all.end());
+  };
+  const auto outcome = esl_loop(problems, simulate, settings, observer);
+  EXPECT_EQ(calls, 3);
+  EXPECT_EQ(judged, 3);
+  ASSERT_EQ(verdicts.size(), 3u);
+  for (size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(verdicts[k].strain_energy_integral, integral[k]);
+    EXPECT_EQ(verdicts[k].best, k == 1);
+  }
+  EXPECT_EQ(outcome[0].sharp.compliance, sharp[1]);
+
+  // One cycle is not compared with any other.
+  settings.max_cycles = 1;
+  problems = one_body({1.5});
+  judged = calls = 0;
+  esl_loop(problems, simulate, settings, {});
+  EXPECT_EQ(judged, 0);
+}
+
 TEST(EslLoop, StopsWhenTheObserverSaysSo) {
   std::vector<BodyProblem> problems = one_body();
   problems.push_back(problems[0]);

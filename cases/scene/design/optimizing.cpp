@@ -134,7 +134,9 @@ const Key& kCells =
     io::key("verify", "cells")
         .integer("a number of parts of a cell", 1, 8)
         .otherwise_as("`mesh` or `refine` is given")
-        .says("Designed bodies move on the cells of their designs, in so many parts.");
+        .says(
+            "Designed bodies move on their designs' cells, in so many parts; that judges cycles, "
+            "too.");
 const Key& kMesh = io::key("verify", "mesh")
                        .integers("a number of elements", 1, 10'000, 2, 2)
                        .otherwise_as("`refine` is given")
