@@ -30,6 +30,9 @@ constexpr double kDesignCell = 25, kDesignComponent = 900, kDesignExports = 250,
 constexpr double kEntry = 40;
 // Of a cell of a design: factors, topology description function and derivatives.
 constexpr double kCell = 1500;
+// Of bodies on cells: unsymmetric factors, and meshes that grow line by line, leave that many times
+// what one tangent takes.
+constexpr double kCellCopies = 6;
 // Loads of a design are kept as forces, displacements and what solving them takes.
 constexpr double kLoadCopies = 9;
 
@@ -145,7 +148,7 @@ void add_motions(const Scene& scene, Extent& out) {
   if (scene.judges_on_cells()) {
     const Scene cells = on_cells(scene, scene.verify->cells);
     double bytes = 0;
-    for (const Body& body : cells.bodies) bytes += moving_bytes(cells, body, 1);
+    for (const Body& body : cells.bodies) bytes += kCellCopies * moving_bytes(cells, body, 1);
     out.memory.push_back({"the verification", "verify.cells", bytes});
   } else if (const double finer = finest(scene); finer > 1) {
     double bytes = 0;
