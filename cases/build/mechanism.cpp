@@ -309,7 +309,10 @@ double stress_round_off(const Scene& scene) {
 }
 
 /// The scene with its designed bodies on the cells of their designs.
-Scene on_cells(Scene scene, int parts, int coarse) {
+namespace {
+
+/// @param coarse  cells of the motion that many cells of the design each way
+Scene on_merged_cells(Scene scene, int parts, int coarse) {
   for (const BodyDesign& design : scene.designs)
     for (Body& body : scene.bodies) {
       if (body.name != design.body) continue;
@@ -321,11 +324,15 @@ Scene on_cells(Scene scene, int parts, int coarse) {
   return scene;
 }
 
+}  // namespace
+
+Scene on_cells(Scene scene, int parts) { return on_merged_cells(std::move(scene), parts, 1); }
+
 Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh) {
   if (mesh.cells > 0) {
     MeshChoice other = mesh;
     other.cells = 0;
-    return build_mechanism(on_cells(scene, mesh.cells, mesh.coarse), other);
+    return build_mechanism(on_merged_cells(scene, mesh.cells, mesh.coarse), other);
   }
   Mechanism out;
   const auto elements = [&](const Body& body) {

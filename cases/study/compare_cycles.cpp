@@ -99,6 +99,8 @@ void write(const std::vector<Result>& results, const std::string& directory,
 int compare_cycles(const CompareCyclesOptions& wanted) {
   CompareCyclesOptions options = wanted;
   StudyOptions& study = options.study;
+  // Settings of cycles that correct are none of others.
+  study.overrides.insert(study.overrides.begin(), "cycle.correct=first_order");
   const Scene scene = read_scene(io::CaseFile(find_case(study.case_name), study.overrides));
   if (scene.designs.empty() || scene.domain)
     throw Error::input("case '" + scene.name +

@@ -85,6 +85,7 @@ class Secants {
   /// R of R Rᵀ (n x rank).
   MatrixXd root(Eigen::Index n) const {
     const auto m = static_cast<Eigen::Index>(pairs_.size());
+    if (m == 0) return MatrixXd(n, 0);
     MatrixXd S(n, m), Y(n, m);
     for (Eigen::Index k = 0; k < m; ++k) {
       S.col(k) = pairs_[static_cast<size_t>(k)].first;
