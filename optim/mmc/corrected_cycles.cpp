@@ -213,7 +213,7 @@ class Corrector {
 
   /// One cycle of first order. @return was its design taken?
   bool step(int cycle) {
-    constexpr double kTaken = 0.1, kGood = 0.75, kPoor = 0.25;
+    constexpr double kTaken = 0.1, kGood = 0.75, kPoor = 0.25, kMissed = 1e-5;
     MotionState state = motion_state_of(parts_, motion_);
     Whole moved(parts_, &state), loaded(parts_);
     const VectorXd x = loaded.problem().start();
@@ -244,10 +244,14 @@ class Corrector {
     } catch (const Error& error) {
       if (error.kind() != Error::Kind::numerical) throw;
     }
+    // After a design was taken its sharp volume is looked up anew: it may ask for a little more.
+    const double missed = std::max(0.0, here.g.maxCoeff());
+    const bool restores = now_.predicted <= 0 && missed > kMissed && std::isfinite(now_.actual) &&
+                          found.violation < 0.5 * missed && now_.actual > -10 * missed;
     const double ratio = now_.predicted > 0 ? now_.actual / now_.predicted : -1;
     const bool at_edge = (found.x - x).lpNorm<Eigen::Infinity>() > 0.99 * radius_;
-    now_.accepted = ratio >= kTaken;
-    if (ratio < kPoor)
+    now_.accepted = ratio >= kTaken || restores;
+    if (ratio < kPoor && !restores)
       radius_ *= 0.5;
     else if (ratio > kGood && at_edge)
       radius_ *= 2;

@@ -198,7 +198,7 @@ const Bad kBadInputs[] = {
      "a width is positive [m]; a number stands without quotes"},
     {"negative_thickness", {"body.thickness=-0.002"}, "a thickness is positive [m]"},
     {"correction_of_adaptive_steps",
-     {"cycle.correct=first_order", "time.tolerance=1e-4"},
+     {"cycle.correct=first_order", "time.step=adaptive"},
      "there is no exact gradient: steps that adapt depend on the design (time.tolerance)"},
     {"correction_of_another_integrator",
      {"cycle.correct=direct", "time.integrator=energy_momentum", "verify="},

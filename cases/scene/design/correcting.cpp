@@ -22,10 +22,11 @@ const io::Choice<Correction> kCorrect(
     {{"none", Correction::none},
      {"first_order", Correction::first_order},
      {"direct", Correction::direct}});
-const Key& kCorrections = io::key("cycle", "corrections")
-                              .integer("a number of cycles", 0, 100'000)
-                              .otherwise(mmc::CorrectionSettings().max_cycles)
-                              .says("Corrected cycles at most, or iterations of `direct`; 0: J is measured.");
+const Key& kCorrections =
+    io::key("cycle", "corrections")
+        .integer("a number of cycles", 0, 100'000)
+        .otherwise(mmc::CorrectionSettings().max_cycles)
+        .says("Corrected cycles at most, or iterations of `direct`; 0: J is measured.");
 const Key& kKktPart = io::key("cycle", "kkt_part")
                           .number(io::between("a part", "", 0, 1))
                           .otherwise(mmc::CorrectionSettings().kkt_part)
@@ -139,17 +140,17 @@ void read_correction(const Table& root, Scene& scene) {
   const Table cycle = root.table_or_empty(tables::kCycle);
   mmc::CorrectionSettings& s = scene.cycle.correction;
   s.kind = cycle.choice(kCorrect);
-  s.max_cycles = cycle.integer(kCorrections);
-  s.kkt_part = cycle.number(kKktPart);
-  s.radius = cycle.number(kRadius);
-  s.inner_iterations = cycle.integer(kInner);
-  s.secants = cycle.integer(kSecants);
   s.optimizer = scene.optimizer;
   s.optimizer.rest.rows = 0;
   const bool corrects = s.kind != Correction::none;
   const std::string why = no_gradient_because(scene);
   if (corrects && !why.empty()) cycle.fail(kCorrect, "there is no exact gradient: " + why);
   if (corrects) {
+    s.max_cycles = cycle.integer(kCorrections);
+    s.kkt_part = cycle.number(kKktPart);
+    s.radius = cycle.number(kRadius);
+    s.inner_iterations = cycle.integer(kInner);
+    s.secants = cycle.integer(kSecants);
     read_motion_keys(cycle, kOfCycle, scene, scene.cycle);
   } else {
     for (const Key* key : {&kCorrections, &kKktPart, &kRadius, &kInner, &kSecants, &kOfCycle.cell,
