@@ -1,7 +1,9 @@
 #include "cases/run/corrections.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "cases/build/scene_motion.h"
 #include "io/files.h"
@@ -144,58 +146,123 @@ void take_designs(const std::vector<mmc::BodyProblem>& from, std::vector<mmc::Bo
     to[k].design = to[k].design.without_symmetry().with(from[k].design.components());
 }
 
+/// J of the designs as their outlines are, on the cells of the case.
+double sharp_value(const Scene& scene, const std::vector<mmc::BodyProblem>& problems,
+                   const std::function<bool()>& go_on) {
+  SceneMotion motion(scene, {0, scene.time.step, 0}, go_on);
+  std::vector<mmc::MotionRow> rows;
+  std::vector<VectorXd> fractions;
+  for (size_t k = 0; k < problems.size(); ++k) {
+    const mmc::MotionRow row{problems[k].motion_goal.objective, k};
+    const auto same = [&](const mmc::MotionRow& other) { return row.same_as(other); };
+    if (std::none_of(rows.begin(), rows.end(), same)) rows.push_back(row);
+    fractions.push_back(mmc::fractions_of(problems[k], problems[k].design.components()));
+  }
+  double sum = 0;
+  for (const double each : motion.sharp(rows, fractions)) sum += each;
+  return sum;
+}
+
+/// The cycles of one run that correct its designs, and whether they are kept.
+class Correcting {
+ public:
+  Correcting(const Scene& scene, const std::function<bool()>& go_on, RunFolder& folder,
+             Progress& progress, RunReport& report)
+      : scene_(scene), go_on_(go_on), folder_(folder), progress_(progress), report_(report) {}
+
+  void go(std::vector<fem::EslSets>& loads) {
+    const std::vector<mmc::BodyProblem> plain = report_.problems;
+    for (const mmc::BodyProblem& problem : plain) folder_.keep_outline(problem, "design_esl");
+    correct();
+    if (report_.corrections.size() < 2) {  // nothing was corrected
+      report_.problems = plain;
+      return;
+    }
+    LoadsOfDesigns last = loads_of(scene_, report_.problems, go_on_, folder_);
+    std::vector<mmc::BodyOutcome> found = outcomes(last);
+    report_.corrected = {.before = sharp_value(scene_, plain, go_on_),
+                         .after = sharp_value(scene_, report_.problems, go_on_)};
+    progress_.say(corrected_words(*report_.corrected));
+    if (!report_.corrected->pays()) {
+      report_.problems = plain;
+      return;
+    }
+    loads = std::move(last.sets());
+    for (size_t k = 0; k < found.size(); ++k) take(std::move(found[k]), loads[k], k);
+  }
+
+ private:
+  /// The cycles; the designs of the report are then what they came to.
+  void correct() {
+    const Scene coarse = with_cells(scene_, scene_.cycle.cell);
+    SceneMotion motion(coarse, {0, scene_.cycle.step, scene_.cycle.checkpoints}, go_on_);
+    std::vector<mmc::BodyProblem> problems = build_problems(coarse);
+    take_designs(report_.problems, problems);
+    std::optional<LoadsOfDesigns> current;
+    const mmc::LoadsAt loads_at = [&] {
+      current.emplace(loads_of(coarse, problems, go_on_, folder_));
+      return current->of(problems);
+    };
+    const mmc::SeeCycle see = [&](const mmc::CorrectedCycle& cycle) {
+      report_.corrections.push_back(cycle);
+      folder_.write_cycles(report_.verdicts, report_.corrections);
+      progress_.say(corrected_words(cycle));
+      return go_on_();
+    };
+    mmc::correct_designs(problems, loads_at, motion, scene_.cycle.correction, see);
+    if (!go_on_()) throw Interrupted();
+    take_designs(problems, report_.problems);
+  }
+
+  std::vector<mmc::BodyOutcome> outcomes(const LoadsOfDesigns& loads) {
+    const std::vector<std::unique_ptr<mmc::LoadResponse>> responses = loads.of(report_.problems);
+    std::vector<mmc::LoadedBody> bodies;
+    for (size_t k = 0; k < responses.size(); ++k)
+      bodies.push_back({report_.problems[k], *responses[k]});
+    std::vector<mmc::BodyOutcome> out = mmc::outcomes_of_corrected(bodies, go_on_);
+    if (!go_on_()) throw Interrupted();
+    return out;
+  }
+
+  /// The outcome of a body in place of the one before.
+  void take(mmc::BodyOutcome found, const fem::EslSets& loads, size_t body) {
+    mmc::BodyOutcome& before = report_.outcomes[body];
+    found.iterations = before.iterations;
+    found.evaluations = before.evaluations;
+    found.kkt = before.kkt;
+    found.stop = before.stop + "; then corrected by " +
+                 std::to_string(report_.corrections.back().motions) + " motions";
+    if (!found.clean_up) found.clean_up = before.clean_up;
+    for (size_t l = 0; l < loads.sets.size(); ++l)
+      found.energy_ratios.push_back(0.5 * found.load_compliances[l] / loads.sets[l].strain_energy);
+    before = std::move(found);
+    folder_.write_loads(before.body, loads, &before);
+    folder_.write_design(report_.problems[body], before);
+  }
+
+  const Scene& scene_;
+  const std::function<bool()>& go_on_;
+  RunFolder& folder_;
+  Progress& progress_;
+  RunReport& report_;
+};
+
 }  // namespace
+
+std::string corrected_words(const CorrectedMotion& c) {
+  return "corrected, J of the outlines on the cells of the case is " + io::to_text(c.after, 6) +
+         " instead of " + io::to_text(c.before, 6) +
+         (c.pays() ? "" : ": no less, the designs for loads are kept");
+}
 
 void correct_by_motion(const Scene& scene, const std::function<bool()>& go_on,
                        std::vector<fem::EslSets>& loads, RunFolder& folder, Progress& progress,
                        RunReport& report) {
   progress.begin("corrected cycles");
-  const Scene coarse = with_cells(scene, scene.cycle.cell);
-  SceneMotion motion(coarse, {0, scene.cycle.step, scene.cycle.checkpoints}, go_on);
-  for (const mmc::BodyProblem& problem : report.problems)
-    folder.keep_outline(problem, "design_esl");
-  std::vector<mmc::BodyProblem> problems = build_problems(coarse);
-  take_designs(report.problems, problems);
-  std::optional<LoadsOfDesigns> current;
-  const mmc::LoadsAt loads_at = [&] {
-    current.emplace(loads_of(coarse, problems, go_on, folder));
-    return current->of(problems);
-  };
-  const mmc::SeeCycle see = [&](const mmc::CorrectedCycle& cycle) {
-    report.corrections.push_back(cycle);
-    folder.write_cycles(report.verdicts, report.corrections);
-    progress.say(corrected_words(cycle));
-    return go_on();
-  };
   try {
-    mmc::correct_designs(problems, loads_at, motion, scene.cycle.correction, see);
+    Correcting(scene, go_on, folder, progress, report).go(loads);
   } catch (const StoppedMotion&) {
     throw Interrupted();
-  }
-  if (!go_on()) throw Interrupted();
-  take_designs(problems, report.problems);
-  LoadsOfDesigns last = loads_of(scene, report.problems, go_on, folder);
-  const std::vector<std::unique_ptr<mmc::LoadResponse>> responses = last.of(report.problems);
-  std::vector<mmc::LoadedBody> bodies;
-  for (size_t k = 0; k < responses.size(); ++k)
-    bodies.push_back({report.problems[k], *responses[k]});
-  std::vector<mmc::BodyOutcome> found = mmc::outcomes_of_corrected(bodies, go_on);
-  if (!go_on()) throw Interrupted();
-  loads = std::move(last.sets());
-  for (size_t k = 0; k < found.size(); ++k) {
-    mmc::BodyOutcome& before = report.outcomes[k];
-    found[k].iterations = before.iterations;
-    found[k].evaluations = before.evaluations;
-    found[k].kkt = before.kkt;
-    found[k].stop =
-        before.stop + "; then corrected by " + std::to_string(motion.motions()) + " motions";
-    if (!found[k].clean_up) found[k].clean_up = before.clean_up;
-    for (size_t l = 0; l < loads[k].sets.size(); ++l)
-      found[k].energy_ratios.push_back(0.5 * found[k].load_compliances[l] /
-                                       loads[k].sets[l].strain_energy);
-    before = std::move(found[k]);
-    folder.write_loads(before.body, loads[k], &before);
-    folder.write_design(report.problems[k], before);
   }
 }
 

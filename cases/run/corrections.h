@@ -7,9 +7,10 @@
 /// What the motion itself does to designs and says of them: corrected cycles, the certificate.
 namespace flexmorph::cases {
 
-/// Corrects the designs of the report (Cycle::correction); its outcomes, and the loads, are then
-/// those of the result. The design before is kept as a drawing. Writes cycles.csv as it goes. With
-/// Cycle::cell designs, too, are on these cells meanwhile.
+/// Corrects the designs of the report (Cycle::correction); where the motion with their outlines, on
+/// the cells of the case, is better by it, its outcomes and the loads are those of the result. The
+/// design before is kept as a drawing. Writes cycles.csv as it goes. With Cycle::cell designs, too,
+/// are on these cells meanwhile.
 /// @throws Interrupted; as mmc::correct_designs()
 void correct_by_motion(const Scene& scene, const std::function<bool()>& go_on,
                        std::vector<fem::EslSets>& loads, RunFolder& folder, Progress& progress,
@@ -26,6 +27,8 @@ void certify_by_motion(const Scene& scene, const Certify& wishes,
 std::string certificate_words(const mmc::MotionCertificate& certificate);
 /// "gradient of J and of the loads 12 degrees apart, ..." of a cycle.
 std::string corrected_words(const mmc::CorrectedCycle& cycle);
+
+std::string corrected_words(const CorrectedMotion& corrected);
 
 struct CertifyOptions {
   std::string directory;               ///< of a finished run

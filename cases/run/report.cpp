@@ -133,6 +133,7 @@ io::ReportSection cycles_section(const Scene& scene, const RunReport& report) {
 io::ReportSection corrections_section(const RunReport& report) {
   io::ReportSection out;
   out.heading = "Cycles of the motion itself";
+  if (report.corrected) out.words = corrected_words(*report.corrected) + ".";
   out.rows.push_back({"cycle", "J", "KKT residual", "trust region", "predicted fall", "actual fall",
                       "taken", "motions", "CPU [s]"});
   for (const mmc::CorrectedCycle& c : report.corrections)

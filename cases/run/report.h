@@ -27,6 +27,12 @@ struct EnergyComparison {
   }
 };
 
+/// What came of cycles that correct: J of the outlines on the cells of the case.
+struct CorrectedMotion {
+  double before = 0, after = 0;
+  bool pays() const { return after < before; }
+};
+
 /// Everything a run knows at its end (or at its failure).
 struct RunReport {
   std::string status, message;
@@ -45,6 +51,7 @@ struct RunReport {
   std::vector<JudgedBody> judged;  ///< final designs, in the order of the outcomes; or none yet
   std::vector<mmc::CycleVerdict> verdicts;       ///< of a run of several cycles
   std::vector<mmc::CorrectedCycle> corrections;  ///< the design they begin with, then every cycle
+  std::optional<CorrectedMotion> corrected;
   std::optional<mmc::MotionCertificate> certificate;
   std::optional<PathRecord> path;                          ///< of a [static] analysis
   std::optional<MotionRecord> motion, uniform_motion;      ///< of the design; of uniform material

@@ -413,6 +413,13 @@ std::string run_json(const Scene& scene, const RunReport& report) {
     for (const mmc::CorrectedCycle& c : report.corrections) cycles.push_back(corrected_results(c));
     out["corrected_cycles"] = std::move(cycles);
   }
+  if (report.corrected) {
+    Json corrected = Json::object();
+    corrected["sharp_before"] = report.corrected->before;
+    corrected["sharp_after"] = report.corrected->after;
+    corrected["kept"] = report.corrected->pays();
+    out["corrected"] = std::move(corrected);
+  }
   if (report.certificate) out["certificate"] = certificate_results(*report.certificate);
   if (scene.has_heat()) out["heat"] = heat_results(scene);
   if (report.motion) out["motion"] = motion_results(scene, report);

@@ -220,6 +220,11 @@ Warnings warnings_of(const Scene& scene, const RunReport& report) {
   Warnings out;
   add_designs(report, out);
   add_cycles(scene.cycle, report.verdicts, out);
+  if (report.corrected && !report.corrected->pays())
+    out.push_back({"corrected cycles did not pay on the cells of the case and were taken back: J " +
+                   io::to_text(report.corrected->after, 5) + " instead of " +
+                   io::to_text(report.corrected->before, 5) +
+                   "; cycle.cell of the design itself sees what it sees"});
   add_energies(report, out);
   if (report.motion) add_motion(scene, *report.motion, out);
   if (!report.lost_frames.empty()) out.push_back({report.lost_frames});
