@@ -95,6 +95,9 @@ class Workspace : public Model {
   /// @param out  what kkt() made of this pattern_version()
   void renew_kkt(const State& x, const Constraints& c, const Weights& w, double scale,
                  const std::vector<char>& chosen, SparseMatrix& out);
+  /// out += (w.q F_q + w.v F_v + w.a M)ᵀ ψ, F of force(), without a matrix.
+  /// @param psi, out  (n_dofs)
+  void add_transposed_product(const State& x, const Weights& w, const VectorXd& psi, VectorXd& out);
 
   /// Mean force of a step from q₀ to q₁ that keeps the energy, see Term::add_mean_force(); mean:
   /// the mean state.

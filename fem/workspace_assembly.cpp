@@ -283,6 +283,32 @@ void Workspace::kkt(const State& x, const Constraints& c, const Weights& w, doub
   fill_joints(x, scale * w.q, c, c, out);
 }
 
+void Workspace::add_transposed_product(const State& x, const Weights& w, const VectorXd& psi,
+                                       VectorXd& out) {
+  if (has_free_lines())
+    throw Error::input("products without a matrix do not know free material lines");
+  prepare(x);
+  for_batches(x, kTangentsPerThread, [&](const Batch& batch, const BatchPlaces& places) {
+    Lanes tangent[kMaxLocal * kMaxLocal], own[kMaxLocal];
+    const int n = batch.n_local();
+    std::fill(tangent, tangent + n * n, Lanes{});
+    for (const auto& term : bodies_[places.body].terms) term->add_tangents(batch, w, tangent);
+    const int* dof = places.dofs.data();
+    for (int k = 0; k < n; ++k, dof += kLanes)
+      for (int lane = 0; lane < kLanes; ++lane) own[k][lane] = psi.data()[dof[lane]];
+    const Lanes* entry = tangent;  // by columns
+    dof = places.dofs.data();
+    for (int column = 0; column < n; ++column, entry += n, dof += kLanes) {
+      Lanes sum{};
+      for (int k = 0; k < n; ++k) sum += entry[k] * own[k];
+      for (int lane = 0; lane < batch.count; ++lane) out.data()[dof[lane]] += sum[lane];
+    }
+  });
+  link_entries_.clear();
+  for (const auto& link : links_) link->add_tangent(x, w, link_entries_);
+  for (const auto& entry : link_entries_) out[entry.col()] += entry.value() * psi[entry.row()];
+}
+
 void Workspace::mean_kkt(const State& mean, const VectorXd& q0, const VectorXd& q1,
                          const Constraints& at_mean, const Constraints& at_end, const Weights& w,
                          double scale, SparseMatrix& out) {

@@ -115,22 +115,20 @@ class Sweep {
   /// @param is_first  does it begin with the start of the motion?
   void back(Workspace& model, const Trajectory& part, size_t last, bool is_first) {
     model_ = &model;
-    TransposedSystem steps(model), projections(model);
+    TransposedSystem system(model);
     size_t change = part.changes.size(), seen = last;
     for (size_t i = part.points.size() - 1; i > 0; --i) {
       if (change > 0 && part.changes[change - 1].after + 1 == i) {
         --change;
-        back_through(part.changes[change], part.points[i - 1].x, part.points[i].x, projections);
+        back_through(part.changes[change], part.points[i - 1].x, part.points[i].x, system);
         continue;
       }
       add_measures(part.points[i].x, seen--);
-      back_through_step(part.points[i].x, part.points[i].x.t - part.points[i - 1].x.t, steps);
+      back_through_step(part.points[i].x, part.points[i].x.t - part.points[i - 1].x.t, system);
     }
     if (is_first) add_measures(part.points[0].x, 0);
-    for (const TransposedSystem* system : {&steps, &projections}) {
-      factorizations_ += system->factorizations();
-      iterations_ += system->iterations();
-    }
+    factorizations_ += system.factorizations();
+    iterations_ += system.iterations();
   }
 
   /// Accelerations, multipliers and velocities that the start was given (Integrator).
@@ -310,16 +308,17 @@ class Gradient {
   MotionGradients go() {
     MotionGradients out;
     const double begin = cpu_seconds();
-    Workspace model(model_);
-    move(model, out.motion);
+    auto model = std::make_unique<Workspace>(model_);
+    move(*model, out.motion);
     const double moved = cpu_seconds();
     Sweep sweep(objectives_, gradient_, AlphaScheme(settings_.alpha.rho_inf));
-    begin_at_end(model, sweep);
+    begin_at_end(*model, sweep);
     if (memories_.empty()) {
-      sweep.back(model, out.motion.trajectory, watched_.times().size() - 1, true);
+      sweep.back(*model, out.motion.trajectory, watched_.times().size() - 1, true);
       start_ = out.motion.trajectory.points.front().x;
-      back_through_start(model, sweep);
+      back_through_start(*model, sweep);
     } else {
+      model.reset();  // every part has one of its own
       back_by_parts(sweep);
     }
     for (Swept& s : sweep.all()) out.of.push_back(std::move(s.out));

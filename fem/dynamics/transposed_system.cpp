@@ -1,47 +1,166 @@
 #include "fem/dynamics/transposed_system.h"
 
+#include <Eigen/Jacobi>
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace flexmorph::fem {
+
+namespace {
+
+/// Have stiffness and mass about the same parts in both?
+bool alike(const Weights& a, const Weights& b) {
+  constexpr double kFar = 0.3;
+  const double x = a.q * b.a, y = b.q * a.a;
+  return std::abs(x - y) <= kFar * std::max(std::abs(x), std::abs(y));
+}
+
+}  // namespace
 
 void TransposedSystem::set(const State& x, const Weights& w, double scale, const VectorXd& spin) {
   model_.constraints(x, constraints_);
   model_.kkt(x, constraints_, w, scale, matrix_);
   if (spin.size() > 0) {
-    model_.kkt(x, constraints_, {0, 0, 1}, scale, part_);
+    model_.kkt(x, constraints_, {0, 0, 1}, scale, mass_);
     for (int column = 0; column < model_.n_dofs(); ++column)
       for (int p = matrix_.outerIndexPtr()[column]; p < matrix_.outerIndexPtr()[column + 1]; ++p)
         if (matrix_.innerIndexPtr()[p] < model_.n_dofs())
-          matrix_.valuePtr()[p] -= spin[column] * part_.valuePtr()[p];
+          matrix_.valuePtr()[p] -= spin[column] * mass_.valuePtr()[p];
   }
-  if (version_ != model_.pattern_version()) {
-    version_ = model_.pattern_version();
-    is_factored_ = false;
-    scales_ = model_.scales();
-    solver_.analyze(matrix_);
-  }
+  q_ = x.q;
+  weights_ = w;
+  if (version_ != model_.pattern_version()) make_room();
+  is_factored_ = is_factored_ && alike(w, factored_weights_);
   const int n = model_.n_dofs();
   for (int column = 0; column < matrix_.cols(); ++column)
     for (SparseMatrix::InnerIterator entry(matrix_, column); entry; ++entry) {
       if (column < n) entry.valueRef() /= scales_[column];
       if (entry.row() < n) entry.valueRef() /= scales_[entry.row()];
     }
+  if (is_factored_) find_turns();
+}
+
+/// For a mesh that was not seen before.
+void TransposedSystem::make_room() {
+  version_ = model_.pattern_version();
+  is_factored_ = false;
+  scales_ = model_.scales();
+  solver_.analyze(matrix_);
+  basis_.resize(matrix_.rows(), kMostDirections + 1);
+  directions_.resize(matrix_.rows(), kMostDirections);
 }
 
 void TransposedSystem::factorize() {
   constexpr double kMiss = 0.02;  // as of the steps themselves
   factored_ = matrix_;
+  factored_q_ = q_;
+  factored_weights_ = weights_;
   solver_.factorize(factored_, kMiss);
   is_factored_ = true;
+  find_turns();
   ++factorizations_;
+}
+
+/// Angles by least squares: of positions about their mean, of slopes as they are.
+void TransposedSystem::find_turns() {
+  turned_.clear();
+  for (const Body& b : model_.bodies()) {
+    const Element& element = *b.element;
+    Vec2 before = Vec2::Zero(), now = Vec2::Zero();  // mean positions
+    int positions = 0;
+    const int n = element.dim() == 2 ? element.n_vectors() : 0;
+    for (int k = 0; k < n; ++k) {
+      if (!element.is_position(k)) continue;
+      before += factored_q_.segment<2>(b.first_dof + 2 * k);
+      now += q_.segment<2>(b.first_dof + 2 * k);
+      ++positions;
+    }
+    double along = 0, across = 0;
+    for (int k = 0; k < n; ++k) {
+      const int at = b.first_dof + 2 * k;
+      Vec2 from = factored_q_.segment<2>(at), to = q_.segment<2>(at);
+      if (element.is_position(k)) {
+        from -= before / positions;
+        to -= now / positions;
+      }
+      const double weight = element.scale(k) * element.scale(k);
+      along += weight * from.dot(to);
+      across += weight * (from.x() * to.y() - from.y() * to.x());
+    }
+    turned_.emplace_back(along > 0 ? std::atan2(across, along) : 0.0);
+  }
+}
+
+/// Turns the vector unknowns of all bodies.
+void TransposedSystem::turn(VectorXd& x, bool back) const {
+  for (size_t i = 0; i < turned_.size(); ++i) {
+    const Body& b = model_.bodies()[i];
+    if (turned_[i].angle() == 0) continue;
+    const Eigen::Matrix2d by = (back ? turned_[i].inverse() : turned_[i]).toRotationMatrix();
+    Eigen::Map<Eigen::Matrix2Xd> vectors(x.data() + b.first_dof, 2, b.element->n_vectors());
+    vectors = (by * vectors).eval();
+  }
+}
+
+/// R J⁻ᵀ Rᵀ of the kept factor.
+void TransposedSystem::solve_kept(const VectorXd& right, VectorXd& out) {
+  turning_ = right;
+  turn(turning_, true);
+  solver_.solve_transposed(factored_, turning_, out, false);
+  turn(out, false);
+  ++iterations_;
+}
+
+/// Adds to found_ what makes the residual smallest over a number of solutions with the kept factor.
+/// @returns whether it fell as fast as it should.
+bool TransposedSystem::improve(double left, double aim, bool fresh) {
+  // By which, after so many, a factor that is worth keeping has lowered the residual: a new one
+  // costs as much as a dozen solutions.
+  constexpr int kLook = 4;
+  constexpr double kSlow = 1e-4;
+  Eigen::Matrix<double, kMostDirections + 1, kMostDirections> h;
+  Eigen::Matrix<double, kMostDirections + 1, 1> g;
+  std::array<Eigen::JacobiRotation<double>, kMostDirections> givens;
+  h.setZero();
+  g.setZero();
+  g[0] = left;
+  basis_.col(0) = rest_ / left;
+  int k = 0;
+  bool slow = false;
+  while (k < kMostDirections && !slow && std::abs(g[k]) > aim) {
+    image_ = basis_.col(k);
+    solve_kept(image_, solution_);
+    directions_.col(k) = solution_;
+    image_.noalias() = matrix_.transpose() * solution_;
+    for (int i = 0; i <= k; ++i) {
+      h(i, k) = basis_.col(i).dot(image_);
+      image_ -= h(i, k) * basis_.col(i);
+    }
+    h(k + 1, k) = image_.norm();
+    if (!std::isfinite(h(k + 1, k)))
+      throw Error::numerical("adjoint: the equations of a step are singular");
+    if (h(k + 1, k) > 0) basis_.col(k + 1) = image_ / h(k + 1, k);
+    for (int i = 0; i < k; ++i)
+      h.col(k).applyOnTheLeft(i, i + 1, givens[static_cast<size_t>(i)].adjoint());
+    Eigen::JacobiRotation<double>& last = givens[static_cast<size_t>(k)];
+    last.makeGivens(h(k, k), h(k + 1, k));
+    h.col(k).applyOnTheLeft(k, k + 1, last.adjoint());
+    g.applyOnTheLeft(k, k + 1, last.adjoint());
+    ++k;
+    slow = !fresh && k == kLook && std::abs(g[k]) > kSlow * left;
+  }
+  const VectorXd y = h.topLeftCorner(k, k).triangularView<Eigen::Upper>().solve(g.head(k));
+  found_.noalias() += directions_.leftCols(k) * y;
+  return !slow;
 }
 
 void TransposedSystem::solve(const VectorXd& seed, const VectorXd& rows, VectorXd& psi,
                              VectorXd& chi) {
-  // A kept factor that contracts less is replaced; a fresh one that no longer contracts is at
-  // round-off, or the matrix is singular.
-  constexpr double kContraction = 0.3, kEnough = 1e-13, kRoundOff = 1e-7;
-  constexpr int kMost = 100;
+  // A fresh factor with which the residual no longer falls is at round-off, or the matrix is
+  // singular.
+  constexpr double kEnough = 1e-12, kStuck = 0.5, kRoundOff = 1e-7;
+  constexpr int kMost = 8;
   const int n = model_.n_dofs(), m = model_.n_constraints();
   right_.resize(n + m);
   right_ << seed.cwiseQuotient(scales_), rows;
@@ -52,36 +171,23 @@ void TransposedSystem::solve(const VectorXd& seed, const VectorXd& rows, VectorX
   rest_ = right_;
   double left = size;
   for (int k = 0; k < kMost && left > kEnough * size; ++k) {
-    solver_.solve_transposed(factored_, rest_, correction_, false);
-    ++iterations_;
-    found_ += correction_;
+    last_ = found_;
+    const bool fast = improve(left, kEnough * size, fresh);
     rest_ = right_;
     rest_.noalias() -= matrix_.transpose() * found_;
-    const double now = rest_.norm(), contraction = now / left;
-    if (!std::isfinite(now))
-      throw Error::numerical("adjoint: the equations of a step are singular");
-    if (contraction > kContraction) {
-      if (fresh && contraction > 0.9) {
-        if (now > left) {
-          found_ -= correction_;
-        } else {
-          left = now;
-        }
-        break;
-      }
-      if (!fresh) {
-        if (now > left) {  // what came of the old factor is worse than nothing
-          found_ -= correction_;
-          rest_ = right_;
-          rest_.noalias() -= matrix_.transpose() * found_;
-        }
-        factorize();
-        fresh = true;
-        left = rest_.norm();
-        continue;
-      }
+    const double now = rest_.norm();
+    if (!(now < left)) {
+      found_ = last_;
+      rest_ = right_;
+      rest_.noalias() -= matrix_.transpose() * found_;
     }
-    left = now;
+    const bool stuck = !(now < kStuck * left);
+    left = std::min(now, left);
+    if (fresh && stuck) break;
+    if (!fresh && (!fast || stuck)) {
+      factorize();
+      fresh = true;
+    }
   }
   if (left > kRoundOff * size)
     throw Error::numerical("adjoint: the equations of a step are singular, or nearly so");
@@ -90,9 +196,9 @@ void TransposedSystem::solve(const VectorXd& seed, const VectorXd& rows, VectorX
 }
 
 VectorXd TransposedSystem::part(const State& x, const Weights& w, const VectorXd& psi) {
-  model_.kkt(x, constraints_, w, 1, part_);
-  const int n = model_.n_dofs();
-  return part_.topLeftCorner(n, n).transpose() * psi;
+  VectorXd out = VectorXd::Zero(model_.n_dofs());
+  model_.add_transposed_product(x, w, psi, out);
+  return out;
 }
 
 VectorXd TransposedSystem::by_velocity(const State& x, const VectorXd& psi) {
@@ -104,7 +210,7 @@ VectorXd TransposedSystem::by_acceleration(const State& x, const VectorXd& psi) 
 }
 
 VectorXd TransposedSystem::by_position(const State& x, const VectorXd& psi) {
-  return part(x, {1, 0, 0}, psi);
+  return part(x, {1, 0, 0}, psi) + model_.constraint_curvature(x, x.lambda, psi);
 }
 
 VectorXd TransposedSystem::by_rows(const VectorXd& chi) const {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <Eigen/Geometry>
+#include <vector>
+
 #include "fem/solve/linear_solver.h"
 #include "fem/workspace.h"
 
@@ -10,8 +13,10 @@ namespace flexmorph::fem {
 ///   J = [ scale (w.q (F + Φ_qᵀ λ)_q + w.v F_v + w.a M)   Φ_qᵀ ]
 ///       [ Φ_q                                            0    ]
 ///
-/// A factor is kept for later matrices while it lets the residual fall fast; solutions meet the
-/// matrix that was set last.
+/// A factor is kept for later matrices, and turned with the bodies: rotated bodies have the same
+/// matrix in axes that rotate with them, J' = R J Rᵀ but for strains, constraints and moving lines.
+/// What it leaves is found by the residual's smallest combination over all solutions with it
+/// (GMRES; Saad, Schultz 1986), which meets the matrix that was set last.
 class TransposedSystem {
  public:
   /// @param model  lives longer
@@ -39,14 +44,27 @@ class TransposedSystem {
   int iterations() const { return iterations_; }
 
  private:
+  static constexpr int kMostDirections = 12;
+
   VectorXd part(const State& x, const Weights& w, const VectorXd& psi);
+  void make_room();
   void factorize();
+  bool improve(double left, double aim, bool fresh);
+  void solve_kept(const VectorXd& right, VectorXd& out);
+  void find_turns();
+  void turn(VectorXd& x, bool back) const;
 
   Workspace& model_;
   UnsymmetricSolver solver_;
   Constraints constraints_;
-  SparseMatrix matrix_, factored_, part_;
-  VectorXd scales_, right_, rest_, found_, correction_;
+  SparseMatrix matrix_, factored_, mass_;
+  VectorXd scales_, right_, rest_, found_, last_;
+  VectorXd q_, factored_q_;                 // where they were set
+  Weights weights_, factored_weights_;      // as of what
+  std::vector<Eigen::Rotation2Dd> turned_;  // of every body since
+  // GMRES: an orthonormal basis of residuals, directions whose images they are.
+  MatrixXd basis_, directions_;
+  VectorXd image_, turning_, solution_;
   int version_ = -1;
   bool is_factored_ = false;
   int factorizations_ = 0, iterations_ = 0;

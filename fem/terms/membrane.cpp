@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "fem/terms.h"
@@ -57,6 +58,7 @@ class Membrane final : public ElasticTerm {
   }
   void prepare(const Element& element, const Factors& factors, bool all) override {
     tabulated_ = -1;
+    scaled_from_ = nullptr;
     prepare_parts(element, factors);
     if (all) {
       dim_ = element.dim();
@@ -469,12 +471,32 @@ class Membrane final : public ElasticTerm {
                       equal(previous_.weight, table_.weight) && equal(previous_.f_m, table_.f_m) &&
                       equal(previous_.f_n, table_.f_n);
     tabulated_ = e;
-    if (!same) {
-      const ProductTable vectors = even_and_odd(table_, function_m_, function_n_);
-      last_ = std::make_shared<std::vector<double>>(
-          membrane_invariant(vectors, pairs_, elasticity_, strains_));
-    }
+    if (!same) last_ = scaled();
     return last_;
+  }
+
+  /// W of table_. Cells of one shape, each of one material, differ by a factor: it is made once.
+  Packed scaled() {
+    const auto equal = [](const MatrixXd& x, const MatrixXd& y) { return x.isApprox(y, 1e-13); };
+    const bool cell = kinds_ == 1 && coupling_ == Coupling::all;
+    if (cell && scaled_from_) {
+      const ProductTable &a = scaled_from_table_, &b = table_;
+      const double factor = b.weight.sum() / a.weight.sum();
+      if (b.weight.rows() == a.weight.rows() && b.weight.cols() == a.weight.cols() &&
+          std::isfinite(factor) && equal(factor * a.weight, b.weight) && equal(a.f_m, b.f_m) &&
+          equal(a.f_n, b.f_n) && equal(a.d_m, b.d_m) && equal(a.d_n, b.d_n)) {
+        auto out = std::make_shared<std::vector<double>>(*scaled_from_);
+        for (double& x : *out) x *= factor;
+        return out;
+      }
+    }
+    const auto out = std::make_shared<std::vector<double>>(membrane_invariant(
+        even_and_odd(table_, function_m_, function_n_), pairs_, elasticity_, strains_));
+    if (cell) {
+      scaled_from_ = out;
+      scaled_from_table_ = table_;
+    }
+    return out;
   }
 
   /// Full squares of the blocks of W; those of the last W asked for are kept.
@@ -493,7 +515,9 @@ class Membrane final : public ElasticTerm {
   std::vector<int> function_m_, function_n_;  // even or odd function of every vector
   std::vector<BatchData> batches_;
   ProductTable table_, previous_;
-  int tabulated_ = -1;                  // element of table_
+  int tabulated_ = -1;  // element of table_
+  Packed scaled_from_;  // W of a cell that those of others are scaled from
+  ProductTable scaled_from_table_;
   Packed last_, squares_, squares_of_;  // W of table_; the squares of which W
 };
 

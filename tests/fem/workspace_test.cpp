@@ -246,5 +246,27 @@ TEST(SideBySide, StopsWhatComesBehindAFailure) {
   }
 }
 
+// By the matrix: F_q, F_v and M by turns, and all of them, with a line that moves and a damper.
+TEST(Workspace, TransposedProductsAreThoseOfTheMatrix) {
+  testing::Scene s = scene();
+  fem::Workspace& model = s.model;
+  State x = testing::SmoothMotion(model.reference().q, 0.01 * model.scales().cwiseInverse(), 3)
+                .state(0.05);
+  x.lambda.setZero(model.n_constraints());  // no (Φ_qᵀ λ)_q
+  const int n = model.n_dofs();
+  const VectorXd psi = VectorXd::LinSpaced(n, -1, 1).array().sin();
+  Constraints c;
+  model.constraints(x, c);
+  SparseMatrix kkt;
+  for (const Weights& w : {Weights{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 30, 900}}) {
+    model.kkt(x, c, w, 1, kkt);
+    const VectorXd by_matrix = kkt.topLeftCorner(n, n).transpose() * psi;
+    VectorXd product = VectorXd::Ones(n);
+    model.add_transposed_product(x, w, psi, product);
+    EXPECT_GT(by_matrix.norm(), 0);
+    EXPECT_LT((product - VectorXd::Ones(n) - by_matrix).norm(), 1e-13 * (by_matrix.norm() + 1));
+  }
+}
+
 }  // namespace
 }  // namespace flexmorph::fem

@@ -1,0 +1,83 @@
+// Cost of the gradient of a motion, by hand: CPU seconds and peak memory of the growing, rotating
+// plate on the cells of its design's start layout, of its motion alone, of that with a balance of
+// energy, and of the strain energy at its load times with all derivatives.
+//
+//   motion_gradient_speed <cell [m]> <step [s]> motion | balance | gradient [objectives
+//   [checkpoints]]
+//
+// A process each, for the memory. With 3 objectives: deflection and force of the root, too.
+#include <sys/resource.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "cases/build/build.h"
+#include "fem/dynamics/motion_gradient.h"
+#include "tests/benchmark/cpu.h"
+
+namespace {
+
+using namespace flexmorph;
+using namespace flexmorph::cases;
+
+std::vector<fem::MotionObjective> objectives_of(const Scene& scene, const Mechanism& m, size_t n) {
+  using Times = fem::MotionObjective::Times;
+  const fem::Growth& g = m.growths.at(0);
+  std::vector<fem::MotionObjective> out = {
+      {fem::measure_strain_energy(), Times::stops, 1},
+      {fem::measure_deflection(g.body, {scene.body(g.body).longest(scene.time.end), 0}, g.hub),
+       Times::steps, 8},
+      {fem::measure_joint_force(m.model.joints().at(0)->name(), g.body), Times::steps, 8}};
+  out.resize(std::min(n, out.size()));
+  return out;
+}
+
+void measure(const std::string& cell, double step, const std::string& what, size_t n_objectives,
+             int checkpoints) {
+  const Scene scene =
+      read_scene(io::CaseFile(std::string(FLEXMORPH_CASES) + "/rotating_plate_v05.toml",
+                              std::vector<std::string>{"design.cell=" + cell}));
+  Mechanism m = build_mechanism(scene, {.elements = {}, .refine = 1, .step = step, .cells = 1});
+  const mmc::BodyProblem problem = build_problems(scene).front();
+  m.model.set_factors(m.model.bodies()[0],
+                      mmc::dynamic_factors(problem, problem.design.components()));
+  m.motion.stops = load_times(scene);
+  m.motion.balance = what == "balance";
+  const double start = cpu_seconds();
+  fem::StepCounts counts;
+  if (what == "gradient") {
+    const auto objectives = objectives_of(scene, m, n_objectives);
+    const fem::MotionGradients g = fem::motion_gradients(
+        m.model, m.growths, m.motion, objectives, {.checkpoints = checkpoints, .parameters = {}});
+    counts = g.motion.counts;
+    std::printf("motion %.2f s, adjoint %.2f s: %d factorizations, %d iterations; ",
+                g.seconds_motion, g.seconds_adjoint, g.factorizations, g.iterations);
+    for (const fem::MotionGradient& of : g.of)
+      std::printf("J %.12g |dJ| %.9g; ", of.value,
+                  std::hypot(of.by_factors[0].stiffness.norm(), of.by_factors[0].mass.norm()));
+  } else {
+    counts = fem::integrate(m.model, m.growths, m.motion, [](const fem::MotionStep&) {}).counts;
+  }
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  std::printf(
+      "%s: %.2f s, %ld MB; motion of %d steps, %d iterations, %d factorizations, %d unknowns\n",
+      what.c_str(), cpu_seconds() - start, used.ru_maxrss / 1024, counts.steps, counts.newton,
+      counts.factorizations, m.model.n_dofs());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  flexmorph::benchmark::begin(argv);
+  if (argc < 4) {
+    std::puts(
+        "motion_gradient_speed <cell> <step> motion | balance | gradient [objectives "
+        "[checkpoints]]");
+    return 2;
+  }
+  measure(argv[1], std::atof(argv[2]), argv[3],
+          argc > 4 ? static_cast<size_t>(std::atoi(argv[4])) : 1,
+          argc > 5 ? std::atoi(argv[5]) : 0);
+}
