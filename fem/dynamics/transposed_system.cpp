@@ -38,7 +38,7 @@ void TransposedSystem::set(const State& x, const Weights& w, double scale, const
       if (column < n) entry.valueRef() /= scales_[column];
       if (entry.row() < n) entry.valueRef() /= scales_[entry.row()];
     }
-  if (is_factored_) find_turns();
+  if (is_factored_) renew();
 }
 
 /// For a mesh that was not seen before.
@@ -54,51 +54,38 @@ void TransposedSystem::make_room() {
 void TransposedSystem::factorize() {
   constexpr double kMiss = 0.02;  // as of the steps themselves
   factored_ = matrix_;
-  factored_q_ = q_;
   factored_weights_ = weights_;
   solver_.factorize(factored_, kMiss);
   is_factored_ = true;
-  find_turns();
+  turns_.begin(model_, q_);
+  turned_.clear();
   ++factorizations_;
 }
 
-/// Angles by least squares: of positions about their mean, of slopes as they are.
-void TransposedSystem::find_turns() {
-  turned_.clear();
-  for (const Body& b : model_.bodies()) {
-    const Element& element = *b.element;
-    Vec2 before = Vec2::Zero(), now = Vec2::Zero();  // mean positions
-    int positions = 0;
-    const int n = element.dim() == 2 ? element.n_vectors() : 0;
-    for (int k = 0; k < n; ++k) {
-      if (!element.is_position(k)) continue;
-      before += factored_q_.segment<2>(b.first_dof + 2 * k);
-      now += q_.segment<2>(b.first_dof + 2 * k);
-      ++positions;
-    }
-    double along = 0, across = 0;
-    for (int k = 0; k < n; ++k) {
-      const int at = b.first_dof + 2 * k;
-      Vec2 from = factored_q_.segment<2>(at), to = q_.segment<2>(at);
-      if (element.is_position(k)) {
-        from -= before / positions;
-        to -= now / positions;
-      }
-      const double weight = element.scale(k) * element.scale(k);
-      along += weight * from.dot(to);
-      across += weight * (from.x() * to.y() - from.y() * to.x());
-    }
-    turned_.emplace_back(along > 0 ? std::atan2(across, along) : 0.0);
+/// A factor with a border has that made anew, and turns by itself.
+void TransposedSystem::renew() {
+  turns_.follow(model_, q_);
+  turned_ = turns_.turns(model_);
+  const std::vector<char>& border = solver_.border();
+  if (border.empty()) return;
+  const auto in_border = [&](Eigen::Index k) { return border[static_cast<size_t>(k)] != 0; };
+  for (int column = 0; column < factored_.cols(); ++column) {
+    if (!in_border(column)) continue;
+    for (int p = factored_.outerIndexPtr()[column]; p < factored_.outerIndexPtr()[column + 1]; ++p)
+      if (in_border(factored_.innerIndexPtr()[p])) factored_.valuePtr()[p] = matrix_.valuePtr()[p];
   }
+  is_factored_ = solver_.renew_border(factored_, std::move(turned_));
+  turned_.clear();
 }
 
 /// Turns the vector unknowns of all bodies.
 void TransposedSystem::turn(VectorXd& x, bool back) const {
-  for (size_t i = 0; i < turned_.size(); ++i) {
-    const Body& b = model_.bodies()[i];
-    if (turned_[i].angle() == 0) continue;
-    const Eigen::Matrix2d by = (back ? turned_[i].inverse() : turned_[i]).toRotationMatrix();
-    Eigen::Map<Eigen::Matrix2Xd> vectors(x.data() + b.first_dof, 2, b.element->n_vectors());
+  for (const TurnedVectors& t : turned_) {
+    if (t.sine == 0) continue;
+    Eigen::Matrix2d by;
+    by << t.cosine, -t.sine, t.sine, t.cosine;
+    if (back) by.transposeInPlace();
+    Eigen::Map<Eigen::Matrix2Xd> vectors(x.data() + t.first, 2, (t.last - t.first) / 2);
     vectors = (by * vectors).eval();
   }
 }
@@ -159,7 +146,7 @@ void TransposedSystem::solve(const VectorXd& seed, const VectorXd& rows, VectorX
                              VectorXd& chi) {
   // A fresh factor with which the residual no longer falls is at round-off, or the matrix is
   // singular.
-  constexpr double kEnough = 1e-12, kStuck = 0.5, kRoundOff = 1e-7;
+  constexpr double kEnough = 2e-13, kStuck = 0.5, kRoundOff = 1e-7;
   constexpr int kMost = 8;
   const int n = model_.n_dofs(), m = model_.n_constraints();
   right_.resize(n + m);

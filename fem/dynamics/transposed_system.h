@@ -1,8 +1,8 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <vector>
 
+#include "fem/dynamics/body_turns.h"
 #include "fem/solve/linear_solver.h"
 #include "fem/workspace.h"
 
@@ -51,7 +51,7 @@ class TransposedSystem {
   void factorize();
   bool improve(double left, double aim, bool fresh);
   void solve_kept(const VectorXd& right, VectorXd& out);
-  void find_turns();
+  void renew();
   void turn(VectorXd& x, bool back) const;
 
   Workspace& model_;
@@ -59,9 +59,10 @@ class TransposedSystem {
   Constraints constraints_;
   SparseMatrix matrix_, factored_, mass_;
   VectorXd scales_, right_, rest_, found_, last_;
-  VectorXd q_, factored_q_;                 // where they were set
-  Weights weights_, factored_weights_;      // as of what
-  std::vector<Eigen::Rotation2Dd> turned_;  // of every body since
+  VectorXd q_;                          // where it was set
+  Weights weights_, factored_weights_;  // as of what
+  BodyTurns turns_;                     // since the last factorization,
+  std::vector<TurnedVectors> turned_;   // as vectors turn that the solver does not turn itself
   // GMRES: an orthonormal basis of residuals, directions whose images they are.
   MatrixXd basis_, directions_;
   VectorXd image_, turning_, solution_;
