@@ -42,7 +42,9 @@ class LoadsOfDesigns {
 std::string picture_of(const mmc::BodyProblem& problem,
                        const mmc::MotionCertificate::Body& certified) {
   const Grid& g = problem.grid;
-  const Box frame{{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}};
+  constexpr double kArrow = 0.05;  // of the picture: as much room is around it
+  const Vec2 corner(g.x0, g.y0), room = Vec2::Constant(kArrow * std::max(g.width, g.height));
+  const Box frame{corner - room, corner + Vec2(g.width, g.height) + room};
   std::string svg = io::outline_svg(
       mmc::regions_of(problem, problem.design.components(), 0.05 * g.dx()), frame, 5);
   double longest = 0;
@@ -52,7 +54,7 @@ std::string picture_of(const mmc::BodyProblem& problem,
   for (size_t c = 0; c < certified.components.size(); ++c)
     longest = std::max(longest, pull(c).norm());
   if (longest == 0) return svg;
-  const double size = std::max(g.width, g.height), scale = 0.05 * size / longest,
+  const double size = std::max(g.width, g.height), scale = kArrow * size / longest,
                line = 0.0025 * size;
   std::string arrows;
   for (size_t c = 0; c < certified.components.size(); ++c) {
