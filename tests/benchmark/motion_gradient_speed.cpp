@@ -2,10 +2,10 @@
 // plate on the cells of its design's start layout, of its motion alone, of that with a balance of
 // energy, and of the strain energy at its load times with all derivatives.
 //
-//   motion_gradient_speed <cell [m]> <step [s]> motion | balance | gradient [objectives
-//   [checkpoints]]
+//   motion_gradient_speed <cell [m]> <step [s]> <what> [objectives [checkpoints [end [s]]]]
 //
-// A process each, for the memory. With 3 objectives: deflection and force of the root, too.
+// what: motion, balance or gradient. A process each, for the memory. With 3 objectives: deflection
+// and force of the root, too.
 #include <sys/resource.h>
 
 #include <cstdio>
@@ -34,7 +34,7 @@ std::vector<fem::MotionObjective> objectives_of(const Scene& scene, const Mechan
 }
 
 void measure(const std::string& cell, double step, const std::string& what, size_t n_objectives,
-             int checkpoints) {
+             int checkpoints, double end) {
   const Scene scene =
       read_scene(io::CaseFile(std::string(FLEXMORPH_CASES) + "/rotating_plate_v05.toml",
                               std::vector<std::string>{"design.cell=" + cell}));
@@ -43,6 +43,7 @@ void measure(const std::string& cell, double step, const std::string& what, size
   m.model.set_factors(m.model.bodies()[0],
                       mmc::dynamic_factors(problem, problem.design.components()));
   m.motion.stops = load_times(scene);
+  m.motion.end = std::min(end, m.motion.end);
   m.motion.balance = what == "balance";
   const double start = cpu_seconds();
   fem::StepCounts counts;
@@ -74,10 +75,10 @@ int main(int argc, char** argv) {
   if (argc < 4) {
     std::puts(
         "motion_gradient_speed <cell> <step> motion | balance | gradient [objectives "
-        "[checkpoints]]");
+        "[checkpoints [end]]]");
     return 2;
   }
   measure(argv[1], std::atof(argv[2]), argv[3],
-          argc > 4 ? static_cast<size_t>(std::atoi(argv[4])) : 1,
-          argc > 5 ? std::atoi(argv[5]) : 0);
+          argc > 4 ? static_cast<size_t>(std::atoi(argv[4])) : 1, argc > 5 ? std::atoi(argv[5]) : 0,
+          argc > 6 ? std::atof(argv[6]) : 1.0);
 }
