@@ -119,7 +119,7 @@ INSTANTIATE_TEST_SUITE_P(Gradients, EveryMotion,
                                            std::tuple(ShapeSet::q4, -0.5, Start::prestretched),
                                            std::tuple(ShapeSet::h16, 0.5, Start::prestretched)));
 
-// Kept states or parts that are gone through again: the same bit for bit.
+// Kept states or parts that are gone through again: the same to what solutions are known to.
 TEST(MotionGradient, IsTheSameWithCheckpoints) {
   const Growing motion(ShapeSet::q4, 0.5, Start::prestretched);
   const MotionGradients kept = motion.gradients(), parts = motion.gradients(4);
