@@ -24,12 +24,7 @@ AlphaScheme::AlphaScheme(double rho) {
 GeneralizedAlpha::GeneralizedAlpha(Workspace& model, const AlphaSettings& settings)
     : StepSolver(model, settings, "generalized_alpha",
                  "A smaller time.step or a smaller rho_inf often helps."),
-      scheme_(settings.rho_inf) {
-  alpha_m_ = scheme_.alpha_m;
-  alpha_f_ = scheme_.alpha_f;
-  gamma_ = scheme_.gamma;
-  beta_ = scheme_.beta;
-}
+      scheme_(settings.rho_inf) {}
 
 void GeneralizedAlpha::begin(const State& x, double h) {
   h_ = h;
@@ -37,9 +32,12 @@ void GeneralizedAlpha::begin(const State& x, double h) {
   next_ = x;
   next_.t = x.t + h;
   // Start of the iteration: the true acceleration stays what it was.
-  next_alpha_ = ((1 - alpha_f_) * x.a + alpha_f_ * x.a - alpha_m_ * start_alpha_) / (1 - alpha_m_);
-  next_.q += h * start_v_ + h * h * ((0.5 - beta_) * start_alpha_ + beta_ * next_alpha_);
-  next_.v = start_v_ + h * ((1 - gamma_) * start_alpha_ + gamma_ * next_alpha_);
+  next_alpha_ =
+      ((1 - scheme_.alpha_f) * x.a + scheme_.alpha_f * x.a - scheme_.alpha_m * start_alpha_) /
+      (1 - scheme_.alpha_m);
+  next_.q +=
+      h * start_v_ + h * h * ((0.5 - scheme_.beta) * start_alpha_ + scheme_.beta * next_alpha_);
+  next_.v = start_v_ + h * ((1 - scheme_.gamma) * start_alpha_ + scheme_.gamma * next_alpha_);
 }
 
 void GeneralizedAlpha::change_mesh(const MeshMap& map, const State& before) {
@@ -104,7 +102,8 @@ void GeneralizedAlpha::correct(const VectorXd& dq, const VectorXd& dlambda) {
 
 void GeneralizedAlpha::set_end_alpha(const State& x) {
   next_alpha_ =
-      ((1 - alpha_f_) * next_.a + alpha_f_ * x.a - alpha_m_ * start_alpha_) / (1 - alpha_m_);
+      ((1 - scheme_.alpha_f) * next_.a + scheme_.alpha_f * x.a - scheme_.alpha_m * start_alpha_) /
+      (1 - scheme_.alpha_m);
 }
 
 double GeneralizedAlpha::first_step(const State& x, double allowed, double longest) {

@@ -61,7 +61,7 @@ class GeneralizedAlpha final : public StepSolver {
   /// From q⃛_0 by a difference of consistent accelerations; the first step starts with it.
   double first_step(const State& x, double allowed, double longest) override;
   /// δ: the algorithmic acceleration is that of the time t + δ h.
-  double shift() const { return alpha_m_ - alpha_f_; }
+  double shift() const { return scheme_.alpha_m - scheme_.alpha_f; }
   /// The algorithmic acceleration that the next step starts from: q̈ after make_consistent(), else
   /// that of the last accepted step (n) [m/s²].
   const VectorXd& alpha() const { return alpha_; }
@@ -69,11 +69,11 @@ class GeneralizedAlpha final : public StepSolver {
   void change_mesh(const MeshMap& map, const State& before) override;
   void remember(Memory& memory) override;
   /// C: the local error of the position is -C h³ q⃛.
-  double error_constant() const { return 1.0 / 6 - beta_ - 0.5 * shift(); }
+  double error_constant() const { return 1.0 / 6 - scheme_.beta - 0.5 * shift(); }
 
  private:
   void begin(const State& x, double h) override;
-  double scale() const override { return beta_ * h_ * h_; }
+  double scale() const override { return scheme_.beta * h_ * h_; }
   void residual(VectorXd& force, VectorXd& constraint) override;
   void tangent(SparseMatrix& out) override;
   void correct(const VectorXd& dq, const VectorXd& dlambda) override;
@@ -94,7 +94,6 @@ class GeneralizedAlpha final : public StepSolver {
   Weights weights() const { return scheme_.weights(h_); }
 
   AlphaScheme scheme_;
-  double alpha_m_, alpha_f_, beta_, gamma_;
   double h_ = 0;
   VectorXd alpha_;                  // of the last accepted step
   State next_;                      // the iterate

@@ -14,8 +14,6 @@
 namespace flexmorph::mmc {
 namespace {
 
-constexpr double kActive = 1e-3;  // as of certify()
-
 /// The static problem with the gradient of the motion at one design, in a trust region around it.
 class Corrected final : public optim::Problem {
  public:
@@ -149,7 +147,7 @@ class Corrector {
       now_.value = std::exp(iterate.response->f);
       now_.kkt = iterate.kkt;
       now_.predicted = now_.actual = 0;
-      now_.accepted = iterate.violation <= kActive;
+      now_.accepted = iterate.violation <= kActiveLimits;
       if (now_.accepted && now_.value < least) {
         least = now_.value;
         best = *iterate.x;
@@ -184,10 +182,9 @@ class Corrector {
     here_ = r;
     now_.value = std::exp(r.f);
     now_.kkt =
-        optim::kkt_point(r, x, moved.problem().lower(), moved.problem().upper(), kActive).residual;
-    const VectorXd of_loads = loaded.problem().evaluate(x).df;
-    const double sizes = r.df.norm() * of_loads.norm();
-    now_.angle = sizes > 0 ? std::acos(std::clamp(r.df.dot(of_loads) / sizes, -1.0, 1.0)) : 0;
+        optim::kkt_point(r, x, moved.problem().lower(), moved.problem().upper(), kActiveLimits)
+            .residual;
+    now_.angle = angle_between(r.df, loaded.problem().evaluate(x).df);
   }
 
   /// The limits of the motion; of one body.

@@ -47,17 +47,10 @@ std::vector<Part> parts_at_end(std::span<const LoadedBody> bodies) {
   return out;
 }
 
-namespace {
-
-/// The sharp volume is what is allowed to 2e-4 only, and counts as a limit that is met.
-constexpr double kActive = 1e-3;
-
 double angle_between(const VectorXd& a, const VectorXd& b) {
   const double sizes = a.norm() * b.norm();
   return sizes > 0 ? std::acos(std::clamp(a.dot(b) / sizes, -1.0, 1.0)) : 0;
 }
-
-}  // namespace
 
 MotionCertificate certify(std::vector<Part>& parts, MotionResponse& motion, double move_limit) {
   const double begin = cpu_seconds();
@@ -66,7 +59,7 @@ MotionCertificate certify(std::vector<Part>& parts, MotionResponse& motion, doub
   optim::Problem& problem = moved.problem();
   const VectorXd x = problem.start(), lower = problem.lower(), upper = problem.upper();
   const optim::Response of_motion = problem.evaluate(x);
-  const optim::KktPoint point = optim::kkt_point(of_motion, x, lower, upper, kActive);
+  const optim::KktPoint point = optim::kkt_point(of_motion, x, lower, upper, kActiveLimits);
 
   MotionCertificate out;
   out.objective = parts.front().problem.motion_goal.objective->words;

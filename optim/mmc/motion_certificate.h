@@ -44,6 +44,13 @@ MotionState motion_state_of(const std::vector<Part>& parts, MotionResponse& moti
 double left_within(const optim::Response& r, const VectorXd& x, const VectorXd& lower,
                    const VectorXd& upper, const VectorXd& lambda, double move_limit);
 
+/// Between two gradients; 0 where one is none [rad].
+double angle_between(const VectorXd& a, const VectorXd& b);
+
+/// The sharp volume is what is allowed to 2e-4 only, and counts as a limit that is met: the
+/// tolerance of active constraints.
+inline constexpr double kActiveLimits = 1e-3;
+
 /// Designed bodies under their loads, at their last stage and as they were mended: their widths are
 /// limits, their volumes those of the sharp designs.
 std::vector<Part> parts_at_end(std::span<const LoadedBody> bodies);

@@ -45,36 +45,21 @@ const Key& kSecants = io::key("cycle", "secants")
                           .otherwise(mmc::CorrectionSettings().secants)
                           .says("Pairs of tried designs whose gradients teach curvature; 0: none.");
 
-/// The keys of a motion with its gradient; a table has its own set.
-struct MotionKeys {
-  const Key &cell, &step, &checkpoints;
-};
-const MotionKeys kOfCycle = {
-    io::key("cycle", "cell")
+const std::vector<std::string> kTables = {"cycle", "certificate"};
+const Key& kCell =
+    io::shared_key(kTables, "cell")
         .number(positive("the size of a cell", "m"))
         .otherwise_as("those of the designs")
-        .says("Cells of the motions that correct; whole numbers of the designs' cells."),
-    io::key("cycle", "step")
-        .number(positive("a time step", "s"))
-        .otherwise_as("`time.step`")
-        .says("Their time step."),
-    io::key("cycle", "checkpoints")
+        .says("Cells of motions with their gradient; whole numbers of the designs' cells.");
+const Key& kStep = io::shared_key(kTables, "step")
+                       .number(positive("a time step", "s"))
+                       .otherwise_as("`time.step`")
+                       .says("Their time step.");
+const Key& kCheckpoints =
+    io::shared_key(kTables, "checkpoints")
         .integer("a number of parts", 0, 10'000)
         .otherwise(0)
-        .says("Parts whose states are kept one at a time: less memory, a motion more; 0: all.")};
-const MotionKeys kOfCertificate = {
-    io::key("certificate", "cell")
-        .number(positive("the size of a cell", "m"))
-        .otherwise_as("those of the designs")
-        .says("Cells of its motion; whole numbers of the designs' cells."),
-    io::key("certificate", "step")
-        .number(positive("a time step", "s"))
-        .otherwise_as("`time.step`")
-        .says("Its time step."),
-    io::key("certificate", "checkpoints")
-        .integer("a number of parts", 0, 10'000)
-        .otherwise(0)
-        .says("Parts whose states are kept one at a time: less memory, a motion more; 0: all.")};
+        .says("Parts whose states are kept one at a time: less memory, a motion more; 0: all.");
 
 /// Why the scene has no exact gradient; empty: it has one.
 std::string no_gradient_because(const Scene& scene) {
@@ -97,21 +82,21 @@ std::string no_gradient_because(const Scene& scene) {
 
 /// Cell, step and checkpoints of a motion with its gradient.
 template <class To>
-void read_motion_keys(const Table& t, const MotionKeys& keys, const Scene& scene, To& out) {
-  out.step = t.number(keys.step, scene.time.step);
-  if (out.step > scene.time.end) t.fail(keys.step, "a time step is no longer than time.end [s]");
-  out.checkpoints = t.integer(keys.checkpoints);
-  if (!t.has(keys.cell)) return;
-  out.cell = t.number(keys.cell);
+void read_motion_keys(const Table& t, const Scene& scene, To& out) {
+  out.step = t.number(kStep, scene.time.step);
+  if (out.step > scene.time.end) t.fail(kStep, "a time step is no longer than time.end [s]");
+  out.checkpoints = t.integer(kCheckpoints);
+  if (!t.has(kCell)) return;
+  out.cell = t.number(kCell);
   for (const BodyDesign& design : scene.designs) {
     const Body& body = scene.body(design.body);
     const double parts = out.cell / design.grid.dx();
     for (const double lengths : {parts, design.grid.width / out.cell, design.grid.height / out.cell,
                                  body.length / out.cell})
       if (!is_whole(lengths) || lengths < 0.5)
-        t.fail(keys.cell, "a whole number of cells of '" + body.name + "' (" +
-                              to_text(design.grid.dx()) +
-                              " m), which divides its lengths and its width");
+        t.fail(kCell, "a whole number of cells of '" + body.name + "' (" +
+                          to_text(design.grid.dx()) +
+                          " m), which divides its lengths and its width");
   }
 }
 
@@ -151,10 +136,10 @@ void read_correction(const Table& root, Scene& scene) {
     s.radius = cycle.number(kRadius);
     s.inner_iterations = cycle.integer(kInner);
     s.secants = cycle.integer(kSecants);
-    read_motion_keys(cycle, kOfCycle, scene, scene.cycle);
+    read_motion_keys(cycle, scene, scene.cycle);
   } else {
-    for (const Key* key : {&kCorrections, &kKktPart, &kRadius, &kInner, &kSecants, &kOfCycle.cell,
-                           &kOfCycle.step, &kOfCycle.checkpoints})
+    for (const Key* key :
+         {&kCorrections, &kKktPart, &kRadius, &kInner, &kSecants, &kCell, &kStep, &kCheckpoints})
       if (cycle.has(*key)) cycle.fail(*key, "without `correct` this does nothing");
     for (const BodyDesign& design : scene.designs)
       if (design.asks_motion)
@@ -165,7 +150,7 @@ void read_correction(const Table& root, Scene& scene) {
   if (!root.has(tables::kCertificate)) return;
   const Table t = root.table(tables::kCertificate);
   if (!why.empty()) t.fail("there is no exact gradient: " + why);
-  read_motion_keys(t, kOfCertificate, scene, scene.certify.emplace());
+  read_motion_keys(t, scene, scene.certify.emplace());
 }
 
 }  // namespace flexmorph::cases
