@@ -56,6 +56,21 @@ TEST(HeatedBoom, IsNotMadeOfCells) {
   }
 }
 
+TEST(HeatedBoom, HasNoExactGradient) {
+  for (const char* asks : {"cycle.correct=first_order", "certificate.checkpoints=0"}) {
+    try {
+      read("heated_boom", {asks});
+      ADD_FAILURE() << asks;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), Error::Kind::input);
+      EXPECT_TRUE(std::string(error.what())
+                      .ends_with("there is no exact gradient: it is not derived for heat "
+                                 "([body.heat])"))
+          << error.what();
+    }
+  }
+}
+
 // Without a temperature, or without expansion: rotating_plate_v05, but for the order of sums.
 TEST(HeatedBoom, WithoutTemperatureIsTheColdBoom) {
   const Changes both = quick({"time.end=0.12", "time.step=2e-3", "esl.every=0.02"});
