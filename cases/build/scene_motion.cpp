@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "optim/mmc/responses/rows.h"
+
 namespace flexmorph::cases {
 namespace {
-
-/// Of the power mean over time: near the largest value, and smooth.
-constexpr double kExponent = 8;
 
 /// A grid whose cells are n x n of another one.
 Grid merged(Grid grid, int n) {
@@ -71,22 +70,24 @@ fem::MotionObjective SceneMotion::objective_of(const mmc::MotionRow& row,
   using Times = fem::MotionObjective::Times;
   const std::string_view name = row.row->name;
   if (name == "strain_energy") return {fem::measure_strain_energy(), Times::stops, 1};
+  if (name == "peak_strain_energy")
+    return {fem::measure_strain_energy(), Times::stops, mmc::kPeakExponent};
   if (name == "trajectory_error") {
     const Trajectory& t = *scene_.trajectory;
     return {fem::measure_place_error(t.body, {scene_.motion_of(t.x), scene_.motion_of(t.y)}),
-            Times::steps, kExponent};
+            Times::steps, mmc::kPeakExponent};
   }
   const Body& body = scene_.body(scene_.designs[row.body].body);
   if (name == "joint_force") {
     const auto carries = [&](const Joint& j) { return j.carries(body.name); };
     const auto joint = std::find_if(scene_.joints.begin(), scene_.joints.end(), carries);
-    return {fem::measure_joint_force(joint->name, body.name), Times::steps, kExponent};
+    return {fem::measure_joint_force(joint->name, body.name), Times::steps, mmc::kPeakExponent};
   }
   const auto rides = [&](const fem::Growth& g) { return g.body == body.name; };
   const auto growth = std::find_if(mechanism.growths.begin(), mechanism.growths.end(), rides);
   const Vec2 tip(body.longest(scene_.time.end), body.low() + 0.5 * body.width);
   return {fem::measure_deflection(body.name, tip, growth->hub, growth->line), Times::steps,
-          kExponent};
+          mmc::kPeakExponent};
 }
 
 std::vector<mmc::MotionResponse::Value> SceneMotion::evaluate(

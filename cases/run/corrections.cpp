@@ -152,17 +152,7 @@ void take_designs(const std::vector<mmc::BodyProblem>& from, std::vector<mmc::Bo
 double sharp_value(const Scene& scene, const std::vector<mmc::BodyProblem>& problems,
                    const std::function<bool()>& go_on) {
   SceneMotion motion(scene, {0, scene.time.step, 0}, go_on);
-  std::vector<mmc::MotionRow> rows;
-  std::vector<VectorXd> fractions;
-  for (size_t k = 0; k < problems.size(); ++k) {
-    const mmc::MotionRow row{problems[k].motion_goal.objective, k};
-    const auto same = [&](const mmc::MotionRow& other) { return row.same_as(other); };
-    if (std::none_of(rows.begin(), rows.end(), same)) rows.push_back(row);
-    fractions.push_back(mmc::fractions_of(problems[k], problems[k].design.components()));
-  }
-  double sum = 0;
-  for (const double each : motion.sharp(rows, fractions)) sum += each;
-  return sum;
+  return mmc::sharp_objective(problems, motion);
 }
 
 /// The cycles of one run that correct its designs, and whether they are kept.

@@ -76,6 +76,7 @@ const std::vector<std::string>& order() {
                                                   "support",
                                                   "esl",
                                                   "design",
+                                                  "design.objective",
                                                   "design.constraint",
                                                   "design.solid",
                                                   "design.void",

@@ -7,89 +7,11 @@
 #include "fem/dynamics/generalized_alpha.h"
 #include "fem/dynamics/start_gradient.h"
 #include "fem/dynamics/transposed_system.h"
+#include "fem/dynamics/watched_measures.h"
 #include "geometry/cpu_time.h"
 
 namespace flexmorph::fem {
 namespace {
-
-/// The measures of a motion at all times that were seen, and what J makes of them.
-class Watched {
- public:
-  explicit Watched(std::span<const MotionObjective> objectives)
-      : objectives_(objectives.begin(), objectives.end()), values_(objectives.size()) {}
-
-  void see(const MotionStep& step) {
-    time_.push_back(step.x.t);
-    stop_.push_back(step.stop);
-    for (size_t k = 0; k < objectives_.size(); ++k)
-      values_[k].push_back(
-          wants(k, time_.size() - 1) ? objectives_[k].measure->value(step.model, step.x) : 0);
-  }
-
-  /// Is the motion looked at there?
-  bool wants(size_t objective, size_t at) const {
-    return objectives_[objective].times == MotionObjective::Times::steps || stop_[at];
-  }
-
-  /// J, and ∂J/∂m(t_i) of every time.
-  struct Mean {
-    double value = 0;
-    std::vector<double> slopes;
-  };
-  Mean mean(size_t objective, std::span<const double> stops) const {
-    const MotionObjective& o = objectives_[objective];
-    const std::vector<double> w =
-        o.times == MotionObjective::Times::stops ? weights_of_stops(stops) : weights_of_steps();
-    Mean out;
-    out.slopes.assign(w.size(), 0);
-    const std::vector<double>& m = values_[objective];
-    // Values against the largest: powers neither vanish nor overflow.
-    double largest = 0, sum = 0;
-    for (size_t i = 0; i < m.size(); ++i)
-      largest = std::max(largest, w[i] > 0 ? std::abs(m[i]) : 0);
-    if (o.exponent == 1 || largest == 0) {
-      for (size_t i = 0; i < m.size(); ++i) out.value += w[i] * m[i];
-      if (o.exponent == 1) out.slopes = w;
-      return out;
-    }
-    for (size_t i = 0; i < m.size(); ++i) sum += w[i] * std::pow(m[i] / largest, o.exponent);
-    out.value = largest * std::pow(sum, 1 / o.exponent);
-    for (size_t i = 0; i < m.size(); ++i)
-      out.slopes[i] = w[i] * std::pow(m[i] / out.value, o.exponent - 1);
-    return out;
-  }
-
-  const std::vector<double>& times() const { return time_; }
-
- private:
-  /// The end of the motion is a stop of its own accord.
-  std::vector<double> weights_of_stops(std::span<const double> stops) const {
-    std::vector<double> out(time_.size(), 0);
-    double n = 0;
-    for (size_t i = 0; i < out.size(); ++i) {
-      const auto near = [&](double t) { return std::abs(t - time_[i]) < 1e-9 * time_.back(); };
-      if (stop_[i] && std::any_of(stops.begin(), stops.end(), near)) out[i] = 1;
-      n += out[i];
-    }
-    for (double& w : out) w /= std::max(n, 1.0);
-    return out;
-  }
-  std::vector<double> weights_of_steps() const {
-    std::vector<double> out(time_.size(), 0);
-    const double whole = time_.back() - time_.front();
-    for (size_t i = 1; i < out.size(); ++i) {
-      const double half = 0.5 * (time_[i] - time_[i - 1]) / whole;
-      out[i - 1] += half;
-      out[i] += half;
-    }
-    return out;
-  }
-
-  std::vector<MotionObjective> objectives_;
-  std::vector<double> time_;
-  std::vector<bool> stop_;
-  std::vector<std::vector<double>> values_;  // of every objective
-};
 
 /// Derivatives of one objective by the state that the sweep has come to, and what it has gathered.
 struct Swept {
@@ -367,7 +289,7 @@ class Gradient {
       Swept& s = sweep.all().emplace_back();
       s.by.set_zero(model.n_dofs(), model.n_constraints());
       s.alpha.setZero(model.n_dofs());
-      Watched::Mean mean = watched_.mean(k, settings_.stops);
+      WatchedMeasures::Mean mean = watched_.mean(k, settings_.stops);
       s.out.value = mean.value;
       s.slopes = std::move(mean.slopes);
       s.out.by_factors = model.no_slopes();
@@ -411,7 +333,7 @@ class Gradient {
   MotionSettings settings_;
   std::span<const MotionObjective> objectives_;
   const GradientSettings& gradient_;
-  Watched watched_;
+  WatchedMeasures watched_;
   std::vector<TakenDown> memories_;
   State start_;
 };

@@ -16,9 +16,9 @@ namespace flexmorph::fem {
 ///   [ E  D  ]   Multifrontal factor A = L Lᵀ, dense LU factor of S = D - E A⁻¹ Eᵀ.
 ///
 /// The border is found from the matrix: constraint rows (those without an entry on the diagonal),
-/// the unknowns they act on with their neighbours, so that A is held, and all unknowns i and j with
-/// a_ij ≠ a_ji, as where material flows through the mesh near a joint. It grows when a matrix asks
-/// for more, and the order of the others, of little fill, ends beside it.
+/// the unknowns they act on (and their neighbours where A is not held without), and all unknowns i
+/// and j with a_ij ≠ a_ji, as where material flows through the mesh near a joint. It grows when a
+/// matrix asks for more, and the order of the others, of little fill, ends beside it.
 class BorderedCholesky {
  public:
   BorderedCholesky();

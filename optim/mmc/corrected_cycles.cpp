@@ -135,7 +135,7 @@ class Corrector {
     look();
     if (settings_.max_cycles == 0) return;
     MotionState state = motion_state_of(parts_, motion_);
-    Whole moved(parts_, &state);
+    Whole moved(parts_, state);
     optim::Settings settings = settings_.optimizer;
     settings.max_iterations = settings_.max_cycles;
     settings.max_evaluations = 0;
@@ -171,7 +171,7 @@ class Corrector {
   /// J and its gradient where the designs are.
   const CorrectedCycle& look() {
     MotionState state = motion_state_of(parts_, motion_);
-    Whole moved(parts_, &state), loaded(parts_);
+    Whole moved(parts_, state), loaded = Whole::smooth(parts_);
     take(moved.problem().start(), moved.problem().evaluate(moved.problem().start()), moved, loaded);
     now_.radius = settings_.radius;
     report();
@@ -187,12 +187,14 @@ class Corrector {
     now_.angle = angle_between(r.df, loaded.problem().evaluate(x).df);
   }
 
-  /// The limits of the motion; of one body.
-  std::vector<int> limit_rows(Whole& moved) const {
+  /// The limits of the motion.
+  std::vector<int> limit_rows(const Whole& moved) const {
     std::vector<int> out;
-    const std::vector<Limit>& limits = parts_.front().problem.motion_goal.limits;
-    for (size_t k = 0; k < limits.size(); ++k)
-      if (limits[k].row->of_motion) out.push_back(moved.states.front().row_of(k));
+    for (size_t b = 0; b < parts_.size(); ++b) {
+      const std::vector<Limit>& limits = parts_[b].problem.motion_goal.limits;
+      for (size_t k = 0; k < limits.size(); ++k)
+        if (limits[k].row->of_motion) out.push_back(moved.row_of(b, k));
+    }
     return out;
   }
 
@@ -208,24 +210,37 @@ class Corrector {
       parts_[k].problem.design.move_to(whole.states[k].design_part(whole.part_of(x, k)));
   }
 
+  /// After a design was taken its sharp volume is looked up anew: it may ask for a little more.
+  static double missed_at(const optim::Response& here) { return std::max(0.0, here.g.maxCoeff()); }
+
+  /// What the static problem with the gradient of the motion comes to within the radius, which
+  /// shrinks where its optimizer finds nothing better: that costs no motion.
+  optim::Result best_within(optim::Problem& loaded, const VectorXd& x, const optim::Response& here,
+                            const Whole& moved) {
+    const std::vector<int> limits = limit_rows(moved);
+    const Corrected::Seen seen{here_.df - here.df, secants_.root(x.size()), here_.g(limits),
+                               here_.dg(limits, Eigen::all)};
+    for (;; radius_ *= 0.5) {
+      Corrected problem(loaded, x, here.f, seen, radius_);
+      optim::Settings inner = settings_.optimizer;
+      inner.max_iterations = settings_.inner_iterations;
+      inner.max_evaluations = 0;
+      inner.move_limit = std::min(inner.move_limit, radius_);
+      inner.kkt_tolerance = std::min(inner.kkt_tolerance, 0.1 * now_.kkt);
+      optim::Result found = optim::make_optimizer(inner)->minimize(problem, {});
+      const bool nearer = found.violation < 0.5 * missed_at(here);
+      if (found.response.f < 1 || nearer || radius_ < settings_.smallest_radius) return found;
+    }
+  }
+
   /// One cycle of first order. @return was its design taken?
   bool step(int cycle) {
     constexpr double kTaken = 0.1, kGood = 0.75, kPoor = 0.25, kMissed = 1e-5;
     MotionState state = motion_state_of(parts_, motion_);
-    Whole moved(parts_, &state), loaded(parts_);
+    Whole moved(parts_, state), loaded = Whole::smooth(parts_);
     const VectorXd x = loaded.problem().start();
     const optim::Response here = loaded.problem().evaluate(x);
-    const std::vector<int> limits = limit_rows(moved);
-    Corrected problem(loaded.problem(), x, here.f,
-                      {here_.df - here.df, secants_.root(x.size()), here_.g(limits),
-                       here_.dg(limits, Eigen::all)},
-                      radius_);
-    optim::Settings inner = settings_.optimizer;
-    inner.max_iterations = settings_.inner_iterations;
-    inner.max_evaluations = 0;
-    inner.move_limit = std::min(inner.move_limit, radius_);
-    inner.kkt_tolerance = std::min(inner.kkt_tolerance, 0.1 * now_.kkt);
-    const optim::Result found = optim::make_optimizer(inner)->minimize(problem, {});
+    const optim::Result found = best_within(loaded.problem(), x, here, moved);
     now_.cycle = cycle;
     now_.radius = radius_;
     now_.predicted = 1 - found.response.f;
@@ -241,8 +256,7 @@ class Corrector {
     } catch (const Error& error) {
       if (error.kind() != Error::Kind::numerical) throw;
     }
-    // After a design was taken its sharp volume is looked up anew: it may ask for a little more.
-    const double missed = std::max(0.0, here.g.maxCoeff());
+    const double missed = missed_at(here);
     const bool restores = now_.predicted <= 0 && missed > kMissed && std::isfinite(now_.actual) &&
                           found.violation < 0.5 * missed && now_.actual > -10 * missed;
     const double ratio = now_.predicted > 0 ? now_.actual / now_.predicted : -1;

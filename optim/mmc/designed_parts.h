@@ -62,13 +62,25 @@ void finish_outcome(Part& p, bool analysed, bool condition);
 /// The problem of all parts at their designs: that of the only one, or the shared one.
 class Whole {
  public:
-  /// @param motion  where the bodies of a mechanism are designed for its motion; lives longer
-  explicit Whole(std::vector<Part>& parts, MotionState* motion = nullptr) {
+  explicit Whole(std::vector<Part>& parts) : Whole(parts, goals_of_loads(parts), nullptr) {}
+  /// For the motion of the mechanism that they are parts of.
+  /// @param motion  lives longer
+  Whole(std::vector<Part>& parts, MotionState& motion)
+      : Whole(parts, goals_of_motion(parts), &motion) {}
+  /// For loads, with goals that have derivatives: smooth().
+  static Whole smooth(std::vector<Part>& parts) {
+    std::vector<Goal> goals = goals_of_loads(parts);
+    for (Goal& goal : goals) goal = mmc::smooth(std::move(goal));
+    return {parts, goals, nullptr};
+  }
+
+ private:
+  Whole(std::vector<Part>& parts, const std::vector<Goal>& goals, MotionState* motion) {
     states.reserve(parts.size());
     seats_.reserve(parts.size());
-    for (Part& p : parts) {
-      seats_.push_back({motion, seats_.size()});
-      states.push_back(motion ? p.state(p.problem.motion_goal, &seats_.back()) : p.state());
+    for (size_t k = 0; k < parts.size(); ++k) {
+      seats_.push_back({motion, k});
+      states.push_back(parts[k].state(goals[k], motion ? &seats_.back() : nullptr));
     }
     if (parts.size() == 1) return;
     std::vector<SharedProblem::Part> all;
@@ -76,6 +88,8 @@ class Whole {
       all.push_back({&states[k], parts[k].plate.full_mass(), parts[k].problem.shares_mass});
     shared_.emplace(std::move(all));
   }
+
+ public:
   Whole(const Whole&) = delete;
 
   optim::Problem& problem() {
@@ -86,9 +100,26 @@ class Whole {
     return shared_ ? shared_->part_of(x, k) : x;
   }
 
+  /// The constraint that a limit of a body has become.
+  int row_of(size_t body, size_t limit) const {
+    const int own = states[body].row_of(limit);
+    return shared_ ? shared_->row_of(body, own) : own;
+  }
+
   std::vector<MmcProblem> states;
 
  private:
+  static std::vector<Goal> goals_of_loads(const std::vector<Part>& parts) {
+    std::vector<Goal> out;
+    for (const Part& p : parts) out.push_back(p.problem.goal);
+    return out;
+  }
+  static std::vector<Goal> goals_of_motion(const std::vector<Part>& parts) {
+    std::vector<Goal> out;
+    for (const Part& p : parts) out.push_back(p.problem.motion_goal);
+    return out;
+  }
+
   std::vector<MotionSeat> seats_;
   std::optional<SharedProblem> shared_;
 };

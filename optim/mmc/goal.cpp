@@ -54,15 +54,30 @@ bool has_motion(const Goal& goal) {
 }
 
 Goal goal_of_loads(Goal goal) {
-  if (goal.objective->of_motion) goal.objective = &kComplianceSum;
+  if (goal.objective->of_motion)
+    goal.objective = goal.objective == &kPeakStrainEnergy ? &kComplianceWorst : &kComplianceSum;
+  goal.addends.clear();
   std::erase_if(goal.limits, [](const Limit& limit) { return limit.row->of_motion; });
   return goal;
 }
 
 Goal goal_of_motion(Goal goal) {
-  if (goal.objective->needs_state()) goal.objective = &kStrainEnergy;
+  if (goal.objective->needs_state())
+    goal.objective = goal.objective->per_load ? &kPeakStrainEnergy : &kStrainEnergy;
   std::erase_if(goal.limits, [](const Limit& limit) { return limit.row->needs_state(); });
   return goal;
+}
+
+Goal smooth(Goal goal) {
+  if (goal.objective == &kComplianceWorst) goal.objective = &kCompliancePeak;
+  return goal;
+}
+
+std::string objective_words(const Goal& goal) {
+  std::string out(goal.addends.empty() ? "" : "weighted sum of ");
+  out += goal.objective->words;
+  for (const Addend& a : goal.addends) out.append(", ").append(a.row->words);
+  return out;
 }
 
 }  // namespace flexmorph::mmc

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "optim/mmc/responses/rows.h"
@@ -23,10 +24,17 @@ struct Limit {
   double excess(double found) const { return at_least ? 1 - found / value : found / value - 1; }
 };
 
+/// A number of the motion that is minimized besides another one.
+struct Addend {
+  const ResponseRow* row = nullptr;
+  double weight = 1;  ///< > 0, one per unit of the row
+};
+
 /// What a design is to be good at, and what it must keep to: rows of the table of responses.
 struct Goal {
   const ResponseRow* objective = &kComplianceSum;
-  std::vector<Limit> limits;
+  std::vector<Limit> limits = {};
+  std::vector<Addend> addends = {};  ///< of a number of the motion: added to it
 };
 
 /// The rows of a goal in the order they are evaluated, each once.
@@ -51,9 +59,13 @@ bool has_motion(const Goal& goal);
 /// What equivalent static loads make of a goal: for numbers of the motion the compliance stands,
 /// and nothing for limits on them.
 Goal goal_of_loads(Goal goal);
-/// What the motion itself makes of it: the strain energy stands for the compliance, and nothing for
-/// limits on that.
+/// What the motion itself makes of it: the strain energy stands for the compliance, its largest
+/// value for the largest compliance, and nothing for limits on that.
 Goal goal_of_motion(Goal goal);
+/// With one number to minimize: the power mean stands for the largest compliance.
+Goal smooth(Goal goal);
+/// "strain energy in motion", "weighted sum of ..."
+std::string objective_words(const Goal& goal);
 
 /// Is there a limit that keeps the objective from being best in a full plate, or an empty one?
 bool is_held_back(const Goal& goal);

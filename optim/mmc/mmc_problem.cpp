@@ -139,6 +139,14 @@ VectorXd MmcProblem::gradient(const Entry& e, double divisor) const {
   return out;
 }
 
+VectorXd MmcProblem::slope_of(const CellFactors& by_factors) {
+  ersatz_.pull_back(tdf_.eroded(), by_factors.stiffness, by_factors.mass, d_h_, d_eroded_);
+  VectorXd out;
+  tdf_.pull_back(d_h_, d_eroded_, out);
+  design_.scale_gradient(out);
+  return out;
+}
+
 /// log f_l - bound <= 0 of a row with many values.
 void MmcProblem::add_each(const Entry& e, double bound, int first_row, optim::Response& out) const {
   const Eigen::Index n = design_.n_variables(), m = e.values.f.size();

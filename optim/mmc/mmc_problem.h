@@ -69,6 +69,9 @@ class MmcProblem final : public optim::Problem {
   /// Derivatives of the objective by the parameters of all components, images included (7 N), after
   /// evaluate().
   const VectorXd& objective_slopes() const { return entries_.front().slope; }
+  /// Derivatives by the variables of any number that has these by the factors, after look().
+  VectorXd slope_of(const CellFactors& by_factors);
+  const MotionSeat* motion() const { return motion_; }
 
   bool is_solved() const { return solved_; }  ///< are values those of x()?
 

@@ -9,14 +9,23 @@
 namespace flexmorph::mmc {
 
 MotionState motion_state_of(const std::vector<Part>& parts, MotionResponse& motion) {
-  std::vector<MotionRow> objectives, limits;
-  for (size_t b = 0; b < parts.size(); ++b) {
-    const Goal& goal = parts[b].problem.motion_goal;
-    objectives.push_back({goal.objective, b});
-    for (const Limit& limit : goal.limits)
-      if (limit.row->of_motion) limits.push_back({limit.row, b});
+  std::vector<const Goal*> goals;
+  for (const Part& p : parts) goals.push_back(&p.problem.motion_goal);
+  return {motion, goals};
+}
+
+double sharp_objective(std::span<const BodyProblem> problems, MotionResponse& motion) {
+  std::vector<const Goal*> goals;
+  std::vector<VectorXd> fractions;
+  for (const BodyProblem& p : problems) {
+    goals.push_back(&p.motion_goal);
+    fractions.push_back(fractions_of(p, p.design.components()));
   }
-  return {motion, objectives, limits};
+  const std::vector<MotionRow> rows = motion_objectives(goals);
+  const std::vector<double> each = motion.sharp(rows, fractions);
+  double out = 0;
+  for (size_t k = 0; k < rows.size(); ++k) out += rows[k].weight * each[k];
+  return out;
 }
 
 double left_within(const optim::Response& r, const VectorXd& x, const VectorXd& lower,
@@ -55,31 +64,26 @@ double angle_between(const VectorXd& a, const VectorXd& b) {
 MotionCertificate certify(std::vector<Part>& parts, MotionResponse& motion, double move_limit) {
   const double begin = cpu_seconds();
   MotionState state = motion_state_of(parts, motion);
-  Whole moved(parts, &state), loaded(parts);
+  Whole moved(parts, state), loaded = Whole::smooth(parts);
   optim::Problem& problem = moved.problem();
   const VectorXd x = problem.start(), lower = problem.lower(), upper = problem.upper();
   const optim::Response of_motion = problem.evaluate(x);
   const optim::KktPoint point = optim::kkt_point(of_motion, x, lower, upper, kActiveLimits);
 
   MotionCertificate out;
-  out.objective = parts.front().problem.motion_goal.objective->words;
+  out.objective = objective_words(parts.front().problem.motion_goal);
   out.value = std::exp(of_motion.f);
   out.kkt = point.residual;
   out.angle = angle_between(of_motion.df, loaded.problem().evaluate(x).df);
   out.move_limit = move_limit;
   out.left = left_within(of_motion, x, lower, upper, point.lambda, move_limit);
-  std::vector<VectorXd> fractions;
-  std::vector<MotionRow> rows;
+  std::vector<BodyProblem> problems;
   for (size_t b = 0; b < parts.size(); ++b) {
-    const BodyProblem& p = parts[b].problem;
-    fractions.push_back(fractions_of(p, p.design.components()));
-    const MotionRow row{p.motion_goal.objective, b};
-    if (std::none_of(rows.begin(), rows.end(), [&](const MotionRow& r) { return row.same_as(r); }))
-      rows.push_back(row);
-    out.bodies.push_back(
-        {p.body, moved.states[b].components(), moved.states[b].objective_slopes() / out.value});
+    problems.push_back(parts[b].problem);
+    out.bodies.push_back({problems.back().body, moved.states[b].components(),
+                          moved.states[b].objective_slopes() / out.value});
   }
-  for (const double each : motion.sharp(rows, fractions)) out.sharp_value += each;
+  out.sharp_value = sharp_objective(problems, motion);
   out.seconds = cpu_seconds() - begin;
   return out;
 }

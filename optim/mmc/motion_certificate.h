@@ -39,6 +39,10 @@ MotionCertificate certify(std::vector<Part>& parts, MotionResponse& motion, doub
 /// The state of the motion for these parts.
 MotionState motion_state_of(const std::vector<Part>& parts, MotionResponse& motion);
 
+/// J of what the outlines of these designs enclose.
+/// @throws Error (numerical) from the motion.
+double sharp_objective(std::span<const BodyProblem> problems, MotionResponse& motion);
+
 /// The first-order bound of MotionCertificate::left.
 /// @param lambda  multipliers, >= 0
 double left_within(const optim::Response& r, const VectorXd& x, const VectorXd& lower,

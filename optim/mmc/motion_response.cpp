@@ -6,19 +6,27 @@
 
 namespace flexmorph::mmc {
 
-MotionState::MotionState(MotionResponse& motion, const std::vector<MotionRow>& objectives,
-                         const std::vector<MotionRow>& limits)
-    : motion_(motion), factors_(objectives.size()) {
+std::vector<MotionRow> motion_objectives(std::span<const Goal* const> goals) {
+  std::vector<MotionRow> out;
   const auto add = [&](const MotionRow& row) {
     const auto same = [&](const MotionRow& other) { return row.same_as(other); };
-    if (std::none_of(rows_.begin(), rows_.end(), same)) rows_.push_back(row);
+    if (std::none_of(out.begin(), out.end(), same)) out.push_back(row);
   };
-  for (const MotionRow& row : objectives) {
-    add(row);
-    objective_of_.push_back(row.row);
+  for (size_t b = 0; b < goals.size(); ++b) {
+    add({goals[b]->objective, b});
+    for (const Addend& addend : goals[b]->addends) add({addend.row, b, addend.weight});
   }
+  return out;
+}
+
+MotionState::MotionState(MotionResponse& motion, std::span<const Goal* const> goals)
+    : motion_(motion), rows_(motion_objectives(goals)), factors_(goals.size()) {
   n_objectives_ = rows_.size();
-  for (const MotionRow& row : limits) rows_.push_back(row);
+  for (size_t b = 0; b < goals.size(); ++b) {
+    objective_of_.push_back(goals[b]->objective);
+    for (const Limit& limit : goals[b]->limits)
+      if (limit.row->of_motion) rows_.push_back({limit.row, b});
+  }
 }
 
 void MotionState::announce(size_t body, const CellFactors& factors) {
@@ -30,28 +38,37 @@ void MotionState::announce(size_t body, const CellFactors& factors) {
   values_.clear();
 }
 
-void MotionState::value(const ResponseRow& row, size_t body, Values& out) {
+MotionState::Range MotionState::rows_behind(const ResponseRow& row, size_t body) const {
+  if (objective_of_[body] == &row) return {0, n_objectives_};
+  size_t k = n_objectives_;
+  while (k < rows_.size() && !rows_[k].same_as({&row, body})) ++k;
+  return {k, std::min(k + 1, rows_.size())};
+}
+
+void MotionState::move() {
   if (values_.empty()) values_ = motion_.evaluate(rows_, factors_);
-  size_t first = n_objectives_, last = rows_.size();
-  if (objective_of_[body] == &row) {
-    first = 0;
-    last = n_objectives_;
-  } else {
-    while (first < last && !rows_[first].same_as({&row, body})) ++first;
-    last = std::min(last, first + 1);
-  }
+}
+
+void MotionState::value(const ResponseRow& row, size_t body, Values& out) {
+  move();
+  const Range range = rows_behind(row, body);
   double sum = 0;
   out.d_stiffness.setZero(1, factors_[body].stiffness.size());
   out.d_mass.setZero(1, factors_[body].mass.size());
-  for (size_t k = first; k < last; ++k) {
-    sum += values_[k].f;
-    out.d_stiffness.row(0) += values_[k].slopes[body].stiffness;
-    out.d_mass.row(0) += values_[k].slopes[body].mass;
+  for (size_t k = range.first; k < range.last; ++k) {
+    sum += rows_[k].weight * values_[k].f;
+    out.d_stiffness.row(0) += rows_[k].weight * values_[k].slopes[body].stiffness;
+    out.d_mass.row(0) += rows_[k].weight * values_[k].slopes[body].mass;
   }
   if (!(sum > 0) || !std::isfinite(sum))
     throw Error::numerical("design problem: the " + std::string(row.words) + " of the motion is " +
                            std::to_string(sum));
   out.f = VectorXd::Constant(1, sum);
+}
+
+const CellFactors& MotionState::limit_slopes(const ResponseRow& row, size_t body, size_t by) {
+  move();
+  return values_[rows_behind(row, body).first].slopes[by];
 }
 
 }  // namespace flexmorph::mmc

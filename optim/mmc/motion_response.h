@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "optim/mmc/goal.h"
 #include "optim/mmc/response.h"
 
 namespace flexmorph::mmc {
@@ -10,13 +11,17 @@ namespace flexmorph::mmc {
 /// A number of the motion of a mechanism: a row of the table, and the designed body it is of.
 struct MotionRow {
   const ResponseRow* row = nullptr;
-  size_t body = 0;  ///< among the designed ones
+  size_t body = 0;    ///< among the designed ones
+  double weight = 1;  ///< of an objective, which is a sum
 
   /// Is it the same number? (Of rows that are of no body the body does not count.)
   bool same_as(const MotionRow& other) const {
     return row == other.row && (body == other.body || !row->of_body);
   }
 };
+
+/// What the goals of all designed bodies minimize, each number once: J is their weighted sum.
+std::vector<MotionRow> motion_objectives(std::span<const Goal* const> goals);
 
 /// What design problems ask of the motion of a mechanism.
 class MotionResponse {
@@ -43,9 +48,8 @@ class MotionResponse {
 /// The motion of a mechanism at the designs of its bodies, moved once for all who ask.
 class MotionState {
  public:
-  /// @param motion  lives longer   @param objectives  one of each body; J is their sum
-  MotionState(MotionResponse& motion, const std::vector<MotionRow>& objectives,
-              const std::vector<MotionRow>& limits);
+  /// @param motion  lives longer   @param goals  of the motion, of every designed body
+  MotionState(MotionResponse& motion, std::span<const Goal* const> goals);
 
   /// The factors of a body.
   void announce(size_t body, const CellFactors& factors);
@@ -53,8 +57,16 @@ class MotionState {
   /// @param out  d_parameters stays as it is
   /// @throws Error (numerical) as MotionResponse::evaluate(), or where J is not positive.
   void value(const ResponseRow& row, size_t body, Values& out);
+  /// The derivatives of a limited number of `body` by the factors of another one.
+  const CellFactors& limit_slopes(const ResponseRow& row, size_t body, size_t by);
 
  private:
+  struct Range {
+    size_t first, last;
+  };
+  Range rows_behind(const ResponseRow& row, size_t body) const;
+  void move();
+
   MotionResponse& motion_;
   std::vector<MotionRow> rows_;  // the objectives, each once, then the limits
   size_t n_objectives_ = 0;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "optim/mmc/motion_response.h"
+
 namespace flexmorph::mmc {
 
 size_t shared_limit(const Goal& goal) {
@@ -21,7 +23,7 @@ SharedProblem::SharedProblem(std::vector<Part> parts) : parts_(std::move(parts))
     const MmcProblem& part = *parts_[b].problem;
     const Goal& goal = part.goal();
     of_motion_ = goal.objective->of_motion;
-    if (goal.objective != &kComplianceSum && !of_motion_)
+    if (!of_motion_ && (goal.objective->per_load || !goal.objective->needs_state()))
       throw Error::input("shared mass: every body minimizes the sum of its compliances");
     first_.push_back(first_.back() + part.n_variables());
     n_constraints_ += part.n_constraints();
@@ -59,13 +61,39 @@ VectorXd SharedProblem::start() const {
   return joined([](const MmcProblem& p) { return p.start(); });
 }
 
+int SharedProblem::row_of(size_t body, int own) const {
+  if (own == budget_[body]) return 0;
+  int row = shares_.sum() > 0 ? 1 : 0;
+  for (size_t b = 0; b < body; ++b)
+    row += parts_[b].problem->n_constraints() - (budget_[b] >= 0 ? 1 : 0);
+  return row + own - (budget_[body] >= 0 && own > budget_[body] ? 1 : 0);
+}
+
+/// Numbers of the motion that are limited for one body depend on the designs of all.
+void SharedProblem::add_slopes_of_others(optim::Response& out) {
+  for (size_t b = 0; b < parts_.size(); ++b) {
+    const MmcProblem& part = *parts_[b].problem;
+    const std::vector<Limit>& limits = part.goal().limits;
+    for (size_t k = 0; k < limits.size(); ++k) {
+      const ResponseRow& row = *limits[k].row;
+      if (!row.of_motion) continue;
+      const double f = (*part.values(row))[0];
+      for (size_t c = 0; c < parts_.size(); ++c) {
+        if (c == b) continue;
+        const CellFactors& by = part.motion()->state->limit_slopes(row, b, c);
+        out.dg.row(row_of(b, part.row_of(k))).segment(first_[c], first_[c + 1] - first_[c]) =
+            parts_[c].problem->slope_of(by) / f;
+      }
+    }
+  }
+}
+
 optim::Response SharedProblem::evaluate(const VectorXd& x) {
   optim::Response out;
   out.df.resize(n_variables());
   out.g.setZero(n_constraints());
   out.dg.setZero(n_constraints(), n_variables());
   double sum = 0;
-  int row = shares_.sum() > 0 ? 1 : 0;
   if (of_motion_)  // which is moved once
     for (size_t b = 0; b < parts_.size(); ++b) parts_[b].problem->look(part_of(x, b));
   for (size_t b = 0; b < parts_.size(); ++b) {
@@ -77,20 +105,21 @@ optim::Response SharedProblem::evaluate(const VectorXd& x) {
       out.f = own.f;
       out.df.segment(first, n) = own.df;
     } else {
-      sum += part.compliance();
-      out.df.segment(first, n) = part.compliance() * own.df;
+      const double f = (*part.values(*part.goal().objective))[0];
+      sum += f;
+      out.df.segment(first, n) = f * own.df;
     }
     for (int k = 0; k < part.n_constraints(); ++k) {
-      if (k == budget_[b]) {
-        out.g[0] += share * own.g[k];
-        out.dg.row(0).segment(first, n) = share * own.dg.row(k);
-      } else {
-        out.g[row] = own.g[k];
-        out.dg.row(row++).segment(first, n) = own.dg.row(k);
-      }
+      const int row = row_of(b, k);
+      const double weight = k == budget_[b] ? share : 1;
+      out.g[row] += weight * own.g[k];
+      out.dg.row(row).segment(first, n) = weight * own.dg.row(k);
     }
   }
-  if (of_motion_) return out;
+  if (of_motion_) {
+    add_slopes_of_others(out);
+    return out;
+  }
   out.f = std::log(sum);
   out.df /= sum;
   return out;

@@ -19,13 +19,15 @@ namespace flexmorph::mmc {
 /// their limits to themselves, and have but the objective in common: the sum of their compliances,
 /// or a number of the motion of the mechanism that they are parts of.
 ///
+/// Limits of that motion depend on the designs of all bodies, the others on those of their own.
+///
 /// The variables are those of all bodies, one body after the other, each with its own scales and
 /// bounds. A body sees the others through the two sums only: values and gradients are made of the
 /// bodies' own, df = Σ (C_b / Σ C) df_b and g = Σ s_b g_b with the shares s_b of the budget.
 class SharedProblem final : public optim::Problem {
  public:
   struct Part {
-    MmcProblem* problem = nullptr;  ///< lives longer; minimizes the sum of its compliances
+    MmcProblem* problem = nullptr;  ///< lives longer
     double full_mass = 0;           ///< m_b [kg]
     bool shares = true;             ///< the budget
   };
@@ -51,8 +53,11 @@ class SharedProblem final : public optim::Problem {
   VectorXd part_of(const VectorXd& x, size_t body) const {
     return x.segment(first_[body], first_[body + 1] - first_[body]);
   }
+  /// The constraint that a constraint of one body has become.
+  int row_of(size_t body, int own) const;
 
  private:
+  void add_slopes_of_others(optim::Response& out);
   template <class Of>
   VectorXd joined(Of&& of) const;
 

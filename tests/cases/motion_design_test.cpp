@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "cases/build/scene_motion.h"
@@ -41,37 +42,124 @@ class NoLoads final : public mmc::LoadResponse {
   Seconds seconds() const override { return {}; }
 };
 
-class EveryRow : public ::testing::TestWithParam<const char*> {};
+/// The design problem of a scene for its motion, at the layouts it starts with.
+class DesignedForMotion {
+ public:
+  explicit DesignedForMotion(cases::Scene scene)
+      : scene_(std::move(scene)),
+        problems_(cases::build_problems(scene_)),
+        parts_(parts_of(problems_, loads_)),
+        motion_(scene_, {.cell = 0, .step = 2e-3, .checkpoints = 0}, {}),
+        state_(mmc::motion_state_of(parts_, motion_)),
+        whole_(parts_, state_) {}
 
-// Through components, TDF, Heaviside, ersatz material, void of motions, and the motion itself: by
-// the variables that an optimizer sees, against differences of fourth order.
-TEST_P(EveryRow, HasTheGradientThatDifferencesSay) {
-  const cases::Scene scene =
-      short_scene({std::string("design.minimize=") + GetParam(), "cycle.correct=direct"});
-  std::vector<mmc::BodyProblem> problems = cases::build_problems(scene);
-  NoLoads loads;
-  const mmc::LoadedBody body{problems[0], loads};
-  mmc::Part part(body);
-  part.tdf = &problems[0].stages.back();
-  std::vector<mmc::Part> parts;
-  parts.push_back(std::move(part));
-  SceneMotion motion(scene, {.cell = 0, .step = 2e-3, .checkpoints = 0}, {});
-  mmc::MotionState state = mmc::motion_state_of(parts, motion);
-  mmc::Whole whole(parts, &state);
-  const VectorXd x = whole.problem().start();
-  const optim::Response r = whole.problem().evaluate(x);
+  optim::Problem& problem() { return whole_.problem(); }
+  const mmc::Whole& whole() const { return whole_; }
+
+ private:
+  static std::vector<mmc::Part> parts_of(std::vector<mmc::BodyProblem>& problems, NoLoads& loads) {
+    std::vector<mmc::Part> out;
+    for (mmc::BodyProblem& problem : problems) {
+      out.emplace_back(mmc::LoadedBody{problem, loads});
+      out.back().tdf = &problem.stages.back();
+    }
+    return out;
+  }
+
+  NoLoads loads_;
+  cases::Scene scene_;
+  std::vector<mmc::BodyProblem> problems_;
+  std::vector<mmc::Part> parts_;
+  SceneMotion motion_;
+  mmc::MotionState state_;
+  mmc::Whole whole_;
+};
+
+/// A slope of every value, the objective first, in one direction, against differences of fourth
+/// order.
+void expect_slopes(optim::Problem& problem, const std::vector<int>& constraints) {
+  const VectorXd x = problem.start();
+  const optim::Response r = problem.evaluate(x);
   EXPECT_GT(r.df.norm(), 0);
   VectorXd direction(x.size());
   for (Eigen::Index k = 0; k < x.size(); ++k) direction[k] = std::sin(3.7 * static_cast<double>(k));
   direction *= 1 / direction.norm();
-  const double slope = testing::first_difference(
-      [&](double by) { return whole.problem().evaluate(x + by * direction).f; }, 1e-4);
-  EXPECT_NEAR(r.df.dot(direction), slope, 2e-6 * std::abs(slope) + 1e-8 * r.df.norm());
+  const auto expect = [&](const VectorXd& df, const std::function<double(const VectorXd&)>& f) {
+    const double slope =
+        testing::first_difference([&](double by) { return f(x + by * direction); }, 1e-4);
+    EXPECT_NEAR(df.dot(direction), slope, 2e-6 * std::abs(slope) + 1e-8 * df.norm());
+  };
+  expect(r.df, [&](const VectorXd& at) { return problem.evaluate(at).f; });
+  for (const int k : constraints)
+    expect(r.dg.row(k), [&](const VectorXd& at) { return problem.evaluate(at).g[k]; });
+}
+
+class EveryRow : public ::testing::TestWithParam<const char*> {};
+
+// Through components, TDF, Heaviside, ersatz material, void of motions, and the motion itself: by
+// the variables that an optimizer sees.
+TEST_P(EveryRow, HasTheGradientThatDifferencesSay) {
+  DesignedForMotion design(
+      short_scene({std::string("design.minimize=") + GetParam(), "cycle.correct=direct"}));
+  expect_slopes(design.problem(), {});
 }
 
 INSTANTIATE_TEST_SUITE_P(MotionDesign, EveryRow,
-                         ::testing::Values("strain_energy", "deflection", "joint_force"),
+                         ::testing::Values("strain_energy", "peak_strain_energy", "deflection",
+                                           "joint_force"),
                          [](const auto& test) { return std::string(test.param); });
+
+// J of a sum is the sum of the numbers by themselves, its gradient that of theirs.
+TEST(MotionSum, IsWeighted) {
+  struct Number {
+    double f;
+    VectorXd df;
+  };
+  const auto number = [&](const std::string& minimized, const std::string& added) {
+    Words changes = {"design.minimize=" + minimized, "cycle.correct=direct"};
+    if (!added.empty()) changes.push_back("design.objective=" + added);
+    DesignedForMotion design(short_scene(changes));
+    const optim::Response r = design.problem().evaluate(design.problem().start());
+    return Number{std::exp(r.f), std::exp(r.f) * r.df};
+  };
+  const Number energy = number("strain_energy", ""), deflection = number("deflection", ""),
+               force = number("joint_force", ""),
+               sum = number("strain_energy",
+                            "[{response=\"deflection\", weight=3.0}, "
+                            "{response=\"joint_force\", weight=0.001}]");
+  const double f = energy.f + 3 * deflection.f + 1e-3 * force.f;
+  EXPECT_NEAR(sum.f, f, 1e-12 * f);
+  const VectorXd df = energy.df + 3 * deflection.df + 1e-3 * force.df;
+  EXPECT_LT((sum.df - df).norm(), 1e-9 * df.norm());  // adjoint systems are solved to 2e-13
+}
+
+// A limit of one body depends on what all bodies are, here of two plates
+// whose ends a spring holds together.
+TEST(MotionLimits, OfOneBodyHaveGradientsByAll) {
+  const std::string limit =
+      "constraint=[{response=\"volume\", at_most=0.5}, "
+      "{response=\"joint_force\", at_most=1.0}]";
+  const Words changes = {
+      "cycle.correct=direct",
+      "design.0.coupling=none",
+      "design.1.coupling=none",
+      "design.0." + limit,
+      "design.1." + limit,
+      "spring=[{a=\"heavy\", point_a=[0.5, 0.0], b=\"light\", point_b=[0.5, 0.0], "
+      "free_length=2.0, stiffness=3000.0}]",
+      "design.0.minimize=strain_energy",
+      "design.1.minimize=strain_energy",
+      "design.0.max_volume=",
+      "design.1.max_volume="};
+  const cases::Scene scene = cases::read_scene(io::CaseFile(FLEXMORPH_TWO_PLATES, changes));
+  DesignedForMotion design(scene);
+  const int heavy = design.whole().row_of(0, 1), light = design.whole().row_of(1, 1);
+  expect_slopes(design.problem(), {heavy, light});
+  const optim::Response r = design.problem().evaluate(design.problem().start());
+  for (const int row : {heavy, light})
+    for (const size_t body : {0, 1})
+      EXPECT_GT(design.whole().part_of(r.dg.row(row), body).norm(), 1e-3 * r.dg.row(row).norm());
+}
 
 // Two variables, one limit x + y <= 0 that is met: within 0.1, log J falls most along (1, -1), by
 // 0.1 (2 - 1); the multiplier that says so is 1.5, and any other one allows more.
@@ -129,6 +217,19 @@ TEST_P(EveryCorrection, LowersWhatTheMotionSays) {
 
 INSTANTIATE_TEST_SUITE_P(MotionDesign, EveryCorrection, ::testing::Values("first_order", "direct"),
                          [](const auto& test) { return std::string(test.param); });
+
+// Where the largest compliance is minimized, it is the largest energy of the motion.
+TEST(MotionDesign, OfTheWorstLoadLowersTheLargestEnergy) {
+  const Scratch scratch;
+  const nlohmann::json run =
+      run_corrected(scratch, scratch / "out", "first_order", {"design.loads=worst"});
+  EXPECT_EQ(run["certificate"]["objective"], "largest strain energy in motion");
+  const auto& cycles = run["corrected_cycles"];
+  double least = cycles[0]["objective"];
+  for (const auto& cycle : cycles)
+    if (cycle["accepted"].get<bool>()) least = std::min(least, cycle["objective"].get<double>());
+  EXPECT_LT(least, 0.98 * cycles[0]["objective"].get<double>());
+}
 
 // A finished run is certified later as at its end.
 TEST(Certify, SaysOfAFinishedRunWhatTheRunWouldHaveSaid) {

@@ -207,9 +207,26 @@ const Bad kBadInputs[] = {
     {"correction_on_cells_between",
      {"cycle.cell=0.004", "cycle.correct=first_order"},
      "a whole number of cells of 'plate' (0.0025 m), which divides its lengths and its width"},
-    {"correction_of_the_worst",
-     {"cycle.correct=first_order", "design.loads=worst"},
-     "cycles are corrected for sums of loads: design.loads = \"sum\""},
+    {"sum_of_loads_and_motion",
+     {"design.objective=[{response=\"deflection\"}]", "cycle.correct=direct"},
+     "only numbers of the motion have sums: `minimize` is the summed compliance"},
+    {"sum_of_motion_and_mass",
+     {"design.objective=[{response=\"mass\"}]", "design.minimize=deflection",
+      "cycle.correct=direct"},
+     "a number of the motion"},
+    {"sum_of_one_number_twice",
+     {"design.objective=[{response=\"deflection\"}]", "design.minimize=deflection",
+      "cycle.correct=direct"},
+     "each number once"},
+    {"weight_of_nothing",
+     {"design.objective=[{response=\"deflection\", weight=0}]", "design.minimize=strain_energy",
+      "cycle.correct=direct"},
+     "a weight is positive"},
+    {"limit_of_an_addend",
+     {"design.constraint=[{response=\"deflection\", at_most=0.1}]",
+      "design.objective=[{response=\"deflection\"}]", "design.minimize=strain_energy",
+      "cycle.correct=direct"},
+     "what is minimized has no limit"},
     {"motion_without_correction",
      {"cycle.correct=none", "design.minimize=deflection"},
      "[[design]] 'plate' asks for numbers of the motion: \"first_order\" or \"direct\""},
@@ -391,6 +408,41 @@ TEST(SceneReader, ErrorsInTheFileNameLineKeyAndValue) {
   std::remove(path.c_str());
   EXPECT_EQ(message, path + ":" + std::to_string(found) +
                          ":13: body.thickness = -0.002: a thickness is positive [m]");
+}
+
+// Another body's lines that find their own way: when its mesh changes depends on the design.
+TEST(SceneReader, RefusesGradientsWhereLinesAreFree) {
+  std::string text;
+  {
+    std::ifstream in(FLEXMORPH_TWO_PLATES);
+    text.assign(std::istreambuf_iterator<char>(in), {});
+  }
+  const std::string elements = "elements = [6, 1]";
+  text.replace(text.rfind(elements), elements.size(),
+               "elements = [6, 1]\n[[body.line]]\nindex = 3\nfree = true\nat = 0.25");
+  const size_t weld = text.rfind("type = \"weld\"");
+  text.replace(weld, text.find("[[point_mass]]") - weld,
+               "type = \"sleeve\"\nbody = \"light\"\nedge = \"line 3\"\n"
+               "mode = \"direction\"\nposition = [2.25, 0.0]\n\n");
+  const size_t second = text.rfind("[[design]]"), after = text.find("[optimizer]");
+  text.erase(second, after - second);
+  const std::string path = ::testing::TempDir() + "flexmorph_free_line.toml";
+  std::ofstream(path) << text;
+  for (const char* change : {"cycle.correct=first_order", "certificate.checkpoints=0"}) {
+    std::string message;
+    try {
+      const Changes changes = {change, "design.0.coupling=none"};
+      read_scene(io::CaseFile(path, changes));
+    } catch (const Error& error) {
+      message = error.what();
+      EXPECT_EQ(error.kind(), Error::Kind::input);
+    }
+    EXPECT_TRUE(
+        message.ends_with("there is no exact gradient: when meshes with free lines change "
+                          "depends on the design ([[body.line]])"))
+        << message;
+  }
+  std::remove(path.c_str());
 }
 
 // Designs that share mass minimize sums of compliances, all of them; volumes may differ.

@@ -3,6 +3,7 @@
 #include "cases/scene/read.h"
 #include "cases/scene/tables.h"
 #include "io/files.h"
+#include "optim/mmc/motion_response.h"
 
 /// What follows the cycles of equivalent static loads: corrected cycles, and the certificate.
 namespace flexmorph::cases {
@@ -25,7 +26,7 @@ const io::Choice<Correction> kCorrect(
 const Key& kCorrections =
     io::key("cycle", "corrections")
         .integer("a number of cycles", 0, 100'000)
-        .otherwise(mmc::CorrectionSettings().max_cycles)
+        .otherwise_as("20, of `direct` `optimizer.max_iterations`")
         .says("Corrected cycles at most, or iterations of `direct`; 0: J is measured.");
 const Key& kKktPart = io::key("cycle", "kkt_part")
                           .number(io::between("a part", "", 0, 1))
@@ -100,23 +101,29 @@ void read_motion_keys(const Table& t, const Scene& scene, To& out) {
   }
 }
 
-/// Goals that ask for what the scene does not have.
-void check_goals(const Table& cycle, const Scene& scene, bool corrects) {
+std::vector<mmc::MotionRow> rows_minimized(const BodyDesign& design) {
+  const mmc::Goal* goal = &design.motion_goal;
+  return mmc::motion_objectives({&goal, 1});
+}
+
+/// Goals that ask for what the scene does not have, or not for one thing.
+void check_goals(const Table& cycle, const Scene& scene) {
   for (const BodyDesign& design : scene.designs) {
-    const auto rows = mmc::rows_of(design.motion_goal);
-    const auto has = [&](const char* name) {
-      return std::any_of(rows.begin(), rows.end(),
-                         [&](const mmc::ResponseRow* r) { return r->name == name; });
-    };
-    if (has("trajectory_error") && !scene.trajectory)
-      cycle.fail("\"trajectory_error\" needs a [trajectory]");
-    const auto is_limit = [](const mmc::Limit& l) { return l.row->of_motion; };
-    const auto& limits = design.motion_goal.limits;
-    if (scene.designs.size() > 1 && std::any_of(limits.begin(), limits.end(), is_limit))
-      cycle.fail("limits of the motion are for scenes with one [[design]]");
-    if (corrects && design.goal.objective->per_load)
-      cycle.fail(kCorrect, "cycles are corrected for sums of loads: design.loads = \"sum\"");
+    std::vector<const mmc::ResponseRow*> rows = mmc::rows_of(design.motion_goal);
+    for (const mmc::Addend& addend : design.motion_goal.addends) rows.push_back(addend.row);
+    const bool asks = std::any_of(rows.begin(), rows.end(), [](const mmc::ResponseRow* r) {
+      return r->name == "trajectory_error";
+    });
+    if (asks && !scene.trajectory) cycle.fail("\"trajectory_error\" needs a [trajectory]");
   }
+  // A number of the whole mechanism counts once, however many designs name it.
+  for (const BodyDesign& design : scene.designs)
+    for (const mmc::MotionRow& row : rows_minimized(design))
+      for (const BodyDesign& other : scene.designs)
+        for (const mmc::MotionRow& twin : rows_minimized(other))
+          if (!row.row->of_body && row.same_as(twin) && row.weight != twin.weight)
+            cycle.fail("\"" + std::string(row.row->name) +
+                       "\" is of the whole mechanism: it has one weight in all designs");
 }
 
 }  // namespace
@@ -131,7 +138,8 @@ void read_correction(const Table& root, Scene& scene) {
   const std::string why = no_gradient_because(scene);
   if (corrects && !why.empty()) cycle.fail(kCorrect, "there is no exact gradient: " + why);
   if (corrects) {
-    s.max_cycles = cycle.integer(kCorrections);
+    if (s.kind == Correction::direct) s.max_cycles = scene.optimizer.max_iterations;
+    s.max_cycles = cycle.integer(kCorrections, s.max_cycles);
     s.kkt_part = cycle.number(kKktPart);
     s.radius = cycle.number(kRadius);
     s.inner_iterations = cycle.integer(kInner);
@@ -146,7 +154,7 @@ void read_correction(const Table& root, Scene& scene) {
         cycle.fail(kCorrect, "[[design]] '" + design.body +
                                  "' asks for numbers of the motion: \"first_order\" or \"direct\"");
   }
-  check_goals(cycle, scene, corrects);
+  check_goals(cycle, scene);
   if (!root.has(tables::kCertificate)) return;
   const Table t = root.table(tables::kCertificate);
   if (!why.empty()) t.fail("there is no exact gradient: " + why);

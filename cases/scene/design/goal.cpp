@@ -61,6 +61,17 @@ const Key& kMaxCompliance = io::key("design", "max_compliance")
                                 .otherwise_as("a [[design.constraint]] is given")
                                 .when("something else than compliance is minimized")
                                 .says("What the compliance may be.");
+const Key& kObjective = io::key("design", "objective")
+                            .tables_of()
+                            .otherwise_as("none")
+                            .when("`minimize` is a number of the motion")
+                            .says("One more of them, added to it by a weight.");
+const Key& kAdded =
+    io::key("design.objective", "response").word("a response", row_names).says("What is added.");
+const Key& kWeight = io::key("design.objective", "weight")
+                         .number(io::positive("a weight"))
+                         .otherwise(1.0)
+                         .says("Per unit of the response; that of `minimize` is 1.");
 const Key& kConstraint = io::key("design", "constraint")
                              .tables_of()
                              .otherwise_as("none")
@@ -107,6 +118,21 @@ void read_limit(const Table& t, const Key& key, const ResponseRow& row, const mm
 
 std::string noun_of(const ResponseRow& row) { return std::string("a ").append(row.words); }
 
+/// One [[design.objective]].
+void read_addend(const Table& t, const std::string& loads, const mmc::Plate& plate,
+                 mmc::Goal& goal) {
+  if (!goal.objective->of_motion)
+    t.fail("only numbers of the motion have sums: `minimize` is the " +
+           std::string(goal.objective->words));
+  if (!t.has(kAdded)) t.fail(kAdded, "what is added is a `response`");
+  const ResponseRow& row = read_row(t, kAdded, loads, plate);
+  if (!row.of_motion) t.fail(kAdded, "a number of the motion");
+  const auto is_row = [&](const mmc::Addend& a) { return a.row == &row; };
+  if (&row == goal.objective || std::any_of(goal.addends.begin(), goal.addends.end(), is_row))
+    t.fail(kAdded, "each number once");
+  goal.addends.push_back({&row, t.number(kWeight)});
+}
+
 /// One [[design.constraint]].
 void read_constraint(const Table& t, const std::string& design_loads, const mmc::Plate& plate,
                      mmc::Goal& goal) {
@@ -115,7 +141,9 @@ void read_constraint(const Table& t, const std::string& design_loads, const mmc:
   const ResponseRow& row = read_row(t, kResponse, loads, plate);
   if (t.has(kItsLoads) && !row.needs_state())
     t.fail(kItsLoads, "only " + names_of_rows(true) + " puts loads together");
-  if (&row == goal.objective) t.fail(kResponse, "what is minimized has no limit");
+  const auto is_row = [&](const mmc::Addend& a) { return a.row == &row; };
+  if (&row == goal.objective || std::any_of(goal.addends.begin(), goal.addends.end(), is_row))
+    t.fail(kResponse, "what is minimized has no limit");
   if (const auto rows = mmc::rows_of(goal); std::find(rows.begin(), rows.end(), &row) != rows.end())
     t.fail(kResponse, "the " + std::string(row.words) + " has a limit already");
   if (!t.has(kAtMost) && !t.has(kAtLeast)) t.fail("a constraint has `at_most`, `at_least` or both");
@@ -164,6 +192,7 @@ mmc::Goal read_goal(const Table& t, const mmc::Plate& plate) {
   const std::string loads = t.choice(kLoads);
   mmc::Goal goal;
   goal.objective = &read_row(t, kMinimize, loads, plate);
+  for (const Table& addend : t.tables(kObjective)) read_addend(addend, loads, plate, goal);
   read_shorthand(t, loads, plate, goal);
   for (const Table& constraint : t.tables(kConstraint))
     read_constraint(constraint, loads, plate, goal);
@@ -206,7 +235,7 @@ std::string goal_words(const mmc::Goal& goal) {
     out += (out.empty() ? (limit.at_least ? " with " : " under ") : " and ") + noun_of(*limit.row) +
            (limit.at_least ? " of at least " : " of ") + with_unit(limit);
   }
-  return std::string(goal.objective->words) + under + with;
+  return mmc::objective_words(goal) + under + with;
 }
 
 std::vector<const ResponseRow*> further_rows(const Scene& scene) {

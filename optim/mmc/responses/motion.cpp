@@ -23,6 +23,12 @@ const ResponseRow kStrainEnergy{.name = "strain_energy",
                                 .of_motion = true,
                                 .make = make_response<OfMotion<kStrainEnergy>>};
 
+const ResponseRow kPeakStrainEnergy{.name = "peak_strain_energy",
+                                    .words = "largest strain energy in motion",
+                                    .unit = "J",
+                                    .of_motion = true,
+                                    .make = make_response<OfMotion<kPeakStrainEnergy>>};
+
 extern const ResponseRow kDeflection, kTrajectoryError, kJointForce;
 
 const ResponseRow kDeflection{.name = "deflection",

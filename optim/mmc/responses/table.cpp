@@ -8,9 +8,10 @@ namespace flexmorph::mmc {
 extern const ResponseRow kInertia, kDeflection, kTrajectoryError, kJointForce;
 
 std::span<const ResponseRow* const> responses() {
-  static const std::array kRows = {&kComplianceSum, &kComplianceWorst, &kVolume,
-                                   &kMass,          &kInertia,         &kStrainEnergy,
-                                   &kDeflection,    &kTrajectoryError, &kJointForce};
+  static const std::array kRows = {
+      &kComplianceSum,   &kComplianceWorst, &kVolume,           &kMass,
+      &kInertia,         &kStrainEnergy,    &kPeakStrainEnergy, &kDeflection,
+      &kTrajectoryError, &kJointForce};
   return kRows;
 }
 
