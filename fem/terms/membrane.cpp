@@ -3,10 +3,11 @@
 #include <memory>
 
 #include "fem/terms.h"
+#include "fem/terms/cell_slopes.h"
 #include "fem/terms/densities.h"
 #include "fem/terms/density_term.h"
+#include "fem/terms/element_invariants.h"
 #include "fem/terms/gram.h"
-#include "fem/terms/membrane_invariant.h"
 #include "fem/terms/sampling.h"
 #include "fem/terms/strain_flow.h"
 #include "fem/terms/void_cells.h"
@@ -44,7 +45,8 @@ class Membrane final : public ElasticTerm {
                     parts_of(s, strains)),
         section_(s),
         elasticity_(s.thickness * s.elasticity()),
-        strains_(strains) {}
+        strains_(strains),
+        invariants_(elasticity_, strains) {}
 
   static std::vector<ElasticPart> parts_of(const PlaneSection& s, Strains strains) {
     return {{std::make_shared<MembraneDensity>(s), strains == Strains::assumed
@@ -57,20 +59,13 @@ class Membrane final : public ElasticTerm {
     return strains_ == Strains::assumed ? make_assumed_membrane(section_) : make_membrane(section_);
   }
   void prepare(const Element& element, const Factors& factors, bool all) override {
-    tabulated_ = -1;
-    scaled_from_ = nullptr;
+    invariants_.forget();
     prepare_parts(element, factors);
     if (all) {
       dim_ = element.dim();
       coupling_ = factors.uniform() ? Coupling::classes : Coupling::all;
-      if (element.n_shapes() == 4)
-        number<1>();
-      else if (element.n_shapes() == 12)
-        number<3>();
-      else if (element.n_shapes() == 16)
-        number<4>();
-      else
-        throw Error::input("term 'membrane' needs 1, 3 or 4 vectors at each of four nodes");
+      kinds_ = element.n_shapes() / 4;
+      invariants_.number(kinds_, coupling_ == Coupling::all);
       batches_.assign(static_cast<size_t>((element.n_elements() + kLanes - 1) / kLanes), {});
     }
     const MatrixXd reference = element.reference();
@@ -163,13 +158,13 @@ class Membrane final : public ElasticTerm {
   void add_factor_slopes(int e, const Local& x, const LocalRows& psi,
                          FactorSlopes& out) const override {
     if (kinds_ == 1)
-      add_cell_slopes(e, x.q.data(), psi.data(), 1, out.stiffness);
+      add_slopes_of_cell(e, x.q.data(), psi.data(), 1, out.stiffness);
     else
       ElasticTerm::add_factor_slopes(e, x, psi, out);
   }
   void add_energy_slopes(int e, const Local& x, double weight, FactorSlopes& out) const override {
     if (kinds_ == 1)
-      add_cell_slopes(e, x.q.data(), nullptr, weight, out.stiffness);
+      add_slopes_of_cell(e, x.q.data(), nullptr, weight, out.stiffness);
     else
       ElasticTerm::add_energy_slopes(e, x, weight, out);
   }
@@ -185,8 +180,7 @@ class Membrane final : public ElasticTerm {
  private:
   static constexpr int kMaxPairs = gram::Numbering<4>::n_pairs;
   static constexpr int kMaxVectors = gram::Numbering<4>::n;
-  static constexpr int kCellDegree = 4;  // of the strains' products, with one vector at a node
-  using Packed = std::shared_ptr<const std::vector<double>>;
+  using Packed = ElementInvariants::Packed;
 
   struct BatchData {
     Packed shared;                 // squares; where all elements have the same W
@@ -194,6 +188,13 @@ class Membrane final : public ElasticTerm {
     std::vector<Lanes> reference;  // g°
     VoidCells cells;               // of the shape set q4
   };
+
+  void add_slopes_of_cell(int e, const double* q, const double* psi, double weight,
+                          VectorXd& out) const {
+    const BatchData& b = of(e);
+    add_cell_slopes(element(), factors(), invariants_, {b.different, b.reference, b.cells}, e, q,
+                    psi, weight, out);
+  }
 
   const BatchData& of(int e) const { return batches_[static_cast<size_t>(e / kLanes)]; }
 
@@ -210,103 +211,6 @@ class Membrane final : public ElasticTerm {
       }
     });
     return energy;
-  }
-
-  /// Work of a cell's force on ψ, or its energy, with all of it solid and with all of it void.
-  struct Shares {
-    double solid = 0, empty = 0;
-  };
-
-  /// @param w  W of lane w.lane   @param psi  by nodes; null: energies
-  static Shares shares(const gram::OneOf& w, const VoidCells& cells, const BatchData& batch,
-                       int lane, const double* q, const double* psi) {
-    using N = gram::Numbering<1>;
-    double p[2 * N::n], d[2 * N::n], g[N::n_pairs], s[N::n_pairs];
-    gram::vectors<1, 2>(q, p);
-    gram::products<1, 2>(p, g);
-    for (size_t k = 0; k < N::n_pairs; ++k) g[k] -= batch.reference[k][lane];
-    gram::multiply<1, Coupling::all>(w, g, s);
-    Shares out;
-    if (psi) gram::vectors<1, 2>(psi, d);
-    for (size_t k = 0; k < N::n_pairs; ++k) {
-      const int i = 2 * N::tables.i[k], j = 2 * N::tables.j[k];
-      double change = g[k] / 2;
-      if (psi) {
-        change = p[i] * d[j] + p[i + 1] * d[j + 1];
-        if (i != j) change += d[i] * p[j] + d[i + 1] * p[j + 1];
-      }
-      out.solid += s[k] * change;
-    }
-    if (cells.any()) out.empty = cells.small_strains(w.lane, p, psi ? d : nullptr);
-    return out;
-  }
-
-  /// U = γ(κ̄) U_solid + (1 - γ(κ̄)) U_empty, both linear in the factors, κ̄ the mean one.
-  void add_cell_slopes(int e, const double* q, const double* psi, double weight,
-                       VectorXd& out) const {
-    const BatchData& batch = of(e);
-    const int lane = e % kLanes;
-    const VoidCells& cells = batch.cells;
-    const Grid& grid = factors().grid;
-    const double factor = cells.factor(lane), solid = VoidCells::solid_part(factor),
-                 slope = VoidCells::solid_slope(factor);
-    const Shares all = shares({batch.different.data(), lane}, cells, batch, lane, q, psi);
-    const Element::CellRange at = element().cells(e, grid);
-    if (at.single() && factor > 0) {
-      out[grid.cell(at.i0, at.j0)] += weight * ((solid / factor + slope) * all.solid +
-                                                ((1 - solid) / factor - slope) * all.empty);
-      return;
-    }
-    for (int i = at.i0; i < at.i1; ++i)
-      for (int j = at.j0; j < at.j1; ++j) {
-        CellPart part = part_in(e, grid.cell(i, j), cells.size(lane));
-        const Shares own = shares({part.w.data(), 0}, part.cells, batch, lane, q, psi);
-        out[grid.cell(i, j)] += weight * (solid * own.solid + (1 - solid) * own.empty +
-                                          slope * part.share * (all.solid - all.empty));
-      }
-  }
-
-  /// What full material of one cell is in an element: its W, and its part of the area.
-  struct CellPart {
-    std::vector<Lanes> w;
-    VoidCells cells;
-    double share = 0;
-  };
-  CellPart part_in(int e, int cell, const Vec2& size) const {
-    static thread_local Factors only;
-    only.grid = factors().grid;
-    only.stiffness.setZero(factors().stiffness.size());
-    only.stiffness[cell] = 1;
-    ProductTable table;
-    element().tabulate_products(e, kCellDegree, only, FactorKind::stiffness, table);
-    CellPart out;
-    out.share = table.weight.sum() / size.prod();
-    for (const double x : membrane_invariant(even_and_odd(table, function_m_, function_n_), pairs_,
-                                             elasticity_, strains_))
-      out.w.push_back(Lanes{} + x);
-    out.cells.set(0, size, 0);
-    out.cells.fill(1);
-    out.cells.set_stiffness(out.w);
-    return out;
-  }
-
-  /// Tables of gram.h that integrate() needs, and the functions of one coordinate in every vector.
-  template <int kKinds>
-  void number() {
-    using N = gram::Numbering<kKinds>;
-    pairs_.i.assign(N::tables.i.begin(), N::tables.i.end());
-    pairs_.j.assign(N::tables.j.begin(), N::tables.j.end());
-    pairs_.starts.assign(N::tables.start.begin(), N::tables.start.end());
-    if (coupling_ == Coupling::all) pairs_.starts = {0, N::n_pairs};
-    kinds_ = kKinds;
-    function_m_.resize(N::n);
-    function_n_.resize(N::n);
-    for (int c = 0; c < 4; ++c)
-      for (int kind = c == 0 ? 1 : 0; kind < kKinds; ++kind) {
-        const auto at = static_cast<size_t>(N::vector(kind, c));
-        function_m_[at] = 2 * gram::slope_m(kind) + c % 2;
-        function_n_[at] = 2 * gram::slope_n(kind) + c / 2;
-      }
   }
 
   template <class F>
@@ -402,10 +306,10 @@ class Membrane final : public ElasticTerm {
     }
     if (n_free == count || (!all && n_moving == 0)) return;
     std::array<Packed, kLanes> w;
-    out.reference.resize(pairs_.i.size());
+    out.reference.resize(static_cast<size_t>(invariants_.n_pairs()));
     for (int lane = 0; lane < count; ++lane)
       if ((all || element.moving(first + lane)) && !is_free(first + lane)) {
-        w[static_cast<size_t>(lane)] = integrate(element, first + lane, factors);
+        w[static_cast<size_t>(lane)] = invariants_.of(element, first + lane, factors);
         set_reference(element, first + lane, reference, out);
         if (kinds_ == 1 && !factors.uniform()) set_cell(element, first + lane, reference, out);
       }
@@ -413,7 +317,7 @@ class Membrane final : public ElasticTerm {
     const bool alike =
         coupling_ == Coupling::classes && n_free == 0 && (n_moving == 0 || n_moving == count) &&
         std::all_of(w.begin(), w.begin() + count, [&](const Packed& x) { return x == w[0]; });
-    out.shared = alike ? squares(*w[0]) : nullptr;
+    out.shared = alike ? invariants_.squares() : nullptr;
     if (!alike) {
       const auto any =
           std::find_if(w.begin(), w.end(), [](const Packed& x) { return x != nullptr; });
@@ -432,11 +336,11 @@ class Membrane final : public ElasticTerm {
     out.cells.set_stiffness(out.different);
   }
 
-  /// Of an element whose products are in table_: its mean factor says how solid it is.
+  /// Of the element whose W was made last: its mean factor says how solid it is.
   void set_cell(const Element& element, int e, const MatrixXd& reference, BatchData& out) {
     const auto numbers = element.vectors(e);
     const Vec2 size = (reference.row(numbers[2]) - reference.row(numbers[0])).head<2>();
-    out.cells.set(e % kLanes, size, table_.weight.sum() / (size.x() * size.y()));
+    out.cells.set(e % kLanes, size, invariants_.table().weight.sum() / (size.x() * size.y()));
   }
 
   void set_reference(const Element& element, int e, const MatrixXd& reference, BatchData& out) {
@@ -458,67 +362,13 @@ class Membrane final : public ElasticTerm {
     for (size_t k = 0; k < out.reference.size(); ++k) out.reference[k][e % kLanes] = g[k];
   }
 
-  /// W of an element, packed; that of its neighbour where size and material are the same.
-  Packed integrate(const Element& element, int e, const Factors& factors) {
-    std::swap(previous_, table_);
-    const int degree = kinds_ == 1 ? kCellDegree : 12;
-    if (!element.tabulate_products(e, degree, factors, FactorKind::stiffness, table_))
-      throw Error::input("term 'membrane' needs shape functions that are products along m and n");
-    const auto equal = [](const MatrixXd& x, const MatrixXd& y) {
-      return x.rows() == y.rows() && x.cols() == y.cols() && x.isApprox(y, 1e-13);
-    };
-    const bool same = tabulated_ >= 0 && tabulated_ == e - 1 &&
-                      equal(previous_.weight, table_.weight) && equal(previous_.f_m, table_.f_m) &&
-                      equal(previous_.f_n, table_.f_n);
-    tabulated_ = e;
-    if (!same) last_ = scaled();
-    return last_;
-  }
-
-  /// W of table_. Cells of one shape, each of one material, differ by a factor: it is made once.
-  Packed scaled() {
-    const auto equal = [](const MatrixXd& x, const MatrixXd& y) { return x.isApprox(y, 1e-13); };
-    const bool cell = kinds_ == 1 && coupling_ == Coupling::all;
-    if (cell && scaled_from_) {
-      const ProductTable &a = scaled_from_table_, &b = table_;
-      const double factor = b.weight.sum() / a.weight.sum();
-      if (b.weight.rows() == a.weight.rows() && b.weight.cols() == a.weight.cols() &&
-          std::isfinite(factor) && equal(factor * a.weight, b.weight) && equal(a.f_m, b.f_m) &&
-          equal(a.f_n, b.f_n) && equal(a.d_m, b.d_m) && equal(a.d_n, b.d_n)) {
-        auto out = std::make_shared<std::vector<double>>(*scaled_from_);
-        for (double& x : *out) x *= factor;
-        return out;
-      }
-    }
-    const auto out = std::make_shared<std::vector<double>>(membrane_invariant(
-        even_and_odd(table_, function_m_, function_n_), pairs_, elasticity_, strains_));
-    if (cell) {
-      scaled_from_ = out;
-      scaled_from_table_ = table_;
-    }
-    return out;
-  }
-
-  /// Full squares of the blocks of W; those of the last W asked for are kept.
-  Packed squares(const std::vector<double>& w) {
-    if (squares_of_ == last_) return squares_;
-    squares_of_ = last_;
-    return squares_ = std::make_shared<std::vector<double>>(full_squares(pairs_, w));
-  }
-
   PlaneSection section_;
   Eigen::Matrix3d elasticity_;  // h C [N/m]
   Strains strains_;
   int dim_ = 0, kinds_ = 0;
   Coupling coupling_ = Coupling::classes;
-  PairNumbers pairs_;                         // of gram::Numbering
-  std::vector<int> function_m_, function_n_;  // even or odd function of every vector
   std::vector<BatchData> batches_;
-  ProductTable table_, previous_;
-  int tabulated_ = -1;  // element of table_
-  Packed scaled_from_;  // W of a cell that those of others are scaled from
-  ProductTable scaled_from_table_;
-  Packed last_, squares_, squares_of_;  // W of table_; the squares of which W
+  ElementInvariants invariants_;
 };
 
 template <Strains kStrains>
