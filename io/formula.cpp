@@ -7,12 +7,13 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 #include <sstream>
+#include <stdexcept>
 #include <vector>
 
 #include "geometry/base.h"
-#include "io/files.h"
 #include "io/formula_operations.h"
 #include "io/formula_size.h"
 #include "io/formula_words.h"
@@ -46,6 +47,58 @@ size_t place_of(std::istringstream& stream, const DecimalFormula& decimal,
   return decimal.origin[end - std::min(end, length)];
 }
 
+/// Functions that GiNaC does not look into: kChoose(x, a, b) is a where x >= 0, else b; kFrom(s, a,
+/// b) is a from the time s on, b before.
+constexpr const char *kChoose = "choose", *kFrom = "from";
+
+unsigned serial_of(const char* name) {
+  static const unsigned kOfChoose =
+      GiNaC::function::register_new(GiNaC::function_options(kChoose, 3));
+  static const unsigned kOfFrom = GiNaC::function::register_new(GiNaC::function_options(kFrom, 3));
+  return name == kChoose ? kOfChoose : kOfFrom;
+}
+
+GiNaC::ex choose(const GiNaC::ex& x, const GiNaC::ex& a, const GiNaC::ex& b) {
+  return GiNaC::function(serial_of(kChoose), x, a, b);
+}
+
+using Arguments = GiNaC::exvector;
+
+GiNaC::ex smooth_step(const Arguments& x) {
+  const GiNaC::ex& u = x[0];
+  return choose(u, choose(u - 1, 1, u * u * (3 - 2 * u)), 0);
+}
+
+/// piecewise(x0, t1, x1, t2, x2): x0 until t1, x1 from there, x2 from t2.
+GiNaC::ex piecewise(const Arguments& x) {
+  GiNaC::ex out = x[0];
+  double last = -std::numeric_limits<double>::infinity();
+  for (size_t i = 1; i < x.size(); i += 2) {
+    const GiNaC::ex time = x[i].evalf();
+    if (!GiNaC::is_a<GiNaC::numeric>(time) || !GiNaC::ex_to<GiNaC::numeric>(time).is_real())
+      throw std::invalid_argument("piecewise(x0, t1, x1, ...): its times are constants");
+    const double from = GiNaC::ex_to<GiNaC::numeric>(time).to_double();
+    if (!(from > last)) throw std::invalid_argument("piecewise(x0, t1, x1, ...): times increase");
+    last = from;
+    out = GiNaC::function(serial_of(kFrom), GiNaC::numeric(from), x[i + 1], out);
+  }
+  return out;
+}
+
+/// GiNaC's own functions, and those with kinks.
+GiNaC::prototype_table prototypes() {
+  constexpr size_t kMostPieces = 100;
+  GiNaC::prototype_table out = GiNaC::get_default_reader();
+  out[{"min", 2}] = [](const Arguments& x) { return choose(x[1] - x[0], x[0], x[1]); };
+  out[{"max", 2}] = [](const Arguments& x) { return choose(x[0] - x[1], x[0], x[1]); };
+  out[{"abs", 1}] = [](const Arguments& x) { return choose(x[0], x[0], -x[0]); };
+  out[{"step", 1}] = [](const Arguments& x) { return choose(x[0], 1, 0); };
+  out[{"smoothstep", 1}] = smooth_step;
+  for (size_t pieces = 2; pieces <= kMostPieces; ++pieces)
+    out[{"piecewise", 2 * pieces - 1}] = piecewise;
+  return out;
+}
+
 GiNaC::ex parsed(const std::string& text, const std::map<std::string, double>& constants,
                  const GiNaC::realsymbol& t) {
   check_formula_words(text, constants);
@@ -56,7 +109,8 @@ GiNaC::ex parsed(const std::string& text, const std::map<std::string, double>& c
   std::istringstream stream(decimal.text);
   stream.imbue(std::locale::classic());
   try {
-    GiNaC::parser parser(names, true);
+    static const GiNaC::prototype_table kPrototypes = prototypes();
+    GiNaC::parser parser(names, true, kPrototypes);
     return parser(stream);
   } catch (const GiNaC::parse_error& e) {
     refuse_formula(text, place_of(stream, decimal, e), words_of(e));
@@ -74,12 +128,6 @@ double whole_power(double x, int n) {
 
 }  // namespace
 
-/// Operations in the order of evaluation; the result of each has its number.
-struct Formula::Program {
-  std::vector<Operation> operations;
-  std::array<int, 3> results{};  // value, rate, acceleration
-};
-
 namespace {
 
 /// Writes expressions as operations; equal ones once.
@@ -96,6 +144,7 @@ class Translator {
   }
 
   std::vector<Operation> operations;
+  bool chooses = false;  ///< has it parts that GiNaC does not differentiate?
 
  private:
   int push(const Operation& operation) {
@@ -199,13 +248,28 @@ class Translator {
 
   int write_function(const GiNaC::ex& e) {
     const std::string name = GiNaC::ex_to<GiNaC::function>(e).get_name();
-    if (name == "conjugate") return translate(e.op(0));  // of a derivative of abs: all is real
+    if (name == "abs" || name == kChoose || name == kFrom) return write_choice(e, name);
     if (name == "atan2") {
       const int y = translate(e.op(0)), x = translate(e.op(1));
       return push({.op = Op::atan2, .a = y, .b = x});
     }
     if (!formula_functions().contains(name)) refuse_formula(text_, "it has no derivative");
     return call(name, translate(e.op(0)));
+  }
+
+  int write_choice(const GiNaC::ex& e, const std::string& name) {
+    chooses = true;
+    int x = translate(e.op(0));
+    if (name == "abs") {  // of GiNaC's own making: sqrt(t^2)
+      const int minus = push({.op = Op::multiply, .a = constant(-1), .b = x});
+      return push({.op = Op::choose, .a = x, .b = x, .c = minus});
+    }
+    if (name == kFrom) {  // as exact as the time itself
+      const int minus = constant(-operations[static_cast<size_t>(x)].number);
+      x = push({.op = Op::add, .a = translate(t_), .b = minus});
+    }
+    const int a = translate(e.op(1)), b = translate(e.op(2));
+    return push({.op = Op::choose, .a = x, .b = a, .c = b});
   }
 
   const std::string& text_;
@@ -257,13 +321,12 @@ Formula::Formula(std::string text, const std::map<std::string, double>& constant
   auto program = std::make_shared<Program>();
   Translator translator(text_, t);
   try {
-    if (size_of(value, t).of_acceleration > kMostSymbolic) {
-      const int result = translator.translate(value);
+    const int result = translator.translate(value);
+    if (translator.chooses || size_of(value, t).of_acceleration > kMostSymbolic) {
       program->results = append_derivatives(text_, result, translator.operations);
     } else {
       const GiNaC::ex rate = value.diff(t), acceleration = rate.diff(t);
-      program->results = {translator.translate(value), translator.translate(rate),
-                          translator.translate(acceleration)};
+      program->results = {result, translator.translate(rate), translator.translate(acceleration)};
     }
   } catch (const Error&) {
     throw;
@@ -274,10 +337,9 @@ Formula::Formula(std::string text, const std::map<std::string, double>& constant
   program_ = std::move(program);
 }
 
-Jet Formula::operator()(double t) const {
-  double x[kMostOperations];  // NOLINT: no more of it is touched than the formula has operations
+void Formula::Program::run(double t, double* x) const {
   double* out = x;
-  for (const Operation& o : program_->operations) {
+  for (const Operation& o : operations) {
     switch (o.op) {
       case Op::constant:
         *out = o.number;
@@ -303,60 +365,21 @@ Jet Formula::operator()(double t) const {
       case Op::atan2:
         *out = std::atan2(x[o.a], x[o.b]);
         break;
+      case Op::choose:
+        *out = x[o.a] >= 0 ? x[o.b] : x[o.c];
+        break;
     }
     ++out;
   }
+}
+
+Jet Formula::operator()(double t) const {
+  double x[kMostOperations];  // NOLINT: no more of it is touched than the formula has operations
+  program_->run(t, x);
   const auto& [value, rate, acceleration] = program_->results;
   return {x[value], x[rate], x[acceleration]};
 }
 
 int Formula::n_operations() const { return static_cast<int>(program_->operations.size()); }
-
-namespace {
-
-/// The time of the largest change of an entry between a and b, and what is left of that change
-/// between two neighbouring times: nothing where the function is continuous.
-std::pair<double, double> jump_between(const Formula& f, double Jet::*entry, double a, double b) {
-  double at_a = f(a).*entry, at_b = f(b).*entry;
-  for (int k = 0; k < 60 && b - a > 1e-12 * std::max(1.0, b); ++k) {
-    const double mid = 0.5 * (a + b), at_mid = f(mid).*entry;
-    const bool left = !(std::abs(at_b - at_mid) > std::abs(at_mid - at_a));
-    (left ? b : a) = mid;
-    (left ? at_b : at_a) = at_mid;
-  }
-  return {0.5 * (a + b), std::abs(at_b - at_a)};
-}
-
-}  // namespace
-
-void Formula::check(double end, int samples) const {
-  const auto time = [&](int i) { return end * i / samples; };
-  const auto at = [](double t) { return " at t = " + to_text(t, 6) + " s"; };
-  std::vector<Jet> jets;
-  Jet largest;
-  const std::pair<double Jet::*, const char*> entries[] = {
-      {&Jet::value, "value"}, {&Jet::rate, "rate"}, {&Jet::acceleration, "acceleration"}};
-  for (int i = 0; i <= samples; ++i) {
-    jets.push_back((*this)(time(i)));
-    for (const auto& [entry, what] : entries) {
-      const double number = jets.back().*entry;
-      largest.*entry = std::max(largest.*entry, std::abs(number));
-      if (!std::isfinite(number))
-        refuse_formula(text_, std::string("its ") + what + at(time(i)) +
-                                  (std::isnan(number) ? " is no real number" : " is infinite"));
-    }
-  }
-  constexpr double kJump = 1e-6;  // of the largest value; smooth functions are left with 1e-9
-  // What moves by the last digit of its value until the end has a rate that is round-off.
-  const double still = 1e-15 * largest.value / end;
-  for (const auto& [entry, what] : {entries[0], entries[1]})
-    for (int i = 0; i < samples; ++i) {
-      const double before = jets[i].*entry, after = jets[i + 1].*entry,
-                   least = std::max(kJump * largest.*entry, entry == &Jet::rate ? still : 0);
-      if (std::abs(after - before) <= least) continue;
-      const auto [t, jump] = jump_between(*this, entry, time(i), time(i + 1));
-      if (!(jump <= least)) refuse_formula(text_, std::string("its ") + what + " jumps" + at(t));
-    }
-}
 
 }  // namespace flexmorph::io

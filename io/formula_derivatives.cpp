@@ -56,6 +56,13 @@ class Differentiator {
   int rate(int a) const { return rate_[static_cast<size_t>(a)]; }
   int acceleration(int a) const { return acceleration_[static_cast<size_t>(a)]; }
 
+  /// One of two, at the same times as `of`.
+  int choice(const Operation& of, int b, int c) {
+    if (b == kZero && c == kZero) return kZero;
+    b = written(b);
+    return push({.op = Op::choose, .a = of.a, .b = b, .c = written(c)});
+  }
+
   Derivatives derivatives(const Operation& o, int self) {
     switch (o.op) {
       case Op::constant:
@@ -76,6 +83,8 @@ class Differentiator {
         return of_call(o, self);
       case Op::atan2:
         return of_atan2(o);
+      case Op::choose:
+        return {choice(o, rate(o.b), rate(o.c)), choice(o, acceleration(o.b), acceleration(o.c))};
     }
     return {};
   }
@@ -127,7 +136,6 @@ class Differentiator {
     if (name == "sinh") return by(call("cosh", x), f);
     if (name == "cosh") return by(call("sinh", x), f);
     if (name == "exp") return by(f, f);
-    if (name == "abs") return by(product(x, power(f, -1)), kZero);
     int f1 = kZero;
     if (name == "tan" || name == "tanh") {
       const double sign = name == "tan" ? 1 : -1;

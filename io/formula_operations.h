@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "io/formula.h"
 #include "io/formula_words.h"
 
 namespace flexmorph::io {
@@ -11,15 +12,25 @@ namespace flexmorph::io {
 constexpr size_t kMostOperations = 8192;  // of value, rate and acceleration together
 
 /// What one step of a formula does.
-enum class Op { constant, time, add, multiply, whole_power, power, call, atan2 };
+enum class Op { constant, time, add, multiply, whole_power, power, call, atan2, choose };
 
 /// One step; results have the numbers of the steps.
 struct Operation {
   Op op;
-  int a = 0, b = 0;   // operations whose results it takes
+  int a = 0, b = 0;  // operations whose results it takes; choose: b where a >= 0, else c
+  int c = 0;
   double number = 0;  // constant
   int exponent = 0;   // whole_power
   FormulaFunction call = nullptr;
+};
+
+/// Operations in the order of evaluation; the result of each has its number.
+struct Formula::Program {
+  std::vector<Operation> operations;
+  std::array<int, 3> results{};  // value, rate, acceleration
+
+  /// @param x  results of all operations at t; room for them
+  void run(double t, double* x) const;
 };
 
 /// Appends the first two time derivatives of the operation `value`, by the chain rule from one

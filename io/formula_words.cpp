@@ -14,7 +14,9 @@ constexpr int kDeepest = 100;   // parentheses
 constexpr int kMostSigns = 10;  // in a row: each of them is one call of GiNaC's parser
 
 bool is_function(const std::string& name) {
-  return name == "atan2" || formula_functions().contains(name);
+  for (const char* other : {"atan2", "abs", "min", "max", "step", "smoothstep", "piecewise"})
+    if (name == other) return true;
+  return formula_functions().contains(name);
 }
 
 std::string quoted(std::string word) { return word.insert(0, 1, '\'').append(1, '\''); }
@@ -39,8 +41,7 @@ const std::map<std::string, FormulaFunction>& formula_functions() {
   static const std::map<std::string, FormulaFunction> kFunctions = {
       {"sin", std::sin},   {"cos", std::cos},   {"tan", std::tan},   {"asin", std::asin},
       {"acos", std::acos}, {"atan", std::atan}, {"sinh", std::sinh}, {"cosh", std::cosh},
-      {"tanh", std::tanh}, {"exp", std::exp},   {"log", std::log},   {"abs", std::abs},
-      {"sqrt", std::sqrt}};
+      {"tanh", std::tanh}, {"exp", std::exp},   {"log", std::log},   {"sqrt", std::sqrt}};
   return kFunctions;
 }
 

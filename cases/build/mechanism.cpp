@@ -365,6 +365,8 @@ Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh) {
     out.motion.adaptive->largest = scene.time.largest_step;
     if (scene.time.start == Start::hub_at_rest) out.motion.kinks = {scene.time.spin_up};
   }
+  for (const Drive& drive : scene.drives)
+    out.motion.kinks.insert(out.motion.kinks.end(), drive.kinks.begin(), drive.kinks.end());
   out.motion.start =
       scene.time.start == Start::prestretched ? fem::Start::prestretched : fem::Start::rigid;
   if (scene.is_mechanism())

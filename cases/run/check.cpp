@@ -137,6 +137,16 @@ std::string thickness_words(const BodyDesign& d) {
   return out;
 }
 
+/// ", kinks at 0.2, 0.5 s"; of many the first.
+std::string kinks_of(const Drive& drive) {
+  constexpr size_t kMost = 5;
+  std::string out;
+  for (size_t i = 0; i < std::min(kMost, drive.kinks.size()); ++i)
+    out += (i == 0 ? ", kinks at " : ", ") + io::to_text(drive.kinks[i], 6);
+  if (drive.kinks.size() > kMost) out += ", ...";
+  return out.empty() ? out : out + " s";
+}
+
 /// "4 revolute, 4 weld, 1 angle_drive": kinds in the order of the case.
 template <class T, class Kind>
 std::string kinds_of(const std::vector<T>& list, const Kind& kind) {
@@ -285,7 +295,7 @@ std::string check_case(const RunOptions& options) {
   for (const Drive& drive : scene.drives) {
     const std::array<double, 2> range = range_of(drive.motion, scene.time.end);
     out << row("drive " + drive.name, drive.words + ", from " + io::to_text(range[0], 6) + " to " +
-                                          io::to_text(range[1], 6));
+                                          io::to_text(range[1], 6) + kinks_of(drive));
   }
   for (const Body& body : scene.bodies) describe_body(body, mechanism, out);
   if (scene.is_mechanism()) describe_mechanism(scene, out);

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "fem/element.h"
 
@@ -20,6 +21,8 @@ struct Drive {
   std::string words;  ///< as the case says it: the formula, or where the table comes from
   /// Beyond the run's time it goes on as the parabola of value, rate and acceleration at its end.
   std::function<fem::Motion(double)> motion;
+  std::vector<double> kinks;  ///< in (0, end]: first times of other branches of its formula [s]
+  std::string jump;           ///< the first jump of value or rate, in words; empty: there is none
   bool from_trajectory = false;  ///< what the trajectory's body needs of it (follow_trajectory())
 };
 

@@ -26,11 +26,12 @@ const Key& kConstant = io::key("constants", "*")
 const Key& kName = io::key("drive", "name")
                        .text("the name of a drive")
                        .says("What hubs, joints, flows and temperatures call it.");
-const Key& kFormula =
-    io::key("drive", "formula")
-        .text("a formula of the time t")
-        .otherwise_as("another one of the four is given")
-        .says("Of the time `t`: + - * / ^, pi, sin ... atan2, exp, log, sqrt, abs.");
+const Key& kFormula = io::key("drive", "formula")
+                          .text("a formula of the time t")
+                          .otherwise_as("another one of the four is given")
+                          .says(
+                              "Of the time `t`: + - * / ^, pi, sin ... sqrt, abs, min, max, step, "
+                              "smoothstep, piecewise.");
 const Key& kTable =
     io::key("drive", "table")
         .rows(any_number("a time or a value"), 2)
@@ -87,15 +88,19 @@ std::function<fem::Motion(double)> over_run(Function function, double end) {
   t.fail(key, words);
 }
 
-std::function<fem::Motion(double)> read_formula(const Table& t, const Constants& constants,
-                                                double end, std::string& words) {
-  words = t.string(kFormula);
+void read_formula(const Table& t, const Constants& constants, double end, Drive& drive) {
+  drive.words = t.string(kFormula);
   try {
-    io::Formula formula(words, constants);
+    io::Formula formula(drive.words, constants);
     formula.check(end);
-    return over_run(std::move(formula), end);
+    drive.kinks = formula.kinks(end);
+    if (const auto jump = formula.first_jump(end))
+      drive.jump = std::string(jump->of_rate ? "its rate" : "it") + " jumps from " +
+                   to_text(jump->before, 4) + " to " + to_text(jump->after, 4) +
+                   " at t = " + to_text(jump->time, 6) + " s";
+    drive.motion = over_run(std::move(formula), end);
   } catch (const Error& error) {
-    pass_on(t, kFormula, error, words);
+    pass_on(t, kFormula, error, drive.words);
   }
 }
 
@@ -171,9 +176,11 @@ Drive read_drive(const Table& t, const Constants& constants, const Scene& scene,
     return drive;
   }
   const double end = scene.time.end;
-  drive.motion = t.has(kFormula) ? read_formula(t, constants, end, drive.words)
-                 : t.has(kTable) ? read_table(t, end, drive.words)
-                                 : read_csv_drive(t, end, drive.words);
+  if (t.has(kFormula))
+    read_formula(t, constants, end, drive);
+  else
+    drive.motion =
+        t.has(kTable) ? read_table(t, end, drive.words) : read_csv_drive(t, end, drive.words);
   return drive;
 }
 
@@ -228,8 +235,17 @@ std::vector<std::string> overrides_of_drive_files(const Table& root) {
 }
 
 Law read_law(const Table& t, const Key& key, const Scene& scene, std::optional<double> computed) {
-  if (t.is_string(key)) return {t.choice(key.called("a drive"), names_of(scene.drives)), 0};
-  return {{}, t.number(key, computed)};
+  if (!t.is_string(key)) return {{}, t.number(key, computed)};
+  const std::string name = t.choice(key.called("a drive"), names_of(scene.drives));
+  refuse_jumps(t, key, scene, name);
+  return {name, 0};
+}
+
+void refuse_jumps(const Table& t, const Key& key, const Scene& scene, const std::string& drive) {
+  for (const Drive& each : scene.drives)
+    if (each.name == drive && !each.jump.empty())
+      t.fail(key, "of the drive '" + drive + "', " + each.jump +
+                      ": what moves is continuous with its rate, only its acceleration may jump");
 }
 
 void read_drives(const Table& root, Scene& scene) {

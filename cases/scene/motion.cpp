@@ -141,6 +141,7 @@ void read_position(const Table& t, const Scene& scene, Hub& hub) {
     refuse_spin_up(t, kHubPosition, scene);
     const std::vector<std::string> names = t.choices(kHubPosition, names_of(scene.drives));
     for (size_t c = 0; c < 2; ++c) {
+      refuse_jumps(t, kHubPosition, scene, names[c]);
       hub.path[c].drive = names[c];
       hub.position[static_cast<int>(c)] = scene.motion_of(hub.path[c])(0).value;
     }

@@ -23,9 +23,14 @@ std::vector<std::string> overrides_of_reference_files(const io::Table& t);
 std::vector<std::string> overrides_of_start_files(const io::Table& root);
 std::vector<std::string> overrides_of_outline(const io::Table& root);
 
-/// A number, or the name of a drive in its place.
+/// A number, or the name of a drive in its place. What follows it moves: value and rate of the
+/// drive are continuous.
 Law read_law(const io::Table& t, const io::Key& key, const Scene& scene,
              std::optional<double> computed = {});
+
+/// @throws Error (input) at the key for a drive that jumps, or whose rate does.
+void refuse_jumps(const io::Table& t, const io::Key& key, const Scene& scene,
+                  const std::string& drive);
 
 /// Smallest and largest value in [0, end]: extremes are looked for between 1000 samples, where the
 /// rate changes its sign.

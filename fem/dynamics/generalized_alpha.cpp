@@ -40,6 +40,12 @@ void GeneralizedAlpha::begin(const State& x, double h) {
   next_.v = start_v_ + h * ((1 - scheme_.gamma) * start_alpha_ + scheme_.gamma * next_alpha_);
 }
 
+void GeneralizedAlpha::cross_kink(State& x) {
+  change_ = alpha_ - x.a;
+  make_consistent(x);
+  alpha_ += change_;
+}
+
 void GeneralizedAlpha::change_mesh(const MeshMap& map, const State& before) {
   if (alpha_.size() == map.n_before()) alpha_ = map.acceleration(before.q, before.v, alpha_);
 }

@@ -66,6 +66,8 @@ class GeneralizedAlpha final : public StepSolver {
   /// that of the last accepted step (n) [m/s²].
   const VectorXd& alpha() const { return alpha_; }
   void set_alpha(VectorXd alpha) { alpha_ = std::move(alpha); }
+  /// The algorithmic acceleration stays as far from the true one as it was: it belongs to t + δ h.
+  void cross_kink(State& x) override;
   void change_mesh(const MeshMap& map, const State& before) override;
   void remember(Memory& memory) override;
   /// C: the local error of the position is -C h³ q⃛.

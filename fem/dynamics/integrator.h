@@ -72,6 +72,10 @@ class Integrator {
   /// The same for velocities that miss Φ_q q̇ + Φ_t = 0 a little: the nearest in the mass norm.
   virtual void project_velocity(State& x) = 0;
 
+  /// The last step ended just before a kink of drives or loads, x.t is its time now: accelerations
+  /// and multipliers jump to those behind it, and what the scheme carries besides with them.
+  virtual void cross_kink(State& x) { make_consistent(x); }
+
   /// The mesh changed between two steps, the state was carried over by `map`: so is what the scheme
   /// carries besides it. @param before  the state before the change
   virtual void change_mesh(const MeshMap& /*map*/, const State& /*before*/) {}

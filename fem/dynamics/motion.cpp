@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "fem/dynamics/dense_output.h"
@@ -42,10 +43,10 @@ class Run {
     const double tiny = kTiny * settings_.step;
     const auto all = landings();
     for (; next_landing_ < all.size() && !is_enough(); ++next_landing_) {
-      const auto& [stop, seen] = all[next_landing_];
-      if (!leg_.open && (stop <= x_.t + tiny || stop > settings_.end + tiny)) continue;
-      while (!is_enough() && (leg_.open || x_.t < stop - tiny))
-        to_next_event(std::min(stop, settings_.end), seen);
+      Landing landing = all[next_landing_];
+      if (!leg_.open && (landing.t <= x_.t + tiny || landing.t > settings_.end + tiny)) continue;
+      landing.t = std::min(landing.t, settings_.end);
+      while (!is_enough() && (leg_.open || x_.t < landing.t - tiny)) to_next_event(landing);
     }
     if (!is_enough()) between_steps();
     result_.final = x_;
@@ -72,8 +73,7 @@ class Run {
       growth_.begin(e, *settings_.energy_round_off);
     see(x_, e, false);
     if (!control_) return;
-    // Asked for in any case: the start of the algorithmic acceleration comes with it.
-    const double first = integrator_->first_step(x_, control_->allowed(), control_->largest());
+    const double first = first_step();
     control_->begin(settings_.adaptive->first > 0 ? settings_.adaptive->first : first);
   }
 
@@ -135,17 +135,32 @@ class Run {
       result_.trajectory.points.push_back({x, stop});
   }
 
-  /// Times that steps must land on, in order, and whether they are stops.
-  std::vector<std::pair<double, bool>> landings() const {
-    std::vector<std::pair<double, bool>> out;
+  /// A time that steps must land on.
+  struct Landing {
+    double t = 0;
+    bool stop = false, kink = false;
+  };
+
+  /// All of them, in order; a kink and a stop at the same time are one, at the time of the kink.
+  std::vector<Landing> landings() const {
+    std::vector<Landing> all, out;
     if (!settings_.adaptive)
-      for (const double t : settings_.stops) out.emplace_back(t, true);
-    for (const double t : settings_.kinks) out.emplace_back(t, false);
-    out.emplace_back(settings_.end, true);
-    // Of equal times the stop first: what comes second is passed already.
-    std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) {
-      return a.first < b.first || (a.first == b.first && a.second && !b.second);
-    });
+      for (const double t : settings_.stops) all.push_back({t, true, false});
+    const double tiny = kTiny * settings_.step;
+    for (const double t : settings_.kinks)
+      if (t > tiny && t < settings_.end - tiny) all.push_back({t, false, true});
+    all.push_back({settings_.end, true, false});
+    std::sort(all.begin(), all.end(), [](const Landing& a, const Landing& b) { return a.t < b.t; });
+    for (const Landing& next : all) {
+      if (out.empty() || next.t > out.back().t + tiny || !(next.kink || out.back().kink)) {
+        out.push_back(next);
+        continue;
+      }
+      Landing& last = out.back();
+      if (next.kink) last.t = next.t;
+      last.kink = true;
+      last.stop |= next.stop;
+    }
     return out;
   }
 
@@ -165,12 +180,13 @@ class Run {
     bool open = false;
     double begin = 0, end = 0;
     int steps = 0, done = 0;  // of equal ones
-    bool is_stop = false;
+    bool is_stop = false, is_kink = false;
     int changing = -1;  // of the growths
     MeshChange change = MeshChange::insertion;
   };
 
-  void plan(double stop, bool seen) {
+  void plan(const Landing& landing) {
+    const double stop = landing.t;
     NextChange next{stop, MeshChange::insertion};
     int changing = -1;
     for (size_t i = 0; i < growths_.size(); ++i) {
@@ -183,16 +199,23 @@ class Run {
     }
     // A change this near to a stop is meant to fall on it; a step this short would be noise.
     if (std::abs(next.t - stop) < kTiny * settings_.step) next.t = stop;
-    leg_ = {true, x_.t, next.t, 0, 0, seen && next.t == stop, changing, next.change};
+    const bool there = next.t == stop;
+    leg_ = {true,     x_.t,       next.t, 0, 0, landing.stop && there, landing.kink && there,
+            changing, next.change};
     // A limit that is passed already (a boundary element too long from the start) takes no step.
     if (const double way = next.t - x_.t; way > kTiny * settings_.step)
       leg_.steps = std::max(1, static_cast<int>(std::ceil(way / settings_.step - 1e-6)));
   }
 
-  void to_next_event(double stop, bool seen) {
-    if (!leg_.open) plan(stop, seen);
+  /// Where the steps of a leg end: just before a kink, further than times are rounded.
+  double end_of_steps() const {
+    return leg_.is_kink ? leg_.end * (1 - 16 * std::numeric_limits<double>::epsilon()) : leg_.end;
+  }
+
+  void to_next_event(const Landing& landing) {
+    if (!leg_.open) plan(landing);
     if (leg_.steps > 0 && control_)
-      adaptive_steps_to(leg_.end, leg_.is_stop);
+      adaptive_steps();
     else
       equal_steps();
     if (is_enough()) return;
@@ -204,7 +227,7 @@ class Run {
 
   /// Those of the leg that are left, none longer than the settings' step.
   void equal_steps() {
-    const double begin = leg_.begin, end = leg_.end;
+    const double begin = leg_.begin, end = end_of_steps();
     const int n = leg_.steps;
     while (leg_.done < n && !is_enough()) {
       const int k = ++leg_.done;
@@ -212,9 +235,11 @@ class Run {
       double last = x_.t;
       watching_joints([&] {
         integrator_->advance(x_, t, [&](const State& x) {
-          watch_steps(x.t - last, (end - begin) / n);
-          accepted(x.t - last, leg_.is_stop && x.t >= end);
+          const double h = x.t - last;
+          watch_steps(h, (end - begin) / n);
+          const bool there = x.t >= end;
           last = x.t;
+          accepted(h, leg_.is_stop && there, leg_.is_kink && there);
         });
       });
       if (is_enough()) return;
@@ -224,8 +249,8 @@ class Run {
   }
 
   /// Steps as the local error lets them be.
-  void adaptive_steps_to(double end, bool stop) {
-    const double tiny = kTiny * settings_.step;
+  void adaptive_steps() {
+    const double tiny = kTiny * settings_.step, end = end_of_steps();
     while (x_.t < end - tiny) {
       const double left = end - x_.t, h = control_->next(left);
       before_ = x_;
@@ -241,8 +266,9 @@ class Run {
       }
       control_->accepted(h, tried.error, tried.iterations);
       if (h == left) x_.t = end;
-      const bool at_stop = see_between(tiny) || (stop && x_.t == end);
-      accepted(h, at_stop);
+      const bool there = x_.t == end;
+      const bool at_stop = see_between(tiny) || (leg_.is_stop && there);
+      accepted(h, at_stop, leg_.is_kink && there);
       if (x_.t < settings_.end - tiny) changes_due();
       between_steps();
     }
@@ -273,12 +299,15 @@ class Run {
   }
 
   /// After every accepted step.
-  void accepted(double h, bool at_stop) {
-    const State& x = at_stop && control_ ? settled() : x_;
-    const Energies e = model_.energies(x);
+  void accepted(double h, bool at_stop, bool at_kink) {
+    const State& x = at_stop && control_ && !at_kink ? settled() : x_;
+    Energies e = model_.energies(x);
     balance(x, e);
     drift();
-    if (at_stop && integrator_->step_mean()) integrator_->make_consistent(x_);
+    if (at_kink)
+      e = cross_kink();
+    else if (at_stop && integrator_->step_mean())
+      integrator_->make_consistent(x_);
     see(x, e, at_stop);
     if (growth_.is_watched()) watch_energy(e);
     if (at_stop || ++since_watched_ == kWatchEvery) watch(x_);
@@ -286,6 +315,21 @@ class Run {
     double& smallest = result_.smallest_step;
     smallest = smallest > 0 ? std::min(smallest, h) : h;
     result_.largest_step = std::max(result_.largest_step, h);
+  }
+
+  /// From just before a kink to its other side.
+  Energies cross_kink() {
+    x_.t = leg_.end;
+    integrator_->cross_kink(x_);
+    const Energies e = model_.energies(x_);
+    powers_ = measure(x_);
+    balance_.add(x_.t, e, powers_);
+    if (control_) control_->begin(first_step());
+    return e;
+  }
+  /// Asked for in any case: the start of the algorithmic acceleration comes with it.
+  double first_step() {
+    return integrator_->first_step(x_, control_->allowed(), control_->largest());
   }
 
   /// Changes at free root lines.

@@ -35,8 +35,10 @@ struct MotionSettings {
   VectorXd gravity;           ///< (dim) or empty
   std::vector<double> stops;  ///< times to be seen (loads, output), any order: equal steps land on
                               ///< them, adaptive ones are interpolated (DenseOutput)
-  std::vector<double> kinks;  ///< times every step must land on: kinks of drives, any order
-  bool balance = true;        ///< keep the energy balance (costs a few percent)
+  /// Kinks of drives and loads, any order: first times of what is behind them. Steps land on them,
+  /// the last one with what is before, and the motion goes on with what is behind.
+  std::vector<double> kinks;
+  bool balance = true;  ///< keep the energy balance (costs a few percent)
   /// Energies that are round-off [J]. Given, a balanced motion that nothing drives is stopped when
   /// it gains energy (EnergyGrowth); absent where it may: loads without an energy, sudden drives.
   std::optional<double> energy_round_off;

@@ -344,6 +344,7 @@ std::string no_gradient_because(const Model& model, const MotionSettings& settin
   if (settings.adaptive) return "steps that adapt depend on the design: time.tolerance";
   if (settings.integrator != "generalized_alpha")
     return "integrator \"" + settings.integrator + "\" has none, \"generalized_alpha\" does";
+  if (!settings.kinks.empty()) return "drives have kinks, where accelerations may jump";
   for (const Body& body : model.bodies()) {
     if (body.element->n_scalars() > 0)
       return "the material lines of body '" + body.name +

@@ -65,7 +65,8 @@ struct MotionGradients {
 /// The balance of the motion is not kept.
 ///
 /// @throws Error (input) for what has no derivative here: steps that adapt, other integrators,
-///         free material lines, hot bodies, plates in space, no measure, an exponent below 1.
+///         free material lines, hot bodies, plates in space, kinks, no measure, an exponent
+///         below 1.
 /// @throws Error (numerical) from the motion, or where its equations are singular.
 ///
 /// Source: Callejo; Sonneville; Bauchau (2019), for a fixed mesh; fem/README.md, Gradients of a

@@ -24,6 +24,9 @@ void check(const TemperatureRise& r) {
     throw Error::input("temperature: the time of settling is positive");
 }
 
+/// One and the same double for all who ask.
+double end_of(const TemperatureRise& r) { return r.start + r.settle; }
+
 /// s(u) and its derivatives by u in [0, 1].
 Motion shape(Profile profile, double u) {
   constexpr double pi = std::numbers::pi;
@@ -59,21 +62,16 @@ std::function<Motion(double t)> make_temperature(const TemperatureRise& rise) {
   check(rise);
   return [r = rise](double t) -> Motion {
     if (r.profile == Profile::step) return {t < r.start ? 0 : r.rise, 0, 0};
-    constexpr double kSame = 1e-12;  // start + settle is rounded
-    const double u = (t - r.start) / r.settle;
-    if (u < -kSame) return {};
-    if (u > 1 + kSame) return {r.rise, 0, 0};
-    const bool kink = std::abs(u - 1) <= kSame || (std::abs(u) <= kSame && r.start != 0);
-    const Motion s = shape(r.profile, std::clamp(u, 0.0, 1.0));
-    const double part = (kink ? 0.5 : 1) * r.rise;  // of two sides, one is constant
-    return {r.rise * s.value, part * s.rate / r.settle,
-            part * s.acceleration / (r.settle * r.settle)};
+    if (t < r.start) return {};
+    if (t >= end_of(r)) return {r.rise, 0, 0};
+    const Motion s = shape(r.profile, std::min((t - r.start) / r.settle, 1.0));
+    return {r.rise * s.value, r.rise * s.rate / r.settle,
+            r.rise * s.acceleration / (r.settle * r.settle)};
   };
 }
 
 std::vector<double> kinks(const TemperatureRise& rise) {
   check(rise);
-  const double end = rise.start + rise.settle;
   switch (rise.profile) {
     case Profile::quartic:  // its acceleration ends at 0
       return {rise.start};
@@ -82,7 +80,7 @@ std::vector<double> kinks(const TemperatureRise& rise) {
     case Profile::step:
       return {rise.start};
     default:
-      return {rise.start, end};
+      return {rise.start, end_of(rise)};
   }
 }
 

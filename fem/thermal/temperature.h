@@ -29,14 +29,11 @@ struct TemperatureRise {
 Profile profile_of(const std::string& name);
 
 /// ΔT, its rate and its acceleration [K], [K/s], [K/s²]: 0 before `start`, constant after settling.
-/// Where rate or acceleration jump they are the mean of both sides: steps that land there then keep
-/// their second order, half an error on each side cancels. But at `start` = 0, where motions begin,
-/// they are those of the rise.
+/// Where they jump they are those behind the jump.
 /// @throws Error (input) for numbers that are not finite or settle <= 0.
 std::function<Motion(double t)> make_temperature(const TemperatureRise& rise);
 
-/// Times at which ΔT, its rate or its acceleration jumps [s]: steps should land there, see
-/// MotionSettings::stops.
+/// Times at which ΔT, its rate or its acceleration jumps [s]: see MotionSettings::kinks.
 std::vector<double> kinks(const TemperatureRise& rise);
 
 /// Is the acceleration of ΔT ever other than 0? Otherwise there is no thermal inertia force: jumps

@@ -38,7 +38,16 @@ State run(const HotBeam& beam, double end, double h, const std::function<void(co
   run->make_consistent(x);
   see(x);
   const int n = static_cast<int>(std::lround(end / h));
-  for (int k = 1; k <= n; ++k) run->advance(x, end * k / n, see);
+  const std::vector<double> bends = kinks(beam.rise);
+  for (int k = 1; k <= n; ++k) {
+    const double t = end * k / n;
+    const auto bend = std::find_if(bends.begin(), bends.end(),
+                                   [&](double each) { return std::abs(each - t) < 1e-9; });
+    run->advance(x, bend == bends.end() ? t : t * (1 - 1e-14), see);
+    if (bend == bends.end()) continue;
+    x.t = *bend;
+    run->cross_kink(x);
+  }
   if (counts) *counts = run->counts();
   return x;
 }

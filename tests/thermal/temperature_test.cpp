@@ -71,14 +71,18 @@ TEST(Temperature, KinksAreWhereSomethingJumps) {
   }
 }
 
-// Steps land there, also where start + settle is rounded: the mean of both sides.
-TEST(Temperature, IsTheMeanOfBothSidesAtAKink) {
+// Steps land there, also where start + settle is rounded: at a kink it is what it is behind it, and
+// at the double before what it is before.
+TEST(Temperature, IsAtAKinkWhatItIsBehindIt) {
   for (const double start : {0.0, 0.1, 0.3, 1.7}) {
     const TemperatureRise rise{Profile::cosine, 1, start, 0.7};
     const auto T = make_temperature(rise);
     const double jump = 4.9348022 / 0.49;  // π²/2 / settle²
-    EXPECT_NEAR(T(kinks(rise).back()).acceleration, -jump / 2, 1e-5);
-    EXPECT_NEAR(T(kinks(rise).front()).acceleration, start == 0 ? jump : jump / 2, 1e-5);
+    const double first = kinks(rise).front(), last = kinks(rise).back();
+    EXPECT_EQ(T(last).acceleration, 0);
+    EXPECT_NEAR(T(std::nextafter(last, 0)).acceleration, -jump, 1e-5);
+    EXPECT_NEAR(T(first).acceleration, jump, 1e-5);
+    EXPECT_EQ(T(std::nextafter(first, -1)).acceleration, 0);
     EXPECT_NEAR(T(start + 0.7).value, 1, 1e-12);
   }
 }
