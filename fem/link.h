@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "fem/dofs.h"
+#include "fem/load_law.h"
 #include "fem/marker.h"
 #include "fem/term.h"
 
@@ -90,10 +91,14 @@ struct TorsionSpringData {
 std::unique_ptr<Link> make_torsion_spring(std::string name, MarkerPlace a, MarkerPlace b,
                                           const TorsionSpringData& spring);
 
-/// Force on a point, constant in the world (2) [N]; Model::scale_loads() scales it.
-std::unique_ptr<Link> make_point_force(std::string name, MarkerPlace at, const Vec2& force);
+/// Force on a point (2) [N], along the axes of the world, or along those of the place: then it
+/// turns with its rigid body. Model::scale_loads() scales it. It has a potential where it is
+/// constant in the world.
+/// @throws Error (input) for a number that is not finite
+std::unique_ptr<Link> make_point_force(std::string name, MarkerPlace at, const LoadLaw& force,
+                                       bool turns = false);
 
-/// Constant torque on a rigid body, counter-clockwise [N m]; Model::scale_loads() scales it.
-std::unique_ptr<Link> make_torque(std::string name, MarkerPlace at, double torque);
+/// Torque on a rigid body (1), counter-clockwise [N m]; Model::scale_loads() scales it.
+std::unique_ptr<Link> make_torque(std::string name, MarkerPlace at, const LoadLaw& torque);
 
 }  // namespace flexmorph::fem

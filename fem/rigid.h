@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fem/load_law.h"
 #include "fem/term.h"
 
 namespace flexmorph::fem {
@@ -17,6 +18,6 @@ struct RigidSection {
 std::unique_ptr<Term> make_rigid_inertia(const RigidSection& section);
 /// Its weight; gravity (2) [m/s²].
 /// @throws Error (input) as above, and for gravity of another size.
-std::unique_ptr<Term> make_rigid_gravity(const RigidSection& section, const VectorXd& gravity);
+std::unique_ptr<Term> make_rigid_gravity(const RigidSection& section, const LoadLaw& gravity);
 
 }  // namespace flexmorph::fem

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "fem/load_term.h"
 #include "fem/strain_term.h"
 
 namespace flexmorph::fem {
@@ -73,6 +74,8 @@ void Workspace::prepare_bodies(double t) {
     if (b.heat)
       for (const auto& term : b.terms)
         if (auto* hot = dynamic_cast<StrainTerm*>(term.get())) hot->heat_to(t);
+    for (const auto& term : b.terms)
+      if (auto* load = dynamic_cast<LoadTerm*>(term.get())) load->load_to(t);
     try {
       for (const auto& term : b.terms) term->prepare(*b.element, b.factors, all);
     } catch (const Error& error) {
@@ -255,6 +258,22 @@ double Workspace::dissipation(const State& x) {
     for (int e = 0; e < b.element->n_elements(); ++e) {
       gather(b, e, x, local);
       for (const auto& term : b.terms) out += term->dissipation(e, local);
+    }
+  return out;
+}
+
+double Workspace::load_power(const State& x) {
+  prepare(x);
+  double out = 0;
+  Local local;
+  for (const Body& b : bodies_)
+    for (const auto& term : b.terms) {
+      const auto* load = dynamic_cast<const LoadTerm*>(term.get());
+      if (!load || load->has_potential()) continue;
+      for (int e = 0; e < b.element->n_elements(); ++e) {
+        gather(b, e, x, local);
+        out += load->power(e, local);
+      }
     }
   return out;
 }

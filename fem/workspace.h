@@ -123,6 +123,8 @@ class Workspace : public Model {
   void follow_turns(State& x) const;
   /// Power of all links, see Link::power() [W].
   double link_power(const State& x);
+  /// Power of loads that have no potential, see LoadTerm::power() [W].
+  double load_power(const State& x);
   /// Power of all terms at fixed unknowns, see Term::flow_power() [W].
   double flow_power(const State& x);
   /// Power that the temperature of hot bodies gives to their energy, see StrainTerm::heat_power()

@@ -121,6 +121,19 @@ std::vector<double> Table::numbers(const Key& key,
       [&](const CaseNode& node) { return read_number(node, form.quantity); });
 }
 
+std::vector<NumberOrName> Table::numbers_or_names(const Key& key,
+                                                  std::span<const std::string> allowed) const {
+  const Form& form = place_->form(key, Form::Kind::number, true);
+  const auto read = [&](const CaseNode& node) -> std::optional<NumberOrName> {
+    if (const auto number = read_number(node, form.quantity)) return NumberOrName{{}, *number};
+    if (node.kind != Kind::text) return {};
+    if (std::find(allowed.begin(), allowed.end(), node.text) == allowed.end())
+      fail(key, one_of(form.or_name, allowed, node.text));
+    return NumberOrName{node.text, 0};
+  };
+  return place_->list<NumberOrName>(key, form, number_or_name(form), {}, read);
+}
+
 std::vector<int> Table::integers(const Key& key,
                                  const std::optional<std::vector<int>>& computed) const {
   const Form& form = place_->form(key, Form::Kind::integer, true);

@@ -14,6 +14,11 @@ namespace flexmorph::io {
 
 struct CaseNode;
 
+struct NumberOrName {
+  std::string name;  ///< empty: a number
+  double number = 0;
+};
+
 /// One table of a case file, and what was asked of it.
 ///
 /// Every reader throws Error (input) with file, line, column, key, value and what is allowed:
@@ -55,6 +60,9 @@ class Table {
   /// Lists of as many entries as the key is declared with.
   std::vector<double> numbers(const Key& key,
                               const std::optional<std::vector<double>>& computed = {}) const;
+  /// Of a key with numbers_or_names(): numbers, and names out of `allowed`.
+  std::vector<NumberOrName> numbers_or_names(const Key& key,
+                                             std::span<const std::string> allowed) const;
   std::vector<int> integers(const Key& key,
                             const std::optional<std::vector<int>>& computed = {}) const;
   std::vector<std::vector<double>> rows(const Key& key) const;

@@ -21,7 +21,8 @@ bool is_number(const CaseNode& node) {
 bool fits_one(const CaseNode& node, const Form& form) {
   switch (form.kind) {
     case Form::Kind::number:
-      return read_number(node, form.quantity).has_value();
+      return read_number(node, form.quantity).has_value() ||
+             (!form.or_name.empty() && node.kind == Kind::text);
     case Form::Kind::integer:
       return read_integer(node, form).has_value();
     case Form::Kind::boolean:
@@ -64,6 +65,7 @@ bool is_alike(const CaseNode& node, const Form& form) {
   if (node.kind == Kind::list) {
     if (form.kind == Form::Kind::tables) return true;
     const bool texts = !node.entries.empty() && node.entries.front().kind == Kind::text;
+    if (form.is_list && !form.or_name.empty()) return true;
     return form.is_list &&
            texts == (form.kind == Form::Kind::text || form.kind == Form::Kind::word);
   }
@@ -88,6 +90,7 @@ std::string allowed_one(const CaseNode& node, const Form& form, const std::strin
   const std::string& noun = form.quantity.noun;
   switch (form.kind) {
     case Form::Kind::number:
+      if (!form.or_name.empty()) return number_or_name(form);
       return form.quantity.allowed() + (node.kind == Kind::text && !form.is_list ? kNoQuotes : "");
     case Form::Kind::integer:
       return whole_number(form);
@@ -234,6 +237,10 @@ std::string whole_number(const Form& form) {
   if (form.upper == std::numeric_limits<int>::max())
     return start + "of at least " + to_text(form.lower);
   return start + "between " + to_text(form.lower) + " and " + to_text(form.upper);
+}
+
+std::string number_or_name(const Form& form) {
+  return form.quantity.allowed() + ", or the name of " + form.or_name;
 }
 
 std::string one_of(const std::string& noun, std::span<const std::string> allowed) {

@@ -17,6 +17,7 @@ std::optional<int> read_integer(const CaseNode& node, const Form& form);
 std::optional<std::string> read_text(const CaseNode& node);
 
 /// What is allowed, as messages end: "a count is a whole number between 1 and 9".
+std::string number_or_name(const Form& form);
 std::string whole_number(const Form& form);
 /// "a term is one of 'inertia', 'membrane'".
 std::string one_of(const std::string& noun, std::span<const std::string> allowed);

@@ -97,6 +97,15 @@ Key& Key::numbers(Quantity each, int least, int most) {
               .most = most});
 }
 
+Key& Key::numbers_or_names(Quantity each, std::string noun, int least, int most) {
+  return add({.kind = Kind::number,
+              .quantity = std::move(each),
+              .is_list = true,
+              .least = least,
+              .most = most,
+              .or_name = std::move(noun)});
+}
+
 Key& Key::integers(std::string noun, int lower, int upper, int least, int most) {
   return add({.kind = Kind::integer,
               .quantity = only(std::move(noun)),

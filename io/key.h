@@ -38,6 +38,7 @@ struct Form {
   bool is_list = false;                 ///< [...] of values, or of rows of `columns` numbers
   int least = 1, most = 0;              ///< entries of a list; most = 0: any number of them
   int columns = 0;                      ///< of a list of rows
+  std::string or_name = {};  ///< of a list of numbers: what an entry may name instead; empty: none
 
   Words words() const { return allowed ? allowed() : Words(); }
   /// Of the list when its length is fixed, else 0.
@@ -74,6 +75,8 @@ class Key {
 
   /// Lists of `least` to `most` entries; of one or more without them.
   Key& numbers(Quantity each, int least = 1, int most = 0);
+  /// The same where every entry may be the name of something instead.
+  Key& numbers_or_names(Quantity each, std::string noun, int least, int most);
   Key& integers(std::string noun, int lower, int upper, int least = 1, int most = 0);
   Key& texts(std::string noun);
   Key& words(std::string noun, Words allowed);

@@ -12,11 +12,9 @@ fem::PlaneSection section_of(const Body& body) {
 }
 
 std::vector<fem::AttachedMass> attached_masses(const Scene& scene, const std::string& name) {
-  const Body& body = scene.body(name);
   std::vector<fem::AttachedMass> out;
   for (const PointMass& m : scene.point_masses)
-    if (m.body == name)
-      out.push_back({m.mass, Vec2(body.longest(scene.time.end), body.low() + 0.5 * body.width)});
+    if (m.body == name) out.push_back({m.mass, m.point});
   return out;
 }
 
@@ -32,11 +30,12 @@ std::vector<fem::AttachedJoint> attached_joints(const Scene& scene, const std::s
   return out;
 }
 
-std::vector<fem::AttachedForce> applied_forces(const Scene& scene, const std::string& name) {
+std::vector<fem::AttachedForce> applied_forces(const Scene& scene, const std::string& name,
+                                               double t) {
   std::vector<fem::AttachedForce> out;
   for (const BodyLoad& load : scene.loads)
     if (load.body == name)
-      if (const auto force = attached_force(load, scene)) out.push_back(*force);
+      if (const auto force = attached_force(load, scene, t)) out.push_back(*force);
   return out;
 }
 

@@ -43,7 +43,7 @@ struct MeshChoice {
   std::optional<std::array<int, 2>> elements;
   int refine = 1;  ///< parts of every element in each direction
   std::optional<double> step;
-  int cells = 0;  ///< designed bodies move on their design's cells, each in so many parts each way
+  int cells = 0;   ///< designed bodies move on their design's cells, each in so many parts each way
   int coarse = 1;  ///< or on cells that are so many of them each way
 };
 
@@ -59,8 +59,11 @@ Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh = {});
 /// Energy of strains of 1e-13, which slopes of size one have by round-off [J].
 double stress_round_off(const Scene& scene);
 
-/// A rigid body with its inertia, its weight (gravity (2) [m/s^2], or empty) and its unit axis.
-void add_rigid_body(const RigidBody& body, fem::Model& model, const VectorXd& gravity);
+/// A rigid body with its inertia and that of its point masses, its weight (gravity (2) [m/s^2], or
+/// empty) and its unit axis.
+void add_rigid_body(const RigidBody& body, fem::Model& model, const fem::LoadLaw& gravity);
+/// The loads on rigid bodies.
+void add_rigid_loads(const Scene& scene, fem::Model& model);
 
 /// The driven frame of a weld to a hub or of a sleeve at rest.
 fem::FrameDrive hub_drive(const Scene& scene, const Joint& joint);
@@ -73,8 +76,9 @@ std::vector<fem::AttachedMass> attached_masses(const Scene& scene, const std::st
 /// Joints of one body besides the one that carries it, for its loads.
 std::vector<fem::AttachedJoint> attached_joints(const Scene& scene, const std::string& name);
 
-/// Applied forces on one body, for its loads: constant in the world.
-std::vector<fem::AttachedForce> applied_forces(const Scene& scene, const std::string& name);
+/// Applied forces on one body at a time, for its loads: those that do not turn.
+std::vector<fem::AttachedForce> applied_forces(const Scene& scene, const std::string& name,
+                                               double t);
 
 /// Scene -> design problems, with the initial layout.
 std::vector<mmc::BodyProblem> build_problems(const Scene& scene);

@@ -78,11 +78,9 @@ const Hub& hub_of(const Scene& scene, const Joint& joint) {
                        [&](const Hub& h) { return h.name == joint.to; });
 }
 
-VectorXd gravity_of(const Scene& scene) { return scene.gravity ? *scene.gravity : VectorXd(); }
-
 void add_body(const Scene& scene, const Body& body, const std::array<int, 2>& count,
               fem::Model& model) {
-  const VectorXd gravity = gravity_of(scene);
+  const fem::LoadLaw gravity = scene.gravity_law();
   const fem::PlaneSection section = section_of(body);
   std::vector<std::unique_ptr<fem::Term>> terms =
       fem::make_terms(body.terms, section, body.numbers);
@@ -90,7 +88,7 @@ void add_body(const Scene& scene, const Body& body, const std::array<int, 2>& co
   for (const fem::AttachedMass& m : attached_masses(scene, body.name))
     terms.push_back(fem::make_point_mass(m.mass, m.material, gravity));
   for (const BodyLoad& load : scene.loads)
-    if (load.body == body.name) terms.push_back(load.row->make(load));
+    if (load.body == body.name) terms.push_back(load.row->make(load, body));
   model.add_body(body.name, body.row->make(body, scene.time.end, count), section, std::move(terms));
 }
 
@@ -229,8 +227,36 @@ fem::FrameDrive hub_drive(const Scene& scene, const Joint& joint) {
                           : drive_of(scene, hub_of(scene, joint));
 }
 
-void add_rigid_body(const RigidBody& body, fem::Model& model, const VectorXd& gravity) {
-  const fem::RigidSection section{body.mass, body.center, body.inertia};
+namespace {
+
+/// With its point masses: about the common centre of mass.
+fem::RigidSection section_of(const RigidBody& body) {
+  if (body.masses.empty()) return {body.mass, body.center, body.inertia};
+  fem::RigidSection out{body.mass, body.mass * body.center, body.inertia};
+  for (const RigidBody::AddedMass& m : body.masses) {
+    out.mass += m.mass;
+    out.center += m.mass * m.point;
+  }
+  out.center /= out.mass;
+  out.inertia += body.mass * (body.center - out.center).squaredNorm();
+  for (const RigidBody::AddedMass& m : body.masses)
+    out.inertia += m.mass * (m.point - out.center).squaredNorm();
+  return out;
+}
+
+}  // namespace
+
+void add_rigid_loads(const Scene& scene, fem::Model& model) {
+  for (size_t i = 0; i < scene.loads.size(); ++i) {
+    const BodyLoad& load = scene.loads[i];
+    const auto is_loaded = [&](const RigidBody& body) { return body.name == load.body; };
+    if (std::any_of(scene.rigid_bodies.begin(), scene.rigid_bodies.end(), is_loaded))
+      model.add_link(load.row->on_rigid(load, "load " + std::to_string(i + 1)));
+  }
+}
+
+void add_rigid_body(const RigidBody& body, fem::Model& model, const fem::LoadLaw& gravity) {
+  const fem::RigidSection section = section_of(body);
   std::vector<std::unique_ptr<fem::Term>> terms;
   terms.push_back(fem::make_rigid_inertia(section));
   if (gravity.size() > 0) terms.push_back(fem::make_rigid_gravity(section, gravity));
@@ -294,7 +320,7 @@ namespace {
 /// Does no load act that has no energy, and nothing that could bring energy in within a step and be
 /// at rest at both of its ends, as a step of temperature? What moves for longer shows as power.
 bool keeps_energy(const Scene& scene) {
-  const auto follows = [](const BodyLoad& l) { return l.row->follows; };
+  const auto follows = [](const BodyLoad& l) { return l.row->follows || l.turns; };
   return !scene.has_heat() && scene.drives.empty() &&
          std::none_of(scene.loads.begin(), scene.loads.end(), follows);
 }
@@ -340,12 +366,13 @@ Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh) {
     return std::array{mesh.refine * count[0], mesh.refine * count[1]};
   };
   for (const RigidBody& body : scene.rigid_bodies)
-    add_rigid_body(body, out.model, gravity_of(scene));
+    add_rigid_body(body, out.model, scene.gravity_law());
   for (const Body& body : scene.bodies) add_body(scene, body, elements(body), out.model);
   const FindPlace place = [](const Anchor& a) {
     return fem::MarkerPlace{a.body, a.point, a.angle, {}};
   };
   for (const Spring& spring : scene.springs) out.model.add_link(make_link(scene, spring, place));
+  add_rigid_loads(scene, out.model);
   for (const Joint& joint : scene.joints) {
     if (!joint.holds_frame()) {
       if (auto made = make_joint(scene, joint, place, false)) out.model.add_joint(std::move(made));
@@ -376,7 +403,7 @@ Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh) {
   out.motion.integrator = scene.time.integrator;
   out.motion.alpha.rho_inf = scene.time.rho_inf;
   out.motion.minimal_coordinates.tolerance = scene.time.explicit_tolerance;
-  out.motion.gravity = gravity_of(scene);
+  if (scene.gravity) out.motion.gravity = *scene.gravity;
   if (keeps_energy(scene)) out.motion.energy_round_off = stress_round_off(scene);
   if (scene.has_heat()) add_heat(scene, out);
   return out;

@@ -89,12 +89,10 @@ bool assemble_start(const Scene& scene, fem::Workspace& model, fem::State& x) {
   }
 }
 
-VectorXd gravity_of(const Scene& scene) { return scene.gravity ? *scene.gravity : VectorXd(); }
-
 }  // namespace
 
 Twin::Twin(const Scene& scene, Driven driven) : scene_(scene), driven_(driven) {
-  for (const RigidBody& b : scene.rigid_bodies) add_rigid_body(b, model_, gravity_of(scene));
+  for (const RigidBody& b : scene.rigid_bodies) add_rigid_body(b, model_, scene.gravity_law());
   for (const Body& b : scene.bodies) add_plate(b);
   const FindPlace place = [&](const Anchor& anchor) {
     Vec2 point = anchor.point;
@@ -104,6 +102,7 @@ Twin::Twin(const Scene& scene, Driven driven) : scene_(scene), driven_(driven) {
     return fem::MarkerPlace{anchor.body, point, anchor.angle, {}};
   };
   for (const Spring& spring : scene.springs) model_.add_link(make_link(scene, spring, place));
+  add_rigid_loads(scene, model_);
   for (const Joint& joint : scene.joints) {
     if (joint.holds_frame()) {
       add_carried(joint);
@@ -131,14 +130,13 @@ void Twin::add_plate(const Body& body) {
   RigidBody twin;
   twin.name = body.name;
   const double length = body.length > 0 ? body.length : body.width;  // not known yet: of no matter
-  const double own = body.density * body.thickness * body.width * length;
-  double at_end = 0;
-  for (const PointMass& m : scene_.point_masses) at_end += m.body == body.name ? m.mass : 0;
-  twin.mass = own + at_end;
-  twin.center = {-0.5 * length * own / twin.mass, 0};
-  twin.inertia = own * (length * length + body.width * body.width) / 12 +
-                 own * at_end / twin.mass * 0.25 * length * length;
-  add_rigid_body(twin, model_, gravity_of(scene_));
+  twin.mass = body.density * body.thickness * body.width * length;
+  twin.center = {-0.5 * length, 0};
+  twin.inertia = twin.mass * (length * length + body.width * body.width) / 12;
+  const Vec2 end(body.longest(scene_.time.end), 0);
+  for (const PointMass& m : scene_.point_masses)
+    if (m.body == body.name) twin.masses.push_back({m.mass, undeformed_place(body, m.point) - end});
+  add_rigid_body(twin, model_, scene_.gravity_law());
 }
 
 void Twin::add_carried(const Joint& joint) {

@@ -131,7 +131,8 @@ std::string form_words(const io::Form& form) {
   }
   const std::string limits = limits_words(limits_of(form));
   if (!limits.empty()) text += " " + limits;
-  return form.quantity.unit.empty() ? text : text + " [" + form.quantity.unit + "]";
+  if (!form.quantity.unit.empty()) text += " [" + form.quantity.unit + "]";
+  return form.or_name.empty() ? text : text + ", or names of " + form.or_name;
 }
 
 }  // namespace

@@ -57,6 +57,7 @@ Json list_schema(Json items, int least, int most) {
 
 Json form_schema(const io::Form& form, const std::string& path) {
   Json out = value_schema(form, path);
+  if (!form.or_name.empty()) out = {{"anyOf", {out, {{"type", "string"}}}}};
   if (form.columns > 0) out = list_schema(std::move(out), form.columns, form.columns);
   if (!form.is_list) return out;
   out = list_schema(std::move(out), form.least, form.most);

@@ -80,7 +80,10 @@ std::string measure_words(const Measure& measure) {
 
 std::string load_words(const BodyLoad& load) {
   return std::string(load.row->words) + (load.edge.empty() ? "" : " '" + load.edge + "'") +
-         (load.row->follows ? ", follows the plate" : "");
+         (load.row->in_space ? ", follows the plate"
+          : load.turns       ? ", turns with the body"
+                             : "") +
+         (load.law.varies() ? ", varies" : "");
 }
 
 void describe_body(const Body& body, const Mechanism& mechanism, std::ostringstream& out) {
@@ -176,6 +179,7 @@ void describe_mechanism(const Scene& scene, std::ostringstream& out) {
   for (const RigidBody& body : scene.rigid_bodies) {
     names += (names.empty() ? "" : ", ") + body.name;
     mass += body.mass;
+    for (const RigidBody::AddedMass& added : body.masses) mass += added.mass;
   }
   out << row("rigid bodies", std::to_string(scene.rigid_bodies.size()) + " (" + names + "), " +
                                  std::to_string(4 * scene.rigid_bodies.size()) + " unknowns, " +
@@ -309,7 +313,7 @@ std::string check_case(const RunOptions& options) {
   if (!scene.point_masses.empty())
     out << row("point masses", std::to_string(scene.point_masses.size()));
   for (const BodyLoad& load : scene.loads) out << row("load on " + load.body, load_words(load));
-  if (scene.gravity) out << row("gravity", "on");
+  if (scene.gravity) out << row("gravity", scene.gravity_law().varies() ? "varies" : "on");
   if (!scene.observed.empty()) out << row("observed points", std::to_string(scene.observed.size()));
   for (const Measure& measure : scene.measures) out << row("measured", measure_words(measure));
   for (const BodyDesign& d : scene.designs) describe_design(scene, d, out);

@@ -88,7 +88,8 @@ Resultant resultant(const Scene& scene, const BodyLoad& load, const Body& body) 
     if (scene.statics) force.head<2>() -= axis * axis.dot(force.head<2>());
     size = force.norm();
   }
-  if (load.row->at_point) return {size, 0};
+  if (load.row->at_point) return load.row->follows ? Resultant{0, size} : Resultant{size, 0};
+  if (load.row->on_beams) return {size * length, 0};
   if (load.row->at_edge && load.row->follows) return {0, size * edge};
   return {size * (load.row->at_edge ? edge : length * body.width), 0};
 }

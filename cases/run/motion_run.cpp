@@ -193,10 +193,11 @@ class Recorder {
   void add_load(const fem::MotionStep& step, const fem::Growth& growth, size_t d) {
     std::vector<fem::AttachedForce> forces = fem::joint_forces(
         step.model, step.x, step.model.body(growth.body), attached_joints(scene_, growth.body));
-    for (const fem::AttachedForce& f : applied_forces(scene_, growth.body)) forces.push_back(f);
+    for (const fem::AttachedForce& f : applied_forces(scene_, growth.body, step.x.t))
+      forces.push_back(f);
     fem::EslSet set = fem::equivalent_static_load(
         step.model, step.x, growth, scene_.designs[d].grid, attached_masses(scene_, growth.body),
-        forces, mechanism_.motion.gravity);
+        forces, scene_.gravity_law().at(step.x.t));
     set.weight = 1.0 / scene_.esl->count(scene_.time.end);
     out_.loads[d].sets.push_back(std::move(set));
   }
@@ -233,9 +234,8 @@ class Recorder {
   void add_mass(const fem::MotionStep& step, const PointMass& mass, int part) {
     const Body& body = scene_.body(mass.body);
     if (body.in_space()) return;
-    const Vec2 end(body.longest(scene_.time.end), body.low() + 0.5 * body.width);
     fem::FrameMotion frame;
-    frame.origin = fem::point_motion(step.model.body(mass.body), step.x, end).position;
+    frame.origin = fem::point_motion(step.model.body(mass.body), step.x, mass.point).position;
     folder_.add_rigid_frame(mass.body + "_mass",
                             disc_mesh(frame, drawn_radius(scene_, mass), false), step.x.t, part);
   }

@@ -114,8 +114,9 @@ inline constexpr double kLongestCell = 1.3, kShortestCell = 0.25;
 
 struct PointMass {
   std::string body;
-  std::string at;   ///< "free_end": the middle of that edge
-  double mass = 0;  ///< [kg]
+  Vec2 point{0, 0};     ///< material [m]
+  bool at_end = false;  ///< is it said to be in the middle of the free end?
+  double mass = 0;      ///< [kg]
 };
 
 }  // namespace flexmorph::cases

@@ -241,6 +241,18 @@ Law read_law(const Table& t, const Key& key, const Scene& scene, std::optional<d
   return {name, 0};
 }
 
+Law read_load_law(const Table& t, const Key& key, const Scene& scene) {
+  if (!t.is_string(key)) return {{}, t.number(key)};
+  return {t.choice(key.called("a drive"), names_of(scene.drives)), 0};
+}
+
+std::vector<Law> read_load_laws(const Table& t, const Key& key, const Scene& scene) {
+  std::vector<Law> out;
+  for (const io::NumberOrName& each : t.numbers_or_names(key, names_of(scene.drives)))
+    out.push_back({each.name, each.number});
+  return out;
+}
+
 void refuse_jumps(const Table& t, const Key& key, const Scene& scene, const std::string& drive) {
   for (const Drive& each : scene.drives)
     if (each.name == drive && !each.jump.empty())

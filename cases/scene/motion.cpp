@@ -3,6 +3,7 @@
 #include "cases/scene/body_keys.h"
 #include "cases/scene/elements/row.h"
 #include "cases/scene/heat/heat.h"
+#include "cases/scene/joints/reading.h"
 #include "cases/scene/read.h"
 #include "cases/scene/tables.h"
 #include "fem/dynamics/step_control.h"
@@ -202,16 +203,37 @@ Body read_body(const Table& t, const Scene& scene, bool has_gravity) {
 const io::Key& kMassBody = io::key("point_mass", "body").name_of("a body").says("What carries it.");
 const io::Key& kMassAt = io::key("point_mass", "at")
                              .word("the place of a point mass", {"free_end"})
+                             .otherwise_as("`point` is given")
                              .says("Where: the middle of the free end.");
+const io::Key& kMassPoint =
+    io::key("point_mass", "point")
+        .numbers(any_number("a coordinate", "m"), 2, 2)
+        .otherwise_as("`at` is given")
+        .says("Or a material point, or a place in the axes of a rigid body.");
 const io::Key& kMass =
     io::key("point_mass", "mass").number(positive("a mass", "kg")).says("Its mass.");
 
-PointMass read_point_mass(const Table& t, const Scene& scene) {
+void read_point_mass(const Table& t, Scene& scene) {
+  for (RigidBody& body : scene.rigid_bodies) {
+    if (!t.says_one_of(kMassBody, std::vector{body.name})) continue;
+    t.choice(kMassBody, names_of(scene.rigid_bodies));
+    body.masses.push_back({t.number(kMass), read_pair(t, kMassPoint)});
+    return;
+  }
   PointMass mass;
   mass.body = read_flexible(t, kMassBody, scene);
-  mass.at = t.choice(kMassAt);
+  const Body& body = scene.body(mass.body);
+  if (t.has(kMassAt) == t.has(kMassPoint))
+    t.fail("a point mass is `at` the \"free_end\" or at a `point`");
+  mass.at_end = t.has(kMassAt);
+  if (mass.at_end) {
+    t.choice(kMassAt);
+    mass.point = {body.longest(scene.time.end), body.low() + 0.5 * body.width};
+  } else {
+    mass.point = read_point(t, kMassPoint, body, scene.time.end);
+  }
   mass.mass = t.number(kMass);
-  return mass;
+  scene.point_masses.push_back(mass);
 }
 
 /// [time], or [static] in its place.
@@ -262,8 +284,11 @@ void read_motion(const Table& root, const Follow& follow, Scene& scene) {
   for (const Table& t : bodies)
     scene.bodies.push_back(read_body(t, scene, root.has(tables::kGravity)));
   if (root.has(tables::kGravity)) {
-    const auto gravity = root.numbers(tables::kGravity.counted(scene.in_space() ? 3 : 2));
-    scene.gravity = Eigen::Map<const VectorXd>(gravity.data(), scene.in_space() ? 3 : 2);
+    scene.gravity_laws =
+        read_load_laws(root, tables::kGravity.counted(scene.in_space() ? 3 : 2), scene);
+    scene.gravity = scene.gravity_law().now();
+    if (scene.gravity_law().varies() && scene.has_free_lines())
+      root.fail(tables::kGravity, "gravity that varies needs bodies without free lines");
   }
   const auto follow_lengths = [&](bool trajectory) {
     for (size_t i = 0; i < bodies.size(); ++i)
@@ -277,8 +302,7 @@ void read_motion(const Table& root, const Follow& follow, Scene& scene) {
   read_joints(root, scene);
   read_springs(root, scene);
   check_mechanism_parts(root, scene);
-  for (const Table& t : root.tables(tables::kPointMass))
-    scene.point_masses.push_back(read_point_mass(t, scene));
+  for (const Table& t : root.tables(tables::kPointMass)) read_point_mass(t, scene);
   read_loads(root, scene);
   read_observed(root, scene);
   read_measures(root, scene);

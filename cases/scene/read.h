@@ -28,6 +28,10 @@ std::vector<std::string> overrides_of_outline(const io::Table& root);
 Law read_law(const io::Table& t, const io::Key& key, const Scene& scene,
              std::optional<double> computed = {});
 
+/// The same of loads, which may jump; and a list of them.
+Law read_load_law(const io::Table& t, const io::Key& key, const Scene& scene);
+std::vector<Law> read_load_laws(const io::Table& t, const io::Key& key, const Scene& scene);
+
 /// @throws Error (input) at the key for a drive that jumps, or whose rate does.
 void refuse_jumps(const io::Table& t, const io::Key& key, const Scene& scene,
                   const std::string& drive);

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "geometry/base.h"
 
@@ -31,6 +32,11 @@ struct RigidBody {
   std::optional<double> angular_velocity;  ///< likewise [rad/s]
   bool is_placed = false;                  ///< is `position` or `angle` in the case?
   std::string place;                       ///< in the case: "cases/four_bar.toml:14"
+  struct AddedMass {
+    double mass = 0;   ///< [kg]
+    Vec2 point{0, 0};  ///< in the axes of the body [m]
+  };
+  std::vector<AddedMass> masses;  ///< [[point_mass]] on it, no part of the others
 };
 
 }  // namespace flexmorph::cases

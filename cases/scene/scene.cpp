@@ -183,6 +183,17 @@ std::function<fem::Motion(double)> Scene::motion_of(const Law& law) const {
       ->motion;
 }
 
+fem::LoadLaw Scene::load_law(std::span<const Law> laws) const {
+  VectorXd constant(static_cast<Eigen::Index>(laws.size()));
+  for (size_t c = 0; c < laws.size(); ++c) constant[static_cast<Eigen::Index>(c)] = laws[c].value;
+  const auto is_driven = [](const Law& law) { return !law.drive.empty(); };
+  if (std::none_of(laws.begin(), laws.end(), is_driven)) return constant;
+  std::vector<fem::LoadLaw::Component> out;
+  for (const Law& law : laws)
+    out.emplace_back([motion = motion_of(law)](double t) { return motion(t).value; });
+  return out;
+}
+
 bool Scene::follows_trajectory(const Law& law) const {
   return std::any_of(drives.begin(), drives.end(),
                      [&](const Drive& d) { return d.from_trajectory && d.name == law.drive; });

@@ -3,6 +3,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,7 +32,8 @@ struct Scene {
   std::optional<Domain> domain;  ///< a static scene: nothing moves, all that follows is absent
   TimeSpan time;
   std::optional<StaticAnalysis> statics;  ///< bodies at rest under growing loads: no time
-  std::optional<VectorXd> gravity;        ///< (dim) [m/s^2]
+  std::optional<VectorXd> gravity;        ///< (dim), at the start [m/s^2]
+  std::vector<Law> gravity_laws;          ///< its entries; empty as well where nothing weighs
   std::vector<Drive> drives;
   std::vector<Hub> hubs;
   std::vector<RigidBody> rigid_bodies;
@@ -58,6 +60,10 @@ struct Scene {
   const Body& body(const std::string& name) const;  ///< name resolves: checked when read
   /// A law in time; drives that follow from a trajectory: after follow_trajectory().
   std::function<fem::Motion(double)> motion_of(const Law& law) const;
+  /// Components of a load or of gravity in time.
+  fem::LoadLaw load_law(std::span<const Law> laws) const;
+  /// Gravity in time; of size 0 where nothing weighs.
+  fem::LoadLaw gravity_law() const { return load_law(gravity_laws); }
   bool follows_trajectory(const Law& law) const;
   bool is_mechanism() const { return !rigid_bodies.empty(); }
   bool in_space() const { return !bodies.empty() && bodies.front().in_space(); }  ///< all, or none

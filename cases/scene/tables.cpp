@@ -16,7 +16,7 @@ constexpr const char* kDefaults = "all its defaults";
 }  // namespace
 
 const io::Key& kGravity = io::key("", "gravity")
-                              .numbers(io::any_number("gravity", "m/s^2"), 2, 3)
+                              .numbers_or_names(io::any_number("gravity", "m/s^2"), "a drive", 2, 3)
                               .otherwise_as("nothing weighs")
                               .says("Two entries in the plane, three in space.");
 const io::Key& kConstants =

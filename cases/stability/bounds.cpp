@@ -82,6 +82,7 @@ Bounds bounds_of(const Scene& scene) {
   }
   for (const RigidBody& body : scene.rigid_bodies) {
     out.mass += body.mass;
+    for (const RigidBody::AddedMass& added : body.masses) out.mass += added.mass;
     out.length = std::max({out.length, body.position.norm(), body.size.norm()});
   }
   if (scene.gravity)

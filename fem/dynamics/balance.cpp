@@ -150,7 +150,7 @@ Powers powers(Workspace& model, const State& x) {
   model.constraints(x, c);
   out.drive = x.lambda.dot(c.rate);
   out.feed = model.flow_power(x);
-  out.links = model.link_power(x);
+  out.links = model.link_power(x) + model.load_power(x);
   out.heat = model.heat_power(x);
   out.loss = model.dissipation(x);
   for (const Body& body : model.bodies()) {

@@ -13,7 +13,8 @@ struct Powers {
   double drive = 0;   ///< of the drives of all joints, λ · ∂Φ/∂t
   double feed = 0;    ///< of what pushes the material through the mesh, Term::flow_power()
   double inflow = 0;  ///< kinetic, strain and potential energy that entering material brings along
-  double links = 0;   ///< of dampers, motors and shifted places of links, Model::link_power()
+  double links = 0;   ///< of dampers, shifted places of links and loads without a potential:
+                      ///< Workspace::link_power(), load_power()
   double heat = 0;    ///< of the temperature of hot bodies, Model::heat_power()
   double loss = 0;    ///< of terms that dissipate, Model::dissipation(): it leaves the model
   double total() const { return drive + feed + inflow + links + heat - loss; }

@@ -196,55 +196,6 @@ class TorsionSpring final : public PairLink {
   TorsionSpringData spring_;
 };
 
-/// s = -F on the point; V = -F · p.
-class PointForce final : public PairLink {
- public:
-  PointForce(std::string name, MarkerPlace at, const Vec2& force)
-      : PairLink(name, std::move(at), {}, {kPositionA}, false), force_(force) {
-    if (!force.allFinite()) throw Error::input("link '" + name + "': its force is not finite");
-  }
-  std::unique_ptr<Link> clone() const override { return std::make_unique<PointForce>(*this); }
-  void add_mean_force(const State& mean, const VectorXd& q0, const VectorXd& q1,
-                      VectorXd& out) const override {
-    if (pair().shifts()) Link::add_mean_force(mean, q0, q1, out);  // refuses
-    add_force(mean, out);
-  }
-  void add_mean_tangent(const State&, const VectorXd&, const VectorXd&, const Weights&,
-                        std::vector<Eigen::Triplet<double>>&) const override {}
-  double potential_energy(const State& x) const override {
-    pair().evaluate(x.t, x.q, x.v);
-    return -factor_ * force_.dot(pair().y().segment<2>(kPositionA));
-  }
-  void scale_load(double factor) override { factor_ = factor; }
-
- private:
-  void fill(const State&, const Values&, const Values&, PairForce& out) const override {
-    out.s.segment<2>(kPositionA) = -factor_ * force_;
-    out.stored = out.s;
-  }
-  Vec2 force_;
-  double factor_ = 1;
-};
-
-/// s = -T θ_e on the axis; no energy: how often the body turned is no part of the state.
-class Torque final : public PairLink {
- public:
-  Torque(std::string name, MarkerPlace at, double torque)
-      : PairLink(name, std::move(at), {}, {MarkerPair::kAxisA}, true), torque_(torque) {
-    if (!std::isfinite(torque)) throw Error::input("link '" + name + "': its torque is not finite");
-  }
-  std::unique_ptr<Link> clone() const override { return std::make_unique<Torque>(*this); }
-  void scale_load(double factor) override { factor_ = factor; }
-
- private:
-  void fill(const State&, const Values& y, const Values&, PairForce& out) const override {
-    const Turn a(y.segment<2>(MarkerPair::kAxisA));
-    out.s.segment<2>(MarkerPair::kAxisA) = -factor_ * torque_ * a.by_e;
-    out.s_y.block<2, 2>(MarkerPair::kAxisA, MarkerPair::kAxisA) = -factor_ * torque_ * a.by_ee;
-  }
-  double torque_, factor_ = 1;
-};
-
 }  // namespace
 
 std::unique_ptr<Link> make_spring(std::string name, MarkerPlace a, MarkerPlace b,
@@ -255,14 +206,6 @@ std::unique_ptr<Link> make_spring(std::string name, MarkerPlace a, MarkerPlace b
 std::unique_ptr<Link> make_torsion_spring(std::string name, MarkerPlace a, MarkerPlace b,
                                           const TorsionSpringData& spring) {
   return std::make_unique<TorsionSpring>(std::move(name), std::move(a), std::move(b), spring);
-}
-
-std::unique_ptr<Link> make_point_force(std::string name, MarkerPlace at, const Vec2& force) {
-  return std::make_unique<PointForce>(std::move(name), std::move(at), force);
-}
-
-std::unique_ptr<Link> make_torque(std::string name, MarkerPlace at, double torque) {
-  return std::make_unique<Torque>(std::move(name), std::move(at), torque);
 }
 
 }  // namespace flexmorph::fem

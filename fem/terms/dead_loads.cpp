@@ -1,19 +1,18 @@
+#include "fem/load_term.h"
 #include "fem/loads.h"
 #include "fem/terms/free_work.h"
 
 namespace flexmorph::fem {
 namespace {
 
-/// Loads of fixed size and direction: the same generalized force whatever the shape of the body.
-class DeadLoad : public Term {
+/// Loads of fixed direction: the same generalized force whatever the shape of the body.
+class DeadLoad : public LoadTerm {
  public:
-  explicit DeadLoad(VectorXd load) : load_(std::move(load)) {
-    if (!load_.allFinite()) throw Error::input("load: a number that is not finite");
-  }
+  explicit DeadLoad(const LoadLaw& load) : LoadTerm(load) {}
 
   void add_force(int e, const Local&, LocalRows& force) const override {
     const VectorXd& share = share_[static_cast<size_t>(e)];
-    if (share.size() > 0) force.noalias() -= factor_ * share * load_.transpose();
+    if (share.size() > 0) force.noalias() -= factor() * share * load().transpose();
   }
   void add_tangent(int, const Local&, const Weights&, LocalTangent&) const override {}
   void add_free_force(int e, const Local& x, FreeForce& force) const override {
@@ -30,14 +29,14 @@ class DeadLoad : public Term {
   std::string name() const override { return "dead load"; }
   Energies energies(int e, const Local& x) const override {
     const VectorXd& share = share_[static_cast<size_t>(e)];
-    return {.potential = share.size() > 0 ? -factor_ * share.dot(x.q * load_) : 0};
+    if (share.size() == 0 || !has_potential()) return {};
+    return {.potential = -factor() * share.dot(x.q * load())};
   }
-  void scale_load(double factor) override { factor_ = factor; }
 
  protected:
   void check(const Element& element, const std::string& what) const {
-    if (load_.size() != element.dim())
-      throw Error::input(what + ": " + std::to_string(load_.size()) +
+    if (load().size() != element.dim())
+      throw Error::input(what + ": " + std::to_string(load().size()) +
                          " components, and the body lives in " + std::to_string(element.dim()) +
                          " dimensions");
   }
@@ -54,16 +53,13 @@ class DeadLoad : public Term {
     share += weight * table_.N.row(0).transpose();
   }
 
-  VectorXd load_;  // (dim)
-  double factor_ = 1;
   std::vector<VectorXd> share_;  // ∫ N per element (n_shapes), or empty: not loaded
   ShapeTable table_;
 };
 
 class PointForce final : public DeadLoad {
  public:
-  PointForce(const Vec2& material, VectorXd force)
-      : DeadLoad(std::move(force)), material_(material) {}
+  PointForce(const Vec2& material, const LoadLaw& force) : DeadLoad(force), material_(material) {}
   std::unique_ptr<Term> clone() const override { return std::make_unique<PointForce>(*this); }
   void prepare(const Element& element, const Factors&, bool all) override {
     if (!all) return;  // only elements whose lines stand still are loaded
@@ -78,7 +74,7 @@ class PointForce final : public DeadLoad {
 
 class EdgeLoad final : public DeadLoad {
  public:
-  EdgeLoad(std::string edge, VectorXd load) : DeadLoad(std::move(load)), edge_(std::move(edge)) {}
+  EdgeLoad(std::string edge, const LoadLaw& load) : DeadLoad(load), edge_(std::move(edge)) {}
   std::unique_ptr<Term> clone() const override { return std::make_unique<EdgeLoad>(*this); }
   void prepare(const Element& element, const Factors&, bool all) override {
     if (!all) return;  // only elements whose lines stand still are loaded
@@ -121,13 +117,14 @@ class SurfaceLoad final : public DeadLoad {
   }
   double flow_power(int e, const Local& x) const override {
     const VectorXd& rate = rate_[static_cast<size_t>(e)];
-    return rate.size() > 0 ? -factor_ * rate.dot(x.q * load_) : 0;
+    return rate.size() > 0 && has_potential() ? -factor() * rate.dot(x.q * load()) : 0;
   }
 
   void add_line_energy(std::span<const ShapeTable> line, const Local& x,
                        LineEnergy& out) const override {
+    if (!has_potential()) return;
     for (size_t g = 0; g < line.size(); ++g)
-      out.none[static_cast<Eigen::Index>(g)] -= factor_ * (line[g].N * x.q * load_)(0);
+      out.none[static_cast<Eigen::Index>(g)] -= factor() * (line[g].N * x.q * load())(0);
   }
 
  private:
@@ -136,15 +133,15 @@ class SurfaceLoad final : public DeadLoad {
 
 }  // namespace
 
-std::unique_ptr<Term> make_point_force(const Vec2& material, const VectorXd& force) {
+std::unique_ptr<Term> make_point_force(const Vec2& material, const LoadLaw& force) {
   return std::make_unique<PointForce>(material, force);
 }
 
-std::unique_ptr<Term> make_edge_load(const std::string& edge, const VectorXd& load) {
+std::unique_ptr<Term> make_edge_load(const std::string& edge, const LoadLaw& load) {
   return std::make_unique<EdgeLoad>(edge, load);
 }
 
-std::unique_ptr<Term> make_surface_load(const VectorXd& load) {
+std::unique_ptr<Term> make_surface_load(const LoadLaw& load) {
   return std::make_unique<SurfaceLoad>(load);
 }
 

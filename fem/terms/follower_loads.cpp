@@ -1,6 +1,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "fem/load_term.h"
 #include "fem/loads.h"
 
 namespace flexmorph::fem {
@@ -23,9 +24,8 @@ Vec3 at(const Row& row, const LocalRows& q) {
   return out;
 }
 
-void check(const Element& element, double size, const std::string& what) {
+void check(const Element& element, const std::string& what) {
   if (element.dim() != 3) throw Error::input(what + " needs a body in space");
-  if (!std::isfinite(size)) throw Error::input(what + ": a number that is not finite");
 }
 
 void check_still(const Element& element, int e, const std::string& what) {
@@ -38,13 +38,13 @@ void check_still(const Element& element, int e, const std::string& what) {
 ///   K_kl = -∫ p N_k (N_l,n [r_m]× - N_l,m [r_n]×) dA
 ///
 /// is unsymmetric but for closed or suitably held surfaces. Integrands are polynomials of degree 8.
-class Pressure final : public Term {
+class Pressure final : public LoadTerm {
  public:
-  explicit Pressure(double pressure) : pressure_(pressure) {}
+  explicit Pressure(const LoadLaw& pressure) : LoadTerm(pressure, true) {}
 
   std::unique_ptr<Term> clone() const override { return std::make_unique<Pressure>(*this); }
   void prepare(const Element& element, const Factors&, bool all) override {
-    check(element, pressure_, "pressure");
+    check(element, "pressure");
     if (!all) return;
     tables_.resize(static_cast<size_t>(element.n_elements()));
     for (int e = 0; e < element.n_elements(); ++e) check_still(element, e, "pressure");
@@ -56,8 +56,8 @@ class Pressure final : public Term {
     const ShapeTable& t = tables_[static_cast<size_t>(e)];
     for (Eigen::Index p = 0; p < t.weight.size(); ++p) {
       const Vec3 r_m = at(t.N_m.row(p), x.q), r_n = at(t.N_n.row(p), x.q);
-      const Vec3 load = factor_ * pressure_ * t.weight[p] * r_m.cross(r_n);
-      force.noalias() -= t.N.row(p).transpose() * load.transpose();
+      const Vec3 push = factor() * load()[0] * t.weight[p] * r_m.cross(r_n);
+      force.noalias() -= t.N.row(p).transpose() * push.transpose();
     }
   }
   void add_tangent(int e, const Local& x, const Weights& w, LocalTangent& tangent) const override {
@@ -65,7 +65,7 @@ class Pressure final : public Term {
     const ShapeTable& t = tables_[static_cast<size_t>(e)];
     for (Eigen::Index p = 0; p < t.weight.size(); ++p) {
       const Vec3 r_m = at(t.N_m.row(p), x.q), r_n = at(t.N_n.row(p), x.q);
-      const double size = w.q * factor_ * pressure_ * t.weight[p];
+      const double size = w.q * factor() * load()[0] * t.weight[p];
       const Mat3 by_m = -size * skew(r_n), by_n = size * skew(r_m);
       for (Eigen::Index l = 0; l < t.N.cols(); ++l) {
         const Mat3 column = t.N_m(p, l) * by_m + t.N_n(p, l) * by_n;
@@ -74,11 +74,9 @@ class Pressure final : public Term {
       }
     }
   }
-  void scale_load(double factor) override { factor_ = factor; }
   std::string name() const override { return "pressure"; }
 
  private:
-  double pressure_, factor_ = 1;
   std::vector<ShapeTable> tables_;
 };
 
@@ -92,13 +90,14 @@ class Pressure final : public Term {
 /// h = σ M n̂/|s| on s has the derivative
 ///
 ///   ∂h = σ M ( (1 - n̂ n̂ᵀ) ∂n / (|n| |s|) - n̂ (s · ∂s) / |s|³ )
-class EdgeMoment final : public Term {
+class EdgeMoment final : public LoadTerm {
  public:
-  EdgeMoment(std::string edge, double moment) : edge_(std::move(edge)), moment_(moment) {}
+  EdgeMoment(std::string edge, const LoadLaw& moment)
+      : LoadTerm(moment, true), edge_(std::move(edge)) {}
 
   std::unique_ptr<Term> clone() const override { return std::make_unique<EdgeMoment>(*this); }
   void prepare(const Element& element, const Factors&, bool all) override {
-    check(element, moment_, "moment of edge '" + edge_ + "'");
+    check(element, "moment of edge '" + edge_ + "'");
     if (!all) return;
     const std::vector<NodeVectors> nodes = element.edge(edge_);
     along_m_ = edge_ == "root" || edge_ == "free_end";
@@ -119,15 +118,15 @@ class EdgeMoment final : public Term {
   void add_force(int e, const Local& x, LocalRows& force) const override {
     for (const Point& p : points_[static_cast<size_t>(e)]) {
       const Slopes s(p, x, along_m_);
-      const Vec3 load = outward_ * factor_ * moment_ * p.weight / s.across.norm() * s.normal;
-      force.noalias() -= (along_m_ ? p.N_m : p.N_n).transpose() * load.transpose();
+      const Vec3 push = outward_ * factor() * load()[0] * p.weight / s.across.norm() * s.normal;
+      force.noalias() -= (along_m_ ? p.N_m : p.N_n).transpose() * push.transpose();
     }
   }
   void add_tangent(int e, const Local& x, const Weights& w, LocalTangent& tangent) const override {
     if (w.q == 0) return;
     for (const Point& p : points_[static_cast<size_t>(e)]) {
       const Slopes s(p, x, along_m_);
-      const double size = w.q * outward_ * factor_ * moment_ * p.weight, l = s.across.norm();
+      const double size = w.q * outward_ * factor() * load()[0] * p.weight, l = s.across.norm();
       const Mat3 by_normal =
           size / (s.area * l) * (Mat3::Identity() - s.normal * s.normal.transpose());
       const Mat3 by_length = size / (l * l * l) * s.normal * s.across.transpose();
@@ -141,7 +140,6 @@ class EdgeMoment final : public Term {
       }
     }
   }
-  void scale_load(double factor) override { factor_ = factor; }
   // Edges of elements that move are refused.
   void add_free_force(int, const Local&, FreeForce&) const override {}
   void add_free_tangent(int, const Local&, const Weights&, FreeTangent&) const override {}
@@ -165,18 +163,18 @@ class EdgeMoment final : public Term {
   };
 
   std::string edge_;
-  double moment_, factor_ = 1, outward_ = 1;
+  double outward_ = 1;
   bool along_m_ = true;
   std::vector<std::vector<Point>> points_;  // per element
 };
 
 }  // namespace
 
-std::unique_ptr<Term> make_pressure(double pressure) {
+std::unique_ptr<Term> make_pressure(const LoadLaw& pressure) {
   return std::make_unique<Pressure>(pressure);
 }
 
-std::unique_ptr<Term> make_edge_moment(const std::string& edge, double moment) {
+std::unique_ptr<Term> make_edge_moment(const std::string& edge, const LoadLaw& moment) {
   return std::make_unique<EdgeMoment>(edge, moment);
 }
 

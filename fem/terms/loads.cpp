@@ -1,20 +1,23 @@
 #include "fem/loads.h"
 
+#include "fem/load_term.h"
 #include "fem/terms/free_work.h"
 
 namespace flexmorph::fem {
 namespace {
 
 /// Weight of a body: f = -∫ ρh N dA gᵀ, potential V = -∫ ρh g·r dA.
-class Gravity final : public Term {
+class Gravity final : public LoadTerm {
  public:
-  Gravity(const PlaneSection& s, VectorXd gravity)
-      : area_density_(s.density * s.thickness),
-        gravity_(std::move(gravity)),
-        of_free_(area_density_, gravity_, false) {}
+  Gravity(const PlaneSection& s, const LoadLaw& gravity)
+      : LoadTerm(gravity),
+        area_density_(s.density * s.thickness),
+        of_free_(area_density_, load(), false) {}
 
   std::unique_ptr<Term> clone() const override { return std::make_unique<Gravity>(*this); }
   void prepare(const Element& element, const Factors& factors, bool all) override {
+    if (!has_potential() && element.n_scalars() > 0)
+      throw Error::input("gravity that varies: on a body with free lines");
     element_ = &element;
     factors_ = &factors;
     free_.prepare(element, 6, Tabulate::position, factors);
@@ -31,7 +34,7 @@ class Gravity final : public Term {
     }
   }
   void add_force(int e, const Local&, LocalRows& force) const override {
-    force.noalias() -= factor_ * mass_[static_cast<size_t>(e)] * gravity_.transpose();
+    force.noalias() -= factor() * mass_[static_cast<size_t>(e)] * load().transpose();
   }
   void add_tangent(int, const Local&, const Weights&, LocalTangent&) const override {}
   void add_forces(const Batch& x, Lanes* force) const override {
@@ -39,7 +42,7 @@ class Gravity final : public Term {
       Lanes mass{};
       for (int lane = 0; lane < x.count; ++lane)
         mass[lane] = mass_[static_cast<size_t>(x.first + lane)][k];
-      for (int c = 0; c < x.dim; ++c) force[x.dim * k + c] -= factor_ * gravity_[c] * mass;
+      for (int c = 0; c < x.dim; ++c) force[x.dim * k + c] -= factor() * load()[c] * mass;
     }
   }
   void add_tangents(const Batch&, const Weights&, Lanes*) const override {}
@@ -62,48 +65,50 @@ class Gravity final : public Term {
     const Element::CellRange at = element_->cells(e, factors_->grid);
     if (psi.rows() == 4 && at.single()) {  // bilinear: a quarter of its weight at each corner
       out.mass[factors_->grid.cell(at.i0, at.j0)] -=
-          0.25 * factor_ * area_density_ * at.area * psi.colwise().sum().dot(gravity_);
+          0.25 * factor() * area_density_ * at.area * psi.colwise().sum().dot(load());
       return;
     }
     static thread_local ShapeTable t;
     element_->tabulate(e, kDegree, Tabulate::position, *factors_, FactorKind::mass, t);
-    const VectorXd values = -factor_ * area_density_ * t.N * (psi * gravity_);
+    const VectorXd values = -factor() * area_density_ * t.N * (psi * load());
     element_->add_cell_integrals(e, kDegree, values, factors_->grid, out.mass);
   }
   Energies energies(int e, const Local& x) const override {
+    if (!has_potential()) return {};
     if (free_.has(e)) return {.potential = of_free_.potential_energy(free_.of(e), x)};
-    return {.potential = -factor_ * mass_[static_cast<size_t>(e)].dot(x.q * gravity_)};
+    return {.potential = -factor() * mass_[static_cast<size_t>(e)].dot(x.q * load())};
   }
   double flow_power(int e, const Local& x) const override {
-    return -factor_ * rate_[static_cast<size_t>(e)].dot(x.q * gravity_);
+    if (!has_potential()) return 0;
+    return -factor() * rate_[static_cast<size_t>(e)].dot(x.q * load());
   }
   void add_line_energy(std::span<const ShapeTable> line, const Local& x,
                        LineEnergy& out) const override {
+    if (!has_potential()) return;
     for (size_t g = 0; g < line.size(); ++g)
       out.mass[static_cast<Eigen::Index>(g)] -=
-          factor_ * area_density_ * (line[g].N * x.q * gravity_)(0);
+          factor() * area_density_ * (line[g].N * x.q * load())(0);
   }
   void scale_load(double factor) override {
-    factor_ = factor;
-    of_free_.set_gravity(factor * gravity_);
+    LoadTerm::scale_load(factor);
+    of_free_.set_gravity(factor * load());
   }
 
  private:
   static constexpr int kDegree = 3;  // of N
   const Element* element_ = nullptr;
   const Factors* factors_ = nullptr;
-  double area_density_, factor_ = 1;
-  VectorXd gravity_;
+  double area_density_;
   FreeInertia of_free_;
   FreeTables free_;
   std::vector<VectorXd> mass_, rate_;  // ∫ρh N, ∫ρh Ṅ per element (n_shapes)
 };
 
 /// Mass at a material point: f = m N (r̈ - g)ᵀ with r̈ as in the inertia of the body.
-class PointMass final : public Term {
+class PointMass final : public LoadTerm {
  public:
-  PointMass(double mass, const Vec2& material, VectorXd gravity)
-      : mass_(mass), material_(material), gravity_(std::move(gravity)) {}
+  PointMass(double mass, const Vec2& material, const LoadLaw& gravity)
+      : LoadTerm(gravity), mass_(mass), material_(material) {}
 
   std::unique_ptr<Term> clone() const override { return std::make_unique<PointMass>(*this); }
   void prepare(const Element& element, const Factors&, bool) override {
@@ -157,28 +162,37 @@ class PointMass final : public Term {
     Eigen::RowVectorXd velocity = table_.N * x.v;
     if (flows_) velocity += table_.N_t * x.q;
     out.kinetic = 0.5 * mass_ * velocity.squaredNorm();
-    if (gravity_.size() > 0) out.potential = -factor_ * mass_ * (table_.N * x.q * gravity_)(0);
+    if (load().size() > 0 && has_potential())
+      out.potential = -factor() * mass_ * (table_.N * x.q * load())(0);
     return out;
   }
   double flow_power(int e, const Local& x) const override {
     if (e != element_ || !flows_) return 0;
-    return mass_ * (table_.N_t * x.q * felt_acceleration(x).transpose())(0);
+    // Weight that varies has no potential that moves with the material.
+    const Eigen::RowVectorXd a = has_potential() ? felt_acceleration(x) : acceleration(x);
+    return mass_ * (table_.N_t * x.q * a.transpose())(0);
   }
-  void scale_load(double factor) override { factor_ = factor; }
 
  private:
+  void add_load(int e, const Local&, LocalRows& force) const override {
+    if (e == element_)
+      force.noalias() -= factor() * mass_ * table_.N.transpose() * load().transpose();
+  }
   bool is_in(const Batch& x) const { return element_ >= x.first && element_ < x.first + x.count; }
 
-  Eigen::RowVectorXd felt_acceleration(const Local& x) const {
+  Eigen::RowVectorXd acceleration(const Local& x) const {
     Eigen::RowVectorXd out = table_.N * x.a;
     if (flows_) out += 2 * table_.N_t * x.v + table_.N_tt * x.q;
-    if (gravity_.size() > 0) out -= factor_ * gravity_.transpose();
+    return out;
+  }
+  Eigen::RowVectorXd felt_acceleration(const Local& x) const {
+    Eigen::RowVectorXd out = acceleration(x);
+    if (load().size() > 0) out -= factor() * load().transpose();
     return out;
   }
 
-  double mass_, factor_ = 1;  // factor: of the weight
+  double mass_;
   Vec2 material_;
-  VectorXd gravity_;
   int element_ = -1;
   bool flows_ = false;
   ShapeTable table_;
@@ -186,11 +200,11 @@ class PointMass final : public Term {
 
 }  // namespace
 
-std::unique_ptr<Term> make_gravity(const PlaneSection& section, const VectorXd& gravity) {
+std::unique_ptr<Term> make_gravity(const PlaneSection& section, const LoadLaw& gravity) {
   return std::make_unique<Gravity>(section, gravity);
 }
 
-std::unique_ptr<Term> make_point_mass(double mass, const Vec2& material, const VectorXd& gravity) {
+std::unique_ptr<Term> make_point_mass(double mass, const Vec2& material, const LoadLaw& gravity) {
   return std::make_unique<PointMass>(mass, material, gravity);
 }
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "fem/load_term.h"
+
 namespace flexmorph::fem {
 namespace {
 
@@ -75,21 +77,20 @@ class RigidInertia final : public Term {
   Eigen::Matrix4d mass_;
 };
 
-/// V = -m g · (r + c_X u + c_Y v), linear in the unknowns.
-class RigidGravity final : public Term {
+/// V = -m g · (r + c_X u + c_Y v), linear in the unknowns; constant gravity only.
+class RigidGravity final : public LoadTerm {
  public:
-  RigidGravity(const RigidSection& s, const VectorXd& gravity) {
+  RigidGravity(const RigidSection& s, const LoadLaw& gravity) : LoadTerm(gravity) {
     check(s);
-    if (gravity.size() != 2 || !gravity.allFinite())
-      throw Error::input("gravity of a planar rigid body has 2 finite components");
-    weight_.head<2>() = s.mass * gravity;
-    weight_.tail<2>() = s.mass * arm(s.center).transpose() * gravity;
+    if (gravity.size() != 2) throw Error::input("gravity of a planar rigid body has 2 components");
+    mass_ << s.mass * Eigen::Matrix2d::Identity(), s.mass * arm(s.center).transpose();
   }
 
   std::unique_ptr<Term> clone() const override { return std::make_unique<RigidGravity>(*this); }
   void prepare(const Element& element, const Factors&, bool) override { check(element, name()); }
   void add_force(int, const Local&, LocalRows& force) const override {
-    for (int i = 0; i < 4; ++i) force.data()[i] -= factor_ * weight_[i];
+    const Eigen::Vector4d f = weight();
+    for (int i = 0; i < 4; ++i) force.data()[i] -= f[i];
   }
   void add_tangent(int, const Local&, const Weights&, LocalTangent&) const override {}
   void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override {
@@ -97,14 +98,16 @@ class RigidGravity final : public Term {
   }
   void add_mean_tangent(int, const LocalStep&, const Weights&, LocalTangent&) const override {}
   Energies energies(int, const Local& x) const override {
-    return {.potential = -factor_ * weight_.dot(Eigen::Map<const Eigen::Vector4d>(x.q.data()))};
+    if (!has_potential()) return {};
+    return {.potential = -weight().dot(Eigen::Map<const Eigen::Vector4d>(x.q.data()))};
   }
-  void scale_load(double factor) override { factor_ = factor; }
   std::string name() const override { return "rigid gravity"; }
 
  private:
-  Eigen::Vector4d weight_;  // generalized force
-  double factor_ = 1;
+  /// Generalized force.
+  Eigen::Vector4d weight() const { return factor() * (mass_ * load().head<2>()); }
+
+  Eigen::Matrix<double, 4, 2> mass_;
 };
 
 }  // namespace
@@ -113,7 +116,7 @@ std::unique_ptr<Term> make_rigid_inertia(const RigidSection& section) {
   return std::make_unique<RigidInertia>(section);
 }
 
-std::unique_ptr<Term> make_rigid_gravity(const RigidSection& section, const VectorXd& gravity) {
+std::unique_ptr<Term> make_rigid_gravity(const RigidSection& section, const LoadLaw& gravity) {
   return std::make_unique<RigidGravity>(section, gravity);
 }
 

@@ -272,26 +272,36 @@ const std::string kCells = "design.cell=0.025";
 
 INSTANTIATE_TEST_SUITE_P(
     Shipped, EveryScene,
-    ::testing::Values(Shipped{"rotating_plate_v01", "rotating_plate_v01",
-                              coarse("design", 12, {kCells, "esl.every=0.25"}), 0.35, 5e-3,
-                              "plate.root", "", 2},
-                      Shipped{"rotating_plate_v05", "rotating_plate_v05",
-                              coarse("design", 20, {kCells, "esl.every=0.05"}), 0.15, 2.5e-3,
-                              "plate.root", "", 3},
-                      Shipped{"four_bar", "four_bar", coarse("design", 8, {kCells}), 0.2, 4e-3,
-                              "rocker.root", "bearing", 0},
-                      Shipped{"damped_four_bar", "four_bar",
-                              coarse("design", 4,
-                                     {"verify=", "design.cell=0.05",
-                                      "body.terms=[\"inertia\", \"membrane\", \"damping\"]",
-                                      "body.damping_time=1e-4"}),
-                              0.05, 5e-3, "rocker.root", "bearing", 0},
-                      Shipped{"telescopic_crane", "telescopic_crane",
-                              coarse("design", 20, {kCells}), 0.5, 1e-2, "arm.root", "load", 2},
-                      Shipped{"motion_platform", "motion_platform",
-                              both(coarse("design.bar1", 18, {"design.bar1.cells=[35, 4]"}),
-                                   coarse("design.bar2", 18, {"design.bar2.cells=[35, 4]"})),
-                              0.1, 2.5e-3, "bar1.root", "platform", 2}),
+    ::testing::Values(
+        Shipped{"rotating_plate_v01", "rotating_plate_v01",
+                coarse("design", 12, {kCells, "esl.every=0.25"}), 0.35, 5e-3, "plate.root", "", 2},
+        Shipped{"rotating_plate_v05", "rotating_plate_v05",
+                coarse("design", 20, {kCells, "esl.every=0.05"}), 0.15, 2.5e-3, "plate.root", "",
+                3},
+        Shipped{"four_bar", "four_bar", coarse("design", 8, {kCells}), 0.2, 4e-3, "rocker.root",
+                "bearing", 0},
+        Shipped{"damped_four_bar", "four_bar",
+                coarse("design", 4,
+                       {"verify=", "design.cell=0.05",
+                        "body.terms=[\"inertia\", \"membrane\", \"damping\"]",
+                        "body.damping_time=1e-4"}),
+                0.05, 5e-3, "rocker.root", "bearing", 0},
+        Shipped{"loaded_four_bar", "four_bar",
+                coarse("design", 4,
+                       {"verify=", "design.cell=0.05", "gravity=[\"f\", -9.81]",
+                        "drive=[{name=\"turn\", formula=\"pi/2 + speed*(t - 2*tau + (t "
+                        "+ 2*tau)*exp(-t/tau))\"}, {name=\"f\", formula=\"9*cos(30*t)\"}]",
+                        "load=[{type=\"point\", body=\"coupler\", point=[0.2, 0.1], "
+                        "force=[\"f\", 5.0], turns=true}, {type=\"torque\", "
+                        "body=\"shaft\", torque=\"f\"}, {type=\"point\", "
+                        "body=\"rocker\", point=[0.2, 0.05], force=[3.0, \"f\"]}]"}),
+                0.05, 5e-3, "rocker.root", "bearing", 0},
+        Shipped{"telescopic_crane", "telescopic_crane", coarse("design", 20, {kCells}), 0.5, 1e-2,
+                "arm.root", "load", 2},
+        Shipped{"motion_platform", "motion_platform",
+                both(coarse("design.bar1", 18, {"design.bar1.cells=[35, 4]"}),
+                     coarse("design.bar2", 18, {"design.bar2.cells=[35, 4]"})),
+                0.1, 2.5e-3, "bar1.root", "platform", 2}),
     [](const auto& info) { return info.param.name; });
 
 }  // namespace

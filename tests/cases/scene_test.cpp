@@ -157,7 +157,7 @@ std::set<std::string> described(const Rows& rows) {
 
 TEST(SceneReader, KnowsTheRowsOfItsTablesAndNoOthers) {
   EXPECT_EQ(described(spring_rows()), (std::set<std::string>{"linear", "torsion"}));
-  EXPECT_EQ(described(load_rows()).size(), 5u);
+  EXPECT_EQ(described(load_rows()).size(), 7u);
   const std::string message = complaint({"joint.type=hinge"});
   for (const std::string& name : described(joint_rows()))
     EXPECT_NE(message.find("'" + name + "'"), std::string::npos) << name;

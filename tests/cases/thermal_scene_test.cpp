@@ -191,7 +191,7 @@ const std::vector<Bad> kBad = {
     {"load",
      kHeld,
      {"load=[{type=\"edge\", body=\"beam\", edge=\"free_end\", force=[0, 1]}]"},
-     "loads on a beam act at points"},
+     "a beam is loaded by \"point\", \"line\" or \"torque\""},
     {"design",
      kCrank,
      {"design=[{body='rod', cell=0.001, components=[4, 1], max_volume=0.5, min_thickness=0.0005}]",

@@ -30,6 +30,8 @@ MarkerPlace ground() { return {.point = {2, 1}, .angle = 0.3}; }
 MarkerPlace ground_shifted() { return {.point = {2, 1}, .angle = 0.3, .along = shift}; }
 MarkerPlace plate() { return {.body = "plate", .point = {0.13, 0.02}}; }
 
+LoadLaw driven(std::vector<LoadLaw::Component> components) { return components; }
+
 struct LinkCase {
   std::string name;
   enum Kind {
@@ -74,13 +76,26 @@ std::vector<LinkCase> cases() {
              return make_torsion_spring("l", ground(), two(), {3, 2, -1});
            }},
           {"point_force_shifted", LinkCase::outside, true,
-           [] {
-             return make_point_force("l", one_shifted(), {2, -3});
-           }},
+           [] { return make_point_force("l", one_shifted(), Vec2(2, -3)); }},
           {"point_force_on_plate", LinkCase::outside, true,
+           [] { return make_point_force("l", plate(), Vec2(2, -3)); }},
+          {"point_force_driven", LinkCase::outside, false,
            [] {
-             return make_point_force("l", plate(), {2, -3});
+             return make_point_force(
+                 "l", one_shifted(),
+                 driven({[](double t) { return 2 * t; }, [](double t) { return t * t; }}));
            }},
+          {"turning_force", LinkCase::outside, false,
+           [] { return make_point_force("l", one_shifted(), Vec2(2, -3), true); }},
+          {"turning_force_driven", LinkCase::outside, false,
+           [] {
+             return make_point_force(
+                 "l", two(),
+                 driven({[](double t) { return std::cos(t); }, [](double t) { return 1 - t; }}),
+                 true);
+           }},
+          {"torque_driven", LinkCase::outside, false,
+           [] { return make_torque("l", two(), driven({[](double t) { return 1.7 + t; }})); }},
           {"torque", LinkCase::outside, false, [] { return make_torque("l", two(), 1.7); }}};
 }
 
@@ -205,26 +220,24 @@ TEST_P(EveryLinkBetween, BodiesItsForcesBalance) {
 // The mean force of a step does the work that the energy takes, whatever the step; its tangent is
 // its derivative by the end of the step.
 TEST(MeanForce, OfSpringsAndForcesKeepsTheEnergy) {
-  for (const auto& [make, damped] : {std::pair{+[] {
-                                                 return make_spring("l", one(), two(), {3, 0, 0.4});
-                                               },
-                                               false},
-                                     {+[] {
-                                        return make_spring("l", two(), plate(), {3, 0, 0});
-                                      },
-                                      false},
-                                     {+[] {
-                                        return make_spring("l", ground(), plate(), {3, 2, 0.4});
-                                      },
-                                      true},
-                                     {+[] {
-                                        return make_spring("l", one(), two(), {0, 2, 0.4});
-                                      },
-                                      true},
-                                     {+[] {
-                                        return make_point_force("l", plate(), {2, -3});
-                                      },
-                                      false}}) {
+  for (const auto& [make, damped] :
+       {std::pair{+[] {
+                    return make_spring("l", one(), two(), {3, 0, 0.4});
+                  },
+                  false},
+        {+[] {
+           return make_spring("l", two(), plate(), {3, 0, 0});
+         },
+         false},
+        {+[] {
+           return make_spring("l", ground(), plate(), {3, 2, 0.4});
+         },
+         true},
+        {+[] {
+           return make_spring("l", one(), two(), {0, 2, 0.4});
+         },
+         true},
+        {+[] { return make_point_force("l", plate(), Vec2(2, -3)); }, false}}) {
     Workspace model = bodies();
     model.add_link(make());
     const SmoothMotion motion = away(model);
@@ -327,7 +340,7 @@ TEST(Torque, TurnsCounterClockwiseWithItsMoment) {
 TEST(PointForce, IsTheGeneralizedForceOfItsPoint) {
   Workspace model;
   model.add_body("one", std::make_unique<RigidBody>(1), {}, {});
-  model.add_link(make_point_force("f", {.body = "one", .point = {2, 3}}, {5, 7}));
+  model.add_link(make_point_force("f", {.body = "one", .point = {2, 3}}, Vec2(5, 7)));
   const State x = placed(model, {1, 2}, 0);
   VectorXd f;
   model.force(x, f);
@@ -347,7 +360,7 @@ TEST(Links, NameWhatTheyCannotUse) {
   EXPECT_THROW(make_spring("s", {}, {.body = "one"}, {-1, 0, 0}), Error);
   EXPECT_THROW(make_spring("s", {}, {.body = "one"}, {1, NAN, 0}), Error);
   EXPECT_THROW(make_torsion_spring("s", {}, {.body = "one"}, {1, -1, 0}), Error);
-  EXPECT_THROW(make_point_force("f", {.body = "one"}, {INFINITY, 0}), Error);
+  EXPECT_THROW(make_point_force("f", {.body = "one"}, Vec2(INFINITY, 0)), Error);
   EXPECT_THROW(make_torque("t", {.body = "one"}, NAN), Error);
 
   Workspace model;

@@ -172,7 +172,7 @@ Workspace zoo() {
   model.add_link(make_spring("k", tip, {.point = {1, 1}}, {20, 3, 0.5}));
   model.add_link(make_torsion_spring("t", tip, {.body = "slide"}, {2, 0.3, 0.1}));
   model.add_link(make_torque("m", {.body = "slide"}, 0.7));
-  model.add_link(make_point_force("f", {.body = "plate", .point = {0.25, 0}}, {1, 2}));
+  model.add_link(make_point_force("f", {.body = "plate", .point = {0.25, 0}}, Vec2(1, 2)));
   return model;
 }
 

@@ -188,15 +188,19 @@ Grid read_grid(const Table& t, const Body& body, double end) {
 /// end. Others would act in the motion and be missing in the design problem.
 void check_loads(const Table& t, const Scene& scene, const BodyDesign& design) {
   const Grid& g = design.grid;
+  const auto is_node = [&](const Vec2& point) {
+    return is_whole((point.x() - g.x0) / g.dx()) && is_whole((point.y() - g.y0) / g.dy());
+  };
+  for (const PointMass& mass : scene.point_masses)
+    if (mass.body == design.body && !mass.at_end && !is_node(mass.point))
+      t.fail(kBody, "a point mass on a designed body sits at a node of its design mesh");
   for (const BodyLoad& load : scene.loads) {
     if (load.body != design.body) continue;
-    const bool at_node =
-        is_whole((load.point.x() - g.x0) / g.dx()) && is_whole((load.point.y() - g.y0) / g.dy());
-    if (load.row->at_point && !at_node)
+    if (load.row->at_point && !is_node(load.point))
       t.fail(kBody, "a force on a designed body acts at a node of its design mesh");
-    if (!attached_force(load, scene))
+    if (!attached_force(load, scene, 0))
       t.fail(kBody, "a designed body is loaded at points or along its \"free_end\", not by \"" +
-                        std::string(load.row->name) + "\"" +
+                        std::string(load.row->name) + "\"" + (load.turns ? " that turns" : "") +
                         (load.edge.empty() ? "" : " at \"" + load.edge + "\""));
   }
 }

@@ -141,7 +141,8 @@ void check_free_end(const Table& t, const Body& body, const Scene& scene,
            holds(ring, end - Vec2(small, -grid.dy() + small));
   };
   for (const PointMass& mass : scene.point_masses)
-    if (mass.body == body.name && std::none_of(design.solid.begin(), design.solid.end(), carries))
+    if (mass.body == body.name && mass.at_end &&
+        std::none_of(design.solid.begin(), design.solid.end(), carries))
       t.fail("the point mass at the free end of '" + body.name + strip);
   const bool welded = std::any_of(scene.joints.begin(), scene.joints.end(), [&](const Joint& j) {
     return j.body == body.name && j.edge == "free_end";

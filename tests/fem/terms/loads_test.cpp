@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "fem/dynamics/growth.h"
 #include "tests/support/differences.h"
 #include "tests/support/space_plates.h"
 
@@ -69,6 +70,14 @@ INSTANTIATE_TEST_SUITE_P(
         LoadCase{"moment_root_h16", ShapeSet::h16, [] { return make_edge_moment("root", 2); }},
         LoadCase{"moment_end_h12", ShapeSet::h12, [] { return make_edge_moment("free_end", 2); }},
         LoadCase{"moment_end_h16", ShapeSet::h16, [] { return make_edge_moment("free_end", 2); }},
+        LoadCase{"turning_point", ShapeSet::h16,
+                 [] {
+                   return make_turning_point_force({0.4, 0.1}, vector(1, 2, 3));
+                 }},
+        LoadCase{"turning_edge", ShapeSet::h12,
+                 [] { return make_turning_edge_load("side_high", vector(1, 2, 3)); }},
+        LoadCase{"turning_surface", ShapeSet::h16,
+                 [] { return make_turning_surface_load(vector(1, 2, 3)); }},
         LoadCase{"moment_side_h16", ShapeSet::h16,
                  [] { return make_edge_moment("side_high", 2); }}),
     [](const auto& c) { return c.param.name; });
@@ -100,7 +109,8 @@ TEST_P(EveryLoad, IsProportionalToItsFactor) {
 
 // The potential's derivative is the force (follower loads have none and say 0).
 TEST_P(EveryLoad, PotentialOfDeadLoadsIsTheirWork) {
-  if (GetParam().name.starts_with("pressure") || GetParam().name.starts_with("moment")) return;
+  for (const char* follows : {"pressure", "moment", "turning"})
+    if (GetParam().name.starts_with(follows)) return;
   const VectorXd direction = VectorXd::Random(x.q.size());
   const double dv = first_difference(
       [&](double by) {
@@ -136,6 +146,18 @@ TEST_P(EveryLoad, ResultantIsThatOfTheLoad) {
   if (name == "point") expected = {1, 2, 3};
   if (name == "edge") expected = 0.9 * Vec3(1, 2, 3);
   if (name == "surface") expected = 0.9 * 0.5 * Vec3(1, 2, 3);
+  if (name == "turning_point") {
+    const Body& body = model.bodies()[0];
+    const auto at = [&](double dx, double dy) {
+      return point_position(body, x, {0.4 + dx, 0.1 + dy});
+    };
+    const Vec3 r_m = (at(1e-5, 0) - at(-1e-5, 0)) / 2e-5, r_n = (at(0, 1e-5) - at(0, -1e-5)) / 2e-5;
+    const Vec3 first = r_m.normalized(), third = r_m.cross(r_n).normalized();
+    expected = first + 2 * third.cross(first) + 3 * third;
+    EXPECT_LT((found - expected).norm(), 1e-8);  // the differences' round-off and truncation
+    return;
+  }
+  if (name.starts_with("turning")) return;
   if (name.starts_with("pressure")) {  // ∮ r × dr / 2: the vector area has no need of the inside
     const Element& element = *model.bodies()[0].element;
     const auto edge_integral = [&](const std::string& edge, bool along_m) {

@@ -1,0 +1,110 @@
+#include <cmath>
+
+#include "fem/links/pair_link.h"
+
+namespace flexmorph::fem {
+namespace {
+
+using Values = MarkerPair::Values;
+constexpr auto kPosition = MarkerPair::kPositionA, kAxis = MarkerPair::kAxisA;
+
+/// What acts on one place, constant or not.
+class PlaceLoad : public PairLink {
+ public:
+  void scale_load(double factor) override { factor_ = factor; }
+
+ protected:
+  PlaceLoad(const std::string& name, MarkerPlace at, LoadLaw law, Eigen::Index size,
+            const std::vector<Part>& parts, bool varies)
+      : PairLink(name, std::move(at), {}, parts, varies), law_(std::move(law)) {
+    if (law_.size() != size || !law_.now().allFinite())
+      throw Error::input("link '" + name + "': its load is not finite, or of another size");
+  }
+  /// At a time, scaled; a torque has one entry.
+  Vec2 load(double t) const {
+    law_.to(t);
+    const VectorXd& now = law_.now();
+    return factor_ * Vec2(now[0], now.size() > 1 ? now[1] : 0);
+  }
+  bool is_constant() const { return !law_.varies(); }
+
+ private:
+  mutable LoadLaw law_;
+  double factor_ = 1;
+};
+
+/// s = -F on the point; V = -F · p where F is constant.
+class PointForce final : public PlaceLoad {
+ public:
+  PointForce(const std::string& name, MarkerPlace at, const LoadLaw& force)
+      : PlaceLoad(name, std::move(at), force, 2, {kPosition}, false) {}
+  std::unique_ptr<Link> clone() const override { return std::make_unique<PointForce>(*this); }
+  void add_mean_force(const State& mean, const VectorXd& q0, const VectorXd& q1,
+                      VectorXd& out) const override {
+    if (pair().shifts()) Link::add_mean_force(mean, q0, q1, out);  // refuses
+    add_force(mean, out);
+  }
+  void add_mean_tangent(const State&, const VectorXd&, const VectorXd&, const Weights&,
+                        std::vector<Eigen::Triplet<double>>&) const override {}
+  double potential_energy(const State& x) const override {
+    if (!is_constant()) return 0;
+    pair().evaluate(x.t, x.q, x.v);
+    return -load(x.t).dot(pair().y().segment<2>(kPosition));
+  }
+
+ private:
+  void fill(const State& x, const Values&, const Values&, PairForce& out) const override {
+    out.s.segment<2>(kPosition) = -load(x.t);
+    if (is_constant()) out.stored = out.s;
+  }
+};
+
+/// s = -(f₁ e + f₂ J e) on the point, e the axis of the place and J the quarter turn. The force has
+/// no potential; e has length one but for what constraints miss.
+class TurningForce final : public PlaceLoad {
+ public:
+  TurningForce(const std::string& name, MarkerPlace at, const LoadLaw& force)
+      : PlaceLoad(name, std::move(at), force, 2, {kPosition, kAxis}, true) {}
+  std::unique_ptr<Link> clone() const override { return std::make_unique<TurningForce>(*this); }
+
+ private:
+  void fill(const State& x, const Values& y, const Values&, PairForce& out) const override {
+    const Vec2 f = load(x.t);
+    Eigen::Matrix2d by_e;
+    by_e << f[0], -f[1], f[1], f[0];
+    out.s.segment<2>(kPosition) = -by_e * y.segment<2>(kAxis);
+    out.s_y.block<2, 2>(kPosition, kAxis) = -by_e;
+  }
+};
+
+/// s = -T θ_e on the axis, θ_e = J e / |e|²; no energy: how often the body turned is no part of the
+/// state.
+class Torque final : public PlaceLoad {
+ public:
+  Torque(const std::string& name, MarkerPlace at, const LoadLaw& torque)
+      : PlaceLoad(name, std::move(at), torque, 1, {kAxis}, true) {}
+  std::unique_ptr<Link> clone() const override { return std::make_unique<Torque>(*this); }
+
+ private:
+  void fill(const State& at, const Values& y, const Values&, PairForce& out) const override {
+    const double torque = load(at.t)[0], x = y[kAxis], z = y[kAxis + 1], square = x * x + z * z;
+    out.s.segment<2>(kAxis) = -torque / square * Vec2(-z, x);
+    Eigen::Matrix2d by_ee;
+    by_ee << 2 * x * z, z * z - x * x, z * z - x * x, -2 * x * z;
+    out.s_y.block<2, 2>(kAxis, kAxis) = -torque / (square * square) * by_ee;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Link> make_point_force(std::string name, MarkerPlace at, const LoadLaw& force,
+                                       bool turns) {
+  if (turns) return std::make_unique<TurningForce>(name, std::move(at), force);
+  return std::make_unique<PointForce>(name, std::move(at), force);
+}
+
+std::unique_ptr<Link> make_torque(std::string name, MarkerPlace at, const LoadLaw& torque) {
+  return std::make_unique<Torque>(name, std::move(at), torque);
+}
+
+}  // namespace flexmorph::fem
