@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "fem/dynamics/dense_output.h"
+#include "fem/dynamics/landings.h"
 #include "fem/dynamics/motion_failures.h"
 #include "fem/dynamics/motion_memory.h"
 
@@ -41,7 +41,7 @@ class Run {
     else
       go_on();
     const double tiny = kTiny * settings_.step;
-    const auto all = landings();
+    const std::vector<Landing> all = landings(settings_, kTiny * settings_.step);
     for (; next_landing_ < all.size() && !is_enough(); ++next_landing_) {
       Landing landing = all[next_landing_];
       if (!leg_.open && (landing.t <= x_.t + tiny || landing.t > settings_.end + tiny)) continue;
@@ -135,35 +135,6 @@ class Run {
       result_.trajectory.points.push_back({x, stop});
   }
 
-  /// A time that steps must land on.
-  struct Landing {
-    double t = 0;
-    bool stop = false, kink = false;
-  };
-
-  /// All of them, in order; a kink and a stop at the same time are one, at the time of the kink.
-  std::vector<Landing> landings() const {
-    std::vector<Landing> all, out;
-    if (!settings_.adaptive)
-      for (const double t : settings_.stops) all.push_back({t, true, false});
-    const double tiny = kTiny * settings_.step;
-    for (const double t : settings_.kinks)
-      if (t > tiny && t < settings_.end - tiny) all.push_back({t, false, true});
-    all.push_back({settings_.end, true, false});
-    std::sort(all.begin(), all.end(), [](const Landing& a, const Landing& b) { return a.t < b.t; });
-    for (const Landing& next : all) {
-      if (out.empty() || next.t > out.back().t + tiny || !(next.kink || out.back().kink)) {
-        out.push_back(next);
-        continue;
-      }
-      Landing& last = out.back();
-      if (next.kink) last.t = next.t;
-      last.kink = true;
-      last.stop |= next.stop;
-    }
-    return out;
-  }
-
   /// Prepares steps that adapt.
   void prepare_to_adapt() {
     if (integrator_->step_mean())
@@ -207,10 +178,8 @@ class Run {
       leg_.steps = std::max(1, static_cast<int>(std::ceil(way / settings_.step - 1e-6)));
   }
 
-  /// Where the steps of a leg end: just before a kink, further than times are rounded.
-  double end_of_steps() const {
-    return leg_.is_kink ? leg_.end * (1 - 16 * std::numeric_limits<double>::epsilon()) : leg_.end;
-  }
+  /// Where the steps of a leg end.
+  double end_of_steps() const { return leg_.is_kink ? just_before(leg_.end) : leg_.end; }
 
   void to_next_event(const Landing& landing) {
     if (!leg_.open) plan(landing);

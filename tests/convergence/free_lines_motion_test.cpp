@@ -156,7 +156,7 @@ TEST(FreeLine, DrivenByAJointMovesAsAPrescribedOne) {
     std::vector<std::unique_ptr<Term>> terms;
     terms.push_back(make_membrane(section));
     terms.push_back(make_inertia(section));
-    terms.push_back(make_point_mass(0.5, {1, 0}, {}));
+    terms.push_back(make_point_mass(0.5, {1, 0}, VectorXd()));
     Workspace model;
     model.add_body("strip",
                    std::make_unique<AncfPlate>(2, ShapeSet::h16, lines, even_lines(-0.05, 0.05, 2)),
