@@ -116,6 +116,21 @@ TEST_P(MotionMemory, GoesOnBitForBit) {
 const Changes kRetracting = {"time.end=0.35", "body.0.flow.speed=-0.5",
                              "body.0.flow.min_length=0.03"};
 
+// Kinks of drives and jumps of loads; some steps end at one and are taken down there.
+const Changes kKinks = {
+    "time.end=0.2",
+    "constants.w=2",
+    "body.elements=4",
+    "gravity=[0.0, \"g\"]",
+    "drive=[{name=\"turn\", formula=\"piecewise(w*t^2/0.2, 0.1, w*(t - 0.05))\"}, {name=\"g\", "
+    "formula=\"-9.81*step(t - 0.05)\"}]",
+    "load=[{type=\"point\", body=\"beam\", point=[10.0, 0.0], force=[\"g\", 1.0], turns=true}]"};
+Changes kinks_by(const std::string& step) {
+  Changes out = kKinks;
+  out.push_back("time.step=" + step);
+  return out;
+}
+
 // Large enough for a factor with a border, which is kept between the lines that come.
 const Changes kOnCells = {"time.end=0.03",
                           "body.0.shape=q4",
@@ -163,6 +178,8 @@ INSTANTIATE_TEST_SUITE_P(
               "time.rho_inf=", "body.0.elements=[3, 3]"},
              2},
         Case{"sleeve", "elastic_sleeve", {"time.end=0.1"}, 6},
+        Case{"kinks", "spin_up", kinks_by("0.003"), 1},
+        Case{"kinks_adaptive", "spin_up", kinks_by("adaptive"), 1},
         Case{"platform",
              "motion_platform",
              {"time.end=0.1", "design=", "optimizer=", "esl=", "verify=", "cycle="},
