@@ -52,6 +52,7 @@ class Formula {
   /// branch: each the first double of the new branch [s]. Arguments change their sign between two
   /// of 2001 equally spaced times, or twice where they have one extreme next to zero between; two
   /// changes nearer to each other that have none are not found.
+  /// @throws Error (input) where finding them takes more than 1e8 operations.
   std::vector<double> kinks(double end) const;
 
   /// A jump at a kink.

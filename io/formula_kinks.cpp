@@ -62,7 +62,8 @@ void check_finite(const Formula& f, double t) {
 /// The arguments that decide which branch a formula takes.
 class Arguments {
  public:
-  explicit Arguments(const Formula::Program& program) : program_(program) {
+  Arguments(const std::string& text, const Formula::Program& program)
+      : text_(text), program_(program) {
     for (const Operation& o : program.operations)
       if (o.op == Op::choose) places_.push_back(o.a);
     std::sort(places_.begin(), places_.end());
@@ -101,13 +102,19 @@ class Arguments {
 
  private:
   const std::vector<double>& run(double t) const {
+    // A tenth of a second or two; some 60 of a formula for every kink.
+    constexpr double kMostWork = 1e8;
+    work_ += static_cast<double>(program_.operations.size());
+    if (work_ > kMostWork) refuse_formula(text_, "it has too many kinks for how long it is");
     results_.resize(program_.operations.size());
     program_.run(t, results_.data());
     return results_;
   }
 
+  const std::string& text_;
   const Formula::Program& program_;
   std::vector<int> places_;  // of the results
+  mutable double work_ = 0;  // operations so far
   mutable std::vector<double> results_;
 };
 
@@ -142,7 +149,7 @@ void Formula::check(double end, int samples) const {
 
 std::vector<double> Formula::kinks(double end) const {
   constexpr int kLooks = 2000;
-  const Arguments arguments(*program_);
+  const Arguments arguments(text_, *program_);
   std::vector<double> out;
   if (arguments.size() == 0) return out;
   const auto time = [&](int i) { return end * i / kLooks; };

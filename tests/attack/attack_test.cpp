@@ -186,7 +186,9 @@ TEST_F(Attack, Formulas) {
                                     : formula;
       },
       [](const std::string&, const std::string& text) {
-        io::Formula(text, {{"a", 0.7}}).check(1.5);
+        const io::Formula formula(text, {{"a", 0.7}});
+        formula.check(1.5);
+        formula.first_jump(1.5);
       });
 }
 

@@ -107,8 +107,10 @@ std::string Mutations::changed(const std::string& text, const std::string& other
 std::string Mutations::formula(int depth) {
   constexpr std::array kLeaves = {"t", "1", "2",  "pi",    "0.3",    "1e5", "7/3",
                                   "a", "0", "-1", "1e300", "999999", "t",   "t"};
-  constexpr std::array kFunctions = {"sin",  "cos",  "tan", "asin", "acos", "atan", "sinh",
-                                     "cosh", "tanh", "exp", "log",  "sqrt", "abs",  "foo"};
+  constexpr std::array kFunctions = {"sin",  "cos",  "tan",  "asin",      "acos", "atan",
+                                     "sinh", "cosh", "tanh", "exp",       "log",  "sqrt",
+                                     "abs",  "foo",  "step", "smoothstep"};
+  constexpr std::array kPairs = {"atan2", "min", "max"};
   constexpr std::array kOperators = {"+", "-", "*", "/", "^", "*", "+", "", "--"};
   if (depth == 0) return kLeaves[below(kLeaves.size())];
   switch (below(6)) {
@@ -118,7 +120,10 @@ std::string Mutations::formula(int depth) {
     }
     case 1: {
       const std::string y = formula(depth - 1);
-      return "atan2(" + y + ", " + formula(depth - 1) + ")";
+      const std::string x = formula(depth - 1);
+      const size_t which = below(kPairs.size() + 1);
+      return which < kPairs.size() ? kPairs[which] + ("(" + y + ", " + x + ")")
+                                   : "piecewise(" + y + ", 0.3, " + x + ")";
     }
     case 2:
       return "(" + formula(depth - 1) + ")";

@@ -330,6 +330,14 @@ TEST(Formula, JumpsAtKinksAreTold) {
   EXPECT_EQ(step->after, 2.25);
 }
 
+// Hundreds are found, thousands of a long formula refused before they take seconds.
+TEST(Formula, ManyKinksAreFoundOrRefused) {
+  EXPECT_EQ(Formula("abs(sin(pi*(500*t + 0.25)))").kinks(1).size(), 500u);
+  std::string text = "0";
+  for (int i = 0; i < 200; ++i) text += " + abs(sin(" + std::to_string(90000 + 7 * i) + "*t))";
+  EXPECT_TRUE(contains(complaint(text), "too many kinks"));
+}
+
 TEST(Formula, FunctionsWithKinksAreReadOrRefused) {
   const std::vector<std::pair<std::string, std::string>> wrong = {
       {"min(t)", "no function \"min\" with 1 arguments"},
