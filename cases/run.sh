@@ -13,7 +13,7 @@ case "${1--}" in
 esac
 
 announce 14
-step "$cores" "runs $(basename "$scene" .toml) (rotating_plate_v01, on one core)"
+step $((2 * cores)) "runs $(basename "$scene" .toml) (rotating_plate_v01, on one core)"
 build_targets flexmorph
 for option in "$@"; do
   case "$option" in

@@ -129,11 +129,25 @@ io::ReportSection cycles_section(const Scene& scene, const RunReport& report) {
   return out;
 }
 
+/// A drawing of every designed body in the run folder.
+void add_drawings(const RunReport& report, const RunFolder& folder, const std::string& name,
+                  io::ReportSection& out) {
+  for (const mmc::BodyProblem& problem : report.problems)
+    out.pictures.push_back(io::read_text(folder.path() + "/" + name +
+                                         (report.problems.size() > 1 ? "_" + problem.body : "") +
+                                         ".svg"));
+}
+
 /// Cycles of the motion itself.
-io::ReportSection corrections_section(const RunReport& report) {
+io::ReportSection corrections_section(const RunReport& report, const RunFolder& folder) {
   io::ReportSection out;
   out.heading = "Cycles of the motion itself";
   if (report.corrected) out.words = corrected_words(*report.corrected) + ".";
+  if (report.corrected && report.corrected->pays()) {
+    out.words += " First the design for loads, then the corrected one.";
+    add_drawings(report, folder, "design_esl", out);
+    add_drawings(report, folder, "design", out);
+  }
   out.rows.push_back({"cycle", "J", "KKT residual", "trust region", "predicted fall", "actual fall",
                       "taken", "motions", "CPU [s]"});
   for (const mmc::CorrectedCycle& c : report.corrections)
@@ -149,10 +163,7 @@ io::ReportSection certificate_section(const RunReport& report, const RunFolder& 
   out.heading = "Certificate of the motion";
   out.words =
       certificate_words(*report.certificate) + ". Arrows: where the motion would move material.";
-  for (const mmc::MotionCertificate::Body& body : report.certificate->bodies)
-    out.pictures.push_back(io::read_text(folder.path() + "/certificate" +
-                                         (report.problems.size() > 1 ? "_" + body.body : "") +
-                                         ".svg"));
+  add_drawings(report, folder, "certificate", out);
   return out;
 }
 
@@ -190,7 +201,7 @@ void write_report(const Scene& scene, const RunReport& report, RunFolder& folder
   if (scene.has_heat()) sections.push_back(heat_section(scene));
   if (!report.outcomes.empty()) sections.push_back(results_section(scene, report));
   if (!report.verdicts.empty()) sections.push_back(cycles_section(scene, report));
-  if (!report.corrections.empty()) sections.push_back(corrections_section(report));
+  if (!report.corrections.empty()) sections.push_back(corrections_section(report, folder));
   if (report.certificate) sections.push_back(certificate_section(report, folder));
   const auto add = [&](const std::string& name, const std::string& heading, std::string svg) {
     if (!scene.output.plots || svg.empty()) return;

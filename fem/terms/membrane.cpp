@@ -64,7 +64,7 @@ class Membrane final : public ElasticTerm {
     if (all) {
       dim_ = element.dim();
       coupling_ = factors.uniform() ? Coupling::classes : Coupling::all;
-      kinds_ = element.n_shapes() / 4;
+      kinds_ = element.n_shapes() % 4 == 0 ? element.n_shapes() / 4 : 0;
       invariants_.number(kinds_, coupling_ == Coupling::all);
       batches_.assign(static_cast<size_t>((element.n_elements() + kLanes - 1) / kLanes), {});
     }

@@ -213,6 +213,8 @@ TEST_P(EveryCorrection, LowersWhatTheMotionSays) {
   const std::string report = contents_of(folder + "/report.html");
   EXPECT_NE(report.find("Cycles of the motion itself"), std::string::npos);
   EXPECT_NE(report.find("Certificate of the motion"), std::string::npos);
+  EXPECT_EQ(report.find("First the design for loads") != std::string::npos,
+            run["corrected"]["kept"].get<bool>());
 }
 
 INSTANTIATE_TEST_SUITE_P(MotionDesign, EveryCorrection, ::testing::Values("first_order", "direct"),

@@ -410,6 +410,22 @@ TEST(SceneReader, ErrorsInTheFileNameLineKeyAndValue) {
                          ":13: body.thickness = -0.002: a thickness is positive [m]");
 }
 
+// Cells of a motion with a gradient are so many of the designs' cells each way, squares or not.
+TEST(SceneReader, MergesAsManyCellsOfAllDesigns) {
+  EXPECT_EQ(read("motion_platform", {"cycle.correct=first_order", "cycle.cell=0.00501"}).cycle.cell,
+            0.00501);
+  const Changes changes = {"cycle.cell=0.0166667", "cycle.correct=first_order",
+                           "design.1.cells=[30, 12]"};
+  std::string message;
+  try {
+    read_scene(io::CaseFile(FLEXMORPH_TWO_PLATES, changes));
+  } catch (const Error& error) {
+    message = error.what();
+  }
+  EXPECT_TRUE(message.ends_with("as many cells of 'light' (0.0166667 m) as of the other designs"))
+      << message;
+}
+
 // Another body's lines that find their own way: when its mesh changes depends on the design.
 TEST(SceneReader, RefusesGradientsWhereLinesAreFree) {
   std::string text;

@@ -89,15 +89,21 @@ void read_motion_keys(const Table& t, const Scene& scene, To& out) {
   out.checkpoints = t.integer(kCheckpoints);
   if (!t.has(kCell)) return;
   out.cell = t.number(kCell);
+  const auto cells_in = [&](const BodyDesign& design) {
+    return static_cast<int>(std::lround(out.cell / design.grid.dx()));
+  };
   for (const BodyDesign& design : scene.designs) {
+    constexpr double kSame = 1e-3;  // cells need not be squares, nor round numbers
+    const Grid& g = design.grid;
     const Body& body = scene.body(design.body);
-    const double parts = out.cell / design.grid.dx();
-    for (const double lengths : {parts, design.grid.width / out.cell, design.grid.height / out.cell,
-                                 body.length / out.cell})
-      if (!is_whole(lengths) || lengths < 0.5)
-        t.fail(kCell, "a whole number of cells of '" + body.name + "' (" +
-                          to_text(design.grid.dx()) +
-                          " m), which divides its lengths and its width");
+    const int n = cells_in(design);
+    if (n < 1 || std::abs(out.cell / (n * g.dx()) - 1) > kSame || g.nx % n != 0 || g.ny % n != 0 ||
+        !is_whole(body.length / (n * g.dx())))
+      t.fail(kCell, "a whole number of cells of '" + body.name + "' (" + to_text(g.dx(), 6) +
+                        " m), which divides its lengths and its width");
+    if (n != cells_in(scene.designs.front()))
+      t.fail(kCell, "as many cells of '" + body.name + "' (" + to_text(g.dx(), 6) +
+                        " m) as of the other designs");
   }
 }
 
