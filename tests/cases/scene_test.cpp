@@ -206,7 +206,7 @@ const Bad kBadInputs[] = {
      "(time.integrator)"},
     {"correction_on_cells_between",
      {"cycle.cell=0.004", "cycle.correct=first_order"},
-     "a whole number of cells of 'plate' (0.0025 m), which divides its lengths and its width"},
+     "a whole number of cells of 'plate' (0.0025 m), which divides its length and its width"},
     {"sum_of_loads_and_motion",
      {"design.objective=[{response=\"deflection\"}]", "cycle.correct=direct"},
      "only numbers of the motion have sums: `minimize` is the summed compliance"},
