@@ -43,4 +43,11 @@ class LoadTerm : public Term {
   double factor_ = 1;
 };
 
+/// The matrix of x ×, which the slopes of loads that turn with a body in space are made of (3 x 3).
+inline Eigen::Matrix3d skew(const Vec3& x) {
+  Eigen::Matrix3d out;
+  out << 0, -x[2], x[1], x[2], 0, -x[0], -x[1], x[0], 0;
+  return out;
+}
+
 }  // namespace flexmorph::fem

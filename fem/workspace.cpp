@@ -234,48 +234,55 @@ double Workspace::link_power(const State& x) {
   return out;
 }
 
-double Workspace::heat_power(const State& x) {
-  prepare(x);
-  double out = 0;
-  Local local;
-  for (const Body& b : bodies_) {
-    if (!b.heat) continue;
-    for (int e = 0; e < b.element->n_elements(); ++e) {
-      gather(b, e, x, local);
-      for (const auto& term : b.terms)
-        if (const auto* hot = dynamic_cast<const StrainTerm*>(term.get()))
-          out += hot->heat_power(e, local);
-    }
-  }
-  return out;
-}
-
-double Workspace::dissipation(const State& x) {
-  prepare(x);
-  double out = 0;
-  Local local;
-  for (const Body& b : bodies_)
-    for (int e = 0; e < b.element->n_elements(); ++e) {
-      gather(b, e, x, local);
-      for (const auto& term : b.terms) out += term->dissipation(e, local);
-    }
-  return out;
-}
-
-double Workspace::load_power(const State& x) {
+template <class Wanted, class Amount>
+double Workspace::summed(const State& x, Wanted wanted, Amount amount) {
   prepare(x);
   double out = 0;
   Local local;
   for (const Body& b : bodies_)
     for (const auto& term : b.terms) {
-      const auto* load = dynamic_cast<const LoadTerm*>(term.get());
-      if (!load || load->has_potential()) continue;
+      if (!wanted(b, *term)) continue;
       for (int e = 0; e < b.element->n_elements(); ++e) {
         gather(b, e, x, local);
-        out += load->power(e, local);
+        out += amount(*term, e, local);
       }
     }
   return out;
+}
+
+double Workspace::heat_power(const State& x) {
+  return summed(
+      x,
+      [](const Body& b, const Term& term) {
+        return b.heat && dynamic_cast<const StrainTerm*>(&term);
+      },
+      [](const Term& term, int e, const Local& local) {
+        return static_cast<const StrainTerm&>(term).heat_power(e, local);
+      });
+}
+
+double Workspace::dissipation(const State& x) {
+  return summed(
+      x, [](const Body&, const Term&) { return true; },
+      [](const Term& term, int e, const Local& local) { return term.dissipation(e, local); });
+}
+
+double Workspace::load_power(const State& x) {
+  return summed(
+      x,
+      [](const Body&, const Term& term) {
+        const auto* load = dynamic_cast<const LoadTerm*>(&term);
+        return load && !load->has_potential();
+      },
+      [](const Term& term, int e, const Local& local) {
+        return static_cast<const LoadTerm&>(term).power(e, local);
+      });
+}
+
+double Workspace::strain_energy(const State& x) {
+  return summed(
+      x, [](const Body&, const Term& term) { return term.is_elastic(); },
+      [](const Term& term, int e, const Local& local) { return term.strain_energy(e, local); });
 }
 
 double Workspace::flow_power(const State& x) {

@@ -185,6 +185,9 @@ class Workspace : public Model {
   void joint_stiffness(const State& x, std::vector<Eigen::Triplet<double>>& out) const;
   static void gather(const Body& body, int e, const State& x, Local& local);
   static void add_energies(const State& x, const Body& body, Energies& out);
+  /// Σ of amount(term, element, its unknowns) over the terms that wanted(body, term) names.
+  template <class Wanted, class Amount>
+  double summed(const State& x, Wanted wanted, Amount amount);
   static void gather(const Body& body, int e, const State& mean, const VectorXd& q0,
                      const VectorXd& q1, LocalStep& step);
   /// Calls f(batch, its places) for all batches, one colour after the other, by one thread for

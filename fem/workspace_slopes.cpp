@@ -37,21 +37,6 @@ void Workspace::add_factor_slopes(const State& x, const VectorXd& psi,
   }
 }
 
-double Workspace::strain_energy(const State& x) {
-  prepare(x);
-  double sum = 0;
-  Local local;
-  for (const Body& b : bodies_)
-    for (const auto& term : b.terms) {
-      if (!term->is_elastic()) continue;
-      for (int e = 0; e < b.element->n_elements(); ++e) {
-        gather(b, e, x, local);
-        sum += term->strain_energy(e, local);
-      }
-    }
-  return sum;
-}
-
 void Workspace::add_strain_slopes(const State& x, double weight, VectorXd& by_q,
                                   std::vector<FactorSlopes>& by_factors) {
   prepare(x);

@@ -9,12 +9,6 @@ namespace {
 
 using Mat3 = Eigen::Matrix3d;
 
-Mat3 skew(const Vec3& x) {
-  Mat3 out;
-  out << 0, -x[2], x[1], x[2], 0, -x[0], -x[1], x[0], 0;
-  return out;
-}
-
 /// Σ_k row_k q_k.
 template <class Row>
 Vec3 at(const Row& row, const LocalRows& q) {

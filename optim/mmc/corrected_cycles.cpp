@@ -5,6 +5,7 @@
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "geometry/cpu_time.h"
@@ -214,12 +215,17 @@ class Corrector {
   static double missed_at(const optim::Response& here) { return std::max(0.0, here.g.maxCoeff()); }
 
   /// What the static problem with the gradient of the motion comes to within the radius, which
-  /// shrinks where its optimizer finds nothing better: that costs no motion.
+  /// shrinks where its optimizer finds nothing better: that costs no motion. Narrow places come and
+  /// go at once; a design next to where one comes has no better neighbour that keeps all limits.
+  /// Then the best one that misses them by little is the step: the next cycles restore it.
   optim::Result best_within(optim::Problem& loaded, const VectorXd& x, const optim::Response& here,
                             const Whole& moved) {
+    constexpr double kLittle = 3e-3;  // a place by 30 % (WidthLimits), a volume by 0.3 %
     const std::vector<int> limits = limit_rows(moved);
     const Corrected::Seen seen{here_.df - here.df, secants_.root(x.size()), here_.g(limits),
                                here_.dg(limits, Eigen::all)};
+    const double first = radius_;
+    std::optional<optim::Result> forgiven;  // within the first radius
     for (;; radius_ *= 0.5) {
       Corrected problem(loaded, x, here.f, seen, radius_);
       optim::Settings inner = settings_.optimizer;
@@ -227,9 +233,23 @@ class Corrector {
       inner.max_evaluations = 0;
       inner.move_limit = std::min(inner.move_limit, radius_);
       inner.kkt_tolerance = std::min(inner.kkt_tolerance, 0.1 * now_.kkt);
-      optim::Result found = optim::make_optimizer(inner)->minimize(problem, {});
+      const auto watch = [&](const optim::Iterate& iterate) {
+        const double least = forgiven ? forgiven->response.f : 1;
+        if (radius_ < first || iterate.violation > kLittle || !(iterate.response->f < least))
+          return true;
+        forgiven.emplace();
+        forgiven->x = *iterate.x;
+        forgiven->response = *iterate.response;
+        forgiven->violation = iterate.violation;
+        return true;
+      };
+      optim::Result found = optim::make_optimizer(inner)->minimize(problem, watch);
       const bool nearer = found.violation < 0.5 * missed_at(here);
-      if (found.response.f < 1 || nearer || radius_ < settings_.smallest_radius) return found;
+      if (found.response.f < 1 || nearer) return found;
+      if (radius_ >= settings_.smallest_radius) continue;
+      if (!forgiven) return found;
+      radius_ = first;
+      return *forgiven;
     }
   }
 

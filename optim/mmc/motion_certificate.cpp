@@ -8,19 +8,28 @@
 
 namespace flexmorph::mmc {
 
+namespace {
+
+/// What the designs ask of their motion.
+template <class Bodies, class Problem>
+std::vector<const Goal*> goals_of(const Bodies& bodies, Problem problem_of) {
+  std::vector<const Goal*> out;
+  for (const auto& b : bodies) out.push_back(&problem_of(b).motion_goal);
+  return out;
+}
+
+}  // namespace
+
 MotionState motion_state_of(const std::vector<Part>& parts, MotionResponse& motion) {
-  std::vector<const Goal*> goals;
-  for (const Part& p : parts) goals.push_back(&p.problem.motion_goal);
-  return {motion, goals};
+  return {motion, goals_of(
+                      parts, [](const Part& p) -> auto& { return p.problem; })};
 }
 
 double sharp_objective(std::span<const BodyProblem> problems, MotionResponse& motion) {
-  std::vector<const Goal*> goals;
+  const auto goals = goals_of(
+      problems, [](const BodyProblem& p) -> auto& { return p; });
   std::vector<VectorXd> fractions;
-  for (const BodyProblem& p : problems) {
-    goals.push_back(&p.motion_goal);
-    fractions.push_back(fractions_of(p, p.design.components()));
-  }
+  for (const BodyProblem& p : problems) fractions.push_back(fractions_of(p, p.design.components()));
   const std::vector<MotionRow> rows = motion_objectives(goals);
   const std::vector<double> each = motion.sharp(rows, fractions);
   double out = 0;

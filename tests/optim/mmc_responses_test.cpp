@@ -75,6 +75,7 @@ std::vector<const ResponseRow*> all_rows() {
   std::vector<const ResponseRow*> rows(responses().begin(), responses().end());
   // Those of a motion: tests/cases/motion_design_test.cpp.
   std::erase_if(rows, [](const ResponseRow* row) { return row->of_motion; });
+  rows.push_back(&kCompliancePeak);  // stands for the worst one where gradients are asked for
   rows.push_back(&kAxes);
   rows.push_back(&kFirstMoment);
   return rows;

@@ -95,13 +95,12 @@ void read_motion_keys(const Table& t, const Scene& scene, To& out) {
   for (const BodyDesign& design : scene.designs) {
     constexpr double kSame = 1e-3;  // cells need not be squares, nor round numbers
     const Grid& g = design.grid;
-    const Body& body = scene.body(design.body);
     const int n = cells_in(design);
     if (n < 1 || std::abs(out.cell / (n * g.dx()) - 1) > kSame || g.nx % n != 0 || g.ny % n != 0)
-      t.fail(kCell, "a whole number of cells of '" + body.name + "' (" + to_text(g.dx(), 6) +
+      t.fail(kCell, "a whole number of cells of '" + design.body + "' (" + to_text(g.dx(), 6) +
                         " m), which divides its length and its width");
     if (n != cells_in(scene.designs.front()))
-      t.fail(kCell, "as many cells of '" + body.name + "' (" + to_text(g.dx(), 6) +
+      t.fail(kCell, "as many cells of '" + design.body + "' (" + to_text(g.dx(), 6) +
                         " m) as of the other designs");
   }
 }
