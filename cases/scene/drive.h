@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,9 @@ struct Drive {
   std::function<fem::Motion(double)> motion;
   std::vector<double> kinks;  ///< in (0, end]: first times of other branches of its formula [s]
   std::string jump;           ///< the first jump of value or rate, in words; empty: there is none
+  /// Of a coordinate of a curve: where its parameter ends, which takes the place of time. It drives
+  /// nothing but `path` joints, and its kinks are no times.
+  std::optional<double> until;
   bool from_trajectory = false;  ///< what the trajectory's body needs of it (follow_trajectory())
 };
 

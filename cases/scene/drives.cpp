@@ -50,6 +50,11 @@ const Key& kColumn = io::key("drive", "column")
                          .text("a column")
                          .when("`csv` is given")
                          .says("Its column of values.");
+const Key& kUntil = io::key("drive", "until")
+                        .number(io::positive("the end of a parameter"))
+                        .otherwise_as("it is a function of time")
+                        .when("a coordinate of a curve")
+                        .says("Of a `path`: its variable `t` goes from 0 to this, and is no time.");
 const Key& kFrom = io::key("drive", "from")
                        .word("a drive follows from", {"trajectory"})
                        .otherwise_as("another one of the four is given")
@@ -115,6 +120,10 @@ std::function<fem::Motion(double)> tabulated(const Table& t, const Key& key,
     }
   };
   io::SmoothTable table = make();
+  if ((table.first() > 0 || table.last() < end) && t.has(kUntil))
+    t.fail(key, "the table of a curve covers the parameter from 0 to until = " + to_text(end) +
+                    "; this one lasts from " + to_text(table.first()) + " to " +
+                    to_text(table.last()));
   if (table.first() > 0 || table.last() < end)
     t.fail(key, "a table covers the run from 0 to time.end = " + to_text(end) +
                     " s; this one lasts from " + to_text(table.first()) + " to " +
@@ -175,13 +184,21 @@ Drive read_drive(const Table& t, const Constants& constants, const Scene& scene,
     drive.words = "from the trajectory";
     return drive;
   }
-  const double end = scene.time.end;
+  if (t.has(kUntil)) drive.until = t.number(kUntil);
+  const double end = drive.until.value_or(scene.time.end);
   if (t.has(kFormula))
     read_formula(t, constants, end, drive);
   else
     drive.motion =
         t.has(kTable) ? read_table(t, end, drive.words) : read_csv_drive(t, end, drive.words);
+  if (drive.until) drive.kinks.clear();
   return drive;
+}
+
+void refuse_curve(const Table& t, const Key& key, const Scene& scene, const std::string& drive) {
+  for (const Drive& each : scene.drives)
+    if (each.name == drive && each.until)
+      t.fail(key, "the drive '" + drive + "' is a coordinate of a curve (`until`), not of time");
 }
 
 /// The value where the rate changes its sign between a and b.
@@ -243,17 +260,22 @@ Law read_law(const Table& t, const Key& key, const Scene& scene, std::optional<d
 
 Law read_load_law(const Table& t, const Key& key, const Scene& scene) {
   if (!t.is_string(key)) return {{}, t.number(key)};
-  return {t.choice(key.called("a drive"), names_of(scene.drives)), 0};
+  const std::string name = t.choice(key.called("a drive"), names_of(scene.drives));
+  refuse_curve(t, key, scene, name);
+  return {name, 0};
 }
 
 std::vector<Law> read_load_laws(const Table& t, const Key& key, const Scene& scene) {
   std::vector<Law> out;
-  for (const io::NumberOrName& each : t.numbers_or_names(key, names_of(scene.drives)))
+  for (const io::NumberOrName& each : t.numbers_or_names(key, names_of(scene.drives))) {
+    refuse_curve(t, key, scene, each.name);
     out.push_back({each.name, each.number});
+  }
   return out;
 }
 
 void refuse_jumps(const Table& t, const Key& key, const Scene& scene, const std::string& drive) {
+  refuse_curve(t, key, scene, drive);
   for (const Drive& each : scene.drives)
     if (each.name == drive && !each.jump.empty())
       t.fail(key, "of the drive '" + drive + "', " + each.jump +

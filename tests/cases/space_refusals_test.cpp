@@ -96,7 +96,7 @@ const Bad kBad[] = {
     {"unknown_joint",
      kPendulum,
      {"joint.0.type=hinge"},
-     "'slider', 'angle_drive', 'distance', 'point_drive', 'gear'"},
+     "'slider', 'angle_drive', 'distance', 'point_drive', 'gear', 'path'"},
     {"pin_outside",
      kPendulum,
      {"joint.0.point=[0.4, 0]"},

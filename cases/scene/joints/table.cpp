@@ -5,12 +5,12 @@
 namespace flexmorph::cases {
 
 extern const JointRow kWeld, kSleeve, kPin, kClamp, kSupport, kSymmetry, kLineDrive, kRevolute,
-    kSlider, kAngleDrive, kDistance, kPointDrive, kGear;
+    kSlider, kAngleDrive, kDistance, kPointDrive, kGear, kPath;
 
 std::span<const JointRow* const> joint_rows() {
   static const std::array kRows = {&kWeld,     &kSleeve,     &kPin,      &kClamp,  &kSupport,
                                    &kSymmetry, &kLineDrive,  &kRevolute, &kSlider, &kAngleDrive,
-                                   &kDistance, &kPointDrive, &kGear};
+                                   &kDistance, &kPointDrive, &kGear,     &kPath};
   return kRows;
 }
 

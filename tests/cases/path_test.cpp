@@ -1,0 +1,289 @@
+// The path joint: its rows against differences at random states, a bead on a wire against the
+// pendulum it is, a cam and its follower against closed forms, and what is refused.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "cases/build/build.h"
+#include "fem/dynamics/motion.h"
+#include "io/tables.h"
+#include "tests/cases/program.h"
+#include "tests/support/differences.h"
+
+namespace flexmorph::test {
+namespace {
+
+using testing::first_difference;
+using testing::second_difference;
+
+constexpr double kG = 9.81;
+const char* const kCircle = R"toml(
+[[drive]]
+name = "x"
+until = 6.283185307179586
+formula = "1.5*cos(t)"
+[[drive]]
+name = "y"
+until = 6.283185307179586
+formula = "1.5*sin(t)"
+)toml";
+
+/// A bead on a wire, `at` a place of it.
+std::string bead(const std::string& wire, const Vec2& at, double step, double end) {
+  return R"toml(
+title = "A bead on a wire"
+gravity = [0.0, -9.81]
+[time]
+start = "rigid"
+step = )toml" +
+         std::to_string(step) + "\nend = " + std::to_string(end) + wire + R"toml(
+[[rigid_body]]
+name = "bead"
+mass = 0.3
+inertia = 1e-3
+velocity = [0.0, 0.0]
+angular_velocity = 0.0
+position = [)toml" +
+         std::to_string(at.x()) + ", " + std::to_string(at.y()) + R"toml(]
+[[joint]]
+type = "path"
+name = "wire"
+b = "bead"
+x = "x"
+y = "y"
+)toml";
+}
+
+io::CsvTable motion_of(const Scratch& scratch, const std::string& text) {
+  const std::string folder = scratch / "out";
+  const Ended ended = run(scratch, scratch.write("path.toml", text), folder);
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  return io::read_csv(folder + "/motion.csv");
+}
+
+/// Angle of a pendulum of length 1.5 m from the x axis, released at rest at 0.3: Runge-Kutta.
+double pendulum(double end) {
+  std::array<double, 2> x{0.3, 0};
+  const auto rate = [](const std::array<double, 2>& x) {
+    return std::array<double, 2>{x[1], -kG / 1.5 * std::cos(x[0])};
+  };
+  const auto plus = [](const std::array<double, 2>& x, double h, const std::array<double, 2>& k) {
+    return std::array<double, 2>{x[0] + h * k[0], x[1] + h * k[1]};
+  };
+  constexpr int kSteps = 4000;
+  const double h = end / kSteps;
+  for (int i = 0; i < kSteps; ++i) {
+    const auto k1 = rate(x), k2 = rate(plus(x, h / 2, k1)), k3 = rate(plus(x, h / 2, k2)),
+               k4 = rate(plus(x, h, k3));
+    for (size_t c = 0; c < 2; ++c) x[c] += h / 6 * (k1[c] + 2 * k2[c] + 2 * k3[c] + k4[c]);
+  }
+  return x[0];
+}
+
+// The curve is closed, the bead crosses where its parameter begins; order 2 in the step.
+TEST(Path, BeadOnACircleIsAPendulum) {
+  const Scratch scratch;
+  const double end = 1.2, exact = pendulum(end);
+  const Vec2 at(1.5 * std::cos(0.3), 1.5 * std::sin(0.3)),
+      expected(1.5 * std::cos(exact), 1.5 * std::sin(exact));
+  std::vector<double> errors;
+  for (const double step : {0.01, 0.005, 0.0025}) {
+    const io::CsvTable motion = motion_of(scratch, bead(kCircle, at, step, end));
+    const auto x = motion.numbers("bead.x"), y = motion.numbers("bead.y");
+    for (size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(std::hypot(x[i], y[i]), 1.5, 1e-10);
+    errors.push_back((Vec2(x.back(), y.back()) - expected).norm());
+  }
+  EXPECT_LT(errors[2], 1e-3);
+  EXPECT_NEAR(std::log2(errors[0] / errors[1]), 2, 0.15);
+  EXPECT_NEAR(std::log2(errors[1] / errors[2]), 2, 0.15);
+}
+
+// y = x²/2: the energy g y + (1 + x²) ẋ²/2 of the motion, with ẋ from differences of positions.
+TEST(Path, BeadOnAParabolaKeepsItsEnergy) {
+  const Scratch scratch;
+  const io::CsvTable motion = motion_of(scratch, bead(R"toml(
+[[drive]]
+name = "x"
+until = 4.0
+formula = "t - 2"
+[[drive]]
+name = "y"
+until = 4.0
+formula = "(t - 2)^2/2"
+)toml",
+                                                      {1, 0.5}, 1e-3, 2));
+  const auto x = motion.numbers("bead.x"), y = motion.numbers("bead.y");
+  double low = 1;
+  for (size_t i = 1; i + 1 < x.size(); ++i) {
+    EXPECT_NEAR(y[i], 0.5 * x[i] * x[i], 1e-10);
+    const double rate = (x[i + 1] - x[i - 1]) / 2e-3;
+    EXPECT_NEAR(kG * y[i] + 0.5 * (1 + x[i] * x[i]) * rate * rate, 0.5 * kG, 2e-4) << i;
+    low = std::min(low, x[i]);
+  }
+  EXPECT_NEAR(low, -1, 1e-4);
+}
+
+/// An eccentric disc turns by 3 t; its follower is led along y.
+std::string cam(const std::string& change = "") {
+  return R"toml(
+title = "A cam"
+gravity = [0.0, -9.81]
+[time]
+start = "rigid"
+step = 1e-3
+end = 3.0
+[[drive]]
+name = "turn"
+formula = "3*t"
+[[drive]]
+name = "x"
+until = 6.283185307179586
+formula = "0.2 + 0.5*cos(t)"
+[[drive]]
+name = "y"
+until = 6.283185307179586
+formula = "0.5*sin(t)"
+[[rigid_body]]
+name = "disc"
+mass = 2.0
+inertia = 0.3
+[[rigid_body]]
+name = "follower"
+mass = 0.7
+inertia = 0.01
+position = [0.0, 0.46]
+angle = 1.5707963267948966
+[[joint]]
+type = "revolute"
+a = "disc"
+[[joint]]
+type = "slider"
+b = "follower"
+angle_a = 1.5707963267948966
+point_a = [0.0, 0.0]
+[[joint]]
+type = "angle_drive"
+name = "motor"
+b = "disc"
+angle = "turn"
+[[joint]]
+type = "path"
+name = "flank"
+a = "disc"
+b = "follower"
+x = "x"
+y = "y"
+)toml" + change;
+}
+
+// y = ε sin θ + sqrt(r² - ε² cos² θ); the motor lifts and accelerates the follower.
+TEST(Path, CamLiftsItsFollower) {
+  const Scratch scratch;
+  const io::CsvTable motion = motion_of(scratch, cam());
+  const auto t = motion.numbers("time"), y = motion.numbers("follower.y"),
+             power = motion.numbers("motor.power"), force = motion.numbers("flank.force_y");
+  const auto lift = [](double time) {
+    const double theta = 3 * time;
+    return 0.2 * std::sin(theta) + std::sqrt(0.25 - 0.04 * std::cos(theta) * std::cos(theta));
+  };
+  for (size_t i = 0; i < t.size(); ++i) {
+    EXPECT_NEAR(y[i], lift(t[i]), 1e-9) << t[i];
+    if (i < 60) continue;  // accelerations settle
+    const double rate = (lift(t[i] + 1e-4) - lift(t[i] - 1e-4)) / 2e-4,
+                 acceleration = (lift(t[i] + 1e-4) - 2 * lift(t[i]) + lift(t[i] - 1e-4)) / 1e-8;
+    EXPECT_NEAR(force[i], 0.7 * (kG + acceleration), 2e-3) << t[i];
+    EXPECT_NEAR(power[i], 0.7 * (kG + acceleration) * rate - 2.0 * 0, 2e-3) << t[i];
+  }
+}
+
+// Rows, rates, tangent along straight lines of states near the curve, with the curve on a body.
+TEST(Path, RowsAreWhatTheySay) {
+  const Scratch scratch;
+  const cases::Scene scene = cases::read_scene(io::CaseFile(scratch.write("c.toml", cam())));
+  cases::Mechanism mechanism = cases::build_mechanism(scene);
+  fem::Workspace& model = mechanism.model;
+  model.prepare(0.0);
+  const fem::Joint* path = nullptr;
+  for (const auto& joint : model.joints())
+    if (joint->name() == "flank") path = joint.get();
+  ASSERT_NE(path, nullptr);
+  ASSERT_EQ(path->size(), 1);
+  VectorXd start = model.reference().q;
+  start.segment<2>(model.body("follower").first_dof) = Vec2(0.3, 0.5);  // off the curve
+  const auto n = start.size();
+  std::srand(5);
+  for (int round = 0; round < 5; ++round) {
+    const VectorXd q = start + 0.05 * VectorXd::Random(n), v = VectorXd::Random(n),
+                   a = VectorXd::Random(n);
+    const auto at = [&](double t) { return VectorXd(q + t * v + 0.5 * t * t * a); };
+    const auto rows_at = [&](double t) {
+      fem::ConstraintRows rows;
+      path->evaluate(0, at(t), v, rows);
+      return rows;
+    };
+    const auto jacobian = [&](const fem::ConstraintRows& rows) {
+      VectorXd out = VectorXd::Zero(n);
+      for (const auto& entry : rows.jacobian) out[entry.col()] += entry.value();
+      return out;
+    };
+    const auto value = [&](double t) { return rows_at(t).value[0]; };
+    const fem::ConstraintRows rows = rows_at(0);
+    EXPECT_GT(std::abs(rows.value[0]), 1e-3);
+    EXPECT_NEAR(jacobian(rows).dot(v), first_difference(value, 1e-3), 1e-8);
+    EXPECT_NEAR(jacobian(rows).dot(a) - rows.acceleration[0], second_difference(value, 1e-3), 1e-6);
+    std::vector<Eigen::Triplet<double>> entries;
+    path->add_stiffness(0, q, VectorXd::Constant(1, 1.7), entries);
+    const VectorXd w = VectorXd::Random(n);
+    double product = 0;
+    for (const auto& entry : entries) product += w[entry.row()] * entry.value() * v[entry.col()];
+    const auto force = [&](double t) { return 1.7 * w.dot(jacobian(rows_at(t))); };
+    EXPECT_NEAR(product, first_difference(force, 1e-3), 1e-7);
+  }
+}
+
+// An open curve: beyond its end there is nothing to run along.
+TEST(Path, EndsWhereItsCurveEnds) {
+  const Scratch scratch;
+  const std::string slope = R"toml(
+[[drive]]
+name = "x"
+until = 1.0
+formula = "t"
+[[drive]]
+name = "y"
+until = 1.0
+formula = "-t"
+)toml";
+  const Ended ended =
+      run(scratch, scratch.write("s.toml", bead(slope, {0.1, -0.1}, 1e-2, 2)), scratch / "out");
+  EXPECT_EQ(ended.code, 3);
+  EXPECT_TRUE(contains(ended.err, "beyond an end of its curve")) << ended.err;
+}
+
+TEST(Path, IsRefusedWhereItMakesNoSense) {
+  const Scratch scratch;
+  const auto complaint = [&](const std::string& change) {
+    const Ended ended =
+        flexmorph(scratch, {"check", scratch.write("c.toml", cam()), "--set", change});
+    EXPECT_EQ(ended.code, 2) << change;
+    return ended.err;
+  };
+  const auto says = [&](const std::string& change, const std::string& words) {
+    const std::string said = complaint(change);
+    EXPECT_TRUE(contains(said, words)) << said;
+  };
+  says("joint.flank.x=turn", "a coordinate of a curve says `until`");
+  says("joint.motor.angle=x", "is a coordinate of a curve (`until`), not of time");
+  says("drive.x.until=6", "its parameter ends at 6.28");
+  says("joint.flank.b=disc", "a joint is between two bodies");
+  says("joint.flank.angle_b=1", "does not look at axes");
+  says("drive.x.until=-1", "the end of a parameter");
+  says("drive.x.formula='0.3*sin(2*t)'", "the curve crosses itself");
+  says("drive.x.formula='0.5*sin(t)'", "the curve has no direction, or a corner");
+  says("drive.x.formula='cos(t)^3'", "the curve has no direction");
+}
+
+}  // namespace
+}  // namespace flexmorph::test
