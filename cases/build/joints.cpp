@@ -49,7 +49,8 @@ std::unique_ptr<fem::Joint> make_joint(const Scene& scene, const Joint& joint,
 
 std::unique_ptr<fem::Link> make_link(const Scene& scene, const Spring& spring,
                                      const FindPlace& place) {
-  return spring.row->make(spring, place(spring.a), place(spring.b),
+  return spring.row->make(spring, place(completed(scene, spring.a, spring.b)),
+                          place(completed(scene, spring.b, spring.a)),
                           start_angle(scene, spring.b) - start_angle(scene, spring.a));
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <any>
 #include <memory>
 #include <span>
 #include <string>
@@ -20,7 +21,9 @@ struct Spring {
   std::string name;
   Anchor a, b;
   double stiffness = 0, damping = 0;
-  double rest = 0;  ///< length or angle without force
+  double rest = 0;     ///< length or angle without force
+  bool named = false;  ///< by the case: its forces are in the table of the motion
+  std::any own;        ///< what only its row knows
 };
 
 /// A row of the table of springs: all that the program knows of one kind (springs.cpp).
@@ -28,11 +31,13 @@ struct SpringRow {
   const char* name;      ///< as cases say it: type = "torsion"
   const char* sentence;  ///< what it does
   bool points, axes;     ///< does it look at points, at axes?
-  const io::Key &stiffness, &damping;
-  const io::Key& rest;  ///< length or angle without force
+  /// Reads its numbers; both places are read.
+  /// @throws Error (input) located in the file
+  void (*read)(const io::Table& t, Spring& spring);
   /// @param start_angle  from the first axis of a to that of b, whole turns counted [rad]
   std::unique_ptr<fem::Link> (*make)(const Spring& spring, const fem::MarkerPlace& a,
                                      const fem::MarkerPlace& b, double start_angle);
+  bool needs_axis_b = true;  ///< of those that look at axes: at both of them?
 };
 
 /// All rows, in the order in which messages list them; the first one is meant where a case says

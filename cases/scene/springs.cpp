@@ -26,17 +26,36 @@ const io::Key& rest_key(const char* name, io::Quantity quantity, const char* typ
       .says("Where it pulls and pushes nothing.");
 }
 
+/// One stiffness, one damping and where both are at rest.
+void read_numbers(const Table& t, const io::Key& stiffness, const io::Key& damping,
+                  const io::Key& rest, Spring& spring) {
+  spring.stiffness = t.number(stiffness);
+  spring.damping = t.number(damping);
+  if (spring.stiffness == 0 && spring.damping == 0)
+    t.fail("a spring has a `stiffness`, a `damping` or both");
+  spring.rest = t.number(rest);
+}
+
+const io::Key &kStiffness = size_key("stiffness", not_negative("a stiffness", "N/m"), "linear"),
+              &kDamping = size_key("damping", not_negative("a damping", "N s/m"), "linear"),
+              &kTorsionStiffness =
+                  size_key("stiffness", not_negative("a stiffness", "N m/rad"), "torsion"),
+              &kTorsionDamping =
+                  size_key("damping", not_negative("a damping", "N m s/rad"), "torsion"),
+              &kFreeLength = rest_key("free_length", not_negative("a length", "m"), "linear"),
+              &kRestAngle = rest_key("rest_angle", io::any_number("an angle", "rad"), "torsion");
+
 const SpringRow kLinear = {
     .name = "linear",
     .sentence = "Spring and damper along the line between two points.",
     .points = true,
     .axes = false,
-    .stiffness = size_key("stiffness", not_negative("a stiffness", "N/m"), "linear"),
-    .damping = size_key("damping", not_negative("a damping", "N s/m"), "linear"),
-    .rest = rest_key("free_length", not_negative("a length", "m"), "linear"),
-    .make = [](const Spring& s, const fem::MarkerPlace& a, const fem::MarkerPlace& b, double) {
-      return fem::make_spring(s.name, a, b, {s.stiffness, s.damping, s.rest});
-    }};
+    .read = [](const Table& t,
+               Spring& s) { read_numbers(t, kStiffness, kDamping, kFreeLength, s); },
+    .make =
+        [](const Spring& s, const fem::MarkerPlace& a, const fem::MarkerPlace& b, double) {
+          return fem::make_spring(s.name, a, b, {s.stiffness, s.damping, s.rest});
+        }};
 
 const SpringRow kTorsion = {
     .name = "torsion",
@@ -45,13 +64,14 @@ const SpringRow kTorsion = {
         "count.",
     .points = false,
     .axes = true,
-    .stiffness = size_key("stiffness", not_negative("a stiffness", "N m/rad"), "torsion"),
-    .damping = size_key("damping", not_negative("a damping", "N m s/rad"), "torsion"),
-    .rest = rest_key("rest_angle", io::any_number("an angle", "rad"), "torsion"),
-    .make = [](const Spring& s, const fem::MarkerPlace& a, const fem::MarkerPlace& b,
-               double start_angle) {
-      return fem::make_torsion_spring(s.name, a, b, {s.stiffness, s.damping, s.rest, start_angle});
-    }};
+    .read = [](const Table& t,
+               Spring& s) { read_numbers(t, kTorsionStiffness, kTorsionDamping, kRestAngle, s); },
+    .make =
+        [](const Spring& s, const fem::MarkerPlace& a, const fem::MarkerPlace& b,
+           double start_angle) {
+          return fem::make_torsion_spring(s.name, a, b,
+                                          {s.stiffness, s.damping, s.rest, start_angle});
+        }};
 
 const io::Key& kType = io::key("spring", "type")
                            .word("a spring",
@@ -68,20 +88,41 @@ const io::Key& kName = io::key("spring", "name")
                            .otherwise_as("`spring` and its number")
                            .says("What messages call it.");
 
+/// Is b a plate or a beam?
+bool is_flexible(const Table& t, const Scene& scene) {
+  const std::vector<std::string> flexible = names_of(scene.bodies);
+  std::vector<std::string> known = names_of(scene.rigid_bodies);
+  known.insert(known.end(), flexible.begin(), flexible.end());
+  known.push_back("ground");
+  const std::string name = t.choice(kAnchorB.body, known);
+  return std::find(flexible.begin(), flexible.end(), name) != flexible.end();
+}
+
+/// Both places; of two axes that of b may be none's where it is a point of a plate.
+void read_places(const Table& t, const Scene& scene, const SpringRow& row, Spring& spring) {
+  if (!row.axes || row.needs_axis_b) {
+    read_anchors(t, scene, row.points, row.axes, spring.a, spring.b);
+    return;
+  }
+  const bool rigid_b = !is_flexible(t, scene);
+  spring.a = read_anchor(t, kAnchorA, scene, row.points, true);
+  spring.b = read_anchor(t, kAnchorB, scene, row.points, rigid_b);
+  if (spring.a.on_ground() && spring.b.on_ground())
+    t.fail("a body is missing: `a`, `b` or both name one; what is left out is the ground");
+  if (spring.a.body == spring.b.body) t.fail(kAnchorB.body, "a spring is between two bodies");
+}
+
 Spring read_spring(const Table& t, const Scene& scene) {
   const std::string type = t.choice(kType);
   Spring spring;
   spring.row = *std::find_if(spring_rows().begin(), spring_rows().end(),
                              [&](const SpringRow* row) { return row->name == type; });
   const SpringRow& row = *spring.row;
-  read_anchors(t, scene, row.points, row.axes, spring.a, spring.b);
-  spring.stiffness = t.number(row.stiffness);
-  spring.damping = t.number(row.damping);
-  if (spring.stiffness == 0 && spring.damping == 0)
-    t.fail("a spring has a `stiffness`, a `damping` or both");
-  spring.rest = t.number(row.rest);
+  read_places(t, scene, row, spring);
+  row.read(t, spring);
   spring.name = "spring " + std::to_string(scene.springs.size() + 1);
-  if (t.has(kName)) spring.name = read_word(t, kName);
+  spring.named = t.has(kName);
+  if (spring.named) spring.name = read_word(t, kName);
   for (const Spring& other : scene.springs)
     if (other.name == spring.name) t.fail(kName, "there is another spring of this name");
   return spring;
@@ -89,8 +130,11 @@ Spring read_spring(const Table& t, const Scene& scene) {
 
 }  // namespace
 
+extern const SpringRow kBushing, kStop, kDistanceStop, kAngleStop;
+
 std::span<const SpringRow* const> spring_rows() {
-  static const std::array kRows = {&kLinear, &kTorsion};
+  static const std::array kRows = {&kLinear, &kTorsion,      &kBushing,
+                                   &kStop,   &kDistanceStop, &kAngleStop};
   return kRows;
 }
 

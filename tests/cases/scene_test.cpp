@@ -156,7 +156,8 @@ std::set<std::string> described(const Rows& rows) {
 }
 
 TEST(SceneReader, KnowsTheRowsOfItsTablesAndNoOthers) {
-  EXPECT_EQ(described(spring_rows()), (std::set<std::string>{"linear", "torsion"}));
+  EXPECT_EQ(described(spring_rows()), (std::set<std::string>{"linear", "torsion", "bushing", "stop",
+                                                             "distance_stop", "angle_stop"}));
   EXPECT_EQ(described(load_rows()).size(), 7u);
   const std::string message = complaint({"joint.type=hinge"});
   for (const std::string& name : described(joint_rows()))

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "fem/bushing.h"
 #include "fem/link.h"
+#include "fem/stop.h"
 #include "tests/support/differences.h"
 #include "tests/support/models.h"
 #include "tests/support/rigid_models.h"
@@ -43,60 +45,194 @@ struct LinkCase {
 };
 
 std::vector<LinkCase> cases() {
-  return {{"spring", LinkCase::between, true,
-           [] {
-             return make_spring("l", one(), two(), {3, 0, 0.4});
-           }},
-          {"spring_shifted", LinkCase::outside, true,
-           [] {
-             return make_spring("l", one_shifted(), two(), {3, 0, 0.4});
-           }},
-          {"spring_without_length", LinkCase::between, true,
-           [] {
-             return make_spring("l", two(), plate(), {3, 0, 0});
-           }},
-          {"damper", LinkCase::between, false,
-           [] {
-             return make_spring("l", one(), two(), {0, 2, 0});
-           }},
-          {"damped_spring", LinkCase::outside, false,
-           [] {
-             return make_spring("l", ground_shifted(), one_shifted(), {3, 2, 0.4});
-           }},
-          {"damped_spring_on_plate", LinkCase::outside, false,
-           [] {
-             return make_spring("l", plate(), one_shifted(), {3, 2, 0.4});
-           }},
-          {"torsion_spring", LinkCase::between, true,
-           [] {
-             return make_torsion_spring("l", one(), two(), {3, 0, 0.4});
-           }},
-          {"damped_torsion_spring", LinkCase::outside, false,
-           [] {
-             return make_torsion_spring("l", ground(), two(), {3, 2, -1});
-           }},
-          {"point_force_shifted", LinkCase::outside, true,
-           [] { return make_point_force("l", one_shifted(), Vec2(2, -3)); }},
-          {"point_force_on_plate", LinkCase::outside, true,
-           [] { return make_point_force("l", plate(), Vec2(2, -3)); }},
-          {"point_force_driven", LinkCase::outside, false,
-           [] {
-             return make_point_force(
-                 "l", one_shifted(),
-                 driven({[](double t) { return 2 * t; }, [](double t) { return t * t; }}));
-           }},
-          {"turning_force", LinkCase::outside, false,
-           [] { return make_point_force("l", one_shifted(), Vec2(2, -3), true); }},
-          {"turning_force_driven", LinkCase::outside, false,
-           [] {
-             return make_point_force(
-                 "l", two(),
-                 driven({[](double t) { return std::cos(t); }, [](double t) { return 1 - t; }}),
-                 true);
-           }},
-          {"torque_driven", LinkCase::outside, false,
-           [] { return make_torque("l", two(), driven({[](double t) { return 1.7 + t; }})); }},
-          {"torque", LinkCase::outside, false, [] { return make_torque("l", two(), 1.7); }}};
+  return {
+      {"spring", LinkCase::between, true,
+       [] {
+         return make_spring("l", one(), two(), {3, 0, 0.4});
+       }},
+      {"spring_shifted", LinkCase::outside, true,
+       [] {
+         return make_spring("l", one_shifted(), two(), {3, 0, 0.4});
+       }},
+      {"spring_without_length", LinkCase::between, true,
+       [] {
+         return make_spring("l", two(), plate(), {3, 0, 0});
+       }},
+      {"damper", LinkCase::between, false,
+       [] {
+         return make_spring("l", one(), two(), {0, 2, 0});
+       }},
+      {"damped_spring", LinkCase::outside, false,
+       [] {
+         return make_spring("l", ground_shifted(), one_shifted(), {3, 2, 0.4});
+       }},
+      {"damped_spring_on_plate", LinkCase::outside, false,
+       [] {
+         return make_spring("l", plate(), one_shifted(), {3, 2, 0.4});
+       }},
+      {"torsion_spring", LinkCase::between, true,
+       [] {
+         return make_torsion_spring("l", one(), two(), {3, 0, 0.4});
+       }},
+      {"damped_torsion_spring", LinkCase::outside, false,
+       [] {
+         return make_torsion_spring("l", ground(), two(), {3, 2, -1});
+       }},
+      {"bushing", LinkCase::between, true,
+       [] {
+         return make_bushing("l", one(), two(), {{3, 0.7}, {0, 0}, 2, 0, 0.4, {}});
+       }},
+      {"bushing_shifted", LinkCase::outside, true,
+       [] {
+         return make_bushing("l", one_shifted(), two(), {{3, 0.7}, {0, 0}, 2, 0, 0.4, {}});
+       }},
+      {"damped_bushing", LinkCase::outside, false,
+       [] {
+         return make_bushing("l", ground_shifted(), two(), {{3, 0.7}, {2, 1}, 2, 0.6, 1, {}});
+       }},
+      {"damped_bushing_on_plate", LinkCase::outside, false,
+       [] {
+         return make_bushing("l", one(), plate(), {{3, 0.7}, {2, 1}, 0, 0, 0, {}});
+       }},
+      {"stop", LinkCase::between, true,
+       [] {
+         return make_stop(
+             "l", one(), two(),
+             {.coordinate = StopData::Coordinate::along, .most = -9, .stiffness = 0.1});
+       }},
+      {"damped_stop", LinkCase::outside, false,
+       [] {
+         return make_stop("l", one_shifted(), plate(),
+                          {.coordinate = StopData::Coordinate::along,
+                           .most = -9,
+                           .stiffness = 9,
+                           .damping = 0.2});
+       }},
+      {"stop_in_onset", LinkCase::between, true,
+       [] {
+         return make_stop(
+             "l", one(), two(),
+             {.coordinate = StopData::Coordinate::along, .most = -9, .stiffness = 2, .onset = 99});
+       }},
+      {"damped_stop_in_onset", LinkCase::outside, false,
+       [] {
+         return make_stop("l", one_shifted(), plate(),
+                          {.coordinate = StopData::Coordinate::along,
+                           .most = -9,
+                           .stiffness = 9,
+                           .damping = 0.2,
+                           .onset = 99});
+       }},
+      {"least_stop", LinkCase::between, true,
+       [] {
+         return make_stop(
+             "l", one(), two(),
+             {.coordinate = StopData::Coordinate::along, .least = 9, .stiffness = 0.1});
+       }},
+      {"damped_least_stop", LinkCase::outside, false,
+       [] {
+         return make_stop("l", one_shifted(), plate(),
+                          {.coordinate = StopData::Coordinate::along,
+                           .least = 9,
+                           .stiffness = 9,
+                           .damping = 0.2});
+       }},
+      {"least_stop_in_onset", LinkCase::between, true,
+       [] {
+         return make_stop(
+             "l", one(), two(),
+             {.coordinate = StopData::Coordinate::along, .least = 9, .stiffness = 2, .onset = 99});
+       }},
+      {"damped_least_stop_in_onset", LinkCase::outside, false,
+       [] {
+         return make_stop("l", one_shifted(), plate(),
+                          {.coordinate = StopData::Coordinate::along,
+                           .least = 9,
+                           .stiffness = 9,
+                           .damping = 0.2,
+                           .onset = 99});
+       }},
+      {"distance_stop", LinkCase::between, true,
+       [] {
+         return make_stop(
+             "l", one(), two(),
+             {.coordinate = StopData::Coordinate::distance, .most = 0.01, .stiffness = 3});
+       }},
+      {"damped_distance_stop", LinkCase::outside, false,
+       [] {
+         return make_stop("l", one_shifted(), plate(),
+                          {.coordinate = StopData::Coordinate::distance,
+                           .most = 0.01,
+                           .stiffness = 9,
+                           .damping = 0.2});
+       }},
+      {"distance_stop_in_onset", LinkCase::between, true,
+       [] {
+         return make_stop("l", one(), two(),
+                          {.coordinate = StopData::Coordinate::distance,
+                           .most = 0.01,
+                           .stiffness = 60,
+                           .onset = 99});
+       }},
+      {"damped_distance_stop_in_onset", LinkCase::outside, false,
+       [] {
+         return make_stop("l", one_shifted(), plate(),
+                          {.coordinate = StopData::Coordinate::distance,
+                           .most = 0.01,
+                           .stiffness = 9,
+                           .damping = 0.2,
+                           .onset = 99});
+       }},
+      {"angle_stop", LinkCase::between, true,
+       [] {
+         return make_stop(
+             "l", one(), two(),
+             {.coordinate = StopData::Coordinate::angle, .most = -8, .stiffness = 0.1});
+       }},
+      {"damped_angle_stop", LinkCase::outside, false,
+       [] {
+         return make_stop("l", one_shifted(), two(),
+                          {.coordinate = StopData::Coordinate::angle,
+                           .most = -8,
+                           .stiffness = 9,
+                           .damping = 0.2});
+       }},
+      {"angle_stop_in_onset", LinkCase::between, true,
+       [] {
+         return make_stop(
+             "l", one(), two(),
+             {.coordinate = StopData::Coordinate::angle, .most = -8, .stiffness = 2, .onset = 99});
+       }},
+      {"damped_angle_stop_in_onset", LinkCase::outside, false,
+       [] {
+         return make_stop("l", one_shifted(), two(),
+                          {.coordinate = StopData::Coordinate::angle,
+                           .most = -8,
+                           .stiffness = 9,
+                           .damping = 0.2,
+                           .onset = 99});
+       }},
+      {"point_force_shifted", LinkCase::outside, true,
+       [] { return make_point_force("l", one_shifted(), Vec2(2, -3)); }},
+      {"point_force_on_plate", LinkCase::outside, true,
+       [] { return make_point_force("l", plate(), Vec2(2, -3)); }},
+      {"point_force_driven", LinkCase::outside, false,
+       [] {
+         return make_point_force(
+             "l", one_shifted(),
+             driven({[](double t) { return 2 * t; }, [](double t) { return t * t; }}));
+       }},
+      {"turning_force", LinkCase::outside, false,
+       [] { return make_point_force("l", one_shifted(), Vec2(2, -3), true); }},
+      {"turning_force_driven", LinkCase::outside, false,
+       [] {
+         return make_point_force(
+             "l", two(),
+             driven({[](double t) { return std::cos(t); }, [](double t) { return 1 - t; }}), true);
+       }},
+      {"torque_driven", LinkCase::outside, false,
+       [] { return make_torque("l", two(), driven({[](double t) { return 1.7 + t; }})); }},
+      {"torque", LinkCase::outside, false, [] { return make_torque("l", two(), 1.7); }}};
 }
 
 Workspace bodies() {
@@ -300,6 +436,54 @@ TEST(Spring, PullsAlongItsLine) {
   EXPECT_NEAR(model.link_power(x), -2 * 36, 1e-12);
 }
 
+// d = (3, 4) in the axes of a, turned by a quarter: forces 2 · 3 and 5 · 4 along them, 7 (π/2 -
+// 0.5) about.
+TEST(Bushing, PushesAlongAndAcross) {
+  const double quarter = 0.5 * std::numbers::pi;
+  Workspace model;
+  model.add_body("one", std::make_unique<RigidBody>(1), {}, {});
+  model.add_link(make_bushing("b", {.point = {1, 1}, .angle = quarter}, {.body = "one"},
+                              {{2, 5}, {0.5, 0}, 7, 0, 0.5, {}}));
+  State x = placed(model, {1 - 4, 1 + 3}, 2 * quarter);
+  x.v[1] = 10;
+  VectorXd f;
+  model.force(x, f);
+  EXPECT_NEAR(f[0], -20, 1e-13);
+  EXPECT_NEAR(f[1], 6 + 5, 1e-13);
+  EXPECT_NEAR(f.tail<2>().dot(Vec2(-x.q[3], x.q[2])), 7 * (quarter - 0.5), 1e-13);
+  EXPECT_NEAR(model.energies(x).strain,
+              0.5 * (2 * 9 + 5 * 16 + 7 * (quarter - 0.5) * (quarter - 0.5)), 1e-13);
+  EXPECT_NEAR(model.link_power(x), -0.5 * 100, 1e-12);
+}
+
+// Free between its limits; k (δ - w/2) beyond its onset; it never pulls, whatever the rate: then
+// its energy leaves as power.
+TEST(Stop, PushesOnlyBeyondItsLimits) {
+  Workspace model;
+  model.add_body("one", std::make_unique<RigidBody>(1), {}, {});
+  model.add_link(make_stop("s", {.point = {1, 0}}, {.body = "one"},
+                           {.least = -2, .most = 3, .stiffness = 10, .damping = 4, .onset = 0.5}));
+  const auto force = [&](double z, double rate) {
+    State x = placed(model, {1 + z, 7}, 0);
+    x.v[0] = rate;
+    VectorXd f;
+    model.force(x, f);
+    EXPECT_EQ(f[1], 0);
+    EXPECT_TRUE(f.tail<2>().isZero());
+    return f[0];
+  };
+  for (const double z : {-2.0, 0.0, 3.0}) EXPECT_EQ(force(z, 5), 0) << z;
+  EXPECT_NEAR(force(4, 0), 10 * 0.75, 1e-13);
+  EXPECT_NEAR(force(4, 2), 10 * 0.75 + 8, 1e-13);
+  EXPECT_NEAR(force(3.25, 2), 10 * 0.0625 + 4, 1e-13);
+  EXPECT_NEAR(force(-3, -2), -10 * 0.75 - 8, 1e-13);
+  EXPECT_EQ(force(4, -20), 0);
+  EXPECT_EQ(force(-3, 20), 0);
+  State x = placed(model, {1 + 4, 7}, 0);
+  x.v[0] = -20;
+  EXPECT_NEAR(model.link_power(x), -20 * 10 * 0.75, 1e-12);
+}
+
 // The angle goes the short way round: from 0.9 π to -0.9 π is 0.2 π, not -1.8 π.
 TEST(TorsionSpring, WrapsItsAngle) {
   const double pi = std::numbers::pi;
@@ -360,6 +544,11 @@ TEST(Links, NameWhatTheyCannotUse) {
   EXPECT_THROW(make_spring("s", {}, {.body = "one"}, {-1, 0, 0}), Error);
   EXPECT_THROW(make_spring("s", {}, {.body = "one"}, {1, NAN, 0}), Error);
   EXPECT_THROW(make_torsion_spring("s", {}, {.body = "one"}, {1, -1, 0}), Error);
+  EXPECT_THROW(make_bushing("b", {}, {.body = "one"}, {}), Error);
+  EXPECT_THROW(make_bushing("b", {}, {.body = "one"}, {{-1, 0}, {0, 0}, 0, 0, 0, {}}), Error);
+  EXPECT_THROW(make_stop("s", {}, {.body = "one"}, {.stiffness = 1}), Error);
+  EXPECT_THROW(make_stop("s", {}, {.body = "one"}, {.most = 1}), Error);
+  EXPECT_THROW(make_stop("s", {}, {.body = "one"}, {.least = 1, .most = 0, .stiffness = 1}), Error);
   EXPECT_THROW(make_point_force("f", {.body = "one"}, Vec2(INFINITY, 0)), Error);
   EXPECT_THROW(make_torque("t", {.body = "one"}, NAN), Error);
 

@@ -1,0 +1,83 @@
+#include "fem/bushing.h"
+
+#include <cmath>
+
+#include "fem/links/pair_coordinate.h"
+
+namespace flexmorph::fem {
+namespace {
+
+class Bushing final : public PairLink {
+ public:
+  Bushing(std::string name, MarkerPlace a, MarkerPlace b, const BushingData& data)
+      : PairLink(name, std::move(a), std::move(b), parts(data), true), data_(data) {
+    const double numbers[] = {data.stiffness.x(), data.stiffness.y(),     data.damping.x(),
+                              data.damping.y(),   data.torsion_stiffness, data.torsion_damping};
+    double sum = 0;
+    for (const double x : numbers) {
+      if (!(x >= 0) || !std::isfinite(x))
+        throw Error::input("link '" + name + "': a stiffness or damping of " + std::to_string(x));
+      sum += x;
+    }
+    if (sum == 0 || !std::isfinite(data.rest_angle))
+      throw Error::input("link '" + name + "': nothing is stiff or damps, or its angle is none");
+  }
+
+  std::unique_ptr<Link> clone() const override { return std::make_unique<Bushing>(*this); }
+  bool counts_turns() const override { return turns(data_); }
+  double turned(const State& x) const override {
+    pair().evaluate(x.t, x.q, x.v);
+    return angle_between(pair().y(), last(x)).z;
+  }
+  double strain_energy(const State& x) const override {
+    pair().evaluate(x.t, x.q, x.v);
+    double out = 0;
+    for (int i = 0; i < 2; ++i) {
+      const double d = coordinate_along(pair().y(), i).z;
+      out += 0.5 * data_.stiffness[i] * d * d;
+    }
+    if (!turns(data_)) return out;
+    const double phi = angle_between(pair().y(), last(x)).z - data_.rest_angle;
+    return out + 0.5 * data_.torsion_stiffness * phi * phi;
+  }
+
+ private:
+  static bool turns(const BushingData& d) {
+    return d.torsion_stiffness > 0 || d.torsion_damping > 0;
+  }
+  static std::vector<Part> parts(const BushingData& d) {
+    std::vector<Part> out = {Part::kPositionA, Part::kAxisA, Part::kPositionB};
+    if (turns(d)) out.push_back(Part::kAxisB);
+    return out;
+  }
+  double last(const State& x) const {
+    return place() < x.turned.size() ? x.turned[place()]
+                                     : data_.start_angle.value_or(data_.rest_angle);
+  }
+
+  /// N = k (z - z₀) + c ż.
+  static void add_linear(const PairCoordinate& along, double rest, double k, double c,
+                         const Values& rate, PairForce& out) {
+    const double pull = k * (along.z - rest);
+    add_along(along, rate, {pull, pull + c * along.z_y.dot(rate), k, c}, out);
+  }
+
+  void fill(const State& x, const Values& y, const Values& rate, PairForce& out) const override {
+    for (int i = 0; i < 2; ++i)
+      add_linear(coordinate_along(y, i), 0, data_.stiffness[i], data_.damping[i], rate, out);
+    if (turns(data_))
+      add_linear(angle_between(y, last(x)), data_.rest_angle, data_.torsion_stiffness,
+                 data_.torsion_damping, rate, out);
+  }
+
+  BushingData data_;
+};
+
+}  // namespace
+
+std::unique_ptr<Link> make_bushing(std::string name, MarkerPlace a, MarkerPlace b,
+                                   const BushingData& bushing) {
+  return std::make_unique<Bushing>(std::move(name), std::move(a), std::move(b), bushing);
+}
+
+}  // namespace flexmorph::fem

@@ -1,0 +1,98 @@
+#include "fem/stop.h"
+
+#include <cmath>
+
+#include "fem/links/pair_coordinate.h"
+
+namespace flexmorph::fem {
+namespace {
+
+using Coordinate = StopData::Coordinate;
+
+class UnilateralStop final : public PairLink {
+ public:
+  UnilateralStop(std::string name, MarkerPlace a, MarkerPlace b, const StopData& data)
+      : PairLink(name, std::move(a), std::move(b), parts(data.coordinate), true), data_(data) {
+    const auto size = [](double x) { return x >= 0 && std::isfinite(x); };
+    if (!(data.stiffness > 0) || !size(data.stiffness) || !size(data.damping) || !size(data.onset))
+      throw Error::input("link '" + name + "': a stop has a stiffness > 0, and no negative number");
+    if (!(data.least < data.most) || (!std::isfinite(data.least) && !std::isfinite(data.most)))
+      throw Error::input("link '" + name + "': a stop has a limit, and the least below the most");
+  }
+
+  std::unique_ptr<Link> clone() const override { return std::make_unique<UnilateralStop>(*this); }
+  bool counts_turns() const override { return data_.coordinate == Coordinate::angle; }
+  double turned(const State& x) const override {
+    pair().evaluate(x.t, x.q, x.v);
+    return at(x, pair().y()).z;
+  }
+  double strain_energy(const State& x) const override {
+    pair().evaluate(x.t, x.q, x.v);
+    const double beyond = beyond_limit(at(x, pair().y()).z).way, k = data_.stiffness,
+                 w = data_.onset;
+    if (beyond <= 0) return 0;
+    if (beyond < w) return k * beyond * beyond * beyond / (6 * w);
+    return 0.5 * k * (beyond - 0.5 * w) * (beyond - 0.5 * w) + k * w * w / 24;
+  }
+
+ private:
+  static std::vector<Part> parts(Coordinate coordinate) {
+    switch (coordinate) {
+      case Coordinate::along:
+        return {Part::kPositionA, Part::kAxisA, Part::kPositionB};
+      case Coordinate::distance:
+        return {Part::kPositionA, Part::kPositionB};
+      case Coordinate::angle:
+        return {Part::kAxisA, Part::kAxisB};
+    }
+    return {};
+  }
+
+  PairCoordinate at(const State& x, const Values& y) const {
+    if (data_.coordinate == Coordinate::along) return coordinate_along(y, 0);
+    if (data_.coordinate == Coordinate::distance) return distance_between(y);
+    return angle_between(
+        y, place() < x.turned.size() ? x.turned[place()] : data_.start_angle.value_or(0));
+  }
+
+  /// δ, and ∂δ/∂z = 1 or -1.
+  struct Beyond {
+    double way, sign;
+  };
+  Beyond beyond_limit(double z) const {
+    return z > data_.most ? Beyond{z - data_.most, 1} : Beyond{data_.least - z, -1};
+  }
+
+  void fill(const State& x, const Values& y, const Values& rate, PairForce& out) const override {
+    const PairCoordinate c = at(x, y);
+    const auto [way, sign] = beyond_limit(c.z);
+    if (!(way > 0)) return;
+    if (data_.coordinate == Coordinate::distance && !(c.z > 0))
+      throw Error::numerical("stop '" + name() + "': its points meet, it has no direction");
+    const double k = data_.stiffness, w = data_.onset;
+    const bool full = way >= w;
+    // The onset: share of k and c that acts.
+    const double share = full ? 1 : way / w, way_t = sign * c.z_y.dot(rate);
+    const double push = full ? k * (way - 0.5 * w) : 0.5 * k * way * share;
+    const double total = push + data_.damping * share * way_t;
+    CoordinateForce n;
+    n.elastic = sign * push;
+    if (total > 0) {
+      n.total = sign * total;
+      n.by_z = k * share + (full ? 0 : data_.damping * way_t / w);
+      n.by_rate = data_.damping * share;
+    }
+    add_along(c, rate, n, out);
+  }
+
+  StopData data_;
+};
+
+}  // namespace
+
+std::unique_ptr<Link> make_stop(std::string name, MarkerPlace a, MarkerPlace b,
+                                const StopData& stop) {
+  return std::make_unique<UnilateralStop>(std::move(name), std::move(a), std::move(b), stop);
+}
+
+}  // namespace flexmorph::fem
