@@ -6,6 +6,7 @@
 
 #include "fem/load_term.h"
 #include "fem/strain_term.h"
+#include "fem/workspace_wrench.h"
 
 namespace flexmorph::fem {
 
@@ -154,14 +155,11 @@ PlaceMotion Workspace::place_motion(const MarkerPlace& place, const State& x) co
   return {m.y.head<2>(), m.rate.head<2>(), acceleration.head<2>(), m.y.tail<2>()};
 }
 
-Wrench Workspace::joint_wrench(size_t joint, const std::string& name, const Vec3& about,
-                               const State& x) {
-  const Body& b = body(name);
-  const Element& element = *b.element;
-  const VectorXd force = joint_force(joint, x);
+Wrench wrench_on(const Body& body, const VectorXd& force, const Vec3& about, const State& x) {
+  const Element& element = *body.element;
   Wrench out;
   for (int k = 0; k < element.n_vectors(); ++k) {
-    const int at = b.first_dof + element.dim() * k;
+    const int at = body.first_dof + element.dim() * k;
     Vec3 f = Vec3::Zero(), arm = Vec3::Zero();
     for (int c = 0; c < element.dim(); ++c) {
       f[c] = force[at + c];
@@ -174,6 +172,11 @@ Wrench Workspace::joint_wrench(size_t joint, const std::string& name, const Vec3
     out.moment += arm.cross(f);
   }
   return out;
+}
+
+Wrench Workspace::joint_wrench(size_t joint, const std::string& name, const Vec3& about,
+                               const State& x) {
+  return wrench_on(body(name), joint_force(joint, x), about, x);
 }
 
 void Workspace::add_energies(const State& x, const Body& body, Energies& out) {

@@ -3,9 +3,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "cases/build/build.h"
 #include "cases/build/joints.h"
 #include "cases/scene/joints/row.h"
 #include "fem/dynamics/carrier.h"
+#include "fem/workspace_wrench.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -14,6 +16,20 @@ constexpr double kTurn = 2 * std::numbers::pi;
 
 /// The value nearest to another one that is the same angle.
 double unwrapped(double angle, double near) { return near + std::remainder(angle - near, kTurn); }
+
+size_t index_of(const fem::Model& model, const std::string& joint) {
+  const auto& all = model.joints();
+  return static_cast<size_t>(std::find_if(all.begin(), all.end(),
+                                          [&](const auto& each) { return each->name() == joint; }) -
+                             all.begin());
+}
+
+/// λ · ∂Φ/∂t.
+double drive_power(const fem::Model& model, size_t joint, const fem::State& x) {
+  fem::ConstraintRows rows;
+  model.joints()[joint]->evaluate(x.t, x.q, x.v, rows);
+  return x.lambda.segment(model.first_row(joint), model.joints()[joint]->size()).dot(rows.rate);
+}
 
 }  // namespace
 
@@ -39,6 +55,15 @@ MechanismColumns::MechanismColumns(const Scene& scene) : scene_(scene) {
     name(joint.name, {"force_x", "force_y", "moment"});
     if (driven) name(joint.name, {"power"});
   }
+  for (const Hub& hub : scene.hubs) {
+    WatchedHub& watched = hubs_.emplace_back();
+    for (const Joint& joint : scene.joints)
+      if (joint.holds_frame() && joint.to == hub.name) watched.joints.push_back(&joint);
+    if (!watched.joints.empty()) watched.drive = hub_drive(scene, *watched.joints[0]);
+    name(hub.name, {"force_x", "force_y", "moment", "power"});
+  }
+  for (const Spring& spring : scene.springs)
+    if (spring.named) name(spring.name, {"force_x", "force_y", "moment", "energy", "power"});
 }
 
 void MechanismColumns::add(fem::Workspace& model, const fem::State& x) {
@@ -53,6 +78,9 @@ void MechanismColumns::add(fem::Workspace& model, const fem::State& x) {
   }
   if (scene_.trajectory) add_trajectory(x.t);
   for (const Watched& watched : joints_) add_joint(watched, model, x);
+  for (const WatchedHub& hub : hubs_) add_hub(hub, model, x);
+  for (const Spring& spring : scene_.springs)
+    if (spring.named) add_spring(spring, model, x);
 }
 
 void MechanismColumns::remember(Memory& memory) {
@@ -74,23 +102,44 @@ void MechanismColumns::add_trajectory(double t) {
 
 void MechanismColumns::add_joint(const Watched& watched, fem::Workspace& model,
                                  const fem::State& x) {
-  const auto& all = model.joints();
-  const auto found = std::find_if(all.begin(), all.end(), [&](const auto& joint) {
-    return joint->name() == watched.joint->name;
-  });
-  const auto index = static_cast<size_t>(found - all.begin());
   const Joint& joint = *watched.joint;
+  const size_t index = index_of(model, joint.name);
   const Vec2 about =
       model.place_motion({watched.about.body, watched.about.point, 0, {}}, x).position;
   const std::string& body = joint.b.on_ground() ? joint.a.body : joint.b.body;
-  const fem::Wrench wrench = model.joint_wrench(index, body, {about.x(), about.y(), 0}, x);
-  put(wrench.force.x());
-  put(wrench.force.y());
-  put(wrench.moment.z());
-  if (!watched.driven) return;
-  fem::ConstraintRows rows;
-  (*found)->evaluate(x.t, x.q, x.v, rows);
-  put(x.lambda.segment(model.first_row(index), (*found)->size()).dot(rows.rate));
+  put(model.joint_wrench(index, body, {about.x(), about.y(), 0}, x));
+  if (watched.driven) put(drive_power(model, index, x));
+}
+
+void MechanismColumns::add_hub(const WatchedHub& hub, fem::Workspace& model, const fem::State& x) {
+  fem::Wrench sum;
+  double power = 0;
+  for (const Joint* joint : hub.joints) {
+    const Vec2 about = hub.drive(x.t).origin;
+    const size_t index = index_of(model, joint->name);
+    const fem::Wrench wrench = model.joint_wrench(index, joint->body, {about.x(), about.y(), 0}, x);
+    sum.force += wrench.force;
+    sum.moment += wrench.moment;
+    power += drive_power(model, index, x);
+  }
+  put(sum);
+  put(power);
+}
+
+void MechanismColumns::add_spring(const Spring& spring, fem::Workspace& model,
+                                  const fem::State& x) {
+  const auto& all = model.links();
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const auto& link) { return link->name() == spring.name; });
+  VectorXd force = VectorXd::Zero(model.n_dofs());
+  (*found)->add_force(x, force);
+  force = -force;  // links stand on the left side
+  const Anchor at = completed(scene_, spring.b, spring.a);
+  const Vec2 about = model.place_motion({at.body, at.point, 0, {}}, x).position;
+  const std::string& body = spring.b.on_ground() ? spring.a.body : spring.b.body;
+  put(fem::wrench_on(model.body(body), force, {about.x(), about.y(), 0}, x));
+  put((*found)->strain_energy(x));
+  put((*found)->power(x));
 }
 
 }  // namespace flexmorph::cases

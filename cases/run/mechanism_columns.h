@@ -16,8 +16,12 @@ namespace flexmorph::cases {
 ///                       or to a where b is the ground; the moment about the joint's point (that
 ///                       of b, the driven one of point_drive)
 /// the driven ones       <joint>.power [W]: λ · ∂Φ/∂t, what the drive puts into the mechanism
+/// every hub             <hub>.force_x, .force_y [N], .moment [N m]: what it does to all that it
+///                       holds, about its own point, and .power [W], what its drive puts in
+/// every named spring    <spring>.force_x, .force_y, .moment as of a joint, .energy [J]: stored in
+///                       it, and .power [W]: what else enters through it, negative in a damper
 ///
-/// Scenes without rigid bodies and named joints have none of these.
+/// Scenes without rigid bodies, hubs and named joints and springs have none of these.
 class MechanismColumns {
  public:
   explicit MechanismColumns(const Scene& scene);
@@ -36,8 +40,19 @@ class MechanismColumns {
     bool driven;
   };
 
+  /// A hub and the joints that sit in it.
+  struct WatchedHub {
+    fem::FrameDrive drive;
+    std::vector<const Joint*> joints;
+  };
+
   void add_trajectory(double t);
   void add_joint(const Watched& watched, fem::Workspace& model, const fem::State& x);
+  void add_hub(const WatchedHub& hub, fem::Workspace& model, const fem::State& x);
+  void add_spring(const Spring& spring, fem::Workspace& model, const fem::State& x);
+  void put(const fem::Wrench& wrench) {
+    for (const double value : {wrench.force.x(), wrench.force.y(), wrench.moment.z()}) put(value);
+  }
   void put(double value) { columns_[next_++].values.push_back(value + 0.0); }  // no "-0"
 
   const Scene& scene_;
@@ -45,6 +60,7 @@ class MechanismColumns {
   std::optional<double> turns_;           // of the trajectory's angle against the body's [rad]
   std::array<std::function<fem::Motion(double)>, 3> path_;
   std::vector<Watched> joints_;
+  std::vector<WatchedHub> hubs_;
   std::vector<Column> columns_;
   size_t next_ = 0;
 };

@@ -83,10 +83,11 @@ const io::Key& kType = io::key("spring", "type")
                                  })
                            .otherwise("linear")
                            .says("Along the line between two points, or between two axes.");
-const io::Key& kName = io::key("spring", "name")
-                           .text("the name of a spring")
-                           .otherwise_as("`spring` and its number")
-                           .says("What messages call it.");
+const io::Key& kName =
+    io::key("spring", "name")
+        .text("the name of a spring")
+        .otherwise_as("`spring` and its number")
+        .says("What messages call it; with one its forces are columns of motion.csv.");
 
 /// Is b a plate or a beam?
 bool is_flexible(const Table& t, const Scene& scene) {
@@ -125,6 +126,10 @@ Spring read_spring(const Table& t, const Scene& scene) {
   if (spring.named) spring.name = read_word(t, kName);
   for (const Spring& other : scene.springs)
     if (other.name == spring.name) t.fail(kName, "there is another spring of this name");
+  const auto same = [&](const auto& other) { return other.name == spring.name; };
+  if (std::any_of(scene.joints.begin(), scene.joints.end(), same) ||
+      std::any_of(scene.hubs.begin(), scene.hubs.end(), same))
+    t.fail(kName, "there is a joint or a hub '" + spring.name + "'");
   return spring;
 }
 

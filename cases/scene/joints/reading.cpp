@@ -129,6 +129,8 @@ void name_between(const Table& t, const Scene& scene, Joint& joint) {
       std::string(joint.row->name) + " of " + body(joint.a) + " and " + body(joint.b);
   joint.named = t.has(kName);
   if (joint.named) name = read_word(t, kName);
+  for (const Hub& hub : scene.hubs)
+    if (hub.name == name) t.fail(kName, "there is a hub '" + name + "'");
   for (const Joint& other : scene.joints)
     if (!other.name.empty() && other.name == name) {
       if (joint.named) t.fail(kName, "there is another joint '" + name + "'");
