@@ -223,8 +223,14 @@ void place_alone(const Scene& scene, fem::MotionSettings& motion) {
 }  // namespace
 
 fem::FrameDrive hub_drive(const Scene& scene, const Joint& joint) {
-  return joint.to.empty() ? at_rest(joint.position, joint.angle)
-                          : drive_of(scene, hub_of(scene, joint));
+  if (joint.to.empty()) return at_rest(joint.position, joint.angle);
+  const fem::FrameDrive hub = drive_of(scene, hub_of(scene, joint));
+  if (joint.angle == 0) return hub;
+  return [hub, angle = joint.angle](double t) {
+    fem::FrameMotion f = hub(t);
+    f.angle += angle;
+    return f;
+  };
 }
 
 namespace {
@@ -300,7 +306,7 @@ Pose straight_pose(const Scene& scene, const Body& body) {
         if (b.name == joint.b.body)
           return {start_place(scene, joint.b), b.angle + joint.b.angle, line};
     const Hub& hub = hub_of(scene, joint);
-    return {hub.position, hub.angle, line};
+    return {hub.position, hub.angle + joint.angle, line};
   }
   if (body.position)
     return {*body.position, body.angle, body.longest(scene.time.end) - body.length};

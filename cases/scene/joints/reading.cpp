@@ -75,7 +75,7 @@ const Key& kBody = io::key("joint", "body")
 const Key& kEdge = io::key("joint", "edge")
                        .text("an edge")
                        .when("weld of a body, sleeve")
-                       .says("`root`, `free_end` on rigid bodies, or an m-line: `line 3`.");
+                       .says("`root`, `free_end`, or an m-line: `line 3`.");
 
 }  // namespace joint_keys
 

@@ -17,8 +17,8 @@ const io::Key& kPoint = io::key("joint", "point")
 const io::Key& kAngle = io::key("joint", "angle")
                             .number(io::any_number("an angle", "rad"))
                             .otherwise(0.0)
-                            .when("weld of a body to a rigid one")
-                            .says("Of the edge's normal, in the axes of that body.");
+                            .when("weld of a body")
+                            .says("Of the edge's normal, in the axes of the hub or rigid body.");
 
 /// The frame on a rigid body that the edge is welded to.
 void read_carrier(const io::Table& t, Joint& joint) {
@@ -37,7 +37,10 @@ void read_welded_edge(const io::Table& t, const Scene& scene, Joint& joint) {
   const bool on_rigid = std::find(rigid.begin(), rigid.end(), joint.to) != rigid.end();
   using Names = std::vector<std::string>;
   read_framed_edge(t, body, Names{"root", "free_end"}, joint);
-  if (on_rigid) read_carrier(t, joint);
+  if (on_rigid)
+    read_carrier(t, joint);
+  else
+    joint.angle = t.number(kAngle);
   joint.mode = body.row->read_weld(t);
   check_frame(t, scene, body, joint);
 }
