@@ -296,6 +296,24 @@ INSTANTIATE_TEST_SUITE_P(
                         "body=\"shaft\", torque=\"f\"}, {type=\"point\", "
                         "body=\"rocker\", point=[0.2, 0.05], force=[3.0, \"f\"]}]"}),
                 0.05, 5e-3, "rocker.root", "bearing", 0},
+        // The shaft on a curved rail, held by a bushing; stops that are hit, and left, within
+        // onsets.
+        Shipped{"sprung_four_bar", "four_bar",
+                coarse("design", 4,
+                       {"verify=", "design.cell=0.05", "time.start=rigid",
+                        "joint.shaft_on_ground.type=path", "joint.shaft_on_ground.x=rail_x",
+                        "joint.shaft_on_ground.y=rail_y",
+                        "drive=[{name=\"turn\", formula=\"pi/2 + speed*(t - 2*tau + (t "
+                        "+ 2*tau)*exp(-t/tau))\"}, {name=\"rail_x\", until=1.0, "
+                        "formula=\"0.05*(t - 0.5)^2\"}, {name=\"rail_y\", until=1.0, "
+                        "formula=\"0.4*(t - 0.5)\"}]",
+                        "spring=[{type=\"bushing\", point_a=[0.55, 0.0], angle_a=0.3, b=\"shaft\", "
+                        "stiffness=[2e3, 1e4], damping=[5.0, 10.0], torsion_stiffness=2.0, "
+                        "torsion_damping=0.02}, {type=\"stop\", a=\"bearing\", b=\"coupler\", "
+                        "point_b=[0.3, 0.0], most=-0.1, stiffness=50.0, damping=0.5, onset=0.5}, "
+                        "{type=\"distance_stop\", a=\"crank\", b=\"rocker\", point_b=[0.2, "
+                        "0.0], least=2.0, stiffness=3.0, onset=1.0}]"}),
+                0.05, 5e-3, "rocker.root", "", 0},
         Shipped{"telescopic_crane", "telescopic_crane", coarse("design", 20, {kCells}), 0.5, 1e-2,
                 "arm.root", "load", 2},
         Shipped{"motion_platform", "motion_platform",
