@@ -43,19 +43,38 @@ void ElementInvariants::number(int kinds, bool coupled) {
     number_as<4>(coupled, pairs_, function_m_, function_n_);
   else
     throw Error::input("term 'membrane' needs 1, 3 or 4 vectors at each of four nodes");
+  places_ = invariant_places(pairs_, function_m_, function_n_);
 }
 
-void ElementInvariants::forget() {
+void ElementInvariants::begin(const Element& element, const Factors& factors, bool all) {
   tabulated_ = -1;
   scaled_from_ = nullptr;
+  lines_ = {};
+  if (kinds_ != 1 && !factors.uniform()) lines_ = element.lines();
+  if (lines_[0].empty())
+    moments_.forget();
+  else if (all || moments_.across() != lines_[1])
+    moments_.prepare(lines_[1], factors.grid, factors.stiffness, kDegree + 1);
+}
+
+bool ElementInvariants::weigh(int e, MatrixXd& weights) const {
+  if (!moments_.is_prepared()) return false;
+  const auto rows = static_cast<int>(lines_[1].size()) - 1;
+  const auto i = static_cast<size_t>(e / rows);
+  moments_.weights(lines_[0][i], lines_[0][i + 1], e % rows, weights);
+  return true;
 }
 
 ElementInvariants::Packed ElementInvariants::of(const Element& element, int e,
                                                 const Factors& factors) {
   std::swap(previous_, table_);
-  const int degree = kinds_ == 1 ? kCellDegree : 12;
-  if (!element.tabulate_products(e, degree, factors, FactorKind::stiffness, table_))
+  // As many points as with factors in the weights, which need twice as many as without.
+  const bool weighed = weigh(e, weights_);
+  const int degree = weighed ? 2 * kDegree : kinds_ == 1 ? kCellDegree : kDegree;
+  const FactorKind kind = weighed ? FactorKind::none : FactorKind::stiffness;
+  if (!element.tabulate_products(e, degree, factors, kind, table_))
     throw Error::input("term 'membrane' needs shape functions that are products along m and n");
+  if (weighed) table_.weight = weights_;
   const bool same = tabulated_ >= 0 && tabulated_ == e - 1 &&
                     equal(previous_.weight, table_.weight) && equal(previous_.f_m, table_.f_m) &&
                     equal(previous_.f_n, table_.f_n);
@@ -87,8 +106,10 @@ ElementInvariants::Packed ElementInvariants::scaled() {
 }
 
 std::vector<double> ElementInvariants::of_table(const ProductTable& table) const {
-  return membrane_invariant(even_and_odd(table, function_m_, function_n_), pairs_, elasticity_,
-                            strains_);
+  const ProductTable classes = even_and_odd(table, function_m_, function_n_);
+  return strains_ == Strains::displacement
+             ? membrane_invariant(classes, places_, elasticity_)
+             : assumed_membrane_invariant(classes, pairs_, elasticity_);
 }
 
 ElementInvariants::Packed ElementInvariants::squares() {

@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "fem/terms.h"
+#include "fem/terms/factor_moments.h"
 #include "fem/terms/free_work.h"
 
 namespace flexmorph::fem {
@@ -29,6 +31,7 @@ class Inertia final : public Term {
     factors_ = &factors;
     free_.prepare(element, kDegree, Tabulate::position, factors);
     matrices_.resize(static_cast<size_t>(element.n_elements()));
+    take_moments(element, factors, all);
     for (int e = 0; e < element.n_elements(); ++e)
       if ((all || element.moving(e)) && !free_.has(e)) integrate(element, e, factors);
     if (element.n_scalars() > 0) return;  // evaluated one by one
@@ -202,8 +205,32 @@ class Inertia final : public Term {
       }
   }
 
+  /// Of elements over many cells of a design.
+  void take_moments(const Element& element, const Factors& factors, bool all) {
+    lines_ = {};
+    if (element.n_shapes() != 4 && !factors.uniform()) lines_ = element.lines();
+    if (lines_[0].empty())
+      moments_.forget();
+    else if (all || moments_.across() != lines_[1])
+      moments_.prepare(lines_[1], factors.grid, factors.mass, kDegree + 1);
+  }
+
+  void tabulate(const Element& element, int e, const Factors& factors) {
+    if (!moments_.is_prepared())
+      return element.tabulate(e, kDegree, Tabulate::position_rates, factors, FactorKind::mass,
+                              table_);
+    const auto rows = static_cast<int>(lines_[1].size()) - 1;
+    const auto i = static_cast<size_t>(e / rows);
+    moments_.weights(lines_[0][i], lines_[0][i + 1], e % rows, weights_);
+    // As many points as with factors in the weights, which need twice as many as without.
+    element.tabulate(e, 2 * kDegree, Tabulate::position_rates, {}, FactorKind::none, table_);
+    for (Eigen::Index g = 0; g < weights_.rows(); ++g)
+      for (Eigen::Index h = 0; h < weights_.cols(); ++h)
+        table_.weight[g * weights_.cols() + h] = weights_(g, h);
+  }
+
   void integrate(const Element& element, int e, const Factors& factors) {
-    element.tabulate(e, kDegree, Tabulate::position_rates, factors, FactorKind::mass, table_);
+    tabulate(element, e, factors);
     Matrices& m = matrices_[static_cast<size_t>(e)];
     m.flows = element.moving(e);
     weighted_.noalias() = (area_density_ * table_.weight).asDiagonal() * table_.N;
@@ -239,8 +266,10 @@ class Inertia final : public Term {
   FreeTables free_;
   std::vector<Matrices> matrices_;
   std::vector<LaneMatrices> batches_;
+  FactorMoments moments_;
+  std::array<std::vector<double>, 2> lines_;  // of the mesh, where there are moments
   ShapeTable table_;
-  MatrixXd weighted_;
+  MatrixXd weighted_, weights_;
 };
 
 }  // namespace

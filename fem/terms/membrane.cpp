@@ -59,7 +59,6 @@ class Membrane final : public ElasticTerm {
     return strains_ == Strains::assumed ? make_assumed_membrane(section_) : make_membrane(section_);
   }
   void prepare(const Element& element, const Factors& factors, bool all) override {
-    invariants_.forget();
     prepare_parts(element, factors);
     if (all) {
       dim_ = element.dim();
@@ -68,6 +67,7 @@ class Membrane final : public ElasticTerm {
       invariants_.number(kinds_, coupling_ == Coupling::all);
       batches_.assign(static_cast<size_t>((element.n_elements() + kLanes - 1) / kLanes), {});
     }
+    invariants_.begin(element, factors, all);
     const MatrixXd reference = element.reference();
     for (size_t b = 0; b < batches_.size(); ++b)
       prepare_batch(element, static_cast<int>(b) * kLanes, factors, reference, all, batches_[b]);
@@ -150,9 +150,17 @@ class Membrane final : public ElasticTerm {
     tangent += by_columns.transpose();
   }
   double flow_power(int e, const Local& x) const override {
-    return strains_ == Strains::assumed
-               ? assumed_flow_power(element(), e, factors(), elasticity_, x.q)
-               : ElasticTerm::flow_power(e, x);
+    if (strains_ == Strains::assumed)
+      return assumed_flow_power(element(), e, factors(), elasticity_, x.q);
+    MatrixXd weights;
+    if (!invariants_.weigh(e, weights)) return ElasticTerm::flow_power(e, x);
+    ShapeTable t;
+    element().tabulate(e, 2 * ElementInvariants::kDegree, Tabulate::gradient_rates, {},
+                       FactorKind::none, t);
+    for (Eigen::Index g = 0; g < weights.rows(); ++g)
+      for (Eigen::Index h = 0; h < weights.cols(); ++h)
+        t.weight[g * weights.cols() + h] = weights(g, h);
+    return fem::flow_power(*parts().front().density, t, x.q);
   }
 
   void add_factor_slopes(int e, const Local& x, const LocalRows& psi,

@@ -1,5 +1,6 @@
 #include "fem/terms/membrane_invariant.h"
 
+#include <algorithm>
 #include <array>
 
 namespace flexmorph::fem {
@@ -21,17 +22,8 @@ MatrixXd products(const MatrixXd& x, const MatrixXd& y) {
   return out;
 }
 
-/// Lower triangles of the blocks, entry(k, l, r, s) for the pairs (k, l) and (r, s).
-template <class Entry>
-std::vector<double> pack(const PairNumbers& pairs, const Entry& entry) {
-  std::vector<double> out;
-  for (size_t block = 0; block + 1 < pairs.starts.size(); ++block)
-    for (auto p = static_cast<size_t>(pairs.starts[block]);
-         p < static_cast<size_t>(pairs.starts[block + 1]); ++p)
-      for (auto q = static_cast<size_t>(pairs.starts[block]); q <= p; ++q)
-        out.push_back(entry(pairs.i[p], pairs.j[p], pairs.i[q], pairs.j[q]));
-  return out;
-}
+constexpr int kFunctions = 4, kPairs1d = kFunctions * (kFunctions + 1) / 2,
+              kRows = kPairs1d * kPairs1d;
 
 /// As the displacements have them: W = Σ_points Λᵀ C Λ. With N_k = f_i(m) g_a(n) every entry of Λᵀ
 /// C Λ is a sum of products of four functions of m and four of n, so all of W is made of three
@@ -40,47 +32,29 @@ std::vector<double> pack(const PairNumbers& pairs, const Entry& entry) {
 ///   X (p q, r s) = Σ_gh w_gh (x_p y_q)(m_g) (y_r x_s)(n_h)     p, q, r, s: pairs of functions
 ///
 /// with f' f' f' f' (11), f f f f (22) or f' f' f f (all others) along m.
-std::vector<double> of_displacements(const ProductTable& t, const PairNumbers& pairs,
-                                     const Eigen::Matrix3d& elasticity) {
-  const MatrixXd dd_m = products_of_two(t.d_m), ff_m = products_of_two(t.f_m),
-                 dd_n = products_of_two(t.d_n), ff_n = products_of_two(t.f_n);
-  const MatrixXd& w = t.weight;
-  const MatrixXd x11 = products(dd_m, dd_m) * w * products(ff_n, ff_n).transpose();
-  const MatrixXd x22 = products(ff_m, ff_m) * w * products(dd_n, dd_n).transpose();
-  const MatrixXd x12 = products(dd_m, ff_m) * w * products(ff_n, dd_n).transpose();
+struct PointSums {
+  MatrixXd normal;  ///< what ε₁₁ and ε₂₂ make of the three, with C
+  MatrixXd shear;   ///< X12
 
-  constexpr int n = 4, n_pairs_1d = n * (n + 1) / 2;
-  const auto pair = [](int i, int j) {  // number of {i, j} among the pairs
-    if (i > j) std::swap(i, j);
-    return i * (2 * n - i + 1) / 2 + j - i;
-  };
-  const auto n_vectors = static_cast<int>(t.function_m.size());
-  Eigen::MatrixXi m_pair(n_vectors, n_vectors), n_pair(n_vectors, n_vectors);
-  for (int k = 0; k < n_vectors; ++k)
-    for (int l = 0; l < n_vectors; ++l) {
-      const auto at = [](const std::vector<int>& x, int i) { return x[static_cast<size_t>(i)]; };
-      m_pair(k, l) = pair(at(t.function_m, k), at(t.function_m, l));
-      n_pair(k, l) = pair(at(t.function_n, k), at(t.function_n, l));
-    }
-  // Entry of one of the three: pairs (p, q) along m and the same unknowns (r, s) along n.
-  const auto entry = [&](const MatrixXd& x, int p_m, int q_m, int p_n, int q_n) {
-    return x(p_m * n_pairs_1d + q_m, p_n * n_pairs_1d + q_n);
-  };
-  const double c11 = elasticity(0, 0), c22 = elasticity(1, 1), c12 = elasticity(0, 1),
-               c33 = elasticity(2, 2);
-  return pack(pairs, [&](int k, int l, int r, int s) {
-    const int kl_m = m_pair(k, l), kl_n = n_pair(k, l), rs_m = m_pair(r, s), rs_n = n_pair(r, s),
-              kr_m = m_pair(k, r), kr_n = n_pair(k, r), ls_m = m_pair(l, s), ls_n = n_pair(l, s),
-              ks_m = m_pair(k, s), ks_n = n_pair(k, s), lr_m = m_pair(l, r), lr_n = n_pair(l, r);
-    // ε₁₁ and ε₂₂ have N_k,m N_l,m and N_k,n N_l,n; 2ε₁₂ the symmetric N_k,m N_l,n.
-    const double normal =
-        c11 * entry(x11, kl_m, rs_m, kl_n, rs_n) + c22 * entry(x22, kl_m, rs_m, kl_n, rs_n) +
-        c12 * (entry(x12, kl_m, rs_m, kl_n, rs_n) + entry(x12, rs_m, kl_m, rs_n, kl_n));
-    const double shear = entry(x12, kr_m, ls_m, kr_n, ls_n) + entry(x12, ks_m, lr_m, ks_n, lr_n) +
-                         entry(x12, lr_m, ks_m, lr_n, ks_n) + entry(x12, ls_m, kr_m, ls_n, kr_n);
-    return normal + c33 * shear;
-  });
-}
+  PointSums(const ProductTable& t, const Eigen::Matrix3d& elasticity) {
+    const MatrixXd dd_m = products_of_two(t.d_m), ff_m = products_of_two(t.f_m),
+                   dd_n = products_of_two(t.d_n), ff_n = products_of_two(t.f_n);
+    const MatrixXd& w = t.weight;
+    shear.noalias() = products(dd_m, ff_m) * w * products(ff_n, dd_n).transpose();
+    normal.noalias() =
+        elasticity(0, 0) * products(dd_m, dd_m) * w * products(ff_n, ff_n).transpose();
+    normal.noalias() +=
+        elasticity(1, 1) * products(ff_m, ff_m) * w * products(dd_n, dd_n).transpose();
+    // X12 (p q, r s) and X12 (q p, s r).
+    for (int r = 0; r < kPairs1d; ++r)
+      for (int s = 0; s < kPairs1d; ++s)
+        for (int p = 0; p < kPairs1d; ++p)
+          for (int q = 0; q < kPairs1d; ++q)
+            normal(p * kPairs1d + q, r * kPairs1d + s) +=
+                elasticity(0, 1) * (shear(p * kPairs1d + q, r * kPairs1d + s) +
+                                    shear(q * kPairs1d + p, s * kPairs1d + r));
+  }
+};
 
 /// Products x_i y_j at all points: row i x.cols() + j, a column per point.
 MatrixXd all_products(const MatrixXd& x, const MatrixXd& y) {
@@ -163,9 +137,47 @@ ProductTable even_and_odd(const ProductTable& table, const std::vector<int>& fun
           both(table.d_n), function_m,      function_n};
 }
 
-std::vector<double> membrane_invariant(const ProductTable& table, const PairNumbers& pairs,
-                                       const Eigen::Matrix3d& elasticity, Strains strains) {
-  if (strains == Strains::displacement) return of_displacements(table, pairs, elasticity);
+InvariantPlaces invariant_places(const PairNumbers& pairs, const std::vector<int>& function_m,
+                                 const std::vector<int>& function_n) {
+  // Number of {i, j} among the pairs of functions of one coordinate.
+  const auto number = [](const std::vector<int>& function, int k, int l) {
+    auto [i, j] = std::minmax(function[static_cast<size_t>(k)], function[static_cast<size_t>(l)]);
+    return i * (2 * kFunctions - i + 1) / 2 + j - i;
+  };
+  // Of the pairs (a, b) and (c, d) of vectors, in a matrix by columns.
+  const auto place = [&](int a, int b, int c, int d) {
+    return number(function_m, a, b) * kPairs1d + number(function_m, c, d) +
+           kRows * (number(function_n, a, b) * kPairs1d + number(function_n, c, d));
+  };
+  InvariantPlaces out;
+  for (size_t block = 0; block + 1 < pairs.starts.size(); ++block)
+    for (auto p = static_cast<size_t>(pairs.starts[block]);
+         p < static_cast<size_t>(pairs.starts[block + 1]); ++p)
+      for (auto q = static_cast<size_t>(pairs.starts[block]); q <= p; ++q) {
+        const int k = pairs.i[p], l = pairs.j[p], r = pairs.i[q], s = pairs.j[q];
+        // ε₁₁ and ε₂₂ have N_k,m N_l,m and N_k,n N_l,n; 2ε₁₂ the symmetric N_k,m N_l,n.
+        out.normal.push_back(place(k, l, r, s));
+        out.shear.push_back(
+            {place(k, r, l, s), place(k, s, l, r), place(l, r, k, s), place(l, s, k, r)});
+      }
+  return out;
+}
+
+std::vector<double> membrane_invariant(const ProductTable& table, const InvariantPlaces& places,
+                                       const Eigen::Matrix3d& elasticity) {
+  const PointSums sums(table, elasticity);
+  const double *normal = sums.normal.data(), *shear = sums.shear.data(), c33 = elasticity(2, 2);
+  std::vector<double> out(places.normal.size());
+  for (size_t k = 0; k < out.size(); ++k) {
+    const std::array<int, 4>& at = places.shear[k];
+    out[k] = normal[places.normal[k]] +
+             c33 * (shear[at[0]] + shear[at[1]] + shear[at[2]] + shear[at[3]]);
+  }
+  return out;
+}
+
+std::vector<double> assumed_membrane_invariant(const ProductTable& table, const PairNumbers& pairs,
+                                               const Eigen::Matrix3d& elasticity) {
   const MatrixXd w = of_assumed_strains(table, pairs, elasticity);
   std::vector<double> out;
   for (size_t block = 0; block + 1 < pairs.starts.size(); ++block)

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "fem/element.h"
 
 namespace flexmorph::fem {
@@ -9,6 +11,15 @@ namespace flexmorph::fem {
 struct PairNumbers {
   std::vector<int> i, j, starts;
 };
+
+/// Where the entries of W stand in sums over the points (membrane_invariant.cpp): the same for all
+/// elements of one kind.
+struct InvariantPlaces {
+  std::vector<int> normal;                ///< one for each entry of W
+  std::vector<std::array<int, 4>> shear;  ///< likewise
+};
+InvariantPlaces invariant_places(const PairNumbers& pairs, const std::vector<int>& function_m,
+                                 const std::vector<int>& function_n);
 
 /// A table of sums and differences of the functions of one coordinate, which are even or odd over
 /// the element, instead of those functions; function_m, function_n: those of every vector.
@@ -36,8 +47,10 @@ MatrixXd parabola_through_samples(int n);
 /// assumed)
 /// @param elasticity  h C, Voigt order 11, 22, 12, without coupling of normal strains and shear
 /// @return lower triangles of the blocks of W, row by row
-std::vector<double> membrane_invariant(const ProductTable& table, const PairNumbers& pairs,
-                                       const Eigen::Matrix3d& elasticity, Strains strains);
+std::vector<double> membrane_invariant(const ProductTable& table, const InvariantPlaces& places,
+                                       const Eigen::Matrix3d& elasticity);
+std::vector<double> assumed_membrane_invariant(const ProductTable& table, const PairNumbers& pairs,
+                                               const Eigen::Matrix3d& elasticity);
 
 /// The blocks of W as full squares, one after the other, from their lower triangles.
 std::vector<double> full_squares(const PairNumbers& pairs, const std::vector<double>& triangles);

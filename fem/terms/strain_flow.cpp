@@ -32,15 +32,23 @@ void measure_at(std::span<const Measure> list, const TableOf& table_of_measure, 
 
 double flow_power(const EnergyDensity& density, const ShapeTable& t, const LocalRows& q) {
   const auto list = density.measures();
-  Measures z, rate, stress;
+  const auto d = q.cols();
+  // Measures at all points, one beside the other, and their rates.
+  const auto measures = static_cast<Eigen::Index>(list.size());
+  MatrixXd all(t.weight.size(), measures * d), rates(t.weight.size(), measures * d);
+  for (Eigen::Index i = 0; i < measures; ++i) {
+    all.middleCols(i * d, d).noalias() = table_of(t, list[static_cast<size_t>(i)]) * q;
+    rates.middleCols(i * d, d).noalias() = rates_of(t, list[static_cast<size_t>(i)]) * q;
+  }
+  Measures z(measures, d), stress;
   double out = 0;
   for (Eigen::Index g = 0; g < t.weight.size(); ++g) {
-    measure_at(
-        list, [&](const Measure& m) -> const MatrixXd& { return table_of(t, m); }, g, q, z);
-    measure_at(
-        list, [&](const Measure& m) -> const MatrixXd& { return rates_of(t, m); }, g, q, rate);
+    for (Eigen::Index i = 0; i < measures; ++i) z.row(i) = all.row(g).segment(i * d, d);
     density.energy(z, &stress, nullptr);
-    out += t.weight[g] * stress.cwiseProduct(rate).sum();
+    double power = 0;
+    for (Eigen::Index i = 0; i < measures; ++i)
+      power += stress.row(i).dot(rates.row(g).segment(i * d, d));
+    out += t.weight[g] * power;
   }
   return out;
 }

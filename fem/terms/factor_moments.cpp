@@ -1,0 +1,58 @@
+#include "fem/terms/factor_moments.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flexmorph::fem {
+namespace {
+
+/// First and last of the cells that an interval lies in; those behind the last line of the grid
+/// belong to its last cell. Lines that coincide up to round-off are one.
+std::pair<int, int> cells_of(double start, double end, double grid_start, double cell, int n) {
+  const auto index = [&](double x) {
+    return std::clamp(static_cast<int>(std::floor((x - grid_start) / cell)), 0, n - 1);
+  };
+  const double tiny = 1e-12 * cell;
+  return {index(start + tiny), index(end - tiny)};
+}
+
+/// Integrals of Lagrange's polynomials over the part of cell k, one of [first, last], in an
+/// interval.
+VectorXd integrals(int n, int k, std::pair<int, int> cells, double start, double end,
+                   double grid_start, double cell) {
+  const double length = end - start;
+  const double lower = k == cells.first ? 0 : (grid_start + k * cell - start) / length,
+               upper = k == cells.second ? 1 : (grid_start + (k + 1) * cell - start) / length;
+  return lagrange_integrals(n, lower, upper);
+}
+
+}  // namespace
+
+void FactorMoments::prepare(const std::vector<double>& across, const Grid& grid,
+                            const VectorXd& factor, int n) {
+  grid_ = grid;
+  n_ = n;
+  across_ = across;
+  rows_.clear();
+  for (size_t j = 0; j + 1 < across.size(); ++j) {
+    const double low = across[j], high = across[j + 1];
+    const auto cells = cells_of(low, high, grid.y0, grid.dy(), grid.ny);
+    MatrixXd& row = rows_.emplace_back(MatrixXd::Zero(n, grid.nx));
+    for (int r = cells.first; r <= cells.second; ++r) {
+      const VectorXd part = integrals(n, r, cells, low, high, grid.y0, grid.dy());
+      for (int c = 0; c < grid.nx; ++c) row.col(c) += factor[grid.cell(c, r)] * part;
+    }
+  }
+}
+
+void FactorMoments::weights(double start, double end, int j, MatrixXd& out) const {
+  const auto row = static_cast<size_t>(j);
+  const auto cells = cells_of(start, end, grid_.x0, grid_.dx(), grid_.nx);
+  const double area = (end - start) * (across_[row + 1] - across_[row]);
+  out.setZero(n_, n_);
+  for (int c = cells.first; c <= cells.second; ++c)
+    out.noalias() += area * integrals(n_, c, cells, start, end, grid_.x0, grid_.dx()) *
+                     rows_[row].col(c).transpose();
+}
+
+}  // namespace flexmorph::fem
