@@ -110,23 +110,30 @@ class LinePowers {
     return width * out;
   }
 
-  /// Energies times the factors of the cells along the line, each integrated exactly.
+  /// Energies times the factors of the cells along the line, each integrated exactly. A line that
+  /// passes from one column of cells to the next has the mean of both: there the power jumps, and
+  /// steps that land on it, each with half the jump too much and too little, keep their order.
   double designed(int j) const {
     const Grid& grid = body_.factors.grid;
     const auto index = [](double at, double start, double cell, int n) {
-      return std::clamp(static_cast<int>(std::floor((at - start) / cell + 1e-9)), 0, n - 1);
+      return std::clamp(static_cast<int>(std::floor((at - start) / cell)), 0, n - 1);
     };
     const double low = plate_.line_n(j).value, width = plate_.line_n(j + 1).value - low;
-    const int column = index(line_[0].material[0].x(), grid.x0, grid.dx(), grid.nx);
+    const double x = line_[0].material[0].x();
+    const double near = 1e-9 * grid.dx();
+    const int before = index(x - near, grid.x0, grid.dx(), grid.nx),
+              behind = index(x + near, grid.x0, grid.dx(), grid.nx);
     double out = 0;
     for (int row = 0; row < grid.ny; ++row) {
       const double from = row == 0 ? 0 : (grid.y0 + row * grid.dy() - low) / width,
                    to = row == grid.ny - 1 ? 1 : (grid.y0 + (row + 1) * grid.dy() - low) / width;
       if (to <= 0 || from >= 1) continue;
       const VectorXd weights = lagrange_integrals(n_, std::max(0.0, from), std::min(1.0, to));
-      const int cell = grid.cell(column, row);
-      out += body_.factors.stiffness[cell] * weights.dot(energy_.stiffness) +
-             body_.factors.mass[cell] * weights.dot(energy_.mass);
+      const double stiffness = weights.dot(energy_.stiffness), mass = weights.dot(energy_.mass);
+      for (const int column : {before, behind}) {
+        const int cell = grid.cell(column, row);
+        out += 0.5 * (body_.factors.stiffness[cell] * stiffness + body_.factors.mass[cell] * mass);
+      }
     }
     return out;
   }
