@@ -86,7 +86,7 @@ std::vector<Level> mesh_levels(const Scene& scene, const io::CaseFile&) {
       if (factor == 1) continue;
       level.overrides.push_back(key(b.name, "elements") +
                                 (b.row->across ? pair(*m, *n) : to_text(*m)));
-      if (!b.flow) continue;
+      if (!b.flow || b.is_even()) continue;
       level.overrides.push_back(key(b.name, "flow.max_length") +
                                 to_text(b.flow->max_length * level.h));
       level.overrides.push_back(key(b.name, "flow.min_length") +

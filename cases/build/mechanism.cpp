@@ -121,7 +121,7 @@ void add_frame(const Scene& scene, const Joint& joint, double finer, Mechanism& 
     growth.cell = finer * body.cell_length();
     growth.max_length = kLongestCell * growth.cell;
     growth.min_length = kShortestCell * growth.cell;
-  } else if (body.flow) {
+  } else if (body.flow && !body.is_even()) {
     growth.max_length = finer * body.flow->max_length;
     growth.min_length = finer * body.flow->min_length;
   } else if (body.mesh_changes()) {

@@ -121,7 +121,9 @@ void describe_body(const Body& body, const Mechanism& mechanism, std::ostringstr
                               "' says, length " + io::to_text(body.flow->shortest, 6) + " to " +
                               io::to_text(body.flow->longest, 6) + " m"
                         : "material leaves the hub at " + io::to_text(body.flow->speed) + " m/s") +
-                       ": one prescribed material line, " + std::to_string(body.elements[1]) +
+                       (body.is_even() ? ": all lines move, elements stay equal, "
+                                       : ": one prescribed material line, ") +
+                       std::to_string(body.elements[1] * (body.is_even() ? body.elements[0] : 1)) +
                        " elements refreshed per step");
 }
 

@@ -55,7 +55,8 @@ StepOperations step_operations(const Scene& scene, const Mechanism& mechanism) {
     const double across = body.row->across ? std::min(body.elements[0], body.elements[1]) + 2 : 1;
     const double band = across * vectors * element.dim();
     out.solver += built.n_dofs() * band * (tangents * kFactor * band + 4 * times(kSolutions));
-    if (body.flow) out.flow += kRefresh + body.elements[1] * kPower;
+    if (body.flow)
+      out.flow += kRefresh * (body.is_even() ? body.elements[0] : 1) + body.elements[1] * kPower;
   }
   const auto rows = static_cast<double>(4 * scene.rigid_bodies.size() + scene.springs.size()) +
                     mechanism.model.n_constraints();

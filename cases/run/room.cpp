@@ -45,7 +45,7 @@ double sum_of(const std::vector<Share>& shares) {
 /// Elements along and across in a motion, `finer` times the case's: flowing bodies grow.
 std::array<double, 2> elements_of(const Scene& scene, const Body& body, double finer) {
   double along = body.elements[0];
-  if (body.flow) {
+  if (body.flow && !body.is_even()) {
     const double grown = body.longest(scene.time.end) - body.length;
     along += std::max(
         0.0, grown / (body.on_cells() ? body.cell_length() : 0.75 * body.flow->max_length));

@@ -17,13 +17,14 @@
 /// [[body]], and the masses on it.
 namespace flexmorph::cases {
 
-/// Material that leaves the hub, and when node lines come and go (fem/README.md, Insertion and
-/// removal).
+/// Material that leaves the hub, and what the mesh does then: lines of nodes come and go
+/// (fem/README.md, Insertion and removal), or all of them move (there, Even meshes).
 struct Flow {
   double speed = 0;  ///< rate at which material leaves the hub [m/s]; negative: enters it
   Law length;        ///< or the drive of the length outside of the hub; `speed` is 0 then
   std::function<fem::Motion(double)> motion;  ///< that drive; empty: constant speed
   double longest = 0, shortest = 0;           ///< with that drive: over the run [m]
+  bool even = false;      ///< all lines move, and elements stay equal; the limits are 0 then
   double max_length = 0;  ///< a longer boundary element is split in the middle [m]
   double min_length = 0;  ///< a shorter one is merged with its neighbour [m]
 };
@@ -103,7 +104,12 @@ struct Body {
     return std::any_of(lines.begin(), lines.end(), [](const BodyLine& l) { return l.free; });
   }
   /// Do lines of nodes come and go?
-  bool mesh_changes() const { return flow || (!lines.empty() && lines.front().has_limits()); }
+  bool mesh_changes() const {
+    return (flow && !is_even()) || (!lines.empty() && lines.front().has_limits());
+  }
+  /// Do all its lines move with its length, so that its elements stay equal? Not those of cells,
+  /// which lie where they lie in the design.
+  bool is_even() const { return flow && flow->even && !on_cells(); }
   /// Material coordinates of the m-lines at the start, the first at `root` [m].
   std::vector<double> start_lines(double root, int count) const;
 };

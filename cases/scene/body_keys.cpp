@@ -65,9 +65,14 @@ const io::Key& kLength = io::key("body.flow", "length")
                              .name_of("a drive")
                              .otherwise_as("`speed` is given")
                              .says("The drive of the length outside of the hub.");
+const io::Key& kMesh =
+    io::key("body.flow", "mesh")
+        .word("a rule of the mesh", {"split", "even"})
+        .otherwise("split")
+        .says("`split`: lines of nodes come and go; `even`: elements stay equal.");
 const io::Key& kMaxLength = io::key("body.flow", "max_length")
                                 .number(positive("a length", "m"))
-                                .when("`shape` is not \"q4\"")
+                                .when("`mesh = \"split\"`, and `shape` is not \"q4\"")
                                 .says("A longer element at the root is split in the middle.");
 const io::Key& kMinLength =
     io::key("body.flow", "min_length")

@@ -13,7 +13,7 @@ extern const io::Key &kBodyName, &kElement, &kTerms, &kLength, &kThickness, &kLi
 }  // namespace body_keys
 
 namespace flow_keys {
-extern const io::Key &kSpeed, &kLength, &kMaxLength, &kMinLength;
+extern const io::Key &kSpeed, &kLength, &kMesh, &kMaxLength, &kMinLength;
 }  // namespace flow_keys
 
 /// Declares the numbers that terms read: rows of another table, which is not there before main().

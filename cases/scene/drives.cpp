@@ -218,6 +218,13 @@ void check_limits(const Table& t, const Body& body, double end) {
   if (body.on_cells()) return;  // they are as long as they are
   const double element = body.length / body.elements[0];
   const double shortest = body.shortest(end);
+  if (body.is_even()) {
+    if (!(shortest > 0))
+      t.fail(flow.motion ? flow_keys::kLength : flow_keys::kSpeed,
+             "some of the body stays outside of the hub, but " + to_text(shortest, 4) +
+                 " m are left at " + (flow.motion ? "its shortest" : "time.end"));
+    return;
+  }
   if (element > flow.max_length * (1 + 1e-9))
     t.fail(flow_keys::kMaxLength,
            "the elements are " + to_text(element, 4) +

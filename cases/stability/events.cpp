@@ -130,7 +130,7 @@ Rows insertion(const Scene& scene) {
   Rows out;
   if (scene.domain) return out;
   for (const Body& body : scene.bodies) {
-    if (!body.flow) continue;
+    if (!body.flow || body.is_even()) continue;
     if (!body.flow->length.drive.empty()) {
       for (const double steps : {25.0, 60.0}) {
         const double h = scene.time.end / steps;

@@ -54,7 +54,7 @@ Rows boundary(const Scene& scene) {
     for (size_t i = 0; i < scene.bodies.size(); ++i) {
       const Body& body = scene.bodies[i];
       const double element = body.length / body.elements[0];
-      if (!body.row->lines || body.elements[0] < 2) continue;
+      if (!body.row->lines || body.elements[0] < 2 || body.is_even()) continue;
       if (body.flow && body.flow->length.drive.empty()) {
         row.overrides.push_back(entry("body", i, "flow.speed", -element * (1 - fraction) / end));
         row.overrides.push_back(entry("body", i, "flow.min_length", 0.5 * fraction * element));

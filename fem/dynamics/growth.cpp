@@ -59,7 +59,7 @@ NextChange next_change(const Body& body, const Growth& growth, double t, double 
   const LineGrid& plate = grid_of(body);
   const MaterialLine &root = plate.lines_m()[0], &first = plate.lines_m()[1];
   const NextChange never{std::numeric_limits<double>::infinity(), MeshChange::insertion};
-  if (!root.drive) return never;
+  if (!root.drive || std::isinf(growth.max_length)) return never;
   const auto length = [&](double at) {
     return (first.drive ? first.drive(at).value : first.value) - root.drive(at).value;
   };

@@ -16,7 +16,7 @@ namespace flexmorph::fem {
 struct Growth {
   std::string body;
   Carrier hub;
-  double max_length = 0.1;   ///< a longer boundary element is split in its middle [m]
+  double max_length = 0.1;   ///< a longer boundary element is split in its middle; ∞: never [m]
   double min_length = 0.03;  ///< a shorter one is merged with its neighbour [m]
   int line = 0;              ///< the m-line that is welded: 0 is the root
   double slide = 0;          ///< rate at the start of that line, where it is free [m/s]

@@ -49,9 +49,19 @@ Flow read_flow(const Table& t, const Scene& scene, bool on_cells) {
   } else {
     flow.speed = t.number(flow_keys::kSpeed);
   }
+  flow.even = t.choice(flow_keys::kMesh) == "even";
   if (on_cells) {
+    if (flow.even)
+      t.fail(flow_keys::kMesh,
+             "cells (shape \"q4\") lie where they lie in the design: their mesh is not \"even\"");
     for (const Key* limit : {&flow_keys::kMaxLength, &flow_keys::kMinLength})
       if (t.has(*limit)) t.fail(*limit, "cells (shape \"q4\") have no limits of their own");
+    return flow;
+  }
+  if (flow.even) {
+    for (const Key* limit : {&flow_keys::kMaxLength, &flow_keys::kMinLength})
+      if (t.has(*limit))
+        t.fail(*limit, "an \"even\" mesh has no limits: its lines neither come nor go");
     return flow;
   }
   flow.max_length = t.number(flow_keys::kMaxLength);
@@ -117,6 +127,19 @@ std::vector<double> cell_lines(double root, double longest, double cell) {
   return out;
 }
 
+/// A line that stays so much of the length L(t) before the free end, p = p_end - share L(t): of an
+/// even mesh of n elements line i with share 1 - i/n, and of every mesh the root.
+std::function<fem::Motion(double)> line_drive(const Body& body, double end, double share) {
+  if (body.flow->motion)
+    return [end, share, length = body.flow->motion](double t) {
+      const fem::Motion x = length(t);
+      return fem::Motion{end - share * x.value, -share * x.rate, -share * x.acceleration};
+    };
+  return [=, length = share * body.length, speed = share * body.flow->speed](double t) {
+    return fem::Motion{end - length - speed * t, -speed, 0};
+  };
+}
+
 std::unique_ptr<fem::Element> make_plate(const Body& body, double end,
                                          const std::array<int, 2>& count) {
   const double longest = body.longest(end);
@@ -128,15 +151,9 @@ std::unique_ptr<fem::Element> make_plate(const Body& body, double end,
        among_cells ? cell_lines(root, longest, cell) : body.start_lines(root, count[0]))
     m.push_back({at, {}});
   for (const BodyLine& line : body.lines) m[static_cast<size_t>(line.index)].free = line.free;
-  if (body.flow && body.flow->motion)
-    m[0].drive = [longest, length = body.flow->motion](double t) {
-      const fem::Motion x = length(t);
-      return fem::Motion{longest - x.value, -x.rate, -x.acceleration};
-    };
-  else if (body.flow)
-    m[0].drive = [longest, length = body.length, speed = body.flow->speed](double t) {
-      return fem::Motion{longest - length - speed * t, -speed, 0};
-    };
+  if (body.flow)
+    for (int i = 0; i < (body.is_even() ? count[0] : 1); ++i)
+      m[static_cast<size_t>(i)].drive = line_drive(body, longest, 1 - 1.0 * i / count[0]);
   for (int j = 0; j <= count[1]; ++j) n.push_back({body.low() + body.width * j / count[1], {}});
   using Shapes = fem::AncfPlate::ShapeSet;
   const Shapes shapes = body.shape == "h12"  ? Shapes::h12

@@ -161,10 +161,11 @@ std::string read_edge(const Table& t, const Key& key, const Body& body,
                       const std::vector<std::string>& names) {
   const std::string edge = t.string(key);
   if (std::find(names.begin(), names.end(), edge) != names.end()) return edge;
-  if (!body.mesh_changes() && line_of(edge, body) >= 0) return edge;
+  const bool moves = body.flow || body.mesh_changes();
+  if (!moves && line_of(edge, body) >= 0) return edge;
   std::string known;
   for (const std::string& name : names) known += "'" + name + "', ";
-  t.fail(key, body.mesh_changes()
+  t.fail(key, moves
                   ? "an edge is " + known.substr(0, known.size() - 2)
                   : "an edge is " + known + "'line 0' to 'line " + to_text(body.elements[0]) + "'");
 }
