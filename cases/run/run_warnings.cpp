@@ -194,7 +194,9 @@ void add_motion(const Scene& scene, const MotionRecord& motion, Warnings& out) {
     out.push_back({alternation_words(*motion.result.alternation)});
   else if (damps_no_multipliers(scene))
     out.push_back({undamped_words(scene)});
-  if (const fem::CutSteps& cut = motion.result.cut; cut.number > 0)
+  // Steps that the tolerance of the explicit integrator shortens are its own business.
+  if (const fem::CutSteps& cut = motion.result.cut;
+      cut.number > 0 && scene.time.integrator != "minimal_coordinates")
     out.push_back({"Newton's method did not solve all steps of " + io::to_text(scene.time.step, 3) +
                    " s: from t = " + io::to_text(cut.since, 4) + " s on " +
                    std::to_string(cut.number) + " steps were cut, down to " +
