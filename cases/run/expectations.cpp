@@ -4,13 +4,14 @@
 #include <cmath>
 #include <functional>
 
+#include "cases/run/limit_points.h"
 #include "cases/run/quantities.h"
 #include "io/tables.h"
 
 namespace flexmorph::cases {
 namespace {
 
-const std::string kLargest = ".largest";
+const std::string kLargest = ".largest", kLimit = "limit_load_";
 
 /// None where outlines could not be united.
 Features widths_of(const mmc::BodyOutcome& o) { return o.sharp.features.value_or(Features{0, 0}); }
@@ -51,6 +52,19 @@ const std::vector<double>* column_of(const PathRecord& path, const std::string& 
   return name == "energy.strain" ? &path.strain : path.column(name);
 }
 
+/// The number of a limit load of a path, from 1 on; 0 for other names.
+size_t limit_number(const std::string& name) {
+  const std::string digit = name.starts_with(kLimit) ? name.substr(kLimit.size()) : "";
+  return digit.size() == 1 && digit[0] >= '1' && digit[0] <= '9'
+             ? static_cast<size_t>(digit[0] - '0')
+             : 0;
+}
+
+std::optional<double> limit_of(const PathRecord& path, size_t number) {
+  const std::vector<double> all = limit_loads(path.arc, path.factor);
+  return number <= all.size() ? std::optional<double>(all[number - 1]) : std::nullopt;
+}
+
 /// The value of a column at the end, or with "<column>.largest" its largest absolute value.
 template <class Record>
 std::optional<double> value_of(const Record& record, const std::string& name) {
@@ -80,8 +94,9 @@ std::optional<double> find(const RunReport& report, const std::string& name) {
   }
   if (report.motion)
     if (const auto found = value_of(*report.motion, name)) return found;
-  if (report.path) return value_of(*report.path, name);
-  return {};
+  if (!report.path) return {};
+  if (const size_t number = limit_number(name)) return limit_of(*report.path, number);
+  return value_of(*report.path, name);
 }
 
 std::string words_of(const Expectation& wanted) {
@@ -123,7 +138,10 @@ void check_expectations(const Scene& scene) {
       for (const std::string& column : candidates(scene, part)) known.push_back(column);
     }
   }
+  const bool turns = scene.statics && scene.statics->path == fem::StaticSettings::Path::arc_length;
+  if (turns) known.push_back(kLimit + "1");
   for (const auto& [name, wanted] : scene.expect) {
+    if (turns && limit_number(name) > 0) continue;
     const std::string column =
         name.ends_with(kLargest) ? name.substr(0, name.size() - kLargest.size()) : name;
     if (std::find(known.begin(), known.end(), column) != known.end()) continue;

@@ -83,7 +83,12 @@ PathRecord run_path(const Scene& scene, RunFolder& folder, const PathWishes& wis
     starts.push_back(body.row->lines ? start_pose(scene, body).place(o.point)
                                      : fem::point_position(model.body(o.body), x, o.point));
   }
+  const VectorXd scales = model.scales();
+  VectorXd before = x.q;
   const auto observe = [&](const fem::StaticStep& step) {
+    const double way = (step.x.q - before).cwiseProduct(scales).norm();
+    out.arc.push_back(out.arc.empty() ? 0 : out.arc.back() + way);
+    before = step.x.q;
     const fem::Energies energies = model.energies(step.x);
     out.factor.push_back(step.factor);
     out.iterations.push_back(step.iterations);

@@ -54,6 +54,7 @@ struct MotionRecord {
 /// The path of a [static] analysis.
 struct PathRecord {
   std::vector<double> factor, strain;  ///< load factor [-], strain energy [J]
+  std::vector<double> arc;             ///< length of the path in scaled displacements
   std::vector<int> iterations;         ///< of Newton's method
   std::vector<Column> observed;        ///< displacements of points [m]
   std::vector<Column> measured;        ///< see BodyMeasures

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cases/run/expectations.h"
+#include "cases/run/limit_points.h"
 #include "cases/run/plots/measured.h"
 #include "cases/run/plots/mechanism.h"
 #include "cases/run/run_warnings.h"
@@ -184,6 +185,9 @@ Json path_results(const PathRecord& path) {
   out["equilibria"] = static_cast<int>(path.factor.size());
   if (!path.factor.empty()) out["load_factor"] = path.factor.back();
   if (!path.strain.empty()) out["strain_energy"] = path.strain.back();
+  int number = 0;
+  for (const double limit : limit_loads(path.arc, path.factor))
+    out["limit_load_" + std::to_string(++number)] = limit;
   out["completed"] = path.result.completed;
   out["rejected_steps"] = path.result.rejected;
   out["newton_iterations"] = path.result.iterations;
