@@ -1,0 +1,34 @@
+// The shipped cases with published numbers, as they are: what they expect of themselves holds.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/io/scratch.h"
+
+namespace flexmorph {
+namespace {
+
+class PublishedCase : public ::testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Cases, PublishedCase,
+                         ::testing::Values("andrews", "deploying_beam", "lee_frame", "spin_up"),
+                         [](const auto& test) { return test.param; });
+
+TEST_P(PublishedCase, EndsAsItExpects) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const std::string command = std::string(FLEXMORPH_PROGRAM) + " run " + GetParam() + " -o '" +
+                              folder + "' --quiet --set output.vtk=false";
+  const int status = std::system(command.c_str());
+  ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << command;
+  const nlohmann::json json = nlohmann::json::parse(contents_of(folder + "/run.json"));
+  ASSERT_FALSE(json["expect"].empty());
+  for (const auto& [name, expected] : json["expect"].items())
+    EXPECT_TRUE(expected["holds"].get<bool>()) << name << ": " << expected;
+}
+
+}  // namespace
+}  // namespace flexmorph
