@@ -140,7 +140,8 @@ TEST(MechanismRun, ForcesOfADrivenRodAreThoseOfMechanics) {
                    "pointer.angle", "rod.delta_x",         "rod.delta_y",   "rod.delta_angle",
                    "hinge.force_x", "hinge.force_y",       "hinge.moment",  "motor.force_x",
                    "motor.force_y", "motor.moment",        "motor.power",   "spin.force_x",
-                   "spin.force_y",  "spin.moment",         "spin.power",    "energy.kinetic",
+                   "spin.force_y",  "spin.moment",         "spin.power",    "wall.force_x",
+                   "wall.force_y",  "wall.moment",         "wall.power",    "energy.kinetic",
                    "energy.strain", "energy.potential",    "energy.defect", "power.drive",
                    "power.feed",    "power.inflow"}));
   const auto column = [&](const char* name) { return motion.numbers(name); };
