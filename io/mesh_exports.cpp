@@ -50,15 +50,20 @@ std::string name_of(const std::string& words) {
 
 /// How thick the elements are. CalculiX makes solids of plane elements: their displacements across
 /// the thickness are continuous, which stiffens a plate that is thicker than its triangles are wide
-/// (by 2 to 3 % on designs of unit thickness), and stresses where triangles are smallest.
+/// (by 2 to 3 % on designs of unit thickness), and stresses where triangles are smallest. Thinner
+/// than a hundredth of most triangles costs it its digits: 0.6 % of the compliance at a ten
+/// thousandth, 2e-5 at a hundredth (rotating plate, smallest side a thousandth of most).
 double slice_of(const PlateModel& model) {
-  constexpr double kPart = 0.2;
-  double side = INFINITY;
+  constexpr double kPart = 0.2, kLeast = 0.01;
+  std::vector<double> sides;
   for (std::size_t t = 0; t < model.mesh.triangles.size(); ++t) {
     const auto [a, b, c] = model.mesh.corners(t);
-    side = std::min({side, (b - a).norm(), (c - b).norm(), (a - c).norm()});
+    sides.insert(sides.end(), {(b - a).norm(), (c - b).norm(), (a - c).norm()});
   }
-  return std::min(model.thickness, kPart * side);
+  const double smallest = std::ranges::min(sides);
+  const auto middle = sides.begin() + static_cast<std::ptrdiff_t>(sides.size() / 2);
+  std::ranges::nth_element(sides, middle);
+  return std::min(model.thickness, std::max(kPart * smallest, kLeast * *middle));
 }
 
 /// @param part  of the forces: that of the slice

@@ -49,20 +49,7 @@ void ElementInvariants::number(int kinds, bool coupled) {
 void ElementInvariants::begin(const Element& element, const Factors& factors, bool all) {
   tabulated_ = -1;
   scaled_from_ = nullptr;
-  lines_ = {};
-  if (kinds_ != 1 && !factors.uniform()) lines_ = element.lines();
-  if (lines_[0].empty())
-    moments_.forget();
-  else if (all || moments_.across() != lines_[1])
-    moments_.prepare(lines_[1], factors.grid, factors.stiffness, kDegree + 1);
-}
-
-bool ElementInvariants::weigh(int e, MatrixXd& weights) const {
-  if (!moments_.is_prepared()) return false;
-  const auto rows = static_cast<int>(lines_[1].size()) - 1;
-  const auto i = static_cast<size_t>(e / rows);
-  moments_.weights(lines_[0][i], lines_[0][i + 1], e % rows, weights);
-  return true;
+  moments_.follow(element, factors, factors.stiffness, kDegree + 1, all);
 }
 
 ElementInvariants::Packed ElementInvariants::of(const Element& element, int e,

@@ -33,7 +33,7 @@ class ElementInvariants {
   Packed of(const Element& element, int e, const Factors& factors);
   /// Weights for n x n points of element e with the factors in them, n those of degree 12; only
   /// where the material is that of a design, and elements have many cells.
-  bool weigh(int e, MatrixXd& weights) const;
+  bool weigh(int e, MatrixXd& weights) const { return moments_.weigh(e, weights); }
   /// The blocks of the last W as full squares.
   Packed squares();
   /// The products that the last W is made of: the mean factor of the element.
@@ -54,7 +54,6 @@ class ElementInvariants {
   InvariantPlaces places_;                    // of the entries of W
   std::vector<int> function_m_, function_n_;  // even or odd function of every vector
   FactorMoments moments_;
-  std::array<std::vector<double>, 2> lines_;  // of the mesh, where there are moments
   ProductTable table_, previous_;
   int tabulated_ = -1;  // element of table_
   MatrixXd weights_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace flexmorph::fem {
 namespace {
@@ -27,6 +28,23 @@ VectorXd integrals(int n, int k, std::pair<int, int> cells, double start, double
 }
 
 }  // namespace
+
+void FactorMoments::follow(const Element& element, const Factors& factors, const VectorXd& factor,
+                           int n, bool all) {
+  const bool cut =
+      element.n_shapes() != 4 && !factors.uniform() && element.cells(0, factors.grid).i1 > 0;
+  if (!cut) return rows_.clear();
+  auto lines = element.lines();
+  along_ = std::move(lines[0]);
+  if (all || rows_.empty() || across_ != lines[1]) prepare(lines[1], factors.grid, factor, n);
+}
+
+bool FactorMoments::weigh(int e, MatrixXd& out) const {
+  if (rows_.empty()) return false;
+  const auto i = static_cast<size_t>(e) / rows_.size(), j = static_cast<size_t>(e) % rows_.size();
+  weights(along_[i], along_[i + 1], static_cast<int>(j), out);
+  return true;
+}
 
 void FactorMoments::prepare(const std::vector<double>& across, const Grid& grid,
                             const VectorXd& factor, int n) {

@@ -18,23 +18,28 @@ namespace flexmorph::fem {
 /// columns of cells that it lies in, and not its cells: its m-lines may move in every step.
 class FactorMoments {
  public:
-  /// @param across  n-lines of the mesh, which stay [m]
-  /// @param factor  of all cells
-  void prepare(const std::vector<double>& across, const Grid& grid, const VectorXd& factor, int n);
-  void forget() { rows_.clear(); }
-  bool is_prepared() const { return !rows_.empty(); }
-  /// n-lines of the last prepare().
-  const std::vector<double>& across() const { return across_; }
+  /// Those of a mesh whose elements lie in many cells of a design: made anew where `all` says that
+  /// the design is another one, or its n-lines are. No others have any: cells, uniform material,
+  /// elements that take no factors (and say so where they are tabulated).
+  /// @param factor  of all cells, one of the two of `factors`
+  void follow(const Element& element, const Factors& factors, const VectorXd& factor, int n,
+              bool all);
+  /// Weights of the points (g, h) of element e where follow() left it [m²]; false, and nothing
+  /// done, without moments.
+  /// @param out  (n x n)
+  bool weigh(int e, MatrixXd& out) const;
 
-  /// Weights of the points (g, h) of the element between two m-lines in row j of the elements [m²].
+  /// @param across  n-lines of the mesh, which stay [m]
+  void prepare(const std::vector<double>& across, const Grid& grid, const VectorXd& factor, int n);
+  /// Weights of the points of the element between two m-lines in row j of the elements [m²].
   /// @param out  (n x n)
   void weights(double start, double end, int j, MatrixXd& out) const;
 
  private:
   Grid grid_;
   int n_ = 0;
-  std::vector<double> across_;
-  std::vector<MatrixXd> rows_;  ///< M of every row of elements (n x columns)
+  std::vector<double> along_, across_;  // lines of the mesh
+  std::vector<MatrixXd> rows_;          // M of every row of elements (n x columns)
 };
 
 }  // namespace flexmorph::fem

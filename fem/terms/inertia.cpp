@@ -31,7 +31,7 @@ class Inertia final : public Term {
     factors_ = &factors;
     free_.prepare(element, kDegree, Tabulate::position, factors);
     matrices_.resize(static_cast<size_t>(element.n_elements()));
-    take_moments(element, factors, all);
+    moments_.follow(element, factors, factors.mass, kDegree + 1, all);
     for (int e = 0; e < element.n_elements(); ++e)
       if ((all || element.moving(e)) && !free_.has(e)) integrate(element, e, factors);
     if (element.n_scalars() > 0) return;  // evaluated one by one
@@ -205,23 +205,10 @@ class Inertia final : public Term {
       }
   }
 
-  /// Of elements over many cells of a design.
-  void take_moments(const Element& element, const Factors& factors, bool all) {
-    lines_ = {};
-    if (element.n_shapes() != 4 && !factors.uniform()) lines_ = element.lines();
-    if (lines_[0].empty())
-      moments_.forget();
-    else if (all || moments_.across() != lines_[1])
-      moments_.prepare(lines_[1], factors.grid, factors.mass, kDegree + 1);
-  }
-
   void tabulate(const Element& element, int e, const Factors& factors) {
-    if (!moments_.is_prepared())
+    if (!moments_.weigh(e, weights_))
       return element.tabulate(e, kDegree, Tabulate::position_rates, factors, FactorKind::mass,
                               table_);
-    const auto rows = static_cast<int>(lines_[1].size()) - 1;
-    const auto i = static_cast<size_t>(e / rows);
-    moments_.weights(lines_[0][i], lines_[0][i + 1], e % rows, weights_);
     // As many points as with factors in the weights, which need twice as many as without.
     element.tabulate(e, 2 * kDegree, Tabulate::position_rates, {}, FactorKind::none, table_);
     for (Eigen::Index g = 0; g < weights_.rows(); ++g)
@@ -267,7 +254,6 @@ class Inertia final : public Term {
   std::vector<Matrices> matrices_;
   std::vector<LaneMatrices> batches_;
   FactorMoments moments_;
-  std::array<std::vector<double>, 2> lines_;  // of the mesh, where there are moments
   ShapeTable table_;
   MatrixXd weighted_, weights_;
 };

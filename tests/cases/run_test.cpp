@@ -67,7 +67,8 @@ void expect_history(const Table& history) {
 }
 
 void expect_motion(const Table& motion) {
-  EXPECT_EQ(motion[0], (Words{"time", "plate.tip_deflection", "plate.length", "energy.kinetic",
+  EXPECT_EQ(motion[0], (Words{"time", "plate.tip_deflection", "plate.length", "hub.force_x",
+                              "hub.force_y", "hub.moment", "hub.power", "energy.kinetic",
                               "energy.strain", "energy.potential", "energy.defect"}));
   ASSERT_GE(motion.size(), 122u);  // 120 steps, the start and the header
   EXPECT_EQ(motion[1][0], "0");

@@ -213,7 +213,8 @@ TEST(SpaceRun, PlateDeploysAndGetsNewLines) {
   ASSERT_EQ(ended.code, 0) << ended.err;
   const io::CsvTable motion = io::read_csv(folder + "/motion.csv");
   EXPECT_EQ(motion.columns,
-            columns({"time", "plate.length", "plate.tip_x", "plate.tip_y", "plate.tip_z"}));
+            columns({"time", "plate.length", "plate.tip_x", "plate.tip_y", "plate.tip_z",
+                     "hub.force_x", "hub.force_y", "hub.moment", "hub.power"}));
   EXPECT_NEAR(motion.numbers("plate.length").back(), 0.475, 1e-12);
   // Static sag of the start: ρ c g L⁴ / (8 E I) of a strip that is free to contract sideways,
   // 1 - ν² of it where it is not; the clamped root lies between.
