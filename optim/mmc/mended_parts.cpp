@@ -13,6 +13,7 @@ Mended repaired(std::vector<Part>& parts, double gaps, bool trims,
   for (const Part& p : parts) {
     volumes.push_back(fractions_of(p.problem, p.problem.design.components()).sum() /
                       p.ersatz.n_domain_cells());
+    if (!p.problem.shares_mass) continue;
     used += p.plate.full_mass() * volumes.back();
     allowed += p.plate.full_mass() * allowed_volume(p.problem.goal).value_or(1);
   }
@@ -22,7 +23,7 @@ Mended repaired(std::vector<Part>& parts, double gaps, bool trims,
     std::optional<CleanUp>& done = out.clean_ups.emplace_back();
     if (p.problem.widths.any()) {
       RepairWishes wishes{.trims = trims, .go_on = go_on};
-      if (parts.size() > 1 && used > 0)
+      if (p.problem.shares_mass && used > 0)
         wishes.max_volume = std::min(1.0, volumes[k] * allowed / used);
       Widths wanted = p.problem.widths;
       wanted.gap *= gaps;

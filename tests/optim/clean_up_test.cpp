@@ -7,6 +7,7 @@
 
 #include "geometry/line_gaps.h"
 #include "optim/mmc/body_design.h"
+#include "optim/mmc/corrected_cycles.h"
 #include "tests/geometry/scrambled_heap.h"
 #include "tests/optim/mmc_small.h"
 
@@ -281,6 +282,29 @@ TEST(CleanUp, IsTheSameBitForBitWhereverTheHeapPutsThings) {
     ASSERT_EQ(now.size(), first.size());
     for (size_t k = 0; k < now.size(); ++k)
       EXPECT_EQ(now[k].parameters(), first[k].parameters()) << run << " " << k;
+  }
+}
+
+// One body has a thin bar and no volume to spare, the other has plenty: it may give some only where
+// both have one budget.
+TEST(CleanUp, GivesNoBodyTheVolumeOfAnotherUnlessTheyShareIt) {
+  constexpr double kLittle = 0.56, kMuch = 0.9;
+  for (const bool shares : {false, true}) {
+    BodyProblem a = problem_of({bar({-0.02, 0.02}, {0.62, 0.02}, 0.02),
+                                bar({-0.02, -0.035}, {0.6, 0.005}, 0.007)},
+                               kLittle),
+                b = problem_of({bar({-0.1, 0}, {0.7, 0}, 0.02)}, kMuch);
+    for (BodyProblem* p : {&a, &b}) {
+      p->widths = kWidths;
+      p->shares_mass = shares;
+    }
+    FixedLoads loads_a = tip_load(), loads_b = tip_load();
+    const LoadedBody bodies[] = {{a, loads_a}, {b, loads_b}};
+    const std::vector<BodyOutcome> out = outcomes_of_corrected(bodies, {});
+    const double of_a = out[0].sharp.volume, of_b = out[1].sharp.volume;
+    EXPECT_TRUE(out[0].clean_up && out[0].clean_up->reached());
+    EXPECT_EQ(of_a > kLittle * (1 + 1e-3), shares) << of_a;
+    EXPECT_LE(of_a + of_b, (kLittle + kMuch) * (1 + 1e-3));
   }
 }
 
