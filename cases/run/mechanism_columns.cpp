@@ -61,6 +61,7 @@ MechanismColumns::MechanismColumns(const Scene& scene) : scene_(scene) {
       if (joint.holds_frame() && joint.to == hub.name) watched.joints.push_back(&joint);
     if (!watched.joints.empty()) watched.drive = hub_drive(scene, *watched.joints[0]);
     name(hub.name, {"force_x", "force_y", "moment", "power"});
+    if (scene.in_space()) name(hub.name, {"force_z", "moment_x", "moment_y"});
   }
   for (const Spring& spring : scene.springs)
     if (spring.named) name(spring.name, {"force_x", "force_y", "moment", "energy", "power"});
@@ -124,6 +125,8 @@ void MechanismColumns::add_hub(const WatchedHub& hub, fem::Workspace& model, con
   }
   put(sum);
   put(power);
+  if (!scene_.in_space()) return;
+  for (const double value : {sum.force.z(), sum.moment.x(), sum.moment.y()}) put(value);
 }
 
 void MechanismColumns::add_spring(const Spring& spring, fem::Workspace& model,
