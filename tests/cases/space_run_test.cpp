@@ -216,13 +216,13 @@ TEST(SpaceRun, PlateDeploysAndGetsNewLines) {
                                      "plate.tip_z", "hub.force_x", "hub.force_y", "hub.moment",
                                      "hub.power", "hub.force_z", "hub.moment_x", "hub.moment_y"}));
   EXPECT_NEAR(motion.numbers("plate.length").back(), 0.475, 1e-12);
-  // Static sag of the start: ρ c g L⁴ / (8 E I) of a strip that is free to contract sideways,
-  // 1 - ν² of it where it is not; the clamped root lies between.
   // The hub carries the weight of what is outside, half its length away, but for what speeds up
   // down the slope w' = 0.019 of the sag: no more than ρ h b v² w' = 0.007 N.
   EXPECT_NEAR(motion.numbers("hub.force_z").front(), 2700 * 0.005 * 0.1 * 0.4 * 9.81, 0.007);
   EXPECT_NEAR(motion.numbers("hub.moment_y").front(), -2700 * 0.005 * 0.1 * 0.08 * 9.81,
               0.007 * 0.4);
+  // Static sag of the start: ρ c g L⁴ / (8 E I) of a strip that is free to contract sideways,
+  // 1 - ν² of it where it is not; the clamped root lies between.
   const double weight = 2700 * 0.005 * 9.81, EI = 7e9 * std::pow(0.005, 3) / 12;
   const double sag = -motion.numbers("plate.tip_z")[0] / (weight * std::pow(0.4, 4) / (8 * EI));
   EXPECT_GT(sag, 1 - 0.09);
