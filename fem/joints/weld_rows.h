@@ -24,6 +24,20 @@ struct WeldRows {
   std::vector<int> flat;  ///< vectors in space whose z entry is zero
 };
 
+/// The vectors of an edge in the undeformed body, in its axes e₁ along m and e₂.
+struct EdgeVectors {
+  Vec2 r_m{1, 0}, r_n{0, 1};
+};
+
+/// A tapered or sheared end of a beam keeps its own.
+inline EdgeVectors edge_vectors(const Element& element, const std::vector<NodeVectors>& nodes) {
+  if (nodes.size() > 1) return {};
+  const MatrixXd reference = element.reference();
+  const Vec2 axis = reference.row(nodes[0].r_m), section = reference.row(nodes[0].r_n);
+  const Vec2 e1 = axis.normalized();
+  return {{axis.norm(), 0}, {e1.dot(section), e1.x() * section.y() - e1.y() * section.x()}};
+}
+
 /// @throws Error (input) for `partial` at the edge of a plate.
 inline WeldRows weld_rows(const Element& element, const std::vector<NodeVectors>& nodes,
                           WeldMode mode, const std::string& joint) {
@@ -31,14 +45,7 @@ inline WeldRows weld_rows(const Element& element, const std::vector<NodeVectors>
   if (mode == WeldMode::partial && !beam)
     throw Error::input("joint '" + joint + "': only the end of a beam is welded partially");
   const auto across = [](const Vec2& x) { return Vec2(-x.y(), x.x()); };
-  Vec2 r_m(1, 0), r_n(0, 1);
-  if (beam) {
-    const MatrixXd reference = element.reference();
-    const Vec2 axis = reference.row(nodes[0].r_m), section = reference.row(nodes[0].r_n);
-    const Vec2 e1 = axis.normalized();
-    r_m = {axis.norm(), 0};
-    r_n = {e1.dot(section), across(e1).dot(section)};
-  }
+  const auto [r_m, r_n] = edge_vectors(element, nodes);
   WeldRows out;
   for (const NodeVectors& node : nodes) {
     out.fixed.push_back({node.r, 1, {0, beam ? 0 : node.material.y()}});

@@ -8,6 +8,9 @@
 #include <cmath>
 #include <random>
 
+#include "fem/body_weld.h"
+#include "fem/elements/ancf_beam.h"
+#include "fem/terms.h"
 #include "tests/support/differences.h"
 #include "tests/support/models.h"
 
@@ -118,6 +121,52 @@ INSTANTIATE_TEST_SUITE_P(Gradients, EveryMotion,
                                            std::tuple(ShapeSet::q4, 0.5, Start::prestretched),
                                            std::tuple(ShapeSet::q4, -0.5, Start::prestretched),
                                            std::tuple(ShapeSet::h16, 0.5, Start::prestretched)));
+
+// A beam that is welded to the free end of the plate across it goes with its motion, and so do the
+// forces between them.
+TEST(MotionGradient, PassesThroughAWeldBetweenBodies) {
+  for (const Start start : {Start::rigid, Start::prestretched}) {
+    Growing motion(ShapeSet::h16, 0, start);
+    static constexpr double kOmega = 2 * std::numbers::pi, kTip = 0.5;
+    constexpr double kStep = 2e-3, kRoundOff = 1e-12;  // of values: what Newton's method leaves
+    const PlaneSection light{0.001, 1e8, 0.3, 2700};
+    std::vector<std::unique_ptr<Term>> terms;
+    terms.push_back(make_inertia(light));
+    terms.push_back(make_beam_ecm(light));
+    Workspace& model = motion.scene.model;
+    model.add_body("beam", std::make_unique<AncfBeam>(0.2, 0.04, 3), light, std::move(terms));
+    model.add_joint(make_body_weld("corner", {"plate", "free_end"}, {"beam", "root"},
+                                   0.5 * std::numbers::pi, WeldMode::edge));
+    motion.settings.placement = [](double t) {
+      const Vec2 e(std::cos(kOmega * t), std::sin(kOmega * t)), n(-e.y(), e.x());
+      FrameMotion f;
+      f.origin = kTip * e;
+      f.origin_rate = kTip * kOmega * n;
+      f.origin_acceleration = -kTip * kOmega * kOmega * e;
+      f.angle = kOmega * t + 0.5 * std::numbers::pi;
+      f.angle_rate = kOmega;
+      return std::vector<Placed>{{"beam", f, 0}};
+    };
+    motion.settings.end = 0.05;
+    motion.settings.stops = {0.02, 0.05};
+    motion.objectives.push_back(
+        {measure_joint_force("corner", "beam"), MotionObjective::Times::steps, 4});
+    const MotionGradients found = motion.gradients();
+    const FactorSlopes direction = random_direction(model.bodies()[0].factors, 5);
+    const auto along = [&](double by) {
+      const std::vector<double> v = motion.values(direction, by);
+      return VectorXd(Eigen::Map<const VectorXd>(v.data(), static_cast<Eigen::Index>(v.size())));
+    };
+    const VectorXd there = along(0), differences = testing::first_difference(along, kStep);
+    for (size_t k = 0; k < motion.objectives.size(); ++k) {
+      const auto i = static_cast<Eigen::Index>(k);
+      EXPECT_NEAR(found.of[k].value, there[i], 1e-12 * there[i]);
+      EXPECT_NEAR(product(found.of[k].by_factors[0], direction), differences[i],
+                  2e-6 * std::abs(differences[i]) + kRoundOff * there[i] / kStep)
+          << "objective " << k;
+    }
+  }
+}
 
 // Kept states or parts that are gone through again: the same to what solutions are known to.
 TEST(MotionGradient, IsTheSameWithCheckpoints) {
