@@ -24,8 +24,8 @@ std::vector<fem::AttachedJoint> attached_joints(const Scene& scene, const std::s
     if (j.body == name && j.edge == "free_end")
       out.push_back({j.name, {scene.body(name).longest(scene.time.end), 0}, true});
     if (!j.between_bodies()) continue;
-    if (j.a.body == name) out.push_back({j.name, j.a.point, false});
-    if (j.b.body == name) out.push_back({j.name, j.b.point, false});
+    if (j.a.body == name) out.push_back({j.name, j.a.point, j.joins_edges()});
+    if (j.b.body == name) out.push_back({j.name, j.b.point, j.joins_edges()});
   }
   return out;
 }

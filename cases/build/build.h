@@ -65,6 +65,8 @@ void add_rigid_body(const RigidBody& body, fem::Model& model, const fem::LoadLaw
 /// The loads on rigid bodies.
 void add_rigid_loads(const Scene& scene, fem::Model& model);
 
+/// The hub that an edge is welded to.
+const Hub& hub_of(const Scene& scene, const Joint& joint);
 /// The driven frame of a weld to a hub or of a sleeve at rest.
 fem::FrameDrive hub_drive(const Scene& scene, const Joint& joint);
 

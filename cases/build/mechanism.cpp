@@ -73,11 +73,6 @@ fem::FrameDrive at_rest(const Vec2& origin, double angle) {
   return [still](double) { return still; };
 }
 
-const Hub& hub_of(const Scene& scene, const Joint& joint) {
-  return *std::find_if(scene.hubs.begin(), scene.hubs.end(),
-                       [&](const Hub& h) { return h.name == joint.to; });
-}
-
 void add_body(const Scene& scene, const Body& body, const std::array<int, 2>& count,
               fem::Model& model) {
   const fem::LoadLaw gravity = scene.gravity_law();
@@ -222,6 +217,11 @@ void place_alone(const Scene& scene, fem::MotionSettings& motion) {
 
 }  // namespace
 
+const Hub& hub_of(const Scene& scene, const Joint& joint) {
+  return *std::find_if(scene.hubs.begin(), scene.hubs.end(),
+                       [&](const Hub& h) { return h.name == joint.to; });
+}
+
 fem::FrameDrive hub_drive(const Scene& scene, const Joint& joint) {
   if (joint.to.empty()) return at_rest(joint.position, joint.angle);
   const fem::FrameDrive hub = drive_of(scene, hub_of(scene, joint));
@@ -269,56 +269,6 @@ void add_rigid_body(const RigidBody& body, fem::Model& model, const fem::LoadLaw
   model.add_body(body.name, std::make_unique<fem::RigidBody>(std::sqrt(body.inertia / body.mass)),
                  {}, std::move(terms));
   model.add_joint(fem::make_unit_axis("axis of " + body.name, body.name));
-}
-
-namespace {
-
-/// A point of a strip whose axis is an arc that begins along the first axis.
-Vec2 on_arc(double curvature, const Vec2& material) {
-  const double turn = curvature * material.x(), half = 0.5 * turn;
-  const double chord = material.x() * (turn == 0 ? 1 : std::sin(half) / half);
-  return chord * Vec2(std::cos(half), std::sin(half)) +
-         material.y() * Vec2(-std::sin(turn), std::cos(turn));
-}
-
-}  // namespace
-
-Vec3 Pose::place(const Vec2& material) const {
-  const Vec2 flat(material.x() - line, material.y());
-  const Vec2 r = origin + fem::rotation(angle) * (curvature == 0 ? flat : on_arc(curvature, flat));
-  return {r.x(), r.y(), 0};
-}
-
-Vec2 undeformed_place(const Body& body, const Vec2& material) {
-  return body.arc == 0 ? material : on_arc(body.arc / body.length, material);
-}
-
-namespace {
-
-Pose straight_pose(const Scene& scene, const Body& body) {
-  for (const Joint& joint : scene.joints) {
-    if (joint.body != body.name || !joint.holds_frame() || joint.edge == "free_end") continue;
-    const double root = body.longest(scene.time.end) - body.length;
-    const double line = body.start_lines(root, body.elements[0])[static_cast<size_t>(joint.line)];
-    if (joint.to.empty()) return {joint.position, joint.angle, line};
-    if (joint.on_rigid_body())
-      for (const RigidBody& b : scene.rigid_bodies)
-        if (b.name == joint.b.body)
-          return {start_place(scene, joint.b), b.angle + joint.b.angle, line};
-    const Hub& hub = hub_of(scene, joint);
-    return {hub.position, hub.angle + joint.angle, line};
-  }
-  if (body.position)
-    return {*body.position, body.angle, body.longest(scene.time.end) - body.length};
-  return {};
-}
-
-}  // namespace
-
-Pose start_pose(const Scene& scene, const Body& body) {
-  Pose pose = straight_pose(scene, body);
-  if (body.arc != 0) pose.curvature = body.arc / body.length;
-  return pose;
 }
 
 namespace {

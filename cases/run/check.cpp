@@ -183,9 +183,10 @@ void describe_mechanism(const Scene& scene, std::ostringstream& out) {
     mass += body.mass;
     for (const RigidBody::AddedMass& added : body.masses) mass += added.mass;
   }
-  out << row("rigid bodies", std::to_string(scene.rigid_bodies.size()) + " (" + names + "), " +
-                                 std::to_string(4 * scene.rigid_bodies.size()) + " unknowns, " +
-                                 io::to_text(mass, 6) + " kg");
+  if (!scene.rigid_bodies.empty())
+    out << row("rigid bodies", std::to_string(scene.rigid_bodies.size()) + " (" + names + "), " +
+                                   std::to_string(4 * scene.rigid_bodies.size()) + " unknowns, " +
+                                   io::to_text(mass, 6) + " kg");
   const int before = undriven_freedoms(scene), after = TwinMotion(scene).degrees_of_freedom();
   out << row("freedoms", "of the rigid twin: " + std::to_string(before) +
                              " without the drives of joints and flows, " + std::to_string(after) +
@@ -271,7 +272,7 @@ void describe_absent(const Scene& scene, std::ostringstream& out) {
   if (std::none_of(scene.bodies.begin(), scene.bodies.end(),
                    [](const Body& b) { return b.flow.has_value(); }))
     out << row("material flow", "no shape function has rates");
-  if (!scene.is_mechanism()) out << row("rigid bodies", "none");
+  if (scene.rigid_bodies.empty()) out << row("rigid bodies", "none");
   if (scene.is_mechanism() && scene.springs.empty()) out << row("springs", "none");
   if (!scene.gravity) out << row("gravity", "none");
   if (scene.designs.empty()) out << row("design", "full material; no loads, no optimizer");

@@ -34,7 +34,7 @@ Support support_of(const Scene& scene, const Body& body) {
     if (j.drives_line || (j.body != body.name && j.a.body != body.name && j.b.body != body.name))
       continue;
     ++held;
-    frames += j.body == body.name && (j.holds_frame() || j.holds_edges());
+    frames += j.joins_edges() || (j.body == body.name && (j.holds_frame() || j.holds_edges()));
   }
   if (held == 0) return Support::none;
   if (held > 1) return Support::two_places;

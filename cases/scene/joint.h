@@ -23,6 +23,7 @@ struct Joint {
   Anchor a, b;         ///< of joints between bodies
   std::vector<Law> laws;
   std::string edge;
+  std::string edge_a, edge_b;  ///< of a weld between plates and beams: the edges at a and b
   std::string to;
   fem::WeldMode mode = fem::WeldMode::edge;
   Vec2 position{0, 0};  ///< [m]
@@ -44,6 +45,8 @@ struct Joint {
   }
   bool on_rigid_body() const { return holds_frame() && !b.on_ground(); }
   bool between_bodies() const { return !holds_frame() && (!a.on_ground() || !b.on_ground()); }
+  /// Does it weld a plate or beam to another one?
+  bool joins_edges() const { return !edge_a.empty(); }
   bool holds_edges() const { return !edges.empty(); }
 };
 

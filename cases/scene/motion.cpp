@@ -254,9 +254,10 @@ void read_span(const Table& root, Scene& scene) {
 void settle_start(const Table& root, Scene& scene) {
   const Table time = root.table(tables::kTime);
   if (scene.is_mechanism() && scene.time.start == Start::hub_at_rest)
-    time.fail(kStart,
-              "\"hub_at_rest\" spins up hubs; the drives of a scene with rigid bodies say "
-              "themselves how they start");
+    time.fail(
+        kStart,
+        "\"hub_at_rest\" spins up hubs; the drives of a scene with rigid bodies, or with bodies "
+        "welded to each other, say themselves how they start");
   if (scene.time.integrator != "generalized_alpha" && scene.has_free_lines())
     time.fail(kIntegrator, "free material lines ([[body.line]]) need \"generalized_alpha\": \"" +
                                scene.time.integrator + "\" does not know them");

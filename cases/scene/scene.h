@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <optional>
@@ -65,7 +66,11 @@ struct Scene {
   /// Gravity in time; of size 0 where nothing weighs.
   fem::LoadLaw gravity_law() const { return load_law(gravity_laws); }
   bool follows_trajectory(const Law& law) const;
-  bool is_mechanism() const { return !rigid_bodies.empty(); }
+  /// Do joints say where its bodies are, not hubs and places alone? The rigid twin finds out.
+  bool is_mechanism() const {
+    return !rigid_bodies.empty() || std::any_of(joints.begin(), joints.end(),
+                                                [](const Joint& j) { return j.joins_edges(); });
+  }
   bool in_space() const { return !bodies.empty() && bodies.front().in_space(); }  ///< all, or none
   bool has_free_lines() const;
   bool has_heat() const;

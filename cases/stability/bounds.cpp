@@ -28,7 +28,7 @@ void offer_body(const Scene& scene, const Body& body, Bounds& out) {
   for (const Joint& j : scene.joints) {
     if (j.body != body.name && j.a.body != body.name && j.b.body != body.name) continue;
     ++held;
-    carried = carried || j.holds_frame() || j.holds_edges();
+    carried = carried || j.holds_frame() || j.holds_edges() || j.joins_edges();
   }
   const double shape = held > 1 ? std::numbers::pi * std::numbers::pi : 1.8751 * 1.8751;
   offer(shape / (length * length) * wave * depth / std::sqrt(12.0),

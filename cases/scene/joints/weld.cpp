@@ -1,12 +1,19 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <set>
+
 #include "cases/scene/elements/row.h"
 #include "cases/scene/joints/reading.h"
 #include "cases/scene/joints/row.h"
+#include "fem/body_weld.h"
 
 namespace flexmorph::cases {
 namespace {
 
 const io::Key& kTo = io::key("joint", "to")
-                         .name_of("a hub or rigid body")
+                         .name_of("a hub or a body")
                          .when("weld of a body")
                          .says("What the edge is welded to.");
 const io::Key& kPoint = io::key("joint", "point")
@@ -20,11 +27,67 @@ const io::Key& kAngle = io::key("joint", "angle")
                             .when("weld of a body")
                             .says("Of the edge's normal, in the axes of the hub or rigid body.");
 
+const io::Key& kOwnEdge = io::key("joint", "edge")
+                              .word("an edge", {"root", "free_end"})
+                              .when("weld of two plates or beams")
+                              .says("The edge of the body.");
+const io::Key& kToEdge = io::key("joint", "to_edge")
+                             .word("an edge", {"root", "free_end"})
+                             .when("weld of two plates or beams")
+                             .says("The edge of the body that it is welded to.");
+const io::Key& kTurn =
+    io::key("joint", "angle")
+        .number(io::any_number("an angle", "rad"))
+        .otherwise_as("0; half a turn where two roots or two free ends meet")
+        .when("weld of two plates or beams")
+        .says("From the axis of the other body to its own, undeformed, at the weld.");
+const io::Choice<fem::WeldMode> kJoining(
+    io::key("joint", "mode")
+        .otherwise_as("`partial` of two beams, else `edge`")
+        .when("weld of two plates or beams")
+        .says("Sections of beams turn together; edges are one; all slopes are continuous."),
+    "the weld of two bodies",
+    {{"partial", fem::WeldMode::partial},
+     {"edge", fem::WeldMode::edge},
+     {"full", fem::WeldMode::full}});
+
 /// The frame on a rigid body that the edge is welded to.
 void read_carrier(const io::Table& t, Joint& joint) {
   joint.b.body = joint.to;
   joint.b.point = read_pair(t, kPoint);
   joint.b.angle = t.number(kAngle);
+}
+
+/// What a weld makes one: an edge of a plate or beam, a rigid body, or all that hubs hold.
+using Part = std::pair<std::string, std::string>;  // body, edge
+
+Part edge_part(const Scene& scene, const Joint& joint) {
+  const bool last = joint.edge == "free_end" || joint.line == scene.body(joint.body).elements[0];
+  return {joint.body, last ? "free_end" : joint.line == 0 ? "root" : joint.edge};
+}
+
+/// Both sides of a weld; {} twice of all other joints.
+std::array<Part, 2> parts_of(const Scene& scene, const Joint& joint) {
+  if (joint.joins_edges()) return {{{joint.a.body, joint.edge_a}, {joint.b.body, joint.edge_b}}};
+  if (joint.holds_frame()) return {edge_part(scene, joint), Part{joint.b.body, ""}};
+  return {};
+}
+
+/// Edges that are one by other welds would be held twice: a row more than there are freedoms, which
+/// no solver forgives.
+void refuse_second_weld(const io::Table& t, const io::Key& key, const Scene& scene,
+                        const Joint& joint) {
+  const auto [from, to] = parts_of(scene, joint);
+  std::set<Part> reached = {from};
+  for (bool grew = true; grew;) {
+    grew = false;
+    for (const Joint& other : scene.joints) {
+      const auto [a, b] = parts_of(scene, other);
+      if (reached.contains(a) != reached.contains(b)) grew = true, reached.insert({a, b});
+    }
+  }
+  if (reached.contains(to))
+    t.fail(key, "other welds make these one already: of a chain that closes leave out one");
 }
 
 /// An edge in a hub or on a rigid body; which also says where the body begins.
@@ -43,9 +106,69 @@ void read_welded_edge(const io::Table& t, const Scene& scene, Joint& joint) {
     joint.angle = t.number(kAngle);
   joint.mode = body.row->read_weld(t);
   check_frame(t, scene, body, joint);
+  refuse_second_weld(t, joint_keys::kEdge, scene, joint);
+}
+
+/// The end of a plate or beam as a place of a weld: in the plane, of material that stays.
+/// @param edge_key  where the edge is said
+Anchor anchor_at(const io::Table& t, const io::Key& body_key, const io::Key& edge_key,
+                 const Body& body, double run_end, const std::string& edge) {
+  if (body.in_space()) t.fail(body_key, "plates in space are not welded to other bodies");
+  const bool root = edge == "root";
+  const bool moves =
+      (root && body.flow) || std::any_of(body.lines.begin(), body.lines.end(), [&](const auto& l) {
+        return l.index == (root ? 0 : body.elements[0]);
+      });
+  if (moves)
+    t.fail(edge_key, "this edge of '" + body.name +
+                         "' moves through the material: it sits in a hub, in a sleeve or on a "
+                         "rigid body");
+  return {body.name, {root ? 0 : body.longest(run_end), 0}, root ? 0 : body.arc};
+}
+
+/// Their edges are one line, node by node.
+void check_plates(const io::Table& t, const Body& a, const Body& b, const Joint& joint,
+                  double angle) {
+  if (std::abs(std::sin(angle)) > 1e-9)
+    t.fail(kTurn,
+           "plates meet edge on edge: 0, or half a turn; at an angle there is a rigid body "
+           "between them");
+  if (std::abs(a.width - b.width) > 1e-9 * a.width || a.elements[1] != b.elements[1] ||
+      a.shape != b.shape)
+    t.fail(kTo, "plates are welded node on node: '" + a.name + "' and '" + b.name +
+                    "' need the same width, elements across and kind of elements");
+  if (joint.mode == fem::WeldMode::partial)
+    t.fail(kJoining, "only beams are welded partially: \"edge\" or \"full\"");
+}
+
+/// Plates and beams at their edges: a is the body it is welded to, b the one that is welded.
+void read_joined_edges(const io::Table& t, const Scene& scene, Joint& joint) {
+  const Body& b = scene.body(read_flexible(t, joint_keys::kBody, scene));
+  const Body& a = scene.body(t.choice(kTo, names_of(scene.bodies)));
+  if (&a == &b) t.fail(kTo, "a weld is between two bodies");
+  joint.edge_a = t.choice(kToEdge);
+  joint.edge_b = t.choice(kOwnEdge);
+  joint.a = anchor_at(t, kTo, kToEdge, a, scene.time.end, joint.edge_a);
+  joint.b = anchor_at(t, joint_keys::kBody, kOwnEdge, b, scene.time.end, joint.edge_b);
+  const bool beams = !a.row->across && !b.row->across, plates = a.row->across && b.row->across;
+  const double angle =
+      t.number(kTurn, std::optional(joint.edge_a == joint.edge_b ? std::numbers::pi : 0.0));
+  joint.a.angle += angle;
+  joint.angle = angle;
+  joint.mode =
+      t.choice(kJoining, std::optional(beams ? fem::WeldMode::partial : fem::WeldMode::edge));
+  if (plates) check_plates(t, a, b, joint, angle);
+  if (!beams && !plates && joint.mode != fem::WeldMode::edge)
+    t.fail(kJoining, "a plate and a beam are welded by \"edge\"");
+  refuse_second_weld(t, kToEdge, scene, joint);
+  name_between(t, scene, joint);
 }
 
 void read(const io::Table& t, const Scene& scene, Joint& joint) {
+  if (t.has(kToEdge) || t.says_one_of(kTo, names_of(scene.bodies))) {
+    read_joined_edges(t, scene, joint);
+    return;
+  }
   if (t.has(joint_keys::kBody)) {
     read_welded_edge(t, scene, joint);
     return;
@@ -55,7 +178,10 @@ void read(const io::Table& t, const Scene& scene, Joint& joint) {
 }
 
 std::unique_ptr<fem::Joint> make(const Joint& joint, const JointParts& parts) {
-  return fem::make_rigid_weld(joint.name, parts.a, parts.b);
+  if (!joint.joins_edges() || parts.rigid)
+    return fem::make_rigid_weld(joint.name, parts.a, parts.b);
+  return fem::make_body_weld(joint.name, {joint.a.body, joint.edge_a}, {joint.b.body, joint.edge_b},
+                             joint.angle, joint.mode);
 }
 
 }  // namespace
@@ -64,7 +190,7 @@ extern const JointRow kWeld;
 const JointRow kWeld = {
     .name = "weld",
     .sentence =
-        "An edge sits in a hub or on a rigid body; or the axes of two rigid bodies are one.",
+        "An edge is one with a hub, a rigid body or another edge; or two rigid bodies are one.",
     .read = read,
     .make = make,
     .has_moment = true};
