@@ -297,17 +297,24 @@ TEST(WeldedBodies, CarryWeight) {
   }
 }
 
-TEST(WeldedBodies, AreRefusedWhereEdgesDoNotMeet) {
+const std::string kHeld =
+    "title = \"Bad\"\n[time]\nstep = 1e-3\nend = 0.1\n"
+    "[[hub]]\nname = \"wall\"\nangular_velocity = 0.0\n";
+
+/// What is said of a case file with these bodies in a hub.
+std::string refusal(const std::string& bodies) {
   const Scratch scratch;
-  const auto says = [&](const std::string& bodies, const std::string& what) {
-    const std::string file = scratch.write("bad.toml",
-                                           "title = \"Bad\"\n[time]\nstep = 1e-3\nend = 0.1\n"
-                                           "[[hub]]\nname = \"wall\"\nangular_velocity = 0.0\n" +
-                                               bodies);
-    const std::string text =
-        testing::error_of(Error::Kind::input, [&] { cases::read_scene(io::CaseFile(file)); });
+  const std::string file = scratch.write("bad.toml", kHeld + bodies);
+  const std::string text =
+      testing::error_of(Error::Kind::input, [&] { cases::read_scene(io::CaseFile(file)); });
+  EXPECT_TRUE(testing::says(text, "bad.toml:")) << text;
+  return text;
+}
+
+TEST(WeldedBodies, AreRefusedWhereEdgesDoNotMeet) {
+  const auto says = [](const std::string& bodies, const std::string& what) {
+    const std::string text = refusal(bodies);
     EXPECT_TRUE(testing::says(text, what)) << text;
-    EXPECT_TRUE(testing::says(text, "bad.toml:")) << text;
   };
   const std::string a = Strip{"a"}.toml() + in_hub("a", "wall"), b = Strip{"b"}.toml(),
                     beam = Strip{"b", true}.toml();
@@ -334,6 +341,31 @@ TEST(WeldedBodies, AreRefusedWhereEdgesDoNotMeet) {
   growing.replace(growing.find("ancf_plate"), 10, "ale_ancf_plate");
   growing += "[body.flow]\nspeed = 0.5\nmax_length = 0.1\n" + in_hub("a", "wall");
   says(growing + b + welded("b", "root", "a", "root"), "moves through the material");
+}
+
+// A designed plate may carry another one, but where it moves on the cells of its design their nodes
+// part: said before anything is computed.
+TEST(WeldedBodies, PartOnTheCellsOfADesign) {
+  const std::string designed = Strip{"a"}.toml() + in_hub("a", "wall") + Strip{"b"}.toml() +
+                               welded("b", "root", "a", "free_end") + R"toml(
+[esl]
+every = 0.01
+[[design]]
+body = "a"
+cells = [40, 10]
+components = [4, 1]
+max_volume = 0.5
+[optimizer]
+name = "mma"
+)toml";
+  const Scratch scratch;
+  const cases::Scene scene =
+      cases::read_scene(io::CaseFile(scratch.write("good.toml", kHeld + designed)));
+  EXPECT_EQ(scene.designs.size(), 1U);
+  for (const char* more : {"[verify]\ncells = 1\n", "[certificate]\n"}) {
+    const std::string text = refusal(designed + more);
+    EXPECT_TRUE(testing::says(text, "on the cells of the design their nodes do not meet")) << text;
+  }
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "cases/scene/design/cells.h"
 #include "cases/scene/read.h"
 #include "cases/scene/tables.h"
 #include "io/files.h"
@@ -72,6 +73,7 @@ std::string no_gradient_because(const Scene& scene) {
   if (scene.has_free_lines())
     return "when meshes with free lines change depends on the design ([[body.line]])";
   if (scene.has_heat()) return "it is not derived for heat ([body.heat])";
+  if (const std::string why = unmatched_cells(scene, 1); !why.empty()) return why;
   for (const BodyDesign& design : scene.designs) {
     const Body& body = scene.body(design.body);
     if (!body.lines.empty()) return "'" + body.name + "' has lines of its own ([[body.line]])";

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "cases/scene/design/cells.h"
 #include "cases/scene/design/keys.h"
 #include "cases/scene/read.h"
 #include "cases/scene/tables.h"
@@ -268,6 +269,9 @@ Verify read_verify(const Table& t, const Scene& scene) {
     const std::vector<int> mesh = t.integers(kMesh);
     verify.mesh = {mesh[0], mesh[1]};
   }
+  if (verify.cells > 0)
+    if (const std::string why = unmatched_cells(scene, verify.cells); !why.empty())
+      t.fail(kCells, why);
   for (const BodyDesign& design : scene.designs) {
     const Body& body = scene.body(design.body);
     if (verify.mesh &&

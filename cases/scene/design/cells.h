@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+
+#include "cases/scene/elements/row.h"
+#include "cases/scene/scene.h"
+
+namespace flexmorph::cases {
+
+/// Why plates that are welded node on node cannot move on the cells of their designs; empty: they
+/// can, as nothing is welded so or both have as many cells across.
+/// @param parts  of a cell, each way
+inline std::string unmatched_cells(const Scene& scene, int parts) {
+  const auto across = [&](const Body& body) {  // 0: no cells
+    for (const BodyDesign& design : scene.designs)
+      if (design.body == body.name) return parts * design.grid.ny;
+    return body.on_cells() ? body.elements[1] : 0;
+  };
+  const auto designed = [&](const Body& body) {
+    return std::any_of(scene.designs.begin(), scene.designs.end(),
+                       [&](const BodyDesign& design) { return design.body == body.name; });
+  };
+  for (const Joint& joint : scene.joints) {
+    if (!joint.joins_edges()) continue;
+    const Body &a = scene.body(joint.a.body), &b = scene.body(joint.b.body);
+    const bool plates = a.row->across && b.row->across;
+    if (plates && (designed(a) || designed(b)) && across(a) != across(b))
+      return "'" + b.name + "' is welded to '" + a.name +
+             "' node on node, but on the cells of the design their nodes do not meet";
+  }
+  return {};
+}
+
+}  // namespace flexmorph::cases
