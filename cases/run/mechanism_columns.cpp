@@ -1,5 +1,6 @@
 #include "cases/run/mechanism_columns.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -7,6 +8,7 @@
 #include "cases/build/joints.h"
 #include "cases/scene/joints/row.h"
 #include "fem/dynamics/carrier.h"
+#include "fem/dynamics/whole_momentum.h"
 #include "fem/workspace_wrench.h"
 
 namespace flexmorph::cases {
@@ -33,10 +35,23 @@ double drive_power(const fem::Model& model, size_t joint, const fem::State& x) {
 
 }  // namespace
 
-MechanismColumns::MechanismColumns(const Scene& scene) : scene_(scene) {
+bool MechanismColumns::is_free(const Scene& scene) {
+  const auto holds = [](const Joint& j) {
+    if (j.holds_frame()) return !j.on_rigid_body();
+    if (j.drives_line) return false;
+    return !j.between_bodies() || j.a.on_ground() || j.b.on_ground();
+  };
+  return !scene.statics && scene.hubs.empty() &&
+         std::none_of(scene.bodies.begin(), scene.bodies.end(),
+                      [](const Body& b) { return b.in_space(); }) &&
+         std::none_of(scene.joints.begin(), scene.joints.end(), holds);
+}
+
+MechanismColumns::MechanismColumns(const Scene& scene) : scene_(scene), is_free_(is_free(scene)) {
   const auto name = [&](const std::string& of, std::initializer_list<const char*> quantities) {
     for (const char* quantity : quantities) columns_.push_back({of + "." + quantity, {}});
   };
+  if (is_free_) name("momentum", {"x", "y", "angular"});
   for (const RigidBody& body : scene.rigid_bodies) {
     name(body.name, {"x", "y", "angle"});
     frames_.emplace_back().angle = body.angle;
@@ -69,6 +84,10 @@ MechanismColumns::MechanismColumns(const Scene& scene) : scene_(scene) {
 
 void MechanismColumns::add(fem::Workspace& model, const fem::State& x) {
   next_ = 0;
+  if (is_free_) {
+    const fem::WholeMomentum all = fem::whole_momentum(model, x);
+    for (const double value : {all.linear.x(), all.linear.y(), all.angular}) put(value);
+  }
   for (size_t i = 0; i < frames_.size(); ++i) {
     const double before = frames_[i].angle;
     frames_[i] = fem::frame_of(model.body(scene_.rigid_bodies[i].name), x);

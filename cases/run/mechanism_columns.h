@@ -8,7 +8,9 @@ namespace flexmorph::cases {
 
 /// What the table of a motion says of a mechanism, step by step, in this order:
 ///
-/// every rigid body      <name>.x, .y [m], .angle [rad]: its point and first axis; the angle goes
+/// where nothing holds   momentum.x, .y [kg m/s], momentum.angular [kg m²/s] about the origin: of
+/// all the bodies            that moves (see is_free()) every rigid body      <name>.x, .y [m],
+/// .angle [rad]: its point and first axis; the angle goes
 ///                       on through half turns, from the one of the case
 /// with a trajectory     <body>.delta_x, .delta_y [m], .delta_angle [rad]: where its body is, less
 ///                       where it should be
@@ -21,9 +23,13 @@ namespace flexmorph::cases {
 /// every named spring    <spring>.force_x, .force_y, .moment as of a joint, .energy [J]: stored in
 ///                       it, and .power [W]: what else enters through it, negative in a damper
 ///
-/// Scenes without rigid bodies, hubs and named joints and springs have none of these.
+/// Other scenes without rigid bodies, hubs and named joints and springs have none of these.
 class MechanismColumns {
  public:
+  /// Do all its bodies live in the plane, of which none is held by the ground or a hub? What they
+  /// do to each other keeps their momentum then.
+  static bool is_free(const Scene& scene);
+
   explicit MechanismColumns(const Scene& scene);
 
   /// The next row. @param x  λ belongs to it
@@ -56,6 +62,7 @@ class MechanismColumns {
   void put(double value) { columns_[next_++].values.push_back(value + 0.0); }  // no "-0"
 
   const Scene& scene_;
+  bool is_free_;
   std::vector<fem::FrameMotion> frames_;  // of the rigid bodies, angles unwrapped
   std::optional<double> turns_;           // of the trajectory's angle against the body's [rad]
   std::array<std::function<fem::Motion(double)>, 3> path_;
