@@ -12,6 +12,15 @@ struct RigidSection {
   double inertia = 1;  ///< about the centre of mass [kg m²]
 };
 
+/// What terms that vary in time ask the elements of a rigid body.
+class RigidClock {
+ public:
+  virtual double time() const = 0;  ///< of the last Element::move_to() [s]
+
+ protected:
+  ~RigidClock() = default;
+};
+
 /// Inertia of a planar rigid body (elements/rigid_body.h): a constant mass matrix.
 /// @throws Error (input) unless mass and inertia are positive and all numbers finite; at prepare()
 /// for a body that is not rigid.

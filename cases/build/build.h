@@ -6,6 +6,7 @@
 #include "cases/scene/scene.h"
 #include "fem/dynamics/esl.h"
 #include "fem/dynamics/motion.h"
+#include "fem/stored.h"
 #include "optim/mmc/esl_loop.h"
 
 namespace flexmorph::cases {
@@ -59,9 +60,10 @@ Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh = {});
 /// Energy of strains of 1e-13, which slopes of size one have by round-off [J].
 double stress_round_off(const Scene& scene);
 
-/// A rigid body with its inertia and that of its point masses, its weight (gravity (2) [m/s^2], or
-/// empty) and its unit axis.
-void add_rigid_body(const RigidBody& body, fem::Model& model, const fem::LoadLaw& gravity);
+/// A rigid body with its inertia and that of its point masses and of what it stores, its weight
+/// (gravity (2) [m/s^2], or empty) and its unit axis.
+void add_rigid_body(const RigidBody& body, fem::Model& model, const fem::LoadLaw& gravity,
+                    std::span<const fem::StoredMaterial> stored = {});
 /// The loads on rigid bodies.
 void add_rigid_loads(const Scene& scene, fem::Model& model);
 

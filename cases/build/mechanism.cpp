@@ -5,6 +5,7 @@
 #include "cases/build/build.h"
 #include "cases/build/heat.h"
 #include "cases/build/joints.h"
+#include "cases/build/stored.h"
 #include "cases/build/twin.h"
 #include "cases/scene/elements/row.h"
 #include "cases/scene/joints/row.h"
@@ -261,13 +262,19 @@ void add_rigid_loads(const Scene& scene, fem::Model& model) {
   }
 }
 
-void add_rigid_body(const RigidBody& body, fem::Model& model, const fem::LoadLaw& gravity) {
+void add_rigid_body(const RigidBody& body, fem::Model& model, const fem::LoadLaw& gravity,
+                    std::span<const fem::StoredMaterial> stored) {
   const fem::RigidSection section = section_of(body);
   std::vector<std::unique_ptr<fem::Term>> terms;
   terms.push_back(fem::make_rigid_inertia(section));
   if (gravity.size() > 0) terms.push_back(fem::make_rigid_gravity(section, gravity));
-  model.add_body(body.name, std::make_unique<fem::RigidBody>(std::sqrt(body.inertia / body.mass)),
-                 {}, std::move(terms));
+  for (const fem::StoredMaterial& each : stored) {
+    terms.push_back(fem::make_stored_inertia(each));
+    if (gravity.size() > 0) terms.push_back(fem::make_stored_weight(each, gravity));
+  }
+  const double size = std::sqrt(body.inertia / body.mass);
+  model.add_body(body.name, std::make_unique<fem::RigidBody>(size, !stored.empty()), {},
+                 std::move(terms));
   model.add_joint(fem::make_unit_axis("axis of " + body.name, body.name));
 }
 
@@ -322,13 +329,14 @@ Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh) {
     return std::array{mesh.refine * count[0], mesh.refine * count[1]};
   };
   for (const RigidBody& body : scene.rigid_bodies)
-    add_rigid_body(body, out.model, scene.gravity_law());
+    add_rigid_body(body, out.model, scene.gravity_law(), stored_in(scene, body.name));
   for (const Body& body : scene.bodies) add_body(scene, body, elements(body), out.model);
   const FindPlace place = [](const Anchor& a) {
     return fem::MarkerPlace{a.body, a.point, a.angle, {}};
   };
   for (const Spring& spring : scene.springs) out.model.add_link(make_link(scene, spring, place));
   add_rigid_loads(scene, out.model);
+  add_outlets(scene, out.model);
   for (const Joint& joint : scene.joints) {
     if (!joint.holds_frame()) {
       if (auto made = make_joint(scene, joint, place, false)) out.model.add_joint(std::move(made));

@@ -17,6 +17,10 @@
 /// [[body]], and the masses on it.
 namespace flexmorph::cases {
 
+/// Where material of a growing plate is before it leaves: nowhere, on a coil, or in a rigid rod
+/// behind the outlet.
+enum class Stored { none, coil, rod };
+
 /// Material that leaves the hub, and what the mesh does then: lines of nodes come and go
 /// (fem/README.md, Insertion and removal), or all of them move (there, Even meshes).
 struct Flow {
@@ -27,6 +31,9 @@ struct Flow {
   bool even = false;      ///< all lines move, and elements stay equal; the limits are 0 then
   double max_length = 0;  ///< a longer boundary element is split in the middle [m]
   double min_length = 0;  ///< a shorter one is merged with its neighbour [m]
+  Stored stored = Stored::none;
+  std::optional<Vec2> stored_at;        ///< in the axes of the carrier; none: the outlet [m]
+  std::optional<double> stored_length;  ///< at the start; none: what leaves until the longest [m]
 };
 
 /// An m-line of a body's mesh that is not where an even mesh has it, or is free to move through the
@@ -99,6 +106,11 @@ struct Body {
   double number(const std::string& key) const {
     const auto found = numbers.find(key);
     return found == numbers.end() ? 0 : found->second;
+  }
+  /// What is stored at the start [m]; 0 where nothing says that anything is.
+  double stored_at_start(double end) const {
+    if (!flow || flow->stored == Stored::none) return 0;
+    return flow->stored_length.value_or(longest(end) - length);
   }
   bool has_free_lines() const {
     return std::any_of(lines.begin(), lines.end(), [](const BodyLine& l) { return l.free; });

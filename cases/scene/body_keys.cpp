@@ -79,6 +79,23 @@ const io::Key& kMinLength =
         .number(positive("a length", "m"))
         .otherwise_as("0.3 `max_length`")
         .says("A shorter element at the root is merged with its neighbour.");
+const io::Key& kStored =
+    io::key("body.flow", "stored")
+        .word("where material is before it leaves", {"none", "coil", "rod"})
+        .otherwise("none")
+        .says(
+            "What a rigid body feels of it: nothing, a coil, or a rod that slides to the outlet.");
+const io::Key& kStoredAt =
+    io::key("body.flow", "stored_at")
+        .numbers(io::any_number("a place", "m"), 2, 2)
+        .otherwise_as("the outlet")
+        .when("`stored` is not \"none\"")
+        .says("Of the coil, or of the rod's front end, in the axes of the rigid body.");
+const io::Key& kStoredLength = io::key("body.flow", "stored_length")
+                                   .number(io::positive("a length", "m"))
+                                   .otherwise_as("what leaves until the body is longest")
+                                   .when("`stored` is not \"none\"")
+                                   .says("Length of the material that is stored at the start.");
 
 }  // namespace flow_keys
 

@@ -13,7 +13,8 @@ extern const io::Key &kBodyName, &kElement, &kTerms, &kLength, &kThickness, &kLi
 }  // namespace body_keys
 
 namespace flow_keys {
-extern const io::Key &kSpeed, &kLength, &kMesh, &kMaxLength, &kMinLength;
+extern const io::Key &kSpeed, &kLength, &kMesh, &kMaxLength, &kMinLength, &kStored, &kStoredAt,
+    &kStoredLength;
 }  // namespace flow_keys
 
 /// Declares the numbers that terms read: rows of another table, which is not there before main().

@@ -326,6 +326,10 @@ void follow_length(const Table& body_table, const Scene& scene, Body& body) {
     flow.longest = range[1];
   }
   check_limits(t, body, scene.time.end);
+  const double leaves = body.longest(scene.time.end) - body.length;
+  if (flow.stored_length && *flow.stored_length < leaves * (1 - 1e-9))
+    t.fail(flow_keys::kStoredLength, "the material runs out: " + to_text(leaves, 4) +
+                                         " m leave until the body is longest [m]");
 }
 
 }  // namespace flexmorph::cases

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "cases/scene/body_keys.h"
 #include "cases/scene/joints/reading.h"
 #include "cases/scene/joints/row.h"
 #include "cases/scene/tables.h"
@@ -41,6 +42,17 @@ void check_lines(const Table& t, const Body& body, const Scene& scene) {
   }
 }
 
+/// Material is stored in rigid bodies: hubs move as they are driven, whatever they store.
+void check_stored(const Table& t, const Body& body, const Scene& scene) {
+  if (!body.flow || body.flow->stored == Stored::none) return;
+  for (const Joint& joint : scene.joints)
+    if (joint.carries(body.name) && !joint.on_rigid_body())
+      t.table(body_keys::kFlow)
+          .fail(flow_keys::kStored, "material is stored in a rigid body, but '" + body.name +
+                                        "' leaves the hub '" + joint.to +
+                                        "', whose motion does not depend on it");
+}
+
 }  // namespace
 
 const io::Key& joint_keys::kType = io::key("joint", "type")
@@ -71,6 +83,7 @@ void read_joints(const Table& root, Scene& scene) {
                                     [&](const Joint& j) { return j.carries(body.name); });
     if (body.flow && !welded)
       bodies[i].fail("material flows out of a hub: a [[joint]] with edge = \"root\" is missing");
+    check_stored(bodies[i], body, scene);
     check_lines(bodies[i], body, scene);
     const bool framed = std::any_of(scene.joints.begin(), scene.joints.end(), [&](const Joint& j) {
       return j.body == body.name && j.holds_frame() && j.edge != "free_end";

@@ -5,7 +5,7 @@
 
 namespace flexmorph::fem {
 
-RigidBody::RigidBody(double length) : length_(length) {
+RigidBody::RigidBody(double length, bool moves) : length_(length), moves_(moves) {
   if (!(length > 0) || !std::isfinite(length))
     throw Error::input("rigid body: its length is positive [m]");
 }

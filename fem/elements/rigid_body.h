@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fem/element.h"
+#include "fem/rigid.h"
 
 namespace flexmorph::fem {
 
@@ -17,12 +18,13 @@ namespace flexmorph::fem {
 ///
 /// Source: García de Jalón & Bayo (1994), Kinematic and Dynamic Simulation of Multibody Systems,
 /// ch. 2 and 4.2; fem/README.md, Rigid bodies and joints.
-class RigidBody final : public Element {
+class RigidBody final : public Element, public RigidClock {
  public:
   /// @param length  makes the axis a displacement: a size of the body, such as its radius of
   ///                gyration [m]
-  /// @throws Error (input) unless it is positive.
-  explicit RigidBody(double length);
+  /// @param moves   does its mass change in time, with material that it stores (fem/stored.h)?
+  /// @throws Error (input) unless the length is positive.
+  explicit RigidBody(double length, bool moves = false);
 
   std::unique_ptr<Element> clone() const override { return std::make_unique<RigidBody>(*this); }
   int dim() const override { return 2; }
@@ -37,8 +39,9 @@ class RigidBody final : public Element {
   MatrixXd reference() const override;
   /// @throws Error (input) always: a rigid body has no edges.
   std::vector<NodeVectors> edge(const std::string& name) const override;
-  void move_to(double /*t*/) override {}
-  bool moving(int /*e*/) const override { return false; }
+  void move_to(double t) override { time_ = t; }
+  bool moving(int /*e*/) const override { return moves_; }
+  double time() const override { return time_; }
   /// An empty table: no points, no gradients.
   void tabulate(int e, int degree, Tabulate what, const Factors& factors, FactorKind kind,
                 ShapeTable& out) const override;
@@ -46,7 +49,8 @@ class RigidBody final : public Element {
   int locate(const Vec2& material, Tabulate what, ShapeTable& out) const override;
 
  private:
-  double length_;
+  double length_, time_ = 0;
+  bool moves_;
 };
 
 }  // namespace flexmorph::fem

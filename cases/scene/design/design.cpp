@@ -342,6 +342,10 @@ BodyDesign read_design(const Table& t, const Scene& scene) {
   if (!scene.body(design.body).row->designable) t.fail(kBody, "plates are designed, beams are not");
   if (const auto& heat = scene.body(design.body).heat; heat && heat->force)
     t.fail(kBody, "the thermal force is that of full material: body.heat.force = false");
+  if (const auto& flow = scene.body(design.body).flow; flow && flow->stored != Stored::none)
+    t.fail(kBody,
+           "what a rigid body stores is full material: no design of a body that has "
+           "body.flow.stored");
   for (const BodyDesign& other : scene.designs)
     if (other.body == design.body) t.fail(kBody, "this body has a [[design]] already");
   const Body& body = scene.body(design.body);

@@ -40,6 +40,20 @@ const io::Key& kElements = io::key("body", "elements")
                                .integers("a number of elements", 1, kMostElements, 2, 2)
                                .when("plates")
                                .says("Elements along the length at the start, and across.");
+/// What is stored, and where.
+void read_stored(const Table& t, Flow& flow) {
+  const std::string stored = t.choice(flow_keys::kStored);
+  flow.stored = stored == "coil" ? Stored::coil : stored == "rod" ? Stored::rod : Stored::none;
+  for (const Key* key : {&flow_keys::kStoredAt, &flow_keys::kStoredLength})
+    if (flow.stored == Stored::none && t.has(*key))
+      t.fail(*key, "nothing is stored: stored = \"coil\" or \"rod\"");
+  if (t.has(flow_keys::kStoredAt)) {
+    const std::vector<double> at = t.numbers(flow_keys::kStoredAt);
+    flow.stored_at = Vec2(at[0], at[1]);
+  }
+  if (t.has(flow_keys::kStoredLength)) flow.stored_length = t.number(flow_keys::kStoredLength);
+}
+
 Flow read_flow(const Table& t, const Scene& scene, bool on_cells) {
   Flow flow;
   if (t.has(flow_keys::kLength)) {
@@ -49,6 +63,7 @@ Flow read_flow(const Table& t, const Scene& scene, bool on_cells) {
   } else {
     flow.speed = t.number(flow_keys::kSpeed);
   }
+  read_stored(t, flow);
   flow.even = t.choice(flow_keys::kMesh) == "even";
   if (on_cells) {
     if (flow.even)

@@ -1,0 +1,130 @@
+#include <array>
+
+#include "fem/line_grid.h"
+#include "fem/stored_matrices.h"
+
+namespace flexmorph::fem {
+namespace {
+
+/// On a line across one element: N_oᵀ r_m is of degree 4.
+constexpr int kPoints = 3;
+
+/// Unknowns q of the body, Q of the plate's elements at the root:
+///   f = s K q̇ - s² B q + s² Σ G_k Q_k,  K = ρc ∫ (N_oᵀ N_o - N_sᵀ N_s) dy,  G_k = ρc ∫ N_oᵀ N_k,m
+///   dy
+class Outlet final : public Link {
+ public:
+  Outlet(std::string name, std::string body, std::string plate, const StoredMaterial& stored)
+      : name_(std::move(name)),
+        body_(std::move(body)),
+        plate_(std::move(plate)),
+        stored_(stored),
+        moved_(mass_across(stored, stored.outlet) - mass_across(stored, stored.at)),
+        slide_(sliding_matrix(stored.area_density * stored.width, stored.at, stored)) {
+    check(stored);
+  }
+
+  std::unique_ptr<Link> clone() const override { return std::make_unique<Outlet>(*this); }
+  std::string name() const override { return name_; }
+
+  void bind(std::span<const BodyView> bodies) override {
+    const std::string user = "outlet '" + name_ + "'";
+    const BodyView &body = find_body(bodies, user, body_), &plate = find_body(bodies, user, plate_);
+    grid_ = dynamic_cast<const LineGrid*>(plate.element);
+    if (!body.element->is_rigid() || !grid_ || grid_->dim() != 2)
+      throw Error::input(user + ": material leaves a rigid body through a plate in the plane");
+    first_ = body.first_dof;
+    places_.clear();
+    for (int j = 0; j < grid_->n_n(); ++j)
+      for (const int vector : grid_->vectors(grid_->element(0, j)))
+        places_.push_back(plate.first_dof + 2 * vector);
+    slopes_.resize(places_.size());
+  }
+
+  void add_force(const State& x, VectorXd& out) const override {
+    out.segment<4>(first_) += force(x);
+  }
+  void add_pattern(std::vector<Eigen::Triplet<double>>& out) const override {
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) out.emplace_back(first_ + i, first_ + j, 0);
+    for (const int place : places_)
+      for (int i = 0; i < 4; ++i)
+        for (int c = 0; c < 2; ++c) out.emplace_back(first_ + i, place + c, 0);
+  }
+  void add_tangent(const State& x, const Weights& w,
+                   std::vector<Eigen::Triplet<double>>& out) const override {
+    const double s = speed(x.t);
+    find_slopes();
+    const Eigen::Matrix4d own = w.v * s * moved_ - w.q * s * s * slide_;
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) out.emplace_back(first_ + i, first_ + j, own(i, j));
+    for (size_t k = 0; k < places_.size(); ++k)
+      for (int i = 0; i < 4; ++i)
+        for (int c = 0; c < 2; ++c)
+          out.emplace_back(first_ + i, places_[k] + c, w.q * s * s * slopes_[k](i, c));
+  }
+  // At mid-step, as the inertia of the plate.
+  void add_mean_force(const State& mean, const VectorXd&, const VectorXd&,
+                      VectorXd& out) const override {
+    add_force(mean, out);
+  }
+  void add_mean_tangent(const State& mean, const VectorXd&, const VectorXd&, const Weights& w,
+                        std::vector<Eigen::Triplet<double>>& out) const override {
+    add_tangent(mean, w, out);
+  }
+  double power(const State& x) const override { return -force(x).dot(x.v.segment<4>(first_)); }
+
+ private:
+  using Block = Eigen::Matrix<double, 4, 2>;
+
+  double speed(double t) const { return -stored_.length(t).rate; }
+
+  Eigen::Vector4d force(const State& x) const {
+    const double s = speed(x.t);
+    find_slopes();
+    Eigen::Vector4d out = -slide_ * x.q.segment<4>(first_);
+    for (size_t k = 0; k < places_.size(); ++k) out += slopes_[k] * x.q.segment<2>(places_[k]);
+    return s * s * out + s * (moved_ * x.v.segment<4>(first_));
+  }
+
+  /// G_k where the lines of the mesh are now.
+  void find_slopes() const {
+    static thread_local ShapeTable table;
+    const Vec2 axis = axis_of(stored_), across(-axis.y(), axis.x());
+    const GaussRule& rule = gauss(kPoints);
+    size_t k = 0;
+    for (int j = 0; j < grid_->n_n(); ++j) {
+      const int e = grid_->element(0, j);
+      const double low = grid_->line_n(j).value, width = grid_->line_n(j + 1).value - low;
+      const auto n = static_cast<size_t>(grid_->vectors(e).size());
+      for (size_t l = 0; l < n; ++l) slopes_[k + l].setZero();
+      for (size_t g = 0; g < kPoints; ++g) {
+        grid_->at(e, 0, rule.points[g], Tabulate::gradient, table);
+        const Vec2 point = stored_.outlet + (low + rule.points[g] * width) * across;
+        Block at;
+        at << Eigen::Matrix2d::Identity(), arm_of(point).transpose();
+        at *= stored_.area_density * width * rule.weights[g];
+        for (size_t l = 0; l < n; ++l)
+          slopes_[k + l] += table.N_m(0, static_cast<Eigen::Index>(l)) * at;
+      }
+      k += n;
+    }
+  }
+
+  std::string name_, body_, plate_;
+  StoredMaterial stored_;
+  Eigen::Matrix4d moved_, slide_;  // K and B
+  const LineGrid* grid_ = nullptr;
+  int first_ = 0;            // unknown of the body
+  std::vector<int> places_;  // of the vectors of the plate's elements at the root, one by one
+  mutable std::vector<Block> slopes_;
+};
+
+}  // namespace
+
+std::unique_ptr<Link> make_outlet(std::string name, std::string body, std::string plate,
+                                  const StoredMaterial& stored) {
+  return std::make_unique<Outlet>(std::move(name), std::move(body), std::move(plate), stored);
+}
+
+}  // namespace flexmorph::fem
