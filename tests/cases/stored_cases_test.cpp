@@ -166,8 +166,15 @@ TEST(StoredCases, RefuseWhatTheyCannotBe) {
     EXPECT_EQ(ended.code, 2) << each.flow;
     EXPECT_NE(ended.err.find(each.says), std::string::npos) << ended.err;
   }
-  // Out of a hub.
+  // With a design.
   const Scratch scratch;
+  const Ended designed = flexmorph(
+      scratch, {"check", scratch.write("design.toml", carrier("stored = \"coil\"", "", "0.0") +
+                                                          "\n[[design]]\nbody = \"boom\"\n")});
+  EXPECT_EQ(designed.code, 2);
+  EXPECT_NE(designed.err.find("what a rigid body stores is full"), std::string::npos)
+      << designed.err;
+  // Out of a hub.
   std::string text = carrier("stored = \"coil\"", "", "0.0");
   const size_t from = text.find("[[rigid_body]]"), to = text.find("[[body]]");
   text.replace(from, to - from, "[[hub]]\nname = \"carrier\"\nangular_velocity = 1.0\n");
