@@ -144,6 +144,9 @@ foreach(folder geometry io fem optim cases tests)
       set(included ${CMAKE_MATCH_2})
       if(CMAKE_MATCH_1 STREQUAL "<")
         judge_library(${file} ${included} offence)
+      elseif(file MATCHES "^tests/examples/installed/" AND
+             EXISTS ${root}/tests/examples/installed/${included})
+        set(offence "")  # a project of its own, whose top that folder is
       elseif(NOT EXISTS ${root}/${included})
         set(offence "no such file, includes start at the top of the source tree")
       else()
