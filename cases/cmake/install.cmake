@@ -1,8 +1,15 @@
-# What `cmake --install --component development` puts where: static libraries, headers under
-# include/flexmorph (included as here: "fem/model.h"), and what find_package(Flexmorph) reads.
+# What `cmake --install --component ...` puts where.
+# program: flexmorph and, in share/flexmorph/cases, where it looks for them, shipped cases.
+# development: static libraries, headers under include/flexmorph (included as here: "fem/model.h"),
+# and what find_package(Flexmorph) reads.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(flexmorph_package "${CMAKE_INSTALL_LIBDIR}/cmake/Flexmorph")
+
+install(TARGETS flexmorph RUNTIME COMPONENT program)
+file(GLOB flexmorph_shipped CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cases/*.toml
+                                              ${PROJECT_SOURCE_DIR}/cases/*.csv)
+install(FILES ${flexmorph_shipped} DESTINATION share/flexmorph/cases COMPONENT program)
 
 set(flexmorph_libraries options geometry io fem optim judge mmc)
 if(FLEXMORPH_HEAT)

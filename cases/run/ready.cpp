@@ -15,6 +15,16 @@
 namespace flexmorph::cases {
 namespace {
 
+/// Where shipped cases are: of an installed program share/flexmorph/cases beside the bin/ it is in,
+/// wherever that was moved to; else in the source tree.
+std::filesystem::path cases_folder() {
+  std::error_code none;  // where there is no /proc
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", none);
+  const auto installed = program.parent_path().parent_path() / "share/flexmorph/cases";
+  if (program.has_parent_path() && std::filesystem::is_directory(installed, none)) return installed;
+  return kCasesFolder;
+}
+
 /// Refuses joints that depend on each other, and bodies that do not reach their joints.
 void require_start(Mechanism& mechanism) {
   constexpr double kMiss = 1e-6;  // of the model: coordinates in cases are rounded
@@ -113,7 +123,7 @@ ReadyCase ready_case(const std::string& name, std::span<const std::string> overr
 std::vector<std::string> shipped_cases() {
   std::vector<std::string> out;
   std::error_code none;  // of a program that was moved away from its cases
-  for (const auto& entry : std::filesystem::directory_iterator(kCasesFolder, none))
+  for (const auto& entry : std::filesystem::directory_iterator(cases_folder(), none))
     if (entry.path().extension() == ".toml") out.push_back(entry.path().stem().string());
   std::sort(out.begin(), out.end());
   return out;
@@ -124,7 +134,7 @@ std::string find_case(const std::string& name) {
   if (std::filesystem::is_regular_file(name)) return name;
   const std::vector<std::string> shipped = shipped_cases();
   if (std::find(shipped.begin(), shipped.end(), name) != shipped.end())
-    return std::string(kCasesFolder) + "/" + name + ".toml";
+    return cases_folder() / (name + ".toml");
   // A pipe is a file as well; a folder is refused by who reads it.
   if (std::filesystem::exists(name)) return name;
   const std::string stem = std::filesystem::path(name).stem().string();
