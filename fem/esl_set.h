@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <optional>
 #include <vector>
 
 #include "geometry/grid.h"
@@ -14,8 +16,8 @@ struct NodalForce {
 
 /// One equivalent static load: the snapshot of one body at one time on its design mesh.
 ///
-/// All vectors are in the body frame (origin and axes of the hub at that time), node by node,
-/// (x, y) interleaved: entry 2 node + c.
+/// All vectors are in the body frame (origin and axes of the hub at that time; of a link, of the
+/// line through its pins), node by node, (x, y) interleaved: entry 2 node + c.
 ///
 /// Source: fem/README.md, Equivalent static loads; the idea P (31), (32).
 struct EslSet {
@@ -46,6 +48,7 @@ struct EslSets {
   /// ∫ U dt of the motion the loads come from, all bodies [J s]: what a cycle is judged by where no
   /// other motion does.
   double strain_energy_integral = 0;
+  std::optional<std::array<int, 2>> pins = {};  ///< nodes of a link between two pins
 };
 
 }  // namespace flexmorph::fem

@@ -23,9 +23,7 @@ std::vector<fem::AttachedJoint> attached_joints(const Scene& scene, const std::s
   for (const Joint& j : scene.joints) {
     if (j.body == name && j.edge == "free_end")
       out.push_back({j.name, {scene.body(name).longest(scene.time.end), 0}, true});
-    if (!j.between_bodies()) continue;
-    if (j.a.body == name) out.push_back({j.name, j.a.point, j.joins_edges()});
-    if (j.b.body == name) out.push_back({j.name, j.b.point, j.joins_edges()});
+    if (const auto point = j.point_on(name)) out.push_back({j.name, *point, j.joins_edges()});
   }
   return out;
 }
@@ -62,8 +60,34 @@ void shake(std::vector<Component>& components, double jitter, int seed) {
   }
 }
 
+/// Cells at the pins of a link.
+std::vector<std::vector<int>> pin_places(const Link& link, const Grid& g) {
+  std::vector<std::vector<int>> out(2);
+  for (size_t k = 0; k < 2; ++k) {
+    const int node = fem::node_at(g, link.pins[k]), i = node / (g.ny + 1), j = node % (g.ny + 1);
+    for (const int ci : {i - 1, i})
+      for (const int cj : {j - 1, j})
+        if (ci >= 0 && ci < g.nx && cj >= 0 && cj < g.ny) out[k].push_back(g.cell(ci, cj));
+  }
+  return out;
+}
+
+std::vector<std::vector<int>> places_of(const Scene& scene, const BodyDesign& design,
+                                        std::span<const signed char> outside) {
+  if (scene.domain) return static_places(scene, design.grid, outside);
+  return design.link ? pin_places(*design.link, design.grid) : std::vector<std::vector<int>>{};
+}
+
+mmc::ComplianceSettings settings_of(const Scene& scene, const BodyDesign& design) {
+  mmc::ComplianceSettings out = scene.esl ? scene.esl->settings : mmc::ComplianceSettings{};
+  if (design.link) out.support = design.link->support;
+  return out;
+}
+
 /// Edges that hold a plate at rest; of a moving one its root line at the longest.
-std::vector<Segment> held_lines(const Scene& scene, const Grid& grid) {
+std::vector<Segment> held_lines(const Scene& scene, const BodyDesign& design) {
+  const Grid& grid = design.grid;
+  if (design.link) return {};
   if (!scene.domain) return {{{grid.x0, grid.y0}, {grid.x0, grid.y0 + grid.height}}};
   std::vector<Segment> out;
   for (const PlaneSupport& s : scene.domain->supports)
@@ -74,7 +98,6 @@ std::vector<Segment> held_lines(const Scene& scene, const Grid& grid) {
 }  // namespace
 
 std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
-  using Cells = std::vector<std::vector<int>>;
   std::vector<mmc::BodyProblem> out;
   for (const BodyDesign& d : scene.designs) {
     const Grid& g = d.grid;
@@ -113,11 +136,11 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
                    .motion_goal = d.motion_goal,
                    .stiffness_void = d.stiffness_void,
                    .mass_void = d.mass_void,
-                   .compliance = scene.esl ? scene.esl->settings : mmc::ComplianceSettings{},
+                   .compliance = settings_of(scene, d),
                    .domain = scene.domain ? scene.domain->shape : Region{},
                    .outside = plate.outside,
-                   .places = scene.domain ? static_places(scene, g, plate.outside) : Cells{},
-                   .held = held_lines(scene, g),
+                   .places = places_of(scene, d, plate.outside),
+                   .held = held_lines(scene, d),
                    .drop_every = d.drop_every,
                    .refill = d.refill,
                    .widths = d.widths,

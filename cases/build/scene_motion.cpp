@@ -79,7 +79,9 @@ fem::MotionObjective SceneMotion::objective_of(const mmc::MotionRow& row,
   }
   const Body& body = scene_.body(scene_.designs[row.body].body);
   if (name == "joint_force") {
-    const auto carries = [&](const Joint& j) { return j.carries(body.name); };
+    const auto carries = [&](const Joint& j) {  // of a link, the one at its first pin
+      return j.carries(body.name) || (scene_.designs[row.body].link && j.point_on(body.name));
+    };
     const auto joint = std::find_if(scene_.joints.begin(), scene_.joints.end(), carries);
     return {fem::measure_joint_force(joint->name, body.name), Times::steps, mmc::kPeakExponent};
   }

@@ -9,6 +9,7 @@
 #include "io/files.h"
 #include "io/plots.h"
 #include "io/tables.h"
+#include "optim/mmc/link_compliance.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -26,8 +27,8 @@ class LoadsOfDesigns {
       const mmc::BodyProblem& p = problems[k];
       const mmc::CellFactors factors =
           mmc::ersatz_of(p).sharp(mmc::fractions_of(p, p.design.components()));
-      out.push_back(std::make_unique<mmc::Compliance>(loads_[k], p.section, p.compliance,
-                                                      factors.stiffness, factors.mass));
+      out.push_back(mmc::make_compliance(loads_[k], p.section, p.compliance, factors.stiffness,
+                                         factors.mass));
     }
     return out;
   }

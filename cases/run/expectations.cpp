@@ -31,7 +31,8 @@ const std::vector<std::pair<std::string, std::function<double(const mmc::BodyOut
         {"min_gap", [](const mmc::BodyOutcome& o) { return widths_of(o).gap; }},
         {"islands", [](const mmc::BodyOutcome& o) { return 1.0 * o.sharp.connectivity.islands; }},
 };
-const std::string kAmplitude = "amplitude", kDefect = "energy.defect";
+const std::string kAmplitude = "amplitude", kDefect = "energy.defect",
+                  kMotionRatio = "motion_ratio";
 
 /// Figures of what else its goal speaks of.
 std::vector<std::pair<const mmc::Figures*, std::string>> further_of(const mmc::BodyOutcome& o) {
@@ -90,6 +91,8 @@ std::optional<double> find(const RunReport& report, const std::string& name) {
   // What a design is judged by; the balance of energy is kept by the motion on the scene's mesh.
   if (const auto& judging = report.judging(); judging && !name.starts_with(kDefect)) {
     if (name == kAmplitude && !judging->amplitude.empty()) return judging->amplitude[0];
+    if (const auto& uniform = report.judging_uniform(); uniform && name == kMotionRatio)
+      return judging->strain_integral / uniform->strain_integral;
     if (const auto found = value_of(*judging, name)) return found;
   }
   if (report.motion)
@@ -133,7 +136,7 @@ void check_expectations(const Scene& scene) {
       for (const auto& [figure, value] : kFigures) known.push_back(figure);
       for (const mmc::ResponseRow* row : mmc::further_rows(scene.designs.front().goal))
         for (const char* prefix : {"", "sharp_"}) known.push_back(prefix + mmc::key_of(*row));
-      if (!scene.domain) known.push_back(kAmplitude);
+      if (!scene.domain) known.insert(known.end(), {kAmplitude, kMotionRatio});
     } else {
       for (const std::string& column : candidates(scene, part)) known.push_back(column);
     }

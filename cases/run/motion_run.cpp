@@ -75,7 +75,12 @@ class Recorder {
       undeformed_ = fem::start_state(mechanism.model, mechanism.growths, 0, fem::Start::rigid,
                                      mechanism.motion.placement);
     if (wishes.loads)
-      for (const BodyDesign& d : scene.designs) out.loads.push_back({d.grid, {}, 0});
+      for (const BodyDesign& d : scene.designs) {
+        fem::EslSets& loads = out.loads.emplace_back(fem::EslSets{d.grid, {}, 0});
+        if (d.link)
+          loads.pins = {fem::node_at(d.grid, d.link->pins[0]),
+                        fem::node_at(d.grid, d.link->pins[1])};
+      }
   }
 
   void operator()(const fem::MotionStep& step) {
@@ -182,24 +187,33 @@ class Recorder {
 
   void at_stop(const fem::MotionStep& step) {
     const double t = step.x.t;
-    for (size_t i = 0; wishes_.loads && t > 0 && i < mechanism_.growths.size(); ++i) {
-      const size_t d = design_of(scene_, mechanism_.growths[i].body);
-      if (d < scene_.designs.size() && is_multiple(t, scene_.esl->every))
-        add_load(step, mechanism_.growths[i], d);
-    }
+    if (wishes_.loads && t > 0 && is_multiple(t, scene_.esl->every))
+      for (size_t d = 0; d < scene_.designs.size(); ++d) add_load(step, d);
     if (is_multiple(t, wishes_.frames_every)) add_frame(step);
   }
 
-  void add_load(const fem::MotionStep& step, const fem::Growth& growth, size_t d) {
-    std::vector<fem::AttachedForce> forces = fem::joint_forces(
-        step.model, step.x, step.model.body(growth.body), attached_joints(scene_, growth.body));
-    for (const fem::AttachedForce& f : applied_forces(scene_, growth.body, step.x.t))
+  void add_load(const fem::MotionStep& step, size_t d) {
+    const BodyDesign& design = scene_.designs[d];
+    const fem::Body& body = step.model.body(design.body);
+    std::vector<fem::AttachedForce> forces =
+        fem::joint_forces(step.model, step.x, body, attached_joints(scene_, design.body));
+    for (const fem::AttachedForce& f : applied_forces(scene_, design.body, step.x.t))
       forces.push_back(f);
-    fem::EslSet set = fem::equivalent_static_load(
-        step.model, step.x, growth, scene_.designs[d].grid, attached_masses(scene_, growth.body),
-        forces, scene_.gravity_law().at(step.x.t));
+    const std::vector<fem::AttachedMass> masses = attached_masses(scene_, design.body);
+    const VectorXd gravity = scene_.gravity_law().at(step.x.t);
+    fem::EslSet set = design.link
+                          ? fem::equivalent_static_load(step.model, step.x, body, design.link->pins,
+                                                        design.grid, masses, forces, gravity)
+                          : fem::equivalent_static_load(step.model, step.x, growth_of(design.body),
+                                                        design.grid, masses, forces, gravity);
     set.weight = 1.0 / scene_.esl->count(scene_.time.end);
     out_.loads[d].sets.push_back(std::move(set));
+  }
+
+  /// Of a designed body that a hub or a rigid body carries.
+  const fem::Growth& growth_of(const std::string& body) const {
+    return *std::find_if(mechanism_.growths.begin(), mechanism_.growths.end(),
+                         [&](const fem::Growth& g) { return g.body == body; });
   }
 
   /// All plates, all rigid bodies that have a size, hubs, point masses; their numbers are those of

@@ -5,6 +5,7 @@
 #include "fem/dynamics/side_by_side.h"
 #include "geometry/cpu_time.h"
 #include "io/files.h"
+#include "optim/mmc/link_compliance.h"
 
 namespace flexmorph::cases {
 
@@ -110,9 +111,9 @@ MeshChoice verified_mesh(const Verify& verify) {
 EnergyComparison compared(const mmc::BodyProblem& problem, const fem::EslSets& loads) {
   const mmc::CellFactors sharp =
       mmc::ersatz_of(problem).sharp(mmc::fractions_of(problem, problem.design.components()));
-  mmc::Compliance compliance(loads, problem.section, problem.compliance, sharp.stiffness,
-                             sharp.mass);
-  const VectorXd each = compliance.individual(sharp.stiffness, sharp.mass);
+  const VectorXd each =
+      mmc::make_compliance(loads, problem.section, problem.compliance, sharp.stiffness, sharp.mass)
+          ->individual(sharp.stiffness, sharp.mass);
   EnergyComparison out;
   out.body = problem.body;
   double largest = 0;
@@ -143,6 +144,16 @@ CycleMotions::CycleMotions(const Scene& scene, bool condition, std::function<boo
       progress_(progress),
       report_(report) {}
 
+namespace {
+
+/// Links between two pins have no tip.
+std::string deflection_words(const MotionRecord& record) {
+  if (record.amplitude.empty()) return "";
+  return ", largest tip deflection " + io::to_text(record.amplitude[0], 4) + " m";
+}
+
+}  // namespace
+
 MotionOutcome CycleMotions::run(MotionWishes& wishes, const std::string& table) {
   wishes.go_on = go_on_;
   wishes.way = way_of(progress_, scene_, wishes.phase);
@@ -154,8 +165,7 @@ MotionOutcome CycleMotions::run(MotionWishes& wishes, const std::string& table) 
   report_.seconds_motion += cpu_seconds() - begin;
   progress_.say(wishes.phase + ": " + std::to_string(motion.record.result.counts.steps) +
                 " steps, " + std::to_string(motion.record.result.events.size()) +
-                " changes of the mesh, largest tip deflection " +
-                io::to_text(motion.record.amplitude.at(0), 4) + " m");
+                " changes of the mesh" + deflection_words(motion.record));
   return motion;
 }
 

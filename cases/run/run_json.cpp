@@ -142,6 +142,7 @@ Json body_results(const RunReport& report, size_t i) {
   const auto amplitude = [&](const std::optional<MotionRecord>& motion) {
     if (!motion) return Json();
     const auto found = std::find(motion->bodies.begin(), motion->bodies.end(), o.body);
+    if (found == motion->bodies.end()) return Json();  // a link between two pins has no tip
     return Json(motion->amplitude.at(static_cast<size_t>(found - motion->bodies.begin())));
   };
   out["dynamic_amplitude"] = amplitude(report.judging());

@@ -25,9 +25,16 @@ struct Esl {
   int count(double end) const;  ///< number of loads up to `end`
 };
 
+/// A designed body that nothing clamps: joints hold it at two points.
+struct Link {
+  std::array<Vec2, 2> pins{};  ///< material points, at nodes of the design mesh [m]
+  mmc::Support support = mmc::Support::pins;
+};
+
 /// The design of one body, on its design domain: the body at its longest.
 struct BodyDesign {
   std::string body;
+  std::optional<Link> link;             ///< absent where a hub or a rigid body carries its root
   Grid grid;                            ///< X from the root (0) to the free end, Y across [m]
   std::array<int, 2> components{1, 1};  ///< boxes of the initial layout, two components in each
   mmc::Goal goal;                       ///< volumes are fractions, solid regions included

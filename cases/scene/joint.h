@@ -1,6 +1,7 @@
 #pragma once
 
 #include <any>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,14 @@ struct Joint {
   /// Does it weld a plate or beam to another one?
   bool joins_edges() const { return !edge_a.empty(); }
   bool holds_edges() const { return !edges.empty(); }
+  /// The material point at which it holds this plate or beam, where it does not hold an edge [m].
+  std::optional<Vec2> point_on(const std::string& name) const {
+    if (holds_frame() || holds_edges() || drives_line) return {};
+    if (a.body == name) return a.point;
+    if (b.body == name) return b.point;
+    if (body == name) return point;
+    return {};
+  }
 };
 
 }  // namespace flexmorph::cases

@@ -95,6 +95,15 @@ BodyDesign read_design(const io::Table& t, const Scene& scene);
 /// @param t  the [[design]]
 void read_regions(const io::Table& t, const Body& body, const Scene& scene, BodyDesign& design);
 
+/// A designed body that no root carries: a link between two points that joints hold.
+/// @param key  that names the body, for what is wrong about it
+Link read_link(const io::Table& t, const io::Key& key, const Body& body, const Scene& scene);
+/// Joints act at nodes of the design mesh.
+void check_joint_points(const io::Table& t, const io::Key& key, const Scene& scene,
+                        const BodyDesign& design);
+/// Both pins of a link sit in solid regions: without them they would end up in the void.
+void check_pins_solid(const io::Table& t, const BodyDesign& design);
+
 /// [[design]], [esl], [optimizer], [cycle], [verify]; needs what read_motion() read.
 void read_designs(const io::Table& root, Scene& scene);
 

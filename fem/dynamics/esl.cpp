@@ -1,5 +1,6 @@
 #include "fem/dynamics/esl.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -103,13 +104,6 @@ void take_off_growth(const Grid& grid, double root, const HotBody& hot, EslSet& 
     }
 }
 
-int nearest_node(const Grid& grid, const Vec2& point) {
-  const double i = (point.x() - grid.x0) / grid.dx(), j = (point.y() - grid.y0) / grid.dy();
-  if (std::abs(i - std::round(i)) > 1e-6 || std::abs(j - std::round(j)) > 1e-6)
-    throw Error::input("masses and forces must sit on nodes of the design mesh");
-  return grid.node(static_cast<int>(std::lround(i)), static_cast<int>(std::lround(j)));
-}
-
 /// A force and its moment, linear across the column of the grid at that X.
 void spread(const Grid& grid, int column, const Vec2& force, double moment,
             std::vector<NodalForce>& out) {
@@ -125,7 +119,22 @@ void spread(const Grid& grid, int column, const Vec2& force, double moment,
   }
 }
 
+/// Forces of point masses, whose accelerations are known.
+void add_masses(const Grid& grid, std::span<const AttachedMass> masses, EslSet& out) {
+  for (const AttachedMass& m : masses) {
+    const int node = node_at(grid, m.material);
+    out.forces.push_back({node, -m.mass * out.acceleration.segment<2>(2 * node)});
+  }
+}
+
 }  // namespace
+
+int node_at(const Grid& grid, const Vec2& point) {
+  const double i = (point.x() - grid.x0) / grid.dx(), j = (point.y() - grid.y0) / grid.dy();
+  if (std::abs(i - std::round(i)) > 1e-6 || std::abs(j - std::round(j)) > 1e-6)
+    throw Error::input("masses, pins and forces must sit on nodes of the design mesh");
+  return grid.node(static_cast<int>(std::lround(i)), static_cast<int>(std::lround(j)));
+}
 
 std::vector<AttachedForce> joint_forces(Workspace& model, const State& x, const Body& body,
                                         std::span<const AttachedJoint> joints) {
@@ -182,13 +191,10 @@ EslSet equivalent_static_load(Workspace& model, const State& x, const Growth& gr
         out.deformation.segment<2>(entry) = to_hub * (p.position - hub.origin) - at;
     }
   if (hot) take_off_growth(grid, root.value, *hot, out);
-  for (const AttachedMass& m : masses) {
-    const int node = nearest_node(grid, m.material);
-    out.forces.push_back({node, -m.mass * out.acceleration.segment<2>(2 * node)});
-  }
+  add_masses(grid, masses, out);
   for (const AttachedForce& f : forces) {
     const Vec2 force = to_hub * f.force;
-    const int node = nearest_node(grid, f.material);
+    const int node = node_at(grid, f.material);
     if (!f.spread) {
       out.forces.push_back({node, force});
       continue;
@@ -201,6 +207,35 @@ EslSet equivalent_static_load(Workspace& model, const State& x, const Growth& gr
     }
   }
   out.strain_energy = model.energies(x, model.body(growth.body)).strain;
+  return out;
+}
+
+EslSet equivalent_static_load(Workspace& model, const State& x, const Body& body,
+                              const std::array<Vec2, 2>& pins, const Grid& grid,
+                              std::span<const AttachedMass> masses,
+                              std::span<const AttachedForce> forces, const VectorXd& gravity) {
+  for (const Vec2& pin : pins) node_at(grid, pin);
+  const Vec2 origin = point_motion(body, x, pins[0]).position;
+  const Vec2 line = point_motion(body, x, pins[1]).position - origin, flat = pins[1] - pins[0];
+  const double angle = std::atan2(line.y(), line.x()) - std::atan2(flat.y(), flat.x());
+  const Eigen::Matrix2d to_frame = rotation(angle).transpose();
+  const Vec2 g = gravity.size() > 0 ? Vec2(gravity.head<2>()) : Vec2(0, 0);
+  EslSet out;
+  out.time = x.t;
+  out.deformation.resize(2 * grid.n_nodes());
+  out.acceleration.resize(2 * grid.n_nodes());
+  for (int i = 0; i <= grid.nx; ++i)
+    for (int j = 0; j <= grid.ny; ++j) {
+      const Vec2 material = grid.node_position(i, j);
+      const PointMotion p = point_motion(body, x, material);
+      const int entry = 2 * grid.node(i, j);
+      out.deformation.segment<2>(entry) = to_frame * (p.position - origin) - (material - pins[0]);
+      out.acceleration.segment<2>(entry) = to_frame * (p.acceleration - g);
+    }
+  add_masses(grid, masses, out);
+  for (const AttachedForce& f : forces)
+    out.forces.push_back({node_at(grid, f.material), to_frame * f.force});
+  out.strain_energy = model.energies(x, body).strain;
   return out;
 }
 

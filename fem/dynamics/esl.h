@@ -63,4 +63,23 @@ EslSet equivalent_static_load(Workspace& model, const State& x, const Growth& gr
                               const Grid& grid, std::span<const AttachedMass> masses,
                               std::span<const AttachedForce> forces, const VectorXd& gravity);
 
+/// The same of a link between two pins, which nothing clamps: the frame is the line through the
+/// pins, material points P1 and P2, as it is turned against that of the undeformed link,
+///
+///   o = r(P1),   R: (P2 - P1) direction -> r(P2) - r(P1) direction
+///   u(X) = Rᵀ (r(X) - o) - (X - P1),   a(X) = Rᵀ (r̈(X) - g)
+///
+/// so that u is zero at the first pin and lies along the line at the second one. Forces of the
+/// joints at both pins belong to `forces`.
+///
+/// Source: fem/README.md, Equivalent static loads.
+/// @throws Error (input) for pins, masses or forces that are not at nodes of the grid.
+EslSet equivalent_static_load(Workspace& model, const State& x, const Body& body,
+                              const std::array<Vec2, 2>& pins, const Grid& grid,
+                              std::span<const AttachedMass> masses,
+                              std::span<const AttachedForce> forces, const VectorXd& gravity);
+
+/// The node of the grid at a point. @throws Error (input) where there is none.
+int node_at(const Grid& grid, const Vec2& point);
+
 }  // namespace flexmorph::fem

@@ -247,6 +247,8 @@ Compliance::Compliance(const fem::EslSets& loads, const fem::PlaneSection& secti
                        const ComplianceSettings& settings, const VectorXd& stiffness0,
                        const VectorXd& mass0) {
   check_loads(loads, settings, stiffness0, mass0);
+  if (is_of_link(settings.support))
+    throw Error::input("equivalent static loads: 'pins' and 'floating' are supports of links");
   impl_ = std::make_unique<Impl>(loads, section, first_root(loads, settings.support));
   Impl& m = *impl_;
   m.root_columns = root_columns_of(loads);

@@ -12,8 +12,9 @@ namespace flexmorph::mmc {
 
 /// How the equivalent static loads meet a changing design (optim/README.md, Load definitions).
 enum class LoadDefinition { inertia, frozen, stiffness };
-/// Where the plate is held.
-enum class Support { moving_root, far_end };
+/// Where the plate is held: at its root, or, as a link between two pins, see LinkCompliance.
+enum class Support { moving_root, far_end, pins, floating };
+constexpr bool is_of_link(Support s) { return s == Support::pins || s == Support::floating; }
 
 struct ComplianceSettings {
   LoadDefinition loads = LoadDefinition::inertia;
@@ -45,8 +46,8 @@ class Compliance final : public LoadResponse {
  public:
   /// @param stiffness0, mass0  factors of the design the motion was computed with; not read by
   ///        `inertia`.
-  /// @throws Error (input) for `inertia` or a held far edge with `far_end`, no loads, or loads that
-  ///         do not fit the grid.
+  /// @throws Error (input) for `inertia` or a held far edge with `far_end`, supports of a link, no
+  ///         loads, or loads that do not fit the grid.
   Compliance(const fem::EslSets& loads, const fem::PlaneSection& section,
              const ComplianceSettings& settings, const VectorXd& stiffness0, const VectorXd& mass0);
   ~Compliance() override;

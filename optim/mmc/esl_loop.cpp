@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "optim/mmc/link_compliance.h"
+
 namespace flexmorph::mmc {
 namespace {
 
@@ -29,14 +31,15 @@ std::vector<std::vector<size_t>> groups_of(const std::vector<BodyProblem>& probl
 struct Start {
   VectorXd fractions;
   CellFactors factors;
-  Compliance compliance;
+  std::unique_ptr<LoadResponse> compliance;
   VectorXd energies;
 
   Start(const BodyProblem& p, const fem::EslSets& loads)
       : fractions(fractions_of(p, p.design.components())),
         factors(ersatz_of(p).sharp(fractions)),
-        compliance(loads, p.section, p.compliance, factors.stiffness, factors.mass),
-        energies(compliance.individual(factors.stiffness, factors.mass)) {}
+        compliance(
+            make_compliance(loads, p.section, p.compliance, factors.stiffness, factors.mass)),
+        energies(compliance->individual(factors.stiffness, factors.mass)) {}
 };
 
 /// The designs of all bodies in one cycle, up to the group that was stopped.
@@ -72,7 +75,7 @@ class CycleDesigner {
     std::vector<LoadedBody> bodies;
     for (const size_t i : group) {
       starts.push_back(std::make_unique<Start>(problems_[i], loads_[i]));
-      bodies.push_back({problems_[i], starts.back()->compliance});
+      bodies.push_back({problems_[i], *starts.back()->compliance});
     }
     std::vector<BodyOutcome> found =
         design_bodies(bodies, cycle, settings.design, observer.iteration, going);

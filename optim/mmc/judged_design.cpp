@@ -15,6 +15,8 @@ std::string cannot_judge(const BodyProblem& problem) {
   if (problem.compliance.loads != LoadDefinition::inertia)
     return "its loads are forces at the corners of cells: only esl.definition = \"inertia\" is "
            "carried over to an outline";
+  if (is_of_link(problem.compliance.support))
+    return "it is a link between two pins, which the supports of an outline do not know";
   return "";
 }
 

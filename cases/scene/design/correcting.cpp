@@ -121,6 +121,12 @@ void check_goals(const Table& cycle, const Scene& scene) {
       return r->name == "trajectory_error";
     });
     if (asks && !scene.trajectory) cycle.fail("\"trajectory_error\" needs a [trajectory]");
+    const bool deflects = std::any_of(rows.begin(), rows.end(), [](const mmc::ResponseRow* r) {
+      return r->name == "deflection";
+    });
+    if (deflects && design.link)
+      cycle.fail("\"deflection\" is that of a free end, and '" + design.body +
+                 "' is a link between two pins");
   }
   // A number of the whole mechanism counts once, however many designs name it.
   for (const BodyDesign& design : scene.designs)

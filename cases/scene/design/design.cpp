@@ -354,7 +354,10 @@ BodyDesign read_design(const Table& t, const Scene& scene) {
   if (body.in_space() || body.has_free_lines())
     t.fail(kBody, "a designed body lives in the plane and has no free lines");
   if (!welded)
-    t.fail(kBody, "a designed body is welded to a hub or a rigid body at its root: see [[joint]]");
+    design.link = read_link(t, kBody, body, scene);
+  else if (t.has(design_keys::kLinkSupport))
+    t.fail(design_keys::kLinkSupport,
+           "'" + body.name + "' is welded at its root, which holds it: esl.support says how");
   if (!body.has_term([](const fem::TermRow& row) { return row.designable; }))
     t.fail(kBody, "a designed body has the term \"membrane\"");
 
@@ -365,6 +368,8 @@ BodyDesign read_design(const Table& t, const Scene& scene) {
   read_tdf(t, design);
   read_regions(t, body, scene, design);
   check_loads(t, scene, design);
+  check_joint_points(t, kBody, scene, design);
+  check_pins_solid(t, design);
   return design;
 }
 

@@ -5,6 +5,7 @@
 /// Keys of [[design]] that others ask for, too.
 namespace flexmorph::cases::design_keys {
 
-extern const io::Key &kCells, &kSolid, &kVoid, &kStrip, &kStripCells, &kMaxVolume, &kCoupling;
+extern const io::Key &kCells, &kSolid, &kVoid, &kStrip, &kStripCells, &kMaxVolume, &kCoupling,
+    &kLinkSupport;
 
 }  // namespace flexmorph::cases::design_keys

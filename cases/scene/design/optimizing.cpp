@@ -32,7 +32,9 @@ const io::Choice<LoadDefinition> kDefinition(
      {"frozen", LoadDefinition::frozen},
      {"stiffness", LoadDefinition::stiffness}});
 const io::Choice<Support> kSupport(
-    io::key("esl", "support").otherwise("moving_root").says("Where the loaded plate is held."),
+    io::key("esl", "support")
+        .otherwise("moving_root")
+        .says("Where plates with a root are held; links: `design.support`."),
     "a support", {{"moving_root", Support::moving_root}, {"far_end", Support::far_end}});
 const Key& kCompress = io::key("esl", "compress")
                            .boolean()
@@ -162,6 +164,10 @@ Esl read_esl(const Table& t, const Scene& scene) {
            "\"inertia\" loads need \"moving_root\": at the far end the reactions of the root would "
            "have to follow the design");
   s.compress = t.boolean(kCompress);
+  for (const BodyDesign& design : scene.designs)
+    if (design.link && s.loads == LoadDefinition::stiffness)
+      t.fail(kDefinition,
+             "'" + design.body + "' is a link between two pins: \"inertia\" or \"frozen\" loads");
 
   // A root that drives move at will is taken to be on the nearest mesh line.
   for (const BodyDesign& design : scene.designs) {

@@ -1,0 +1,88 @@
+#include <algorithm>
+
+#include "cases/scene/design/keys.h"
+#include "cases/scene/read.h"
+#include "geometry/picture.h"
+#include "io/files.h"
+
+/// Designed bodies that nothing clamps: links between two pins.
+namespace flexmorph::cases {
+namespace {
+
+using io::Table;
+using mmc::Support;
+
+const io::Choice<Support> kSupport(
+    io::key("design", "support")
+        .otherwise("pins")
+        .when("joints hold the body at two points")
+        .says("What balances the loads of a link: reactions at its pins, or its own inertia."),
+    "a support of a link", {{"pins", Support::pins}, {"floating", Support::floating}});
+
+/// Cells around a pin that are solid: those whose centres are nearer [cells].
+constexpr double kSolidReach = 1.5;
+
+std::string words(const Vec2& point) {
+  return "(" + io::to_text(point.x()) + ", " + io::to_text(point.y()) + ")";
+}
+
+}  // namespace
+
+namespace design_keys {
+const io::Key& kLinkSupport = kSupport;
+}
+
+Link read_link(const Table& t, const io::Key& key, const Body& body, const Scene& scene) {
+  const std::string needs =
+      "a designed body is welded to a hub or a rigid body at its root, or joints hold it at two "
+      "points: see [[joint]]";
+  std::vector<Vec2> points;
+  for (const Joint& joint : scene.joints) {
+    if (joint.body == body.name && (joint.holds_frame() || joint.holds_edges())) t.fail(key, needs);
+    const auto point = joint.point_on(body.name);
+    if (!point) continue;
+    if (joint.joins_edges()) t.fail(key, needs);
+    const auto is_here = [&](const Vec2& p) { return (p - *point).norm() < 1e-9 * body.length; };
+    if (std::none_of(points.begin(), points.end(), is_here)) points.push_back(*point);
+  }
+  if (points.size() != 2)
+    t.fail(key, needs + (points.empty() ? ""
+                                        : "; '" + body.name + "' is held at " +
+                                              std::to_string(points.size())));
+  if (body.heat) t.fail(key, "a designed link between two pins stays cold: no [body.heat]");
+  return {{points[0], points[1]}, t.choice(kSupport)};
+}
+
+void check_joint_points(const Table& t, const io::Key& key, const Scene& scene,
+                        const BodyDesign& design) {
+  const Grid& g = design.grid;
+  for (const Joint& joint : scene.joints)
+    if (const auto point = joint.point_on(design.body);
+        point &&
+        !(is_whole((point->x() - g.x0) / g.dx()) && is_whole((point->y() - g.y0) / g.dy())))
+      t.fail(key, "joint '" + joint.name +
+                      "' holds a designed body at a node of its design mesh, not at " +
+                      words(*point) + " [m]");
+}
+
+void check_pins_solid(const Table& t, const BodyDesign& design) {
+  if (!design.link) return;
+  const Grid& g = design.grid;
+  const double reach = kSolidReach * std::max(g.dx(), g.dy());
+  for (const Vec2& pin : design.link->pins)
+    for (int i = 0; i < g.nx; ++i)
+      for (int j = 0; j < g.ny; ++j) {
+        const Vec2 center = g.cell_center(i, j);
+        const auto holds = [&](const std::vector<Vec2>& ring) {
+          return contains({ring, {}}, center);
+        };
+        if ((center - pin).norm() < reach &&
+            std::none_of(design.solid.begin(), design.solid.end(), holds))
+          t.fail("the pin of '" + design.body + "' at " + words(pin) +
+                 " needs solid material: [[design.solid]] with disc = [" + io::to_text(pin.x()) +
+                 ", " + io::to_text(pin.y()) + ", " + io::to_text(2 * std::max(g.dx(), g.dy())) +
+                 "] or larger");
+      }
+}
+
+}  // namespace flexmorph::cases
