@@ -119,5 +119,24 @@ TEST_P(ShippedMechanism, EndsWithAGoodDesignAndWhereItIsExpected) {
         << warning;
 }
 
+// A rod between two pins, judged by the motion of its cells.
+TEST(ShippedLink, IsAQuarterStifferInItsMotion) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const std::string command = std::string(FLEXMORPH_PROGRAM) + " run slider_crank_designed -o '" +
+                              folder + "' --quiet --set output.vtk=false";
+  const int status = std::system(command.c_str());
+  ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << command;
+  const nlohmann::json json = nlohmann::json::parse(contents_of(folder + "/run.json"));
+  EXPECT_GE(json["expect"].size(), 8u);
+  for (const auto& [name, expected] : json["expect"].items())
+    EXPECT_TRUE(expected["holds"].get<bool>()) << name << ": " << expected;
+  const nlohmann::json& motion = json["motion"];
+  EXPECT_GT(motion["uniform_strain_energy_integral"].get<double>(),
+            1.25 * motion["strain_energy_integral"].get<double>());
+  for (const std::string warning : json["warnings"])
+    EXPECT_NE(warning.find("it is a link between two pins"), std::string::npos) << warning;
+}
+
 }  // namespace
 }  // namespace flexmorph
