@@ -1,10 +1,15 @@
 #!/bin/sh
-# cases/run.sh [CASE] [OPTION]...
-# Installs missing packages, builds flexmorph and runs one case (default rotating_plate_v01) into
-# runs/CASE. CASE is a path or the name of a shipped case; options go to `flexmorph run`.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
-. "$root/cases/cmake/setup.sh"
+usage() {
+  cat <<TEXT
+cases/run.sh [CASE] [OPTION]...
+Installs missing packages, builds flexmorph and runs one case into runs/CASE.
+  CASE    path of a case file or name of a shipped case (default: rotating_plate_v01)
+  OPTION  option of 'flexmorph run': --set KEY=VALUE, -o FOLDER, --output FOLDER, --threads N,
+          --resume, --quiet, --condition, --explain
+TEXT
+}
 
 scene=rotating_plate_v01
 case "${1--}" in
@@ -12,12 +17,34 @@ case "${1--}" in
   *) scene=$1 && shift ;;
 esac
 
-announce 14
-step $((2 * cores)) "runs $(basename "$scene" .toml) (rotating_plate_v01, on one core)"
-build_targets flexmorph
+# Arguments are read before anything is installed or built.
+wrong() { echo "cases/run.sh: $1" >&2 && usage >&2 && exit 2; }
+output=
+value=0  # 1: the next word belongs to the option before it
 for option in "$@"; do
+  if [ "$value" = 1 ]; then value=0 && continue; fi
   case "$option" in
-    -o* | --output*) exec "$build/cases/flexmorph" run "$scene" "$@" ;;
+    -h | --help) usage && exit 0 ;;
+    -o | --output) output=1 value=1 ;;
+    -o?* | --output=*) output=1 ;;
+    --set | --threads) value=1 ;;
+    --set=* | --threads=* | --resume | --quiet | --condition | --explain) ;;
+    *) wrong "unknown option '$option'" ;;
   esac
 done
-exec "$build/cases/flexmorph" run "$scene" -o "$root/runs/$(basename "$scene" .toml)" "$@"
+[ "$value" = 0 ] || wrong "'$option' needs a value"
+if [ ! -f "$scene" ] && [ ! -f "$root/cases/$scene.toml" ]; then
+  wrong "no case '$scene': neither a file nor one of the shipped cases $(
+    cd "$root/cases" && echo *.toml | sed 's/\.toml//g')"
+fi
+
+. "$root/cases/cmake/setup.sh"
+announce 14
+step $((2 * cores)) "runs $(basename "$scene" .toml) (rotating_plate_v01, on one core)"
+install_packages
+# A build folder that tests/run.sh has configured keeps its tests.
+[ -f "$build/CMakeCache.txt" ] || set_tests=-DFLEXMORPH_TESTS=OFF
+cmake -S "$root" --preset release ${set_tests-}
+cmake --build "$build" --parallel "$cores" --target flexmorph
+[ -n "$output" ] || set -- -o "$root/runs/$(basename "$scene" .toml)" "$@"
+exec "$build/cases/flexmorph" run "$scene" "$@"

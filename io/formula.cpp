@@ -89,13 +89,17 @@ GiNaC::ex piecewise(const Arguments& x) {
 GiNaC::prototype_table prototypes() {
   constexpr size_t kMostPieces = 100;
   GiNaC::prototype_table out = GiNaC::get_default_reader();
-  out[{"min", 2}] = [](const Arguments& x) { return choose(x[1] - x[0], x[0], x[1]); };
-  out[{"max", 2}] = [](const Arguments& x) { return choose(x[0] - x[1], x[0], x[1]); };
-  out[{"abs", 1}] = [](const Arguments& x) { return choose(x[0], x[0], -x[0]); };
-  out[{"step", 1}] = [](const Arguments& x) { return choose(x[0], 1, 0); };
-  out[{"smoothstep", 1}] = smooth_step;
+  // The functions of version 1.8.8 have no default constructor, which operator[] would need.
+  const auto add = [&out](const GiNaC::prototype& name, GiNaC::ex (*function)(const Arguments&)) {
+    out.insert_or_assign(name, function);
+  };
+  add({"min", 2}, [](const Arguments& x) { return choose(x[1] - x[0], x[0], x[1]); });
+  add({"max", 2}, [](const Arguments& x) { return choose(x[0] - x[1], x[0], x[1]); });
+  add({"abs", 1}, [](const Arguments& x) { return choose(x[0], x[0], -x[0]); });
+  add({"step", 1}, [](const Arguments& x) { return choose(x[0], 1, 0); });
+  add({"smoothstep", 1}, smooth_step);
   for (size_t pieces = 2; pieces <= kMostPieces; ++pieces)
-    out[{"piecewise", 2 * pieces - 1}] = piecewise;
+    add({"piecewise", 2 * pieces - 1}, piecewise);
   return out;
 }
 

@@ -26,6 +26,7 @@ macro(flexmorph_find name oldest)
 endmacro()
 
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
+set(CMAKE_POLICY_DEFAULT_CMP0167 NEW)  # CGAL 6 asks for Boost without saying so
 flexmorph_find(Eigen3 3.4)
 flexmorph_find(CGAL 5.5)
 flexmorph_find(Boost 1.74)
@@ -86,7 +87,10 @@ flexmorph_library(SUITESPARSE 5.12 SUITESPARSE_FOUND)
 find_path(OCCT_INCLUDE_DIR STEPControl_Writer.hxx PATH_SUFFIXES opencascade)
 set(OCCT_FOUND TRUE)
 add_library(OpenCASCADE::step INTERFACE IMPORTED)
-foreach(library TKSTEP TKSTEPBase TKXSBase TKPrim TKTopAlgo TKBRep TKG3d TKMath TKernel)
+# Version 7.8 has TKDESTEP where earlier ones have TKSTEP and TKSTEPBase.
+find_library(OCCT_step NAMES TKDESTEP TKSTEP)
+find_library(OCCT_step_base NAMES TKDESTEP TKSTEPBase)
+foreach(library step step_base TKXSBase TKPrim TKTopAlgo TKBRep TKG3d TKMath TKernel)
   find_library(OCCT_${library} ${library})
   if(OCCT_INCLUDE_DIR AND OCCT_${library})
     target_link_libraries(OpenCASCADE::step INTERFACE ${OCCT_${library}})
@@ -105,18 +109,21 @@ if(OCCT_FOUND)
 endif()
 flexmorph_library(OCCT 7.6 OCCT_FOUND)
 
-# Of the tests. CalculiX judges exported designs; valijson, headers alone, judges cases by their schema; SUNDIALS judges our integrators; its own package file would ask for PETSc and MPI,
-# which the serial libraries do not need.
+# What only tests need. Without GoogleTest there are none; what else is absent leaves out the tests
+# that need it: CalculiX solves exported designs, valijson (headers only) checks cases against their
+# schema, IDA of SUNDIALS integrates scenes. The package file of SUNDIALS would ask for PETSc and
+# MPI, which the serial libraries do not need.
 if(FLEXMORPH_TESTS)
+  set(flexmorph_absent "")
   flexmorph_find(GTest 1.12)
   find_program(FLEXMORPH_CCX ccx)
-  flexmorph_library(calculix-ccx 2.20 FLEXMORPH_CCX)
   find_path(VALIJSON_INCLUDE_DIR valijson/validator.hpp)
-  flexmorph_library(valijson 1.0 VALIJSON_INCLUDE_DIR)
   find_path(SUNDIALS_INCLUDE_DIR ida/ida.h)
   set(SUNDIALS_FOUND TRUE)
   add_library(SUNDIALS::ida INTERFACE IMPORTED)
-  foreach(library ida nvecserial sunlinsolklu sunmatrixsparse generic)
+  # Version 7 has sundials_core where version 6 has sundials_generic.
+  find_library(SUNDIALS_core NAMES sundials_core sundials_generic)
+  foreach(library ida nvecserial sunlinsolklu sunmatrixsparse core)
     find_library(SUNDIALS_${library} sundials_${library})
     if(SUNDIALS_INCLUDE_DIR AND SUNDIALS_${library})
       target_link_libraries(SUNDIALS::ida INTERFACE ${SUNDIALS_${library}})
@@ -132,9 +139,26 @@ if(FLEXMORPH_TESTS)
     string(REGEX MATCH "[0-9.]+" SUNDIALS_VERSION "${line}")
     if(SUNDIALS_VERSION VERSION_LESS 6)
       set(SUNDIALS_FOUND FALSE)
+    elseif(SUNDIALS_VERSION VERSION_GREATER_EQUAL 7)
+      # Its headers include those of MPI where it was built with MPI.
+      find_package(MPI QUIET COMPONENTS C)
+      if(MPI_C_FOUND)
+        target_link_libraries(SUNDIALS::ida INTERFACE MPI::MPI_C)
+      else()
+        set(SUNDIALS_FOUND FALSE)
+      endif()
     endif()
   endif()
-  flexmorph_library(SUNDIALS 6 SUNDIALS_FOUND)
+  foreach(name FLEXMORPH_CCX VALIJSON_INCLUDE_DIR SUNDIALS_FOUND)
+    if(NOT ${name})
+      string(REGEX REPLACE "FLEXMORPH_|_INCLUDE_DIR|_FOUND" "" name ${name})
+      list(APPEND flexmorph_absent ${name})
+    endif()
+  endforeach()
+  if(flexmorph_absent)
+    list(JOIN flexmorph_absent ", " absent)
+    message(STATUS "Tests that need these are skipped: ${absent}")
+  endif()
 endif()
 
 # The reference BLAS, which would be found otherwise, is three times slower.
@@ -153,10 +177,14 @@ flexmorph_library(OpenMP 4.5 OpenMP_CXX_FOUND)
 if(flexmorph_missing)
   list(JOIN flexmorph_missing "\n  " missing)
   file(STRINGS "${CMAKE_CURRENT_LIST_DIR}/packages.txt" packages REGEX "^[^#]")
+  if(FLEXMORPH_TESTS)
+    list(APPEND packages libgtest-dev)
+  endif()
+  list(TRANSFORM packages REPLACE " *[|].*" "")
   list(JOIN packages " " packages)
   message(FATAL_ERROR
     "Libraries are missing:\n  ${missing}\n"
-    "cases/run.sh installs all of them. By hand, on Debian 12:\n"
+    "cases/run.sh and tests/run.sh install all of them. By hand, on Debian 12 or newer:\n"
     "  apt-get install --no-install-recommends ${packages}\n")
 endif()
 list(JOIN flexmorph_found ", " found)

@@ -8,11 +8,6 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
-#include <valijson/adapters/nlohmann_json_adapter.hpp>
-#include <valijson/schema.hpp>
-#include <valijson/schema_parser.hpp>
-#include <valijson/validation_results.hpp>
-#include <valijson/validator.hpp>
 
 #include "cases/build/build.h"
 #include "cases/keys/book.h"
@@ -83,65 +78,6 @@ TEST(Keys, TheReferenceIsFresh) {
   const std::string text = contents_of(FLEXMORPH_CASES "/README.md");
   EXPECT_TRUE(text == cases::with_reference(text))
       << "the keys have changed: build/cases/flexmorph keys --renew cases/README.md";
-}
-
-class Schema : public ::testing::Test {
- protected:
-  Schema() {
-    const nlohmann::json json = nlohmann::json::parse(cases::keys_as_schema());
-    valijson::SchemaParser(valijson::SchemaParser::kDraft7)
-        .populateSchema(valijson::adapters::NlohmannJsonAdapter(json), schema_);
-  }
-  /// What is wrong with a case; empty if nothing is.
-  std::string judge(const std::string& toml_text) const {
-    std::ostringstream text;
-    text << toml::json_formatter(toml::parse(toml_text));
-    const nlohmann::json json = nlohmann::json::parse(text.str());
-    valijson::Validator validator;
-    valijson::ValidationResults results;
-    const valijson::adapters::NlohmannJsonAdapter target(json);
-    if (validator.validate(schema_, target, &results)) return "";
-    std::string out;
-    for (const auto& error : results) {
-      for (const std::string& part : error.context) out += part;
-      out += ": " + error.description + "\n";
-    }
-    return out;
-  }
-  valijson::Schema schema_;
-};
-
-TEST_F(Schema, TakesAllShippedCases) {
-  for (const std::string& name : cases::shipped_cases())
-    EXPECT_EQ(judge(io::read_text(cases::find_case(name))), "") << name;
-}
-
-TEST_F(Schema, RefusesBrokenCases) {
-  const std::string whole = io::read_text(FLEXMORPH_SHORT_CASE);
-  ASSERT_EQ(judge(whole), "");
-  struct Break {
-    const char *from, *to;
-  };
-  for (const Break& each :
-       {Break{"step = 1e-3", "step = -1e-3"},          // below its range
-        Break{"step = 1e-3", "step = \"adaptativ\""},  // no such word
-        Break{"step = 1e-3", "stepp = 1e-3"},          // no such key
-        Break{"end = 0.12", ""},                       // required
-        Break{"end = 0.12", "end = \"0.12\""},         // a text
-        Break{"element = \"ale_ancf_plate\"", "element = \"plate\""},
-        Break{"poisson_ratio = 0.3", "poisson_ratio = 0.7"},
-        Break{"elements = [10, 2]", "elements = [10, 2, 2]"},
-        Break{"elements = [10, 2]", "elements = [10, 0.5]"},
-        Break{"terms = [\"inertia\", \"membrane\"]", "terms = []"},
-        Break{"terms = [\"inertia\", \"membrane\"]", "terms = [\"inertia\", \"inertia\"]"},
-        Break{"[[hub]]", "[hub]"},  // no list
-        Break{"[time]", "[tyme]"}}) {
-    std::string broken = whole;
-    const size_t at = broken.find(each.from);
-    ASSERT_NE(at, std::string::npos) << each.from;
-    broken.replace(at, std::string(each.from).size(), each.to);
-    EXPECT_NE(judge(broken), "") << each.to;
-  }
 }
 
 TEST(ExplainedCases, ReadBackAsTheSameText) {

@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <sstream>
 #include <string>
@@ -43,6 +44,22 @@ inline pid_t start(const Scratch& scratch, const Words& arguments) {
 /// Exit code of a run that is whole, but ended after so few iterations that its design is worse
 /// than uniform material: "done, not usable".
 inline constexpr int kTooFew = 5;
+
+/// Waits until a condition holds.
+/// @return false if the child ended before, or the time [s] was over; the child is killed then
+template <class Condition>
+bool eventually(double seconds, pid_t child, const Condition& condition) {
+  for (double waited = 0; waited < seconds; waited += 0.01) {
+    if (condition()) return true;
+    siginfo_t ended{};
+    if (waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOHANG | WNOWAIT) != 0 ||
+        ended.si_pid == child)
+      return condition();
+    usleep(10'000);
+  }
+  kill(child, SIGKILL);
+  return false;
+}
 
 struct Ended {
   int code = -1;  ///< exit code, -1 when a signal ended it

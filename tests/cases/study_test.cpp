@@ -301,8 +301,10 @@ TEST(Compare, StopsWhenInterruptedAndGoesOnLater) {
                             {"--optimizers", "mma", "--starts", "2", "--budget", "1000000", "--set",
                              "optimizer.kkt_tolerance=0"});
   const pid_t study = test::start(scratch, words);
-  // No assertion on time: the history of the first run appears sooner or later.
-  while (test::lines_of(contents_of(folder + "/mma_1/history.csv")).size() < 3) usleep(10'000);
+  // The study runs until it is interrupted; if it ends by itself, the test goes on and fails.
+  ASSERT_TRUE(test::eventually(60, study, [&] {
+    return test::lines_of(contents_of(folder + "/mma_1/history.csv")).size() >= 3;
+  })) << test::end_of(scratch, study).err;
   kill(study, SIGTERM);
   const Ended ended = test::end_of(scratch, study);
   EXPECT_EQ(ended.code, 4) << ended.err;

@@ -2,6 +2,8 @@
 // what was in it before is moved, not removed.
 #include "io/output_folder.h"
 
+#include <fcntl.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -88,32 +90,68 @@ TEST(OutputFolder, LeavesForeignFoldersAlone) {
   EXPECT_EQ(contents_of(scratch / "file"), "");
 }
 
-// Whoever is killed leaves no lock.
+/// A process that fills a folder until it is killed, which the destructor does.
+class Filler {
+ public:
+  explicit Filler(const std::string& folder) {
+    int ready[2];
+    if (pipe(ready) != 0) return;
+    pid_ = fork();
+    if (pid_ == 0) fill_and_wait(folder, ready[1]);
+    close(ready[1]);  // so that read() ends when the child does
+    char byte = 0;
+    begun_ = read(ready[0], &byte, 1) == 1;
+    close(ready[0]);
+  }
+  ~Filler() { end(); }
+  Filler(const Filler&) = delete;
+  Filler& operator=(const Filler&) = delete;
+
+  pid_t pid() const { return pid_; }
+  bool begun() const { return begun_; }
+  void end() {
+    if (pid_ <= 0) return;
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+    pid_ = -1;
+  }
+
+ private:
+  /// In the child, which ends without GoogleTest, at the latest after a minute.
+  [[noreturn]] static void fill_and_wait(const std::string& path, int ready) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    alarm(60);
+    const int null = open("/dev/null", O_RDWR);
+    for (int file : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(null, file);
+    try {
+      OutputFolder folder(path);
+      std::ofstream(folder.file("run.json")) << "running";
+      if (write(ready, "x", 1) == 1)
+        for (;;) pause();
+    } catch (...) {
+    }
+    _exit(1);
+  }
+
+  pid_t pid_ = -1;
+  bool begun_ = false;
+};
+
+// A process that is killed leaves no lock.
 TEST(OutputFolder, IsFilledByOneProcess) {
   const Scratch scratch;
-  int ready[2];
-  ASSERT_EQ(pipe(ready), 0);
-  const pid_t child = fork();
-  if (child == 0) {
-    OutputFolder folder(scratch / "run");
-    std::ofstream(folder.file("run.json")) << "running";
-    [[maybe_unused]] const ssize_t n = write(ready[1], "x", 1);
-    for (;;) pause();
-  }
-  char byte = 0;
-  ASSERT_EQ(read(ready[0], &byte, 1), 1);
+  Filler filler(scratch / "run");
+  ASSERT_TRUE(filler.begun());
   EXPECT_TRUE(is_being_filled(scratch / "run"));
   const std::string words = refusal_of(scratch / "run");
-  EXPECT_NE(words.find("process " + std::to_string(child) + " on '"), std::string::npos) << words;
+  EXPECT_NE(words.find("process " + std::to_string(filler.pid()) + " on '"), std::string::npos)
+      << words;
   EXPECT_EQ(contents_of(scratch / "run/run.json"), "running");
   EXPECT_FALSE(fs::exists(scratch / "run.previous"));
-  kill(child, SIGKILL);
-  waitpid(child, nullptr, 0);
+  filler.end();
   EXPECT_FALSE(is_being_filled(scratch / "run"));
   EXPECT_EQ(refusal_of(scratch / "run"), "");
   EXPECT_EQ(contents_of(scratch / "run.previous/run.json"), "running");
-  close(ready[0]);
-  close(ready[1]);
 }
 
 TEST(OutputFolder, IsRemovedAsFarAsItIsOurs) {

@@ -1,0 +1,215 @@
+#include "tests/support/watchdog.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <charconv>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace flexmorph::testing {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Processes of a test that are about to end may take so long after it.
+constexpr std::chrono::seconds kGrace{2};
+
+/// Test that runs now: memory that the child writes and the watching process reads.
+struct RunningTest {
+  std::atomic<unsigned> number;  ///< counts the starts of tests
+  char name[256];                ///< "Suite.Test", empty between tests
+};
+
+/// Writes the name of each test into the shared memory when the test starts.
+class NameListener : public ::testing::EmptyTestEventListener {
+ public:
+  explicit NameListener(RunningTest& running) : running_(running) {}
+
+ private:
+  void OnTestStart(const ::testing::TestInfo& info) override {
+    std::snprintf(running_.name, sizeof running_.name, "%s.%s", info.test_suite_name(),
+                  info.name());
+    ++running_.number;
+  }
+
+  RunningTest& running_;
+};
+
+struct Process {
+  pid_t pid, parent;
+  bool ended;  ///< it is a zombie: it has ended, and its parent has not asked for its exit code
+};
+
+/// All processes of this machine that can be seen, from /proc/PID/stat.
+std::vector<Process> all_processes() {
+  std::vector<Process> out;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc", ignored)) {
+    const std::string name = entry.path().filename();
+    pid_t pid = 0;
+    if (std::from_chars(name.data(), name.data() + name.size(), pid).ec != std::errc{}) continue;
+    std::ifstream in(entry.path() / "stat");
+    const std::string text(std::istreambuf_iterator<char>(in), {});
+    // The name of the program stands in parentheses and may hold any character.
+    const size_t close = text.rfind(')');
+    if (close == std::string::npos) continue;
+    std::istringstream rest(text.substr(close + 1));
+    char state = 0;
+    Process p{pid, 0, false};
+    if (!(rest >> state >> p.parent)) continue;
+    p.ended = state == 'Z' || state == 'X';
+    out.push_back(p);
+  }
+  return out;
+}
+
+/// Processes that descend from this one and have not ended.
+std::vector<pid_t> descendants() {
+  const std::vector<Process> all = all_processes();
+  std::vector<pid_t> family{getpid()}, out;
+  for (size_t k = 0; k < family.size(); ++k)
+    for (const Process& p : all)
+      if (p.parent == family[k]) {
+        family.push_back(p.pid);
+        if (!p.ended) out.push_back(p.pid);
+      }
+  return out;
+}
+
+std::string command_of(pid_t pid) {
+  std::ifstream in("/proc/" + std::to_string(pid) + "/cmdline");
+  std::string text(std::istreambuf_iterator<char>(in), {});
+  std::replace(text.begin(), text.end(), '\0', ' ');
+  return "process " + std::to_string(pid) + ": " + text;
+}
+
+constexpr int kNotEnded = -1;
+
+/// Collects the exit codes of children that have ended.
+/// @return the status of `child` if it is among them, else kNotEnded
+int collect(pid_t child) {
+  int status = 0, found = kNotEnded;
+  for (pid_t pid = 0; (pid = waitpid(-1, &status, WNOHANG)) > 0;)
+    if (pid == child) found = status;
+  return found;
+}
+
+/// Collects what has ended. @return does this process have no child any more?
+bool has_no_child() {
+  while (waitpid(-1, nullptr, WNOHANG) > 0) continue;
+  return waitpid(-1, nullptr, WNOHANG) == -1 && errno == ECHILD;
+}
+
+}  // namespace
+
+void kill_descendants() {
+  for (const Clock::time_point end = Clock::now() + std::chrono::seconds(10); Clock::now() < end;) {
+    for (const pid_t pid : descendants()) kill(pid, SIGKILL);
+    if (has_no_child()) return;
+    usleep(10'000);
+  }
+}
+
+namespace {
+
+/// Names and kills what is left after the tests. @return is anything left?
+bool left_behind() {
+  for (const Clock::time_point end = Clock::now() + kGrace; Clock::now() < end; usleep(10'000))
+    if (has_no_child()) return false;
+  for (const pid_t pid : descendants())
+    std::fprintf(stderr, "The test left a process behind; it is killed: %s\n",
+                 command_of(pid).c_str());
+  kill_descendants();
+  return true;
+}
+
+double seconds_per_test() {
+  const char* text = std::getenv("FLEXMORPH_TEST_SECONDS");
+  return text ? std::strtod(text, nullptr) : kDefaultTestSeconds;
+}
+
+int run_in_child(const std::function<int()>& run_tests, RunningTest& running) {
+  ::testing::UnitTest::GetInstance()->listeners().Append(new NameListener(running));
+  const int code = run_tests();
+  std::fflush(nullptr);
+  return code;
+}
+
+/// Waits for the child, tells which test exceeds the limit. @return exit code of the program
+int watch(pid_t child, const RunningTest& running, double limit, const sigset_t& signals) {
+  unsigned number = 0;
+  Clock::time_point begun = Clock::now();
+  for (;;) {
+    if (const int status = collect(child); status != kNotEnded) {
+      if (left_behind()) return 1;
+      if (WIFEXITED(status)) return WEXITSTATUS(status);
+      std::fprintf(stderr, "%s was ended by signal %d (%s)\n", running.name, WTERMSIG(status),
+                   strsignal(WTERMSIG(status)));
+      return 128 + WTERMSIG(status);
+    }
+    if (const unsigned now = running.number; now != number) number = now, begun = Clock::now();
+    const double seconds = std::chrono::duration<double>(Clock::now() - begun).count();
+    const timespec wait{0, 100'000'000};
+    const int signal = sigtimedwait(&signals, nullptr, &wait);
+    if (signal == SIGTERM || signal == SIGINT || signal == SIGHUP) {
+      std::fprintf(stderr, "Interrupted by signal %d after %.1f s of the test %s\n", signal,
+                   seconds, running.name);
+    } else if (seconds > limit) {
+      std::fprintf(stderr, "The test %s has taken more than %g s and is killed.\n", running.name,
+                   limit);
+    } else {
+      continue;
+    }
+    for (const pid_t pid : descendants())
+      std::fprintf(stderr, "Killed: %s\n", command_of(pid).c_str());
+    kill_descendants();
+    return 1;
+  }
+}
+
+}  // namespace
+
+int run_watched(const std::function<int()>& run_tests) {
+  if (const int null = open("/dev/null", O_RDONLY); null >= 0)
+    dup2(null, STDIN_FILENO), close(null);
+  const double limit = seconds_per_test();
+  if (!(limit > 0)) return run_tests();
+  void* const memory =
+      mmap(nullptr, sizeof(RunningTest), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED) return std::perror("mmap"), 1;
+  RunningTest& running = *new (memory) RunningTest{};
+  prctl(PR_SET_CHILD_SUBREAPER, 1);
+  sigset_t signals, before;
+  sigemptyset(&signals);
+  for (const int signal : {SIGCHLD, SIGTERM, SIGINT, SIGHUP}) sigaddset(&signals, signal);
+  sigprocmask(SIG_BLOCK, &signals, &before);
+  const pid_t child = fork();
+  if (child == -1) return std::perror("fork"), 1;
+  if (child == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    prctl(PR_SET_CHILD_SUBREAPER, 1);  // what a test's children leave is its own
+    sigprocmask(SIG_SETMASK, &before, nullptr);
+    std::exit(run_in_child(run_tests, running));
+  }
+  return watch(child, running, limit, signals);
+}
+
+}  // namespace flexmorph::testing

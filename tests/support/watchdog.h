@@ -1,0 +1,32 @@
+#pragma once
+
+#include <functional>
+
+namespace flexmorph::testing {
+
+/// Runs the tests of a program in a child process and watches over it.
+///
+/// A test that exceeds its time limit is named and killed, together with every process that it
+/// started; the limit starts anew with each test. A process that a test leaves behind is named and
+/// killed within seconds, and the program fails. SIGTERM and SIGINT name the running test, kill
+/// everything that it started and end the program. Standard input is /dev/null. If the watching
+/// process itself dies, the child dies with it.
+///
+/// The time limit is FLEXMORPH_TEST_SECONDS [s of wall-clock time], kDefaultTestSeconds if the
+/// variable is not set. FLEXMORPH_TEST_SECONDS=0 runs the tests in this process without a limit,
+/// for debuggers.
+///
+/// @param run_tests  initializes GoogleTest, runs the tests and returns the exit code; called in
+/// the
+///                   child process
+/// @return exit code of the child process; 1 if it exceeded the limit or left a process behind
+int run_watched(const std::function<int()>& run_tests);
+
+/// Kills every process that descends from this one and waits up to 10 s for their ends. A process
+/// whose parent was killed has this process as its parent (PR_SET_CHILD_SUBREAPER): none escapes.
+void kill_descendants();
+
+/// Time limit of one test if FLEXMORPH_TEST_SECONDS is not set [s].
+inline constexpr int kDefaultTestSeconds = 300;
+
+}  // namespace flexmorph::testing

@@ -1,0 +1,26 @@
+// Tests that do what the watchdog (tests/support/watchdog.h) is there for; watchdog_test.cmake runs
+// each in a process of its own.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+
+namespace {
+
+TEST(Subject, Passes) { EXPECT_EQ(getchar(), EOF) << "standard input is /dev/null"; }
+
+TEST(Subject, Hangs) {
+  for (;;) pause();
+}
+
+TEST(Subject, LeavesAProcess) { EXPECT_EQ(std::system("setsid sleep 1000 &"), 0); }
+
+TEST(Subject, IgnoresTheEnd) {
+  EXPECT_EQ(std::system("trap '' TERM INT HUP; setsid sleep 1000; sleep 1000"), 0);
+}
+
+TEST(Subject, EndsByASignal) { raise(SIGSEGV); }
+
+}  // namespace
