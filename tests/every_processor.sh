@@ -1,22 +1,23 @@
 #!/bin/sh
-# tests/every_processor.sh [--builds A,B] [--kernels A,B] [--disturbances N] [--all]
-# Shows that no verdict hangs on the last bits: all tests in three builds (native; portable, for any
-# processor of the family; uncontracted, the portable one with -ffp-contract=off), each with four
-# kernels of OpenBLAS; kernels that the processor lacks are named and skipped. Where the portable
-# programs hold no fused product to begin with, the third build is the second, and is not made. Then,
-# in the first build, tests that integrate or optimize from starts disturbed by 1e-13 (five unless
-# given; tests/support/disturbance.h). --all takes the benchmarks too, shipped cases with [expect].
+# tests/every_processor.sh [--builds LIST] [--kernels LIST] [--disturbances N] [--all]
+# Runs the tests with the last digits of other processors: builds (native, portable, uncontracted)
+# times kernels of OpenBLAS, then the native build with tests that integrate or optimize from starts
+# disturbed by 1e-13 (five unless given; tests/support/disturbance.h). Without --builds and --kernels:
+# native with Haswell, Zen, SkylakeX, Sandybridge and Prescott, portable with Haswell and Prescott.
+# --all adds the benchmarks: shipped cases with [expect].
 #
 # A row per run goes to the screen and into every_processor.md in the folder of the builds: verdicts,
-# and which numbers that tests print moved from those of the first run. On two cores a build takes
-# about fourteen minutes, a run of the tests about three. The last line says `N passed, N failed`, of
-# runs.
+# and which numbers that tests print moved from those of the first run. A kernel whose instructions
+# the processor lacks is named and skipped. On two cores a build takes about fourteen minutes, a run
+# of the tests about four. The last line says `N passed, N failed`, of runs.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 . "$root/cases/cmake/setup.sh"
+package_lists="$package_lists $root/tests/packages.txt"
+export FLEXMORPH_TEST_SECONDS=300  # limit of one test, not of a program
 
-builds=native,portable,uncontracted
-kernels=Haswell,SkylakeX,Zen,Sandybridge
+builds=native,portable
+kernels=
 disturbances=5
 all=0
 while [ $# -gt 0 ]; do
@@ -25,7 +26,8 @@ while [ $# -gt 0 ]; do
     --kernels) kernels=$2 && shift ;;
     --disturbances) disturbances=$2 && shift ;;
     --all) all=1 ;;
-    *) sed -n '2,4p' "$0" >&2 && exit 2 ;;
+    -h | --help) sed -n '2,/^set -eu/s/^# //p' "$0" && exit 0 ;;
+    *) sed -n '2p' "$0" >&2 && exit 2 ;;
   esac
   shift
 done
@@ -46,6 +48,13 @@ runs_here() {
     *) return 0 ;;
   esac
   grep -m 1 '^flags' /proc/cpuinfo | grep -qw "$word"
+}
+
+# kernels_of BUILD
+kernels_of() {
+  if [ -n "$kernels" ]; then echo "$kernels" | tr ',' ' '
+  elif [ "$1" = native ]; then echo Haswell Zen SkylakeX Sandybridge Prescott
+  else echo Haswell Prescott; fi
 }
 
 # The native build is that of tests/run.sh.
@@ -163,9 +172,10 @@ for name in $(echo "$builds" | tr "," " "); do
     continue
   fi
   # shellcheck disable=SC2046  # words
-  cmake -S "$root" -B "$at" -G Ninja -DCMAKE_BUILD_TYPE=Release $(options "$name") >/dev/null
+  cmake -S "$root" -B "$at" -G Ninja -DCMAKE_BUILD_TYPE=Release -DFLEXMORPH_TESTS=ON \
+    $(options "$name") >/dev/null
   cmake --build "$at" --parallel "$cores" >"$folder/$name.log"
-  for kernel in $(echo "$kernels" | tr ',' ' '); do
+  for kernel in $(kernels_of "$name"); do
     if runs_here "$kernel"; then
       export OPENBLAS_CORETYPE="$kernel"
       run "$name-$kernel" "$name"

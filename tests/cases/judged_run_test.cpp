@@ -1,5 +1,6 @@
-// Designs as their outlines say: what a run writes of its judge, and CalculiX, another
-// finite-element program, on the files that it exports.
+// Verification of exported outlines: CalculiX, an independent finite-element program, solves the
+// files that a run exports. The designs are input data (tests/data/), so that the verdict does not
+// depend on the way of an optimizer.
 
 #include <gtest/gtest.h>
 #include <vtkDataArray.h>
@@ -20,12 +21,16 @@
 namespace flexmorph::test {
 namespace {
 
-/// A run of few iterations with its judge's verdict.
-nlohmann::json judged(const Scratch& scratch, const std::string& name, const std::string& folder,
-                      Words changes) {
-  changes.insert(changes.end(), {"output.design_every=0", "output.plots=false"});
+/// Runs a case with the design of tests/data/NAME.csv: its optimizer may move a variable by 1e-9 of
+/// the variable's range. @return what run.json says of the exported outline
+nlohmann::json verified(const Scratch& scratch, const std::string& name, const std::string& folder,
+                        Words changes = {}) {
+  changes.insert(changes.end(),
+                 {"design.start='" FLEXMORPH_DATA "/" + name + ".csv'", "design.mend=false",
+                  "optimizer.max_iterations=1", "optimizer.move_limit=1e-9",
+                  "output.design_every=0", "output.plots=false"});
   const Ended ended = run(scratch, name, folder, changes);
-  EXPECT_TRUE(ended.code == 0 || ended.code == 5) << ended.err;
+  EXPECT_EQ(ended.code, 0) << ended.err;
   return nlohmann::json::parse(contents_of(folder + "/run.json"))["results"][0]["body_fitted"];
 }
 
@@ -92,8 +97,16 @@ double von_mises(const std::vector<double>& s) {
       3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
 }
 
-/// design.vtu against the first step: displacements everywhere, relative to the largest one.
-void expect_fields(const std::string& path, const Input& input, const Values& moved) {
+/// Compares the fields of design.vtu with those of CalculiX at all nodes of the first step.
+///
+/// Displacements: largest difference, in parts of the largest displacement. Both programs solve the
+/// same elements under the same forces; what differs is that CalculiX has bricks of one layer.
+/// Von Mises stress: root mean square of the difference, in parts of that of the stress. Each
+/// program averages its elements' stresses at nodes in its own way. Single values at re-entrant
+/// corners, where the stress has no limit as elements shrink, say nothing.
+/// @param moved, stress  of CalculiX  @param largest  von Mises stress that run.json reports
+void expect_fields(const std::string& path, const Input& input, const Values& moved,
+                   const Values& stress, double largest) {
   vtkNew<vtkXMLUnstructuredGridReader> reader;
   reader->SetFileName(path.c_str());
   reader->Update();
@@ -101,7 +114,8 @@ void expect_fields(const std::string& path, const Input& input, const Values& mo
   ASSERT_GT(grid->GetNumberOfCells(), 0);
   EXPECT_EQ(grid->GetCellType(0), VTK_QUADRATIC_TRIANGLE);
   vtkDataArray* displacement = grid->GetPointData()->GetArray("displacement");
-  double largest = 0, difference = 0;
+  vtkDataArray* mises = grid->GetPointData()->GetArray("von_mises");
+  double largest_displacement = 0, difference = 0, squares = 0, stress_squares = 0, peak = 0;
   int n = 0;
   for (const auto& [node, at] : input.nodes) {
     if (!moved.contains(node) || node > grid->GetNumberOfPoints()) continue;
@@ -110,13 +124,22 @@ void expect_fields(const std::string& path, const Input& input, const Values& mo
     ASSERT_NEAR(place[1], at.second, 1e-6);
     for (int c = 0; c < 2; ++c) {
       const double value = moved.at(node)[static_cast<std::size_t>(c)];
-      largest = std::max(largest, std::abs(value));
+      largest_displacement = std::max(largest_displacement, std::abs(value));
       difference = std::max(difference, std::abs(value - displacement->GetComponent(node - 1, c)));
     }
+    const double ours = mises->GetComponent(node - 1, 0), theirs = von_mises(stress.at(node));
+    squares += std::pow(ours - theirs, 2);
+    stress_squares += theirs * theirs;
+    peak = std::max(peak, ours);
     ++n;
   }
   EXPECT_GT(n, 100);
-  EXPECT_LT(difference, 5e-3 * largest);
+  EXPECT_LT(difference, 5e-3 * largest_displacement);
+  ::testing::Test::RecordProperty("stress_rms",
+                                  std::to_string(std::sqrt(squares / stress_squares)));
+  EXPECT_LT(std::sqrt(squares / stress_squares), 0.02);
+  // The reported stress leaves out the surroundings of loads and supports.
+  EXPECT_LE(largest, peak * (1 + 1e-6));
 }
 
 /// Runs CalculiX on design.inp and compares.
@@ -143,20 +166,16 @@ void expect_calculix_agrees(const std::string& folder, const nlohmann::json& fou
   }
   const auto expected = found["compliance"].get<double>();
   EXPECT_NEAR(worst ? largest : sum, expected, 0.005 * expected);
-  expect_fields(folder + "/design.vtu", input, moved[0]);
-  // The largest stress of the first step, where the judge says it is.
   const nlohmann::json& exported = found["exported"];
   const double x = exported["largest_stress_at"][0], y = exported["largest_stress_at"][1];
-  double near = INFINITY, there = 0;
-  for (const auto& [node, at] : input.nodes) {
-    const double distance = std::hypot(at.first - x, at.second - y);
-    if (distance >= near || !stress[0].contains(node)) continue;
-    near = distance;
-    there = von_mises(stress[0].at(node));
-  }
-  EXPECT_LT(near, 1e-9);
-  const auto judged = exported["largest_stress"].get<double>();
-  EXPECT_NEAR(there, judged, 0.03 * judged);
+  const auto reported = exported["largest_stress"].get<double>();
+  expect_fields(folder + "/design.vtu", input, moved[0], stress[0], reported);
+  // The place of the largest reported stress is a node that CalculiX has, too.
+  double nearest = INFINITY;
+  for (const auto& [node, at] : input.nodes)
+    if (stress[0].contains(node))
+      nearest = std::min(nearest, std::hypot(at.first - x, at.second - y));
+  EXPECT_LT(nearest, 1e-9);
 }
 
 bool has_calculix() { return std::system("command -v ccx > /dev/null 2>&1") == 0; }
@@ -194,11 +213,10 @@ void expect_narrow_places(const nlohmann::json& run, const Plate& plate) {
 class ExportedPlates : public ::testing::TestWithParam<Plate> {};
 
 TEST_P(ExportedPlates, AreWhatCalculixFinds) {
-  ASSERT_TRUE(has_calculix()) << "the package calculix-ccx is missing";
+  if (!has_calculix()) GTEST_SKIP() << "the program ccx is absent";
   const Scratch scratch;
   const std::string folder = scratch / "out";
-  const nlohmann::json found =
-      judged(scratch, GetParam().name, folder, {"optimizer.max_iterations=60"});
+  const nlohmann::json found = verified(scratch, GetParam().name, folder);
   ASSERT_TRUE(found["compliance"].is_number()) << found;
   EXPECT_LE(found["error"].get<double>(), 0.005);
   EXPECT_GT(found["volume"].get<double>(), 0.2);
@@ -215,14 +233,13 @@ INSTANTIATE_TEST_SUITE_P(Shipped, ExportedPlates,
 
 // The worst load of a growing plate: what is in the hub is held, inertia is there as nodal forces.
 TEST(ExportedMotion, IsWhatCalculixFinds) {
-  ASSERT_TRUE(has_calculix()) << "the package calculix-ccx is missing";
+  if (!has_calculix()) GTEST_SKIP() << "the program ccx is absent";
   const Scratch scratch;
   const std::string folder = scratch / "out";
   const nlohmann::json found =
-      judged(scratch, "rotating_plate_v05", folder,
-             {"optimizer.max_iterations=30", "design.cell=0.005", "time.step=5e-3",
-              "verify=", "esl.every=0.1", "design.components=[20, 2]", "design.loads=\"worst\"",
-              "cycle="});
+      verified(scratch, "rotating_plate_v05", folder,
+               {"design.cell=0.005", "time.step=5e-3", "verify=", "esl.every=0.1",
+                "design.loads=\"worst\"", "cycle="});
   ASSERT_TRUE(found["compliance"].is_number()) << found;
   EXPECT_LE(found["error"].get<double>(), 0.005);
   expect_calculix_agrees(folder, found, 0.01, true);

@@ -1,31 +1,58 @@
-// Designs of a rod between two pins, as cases ask for them: without any support, too, the rod has
-// less strain energy than uniform material in the motion of its cells; what a link needs and does
-// not take is said by the key that is wrong.
+// Designs of a rod between two pins: in the motion of its cells a designed rod has less strain
+// energy than uniform material, the optimizer makes the rod stiffer for both kinds of support, and
+// wrong input is named by its key.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
+#include "io/tables.h"
 #include "tests/cases/program.h"
 
 namespace flexmorph::test {
 namespace {
 
-// As shipped, with reactions at its pins, the rod is a benchmark (tests/benchmark).
-TEST(FloatingLink, IsStifferInItsMotion) {
+class Link : public ::testing::TestWithParam<const char*> {
+ protected:
+  /// Runs the shipped case over half of its time. @return run.json
+  nlohmann::json run_link(const Scratch& scratch, Words changes, int other_code = 0) const {
+    const std::string folder = scratch / "out";
+    changes.insert(changes.end(), {std::string("design.0.support=\"") + GetParam() + "\"",
+                                   "design.0.mend=false", "time.end=0.15", "cycle.max_cycles=1",
+                                   "output.plots=false", "output.design_every=0"});
+    const Ended ended = run(scratch, "slider_crank_designed", folder, changes);
+    EXPECT_TRUE(ended.code == 0 || ended.code == other_code) << ended.err;
+    return nlohmann::json::parse(contents_of(folder + "/run.json"));
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Supports, Link, ::testing::Values("pins", "floating"),
+                         [](const auto& test) { return std::string(test.param); });
+
+// The design is input data; the optimizer may move a variable by 1e-9 of its range. The ratio of
+// the strain energies is 0.774, those of the compliances are 0.777 (pins) and 0.524 (floating).
+TEST_P(Link, IsStifferInItsMotion) {
   const Scratch scratch;
-  const std::string folder = scratch / "out";
-  const Ended ended =
-      run(scratch, "slider_crank_designed", folder,
-          {"design.0.support=\"floating\"", "time.end=0.15", "optimizer.max_iterations=150",
-           "cycle.max_cycles=2", "output.plots=false", "output.design_every=0"});
-  ASSERT_EQ(ended.code, 0) << ended.err;
-  const auto found = nlohmann::json::parse(contents_of(folder + "/run.json"));
+  const auto found =
+      run_link(scratch, {"design.0.start='" FLEXMORPH_DATA "/slider_crank_designed.csv'",
+                         "optimizer.max_iterations=1", "optimizer.move_limit=1e-9"});
   const nlohmann::json &result = found["results"][0], &motion = found["motion"];
   EXPECT_TRUE(result["connected"].get<bool>());
-  EXPECT_LE(result["sharp_volume"].get<double>(), 0.5 * (1 + 1e-3));
   EXPECT_LT(motion["strain_energy_integral"].get<double>(),
             0.85 * motion["uniform_strain_energy_integral"].get<double>());
+  EXPECT_LT(result["sharp_compliance"].get<double>(),
+            0.85 * result["uniform_compliance"].get<double>());
   EXPECT_TRUE(result["dynamic_amplitude"].is_null());  // a link has no tip
+}
+
+// Thirty iterations from the shipped start reach a quarter of its compliance. The outline is then
+// still worse than uniform material, or nearly so.
+TEST_P(Link, BecomesStiffer) {
+  const Scratch scratch;
+  const auto found = run_link(scratch, {"verify=", "optimizer.max_iterations=30"}, kTooFew);
+  const io::CsvTable history = io::read_csv(scratch / "out/history.csv");
+  const std::vector<double> compliance = history.numbers("compliance");
+  ASSERT_EQ(compliance.size(), 30u);
+  EXPECT_LT(compliance.back(), 0.5 * compliance.front());
+  EXPECT_LE(found["results"][0]["volume"].get<double>(), 0.5 * (1 + 1e-3));
 }
 
 struct Wrong {

@@ -201,7 +201,8 @@ TEST_P(EveryCorrection, LowersWhatTheMotionSays) {
   double least = cycles[0]["objective"];
   for (const auto& cycle : cycles)
     if (cycle["accepted"].get<bool>()) least = std::min(least, cycle["objective"].get<double>());
-  EXPECT_LT(least, 0.98 * cycles[0]["objective"].get<double>());
+  // Six iterations leave a design far from its optimum: three corrections reach 0.16 and 0.22.
+  EXPECT_LT(least, 0.5 * cycles[0]["objective"].get<double>());
   EXPECT_GT(run["certificate"]["kkt"].get<double>(), 0);
   EXPECT_GT(run["certificate"]["left"].get<double>(), 0);
   const io::CsvTable table = io::read_csv(folder + "/cycles.csv");
@@ -230,7 +231,7 @@ TEST(MotionDesign, OfTheWorstLoadLowersTheLargestEnergy) {
   double least = cycles[0]["objective"];
   for (const auto& cycle : cycles)
     if (cycle["accepted"].get<bool>()) least = std::min(least, cycle["objective"].get<double>());
-  EXPECT_LT(least, 0.98 * cycles[0]["objective"].get<double>());
+  EXPECT_LT(least, 0.5 * cycles[0]["objective"].get<double>());  // 0.087
 }
 
 // A finished run is certified later as at its end.

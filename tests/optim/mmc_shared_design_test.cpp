@@ -71,15 +71,15 @@ class EveryOptimizer : public ::testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Table, EveryOptimizer, ::testing::ValuesIn(optim::optimizer_names()),
                          [](const auto& test) { return test.param; });
 
-// By symmetry. Trajectories are chaotic, so round-off may part them: levels are compared.
+// By symmetry, equal bodies stay equal up to round-off, which few iterations do not amplify much:
+// the systems have a condition number of about 1e6, so that one evaluation differs by 1e-10.
 TEST_P(EveryOptimizer, EqualBodiesShareEqually) {
-  const Designed both = designed(GetParam(), 40, 1, 1, true);
+  const Designed start = designed(GetParam(), 1, 1, 1, true);
+  const Designed both = designed(GetParam(), 4, 1, 1, true);
   const BodyOutcome &a = both.outcomes[0], &b = both.outcomes[1];
-  RecordProperty("volume_a", std::to_string(a.volume));
-  RecordProperty("volume_b", std::to_string(b.volume));
-  EXPECT_NEAR(a.volume, b.volume, 0.01);
-  EXPECT_NEAR(a.compliance, b.compliance, 0.03 * a.compliance);
-  EXPECT_LE(a.volume + b.volume, 2 * 0.5 * (1 + 1e-4));
+  EXPECT_NE(both.compliance(), start.compliance());
+  EXPECT_NEAR(a.volume, b.volume, 1e-6);
+  EXPECT_NEAR(a.compliance, b.compliance, 1e-6 * a.compliance);
 }
 
 // Ten times the force is a hundred times the compliance: mass goes there, until another gram saves
