@@ -27,8 +27,6 @@ std::string words_of(const std::exception& e) {
   words = words.substr(0, words.find("\n["));
   for (const std::string start : {"GiNaC: ", "parse error at line 0, column 0: "})
     if (words.starts_with(start)) words = words.substr(start.size());
-  if (words.find("power should have exactly 2 operands") != std::string::npos)
-    return "a^b^c needs parentheses: (a^b)^c or a^(b^c)";
   if (words.find("division by zero") != std::string::npos)
     return "division by zero, or a power of 0 whose exponent is not positive at all times";
   if (words.find("::") != std::string::npos) return "it has no value";

@@ -53,6 +53,41 @@ void refuse_formula(const std::string& text, size_t position, const std::string&
   refuse_formula(text, "character " + std::to_string(position + 1) + ": " + why);
 }
 
+namespace {
+
+/// Refuses a^b^c, which GiNaC refuses or accepts depending on its version.
+void check_powers(const std::string& text) {
+  std::vector<bool> has_power = {false};  // the product that is read, in each open parenthesis
+  char last = ' ';
+  for (size_t i = 0; i < text.size();) {
+    const char c = text[i];
+    if (is_digit(c) || c == '.') {
+      i = end_of_number(text, i);
+      last = c;
+      continue;
+    }
+    if (is_letter(c)) {
+      while (i < text.size() && (is_letter(text[i]) || is_digit(text[i]))) ++i;
+      last = c;
+      continue;
+    }
+    ++i;
+    if (c == ' ' || c == '\t' || c == '\n') continue;
+    if (c == '(') has_power.push_back(false);
+    if (c == ')' && has_power.size() > 1) has_power.pop_back();
+    if (c == '*' || c == '/' || c == ',' || ((c == '+' || c == '-') && last != '^'))
+      has_power.back() = false;
+    if (c == '^') {
+      if (has_power.back())
+        refuse_formula(text, i - 1, "a^b^c needs parentheses: (a^b)^c or a^(b^c)");
+      has_power.back() = true;
+    }
+    last = c;
+  }
+}
+
+}  // namespace
+
 void check_formula_words(const std::string& text, const std::map<std::string, double>& constants) {
   if (text.size() > kMostCharacters)
     throw Error::input("a formula has at most " + std::to_string(kMostCharacters) + " characters");
@@ -101,6 +136,7 @@ void check_formula_words(const std::string& text, const std::map<std::string, do
       ++i;
     }
   }
+  check_powers(text);
 }
 
 DecimalFormula::DecimalFormula(const std::string& formula) {

@@ -129,7 +129,7 @@ programs() {
     \( -name '*_test' -o -name '*_tests' -o -name '*_convergence' \) -printf '%s %p\n' |
     sort -rn | cut -d ' ' -f 2 | while read -r program; do
       case "$program" in
-        *shipped_cases*) [ "$all" = 1 ] || continue ;;
+        *shipped_cases* | *comparison_tests) [ "$all" = 1 ] || continue ;;
       esac
       [ -z "${FLEXMORPH_DISTURBANCE-}" ] || grep -q FLEXMORPH_DISTURBANCE "$program" || continue
       echo "$program"

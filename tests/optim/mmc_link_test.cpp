@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <string>
@@ -124,10 +125,14 @@ TEST_P(EveryLink, GradientsAgreeWithDifferences) {
   LoadResponse::Each each;
   compliance.evaluate_each(k, m, each);
   const VectorXd one_by_one = compliance.individual(k, m);
+  // Two solutions of one system, whose condition number is about 5 E t / λ / s: E t = 1e6 N/m,
+  // λ = E I (π / L)^4 L / n = 56 N/m (first bending mode between pins: E I = 83 N m^2, L = 0.6 m,
+  // n = 671 nodes), s = 10^-1.5 the geometric mean of the stiffness scale factors.
+  const double allowed = 5e6 / 56 / 0.03 * std::numeric_limits<double>::epsilon();
   double sum = 0;
   for (Eigen::Index l = 0; l < 3; ++l) {
     sum += loads.sets[static_cast<std::size_t>(l)].weight * each.f[l];
-    EXPECT_NEAR(one_by_one[l], each.f[l], 1e-11 * each.f[l]);
+    EXPECT_NEAR(one_by_one[l], each.f[l], allowed * each.f[l]);
   }
   EXPECT_NEAR(sum, value.f, 1e-12 * value.f);
   for (const int cell : {0, 77, 111, 215}) {

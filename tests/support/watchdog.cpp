@@ -24,6 +24,8 @@
 #include <string>
 #include <vector>
 
+#include "geometry/processor.h"
+
 namespace flexmorph::testing {
 namespace {
 
@@ -146,13 +148,6 @@ double seconds_per_test() {
   return text ? std::strtod(text, nullptr) : kDefaultTestSeconds;
 }
 
-int run_in_child(const std::function<int()>& run_tests, RunningTest& running) {
-  ::testing::UnitTest::GetInstance()->listeners().Append(new NameListener(running));
-  const int code = run_tests();
-  std::fflush(nullptr);
-  return code;
-}
-
 /// Waits for the child, tells which test exceeds the limit. @return exit code of the program
 int watch(pid_t child, const RunningTest& running, double limit, const sigset_t& signals) {
   unsigned number = 0;
@@ -185,17 +180,53 @@ int watch(pid_t child, const RunningTest& running, double limit, const sigset_t&
   }
 }
 
+/// Memory that two processes share by an open file.
+RunningTest* shared_memory(int file) {
+  void* const memory =
+      mmap(nullptr, sizeof(RunningTest), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+  if (memory != MAP_FAILED) return static_cast<RunningTest*>(memory);
+  std::perror("mmap");
+  std::exit(1);
+}
+
+/// Number of the open file that holds the RunningTest, in the environment of the child.
+constexpr const char* kMemoryVariable = "FLEXMORPH_WATCHDOG_FILE";
+
+/// Starts this program anew as the child that runs the tests. A child without a new start could not
+/// end: libraries wait at the end for threads that they started when they were loaded.
+[[noreturn]] void start_child(int file, char** argv) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  prctl(PR_SET_CHILD_SUBREAPER, 1);  // what a test's children leave is its own
+  setenv(kMemoryVariable, std::to_string(file).c_str(), 1);
+  settle_processor(1, argv);
+  execv("/proc/self/exe", argv);
+  std::perror("execv");
+  _exit(1);
+}
+
 }  // namespace
 
-int run_watched(const std::function<int()>& run_tests) {
-  if (const int null = open("/dev/null", O_RDONLY); null >= 0)
-    dup2(null, STDIN_FILENO), close(null);
+int run_watched(char** argv, const std::function<int()>& run_tests) {
+  if (const int null = open("/dev/null", O_RDONLY); null >= 0) {
+    dup2(null, STDIN_FILENO);
+    close(null);
+  }
+  if (const char* number = std::getenv(kMemoryVariable)) {
+    const int file = static_cast<int>(std::strtol(number, nullptr, 10));
+    RunningTest* const running = shared_memory(file);
+    close(file);
+    unsetenv(kMemoryVariable);
+    ::testing::UnitTest::GetInstance()->listeners().Append(new NameListener(*running));
+    return run_tests();
+  }
   const double limit = seconds_per_test();
-  if (!(limit > 0)) return run_tests();
-  void* const memory =
-      mmap(nullptr, sizeof(RunningTest), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-  if (memory == MAP_FAILED) return std::perror("mmap"), 1;
-  RunningTest& running = *new (memory) RunningTest{};
+  if (!(limit > 0)) {
+    settle_processor(1, argv);
+    return run_tests();
+  }
+  const int file = memfd_create("watchdog", 0);
+  if (file == -1 || ftruncate(file, sizeof(RunningTest)) != 0) return std::perror("memfd"), 1;
+  const RunningTest& running = *shared_memory(file);
   prctl(PR_SET_CHILD_SUBREAPER, 1);
   sigset_t signals, before;
   sigemptyset(&signals);
@@ -204,11 +235,10 @@ int run_watched(const std::function<int()>& run_tests) {
   const pid_t child = fork();
   if (child == -1) return std::perror("fork"), 1;
   if (child == 0) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    prctl(PR_SET_CHILD_SUBREAPER, 1);  // what a test's children leave is its own
     sigprocmask(SIG_SETMASK, &before, nullptr);
-    std::exit(run_in_child(run_tests, running));
+    start_child(file, argv);
   }
+  close(file);
   return watch(child, running, limit, signals);
 }
 

@@ -4,7 +4,8 @@
 
 namespace flexmorph::testing {
 
-/// Runs the tests of a program in a child process and watches over it.
+/// Runs the tests of a program in a child process, which is this program started anew, and watches
+/// over it. Tests run with one thread and the BLAS kernels of the processor (geometry/processor.h).
 ///
 /// A test that exceeds its time limit is named and killed, together with every process that it
 /// started; the limit starts anew with each test. A process that a test leaves behind is named and
@@ -16,11 +17,10 @@ namespace flexmorph::testing {
 /// variable is not set. FLEXMORPH_TEST_SECONDS=0 runs the tests in this process without a limit,
 /// for debuggers.
 ///
-/// @param run_tests  initializes GoogleTest, runs the tests and returns the exit code; called in
-/// the
-///                   child process
+/// @param argv  arguments of main(), for the new start
+/// @param run_tests  initializes GoogleTest, runs the tests, returns the exit code (in the child)
 /// @return exit code of the child process; 1 if it exceeded the limit or left a process behind
-int run_watched(const std::function<int()>& run_tests);
+int run_watched(char** argv, const std::function<int()>& run_tests);
 
 /// Kills every process that descends from this one and waits up to 10 s for their ends. A process
 /// whose parent was killed has this process as its parent (PR_SET_CHILD_SUBREAPER): none escapes.
