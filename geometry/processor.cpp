@@ -28,6 +28,11 @@ void settle_processor(int threads, char** argv) {
   setenv("OPENBLAS_NUM_THREADS", "1", 1);
   if (const std::string kernel = kernel_for_processor(); !kernel.empty())
     setenv("OPENBLAS_CORETYPE", kernel.c_str(), 0);
+  // Where Ipopt brings Open MPI: one process needs no network, and no memory shared with others.
+  setenv("OMPI_MCA_pml", "ob1", 0);
+  setenv("OMPI_MCA_btl", "self", 0);
+  setenv("OMPI_MCA_osc", "rdma", 0);
+  setenv("OMPI_MCA_coll", "basic,self,libnbc,inter,tuned", 0);
   execv("/proc/self/exe", argv);  // returns only on failure: then the library defaults stand
 }
 

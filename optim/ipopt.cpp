@@ -10,6 +10,7 @@
 #include "optim/kkt.h"
 #include "optim/makers.h"
 #include "optim/moving_box.h"
+#include "optim/mpi_when_needed.h"
 #include "optim/search.h"
 
 /// Ipopt: interior point method with a filter line search; second derivatives where the problem has
@@ -329,6 +330,7 @@ std::unique_ptr<Optimizer> make_ipopt(const Settings& settings) {
   check_option(settings, "history", o.at("history"), 1, 1000);
   check_option(settings, "box", o.at("box"), 0, 1e9);
   check_option(settings, "restart", o.at("restart"), 2, 1e6);
+  start_mpi_for_ipopt();
   return std::make_unique<IpoptOptimizer>(
       settings,
       Constants{o.at("mu_init"), o.at("bound_push"), o.at("box"), static_cast<int>(o.at("history")),
