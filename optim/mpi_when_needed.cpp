@@ -37,9 +37,9 @@ bool answer_of_mpi(const char* name) {
 
 }  // namespace
 
-// Ipopt calls MPI_Init while it is loaded unless MPI_Initialized says yes, and MPI_Finalize while
-// it is unloaded unless MPI_Finalized says yes (Ipopt 3.14, IpMumpsSolverInterface.cpp). At every
-// other time the two answers are those of MPI.
+// Ipopt 3.14 with MUMPS for MPI calls MPI_Init while it is loaded unless MPI_Initialized says yes,
+// and MPI_Finalize while it is unloaded unless MPI_Finalized says yes. At every other time the two
+// answers are those of MPI.
 extern "C" {
 
 __attribute__((visibility("default"))) int MPI_Initialized(int* flag) {
