@@ -186,7 +186,9 @@ std::vector<std::pair<std::string, double>> phases_of(const RunReport& report,
 }
 
 void write_report(const Scene& scene, const RunReport& report, RunFolder& folder) {
-  folder.write_text("run.json", run_json(scene, report));
+  // "done" is written last: a run that says so has all its files.
+  const bool done = report.status.starts_with("done");
+  if (!done) folder.write_text("run.json", run_json(scene, report));
   if (report.status == "running") return;
   std::vector<io::ReportSection> sections;
   io::ReportSection head;
@@ -244,6 +246,7 @@ void write_report(const Scene& scene, const RunReport& report, RunFolder& folder
             (scene.verify ? scene.verify->words() : std::string("the finer mesh")),
         deflection_plot(*report.verified, report.verified_uniform));
   folder.write_text("report.html", io::report_html(scene.title, sections));
+  if (done) folder.write_text("run.json", run_json(scene, report));
 }
 
 }  // namespace flexmorph::cases

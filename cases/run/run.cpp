@@ -58,19 +58,17 @@ void judge_outlines(const Scene& scene, std::span<const fem::EslSets> loads, Run
   }
 }
 
+const char* const kEvaluations = "evaluations.log";
+
 /// Evaluations of a design, kept in the folder while the run is not done.
 class Memory {
  public:
   explicit Memory(RunFolder& folder)
-      : path_(folder.file("evaluations.log")),
-        log_(path_),
-        past_{log_, [&folder](const mmc::RowOfHistory& row) { return folder.has_row(row); }} {}
+      : log_(folder.file(kEvaluations)), past_{log_, [&folder](const mmc::RowOfHistory& row) {
+                                                 return folder.has_row(row);
+                                               }} {}
 
   mmc::Past* past() { return &past_; }
-  void forget() const {
-    std::error_code none;
-    std::filesystem::remove(path_, none);
-  }
   /// ", 35 state solves were known"; nothing in a run that began anew.
   std::string words() const {
     return counted(static_cast<size_t>(log_.n_known()), "state solve was known",
@@ -78,7 +76,6 @@ class Memory {
   }
 
  private:
-  std::string path_;
   optim::EvaluationLog log_;
   mmc::Past past_;
 };
@@ -156,8 +153,6 @@ void run_designs(const Scene& scene, bool condition, RunFolder& folder, Progress
   report.seconds_verification = cpu_seconds() - begin;
   if (scene.certify)
     certify_by_motion(scene, *scene.certify, loads, go_on, folder, progress, report);
-  memory.forget();
-  forget_motions(folder);
 }
 
 /// The story of a plate at rest.
@@ -188,7 +183,6 @@ void run_static(const Scene& scene, bool condition, RunFolder& folder, Progress&
   progress.say(summary(outcome) + memory.words());
   if (interrupted) throw Interrupted();
   if (scene.optimizer.max_iterations > 0) judge_outlines(scene, {}, folder, progress, report);
-  memory.forget();
 }
 
 /// The run itself.
@@ -220,7 +214,6 @@ void tell_story(const Scene& scene, bool condition, RunFolder& folder, Progress&
   keep_going(wishes, report, progress, wishes.table);
   progress.begin(wishes.phase);
   report.motion = run_motion(scene, wishes, folder).record;
-  forget_motions(folder);
   const fem::MotionResult& result = report.motion->result;
   progress.say("motion: " + std::to_string(result.counts.steps) + " steps, " +
                std::to_string(result.counts.newton) + " Newton iterations, " +
@@ -282,6 +275,14 @@ std::optional<int> finished_with(const std::string& directory, const RunOptions&
   return missed ? kMissed : 0;
 }
 
+/// Removes what only resuming needs from the folder of a run whose results are all written: until
+/// then a run that is killed can be resumed.
+void forget_progress(const std::string& directory) {
+  std::error_code none;
+  std::filesystem::remove(directory + "/" + kEvaluations, none);
+  forget_motions(directory);
+}
+
 int run_case(const RunOptions& options) {
   const auto wall = std::chrono::steady_clock::now();
   // What cannot be built, or is too large, is refused before a folder exists.
@@ -292,6 +293,7 @@ int run_case(const RunOptions& options) {
   if (directory.empty()) directory = "runs/" + scene.name;
   if (options.resume)
     if (const std::optional<int> code = finished_with(directory, options, file)) {
+      forget_progress(directory);  // of a run that was killed as soon as it was done
       std::printf("%s: finished before\n", directory.c_str());
       return *code;
     }
@@ -348,6 +350,7 @@ int run_case(const RunOptions& options) {
     }
     throw;
   }
+  forget_progress(directory);
   for (const Warning& each : warnings)
     progress.object(each.unusable ? "not usable" : "warning", each.words);
   size_t missed = 0;
