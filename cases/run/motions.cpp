@@ -49,15 +49,13 @@ void keep_going(MotionWishes& wishes, const RunReport& report, Progress& progres
   wishes.resumed = [&progress](const std::string& words) { progress.say(words); };
 }
 
-void forget_motions(const std::string& directory) {
+void forget_motions(const FilesOf& files_of) {
   std::error_code none;
-  for (const auto& entry : std::filesystem::directory_iterator(directory, none)) {
-    const std::string name = entry.path().filename().string();
-    const bool checkpoint = name.ends_with(kCheckpoint) ||
-                            name.ends_with(std::string(kCheckpoint) + ".tmp");  // of a kill
-    if (name.starts_with("motion") && (checkpoint || name == kJudged))
-      std::filesystem::remove(entry.path(), none);
+  for (const std::string& path : files_of(kCheckpoint)) {
+    std::filesystem::remove(path, none);
+    std::filesystem::remove(path + ".tmp", none);  // of a kill while it was written
   }
+  for (const std::string& path : files_of(kJudged)) std::filesystem::remove(path, none);
 }
 
 namespace {

@@ -18,9 +18,12 @@ std::function<void(double)> way_of(Progress& progress, const Scene& scene,
 void keep_going(MotionWishes& wishes, const RunReport& report, Progress& progress,
                 const std::string& table);
 
-/// Removes what keep_going() kept, and the tables of cycles that did not pay, from the folder of a
-/// run whose results are all written.
-void forget_motions(const std::string& directory);
+/// Paths of the files that a run made in its folder, by the ending of their names.
+using FilesOf = std::function<std::vector<std::string>(const std::string& ending)>;
+
+/// Removes what keep_going() kept, and the tables of cycles that did not pay, of a run whose
+/// results are all written.
+void forget_motions(const FilesOf& files_of);
 
 /// The motions of the cycles of a run: those that make loads, on the elements of the case, and
 /// those on the cells of the designs that judge them, where the case verifies on cells.

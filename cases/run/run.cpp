@@ -275,12 +275,21 @@ std::optional<int> finished_with(const std::string& directory, const RunOptions&
   return missed ? kMissed : 0;
 }
 
-/// Removes what only resuming needs from the folder of a run whose results are all written: until
-/// then a run that is killed can be resumed.
-void forget_progress(const std::string& directory) {
+/// Removes what only resuming needs, of a run whose results are all written: until then a run that
+/// is killed can be resumed.
+void forget_progress(const FilesOf& files_of) {
   std::error_code none;
-  std::filesystem::remove(directory + "/" + kEvaluations, none);
-  forget_motions(directory);
+  for (const std::string& path : files_of(kEvaluations)) std::filesystem::remove(path, none);
+  forget_motions(files_of);
+}
+
+/// Does that for a run that was killed as soon as it was done.
+void forget_progress_of_finished(const std::string& directory) {
+  try {
+    io::OutputFolder folder(directory, io::OutputFolder::Begin::go_on);
+    forget_progress([&](const std::string& ending) { return folder.files_of(ending); });
+  } catch (const Error&) {  // taken, or not to be written: the files harm nobody
+  }
 }
 
 int run_case(const RunOptions& options) {
@@ -293,7 +302,7 @@ int run_case(const RunOptions& options) {
   if (directory.empty()) directory = "runs/" + scene.name;
   if (options.resume)
     if (const std::optional<int> code = finished_with(directory, options, file)) {
-      forget_progress(directory);  // of a run that was killed as soon as it was done
+      forget_progress_of_finished(directory);
       std::printf("%s: finished before\n", directory.c_str());
       return *code;
     }
@@ -350,7 +359,7 @@ int run_case(const RunOptions& options) {
     }
     throw;
   }
-  forget_progress(directory);
+  forget_progress([&](const std::string& ending) { return folder.files_of(ending); });
   for (const Warning& each : warnings)
     progress.object(each.unusable ? "not usable" : "warning", each.words);
   size_t missed = 0;
