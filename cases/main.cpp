@@ -14,7 +14,7 @@
 #include "cases/keys/completion.h"
 #include "cases/run/corrections.h"
 #include "cases/run/run.h"
-#include "cases/run/version.h"
+#include "cases/scene/version.h"
 #include "cases/stability/stability.h"
 #include "cases/study/compare.h"
 #include "cases/study/compare_cycles.h"

@@ -24,11 +24,11 @@ set(may_fem/triangles geometry fem fem/solve)
 set(may_fem/thermal geometry fem fem/model)
 set(may_fem/dynamics geometry fem fem/model fem/solve)
 set(may_optim geometry)
-set(may_optim/judge geometry ${fem})
-set(may_optim/mmc geometry ${fem} optim optim/judge)
+set(may_optim/verification geometry ${fem})
+set(may_optim/mmc geometry ${fem} optim optim/verification)
 # The door, main.cpp, and its wings, each on top of those before it.
-set(below geometry io ${fem} optim optim/judge optim/mmc)
-foreach(wing scene keys build run study)
+set(below geometry io ${fem} optim optim/verification optim/mmc)
+foreach(wing scene keys assembly results output check run study)
   set(may_cases/${wing} ${below})
   list(APPEND below cases/${wing})
 endforeach()
@@ -37,6 +37,19 @@ set(may_cases/stability ${below})
 list(APPEND below cases/accuracy cases/stability)
 set(may_cases ${below})
 set(may_tests ${below} cases)
+
+# Includes of cases/ that still point up, "file>included". A commit may only take lines away.
+set(points_up cases/output/report.cpp>cases/run/corrections.h
+              cases/results/body_measures.h>cases/output/run_folder.h
+              cases/results/judged.h>cases/output/run_folder.h
+              cases/results/judged.cpp>cases/output/plots/stress.h
+              cases/results/run_json.h>cases/output/report.h
+              cases/results/expectations.h>cases/output/report.h
+              cases/results/run_json.cpp>cases/output/plots/measured.h
+              cases/results/run_json.cpp>cases/output/plots/mechanism.h
+              cases/results/mechanism_columns.h>cases/output/run_folder.h
+              cases/results/warnings.h>cases/output/report.h
+              cases/check/check.cpp>cases/run/run.h)
 
 # Wrapped library (how its headers begin) -> the folder whose .cpp files may include it.
 set(libraries CGAL Boost SuiteSparse VTK NLopt Ipopt toml++ CLI11 GiNaC
@@ -82,7 +95,8 @@ function(judge_room file included offence)
   room_of(${file} from)
   room_of(${included} to)
   set(${offence} "" PARENT_SCOPE)
-  if(NOT to IN_LIST may_${from} AND NOT to STREQUAL from)
+  if(NOT to IN_LIST may_${from} AND NOT to STREQUAL from
+     AND NOT "${file}>${included}" IN_LIST points_up)
     list(JOIN may_${from} " " allowed)
     set(${offence} "${from} may include: ${allowed}" PARENT_SCOPE)
   endif()

@@ -7,10 +7,10 @@
 #include <limits>
 
 #include "cases/accuracy/report.h"
-#include "cases/build/build.h"
-#include "cases/run/room.h"
+#include "cases/assembly/build.h"
+#include "cases/assembly/resource_estimate.h"
+#include "cases/output/run_folder.h"
 #include "cases/run/run.h"
-#include "cases/run/run_folder.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {

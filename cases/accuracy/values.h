@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "cases/run/quantities.h"
+#include "cases/results/quantities.h"
 
 /// Quantities of interest: what there is, and their values in run folders.
 namespace flexmorph::cases {

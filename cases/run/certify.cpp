@@ -2,10 +2,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "cases/results/run_json.h"
 #include "cases/run/corrections.h"
 #include "cases/run/motions.h"
 #include "cases/run/run.h"
-#include "cases/run/run_json.h"
 #include "io/case_file.h"
 #include "io/case_parser.h"
 #include "io/files.h"

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <optional>
 
-#include "cases/build/scene_motion.h"
+#include "cases/assembly/scene_motion.h"
 #include "io/files.h"
 #include "io/plots.h"
 #include "io/tables.h"

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "cases/output/report.h"
 #include "cases/run/motion_run.h"
 #include "cases/run/progress.h"
-#include "cases/run/report.h"
 
 /// What the motion itself does to designs and says of them: corrected cycles, the certificate.
 namespace flexmorph::cases {

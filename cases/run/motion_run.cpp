@@ -2,14 +2,14 @@
 
 #include <cmath>
 
-#include "cases/run/failure.h"
-#include "cases/run/measures.h"
-#include "cases/run/mechanism_columns.h"
-#include "cases/run/motion_checkpoint.h"
+#include "cases/output/motion_checkpoint.h"
+#include "cases/output/motion_table.h"
+#include "cases/results/body_measures.h"
+#include "cases/results/failure.h"
+#include "cases/results/mechanism_columns.h"
+#include "cases/results/quantities.h"
+#include "cases/results/warnings.h"
 #include "cases/run/motion_run_memory.h"
-#include "cases/run/motion_table.h"
-#include "cases/run/quantities.h"
-#include "cases/run/run_warnings.h"
 #include "cases/run/start_remarks.h"
 #include "cases/scene/elements/row.h"
 #include "io/files.h"

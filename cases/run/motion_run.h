@@ -2,8 +2,8 @@
 
 #include <functional>
 
-#include "cases/build/build.h"
-#include "cases/run/run_folder.h"
+#include "cases/assembly/build.h"
+#include "cases/output/run_folder.h"
 
 namespace flexmorph::cases {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cases/run/run_folder.h"
+#include "cases/output/run_folder.h"
 #include "geometry/memory.h"
 
 /// What a motion that goes on remembers of what it came to (geometry/memory.h).

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "cases/output/report.h"
 #include "cases/run/motion_run.h"
 #include "cases/run/progress.h"
-#include "cases/run/report.h"
 
 /// The motions of a run: what they have in common, and those that load and judge its designs.
 namespace flexmorph::cases {

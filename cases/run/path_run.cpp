@@ -1,7 +1,7 @@
 #include "cases/run/path_run.h"
 
-#include "cases/run/failure.h"
-#include "cases/run/measures.h"
+#include "cases/results/body_measures.h"
+#include "cases/results/failure.h"
 #include "cases/run/motion_run.h"
 #include "cases/scene/elements/row.h"
 

@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "cases/run/run_folder.h"
+#include "cases/output/run_folder.h"
 
 namespace flexmorph::cases {
 

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "cases/run/room.h"
+#include "cases/assembly/resource_estimate.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {

@@ -4,7 +4,7 @@
 #include <mutex>
 #include <string>
 
-#include "cases/run/failure.h"
+#include "cases/results/failure.h"
 #include "optim/mmc/esl_loop.h"
 
 namespace flexmorph::cases {

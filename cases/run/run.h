@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "cases/run/ready.h"
+#include "cases/check/ready.h"
 
 namespace flexmorph::cases {
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "cases/build/build.h"
+#include "cases/assembly/build.h"
 #include "cases/stability/overrides.h"
 #include "io/files.h"
 

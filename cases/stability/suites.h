@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "cases/run/quantities.h"
+#include "cases/results/quantities.h"
 #include "cases/scene/scene.h"
 
 /// The suites of stability: how a case is made stiff, extreme or empty (cases/README.md,

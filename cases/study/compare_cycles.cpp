@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "cases/build/build.h"
+#include "cases/assembly/build.h"
 #include "cases/run/run.h"
 #include "io/plots.h"
 #include "io/tables.h"

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <sstream>
 
-#include "cases/run/kept_case.h"
+#include "cases/output/kept_case.h"
 #include "cases/run/progress.h"
 #include "cases/run/run.h"
 #include "cases/study/processes.h"

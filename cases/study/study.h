@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cases/run/quantities.h"
+#include "cases/results/quantities.h"
 #include "io/case_file.h"
 #include "optim/mmc/body_problem.h"
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "cases/run/run_warnings.h"
+#include "cases/results/warnings.h"
 #include "cases/study/statistics.h"
 #include "cases/study/study.h"
 #include "io/output_folder.h"

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "optim/judge/judge.h"
 #include "optim/mmc/body_problem.h"
+#include "optim/verification/judge.h"
 
 namespace flexmorph::mmc {
 

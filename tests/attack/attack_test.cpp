@@ -13,7 +13,7 @@
 #include <filesystem>
 #include <functional>
 
-#include "cases/build/build.h"
+#include "cases/assembly/build.h"
 #include "cases/run/run.h"
 #include "cases/scene/scene.h"
 #include "geometry/sanitizers.h"

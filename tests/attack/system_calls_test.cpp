@@ -12,7 +12,7 @@
 #include <set>
 #include <sstream>
 
-#include "cases/run/ready.h"
+#include "cases/check/ready.h"
 #include "geometry/sanitizers.h"
 #include "tests/attack/attacked_program.h"
 #include "tests/io/scratch.h"

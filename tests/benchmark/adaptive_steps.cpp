@@ -15,7 +15,7 @@
 #include <optional>
 #include <string>
 
-#include "cases/build/build.h"
+#include "cases/assembly/build.h"
 #include "tests/benchmark/cpu.h"
 #include "tests/support/rigid_models.h"
 

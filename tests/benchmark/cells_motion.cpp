@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "cases/build/build.h"
+#include "cases/assembly/build.h"
 #include "io/case_file.h"
 #include "tests/benchmark/cpu.h"
 #include "tests/support/reissner_beam.h"

@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <utility>
 
-#include "cases/build/build.h"
-#include "cases/build/judged_loads.h"
+#include "cases/assembly/build.h"
+#include "cases/assembly/verified_loads.h"
+#include "cases/check/ready.h"
 #include "cases/run/motion_run.h"
-#include "cases/run/ready.h"
 #include "geometry/cpu_time.h"
 #include "optim/mmc/body_design.h"
 #include "optim/mmc/judged_design.h"

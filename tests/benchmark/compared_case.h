@@ -7,8 +7,8 @@
 
 #include "cases/scene/scene.h"
 #include "fem/esl_set.h"
-#include "optim/judge/judge.h"
 #include "optim/mmc/body_problem.h"
+#include "optim/verification/judge.h"
 
 /// A case whose problem several methods solve, and the judge of what they come to.
 namespace flexmorph::benchmark {

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "cases/build/build.h"
+#include "cases/assembly/build.h"
 #include "cases/run/motion_run.h"
 #include "cases/run/run.h"
 #include "tests/benchmark/cpu.h"

@@ -12,7 +12,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "cases/build/build.h"
+#include "cases/assembly/build.h"
 #include "fem/dynamics/motion_gradient.h"
 #include "tests/benchmark/cpu.h"
 

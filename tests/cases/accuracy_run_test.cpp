@@ -5,7 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "cases/build/build.h"
+#include "cases/assembly/build.h"
 #include "cases/run/run.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"

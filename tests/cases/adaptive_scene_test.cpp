@@ -1,7 +1,7 @@
 // Scenes whose steps adapt: what the keys of [time] become.
 #include <gtest/gtest.h>
 
-#include "cases/build/build.h"
+#include "cases/assembly/build.h"
 #include "tests/cases/scenes.h"
 
 namespace flexmorph::cases {

@@ -1,5 +1,5 @@
 // What `flexmorph check` says of a step's cost, against instructions that valgrind counted.
-#include "cases/run/check_cost.h"
+#include "cases/check/check_cost.h"
 
 #include <gtest/gtest.h>
 

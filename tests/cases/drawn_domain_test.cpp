@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "cases/build/build.h"
-#include "cases/build/judged_loads.h"
+#include "cases/assembly/build.h"
+#include "cases/assembly/verified_loads.h"
 #include "optim/mmc/judged_design.h"
 #include "tests/cases/program.h"
 

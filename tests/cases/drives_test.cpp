@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "cases/build/build.h"
+#include "cases/assembly/build.h"
 #include "cases/run/run.h"
 #include "cases/scene/scene.h"
 #include "io/files.h"

@@ -1,6 +1,6 @@
 // Figures that make wrong units visible: against the tangents of the models themselves, and the
 // mistakes that they are for.
-#include "cases/run/figures.h"
+#include "cases/results/figures.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "cases/run/ready.h"
+#include "cases/check/ready.h"
 #include "tests/cases/scenes.h"
 #include "tests/io/scratch.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "cases/build/build.h"
+#include "cases/assembly/build.h"
 #include "fem/dynamics/motion.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "cases/build/build.h"
-#include "cases/build/twin.h"
+#include "cases/assembly/build.h"
+#include "cases/assembly/twin.h"
 #include "cases/run/run.h"
 #include "fem/dynamics/carrier.h"
 #include "fem/solve/statics.h"

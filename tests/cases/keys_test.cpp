@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "cases/build/build.h"
+#include "cases/assembly/build.h"
 #include "cases/keys/book.h"
 #include "cases/run/run.h"
 #include "io/case_parser.h"

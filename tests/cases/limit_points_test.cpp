@@ -1,5 +1,5 @@
 // Limit loads of paths of which they are known.
-#include "cases/run/limit_points.h"
+#include "cases/results/limit_points.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "cases/build/build.h"
+#include "cases/assembly/build.h"
 #include "fem/solve/statics.h"
 #include "io/files.h"
 #include "tests/cases/scenes.h"

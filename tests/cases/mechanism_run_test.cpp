@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "cases/build/build.h"
+#include "cases/assembly/build.h"
+#include "cases/output/surface.h"
 #include "cases/run/run.h"
-#include "cases/run/surface.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"
 

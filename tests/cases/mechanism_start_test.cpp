@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "cases/build/build.h"
-#include "cases/build/twin.h"
-#include "cases/run/run_folder.h"
+#include "cases/assembly/build.h"
+#include "cases/assembly/twin.h"
+#include "cases/output/run_folder.h"
 #include "tests/cases/scenes.h"
 
 namespace flexmorph::cases {

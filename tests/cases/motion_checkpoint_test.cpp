@@ -1,12 +1,12 @@
 // Checkpoints of motions that cannot be used are refused, and why is said.
-#include "cases/run/motion_checkpoint.h"
+#include "cases/output/motion_checkpoint.h"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 
-#include "cases/run/version.h"
+#include "cases/scene/version.h"
 #include "tests/cases/scenes.h"
 #include "tests/io/scratch.h"
 

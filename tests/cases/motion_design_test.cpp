@@ -7,7 +7,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "cases/build/scene_motion.h"
+#include "cases/assembly/scene_motion.h"
 #include "io/case_file.h"
 #include "io/tables.h"
 #include "optim/mmc/motion_certificate.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "cases/build/build.h"
+#include "cases/assembly/build.h"
 #include "geometry/memory.h"
 #include "tests/cases/scenes.h"
 #include "tests/io/scratch.h"

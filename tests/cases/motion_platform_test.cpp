@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "cases/build/build.h"
-#include "cases/build/twin.h"
+#include "cases/assembly/build.h"
+#include "cases/assembly/twin.h"
 #include "fem/solve/diagnosis.h"
 #include "tests/cases/scenes.h"
 #include "tests/support/rates.h"

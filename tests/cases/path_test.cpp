@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "cases/build/build.h"
+#include "cases/assembly/build.h"
 #include "fem/dynamics/motion.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"

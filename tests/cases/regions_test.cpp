@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "cases/build/build.h"
+#include "cases/assembly/build.h"
 #include "tests/cases/scenes.h"
 #include "tests/io/scratch.h"
 

@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cases/output/report.h"
 #include "cases/run/motion_run.h"
-#include "cases/run/report.h"
 #include "cases/run/run.h"
 #include "io/exports.h"
 #include "tests/cases/program.h"

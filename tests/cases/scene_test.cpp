@@ -8,7 +8,7 @@
 #include <numbers>
 #include <set>
 
-#include "cases/build/build.h"
+#include "cases/assembly/build.h"
 #include "cases/scene/joints/row.h"
 
 namespace flexmorph::cases {

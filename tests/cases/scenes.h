@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "cases/build/build.h"
+#include "cases/assembly/build.h"
 #include "tests/support/disturbance.h"
 
 /// Shipped cases as tests read them.

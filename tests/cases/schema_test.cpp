@@ -12,7 +12,7 @@
 #include <valijson/validation_results.hpp>
 #include <valijson/validator.hpp>
 
-#include "cases/build/build.h"
+#include "cases/assembly/build.h"
 #include "cases/keys/book.h"
 #include "cases/run/run.h"
 #include "io/case_parser.h"

@@ -9,7 +9,7 @@
 #include <iostream>
 #include <limits>
 
-#include "cases/build/build.h"
+#include "cases/assembly/build.h"
 #include "fem/dynamics/start.h"
 #include "tests/cases/scenes.h"
 #include "tests/support/ida.h"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cases/build/build.h"
+#include "cases/assembly/build.h"
 #include "tests/io/scratch.h"
 
 namespace flexmorph::cases {

@@ -2,7 +2,7 @@
 // reaches the model.
 #include <gtest/gtest.h>
 
-#include "cases/build/build.h"
+#include "cases/assembly/build.h"
 #include "cases/run/run.h"
 #include "tests/cases/scenes.h"
 

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "cases/build/build.h"
-#include "cases/build/twin.h"
+#include "cases/assembly/build.h"
+#include "cases/assembly/twin.h"
 #include "fem/dynamics/carrier.h"
 #include "tests/io/scratch.h"
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "cases/build/build.h"
+#include "cases/assembly/build.h"
 #include "io/exports.h"
 #include "tests/cases/scenes.h"
 #include "tests/io/scratch.h"

@@ -6,9 +6,9 @@
 #include <fstream>
 #include <numbers>
 
-#include "cases/build/build.h"
-#include "cases/build/heat.h"
-#include "cases/run/measures.h"
+#include "cases/assembly/build.h"
+#include "cases/assembly/heat.h"
+#include "cases/results/body_measures.h"
 #include "fem/elements/ancf_beam.h"
 #include "tests/cases/scenes.h"
 #include "tests/io/scratch.h"

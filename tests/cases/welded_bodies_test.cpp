@@ -10,7 +10,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "cases/build/build.h"
+#include "cases/assembly/build.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"
 #include "tests/support/errors.h"

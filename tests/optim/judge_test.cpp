@@ -1,6 +1,6 @@
 // The judge against beams, a hole, a corner, a spinning rod, and itself on finer meshes.
 
-#include "optim/judge/judge.h"
+#include "optim/verification/judge.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,57 @@
+#include "cases/assembly/joints.h"
+
+#include "cases/assembly/build.h"
+#include "cases/scene/joints/row.h"
+
+namespace flexmorph::cases {
+namespace {
+
+/// Angle of the first axis of an anchor at the start, as far as the case says [rad].
+double start_angle(const Scene& scene, const Anchor& anchor) {
+  for (const RigidBody& b : scene.rigid_bodies)
+    if (b.name == anchor.body) return b.angle + anchor.angle;
+  return anchor.angle;
+}
+
+}  // namespace
+
+Vec2 start_place(const Scene& scene, const Anchor& anchor) {
+  if (anchor.on_ground()) return anchor.point;
+  for (const RigidBody& b : scene.rigid_bodies)
+    if (b.name == anchor.body) return b.position + fem::rotation(b.angle) * anchor.point;
+  return start_pose(scene, scene.body(anchor.body)).place(anchor.point).head<2>();
+}
+
+Anchor completed(const Scene& scene, const Anchor& anchor, const Anchor& other) {
+  Anchor out = anchor;
+  if (!anchor.given) out.point = start_place(scene, other);
+  out.given = true;
+  return out;
+}
+
+std::unique_ptr<fem::Joint> make_joint(const Scene& scene, const Joint& joint,
+                                       const FindPlace& place, bool rigid) {
+  if (!joint.row->make) return nullptr;
+  JointParts parts{.scene = scene, .rigid = rigid};
+  if (joint.between_bodies()) {
+    parts.a = place(completed(scene, joint.a, joint.b));
+    parts.b = place(completed(scene, joint.b, joint.a));
+    parts.angle_a = start_angle(scene, joint.a);
+    parts.angle_b = start_angle(scene, joint.b);
+  } else {
+    parts.place = [&](const Vec2& material) { return place({joint.body, material}); };
+    parts.start = [&](const Vec2& material) {
+      return start_pose(scene, scene.body(joint.body)).place(material);
+    };
+  }
+  return joint.row->make(joint, parts);
+}
+
+std::unique_ptr<fem::Link> make_link(const Scene& scene, const Spring& spring,
+                                     const FindPlace& place) {
+  return spring.row->make(spring, place(completed(scene, spring.a, spring.b)),
+                          place(completed(scene, spring.b, spring.a)),
+                          start_angle(scene, spring.b) - start_angle(scene, spring.a));
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,376 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "cases/assembly/build.h"
+#include "cases/assembly/heat.h"
+#include "cases/assembly/joints.h"
+#include "cases/assembly/stored.h"
+#include "cases/assembly/twin.h"
+#include "cases/scene/elements/row.h"
+#include "cases/scene/joints/row.h"
+#include "fem/elements/rigid_body.h"
+#include "fem/loads.h"
+#include "fem/rigid.h"
+#include "fem/terms.h"
+#include "io/files.h"
+
+namespace flexmorph::cases {
+namespace {
+
+/// Angle and position as drives say, where they do.
+fem::FrameDrive driven_hub(const Scene& scene, const Hub& hub) {
+  const bool turns = !hub.turn.drive.empty(), travels = !hub.path[0].drive.empty();
+  const auto turn = scene.motion_of(hub.turn);
+  const std::array path = {scene.motion_of(hub.path[0]), scene.motion_of(hub.path[1])};
+  return [=](double t) {
+    fem::FrameMotion f;
+    f.origin = hub.position;
+    f.angle = hub.angle + hub.angular_velocity * t;
+    f.angle_rate = hub.angular_velocity;
+    if (turns) {
+      const fem::Motion angle = turn(t);
+      f.angle = angle.value;
+      f.angle_rate = angle.rate;
+      f.angle_acceleration = angle.acceleration;
+    }
+    for (int c = 0; c < 2 && travels; ++c) {
+      const fem::Motion x = path[static_cast<size_t>(c)](t);
+      f.origin[c] = x.value;
+      f.origin_rate[c] = x.rate;
+      f.origin_acceleration[c] = x.acceleration;
+    }
+    return f;
+  };
+}
+
+fem::FrameDrive drive_of(const Scene& scene, const Hub& hub) {
+  if (!hub.turn.drive.empty() || !hub.path[0].drive.empty()) return driven_hub(scene, hub);
+  const TimeSpan& time = scene.time;
+  fem::FrameMotion still;
+  still.origin = hub.position;
+  if (time.start != Start::hub_at_rest)
+    return [hub, still](double t) {
+      fem::FrameMotion f = still;
+      f.angle = hub.angle + hub.angular_velocity * t;
+      f.angle_rate = hub.angular_velocity;
+      return f;
+    };
+  // ω(t) = ω s(t/T), s = 10u³ - 15u⁴ + 6u⁵: rate and acceleration start and end smoothly.
+  return [hub, still, T = time.spin_up](double t) {
+    fem::FrameMotion f = still;
+    const double w = hub.angular_velocity, u = std::min(1.0, t / T);
+    f.angle = hub.angle + w * T * std::pow(u, 4) * (2.5 - 3 * u + u * u) + w * std::max(0.0, t - T);
+    f.angle_rate = w * std::pow(u, 3) * (10 - 15 * u + 6 * u * u);
+    f.angle_acceleration = w / T * 30 * u * u * (1 - u) * (1 - u);
+    return f;
+  };
+}
+
+fem::FrameDrive at_rest(const Vec2& origin, double angle) {
+  fem::FrameMotion still;
+  still.origin = origin;
+  still.angle = angle;
+  return [still](double) { return still; };
+}
+
+void add_body(const Scene& scene, const Body& body, const std::array<int, 2>& count,
+              fem::Model& model) {
+  const fem::LoadLaw gravity = scene.gravity_law();
+  const fem::PlaneSection section = section_of(body);
+  std::vector<std::unique_ptr<fem::Term>> terms =
+      fem::make_terms(body.terms, section, body.numbers);
+  if (gravity.size() > 0) terms.push_back(fem::make_gravity(section, gravity));
+  for (const fem::AttachedMass& m : attached_masses(scene, body.name))
+    terms.push_back(fem::make_point_mass(m.mass, m.material, gravity));
+  for (const BodyLoad& load : scene.loads)
+    if (load.body == body.name) terms.push_back(load.row->make(load, body));
+  model.add_body(body.name, body.row->make(body, scene.time.end, count), section, std::move(terms));
+}
+
+/// The rate at the start of a line that is driven through the material; 0 where it is not.
+double slide_of(const Scene& scene, const Joint& frame) {
+  for (const Joint& j : scene.joints)
+    if (j.drives_line && j.body == frame.body && j.line == frame.line)
+      return j.at.drive.empty() ? j.speed : scene.motion_of(j.at)(0).rate;
+  return 0;
+}
+
+/// An edge in a hub, in a sleeve or on a rigid body; the first one of a body carries it.
+void add_frame(const Scene& scene, const Joint& joint, double finer, Mechanism& out) {
+  const Body& body = scene.body(joint.body);
+  fem::Carrier carrier;
+  if (joint.on_rigid_body()) {
+    const Anchor& b = joint.b;
+    carrier = fem::Carrier(b.body, b.point, b.angle);
+    out.model.add_joint(fem::make_edge_weld(joint.name, joint.body, joint.edge,
+                                            {b.body, b.point, b.angle, {}}, joint.mode));
+  } else {
+    carrier = hub_drive(scene, joint);
+    out.model.add_joint(
+        fem::make_weld(joint.name, joint.body, joint.edge, carrier.drive(), joint.mode));
+  }
+  if (joint.edge == "free_end" || !body.row->lines) return;
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  fem::Growth growth{joint.body, carrier, kNever, 0, joint.line, slide_of(scene, joint)};
+  if (body.flow && body.on_cells()) {
+    growth.cell = finer * body.cell_length();
+    growth.max_length = kLongestCell * growth.cell;
+    growth.min_length = kShortestCell * growth.cell;
+  } else if (body.flow && !body.is_even()) {
+    growth.max_length = finer * body.flow->max_length;
+    growth.min_length = finer * body.flow->min_length;
+  } else if (body.mesh_changes()) {
+    growth.max_length = finer * body.lines.front().max_length;
+    growth.min_length = finer * body.lines.front().min_length;
+  }
+  out.growths.push_back(growth);
+}
+
+/// All held edges of a body in one joint, so that a corner of two of them is held once.
+void add_holds(const Scene& scene, const Body& body, fem::Model& model) {
+  std::vector<fem::Held> all;
+  for (const Joint& joint : scene.joints) {
+    if (joint.body != body.name || !joint.holds_edges()) continue;
+    for (const std::string& edge : joint.edges) {
+      const std::vector<fem::Held> held = joint.row->held(joint, edge);
+      all.insert(all.end(), held.begin(), held.end());
+    }
+  }
+  if (!all.empty()) model.add_joint(fem::make_hold(body.name + ".held", body.name, std::move(all)));
+}
+
+/// What the prestretched start looks ahead by, at most (fem::start_state()) [s].
+constexpr double kAhead = 2e-4;
+
+/// How a mechanism starts: at rest in equilibrium where its drives do not determine it all.
+/// @throws Error (input) when that is asked for but it does not rest.
+fem::Start start_of(const Scene& scene, TwinMotion& twin) {
+  // Where nothing bends nothing is stretched.
+  if (scene.time.start != Start::prestretched || scene.bodies.empty()) return fem::Start::rigid;
+  if (twin.degrees_of_freedom() == 0)
+    return twin.reaches(kAhead) ? fem::Start::prestretched : fem::Start::rigid;
+  if (twin.is_indeterminate())
+    throw Error::input(
+        "time.start: \"prestretched\" needs a motion of the rigid mechanism, but its joints hold "
+        "more than it has freedoms: start = \"rigid\"");
+  // What is left of it is the start of a swing; the equilibrium of the plates ends it.
+  const double nearly = 0.05 * std::max(1.0, scene.gravity ? scene.gravity->norm() : 0.0);
+  const double speed = twin.start_speed(), acceleration = twin.start_acceleration();
+  if (speed < 1e-6 && acceleration < nearly) return fem::Start::settled;
+  scene.refuse("time.start",
+               "\"prestretched\" puts a mechanism whose drives leave freedoms (" +
+                   std::to_string(twin.degrees_of_freedom()) +
+                   " here) into its equilibrium at rest, but this one sets off with " +
+                   io::to_text(speed, 3) + " m/s and " + io::to_text(acceleration, 3) +
+                   " m/s²: bodies where they hang at rest and drives that begin at rest, or start "
+                   "= \"rigid\"");
+}
+
+/// Where bodies that ride in no hub are, by the rigid twin.
+void place_bodies(const Scene& scene, fem::MotionSettings& motion) {
+  const auto kept = std::make_shared<const Scene>(scene);  // the twin looks at it
+  const auto twin = std::make_shared<TwinMotion>(*kept);
+  motion.start = start_of(scene, *twin);
+  motion.placement = [kept, twin](double t) {
+    const Scene& scene = *kept;
+    const fem::State& x = twin->at(t);
+    std::vector<fem::Placed> out;
+    for (const RigidBody& b : scene.rigid_bodies)
+      out.push_back({b.name, twin->twin().frame(b.name, x)});
+    for (const Body& b : scene.bodies) {
+      const bool rides = b.row->lines &&
+                         std::any_of(scene.joints.begin(), scene.joints.end(), [&](const Joint& j) {
+                           return j.body == b.name && j.holds_frame() && j.edge != "free_end";
+                         });
+      if (!rides) out.push_back({b.name, twin->twin().frame(b.name, x), b.longest(scene.time.end)});
+    }
+    return out;
+  };
+}
+
+/// Without rigid bodies: where beams are, as the case says or with their hubs.
+void place_alone(const Scene& scene, fem::MotionSettings& motion) {
+  struct Frame {
+    std::string body;
+    fem::FrameDrive drive;
+    double line;
+  };
+  std::vector<Frame> frames;
+  for (const Body& body : scene.bodies) {
+    const auto holds = [&](const Joint& j) {
+      return j.body == body.name && j.holds_frame() && j.edge != "free_end";
+    };
+    const auto hub = std::find_if(scene.joints.begin(), scene.joints.end(), holds);
+    const bool rides = hub != scene.joints.end();
+    if (body.row->lines) continue;
+    const Pose pose = start_pose(scene, body);
+    frames.push_back(
+        {body.name, rides ? hub_drive(scene, *hub) : at_rest(pose.origin, pose.angle), pose.line});
+  }
+  if (frames.empty()) return;
+  motion.placement = [frames](double t) {
+    std::vector<fem::Placed> out;
+    for (const Frame& f : frames) out.push_back({f.body, f.drive(t), f.line});
+    return out;
+  };
+}
+
+}  // namespace
+
+const Hub& hub_of(const Scene& scene, const Joint& joint) {
+  return *std::find_if(scene.hubs.begin(), scene.hubs.end(),
+                       [&](const Hub& h) { return h.name == joint.to; });
+}
+
+fem::FrameDrive hub_drive(const Scene& scene, const Joint& joint) {
+  if (joint.to.empty()) return at_rest(joint.position, joint.angle);
+  const fem::FrameDrive hub = drive_of(scene, hub_of(scene, joint));
+  if (joint.angle == 0) return hub;
+  return [hub, angle = joint.angle](double t) {
+    fem::FrameMotion f = hub(t);
+    f.angle += angle;
+    return f;
+  };
+}
+
+namespace {
+
+/// With its point masses: about the common centre of mass.
+fem::RigidSection section_of(const RigidBody& body) {
+  if (body.masses.empty()) return {body.mass, body.center, body.inertia};
+  fem::RigidSection out{body.mass, body.mass * body.center, body.inertia};
+  for (const RigidBody::AddedMass& m : body.masses) {
+    out.mass += m.mass;
+    out.center += m.mass * m.point;
+  }
+  out.center /= out.mass;
+  out.inertia += body.mass * (body.center - out.center).squaredNorm();
+  for (const RigidBody::AddedMass& m : body.masses)
+    out.inertia += m.mass * (m.point - out.center).squaredNorm();
+  return out;
+}
+
+}  // namespace
+
+void add_rigid_loads(const Scene& scene, fem::Model& model) {
+  for (size_t i = 0; i < scene.loads.size(); ++i) {
+    const BodyLoad& load = scene.loads[i];
+    const auto is_loaded = [&](const RigidBody& body) { return body.name == load.body; };
+    if (std::any_of(scene.rigid_bodies.begin(), scene.rigid_bodies.end(), is_loaded))
+      model.add_link(load.row->on_rigid(load, "load " + std::to_string(i + 1)));
+  }
+}
+
+void add_rigid_body(const RigidBody& body, fem::Model& model, const fem::LoadLaw& gravity,
+                    std::span<const fem::StoredMaterial> stored) {
+  const fem::RigidSection section = section_of(body);
+  std::vector<std::unique_ptr<fem::Term>> terms;
+  terms.push_back(fem::make_rigid_inertia(section));
+  if (gravity.size() > 0) terms.push_back(fem::make_rigid_gravity(section, gravity));
+  for (const fem::StoredMaterial& each : stored) {
+    terms.push_back(fem::make_stored_inertia(each));
+    if (gravity.size() > 0) terms.push_back(fem::make_stored_weight(each, gravity));
+  }
+  const double size = std::sqrt(body.inertia / body.mass);
+  model.add_body(body.name, std::make_unique<fem::RigidBody>(size, !stored.empty()), {},
+                 std::move(terms));
+  model.add_joint(fem::make_unit_axis("axis of " + body.name, body.name));
+}
+
+namespace {
+
+/// Does no load act that has no energy, and nothing that could bring energy in within a step and be
+/// at rest at both of its ends, as a step of temperature? What moves for longer shows as power.
+bool keeps_energy(const Scene& scene) {
+  const auto follows = [](const BodyLoad& l) { return l.row->follows || l.turns; };
+  return !scene.has_heat() && scene.drives.empty() &&
+         std::none_of(scene.loads.begin(), scene.loads.end(), follows);
+}
+
+}  // namespace
+
+double stress_round_off(const Scene& scene) {
+  double out = 0;
+  for (const Body& body : scene.bodies)
+    out += 1e-26 * body.youngs_modulus * body.length_at(0) * body.width * body.thickness;
+  return out;
+}
+
+/// The scene with its designed bodies on the cells of their designs.
+namespace {
+
+/// @param coarse  cells of the motion that many cells of the design each way
+Scene on_merged_cells(Scene scene, int parts, int coarse) {
+  for (const BodyDesign& design : scene.designs)
+    for (Body& body : scene.bodies) {
+      if (body.name != design.body) continue;
+      body.shape = "q4";
+      body.cell = coarse * design.grid.dx() / parts;
+      body.elements = {static_cast<int>(std::lround(body.length / body.cell)),
+                       parts * design.grid.ny / coarse};
+    }
+  return scene;
+}
+
+}  // namespace
+
+Scene on_cells(Scene scene, int parts) { return on_merged_cells(std::move(scene), parts, 1); }
+
+Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh) {
+  if (mesh.cells > 0) {
+    MeshChoice other = mesh;
+    other.cells = 0;
+    return build_mechanism(on_merged_cells(scene, mesh.cells, mesh.coarse), other);
+  }
+  Mechanism out;
+  const auto elements = [&](const Body& body) {
+    const std::array<int, 2> count = mesh.elements.value_or(body.elements);
+    return std::array{mesh.refine * count[0], mesh.refine * count[1]};
+  };
+  for (const RigidBody& body : scene.rigid_bodies)
+    add_rigid_body(body, out.model, scene.gravity_law(), stored_in(scene, body.name));
+  for (const Body& body : scene.bodies) add_body(scene, body, elements(body), out.model);
+  const FindPlace place = [](const Anchor& a) {
+    return fem::MarkerPlace{a.body, a.point, a.angle, {}};
+  };
+  for (const Spring& spring : scene.springs) out.model.add_link(make_link(scene, spring, place));
+  add_rigid_loads(scene, out.model);
+  add_outlets(scene, out.model);
+  for (const Joint& joint : scene.joints) {
+    if (!joint.holds_frame()) {
+      if (auto made = make_joint(scene, joint, place, false)) out.model.add_joint(std::move(made));
+      continue;
+    }
+    const Body& body = scene.body(joint.body);
+    const double finer = static_cast<double>(body.elements[0]) / elements(body)[0];
+    add_frame(scene, joint, finer, out);
+  }
+  for (const Body& body : scene.bodies) add_holds(scene, body, out.model);
+  out.motion.end = scene.time.end;
+  out.motion.step = mesh.step.value_or(scene.time.step);
+  // A run with a step of its own has that.
+  if (scene.time.tolerance && out.motion.step == scene.time.step) {
+    out.motion.adaptive = fem::AdaptiveStep{};
+    out.motion.adaptive->tolerance = *scene.time.tolerance;
+    out.motion.adaptive->largest = scene.time.largest_step;
+    if (scene.time.start == Start::hub_at_rest) out.motion.kinks = {scene.time.spin_up};
+  }
+  for (const Drive& drive : scene.drives)
+    out.motion.kinks.insert(out.motion.kinks.end(), drive.kinks.begin(), drive.kinks.end());
+  out.motion.start =
+      scene.time.start == Start::prestretched ? fem::Start::prestretched : fem::Start::rigid;
+  if (scene.is_mechanism())
+    place_bodies(scene, out.motion);
+  else
+    place_alone(scene, out.motion);
+  out.motion.integrator = scene.time.integrator;
+  out.motion.alpha.rho_inf = scene.time.rho_inf;
+  out.motion.minimal_coordinates.tolerance = scene.time.explicit_tolerance;
+  if (scene.gravity) out.motion.gravity = *scene.gravity;
+  if (keeps_energy(scene)) out.motion.energy_round_off = stress_round_off(scene);
+  if (scene.has_heat()) add_heat(scene, out);
+  return out;
+}
+
+}  // namespace flexmorph::cases

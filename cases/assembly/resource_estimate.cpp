@@ -1,0 +1,305 @@
+#include "cases/assembly/resource_estimate.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "cases/assembly/build.h"
+#include "cases/scene/elements/row.h"
+#include "io/files.h"
+
+namespace flexmorph::cases {
+namespace {
+
+constexpr double kAny = std::numeric_limits<double>::infinity();
+constexpr double kNumber = 8;
+
+// Measured, see room.h: the program with its libraries and a report; a number of a table; of a
+// frame for ParaView its head, its points in the plane and in space, cells and components of
+// designs; of pictures in space.
+constexpr double kProgram = 36e6, kReport = 5e5, kCsvNumber = 17;
+constexpr double kFrame = 1600, kPlanePoint = 19, kSpacePoint = 34;
+constexpr double kDesignCell = 25, kDesignComponent = 900, kDesignExports = 250,
+                 kPicturePoint = 190;
+// A tangent: its entries with their places, in the copies that assembly and solvers keep.
+constexpr double kEntry = 40;
+// Of a cell of a design: factors, topology description function and derivatives.
+constexpr double kCell = 1500;
+// Of bodies on cells: unsymmetric factors, and meshes that grow line by line, leave that many times
+// what one tangent takes.
+constexpr double kCellCopies = 6;
+// Loads of a design are kept as forces, displacements and what solving them takes.
+constexpr double kLoadCopies = 9;
+
+double sum_of(const std::vector<Share>& shares) {
+  double sum = 0;
+  for (const Share& each : shares) sum += each.bytes;
+  return sum;
+}
+
+/// Elements along and across in a motion, `finer` times the case's: flowing bodies grow.
+std::array<double, 2> elements_of(const Scene& scene, const Body& body, double finer) {
+  double along = body.elements[0];
+  if (body.flow && !body.is_even()) {
+    const double grown = body.longest(scene.time.end) - body.length;
+    along += std::max(
+        0.0, grown / (body.on_cells() ? body.cell_length() : 0.75 * body.flow->max_length));
+  }
+  return {finer * along, body.row->across ? finer * body.elements[1] : 0};
+}
+
+/// Unknowns at a node of a body: its position and slopes.
+double node_unknowns(const Body& body) {
+  const double vectors = !body.row->across ? 2 : body.on_cells() ? 1 : body.shape == "h12" ? 3 : 4;
+  return vectors * body.dim();
+}
+
+/// Tangent, factor and element matrices of one body that moves.
+double moving_bytes(const Scene& scene, const Body& body, double finer) {
+  const std::array<double, 2> n = elements_of(scene, body, finer);
+  const double each = node_unknowns(body), rows = (n[0] + 1) * (n[1] + 1) * each;
+  const double corners = body.row->across ? 4 : 2, neighbours = body.row->across ? 9 : 3;
+  // Orderings of planar meshes fill by about the logarithm of their width.
+  const double narrow = std::min(n[0], n[1]) + 1;
+  const double fill = neighbours * each * (1 + std::log2(1 + narrow));
+  const double elements = n[0] * std::max(1.0, n[1]), size = corners * each;
+  return rows * (neighbours * each * kEntry + kNumber * fill) + elements * kNumber * size * size;
+}
+
+/// Two full matrices of its vectors, see fem::thermal_matrices().
+double thermal_bytes(const Scene& scene, const Body& body) {
+  const std::array<double, 2> n = elements_of(scene, body, 1);
+  const double vectors = (n[0] + 1) * (n[1] + 1) * node_unknowns(body) / body.dim();
+  return 2 * kNumber * vectors * vectors;
+}
+
+/// The finest mesh that any motion of the scene has, times that of its bodies.
+double finest(const Scene& scene) {
+  if (!scene.verify) return 1;
+  if (!scene.verify->mesh) return scene.verify->refine;
+  double out = 1;
+  for (const Body& body : scene.bodies)
+    for (const size_t c : {0u, 1u})
+      out = std::max(out, double((*scene.verify->mesh)[c]) / body.elements[c]);
+  return out;
+}
+
+double columns_of(const Scene& scene) {
+  double out = 6;
+  out += 4.0 * static_cast<double>(scene.bodies.size());
+  out += 3.0 * static_cast<double>(scene.rigid_bodies.size() + scene.observed.size());
+  for (const Joint& joint : scene.joints) out += joint.named ? 3 : 0;
+  for (const Measure& m : scene.measures) out += 2.0 * static_cast<double>(m.quantities.size());
+  return out;
+}
+
+/// Points that a body without a design is drawn with.
+double drawn_points(const Scene& scene, const Body& body) {
+  const std::array<double, 2> n = elements_of(scene, body, 1);
+  return (n[0] * body.row->drawn[0] + 1) * (std::max(1.0, n[1]) * body.row->drawn[1] + 1);
+}
+
+/// Files for ParaView of one moment.
+double frame_bytes(const Scene& scene) {
+  double out = 0;
+  for (const Body& body : scene.bodies) {
+    double points = 0;
+    for (const BodyDesign& d : scene.designs)
+      if (d.body == body.name) points = (d.grid.nx + 1.0) * (d.grid.ny + 1.0);
+    if (points == 0) points = drawn_points(scene, body);
+    out += kFrame + points * (body.in_space() ? kSpacePoint : kPlanePoint);
+  }
+  return out + kFrame * static_cast<double>(scene.rigid_bodies.size());
+}
+
+void add_course(const Scene& scene, Extent& out) {
+  const TimeSpan& time = scene.time;
+  if (scene.statics) {
+    const bool load = scene.statics->path == fem::StaticSettings::Path::load;
+    out.steps = load ? scene.statics->steps : scene.statics->max_steps;
+    out.step_key = load ? "static.steps" : "static.max_steps";
+    return;
+  }
+  const bool adaptive = time.tolerance.has_value();
+  const double longest = time.largest_step > 0 ? time.largest_step : time.end / 50;
+  out.steps = std::ceil(time.end / (adaptive ? longest : time.step) - 1e-9);
+  out.step_key = adaptive ? "time.largest_step" : "time.step";
+  // Steps end where a frame is written.
+  const bool frames = scene.output.vtk && scene.output.motion_every > 0;
+  if (const double n = frames ? time.end / scene.output.motion_every : 0; n > out.steps) {
+    out.steps = std::floor(n);
+    out.step_key = "output.motion_every";
+  }
+}
+
+void add_motions(const Scene& scene, Extent& out) {
+  for (const Body& body : scene.bodies)
+    out.memory.push_back({"the mesh of '" + body.name + "'", "body." + body.name + ".elements",
+                          moving_bytes(scene, body, 1)});
+  for (const Body& body : scene.bodies)
+    if (body.heat && body.heat->force)
+      out.memory.push_back({"the thermal force of '" + body.name + "'",
+                            "body." + body.name + ".elements", thermal_bytes(scene, body)});
+  if (scene.judges_on_cells()) {
+    const Scene cells = on_cells(scene, scene.verify->cells);
+    double bytes = 0;
+    for (const Body& body : cells.bodies) bytes += kCellCopies * moving_bytes(cells, body, 1);
+    out.memory.push_back({"the verification", "verify.cells", bytes});
+  } else if (const double finer = finest(scene); finer > 1) {
+    double bytes = 0;
+    for (const Body& body : scene.bodies) bytes += moving_bytes(scene, body, finer);
+    out.memory.push_back(
+        {"the verification", scene.verify->mesh ? "verify.mesh" : "verify.refine", bytes});
+  }
+  const double numbers = out.motions * out.steps * columns_of(scene);
+  out.memory.push_back({"the table of steps", out.step_key, 2 * kNumber * numbers});
+  out.disk.push_back({"the table of steps", out.step_key, kCsvNumber * numbers});
+  if (scene.in_space() && scene.output.plots)
+    out.disk.push_back({"pictures of '" + scene.bodies[0].name + "'",
+                        "body." + scene.bodies[0].name + ".elements",
+                        kPicturePoint * drawn_points(scene, scene.bodies[0])});
+  if (!scene.output.vtk) return;
+  const bool path = scene.statics.has_value();
+  const double every = scene.output.motion_every;
+  out.frames = path ? out.steps : every > 0 ? std::floor(scene.time.end / every) + 1 : 0;
+  out.disk.push_back({"frames of the motion", path ? out.step_key : "output.motion_every",
+                      out.frames * frame_bytes(scene)});
+}
+
+void add_design(const Scene& scene, const BodyDesign& d, Extent& out) {
+  const Grid& g = d.grid;
+  const std::string path = "design" + (scene.designs.size() > 1 ? "." + d.body : ""),
+                    cell = path +
+                           (scene.file && scene.file->gives(path + ".cells") ? ".cells" : ".cell");
+  const double cells = 1.0 * g.nx * g.ny, n = 2.0 * (g.nx + 1) * (g.ny + 1);
+  const std::string name = "the design of '" + d.body + "'";
+  // Of bodies that move a band in natural order; at rest nested dissection.
+  const double narrow = std::min(g.nx, g.ny);
+  const double factor = scene.domain ? n * 24 * std::log2(1 + narrow) : n * (2.0 * g.ny + 5);
+  out.memory.push_back({name, cell, kNumber * factor + kCell * cells});
+  if (scene.esl)
+    out.memory.push_back({"the loads of '" + d.body + "'", "esl.every",
+                          kNumber * kLoadCopies * n * scene.esl->count(scene.time.end)});
+  const double components = d.n_components();
+  out.disk.push_back({"exports of '" + d.body + "'", cell, kDesignExports * cells});
+  const double every = scene.output.vtk ? scene.output.design_every : 0;
+  const double frames = every > 0 ? std::ceil(out.iterations / every) : 0;
+  out.disk.push_back({"frames of the design of '" + d.body + "'", "optimizer.max_iterations",
+                      frames * (kDesignCell * cells + kDesignComponent * components)});
+}
+
+/// Bytes that are mapped and not used, of libraries and of fem::reserve_blas(): they count where
+/// the address space is limited.
+double unused_mapped() {
+  std::ifstream status("/proc/self/statm");
+  double mapped = 0, used = 0;
+  status >> mapped >> used;
+  return (mapped - used) * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+/// What the program may take less than the machine has: limits of the process and of its group.
+double allowed_memory() {
+  double out = kAny;
+  if (rlimit limit{}; getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+    out = std::max(0.0, static_cast<double>(limit.rlim_cur) - unused_mapped());
+  std::ifstream group("/sys/fs/cgroup/memory.max");
+  if (double most = 0; group >> most) out = std::min(out, most);  // "max": none
+  return out;
+}
+
+const Share& largest(const std::vector<Share>& shares) {
+  return *std::max_element(shares.begin(), shares.end(),
+                           [](const Share& a, const Share& b) { return a.bytes < b.bytes; });
+}
+
+void refuse_more(const Scene& scene, const std::vector<Share>& shares, double there,
+                 const std::string& what, const std::string& where) {
+  const double bytes = sum_of(shares);
+  if (!(bytes > there)) return;
+  const Share& most = largest(shares);
+  scene.refuse(most.key, "the run takes about " + bytes_text(bytes) + what + ", " +
+                             bytes_text(most.bytes) + " of it for " + most.what + "; " + where +
+                             bytes_text(there));
+}
+
+}  // namespace
+
+double Extent::memory_bytes() const { return sum_of(memory); }
+
+double Extent::disk_bytes() const { return sum_of(disk); }
+
+Extent extent_of(const Scene& scene) {
+  Extent out;
+  out.memory.push_back({"the program", "title", kProgram});
+  out.disk.push_back({"the report", "title", kReport});
+  out.iterations = 1.0 * scene.optimizer.max_iterations * static_cast<double>(scene.designs.size());
+  if (scene.finish && out.iterations > 0)
+    out.iterations += 1.0 * mmc::kFinishTries * scene.finish->max_iterations;
+  if (!scene.domain) out.iterations *= scene.cycle.max_cycles;
+  for (const BodyDesign& d : scene.designs)
+    out.iterations += 1.0 * (d.starts - 1) * scene.optimizer.max_iterations;
+  if (!scene.domain) {
+    if (out.iterations > 0) out.motions = scene.verify ? 4 : 2;
+    add_course(scene, out);
+    add_motions(scene, out);
+  }
+  for (const BodyDesign& d : scene.designs) {
+    Extent own = out;  // every body has its own iterations
+    own.iterations /= static_cast<double>(scene.designs.size());
+    own.memory.clear(), own.disk.clear();
+    add_design(scene, d, own);
+    out.memory.insert(out.memory.end(), own.memory.begin(), own.memory.end());
+    out.disk.insert(out.disk.end(), own.disk.begin(), own.disk.end());
+  }
+  return out;
+}
+
+Machine this_machine(const std::string& directory) {
+  namespace fs = std::filesystem;
+  Machine out{kAny, kAny};
+  const long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGESIZE);
+  if (pages > 0 && size > 0) out.memory = static_cast<double>(pages) * static_cast<double>(size);
+  out.memory = std::min(out.memory, allowed_memory());
+  std::error_code code;
+  fs::path folder = fs::absolute(directory.empty() ? "." : directory, code);
+  while (!fs::exists(folder, code) && folder.has_relative_path()) folder = folder.parent_path();
+  if (const fs::space_info space = fs::space(folder, code); !code && space.capacity > 0)
+    out.disk = static_cast<double>(space.available);
+  return out;
+}
+
+void require_room(const Scene& scene, const Machine& machine) {
+  const Extent extent = extent_of(scene);
+  if (extent.steps > kMostSteps)
+    scene.refuse(extent.step_key, io::to_text(extent.steps, 3) + " steps; the most are " +
+                                      io::to_text(kMostSteps, 3));
+  refuse_more(scene, extent.memory, machine.memory, " of memory", "this machine has ");
+  refuse_more(scene, extent.disk, machine.disk, " of disk", "free are ");
+}
+
+std::string out_of_memory_words(const Extent& extent) {
+  return "memory ran out: the run was to take about " + bytes_text(extent.memory_bytes()) +
+         " (within a factor of two), and there are " + bytes_text(this_machine().memory);
+}
+
+std::string bytes_text(double bytes) {
+  static const char* const kUnits[] = {"kB", "MB", "GB", "TB", "PB"};
+  double size = bytes / 1e3;
+  size_t unit = 0;
+  for (; size >= 1e3 && unit + 1 < std::size(kUnits); ++unit) size /= 1e3;
+  return io::to_text(size, size >= 10 ? 3 : 2) + " " + kUnits[unit];
+}
+
+std::string duration_text(double seconds) {
+  if (seconds < 120) return io::to_text(seconds, 2) + " s";
+  if (seconds < 7200) return io::to_text(seconds / 60, 2) + " min";
+  if (seconds < 172800) return io::to_text(seconds / 3600, 2) + " h";
+  return io::to_text(seconds / 86400, 3) + " days";
+}
+
+}  // namespace flexmorph::cases

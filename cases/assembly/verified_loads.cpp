@@ -1,0 +1,28 @@
+#include "cases/assembly/verified_loads.h"
+
+namespace flexmorph::cases {
+namespace {
+
+judge::Place place_of(const Place& place, const mmc::BodyProblem& problem) {
+  if (place.kind != Place::Kind::point) return judge::box_place(place.box);
+  return judge::point_place(place.box.lower, mmc::domain_of(problem), mmc::point_reach(problem));
+}
+
+}  // namespace
+
+judge::Loads judged_loads(const Scene& scene, const mmc::BodyProblem& problem) {
+  judge::Loads out;
+  out.worst = mmc::compliance_row(problem.goal).per_load;
+  for (const PlaneSupport& s : scene.domain->supports)
+    out.supports.push_back({out.add(place_of(s.place, problem)), s.x, s.y});
+  for (const LoadCase& l : scene.domain->loads) {
+    judge::Load& load = out.loads.emplace_back();
+    load.name = l.name;
+    load.weight = l.weight;
+    for (const PlaneForce& f : l.forces)
+      load.forces.push_back({out.add(place_of(f.place, problem)), f.force});
+  }
+  return out;
+}
+
+}  // namespace flexmorph::cases

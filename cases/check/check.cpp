@@ -1,0 +1,341 @@
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "cases/assembly/build.h"
+#include "cases/assembly/twin.h"
+#include "cases/check/check_cost.h"
+#include "cases/check/check_figures.h"
+#include "cases/run/run.h"
+#include "cases/scene/design/goal.h"
+#include "cases/scene/elements/row.h"
+#include "cases/scene/heat/heat.h"
+#include "cases/scene/joints/row.h"
+#include "cases/scene/read.h"
+#include "io/files.h"
+
+namespace flexmorph::cases {
+namespace {
+
+std::string row(const std::string& what, const std::string& words) {
+  return summary_row(what, words);
+}
+
+std::string millions(double operations) { return io::to_text(1e-6 * operations, 2); }
+
+/// Loads alone are what one expects.
+std::string growing_words(const StaticAnalysis& analysis) {
+  if (!analysis.temperatures_grow) return "";
+  return analysis.loads_grow ? ", of loads and temperatures" : ", of temperatures";
+}
+
+std::string words_of(const Region& domain) {
+  if (domain.outer.empty()) return "";
+  const size_t n = domain.holes.size();
+  return ", domain a polygon" + (n == 0   ? std::string()
+                                 : n == 1 ? " with a hole"
+                                          : " with " + std::to_string(n) + " holes");
+}
+
+/// A motion through time, or a path of equilibria.
+void describe_course(const Scene& scene, std::ostringstream& out) {
+  if (scene.statics) {
+    const bool load = scene.statics->path == fem::StaticSettings::Path::load;
+    out << row("static analysis", "nonlinear, load factor 0 to " + io::to_text(scene.statics->to) +
+                                      (load ? " in " : " along the arc, first step 1/") +
+                                      std::to_string(scene.statics->steps) +
+                                      (load ? " steps" : " of it") + growing_words(*scene.statics));
+    return;
+  }
+  const TimeSpan& time = scene.time;
+  const std::string until = "0 to " + io::to_text(time.end) + " s, ";
+  if (time.integrator == "minimal_coordinates") {
+    out << row("time", until + "step " + io::to_text(time.step) +
+                           " s, minimal_coordinates in shorter ones, tolerance " +
+                           io::to_text(time.explicit_tolerance));
+    return;
+  }
+  if (time.tolerance) {
+    fem::AdaptiveStep adaptive;
+    adaptive.largest = time.largest_step;
+    out << row("time", until + "rho_inf " + io::to_text(time.rho_inf) +
+                           ", adaptive steps, tolerance " + io::to_text(*time.tolerance) +
+                           ", none longer than " +
+                           io::to_text(fem::StepControl(adaptive, time.end).largest()) + " s");
+    return;
+  }
+  const std::string scheme = time.integrator == "energy_momentum"
+                                 ? "energy_momentum, "
+                                 : "rho_inf " + io::to_text(time.rho_inf) + ", ";
+  out << row("time", until + "step " + io::to_text(time.step) + " s, " + scheme +
+                         io::to_text(std::ceil(time.end / time.step - 1e-9)) + " steps");
+}
+
+std::string measure_words(const Measure& measure) {
+  std::string out;
+  for (const std::string& quantity : measure.quantities)
+    out += (out.empty() ? "" : ", ") + quantity;
+  return out + " of " + measure.body;
+}
+
+std::string load_words(const BodyLoad& load) {
+  return std::string(load.row->words) + (load.edge.empty() ? "" : " '" + load.edge + "'") +
+         (load.row->in_space ? ", follows the plate"
+          : load.turns       ? ", turns with the body"
+                             : "") +
+         (load.law.varies() ? ", varies" : "");
+}
+
+void describe_body(const Body& body, const Mechanism& mechanism, std::ostringstream& out) {
+  const fem::Body& built = mechanism.model.body(body.name);
+  const int n = built.n_dofs();
+  const std::string mesh = body.row->across
+                               ? " " + body.shape + ", " + std::to_string(body.elements[0]) +
+                                     " x " + std::to_string(body.elements[1])
+                               : ", " + std::to_string(body.elements[0]);
+  const ElementOperations each = body.row->operations(body, *built.element);
+  out << row("body " + body.name,
+             body.row->name + mesh + " elements, " + std::to_string(n) + " unknowns, about " +
+                 millions(built.element->n_elements() * (each.force + each.tangent)) +
+                 " Mflop for a force and tangent");
+  std::string terms;
+  for (const std::string& t : body.terms) terms += (terms.empty() ? "" : ", ") + t;
+  out << row("", "terms: " + terms);
+  if (body.arc != 0) out << row("", "undeformed an arc of " + io::to_text(body.arc, 4) + " rad");
+  if (body.heat) {
+    out << row("heat of " + body.name, temperature_words(*body.heat) + ", expansion " +
+                                           io::to_text(body.heat->expansion, 6) +
+                                           " 1/K, thermal volume " +
+                                           volume_name(body.heat->volume));
+    out << row("", body.heat->force ? "thermal force Q_tk" : "no thermal force");
+  }
+  if (body.in_space())
+    out << row("", "out-of-plane: positions have three components; bending at Gauss points");
+  for (const BodyLine& line : body.lines)
+    if (line.free)
+      out << row("", "free material line " + std::to_string(line.index) +
+                         ": one more unknown; all elements evaluated one at a time");
+  if (body.flow)
+    out << row("", (body.flow->motion
+                        ? "material leaves and enters the hub as '" + body.flow->length.drive +
+                              "' says, length " + io::to_text(body.flow->shortest, 6) + " to " +
+                              io::to_text(body.flow->longest, 6) + " m"
+                        : "material leaves the hub at " + io::to_text(body.flow->speed) + " m/s") +
+                       (body.is_even() ? ": all lines move, elements stay equal, "
+                                       : ": one prescribed material line, ") +
+                       std::to_string(body.elements[1] * (body.is_even() ? body.elements[0] : 1)) +
+                       " elements refreshed per step");
+}
+
+std::string optimizer_words(const Scene& scene) {
+  const auto words = [](const optim::Settings& s) {
+    return s.name + ", at most " + std::to_string(s.max_iterations) + " iterations";
+  };
+  return words(scene.optimizer) + (scene.finish ? ", then " + words(*scene.finish) : "");
+}
+
+std::string thickness_words(const BodyDesign& d) {
+  std::string out = "half-thickness of components at least " + io::to_text(d.min_thickness) + " m";
+  if (d.widths.solid > 0)
+    out += ", smallest feature of their union at least " + io::to_text(d.widths.solid) + " m";
+  if (d.widths.gap > 0) out += ", smallest gap at least " + io::to_text(d.widths.gap) + " m";
+  return out;
+}
+
+/// ", kinks at 0.2, 0.5 s"; of many the first.
+std::string kinks_of(const Drive& drive) {
+  constexpr size_t kMost = 5;
+  std::string out;
+  for (size_t i = 0; i < std::min(kMost, drive.kinks.size()); ++i)
+    out += (i == 0 ? ", kinks at " : ", ") + io::to_text(drive.kinks[i], 6);
+  if (drive.kinks.size() > kMost) out += ", ...";
+  return out.empty() ? out : out + " s";
+}
+
+/// "4 revolute, 4 weld, 1 angle_drive": kinds in the order of the case.
+template <class T, class Kind>
+std::string kinds_of(const std::vector<T>& list, const Kind& kind) {
+  std::vector<std::pair<std::string, int>> counts;
+  for (const T& each : list) {
+    const std::string name = kind(each);
+    const auto found = std::find_if(counts.begin(), counts.end(),
+                                    [&](const auto& count) { return count.first == name; });
+    if (found == counts.end())
+      counts.emplace_back(name, 1);
+    else
+      ++found->second;
+  }
+  std::string out;
+  for (const auto& [name, n] : counts)
+    out += (out.empty() ? "" : ", ") + std::to_string(n) + " " + name;
+  return out;
+}
+
+std::string law_words(const Law& law) {
+  return law.drive.empty() ? io::to_text(law.value, 6) : "'" + law.drive + "'";
+}
+
+void describe_mechanism(const Scene& scene, std::ostringstream& out) {
+  std::string names;
+  double mass = 0;
+  for (const RigidBody& body : scene.rigid_bodies) {
+    names += (names.empty() ? "" : ", ") + body.name;
+    mass += body.mass;
+    for (const RigidBody::AddedMass& added : body.masses) mass += added.mass;
+  }
+  if (!scene.rigid_bodies.empty())
+    out << row("rigid bodies", std::to_string(scene.rigid_bodies.size()) + " (" + names + "), " +
+                                   std::to_string(4 * scene.rigid_bodies.size()) + " unknowns, " +
+                                   io::to_text(mass, 6) + " kg");
+  const int before = undriven_freedoms(scene), after = TwinMotion(scene).degrees_of_freedom();
+  out << row("freedoms", "of the rigid twin: " + std::to_string(before) +
+                             " without the drives of joints and flows, " + std::to_string(after) +
+                             " with them");
+  if (!scene.trajectory) return;
+  const Trajectory& path = *scene.trajectory;
+  std::string drives;
+  for (const Drive& drive : scene.drives)
+    if (drive.from_trajectory) drives += (drives.empty() ? "" : ", ") + drive.name;
+  out << row("trajectory", "of " + path.body + ": x " + law_words(path.x) + ", y " +
+                               law_words(path.y) + ", angle " + law_words(path.angle) +
+                               "; drives that follow: " + (drives.empty() ? "none" : drives));
+}
+
+std::string components_words(const BodyDesign& d) {
+  const int components = d.n_components();
+  return std::to_string(components) + " components, " +
+         std::to_string(components * Component::kParameters) + " variables" +
+         (d.starts > 1 ? ", the best of " + std::to_string(d.starts) + " starts" : "");
+}
+
+void describe_design(const Scene& scene, const BodyDesign& d, std::ostringstream& out) {
+  const Grid& g = d.grid;
+  const int n = 2 * g.nx * (g.ny + 1), loads = scene.esl->count(scene.time.end);
+  // Natural order from the free end: a band of ny + 2 nodes.
+  const double factor = static_cast<double>(n) * (2 * g.ny + 5);
+  out << row("design of " + d.body, components_words(d) + ", " + std::to_string(g.nx) + " x " +
+                                        std::to_string(g.ny) + " cells, " + std::to_string(n) +
+                                        " static unknowns");
+  out << row("", std::to_string(loads) + " loads, " + limit_words(d.goal) +
+                     (d.shares_mass ? " on average, mass is shared, " : ", ") + thickness_words(d));
+  out << row("", "factor about " + io::to_text(8e-6 * factor, 3) + " MB, loads and displacements " +
+                     io::to_text(8e-6 * 3.0 * n * loads, 3) + " MB; an iteration about " +
+                     io::to_text(1e-9 * factor * (2 * g.ny + 5 + 3.0 * loads), 2) + " Gflop");
+}
+
+void describe_static(const Scene& scene, std::ostringstream& out, const Machine& machine) {
+  const Domain& domain = *scene.domain;
+  const mmc::BodyProblem problem = build_problems(scene).front();
+  std::unique_ptr<mmc::LoadResponse> loads;
+  if (problem.grid.n_cells() <= kMostBuilt) loads = build_static_loads(scene, problem);
+  const BodyDesign& d = scene.designs.front();
+  const Grid& g = d.grid;
+  out << row("plate " + domain.name, "at rest, " + std::to_string(g.nx) + " x " +
+                                         std::to_string(g.ny) + " cells" + words_of(domain.shape));
+  out << row("supports", std::to_string(domain.supports.size()));
+  out << row("loads",
+             std::to_string(domain.loads.size()) +
+                 (loads ? ", solved as " + std::to_string(loads->n_right_hand_sides()) : ""));
+  out << row("design", components_words(d) + "; " + goal_words(d.goal));
+  out << row("", thickness_words(d));
+  out << row("optimizer", optimizer_words(scene));
+  out << figures_text(scene, nullptr, machine);
+  out << "\nabsent: not built, costs nothing\n";
+  out << row("motion", "no bodies, no joints, no time, no equivalent static loads");
+  if (domain.loads.size() == 1) out << row("load compression", "one load");
+  if (!scene.output.vtk) out << row("VTK files", "none");
+}
+
+void describe_operations(const Scene& scene, const Mechanism& mechanism, std::ostringstream& out) {
+  if (scene.time.integrator == "minimal_coordinates") return;
+  const StepOperations each = step_operations(scene, mechanism);
+  std::string parts = "forces " + millions(each.forces);
+  if (each.tangents > 0) parts += ", tangents " + millions(each.tangents);
+  parts += ", sparse solver " + millions(each.solver);
+  if (each.flow > 0) parts += ", flow of material " + millions(each.flow);
+  out << row("operations", "about " + millions(each.total()) + " million per step: " + parts);
+}
+
+void describe_absent(const Scene& scene, std::ostringstream& out) {
+  if (!scene.in_space())
+    out << row("out-of-plane", "positions have two components; no bending term");
+  if (!scene.has_heat()) out << row("heat", "no thermal term");
+  if (!scene.has_free_lines())
+    out << row("free material lines", "no material coordinate is an unknown");
+  if (scene.statics)
+    out << row("motion", "no time, no inertia, no integrator");
+  else
+    out << row("static analysis", "no path of equilibria");
+  if (!scene.statics && !scene.time.tolerance)
+    out << row("adaptive steps", "no estimate of errors, no dense output");
+  if (scene.loads.empty()) out << row("loads", "none");
+  if (std::none_of(scene.bodies.begin(), scene.bodies.end(),
+                   [](const Body& b) { return b.flow.has_value(); }))
+    out << row("material flow", "no shape function has rates");
+  if (scene.rigid_bodies.empty()) out << row("rigid bodies", "none");
+  if (scene.is_mechanism() && scene.springs.empty()) out << row("springs", "none");
+  if (!scene.gravity) out << row("gravity", "none");
+  if (scene.designs.empty()) out << row("design", "full material; no loads, no optimizer");
+  if (!scene.verify) out << row("verification", "no run on a finer mesh");
+  if (scene.observed.empty()) out << row("observed points", "none");
+  if (scene.measures.empty()) out << row("measured", "no quantities of bodies");
+  if (!scene.output.vtk) out << row("VTK files", "none");
+  if (scene.output.vtk && scene.output.motion_every == 0)
+    out << row("VTK files", "none of the motion");
+  if (!scene.output.plots) out << row("plots", "none");
+}
+
+}  // namespace
+
+std::string check_case(const RunOptions& options) {
+  const auto [file, scene] = ready_case(options.case_name, options.overrides);
+  if (options.explain) return file.explained();
+  const Machine machine = this_machine(scene.output.directory);
+  std::ostringstream out;
+  out << scene.name << ": " << scene.title << "\n\nactive\n";
+  if (scene.domain) {
+    describe_static(scene, out, machine);
+    return out.str();
+  }
+  Mechanism mechanism = build_mechanism(scene);
+  describe_course(scene, out);
+  for (const Drive& drive : scene.drives) {
+    const std::array<double, 2> range = range_of(drive.motion, scene.time.end);
+    out << row("drive " + drive.name, drive.words + ", from " + io::to_text(range[0], 6) + " to " +
+                                          io::to_text(range[1], 6) + kinks_of(drive));
+  }
+  for (const Body& body : scene.bodies) describe_body(body, mechanism, out);
+  if (scene.is_mechanism()) describe_mechanism(scene, out);
+  out << row("joints", std::to_string(scene.joints.size()) + ", " +
+                           std::to_string(mechanism.model.n_constraints()) + " constraint rows" +
+                           (scene.joints.empty() ? "" : ": ") +
+                           kinds_of(scene.joints, [](const Joint& j) { return j.row->name; }));
+  if (!scene.springs.empty())
+    out << row("springs", std::to_string(scene.springs.size()) + ": " +
+                              kinds_of(scene.springs, [](const Spring& s) { return s.row->name; }));
+  if (!scene.point_masses.empty())
+    out << row("point masses", std::to_string(scene.point_masses.size()));
+  for (const BodyLoad& load : scene.loads) out << row("load on " + load.body, load_words(load));
+  if (scene.gravity) out << row("gravity", scene.gravity_law().varies() ? "varies" : "on");
+  if (!scene.observed.empty()) out << row("observed points", std::to_string(scene.observed.size()));
+  for (const Measure& measure : scene.measures) out << row("measured", measure_words(measure));
+  for (const BodyDesign& d : scene.designs) describe_design(scene, d, out);
+  if (!scene.designs.empty())
+    out << row("optimizer", optimizer_words(scene) + ", " + std::to_string(scene.cycle.max_cycles) +
+                                " cycle(s)");
+  if (scene.verify)
+    out << row("verification", (scene.judges_on_cells() && scene.cycle.max_cycles > 1
+                                    ? "designs of all cycles and uniform plate, "
+                                    : "designed and uniform plate once more, ") +
+                                   scene.verify->words() +
+                                   (scene.time.tolerance && scene.verify->step == scene.time.step
+                                        ? ", adaptive steps"
+                                        : ", step " + io::to_text(scene.verify->step) + " s"));
+  describe_operations(scene, mechanism, out);
+  out << figures_text(scene, &mechanism, machine);
+  out << "\nabsent: not built, costs nothing\n";
+  describe_absent(scene, out);
+  return out.str();
+}
+
+}  // namespace flexmorph::cases

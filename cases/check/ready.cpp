@@ -1,0 +1,148 @@
+#include "cases/check/ready.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "cases/assembly/resource_estimate.h"
+#include "cases/assembly/twin.h"
+#include "cases/results/expectations.h"
+#include "cases/scene/version.h"
+#include "fem/solve/blas_room.h"
+#include "fem/solve/scaled_constraints.h"
+#include "io/case_document.h"
+#include "io/files.h"
+
+namespace flexmorph::cases {
+namespace {
+
+/// Where shipped cases are: of an installed program share/flexmorph/cases beside the bin/ it is in,
+/// wherever that was moved to; else in the source tree.
+std::filesystem::path cases_folder() {
+  std::error_code none;  // where there is no /proc
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", none);
+  const auto installed = program.parent_path().parent_path() / "share/flexmorph/cases";
+  if (program.has_parent_path() && std::filesystem::is_directory(installed, none)) return installed;
+  return kCasesFolder;
+}
+
+/// Refuses joints that depend on each other, and bodies that do not reach their joints.
+void require_start(Mechanism& mechanism) {
+  constexpr double kMiss = 1e-6;  // of the model: coordinates in cases are rounded
+  fem::Workspace& model = mechanism.model;
+  const fem::State x =
+      fem::start_state(model, mechanism.growths, 0, fem::Start::rigid, mechanism.motion.placement);
+  fem::require_independent(fem::diagnose(model, x));
+  fem::ScaledConstraints rows;
+  rows.evaluate(model, x);
+  const VectorXd misses = rows.misses();
+  const double worst = misses.lpNorm<Eigen::Infinity>();
+  if (worst > kMiss * fem::model_size(rows.scales(), x.q))
+    throw Error::input("at the start " + fem::list_joints(fem::heaviest_joints(model, misses, 1)) +
+                       " misses by " + io::to_text(worst, 3) +
+                       " m: bodies that are not deformed do not reach their joints");
+}
+
+void build_parts(const Scene& scene) {
+  if (!scene.domain) {
+    // One evaluation: loads and terms find their places, or say what they cannot do.
+    if (scene.is_mechanism()) check_mechanism(scene);  // its joints have the names of the case
+    Mechanism mechanism = build_mechanism(scene);
+    if (mechanism.model.n_constraints() > 0) require_start(mechanism);
+    const fem::State x = mechanism.model.reference();
+    VectorXd force;
+    mechanism.model.force(x, force);
+    if (scene.time.integrator == "energy_momentum") mechanism.model.mean_force(x, x.q, x.q, force);
+  }
+  check_expectations(scene);
+  const std::vector<mmc::BodyProblem> problems = build_problems(scene);
+  if (!scene.domain) return;
+  const mmc::BodyProblem& problem = problems.front();
+  if (problem.grid.n_cells() <= kMostBuilt)
+    build_static_loads(scene, problem);
+  else
+    static_places(scene, problem.grid, problem.outside);
+}
+
+/// Keeps the entry that a message names earliest.
+class FirstNamed {
+ public:
+  explicit FirstNamed(const std::string& message) : message_(message) {}
+
+  template <class List>
+  void look(const List& list, const std::string& path) {
+    for (size_t i = 0; i < list.size(); ++i) {
+      if (list[i].name.empty()) continue;
+      const size_t at = message_.find("'" + list[i].name + "'");
+      if (at >= at_) continue;
+      at_ = at;
+      path_ = path + "." + std::to_string(i);
+    }
+  }
+  const std::string& path() const { return path_; }
+
+ private:
+  const std::string& message_;
+  size_t at_ = std::string::npos;
+  std::string path_;
+};
+
+}  // namespace
+
+std::string located_refusal(const Scene& scene, const std::string& message) {
+  if (!scene.file || message.starts_with(scene.file->path() + ":") || message.starts_with("--set "))
+    return message;
+  FirstNamed named(message);
+  named.look(scene.joints, "joint");
+  named.look(scene.bodies, "body");
+  named.look(scene.rigid_bodies, "rigid_body");
+  named.look(scene.springs, "spring");
+  named.look(scene.drives, "drive");
+  if (scene.domain) named.look(scene.domain->loads, "load");
+  return scene.file->where(named.path()) + ": " + message;
+}
+
+void build_scene(const Scene& scene, const std::string& directory, int threads) {
+  fem::reserve_blas(threads);
+  require_room(scene, this_machine(directory.empty() ? scene.output.directory : directory));
+  try {
+    build_parts(scene);
+  } catch (const Error& error) {
+    const std::string words = located_refusal(scene, error.what());
+    throw error.kind() == Error::Kind::input ? Error::input(words) : Error::numerical(words);
+  }
+}
+
+ReadyCase ready_case(const std::string& name, std::span<const std::string> overrides,
+                     const std::string& directory, int threads) {
+  io::CaseFile file(find_case(name), overrides);
+  Scene scene = read_scene(file);
+  build_scene(scene, directory, threads);
+  return {std::move(file), std::move(scene)};
+}
+
+std::vector<std::string> shipped_cases() {
+  std::vector<std::string> out;
+  std::error_code none;  // of a program that was moved away from its cases
+  for (const auto& entry : std::filesystem::directory_iterator(cases_folder(), none))
+    if (entry.path().extension() == ".toml") out.push_back(entry.path().stem().string());
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::string find_case(const std::string& name) {
+  if (name == "-") return "/dev/stdin";
+  if (std::filesystem::is_regular_file(name)) return name;
+  const std::vector<std::string> shipped = shipped_cases();
+  if (std::find(shipped.begin(), shipped.end(), name) != shipped.end())
+    return cases_folder() / (name + ".toml");
+  // A pipe is a file as well; a folder is refused by who reads it.
+  if (std::filesystem::exists(name)) return name;
+  const std::string stem = std::filesystem::path(name).stem().string();
+  const std::string close = io::nearest(stem, shipped);
+  std::string known;
+  for (const std::string& each : shipped) known += (known.empty() ? "" : ", ") + each;
+  throw Error::input("case '" + name + "': no such file, and not a shipped case" +
+                     (close.empty() ? " (" + known + ")" : ", did you mean '" + close + "'?"));
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,100 @@
+#include "cases/output/motion_checkpoint.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "cases/scene/version.h"
+#include "io/files.h"
+
+namespace flexmorph::cases {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kFormat = "flexmorph motion 1";
+/// Of the time between two files, that it may take to write one.
+constexpr double kShare = 0.05;
+
+/// What cannot be read is empty.
+std::string contents_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// The case of a folder and the files that it reads, by their names.
+std::string case_of(const std::string& folder) {
+  std::vector<std::string> paths = {folder + "/case.toml"};
+  if (fs::is_directory(folder + "/inputs"))
+    for (const auto& entry : fs::directory_iterator(folder + "/inputs"))
+      paths.push_back(entry.path().string());
+  std::sort(paths.begin() + 1, paths.end());
+  std::string out;
+  for (const std::string& path : paths)
+    if (fs::is_regular_file(path)) out += path.substr(folder.size()) + "\n" + contents_of(path);
+  return out;
+}
+
+}  // namespace
+
+MotionCheckpoint::MotionCheckpoint(RunFolder& folder, const std::string& name,
+                                   const std::string& about, double every)
+    : folder_(folder),
+      name_(name),
+      path_(folder.file(name)),
+      about_(checksum(case_of(folder.path()) + about)),
+      every_(every) {}
+
+std::optional<std::string> MotionCheckpoint::read(std::string& why) const {
+  why.clear();
+  if (!fs::exists(path_)) return {};
+  const std::string text = contents_of(path_);
+  const size_t head = text.find('\n');
+  if (!text.starts_with(kFormat + ", ") || head == std::string::npos) {
+    why = "it is none of this format";
+    return {};
+  }
+  const std::string version = text.substr(kFormat.size() + 2, head - kFormat.size() - 2);
+  if (version != kVersion) {
+    why = "it was written by version " + version.substr(0, 40) + ", this is " + kVersion;
+    return {};
+  }
+  try {
+    Memory file(text.substr(head + 1));
+    std::uint64_t sum = 0, about = 0;
+    std::string rest, memory;
+    file(sum, rest);
+    if (checksum(rest) != sum) throw Error::input("");
+    Memory parts(std::move(rest));
+    std::vector<std::string> frames;
+    parts(about, frames, memory);
+    if (about != about_) why = "it is that of another case or design";
+    for (const std::string& frame : frames)
+      if (why.empty() && !fs::exists(folder_.path() + "/" + frame)) why = frame + " is missing";
+    if (why.empty()) return memory;
+  } catch (const Error&) {
+    why = "it is damaged";
+  }
+  return {};
+}
+
+bool MotionCheckpoint::is_due() const {
+  return Clock::now() - written_ >= std::max(every_, took_ / kShare);
+}
+
+void MotionCheckpoint::write(const std::string& memory, std::vector<std::string> frames) {
+  const Clock::time_point begin = Clock::now();
+  Memory parts, file;
+  std::string contents = memory;
+  parts(about_, frames, contents);
+  std::string rest = parts.bytes();
+  std::uint64_t sum = checksum(rest);
+  file(sum, rest);
+  io::write_file(folder_.file(name_), kFormat + ", " + kVersion + "\n" + file.bytes(),
+                 io::Sync::now);
+  written_ = Clock::now();
+  took_ = written_ - begin;
+}
+
+}  // namespace flexmorph::cases

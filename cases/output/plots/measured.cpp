@@ -1,0 +1,102 @@
+#include "cases/output/plots/measured.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace flexmorph::cases {
+namespace {
+
+struct Line {
+  const char* column;
+  const char* name;
+  bool analytic = false;  // of the free body, in closed form
+};
+
+struct Group {
+  const char* title;
+  const char* label;
+  std::vector<Line> lines;
+};
+
+const std::vector<Group>& groups() {
+  static const std::vector<Group> kGroups = {
+      {"temperature", "temperature rise [K]", {{"temperature", ""}}},
+      {"along x",
+       "displacement [m]",
+       {{"root_ux", "root"}, {"end_ux", "free end"}, {"free_ux", "closed form, free", true}}},
+      {"along y",
+       "displacement [m]",
+       {{"root_uy", "root"}, {"end_uy", "free end"}, {"free_uy", "closed form, free", true}}},
+      {"slopes at the free end", "length [-]", {{"end_rx", "|r_x|"}, {"end_ry", "|r_y|"}}},
+      {"velocity of the free end", "velocity [m/s]", {{"end_vx", "x"}, {"end_vy", "y"}}},
+      {"middle", "deflection [m]", {{"midpoint_deflection", ""}}},
+      {"elastic strain", "largest [-]", {{"max_elastic_strain", ""}}}};
+  return kGroups;
+}
+
+const Column* column_of(std::span<const Column> columns, const std::string& name) {
+  for (const Column& column : columns)
+    if (column.name == name) return &column;
+  return nullptr;
+}
+
+/// Names of the bodies of columns "<body>.<quantity>", each once.
+std::vector<std::string> bodies_of(std::span<const Column> columns) {
+  std::vector<std::string> out;
+  for (const Column& column : columns) {
+    const std::string body = column.name.substr(0, column.name.find('.'));
+    if (out.empty() || out.back() != body) out.push_back(body);
+  }
+  return out;
+}
+
+/// Is it more than the rounding of zeros?
+bool shows(const io::Curve& curve) {
+  return std::any_of(curve.y.begin(), curve.y.end(), [](double y) { return std::abs(y) > 1e-12; });
+}
+
+}  // namespace
+
+void add_measured(const std::vector<double>& x, const std::string& x_label,
+                  const std::vector<Column>& columns, io::Figure& figure) {
+  for (const std::string& body : bodies_of(columns))
+    for (const Group& group : groups()) {
+      io::Panel panel;
+      panel.title = body + ": " + group.title;
+      panel.x.label = x_label;
+      panel.y.label = group.label;
+      for (const Line& line : group.lines) {
+        const Column* column = column_of(columns, body + "." + line.column);
+        if (!column) continue;
+        io::Curve curve{line.name, x, column->values};
+        curve.dashed = line.analytic;
+        panel.curves.push_back(std::move(curve));
+      }
+      if (std::any_of(panel.curves.begin(), panel.curves.end(), shows))
+        figure.panels.push_back(std::move(panel));
+    }
+}
+
+std::string measured_plot(const MotionRecord& motion) {
+  if (motion.measured.empty()) return "";
+  io::Figure figure;
+  figure.title = "Measured quantities";
+  figure.panel_height = 240;
+  add_measured(motion.time, "time [s]", motion.measured, figure);
+  io::Panel kinetic;
+  kinetic.title = "kinetic energy";
+  kinetic.x.label = "time [s]";
+  kinetic.y.label = "kinetic energy [J]";
+  kinetic.curves.push_back({"model", motion.time, motion.kinetic});
+  for (const std::string& body : bodies_of(motion.measured))
+    if (const Column* free = column_of(motion.measured, body + ".free_kinetic")) {
+      io::Curve curve{body + ", closed form, free", motion.time, free->values};
+      curve.dashed = true;
+      kinetic.curves.push_back(std::move(curve));
+    }
+  if (kinetic.curves.size() > 1) figure.panels.push_back(std::move(kinetic));
+  return io::plot_svg(figure);
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,67 @@
+#include "cases/output/plots/stress.h"
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+#include "fem/triangles/t6.h"
+#include "io/files.h"
+#include "io/part_picture.h"
+
+namespace flexmorph::cases {
+
+std::vector<double> mises_of(const judge::Judged& judged) {
+  std::vector<double> out(judged.mesh.points.size());
+  for (std::size_t k = 0; k < out.size(); ++k)
+    out[k] = fem::von_mises(judged.stress.col(static_cast<Eigen::Index>(k)));
+  return out;
+}
+
+namespace {
+
+/// Less than this part of the area has more than the lightest colour: peaks at corners would leave
+/// all else dark.
+constexpr double kPeaks = 0.005;
+
+/// The stress that triangles of so much area exceed.
+double all_but_peaks(const judge::Judged& j, const std::vector<double>& mises) {
+  std::vector<std::pair<double, double>> parts;  // stress, area
+  double area = 0;
+  for (std::size_t t = 0; t < j.mesh.triangles.size(); ++t) {
+    double mean = 0;
+    for (const int node : j.mesh.triangles[t]) mean += mises[static_cast<std::size_t>(node)] / 6;
+    parts.emplace_back(mean, fem::T6(j.mesh.corners(t)).area());
+    area += parts.back().second;
+  }
+  std::sort(parts.begin(), parts.end(), std::greater<>());
+  double above = 0;
+  for (const auto& [stress, own] : parts)
+    if ((above += own) > kPeaks * area) return stress;
+  return 0;
+}
+
+std::string times(double magnification) {
+  return magnification == 1 ? "as it is" : io::to_text(magnification, 3) + " times as far";
+}
+
+}  // namespace
+
+std::string stress_plot(const JudgedBody& judged) {
+  if (!judged.verdict || judged.verdict->displacement.size() == 0) return "";
+  const judge::Judged& j = *judged.verdict;
+  const std::vector<double> mises = mises_of(j);
+  io::PartPicture picture;
+  picture.upper = all_but_peaks(j, mises);
+  if (!(picture.upper > 0)) return "";
+  picture.values = mises;
+  picture.displacement = {j.displacement.data(), static_cast<std::size_t>(j.displacement.size())};
+  picture.magnification = io::clear_magnification(j.mesh, picture.displacement);
+  picture.unit = "Pa";
+  picture.left_out = j.triangles_left_out;
+  picture.title = "von Mises stress under '" + j.shown_load + "', " +
+                  io::to_text(j.carried_stress.value, 3) +
+                  " Pa at most away from where it acts; displaced " + times(picture.magnification);
+  return io::part_svg(j.mesh, picture);
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,173 @@
+#include "cases/output/run_folder.h"
+
+#include <cmath>
+
+#include "cases/scene/elements/row.h"
+#include "io/files.h"
+
+namespace flexmorph::cases {
+
+std::string numbered(const std::string& stem, int number, const std::string& ending) {
+  std::string digits = io::to_text(number);
+  return stem + std::string(digits.size() < 5 ? 5 - digits.size() : 0, '0') + digits + ending;
+}
+
+const std::vector<double>* MotionRecord::column(const std::string& name) const {
+  for (const auto* columns : {&observed, &measured, &mechanism, &written})
+    for (const Column& column : *columns)
+      if (column.name == name) return &column.values;
+  return nullptr;
+}
+
+const std::vector<double>* PathRecord::column(const std::string& name) const {
+  for (const auto* columns : {&observed, &measured})
+    for (const Column& column : *columns)
+      if (column.name == name) return &column.values;
+  return nullptr;
+}
+
+void remember(Memory& memory, Column& column) { memory(column.name, column.values); }
+
+double tip_deflection(const fem::Model& model, const fem::Growth& growth, const fem::State& x) {
+  const fem::Body& body = model.body(growth.body);
+  const fem::LineGrid& mesh = fem::grid_of(body);
+  const fem::FrameMotion hub = growth.hub.at(model, x);
+  const Vec2 tip = fem::point_motion(body, x, {mesh.line_m(mesh.n_m()).value, 0}).position;
+  return Vec2(-std::sin(hub.angle), std::cos(hub.angle)).dot(tip - hub.origin);
+}
+
+RunFolder::RunFolder(std::string path, const Scene& scene, bool beside, Begin begin)
+    : folder_(std::move(path), begin),
+      scene_(scene),
+      iterations_(*this, "design/iterations.pvd"),
+      components_(*this, "design/components.pvd"),
+      motion_(*this, "motion/motion.pvd"),
+      writer_(beside) {
+  if (!scene.designs.empty()) begin_history(begin);
+}
+
+void RunFolder::FrameIndex::add(double time, const std::string& file, int part) {
+  if (!series_) series_.emplace(folder_.file(name_));
+  series_->add(time, file, part);
+}
+
+void RunFolder::write_frame(std::function<void()> task) {
+  writer_.then([this, task = std::move(task)] {
+    try {
+      task();
+    } catch (const Error& error) {
+      if (lost_frames_++ == 0) why_lost_ = error.what();
+    }
+  });
+}
+
+std::string RunFolder::lost_frames() {
+  writer_.wait();
+  if (lost_frames_ == 0) return "";
+  return io::to_text(lost_frames_) + (lost_frames_ == 1 ? " frame" : " frames") +
+         " for ParaView could not be written: " + why_lost_;
+}
+
+double RunFolder::take_output_seconds() { return output_seconds_.exchange(0); }
+
+void RunFolder::finish() {
+  writer_.wait();
+  // Frames are pictures on the way, and many.
+  for (const std::string& name : folder_.files())
+    if (!name.starts_with("design/") && !name.starts_with("motion/"))
+      io::sync_file(path() + "/" + name);
+}
+
+namespace {
+
+/// A field with values of its own.
+struct OwnField {
+  std::string name;
+  std::vector<double> values;
+  int components;
+};
+
+std::vector<OwnField> copies_of(std::span<const io::Field> fields) {
+  std::vector<OwnField> out;
+  for (const io::Field& f : fields)
+    out.push_back({f.name, {f.values.begin(), f.values.end()}, f.components});
+  return out;
+}
+
+std::vector<io::Field> views_of(const std::vector<OwnField>& fields) {
+  std::vector<io::Field> out;
+  for (const OwnField& f : fields) out.push_back({f.name, f.values, f.components});
+  return out;
+}
+
+}  // namespace
+
+void RunFolder::write_part(const std::string& body, const io::QuadMesh& mesh,
+                           std::vector<io::Field> cells, std::span<const io::Field> points,
+                           double time, int part) {
+  const std::vector<double> number(mesh.quads.size(), part);
+  cells.push_back({"body", number});
+  write_frame([this, file = numbered("motion_" + body + "_", ++motion_frames_, ".vtu"), mesh,
+               of_cells = copies_of(cells), of_points = copies_of(points), time, part] {
+    io::write_quad_mesh(folder_.file("motion/" + file), mesh, views_of(of_cells),
+                        views_of(of_points));
+    motion_.add(time, file, part);
+    frames_.push_back({file, time, part});
+  });
+}
+
+void RunFolder::remember_frames(Memory& memory) {
+  writer_.wait();
+  memory(motion_frames_, frames_, lost_frames_, why_lost_);
+  size_t n = shapes_.size();
+  memory(n);
+  shapes_.resize(n);
+  for (io::SurfaceFrame& shape : shapes_)
+    memory(shape.title, shape.mesh.dimension, shape.mesh.points, shape.mesh.quads, shape.values);
+  if (memory.puts_back())
+    for (const Frame& frame : frames_) motion_.add(frame.time, frame.file, frame.part);
+}
+
+std::vector<std::string> RunFolder::frames() const {
+  std::vector<std::string> out;
+  for (const Frame& frame : frames_) out.push_back("motion/" + frame.file);
+  return out;
+}
+
+void RunFolder::add_surface_frame(const fem::Body& body, const fem::State& x, const Pose& pose,
+                                  double time, int part, double heating) {
+  const Surface surface = deformed_surface(*scene_.body(body.name).row, body, x, pose, heating);
+  const io::Field points[] = {{"displacement", surface.displacement, surface.mesh.dimension}};
+  std::vector<io::Field> cells = {{"strain_energy", surface.energy}};
+  if (!surface.strain.empty()) cells.push_back({"elastic_strain", surface.strain, 3});
+  write_part(body.name, surface.mesh, std::move(cells), points, time, part);
+  if (part == 0 && surface.mesh.dimension == 3)
+    shapes_.push_back(
+        {(scene_.statics ? "step " : "t = ") + io::to_text(time, 4) + (scene_.statics ? "" : " s"),
+         surface.mesh, surface.energy});
+}
+
+void RunFolder::add_rigid_frame(const std::string& name, const io::QuadMesh& mesh, double time,
+                                int part) {
+  write_part(name, mesh, {}, {}, time, part);
+}
+
+void RunFolder::add_motion_frame(const std::string& body, const DesignedSurface& surface,
+                                 double time, int part) {
+  const io::Field points[] = {{"displacement", surface.displacement, 2}};
+  write_part(body, surface.mesh, {{"density", surface.density}, {"strain_energy", surface.energy}},
+             points, time, part);
+}
+
+std::vector<io::SurfaceFrame> RunFolder::shapes(size_t most) const {
+  if (shapes_.size() <= most) return shapes_;
+  std::vector<io::SurfaceFrame> out;
+  for (size_t k = 0; k < most; ++k) out.push_back(shapes_[k * (shapes_.size() - 1) / (most - 1)]);
+  return out;
+}
+
+void RunFolder::write_text(const std::string& name, const std::string& text) {
+  io::write_file(folder_.file(name), text, io::Sync::now);
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,155 @@
+#include "cases/output/run_folder.h"
+#include "io/exports.h"
+#include "io/files.h"
+#include "io/plots.h"
+#include "io/step.h"
+
+/// Tables and pictures of designs and their loads.
+namespace flexmorph::cases {
+namespace {
+
+/// The union of a design's components in its domain, to a tolerance in cells.
+struct Outlines {
+  std::vector<Region> regions;
+  Box frame;
+
+  explicit Outlines(const mmc::BodyProblem& problem, double tolerance = mmc::kOutlineTolerance)
+      : regions(
+            mmc::regions_of(problem, problem.design.components(), tolerance * problem.grid.dx())) {
+    const Grid& g = problem.grid;
+    frame = {{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}};
+  }
+  std::string svg() const { return io::outline_svg(regions, frame); }
+  std::string picture() const { return io::outline_svg(regions, frame, 5); }
+};
+
+/// A place as a drawing shows it: a point, a line or a box.
+std::vector<Vec2> shape_of(const Place& place) {
+  const Vec2 &a = place.box.lower, &b = place.box.upper;
+  if (a == b) return {a};
+  if ((b - a).minCoeff() == 0) return {a, b};
+  return corners_of(place.box);
+}
+
+/// The domain, and where a plate at rest is held and pulled.
+std::vector<io::DrawingLayer> drawn_besides(const Scene& scene, const mmc::BodyProblem& problem) {
+  std::vector<io::DrawingLayer> out = {{"DOMAIN", rings_of(mmc::domain_of(problem))}};
+  if (!scene.domain) return out;
+  io::DrawingLayer supports{"SUPPORTS", {}}, loads{"LOADS", {}};
+  for (const PlaneSupport& s : scene.domain->supports) supports.shapes.push_back(shape_of(s.place));
+  for (const LoadCase& load : scene.domain->loads)
+    for (const PlaneForce& f : load.forces) loads.shapes.push_back(shape_of(f.place));
+  out.push_back(std::move(supports));
+  out.push_back(std::move(loads));
+  return out;
+}
+
+}  // namespace
+
+std::string components_name(const Scene& scene, const std::string& body) {
+  return scene.designs.size() > 1 ? "components_" + body + ".csv" : "components.csv";
+}
+
+void RunFolder::write_loads(const std::string& body, const fem::EslSets& loads,
+                            const mmc::BodyOutcome* outcome) {
+  const std::vector<std::string> columns = {"time",          "root_column",  "weight",
+                                            "strain_energy", "energy_ratio", "compliance",
+                                            "force_x",       "force_y"};
+  io::CsvWriter csv(folder_.file("loads/" + body + ".csv"), columns);
+  for (size_t i = 0; i < loads.sets.size(); ++i) {
+    const fem::EslSet& s = loads.sets[i];
+    Vec2 force(0, 0);
+    for (const fem::NodalForce& f : s.forces) force += f.force;
+    io::Cell ratio, compliance;
+    if (outcome) {
+      ratio = outcome->energy_ratios[i];
+      compliance = outcome->load_compliances[i];
+    }
+    csv.row({s.time, s.root_column, s.weight, s.strain_energy, ratio, compliance, force.x(),
+             force.y()});
+  }
+}
+
+void RunFolder::write_static_loads(const Domain& domain, const mmc::BodyOutcome& outcome) {
+  const std::vector<std::string> columns = {"load", "weight", "compliance", "active"};
+  io::CsvWriter csv(folder_.file("loads/" + domain.name + ".csv"), columns);
+  for (size_t l = 0; l < domain.loads.size(); ++l)
+    csv.row({domain.loads[l].name, domain.loads[l].weight, outcome.load_compliances[l],
+             outcome.load_compliances[l] >= 0.99 * outcome.worst_compliance});
+}
+
+RunFolder::DesignPictures& RunFolder::pictures_of(const std::string& body) {
+  for (DesignPictures& p : pictures_)
+    if (p.body == body) return p;
+  pictures_.emplace_back().body = body;
+  return pictures_.back();
+}
+
+void RunFolder::write_start(const mmc::BodyProblem& problem) {
+  if (!scene_.output.plots) return;
+  std::string& svg = pictures_of(problem.body).start;
+  svg = Outlines(problem, 0.05).picture();
+  io::write_file(folder_.file("plots/start_" + problem.body + ".svg"), svg);
+}
+
+void RunFolder::write_design(const mmc::BodyProblem& problem, const mmc::BodyOutcome& outcome) {
+  writer_.wait();  // one picture at a time
+  const std::string stem = scene_.designs.size() > 1 ? "_" + problem.body : "";
+  const std::vector<Component> components = problem.design.components();
+  io::write_components_csv(folder_.file(components_name(scene_, problem.body)), components);
+  const Outlines outlines(problem);
+  io::write_file(folder_.file("design" + stem + ".svg"), outlines.svg());
+  const io::LengthUnit& unit = scene_.output.unit;
+  const double thickness = problem.section.thickness;
+  io::write_dxf(folder_.file("design" + stem + ".dxf"), outlines.regions, unit,
+                drawn_besides(scene_, problem));
+  io::write_stl(folder_.file("design" + stem + ".stl"), outlines.regions, thickness, unit);
+  // An outline that touches itself is no solid: the other files have it.
+  const std::string name = "design" + stem + ".step";
+  const std::string why = io::write_step(folder_.file(name), outlines.regions, thickness);
+  if (!why.empty()) missing_ += name + " is not there: OpenCASCADE makes no solid of it: " + why;
+  if (!scene_.output.plots) return;
+  pictures_of(problem.body).result = outlines.picture();
+  const auto& sharp = outcome.sharp.fractions;
+  io::write_png(folder_.file("plots/design" + stem + ".png"), problem.grid,
+                {sharp.data(), static_cast<size_t>(sharp.size())});
+}
+
+void RunFolder::keep_outline(const mmc::BodyProblem& problem, const std::string& name) {
+  const std::string stem = scene_.designs.size() > 1 ? "_" + problem.body : "";
+  io::write_file(folder_.file(name + stem + ".svg"), Outlines(problem).svg());
+}
+
+void RunFolder::write_cycles(std::span<const mmc::CycleVerdict> cycles,
+                             std::span<const mmc::CorrectedCycle> corrected) {
+  std::vector<std::string> columns = {
+      "cycle", "body", "compliance", "sharp_compliance", "design_change", "strain_energy_integral",
+      "best"};
+  const size_t n = columns.size();
+  if (!corrected.empty())
+    for (const char* name : {"objective", "kkt", "angle", "radius", "predicted", "actual",
+                             "accepted", "motions", "seconds"})
+      columns.emplace_back(name);
+  io::CsvWriter csv(folder_.file("cycles.csv"), columns);
+  for (const mmc::CycleVerdict& c : cycles)
+    for (const mmc::BodyVerdict& b : c.bodies) {
+      std::vector<io::Cell> row = {c.cycle,         b.body,
+                                   b.compliance,    b.sharp_compliance,
+                                   b.design_change, c.strain_energy_integral,
+                                   c.best};
+      row.resize(columns.size());
+      csv.row(row);
+    }
+  for (const mmc::CorrectedCycle& c : corrected) {
+    std::vector<io::Cell> row(n);
+    row[0] = c.cycle;
+    row[1] = "of the motion";
+    for (const io::Cell& cell : {io::Cell(c.value), io::Cell(c.kkt), io::Cell(c.angle),
+                                 io::Cell(c.radius), io::Cell(c.predicted), io::Cell(c.actual),
+                                 io::Cell(c.accepted), io::Cell(c.motions), io::Cell(c.seconds)})
+      row.push_back(cell);
+    csv.row(row);
+  }
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,251 @@
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "cases/output/run_folder.h"
+#include "cases/scene/design/goal.h"
+#include "geometry/cpu_time.h"
+#include "io/files.h"
+
+/// The history of a design: a row and perhaps frames per iteration; written, or gone on with.
+namespace flexmorph::cases {
+namespace {
+
+const std::vector<std::string> kHistoryColumns = {"body",
+                                                  "cycle",
+                                                  "iteration",
+                                                  "evaluations",
+                                                  "scaled_objective",
+                                                  "compliance",
+                                                  "volume",
+                                                  "violation",
+                                                  "kkt",
+                                                  "change",
+                                                  "band",
+                                                  "sharp_compliance",
+                                                  "sharp_volume",
+                                                  "connected",
+                                                  "min_feature"};
+/// Between these and what follows are the responses of further_rows().
+const std::vector<std::string> kHistorySeconds = {
+    "seconds_tdf",         "seconds_outlines",  "seconds_factor", "seconds_solve",
+    "seconds_sensitivity", "seconds_optimizer", "seconds_output"};
+
+std::vector<std::string> columns_of(const Scene& scene) {
+  std::vector<std::string> out = kHistoryColumns;
+  for (const mmc::ResponseRow* row : further_rows(scene)) out.push_back(mmc::key_of(*row));
+  out.insert(out.end(), kHistorySeconds.begin(), kHistorySeconds.end());
+  return out;
+}
+
+/// Of a cell of an old table; NaN where it is empty.
+double value_of(const std::string& cell) {
+  double value = std::numeric_limits<double>::quiet_NaN();
+  std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  return value;
+}
+
+/// Names of the frames of a design, the n-th row of the history.
+struct FrameNames {
+  std::string image, lines;
+  FrameNames(const Scene& scene, const std::string& body, int n) {
+    const std::string stem = scene.designs.size() > 1 ? body + "_" : "";
+    image = numbered("iteration_" + stem, n, ".vti");
+    lines = numbered("components_" + stem, n, ".vtp");
+  }
+};
+
+}  // namespace
+
+void RunFolder::begin_history(Begin begin) {
+  const std::vector<std::string> columns = columns_of(scene_);
+  for (const std::string& name : kHistorySeconds)
+    phases_.emplace_back(name.substr(std::string("seconds_").size()), 0);
+  const std::string path = folder_.file("history.csv");
+  if (begin == Begin::go_on && std::filesystem::exists(path)) {
+    history_ = std::make_unique<io::CsvWriter>(io::CsvWriter::go_on(path, columns.size()));
+    const io::CsvTable old = io::read_csv(path);
+    if (old.columns == columns) {
+      for (size_t r = 0; r < old.n_rows(); ++r) old_rows_.push_back(old.row(r));
+      return;
+    }
+  }
+  history_ = std::make_unique<io::CsvWriter>(path, columns);
+}
+
+bool RunFolder::wants_frame(int iteration) const {
+  const Output& wish = scene_.output;
+  return wish.vtk && wish.design_every > 0 &&
+         (iteration == 1 || iteration % wish.design_every == 0);
+}
+
+bool RunFolder::has_frames(const mmc::RowOfHistory& row) const {
+  if (!wants_frame(row.iteration)) return true;
+  const FrameNames names(scene_, row.body, rows_ + 1);
+  return std::filesystem::exists(path() + "/design/" + names.image) &&
+         std::filesystem::exists(path() + "/design/" + names.lines);
+}
+
+bool RunFolder::has_row(const mmc::RowOfHistory& row) {
+  if (old_rows_.empty()) return false;
+  const std::vector<std::string> old = old_rows_.front();
+  if (old[0] != row.body || old[1] != io::to_text(row.cycle) ||
+      old[2] != io::to_text(row.iteration) || !has_frames(row)) {
+    forget_old_rows();
+    return false;
+  }
+  keep_row(row, old);
+  kept_rows_.push_back(old);
+  old_rows_.pop_front();
+  return true;
+}
+
+/// From here on the run is another one, or files of it are missing: what follows is written anew.
+void RunFolder::forget_old_rows() {
+  old_rows_.clear();
+  history_ = std::make_unique<io::CsvWriter>(folder_.file("history.csv"), columns_of(scene_));
+  for (const std::vector<std::string>& kept : kept_rows_)
+    history_->row(std::vector<io::Cell>(kept.begin(), kept.end()));
+}
+
+/// As add_iteration(), from what the row says.
+void RunFolder::keep_row(const mmc::RowOfHistory& row, const std::vector<std::string>& old) {
+  ++rows_;
+  if (wants_frame(row.iteration))
+    write_frame([this, number = rows_, names = FrameNames(scene_, row.body, rows_)] {
+      iterations_.add(number, names.image);
+      components_.add(number, names.lines);
+    });
+  const auto number = [&](const char* name) {
+    const auto at = std::find(kHistoryColumns.begin(), kHistoryColumns.end(), name);
+    return value_of(old[static_cast<size_t>(at - kHistoryColumns.begin())]);
+  };
+  for (size_t i = 0, first = old.size() - phases_.size(); i < phases_.size(); ++i)
+    phases_[i].second += value_of(old[first + i]);
+  History& h = history_of(row.body);
+  h.row.push_back(static_cast<double>(h.row.size() + 1));
+  h.compliance.push_back(number("compliance"));
+  h.volume.push_back(number("volume"));
+  h.kkt.push_back(number("kkt"));
+  if (const double sharp = number("sharp_compliance"); std::isfinite(sharp)) {
+    h.sharp_row.push_back(h.row.back());
+    h.sharp_compliance.push_back(sharp);
+  }
+  add_events(row.body, row.cycle, row.iteration, row.events);
+}
+
+/// VTK files of a design on its way.
+void RunFolder::write_design_frame(const mmc::IterationReport& r) {
+  const double start = thread_seconds();
+  const mmc::CellFactors& factors = r.state.factors();
+  // Σ w ½ uᵀ K_cell u: the derivative by the stiffness factor holds it. The energies of loads and
+  // of held growth are added; what they do on each other sums to zero over the cells.
+  VectorXd by_stiffness = -r.value.d_stiffness;
+  if (by_stiffness.size() == 0) by_stiffness.setZero(factors.stiffness.size());  // not solved
+  if (r.value.d_held.size() > 0) by_stiffness += 2 * r.value.d_held;
+  VectorXd shown = r.loads.displacement(factors.stiffness, factors.mass, r.loads.n_loads() - 1);
+  output_seconds_ += thread_seconds() - start;
+  // Whatever is shown is copied: it is written while the next iteration goes on.
+  write_frame([this, names = FrameNames(scene_, r.problem.body, rows_), row = rows_,
+               grid = r.problem.grid, mass = factors.mass, stiffness = factors.stiffness,
+               energy = VectorXd(0.5 * by_stiffness.cwiseProduct(factors.stiffness)),
+               phi = VectorXd(r.state.phi()), displacement = std::move(shown),
+               components = r.state.components(),
+               min_half_thickness = r.problem.stages.back().min_half_thickness] {
+    const double clock = thread_seconds();
+    const auto view = [](const VectorXd& v) {
+      return std::span<const double>(v.data(), static_cast<size_t>(v.size()));
+    };
+    const io::Field cells[] = {{"density", view(mass)},
+                               {"stiffness_factor", view(stiffness)},
+                               {"strain_energy", view(energy)}};
+    const io::Field points[] = {{"tdf", view(phi)}, {"displacement", view(displacement), 2}};
+    io::write_image_data(folder_.file("design/" + names.image), grid, cells, points);
+    iterations_.add(row, names.image);
+    io::write_components(folder_.file("design/" + names.lines), components, min_half_thickness);
+    components_.add(row, names.lines);
+    output_seconds_ += thread_seconds() - clock;
+  });
+}
+
+void RunFolder::add_iteration(const mmc::IterationReport& r) {
+  ++rows_;
+  if (wants_frame(r.iteration)) write_design_frame(r);
+  History& h = history_of(r.problem.body);
+  h.row.push_back(static_cast<double>(h.row.size() + 1));
+  h.compliance.push_back(r.state.compliance());
+  h.volume.push_back(r.state.volume());
+  h.kkt.push_back(r.iterate.kkt);
+  if (r.sharp) {
+    h.sharp_row.push_back(h.row.back());
+    h.sharp_compliance.push_back(r.sharp->compliance);
+  }
+  add_events(r.problem.body, r.cycle, r.iteration, r.events);
+  write_history_row(r);
+}
+
+void RunFolder::write_history_row(const mmc::IterationReport& r) {
+  io::Cell sharp_c, sharp_v, connected, min_feature;
+  if (r.sharp) {
+    sharp_c = r.sharp->compliance;
+    sharp_v = r.sharp->volume;
+    connected = r.sharp->connectivity.connected;
+    if (r.sharp->features && std::isfinite(r.sharp->features->solid))
+      min_feature = r.sharp->features->solid;
+  }
+  const mmc::LoadResponse::Seconds s = r.state.seconds();
+  const auto number = [](double v) { return std::isfinite(v) ? io::Cell(v) : io::Cell(); };
+  std::vector<io::Cell> row = {r.problem.body,
+                               r.cycle,
+                               r.iteration,
+                               r.evaluations,
+                               r.iterate.response->f,
+                               number(r.state.compliance()),
+                               r.state.volume(),
+                               r.iterate.violation,
+                               r.iterate.kkt,
+                               r.iterate.change,
+                               r.state.band() / r.problem.grid.dx(),
+                               sharp_c,
+                               sharp_v,
+                               connected,
+                               min_feature};
+  for (const mmc::ResponseRow* further : further_rows(scene_)) {
+    const std::optional<VectorXd> values = r.state.values(*further);
+    row.push_back(values ? io::Cell(values->maxCoeff()) : io::Cell());
+  }
+  const std::array seconds = {r.state.seconds_tdf(),
+                              r.sharp ? r.sharp->seconds_outlines : 0,
+                              s.factor,
+                              s.solve,
+                              s.sensitivity,
+                              r.iterate.seconds,
+                              take_output_seconds()};
+  row.insert(row.end(), seconds.begin(), seconds.end());
+  for (size_t i = 0; i < seconds.size(); ++i) phases_.at(i).second += seconds[i];
+  history_->row(row);
+}
+
+RunFolder::History& RunFolder::history_of(const std::string& body) {
+  for (History& h : histories_)
+    if (h.body == body) return h;
+  histories_.emplace_back().body = body;
+  return histories_.back();
+}
+
+void RunFolder::add_events(const std::string& body, int cycle, int iteration,
+                           std::span<const mmc::ComponentEvent> events) {
+  if (events.empty()) return;
+  if (!events_) {
+    const std::vector<std::string> columns = {"body",  "cycle",     "iteration",
+                                              "event", "component", "components"};
+    events_ = std::make_unique<io::CsvWriter>(folder_.file("events.csv"), columns);
+  }
+  for (const mmc::ComponentEvent& e : events)
+    events_->row({body, cycle, iteration, to_string(e.kind), e.component + 1, e.n_components});
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,143 @@
+#include "cases/results/body_measures.h"
+
+#include <cmath>
+
+#include "fem/dynamics/growth.h"
+
+namespace flexmorph::cases {
+namespace {
+
+constexpr int kDegree = 8;  // of the Gauss points that strains are looked for at: 5 per direction
+
+Vec2 place(const fem::Body& body, const fem::State& x, const Vec2& material) {
+  return fem::point_position(body, x, material).head<2>();
+}
+
+/// How far b lies to the left of the line from a to c.
+double left_of(const Vec2& a, const Vec2& b, const Vec2& c) {
+  const Vec2 along = (c - a).normalized(), d = b - a;
+  return along.x() * d.y() - along.y() * d.x();
+}
+
+std::vector<fem::ShapeTable> gauss_points(const fem::Body& body) {
+  std::vector<fem::ShapeTable> out(static_cast<size_t>(body.element->n_elements()));
+  for (int e = 0; e < body.element->n_elements(); ++e)
+    body.element->tabulate(e, kDegree, fem::Tabulate::gradient, {}, fem::FactorKind::none,
+                           out[static_cast<size_t>(e)]);
+  return out;
+}
+
+/// Largest entry of (FᵀF/s² - 1)/2.
+double largest_strain(const fem::Body& body, const fem::State& x, double s,
+                      const std::vector<fem::ShapeTable>& tables) {
+  const fem::VectorRows unknowns = fem::rows_of(body, x.q) / s;
+  double largest = 0;
+  for (int e = 0; e < body.element->n_elements(); ++e) {
+    const fem::ShapeTable& t = tables[static_cast<size_t>(e)];
+    const MatrixXd q = unknowns(body.element->vectors(e), Eigen::all);
+    const MatrixXd r_x = t.N_m * q, r_y = t.N_n * q;  // a row per point
+    for (Eigen::Index g = 0; g < r_x.rows(); ++g)
+      for (const double strain :
+           {0.5 * (r_x.row(g).squaredNorm() - 1), 0.5 * (r_y.row(g).squaredNorm() - 1),
+            0.5 * r_x.row(g).dot(r_y.row(g))})
+        largest = std::max(largest, std::abs(strain));
+  }
+  return largest;
+}
+
+/// Centre of mass in the axes of the undeformed body, and ∫ ρ |X - X_c|² dV about it.
+std::pair<Vec2, double> second_moment(const fem::Body& body,
+                                      const std::vector<fem::ShapeTable>& tables) {
+  const MatrixXd reference = body.element->reference();
+  const double per_area = body.section.density * body.section.thickness;
+  double mass = 0, square = 0;
+  Vec2 first(0, 0);
+  for (int e = 0; e < body.element->n_elements(); ++e) {
+    const auto vectors = body.element->vectors(e);
+    const fem::ShapeTable& t = tables[static_cast<size_t>(e)];
+    for (Eigen::Index g = 0; g < t.weight.size(); ++g) {
+      Vec2 X(0, 0);
+      for (size_t k = 0; k < vectors.size(); ++k)
+        X += t.N(g, static_cast<Eigen::Index>(k)) * reference.row(vectors[k]).head<2>().transpose();
+      const double m = per_area * t.weight[g];
+      mass += m;
+      first += m * X;
+      square += m * X.squaredNorm();
+    }
+  }
+  const Vec2 center = first / mass;
+  return {center, square - mass * center.squaredNorm()};
+}
+
+}  // namespace
+
+BodyMeasures::BodyMeasures(const Scene& scene, const fem::Model& model, const fem::State& start) {
+  for (const Measure& measure : scene.measures) {
+    const Body& body = scene.body(measure.body);
+    Measured m;
+    m.measure = &measure;
+    while (model.bodies()[m.body].name != body.name) ++m.body;
+    const fem::Body& built = model.bodies()[m.body];
+    const double y = body.low() + 0.5 * body.width;
+    m.material = {Vec2(0, y), Vec2(0.5 * body.length, y), Vec2(body.length, y)};
+    for (size_t i = 0; i < 3; ++i) m.start[i] = place(built, start, m.material[i]);
+    m.sag = left_of(m.start[0], m.start[1], m.start[2]);
+    const auto asks = [&](const char* quantity) {
+      return std::find(measure.quantities.begin(), measure.quantities.end(), quantity) !=
+             measure.quantities.end();
+    };
+    if (asks("max_elastic_strain") || asks("free_expansion")) m.tables = gauss_points(built);
+    if (asks("free_expansion")) {
+      const auto [center, polar] = second_moment(built, m.tables);
+      m.arm = place(built, model.reference(), m.material[2]) - center;
+      m.polar = polar;
+    }
+    for (const std::string& name : measured_columns(measure)) columns_.push_back({name, {}});
+    bodies_.push_back(std::move(m));
+  }
+}
+
+void BodyMeasures::add(const fem::Model& model, const fem::State& x, double heating) {
+  next_ = 0;
+  for (const Measured& m : bodies_)
+    for (const std::string& quantity : m.measure->quantities)
+      put_quantity(m, quantity, model.bodies()[m.body], x, heating);
+}
+
+void BodyMeasures::put_quantity(const Measured& m, const std::string& quantity,
+                                const fem::Body& body, const fem::State& x, double heating) {
+  const fem::Motion rise = body.heat ? body.heat->temperature(x.t) : fem::Motion{0, 0, 0};
+  const double a = body.heat ? body.heat->expansion * heating * rise.value : 0;
+  if (quantity == "temperature") {
+    put(heating * rise.value);
+  } else if (quantity == "max_elastic_strain") {
+    put(largest_strain(body, x, 1 + a, m.tables));
+  } else if (quantity == "midpoint_deflection") {
+    put(left_of(place(body, x, m.material[0]), place(body, x, m.material[1]),
+                place(body, x, m.material[2])) -
+        m.sag);
+  } else if (quantity == "end_displacements") {
+    for (const size_t i : {0, 2}) {
+      const Vec2 u = place(body, x, m.material[i]) - m.start[i];
+      put(u.x());
+      put(u.y());
+    }
+  } else if (quantity == "end_velocity") {
+    const Vec2 v = fem::point_motion(body, x, m.material[2]).velocity;
+    put(v.x());
+    put(v.y());
+  } else if (quantity == "end_slopes") {
+    fem::ShapeTable t;
+    const int e = body.element->locate(m.material[2], fem::Tabulate::gradient, t);
+    const MatrixXd q = fem::rows_of(body, x.q)(body.element->vectors(e), Eigen::all);
+    put((t.N_m * q).norm());
+    put((t.N_n * q).norm());
+  } else {
+    const double rate = body.heat->expansion * rise.rate;
+    put(a * m.arm.x());
+    put(a * m.arm.y());
+    put(0.5 * rate * rate * m.polar);
+  }
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,282 @@
+#include "cases/results/figures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "cases/scene/elements/row.h"
+#include "cases/scene/joints/row.h"
+#include "cases/scene/read.h"
+#include "io/files.h"
+
+namespace flexmorph::cases {
+namespace {
+
+using io::to_text;
+
+/// An interval of what is ordinary.
+struct Usual {
+  double lower, upper;
+  bool holds(double x) const { return x >= lower && x <= upper; }
+  std::string words() const { return "usual are " + to_text(lower) + " to " + to_text(upper); }
+};
+constexpr Usual kModulus{1e3, 2e12}, kDensity{10, 25000}, kGravity{0.01, 50};
+constexpr Usual kSlenderness{2, 5000}, kThinness{1, 1e5};
+constexpr double kFastest = 5;          // periods in a step
+constexpr double kSlowest = 0.05;       // of a period in the run
+constexpr double kSag = 1, kBend = 10;  // lengths; statics roll a strip up by 3
+constexpr double kTurns = 20;
+constexpr double kTurnPerStep = 0.5;  // [rad]
+
+Support support_of(const Scene& scene, const Body& body) {
+  int held = 0, frames = 0;
+  for (const Joint& j : scene.joints) {
+    if (j.drives_line || (j.body != body.name && j.a.body != body.name && j.b.body != body.name))
+      continue;
+    ++held;
+    frames += j.joins_edges() || (j.body == body.name && (j.holds_frame() || j.holds_edges()));
+  }
+  if (held == 0) return Support::none;
+  if (held > 1) return Support::two_places;
+  return frames == 1 ? Support::cantilever : Support::one_point;
+}
+
+/// In statics without weight nobody asks for it, and it is not given.
+bool has_density(const Scene& scene) { return !scene.statics || scene.gravity; }
+
+/// √c of the two lowest bending frequencies.
+std::array<double, 2> roots_of(Support support) {
+  switch (support) {
+    case Support::cantilever:
+      return {1.8751, 4.6941};
+    case Support::two_places:
+      return {std::numbers::pi, 2 * std::numbers::pi};
+    case Support::one_point:
+      return {3.9266, 7.0686};
+    case Support::none:
+      break;
+  }
+  return {4.7300, 7.8532};
+}
+
+/// From the line that is held to the farther end.
+double arm_of(const Scene& scene, const Body& body) {
+  const double length = body.longest(scene.time.end);
+  for (const Joint& j : scene.joints) {
+    if (j.body != body.name || !j.holds_frame() || j.edge == "free_end" || j.line == 0) continue;
+    const double at = body.start_lines(0, body.elements[0])[static_cast<size_t>(j.line)];
+    return std::max(at, length - at);
+  }
+  return length;
+}
+
+/// Sizes of the force of a load in all, and of its moment.
+struct Resultant {
+  double force = 0, moment = 0;
+};
+
+Resultant resultant(const Scene& scene, const BodyLoad& load, const Body& body) {
+  const double length = body.longest(scene.time.end);
+  const bool side = load.edge == "side_low" || load.edge == "side_high";
+  const double edge = side ? length : body.width;
+  // At rest what pulls along the axis bends nothing.
+  double size = std::abs(load.size);
+  if (load.force.size() >= 2) {
+    VectorXd force = load.force;
+    const double angle = start_pose(scene, body).angle;
+    const Vec2 axis(std::cos(angle), std::sin(angle));
+    if (scene.statics) force.head<2>() -= axis * axis.dot(force.head<2>());
+    size = force.norm();
+  }
+  if (load.row->at_point) return load.row->follows ? Resultant{0, size} : Resultant{size, 0};
+  if (load.row->on_beams) return {size * length, 0};
+  if (load.row->at_edge && load.row->follows) return {0, size * edge};
+  return {size * (load.row->at_edge ? edge : length * body.width), 0};
+}
+
+/// Largest deflection of a slender strip, linear: spread weight [N/m], force at the worst place,
+/// moment at an end.
+double deflection(Support support, double EI, double L, double weight, const Resultant& r) {
+  if (support == Support::cantilever)
+    return weight * std::pow(L, 4) / (8 * EI) + r.force * std::pow(L, 3) / (3 * EI) +
+           r.moment * L * L / (2 * EI);
+  return 5 * weight * std::pow(L, 4) / (384 * EI) + r.force * std::pow(L, 3) / (48 * EI) +
+         r.moment * L * L / (9 * std::sqrt(3.0) * EI);
+}
+
+BendingFigures figures_of(const Scene& scene, const Body& body) {
+  BendingFigures out;
+  out.body = body.name;
+  out.support = support_of(scene, body);
+  out.length = arm_of(scene, body);
+  out.depth = body.in_space() ? body.thickness : body.width;
+  const double across = body.in_space() ? body.width : body.thickness;
+  const double L = out.length, E = body.youngs_modulus;
+  const double EI = E * across * std::pow(out.depth, 3) / 12;
+  for (size_t i = 0; has_density(scene) && i < 2; ++i) {
+    const double c = std::pow(roots_of(out.support)[i], 2);
+    out.frequencies[i] = c / (2 * std::numbers::pi * L * L) * std::sqrt(E / body.density) *
+                         out.depth / std::sqrt(12.0);
+  }
+  if (!scene.statics) out.step_frequency = scene.time.step * out.frequencies[0];
+  if (out.support != Support::cantilever && out.support != Support::two_places) return out;
+  if (scene.gravity)
+    out.sag = deflection(out.support, EI, L,
+                         body.density * scene.gravity->norm() * across * out.depth, {}) /
+              L;
+  Resultant all;
+  for (const BodyLoad& load : scene.loads) {
+    if (load.body != body.name) continue;
+    const Resultant r = resultant(scene, load, body);
+    all.force += r.force;
+    all.moment += r.moment;
+  }
+  if (all.force > 0 || all.moment > 0) out.bend = deflection(out.support, EI, L, 0, all) / L;
+  return out;
+}
+
+/// Largest size over the run, from the start.
+double reach(const Scene& scene, const Law& law) {
+  const auto motion = scene.motion_of(law);
+  const std::array<double, 2> range = range_of(motion, scene.time.end);
+  const double start = motion(0).value;
+  return std::max(std::abs(range[0] - start), std::abs(range[1] - start));
+}
+
+/// Whole numbers of degrees, and many of them: nobody says 45 rad.
+bool looks_like_degrees(double angle) {
+  return std::abs(angle) >= 15 && std::abs(std::remainder(angle, 15)) < 1e-9 * std::abs(angle);
+}
+
+class Remarks {
+ public:
+  explicit Remarks(const Scene& scene) : scene_(scene) {}
+
+  void add(const std::string& key, const std::string& words) {
+    out.push_back((scene_.file ? scene_.file->where(key) : key) + ": " + words);
+  }
+  void check(const std::string& key, double found, const Usual& usual, const std::string& noun) {
+    if (!usual.holds(found)) add(key, noun + "; " + usual.words());
+  }
+  std::vector<std::string> out;
+
+ private:
+  const Scene& scene_;
+};
+
+void remark_body(const Scene& scene, const Body& body, const BendingFigures& f, Remarks& out) {
+  const std::string path = "body." + body.name + ".";
+  out.check(path + "youngs_modulus", body.youngs_modulus, kModulus,
+            "Young's modulus of " + to_text(body.youngs_modulus, 3) + " Pa");
+  if (has_density(scene))
+    out.check(path + "density", body.density, kDensity,
+              "a density of " + to_text(body.density, 3) + " kg/m^3");
+  const bool beam = !body.row->across;
+  const std::string depth = beam              ? "height"
+                            : body.in_space() ? "thickness"
+                                              : "width",
+                    other = beam              ? "width"
+                            : body.in_space() ? "width"
+                                              : "thickness";
+  const double across = body.in_space() ? body.width : body.thickness;
+  out.check(path + depth, f.slenderness(), kSlenderness,
+            "length / " + depth + " = " + to_text(f.slenderness(), 3));
+  const Usual& second = body.in_space() ? Usual{0.1, 5000} : kThinness;
+  out.check(path + other, f.length / across, second,
+            "length / " + other + " = " + to_text(f.length / across, 3));
+  if (f.step_frequency > kFastest)
+    out.add(path + "youngs_modulus", "the lowest bending, " + to_text(f.frequencies[0], 3) +
+                                         " Hz, has " + to_text(f.step_frequency, 3) +
+                                         " periods in every time step: nearly rigid");
+  if (!scene.statics && f.frequencies[0] > 0 && f.frequencies[0] * scene.time.end < kSlowest)
+    out.add(path + "youngs_modulus",
+            "the lowest bending, " + to_text(f.frequencies[0], 3) + " Hz, has a period of " +
+                to_text(1 / (f.frequencies[0] * scene.time.end), 3) + " runs: nearly a cloth");
+  if (f.sag && *f.sag > kSag)
+    out.add(path + "youngs_modulus",
+            "hangs by " + to_text(*f.sag, 3) + " of its length under gravity, by linear theory");
+  if (f.bend && *f.bend > kBend)
+    out.add(path + "youngs_modulus",
+            "bends by " + to_text(*f.bend, 3) + " of its length under its loads, by linear theory");
+}
+
+void remark_start(const std::string& key, double angle, Remarks& out) {
+  if (std::abs(angle) > 2 * std::numbers::pi)
+    out.add(key, "an angle of " + to_text(angle, 4) + " rad, more than a turn: angles are radians");
+}
+
+void remark_turns(const Scene& scene, Remarks& out) {
+  for (const TurnFigures& turn : turn_figures(scene)) {
+    const std::string words = turn.what + " turns by " + to_text(turn.angle, 4) + " rad, " +
+                              to_text(turn.angle / (2 * std::numbers::pi), 3) + " turns";
+    if (turn.per_step > kTurnPerStep)
+      out.add(turn.key, words + ", " + to_text(turn.per_step, 2) + " rad in every time step");
+    else if (turn.angle > 2 * std::numbers::pi * kTurns || looks_like_degrees(turn.angle))
+      out.add(turn.key, words + ": angles are radians");
+  }
+}
+
+}  // namespace
+
+std::string to_string(Support support) {
+  switch (support) {
+    case Support::cantilever:
+      return "as a cantilever";
+    case Support::two_places:
+      return "between pins";
+    case Support::one_point:
+      return "about one pin";
+    case Support::none:
+      break;
+  }
+  return "free";
+}
+
+std::vector<BendingFigures> bending_figures(const Scene& scene) {
+  std::vector<BendingFigures> out;
+  for (const Body& body : scene.bodies) out.push_back(figures_of(scene, body));
+  return out;
+}
+
+std::vector<TurnFigures> turn_figures(const Scene& scene) {
+  std::vector<TurnFigures> out;
+  if (scene.domain || scene.statics) return out;
+  // Steps that adapt are as short as they must be.
+  const bool even = !scene.time.tolerance && scene.time.integrator != "minimal_coordinates";
+  const double part = even ? std::min(1.0, scene.time.step / scene.time.end) : 0;
+  for (const Hub& hub : scene.hubs) {
+    const bool driven = !hub.turn.drive.empty();
+    const double angle =
+        driven ? reach(scene, hub.turn) : std::abs(hub.angular_velocity) * scene.time.end;
+    out.push_back({"hub '" + hub.name + "'",
+                   "hub." + hub.name + (driven ? ".angle" : ".angular_velocity"), angle,
+                   part * angle});
+  }
+  for (size_t i = 0; i < scene.joints.size(); ++i) {
+    const Joint& joint = scene.joints[i];
+    if (!joint.row->drives_angle || joint.laws.empty()) continue;
+    const double angle = reach(scene, joint.laws[0]);
+    out.push_back(
+        {"joint '" + joint.name + "'", "joint." + std::to_string(i), angle, part * angle});
+  }
+  return out;
+}
+
+std::vector<std::string> odd_remarks(const Scene& scene) {
+  Remarks out(scene);
+  const std::vector<BendingFigures> figures = bending_figures(scene);
+  for (size_t i = 0; i < figures.size(); ++i) remark_body(scene, scene.bodies[i], figures[i], out);
+  if (scene.gravity && scene.gravity->norm() > 0)
+    out.check("gravity", scene.gravity->norm(), kGravity,
+              "gravity of " + to_text(scene.gravity->norm(), 3) + " m/s^2");
+  for (const Hub& hub : scene.hubs)
+    if (hub.turn.drive.empty()) remark_start("hub." + hub.name + ".angle", hub.angle, out);
+  for (const RigidBody& body : scene.rigid_bodies)
+    remark_start("rigid_body." + body.name + ".angle", body.angle, out);
+  for (const Body& body : scene.bodies)
+    remark_start("body." + body.name + ".angle", body.angle, out);
+  remark_turns(scene, out);
+  return std::move(out.out);
+}
+
+}  // namespace flexmorph::cases

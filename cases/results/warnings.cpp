@@ -1,0 +1,267 @@
+#include "cases/results/warnings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "cases/assembly/build.h"
+#include "io/files.h"
+
+namespace flexmorph::cases {
+namespace {
+
+using Warnings = std::vector<Warning>;
+
+constexpr double kLargestDefect = 0.1;  // of the balance of energy before a motion is warned of
+constexpr double kCellsApart = 0.02;    // sharp compliances from body-fitted ones
+// Compliance of the blurred design over that of the sharp one. Where the start of a design is
+// analysed it is about 2; 10 is no design any more but heavy, soft edges.
+constexpr double kHangingMass = 10;
+
+/// What a row of the goal came to. Volumes of mended designs are limited as they are, without blur.
+double found_of(const mmc::ResponseRow& row, const mmc::BodyProblem& p, const mmc::BodyOutcome& o) {
+  const bool sharp = o.clean_up && row.even;
+  if (&row == &mmc::kVolume) return sharp ? o.sharp.volume : o.volume;
+  if (&row == &mmc::compliance_row(p.goal)) return o.compliance;
+  return (sharp ? o.sharp.further : o.further).at(mmc::key_of(row));
+}
+
+/// Has the optimizer left a design that is not feasible? (One that is analysed as it starts was not
+/// asked; what bodies share is no limit of one.)
+void add_limits(const mmc::BodyProblem& p, const mmc::BodyOutcome& o, Warnings& out) {
+  if (o.iterations == 0) return;
+  for (const mmc::Limit& limit : p.goal.limits) {
+    if (p.shares_mass && limit.volume && !limit.at_least) continue;
+    const double found = found_of(*limit.row, p, o);
+    const double scale = limit.row->full ? limit.row->full(mmc::plate_of(p)) : limit.value;
+    const double beyond = limit.at_least ? limit.value - found : found - limit.value;
+    if (!(beyond > 1e-3 * scale)) continue;
+    out.push_back({"body '" + o.body + "': the " + std::string(limit.row->words) + " " +
+                   io::to_text(found, 4) + " is " +
+                   (limit.at_least ? "below what is wanted, " : "above what is allowed, ") +
+                   io::to_text(limit.value, 4) + ": no design that was found " +
+                   (limit.row->even && !limit.at_least ? "is as light" : "keeps to it")});
+  }
+}
+
+/// Is the balance of energy so bad that nobody should trust the motion?
+bool misses_energy(const Scene& scene, const MotionRecord& motion) {
+  double worst = 0;
+  for (const double defect : motion.defect) worst = std::max(worst, std::abs(defect));
+  return motion.result.energy_defect > kLargestDefect && worst > stress_round_off(scene);
+}
+
+/// A design for a compliance that is worse than the same material spread evenly. (One that is
+/// analysed as it starts was not asked.)
+void add_worse(const mmc::BodyProblem& p, const mmc::BodyOutcome& o, Warnings& out) {
+  if (o.iterations == 0 || p.goal.objective != &mmc::compliance_row(p.goal)) return;
+  if (!(o.sharp.compliance > o.uniform_compliance)) return;
+  out.push_back({"body '" + o.body + "': the sharp compliance " +
+                     io::to_text(o.sharp.compliance, 4) + " J is above that of uniform material, " +
+                     io::to_text(o.uniform_compliance, 4) + " J: the design is worse than none",
+                 true});
+}
+
+/// What the judge of outlines has against a design.
+/// @param sharp  its compliance by cells
+void add_judged(const JudgedBody& judged, double sharp, Warnings& out) {
+  if (!judged.verdict) {
+    out.push_back({"body '" + judged.body + "': no body-fitted compliance: " + judged.why_not});
+    return;
+  }
+  const judge::Judged& j = *judged.verdict;
+  if (!std::isfinite(j.compliance))
+    out.push_back({"body '" + judged.body + "': load '" + j.loose_load +
+                   "' acts on material that nothing holds, or on none: the body-fitted compliance "
+                   "is infinite"});
+  else if (!j.converged)
+    out.push_back({"body '" + judged.body + "': the body-fitted compliance has an error of about " +
+                   io::to_text(100 * j.error, 2) + " %: its mesh reached its largest size"});
+  const double apart = sharp / j.compliance - 1;
+  if (std::isfinite(j.compliance) && std::abs(apart) > kCellsApart)
+    out.push_back({"body '" + judged.body + "': the cells of the design say a compliance " +
+                   io::to_text(100 * std::abs(apart), 2) + " % " + (apart < 0 ? "below" : "above") +
+                   " the body-fitted one"});
+  if (j.left_out > 0)
+    out.push_back({"body '" + judged.body + "': " + std::to_string(j.left_out) + " of " +
+                   std::to_string(j.pieces) + " pieces are held by nothing"});
+}
+
+/// What mending has left.
+std::string not_mended(const mmc::BodyOutcome& o) {
+  const mmc::CleanUp& c = *o.clean_up;
+  std::string out = "body '" + o.body + "' could not be mended: ";
+  const auto add = [&](const std::string& what, double found, double wanted) {
+    if (found < wanted)
+      out += "its smallest " + what + " is " + io::to_text(found, 4) + " m where " +
+             io::to_text(wanted, 4) + " m was wanted; ";
+  };
+  add("feature", c.after.solid, c.wanted.solid);
+  add("gap", c.after.gap, c.wanted.gap);
+  if (c.torn > 0)
+    out += "loads pass through " + std::to_string(c.torn) +
+           " of its gaps, by its cells only, or would pass to what holds it; ";
+  if (c.pieces_after != 1) out += "it has " + std::to_string(c.pieces_after) + " pieces; ";
+  return out + (c.given_up
+                    ? "repairs would have cost more than a quarter of the compliance, and were "
+                      "taken back: more iterations help"
+                    : "more iterations may help");
+}
+
+void add_designs(const RunReport& report, Warnings& out) {
+  for (const mmc::BodyOutcome& o : report.outcomes) {
+    if (!o.sharp.connectivity.connected)
+      out.push_back(
+          {"body '" + o.body + "': no piece of material joins what is held and what is loaded",
+           true});
+    if (o.clean_up && !o.clean_up->reached()) out.push_back({not_mended(o)});
+    if (o.sharp.compliance > 1.15 * o.compliance)
+      out.push_back({"body '" + o.body +
+                     "': the sharp compliance is far above the blurred one: gaps are bridged"});
+    if (o.compliance > kHangingMass * o.sharp.compliance)
+      out.push_back(
+          {"body '" + o.body + "': the compliance is " +
+           io::to_text(o.compliance / o.sharp.compliance, 2) +
+           " times the sharp one: edges of material hang on void of hardly any stiffness; "
+           "a larger design.alpha helps"});
+  }
+  for (const mmc::BodyProblem& p : report.problems)
+    for (const mmc::BodyOutcome& o : report.outcomes)
+      if (o.body == p.body) {
+        add_limits(p, o, out);
+        add_worse(p, o, out);
+      }
+  for (const JudgedBody& judged : report.judged) {
+    for (const mmc::BodyOutcome& o : report.outcomes)
+      if (o.body == judged.body) add_judged(judged, o.sharp.compliance, out);
+    for (std::string& words : narrow_words(judged)) out.push_back({std::move(words)});
+  }
+}
+
+/// Cycles that ended at their limit, while they still changed the designs and made the motion
+/// better.
+void add_cycles(const Cycle& cycle, std::span<const mmc::CycleVerdict> verdicts, Warnings& out) {
+  if (verdicts.size() < 2 || static_cast<int>(verdicts.size()) < cycle.max_cycles ||
+      !verdicts.back().best)
+    return;
+  const auto sum = [](const mmc::CycleVerdict& v) {
+    double all = 0;
+    for (const mmc::BodyVerdict& b : v.bodies) all += b.sharp_compliance;
+    return all;
+  };
+  const double before = sum(verdicts[verdicts.size() - 2]);
+  const double change = std::abs(sum(verdicts.back()) - before) / before;
+  if (change > cycle.tolerance)
+    out.push_back(
+        {"cycle.max_cycles = " + std::to_string(cycle.max_cycles) +
+         " ended the cycles while they still made the motion better: the last one changed "
+         "sharp compliances by " +
+         io::to_text(100 * change, 2) + " %"});
+}
+
+/// Designs whose static energies are far from those of a motion that is all that judges them.
+void add_energies(const RunReport& report, Warnings& out) {
+  for (const EnergyComparison& e : report.energies)
+    if (e.apart > 0)
+      out.push_back(
+          {"body '" + e.body + "': at " + std::to_string(e.apart) + " of " +
+           std::to_string(e.compared) + " loads the static energy of its cells is more than " +
+           io::to_text(100 * EnergyComparison::kApart, 2) +
+           " % off the strain energy of its motion, at t = " + io::to_text(e.time, 4) + " s " +
+           io::to_text(e.ratio, 3) +
+           " times as much: elements of the motion bridge what is cut or thin, or deflections are "
+           "large; [verify] cells = 1 moves the cells themselves"});
+}
+
+/// Of bodies whose temperature jumps on the way; nothing where none does.
+std::string jump_words(const Scene& scene) {
+  std::string jumps;
+  for (const Body& body : scene.bodies)
+    if (body.heat && body.heat->profile == "step" && body.heat->start < scene.time.end)
+      jumps += (jumps.empty() ? "" : ", ") + ("'" + body.name + "' at t = ") +
+               io::to_text(body.heat->start, 4) + " s";
+  if (jumps.empty()) return "";
+  return "a temperature that jumps (" + jumps +
+         ") brings energy in between two steps, where no power shows, and that is missed here; the "
+         "motion is as good as its step. A body.heat.profile that takes time, as \"quartic\", has "
+         "a power";
+}
+
+void add_motion(const Scene& scene, const MotionRecord& motion, Warnings& out) {
+  const std::string jumps = jump_words(scene);
+  for (const fem::Conditioning& c : motion.result.near_singular) out.push_back({fem::describe(c)});
+  if (motion.result.alternation)
+    out.push_back({alternation_words(*motion.result.alternation)});
+  else if (damps_no_multipliers(scene))
+    out.push_back({undamped_words(scene)});
+  // Steps that the tolerance of the explicit integrator shortens are its own business.
+  if (const fem::CutSteps& cut = motion.result.cut;
+      cut.number > 0 && scene.time.integrator != "minimal_coordinates")
+    out.push_back({"Newton's method did not solve all steps of " + io::to_text(scene.time.step, 3) +
+                   " s: from t = " + io::to_text(cut.since, 4) + " s on " +
+                   std::to_string(cut.number) + " steps were cut, down to " +
+                   io::to_text(cut.shortest, 2) + " s"});
+  if (const fem::EnergyGain& gain = motion.result.energy_gain; gain.time > 0)
+    out.push_back({"no drive brings energy in, but the energy of the motion has grown by " +
+                       io::to_text(100 * gain.part, 3) +
+                       " % of the largest, by more than 10 % from " +
+                       "t = " + io::to_text(gain.time, 4) +
+                       " s on: do not trust what comes after; a smaller time.step helps, "
+                       "time.integrator = \"energy_momentum\" keeps the energy",
+                   true});
+  else if (misses_energy(scene, motion))
+    out.push_back(
+        {"the balance of energy is missed by " + io::to_text(100 * motion.result.energy_defect, 3) +
+         " % of the largest energy: " +
+         (jumps.empty() ? "do not trust this motion; a smaller time.step helps" : jumps)});
+}
+
+}  // namespace
+
+Warnings warnings_of(const Scene& scene, const RunReport& report) {
+  Warnings out;
+  add_designs(report, out);
+  add_cycles(scene.cycle, report.verdicts, out);
+  if (report.corrected && !report.corrected->pays())
+    out.push_back({"corrected cycles did not pay on the cells of the case and were taken back: J " +
+                   io::to_text(report.corrected->after, 5) + " instead of " +
+                   io::to_text(report.corrected->before, 5) +
+                   "; cycle.cell of the design itself sees what it sees"});
+  add_energies(report, out);
+  if (report.motion) add_motion(scene, *report.motion, out);
+  if (!report.lost_frames.empty()) out.push_back({report.lost_frames});
+  if (!report.missing_exports.empty()) out.push_back({report.missing_exports});
+  return out;
+}
+
+bool damps_no_multipliers(const Scene& scene) {
+  return !scene.joints.empty() && scene.time.integrator == "generalized_alpha" &&
+         scene.time.rho_inf > 0.98;
+}
+
+std::string undamped_words(const Scene& scene) {
+  return "rho_inf = " + io::to_text(scene.time.rho_inf, 3) +
+         " hardly damps multipliers: joint forces may alternate from step to step and "
+         "grow; time.rho_inf = 0.9 damps them";
+}
+
+std::string alternation_words(const fem::Alternation& found) {
+  return "from t = " + io::to_text(found.time, 4) + " s on the force of joint '" + found.joint +
+         "' alternates from step to step, by " + io::to_text(100 * found.part, 2) +
+         " % of its largest: these forces are no results; time.rho_inf = 0.9 damps them";
+}
+
+bool usable(const Warnings& warnings) {
+  return std::none_of(warnings.begin(), warnings.end(),
+                      [](const Warning& each) { return each.unusable; });
+}
+
+std::string done_words(const Warnings& warnings) {
+  return usable(warnings) ? "done" : "done, not usable";
+}
+
+std::string counted(size_t n, const std::string& one, const std::string& many) {
+  return n == 0 ? "" : ", " + std::to_string(n) + " " + (n == 1 ? one : many);
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,298 @@
+#include "optim/verification/judge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "fem/triangles/recovered_stress.h"
+#include "fem/triangles/t6.h"
+#include "geometry/cpu_time.h"
+#include "optim/verification/loaded_mesh.h"
+
+namespace flexmorph::judge {
+namespace {
+
+// Corners that reach around by more have stresses without a limit: triangles are small there from
+// the start.
+constexpr double kReentrant = 200 * std::numbers::pi / 180, kAtCorners = 0.25;
+constexpr Eigen::Index kBlock = 16;  // loads whose stresses are there at a time
+// Errors in the energy of a triangle fall like h^6, the fourth power of strains times its area; no
+// side is cut to less than a quarter at once.
+constexpr double kPower = 1. / 6, kLeastCut = 0.25;
+
+Box bounds_of(std::span<const Region> regions) {
+  Box out{Vec2::Constant(INFINITY), Vec2::Constant(-INFINITY)};
+  for (const Region& r : regions)
+    for (const Vec2& p : r.outer) {
+      out.lower = out.lower.cwiseMin(p);
+      out.upper = out.upper.cwiseMax(p);
+    }
+  return out;
+}
+
+/// What one mesh says.
+struct Look {
+  VectorXd compliances, errors;      // by rows of LoadedMesh [J]
+  VectorXd by_triangle;              // what counts of the errors [J]
+  double compliance = 0, error = 0;  // what counts of all loads [J]
+  LargestStress largest;
+  int largest_row = -1;
+  int worst_row = 0;
+  MatrixXd stress;             // of the worst row (3 x n_nodes)
+  VectorXd displacement;       // likewise (2 n_nodes)
+  LargestStress worst_stress;  // likewise
+};
+
+class Judge {
+ public:
+  Judge(std::span<const Region> regions, const fem::PlaneSection& section, const Loads& loads,
+        const Settings& settings)
+      : section_(section),
+        loads_(loads),
+        settings_(settings),
+        small_(1e-9 * (bounds_of(regions).upper - bounds_of(regions).lower).norm()),
+        places_(chosen_places(loads, regions, small_)),
+        mesher_(regions, LoadedMesh::lines_of(loads, regions, small_)),
+        sizes_(bounds_of(regions), settings.size) {
+    const double fine = kAtCorners * settings.size;
+    for (const Vec2& p : reentrant_corners(regions, kReentrant)) sizes_.refine(p, fine, fine);
+    out_.area = area(regions);
+  }
+
+  Judged go() {
+    const double start = cpu_seconds();
+    std::size_t before = 0;
+    for (int k = 0; k < settings_.most_meshes; ++k) {
+      mesher_.refine(sizes_);
+      out_.mesh = mesher_.mesh();
+      const std::size_t n = out_.mesh.triangles.size();
+      if (n == before) break;  // nothing is left to refine
+      LoadedMesh mesh(out_.mesh, section_, loads_, places_, small_);
+      if (mesh.loose_load() >= 0) return loose(mesh);
+      Look now = look(mesh);
+      double error = now.error;
+      if (k > 0) {
+        const double growth = static_cast<double>(n) / static_cast<double>(before) - 1;
+        error = std::max(error, std::abs(now.compliance - out_.compliance) / growth);
+      }
+      keep(mesh, now, error, k + 1);
+      before = n;
+      out_.converged = k > 0 && out_.error <= settings_.tolerance;
+      if (out_.converged || n > static_cast<std::size_t>(settings_.most_triangles)) break;
+      if (settings_.go_on && !settings_.go_on()) break;
+      refine(now, error);
+    }
+    out_.seconds = cpu_seconds() - start;
+    return std::move(out_);
+  }
+
+ private:
+  Look look(LoadedMesh& mesh) const;
+  void look_at_stress(const LoadedMesh& mesh, const fem::RecoveredStress::Outcome& found,
+                      Eigen::Index first, const std::vector<char>& counts, Look& out) const;
+  std::vector<char> away_from_places(const LoadedMesh& mesh) const;
+  LargestStress largest_of(const LoadedMesh& mesh, int row, const MatrixXd& stress,
+                           const std::vector<char>& counts) const;
+  void keep(const LoadedMesh& mesh, Look& now, double error, int meshes);
+  void refine(const Look& now, double error);
+  Judged loose(const LoadedMesh& mesh);
+
+  fem::PlaneSection section_;
+  const Loads& loads_;
+  Settings settings_;
+  double small_;
+  std::vector<Place> places_;
+  PartMesher mesher_;
+  SizeField sizes_;
+  Judged out_;
+};
+
+/// Nodes whose stress is no matter of how a force is put on, or a support.
+std::vector<char> Judge::away_from_places(const LoadedMesh& mesh) const {
+  const PartMesh& m = mesh.plate().mesh();
+  std::vector<char> out(m.points.size(), 1);
+  for (std::size_t k = 0; k < m.points.size(); ++k)
+    for (const Place& p : places_) {
+      const Vec2& at = m.points[k];
+      const bool on_line = std::any_of(p.lines.begin(), p.lines.end(), [&](const Segment& s) {
+        return distance(s, at) <= settings_.reach;
+      });
+      const bool in_box = p.box && (at.array() >= p.box->lower.array() - settings_.reach).all() &&
+                          (at.array() <= p.box->upper.array() + settings_.reach).all();
+      if (on_line || in_box) out[k] = 0;
+    }
+  return out;
+}
+
+void Judge::look_at_stress(const LoadedMesh& mesh, const fem::RecoveredStress::Outcome& found,
+                           Eigen::Index first, const std::vector<char>& counts, Look& out) const {
+  for (Eigen::Index l = 0; l < found.energies.size(); ++l) {
+    const int row = static_cast<int>(first + l);
+    const LargestStress of_load =
+        largest_of(mesh, row, found.averaged.middleRows(3 * l, 3), counts);
+    if (!(of_load.value > out.largest.value)) continue;
+    out.largest = of_load;
+    out.largest_row = row;
+  }
+}
+
+LargestStress Judge::largest_of(const LoadedMesh& mesh, int row, const MatrixXd& stress,
+                                const std::vector<char>& counts) const {
+  const PartMesh& m = mesh.plate().mesh();
+  const int load = mesh.order()[static_cast<std::size_t>(row)];
+  const std::optional<double>& clamp = loads_.loads[static_cast<std::size_t>(load)].clamp;
+  LargestStress out;
+  for (std::size_t k = 0; k < m.points.size(); ++k) {
+    const double x = m.points[k].x();
+    if (!counts[k] || (clamp && x < *clamp + settings_.reach)) continue;
+    if (loads_.held_edge && x > loads_.held_edge->x - settings_.reach) continue;
+    const double value = fem::von_mises(stress.col(static_cast<Eigen::Index>(k)));
+    if (value > out.value) out = {value, m.points[k]};
+  }
+  return out;
+}
+
+/// Of all nodes, from the unknowns.
+VectorXd displacement_of(LoadedMesh& mesh, const VectorXd& unknowns) {
+  VectorXd out = VectorXd::Zero(2 * static_cast<Eigen::Index>(mesh.plate().mesh().points.size()));
+  for (int k = 0; k < out.size(); ++k)
+    if (const int row = mesh.plate().row(k / 2, k % 2); row >= 0) out[k] = unknowns[row];
+  return out;
+}
+
+Look Judge::look(LoadedMesh& mesh) const {
+  mesh.plate().factorize();
+  MatrixXd u = mesh.forces();
+  mesh.plate().solve(u, mesh.clamps());
+  const MatrixXd given = mesh.prescribed();
+  const fem::RecoveredStress recovery(mesh.plate());
+  const std::vector<char> counts = away_from_places(mesh);
+  const VectorXd edge = mesh.edge_energies(u);
+  const Eigen::Index n = u.rows();
+  Look out;
+  out.compliances = out.errors = VectorXd::Zero(n);
+  out.by_triangle = VectorXd::Zero(static_cast<Eigen::Index>(mesh.plate().mesh().triangles.size()));
+  for (Eigen::Index first = 0; first < n; first += kBlock) {
+    const Eigen::Index count = std::min(kBlock, n - first);
+    const std::span<const int> clamps =
+        std::span<const int>(mesh.clamps())
+            .subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count));
+    MatrixXd some;
+    if (given.size() > 0) some = given.middleRows(first, count);
+    const fem::RecoveredStress::Outcome found =
+        recovery.evaluate(u.middleRows(first, count), clamps, some);
+    look_at_stress(mesh, found, first, counts, out);
+    for (Eigen::Index l = 0; l < count; ++l) {
+      const int load = mesh.order()[static_cast<std::size_t>(first + l)];
+      const double compliance = found.energies[l] + edge[first + l];
+      out.compliances[first + l] = compliance;
+      out.errors[first + l] = found.errors[l];
+      const double weight = loads_.worst ? 1 : loads_.loads[static_cast<std::size_t>(load)].weight;
+      out.by_triangle += weight * found.by_triangle.row(l).transpose();
+      if (!loads_.worst) {
+        out.compliance += weight * compliance;
+        out.error += weight * found.errors[l];
+      }
+      if (first + l > 0 && !(compliance > out.compliances[out.worst_row])) continue;
+      out.worst_row = static_cast<int>(first + l);
+      out.stress = found.averaged.middleRows(3 * l, 3);
+    }
+  }
+  if (loads_.worst) {
+    out.compliance = out.compliances[out.worst_row];
+    out.error = out.errors[out.worst_row];
+  }
+  out.displacement = displacement_of(mesh, u.row(out.worst_row));
+  if (given.size() > 0) out.displacement += given.row(out.worst_row).transpose();
+  out.worst_stress = largest_of(mesh, out.worst_row, out.stress, counts);
+  if (!std::isfinite(out.compliance) || !std::isfinite(out.error))
+    throw Error::numerical("judge: the compliance is not finite");
+  return out;
+}
+
+void Judge::keep(const LoadedMesh& mesh, Look& now, double error, int meshes) {
+  const auto n = static_cast<std::size_t>(now.compliances.size());
+  out_.compliance = now.compliance;
+  out_.error = error / now.compliance;
+  out_.compliances.assign(n, 0);
+  for (std::size_t row = 0; row < n; ++row)
+    out_.compliances[static_cast<std::size_t>(mesh.order()[row])] =
+        now.compliances[static_cast<Eigen::Index>(row)];
+  out_.largest_stress = now.largest.value;
+  out_.largest_at = now.largest.at;
+  out_.largest_load =
+      now.largest_row < 0 ? -1 : mesh.order()[static_cast<std::size_t>(now.largest_row)];
+  out_.pieces = out_.mesh.n_pieces;
+  out_.left_out = mesh.pieces_left_out();
+  out_.meshes = meshes;
+  out_.triangles_left_out = mesh.left_out();
+  out_.stress = std::move(now.stress);
+  out_.displacement = std::move(now.displacement);
+  out_.carried_stress = now.worst_stress;
+  const int worst = mesh.order()[static_cast<std::size_t>(now.worst_row)];
+  out_.shown_load = loads_.loads[static_cast<std::size_t>(worst)].name;
+  out_.carried.clear();
+  const bool clamped = std::any_of(loads_.loads.begin(), loads_.loads.end(),
+                                   [](const Load& l) { return l.clamp.has_value(); });
+  for (std::size_t row = 0; row < n && !loads_.held_edge; ++row) {
+    if (clamped && static_cast<int>(row) != now.worst_row) continue;
+    CarriedLoad& each = out_.carried.emplace_back();
+    each.load = mesh.order()[row];
+    each.name = loads_.loads[static_cast<std::size_t>(each.load)].name;
+    each.compliance = now.compliances[static_cast<Eigen::Index>(row)];
+    each.held = mesh.held(static_cast<int>(row));
+    const MatrixXd given = mesh.prescribed();
+    for (const fem::HeldUnknown& h : each.held)
+      each.prescribed.push_back(
+          given.size() > 0 ? given(static_cast<Eigen::Index>(row), 2 * h.node + h.component) : 0.0);
+    const VectorXd forces = mesh.nodal_forces(static_cast<int>(row));
+    for (Eigen::Index k = 0; k < forces.size(); k += 2)
+      if (forces[k] != 0 || forces[k + 1] != 0)
+        each.forces.push_back({static_cast<int>(k / 2), forces.segment<2>(k)});
+  }
+  // The stress that is kept belongs to the worst one.
+  std::stable_sort(out_.carried.begin(), out_.carried.end(),
+                   [&](const CarriedLoad& a, const CarriedLoad& b) {
+                     return (a.load == worst) > (b.load == worst);
+                   });
+}
+
+/// Smaller triangles where the error is, so that all have an equal part of what is allowed.
+void Judge::refine(const Look& now, double error) {
+  const double wanted =
+      std::min(0.5 * settings_.tolerance * now.compliance, 0.25 * std::max(now.error, 0.1 * error));
+  const double part = wanted / static_cast<double>(out_.mesh.triangles.size());
+  for (std::size_t t = 0; t < out_.mesh.triangles.size(); ++t) {
+    const double own = now.by_triangle[static_cast<Eigen::Index>(t)];
+    if (!(own > part)) continue;
+    const auto [a, b, c] = out_.mesh.corners(t);
+    const double side = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+    // A longest side just as long as allowed is not cut: a little less.
+    const double size = side * std::clamp(std::pow(part / own, kPower), kLeastCut, 0.9);
+    sizes_.refine((a + b + c) / 3, 0.5 * side, size);
+  }
+}
+
+Judged Judge::loose(const LoadedMesh& mesh) {
+  out_.compliance = INFINITY;
+  out_.loose_load = loads_.loads[static_cast<std::size_t>(mesh.loose_load())].name;
+  out_.converged = true;
+  out_.pieces = out_.mesh.n_pieces;
+  out_.left_out = mesh.pieces_left_out();
+  out_.triangles_left_out = mesh.left_out();
+  return std::move(out_);
+}
+
+}  // namespace
+
+Judged judge(std::span<const Region> regions, const fem::PlaneSection& section, const Loads& loads,
+             const Settings& settings) {
+  if (loads.loads.empty()) throw Error::input("judge: there are no loads");
+  if (regions.empty()) throw Error::numerical("judge: there is no material");
+  return Judge(regions, section, loads, settings).go();
+}
+
+}  // namespace flexmorph::judge

@@ -1,0 +1,421 @@
+#include "optim/verification/loaded_mesh.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+
+#include "fem/triangles/t6.h"
+
+namespace flexmorph::judge {
+namespace {
+
+/// Does a side of the outline run along the line?
+bool runs_along(const Segment& line, std::span<const Region> regions, double small) {
+  const double length = (line.b - line.a).norm();
+  const Vec2 along = (line.b - line.a) / length;
+  const auto looks = [&](const std::vector<Vec2>& ring) {
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const Vec2 u = ring[k] - line.a, v = ring[(k + 1) % ring.size()] - line.a;
+      const auto off = [&](const Vec2& p) {
+        return std::abs(along.x() * p.y() - along.y() * p.x());
+      };
+      if (off(u) > small || off(v) > small) continue;
+      const double from = std::max(0.0, std::min(along.dot(u), along.dot(v)));
+      const double to = std::min(length, std::max(along.dot(u), along.dot(v)));
+      if (to - from > 10 * small) return true;
+    }
+    return false;
+  };
+  return std::any_of(regions.begin(), regions.end(), [&](const Region& r) {
+    return looks(r.outer) || std::any_of(r.holes.begin(), r.holes.end(), looks);
+  });
+}
+
+/// Collects what of a mesh lies at a place.
+class Collector {
+ public:
+  explicit Collector(const PartMesh& mesh) : share_(mesh.points.size(), 0.0) {}
+
+  void add(int node, double share) {
+    if (share_[static_cast<std::size_t>(node)] == 0) nodes_.push_back(node);
+    share_[static_cast<std::size_t>(node)] += share;
+  }
+  /// Material that takes part, before loose pieces are known: all of it.
+  PlaceNodes take() {
+    PlaceNodes out;
+    double sum = 0;
+    std::sort(nodes_.begin(), nodes_.end());
+    nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
+    for (const int node : nodes_) sum += share_[static_cast<std::size_t>(node)];
+    for (const int node : nodes_) {
+      out.shares.emplace_back(node, share_[static_cast<std::size_t>(node)] / sum);
+      share_[static_cast<std::size_t>(node)] = 0;
+    }
+    nodes_.clear();
+    return out;
+  }
+
+ private:
+  std::vector<double> share_;
+  std::vector<int> nodes_;
+};
+
+bool lies_in(const Box& box, const Vec2& p, double small) {
+  return (p.array() >= box.lower.array() - small).all() &&
+         (p.array() <= box.upper.array() + small).all();
+}
+
+}  // namespace
+
+std::vector<Place> chosen_places(const Loads& loads, std::span<const Region> regions,
+                                 double small) {
+  std::vector<Place> out = loads.places;
+  for (Place& p : out) {
+    if (!p.box) continue;
+    const bool on_lines = std::any_of(p.lines.begin(), p.lines.end(), [&](const Segment& s) {
+      return runs_along(s, regions, small);
+    });
+    if (on_lines)
+      p.box.reset();
+    else
+      p.lines.clear();
+  }
+  return out;
+}
+
+std::vector<Segment> LoadedMesh::lines_of(const Loads& loads, std::span<const Region> regions,
+                                          double small) {
+  std::vector<Segment> out;
+  for (const Place& p : chosen_places(loads, regions, small)) {
+    out.insert(out.end(), p.lines.begin(), p.lines.end());
+    if (!p.box) continue;
+    const Vec2 &a = p.box->lower, &b = p.box->upper;
+    const std::array<Vec2, 4> corners = {a, Vec2(b.x(), a.y()), b, Vec2(a.x(), b.y())};
+    for (std::size_t k = 0; k < 4; ++k) out.push_back({corners[k], corners[(k + 1) % 4]});
+  }
+  double lowest = INFINITY, highest = -INFINITY;
+  for (const Region& r : regions)
+    for (const Vec2& p : r.outer) {
+      lowest = std::min(lowest, p.y());
+      highest = std::max(highest, p.y());
+    }
+  const double beyond = 0.1 * (highest - lowest);
+  std::vector<double> clamps;
+  for (const Load& l : loads.loads)
+    if (l.clamp) clamps.push_back(*l.clamp);
+  std::sort(clamps.begin(), clamps.end());
+  clamps.erase(std::unique(clamps.begin(), clamps.end()), clamps.end());
+  for (const double x : clamps) out.push_back({{x, lowest - beyond}, {x, highest + beyond}});
+  return out;
+}
+
+LoadedMesh::LoadedMesh(const PartMesh& mesh, const fem::PlaneSection& section, const Loads& loads,
+                       std::span<const Place> places, double small)
+    : mesh_(mesh), section_(section), loads_(loads), places_(places), small_(small) {
+  sort_loads();
+  find_places();
+  leave_out_loose_pieces();
+  find_edge();
+  if (loose_load_ < 0)
+    plate_ = std::make_unique<fem::TrianglePlate>(
+        mesh_, section_,
+        fem::TrianglePlateSupports{held_, clamp_lines_, small_, left_out_, springs_});
+}
+
+/// Clamps from the largest x on.
+void LoadedMesh::sort_loads() {
+  const auto n = loads_.loads.size();
+  order_.resize(n);
+  std::iota(order_.begin(), order_.end(), 0);
+  const auto x_of = [&](int l) {
+    return loads_.loads[static_cast<std::size_t>(l)].clamp.value_or(INFINITY);
+  };
+  std::stable_sort(order_.begin(), order_.end(), [&](int a, int b) { return x_of(a) > x_of(b); });
+  for (const int l : order_) {
+    if (!loads_.loads[static_cast<std::size_t>(l)].clamp) {
+      clamps_.push_back(0);
+      continue;
+    }
+    if (clamp_lines_.empty() || clamp_lines_.back() != x_of(l)) clamp_lines_.push_back(x_of(l));
+    clamps_.push_back(static_cast<int>(clamp_lines_.size()) - 1);
+  }
+}
+
+void LoadedMesh::find_places() {
+  Collector all(mesh_);
+  std::vector<char> seen(mesh_.points.size());
+  for (const Place& place : places_) {
+    std::fill(seen.begin(), seen.end(), 0);  // sides between two triangles count once
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+      const auto& n = mesh_.triangles[t];
+      if (place.box) {
+        const auto [a, b, c] = mesh_.corners(t);
+        if (!lies_in(*place.box, (a + b + c) / 3, 0)) continue;
+        // Corners have no share of a force over an area, but they are there.
+        for (std::size_t k = 0; k < 6; ++k)
+          all.add(n[k], k < 3 ? 0 : fem::T6(mesh_.corners(t)).area() / 3);
+        continue;
+      }
+      for (std::size_t k = 0; k < 3; ++k) {
+        const int a = n[k], b = n[(k + 1) % 3], middle = n[3 + k];
+        if (seen[static_cast<std::size_t>(middle)]) continue;
+        const Vec2 &at_a = mesh_.point(a), &at_b = mesh_.point(b);
+        if (std::none_of(place.lines.begin(), place.lines.end(), [&](const Segment& s) {
+              return distance(s, at_a) <= small_ && distance(s, at_b) <= small_ &&
+                     distance(s, mesh_.point(middle)) <= small_;
+            }))
+          continue;
+        seen[static_cast<std::size_t>(middle)] = 1;
+        const double length = (at_b - at_a).norm();
+        all.add(a, length / 6);
+        all.add(b, length / 6);
+        all.add(middle, 4 * length / 6);
+      }
+    }
+    at_places_.push_back(all.take());
+  }
+  for (const Support& s : loads_.supports)
+    for (const auto& [node, share] : at_places_[static_cast<std::size_t>(s.place)].shares) {
+      if (s.x) held_.push_back({node, 0});
+      if (s.y) held_.push_back({node, 1});
+    }
+}
+
+/// Do supports, or clamps, keep the piece from moving as a whole?
+bool LoadedMesh::is_held(int piece) const {
+  std::vector<char> own(mesh_.points.size(), 0);
+  double first = INFINITY, last = -INFINITY;  // x
+  Vec2 middle = Vec2::Zero();
+  int n = 0;
+  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+    if (mesh_.piece[t] != piece) continue;
+    for (const int node : mesh_.triangles[t]) {
+      own[static_cast<std::size_t>(node)] = 1;
+      first = std::min(first, mesh_.point(node).x());
+      last = std::max(last, mesh_.point(node).x());
+    }
+    for (const Vec2& p : mesh_.corners(t)) {
+      middle += p;
+      ++n;
+    }
+  }
+  middle /= n;
+  for (const double x : clamp_lines_)  // it sticks out of it, and does not reach back to it
+    if (last > x + small_ && first > x + small_) return false;
+  if (!clamp_lines_.empty()) return true;
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  const double size = std::max(last - first, small_);
+  for (const fem::HeldUnknown& h : held_) {
+    if (!own[static_cast<std::size_t>(h.node)]) continue;
+    const Vec2 at = (mesh_.point(h.node) - middle) / size;
+    const Vec3 row = h.component == 0 ? Vec3(1, 0, -at.y()) : Vec3(0, 1, at.x());
+    sum += row * row.transpose();
+  }
+  const Vec3 values = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(sum).eigenvalues();
+  return values[0] > 1e-12 * values[2];
+}
+
+void LoadedMesh::leave_out_loose_pieces() {
+  std::vector<char> loose(static_cast<std::size_t>(mesh_.n_pieces), 0);
+  for (int piece = 0; piece < mesh_.n_pieces; ++piece)
+    loose[static_cast<std::size_t>(piece)] = !is_held(piece);
+  pieces_left_out_ = static_cast<int>(std::count(loose.begin(), loose.end(), 1));
+  std::vector<char> carries(mesh_.points.size(), 0);
+  left_out_.resize(mesh_.triangles.size());
+  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+    left_out_[t] = static_cast<signed char>(loose[static_cast<std::size_t>(mesh_.piece[t])]);
+    if (left_out_[t] != 0) continue;
+    for (const int node : mesh_.triangles[t]) carries[static_cast<std::size_t>(node)] = 1;
+  }
+  // Forces go to what carries them.
+  for (PlaceNodes& place : at_places_) {
+    std::erase_if(place.shares,
+                  [&](const auto& each) { return !carries[static_cast<std::size_t>(each.first)]; });
+    for (const auto& [node, share] : place.shares) place.held += share;
+    for (auto& [node, share] : place.shares) share /= place.held > 0 ? place.held : 1;
+  }
+  std::erase_if(
+      held_, [&](const fem::HeldUnknown& h) { return !carries[static_cast<std::size_t>(h.node)]; });
+  if (std::none_of(carries.begin(), carries.end(), [](char c) { return c != 0; })) loose_load_ = 0;
+  for (std::size_t l = 0; l < loads_.loads.size() && loose_load_ < 0; ++l)
+    for (const Force& f : loads_.loads[l].forces)
+      if (f.force != Vec2::Zero() && at_places_[static_cast<std::size_t>(f.place)].held < 0.5)
+        loose_load_ = static_cast<int>(l);
+}
+
+/// Springs k Δy between neighbours on the edge. Straight in x, however it is turned: of elongations
+/// Δx - s Δy, s the slope from the first node to the last one, the part with s is a spring of
+/// negative stiffness between these two.
+void LoadedMesh::find_edge() {
+  if (!loads_.held_edge) return;
+  std::vector<char> carries(mesh_.points.size(), 0);
+  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
+    for (const int node : mesh_.triangles[t])
+      if (left_out_[t] == 0) carries[static_cast<std::size_t>(node)] = 1;
+  for (std::size_t k = 0; k < mesh_.points.size(); ++k)
+    if (carries[k] && std::abs(mesh_.points[k].x() - loads_.held_edge->x) <= small_)
+      edge_.push_back(static_cast<int>(k));
+  std::sort(edge_.begin(), edge_.end(),
+            [&](int a, int b) { return mesh_.point(a).y() < mesh_.point(b).y(); });
+  if (edge_.size() < 2) return edge_.clear();
+  const double stiffness = loads_.held_edge->stiffness;
+  const auto height = [&](int a, int b) { return mesh_.point(b).y() - mesh_.point(a).y(); };
+  for (std::size_t k = 1; k < edge_.size(); ++k)
+    for (const int c : {0, 1})
+      springs_.push_back({edge_[k - 1], edge_[k], c, stiffness / height(edge_[k - 1], edge_[k])});
+  springs_.push_back(
+      {edge_.front(), edge_.back(), 0, -stiffness / height(edge_.front(), edge_.back())});
+}
+
+double LoadedMesh::held_end_stretch(std::size_t row) const {
+  return edge_.empty() ? 0 : loads_.loads[static_cast<std::size_t>(order_[row])].held_end_stretch;
+}
+
+/// Elongations across are Δw + g_e Δy.
+VectorXd LoadedMesh::edge_energies(const MatrixXd& u) const {
+  VectorXd out = VectorXd::Zero(u.rows());
+  const auto difference = [&](int a, int b, int c) -> VectorXd {
+    const int at_a = plate_->row(a, c), at_b = plate_->row(b, c);
+    VectorXd d = VectorXd::Zero(u.rows());
+    if (at_b >= 0) d += u.col(at_b);
+    if (at_a >= 0) d -= u.col(at_a);
+    return d;
+  };
+  for (const fem::NodeSpring& s : springs_)
+    out += s.stiffness * difference(s.a, s.b, s.component).cwiseAbs2();
+  if (edge_.empty()) return out;
+  const VectorXd across = difference(edge_.front(), edge_.back(), 1);
+  const double height = mesh_.point(edge_.back()).y() - mesh_.point(edge_.front()).y();
+  for (Eigen::Index l = 0; l < u.rows(); ++l) {
+    const double g = held_end_stretch(static_cast<std::size_t>(l));
+    out[l] += loads_.held_edge->stiffness * g * (2 * across[l] + g * height);
+  }
+  return out;
+}
+
+/// -ρ a of all material that takes part, for these rows: (n x 2 n_nodes).
+void LoadedMesh::add_inertia(std::span<const int> rows, MatrixXd& at_nodes) const {
+  const Grid& g = loads_.grid;
+  const auto n = static_cast<Eigen::Index>(rows.size());
+  MatrixXd acceleration = MatrixXd::Zero(n, 2 * g.n_nodes());
+  bool any = false;
+  for (Eigen::Index l = 0; l < n; ++l) {
+    const int load = order_[static_cast<std::size_t>(rows[static_cast<std::size_t>(l)])];
+    const VectorXd* a = loads_.loads[static_cast<std::size_t>(load)].acceleration;
+    if (a == nullptr) continue;
+    acceleration.row(l) = a->transpose();
+    any = true;
+  }
+  if (!any) return;
+  MatrixXd here(n, 2);
+  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+    if (left_out_[t] != 0) continue;
+    const fem::T6 element(mesh_.corners(t));
+    const double mass = section_.density * section_.thickness * element.area();
+    for (const fem::WeightedPoint& w : fem::six_points()) {
+      const Vec2 p = element.place(w.at);
+      const double x = std::clamp((p.x() - g.x0) / g.dx(), 0.0, double(g.nx)),
+                   y = std::clamp((p.y() - g.y0) / g.dy(), 0.0, double(g.ny));
+      const int i = std::min(static_cast<int>(x), g.nx - 1),
+                j = std::min(static_cast<int>(y), g.ny - 1);
+      const double u = x - i, v = y - j;
+      here.setZero();
+      for (int k = 0; k < 4; ++k) {
+        const double share = (k % 2 ? u : 1 - u) * (k / 2 ? v : 1 - v);
+        here += share * acceleration.middleCols(2 * g.node(i + k % 2, j + k / 2), 2);
+      }
+      const Eigen::Matrix<double, 6, 1> shapes = fem::t6_shapes(w.at);
+      for (int k = 0; k < 6; ++k)
+        at_nodes.middleCols(2 * mesh_.triangles[t][static_cast<std::size_t>(k)], 2) -=
+            w.weight * mass * shapes[k] * here;
+    }
+  }
+}
+
+VectorXd LoadedMesh::nodal_forces(int row) const {
+  MatrixXd out = MatrixXd::Zero(1, 2 * static_cast<Eigen::Index>(mesh_.points.size()));
+  add_inertia(std::span<const int>(&row, 1), out);
+  const Load& load = loads_.loads[static_cast<std::size_t>(order_[static_cast<std::size_t>(row)])];
+  for (const Force& f : load.forces)
+    for (const auto& [node, share] : at_places_[static_cast<std::size_t>(f.place)].shares)
+      out.middleCols(2 * node, 2) += share * f.force.transpose();
+  return out.row(0).transpose();
+}
+
+MatrixXd LoadedMesh::prescribed() const {
+  if (std::all_of(loads_.loads.begin(), loads_.loads.end(),
+                  [](const Load& l) { return l.held_stretch == 0; }))
+    return {};
+  MatrixXd out = MatrixXd::Zero(static_cast<Eigen::Index>(order_.size()),
+                                2 * static_cast<Eigen::Index>(mesh_.points.size()));
+  for (std::size_t l = 0; l < order_.size(); ++l) {
+    const Load& load = loads_.loads[static_cast<std::size_t>(order_[l])];
+    for (std::size_t k = 0; load.clamp && k < mesh_.points.size(); ++k)
+      if (std::abs(mesh_.points[k].x() - *load.clamp) <= small_)
+        out(static_cast<Eigen::Index>(l), 2 * static_cast<Eigen::Index>(k) + 1) =
+            -load.held_stretch * mesh_.points[k].y();
+  }
+  return out;
+}
+
+MatrixXd LoadedMesh::forces() const {
+  constexpr std::size_t kBlock = 16;  // forces at all nodes are there for so many loads at a time
+  const auto n = order_.size();
+  MatrixXd out = MatrixXd::Zero(static_cast<Eigen::Index>(n), plate_->n_unknowns());
+  const MatrixXd given = prescribed();
+  for (std::size_t first = 0; first < n; first += kBlock) {
+    std::vector<int> rows;
+    for (std::size_t l = first; l < std::min(n, first + kBlock); ++l)
+      rows.push_back(static_cast<int>(l));
+    const auto m = static_cast<Eigen::Index>(rows.size()), from = static_cast<Eigen::Index>(first);
+    MatrixXd at_nodes = MatrixXd::Zero(m, 2 * static_cast<Eigen::Index>(mesh_.points.size()));
+    add_inertia(rows, at_nodes);
+    for (Eigen::Index k = 0; k < at_nodes.cols(); ++k) {
+      const int row = plate_->row(static_cast<int>(k / 2), static_cast<int>(k % 2));
+      if (row >= 0) out.block(from, row, m, 1) = at_nodes.col(k);
+    }
+  }
+  for (std::size_t l = 0; l < n; ++l)
+    for (const Force& f : loads_.loads[static_cast<std::size_t>(order_[l])].forces)
+      for (const auto& [node, share] : at_places_[static_cast<std::size_t>(f.place)].shares)
+        for (int c = 0; c < 2; ++c)
+          if (const int row = plate_->row(node, c); row >= 0)
+            out(static_cast<Eigen::Index>(l), row) += share * f.force[c];
+  for (std::size_t l = 0; l < n; ++l) {
+    const double g = held_end_stretch(l);
+    if (g == 0) continue;
+    const double force = loads_.held_edge->stiffness * g;
+    out(static_cast<Eigen::Index>(l), plate_->row(edge_.front(), 1)) += force;
+    out(static_cast<Eigen::Index>(l), plate_->row(edge_.back(), 1)) -= force;
+  }
+  if (given.size() == 0) return out;
+  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+    if (left_out_[t] != 0) continue;
+    MatrixXd local(given.rows(), 12);
+    for (int a = 0; a < 12; ++a)
+      local.col(a) = given.col(2 * mesh_.triangles[t][static_cast<std::size_t>(a / 2)] + a % 2);
+    if (local.isZero(0)) continue;
+    // Behind its clamp a load has no unknowns: what is added there is ignored.
+    const MatrixXd back = local * fem::T6(mesh_.corners(t)).stiffness(section_);
+    for (int a = 0; a < 12; ++a)
+      if (const int row = plate_->row(mesh_.triangles[t][static_cast<std::size_t>(a / 2)], a % 2);
+          row >= 0)
+        out.col(row) -= back.col(a);
+  }
+  return out;
+}
+
+std::vector<fem::HeldUnknown> LoadedMesh::held(int row) const {
+  std::vector<fem::HeldUnknown> out = held_;
+  if (clamp_lines_.empty()) return out;
+  const int clamp = clamps_[static_cast<std::size_t>(row)];
+  for (int node = 0; node < static_cast<int>(mesh_.points.size()); ++node)
+    if (plate_->first_clamp(node) > clamp)
+      for (int c = 0; c < 2; ++c) out.push_back({node, c});
+  return out;
+}
+
+}  // namespace flexmorph::judge

@@ -1,0 +1,58 @@
+#include "optim/verification/places.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace flexmorph::judge {
+namespace {
+
+/// The part of a segment in a box; nothing where that is a point or less.
+std::optional<Segment> clipped(const Segment& s, const Box& box) {
+  const Vec2 along = s.b - s.a;
+  double from = 0, to = 1;
+  for (int c = 0; c < 2; ++c) {
+    if (along[c] == 0) {
+      if (s.a[c] < box.lower[c] || s.a[c] > box.upper[c]) return {};
+      continue;
+    }
+    double enters = (box.lower[c] - s.a[c]) / along[c], leaves = (box.upper[c] - s.a[c]) / along[c];
+    if (enters > leaves) std::swap(enters, leaves);
+    from = std::max(from, enters);
+    to = std::min(to, leaves);
+  }
+  const double shortest = 1e-6 * (box.upper - box.lower).norm() / along.norm();
+  if (to - from <= shortest) return {};
+  return Segment{from == 0 ? s.a : Vec2(s.a + from * along),
+                 to == 1 ? s.b : Vec2(s.a + to * along)};
+}
+
+}  // namespace
+
+Place point_place(const Vec2& point, const Region& border, double reach) {
+  Place out;
+  out.box = Box{point - Vec2::Constant(reach), point + Vec2::Constant(reach)};
+  double near = INFINITY;
+  for (const std::vector<Vec2>& ring : rings_of(border))
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const Segment side{ring[k], ring[(k + 1) % ring.size()]};
+      near = std::min(near, distance(side, point));
+      if (const auto part = clipped(side, *out.box)) out.lines.push_back(*part);
+    }
+  // Points are said to a fraction of a cell.
+  if (near > 0.5 * reach) out.lines.clear();
+  return out;
+}
+
+Place box_place(const Box& box) {
+  const Vec2 size = box.upper - box.lower;
+  if (size.minCoeff() > 0) return {{}, box};
+  return {{{box.lower, box.upper}}, {}};
+}
+
+int Loads::add(Place place) {
+  places.push_back(std::move(place));
+  return static_cast<int>(places.size()) - 1;
+}
+
+}  // namespace flexmorph::judge
