@@ -10,8 +10,11 @@
 #include <system_error>
 
 #include "cases/accuracy/accuracy.h"
+#include "cases/check/check.h"
+#include "cases/check/ready.h"
 #include "cases/keys/book.h"
 #include "cases/keys/completion.h"
+#include "cases/results/schema.h"
 #include "cases/run/corrections.h"
 #include "cases/run/run.h"
 #include "cases/scene/version.h"
@@ -140,7 +143,7 @@ size_t screen_width() {
 void print_keys(const KeysOptions& options) {
   if (!options.renewed.empty())
     return flexmorph::io::write_file(options.renewed,
-                                     with_reference(flexmorph::io::read_text(options.renewed)));
+                                     with_references(flexmorph::io::read_text(options.renewed)));
   const std::string text = options.schema     ? keys_as_schema()
                            : options.markdown ? keys_as_markdown()
                                               : keys_for_terminal(options.table, screen_width());
@@ -259,7 +262,8 @@ int parse_and_run(int argc, char** argv) {
   if (*help) std::fputs(all_help.c_str(), stdout);
   if (*keys) print_keys(keys_options);
   if (*completion) std::fputs(completion_script(shell, command_words(app)).c_str(), stdout);
-  if (*check) std::fputs(check_case(options).c_str(), stdout);
+  if (*check)
+    std::fputs(check_case(options.case_name, options.overrides, options.explain).c_str(), stdout);
   if (*cases)
     for (const std::string& name : shipped_cases()) std::printf("%s\n", name.c_str());
   return 0;

@@ -9,6 +9,7 @@
 #include "cases/accuracy/report.h"
 #include "cases/assembly/build.h"
 #include "cases/assembly/resource_estimate.h"
+#include "cases/check/ready.h"
 #include "cases/output/run_folder.h"
 #include "cases/run/run.h"
 #include "io/files.h"

@@ -6,7 +6,7 @@
 #include "cases/assembly/twin.h"
 #include "cases/check/check_cost.h"
 #include "cases/check/check_figures.h"
-#include "cases/run/run.h"
+#include "cases/check/ready.h"
 #include "cases/scene/design/goal.h"
 #include "cases/scene/elements/row.h"
 #include "cases/scene/heat/heat.h"
@@ -287,9 +287,10 @@ void describe_absent(const Scene& scene, std::ostringstream& out) {
 
 }  // namespace
 
-std::string check_case(const RunOptions& options) {
-  const auto [file, scene] = ready_case(options.case_name, options.overrides);
-  if (options.explain) return file.explained();
+std::string check_case(const std::string& name, std::span<const std::string> overrides,
+                       bool explain) {
+  const auto [file, scene] = ready_case(name, overrides);
+  if (explain) return file.explained();
   const Machine machine = this_machine(scene.output.directory);
   std::ostringstream out;
   out << scene.name << ": " << scene.title << "\n\nactive\n";

@@ -44,9 +44,11 @@ std::string shown_name(const io::Key& key);
 std::string keys_for_terminal(const std::string& table, size_t width);
 /// The reference in cases/README.md.
 std::string keys_as_markdown();
-/// A file of Markdown with the reference anew, between the lines that mark it.
-/// @throws Error (input) for a file without these lines.
-std::string with_reference(const std::string& text);
+/// Replaces a generated section of a Markdown file, between the lines that mark it.
+/// @param name  of the section in these lines: "keys"
+/// @throws Error (input) for a file without these lines
+std::string with_section(const std::string& text, const std::string& name,
+                         const std::string& section);
 /// JSON schema (draft-07) of a case.
 std::string keys_as_schema();
 

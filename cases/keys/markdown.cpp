@@ -5,10 +5,6 @@
 namespace flexmorph::cases {
 namespace {
 
-constexpr const char* kBegin =
-    "<!-- keys: made by `flexmorph keys --renew cases/README.md` from here on -->\n";
-constexpr const char* kEnd = "<!-- keys: to here -->\n";
-
 /// In a cell of a table.
 std::string cell(const std::string& text) {
   std::string out;
@@ -35,12 +31,16 @@ std::string keys_as_markdown() {
   return out;
 }
 
-std::string with_reference(const std::string& text) {
-  const size_t begin = text.find(kBegin), end = text.find(kEnd);
+std::string with_section(const std::string& text, const std::string& name,
+                         const std::string& section) {
+  const std::string first = "<!-- " + name +
+                            ": made by `flexmorph keys --renew cases/README.md` from here on -->\n",
+                    last = "<!-- " + name + ": to here -->\n";
+  const size_t begin = text.find(first), end = text.find(last);
   if (begin == std::string::npos || end == std::string::npos || end < begin)
-    throw Error::input(std::string("a file with the lines\n") + kBegin + kEnd +
-                       "has its key reference between them; this one has not");
-  return text.substr(0, begin) + kBegin + "\n" + keys_as_markdown() + "\n" + text.substr(end);
+    throw Error::input(std::string("a file with the lines\n") + first + last +
+                       "has a reference between them; this one has not");
+  return text.substr(0, begin) + first + "\n" + section + "\n" + text.substr(end);
 }
 
 }  // namespace flexmorph::cases

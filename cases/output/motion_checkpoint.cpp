@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kFormat = "flexmorph motion 1";
+const std::string kFormat = "flexmorph motion 2";
 /// Of the time between two files, that it may take to write one.
 constexpr double kShare = 0.05;
 

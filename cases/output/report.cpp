@@ -6,10 +6,8 @@
 #include "cases/output/plots/mechanism.h"
 #include "cases/output/plots/run.h"
 #include "cases/output/plots/stress.h"
-#include "cases/results/expectations.h"
+#include "cases/results/correction_messages.h"
 #include "cases/results/run_json.h"
-#include "cases/results/warnings.h"
-#include "cases/run/corrections.h"
 #include "cases/scene/design/goal.h"
 #include "cases/scene/heat/heat.h"
 #include "io/case_parser.h"
@@ -20,12 +18,12 @@ namespace {
 
 constexpr size_t kShapes = 4;  // pictures of a plate in space
 
-/// Body-fitted compliance, its error and the volume of a body, where it was judged.
-std::array<std::string, 3> judged_cells(const RunReport& report, const std::string& body) {
-  for (const JudgedBody& j : report.judged)
-    if (j.body == body && j.verdict)
-      return {io::to_text(j.verdict->compliance, 6), io::to_text(100 * j.verdict->error, 2) + " %",
-              io::to_text(j.volume, 5)};
+/// Body-fitted compliance, its error and the volume of a body, where its outline was verified.
+std::array<std::string, 3> outline_cells(const DesignResult& design, const std::string& body) {
+  for (const VerifiedOutline& o : design.outlines)
+    if (o.body == body && o.verification)
+      return {io::to_text(o.verification->compliance, 6),
+              io::to_text(100 * o.verification->error, 2) + " %", io::to_text(o.volume, 5)};
   return {};
 }
 
@@ -37,22 +35,22 @@ std::vector<std::vector<std::string>> turned(const std::vector<std::vector<std::
   return out;
 }
 
-io::ReportSection results_section(const Scene& scene, const RunReport& report) {
+io::ReportSection results_section(const Scene& scene, const DesignResult& design) {
   io::ReportSection out;
   out.heading = "Results";
   out.rows.push_back({"body", "compliance [J]", "volume", "sharp compliance [J]", "sharp volume",
                       "body-fitted compliance [J]", "estimated error", "body-fitted volume",
                       "uniform compliance [J]", "sharp / uniform", "connected", "iterations",
                       "state solves", "stopped"});
-  for (const JudgedBody& j : report.judged)
-    for (const mmc::BodyOutcome& o : report.outcomes)
-      if (o.body == j.body)
-        out.words += (out.words.empty() ? "" : " ") + judged_words(j, o.sharp.compliance) + ".";
-  for (const mmc::BodyOutcome& o : report.outcomes) {
-    const std::array<std::string, 3> judged = judged_cells(report, o.body);
+  for (const VerifiedOutline& v : design.outlines)
+    for (const mmc::BodyOutcome& o : design.outcomes)
+      if (o.body == v.body)
+        out.words += (out.words.empty() ? "" : " ") + outline_words(v, o.sharp.compliance) + ".";
+  for (const mmc::BodyOutcome& o : design.outcomes) {
+    const std::array<std::string, 3> outline = outline_cells(design, o.body);
     out.rows.push_back({o.body, io::to_text(o.compliance, 6), io::to_text(o.volume, 5),
                         io::to_text(o.sharp.compliance, 6), io::to_text(o.sharp.volume, 5),
-                        judged[0], judged[1], judged[2], io::to_text(o.uniform_compliance, 6),
+                        outline[0], outline[1], outline[2], io::to_text(o.uniform_compliance, 6),
                         io::to_text(o.sharp.compliance / o.uniform_compliance, 4),
                         o.sharp.connectivity.connected ? "yes" : "no", io::to_text(o.iterations),
                         io::to_text(o.evaluations), o.stop});
@@ -61,9 +59,9 @@ io::ReportSection results_section(const Scene& scene, const RunReport& report) {
     const std::string name = mmc::key_of(*row);
     const std::string words = std::string(row->words).append(" [").append(row->unit).append("]");
     out.rows[0].insert(out.rows[0].end(), {words, "sharp " + words});
-    for (size_t i = 0; i < report.outcomes.size(); ++i)
+    for (size_t i = 0; i < design.outcomes.size(); ++i)
       for (const mmc::Figures* figures :
-           {&report.outcomes[i].further, &report.outcomes[i].sharp.further})
+           {&design.outcomes[i].further, &design.outcomes[i].sharp.further})
         out.rows[i + 1].push_back(figures->contains(name) ? io::to_text(figures->at(name), 6) : "");
   }
   out.rows = turned(out.rows);
@@ -71,12 +69,12 @@ io::ReportSection results_section(const Scene& scene, const RunReport& report) {
 }
 
 /// Expectations that were missed come before everything else.
-io::ReportSection expect_section(const Scene& scene, const RunReport& report) {
+io::ReportSection expect_section(const std::vector<Expected>& expectations) {
   io::ReportSection out;
   out.heading = "Expected";
   out.rows.push_back({"", "number, what was found and what was expected"});
   for (const bool holds : {false, true})
-    for (const Expected& expected : judge_expectations(scene, report))
+    for (const Expected& expected : expectations)
       if (expected.holds == holds) out.rows.push_back({holds ? "met" : "MISSED", expected.words});
   return out;
 }
@@ -107,7 +105,7 @@ io::ReportSection design_section(const RunFolder::DesignPictures& pictures, cons
 }
 
 /// Cycles beside each other: did the motion get better, and not only the loads' compliance?
-io::ReportSection cycles_section(const Scene& scene, const RunReport& report) {
+io::ReportSection cycles_section(const Scene& scene, const DesignResult& design) {
   io::ReportSection out;
   out.heading = "Cycles";
   out.words = "Judged by the motion on " +
@@ -115,10 +113,10 @@ io::ReportSection cycles_section(const Scene& scene, const RunReport& report) {
               ".";
   out.rows.push_back({"cycle", "compliance of all [J]", "strain energy over time [J s]", "best"});
   std::vector<std::string>& header = out.rows.front();
-  for (const mmc::BodyVerdict& b : report.verdicts.front().bodies)
+  for (const mmc::BodyVerdict& b : design.verdicts.front().bodies)
     for (const char* what : {": compliance [J]", ": sharp compliance [J]", ": change of design"})
       header.push_back(b.body + what);
-  for (const mmc::CycleVerdict& v : report.verdicts) {
+  for (const mmc::CycleVerdict& v : design.verdicts) {
     std::vector<std::string>& row = out.rows.emplace_back();
     row = {io::to_text(v.cycle), io::to_text(v.objective, 6),
            io::to_text(v.strain_energy_integral, 6), v.best ? "yes" : ""};
@@ -130,27 +128,27 @@ io::ReportSection cycles_section(const Scene& scene, const RunReport& report) {
 }
 
 /// A drawing of every designed body in the run folder.
-void add_drawings(const RunReport& report, const RunFolder& folder, const std::string& name,
+void add_drawings(const DesignResult& design, const RunFolder& folder, const std::string& name,
                   io::ReportSection& out) {
-  for (const mmc::BodyProblem& problem : report.problems)
+  for (const mmc::BodyProblem& problem : design.problems)
     out.pictures.push_back(io::read_text(folder.path() + "/" + name +
-                                         (report.problems.size() > 1 ? "_" + problem.body : "") +
+                                         (design.problems.size() > 1 ? "_" + problem.body : "") +
                                          ".svg"));
 }
 
 /// Cycles of the motion itself.
-io::ReportSection corrections_section(const RunReport& report, const RunFolder& folder) {
+io::ReportSection corrections_section(const DesignResult& design, const RunFolder& folder) {
   io::ReportSection out;
   out.heading = "Cycles of the motion itself";
-  if (report.corrected) out.words = corrected_words(*report.corrected) + ".";
-  if (report.corrected && report.corrected->pays()) {
+  if (design.corrected) out.words = corrected_words(*design.corrected) + ".";
+  if (design.corrected && design.corrected->improves()) {
     out.words += " First the design for loads, then the corrected one.";
-    add_drawings(report, folder, "design_esl", out);
-    add_drawings(report, folder, "design", out);
+    add_drawings(design, folder, "design_esl", out);
+    add_drawings(design, folder, "design", out);
   }
   out.rows.push_back({"cycle", "J", "KKT residual", "trust region", "predicted fall", "actual fall",
                       "taken", "motions", "CPU [s]"});
-  for (const mmc::CorrectedCycle& c : report.corrections)
+  for (const mmc::CorrectedCycle& c : design.corrections)
     out.rows.push_back({io::to_text(c.cycle), io::to_text(c.value, 6), io::to_text(c.kkt, 3),
                         io::to_text(c.radius, 3), io::to_text(c.predicted, 3),
                         io::to_text(c.actual, 3), c.accepted ? "yes" : "", io::to_text(c.motions),
@@ -158,95 +156,115 @@ io::ReportSection corrections_section(const RunReport& report, const RunFolder& 
   return out;
 }
 
-io::ReportSection certificate_section(const RunReport& report, const RunFolder& folder) {
+io::ReportSection certificate_section(const DesignResult& design, const RunFolder& folder) {
   io::ReportSection out;
   out.heading = "Certificate of the motion";
   out.words =
-      certificate_words(*report.certificate) + ". Arrows: where the motion would move material.";
-  add_drawings(report, folder, "certificate", out);
+      certificate_words(*design.certificate) + ". Arrows: where the motion would move material.";
+  add_drawings(design, folder, "certificate", out);
   return out;
+}
+
+/// The report's sections in their order; pictures are written to plots/ as well.
+class Sections {
+ public:
+  Sections(bool plots, RunFolder& folder) : plots_(plots), folder_(folder) {}
+
+  void add(io::ReportSection section) { all_.push_back(std::move(section)); }
+  /// Adds a picture, unless it is empty or the case wants none.
+  void add_plot(const std::string& name, const std::string& heading, std::string svg) {
+    if (!plots_ || svg.empty()) return;
+    folder_.write_text("plots/" + name + ".svg", svg);
+    io::ReportSection section;
+    section.heading = heading;
+    section.pictures.push_back(std::move(svg));
+    add(std::move(section));
+  }
+  const std::vector<io::ReportSection>& all() const { return all_; }
+
+ private:
+  bool plots_;
+  RunFolder& folder_;
+  std::vector<io::ReportSection> all_;
+};
+
+io::ReportSection head_section(const RunResult& result) {
+  io::ReportSection out;
+  out.heading = "Run";
+  out.words = "Status: " + result.info.status +
+              (result.info.message.empty() ? "" : " - " + result.info.message);
+  if (result.motions.motion)
+    for (const std::string& each : result.motions.motion->remarks) out.words += ". Note: " + each;
+  for (const Warning& each : result.warnings) out.warnings.push_back(each.words);
+  return out;
+}
+
+void add_tables(const Scene& scene, const RunResult& result, const RunFolder& folder,
+                Sections& out) {
+  const DesignResult& design = result.design;
+  out.add(head_section(result));
+  if (!scene.expect.empty() && result.info.status.starts_with("done"))
+    out.add(expect_section(result.expectations));
+  if (scene.has_heat()) out.add(heat_section(scene));
+  if (!design.outcomes.empty()) out.add(results_section(scene, design));
+  if (!design.verdicts.empty()) out.add(cycles_section(scene, design));
+  if (!design.corrections.empty()) out.add(corrections_section(design, folder));
+  if (design.certificate) out.add(certificate_section(design, folder));
+}
+
+void add_design_pictures(const Scene& scene, const DesignResult& design, const RunFolder& folder,
+                         Sections& out) {
+  for (const RunFolder::DesignPictures& p : folder.design_pictures())
+    out.add(design_section(p, scene.output));
+  for (const VerifiedOutline& v : design.outlines)
+    if (scene.output.plots) out.add_plot("stress_" + v.body, "Stress of " + v.body, stress_plot(v));
+  for (const RunFolder::History& h : folder.histories())
+    out.add_plot("convergence_" + h.body, "Convergence of " + h.body, convergence_plot(h));
+}
+
+void add_motion_pictures(const Scene& scene, const MotionResults& motions, Sections& out) {
+  const MotionRecord& motion = *motions.motion;
+  const auto has = [&](ColumnGroup group) { return !motion.table.of_group(group).empty(); };
+  if (has(ColumnGroup::deflection))
+    out.add_plot("deflection", "Tip deflection", deflection_plot(motion, motions.uniform));
+  if (has(ColumnGroup::observed))
+    out.add_plot("observed", "Observed motion", observed_plot(motion));
+  if (has(ColumnGroup::measured))
+    out.add_plot("measured", "Measured quantities", measured_plot(motion));
+  if (scene.is_mechanism()) {
+    out.add_plot("inputs", "Inputs", inputs_plot(scene));
+    out.add_plot("mechanism", "Mechanism in motion", moments_plot(motion));
+    if (scene.trajectory)
+      out.add_plot("error_" + scene.trajectory->body, "Error of " + scene.trajectory->body,
+                   error_plot(scene, *motions.assessed(), motions.assessed_uniform()));
+  }
+  out.add_plot("joint_forces", "Joint forces", joint_forces_plot(scene, motion));
+  out.add_plot("energies", "Energies of the motion", energy_plot(scene, motion));
 }
 
 }  // namespace
 
-std::vector<std::pair<std::string, double>> phases_of(const RunReport& report,
-                                                      const RunFolder& folder) {
-  std::vector<std::pair<std::string, double>> out = folder.phases();
-  if (out.empty()) return out;
-  for (auto& [name, seconds] : out)
-    if (name == "outlines")
-      for (const mmc::BodyOutcome& o : report.outcomes) seconds += o.sharp.seconds_outlines;
-  double judge = 0;
-  for (const JudgedBody& j : report.judged) judge += j.seconds;
-  out.emplace_back("mending", report.seconds_mending);
-  out.emplace_back("motion", report.seconds_motion);
-  out.emplace_back("judge", judge);
-  out.emplace_back("verification", report.seconds_verification);
-  return out;
-}
-
-void write_report(const Scene& scene, const RunReport& report, RunFolder& folder) {
+void write_report(const Scene& scene, const RunResult& result, RunFolder& folder) {
   // "done" is written last: a run that says so has all its files.
-  const bool done = report.status.starts_with("done");
-  if (!done) folder.write_text("run.json", run_json(scene, report));
-  if (report.status == "running") return;
-  std::vector<io::ReportSection> sections;
-  io::ReportSection head;
-  head.heading = "Run";
-  head.words = "Status: " + report.status + (report.message.empty() ? "" : " - " + report.message);
-  if (report.motion)
-    for (const std::string& each : report.motion->remarks) head.words += ". Note: " + each;
-  for (const Warning& each : warnings_of(scene, report)) head.warnings.push_back(each.words);
-  sections.push_back(head);
-  if (!scene.expect.empty() && report.status.starts_with("done"))
-    sections.push_back(expect_section(scene, report));
-  if (scene.has_heat()) sections.push_back(heat_section(scene));
-  if (!report.outcomes.empty()) sections.push_back(results_section(scene, report));
-  if (!report.verdicts.empty()) sections.push_back(cycles_section(scene, report));
-  if (!report.corrections.empty()) sections.push_back(corrections_section(report, folder));
-  if (report.certificate) sections.push_back(certificate_section(report, folder));
-  const auto add = [&](const std::string& name, const std::string& heading, std::string svg) {
-    if (!scene.output.plots || svg.empty()) return;
-    folder.write_text("plots/" + name + ".svg", svg);
-    io::ReportSection section;
-    section.heading = heading;
-    section.pictures.push_back(std::move(svg));
-    sections.push_back(std::move(section));
-  };
-  for (const RunFolder::DesignPictures& p : folder.design_pictures())
-    sections.push_back(design_section(p, scene.output));
-  for (const JudgedBody& j : report.judged)
-    if (scene.output.plots) add("stress_" + j.body, "Stress of " + j.body, stress_plot(j));
-  for (const RunFolder::History& h : folder.histories())
-    add("convergence_" + h.body, "Convergence of " + h.body, convergence_plot(h));
-  if (report.motion) {
-    if (!report.motion->deflection.empty())
-      add("deflection", "Tip deflection", deflection_plot(*report.motion, report.uniform_motion));
-    if (!report.motion->observed.empty())
-      add("observed", "Observed motion", observed_plot(*report.motion));
-    if (!report.motion->measured.empty())
-      add("measured", "Measured quantities", measured_plot(*report.motion));
-    if (scene.is_mechanism()) {
-      add("inputs", "Inputs", inputs_plot(scene));
-      add("mechanism", "Mechanism in motion", moments_plot(*report.motion));
-      if (scene.trajectory)
-        add("error_" + scene.trajectory->body, "Error of " + scene.trajectory->body,
-            error_plot(scene, *report.judging(), report.judging_uniform()));
-    }
-    add("joint_forces", "Joint forces", joint_forces_plot(scene, *report.motion));
-    add("energies", "Energies of the motion", energy_plot(scene, *report.motion));
-  }
-  if (report.path) add("path", "Path of equilibria", path_plot(*report.path));
+  const std::string& status = result.info.status;
+  const bool done = status.starts_with("done");
+  if (!done) folder.write_text("run.json", run_json(scene, result));
+  if (status == "running") return;
+  Sections sections(scene.output.plots, folder);
+  add_tables(scene, result, folder, sections);
+  add_design_pictures(scene, result.design, folder, sections);
+  if (result.motions.motion) add_motion_pictures(scene, result.motions, sections);
+  if (result.path) sections.add_plot("path", "Path of equilibria", path_plot(*result.path));
   if (const auto shapes = folder.shapes(kShapes); !shapes.empty())
-    add("shapes", "Deformed shapes",
-        io::surfaces_svg("Deformed shapes, light: strain energy", shapes));
-  if (report.verified)
-    add("deflection_verified",
-        "Tip deflection on " +
-            (scene.verify ? scene.verify->words() : std::string("the finer mesh")),
-        deflection_plot(*report.verified, report.verified_uniform));
-  folder.write_text("report.html", io::report_html(scene.title, sections));
-  if (done) folder.write_text("run.json", run_json(scene, report));
+    sections.add_plot("shapes", "Deformed shapes",
+                      io::surfaces_svg("Deformed shapes, light: strain energy", shapes));
+  if (result.motions.verified)
+    sections.add_plot("deflection_verified",
+                      "Tip deflection on " +
+                          (scene.verify ? scene.verify->words() : std::string("the finer mesh")),
+                      deflection_plot(*result.motions.verified, result.motions.verified_uniform));
+  folder.write_text("report.html", io::report_html(scene.title, sections.all()));
+  if (done) folder.write_text("run.json", run_json(scene, result));
 }
 
 }  // namespace flexmorph::cases

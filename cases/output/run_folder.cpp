@@ -12,30 +12,6 @@ std::string numbered(const std::string& stem, int number, const std::string& end
   return stem + std::string(digits.size() < 5 ? 5 - digits.size() : 0, '0') + digits + ending;
 }
 
-const std::vector<double>* MotionRecord::column(const std::string& name) const {
-  for (const auto* columns : {&observed, &measured, &mechanism, &written})
-    for (const Column& column : *columns)
-      if (column.name == name) return &column.values;
-  return nullptr;
-}
-
-const std::vector<double>* PathRecord::column(const std::string& name) const {
-  for (const auto* columns : {&observed, &measured})
-    for (const Column& column : *columns)
-      if (column.name == name) return &column.values;
-  return nullptr;
-}
-
-void remember(Memory& memory, Column& column) { memory(column.name, column.values); }
-
-double tip_deflection(const fem::Model& model, const fem::Growth& growth, const fem::State& x) {
-  const fem::Body& body = model.body(growth.body);
-  const fem::LineGrid& mesh = fem::grid_of(body);
-  const fem::FrameMotion hub = growth.hub.at(model, x);
-  const Vec2 tip = fem::point_motion(body, x, {mesh.line_m(mesh.n_m()).value, 0}).position;
-  return Vec2(-std::sin(hub.angle), std::cos(hub.angle)).dot(tip - hub.origin);
-}
-
 RunFolder::RunFolder(std::string path, const Scene& scene, bool beside, Begin begin)
     : folder_(std::move(path), begin),
       scene_(scene),
@@ -134,13 +110,12 @@ std::vector<std::string> RunFolder::frames() const {
   return out;
 }
 
-void RunFolder::add_surface_frame(const fem::Body& body, const fem::State& x, const Pose& pose,
-                                  double time, int part, double heating) {
-  const Surface surface = deformed_surface(*scene_.body(body.name).row, body, x, pose, heating);
+void RunFolder::add_surface_frame(const std::string& body, const Surface& surface, double time,
+                                  int part) {
   const io::Field points[] = {{"displacement", surface.displacement, surface.mesh.dimension}};
   std::vector<io::Field> cells = {{"strain_energy", surface.energy}};
   if (!surface.strain.empty()) cells.push_back({"elastic_strain", surface.strain, 3});
-  write_part(body.name, surface.mesh, std::move(cells), points, time, part);
+  write_part(body, surface.mesh, std::move(cells), points, time, part);
   if (part == 0 && surface.mesh.dimension == 3)
     shapes_.push_back(
         {(scene_.statics ? "step " : "t = ") + io::to_text(time, 4) + (scene_.statics ? "" : " s"),

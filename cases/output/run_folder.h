@@ -21,52 +21,6 @@
 
 namespace flexmorph::cases {
 
-/// A column of a table, one value per step.
-struct Column {
-  std::string name;
-  std::vector<double> values;
-};
-
-void remember(Memory& memory, Column& column);
-
-/// What a motion did: its table, and the numbers a report quotes.
-struct MotionRecord {
-  std::vector<std::string> bodies;   ///< whose deflections these are: those in hubs in the plane
-  std::vector<std::string> growing;  ///< whose lengths are in the table
-  std::vector<double> time, kinetic, strain, potential, defect;
-  std::vector<std::vector<double>> deflection;  ///< per body [m]
-  std::vector<double> amplitude;                ///< largest |tip deflection| per body [m]
-  double strain_integral = 0;                   ///< ∫ U dt of the whole model [J s]
-  std::vector<Column> observed;         ///< positions of points, and free lines' coordinates [m]
-  std::vector<Column> measured;         ///< see BodyMeasures
-  std::vector<Column> mechanism;        ///< see MechanismColumns
-  std::vector<Column> written;          ///< by terms (fem::TermRow::columns) [J]
-  std::vector<Column> powers;           ///< that enter a mechanism, where the balance is kept [W]
-  std::vector<io::PlaneFrame> moments;  ///< pictures of a mechanism
-  std::vector<std::string> remarks;     ///< on the start, where it is not as the case says
-  fem::MotionResult result;
-
-  /// The values of a column of `observed`, `measured`, `mechanism` or `written`; null where there
-  /// is none.
-  const std::vector<double>* column(const std::string& name) const;
-};
-
-/// The path of a [static] analysis.
-struct PathRecord {
-  std::vector<double> factor, strain;  ///< load factor [-], strain energy [J]
-  std::vector<double> arc;             ///< length of the path in scaled displacements
-  std::vector<int> iterations;         ///< of Newton's method
-  std::vector<Column> observed;        ///< displacements of points [m]
-  std::vector<Column> measured;        ///< see BodyMeasures
-
-  /// The values of a column of `observed` or `measured`; null where there is none.
-  const std::vector<double>* column(const std::string& name) const;
-  fem::StaticResult result;
-};
-
-/// Tip deflection: coordinate across the hub's axis of the middle of the free end [m].
-double tip_deflection(const fem::Model& model, const fem::Growth& growth, const fem::State& x);
-
 /// "frame_00012.vti".
 std::string numbered(const std::string& stem, int number, const std::string& ending);
 
@@ -120,9 +74,8 @@ class RunFolder {
   void add_motion_frame(const std::string& body, const DesignedSurface& surface, double time,
                         int part);
   /// The deformed mid-surface of a body without a design, with displacements and strain energy per
-  /// area, a beam with its elastic strain (`heating`: see deformed_surface()):
-  void add_surface_frame(const fem::Body& body, const fem::State& x, const Pose& pose, double time,
-                         int part, double heating = 1);
+  /// area, a beam with its elastic strain:
+  void add_surface_frame(const std::string& body, const Surface& surface, double time, int part);
   /// What does not deform: rigid bodies, hubs, point masses.
   void add_rigid_frame(const std::string& name, const io::QuadMesh& mesh, double time, int part);
 

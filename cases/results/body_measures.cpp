@@ -71,6 +71,15 @@ std::pair<Vec2, double> second_moment(const fem::Body& body,
 
 }  // namespace
 
+std::vector<ColumnInfo> BodyMeasures::columns(const Scene& scene) {
+  std::vector<ColumnInfo> out;
+  for (const Measure& measure : scene.measures)
+    for (const std::string& quantity : measure.quantities)
+      for (const MeasuredColumn& c : columns_of_quantity(quantity))
+        out.push_back({measure.body + "." + c.name, c.unit, c.meaning, ColumnGroup::measured});
+  return out;
+}
+
 BodyMeasures::BodyMeasures(const Scene& scene, const fem::Model& model, const fem::State& start) {
   for (const Measure& measure : scene.measures) {
     const Body& body = scene.body(measure.body);
@@ -92,52 +101,66 @@ BodyMeasures::BodyMeasures(const Scene& scene, const fem::Model& model, const fe
       m.arm = place(built, model.reference(), m.material[2]) - center;
       m.polar = polar;
     }
-    for (const std::string& name : measured_columns(measure)) columns_.push_back({name, {}});
     bodies_.push_back(std::move(m));
   }
 }
 
-void BodyMeasures::add(const fem::Model& model, const fem::State& x, double heating) {
-  next_ = 0;
-  for (const Measured& m : bodies_)
-    for (const std::string& quantity : m.measure->quantities)
-      put_quantity(m, quantity, model.bodies()[m.body], x, heating);
-}
+namespace {
 
-void BodyMeasures::put_quantity(const Measured& m, const std::string& quantity,
-                                const fem::Body& body, const fem::State& x, double heating) {
-  const fem::Motion rise = body.heat ? body.heat->temperature(x.t) : fem::Motion{0, 0, 0};
-  const double a = body.heat ? body.heat->expansion * heating * rise.value : 0;
+/// A state of a measured body: its temperature rise, and the elongation αΔT that it causes.
+struct HeatedState {
+  const fem::Body& body;
+  const fem::State& x;
+  double rise, elongation;
+};
+
+/// Values of the quantities that do not depend on the closed form of a free body.
+void append_quantity(const BodyMeasures::Measured& m, const std::string& quantity,
+                     const HeatedState& at, std::vector<double>& row) {
+  const fem::Body& body = at.body;
+  const fem::State& x = at.x;
   if (quantity == "temperature") {
-    put(heating * rise.value);
+    row.push_back(at.rise);
   } else if (quantity == "max_elastic_strain") {
-    put(largest_strain(body, x, 1 + a, m.tables));
+    row.push_back(largest_strain(body, x, 1 + at.elongation, m.tables));
   } else if (quantity == "midpoint_deflection") {
-    put(left_of(place(body, x, m.material[0]), place(body, x, m.material[1]),
-                place(body, x, m.material[2])) -
-        m.sag);
+    row.push_back(left_of(place(body, x, m.material[0]), place(body, x, m.material[1]),
+                          place(body, x, m.material[2])) -
+                  m.sag);
   } else if (quantity == "end_displacements") {
     for (const size_t i : {0, 2}) {
       const Vec2 u = place(body, x, m.material[i]) - m.start[i];
-      put(u.x());
-      put(u.y());
+      row.insert(row.end(), {u.x(), u.y()});
     }
   } else if (quantity == "end_velocity") {
     const Vec2 v = fem::point_motion(body, x, m.material[2]).velocity;
-    put(v.x());
-    put(v.y());
+    row.insert(row.end(), {v.x(), v.y()});
   } else if (quantity == "end_slopes") {
     fem::ShapeTable t;
     const int e = body.element->locate(m.material[2], fem::Tabulate::gradient, t);
     const MatrixXd q = fem::rows_of(body, x.q)(body.element->vectors(e), Eigen::all);
-    put((t.N_m * q).norm());
-    put((t.N_n * q).norm());
-  } else {
-    const double rate = body.heat->expansion * rise.rate;
-    put(a * m.arm.x());
-    put(a * m.arm.y());
-    put(0.5 * rate * rate * m.polar);
+    row.insert(row.end(), {(t.N_m * q).norm(), (t.N_n * q).norm()});
   }
+}
+
+}  // namespace
+
+void BodyMeasures::append(const fem::Model& model, const fem::State& x, double heating,
+                          std::vector<double>& row) const {
+  const size_t first = row.size();
+  for (const Measured& m : bodies_) {
+    const fem::Body& body = model.bodies()[m.body];
+    const fem::Motion rise = body.heat ? body.heat->temperature(x.t) : fem::Motion{0, 0, 0};
+    const double elongation = body.heat ? body.heat->expansion * heating * rise.value : 0;
+    for (const std::string& quantity : m.measure->quantities) {
+      append_quantity(m, quantity, {body, x, heating * rise.value, elongation}, row);
+      if (quantity != "free_expansion") continue;
+      const double rate = body.heat->expansion * rise.rate;
+      row.insert(row.end(),
+                 {elongation * m.arm.x(), elongation * m.arm.y(), 0.5 * rate * rate * m.polar});
+    }
+  }
+  for (size_t i = first; i < row.size(); ++i) row[i] += 0.0;  // no "-0"
 }
 
 }  // namespace flexmorph::cases

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "cases/results/limit_points.h"
 #include "cases/results/quantities.h"
+#include "cases/results/schema.h"
 #include "io/tables.h"
 
 namespace flexmorph::cases {
@@ -13,44 +13,22 @@ namespace {
 
 const std::string kLargest = ".largest", kLimit = "limit_load_";
 
-/// None where outlines could not be united.
-Features widths_of(const mmc::BodyOutcome& o) { return o.sharp.features.value_or(Features{0, 0}); }
+const std::string kAmplitude = "amplitude", kMotionRatio = "motion_ratio";
 
-/// Figures of the first design of a run.
-const std::vector<std::pair<std::string, std::function<double(const mmc::BodyOutcome&)>>> kFigures =
-    {
-        {"compliance", [](const mmc::BodyOutcome& o) { return o.compliance; }},
-        {"volume", [](const mmc::BodyOutcome& o) { return o.volume; }},
-        {"sharp_compliance", [](const mmc::BodyOutcome& o) { return o.sharp.compliance; }},
-        {"sharp_volume", [](const mmc::BodyOutcome& o) { return o.sharp.volume; }},
-        {"compliance_ratio",
-         [](const mmc::BodyOutcome& o) { return o.sharp.compliance / o.uniform_compliance; }},
-        {"sharp_ratio",
-         [](const mmc::BodyOutcome& o) { return o.sharp.compliance / o.compliance; }},
-        {"min_feature", [](const mmc::BodyOutcome& o) { return widths_of(o).solid; }},
-        {"min_gap", [](const mmc::BodyOutcome& o) { return widths_of(o).gap; }},
-        {"islands", [](const mmc::BodyOutcome& o) { return 1.0 * o.sharp.connectivity.islands; }},
-};
-const std::string kAmplitude = "amplitude", kDefect = "energy.defect",
-                  kMotionRatio = "motion_ratio";
-
-/// Figures of what else its goal speaks of.
-std::vector<std::pair<const mmc::Figures*, std::string>> further_of(const mmc::BodyOutcome& o) {
-  return {{&o.further, ""}, {&o.sharp.further, "sharp_"}};
+/// The number of a value; nothing where it has none.
+std::optional<double> number_of(const Value& value) {
+  if (const auto* number = std::get_if<double>(&value)) return *number;
+  if (const auto* number = std::get_if<int>(&value)) return *number;
+  if (std::holds_alternative<std::nullptr_t>(value)) return 0;  // outlines could not be united
+  return {};
 }
 
-/// A column of motion.csv or path.csv; null where there is none.
-const std::vector<double>* column_of(const MotionRecord& motion, const std::string& name) {
-  if (name == "energy.kinetic") return &motion.kinetic;
-  if (name == "energy.strain") return &motion.strain;
-  if (name == "energy.potential") return &motion.potential;
-  if (name == "energy.defect") return &motion.defect;
-  for (size_t i = 0; i < motion.bodies.size(); ++i)
-    if (name == motion.bodies[i] + ".tip_deflection") return &motion.deflection[i];
-  return motion.column(name);
-}
-const std::vector<double>* column_of(const PathRecord& path, const std::string& name) {
-  return name == "energy.strain" ? &path.strain : path.column(name);
+/// Quantities of designs that are numbers and can be expected.
+bool can_be_expected(const Quantity<mmc::BodyOutcome>& q) {
+  static const std::string kNames[] = {"compliance",   "volume",      "sharp_compliance",
+                                       "sharp_volume", "islands",     "compliance_ratio",
+                                       "sharp_ratio",  "min_feature", "min_gap"};
+  return std::find(std::begin(kNames), std::end(kNames), q.name) != std::end(kNames);
 }
 
 /// The number of a limit load of a path, from 1 on; 0 for other names.
@@ -62,44 +40,53 @@ size_t limit_number(const std::string& name) {
 }
 
 std::optional<double> limit_of(const PathRecord& path, size_t number) {
-  const std::vector<double> all = limit_loads(path.arc, path.factor);
+  const std::vector<double> all = limit_loads(path.arc, path.table.at(kFactorColumn));
   return number <= all.size() ? std::optional<double>(all[number - 1]) : std::nullopt;
 }
 
 /// The value of a column at the end, or with "<column>.largest" its largest absolute value.
-template <class Record>
-std::optional<double> value_of(const Record& record, const std::string& name) {
-  if (const std::vector<double>* values = column_of(record, name))
+std::optional<double> value_of(const Series& table, const std::string& name) {
+  if (const std::vector<double>* values = table.find(name))
     return values->empty() ? std::optional<double>() : values->back();
   if (!name.ends_with(kLargest)) return {};
-  const std::vector<double>* values =
-      column_of(record, name.substr(0, name.size() - kLargest.size()));
+  const std::vector<double>* values = table.find(name.substr(0, name.size() - kLargest.size()));
   if (!values || values->empty()) return {};
-  double largest = 0;
-  for (const double v : *values) largest = std::max(largest, std::abs(v));
-  return largest;
+  return largest_size(*values);
 }
 
-std::optional<double> find(const RunReport& report, const std::string& name) {
-  if (!report.outcomes.empty())
-    for (const auto& [figure, value] : kFigures)
-      if (figure == name) return value(report.outcomes.front());
-  if (!report.outcomes.empty())
-    for (const auto& [figures, prefix] : further_of(report.outcomes.front()))
-      for (const auto& [figure, value] : *figures)
-        if (prefix + figure == name) return value;
-  // What a design is judged by; the balance of energy is kept by the motion on the scene's mesh.
-  if (const auto& judging = report.judging(); judging && !name.starts_with(kDefect)) {
-    if (name == kAmplitude && !judging->amplitude.empty()) return judging->amplitude[0];
-    if (const auto& uniform = report.judging_uniform(); uniform && name == kMotionRatio)
-      return judging->strain_integral / uniform->strain_integral;
-    if (const auto found = value_of(*judging, name)) return found;
+/// A number of the first design of a run.
+std::optional<double> design_value(const mmc::BodyOutcome& o, const std::string& name) {
+  for (const Quantity<mmc::BodyOutcome>& q : design_quantities())
+    if (name == q.name && can_be_expected(q)) return number_of(q.value(o));
+  for (const auto& [figures, prefix] :
+       {std::pair{&o.further, std::string()}, {&o.sharp.further, std::string("sharp_")}})
+    for (const auto& [figure, value] : *figures)
+      if (prefix + figure == name) return value;
+  return {};
+}
+
+/// A number of the motion that designs are assessed by; the energy balance is kept by the motion
+/// on the scene's mesh only.
+std::optional<double> motion_value(const MotionResults& motions, const std::string& name) {
+  if (const auto& assessed = motions.assessed(); assessed && !name.starts_with(kDefectColumn)) {
+    const std::vector<size_t> tips = assessed->table.of_group(ColumnGroup::deflection);
+    if (name == kAmplitude && !tips.empty())
+      return largest_size(assessed->table.values[tips.front()]);
+    if (const auto& uniform = motions.assessed_uniform(); uniform && name == kMotionRatio)
+      return assessed->strain_integral() / uniform->strain_integral();
+    if (const auto found = value_of(assessed->table, name)) return found;
   }
-  if (report.motion)
-    if (const auto found = value_of(*report.motion, name)) return found;
-  if (!report.path) return {};
-  if (const size_t number = limit_number(name)) return limit_of(*report.path, number);
-  return value_of(*report.path, name);
+  if (!motions.motion) return {};
+  return value_of(motions.motion->table, name);
+}
+
+std::optional<double> find(const RunResult& result, const std::string& name) {
+  if (!result.design.outcomes.empty())
+    if (const auto found = design_value(result.design.outcomes.front(), name)) return found;
+  if (const auto found = motion_value(result.motions, name)) return found;
+  if (!result.path) return {};
+  if (const size_t number = limit_number(name)) return limit_of(*result.path, number);
+  return value_of(result.path->table, name);
 }
 
 std::string words_of(const Expectation& wanted) {
@@ -114,12 +101,12 @@ std::string words_of(const Expectation& wanted) {
 
 }  // namespace
 
-std::vector<Expected> judge_expectations(const Scene& scene, const RunReport& report) {
+std::vector<Expected> compare_expectations(const Scene& scene, const RunResult& result) {
   std::vector<Expected> out;
   for (const auto& [name, wanted] : scene.expect) {
     Expected e;
     e.name = name;
-    e.found = find(report, name);
+    e.found = find(result, name);
     e.holds = e.found && wanted.holds(*e.found);
     e.words = name + " = " + (e.found ? io::to_text(*e.found, 9) : std::string("nothing")) +
               ": expected " + words_of(wanted);
@@ -133,7 +120,8 @@ void check_expectations(const Scene& scene) {
   std::vector<std::string> known;
   for (const Part part : parts_of(scene)) {
     if (part == Part::design) {
-      for (const auto& [figure, value] : kFigures) known.push_back(figure);
+      for (const Quantity<mmc::BodyOutcome>& q : design_quantities())
+        if (can_be_expected(q)) known.emplace_back(q.name);
       for (const mmc::ResponseRow* row : mmc::further_rows(scene.designs.front().goal))
         for (const char* prefix : {"", "sharp_"}) known.push_back(prefix + mmc::key_of(*row));
       if (!scene.domain) known.insert(known.end(), {kAmplitude, kMotionRatio});

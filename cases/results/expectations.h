@@ -1,26 +1,16 @@
 #pragma once
 
-#include <string>
-#include <vector>
+#include "cases/results/run_result.h"
+#include "cases/scene/scene.h"
 
-#include "cases/output/report.h"
-
-/// `[expect]` of a case against what its run came to.
+/// `[expect]` of a case and what its run found.
 namespace flexmorph::cases {
 
-/// One expectation and what was found.
-struct Expected {
-  std::string name;
-  std::optional<double> found;  ///< absent where the run did not get that far
-  bool holds = false;
-  std::string words;  ///< "volume = 0.52: expected at most 0.5001"
-};
+/// Compares the expectations of a case with a result, in the order of their names.
+std::vector<Expected> compare_expectations(const Scene& scene, const RunResult& result);
 
-/// In the order of the names.
-std::vector<Expected> judge_expectations(const Scene& scene, const RunReport& report);
-
-/// @throws Error (input), with place and the names there are, for an expectation of a name that no
-///         run of the scene can have.
+/// @throws Error (input), with place and the names that exist, for an expectation of a number that
+///         no run of the scene has
 void check_expectations(const Scene& scene);
 
 }  // namespace flexmorph::cases

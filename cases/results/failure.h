@@ -7,7 +7,7 @@
 
 namespace flexmorph::cases {
 
-/// Where a run was when it ended before its end: data, for who judges runs by it.
+/// Says where a run was when it failed.
 struct Failure {
   std::string phase;                    ///< "motion", "design", "verification ..."; empty: unknown
   std::string body;                     ///< that was designed
@@ -19,7 +19,7 @@ struct Failure {
   std::string cause;                    ///< the message
 };
 
-/// An error that knows where it happened.
+/// An error that says where the run was.
 class FailedRun : public Error {
  public:
   FailedRun(const Error& error, Failure where)
@@ -30,8 +30,8 @@ class FailedRun : public Error {
   Failure where_;
 };
 
-/// What is known of an exception.
-/// @param here  where the run is, for those that do not know
+/// Describes an exception.
+/// @param here  where the run is, for exceptions that do not know
 Failure failure_of(const std::exception& error, const Failure& here);
 
 }  // namespace flexmorph::cases

@@ -48,90 +48,152 @@ bool MechanismColumns::is_free(const Scene& scene) {
 }
 
 MechanismColumns::MechanismColumns(const Scene& scene) : scene_(scene), is_free_(is_free(scene)) {
-  const auto name = [&](const std::string& of, std::initializer_list<const char*> quantities) {
-    for (const char* quantity : quantities) columns_.push_back({of + "." + quantity, {}});
-  };
-  if (is_free_) name("momentum", {"x", "y", "angular"});
-  for (const RigidBody& body : scene.rigid_bodies) {
-    name(body.name, {"x", "y", "angle"});
+  if (is_free_)
+    describe("momentum",
+             {{"x", "kg m/s", "linear momentum of all bodies along x"},
+              {"y", "kg m/s", "linear momentum of all bodies along y"},
+              {"angular", "kg m^2/s", "angular momentum of all bodies about the origin"}});
+  describe_bodies();
+  describe_joints();
+  describe_hubs();
+  describe_springs();
+}
+
+void MechanismColumns::describe(const std::string& of,
+                                std::initializer_list<std::array<const char*, 3>> quantities) {
+  for (const auto& [quantity, unit, meaning] : quantities)
+    columns_.push_back({of + "." + quantity, unit, meaning, ColumnGroup::mechanism});
+}
+
+void MechanismColumns::describe_bodies() {
+  for (const RigidBody& body : scene_.rigid_bodies) {
+    describe(body.name, {{"x", "m", "position of the rigid body's point along x"},
+                         {"y", "m", "position of the rigid body's point along y"},
+                         {"angle", "rad", "angle of the rigid body's first axis"}});
     frames_.emplace_back().angle = body.angle;
   }
-  if (scene.trajectory) {
-    const Trajectory& t = *scene.trajectory;
-    name(t.body, {"delta_x", "delta_y", "delta_angle"});
-    path_ = {scene.motion_of(t.x), scene.motion_of(t.y), scene.motion_of(t.angle)};
-  }
-  for (const Joint& joint : scene.joints) {
+  if (!scene_.trajectory) return;
+  const Trajectory& t = *scene_.trajectory;
+  describe(t.body, {{"delta_x", "m", "position along x less that of the trajectory"},
+                    {"delta_y", "m", "position along y less that of the trajectory"},
+                    {"delta_angle", "rad", "angle less that of the trajectory"}});
+  path_ = {scene_.motion_of(t.x), scene_.motion_of(t.y), scene_.motion_of(t.angle)};
+}
+
+void MechanismColumns::describe_joints() {
+  for (const Joint& joint : scene_.joints) {
     if (!joint.named) continue;
     const bool driven = std::any_of(joint.laws.begin(), joint.laws.end(),
                                     [](const Law& law) { return !law.drive.empty(); });
-    const Anchor about = joint.row->on_one_body ? joint.a : completed(scene, joint.b, joint.a);
+    const Anchor about = joint.row->on_one_body ? joint.a : completed(scene_, joint.b, joint.a);
     joints_.push_back({&joint, about, driven});
-    name(joint.name, {"force_x", "force_y", "moment"});
-    if (driven) name(joint.name, {"power"});
+    describe(joint.name,
+             {{"force_x", "N", "force of the joint on its body b along x"},
+              {"force_y", "N", "force of the joint on its body b along y"},
+              {"moment", "N m", "moment of the joint on its body b about the joint's point"}});
+    if (driven)
+      describe(joint.name, {{"power", "W", "power that the drive puts into the mechanism"}});
   }
-  for (const Hub& hub : scene.hubs) {
-    WatchedHub& watched = hubs_.emplace_back();
-    for (const Joint& joint : scene.joints)
-      if (joint.holds_frame() && joint.to == hub.name) watched.joints.push_back(&joint);
-    if (!watched.joints.empty()) watched.drive = hub_drive(scene, *watched.joints[0]);
-    name(hub.name, {"force_x", "force_y", "moment", "power"});
-    if (scene.in_space()) name(hub.name, {"force_z", "moment_x", "moment_y"});
-  }
-  for (const Spring& spring : scene.springs)
-    if (spring.named) name(spring.name, {"force_x", "force_y", "moment", "energy", "power"});
 }
 
-void MechanismColumns::add(fem::Workspace& model, const fem::State& x) {
-  next_ = 0;
+void MechanismColumns::describe_hubs() {
+  for (const Hub& hub : scene_.hubs) {
+    WatchedHub& watched = hubs_.emplace_back();
+    for (const Joint& joint : scene_.joints)
+      if (joint.holds_frame() && joint.to == hub.name) watched.joints.push_back(&joint);
+    if (!watched.joints.empty()) watched.drive = hub_drive(scene_, *watched.joints[0]);
+    describe(hub.name, {{"force_x", "N", "force of the hub on what it holds along x"},
+                        {"force_y", "N", "force of the hub on what it holds along y"},
+                        {"moment", "N m", "moment of the hub on what it holds about its point"},
+                        {"power", "W", "power that the hub's drive puts into the mechanism"}});
+    if (scene_.in_space())
+      describe(hub.name, {{"force_z", "N", "force of the hub on what it holds along z"},
+                          {"moment_x", "N m", "moment of the hub on what it holds about x"},
+                          {"moment_y", "N m", "moment of the hub on what it holds about y"}});
+  }
+}
+
+void MechanismColumns::describe_springs() {
+  for (const Spring& spring : scene_.springs)
+    if (spring.named)
+      describe(spring.name,
+               {{"force_x", "N", "force of the spring on its body b along x"},
+                {"force_y", "N", "force of the spring on its body b along y"},
+                {"moment", "N m", "moment of the spring on its body b about its point"},
+                {"energy", "J", "energy that is stored in the spring"},
+                {"power", "W", "other power that enters through the spring"}});
+}
+
+namespace {
+
+void append_wrench(const fem::Wrench& wrench, std::vector<double>& row) {
+  row.insert(row.end(), {wrench.force.x(), wrench.force.y(), wrench.moment.z()});
+}
+
+void append_spring(const Scene& scene, const Spring& spring, fem::Workspace& model,
+                   const fem::State& x, std::vector<double>& row) {
+  const auto& all = model.links();
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const auto& link) { return link->name() == spring.name; });
+  VectorXd force = VectorXd::Zero(model.n_dofs());
+  (*found)->add_force(x, force);
+  force = -force;  // links stand on the left side
+  const Anchor at = completed(scene, spring.b, spring.a);
+  const Vec2 about = model.place_motion({at.body, at.point, 0, {}}, x).position;
+  const std::string& body = spring.b.on_ground() ? spring.a.body : spring.b.body;
+  append_wrench(fem::wrench_on(model.body(body), force, {about.x(), about.y(), 0}, x), row);
+  row.insert(row.end(), {(*found)->strain_energy(x), (*found)->power(x)});
+}
+
+}  // namespace
+
+void MechanismColumns::append(fem::Workspace& model, const fem::State& x,
+                              std::vector<double>& row) {
+  const size_t first = row.size();
   if (is_free_) {
     const fem::WholeMomentum all = fem::whole_momentum(model, x);
-    for (const double value : {all.linear.x(), all.linear.y(), all.angular}) put(value);
+    row.insert(row.end(), {all.linear.x(), all.linear.y(), all.angular});
   }
   for (size_t i = 0; i < frames_.size(); ++i) {
     const double before = frames_[i].angle;
     frames_[i] = fem::frame_of(model.body(scene_.rigid_bodies[i].name), x);
     frames_[i].angle = unwrapped(frames_[i].angle, before);
-    put(frames_[i].origin.x());
-    put(frames_[i].origin.y());
-    put(frames_[i].angle);
+    row.insert(row.end(), {frames_[i].origin.x(), frames_[i].origin.y(), frames_[i].angle});
   }
-  if (scene_.trajectory) add_trajectory(x.t);
-  for (const Watched& watched : joints_) add_joint(watched, model, x);
-  for (const WatchedHub& hub : hubs_) add_hub(hub, model, x);
+  if (scene_.trajectory) append_trajectory(x.t, row);
+  for (const Watched& watched : joints_) {
+    const Joint& joint = *watched.joint;
+    const size_t index = index_of(model, joint.name);
+    const Vec2 about =
+        model.place_motion({watched.about.body, watched.about.point, 0, {}}, x).position;
+    const std::string& body = joint.b.on_ground() ? joint.a.body : joint.b.body;
+    append_wrench(model.joint_wrench(index, body, {about.x(), about.y(), 0}, x), row);
+    if (watched.driven) row.push_back(drive_power(model, index, x));
+  }
+  for (const WatchedHub& hub : hubs_) append_hub(hub, model, x, row);
   for (const Spring& spring : scene_.springs)
-    if (spring.named) add_spring(spring, model, x);
+    if (spring.named) append_spring(scene_, spring, model, x, row);
+  for (size_t i = first; i < row.size(); ++i) row[i] += 0.0;  // no "-0"
 }
 
 void MechanismColumns::remember(Memory& memory) {
   for (fem::FrameMotion& frame : frames_) memory(frame.angle);  // all else is overwritten
-  memory(turns_, columns_);
+  memory(turns_);
 }
 
-void MechanismColumns::add_trajectory(double t) {
+void MechanismColumns::append_trajectory(double t, std::vector<double>& row) {
   size_t i = 0;
   while (scene_.rigid_bodies[i].name != scene_.trajectory->body) ++i;
   const fem::FrameMotion& frame = frames_[i];
   const double angle = path_[2](t).value;
   // Whole turns between the two are a matter of how the case counts them.
   if (!turns_) turns_ = kTurn * std::round((frame.angle - angle) / kTurn);
-  put(frame.origin.x() - path_[0](t).value);
-  put(frame.origin.y() - path_[1](t).value);
-  put(frame.angle - angle - *turns_);
+  row.insert(row.end(), {frame.origin.x() - path_[0](t).value, frame.origin.y() - path_[1](t).value,
+                         frame.angle - angle - *turns_});
 }
 
-void MechanismColumns::add_joint(const Watched& watched, fem::Workspace& model,
-                                 const fem::State& x) {
-  const Joint& joint = *watched.joint;
-  const size_t index = index_of(model, joint.name);
-  const Vec2 about =
-      model.place_motion({watched.about.body, watched.about.point, 0, {}}, x).position;
-  const std::string& body = joint.b.on_ground() ? joint.a.body : joint.b.body;
-  put(model.joint_wrench(index, body, {about.x(), about.y(), 0}, x));
-  if (watched.driven) put(drive_power(model, index, x));
-}
-
-void MechanismColumns::add_hub(const WatchedHub& hub, fem::Workspace& model, const fem::State& x) {
+void MechanismColumns::append_hub(const WatchedHub& hub, fem::Workspace& model, const fem::State& x,
+                                  std::vector<double>& row) const {
   fem::Wrench sum;
   double power = 0;
   for (const Joint* joint : hub.joints) {
@@ -142,26 +204,9 @@ void MechanismColumns::add_hub(const WatchedHub& hub, fem::Workspace& model, con
     sum.moment += wrench.moment;
     power += drive_power(model, index, x);
   }
-  put(sum);
-  put(power);
-  if (!scene_.in_space()) return;
-  for (const double value : {sum.force.z(), sum.moment.x(), sum.moment.y()}) put(value);
-}
-
-void MechanismColumns::add_spring(const Spring& spring, fem::Workspace& model,
-                                  const fem::State& x) {
-  const auto& all = model.links();
-  const auto found = std::find_if(all.begin(), all.end(),
-                                  [&](const auto& link) { return link->name() == spring.name; });
-  VectorXd force = VectorXd::Zero(model.n_dofs());
-  (*found)->add_force(x, force);
-  force = -force;  // links stand on the left side
-  const Anchor at = completed(scene_, spring.b, spring.a);
-  const Vec2 about = model.place_motion({at.body, at.point, 0, {}}, x).position;
-  const std::string& body = spring.b.on_ground() ? spring.a.body : spring.b.body;
-  put(fem::wrench_on(model.body(body), force, {about.x(), about.y(), 0}, x));
-  put((*found)->strain_energy(x));
-  put((*found)->power(x));
+  append_wrench(sum, row);
+  row.push_back(power);
+  if (scene_.in_space()) row.insert(row.end(), {sum.force.z(), sum.moment.x(), sum.moment.y()});
 }
 
 }  // namespace flexmorph::cases

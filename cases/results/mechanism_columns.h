@@ -1,41 +1,33 @@
 #pragma once
 
+#include <array>
 #include <optional>
+#include <string>
+#include <vector>
 
-#include "cases/output/run_folder.h"
+#include "cases/assembly/build.h"
+#include "cases/results/series.h"
 
 namespace flexmorph::cases {
 
-/// What the table of a motion says of a mechanism, step by step, in this order:
-///
-/// where nothing holds   momentum.x, .y [kg m/s], momentum.angular [kg m²/s] about the origin: of
-/// all the bodies            that moves (see is_free()) every rigid body      <name>.x, .y [m],
-/// .angle [rad]: its point and first axis; the angle goes
-///                       on through half turns, from the one of the case
-/// with a trajectory     <body>.delta_x, .delta_y [m], .delta_angle [rad]: where its body is, less
-///                       where it should be
-/// every named joint     <joint>.force_x, .force_y [N], .moment [N m]: what it does to its body b,
-///                       or to a where b is the ground; the moment about the joint's point (that
-///                       of b, the driven one of point_drive)
-/// the driven ones       <joint>.power [W]: λ · ∂Φ/∂t, what the drive puts into the mechanism
-/// every hub             <hub>.force_x, .force_y [N], .moment [N m]: what it does to all that it
-///                       holds, about its own point, and .power [W], what its drive puts in
-/// every named spring    <spring>.force_x, .force_y, .moment as of a joint, .energy [J]: stored in
-///                       it, and .power [W]: what else enters through it, negative in a damper
-///
-/// Other scenes without rigid bodies, hubs and named joints and springs have none of these.
+/// Computes the columns of a motion's table that describe a mechanism; columns() says what each of
+/// them holds. Moments of joints are about the joint's point: that of body b, the driven one of
+/// point_drive; where b is the ground, the joint acts on its body a. Powers of drives are λ ·
+/// ∂Φ/∂t.
 class MechanismColumns {
  public:
-  /// Do all its bodies live in the plane, of which none is held by the ground or a hub? What they
-  /// do to each other keeps their momentum then.
+  /// Tells whether all bodies move in the plane and none is held by the ground or a hub: forces
+  /// between bodies conserve their total momentum then.
   static bool is_free(const Scene& scene);
 
   explicit MechanismColumns(const Scene& scene);
 
-  /// The next row. @param x  λ belongs to it
-  void add(fem::Workspace& model, const fem::State& x);
-  const std::vector<Column>& columns() const { return columns_; }
-  std::vector<Column> take() { return std::move(columns_); }
+  /// Describes the values in the order of append().
+  const std::vector<ColumnInfo>& columns() const { return columns_; }
+  /// Appends the values of a state to a row.
+  /// @param x  state with the multipliers λ that belong to it
+  void append(fem::Workspace& model, const fem::State& x, std::vector<double>& row);
+  /// Saves and restores the angles, which go on through half turns.
   void remember(Memory& memory);
 
  private:
@@ -52,14 +44,16 @@ class MechanismColumns {
     std::vector<const Joint*> joints;
   };
 
-  void add_trajectory(double t);
-  void add_joint(const Watched& watched, fem::Workspace& model, const fem::State& x);
-  void add_hub(const WatchedHub& hub, fem::Workspace& model, const fem::State& x);
-  void add_spring(const Spring& spring, fem::Workspace& model, const fem::State& x);
-  void put(const fem::Wrench& wrench) {
-    for (const double value : {wrench.force.x(), wrench.force.y(), wrench.moment.z()}) put(value);
-  }
-  void put(double value) { columns_[next_++].values.push_back(value + 0.0); }  // no "-0"
+  void describe_bodies();
+  void describe_joints();
+  void describe_hubs();
+  void describe_springs();
+  /// Adds descriptions of columns "<of>.<quantity>".
+  void describe(const std::string& of,
+                std::initializer_list<std::array<const char*, 3>> quantities);
+  void append_trajectory(double t, std::vector<double>& row);
+  void append_hub(const WatchedHub& hub, fem::Workspace& model, const fem::State& x,
+                  std::vector<double>& row) const;
 
   const Scene& scene_;
   bool is_free_;
@@ -68,8 +62,7 @@ class MechanismColumns {
   std::array<std::function<fem::Motion(double)>, 3> path_;
   std::vector<Watched> joints_;
   std::vector<WatchedHub> hubs_;
-  std::vector<Column> columns_;
-  size_t next_ = 0;
+  std::vector<ColumnInfo> columns_;
 };
 
 }  // namespace flexmorph::cases

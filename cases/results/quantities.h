@@ -20,9 +20,6 @@ std::vector<Part> parts_of(const Scene& scene);
 /// designs. Numbers of run.json ("motion.energy_defect") come on top of them.
 std::vector<std::string> candidates(const Scene& scene, Part part);
 
-/// Columns of motion.csv that the terms of its bodies write, each once.
-std::vector<std::string> columns_of_terms(const Scene& scene);
-
 /// "there are: ..." for messages.
 std::string all_candidates(const Scene& scene);
 

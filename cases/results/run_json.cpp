@@ -1,13 +1,11 @@
 #include "cases/results/run_json.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "cases/output/plots/measured.h"
-#include "cases/output/plots/mechanism.h"
-#include "cases/results/expectations.h"
 #include "cases/results/limit_points.h"
-#include "cases/results/warnings.h"
+#include "cases/results/schema.h"
 #include "cases/scene/design/goal.h"
 #include "cases/scene/heat/heat.h"
 #include "cases/scene/version.h"
@@ -18,6 +16,20 @@ namespace flexmorph::cases {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/// Adds the quantities of a table that the source has.
+template <class Source>
+void add(Json& out, std::span<const Quantity<Source>> table, const Source& source) {
+  for (const Quantity<Source>& q : table)
+    if (const Value value = q.value(source); !std::holds_alternative<std::monostate>(value))
+      out[q.name] = json_of(value);
+}
+template <class Source>
+Json object_of(std::span<const Quantity<Source>> table, const Source& source) {
+  Json out = Json::object();
+  add(out, table, source);
+  return out;
+}
 
 /// Thinnest half-thickness of any component anywhere along its axis [m].
 double thinnest(const mmc::BodyProblem& problem) {
@@ -30,37 +42,6 @@ double thinnest(const mmc::BodyProblem& problem) {
   return out;
 }
 
-/// Where it was asked for, and the matrix is not singular to working precision.
-void set_condition(Json& out, const std::optional<double>& condition) {
-  if (condition && std::isfinite(*condition)) out["condition"] = *condition;
-}
-
-/// Numbers that JSON has none for: "infinite".
-Json finite_or_words(double value) { return std::isfinite(value) ? Json(value) : Json("infinite"); }
-
-Json clean_up_results(const mmc::CleanUp& c) {
-  Json out = Json::object();
-  out["min_feature_wanted"] = c.wanted.solid;
-  out["min_feature_before"] = finite_or_words(c.before.solid);
-  out["min_gap_wanted"] = c.wanted.gap;
-  out["min_gap_before"] = finite_or_words(c.before.gap);
-  out["pieces_before"] = c.pieces_before;
-  out["pieces"] = c.pieces_after;
-  out["compliance_before"] = c.compliance_before;
-  out["compliance_cost"] = c.compliance_after / c.compliance_before - 1;
-  out["patches"] = c.patches;
-  out["dropped"] = c.dropped;
-  out["idle"] = c.idle;
-  out["stubs"] = c.stubs;
-  out["joined"] = c.joined;
-  out["born"] = c.born;
-  out["rounds"] = c.rounds;
-  out["torn_gaps"] = c.torn;
-  out["reached"] = c.reached();
-  out["given_up"] = c.given_up;
-  return out;
-}
-
 /// What the column `scaled_objective` of history.csv holds: the objective as optimizers see it.
 std::string objective_words(const mmc::BodyProblem& p) {
   const mmc::ResponseRow& row = *p.goal.objective;
@@ -70,183 +51,107 @@ std::string objective_words(const mmc::BodyProblem& p) {
   return row.full ? of + ", divided by that of the full plate" : "natural logarithm of the " + of;
 }
 
-Json judged_results(const JudgedBody& judged, double sharp_compliance) {
-  Json out = Json::object();
-  if (!judged.verdict) {
-    out["not_judged"] = judged.why_not;
-    return out;
-  }
-  const judge::Judged& j = *judged.verdict;
-  out["compliance"] = finite_or_words(j.compliance);
-  out["volume"] = judged.volume;
-  out["islands"] = j.pieces - 1;
-  out["held_by_nothing"] = j.left_out;
-  out["triangles"] = static_cast<int>(j.mesh.triangles.size());
-  out["seconds"] = j.seconds;
-  if (!std::isfinite(j.compliance)) {
-    out["loose_load"] = j.loose_load;
-    return out;
-  }
-  out["error"] = j.error;
-  out["converged"] = j.converged;
-  out["cells_over_this"] = sharp_compliance / j.compliance - 1;
-  out["meshes"] = j.meshes;
-  out["largest_stress"] = j.largest_stress;
-  out["largest_stress_at"] = {j.largest_at.x(), j.largest_at.y()};
-  out["largest_stress_load"] = j.largest_load + 1;
-  if (!j.carried.empty()) {
+Json outline_results(const VerifiedOutline& outline, double crisp_compliance) {
+  Json out = object_of(outline_quantities(), outline);
+  if (!outline.verification || !std::isfinite(outline.verification->compliance)) return out;
+  const judge::Judged& v = *outline.verification;
+  out["cells_over_this"] = crisp_compliance / v.compliance - 1;
+  out["largest_stress_at"] = {v.largest_at.x(), v.largest_at.y()};
+  if (!v.carried.empty()) {
     Json exported = Json::object();  // the first load of design.inp
-    exported["load"] = j.carried.front().load + 1;
-    exported["compliance"] = j.carried.front().compliance;
-    exported["largest_stress"] = j.carried_stress.value;
-    exported["largest_stress_at"] = {j.carried_stress.at.x(), j.carried_stress.at.y()};
+    exported["load"] = v.carried.front().load + 1;
+    exported["compliance"] = v.carried.front().compliance;
+    exported["largest_stress"] = v.carried_stress.value;
+    exported["largest_stress_at"] = {v.carried_stress.at.x(), v.carried_stress.at.y()};
     out["exported"] = std::move(exported);
   }
   return out;
 }
 
-Json energy_results(const EnergyComparison& e) {
-  Json out = Json::object();
-  out["loads_compared"] = e.compared;
-  out["loads_apart"] = e.apart;
-  out["worst_static_over_motion"] = e.ratio;
-  out["worst_time"] = e.time;
-  return out;
+/// Largest tip deflections of a body: a link between two pins has none.
+void add_amplitudes(Json& out, const MotionResults& motions, const std::string& body) {
+  const auto amplitude = [&](const std::optional<MotionRecord>& motion) {
+    const std::optional<double> found = motion ? motion->amplitude(body) : std::nullopt;
+    return found ? Json(*found) : Json();
+  };
+  out["dynamic_amplitude"] = amplitude(motions.assessed());
+  out["uniform_dynamic_amplitude"] = amplitude(motions.assessed_uniform());
+  out["scene_mesh_amplitude"] = amplitude(motions.motion);
+  out["scene_mesh_uniform_amplitude"] = amplitude(motions.uniform);
 }
 
-Json body_results(const RunReport& report, size_t i) {
-  const mmc::BodyOutcome& o = report.outcomes[i];
+Json body_results(const RunResult& result, size_t i) {
+  const DesignResult& design = result.design;
+  const mmc::BodyOutcome& o = design.outcomes[i];
   Json out = Json::object();
   out["body"] = o.body;
-  out["compliance"] = o.compliance;
-  out["volume"] = o.volume;
-  out["sharp_compliance"] = o.sharp.compliance;
-  out["sharp_volume"] = o.sharp.volume;
+  add(out, design_quantities(), o);
   for (const auto& [name, value] : o.further) {
     out[name] = value;
     out["sharp_" + name] = o.sharp.further.at(name);
   }
-  if (i < report.judged.size())
-    out["body_fitted"] = judged_results(report.judged[i], o.sharp.compliance);
-  out["uniform_compliance"] = o.uniform_compliance;
-  out["connected"] = o.sharp.connectivity.connected;
-  out["islands"] = o.sharp.connectivity.islands;
-  const auto width = [&](double Features::*which) {
-    const bool there = o.sharp.features && std::isfinite((*o.sharp.features).*which);
-    return there ? Json((*o.sharp.features).*which) : Json();
-  };
-  out["min_feature"] = width(&Features::solid);
-  out["min_gap"] = width(&Features::gap);
-  if (o.clean_up) out["clean_up"] = clean_up_results(*o.clean_up);
-  out["thinnest_component"] = thinnest(report.problems[i]);
-  const auto amplitude = [&](const std::optional<MotionRecord>& motion) {
-    if (!motion) return Json();
-    const auto found = std::find(motion->bodies.begin(), motion->bodies.end(), o.body);
-    if (found == motion->bodies.end()) return Json();  // a link between two pins has no tip
-    return Json(motion->amplitude.at(static_cast<size_t>(found - motion->bodies.begin())));
-  };
-  out["dynamic_amplitude"] = amplitude(report.judging());
-  out["uniform_dynamic_amplitude"] = amplitude(report.judging_uniform());
-  out["scene_mesh_amplitude"] = amplitude(report.motion);
-  out["scene_mesh_uniform_amplitude"] = amplitude(report.uniform_motion);
-  for (const EnergyComparison& e : report.energies)
-    if (e.body == o.body) out["energies"] = energy_results(e);
-  out["scaled_objective"] = objective_words(report.problems[i]);
-  out["cycles"] = report.cycles;
-  out["iterations"] = o.iterations;
-  out["start"] = o.start;
-  out["state_solves"] = o.evaluations;
-  out["kkt"] = o.kkt;
-  out["factorizations"] = o.factorizations;
-  out["worst_compliance"] = o.worst_compliance;
-  set_condition(out, o.condition);
+  if (i < design.outlines.size())
+    out["body_fitted"] = outline_results(design.outlines[i], o.sharp.compliance);
+  if (o.clean_up) out["clean_up"] = object_of(clean_up_quantities(), *o.clean_up);
+  out["thinnest_component"] = thinnest(design.problems[i]);
+  add_amplitudes(out, result.motions, o.body);
+  for (const EnergyComparison& e : design.energies)
+    if (e.body == o.body) out["energies"] = object_of(energy_quantities(), e);
+  out["scaled_objective"] = objective_words(design.problems[i]);
+  out["cycles"] = design.cycles;
   Json active = Json::array();  // loads within 1 % of the worst, from 1
   for (size_t l = 0; l < o.load_compliances.size(); ++l)
     if (o.load_compliances[l] >= 0.99 * o.worst_compliance)
       active.push_back(static_cast<int>(l + 1));
   out["active_loads"] = std::move(active);
-  out["loads"] = o.n_loads;
-  out["right_hand_sides"] = o.n_right_hand_sides;
-  out["components"] = report.problems[i].design.n_components();
-  out["component_changes"] = static_cast<int>(o.events.size());
-  out["stop"] = o.stop;
+  out["components"] = design.problems[i].design.n_components();
   return out;
 }
 
-/// Last values of columns, by their names.
-Json last_values(const std::vector<Column>& columns) {
+/// Last values of the columns of a group, by their names.
+Json last_values(const Series& table, ColumnGroup group) {
   Json out = Json::object();
-  for (const Column& column : columns)
-    if (!column.values.empty()) out[column.name] = column.values.back();
+  for (const size_t c : table.of_group(group))
+    if (!table.values[c].empty()) out[table.columns[c].name] = table.values[c].back();
   return out;
+}
+
+/// Adds the last values of observed points and measured quantities, where there are such columns.
+void add_last_values(Json& out, const Series& table) {
+  if (!table.of_group(ColumnGroup::observed).empty())
+    out["observed"] = last_values(table, ColumnGroup::observed);
+  if (!table.of_group(ColumnGroup::measured).empty())
+    out["measured"] = last_values(table, ColumnGroup::measured);
 }
 
 Json path_results(const PathRecord& path) {
-  Json out = Json::object();
-  out["equilibria"] = static_cast<int>(path.factor.size());
-  if (!path.factor.empty()) out["load_factor"] = path.factor.back();
-  if (!path.strain.empty()) out["strain_energy"] = path.strain.back();
+  Json out = object_of(path_quantities(), path);
   int number = 0;
-  for (const double limit : limit_loads(path.arc, path.factor))
+  for (const double limit : limit_loads(path.arc, path.table.at(kFactorColumn)))
     out["limit_load_" + std::to_string(++number)] = limit;
-  out["completed"] = path.result.completed;
-  out["rejected_steps"] = path.result.rejected;
-  out["newton_iterations"] = path.result.iterations;
-  set_condition(out, path.result.condition);
-  out["observed"] = last_values(path.observed);
-  if (!path.measured.empty()) out["measured"] = last_values(path.measured);
+  add_last_values(out, path.table);
   return out;
 }
 
-/// How far the trajectory's body was from its path at worst.
-Json trajectory_errors(const Scene& scene, const RunReport& report) {
+/// Largest deviations of the trajectory's body from its path, and their times.
+Json trajectory_errors(const Scene& scene, const MotionResults& motions) {
   const std::string& body = scene.trajectory->body;
   Json out = Json::object();
   out["body"] = body;
-  const auto add = [&](const std::string& prefix, const MotionRecord& motion) {
+  const auto add_errors = [&](const std::string& prefix, const MotionRecord& motion) {
     for (const char* quantity : {"delta_x", "delta_y", "delta_angle"}) {
       const LargestError error = largest_error(motion, body, quantity);
       out[prefix + quantity] = error.size;
       out[prefix + quantity + "_time"] = error.time;
     }
   };
-  add("", *report.judging());
-  if (report.judging_uniform()) add("uniform_", *report.judging_uniform());
-  if (report.verified) add("scene_mesh_", *report.motion);
+  add_errors("", *motions.assessed());
+  if (motions.assessed_uniform()) add_errors("uniform_", *motions.assessed_uniform());
+  if (motions.verified) add_errors("scene_mesh_", *motions.motion);
   return out;
 }
 
-Json motion_results(const Scene& scene, const RunReport& report) {
-  const MotionRecord& motion = *report.motion;
-  const fem::MotionResult& r = motion.result;
-  Json out = Json::object();
-  // Of final designs: what judges them, and what is like it.
-  if (!report.outcomes.empty()) {
-    out["judged_on"] = scene.verify && report.verified ? scene.verify->words() : "the scene's mesh";
-    out["strain_energy_integral"] = report.judging()->strain_integral;
-    if (report.judging_uniform())
-      out["uniform_strain_energy_integral"] = report.judging_uniform()->strain_integral;
-    if (report.verified) out["scene_mesh_strain_energy_integral"] = motion.strain_integral;
-  }
-  out["steps"] = r.counts.steps;
-  out["newton_iterations"] = r.counts.newton;
-  out["factorizations"] = r.counts.factorizations;
-  out["rejected_steps"] = r.counts.rejected;
-  if (r.counts.evaluations > 0) {
-    out["evaluations"] = r.counts.evaluations;
-    out["partitions"] = r.counts.partitions;
-  }
-  if (scene.time.tolerance) {
-    out["inaccurate_steps"] = r.counts.inaccurate;
-    out["smallest_step"] = r.smallest_step;
-  }
-  out["largest_step"] = r.largest_step;
-  out["energy_defect"] = r.energy_defect;
-  if (!motion.written.empty()) out["balance"] = last_values(motion.written);
-  out["constraint_drift"] = r.constraint_drift;
-  out["velocity_drift"] = r.velocity_drift;
-  out["smallest_area_ratio"] = r.smallest_area_ratio;
-  set_condition(out, r.condition);
+Json mesh_events(const fem::MotionResult& r) {
   Json events = Json::array();
   for (const fem::MeshEvent& e : r.events) {
     Json event = Json::object();
@@ -259,16 +164,37 @@ Json motion_results(const Scene& scene, const RunReport& report) {
     event["tip_jump"] = e.tip_jump;
     events.push_back(std::move(event));
   }
-  out["events"] = std::move(events);
-  if (!motion.observed.empty()) out["observed"] = last_values(motion.observed);
-  if (!motion.measured.empty()) out["measured"] = last_values(motion.measured);
-  if (scene.trajectory) out["platform_error"] = trajectory_errors(scene, report);
+  return events;
+}
+
+Json motion_results(const Scene& scene, const RunResult& result) {
+  const MotionResults& motions = result.motions;
+  const MotionRecord& motion = *motions.motion;
+  Json out = Json::object();
+  if (!result.design.outcomes.empty()) {
+    out["judged_on"] =
+        scene.verify && motions.verified ? scene.verify->words() : "the scene's mesh";
+    out["strain_energy_integral"] = motions.assessed()->strain_integral();
+    if (motions.assessed_uniform())
+      out["uniform_strain_energy_integral"] = motions.assessed_uniform()->strain_integral();
+    if (motions.verified) out["scene_mesh_strain_energy_integral"] = motion.strain_integral();
+  }
+  add(out, motion_quantities(), motion.result);
+  if (scene.time.tolerance) {
+    out["inaccurate_steps"] = motion.result.counts.inaccurate;
+    out["smallest_step"] = motion.result.smallest_step;
+  }
+  if (!motion.table.of_group(ColumnGroup::term).empty())
+    out["balance"] = last_values(motion.table, ColumnGroup::term);
+  out["events"] = mesh_events(motion.result);
+  add_last_values(out, motion.table);
+  if (scene.trajectory) out["platform_error"] = trajectory_errors(scene, motions);
   return out;
 }
 
-Json expectations(const Scene& scene, const RunReport& report) {
+Json expectations(const std::vector<Expected>& all) {
   Json out = Json::object();
-  for (const Expected& expected : judge_expectations(scene, report)) {
+  for (const Expected& expected : all) {
     Json entry = Json::object();
     entry["found"] = expected.found ? Json(*expected.found) : Json();
     entry["holds"] = expected.holds;
@@ -278,49 +204,14 @@ Json expectations(const Scene& scene, const RunReport& report) {
 }
 
 Json cycle_results(const mmc::CycleVerdict& v) {
-  Json out = Json::object();
-  out["cycle"] = v.cycle;
-  out["objective"] = v.objective;
+  Json out = object_of(cycle_quantities(), v);
   Json bodies = Json::array();
-  for (const mmc::BodyVerdict& b : v.bodies) {
-    Json body = Json::object();
-    body["body"] = b.body;
-    body["compliance"] = b.compliance;
-    body["sharp_compliance"] = b.sharp_compliance;
-    body["design_change"] = b.design_change;
-    bodies.push_back(std::move(body));
-  }
+  for (const mmc::BodyVerdict& b : v.bodies)
+    bodies.push_back({{"body", b.body},
+                      {"compliance", b.compliance},
+                      {"sharp_compliance", b.sharp_compliance},
+                      {"design_change", b.design_change}});
   out["bodies"] = std::move(bodies);
-  out["strain_energy_integral"] = v.strain_energy_integral;
-  out["best"] = v.best;
-  return out;
-}
-
-Json corrected_results(const mmc::CorrectedCycle& c) {
-  Json out = Json::object();
-  out["cycle"] = c.cycle;
-  out["objective"] = c.value;
-  out["kkt"] = c.kkt;
-  out["angle"] = c.angle;
-  out["radius"] = c.radius;
-  out["predicted"] = c.predicted;
-  out["actual"] = std::isfinite(c.actual) ? Json(c.actual) : Json();
-  out["accepted"] = c.accepted;
-  out["motions"] = c.motions;
-  out["seconds"] = c.seconds;
-  return out;
-}
-
-Json certificate_results(const mmc::MotionCertificate& c) {
-  Json out = Json::object();
-  out["objective"] = c.objective;
-  out["value"] = c.value;
-  out["sharp_value"] = c.sharp_value;
-  out["kkt"] = c.kkt;
-  out["angle"] = c.angle;
-  out["left"] = c.left;
-  out["move_limit"] = c.move_limit;
-  out["seconds"] = c.seconds;
   return out;
 }
 
@@ -340,12 +231,12 @@ Json heat_results(const Scene& scene) {
 }
 
 /// What bodies with one budget take of it, if there are such.
-std::optional<Json> shared_mass(const RunReport& report) {
+std::optional<Json> shared_mass(const DesignResult& design) {
   double used = 0, allowed = 0;
-  for (size_t i = 0; i < report.outcomes.size(); ++i) {
-    const mmc::BodyProblem& p = report.problems[i];
+  for (size_t i = 0; i < design.outcomes.size(); ++i) {
+    const mmc::BodyProblem& p = design.problems[i];
     if (!p.shares_mass) continue;
-    used += mmc::full_mass_of(p) * report.outcomes[i].volume;
+    used += mmc::full_mass_of(p) * design.outcomes[i].volume;
     allowed += mmc::full_mass_of(p) * mmc::allowed_volume(p.goal).value_or(1);
   }
   if (allowed == 0) return {};
@@ -372,13 +263,9 @@ Json failure_results(const Failure& f) {
   return out;
 }
 
-}  // namespace
-
-std::string certificate_json(const mmc::MotionCertificate& certificate) {
-  return certificate_results(certificate).dump();
-}
-
-std::string run_json(const Scene& scene, const RunReport& report) {
+/// Version, libraries, status and times of a run.
+Json info_results(const Scene& scene, const RunResult& result) {
+  const RunInfo& info = result.info;
   Json out = Json::object();
   out["case"] = scene.name;
   out["title"] = scene.title;
@@ -387,49 +274,57 @@ std::string run_json(const Scene& scene, const RunReport& report) {
   for (const auto& [name, version] : library_versions()) libraries[name] = version;
   out["libraries"] = std::move(libraries);
   out["blas_kernel"] = fem::blas_kernel();
-  out["threads"] = report.threads;
-  out["status"] = report.status;
-  if (!report.message.empty()) out["message"] = report.message;
-  if (report.failure) out["failure"] = failure_results(*report.failure);
-  out["seconds_wall"] = report.seconds_wall;
-  out["seconds_cpu"] = report.seconds_cpu;
-  if (!report.phases.empty()) {
+  out["threads"] = info.threads;
+  out["status"] = info.status;
+  if (!info.message.empty()) out["message"] = info.message;
+  if (result.failure) out["failure"] = failure_results(*result.failure);
+  out["seconds_wall"] = info.seconds_wall;
+  out["seconds_cpu"] = info.seconds_cpu;
+  if (!info.phases.empty()) {
     Json phases = Json::object();
-    for (const auto& [name, seconds] : report.phases) phases["seconds_" + name] = seconds;
+    for (const auto& [name, seconds] : info.phases) phases["seconds_" + name] = seconds;
     out["seconds_by_phase"] = std::move(phases);
   }
-  out["peak_memory_bytes"] = static_cast<long long>(report.peak_memory_bytes);
+  out["peak_memory_bytes"] = static_cast<long long>(info.peak_memory_bytes);
   Json warnings = Json::array();
-  for (const Warning& each : warnings_of(scene, report)) warnings.push_back(each.words);
+  for (const Warning& each : result.warnings) warnings.push_back(each.words);
   out["warnings"] = std::move(warnings);
-  if (report.motion && !report.motion->remarks.empty()) out["remarks"] = report.motion->remarks;
+  return out;
+}
+
+void add_designs(Json& out, const Scene& scene, const RunResult& result) {
+  const DesignResult& design = result.design;
   Json results = Json::array();
-  for (size_t i = 0; i < report.outcomes.size(); ++i) results.push_back(body_results(report, i));
+  for (size_t i = 0; i < design.outcomes.size(); ++i) results.push_back(body_results(result, i));
   out["results"] = std::move(results);
-  if (!report.outcomes.empty()) out["drawing_unit"] = scene.output.unit.name;
-  if (std::optional<Json> shared = shared_mass(report)) out["shared_mass"] = std::move(*shared);
-  if (!report.verdicts.empty()) {
-    Json cycles = Json::array();
-    for (const mmc::CycleVerdict& v : report.verdicts) cycles.push_back(cycle_results(v));
-    out["cycles"] = std::move(cycles);
-  }
-  if (!report.corrections.empty()) {
-    Json cycles = Json::array();
-    for (const mmc::CorrectedCycle& c : report.corrections) cycles.push_back(corrected_results(c));
-    out["corrected_cycles"] = std::move(cycles);
-  }
-  if (report.corrected) {
-    Json corrected = Json::object();
-    corrected["sharp_before"] = report.corrected->before;
-    corrected["sharp_after"] = report.corrected->after;
-    corrected["kept"] = report.corrected->pays();
-    out["corrected"] = std::move(corrected);
-  }
-  if (report.certificate) out["certificate"] = certificate_results(*report.certificate);
+  if (!design.outcomes.empty()) out["drawing_unit"] = scene.output.unit.name;
+  if (std::optional<Json> shared = shared_mass(design)) out["shared_mass"] = std::move(*shared);
+  for (const mmc::CycleVerdict& v : design.verdicts) out["cycles"].push_back(cycle_results(v));
+  for (const mmc::CorrectedCycle& c : design.corrections)
+    out["corrected_cycles"].push_back(object_of(corrected_cycle_quantities(), c));
+  if (design.corrected)
+    out["corrected"] = {{"sharp_before", design.corrected->before},
+                        {"sharp_after", design.corrected->after},
+                        {"kept", design.corrected->improves()}};
+  if (design.certificate)
+    out["certificate"] = object_of(certificate_quantities(), *design.certificate);
+}
+
+}  // namespace
+
+std::string certificate_json(const mmc::MotionCertificate& certificate) {
+  return object_of(certificate_quantities(), certificate).dump();
+}
+
+std::string run_json(const Scene& scene, const RunResult& result) {
+  Json out = info_results(scene, result);
+  const std::optional<MotionRecord>& motion = result.motions.motion;
+  if (motion && !motion->remarks.empty()) out["remarks"] = motion->remarks;
+  add_designs(out, scene, result);
   if (scene.has_heat()) out["heat"] = heat_results(scene);
-  if (report.motion) out["motion"] = motion_results(scene, report);
-  if (report.path) out["static"] = path_results(*report.path);
-  if (!scene.expect.empty()) out["expect"] = expectations(scene, report);
+  if (motion) out["motion"] = motion_results(scene, result);
+  if (result.path) out["static"] = path_results(*result.path);
+  if (!scene.expect.empty()) out["expect"] = expectations(result.expectations);
   return io::json_text(out);
 }
 

@@ -2,13 +2,14 @@
 
 #include <string>
 
-#include "cases/output/report.h"
+#include "cases/results/run_result.h"
+#include "cases/scene/scene.h"
 
 namespace flexmorph::cases {
 
-/// The text of run.json: what the run found, in numbers (cases/README.md, The run folder).
-std::string run_json(const Scene& scene, const RunReport& report);
-/// What stands in it under "certificate".
+/// Writes a result as the text of run.json (cases/README.md, The run folder).
+std::string run_json(const Scene& scene, const RunResult& result);
+/// Writes a certificate as the text that stands in run.json under "certificate".
 std::string certificate_json(const mmc::MotionCertificate& certificate);
 
 }  // namespace flexmorph::cases

@@ -46,9 +46,8 @@ void add_limits(const mmc::BodyProblem& p, const mmc::BodyOutcome& o, Warnings& 
 
 /// Is the balance of energy so bad that nobody should trust the motion?
 bool misses_energy(const Scene& scene, const MotionRecord& motion) {
-  double worst = 0;
-  for (const double defect : motion.defect) worst = std::max(worst, std::abs(defect));
-  return motion.result.energy_defect > kLargestDefect && worst > stress_round_off(scene);
+  return motion.result.energy_defect > kLargestDefect &&
+         largest_size(motion.table.at(kDefectColumn)) > stress_round_off(scene);
 }
 
 /// A design for a compliance that is worse than the same material spread evenly. (One that is
@@ -62,28 +61,29 @@ void add_worse(const mmc::BodyProblem& p, const mmc::BodyOutcome& o, Warnings& o
                  true});
 }
 
-/// What the judge of outlines has against a design.
-/// @param sharp  its compliance by cells
-void add_judged(const JudgedBody& judged, double sharp, Warnings& out) {
-  if (!judged.verdict) {
-    out.push_back({"body '" + judged.body + "': no body-fitted compliance: " + judged.why_not});
+/// Warns of what the verification found.
+/// @param sharp  compliance of the cells of the design [J]
+void add_verification(const VerifiedOutline& outline, double sharp, Warnings& out) {
+  if (!outline.verification) {
+    out.push_back({"body '" + outline.body + "': no body-fitted compliance: " + outline.why_not});
     return;
   }
-  const judge::Judged& j = *judged.verdict;
+  const judge::Judged& j = *outline.verification;
   if (!std::isfinite(j.compliance))
-    out.push_back({"body '" + judged.body + "': load '" + j.loose_load +
+    out.push_back({"body '" + outline.body + "': load '" + j.loose_load +
                    "' acts on material that nothing holds, or on none: the body-fitted compliance "
                    "is infinite"});
   else if (!j.converged)
-    out.push_back({"body '" + judged.body + "': the body-fitted compliance has an error of about " +
+    out.push_back({"body '" + outline.body +
+                   "': the body-fitted compliance has an error of about " +
                    io::to_text(100 * j.error, 2) + " %: its mesh reached its largest size"});
   const double apart = sharp / j.compliance - 1;
   if (std::isfinite(j.compliance) && std::abs(apart) > kCellsApart)
-    out.push_back({"body '" + judged.body + "': the cells of the design say a compliance " +
+    out.push_back({"body '" + outline.body + "': the cells of the design say a compliance " +
                    io::to_text(100 * std::abs(apart), 2) + " % " + (apart < 0 ? "below" : "above") +
                    " the body-fitted one"});
   if (j.left_out > 0)
-    out.push_back({"body '" + judged.body + "': " + std::to_string(j.left_out) + " of " +
+    out.push_back({"body '" + outline.body + "': " + std::to_string(j.left_out) + " of " +
                    std::to_string(j.pieces) + " pieces are held by nothing"});
 }
 
@@ -108,8 +108,8 @@ std::string not_mended(const mmc::BodyOutcome& o) {
                     : "more iterations may help");
 }
 
-void add_designs(const RunReport& report, Warnings& out) {
-  for (const mmc::BodyOutcome& o : report.outcomes) {
+void add_designs(const DesignResult& design, Warnings& out) {
+  for (const mmc::BodyOutcome& o : design.outcomes) {
     if (!o.sharp.connectivity.connected)
       out.push_back(
           {"body '" + o.body + "': no piece of material joins what is held and what is loaded",
@@ -125,16 +125,16 @@ void add_designs(const RunReport& report, Warnings& out) {
            " times the sharp one: edges of material hang on void of hardly any stiffness; "
            "a larger design.alpha helps"});
   }
-  for (const mmc::BodyProblem& p : report.problems)
-    for (const mmc::BodyOutcome& o : report.outcomes)
+  for (const mmc::BodyProblem& p : design.problems)
+    for (const mmc::BodyOutcome& o : design.outcomes)
       if (o.body == p.body) {
         add_limits(p, o, out);
         add_worse(p, o, out);
       }
-  for (const JudgedBody& judged : report.judged) {
-    for (const mmc::BodyOutcome& o : report.outcomes)
-      if (o.body == judged.body) add_judged(judged, o.sharp.compliance, out);
-    for (std::string& words : narrow_words(judged)) out.push_back({std::move(words)});
+  for (const VerifiedOutline& outline : design.outlines) {
+    for (const mmc::BodyOutcome& o : design.outcomes)
+      if (o.body == outline.body) add_verification(outline, o.sharp.compliance, out);
+    for (std::string& words : narrow_words(outline)) out.push_back({std::move(words)});
   }
 }
 
@@ -160,13 +160,13 @@ void add_cycles(const Cycle& cycle, std::span<const mmc::CycleVerdict> verdicts,
 }
 
 /// Designs whose static energies are far from those of a motion that is all that judges them.
-void add_energies(const RunReport& report, Warnings& out) {
-  for (const EnergyComparison& e : report.energies)
+void add_energies(const DesignResult& design, Warnings& out) {
+  for (const EnergyComparison& e : design.energies)
     if (e.apart > 0)
       out.push_back(
           {"body '" + e.body + "': at " + std::to_string(e.apart) + " of " +
            std::to_string(e.compared) + " loads the static energy of its cells is more than " +
-           io::to_text(100 * EnergyComparison::kApart, 2) +
+           io::to_text(100 * EnergyComparison::kTolerance, 2) +
            " % off the strain energy of its motion, at t = " + io::to_text(e.time, 4) + " s " +
            io::to_text(e.ratio, 3) +
            " times as much: elements of the motion bridge what is cut or thin, or deflections are "
@@ -218,19 +218,20 @@ void add_motion(const Scene& scene, const MotionRecord& motion, Warnings& out) {
 
 }  // namespace
 
-Warnings warnings_of(const Scene& scene, const RunReport& report) {
+Warnings warnings_of(const Scene& scene, const RunResult& result) {
   Warnings out;
-  add_designs(report, out);
-  add_cycles(scene.cycle, report.verdicts, out);
-  if (report.corrected && !report.corrected->pays())
+  const DesignResult& design = result.design;
+  add_designs(design, out);
+  add_cycles(scene.cycle, design.verdicts, out);
+  if (design.corrected && !design.corrected->improves())
     out.push_back({"corrected cycles did not pay on the cells of the case and were taken back: J " +
-                   io::to_text(report.corrected->after, 5) + " instead of " +
-                   io::to_text(report.corrected->before, 5) +
+                   io::to_text(design.corrected->after, 5) + " instead of " +
+                   io::to_text(design.corrected->before, 5) +
                    "; cycle.cell of the design itself sees what it sees"});
-  add_energies(report, out);
-  if (report.motion) add_motion(scene, *report.motion, out);
-  if (!report.lost_frames.empty()) out.push_back({report.lost_frames});
-  if (!report.missing_exports.empty()) out.push_back({report.missing_exports});
+  add_energies(design, out);
+  if (result.motions.motion) add_motion(scene, *result.motions.motion, out);
+  if (!result.info.lost_frames.empty()) out.push_back({result.info.lost_frames});
+  if (!result.info.missing_exports.empty()) out.push_back({result.info.missing_exports});
   return out;
 }
 

@@ -2,10 +2,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "cases/results/correction_messages.h"
 #include "cases/results/run_json.h"
 #include "cases/run/corrections.h"
 #include "cases/run/motions.h"
-#include "cases/run/run.h"
 #include "io/case_file.h"
 #include "io/case_parser.h"
 #include "io/files.h"
@@ -43,18 +43,17 @@ Scene finished_scene(const CertifyOptions& options) {
   return read_scene(io::CaseFile(kept, changes));
 }
 
-/// Loads of the motion with the designs as they are.
-std::vector<fem::EslSets> loads_of(const Scene& scene, const RunReport& report, RunFolder& folder,
-                                   Progress& progress) {
-  MotionWishes wishes;
-  for (const mmc::BodyProblem& p : report.problems)
-    wishes.factors.push_back(mmc::dynamic_factors(p, p.design.components()));
-  wishes.loads = true;
-  wishes.balance = false;
-  wishes.table = "motion_certified.csv";
-  wishes.way = way_of(progress, scene, wishes.phase);
-  progress.begin(wishes.phase);
-  return run_motion(scene, wishes, folder).loads;
+/// Computes the loads of the motion with the designs of these problems.
+std::vector<fem::EslSets> loads_of(const RunContext& run,
+                                   const std::vector<mmc::BodyProblem>& problems) {
+  MotionRequest request = resumable_request(run, "motion", "motion_certified.csv");
+  request.checkpoint.clear();
+  for (const mmc::BodyProblem& p : problems)
+    request.factors.push_back(mmc::dynamic_factors(p, p.design.components()));
+  request.loads = true;
+  request.balance = false;
+  run.progress.begin(request.phase);
+  return run_motion(run.scene, request, run.folder).loads;
 }
 
 }  // namespace
@@ -63,17 +62,16 @@ int certify_run(const CertifyOptions& options) {
   const Scene scene = finished_scene(options);
   RunFolder folder(options.directory, scene, false, RunFolder::Begin::go_on);
   Progress progress(options.quiet);
-  RunReport report;
-  report.problems = build_problems(scene);
-  const std::vector<fem::EslSets> loads = loads_of(scene, report, folder, progress);
-  certify_by_motion(
-      scene, *scene.certify, loads, [] { return true; }, folder, progress, report);
+  const RunContext run{scene, folder, progress, [] { return true; }};
+  const std::vector<mmc::BodyProblem> problems = build_problems(scene);
+  const mmc::MotionCertificate certificate =
+      certify_by_motion(run, *scene.certify, loads_of(run, problems), problems);
   const std::string path = folder.file("run.json");
-  nlohmann::ordered_json run = nlohmann::ordered_json::parse(io::read_text(path));
-  run["certificate"] = nlohmann::ordered_json::parse(certificate_json(*report.certificate));
-  io::write_file(path, io::json_text(run));
+  nlohmann::ordered_json results = nlohmann::ordered_json::parse(io::read_text(path));
+  results["certificate"] = nlohmann::ordered_json::parse(certificate_json(certificate));
+  io::write_file(path, io::json_text(results));
   folder.finish();
-  if (options.quiet) std::printf("%s\n", certificate_words(*report.certificate).c_str());
+  if (options.quiet) std::printf("%s\n", certificate_words(certificate).c_str());
   return 0;
 }
 

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "cases/assembly/scene_motion.h"
+#include "cases/results/correction_messages.h"
+#include "cases/run/motion_run.h"
 #include "io/files.h"
 #include "io/plots.h"
 #include "io/tables.h"
@@ -14,9 +15,7 @@
 namespace flexmorph::cases {
 namespace {
 
-double degrees(double angle) { return angle * 180 / std::numbers::pi; }
-
-/// Static problems of all designs under loads that they keep.
+/// The static problems of all designs under loads that do not change.
 class LoadsOfDesigns {
  public:
   explicit LoadsOfDesigns(std::vector<fem::EslSets> loads) : loads_(std::move(loads)) {}
@@ -38,8 +37,8 @@ class LoadsOfDesigns {
   std::vector<fem::EslSets> loads_;
 };
 
-/// Where the motion would move material: an arrow from the centre of every component, the longest
-/// of them a twentieth of the picture.
+/// Draws where the motion would move material: an arrow from the centre of every component, the
+/// longest of them a twentieth of the picture.
 std::string picture_of(const mmc::BodyProblem& problem,
                        const mmc::MotionCertificate::Body& certified) {
   const Grid& g = problem.grid;
@@ -94,39 +93,19 @@ void write_certificate(const Scene& scene, const mmc::MotionCertificate& certifi
 
 }  // namespace
 
-std::string certificate_words(const mmc::MotionCertificate& c) {
-  return c.objective + " " + io::to_text(c.value, 5) + " (sharp " + io::to_text(c.sharp_value, 5) +
-         "), KKT residual " + io::to_text(c.kkt, 3) + ", gradients of motion and loads " +
-         io::to_text(degrees(c.angle), 3) + " degrees apart, at most " +
-         io::to_text(100 * c.left, 3) + " % left within a move of " + io::to_text(c.move_limit, 3);
-}
-
-std::string corrected_words(const mmc::CorrectedCycle& c) {
-  std::string out = "cycle " + std::to_string(c.cycle) + " of the motion: J " +
-                    io::to_text(c.value, 6) + ", KKT residual " + io::to_text(c.kkt, 3);
-  if (c.cycle == 0)
-    return out + ", gradients of motion and loads " + io::to_text(degrees(c.angle), 3) +
-           " degrees apart";
-  if (c.predicted != 0)
-    out += ", within " + io::to_text(c.radius, 3) + " predicted " +
-           io::to_text(100 * c.predicted, 3) + " % less, found " + io::to_text(100 * c.actual, 3) +
-           " %";
-  return out + (c.accepted ? "" : ", not taken");
-}
-
 namespace {
 
-/// The loads of the motion with the designs of these problems, on their grids.
-LoadsOfDesigns loads_of(const Scene& scene, const std::vector<mmc::BodyProblem>& problems,
-                        const std::function<bool()>& go_on, RunFolder& folder) {
-  MotionWishes wishes;
+/// Computes the loads of the motion with the designs of these problems, on their grids.
+LoadsOfDesigns loads_of(const RunContext& run, const Scene& scene,
+                        const std::vector<mmc::BodyProblem>& problems) {
+  MotionRequest request;
   for (const mmc::BodyProblem& p : problems)
-    wishes.factors.push_back(mmc::dynamic_factors(p, p.design.components()));
-  wishes.loads = true;
-  wishes.balance = false;
-  wishes.go_on = go_on;
-  wishes.table = "motion_corrected.csv";
-  return LoadsOfDesigns(run_motion(scene, wishes, folder).loads);
+    request.factors.push_back(mmc::dynamic_factors(p, p.design.components()));
+  request.loads = true;
+  request.balance = false;
+  request.go_on = run.go_on;
+  request.table = "motion_corrected.csv";
+  return LoadsOfDesigns(run_motion(scene, request, run.folder).loads);
 }
 
 /// The scene with designs on cells of another size; their bands are as many of them.
@@ -149,35 +128,32 @@ void take_designs(const std::vector<mmc::BodyProblem>& from, std::vector<mmc::Bo
     to[k].design = to[k].design.without_symmetry().with(from[k].design.components());
 }
 
-/// J of the designs as their outlines are, on the cells of the case.
-double sharp_value(const Scene& scene, const std::vector<mmc::BodyProblem>& problems,
-                   const std::function<bool()>& go_on) {
-  SceneMotion motion(scene, {0, scene.time.step, 0}, go_on);
+/// J of the crisp outlines of the designs, on the cells of the case.
+double crisp_value(const RunContext& run, const std::vector<mmc::BodyProblem>& problems) {
+  SceneMotion motion(run.scene, {0, run.scene.time.step, 0}, run.go_on);
   return mmc::sharp_objective(problems, motion);
 }
 
-/// The cycles of one run that correct its designs, and whether they are kept.
+/// The cycles of a run that correct its designs.
 class Correcting {
  public:
-  Correcting(const Scene& scene, const std::function<bool()>& go_on, RunFolder& folder,
-             Progress& progress, RunReport& report)
-      : scene_(scene), go_on_(go_on), folder_(folder), progress_(progress), report_(report) {}
+  Correcting(const RunContext& run, DesignResult& design) : run_(run), design_(design) {}
 
   void go(std::vector<fem::EslSets>& loads) {
-    const std::vector<mmc::BodyProblem> plain = report_.problems;
-    for (const mmc::BodyProblem& problem : plain) folder_.keep_outline(problem, "design_esl");
+    const std::vector<mmc::BodyProblem> plain = design_.problems;
+    for (const mmc::BodyProblem& problem : plain) run_.folder.keep_outline(problem, "design_esl");
     correct();
-    if (report_.corrections.size() < 2) {  // nothing was corrected
-      report_.problems = plain;
+    if (design_.corrections.size() < 2) {  // nothing was corrected
+      design_.problems = plain;
       return;
     }
-    LoadsOfDesigns last = loads_of(scene_, report_.problems, go_on_, folder_);
+    LoadsOfDesigns last = loads_of(run_, run_.scene, design_.problems);
     std::vector<mmc::BodyOutcome> found = outcomes(last);
-    report_.corrected = {.before = sharp_value(scene_, plain, go_on_),
-                         .after = sharp_value(scene_, report_.problems, go_on_)};
-    progress_.say(corrected_words(*report_.corrected));
-    if (!report_.corrected->pays()) {
-      report_.problems = plain;
+    design_.corrected = {.before = crisp_value(run_, plain),
+                         .after = crisp_value(run_, design_.problems)};
+    run_.progress.say(corrected_words(*design_.corrected));
+    if (!design_.corrected->improves()) {
+      design_.problems = plain;
       return;
     }
     loads = std::move(last.sets());
@@ -185,99 +161,92 @@ class Correcting {
   }
 
  private:
-  /// The cycles; the designs of the report are then what they came to.
+  /// Runs the cycles; the designs of the result are then the corrected ones.
   void correct() {
-    const Scene coarse = with_cells(scene_, scene_.cycle.cell);
-    SceneMotion motion(coarse, {0, scene_.cycle.step, scene_.cycle.checkpoints}, go_on_);
+    const Scene& scene = run_.scene;
+    const Scene coarse = with_cells(scene, scene.cycle.cell);
+    SceneMotion motion(coarse, {0, scene.cycle.step, scene.cycle.checkpoints}, run_.go_on);
     std::vector<mmc::BodyProblem> problems = build_problems(coarse);
-    take_designs(report_.problems, problems);
+    take_designs(design_.problems, problems);
     std::optional<LoadsOfDesigns> current;
     const mmc::LoadsAt loads_at = [&] {
-      current.emplace(loads_of(coarse, problems, go_on_, folder_));
+      current.emplace(loads_of(run_, coarse, problems));
       return current->of(problems);
     };
     const mmc::SeeCycle see = [&](const mmc::CorrectedCycle& cycle) {
-      report_.corrections.push_back(cycle);
-      folder_.write_cycles(report_.verdicts, report_.corrections);
-      progress_.say(corrected_words(cycle));
-      return go_on_();
+      design_.corrections.push_back(cycle);
+      run_.folder.write_cycles(design_.verdicts, design_.corrections);
+      run_.progress.say(corrected_words(cycle));
+      return run_.go_on();
     };
-    mmc::correct_designs(problems, loads_at, motion, scene_.cycle.correction, see);
-    if (!go_on_()) throw Interrupted();
-    take_designs(problems, report_.problems);
+    mmc::correct_designs(problems, loads_at, motion, scene.cycle.correction, see);
+    if (!run_.go_on()) throw Interrupted();
+    take_designs(problems, design_.problems);
   }
 
   std::vector<mmc::BodyOutcome> outcomes(const LoadsOfDesigns& loads) {
-    const std::vector<std::unique_ptr<mmc::LoadResponse>> responses = loads.of(report_.problems);
+    const std::vector<std::unique_ptr<mmc::LoadResponse>> responses = loads.of(design_.problems);
     std::vector<mmc::LoadedBody> bodies;
     for (size_t k = 0; k < responses.size(); ++k)
-      bodies.push_back({report_.problems[k], *responses[k]});
-    std::vector<mmc::BodyOutcome> out = mmc::outcomes_of_corrected(bodies, go_on_);
-    if (!go_on_()) throw Interrupted();
+      bodies.push_back({design_.problems[k], *responses[k]});
+    std::vector<mmc::BodyOutcome> out = mmc::outcomes_of_corrected(bodies, run_.go_on);
+    if (!run_.go_on()) throw Interrupted();
     return out;
   }
 
-  /// The outcome of a body in place of the one before.
+  /// Replaces the outcome of a body.
   void take(mmc::BodyOutcome found, const fem::EslSets& loads, size_t body) {
-    mmc::BodyOutcome& before = report_.outcomes[body];
+    mmc::BodyOutcome& before = design_.outcomes[body];
     found.iterations = before.iterations;
     found.evaluations = before.evaluations;
     found.kkt = before.kkt;
     found.stop = before.stop + "; then corrected by " +
-                 std::to_string(report_.corrections.back().motions) + " motions";
+                 std::to_string(design_.corrections.back().motions) + " motions";
     if (!found.clean_up) found.clean_up = before.clean_up;
     for (size_t l = 0; l < loads.sets.size(); ++l)
       found.energy_ratios.push_back(0.5 * found.load_compliances[l] / loads.sets[l].strain_energy);
     before = std::move(found);
-    folder_.write_loads(before.body, loads, &before);
-    folder_.write_design(report_.problems[body], before);
+    run_.folder.write_loads(before.body, loads, &before);
+    run_.folder.write_design(design_.problems[body], before);
   }
 
-  const Scene& scene_;
-  const std::function<bool()>& go_on_;
-  RunFolder& folder_;
-  Progress& progress_;
-  RunReport& report_;
+  const RunContext& run_;
+  DesignResult& design_;
 };
 
 }  // namespace
 
-std::string corrected_words(const CorrectedMotion& c) {
-  return "corrected, J of the outlines on the cells of the case is " + io::to_text(c.after, 6) +
-         " instead of " + io::to_text(c.before, 6) +
-         (c.pays() ? "" : ": no less, the designs for loads are kept");
-}
-
-void correct_by_motion(const Scene& scene, const std::function<bool()>& go_on,
-                       std::vector<fem::EslSets>& loads, RunFolder& folder, Progress& progress,
-                       RunReport& report) {
-  progress.begin("corrected cycles");
+void correct_by_motion(const RunContext& run, std::vector<fem::EslSets>& loads,
+                       DesignResult& design) {
+  run.progress.begin("corrected cycles");
   try {
-    Correcting(scene, go_on, folder, progress, report).go(loads);
+    Correcting(run, design).go(loads);
   } catch (const StoppedMotion&) {
     throw Interrupted();
   }
 }
 
-void certify_by_motion(const Scene& scene, const Certify& wishes,
-                       std::span<const fem::EslSets> loads, const std::function<bool()>& go_on,
-                       RunFolder& folder, Progress& progress, RunReport& report) {
-  progress.begin("certificate");
-  SceneMotion motion(scene, {wishes.cell, wishes.step, wishes.checkpoints}, go_on);
+mmc::MotionCertificate certify_by_motion(const RunContext& run, const Certify& settings,
+                                         std::span<const fem::EslSets> loads,
+                                         std::span<const mmc::BodyProblem> designs) {
+  run.progress.begin("certificate");
+  SceneMotion motion(run.scene, {settings.cell, settings.step, settings.checkpoints}, run.go_on);
   const LoadsOfDesigns kept({loads.begin(), loads.end()});
-  std::vector<std::unique_ptr<mmc::LoadResponse>> responses = kept.of(report.problems);
-  // With copies: certifying leaves the designs as they are.
-  std::vector<mmc::BodyProblem> problems = report.problems;
+  // Copies: a certificate leaves the designs as they are.
+  std::vector<mmc::BodyProblem> problems(designs.begin(), designs.end());
+  std::vector<std::unique_ptr<mmc::LoadResponse>> responses = kept.of(problems);
   std::vector<mmc::LoadedBody> bodies;
   for (size_t k = 0; k < problems.size(); ++k) bodies.push_back({problems[k], *responses[k]});
   std::vector<mmc::Part> parts = mmc::parts_at_end(bodies);
+  mmc::MotionCertificate out;
   try {
-    report.certificate = mmc::certify(parts, motion, scene.optimizer.move_limit);
+    out = mmc::certify(parts, motion, run.scene.optimizer.move_limit);
   } catch (const StoppedMotion&) {
     throw Interrupted();
   }
-  write_certificate(scene, *report.certificate, problems, folder);
-  progress.say("certificate: " + certificate_words(*report.certificate));
+  write_certificate(run.scene, out, problems, run.folder);
+  run.progress.say("certificate: " + certificate_words(out));
+  return out;
 }
 
 }  // namespace flexmorph::cases

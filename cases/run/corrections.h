@@ -1,35 +1,28 @@
 #pragma once
 
-#include "cases/output/report.h"
-#include "cases/run/motion_run.h"
-#include "cases/run/progress.h"
+#include "cases/results/run_result.h"
+#include "cases/run/run_context.h"
 
-/// What the motion itself does to designs and says of them: corrected cycles, the certificate.
+/// Designs and the gradient of the motion itself: corrected cycles, the certificate.
 namespace flexmorph::cases {
 
-/// Corrects the designs of the report (Cycle::correction); where the motion with their outlines, on
-/// the cells of the case, is better by it, its outcomes and the loads are those of the result. The
-/// design before is kept as a drawing. Writes cycles.csv as it goes. With Cycle::cell designs, too,
-/// are on these cells meanwhile.
+/// Corrects designs by the gradient of the motion (Cycle::correction). Where the motion with their
+/// outlines, on the cells of the case, improves, the outcomes and the loads are replaced. The
+/// design before is kept as a drawing; cycles.csv is written after every cycle. Cycle::cell sets
+/// the size of the cells of these cycles.
+/// @param loads  of the designs; replaced with them
 /// @throws Interrupted; as mmc::correct_designs()
-void correct_by_motion(const Scene& scene, const std::function<bool()>& go_on,
-                       std::vector<fem::EslSets>& loads, RunFolder& folder, Progress& progress,
-                       RunReport& report);
+void correct_by_motion(const RunContext& run, std::vector<fem::EslSets>& loads,
+                       DesignResult& design);
 
-/// The certificate of the designs of the report under these loads: into the report, and for every
-/// body into certificate.csv (of several bodies certificate_<body>.csv) and a picture.
+/// Certifies designs under these loads, and writes certificate.csv (of several bodies
+/// certificate_<body>.csv) and a picture for every body.
 /// @throws Interrupted; as mmc::certify()
-void certify_by_motion(const Scene& scene, const Certify& wishes,
-                       std::span<const fem::EslSets> loads, const std::function<bool()>& go_on,
-                       RunFolder& folder, Progress& progress, RunReport& report);
+mmc::MotionCertificate certify_by_motion(const RunContext& run, const Certify& settings,
+                                         std::span<const fem::EslSets> loads,
+                                         std::span<const mmc::BodyProblem> designs);
 
-/// One line: J, KKT residual, angle, what is left.
-std::string certificate_words(const mmc::MotionCertificate& certificate);
-/// "gradient of J and of the loads 12 degrees apart, ..." of a cycle.
-std::string corrected_words(const mmc::CorrectedCycle& cycle);
-
-std::string corrected_words(const CorrectedMotion& corrected);
-
+/// Options of the command `certify`.
 struct CertifyOptions {
   std::string directory;               ///< of a finished run
   std::vector<std::string> overrides;  ///< KEY=VALUE

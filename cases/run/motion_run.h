@@ -4,43 +4,45 @@
 
 #include "cases/assembly/build.h"
 #include "cases/output/run_folder.h"
+#include "cases/results/motion_record.h"
 
 namespace flexmorph::cases {
 
-/// What a motion is asked to leave behind.
-struct MotionWishes {
-  std::vector<fem::Factors> factors;  ///< one per design; empty: full material
+/// Says which motion is computed and what it leaves behind.
+struct MotionRequest {
+  std::vector<fem::Factors>
+      factors;  ///< scale factors of the cells, per design; empty: full material
   MeshChoice mesh;
-  bool loads = false;                ///< collect equivalent static loads
-  double frames_every = 0;           ///< VTK frames [s]; 0: none
-  int moments = 0;                   ///< pictures of a mechanism, evenly over the run
-  bool condition = false;            ///< estimate it at the end
-  bool balance = true;               ///< keep the energy balance
-  std::string table = "motion.csv";  ///< file of the folder: the steps, up to a failure too
-  std::function<void(const std::string&)> say;  ///< told what is odd when it happens, if there
-  std::function<bool()> go_on;      ///< asked at every step; false ends it with Interrupted
-  std::string phase = "motion";     ///< of the run, for messages
-  std::function<void(double)> way;  ///< told the time of every step [s]
-  /// File of the folder that keeps what the motion needs to go on; empty: it is not kept.
+  bool loads = false;                ///< whether equivalent static loads are collected
+  double frames_every = 0;           ///< spacing of frames for ParaView [s]; 0: no frames
+  int snapshots = 0;                 ///< number of pictures of a mechanism; 0, or at least 2
+  bool condition = false;            ///< whether the condition of the last matrix is estimated
+  bool balance = true;               ///< whether the energy balance is kept
+  std::string table = "motion.csv";  ///< file of the run folder for the rows
+  std::string phase = "motion";      ///< part of the run that messages name
+  /// File of the run folder that keeps what the motion needs to be resumed; empty: no such file.
   std::string checkpoint;
-  double checkpoint_every = 1;  ///< [s] of wall time, at least
-  bool resume = false;          ///< go on from that file, where there is one of this motion
-  /// Told where the motion goes on, or why it begins anew.
-  std::function<void(const std::string&)> resumed;
+  double checkpoint_every = 1;  ///< least wall time between two of them [s]
+  bool resume = false;          ///< whether the motion is resumed from the checkpoint, if it fits
+
+  std::function<bool()> go_on;                      ///< asked at every step; false interrupts
+  std::function<void(double)> reached;              ///< told the time of every step [s]
+  std::function<void(const std::string&)> say;      ///< told what is unusual when it happens
+  std::function<void(const std::string&)> resumed;  ///< told where or why not the motion resumes
 };
 
-/// The user wants no more. What was computed is in the folder.
+/// Thrown when the user interrupts a run. What was computed is in the run folder.
 struct Interrupted {};
 
+/// The result of run_motion().
 struct MotionOutcome {
   MotionRecord record;
-  std::vector<fem::EslSets> loads;  ///< one per design
+  std::vector<fem::EslSets> loads;  ///< one entry per design, where loads were asked for
 };
 
-/// Builds the mechanism of a scene and moves it through its time.
-/// @param folder  receives the table of steps and VTK frames
-/// @throws FailedRun or Interrupted, with the steps before it in the table, and the checkpoint
-/// written
-MotionOutcome run_motion(const Scene& scene, const MotionWishes& wishes, RunFolder& folder);
+/// Builds the mechanism of a scene and integrates its motion.
+/// @param folder  receives the table of steps and the frames
+/// @throws FailedRun or Interrupted; the steps before are in the table, the checkpoint is written
+MotionOutcome run_motion(const Scene& scene, const MotionRequest& request, RunFolder& folder);
 
 }  // namespace flexmorph::cases

@@ -12,9 +12,9 @@ namespace flexmorph::cases {
 namespace {
 
 const char *const kCheckpoint = ".checkpoint", *const kVerified = "motion_verified.csv",
-                  *const kJudged = "motion_judged.csv";
+                  *const kOnCells = "motion_judged.csv";
 
-std::vector<fem::Factors> uniform_factors(const std::vector<mmc::BodyProblem>& problems) {
+std::vector<fem::Factors> uniform_factors(std::span<const mmc::BodyProblem> problems) {
   std::vector<fem::Factors> out;
   for (const mmc::BodyProblem& p : problems) {
     const double volume = mmc::allowed_volume(p.goal).value_or(0.5);
@@ -24,84 +24,136 @@ std::vector<fem::Factors> uniform_factors(const std::vector<mmc::BodyProblem>& p
   return out;
 }
 
-std::vector<fem::Factors> final_factors(const std::vector<mmc::BodyProblem>& problems) {
+std::vector<fem::Factors> final_factors(std::span<const mmc::BodyProblem> problems) {
   std::vector<fem::Factors> out;
   for (const mmc::BodyProblem& p : problems)
     out.push_back(mmc::dynamic_factors(p, p.design.components()));
   return out;
 }
 
+MeshChoice verified_mesh(const Verify& verify) {
+  return {verify.mesh, verify.refine, verify.step, verify.cells};
+}
+
+/// Links between two pins have no tip.
+std::string deflection_words(const MotionRecord& record) {
+  const std::vector<size_t> tips = record.table.of_group(ColumnGroup::deflection);
+  if (tips.empty()) return "";
+  return ", largest tip deflection " +
+         io::to_text(largest_size(record.table.values[tips.front()]), 4) + " m";
+}
+
 }  // namespace
 
-int moments_of(const Scene& scene) { return scene.is_mechanism() && scene.output.plots ? 4 : 0; }
-
-std::function<void(double)> way_of(Progress& progress, const Scene& scene,
-                                   const std::string& phase) {
-  return [&progress, phase, end = scene.time.end](double t) {
-    progress.way(phase, t / end, "t = " + io::to_text(t, 4) + " of " + io::to_text(end, 4) + " s");
+MotionRequest resumable_request(const RunContext& run, const std::string& phase,
+                                const std::string& table) {
+  MotionRequest out;
+  out.phase = phase;
+  out.table = table;
+  out.go_on = run.go_on;
+  out.reached = [&run, phase, end = run.scene.time.end](double t) {
+    run.progress.way(phase, t / end,
+                     "t = " + io::to_text(t, 4) + " of " + io::to_text(end, 4) + " s");
   };
+  out.checkpoint = table.substr(0, table.rfind('.')) + kCheckpoint;
+  out.resume = run.resume;
+  out.resumed = [&run](const std::string& words) { run.progress.say(words); };
+  return out;
 }
 
-void keep_going(MotionWishes& wishes, const RunReport& report, Progress& progress,
-                const std::string& table) {
-  wishes.checkpoint = table.substr(0, table.rfind('.')) + kCheckpoint;
-  wishes.resume = report.resumed;
-  wishes.resumed = [&progress](const std::string& words) { progress.say(words); };
+MotionRequest result_request(const RunContext& run, const std::string& phase) {
+  constexpr int kSnapshots = 4;
+  MotionRequest out = resumable_request(run, phase, "motion.csv");
+  const Output& output = run.scene.output;
+  out.frames_every = output.vtk ? output.motion_every : 0;
+  out.snapshots = run.scene.is_mechanism() && output.plots ? kSnapshots : 0;
+  out.condition = run.condition;
+  return out;
 }
 
-void forget_motions(const FilesOf& files_of) {
+void remove_checkpoints(const FilesOf& files_of) {
   std::error_code none;
   for (const std::string& path : files_of(kCheckpoint)) {
     std::filesystem::remove(path, none);
-    std::filesystem::remove(path + ".tmp", none);  // of a kill while it was written
+    std::filesystem::remove(path + ".tmp", none);  // left when the run was killed while writing
   }
-  for (const std::string& path : files_of(kJudged)) std::filesystem::remove(path, none);
+  for (const std::string& path : files_of(kOnCells)) std::filesystem::remove(path, none);
+}
+
+MotionOutcome CycleMotions::run_one(const MotionRequest& request) {
+  run_.progress.begin(request.phase);
+  const double begin = cpu_seconds();
+  MotionOutcome motion = run_motion(run_.scene, request, run_.folder);
+  seconds_ += cpu_seconds() - begin;
+  const fem::MotionResult& result = motion.record.result;
+  run_.progress.say(request.phase + ": " + std::to_string(result.counts.steps) + " steps, " +
+                    std::to_string(result.events.size()) + " changes of the mesh" +
+                    deflection_words(motion.record));
+  return motion;
+}
+
+std::vector<fem::EslSets> CycleMotions::loads(std::span<const fem::Factors> factors) {
+  const bool analysed = run_.scene.optimizer.max_iterations == 0;
+  const bool first = ++n_loads_ == 1;
+  MotionRequest request = resumable_request(run_, "motion", "motion.csv");
+  // Every cycle has a checkpoint: designs of earlier cycles come back from their evaluations.
+  request.checkpoint = "motion_" + io::to_text(n_loads_) + kCheckpoint;
+  request.factors.assign(factors.begin(), factors.end());
+  request.loads = true;
+  request.condition = run_.condition && analysed;
+  if (first) request.say = [this](const std::string& words) { run_.progress.say(words); };
+  MotionOutcome motion = run_one(request);
+  if (analysed) results_.motion = std::move(motion.record);
+  return std::move(motion.loads);
+}
+
+mmc::Judge CycleMotions::judge() {
+  if (!run_.scene.judges_on_cells()) return {};
+  return
+      [this](std::span<const fem::Factors> factors) { return strain_integral_on_cells(factors); };
+}
+
+double CycleMotions::strain_integral_on_cells(std::span<const fem::Factors> factors) {
+  MotionRequest request = resumable_request(run_, "motion on cells", kOnCells);
+  request.checkpoint = "motion_judged_" + io::to_text(++n_assessed_) + kCheckpoint;
+  request.factors.assign(factors.begin(), factors.end());
+  request.mesh = verified_mesh(*run_.scene.verify);
+  request.balance = false;
+  last_on_cells_ = run_one(request).record;
+  return last_on_cells_->strain_integral();
+}
+
+void CycleMotions::keep_assessed() {
+  if (!last_on_cells_) return;
+  results_.verified = std::move(last_on_cells_);
+  last_on_cells_.reset();
+  std::filesystem::rename(run_.folder.file(kOnCells), run_.folder.file(kVerified));
 }
 
 namespace {
 
-/// Motions that do not need each other, at the same time where there are threads for it.
-class Motions {
- public:
-  Motions(const Scene& scene, std::function<bool()> go_on, RunFolder& folder, Progress& progress,
-          const RunReport& report)
-      : scene_(scene),
-        go_on_(std::move(go_on)),
-        folder_(folder),
-        progress_(progress),
-        report_(report) {}
-
-  /// @param out    what becomes of it
-  /// @param loads  likewise of the loads it was asked for, if any
-  void add(std::string name, double cost, MotionWishes wishes, std::optional<MotionRecord>& out,
-           std::vector<fem::EslSets>* loads = nullptr) {
-    wishes.phase = name;
-    wishes.way = way_of(progress_, scene_, name);
-    keep_going(wishes, report_, progress_, wishes.table);
-    jobs_.push_back(
-        {std::move(name), cost,
-         [this, wishes = std::move(wishes), &out, loads](const std::function<bool()>& others) {
-           MotionWishes mine = wishes;
-           mine.go_on = [this, &others] { return go_on_() && others(); };
-           MotionOutcome found = run_motion(scene_, mine, folder_);
-           out = std::move(found.record);
-           if (loads) *loads = std::move(found.loads);
-         }});
-  }
-  /// @throws as fem::side_by_side(); Interrupted
-  void run() const { fem::side_by_side(report_.threads, jobs_); }
-
- private:
-  const Scene& scene_;
-  std::function<bool()> go_on_;
-  RunFolder& folder_;
-  Progress& progress_;
-  const RunReport& report_;
-  std::vector<fem::Job> jobs_;
+/// A motion that does not need the others.
+struct IndependentMotion {
+  double cost;  ///< relative CPU time
+  MotionRequest request;
+  std::optional<MotionRecord>* record;  ///< receives its record
+  std::vector<fem::EslSets>* loads = nullptr;
 };
 
-MeshChoice verified_mesh(const Verify& verify) {
-  return {verify.mesh, verify.refine, verify.step, verify.cells};
+/// Computes motions at the same time, where there are threads for it.
+/// @throws as fem::side_by_side(); Interrupted
+void run_side_by_side(const RunContext& run, const std::vector<IndependentMotion>& motions) {
+  std::vector<fem::Job> jobs;
+  for (const IndependentMotion& motion : motions)
+    jobs.push_back(
+        {motion.request.phase, motion.cost, [&run, &motion](const std::function<bool()>& others) {
+           MotionRequest request = motion.request;
+           request.go_on = [&] { return run.go_on() && others(); };
+           MotionOutcome found = run_motion(run.scene, request, run.folder);
+           *motion.record = std::move(found.record);
+           if (motion.loads) *motion.loads = std::move(found.loads);
+         }});
+  fem::side_by_side(run.threads, jobs);
 }
 
 /// ½ F · u of every load of the sharp design over the strain energy of the motion with it.
@@ -132,111 +184,41 @@ std::vector<EnergyComparison> compared_energies(std::span<const mmc::BodyProblem
   return out;
 }
 
-CycleMotions::CycleMotions(const Scene& scene, bool condition, std::function<bool()> go_on,
-                           RunFolder& folder, Progress& progress, RunReport& report)
-    : scene_(scene),
-      condition_(condition),
-      go_on_(std::move(go_on)),
-      folder_(folder),
-      progress_(progress),
-      report_(report) {}
-
-namespace {
-
-/// Links between two pins have no tip.
-std::string deflection_words(const MotionRecord& record) {
-  if (record.amplitude.empty()) return "";
-  return ", largest tip deflection " + io::to_text(record.amplitude[0], 4) + " m";
-}
-
-}  // namespace
-
-MotionOutcome CycleMotions::run(MotionWishes& wishes, const std::string& table) {
-  wishes.go_on = go_on_;
-  wishes.way = way_of(progress_, scene_, wishes.phase);
-  // Of all cycles, until the run is done: their designs come back from their evaluations.
-  keep_going(wishes, report_, progress_, table);
-  progress_.begin(wishes.phase);
-  const double begin = cpu_seconds();
-  MotionOutcome motion = run_motion(scene_, wishes, folder_);
-  report_.seconds_motion += cpu_seconds() - begin;
-  progress_.say(wishes.phase + ": " + std::to_string(motion.record.result.counts.steps) +
-                " steps, " + std::to_string(motion.record.result.events.size()) +
-                " changes of the mesh" + deflection_words(motion.record));
-  return motion;
-}
-
-std::vector<fem::EslSets> CycleMotions::loads(std::span<const fem::Factors> factors) {
-  const bool analysed = scene_.optimizer.max_iterations == 0;  // as they start: this says all
-  MotionWishes wishes;
-  wishes.factors.assign(factors.begin(), factors.end());
-  wishes.loads = true;
-  wishes.condition = condition_ && analysed;
-  if (!report_.motion && report_.cycles == 0)
-    wishes.say = [&](const std::string& words) { progress_.say(words); };
-  MotionOutcome motion = run(wishes, "motion_" + io::to_text(++n_loads_) + ".csv");
-  if (analysed) report_.motion = motion.record;
-  return std::move(motion.loads);
-}
-
-mmc::Judge CycleMotions::judge() {
-  if (!scene_.judges_on_cells()) return {};
-  return [this](std::span<const fem::Factors> factors) { return on_cells(factors); };
-}
-
-double CycleMotions::on_cells(std::span<const fem::Factors> factors) {
-  MotionWishes wishes;
-  wishes.factors.assign(factors.begin(), factors.end());
-  wishes.phase = "motion on cells";
-  wishes.mesh = verified_mesh(*scene_.verify);
-  wishes.balance = false;
-  wishes.table = kJudged;
-  judged_ = run(wishes, "motion_judged_" + io::to_text(++n_judged_) + ".csv").record;
-  return judged_->strain_integral;
-}
-
-void CycleMotions::keep_judged() {
-  if (!judged_) return;
-  report_.verified = std::move(judged_);
-  judged_.reset();
-  std::filesystem::rename(folder_.file(kJudged), folder_.file(kVerified));
-}
-
-void judge_by_motion(const Scene& scene, bool condition, std::function<bool()> go_on,
-                     RunFolder& folder, Progress& progress, RunReport& report) {
-  Motions motions(scene, std::move(go_on), folder, progress, report);
-  const std::vector<fem::Factors> designed = final_factors(report.problems),
-                                  uniform = uniform_factors(report.problems);
+std::vector<fem::EslSets> assess_by_motion(const RunContext& run,
+                                           std::span<const mmc::BodyProblem> problems,
+                                           MotionResults& motions) {
+  const Scene& scene = run.scene;
   const bool on_cells = scene.judges_on_cells();
   std::vector<fem::EslSets> loads;
-  MotionWishes wishes;
-  wishes.condition = condition;
-  wishes.factors = designed;
-  wishes.loads = !on_cells;
-  wishes.frames_every = scene.output.vtk ? scene.output.motion_every : 0;
-  wishes.moments = moments_of(scene);
-  motions.add("motion with the design", 1, wishes, report.motion, &loads);
-  wishes = {};
-  wishes.factors = uniform;
-  wishes.table = "motion_uniform.csv";
-  motions.add("motion with uniform material", 1, wishes, report.uniform_motion);
+  std::vector<IndependentMotion> all;
+  MotionRequest request = result_request(run, "motion with the design");
+  request.factors = final_factors(problems);
+  request.loads = !on_cells;
+  all.push_back({1, request, &motions.motion, &loads});
+  request = resumable_request(run, "motion with uniform material", "motion_uniform.csv");
+  request.factors = uniform_factors(problems);
+  all.push_back({1, request, &motions.uniform});
   if (scene.verify) {
-    progress.say("verification on " + scene.verify->words());
-    // A finer mesh, and in all likelihood shorter steps; cells are hundreds of times as many.
+    run.progress.say("verification on " + scene.verify->words());
+    // A finer mesh, and mostly shorter steps; cells are hundreds of times as many.
     const double finer = on_cells ? 100 : 4;
-    wishes.mesh = verified_mesh(*scene.verify);
-    wishes.balance = false;
-    wishes.table = "motion_verified_uniform.csv";
-    motions.add("verification with uniform material", finer, wishes, report.verified_uniform);
-    if (!report.verified) {
-      wishes.factors = designed;
-      wishes.table = kVerified;
-      motions.add("verification with the design", finer, wishes, report.verified);
+    request =
+        resumable_request(run, "verification with uniform material", "motion_verified_uniform.csv");
+    request.factors = uniform_factors(problems);
+    request.mesh = verified_mesh(*scene.verify);
+    request.balance = false;
+    all.push_back({finer, request, &motions.verified_uniform});
+    if (!motions.verified) {
+      MotionRequest designed = resumable_request(run, "verification with the design", kVerified);
+      designed.factors = final_factors(problems);
+      designed.mesh = request.mesh;
+      designed.balance = false;
+      all.push_back({finer, designed, &motions.verified});
     }
   }
-  progress.begin(scene.verify ? "verification" : "motion with the design");
-  motions.run();
-  report.energies = compared_energies(report.problems, loads);
+  run.progress.begin(scene.verify ? "verification" : "motion with the design");
+  run_side_by_side(run, all);
+  return loads;
 }
 
 }  // namespace flexmorph::cases

@@ -1,70 +1,69 @@
 #pragma once
 
-#include "cases/output/report.h"
+#include "cases/results/run_result.h"
 #include "cases/run/motion_run.h"
-#include "cases/run/progress.h"
+#include "cases/run/run_context.h"
 
-/// The motions of a run: what they have in common, and those that load and judge its designs.
+/// The motions of a run: those that make loads, and those that designs are assessed by.
 namespace flexmorph::cases {
 
-/// Pictures of a mechanism in its motion.
-int moments_of(const Scene& scene);
+/// The request of a motion with the callbacks of a run: progress on the screen, interruption, and a
+/// checkpoint, "NAME.checkpoint" of the table "NAME.csv", that is kept until the run is done.
+MotionRequest resumable_request(const RunContext& run, const std::string& phase,
+                                const std::string& table);
 
-/// Tells how far a motion is.
-std::function<void(double)> way_of(Progress& progress, const Scene& scene,
-                                   const std::string& phase);
-
-/// The motion can be gone on with: "NAME.checkpoint" of its table keeps it, until the run is done.
-void keep_going(MotionWishes& wishes, const RunReport& report, Progress& progress,
-                const std::string& table);
+/// The request of the motion with the result of a run: frames, snapshots and condition as the case
+/// and the options want them.
+MotionRequest result_request(const RunContext& run, const std::string& phase);
 
 /// Paths of the files that a run made in its folder, by the ending of their names.
 using FilesOf = std::function<std::vector<std::string>(const std::string& ending)>;
 
-/// Removes what keep_going() kept, and the tables of cycles that did not pay, of a run whose
+/// Removes checkpoints, and tables of cycles that did not improve the design, of a run whose
 /// results are all written.
-void forget_motions(const FilesOf& files_of);
+void remove_checkpoints(const FilesOf& files_of);
 
 /// The motions of the cycles of a run: those that make loads, on the elements of the case, and
-/// those on the cells of the designs that judge them, where the case verifies on cells.
+/// those on the cells of the designs, where the case verifies on cells.
 class CycleMotions {
  public:
-  /// @param condition  of a run that designs nothing its one motion estimates it
-  CycleMotions(const Scene& scene, bool condition, std::function<bool()> go_on, RunFolder& folder,
-               Progress& progress, RunReport& report);
+  explicit CycleMotions(const RunContext& run) : run_(run) {}
 
-  /// The loads of all designs. @throws as run_motion()
+  /// Computes the loads of all designs. @throws as run_motion()
   std::vector<fem::EslSets> loads(std::span<const fem::Factors> factors);
-  /// Empty where the motions that make loads judge.
+  /// The motion on cells that compares cycles; empty where the motions that make loads do.
   mmc::Judge judge();
-  /// What was judged last is the best so far: report.verified, with its table.
-  void keep_judged();
+  /// Keeps the last motion on cells, with its table, as that of the best design so far.
+  void keep_assessed();
+
+  /// The motion of a run that only analyses its start; the motion on cells of the best design.
+  MotionResults take_results() { return std::move(results_); }
+  /// CPU seconds of all motions so far.
+  double seconds() const { return seconds_; }
 
  private:
-  double on_cells(std::span<const fem::Factors> factors);
-  MotionOutcome run(MotionWishes& wishes, const std::string& table);
+  double strain_integral_on_cells(std::span<const fem::Factors> factors);
+  MotionOutcome run_one(const MotionRequest& request);
 
-  const Scene& scene_;
-  bool condition_;
-  std::function<bool()> go_on_;
-  RunFolder& folder_;
-  Progress& progress_;
-  RunReport& report_;
-  int n_loads_ = 0, n_judged_ = 0;
-  std::optional<MotionRecord> judged_;  ///< the last one
+  const RunContext& run_;
+  int n_loads_ = 0, n_assessed_ = 0;
+  double seconds_ = 0;
+  MotionResults results_;
+  std::optional<MotionRecord> last_on_cells_;
 };
 
-/// Static energies of the sharp designs of problems beside those of the motion their loads are of.
+/// Compares the static energies of crisp designs with those of the motion that their loads are of.
 /// @throws Error (numerical) from statics
 std::vector<EnergyComparison> compared_energies(std::span<const mmc::BodyProblem> problems,
                                                 std::span<const fem::EslSets> loads);
 
-/// The judge of a design is the motion with it; beside it the same volume spread evenly, and both
-/// on a finer mesh or on cells where the scene asks for it (the design's own is there already where
-/// a cycle was judged by it). All are in the report then, and where no motion on cells judges also
-/// how far the design's static energies are from those of its motion.
+/// Computes the motions that assess designs: with the design, with uniform material of the same
+/// volume, and both on the mesh of [verify]. A verification that `motions` holds already is kept.
+/// @param motions  receives them as far as they were computed
+/// @return loads of the motion with the design; none where the verification is on cells
 /// @throws as run_motion()
-void judge_by_motion(const Scene& scene, bool condition, std::function<bool()> go_on,
-                     RunFolder& folder, Progress& progress, RunReport& report);
+std::vector<fem::EslSets> assess_by_motion(const RunContext& run,
+                                           std::span<const mmc::BodyProblem> problems,
+                                           MotionResults& motions);
 
 }  // namespace flexmorph::cases

@@ -1,7 +1,8 @@
 #include "cases/run/path_run.h"
 
-#include "cases/results/body_measures.h"
+#include "cases/output/motion_frames.h"
 #include "cases/results/failure.h"
+#include "cases/results/motion_columns.h"
 #include "cases/run/motion_run.h"
 #include "cases/scene/elements/row.h"
 
@@ -19,7 +20,7 @@ fem::StaticSettings settings_of(const StaticAnalysis& analysis) {
   return out;
 }
 
-/// Of loads and temperatures, what does not grow along the path is put on before, step by step.
+/// Applies the loads and temperatures that do not grow along the path, in steps.
 void put_on(const Scene& scene, fem::Workspace& model, fem::State& x) {
   const StaticAnalysis& analysis = *scene.statics;
   model.scale_loads(0);
@@ -35,97 +36,89 @@ void put_on(const Scene& scene, fem::Workspace& model, fem::State& x) {
   model.choose_scaled(analysis.loads_grow, analysis.temperatures_grow);
 }
 
-/// path.csv, a row per equilibrium, which grows with the path: what a run was killed after is on
-/// the disk.
-class PathTable {
+/// Computes the rows of a path and hands its equilibria to the writers.
+class PathSteps {
  public:
-  explicit PathTable(std::string path) : path_(std::move(path)) {}
+  PathSteps(const Scene& scene, Mechanism& mechanism, const fem::State& start, RunFolder& folder,
+            PathRecord& out)
+      : scene_(scene),
+        model_(mechanism.model),
+        measures_(scene, mechanism.model, start),
+        scales_(mechanism.model.scales()),
+        before_(start.q),
+        shapes_(scene, {}),
+        out_(out) {
+    for (const Observe& o : scene.observed) {
+      const Body& body = scene.body(o.body);
+      // A body with lines may still be in its hub; one without lines may be an arc.
+      starts_.push_back(body.row->lines ? start_pose(scene, body).place(o.point)
+                                        : fem::point_position(model_.body(o.body), start, o.point));
+    }
+    out.table = Series(path_columns(scene));
+    writers_.push_back(std::make_unique<SeriesWriter>(out.table));
+    writers_.push_back(std::make_unique<TableWriter>(folder.file("path.csv"), out.table));
+    if (scene.output.vtk) writers_.push_back(std::make_unique<FrameWriter>(shapes_, 1, folder));
+  }
 
-  /// The last equilibrium of a record, whose columns of bodies may still be elsewhere.
-  void add(const PathRecord& path, const std::vector<Column>& measured) {
-    std::vector<std::string> names = {"step", "load_factor"};
-    std::vector<io::Cell> row = {static_cast<int>(path.factor.size()) - 1, path.factor.back()};
-    for (const auto* group : {&path.observed, &measured})
-      for (const Column& column : *group) {
-        names.push_back(column.name);
-        row.emplace_back(column.values.back());
-      }
-    names.insert(names.end(), {"energy.strain", "iterations"});
-    row.emplace_back(path.strain.back());
-    row.emplace_back(path.iterations.back());
-    if (!csv_) csv_.emplace(path_, names);
-    csv_->row(row);
+  void add(const fem::StaticStep& step) {
+    const double way = (step.x.q - before_).cwiseProduct(scales_).norm();
+    out_.arc.push_back(out_.arc.empty() ? 0 : out_.arc.back() + way);
+    before_ = step.x.q;
+    const double heating = scene_.statics->temperatures_grow ? step.factor : 1;
+    const auto number = static_cast<double>(out_.table.n_rows());
+    row_ = {number, step.factor};
+    for (size_t i = 0; i < starts_.size(); ++i) {
+      const Observe& o = scene_.observed[i];
+      const Vec3 u = fem::point_position(model_.body(o.body), step.x, o.point) - starts_[i];
+      for (int c = 0; c < scene_.body(o.body).dim(); ++c) row_.push_back(u[c]);
+    }
+    const double strain = model_.energies(step.x).strain;
+    measures_.append(model_, step.x, heating, row_);
+    row_.insert(row_.end(), {strain, static_cast<double>(step.iterations)});
+    const StepRecord record{model_, step.x, row_, static_cast<double>(step.number), heating};
+    for (const auto& writer : writers_) writer->add(record);
   }
 
  private:
-  std::string path_;
-  std::optional<io::CsvWriter> csv_;
+  const Scene& scene_;
+  fem::Workspace& model_;
+  BodyMeasures measures_;
+  VectorXd scales_, before_;
+  BodyShapes shapes_;
+  PathRecord& out_;
+  std::vector<Vec3> starts_;  // places of the observed points before the first step
+  std::vector<double> row_;
+  std::vector<std::unique_ptr<StepWriter>> writers_;
 };
 
 }  // namespace
 
-PathRecord run_path(const Scene& scene, RunFolder& folder, const PathWishes& wishes) {
+PathRecord run_path(const Scene& scene, RunFolder& folder, const PathRequest& request) {
   Mechanism mechanism = build_mechanism(scene);
   fem::Workspace& model = mechanism.model;
   fem::State x =
       fem::start_state(model, mechanism.growths, 0, fem::Start::rigid, mechanism.motion.placement);
-  BodyMeasures measures(scene, model, x);
   PathRecord out;
-  PathTable table(folder.file("path.csv"));
-  static const char* const kAxes[] = {"_ux", "_uy", "_uz"};
-  for (const Observe& o : scene.observed)
-    for (int c = 0; c < scene.body(o.body).dim(); ++c)
-      out.observed.push_back({o.body + "." + o.name + kAxes[c], {}});
-  std::vector<Vec3> starts;  // of the observed points
-  for (const Observe& o : scene.observed) {
-    const Body& body = scene.body(o.body);
-    // Of a body with lines it may still be in the hub; of one without, it may be on an arc.
-    starts.push_back(body.row->lines ? start_pose(scene, body).place(o.point)
-                                     : fem::point_position(model.body(o.body), x, o.point));
-  }
-  const VectorXd scales = model.scales();
-  VectorXd before = x.q;
+  PathSteps steps(scene, mechanism, x, folder, out);
   const auto observe = [&](const fem::StaticStep& step) {
-    const double way = (step.x.q - before).cwiseProduct(scales).norm();
-    out.arc.push_back(out.arc.empty() ? 0 : out.arc.back() + way);
-    before = step.x.q;
-    const fem::Energies energies = model.energies(step.x);
-    out.factor.push_back(step.factor);
-    out.iterations.push_back(step.iterations);
-    out.strain.push_back(energies.strain);
-    size_t column = 0;
-    for (size_t i = 0; i < scene.observed.size(); ++i) {
-      const Observe& o = scene.observed[i];
-      const Vec3 u = fem::point_position(model.body(o.body), step.x, o.point) - starts[i];
-      for (int c = 0; c < scene.body(o.body).dim(); ++c)
-        out.observed[column++].values.push_back(u[c]);
-    }
-    const double heating = scene.statics->temperatures_grow ? step.factor : 1;
-    measures.add(model, step.x, heating);
-    table.add(out, measures.columns());
-    if (scene.output.vtk)
-      for (size_t i = 0; i < scene.bodies.size(); ++i)
-        folder.add_surface_frame(model.body(scene.bodies[i].name), step.x,
-                                 start_pose(scene, scene.bodies[i]), step.number,
-                                 static_cast<int>(i), heating);
-    if (wishes.way) wishes.way(step.factor);
-    if (wishes.go_on && !wishes.go_on()) throw Interrupted();
+    steps.add(step);
+    if (request.reached) request.reached(step.factor);
+    if (request.go_on && !request.go_on()) throw Interrupted();
     return true;
   };
   try {
     if (scene.has_heat()) put_on(scene, model, x);
     fem::StaticSettings settings = settings_of(*scene.statics);
-    settings.condition = wishes.condition;
+    settings.condition = request.condition;
     out.result = fem::solve_static(model, x, settings, observe);
   } catch (const Error& error) {
-    out.measured = measures.take();
     Failure where;
     where.phase = "statics";
-    where.load_factor = out.factor.empty() ? 0 : out.factor.back();
-    where.step = std::max(0, static_cast<int>(out.factor.size()) - 1);  // the start is none
+    const auto n = static_cast<int>(out.table.n_rows());
+    where.load_factor = n == 0 ? 0 : out.table.at(kFactorColumn).back();
+    where.step = std::max(0, n - 1);  // the start is no step
     throw FailedRun(error, where);
   }
-  out.measured = measures.take();
   return out;
 }
 

@@ -3,19 +3,20 @@
 #include <functional>
 
 #include "cases/output/run_folder.h"
+#include "cases/results/motion_record.h"
 
 namespace flexmorph::cases {
 
-/// What a path is asked.
-struct PathWishes {
-  bool condition = false;           ///< estimate it at the end
-  std::function<bool()> go_on;      ///< asked at every equilibrium; false ends it with Interrupted
-  std::function<void(double)> way;  ///< told the load factor of every equilibrium
+/// Settings of a run along a path of equilibria.
+struct PathRequest {
+  bool condition = false;               ///< whether the condition of the last matrix is estimated
+  std::function<bool()> go_on;          ///< asked at every equilibrium; false interrupts
+  std::function<void(double)> reached;  ///< told the load factor of every equilibrium
 };
 
 /// Follows the equilibria of a [static] analysis from load factor 0.
 /// @param folder  receives path.csv, and with output.vtk a frame per equilibrium
 /// @throws FailedRun or Interrupted, with the equilibria before it in the table
-PathRecord run_path(const Scene& scene, RunFolder& folder, const PathWishes& wishes);
+PathRecord run_path(const Scene& scene, RunFolder& folder, const PathRequest& request);
 
 }  // namespace flexmorph::cases

@@ -5,15 +5,30 @@
 namespace flexmorph::cases {
 namespace {
 
-const std::map<std::string, std::vector<const char*>>& columns_of() {
-  static const std::map<std::string, std::vector<const char*>> kColumns = {
-      {"temperature", {"temperature"}},
-      {"max_elastic_strain", {"max_elastic_strain"}},
-      {"midpoint_deflection", {"midpoint_deflection"}},
-      {"end_displacements", {"root_ux", "root_uy", "end_ux", "end_uy"}},
-      {"end_velocity", {"end_vx", "end_vy"}},
-      {"end_slopes", {"end_rx", "end_ry"}},
-      {"free_expansion", {"free_ux", "free_uy", "free_kinetic"}}};
+const std::map<std::string, std::vector<MeasuredColumn>>& all_quantities() {
+  static const std::map<std::string, std::vector<MeasuredColumn>> kColumns = {
+      {"temperature", {{"temperature", "K", "temperature rise of the body"}}},
+      {"max_elastic_strain",
+       {{"max_elastic_strain", "-",
+         "largest entry of the elastic Green strain over the Gauss points"}}},
+      {"midpoint_deflection",
+       {{"midpoint_deflection", "m",
+         "deflection of the middle of the axis across the line between its ends"}}},
+      {"end_displacements",
+       {{"root_ux", "m", "displacement of the root along x"},
+        {"root_uy", "m", "displacement of the root along y"},
+        {"end_ux", "m", "displacement of the free end along x"},
+        {"end_uy", "m", "displacement of the free end along y"}}},
+      {"end_velocity",
+       {{"end_vx", "m/s", "velocity of the free end along x"},
+        {"end_vy", "m/s", "velocity of the free end along y"}}},
+      {"end_slopes",
+       {{"end_rx", "-", "length of the position gradient along the axis at the free end"},
+        {"end_ry", "-", "length of the position gradient across the axis at the free end"}}},
+      {"free_expansion",
+       {{"free_ux", "m", "closed form: displacement along x of the end of the free body"},
+        {"free_uy", "m", "closed form: displacement along y of the end of the free body"},
+        {"free_kinetic", "J", "closed form: kinetic energy of the free body"}}}};
   return kColumns;
 }
 
@@ -22,17 +37,14 @@ const std::map<std::string, std::vector<const char*>>& columns_of() {
 const std::vector<std::string>& measured_quantities() {
   static const std::vector<std::string> kNames = [] {
     std::vector<std::string> names;
-    for (const auto& [name, columns] : columns_of()) names.push_back(name);
+    for (const auto& [name, columns] : all_quantities()) names.push_back(name);
     return names;
   }();
   return kNames;
 }
 
-std::vector<std::string> measured_columns(const Measure& measure) {
-  std::vector<std::string> out;
-  for (const std::string& quantity : measure.quantities)
-    for (const char* column : columns_of().at(quantity)) out.push_back(measure.body + "." + column);
-  return out;
+const std::vector<MeasuredColumn>& columns_of_quantity(const std::string& quantity) {
+  return all_quantities().at(quantity);
 }
 
 std::string refusal_of_measure(const Scene& scene, const Body& body, const std::string& quantity) {

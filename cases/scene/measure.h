@@ -24,8 +24,12 @@ namespace flexmorph::cases {
 ///                      centre of mass, and kinetic energy (α Ṫ)² ½ ∫ ρ |X - X_c|² dV; T (12), (19)
 const std::vector<std::string>& measured_quantities();
 
-/// Names of the columns of a [[measure]].
-std::vector<std::string> measured_columns(const Measure& measure);
+/// A column that a quantity of a [[measure]] has: its name behind "<body>.", unit and meaning.
+struct MeasuredColumn {
+  const char *name, *unit, *meaning;
+};
+/// Columns of a quantity. @throws std::out_of_range for a quantity that does not exist.
+const std::vector<MeasuredColumn>& columns_of_quantity(const std::string& quantity);
 
 /// Why a quantity cannot be measured; empty where it can.
 std::string refusal_of_measure(const Scene& scene, const Body& body, const std::string& quantity);

@@ -5,6 +5,7 @@
 #include <csignal>
 #include <nlohmann/json.hpp>
 
+#include "cases/check/ready.h"
 #include "cases/run/run.h"
 #include "cases/study/study.h"
 #include "io/files.h"

@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "cases/check/ready.h"
 #include "cases/run/progress.h"
 #include "cases/run/run.h"
 #include "cases/stability/report.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "cases/check/ready.h"
 #include "cases/run/run.h"
 #include "cases/study/compare_report.h"
 #include "io/tables.h"

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cases/assembly/build.h"
+#include "cases/check/ready.h"
 #include "cases/run/run.h"
 #include "io/plots.h"
 #include "io/tables.h"

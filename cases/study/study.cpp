@@ -8,6 +8,7 @@
 
 #include "cases/output/kept_case.h"
 #include "cases/run/progress.h"
+#include "cases/check/ready.h"
 #include "cases/run/run.h"
 #include "cases/study/processes.h"
 #include "io/files.h"

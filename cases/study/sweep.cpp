@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "cases/check/ready.h"
 #include "cases/run/run.h"
 #include "cases/scene/scene.h"
 #include "cases/study/sweep_motion.h"

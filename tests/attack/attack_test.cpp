@@ -14,7 +14,8 @@
 #include <functional>
 
 #include "cases/assembly/build.h"
-#include "cases/run/run.h"
+#include "cases/check/check.h"
+#include "cases/check/ready.h"
 #include "cases/scene/scene.h"
 #include "geometry/sanitizers.h"
 #include "io/exports.h"
@@ -138,11 +139,7 @@ TEST_F(Attack, CasesAsCheckBuildsThem) {
         return random.below(4) == 0 ? random.changed(text, text)
                                     : random.changed(text, "0.5 1 2 0.01 -1");
       },
-      [](const std::string& file, const std::string&) {
-        cases::RunOptions options;
-        options.case_name = file;
-        cases::check_case(options);
-      },
+      [](const std::string& file, const std::string&) { cases::check_case(file, {}, false); },
       [](const std::string& file) {
         double sum = 0;
         for (const cases::Body& body : cases::read_scene(io::CaseFile(file, {})).bodies)
@@ -163,12 +160,9 @@ TEST(Found, InputsAreReadOrRefusedInASecond) {
       {"motion_platform",
        "drive.1.formula='0.5*sin(pi - (-100000*pi*(t - 1/2)^3 + 3/2*pi*t - pi/4)) + 0.4'"}};
   for (const auto& [name, change] : found) {
-    cases::RunOptions options;
-    options.case_name = name;
-    options.overrides = {change};
     const std::clock_t begin = std::clock();
     try {
-      cases::check_case(options);
+      cases::check_case(name, std::vector<std::string>{change}, false);
     } catch (const Error& error) {
       EXPECT_STRNE(error.what(), "");
     }

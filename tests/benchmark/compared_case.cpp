@@ -24,7 +24,7 @@ cases::Scene scene_of(const std::string& path, std::span<const std::string> chan
 fem::EslSets loads_of_motion(const cases::Scene& scene, const mmc::BodyProblem& problem) {
   const auto folder =
       std::filesystem::temp_directory_path() / ("flexmorph_compared_" + std::to_string(getpid()));
-  cases::MotionWishes wishes;
+  cases::MotionRequest wishes;
   wishes.factors = {mmc::dynamic_factors(problem, problem.design.components())};
   wishes.loads = true;
   wishes.balance = false;

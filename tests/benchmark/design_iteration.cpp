@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "cases/assembly/build.h"
+#include "cases/check/ready.h"
 #include "cases/run/motion_run.h"
-#include "cases/run/run.h"
 #include "tests/benchmark/cpu.h"
 #include "tests/benchmark/iteration.h"
 #include "tests/benchmark/reference.h"
@@ -25,7 +25,7 @@ using namespace flexmorph::benchmark;
 /// Loads of the motion of the scene's first design.
 fem::EslSets loads_of(const cases::Scene& scene, const mmc::BodyProblem& problem) {
   const auto folder = std::filesystem::temp_directory_path() / "flexmorph_design_iteration";
-  cases::MotionWishes wishes;
+  cases::MotionRequest wishes;
   wishes.factors = {mmc::dynamic_factors(problem, problem.design.components())};
   wishes.loads = true;
   wishes.balance = false;

@@ -10,7 +10,7 @@
 #include "cases/accuracy/budget.h"
 #include "cases/accuracy/choice.h"
 #include "cases/accuracy/study.h"
-#include "cases/run/run.h"
+#include "cases/check/ready.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"
 

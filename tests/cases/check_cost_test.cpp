@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cases/run/run.h"
+#include "cases/check/ready.h"
 
 namespace flexmorph::cases {
 namespace {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "cases/assembly/build.h"
-#include "cases/run/run.h"
+#include "cases/check/check.h"
 #include "cases/scene/scene.h"
 #include "io/files.h"
 #include "tests/io/scratch.h"
@@ -193,9 +193,7 @@ TEST_F(Drives, AreRefusedWithTheirPlace) {
 }
 
 TEST_F(Drives, AreShownByCheck) {
-  RunOptions options;
-  options.case_name = scratch_.write("breathing.toml", kBreathing);
-  const std::string out = check_case(options);
+  const std::string out = check_case(scratch_.write("breathing.toml", kBreathing), {}, false);
   EXPECT_TRUE(contains(out, "drive out             L0 + swing*sin(2*pi*t), from 0.25 to 0.65\n"));
   EXPECT_TRUE(contains(
       out, "drive side            'side.csv', column 'y', 21 points, from 0 to 0.841471\n"));

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "cases/check/ready.h"
 #include "cases/run/motion_run.h"
-#include "cases/run/run.h"
 #include "optim/gradient_check.h"
 #include "optim/mmc/mmc_problem.h"
 #include "tests/cases/scenes.h"
@@ -26,7 +26,7 @@ Changes quick(const Changes& more = {}) {
 MotionOutcome move(const Scene& scene, bool loads = false) {
   const Scratch scratch;
   RunFolder folder(scratch / "out", scene);
-  MotionWishes wishes;
+  MotionRequest wishes;
   wishes.loads = loads;
   return run_motion(scene, wishes, folder);
 }
@@ -79,11 +79,17 @@ TEST(HeatedBoom, WithoutTemperatureIsTheColdBoom) {
     Changes changes = both;
     changes.emplace_back(none);
     const MotionRecord hot = move(read("heated_boom", changes)).record;
-    ASSERT_EQ(hot.time.size(), cold.time.size());
-    for (size_t k = 0; k < hot.time.size(); ++k) {
-      EXPECT_NEAR(hot.deflection[0][k], cold.deflection[0][k], 1e-11) << none;
-      EXPECT_NEAR(hot.strain[k], cold.strain[k], 1e-9 * cold.strain.back()) << none;
-      EXPECT_NEAR(hot.kinetic[k], cold.kinetic[k], 1e-10 * cold.kinetic.back()) << none;
+    ASSERT_EQ(hot.time().size(), cold.time().size());
+    for (size_t k = 0; k < hot.time().size(); ++k) {
+      EXPECT_NEAR(hot.table.at("plate.tip_deflection")[k], cold.table.at("boom.tip_deflection")[k],
+                  1e-11)
+          << none;
+      EXPECT_NEAR(hot.table.at(kStrainColumn)[k], cold.table.at(kStrainColumn)[k],
+                  1e-9 * cold.table.at(kStrainColumn).back())
+          << none;
+      EXPECT_NEAR(hot.table.at(kKineticColumn)[k], cold.table.at(kKineticColumn)[k],
+                  1e-10 * cold.table.at(kKineticColumn).back())
+          << none;
     }
   }
 }
@@ -96,8 +102,8 @@ TEST(HeatedBoom, EnergyBalanceIsOfSecondOrder) {
                                                            std::string("time.step=") + step})))
                                .record;
     EXPECT_TRUE(r.result.events.empty());
-    EXPECT_GT(r.strain.back(), 0.2);  // J: of the held root
-    return std::abs(r.defect.back());
+    EXPECT_GT(r.table.at(kStrainColumn).back(), 0.2);  // J: of the held root
+    return std::abs(r.table.at(kDefectColumn).back());
   };
   const double coarse = defect("2e-3"), fine = defect("1e-3"), finest = defect("5e-4");
   EXPECT_NEAR(std::log2(coarse / fine), 2, 0.3) << coarse << " " << fine;

@@ -8,7 +8,7 @@
 
 #include "cases/assembly/build.h"
 #include "cases/assembly/twin.h"
-#include "cases/run/run.h"
+#include "cases/check/ready.h"
 #include "fem/dynamics/carrier.h"
 #include "fem/solve/statics.h"
 #include "tests/io/scratch.h"

@@ -10,8 +10,9 @@
 #include <sstream>
 
 #include "cases/assembly/build.h"
+#include "cases/check/ready.h"
 #include "cases/keys/book.h"
-#include "cases/run/run.h"
+#include "cases/results/schema.h"
 #include "io/case_parser.h"
 #include "tests/cases/program.h"
 
@@ -76,7 +77,7 @@ TEST(Keys, AKeyIsDeclaredOnceForEveryCondition) {
 
 TEST(Keys, TheReferenceIsFresh) {
   const std::string text = contents_of(FLEXMORPH_CASES "/README.md");
-  EXPECT_TRUE(text == cases::with_reference(text))
+  EXPECT_TRUE(text == cases::with_references(text))
       << "the keys have changed: build/cases/flexmorph keys --renew cases/README.md";
 }
 

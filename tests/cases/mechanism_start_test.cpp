@@ -6,7 +6,7 @@
 
 #include "cases/assembly/build.h"
 #include "cases/assembly/twin.h"
-#include "cases/output/run_folder.h"
+#include "cases/results/motion_columns.h"
 #include "tests/cases/scenes.h"
 
 namespace flexmorph::cases {

@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cases/check/ready.h"
 #include "cases/output/report.h"
 #include "cases/run/motion_run.h"
-#include "cases/run/run.h"
 #include "io/exports.h"
 #include "tests/cases/program.h"
 
@@ -38,48 +38,42 @@ void expect_column(const io::CsvTable& table, const std::string& name,
 }
 
 void expect_motion(const io::CsvTable& table, const MotionRecord& motion) {
-  expect_column(table, "time", motion.time);
-  expect_column(table, "energy.kinetic", motion.kinetic);
-  expect_column(table, "energy.strain", motion.strain);
-  expect_column(table, "energy.potential", motion.potential);
-  expect_column(table, "energy.defect", motion.defect);
-  for (size_t i = 0; i < motion.bodies.size(); ++i)
-    expect_column(table, motion.bodies[i] + ".tip_deflection", motion.deflection[i]);
-  for (const auto* columns :
-       {&motion.observed, &motion.measured, &motion.mechanism, &motion.powers})
-    for (const Column& column : *columns) expect_column(table, column.name, column.values);
+  ASSERT_EQ(table.columns.size(), motion.table.columns.size());
+  for (size_t c = 0; c < motion.table.columns.size(); ++c)
+    expect_column(table, motion.table.columns[c].name, motion.table.values[c]);
 }
 
 TEST(RoundTrip, Motion) {
   for (const char* name : {FLEXMORPH_SHORT_CASE, "slider_crank_heated"}) {
     const Scratch scratch;
     Case c(scratch, name, {"time.end=0.02"});
-    RunReport report;
-    report.motion = run_motion(c.scene, {}, c.folder).record;
-    const MotionRecord& motion = *report.motion;
-    ASSERT_EQ(motion.time.size(), 21u);
+    RunResult result;
+    result.motions.motion = run_motion(c.scene, {}, c.folder).record;
+    const MotionRecord& motion = *result.motions.motion;
+    ASSERT_EQ(motion.table.n_rows(), 21u);
     expect_motion(c.table("motion.csv"), motion);
-    write_report(c.scene, report, c.folder);
+    write_report(c.scene, result, c.folder);
     const json run = c.run_json()["motion"];
     EXPECT_GT(motion.result.energy_defect, 0);
     EXPECT_EQ(run["energy_defect"].get<double>(), motion.result.energy_defect);
     EXPECT_EQ(run["velocity_drift"].get<double>(), motion.result.velocity_drift);
     EXPECT_EQ(run["smallest_area_ratio"].get<double>(), motion.result.smallest_area_ratio);
-    for (const Column& column : motion.observed)
-      EXPECT_EQ(run["observed"][column.name].get<double>(), column.values.back());
+    for (const size_t c : motion.table.of_group(ColumnGroup::observed))
+      EXPECT_EQ(run["observed"][motion.table.columns[c].name].get<double>(),
+                motion.table.values[c].back());
   }
 }
 
 TEST(RoundTrip, Design) {
   const Scratch scratch;
   Case c(scratch, "short_beam", {"design.cell=0.1", "optimizer.max_iterations=8"});
-  RunReport report;
-  report.problems = build_problems(c.scene);
-  mmc::BodyProblem& problem = report.problems.front();
+  RunResult run;
+  run.design.problems = build_problems(c.scene);
+  mmc::BodyProblem& problem = run.design.problems.front();
   const auto loads = build_static_loads(c.scene, problem);
   std::vector<double> compliance, volume, kkt, change;
   bool going = true;
-  report.outcomes = {mmc::design_body(
+  run.design.outcomes = {mmc::design_body(
       problem, *loads, 1, {0, c.scene.optimizer},
       [&](const mmc::IterationReport& r) {
         c.folder.add_iteration(r);
@@ -97,14 +91,14 @@ TEST(RoundTrip, Design) {
   expect_column(history, "kkt", kkt);
   expect_column(history, "change", change);
 
-  const mmc::BodyOutcome& outcome = report.outcomes.front();
+  const mmc::BodyOutcome& outcome = run.design.outcomes.front();
   c.folder.write_design(problem, outcome);
   const auto components = io::read_components_csv(c.folder.path() + "/components.csv");
   ASSERT_EQ(components.size(), problem.design.components().size());
   for (size_t i = 0; i < components.size(); ++i)
     EXPECT_EQ(components[i].parameters(), problem.design.components()[i].parameters()) << i;
 
-  write_report(c.scene, report, c.folder);
+  write_report(c.scene, run, c.folder);
   const json result = c.run_json()["results"][0];
   for (const auto& [key, value] : std::initializer_list<std::pair<const char*, double>>{
            {"compliance", outcome.compliance},

@@ -13,8 +13,8 @@
 #include <valijson/validator.hpp>
 
 #include "cases/assembly/build.h"
+#include "cases/check/ready.h"
 #include "cases/keys/book.h"
-#include "cases/run/run.h"
 #include "io/case_parser.h"
 #include "tests/cases/program.h"
 

@@ -1,7 +1,7 @@
 // Scenes in space: every bad input is refused with one message that says where and why.
 #include <gtest/gtest.h>
 
-#include "cases/run/run.h"
+#include "cases/check/ready.h"
 #include "tests/cases/scenes.h"
 
 namespace flexmorph::cases {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "cases/run/run.h"
+#include "cases/check/ready.h"
 #include "cases/stability/stability.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <set>
 
-#include "cases/run/run.h"
+#include "cases/check/ready.h"
 #include "cases/stability/report.h"
 #include "io/files.h"
 #include "io/tables.h"

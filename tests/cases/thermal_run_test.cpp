@@ -51,22 +51,23 @@ TEST(FreeBeam, GrowsAsTheClosedFormSays) {
   for (const double rise : {50.0, 100.0, 200.0}) {
     const MotionRecord r =
         motion_of("free_beam_heated", {"body.heat.rise=" + std::to_string(rise)});
-    const auto& end = *r.column("beam.end_ux");
+    const auto& end = r.table.at("beam.end_ux");
     double fastest = 0;
-    for (size_t k = 0; k < r.time.size(); ++k) {
-      const double u = std::min(1.0, r.time[k] / 0.5), s = u * u * (6 - 8 * u + 3 * u * u),
+    for (size_t k = 0; k < r.time().size(); ++k) {
+      const double u = std::min(1.0, r.time()[k] / 0.5), s = u * u * (6 - 8 * u + 3 * u * u),
                    s_t = 12 * u * (1 - u) * (1 - u) / 0.5;
-      EXPECT_NEAR(end[k], 0.5e-4 * rise * s, 1e-6 * 1e-4 * rise) << r.time[k];
+      EXPECT_NEAR(end[k], 0.5e-4 * rise * s, 1e-6 * 1e-4 * rise) << r.time()[k];
       const double kinetic = 0.5 * std::pow(1e-4 * rise * s_t, 2) * 72 * 1.01 / 12;
-      EXPECT_NEAR(r.kinetic[k], kinetic, 1e-4 * 3.03 * std::pow(1e-4 * rise * 32 / 9, 2));
-      EXPECT_NEAR((*r.column("beam.free_kinetic"))[k], kinetic, 1e-12);
-      fastest = std::max(fastest, r.kinetic[k]);
+      EXPECT_NEAR(r.table.at(kKineticColumn)[k], kinetic,
+                  1e-4 * 3.03 * std::pow(1e-4 * rise * 32 / 9, 2));
+      EXPECT_NEAR(r.table.at("beam.free_kinetic")[k], kinetic, 1e-12);
+      fastest = std::max(fastest, r.table.at(kKineticColumn)[k]);
     }
     EXPECT_NEAR(end.back(), 0.5e-4 * rise, 1e-9);
-    EXPECT_NEAR(r.column("beam.end_rx")->back(), 1 + 1e-4 * rise, 1e-9);
-    EXPECT_NEAR(r.column("beam.end_ry")->back(), 1 + 1e-4 * rise, 1e-9);
+    EXPECT_NEAR(r.table.at("beam.end_rx").back(), 1 + 1e-4 * rise, 1e-9);
+    EXPECT_NEAR(r.table.at("beam.end_ry").back(), 1 + 1e-4 * rise, 1e-9);
     EXPECT_NEAR(fastest / (3.03 * std::pow(1e-4 * rise * 32 / 9, 2)), 1, 1e-4);
-    EXPECT_LE(largest(*r.column("beam.max_elastic_strain")), 1e-8);
+    EXPECT_LE(largest(r.table.at("beam.max_elastic_strain")), 1e-8);
   }
 }
 
@@ -74,7 +75,7 @@ TEST(FreeBeam, GrowsAsTheClosedFormSays) {
 TEST(FreeBeam, WithoutThermalForceStrainsAccelerateIt) {
   const MotionRecord r = motion_of("free_beam_heated", {"body.heat.force=false"});
   const double alone = 7200 / 8.0 * 1e-4 * 200 * 12 / 0.25 / 7e8;  // at the start, quasi-static
-  const double strain = largest(*r.column("beam.max_elastic_strain"));
+  const double strain = largest(r.table.at("beam.max_elastic_strain"));
   EXPECT_GT(strain, 0.5 * alone);
   EXPECT_LT(strain, 3 * alone);  // twice for a sudden load, and what is linear across the element
 }
@@ -84,9 +85,9 @@ TEST(FreeBeam, WithoutThermalForceStrainsAccelerateIt) {
 TEST(HeldBeam, BucklesAndItsBranchIsFollowed) {
   const PathRecord r = path_of("beam_heated_held", {"load.force=[0, -0.05]"});
   EXPECT_TRUE(r.result.completed);
-  const auto& T = *r.column("beam.temperature");
-  const auto& w = *r.column("beam.midpoint_deflection");
-  EXPECT_GT(r.factor.size(), 10u);
+  const auto& T = r.table.at("beam.temperature");
+  const auto& w = r.table.at("beam.midpoint_deflection");
+  EXPECT_GT(r.table.n_rows(), 10u);
   const double critical = kPi * kPi * 0.05 * 0.05 / 12 / 80e-6;  // 25.7 K
   EXPECT_LT(std::abs(at(T, w, 0.9 * critical)), 2e-3);
   for (const double rise : {30.0, 40.0, 48.0}) {
@@ -102,23 +103,23 @@ TEST(HeldBeam, BucklesAndItsBranchIsFollowed) {
 // left of that decays along the beam as exp(-x/λ).
 TEST(Clamp, PartialIsFreeOfStressAndFullTapers) {
   const PathRecord partial = path_of("clamped_expansion");
-  EXPECT_NEAR(partial.column("beam.end_ux")->back(), 0.01, 1e-11);
-  EXPECT_NEAR(partial.column("beam.end_uy")->back(), 0, 1e-11);
-  EXPECT_LE(largest(*partial.column("beam.max_elastic_strain")), 1e-12);
+  EXPECT_NEAR(partial.table.at("beam.end_ux").back(), 0.01, 1e-11);
+  EXPECT_NEAR(partial.table.at("beam.end_uy").back(), 0, 1e-11);
+  EXPECT_LE(largest(partial.table.at("beam.max_elastic_strain")), 1e-12);
   // The section that is held is too small by e = (1 - s⁻²)/2, and Poisson's effect makes the beam
   // longer by s ν e λ, λ = h √(G/(12E)); the axis that may not stretch takes some of it back,
   // within the first element.
   const double s = 1.02, e = 0.5 * (1 - 1 / (s * s)), lambda = 0.1 * std::sqrt(1 / (2.6 * 12));
   const PathRecord edge = path_of("clamped_expansion", {"joint.mode=edge"}),
                    full = path_of("clamped_expansion", {"joint.mode=full"});
-  const double longer = edge.column("beam.end_ux")->back() - 0.01;
+  const double longer = edge.table.at("beam.end_ux").back() - 0.01;
   EXPECT_NEAR(longer / (s * 0.3 * e * lambda), 1, 0.05);
-  const double less = edge.column("beam.end_ux")->back() - full.column("beam.end_ux")->back();
+  const double less = edge.table.at("beam.end_ux").back() - full.table.at("beam.end_ux").back();
   EXPECT_GT(less, 0);
   EXPECT_LT(less, 0.02 * 0.01);  // α ΔT of an element
   for (const PathRecord* each : {&edge, &full}) {
-    EXPECT_NEAR(each->column("beam.max_elastic_strain")->back(), e, 0.05 * e);
-    EXPECT_NEAR(each->column("beam.end_ry")->back(), s, 1e-9);  // far from the clamp
+    EXPECT_NEAR(each->table.at("beam.max_elastic_strain").back(), e, 0.05 * e);
+    EXPECT_NEAR(each->table.at("beam.end_ry").back(), s, 1e-9);  // far from the clamp
   }
 }
 
@@ -130,8 +131,8 @@ TEST(HotBeam, SmallDeflectionGoesWithThePowerOfTheStretch) {
                "beam_heated_static",
                {std::string("body.heat.rise=") + rise, std::string("body.heat.volume=") + volume,
                 "load.force=[0, -1]", "static.steps=1", "body.elements=8"})
-        .column("beam.midpoint_deflection")
-        ->back();
+        .table.at("beam.midpoint_deflection")
+        .back();
   };
   const double cold = deflection("0", "grown"), s = 1 + 80e-6 * 200;
   EXPECT_NEAR(deflection("200", "grown") / cold, 1 / s, 1e-5);
@@ -145,8 +146,8 @@ TEST(HotBeam, OrderOfLoadAndTemperatureIsOfNoMatter) {
     return path_of("beam_heated_static",
                    {"body.heat.rise=100", std::string("static.grows=") + grows,
                     "load.force=[0, -300]", "static.steps=3", "body.elements=8"})
-        .column("beam.midpoint_deflection")
-        ->back();
+        .table.at("beam.midpoint_deflection")
+        .back();
   };
   const double loads = deflection("loads");
   EXPECT_NEAR(deflection("temperatures") / loads, 1, 1e-9);
@@ -187,7 +188,7 @@ TEST(HotBeam, RidesOnARigidBodyAsInAHub) {
         read_scene(io::CaseFile(scratch.write("arm.toml", time + rest + kArm + weld)));
     RunFolder folder(scratch / "out", scene);
     const MotionRecord r = run_motion(scene, {}, folder).record;
-    return Vec2(r.column("arm.end_ux")->back(), r.column("arm.end_uy")->back());
+    return Vec2(r.table.at("arm.end_ux").back(), r.table.at("arm.end_uy").back());
   };
   for (const char* mode : {"partial", "edge", "full"}) {
     const std::string by = std::string("mode = \"") + mode + "\"\n";
@@ -212,11 +213,11 @@ TEST(HotBeam, ArcGrowsWithoutStress) {
               {"body.arc=1.5707963267948966", "body.heat.rise=100", "static.grows=temperatures",
                "load=[]", "joint.1.components=[\"y\"]", "body.elements=6"});
   const double R = 2 / kPi;
-  EXPECT_LE(largest(*r.column("beam.max_elastic_strain")), 1e-11);
+  EXPECT_LE(largest(r.table.at("beam.max_elastic_strain")), 1e-11);
   // Root held, the end kept at its height: the grown arc turns about the root until it is there.
   const double far = std::sqrt(2.0) * R, s = 1.008;
   const double angle = std::asin(1 / (std::sqrt(2.0) * s));
-  EXPECT_NEAR(r.column("beam.end_ux")->back(), s * far * std::cos(angle) - R, 1e-9);
+  EXPECT_NEAR(r.table.at("beam.end_ux").back(), s * far * std::cos(angle) - R, 1e-9);
 }
 
 }  // namespace

@@ -109,13 +109,13 @@ TEST(SliderCrank, ColdRodFollowsTheSmallDeflectionModel) {
   for (const auto& [model, bending] : {std::pair{"ecm", EI}, {"gcm", EI / (1 - 0.09)}}) {
     const MotionRecord r = run({"body.heat.rise=0", "time.step=2e-3", "body.elements=24",
                                 std::string("body.terms=[\"inertia\", \"") + model + "\"]"});
-    const std::vector<double>& w = *r.column("rod.midpoint_deflection");
+    const std::vector<double>& w = r.table.at("rod.midpoint_deflection");
     const std::vector<double> expected = SmallDeflections(bending, 7200 * h * b).middle(1e-3, 2000);
     ASSERT_EQ(w.size(), 1001u);
     const double size = largest(expected);
     EXPECT_GT(size, 1e-3);
     for (size_t k = 0; k < w.size(); ++k)
-      ASSERT_NEAR(w[k], expected[2 * k], 0.03 * size) << model << " at " << r.time[k];
+      ASSERT_NEAR(w[k], expected[2 * k], 0.03 * size) << model << " at " << r.time()[k];
   }
 }
 
@@ -124,10 +124,10 @@ TEST(SliderCrank, ColdRodFollowsTheSmallDeflectionModel) {
 TEST(SliderCrank, HeatMovesTheSliderAndLeavesNoStress) {
   const MotionRecord cold = run({"body.heat.rise=0", "time.step=2e-3"}),
                      hot = run({"body.heat.rise=200", "time.step=2e-3"});
-  const double shift = hot.column("rod.slider_x")->back() - cold.column("rod.slider_x")->back();
+  const double shift = hot.table.at("rod.slider_x").back() - cold.table.at("rod.slider_x").back();
   EXPECT_NEAR(shift, kAlpha * 200 * kRod, 5e-5);
-  const double strain = largest(*cold.column("rod.max_elastic_strain"));
-  EXPECT_NEAR(largest(*hot.column("rod.max_elastic_strain")) / strain, 1, 0.1);
+  const double strain = largest(cold.table.at("rod.max_elastic_strain"));
+  EXPECT_NEAR(largest(hot.table.at("rod.max_elastic_strain")) / strain, 1, 0.1);
   EXPECT_LT(strain, 0.1 * kAlpha * 200);  // held, the rod would have α ΔT
 }
 
@@ -136,9 +136,9 @@ TEST(SliderCrank, HeatMovesTheSliderAndLeavesNoStress) {
 // reference's (p = 0). The swing of the rod follows its frequency, which changes by less.
 TEST(SliderCrank, ThermalVolumeDecidesTheTrendOfTheDeflection) {
   const auto deflection = [](const char* volume, const char* rise) {
-    return largest(*run({std::string("body.heat.rise=") + rise, "time.step=2e-3",
+    return largest(run({std::string("body.heat.rise=") + rise, "time.step=2e-3",
                          std::string("body.heat.volume=") + volume})
-                        .column("rod.midpoint_deflection"));
+                        .table.at("rod.midpoint_deflection"));
   };
   const double cold = deflection("grown", "0");
   const double grown = deflection("grown", "200"), plane = deflection("grown_plane", "200"),
@@ -154,8 +154,8 @@ TEST(SliderCrank, ThermalVolumeDecidesTheTrendOfTheDeflection) {
 TEST(SliderCrank, DeflectionConvergesWithOrderTwoInTheStep) {
   const auto at_end = [](double h) {
     return run({"time.end=0.4", "body.heat.settle=0.4", "time.step=" + std::to_string(h)})
-        .column("rod.midpoint_deflection")
-        ->back();
+        .table.at("rod.midpoint_deflection")
+        .back();
   };
   const double a = at_end(4e-3), b = at_end(2e-3), c = at_end(1e-3);
   EXPECT_NEAR(std::log2((a - b) / (b - c)), 2, 0.25);
@@ -172,11 +172,12 @@ TEST(SliderCrank, IntegratorsAgree) {
   const MotionRecord alpha = swing("generalized_alpha", "2e-4"),
                      momentum = swing("energy_momentum", "2e-4"),
                      minimal = swing("minimal_coordinates", "2e-3");
-  const double expected = alpha.column("rod.midpoint_deflection")->back();
+  const double expected = alpha.table.at("rod.midpoint_deflection").back();
   EXPECT_GT(std::abs(expected), 5e-4);
   for (const MotionRecord* other : {&momentum, &minimal}) {
-    EXPECT_NEAR(other->column("rod.midpoint_deflection")->back() / expected, 1, 2e-3);
-    EXPECT_NEAR(other->column("rod.slider_x")->back(), alpha.column("rod.slider_x")->back(), 6e-6);
+    EXPECT_NEAR(other->table.at("rod.midpoint_deflection").back() / expected, 1, 2e-3);
+    EXPECT_NEAR(other->table.at("rod.slider_x").back(), alpha.table.at("rod.slider_x").back(),
+                6e-6);
   }
 }
 
@@ -188,13 +189,13 @@ TEST(SliderCrank, StepOfTheTemperatureRingsAtTheAxialFrequency) {
   sudden.push_back("body.heat.profile=step");
   const MotionRecord gradual = run(fine), step = run(sudden);
   const double a = kAlpha * 50;
-  EXPECT_GT(largest(*step.column("rod.max_elastic_strain")), 0.9 * a);
-  EXPECT_LT(largest(*gradual.column("rod.max_elastic_strain")), 0.3 * a);
+  EXPECT_GT(largest(step.table.at("rod.max_elastic_strain")), 0.9 * a);
+  EXPECT_LT(largest(gradual.table.at("rod.max_elastic_strain")), 0.3 * a);
   // Crossings of the mean by the slider's place less that of the gradual rod.
   std::vector<double> u;
-  for (size_t k = 0; k < step.time.size(); ++k)
-    u.push_back((*step.column("rod.slider_x"))[k] - (*gradual.column("rod.slider_x"))[k] -
-                kRod * (a - kAlpha * (*gradual.column("rod.temperature"))[k]));
+  for (size_t k = 0; k < step.time().size(); ++k)
+    u.push_back(step.table.at("rod.slider_x")[k] - gradual.table.at("rod.slider_x")[k] -
+                kRod * (a - kAlpha * gradual.table.at("rod.temperature")[k]));
   int crossings = 0;
   for (size_t k = 1; k < u.size(); ++k) crossings += (u[k] > 0) != (u[k - 1] > 0);
   const double frequency = std::sqrt(2e8 / 7200) / (4 * kRod);

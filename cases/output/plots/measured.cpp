@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 namespace flexmorph::cases {
 namespace {
@@ -35,17 +34,12 @@ const std::vector<Group>& groups() {
   return kGroups;
 }
 
-const Column* column_of(std::span<const Column> columns, const std::string& name) {
-  for (const Column& column : columns)
-    if (column.name == name) return &column;
-  return nullptr;
-}
-
 /// Names of the bodies of columns "<body>.<quantity>", each once.
-std::vector<std::string> bodies_of(std::span<const Column> columns) {
+std::vector<std::string> bodies_of(const Series& table) {
   std::vector<std::string> out;
-  for (const Column& column : columns) {
-    const std::string body = column.name.substr(0, column.name.find('.'));
+  for (const size_t c : table.of_group(ColumnGroup::measured)) {
+    const std::string& name = table.columns[c].name;
+    const std::string body = name.substr(0, name.find('.'));
     if (out.empty() || out.back() != body) out.push_back(body);
   }
   return out;
@@ -58,18 +52,18 @@ bool shows(const io::Curve& curve) {
 
 }  // namespace
 
-void add_measured(const std::vector<double>& x, const std::string& x_label,
-                  const std::vector<Column>& columns, io::Figure& figure) {
-  for (const std::string& body : bodies_of(columns))
+void add_measured(const std::vector<double>& x, const std::string& x_label, const Series& table,
+                  io::Figure& figure) {
+  for (const std::string& body : bodies_of(table))
     for (const Group& group : groups()) {
       io::Panel panel;
       panel.title = body + ": " + group.title;
       panel.x.label = x_label;
       panel.y.label = group.label;
       for (const Line& line : group.lines) {
-        const Column* column = column_of(columns, body + "." + line.column);
-        if (!column) continue;
-        io::Curve curve{line.name, x, column->values};
+        const std::vector<double>* values = table.find(body + "." + line.column);
+        if (!values) continue;
+        io::Curve curve{line.name, x, *values};
         curve.dashed = line.analytic;
         panel.curves.push_back(std::move(curve));
       }
@@ -79,19 +73,21 @@ void add_measured(const std::vector<double>& x, const std::string& x_label,
 }
 
 std::string measured_plot(const MotionRecord& motion) {
-  if (motion.measured.empty()) return "";
+  const std::vector<std::string> bodies = bodies_of(motion.table);
+  if (bodies.empty()) return "";
+  const std::vector<double>& time = motion.time();
   io::Figure figure;
   figure.title = "Measured quantities";
   figure.panel_height = 240;
-  add_measured(motion.time, "time [s]", motion.measured, figure);
+  add_measured(time, "time [s]", motion.table, figure);
   io::Panel kinetic;
   kinetic.title = "kinetic energy";
   kinetic.x.label = "time [s]";
   kinetic.y.label = "kinetic energy [J]";
-  kinetic.curves.push_back({"model", motion.time, motion.kinetic});
-  for (const std::string& body : bodies_of(motion.measured))
-    if (const Column* free = column_of(motion.measured, body + ".free_kinetic")) {
-      io::Curve curve{body + ", closed form, free", motion.time, free->values};
+  kinetic.curves.push_back({"model", time, motion.table.at(kKineticColumn)});
+  for (const std::string& body : bodies)
+    if (const std::vector<double>* free = motion.table.find(body + ".free_kinetic")) {
+      io::Curve curve{body + ", closed form, free", time, *free};
       curve.dashed = true;
       kinetic.curves.push_back(std::move(curve));
     }

@@ -86,8 +86,8 @@ std::string error_plot(const Scene& scene, const MotionRecord& design,
     panel.x.label = kTime;
     panel.y.label = label;
     const auto add = [&](const char* name, const MotionRecord& motion, bool second) {
-      if (const auto* values = motion.column(body + quantity)) {
-        io::Curve curve{name, motion.time, *values};
+      if (const auto* values = motion.table.find(body + quantity)) {
+        io::Curve curve{name, motion.time(), *values};
         curve.dashed = second;
         panel.curves.push_back(std::move(curve));
       }
@@ -101,9 +101,9 @@ std::string error_plot(const Scene& scene, const MotionRecord& design,
 
 std::string moments_plot(const MotionRecord& motion) {
   const bool any =
-      std::any_of(motion.moments.begin(), motion.moments.end(),
+      std::any_of(motion.snapshots.begin(), motion.snapshots.end(),
                   [](const io::PlaneFrame& f) { return !f.plates.empty() || !f.outlines.empty(); });
-  return any ? io::plane_frames_svg("Mechanism", motion.moments) : "";
+  return any ? io::plane_frames_svg("Mechanism", motion.snapshots) : "";
 }
 
 std::string joint_forces_plot(const Scene& scene, const MotionRecord& motion) {
@@ -122,9 +122,9 @@ std::string joint_forces_plot(const Scene& scene, const MotionRecord& motion) {
       panel.y.label = label;
       bool any = false;
       for (const auto& [quantity, name] : quantities)
-        if (const auto* values = motion.column(joint.name + "." + quantity)) {
+        if (const auto* values = motion.table.find(joint.name + "." + quantity)) {
           any = any || varies(*values);
-          panel.curves.push_back({name, motion.time, *values});
+          panel.curves.push_back({name, motion.time(), *values});
         }
       if (any) figure.panels.push_back(std::move(panel));
     };
@@ -134,15 +134,6 @@ std::string joint_forces_plot(const Scene& scene, const MotionRecord& motion) {
     add({{"power", ""}}, "power [W]");
   }
   return figure.panels.empty() ? "" : io::plot_svg(figure);
-}
-
-LargestError largest_error(const MotionRecord& motion, const std::string& body,
-                           const std::string& quantity) {
-  LargestError out;
-  const std::vector<double>* values = motion.column(body + "." + quantity);
-  for (size_t i = 0; values && i < values->size(); ++i)
-    if (std::abs((*values)[i]) > out.size) out = {std::abs((*values)[i]), motion.time[i]};
-  return out;
 }
 
 }  // namespace flexmorph::cases

@@ -2,7 +2,8 @@
 
 #include <optional>
 
-#include "cases/output/run_folder.h"
+#include "cases/results/motion_record.h"
+#include "cases/scene/scene.h"
 
 /// Plots of a mechanism as SVG; empty where there is nothing to show.
 namespace flexmorph::cases {
@@ -20,13 +21,5 @@ std::string moments_plot(const MotionRecord& motion);
 
 /// Forces, moments and powers of named joints against time.
 std::string joint_forces_plot(const Scene& scene, const MotionRecord& motion);
-
-/// The largest error |delta| of the trajectory's body over a motion, and when; `quantity` is one of
-/// delta_x, delta_y [m] and delta_angle [rad].
-struct LargestError {
-  double size = 0, time = 0;
-};
-LargestError largest_error(const MotionRecord& motion, const std::string& body,
-                           const std::string& quantity);
 
 }  // namespace flexmorph::cases

@@ -7,22 +7,23 @@ namespace {
 
 /// Panels of observed columns: components of a point share one, and curves are named by what
 /// follows the last underscore.
-void add_observed(const std::vector<double>& x, const std::string& x_label,
-                  const std::vector<Column>& columns, const std::string& what, io::Figure& figure) {
-  for (const Column& column : columns) {
-    const size_t cut = column.name.rfind('_');
-    const std::string point = column.name.substr(0, cut);
+void add_observed(const io::Axis& x, const std::vector<double>& at, const Series& table,
+                  const std::string& what, io::Figure& figure) {
+  for (const size_t c : table.of_group(ColumnGroup::observed)) {
+    const std::string& name = table.columns[c].name;
+    const size_t cut = name.rfind('_');
+    const std::string point = name.substr(0, cut);
     const bool line = point.ends_with(".line");
-    const std::string title = line ? column.name : point;
+    const std::string title = line ? name : point;
     if (figure.panels.empty() || figure.panels.back().title != title) {
       io::Panel panel;
       panel.title = title;
-      panel.x.label = x_label;
+      panel.x = x;
       panel.y.label = line ? "material coordinate [m]" : what;
       figure.panels.push_back(panel);
     }
     figure.panels.back().curves.push_back(
-        {line ? "" : column.name.substr(cut + 1), x, column.values, true, false, false});
+        {line ? "" : name.substr(cut + 1), at, table.values[c], true, false, false});
   }
 }
 
@@ -53,17 +54,18 @@ std::string deflection_plot(const MotionRecord& design,
                             const std::optional<MotionRecord>& uniform) {
   io::Figure figure;
   figure.title = "Tip deflection";
-  for (size_t i = 0; i < design.deflection.size(); ++i) {
+  const std::vector<size_t> tips = design.table.of_group(ColumnGroup::deflection);
+  for (const size_t c : tips) {
+    const std::string& name = design.table.columns[c].name;
     io::Panel panel;
-    panel.title = design.bodies.size() > 1 ? design.bodies[i] : "";
+    panel.title = tips.size() > 1 ? name.substr(0, name.size() - kDeflectionEnding.size()) : "";
     panel.x.label = "time [s]";
     panel.y.label = "deflection [m]";
-    const bool designed = uniform.has_value();
     panel.curves.push_back(
-        {designed ? "optimized" : "", design.time, design.deflection[i], true, false, false});
-    if (designed)
+        {uniform ? "optimized" : "", design.time(), design.table.values[c], true, false, false});
+    if (uniform)
       panel.curves.push_back(
-          {"uniform, same volume", uniform->time, uniform->deflection[i], true, false, true});
+          {"uniform, same volume", uniform->time(), uniform->table.at(name), true, false, true});
     figure.panels.push_back(panel);
   }
   return io::plot_svg(figure);
@@ -72,21 +74,26 @@ std::string deflection_plot(const MotionRecord& design,
 std::string observed_plot(const MotionRecord& motion) {
   io::Figure figure;
   figure.title = "Observed motion";
-  add_observed(motion.time, "time [s]", motion.observed, "position [m]", figure);
+  io::Axis time;
+  time.label = "time [s]";
+  add_observed(time, motion.time(), motion.table, "position [m]", figure);
   return io::plot_svg(figure);
 }
 
 std::string path_plot(const PathRecord& path) {
+  const std::vector<double>& factor = path.table.at(kFactorColumn);
   io::Figure figure;
   figure.title = "Path of equilibria";
-  add_observed(path.factor, "load factor", path.observed, "displacement [m]", figure);
-  add_measured(path.factor, "load factor", path.measured, figure);
+  io::Axis load;
+  load.label = "load factor";
+  add_observed(load, factor, path.table, "displacement [m]", figure);
+  add_measured(factor, load.label, path.table, figure);
   for (io::Panel& panel : figure.panels)
     for (io::Curve& curve : panel.curves) curve.markers = true;
   io::Panel energy;
-  energy.x.label = "load factor";
+  energy.x = load;
   energy.y.label = "strain energy [J]";
-  energy.curves.push_back({"", path.factor, path.strain, true, true, false});
+  energy.curves.push_back({"", factor, path.table.at(kStrainColumn), true, true, false});
   figure.panels.push_back(energy);
   return io::plot_svg(figure);
 }
@@ -94,18 +101,20 @@ std::string path_plot(const PathRecord& path) {
 std::string energy_plot(const Scene& scene, const MotionRecord& motion) {
   io::Figure figure;
   figure.title = "Energies";
+  const Series& table = motion.table;
   const auto panel = [&](const std::string& label, const std::vector<double>& y) {
     io::Panel out;
     out.x.label = "time [s]";
     out.y.label = label;
-    out.curves.push_back({"", motion.time, y, true, false, false});
+    out.curves.push_back({"", motion.time(), y, true, false, false});
     figure.panels.push_back(out);
   };
-  panel("kinetic [J]", motion.kinetic);
-  panel("strain [J]", motion.strain);
-  if (scene.in_space() || scene.gravity) panel("potential [J]", motion.potential);
-  for (const Column& column : motion.written) panel(column.name + " [J]", column.values);
-  panel("defect of the balance [J]", motion.defect);
+  panel("kinetic [J]", table.at(kKineticColumn));
+  panel("strain [J]", table.at(kStrainColumn));
+  if (scene.in_space() || scene.gravity) panel("potential [J]", table.at(kPotentialColumn));
+  for (const size_t c : table.of_group(ColumnGroup::term))
+    panel(table.columns[c].name + " [J]", table.values[c]);
+  panel("defect of the balance [J]", table.at(kDefectColumn));
   return io::plot_svg(figure);
 }
 

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "cases/output/run_folder.h"
-#include "io/plots.h"
+#include "cases/results/motion_record.h"
 
 /// Plots of a run as SVG.
 namespace flexmorph::cases {

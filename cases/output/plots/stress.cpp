@@ -10,17 +10,10 @@
 
 namespace flexmorph::cases {
 
-std::vector<double> mises_of(const judge::Judged& judged) {
-  std::vector<double> out(judged.mesh.points.size());
-  for (std::size_t k = 0; k < out.size(); ++k)
-    out[k] = fem::von_mises(judged.stress.col(static_cast<Eigen::Index>(k)));
-  return out;
-}
-
 namespace {
 
-/// Less than this part of the area has more than the lightest colour: peaks at corners would leave
-/// all else dark.
+/// The part of the area whose stress may exceed the lightest colour: peaks at corners would leave
+/// the rest dark.
 constexpr double kPeaks = 0.005;
 
 /// The stress that triangles of so much area exceed.
@@ -46,9 +39,9 @@ std::string times(double magnification) {
 
 }  // namespace
 
-std::string stress_plot(const JudgedBody& judged) {
-  if (!judged.verdict || judged.verdict->displacement.size() == 0) return "";
-  const judge::Judged& j = *judged.verdict;
+std::string stress_plot(const VerifiedOutline& outline) {
+  if (!outline.verification || outline.verification->displacement.size() == 0) return "";
+  const judge::Judged& j = *outline.verification;
   const std::vector<double> mises = mises_of(j);
   io::PartPicture picture;
   picture.upper = all_but_peaks(j, mises);

@@ -2,15 +2,12 @@
 
 #include <string>
 
-#include "cases/results/judged.h"
+#include "cases/results/verified_outline.h"
 
 namespace flexmorph::cases {
 
-/// What a judged design does under its worst load: displaced, in the colours of the von Mises
-/// stress. Empty where there is no verdict, or an infinite one.
-std::string stress_plot(const JudgedBody& judged);
-
-/// Von Mises stress at the nodes of the judge's mesh (n) [Pa].
-std::vector<double> mises_of(const judge::Judged& judged);
+/// Draws a verified design under its worst load as SVG: displaced, in the colours of the von Mises
+/// stress. Empty where there is no verification, or an infinite compliance.
+std::string stress_plot(const VerifiedOutline& outline);
 
 }  // namespace flexmorph::cases

@@ -1,10 +1,11 @@
 // What a run will take, against runs that were measured, and the refusal of what a machine has not.
+#include "cases/assembly/resource_estimate.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
 
-#include "cases/assembly/resource_estimate.h"
 #include "cases/check/check_cost.h"
 #include "tests/cases/scenes.h"
 #include "tests/io/scratch.h"

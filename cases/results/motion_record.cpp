@@ -1,0 +1,41 @@
+#include "cases/results/motion_record.h"
+
+#include <cmath>
+
+namespace flexmorph {
+
+namespace io {
+
+void remember(Memory& memory, PlanePlate& p) { memory(p.n_across, p.points, p.density); }
+void remember(Memory& memory, PlaneFrame& f) { memory(f.title, f.plates, f.outlines); }
+
+}  // namespace io
+
+namespace cases {
+
+double MotionRecord::strain_integral() const {
+  const std::vector<double>&t = time(), &strain = table.at(kStrainColumn);
+  double out = 0;
+  for (std::size_t i = 1; i < t.size(); ++i)
+    out += 0.5 * (t[i] - t[i - 1]) * (strain[i - 1] + strain[i]);
+  return out;
+}
+
+std::optional<double> MotionRecord::amplitude(const std::string& body) const {
+  const std::vector<double>* deflection = table.find(body + kDeflectionEnding);
+  if (!deflection) return {};
+  return largest_size(*deflection);
+}
+
+LargestError largest_error(const MotionRecord& motion, const std::string& body,
+                           const std::string& quantity) {
+  LargestError out;
+  const std::vector<double>* values = motion.table.find(body + "." + quantity);
+  for (std::size_t i = 0; values && i < values->size(); ++i)
+    if (std::abs((*values)[i]) > out.size) out = {std::abs((*values)[i]), motion.time()[i]};
+  return out;
+}
+
+}  // namespace cases
+
+}  // namespace flexmorph

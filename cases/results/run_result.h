@@ -1,0 +1,107 @@
+#pragma once
+
+#include <cmath>
+#include <optional>
+
+#include "cases/results/failure.h"
+#include "cases/results/motion_record.h"
+#include "cases/results/verified_outline.h"
+#include "optim/mmc/corrected_cycles.h"
+#include "optim/mmc/esl_loop.h"
+
+/// What a run found. Drivers return its parts; once it is complete it is const.
+namespace flexmorph::cases {
+
+/// Compares the static energy of a crisp design under its own loads with the strain energy of the
+/// motion with this design, load by load: coarse elements of a motion bridge what the cells of a
+/// design resolve (fem/README.md, Cells).
+struct EnergyComparison {
+  static constexpr double kTolerance = 0.2;  ///< relative difference of a load's energies
+  /// Loads with less than this part of the largest energy are left out: the motion passes through
+  /// rest there.
+  static constexpr double kLeast = 0.01;
+
+  std::string body;
+  int compared = 0, apart = 0;  ///< loads, and those that differ by more than kTolerance
+  double ratio = 1, time = 0;  ///< static energy over that of the motion, furthest from 1; when [s]
+
+  void add(double at, double found) {
+    ++compared;
+    if (std::abs(found - 1) > kTolerance) ++apart;
+    if (std::abs(found - 1) > std::abs(ratio - 1)) ratio = found, time = at;
+  }
+};
+
+/// Objective of the crisp outlines on the cells of the case before and after corrected cycles.
+struct CorrectedMotion {
+  double before = 0, after = 0;
+  bool improves() const { return after < before; }
+};
+
+/// What a sentence of a run says against its own results.
+struct Warning {
+  std::string words;
+  bool unusable = false;  ///< nobody can use the result: the run ends "done, not usable"
+};
+
+/// An expectation of the case and what was found.
+struct Expected {
+  std::string name;
+  std::optional<double> found;  ///< nothing where the run did not get that far
+  bool holds = false;
+  std::string words;  ///< "volume = 0.52: expected at most 0.5001"
+};
+
+/// CPU seconds of parts of a run, by name.
+using Seconds = std::vector<std::pair<std::string, double>>;
+
+/// How a run went.
+struct RunInfo {
+  std::string status = "running", message;
+  std::string lost_frames;      ///< sentence on frames that could not be written; mostly empty
+  std::string missing_exports;  ///< sentence on files that could not be made; mostly empty
+  int threads = 1;
+  double seconds_wall = 0, seconds_cpu = 0, peak_memory_bytes = 0;
+  Seconds phases;  ///< CPU seconds of a run with designs
+};
+
+/// The designs of a run and what is known of them.
+struct DesignResult {
+  std::vector<mmc::BodyProblem> problems;
+  std::vector<mmc::BodyOutcome> outcomes;
+  std::vector<VerifiedOutline> outlines;         ///< of final designs, in the order of the outcomes
+  std::vector<mmc::CycleVerdict> verdicts;       ///< of a run of several cycles
+  std::vector<mmc::CorrectedCycle> corrections;  ///< the design they begin with, then every cycle
+  std::optional<CorrectedMotion> corrected;
+  std::optional<mmc::MotionCertificate> certificate;
+  std::vector<EnergyComparison> energies;  ///< of designs whose verification is not on cells
+  int cycles = 0;
+  /// CPU seconds: post-processing of designs; motions that make loads; motions with final designs
+  /// and with uniform material.
+  double seconds_clean_up = 0, seconds_motion = 0, seconds_verification = 0;
+};
+
+/// The motions of a run: with the design (or full material), with uniform material of the same
+/// volume, and both on the mesh of [verify].
+struct MotionResults {
+  std::optional<MotionRecord> motion, uniform, verified, verified_uniform;
+
+  /// The motion that a design is assessed by: the verification where there is one.
+  const std::optional<MotionRecord>& assessed() const { return verified ? verified : motion; }
+  const std::optional<MotionRecord>& assessed_uniform() const {
+    return verified ? verified_uniform : uniform;
+  }
+};
+
+/// Everything a run knows at its end, or when it fails.
+struct RunResult {
+  RunInfo info;
+  DesignResult design;
+  MotionResults motions;
+  std::optional<PathRecord> path;  ///< of a [static] analysis
+  std::optional<Failure> failure;
+  std::vector<Warning> warnings;
+  std::vector<Expected> expectations;
+};
+
+}  // namespace flexmorph::cases

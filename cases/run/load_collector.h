@@ -1,0 +1,26 @@
+#pragma once
+
+#include "cases/assembly/build.h"
+#include "cases/output/step_writer.h"
+
+namespace flexmorph::cases {
+
+/// Collects the equivalent static loads of the designed bodies at multiples of esl.every.
+class LoadCollector : public StepWriter {
+ public:
+  /// @param growths  moving roots of the model
+  /// @param loads    receives one entry per design; outlives the writer
+  LoadCollector(const Scene& scene, std::span<const fem::Growth> growths,
+                std::vector<fem::EslSets>& loads);
+  void add(const StepRecord& step) override;
+  void remember(Memory& memory) override;
+
+ private:
+  fem::EslSet load_of(const StepRecord& step, const BodyDesign& design) const;
+
+  const Scene& scene_;
+  std::span<const fem::Growth> growths_;
+  std::vector<fem::EslSets>& loads_;
+};
+
+}  // namespace flexmorph::cases

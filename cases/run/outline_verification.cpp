@@ -1,0 +1,58 @@
+#include "cases/run/outline_verification.h"
+
+#include <algorithm>
+
+#include "cases/assembly/verified_loads.h"
+#include "cases/output/outline_meshes.h"
+#include "geometry/cpu_time.h"
+
+namespace flexmorph::cases {
+namespace {
+
+/// Round-off and the outline's own tolerance: not below by more than 1 %.
+constexpr double kWithin = 0.99;
+
+void find_narrow(const mmc::BodyProblem& problem, std::span<const Region> regions,
+                 VerifiedOutline& out) {
+  out.cell = std::min(problem.grid.dx(), problem.grid.dy());
+  out.thickness = problem.widths.solid > 0 ? problem.widths.solid
+                                           : 2 * problem.stages.back().min_half_thickness;
+  // Discs side by side are one place: the narrowest stands for them.
+  for (const NarrowPlace& p :
+       mmc::narrow_places_of(problem, regions, kWithin * std::max(out.cell, out.thickness))) {
+    const double wanted = p.solid ? out.thickness : out.cell;
+    const bool known = std::any_of(out.narrow.begin(), out.narrow.end(), [&](const NarrowPlace& q) {
+      return q.solid == p.solid && (q.center - p.center).norm() < 2 * wanted;
+    });
+    if (!known && p.width < kWithin * wanted) out.narrow.push_back(p);
+  }
+}
+
+}  // namespace
+
+VerifiedOutline verify_outline_of(const Scene& scene, const mmc::BodyProblem& problem,
+                                  const fem::EslSets* loads, const std::function<bool()>& go_on,
+                                  RunFolder& folder) {
+  VerifiedOutline out;
+  out.body = problem.body;
+  const double clock = thread_seconds();
+  try {
+    const std::vector<Region> regions = mmc::exported_regions(problem);
+    find_narrow(problem, regions, out);
+    if (loads != nullptr) out.why_not = mmc::cannot_judge(problem);
+    if (!out.why_not.empty()) return out;
+    const judge::Loads by_position =
+        loads != nullptr ? mmc::loads_by_position(problem, *loads) : judged_loads(scene, problem);
+    const Grid& g = problem.grid;
+    out.volume = area(regions) / (mmc::plate_of(problem).n_domain_cells() * g.dx() * g.dy());
+    out.verification = mmc::judge_design(problem, regions, by_position, go_on);
+    write_outline_meshes(scene, problem, regions, *out.verification, folder);
+  } catch (const Error& error) {
+    out.verification.reset();
+    out.why_not = error.what();
+  }
+  out.seconds = thread_seconds() - clock;
+  return out;
+}
+
+}  // namespace flexmorph::cases
