@@ -134,8 +134,9 @@ std::vector<std::string> RunFolder::frames() const {
   return out;
 }
 
-void RunFolder::add_surface_frame(const fem::Body& body, const fem::State& x, const Pose& pose,
-                                  double time, int part, double heating) {
+void RunFolder::add_surface_frame(const fem::Body& body, const fem::State& x,
+                                  const fem::ReferencePose& pose, double time, int part,
+                                  double heating) {
   const Surface surface = deformed_surface(*scene_.body(body.name).row, body, x, pose, heating);
   const io::Field points[] = {{"displacement", surface.displacement, surface.mesh.dimension}};
   std::vector<io::Field> cells = {{"strain_energy", surface.energy}};

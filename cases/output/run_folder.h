@@ -121,8 +121,8 @@ class RunFolder {
                         int part);
   /// The deformed mid-surface of a body without a design, with displacements and strain energy per
   /// area, a beam with its elastic strain (`heating`: see deformed_surface()):
-  void add_surface_frame(const fem::Body& body, const fem::State& x, const Pose& pose, double time,
-                         int part, double heating = 1);
+  void add_surface_frame(const fem::Body& body, const fem::State& x, const fem::ReferencePose& pose,
+                         double time, int part, double heating = 1);
   /// What does not deform: rigid bodies, hubs, point masses.
   void add_rigid_frame(const std::string& name, const io::QuadMesh& mesh, double time, int part);
 

@@ -267,7 +267,7 @@ class Recorder {
     const Grid& grid = scene_.designs[d].grid;
     const VectorXd density =
         wishes_.factors.empty() ? VectorXd::Ones(grid.n_cells()) : wishes_.factors[d].mass;
-    const Pose& pose = poses_[static_cast<size_t>(&body - scene_.bodies.data())];
+    const fem::ReferencePose& pose = poses_[static_cast<size_t>(&body - scene_.bodies.data())];
     return designed_surface(step.model.body(body.name), step.x, pose, grid, density);
   }
 
@@ -299,7 +299,7 @@ class Recorder {
   RunFolder& folder_;
   MotionOutcome& out_;
   std::vector<const fem::Growth*> tracked_;  // whose tip deflections are in the table
-  std::vector<Pose> poses_;                  // of the bodies at the start
+  std::vector<fem::ReferencePose> poses_;    // of the bodies at the start
   MechanismColumns columns_;
   MotionTable table_;
   fem::State undeformed_, start_;  // as the motion starts, where something is measured

@@ -15,7 +15,6 @@
 #include <nlohmann/json.hpp>
 
 #include "cases/assembly/resource_estimate.h"
-#include "cases/assembly/twin.h"
 #include "cases/output/kept_case.h"
 #include "cases/output/paraview_script.h"
 #include "cases/output/report.h"
