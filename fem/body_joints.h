@@ -1,11 +1,12 @@
 #pragma once
 
 #include "fem/marker.h"
+#include "fem/plane_curve.h"
 
 /// Joints between places on planar rigid bodies, on plates and on the ground (fem/marker.h).
 ///
-/// Every Φ is of degree 2 at most in the unknowns. Rows are lengths [m] with multipliers in N, or
-/// numbers of the size of an angle with multipliers in N m.
+/// Every Φ but those of gears and paths is of degree 2 at most in the unknowns. Rows are lengths
+/// [m] with multipliers in N, or numbers of the size of an angle with multipliers in N m.
 ///
 /// Rows that say "axes are parallel" (n_a · e_b = 0 with n_a = e_a turned by +90 degrees) are also
 /// fulfilled by axes that point against each other. The motion cannot reach that root, for the two
@@ -41,6 +42,29 @@ std::unique_ptr<Joint> make_angle_drive(std::string name, MarkerPlace a, MarkerP
 /// @throws Error (input) unless L(0) > 0; at evaluation unless L(t) > 0.
 std::unique_ptr<Joint> make_distance(std::string name, MarkerPlace a, MarkerPlace b,
                                      std::function<Motion(double t)> motion);
+
+/// Two wheels that roll on each other without slip.
+struct GearData {
+  int teeth_a = 1, teeth_b = 1;
+  bool inner = false;  ///< does one of them have its teeth inside, so that both turn one way?
+  double angle_a = 0, angle_b = 0;  ///< of axes 1 where these teeth are in mesh [rad]
+};
+/// The wheels of a and b turn as their numbers of teeth n_a, n_b say: with p/q = n_a/n_b in lowest
+/// terms and s = 1 for outer, -1 for inner gearing,
+///
+///   Φ = [s p (θ_a - θ_a0) + q (θ_b - θ_b0)] / q, 1 row [rad]
+///
+/// Its multiplier is the moment [N m] on b, with the sign turned. Other roots, 2 π/q away, are
+/// other teeth in mesh: a motion cannot reach them.
+/// @throws Error (input) for a number of teeth that is not positive.
+std::unique_ptr<Joint> make_gear(std::string name, MarkerPlace a, MarkerPlace b,
+                                 const GearData& wheels);
+
+/// The point of b runs along a curve in the axes of a: Φ is its signed distance from the curve, 1
+/// row [m]. The multiplier is the force [N] across the curve on b, with the sign turned: there is
+/// no friction.
+/// @throws Error (numerical) at evaluation where the point leaves an open curve at one of its ends.
+std::unique_ptr<Joint> make_path(std::string name, MarkerPlace a, MarkerPlace b, PlaneCurve curve);
 
 /// Those components (0, 1; both when empty) of the point follow a path in the world: a row each.
 std::unique_ptr<Joint> make_point_drive(std::string name, MarkerPlace a, PointDrive point,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fem/element.h"
 #include "fem/load_law.h"
 #include "fem/term.h"
 
@@ -20,6 +21,12 @@ class RigidClock {
  protected:
   ~RigidClock() = default;
 };
+
+/// Makes the element of a planar rigid body (elements/rigid_body.h).
+/// @param length  makes the axis a displacement: a size of the body [m]
+/// @param moves   does its mass change in time, with material that it stores (fem/stored.h)?
+/// @throws Error (input) unless the length is positive.
+std::unique_ptr<Element> make_rigid_body(double length, bool moves = false);
 
 /// Inertia of a planar rigid body (elements/rigid_body.h): a constant mass matrix.
 /// @throws Error (input) unless mass and inertia are positive and all numbers finite; at prepare()

@@ -4,7 +4,6 @@
 #include <random>
 
 #include "cases/assembly/static_conditions.h"
-#include "cases/assembly/twin.h"
 
 namespace flexmorph::cases {
 fem::PlaneSection section_of(const Body& body) {

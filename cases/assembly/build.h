@@ -3,28 +3,13 @@
 #include <memory>
 #include <span>
 
+#include "cases/assembly/rigid_kinematics.h"
 #include "cases/scene/scene.h"
 #include "fem/dynamics/esl.h"
 #include "fem/dynamics/motion.h"
-#include "fem/stored.h"
 #include "optim/mmc/esl_loop.h"
 
 namespace flexmorph::cases {
-
-/// Where an undeformed body lies at the start: its m-line at `line` goes through `origin`, where
-/// its axis along m is turned by `angle` about z.
-struct Pose {
-  Vec2 origin{0, 0};
-  double angle = 0;
-  double line = 0;       ///< material coordinate [m]
-  double curvature = 0;  ///< of the axis of a beam [1/m]
-
-  Vec3 place(const Vec2& material) const;
-};
-/// A material point in the axes of the undeformed body at its root: the point itself, but of a beam
-/// that is an arc.
-Vec2 undeformed_place(const Body& body, const Vec2& material);
-Pose start_pose(const Scene& scene, const Body& body);
 
 /// The scene of a case file, drives that follow from a trajectory included.
 /// @throws Error (input) located in the file, see io::Table; Error (numerical) where the path of
@@ -54,18 +39,13 @@ Scene on_cells(Scene scene, int parts);
 
 /// Scene -> model, joints and integrator settings. Stops for loads and output are left empty. The
 /// model of a [static] analysis has the same bodies, joints and loads.
+/// @param rigid  the rigid kinematic model of the scene, which is copied; null: it is built here
 /// @throws Error (input) for combinations the tables of elements, terms and joints do not have.
-Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh = {});
+Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh = {},
+                          const fem::RigidKinematics* rigid = nullptr);
 
 /// Energy of strains of 1e-13, which slopes of size one have by round-off [J].
 double stress_round_off(const Scene& scene);
-
-/// A rigid body with its inertia and that of its point masses and of what it stores, its weight
-/// (gravity (2) [m/s^2], or empty) and its unit axis.
-void add_rigid_body(const RigidBody& body, fem::Model& model, const fem::LoadLaw& gravity,
-                    std::span<const fem::StoredMaterial> stored = {});
-/// The loads on rigid bodies.
-void add_rigid_loads(const Scene& scene, fem::Model& model);
 
 /// The hub that an edge is welded to.
 const Hub& hub_of(const Scene& scene, const Joint& joint);

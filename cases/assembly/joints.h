@@ -7,12 +7,12 @@
 namespace flexmorph::cases {
 
 /// Where an anchor is in the model at hand: in the flexible one plates have material points, in the
-/// rigid twin they have places on a rigid body.
+/// rigid kinematic model they have places on a rigid body.
 using FindPlace = std::function<fem::MarkerPlace(const Anchor&)>;
 
 /// The joint of the model; nothing where the model at hand does not need it, and of edges, which
 /// are not made one by one: see JointRow::make.
-/// @param rigid  is the model the rigid twin?
+/// @param rigid  is it the rigid kinematic model?
 std::unique_ptr<fem::Joint> make_joint(const Scene& scene, const Joint& joint,
                                        const FindPlace& place, bool rigid);
 

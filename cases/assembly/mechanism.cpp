@@ -6,12 +6,10 @@
 #include "cases/assembly/heat.h"
 #include "cases/assembly/joints.h"
 #include "cases/assembly/stored.h"
-#include "cases/assembly/twin.h"
 #include "cases/scene/elements/row.h"
 #include "cases/scene/joints/row.h"
-#include "fem/elements/rigid_body.h"
+#include "fem/dynamics/rigid_motion.h"
 #include "fem/loads.h"
-#include "fem/rigid.h"
 #include "fem/terms.h"
 #include "io/files.h"
 
@@ -145,48 +143,26 @@ constexpr double kAhead = 2e-4;
 
 /// How a mechanism starts: at rest in equilibrium where its drives do not determine it all.
 /// @throws Error (input) when that is asked for but it does not rest.
-fem::Start start_of(const Scene& scene, TwinMotion& twin) {
+fem::Start start_of(const Scene& scene, fem::RigidMotion& rigid) {
   // Where nothing bends nothing is stretched.
   if (scene.time.start != Start::prestretched || scene.bodies.empty()) return fem::Start::rigid;
-  if (twin.degrees_of_freedom() == 0)
-    return twin.reaches(kAhead) ? fem::Start::prestretched : fem::Start::rigid;
-  if (twin.is_indeterminate())
+  if (rigid.degrees_of_freedom() == 0)
+    return rigid.reaches(kAhead) ? fem::Start::prestretched : fem::Start::rigid;
+  if (rigid.is_indeterminate())
     throw Error::input(
         "time.start: \"prestretched\" needs a motion of the rigid mechanism, but its joints hold "
         "more than it has freedoms: start = \"rigid\"");
   // What is left of it is the start of a swing; the equilibrium of the plates ends it.
   const double nearly = 0.05 * std::max(1.0, scene.gravity ? scene.gravity->norm() : 0.0);
-  const double speed = twin.start_speed(), acceleration = twin.start_acceleration();
+  const double speed = rigid.start_speed(), acceleration = rigid.start_acceleration();
   if (speed < 1e-6 && acceleration < nearly) return fem::Start::settled;
   scene.refuse("time.start",
                "\"prestretched\" puts a mechanism whose drives leave freedoms (" +
-                   std::to_string(twin.degrees_of_freedom()) +
+                   std::to_string(rigid.degrees_of_freedom()) +
                    " here) into its equilibrium at rest, but this one sets off with " +
                    io::to_text(speed, 3) + " m/s and " + io::to_text(acceleration, 3) +
                    " m/s²: bodies where they hang at rest and drives that begin at rest, or start "
                    "= \"rigid\"");
-}
-
-/// Where bodies that ride in no hub are, by the rigid twin.
-void place_bodies(const Scene& scene, fem::MotionSettings& motion) {
-  const auto kept = std::make_shared<const Scene>(scene);  // the twin looks at it
-  const auto twin = std::make_shared<TwinMotion>(*kept);
-  motion.start = start_of(scene, *twin);
-  motion.placement = [kept, twin](double t) {
-    const Scene& scene = *kept;
-    const fem::State& x = twin->at(t);
-    std::vector<fem::Placed> out;
-    for (const RigidBody& b : scene.rigid_bodies)
-      out.push_back({b.name, twin->twin().frame(b.name, x)});
-    for (const Body& b : scene.bodies) {
-      const bool rides = b.row->lines &&
-                         std::any_of(scene.joints.begin(), scene.joints.end(), [&](const Joint& j) {
-                           return j.body == b.name && j.holds_frame() && j.edge != "free_end";
-                         });
-      if (!rides) out.push_back({b.name, twin->twin().frame(b.name, x), b.longest(scene.time.end)});
-    }
-    return out;
-  };
 }
 
 /// Without rigid bodies: where beams are, as the case says or with their hubs.
@@ -204,7 +180,7 @@ void place_alone(const Scene& scene, fem::MotionSettings& motion) {
     const auto hub = std::find_if(scene.joints.begin(), scene.joints.end(), holds);
     const bool rides = hub != scene.joints.end();
     if (body.row->lines) continue;
-    const Pose pose = start_pose(scene, body);
+    const fem::ReferencePose pose = start_pose(scene, body);
     frames.push_back(
         {body.name, rides ? hub_drive(scene, *hub) : at_rest(pose.origin, pose.angle), pose.line});
   }
@@ -236,50 +212,6 @@ fem::FrameDrive hub_drive(const Scene& scene, const Joint& joint) {
 
 namespace {
 
-/// With its point masses: about the common centre of mass.
-fem::RigidSection section_of(const RigidBody& body) {
-  if (body.masses.empty()) return {body.mass, body.center, body.inertia};
-  fem::RigidSection out{body.mass, body.mass * body.center, body.inertia};
-  for (const RigidBody::AddedMass& m : body.masses) {
-    out.mass += m.mass;
-    out.center += m.mass * m.point;
-  }
-  out.center /= out.mass;
-  out.inertia += body.mass * (body.center - out.center).squaredNorm();
-  for (const RigidBody::AddedMass& m : body.masses)
-    out.inertia += m.mass * (m.point - out.center).squaredNorm();
-  return out;
-}
-
-}  // namespace
-
-void add_rigid_loads(const Scene& scene, fem::Model& model) {
-  for (size_t i = 0; i < scene.loads.size(); ++i) {
-    const BodyLoad& load = scene.loads[i];
-    const auto is_loaded = [&](const RigidBody& body) { return body.name == load.body; };
-    if (std::any_of(scene.rigid_bodies.begin(), scene.rigid_bodies.end(), is_loaded))
-      model.add_link(load.row->on_rigid(load, "load " + std::to_string(i + 1)));
-  }
-}
-
-void add_rigid_body(const RigidBody& body, fem::Model& model, const fem::LoadLaw& gravity,
-                    std::span<const fem::StoredMaterial> stored) {
-  const fem::RigidSection section = section_of(body);
-  std::vector<std::unique_ptr<fem::Term>> terms;
-  terms.push_back(fem::make_rigid_inertia(section));
-  if (gravity.size() > 0) terms.push_back(fem::make_rigid_gravity(section, gravity));
-  for (const fem::StoredMaterial& each : stored) {
-    terms.push_back(fem::make_stored_inertia(each));
-    if (gravity.size() > 0) terms.push_back(fem::make_stored_weight(each, gravity));
-  }
-  const double size = std::sqrt(body.inertia / body.mass);
-  model.add_body(body.name, std::make_unique<fem::RigidBody>(size, !stored.empty()), {},
-                 std::move(terms));
-  model.add_joint(fem::make_unit_axis("axis of " + body.name, body.name));
-}
-
-namespace {
-
 /// Does no load act that has no energy, and nothing that could bring energy in within a step and be
 /// at rest at both of its ends, as a step of temperature? What moves for longer shows as power.
 bool keeps_energy(const Scene& scene) {
@@ -297,9 +229,9 @@ double stress_round_off(const Scene& scene) {
   return out;
 }
 
-/// The scene with its designed bodies on the cells of their designs.
 namespace {
 
+/// The scene with its designed bodies on the cells of their designs.
 /// @param coarse  cells of the motion that many cells of the design each way
 Scene on_merged_cells(Scene scene, int parts, int coarse) {
   for (const BodyDesign& design : scene.designs)
@@ -317,58 +249,79 @@ Scene on_merged_cells(Scene scene, int parts, int coarse) {
 
 Scene on_cells(Scene scene, int parts) { return on_merged_cells(std::move(scene), parts, 1); }
 
-Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh) {
+namespace {
+
+/// Adds the joints of a scene.
+/// @param finer  length of the elements of this run, in those of the scene
+void add_joints(const Scene& scene, const std::function<double(const Body&)>& finer,
+                const FindPlace& place, Mechanism& out) {
+  for (const Joint& joint : scene.joints) {
+    if (joint.holds_frame())
+      add_frame(scene, joint, finer(scene.body(joint.body)), out);
+    else if (auto made = make_joint(scene, joint, place, false))
+      out.model.add_joint(std::move(made));
+  }
+  for (const Body& body : scene.bodies) add_holds(scene, body, out.model);
+}
+
+void set_motion(const Scene& scene, const MeshChoice& mesh, fem::MotionSettings& out) {
+  out.end = scene.time.end;
+  out.step = mesh.step.value_or(scene.time.step);
+  // A run with a step of its own has that.
+  if (scene.time.tolerance && out.step == scene.time.step) {
+    out.adaptive = fem::AdaptiveStep{};
+    out.adaptive->tolerance = *scene.time.tolerance;
+    out.adaptive->largest = scene.time.largest_step;
+    if (scene.time.start == Start::hub_at_rest) out.kinks = {scene.time.spin_up};
+  }
+  for (const Drive& drive : scene.drives)
+    out.kinks.insert(out.kinks.end(), drive.kinks.begin(), drive.kinks.end());
+  out.start =
+      scene.time.start == Start::prestretched ? fem::Start::prestretched : fem::Start::rigid;
+  out.integrator = scene.time.integrator;
+  out.alpha.rho_inf = scene.time.rho_inf;
+  out.minimal_coordinates.tolerance = scene.time.explicit_tolerance;
+  if (scene.gravity) out.gravity = *scene.gravity;
+  if (keeps_energy(scene)) out.energy_round_off = stress_round_off(scene);
+}
+
+}  // namespace
+
+Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh,
+                          const fem::RigidKinematics* rigid) {
   if (mesh.cells > 0) {
     MeshChoice other = mesh;
     other.cells = 0;
-    return build_mechanism(on_merged_cells(scene, mesh.cells, mesh.coarse), other);
+    return build_mechanism(on_merged_cells(scene, mesh.cells, mesh.coarse), other, rigid);
   }
   Mechanism out;
   const auto elements = [&](const Body& body) {
     const std::array<int, 2> count = mesh.elements.value_or(body.elements);
     return std::array{mesh.refine * count[0], mesh.refine * count[1]};
   };
+  const auto finer = [&](const Body& body) {
+    return static_cast<double>(body.elements[0]) / elements(body)[0];
+  };
   for (const RigidBody& body : scene.rigid_bodies)
-    add_rigid_body(body, out.model, scene.gravity_law(), stored_in(scene, body.name));
+    fem::add_rigid_body(out.model, mechanism_body(body), scene.gravity_law(),
+                        stored_in(scene, body.name));
   for (const Body& body : scene.bodies) add_body(scene, body, elements(body), out.model);
   const FindPlace place = [](const Anchor& a) {
     return fem::MarkerPlace{a.body, a.point, a.angle, {}};
   };
   for (const Spring& spring : scene.springs) out.model.add_link(make_link(scene, spring, place));
-  add_rigid_loads(scene, out.model);
+  for (auto& load : rigid_loads(scene)) out.model.add_link(std::move(load));
   add_outlets(scene, out.model);
-  for (const Joint& joint : scene.joints) {
-    if (!joint.holds_frame()) {
-      if (auto made = make_joint(scene, joint, place, false)) out.model.add_joint(std::move(made));
-      continue;
-    }
-    const Body& body = scene.body(joint.body);
-    const double finer = static_cast<double>(body.elements[0]) / elements(body)[0];
-    add_frame(scene, joint, finer, out);
-  }
-  for (const Body& body : scene.bodies) add_holds(scene, body, out.model);
-  out.motion.end = scene.time.end;
-  out.motion.step = mesh.step.value_or(scene.time.step);
-  // A run with a step of its own has that.
-  if (scene.time.tolerance && out.motion.step == scene.time.step) {
-    out.motion.adaptive = fem::AdaptiveStep{};
-    out.motion.adaptive->tolerance = *scene.time.tolerance;
-    out.motion.adaptive->largest = scene.time.largest_step;
-    if (scene.time.start == Start::hub_at_rest) out.motion.kinks = {scene.time.spin_up};
-  }
-  for (const Drive& drive : scene.drives)
-    out.motion.kinks.insert(out.motion.kinks.end(), drive.kinks.begin(), drive.kinks.end());
-  out.motion.start =
-      scene.time.start == Start::prestretched ? fem::Start::prestretched : fem::Start::rigid;
-  if (scene.is_mechanism())
-    place_bodies(scene, out.motion);
-  else
+  add_joints(scene, finer, place, out);
+  set_motion(scene, mesh, out.motion);
+  if (scene.is_mechanism()) {
+    const auto motion =
+        std::make_shared<fem::RigidMotion>(rigid ? *rigid : rigid_kinematics(scene));
+    out.motion.start = start_of(scene, *motion);
+    out.motion.placement = fem::rigid_configuration(motion);
+  } else {
     place_alone(scene, out.motion);
-  out.motion.integrator = scene.time.integrator;
-  out.motion.alpha.rho_inf = scene.time.rho_inf;
-  out.motion.minimal_coordinates.tolerance = scene.time.explicit_tolerance;
-  if (scene.gravity) out.motion.gravity = *scene.gravity;
-  if (keeps_energy(scene)) out.motion.energy_round_off = stress_round_off(scene);
+  }
   if (scene.has_heat()) add_heat(scene, out);
   return out;
 }

@@ -13,8 +13,9 @@ class SceneMotion final : public mmc::MotionResponse {
     double cell = 0;  ///< of the motion [m]; 0: those of the designs
     double step = 0;  ///< [s]
     int checkpoints = 0;
+    const fem::RigidKinematics* rigid = nullptr;  ///< of the scene; null: it is built here
   };
-  /// @param scene  lives longer
+  /// @param scene  lives longer; the rigid kinematic model is copied
   /// @param go_on  asked at every step; false ends a motion with StoppedMotion
   SceneMotion(const Scene& scene, const Settings& settings, std::function<bool()> go_on);
 
@@ -34,6 +35,7 @@ class SceneMotion final : public mmc::MotionResponse {
 
   const Scene& scene_;
   Settings settings_;
+  std::optional<fem::RigidKinematics> rigid_;  // where joints say where the bodies are
   std::function<bool()> go_on_;
   int motions_ = 0;
   fem::MotionGradients last_;

@@ -3,7 +3,6 @@
 #include <sstream>
 
 #include "cases/assembly/build.h"
-#include "cases/assembly/twin.h"
 #include "cases/check/check_cost.h"
 #include "cases/check/check_figures.h"
 #include "cases/check/ready.h"
@@ -12,6 +11,7 @@
 #include "cases/scene/heat/heat.h"
 #include "cases/scene/joints/row.h"
 #include "cases/scene/read.h"
+#include "fem/dynamics/rigid_motion.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
@@ -175,7 +175,8 @@ std::string law_words(const Law& law) {
   return law.drive.empty() ? io::to_text(law.value, 6) : "'" + law.drive + "'";
 }
 
-void describe_mechanism(const Scene& scene, std::ostringstream& out) {
+void describe_mechanism(const Scene& scene, const fem::RigidKinematics& rigid,
+                        std::ostringstream& out) {
   std::string names;
   double mass = 0;
   for (const RigidBody& body : scene.rigid_bodies) {
@@ -187,8 +188,9 @@ void describe_mechanism(const Scene& scene, std::ostringstream& out) {
     out << row("rigid bodies", std::to_string(scene.rigid_bodies.size()) + " (" + names + "), " +
                                    std::to_string(4 * scene.rigid_bodies.size()) + " unknowns, " +
                                    io::to_text(mass, 6) + " kg");
-  const int before = undriven_freedoms(scene), after = TwinMotion(scene).degrees_of_freedom();
-  out << row("freedoms", "of the rigid twin: " + std::to_string(before) +
+  const int before = fem::undriven_degrees_of_freedom(rigid),
+            after = fem::RigidMotion(rigid).degrees_of_freedom();
+  out << row("freedoms", "of the rigid mechanism: " + std::to_string(before) +
                              " without the drives of joints and flows, " + std::to_string(after) +
                              " with them");
   if (!scene.trajectory) return;
@@ -298,7 +300,9 @@ std::string check_case(const std::string& name, std::span<const std::string> ove
     describe_static(scene, out, machine);
     return out.str();
   }
-  Mechanism mechanism = build_mechanism(scene);
+  std::optional<fem::RigidKinematics> rigid;
+  if (scene.is_mechanism()) rigid = rigid_kinematics(scene);
+  Mechanism mechanism = build_mechanism(scene, {}, rigid ? &*rigid : nullptr);
   describe_course(scene, out);
   for (const Drive& drive : scene.drives) {
     const std::array<double, 2> range = range_of(drive.motion, scene.time.end);
@@ -306,7 +310,7 @@ std::string check_case(const std::string& name, std::span<const std::string> ove
                                           io::to_text(range[1], 6) + kinks_of(drive));
   }
   for (const Body& body : scene.bodies) describe_body(body, mechanism, out);
-  if (scene.is_mechanism()) describe_mechanism(scene, out);
+  if (rigid) describe_mechanism(scene, *rigid, out);
   out << row("joints", std::to_string(scene.joints.size()) + ", " +
                            std::to_string(mechanism.model.n_constraints()) + " constraint rows" +
                            (scene.joints.empty() ? "" : ": ") +

@@ -4,9 +4,9 @@
 #include <filesystem>
 
 #include "cases/assembly/resource_estimate.h"
-#include "cases/assembly/twin.h"
 #include "cases/results/expectations.h"
 #include "cases/scene/version.h"
+#include "fem/dynamics/rigid_motion.h"
 #include "fem/solve/blas_room.h"
 #include "fem/solve/scaled_constraints.h"
 #include "io/case_document.h"
@@ -45,8 +45,12 @@ void require_start(Mechanism& mechanism) {
 void build_parts(const Scene& scene) {
   if (!scene.domain) {
     // One evaluation: loads and terms find their places, or say what they cannot do.
-    if (scene.is_mechanism()) check_mechanism(scene);  // its joints have the names of the case
-    Mechanism mechanism = build_mechanism(scene);
+    std::optional<fem::RigidKinematics> rigid;
+    if (scene.is_mechanism()) {
+      rigid = rigid_kinematics(scene);
+      fem::require_motion(*rigid, scene.time.end);  // its joints have the names of the case
+    }
+    Mechanism mechanism = build_mechanism(scene, {}, rigid ? &*rigid : nullptr);
     if (mechanism.model.n_constraints() > 0) require_start(mechanism);
     const fem::State x = mechanism.model.reference();
     VectorXd force;

@@ -28,7 +28,7 @@ class BodyShapes {
 
   const Scene& scene_;
   std::vector<VectorXd> densities_;
-  std::vector<Pose> poses_;  // of the bodies at the start
+  std::vector<fem::ReferencePose> poses_;  // of the bodies at the start
 };
 
 /// Writes a frame of motion/motion.pvd at every stop that is a multiple of a time: all bodies,

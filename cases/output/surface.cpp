@@ -82,7 +82,7 @@ void add_strain(const fem::Body& body, const fem::State& x, const Vec2& material
 }  // namespace
 
 Surface deformed_surface(const ElementRow& row, const fem::Body& body, const fem::State& x,
-                         const Pose& pose, double heating) {
+                         const fem::ReferencePose& pose, double heating) {
   const Cuts cuts(body);
   const auto [fine_m, fine_n] = row.drawn;
   const std::vector<double> along = fine_lines(cuts.m, fine_m), across = fine_lines(cuts.n, fine_n);
@@ -114,8 +114,9 @@ Surface deformed_surface(const ElementRow& row, const fem::Body& body, const fem
   return out;
 }
 
-DesignedSurface designed_surface(const fem::Body& body, const fem::State& x, const Pose& pose,
-                                 const Grid& grid, const VectorXd& density) {
+DesignedSurface designed_surface(const fem::Body& body, const fem::State& x,
+                                 const fem::ReferencePose& pose, const Grid& grid,
+                                 const VectorXd& density) {
   const Cuts cuts(body);
   const std::vector<double> energy = energies(body, cuts, x);
   const double root = fem::grid_of(body).line_m(0).value;

@@ -22,7 +22,7 @@ struct Surface {
 /// @param x     the model of the body is prepared for it
 /// @param heating  what its temperature is multiplied by, in a [static] analysis
 Surface deformed_surface(const ElementRow& row, const fem::Body& body, const fem::State& x,
-                         const Pose& pose, double heating = 1);
+                         const fem::ReferencePose& pose, double heating = 1);
 
 /// A deformed body in the plane, cell by cell of its design; what is still in the hub is left out.
 /// Points and quads across, then along, as in a Surface.
@@ -34,8 +34,9 @@ struct DesignedSurface {
 };
 /// @param pose     as of deformed_surface()
 /// @param density  of the cells of the grid
-DesignedSurface designed_surface(const fem::Body& body, const fem::State& x, const Pose& pose,
-                                 const Grid& grid, const VectorXd& density);
+DesignedSurface designed_surface(const fem::Body& body, const fem::State& x,
+                                 const fem::ReferencePose& pose, const Grid& grid,
+                                 const VectorXd& density);
 
 /// A disc at a frame's origin; without the part around its -x, which shows how far it has turned,
 /// where it is notched.

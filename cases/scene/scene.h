@@ -66,7 +66,8 @@ struct Scene {
   /// Gravity in time; of size 0 where nothing weighs.
   fem::LoadLaw gravity_law() const { return load_law(gravity_laws); }
   bool follows_trajectory(const Law& law) const;
-  /// Do joints say where its bodies are, not hubs and places alone? The rigid twin finds out.
+  /// Do joints say where its bodies are, not hubs and places alone? The rigid kinematic model finds
+  /// out.
   bool is_mechanism() const {
     return !rigid_bodies.empty() || std::any_of(joints.begin(), joints.end(),
                                                 [](const Joint& j) { return j.joins_edges(); });
@@ -82,7 +83,7 @@ struct Scene {
 };
 
 /// Fills the drives that follow from the trajectory of a scene read as far as its joints: a job for
-/// those who know mechanisms (build/trajectory.h); here it is only asked.
+/// those who know mechanisms (assembly/rigid_kinematics.h); here it is only asked.
 using Follow = std::function<void(Scene&)>;
 
 /// Changes of the command line by which the case finds its files from any folder.

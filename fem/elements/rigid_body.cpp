@@ -10,6 +10,10 @@ RigidBody::RigidBody(double length, bool moves) : length_(length), moves_(moves)
     throw Error::input("rigid body: its length is positive [m]");
 }
 
+std::unique_ptr<Element> make_rigid_body(double length, bool moves) {
+  return std::make_unique<RigidBody>(length, moves);
+}
+
 std::span<const int> RigidBody::vectors(int) const {
   static constexpr std::array<int, 2> kVectors = {0, 1};
   return kVectors;

@@ -239,6 +239,10 @@ bool Diagnosis::is_contradictory() const {
   return std::any_of(groups.begin(), groups.end(), [](const auto& g) { return g.contradictory; });
 }
 
+bool Diagnosis::misses_positions() const {
+  return std::any_of(groups.begin(), groups.end(), [](const auto& g) { return g.miss > 0; });
+}
+
 Diagnosis diagnose(Workspace& model, const State& x) {
   Diagnosis out;
   out.unknowns = model.n_dofs();

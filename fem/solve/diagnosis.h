@@ -32,6 +32,8 @@ struct Diagnosis {
   int degrees_of_freedom() const { return unknowns - rank; }
   bool is_independent() const { return rank == constraints; }
   bool is_contradictory() const;
+  /// Says whether rows of a group miss each other in position.
+  bool misses_positions() const;
 };
 
 /// Rank of Φ_q at a state, and which joints depend on each other. Columns are scaled to

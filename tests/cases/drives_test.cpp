@@ -471,5 +471,66 @@ TEST_F(Drives, OfFreeLinesMoveThemThroughTheMaterial) {
   }
 }
 
+// A plate leaves a tool at (0.1, 0) along its axis: the point (m, n) of the plate is (0.1 + m, n)
+// in the axes of the tool, which is led along a path. Three struts of driven lengths hold it.
+TEST_F(Drives, FromATrajectoryAreLengthsToPointsOfPlatesToo) {
+  std::string text = R"toml(
+[time]
+end = 0.5
+[trajectory]
+body = "tool"
+x = "x"
+y = 0.2
+angle = 0.1
+[[drive]]
+name = "x"
+formula = "0.3*t"
+[[rigid_body]]
+name = "tool"
+mass = 1.0
+inertia = 0.1
+position = [0.0, 0.2]
+angle = 0.1
+[[body]]
+name = "blade"
+element = "ancf_plate"
+terms = ["inertia", "membrane"]
+length = 0.4
+width = 0.1
+thickness = 0.01
+density = 2700.0
+youngs_modulus = 1e8
+poisson_ratio = 0.3
+elements = [4, 1]
+[[joint]]
+type = "weld"
+body = "blade"
+edge = "root"
+to = "tool"
+point = [0.1, 0.0]
+)toml";
+  const std::pair<Vec2, Vec2> struts[] = {
+      {{-0.5, -0.6}, {0, 0}}, {{0.1, -0.9}, {0.1, -0.05}}, {{0.9, -0.4}, {0.4, 0.05}}};
+  const auto pair = [](const Vec2& x) {
+    return "[" + io::to_text(x.x()) + ", " + io::to_text(x.y()) + "]\n";
+  };
+  const std::string names[] = {"first", "second", "third"};
+  for (size_t i = 0; i < 3; ++i)
+    text += "[[drive]]\nname = \"" + names[i] +
+            "\"\nfrom = \"trajectory\"\n[[joint]]\ntype = \"distance\"\npoint_a = " +
+            pair(struts[i].first) + "b = \"blade\"\npoint_b = " + pair(struts[i].second) +
+            "distance = \"" + names[i] + "\"\n";
+  const Scene scene = read({}, text);
+  const Eigen::Matrix2d turn = fem::rotation(0.1);
+  for (size_t i = 0; i < 3; ++i)
+    for (const double t : {0.0, 0.123, 0.5}) {
+      const Vec2 tool(0.3 * t, 0.2), foot = struts[i].first, head = struts[i].second;
+      const Vec2 strut = tool + turn * (Vec2(0.1, 0) + head) - foot;
+      const fem::Motion length = scene.motion_of({names[i]})(t);
+      EXPECT_NEAR(length.value, strut.norm(), 1e-11) << names[i] << t;
+      EXPECT_NEAR(length.rate, 0.3 * strut.x() / strut.norm(), 1e-9) << names[i] << t;
+    }
+}
+
 }  // namespace
 }  // namespace flexmorph::cases

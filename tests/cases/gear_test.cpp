@@ -1,21 +1,15 @@
-// The planar gear: its rows against differences at random states, the ratio of angles over many
-// turns, the powers of a driven train, and the frequency of a train that swings on a spring.
+// The planar gear: the ratio of angles over many turns, the powers of a driven train, and the
+// frequency of a train that swings on a spring.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "cases/assembly/build.h"
-#include "fem/dynamics/motion.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"
-#include "tests/support/differences.h"
 
 namespace flexmorph::test {
 namespace {
-
-using testing::first_difference;
-using testing::second_difference;
 
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kInertiaA = 0.02, kInertiaB = 0.3;  // [kg m^2]
@@ -76,52 +70,6 @@ io::CsvTable motion_of(const Scratch& scratch, const std::string& text) {
   const Ended ended = run(scratch, scratch.write("wheels.toml", text), folder);
   EXPECT_EQ(ended.code, 0) << ended.err;
   return io::read_csv(folder + "/motion.csv");
-}
-
-// Rows, rates, tangent: the gear of a model against differences along straight lines of states.
-TEST(Gear, RowsAreWhatTheySay) {
-  const Scratch scratch;
-  const cases::Scene scene =
-      cases::read_scene(io::CaseFile(scratch.write("w.toml", wheels("[14, 35]", 1, kMotor))));
-  cases::Mechanism mechanism = cases::build_mechanism(scene);
-  fem::Workspace& model = mechanism.model;
-  model.prepare(0.0);
-  const fem::Joint* gear = nullptr;
-  for (const auto& joint : model.joints())
-    if (joint->name() == "mesh") gear = joint.get();
-  ASSERT_NE(gear, nullptr);
-  ASSERT_EQ(gear->size(), 1);
-  const auto n = model.reference().q.size();
-  std::srand(7);
-  for (int round = 0; round < 5; ++round) {
-    const VectorXd q = model.reference().q + 0.4 * VectorXd::Random(n), v = VectorXd::Random(n),
-                   a = VectorXd::Random(n);
-    const auto at = [&](double t) { return VectorXd(q + t * v + 0.5 * t * t * a); };
-    const auto rows_at = [&](double t) {
-      fem::ConstraintRows rows;
-      gear->evaluate(0, at(t), v, rows);
-      return rows;
-    };
-    const auto jacobian = [&](const fem::ConstraintRows& rows) {
-      VectorXd out = VectorXd::Zero(n);
-      for (const auto& entry : rows.jacobian) out[entry.col()] += entry.value();
-      return out;
-    };
-    const fem::ConstraintRows rows = rows_at(0);
-    // Away from the root values jump between those of neighbouring teeth, 2 π/5 apart (2 : 5).
-    const auto value = [&](double t) {
-      return std::remainder(rows_at(t).value[0] - rows.value[0], kTurn / 5);
-    };
-    EXPECT_NEAR(jacobian(rows).dot(v), first_difference(value, 1e-2), 1e-7);
-    EXPECT_NEAR(jacobian(rows).dot(a) - rows.acceleration[0], second_difference(value, 1e-2), 1e-5);
-    std::vector<Eigen::Triplet<double>> entries;
-    gear->add_stiffness(0, q, VectorXd::Constant(1, 1.7), entries);
-    const VectorXd w = VectorXd::Random(n);
-    double product = 0;
-    for (const auto& entry : entries) product += w[entry.row()] * entry.value() * v[entry.col()];
-    const auto force = [&](double t) { return 1.7 * w.dot(jacobian(rows_at(t))); };
-    EXPECT_NEAR(product, first_difference(force, 1e-2), 1e-6);
-  }
 }
 
 struct Train {

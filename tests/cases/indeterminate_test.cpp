@@ -7,9 +7,8 @@
 #include <numbers>
 
 #include "cases/assembly/build.h"
-#include "cases/assembly/twin.h"
 #include "cases/check/ready.h"
-#include "fem/dynamics/carrier.h"
+#include "fem/dynamics/rigid_motion.h"
 #include "fem/solve/statics.h"
 #include "tests/io/scratch.h"
 
@@ -49,7 +48,7 @@ TEST(Indeterminate, LeesFrameSnapsAtItsCriticalLoad) {
       "\n[[load]]\ntype = \"point\"\nbody = \"beam\"\npoint = [0.24, 0.0]\nforce = [0.0, "
       "-2500.0]\n");
   build_scene(scene);
-  EXPECT_TRUE(TwinMotion(scene).is_indeterminate());
+  EXPECT_TRUE(fem::RigidMotion(rigid_kinematics(scene)).is_indeterminate());
   Mechanism m = build_mechanism(scene);
   fem::State x = fem::start_state(m.model, m.growths, 0, fem::Start::rigid, m.motion.placement);
   m.model.scale_loads(0);
@@ -106,7 +105,7 @@ TEST(Indeterminate, ParallelogramOfThreeCranks) {
 }
 
 // Two motors that go against each other stretch what a rigid coupler could not be.
-TEST(Indeterminate, DrivesMayContradictTheRigidTwin) {
+TEST(Indeterminate, DrivesMayContradictTheRigidModel) {
   const Scene scene =
       scene_of(cranks(3, "pi/2 - 0.001*sin(3*t)") + kCoupler +
                "\n[[drive]]\nname = \"back\"\nformula = \"pi/2 + 0.001*sin(3*t)\"\n" +

@@ -219,7 +219,7 @@ TEST(MechanismRun, DesignedPlatesShowTheirEnergyAndDisplacement) {
   fem::State x = fem::start_state(mechanism.model, mechanism.growths, 0, fem::Start::rigid,
                                   mechanism.motion.placement);
   const fem::Body& body = mechanism.model.body("plate");
-  const cases::Pose pose = cases::start_pose(scene, scene.body("plate"));
+  const fem::ReferencePose pose = cases::start_pose(scene, scene.body("plate"));
   mechanism.model.prepare(x);
   const cases::DesignedSurface rigid = cases::designed_surface(body, x, pose, grid, density);
   double largest = 0;

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "cases/assembly/build.h"
-#include "cases/assembly/twin.h"
 #include "cases/results/motion_columns.h"
+#include "fem/dynamics/rigid_motion.h"
 #include "tests/cases/scenes.h"
 
 namespace flexmorph::cases {
@@ -27,12 +27,12 @@ class Crane : public ::testing::Test {
   fem::State x;
 };
 
-TEST_F(Crane, TwinHasTheSwingAsItsOnlyFreedom) {
-  TwinMotion twin(scene);
-  EXPECT_EQ(twin.degrees_of_freedom(), 1);
-  EXPECT_LT(twin.start_speed(), 1e-12);
+TEST_F(Crane, RigidModelHasTheSwingAsItsOnlyFreedom) {
+  fem::RigidMotion rigid(rigid_kinematics(scene));
+  EXPECT_EQ(rigid.degrees_of_freedom(), 1);
+  EXPECT_LT(rigid.start_speed(), 1e-12);
   // Positions of the case have three digits: the load hangs within 0.001 of 0.3 m.
-  EXPECT_LT(twin.start_acceleration(), 0.005 * kG);
+  EXPECT_LT(rigid.start_acceleration(), 0.005 * kG);
   EXPECT_EQ(crane.motion.start, fem::Start::settled);
 }
 
@@ -124,13 +124,14 @@ TEST(MechanismStart, WhatSetsOffIsRefusedInWords) {
   EXPECT_EQ(build_mechanism(read("four_bar")).motion.start, fem::Start::prestretched);
 }
 
-// The pendulum of the crane sets off with m g l sin φ / (J + m l²), as the twin's equations say.
-TEST(MechanismStart, TwinsAccelerationIsThatOfAPendulum) {
+// The pendulum of the crane sets off with m g l sin φ / (J + m l²), as the equations of the rigid
+// model say.
+TEST(MechanismStart, RigidAccelerationIsThatOfAPendulum) {
   const Scene scene = read("telescopic_crane", {"gravity=[9.81, -9.81]", "time.start=rigid"});
   const double J = 10 * (2 * 0.12 * 0.12) / 12, l = 0.3, m = 10;
   const double turn = m * kG * l / (J + m * l * l);  // the horizontal part alone accelerates it
   // Turning is scaled by the body's radius of inertia, its centre moves by l.
-  EXPECT_NEAR(TwinMotion(scene).start_acceleration() / (turn * l), 1, 0.01);
+  EXPECT_NEAR(fem::RigidMotion(rigid_kinematics(scene)).start_acceleration() / (turn * l), 1, 0.01);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "cases/assembly/build.h"
-#include "cases/assembly/twin.h"
+#include "fem/dynamics/rigid_motion.h"
 #include "fem/solve/diagnosis.h"
 #include "tests/cases/scenes.h"
 #include "tests/support/rates.h"
@@ -58,19 +58,20 @@ TEST_F(MotionPlatform, LengthsAndAngleAreThoseOfInverseKinematics) {
   }
 }
 
-TEST_F(MotionPlatform, RigidTwinFollowsThePathAndIsDetermined) {
-  TwinMotion motion(scene_);
+TEST_F(MotionPlatform, RigidModelFollowsThePathAndIsDetermined) {
+  const fem::RigidKinematics rigid = rigid_kinematics(scene_);
+  fem::RigidMotion motion(rigid);
   EXPECT_EQ(motion.degrees_of_freedom(), 0);
-  EXPECT_EQ(undriven_freedoms(scene_), 3);
+  EXPECT_EQ(fem::undriven_degrees_of_freedom(rigid), 3);
 
   for (int i = 0; i <= 200; ++i) {
     const double t = i / 200.0;
     const fem::State& x = motion.at(t);
-    const fem::FrameMotion platform = motion.twin().frame("platform", x);
+    const fem::FrameMotion platform = rigid.frame("platform", x);
     EXPECT_LT((platform.origin - center(t)).norm(), 1e-10) << t;
     EXPECT_NEAR(platform.angle, 0, 1e-10) << t;
-    fem::Workspace twin(motion.twin().model());
-    const fem::Diagnosis found = fem::diagnose(twin, x);
+    fem::Workspace model(rigid.model());
+    const fem::Diagnosis found = fem::diagnose(model, x);
     EXPECT_TRUE(found.is_independent()) << t;
     EXPECT_EQ(found.degrees_of_freedom(), 0) << t;
   }

@@ -1,5 +1,5 @@
-// The path joint: its rows against differences at random states, a bead on a wire against the
-// pendulum it is, a cam and its follower against closed forms, and what is refused.
+// The path joint: a bead on a wire against the pendulum it is, a cam and its follower against
+// closed forms, and what is refused.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -7,17 +7,11 @@
 #include <cstdio>
 #include <numbers>
 
-#include "cases/assembly/build.h"
-#include "fem/dynamics/motion.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"
-#include "tests/support/differences.h"
 
 namespace flexmorph::test {
 namespace {
-
-using testing::first_difference;
-using testing::second_difference;
 
 constexpr double kG = 9.81;
 const char* const kCircle = R"toml(
@@ -280,51 +274,6 @@ TEST(Path, CamLiftsItsFollower) {
                  acceleration = (lift(t[i] + 1e-4) - 2 * lift(t[i]) + lift(t[i] - 1e-4)) / 1e-8;
     EXPECT_NEAR(force[i], 0.7 * (kG + acceleration), 2e-3) << t[i];
     EXPECT_NEAR(power[i], 0.7 * (kG + acceleration) * rate - 2.0 * 0, 2e-3) << t[i];
-  }
-}
-
-// Rows, rates, tangent along straight lines of states near the curve, with the curve on a body.
-TEST(Path, RowsAreWhatTheySay) {
-  const Scratch scratch;
-  const cases::Scene scene = cases::read_scene(io::CaseFile(scratch.write("c.toml", cam())));
-  cases::Mechanism mechanism = cases::build_mechanism(scene);
-  fem::Workspace& model = mechanism.model;
-  model.prepare(0.0);
-  const fem::Joint* path = nullptr;
-  for (const auto& joint : model.joints())
-    if (joint->name() == "flank") path = joint.get();
-  ASSERT_NE(path, nullptr);
-  ASSERT_EQ(path->size(), 1);
-  VectorXd start = model.reference().q;
-  start.segment<2>(model.body("follower").first_dof) = Vec2(0.3, 0.5);  // off the curve
-  const auto n = start.size();
-  std::srand(5);
-  for (int round = 0; round < 5; ++round) {
-    const VectorXd q = start + 0.05 * VectorXd::Random(n), v = VectorXd::Random(n),
-                   a = VectorXd::Random(n);
-    const auto at = [&](double t) { return VectorXd(q + t * v + 0.5 * t * t * a); };
-    const auto rows_at = [&](double t) {
-      fem::ConstraintRows rows;
-      path->evaluate(0, at(t), v, rows);
-      return rows;
-    };
-    const auto jacobian = [&](const fem::ConstraintRows& rows) {
-      VectorXd out = VectorXd::Zero(n);
-      for (const auto& entry : rows.jacobian) out[entry.col()] += entry.value();
-      return out;
-    };
-    const auto value = [&](double t) { return rows_at(t).value[0]; };
-    const fem::ConstraintRows rows = rows_at(0);
-    EXPECT_GT(std::abs(rows.value[0]), 1e-3);
-    EXPECT_NEAR(jacobian(rows).dot(v), first_difference(value, 1e-3), 1e-8);
-    EXPECT_NEAR(jacobian(rows).dot(a) - rows.acceleration[0], second_difference(value, 1e-3), 1e-6);
-    std::vector<Eigen::Triplet<double>> entries;
-    path->add_stiffness(0, q, VectorXd::Constant(1, 1.7), entries);
-    const VectorXd w = VectorXd::Random(n);
-    double product = 0;
-    for (const auto& entry : entries) product += w[entry.row()] * entry.value() * v[entry.col()];
-    const auto force = [&](double t) { return 1.7 * w.dot(jacobian(rows_at(t))); };
-    EXPECT_NEAR(product, first_difference(force, 1e-3), 1e-7);
   }
 }
 

@@ -95,7 +95,7 @@ TEST(SpaceScene, FreeLinesAndSleevesReachTheModel) {
   EXPECT_EQ(m.model.bodies()[0].element->n_scalars(), 1);
   // Two nodes with r, r_n; z of r_m, r_mn; and both across the axis.
   EXPECT_EQ(m.model.n_constraints(), 2 * (3 + 3 + 2 + 2));
-  const Pose pose = start_pose(s, s.bodies[0]);
+  const fem::ReferencePose pose = start_pose(s, s.bodies[0]);
   EXPECT_EQ(pose.place({0.42, 0.01}), Vec3(0, 0.01, 0));
 
   // Turned and shifted: the body starts where the sleeve is.

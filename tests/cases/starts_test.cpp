@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "cases/assembly/build.h"
-#include "cases/assembly/twin.h"
 #include "fem/dynamics/carrier.h"
 #include "tests/io/scratch.h"
 

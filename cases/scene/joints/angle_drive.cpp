@@ -1,6 +1,3 @@
-#include <cmath>
-#include <numbers>
-
 #include "cases/scene/joints/reading.h"
 #include "cases/scene/joints/row.h"
 
@@ -23,11 +20,6 @@ std::unique_ptr<fem::Joint> make(const Joint& joint, const JointParts& parts) {
   return fem::make_angle_drive(joint.name, parts.a, parts.b, parts.law(joint, 0));
 }
 
-fem::Motion angle(const fem::FrameMotion& a, const fem::FrameMotion& b) {
-  return {std::remainder(b.angle - a.angle, 2 * std::numbers::pi), b.angle_rate - a.angle_rate,
-          b.angle_acceleration - a.angle_acceleration};
-}
-
 }  // namespace
 
 extern const JointRow kAngleDrive;
@@ -35,7 +27,7 @@ const JointRow kAngleDrive = {.name = "angle_drive",
                               .sentence = "The first axis of b stands at an angle to that of a.",
                               .read = read,
                               .make = make,
-                              .coordinate = angle,
+                              .coordinate = fem::angle_between,
                               .drives_angle = true,
                               .has_force = false,
                               .has_moment = true};

@@ -20,13 +20,6 @@ std::unique_ptr<fem::Joint> make(const Joint& joint, const JointParts& parts) {
   return fem::make_distance(joint.name, parts.a, parts.b, parts.law(joint, 0));
 }
 
-fem::Motion distance(const fem::FrameMotion& a, const fem::FrameMotion& b) {
-  const Vec2 d = b.origin - a.origin, d_t = b.origin_rate - a.origin_rate,
-             d_tt = b.origin_acceleration - a.origin_acceleration;
-  const double l = d.norm(), rate = d.dot(d_t) / l;
-  return {l, rate, (d_t.squaredNorm() + d.dot(d_tt) - rate * rate) / l};
-}
-
 }  // namespace
 
 extern const JointRow kDistance;
@@ -36,6 +29,6 @@ const JointRow kDistance = {.name = "distance",
                                 "whose length is driven.",
                             .read = read,
                             .make = make,
-                            .coordinate = distance};
+                            .coordinate = fem::distance_between};
 
 }  // namespace flexmorph::cases

@@ -9,6 +9,7 @@
 #include "cases/scene/joint.h"
 #include "cases/scene/scene.h"
 #include "fem/body_joints.h"
+#include "fem/dynamics/rigid_kinematics.h"
 
 /// The shelf of joints: all that the program knows of a kind of [[joint]] stands in one file of
 /// this folder, and table.cpp lists it.
@@ -17,8 +18,8 @@ namespace flexmorph::cases {
 /// What the maker of a joint may ask of the model that it becomes part of.
 struct JointParts {
   const Scene& scene;
-  bool rigid = false;               ///< in the rigid twin, where plates and beams do not bend
-  fem::MarkerPlace a{}, b{};        ///< of joints between bodies: both places, found in the model
+  bool rigid = false;         ///< in the rigid kinematic model, where plates and beams do not bend
+  fem::MarkerPlace a{}, b{};  ///< of joints between bodies: both places, found in the model
   double angle_a = 0, angle_b = 0;  ///< of their first axes at the start, in the world [rad]
   /// Place of a material point of the joint's body, in the model; and in the world at the start
   /// [m].
@@ -38,15 +39,15 @@ struct JointRow {
   /// Reads the keys of its entry, and checks that it fits to what the scene has so far.
   /// @throws Error (input) located in the file
   void (*read)(const io::Table& t, const Scene& scene, Joint& joint);
-  /// The joint of the model, or nothing where the model does not need it (in the twin no lines
-  /// move). Edges in hubs, in sleeves and on rigid bodies are made by those who know how plates
-  /// grow (build/mechanism.cpp), held edges from `held`: they have no maker.
+  /// The joint of the model, or nothing where the model does not need it (in the rigid kinematic
+  /// model no lines move). Edges in hubs, in sleeves and on rigid bodies are made by those who know
+  /// how plates grow (assembly/mechanism.cpp), held edges from `held`: they have no maker.
   std::unique_ptr<fem::Joint> (*make)(const Joint& joint, const JointParts& parts) = nullptr;
   /// What it holds at one edge of a plate in space.
   std::vector<fem::Held> (*held)(const Joint& joint, const std::string& edge) = nullptr;
   /// What its first law prescribes, as the frames of its two places say it: a drive that follows
   /// from a trajectory is found that way.
-  fem::Motion (*coordinate)(const fem::FrameMotion& a, const fem::FrameMotion& b) = nullptr;
+  fem::JointCoordinate coordinate = nullptr;
 
   bool drives_angle = false;  ///< its laws are angles [rad], not lengths or coordinates [m]
   bool on_one_body = false;   ///< it acts on place a alone; its columns are of that body

@@ -1,0 +1,97 @@
+#include <algorithm>
+#include <cstdio>
+
+#include "fem/body_joints.h"
+#include "fem/dynamics/rigid_kinematics.h"
+#include "fem/solve/assembly.h"
+
+namespace flexmorph::fem {
+namespace {
+
+/// A given velocity, and the name of the joint that drives the body with it.
+struct Given {
+  std::string joint;
+  const MechanismBody* body;
+  std::string words;
+};
+
+std::string text_of(double value, int digits = 6) {
+  char out[32];
+  std::snprintf(out, sizeof out, "%.*g", digits, value);
+  return out;
+}
+
+/// Adds joints that drive all bodies with their given velocities.
+std::vector<Given> drive_as_given(const RigidMechanism& mechanism, const State& x,
+                                  Workspace& model) {
+  std::vector<Given> out;
+  const double t0 = x.t;
+  for (const MechanismBody& b : mechanism.bodies) {
+    const FrameMotion frame = frame_of(model.body(b.name), x);
+    if (b.velocity) {
+      out.push_back(
+          {"velocity of " + b.name, &b,
+           "velocity = [" + text_of(b.velocity->x()) + ", " + text_of(b.velocity->y()) + "]"});
+      model.add_joint(make_point_drive(
+          out.back().joint, {b.name},
+          [r = frame.origin, rate = *b.velocity, t0](double t) {
+            const Vec2 now = r + (t - t0) * rate;
+            return std::vector<Motion>{{now.x(), rate.x(), 0}, {now.y(), rate.y(), 0}};
+          },
+          {}));
+    }
+    if (b.angular_velocity) {
+      out.push_back({"angular velocity of " + b.name, &b,
+                     "angular_velocity = " + text_of(*b.angular_velocity)});
+      model.add_joint(
+          make_angle_drive(out.back().joint, {}, {b.name},
+                           [angle = frame.angle, rate = *b.angular_velocity, t0](double t) {
+                             return Motion{angle + (t - t0) * rate, rate, 0};
+                           }));
+    }
+  }
+  return out;
+}
+
+/// Returns the error about the first group of rows that miss each other in velocity and have a
+/// given one among them; nothing where there is none.
+std::optional<Error> contradiction(const std::vector<Given>& given, const Diagnosis& diagnosis) {
+  for (const DependentGroup& group : diagnosis.groups) {
+    if (!(group.rate_miss > 0)) continue;
+    std::string words, source;
+    std::vector<std::string> joints;
+    for (const std::string& name : group.joints) {
+      const auto found =
+          std::find_if(given.begin(), given.end(), [&](const Given& g) { return g.joint == name; });
+      if (found == given.end()) {
+        joints.push_back(name);
+        continue;
+      }
+      if (words.empty()) source = found->body->source;
+      words += (words.empty() ? "" : ", ") + found->body->name + "." + found->words;
+    }
+    if (words.empty()) continue;
+    return Error::input(
+        source + words + ": " +
+        (joints.empty() ? "they contradict each other" : "contradicts " + list_joints(joints)) +
+        " by " + text_of(group.rate_miss, 3) +
+        " m/s. Velocities that are not given follow from those that are");
+  }
+  return {};
+}
+
+}  // namespace
+
+void give_initial_velocities(const RigidKinematics& kinematics, State& x) {
+  Workspace model(kinematics.model());
+  x.v.setZero();
+  const std::vector<Given> given = drive_as_given(kinematics.mechanism(), x, model);
+  try {
+    assemble(model, x);
+  } catch (const Error&) {
+    if (const auto why = contradiction(given, diagnose(model, x))) throw *why;
+    throw;
+  }
+}
+
+}  // namespace flexmorph::fem
