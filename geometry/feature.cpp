@@ -411,14 +411,4 @@ Features smallest_features(std::span<const Region> regions, const Region& domain
   return MedialAxis<Apart>(outlines, kInfinity).smallest(counts);
 }
 
-Features smallest_of(std::span<const NarrowPlace> places) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Features out{kInfinity, kInfinity};
-  for (const NarrowPlace& p : places) {
-    double& smallest = p.solid ? out.solid : out.gap;
-    smallest = std::min(smallest, p.width);
-  }
-  return out;
-}
-
 }  // namespace flexmorph

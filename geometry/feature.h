@@ -59,7 +59,4 @@ struct Features {
 Features smallest_features(std::span<const Region> regions, const Region& domain,
                            const std::function<bool(const NarrowPlace&)>& counts = {});
 
-/// The same of places that are known: all up to an infinite limit, or some of them.
-Features smallest_of(std::span<const NarrowPlace> places);
-
 }  // namespace flexmorph

@@ -219,16 +219,15 @@ class Collector {
 }  // namespace
 
 struct PartMesher::Impl {
-  double small = 0;
   std::vector<std::unique_ptr<Piece>> pieces;
 };
 
 PartMesher::PartMesher(std::span<const Region> regions, std::span<const Segment> lines)
     : impl_(std::make_unique<Impl>()) {
-  impl_->small = smallest_distance(regions);
-  const std::vector<Segment> cut = conforming_lines(lines, impl_->small);
+  const double small = smallest_distance(regions);
+  const std::vector<Segment> cut = conforming_lines(lines, small);
   for (const Region& region : regions) {
-    const Region conforming = with_points_of(region, cut, impl_->small);
+    const Region conforming = with_points_of(region, cut, small);
     if (conforming.outer.size() < 3) continue;
     auto piece = std::make_unique<Piece>(conforming, cut);
     if (!piece->seeds.empty()) impl_->pieces.push_back(std::move(piece));
@@ -247,8 +246,6 @@ PartMesh PartMesher::mesh() const {
   for (const auto& piece : impl_->pieces) all.add(*piece);
   return std::move(all).finish();
 }
-
-double PartMesher::small() const { return impl_->small; }
 
 std::array<Vec2, 3> PartMesh::corners(std::size_t triangle) const {
   const auto& t = triangles[triangle];

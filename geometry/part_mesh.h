@@ -58,8 +58,6 @@ class PartMesher {
   /// stay.
   void refine(const SizeField& size);
   PartMesh mesh() const;
-  /// Points that are nearer to each other are one [m].
-  double small() const;
 
  private:
   struct Impl;

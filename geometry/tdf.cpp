@@ -76,17 +76,11 @@ double component_tdf(const Component& c, const TdfSettings& s, double X, double 
   return d.phi;
 }
 
-UnionTdf::UnionTdf(const Grid& grid, TdfSettings settings) : grid_(grid) {
-  set_settings(settings);
+UnionTdf::UnionTdf(const Grid& grid, TdfSettings settings) : grid_(grid), settings_(settings) {
+  check(settings);
   for (VectorXd* v : {&phi_, &h_, &eroded_, &highest_, &sum_, &chain_, &chain_eroded_, &zero_}) {
     v->setZero(grid.n_nodes());
   }
-}
-
-void UnionTdf::set_settings(const TdfSettings& s) {
-  check(s);
-  settings_ = s;
-  evaluated_ = false;
 }
 
 void UnionTdf::evaluate(std::span<const Component> components) {

@@ -68,9 +68,6 @@ class UnionTdf {
   UnionTdf(const Grid& grid, TdfSettings settings);
 
   const TdfSettings& settings() const { return settings_; }
-  /// New settings for the next evaluate(), which must come before the next pull_back().
-  /// @throws Error(input) as the constructor.
-  void set_settings(const TdfSettings& s);
 
   /// Fills phi() and density(); no allocation after the first calls of similar size.
   /// @throws Error(numerical) when a parameter is not finite or a length not positive.

@@ -1,315 +1,255 @@
 #include "io/formula.h"
 
-#include <ginac/ginac.h>
-
 #include <algorithm>
-#include <array>
-#include <bit>
+#include <charconv>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <numbers>
-#include <sstream>
 #include <stdexcept>
-#include <vector>
 
 #include "geometry/base.h"
-#include "io/formula_operations.h"
-#include "io/formula_size.h"
-#include "io/formula_words.h"
+#include "io/formula_graph.h"
 
 namespace flexmorph::io {
 namespace {
 
-/// What GiNaC says, without the place in its own source and its name.
-std::string words_of(const std::exception& e) {
-  std::string words = e.what();
-  words = words.substr(0, words.find("\n["));
-  for (const std::string start : {"GiNaC: ", "parse error at line 0, column 0: "})
-    if (words.starts_with(start)) words = words.substr(start.size());
-  if (words.find("division by zero") != std::string::npos)
-    return "division by zero, or a power of 0 whose exponent is not positive at all times";
-  if (words.find("::") != std::string::npos) return "it has no value";
-  return words;
-}
+constexpr size_t kMaxCharacters = 10'000;
+constexpr int kMaxParentheses = 100;  // open ones
+constexpr int kMaxSigns = 10;         // in a row
+constexpr double kLargestExponent = 1e6;
 
-/// GiNaC's parse_error has no place, but its parser is one character behind the word it dislikes.
-size_t place_of(std::istringstream& stream, const DecimalFormula& decimal,
-                const std::exception& e) {
-  const std::string words = words_of(e);
-  const size_t got = words.find("got: \"");
-  if (got == std::string::npos || words.ends_with("EOF")) return decimal.origin.back();
-  const size_t length = words.rfind('"') - (got + 6);
-  const bool at_end = stream.eof() || stream.fail();
-  const size_t end = at_end ? decimal.text.size() : static_cast<size_t>(stream.tellg()) - 1;
-  return decimal.origin[end - std::min(end, length)];
-}
+using Nodes = std::vector<Node>;
 
-/// Functions that GiNaC does not look into: kChoose(x, a, b) is a where x >= 0, else b; kFrom(s, a,
-/// b) is a from the time s on, b before.
-constexpr const char *kChoose = "choose", *kFrom = "from";
-
-unsigned serial_of(const char* name) {
-  static const unsigned kOfChoose =
-      GiNaC::function::register_new(GiNaC::function_options(kChoose, 3));
-  static const unsigned kOfFrom = GiNaC::function::register_new(GiNaC::function_options(kFrom, 3));
-  return name == kChoose ? kOfChoose : kOfFrom;
-}
-
-GiNaC::ex choose(const GiNaC::ex& x, const GiNaC::ex& a, const GiNaC::ex& b) {
-  return GiNaC::function(serial_of(kChoose), x, a, b);
-}
-
-using Arguments = GiNaC::exvector;
-
-GiNaC::ex smooth_step(const Arguments& x) {
-  const GiNaC::ex& u = x[0];
-  return choose(u, choose(u - 1, 1, u * u * (3 - 2 * u)), 0);
+Node smooth_step(const Nodes& x) {
+  Graph& graph = *x[0].graph;
+  const Node rising = power(x[0], 2) * (3 + -2 * x[0]);
+  return choose(x[0], choose(-1 + x[0], graph.number(1), rising), graph.number(0));
 }
 
 /// piecewise(x0, t1, x1, t2, x2): x0 until t1, x1 from there, x2 from t2.
-GiNaC::ex piecewise(const Arguments& x) {
-  GiNaC::ex out = x[0];
+Node piecewise(const Nodes& x) {
+  Graph& graph = *x[0].graph;
+  Node out = x[0];
   double last = -std::numeric_limits<double>::infinity();
   for (size_t i = 1; i < x.size(); i += 2) {
-    const GiNaC::ex time = x[i].evalf();
-    if (!GiNaC::is_a<GiNaC::numeric>(time) || !GiNaC::ex_to<GiNaC::numeric>(time).is_real())
-      throw std::invalid_argument("piecewise(x0, t1, x1, ...): its times are constants");
-    const double from = GiNaC::ex_to<GiNaC::numeric>(time).to_double();
-    if (!(from > last)) throw std::invalid_argument("piecewise(x0, t1, x1, ...): times increase");
+    if (!x[i].is_number())
+      throw std::domain_error("piecewise(x0, t1, x1, ...): its times are constants");
+    const double from = x[i]->number;
+    if (!(from > last)) throw std::domain_error("piecewise(x0, t1, x1, ...): times increase");
     last = from;
-    out = GiNaC::function(serial_of(kFrom), GiNaC::numeric(from), x[i + 1], out);
+    out = choose(-from + graph.time(), x[i + 1], out);
   }
   return out;
 }
 
-/// GiNaC's own functions, and those with kinks.
-GiNaC::prototype_table prototypes() {
-  constexpr size_t kMostPieces = 100;
-  GiNaC::prototype_table out = GiNaC::get_default_reader();
-  // The functions of version 1.8.8 have no default constructor, which operator[] would need.
-  const auto add = [&out](const GiNaC::prototype& name, GiNaC::ex (*function)(const Arguments&)) {
-    out.insert_or_assign(name, function);
-  };
-  add({"min", 2}, [](const Arguments& x) { return choose(x[1] - x[0], x[0], x[1]); });
-  add({"max", 2}, [](const Arguments& x) { return choose(x[0] - x[1], x[0], x[1]); });
-  add({"abs", 1}, [](const Arguments& x) { return choose(x[0], x[0], -x[0]); });
-  add({"step", 1}, [](const Arguments& x) { return choose(x[0], 1, 0); });
-  add({"smoothstep", 1}, smooth_step);
-  for (size_t pieces = 2; pieces <= kMostPieces; ++pieces)
-    add({"piecewise", 2 * pieces - 1}, piecewise);
-  return out;
+/// A function that is made of other operations than a call.
+struct BuiltFunction {
+  const char* name;
+  size_t n_arguments;  // 0: 3, 5, 7, ...
+  Node (*build)(const Nodes& arguments);
+};
+
+const BuiltFunction kBuiltFunctions[] = {
+    {"sqrt", 1, [](const Nodes& x) { return power(x[0], 0.5); }},
+    {"atan2", 2, [](const Nodes& x) { return atan2(x[0], x[1]); }},
+    {"abs", 1, [](const Nodes& x) { return choose(x[0], x[0], -x[0]); }},
+    {"min", 2, [](const Nodes& x) { return choose(x[1] - x[0], x[0], x[1]); }},
+    {"max", 2, [](const Nodes& x) { return choose(x[0] - x[1], x[0], x[1]); }},
+    {"step", 1,
+     [](const Nodes& x) { return choose(x[0], x[0].graph->number(1), x[0].graph->number(0)); }},
+    {"smoothstep", 1, smooth_step},
+    {"piecewise", 0, piecewise}};
+
+const BuiltFunction* find_built_function(const std::string& name) {
+  for (const BuiltFunction& function : kBuiltFunctions)
+    if (name == function.name) return &function;
+  return nullptr;
 }
 
-GiNaC::ex parsed(const std::string& text, const std::map<std::string, double>& constants,
-                 const GiNaC::realsymbol& t) {
-  check_formula_words(text, constants);
-  check_formula_size(text);
-  GiNaC::symtab names = {{"t", t}, {"pi", GiNaC::Pi}};
-  for (const auto& [name, value] : constants) names[name] = GiNaC::numeric(value);
-  const DecimalFormula decimal(text);
-  std::istringstream stream(decimal.text);
-  stream.imbue(std::locale::classic());
-  try {
-    static const GiNaC::prototype_table kPrototypes = prototypes();
-    GiNaC::parser parser(names, true, kPrototypes);
-    return parser(stream);
-  } catch (const GiNaC::parse_error& e) {
-    refuse_formula(text, place_of(stream, decimal, e), words_of(e));
-  } catch (const std::exception& e) {
-    refuse_formula(text, words_of(e));
-  }
+bool is_function(const std::string& name) {
+  return find_built_function(name) || is_elementary_function(name);
 }
 
-double whole_power(double x, int n) {
-  double out = 1, square = n < 0 ? 1 / x : x;
-  for (unsigned k = static_cast<unsigned>(std::abs(n)); k > 0; k >>= 1, square *= square)
-    if (k & 1U) out *= square;
-  return out;
-}
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-}  // namespace
-
-namespace {
-
-/// Writes expressions as operations; equal ones once.
-class Translator {
+/// Reads a formula by recursive descent and writes it as nodes of a graph:
+///
+///   sum      product {(+|-) product}
+///   product  {+|-} power {(*|/) {+|-} power}
+///   power    operand [^ {+|-} operand]
+///   operand  number | name | function(sum {, sum}) | (sum)
+class Parser {
  public:
-  Translator(const std::string& text, const GiNaC::realsymbol& t) : text_(text), t_(t) {}
+  Parser(const std::string& text, const std::map<std::string, double>& constants, Graph& graph)
+      : text_(text), constants_(constants), graph_(graph) {}
 
-  int translate(const GiNaC::ex& e) {
-    const auto known = known_.find(e);
-    if (known != known_.end()) return known->second;
-    const int result = write(e);
-    known_.emplace(e, result);
-    return result;
+  Node run() {
+    if (text_.size() > kMaxCharacters)
+      throw Error::input("a formula has at most " + std::to_string(kMaxCharacters) + " characters");
+    try {
+      const Node out = sum();
+      if (peek() != '\0') refuse("expected EOF, got: " + token());
+      return out;
+    } catch (const std::domain_error& e) {  // of the operation that is written
+      refuse(written_, e.what());
+    }
   }
-
-  std::vector<Operation> operations;
-  bool chooses = false;  ///< has it parts that GiNaC does not differentiate?
 
  private:
-  int push(const Operation& operation) {
-    if (operations.size() == kMostOperations) refuse_as_too_long(text_);
-    operations.push_back(operation);
-    return static_cast<int>(operations.size()) - 1;
+  [[noreturn]] void refuse(size_t place, const std::string& why) const {
+    refuse_formula(text_, "character " + std::to_string(place + 1) + ": " + why);
+  }
+  [[noreturn]] void refuse(const std::string& why) const { refuse(at_, why); }
+
+  /// The next character that is no blank; 0 at the end.
+  char peek() {
+    while (at_ < text_.size() && std::string_view(" \t\n").find(text_[at_]) != std::string::npos)
+      ++at_;
+    if (at_ == text_.size()) return '\0';
+    const char c = text_[at_];
+    if (static_cast<unsigned char>(c) > 127)
+      refuse("a formula has no letters beyond a to z, A to Z and _");
+    if (!is_letter(c) && !is_digit(c) && std::string_view("+-*/^(),.").find(c) == std::string::npos)
+      refuse(std::string("a formula has no '") + c + "'");
+    return c;
   }
 
-  int constant(double value) {
-    if (!std::isfinite(value)) refuse_formula(text_, "a number in it is too large");
-    return push({.op = Op::constant, .number = value});
+  /// The name or character that comes next, in quotes.
+  std::string token() {
+    if (peek() == '\0') return "EOF";
+    size_t end = at_;
+    while (end < text_.size() && (is_letter(text_[end]) || is_digit(text_[end]))) ++end;
+    return '"' + text_.substr(at_, std::max<size_t>(end - at_, 1)) + '"';
   }
 
-  int call(const std::string& name, int argument) {
-    return push({.op = Op::call, .a = argument, .call = formula_functions().at(name)});
-  }
-
-  int write(const GiNaC::ex& e) {
-    if (GiNaC::is_a<GiNaC::numeric>(e)) {
-      const GiNaC::numeric& number = GiNaC::ex_to<GiNaC::numeric>(e);
-      if (!number.is_real()) refuse_formula(text_, "its value is no real number");
-      return constant(number.to_double());
+  Node sum() {
+    Node out = product();
+    for (char c = peek(); c == '+' || c == '-'; c = peek()) {
+      const size_t place = at_++;
+      const Node next = product();
+      written_ = place;
+      out = c == '+' ? out + next : out - next;
     }
-    if (e.is_equal(t_)) return push({.op = Op::time});
-    if (e.is_equal(GiNaC::Pi)) return constant(std::numbers::pi);
-    if (GiNaC::is_a<GiNaC::add>(e)) return write_chain(e, Op::add);
-    if (GiNaC::is_a<GiNaC::mul>(e)) return write_chain(e, Op::multiply);
-    if (GiNaC::is_a<GiNaC::power>(e)) return write_power(e);
-    if (GiNaC::is_a<GiNaC::function>(e)) return write_function(e);
-    refuse_formula(text_, "a part of it has no value");
+    return out;
   }
 
-  /// GiNaC keeps operands in an order that depends on where its library lies in memory; sums would
-  /// be rounded in another way in every process.
-  int write_chain(const GiNaC::ex& e, Op op) {
-    std::vector<std::pair<std::uint64_t, GiNaC::ex>> operands;
-    for (size_t i = 0; i < e.nops(); ++i) operands.emplace_back(mark_of(e.op(i)), e.op(i));
-    std::stable_sort(operands.begin(), operands.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
-    int result = translate(operands.front().second);
-    for (size_t i = 1; i < operands.size(); ++i)
-      result = push({.op = op, .a = result, .b = translate(operands[i].second)});
-    return result;
-  }
-
-  /// A number that depends on what an expression is, whatever the order of its operands.
-  std::uint64_t mark_of(const GiNaC::ex& e) {
-    const auto known = marks_.find(e);
-    if (known != marks_.end()) return known->second;
-    const bool commutes = GiNaC::is_a<GiNaC::add>(e) || GiNaC::is_a<GiNaC::mul>(e);
-    std::vector<std::uint64_t> parts;
-    for (size_t i = 0; i < e.nops(); ++i) parts.push_back(mark_of(e.op(i)));
-    if (commutes) std::sort(parts.begin(), parts.end());
-    std::uint64_t mark = mixed(0, e.nops());
-    if (GiNaC::is_a<GiNaC::numeric>(e) && GiNaC::ex_to<GiNaC::numeric>(e).is_real())
-      mark = mixed(1, std::bit_cast<std::uint64_t>(GiNaC::ex_to<GiNaC::numeric>(e).to_double()));
-    else if (e.is_equal(t_))
-      mark = mixed(2, 0);
-    else if (GiNaC::is_a<GiNaC::add>(e))
-      mark = mixed(3, 0);
-    else if (GiNaC::is_a<GiNaC::mul>(e))
-      mark = mixed(4, 0);
-    else if (GiNaC::is_a<GiNaC::function>(e))
-      for (const char c : GiNaC::ex_to<GiNaC::function>(e).get_name())
-        mark = mixed(mark, static_cast<unsigned char>(c));
-    for (const std::uint64_t part : parts) mark = mixed(mark, part);
-    marks_.emplace(e, mark);
-    return mark;
-  }
-
-  /// One more number into a mark: the finalizer of SplitMix64 (Steele, Lea & Flood 2014).
-  static std::uint64_t mixed(std::uint64_t mark, std::uint64_t number) {
-    std::uint64_t z = mark * 31 + number + 0x9e3779b97f4a7c15U;
-    z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
-    z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
-    return z ^ (z >> 31U);
-  }
-
-  int write_power(const GiNaC::ex& e) {
-    const int base = translate(e.op(0));
-    if (GiNaC::is_a<GiNaC::numeric>(e.op(1)) && GiNaC::ex_to<GiNaC::numeric>(e.op(1)).is_real()) {
-      const double n = GiNaC::ex_to<GiNaC::numeric>(e.op(1)).to_double();
-      constexpr double kLargest = 64;
-      if (n == std::round(n) && std::abs(n) <= kLargest)
-        return push({.op = Op::whole_power, .a = base, .exponent = static_cast<int>(n)});
-      if (2 * n == std::round(2 * n) && std::abs(n) <= kLargest) {
-        const int root = translate_root(e.op(0), base);
-        return push({.op = Op::whole_power, .a = root, .exponent = static_cast<int>(2 * n)});
-      }
+  Node product() {
+    Node out = after_signs(&Parser::power);
+    for (char c = peek(); c == '*' || c == '/'; c = peek()) {
+      const size_t place = at_++;
+      const Node next = after_signs(&Parser::power);
+      written_ = place;
+      out = io::product(out, next, c == '*' ? 1 : -1);
     }
-    const int exponent = translate(e.op(1));
-    return push({.op = Op::power, .a = base, .b = exponent});
+    return out;
   }
 
-  /// The square root that powers with exponents 1/2, -1/2, -3/2 share.
-  int translate_root(const GiNaC::ex& e, int base) {
-    const auto [place, is_new] = roots_.try_emplace(e, 0);
-    if (is_new) place->second = call("sqrt", base);
-    return place->second;
+  /// Reads signs, and by `read` what they belong to.
+  Node after_signs(Node (Parser::*read)()) {
+    bool negative = false;
+    for (int n = 1; peek() == '+' || peek() == '-'; ++n, ++at_) {
+      if (n > kMaxSigns) refuse("more than " + std::to_string(kMaxSigns) + " signs in a row");
+      negative ^= text_[at_] == '-';
+    }
+    const Node out = (this->*read)();
+    return negative ? -out : out;
   }
 
-  int write_function(const GiNaC::ex& e) {
-    const std::string name = GiNaC::ex_to<GiNaC::function>(e).get_name();
-    if (name == "abs" || name == kChoose || name == kFrom) return write_choice(e, name);
-    if (name == "atan2") {
-      const int y = translate(e.op(0)), x = translate(e.op(1));
-      return push({.op = Op::atan2, .a = y, .b = x});
-    }
-    if (!formula_functions().contains(name)) refuse_formula(text_, "it has no derivative");
-    return call(name, translate(e.op(0)));
+  Node power() {
+    const Node base = operand();
+    if (peek() != '^') return base;
+    const size_t place = at_++;
+    const Node exponent = after_signs(&Parser::operand);
+    if (peek() == '^') refuse("a^b^c needs parentheses: (a^b)^c or a^(b^c)");
+    if (exponent.is_number() && std::abs(exponent->number) > kLargestExponent)
+      refuse(place, "an exponent is at most 1e6");
+    written_ = place;
+    return io::power(base, exponent);
   }
 
-  int write_choice(const GiNaC::ex& e, const std::string& name) {
-    chooses = true;
-    int x = translate(e.op(0));
-    if (name == "abs") {  // of GiNaC's own making: sqrt(t^2)
-      const int minus = push({.op = Op::multiply, .a = constant(-1), .b = x});
-      return push({.op = Op::choose, .a = x, .b = x, .c = minus});
-    }
-    if (name == kFrom) {  // as exact as the time itself
-      const int minus = constant(-operations[static_cast<size_t>(x)].number);
-      x = push({.op = Op::add, .a = translate(t_), .b = minus});
-    }
-    const int a = translate(e.op(1)), b = translate(e.op(2));
-    return push({.op = Op::choose, .a = x, .b = a, .c = b});
+  Node operand() {
+    const char c = peek();
+    if (c == '(') return in_parentheses(1)[0];
+    if (is_digit(c) || c == '.') return number();
+    if (is_letter(c)) return name();
+    refuse("unexpected token, got: " + token());
+  }
+
+  /// Reads what is in parentheses, between commas: so many sums at most.
+  Nodes in_parentheses(size_t most) {
+    if (++depth_ > kMaxParentheses)
+      refuse("more than " + std::to_string(kMaxParentheses) + " parentheses are open");
+    const size_t place = at_++;
+    if (peek() == ')') refuse(place, "nothing is in these parentheses");
+    Nodes out = {sum()};
+    for (; peek() == ',' && out.size() < most; out.push_back(sum())) ++at_;
+    if (peek() != ')') refuse("expected ')', got: " + token());
+    ++at_;
+    --depth_;
+    return out;
+  }
+
+  Node number() {
+    double value = 0;
+    const char *begin = text_.data() + at_, *text_end = text_.data() + text_.size();
+    auto [end, error] = std::from_chars(begin, text_end, value);
+    for (; end != text_end && (is_digit(*end) || *end == '.'); ++end)
+      error = std::errc::invalid_argument;  // a second point
+    if (error != std::errc()) refuse("'" + std::string(begin, end) + "' is no number");
+    at_ += static_cast<size_t>(end - begin);
+    return graph_.number(value);
+  }
+
+  Node name() {
+    const size_t start = at_;
+    while (at_ < text_.size() && (is_letter(text_[at_]) || is_digit(text_[at_]))) ++at_;
+    const std::string name = text_.substr(start, at_ - start);
+    if (peek() == '(') return called(name, start);
+    if (is_function(name))
+      refuse(start, "the function '" + name + "' has its argument in parentheses");
+    if (name == "t") return graph_.time();
+    if (name == "pi") return graph_.number(std::numbers::pi);
+    const auto constant = constants_.find(name);
+    if (constant != constants_.end()) return graph_.number(constant->second);
+    refuse(start, "'" + name + "' is unknown: a formula knows the time t, pi and given constants");
+  }
+
+  Node called(const std::string& name, size_t place) {
+    if (!is_function(name)) refuse(place, "there is no function '" + name + "'");
+    const Nodes x = in_parentheses(text_.size());
+    const BuiltFunction* built = find_built_function(name);
+    const size_t wanted = built ? built->n_arguments : 1;
+    if (wanted == 0 ? x.size() < 3 || x.size() % 2 == 0 : x.size() != wanted)
+      refuse(place, "no function \"" + name + "\" with " + std::to_string(x.size()) + " arguments");
+    written_ = place;
+    return built ? built->build(x) : call(name, x[0]);
   }
 
   const std::string& text_;
-  const GiNaC::realsymbol& t_;
-  std::map<GiNaC::ex, int, GiNaC::ex_is_less> known_, roots_;
-  std::map<GiNaC::ex, std::uint64_t, GiNaC::ex_is_less> marks_;
+  const std::map<std::string, double>& constants_;
+  Graph& graph_;
+  size_t at_ = 0, written_ = 0;  // places of the next character and of the operation being written
+  int depth_ = 0;                // open parentheses
 };
-
-/// Nodes of an expression and of its derivatives as GiNaC writes them, at most.
-struct Sizes {
-  double of_value = 1, of_rate = 0, of_acceleration = 0;
-};
-
-/// More than this is not differentiated as an expression: the derivatives of a product of n factors
-/// have n² and n³ of them.
-constexpr double kMostSymbolic = 20'000;
-
-Sizes size_of(const GiNaC::ex& e, const GiNaC::realsymbol& t) {
-  if (e.is_equal(t)) return {1, 1, 1};
-  Sizes out;
-  double moving = 0;  // operands that depend on time
-  for (size_t i = 0; i < e.nops(); ++i) {
-    const Sizes part = size_of(e.op(i), t);
-    out.of_value += part.of_value;
-    out.of_rate += part.of_rate;
-    out.of_acceleration += part.of_acceleration;
-    moving += part.of_rate > 0 ? 1 : 0;
-  }
-  if (moving == 0 || GiNaC::is_a<GiNaC::add>(e)) return out;
-  // Each moving operand: all others times its own derivative, of a function its derivative too.
-  constexpr double kOfFunction = 5;
-  const double factors = moving + (GiNaC::is_a<GiNaC::mul>(e) ? 0 : 1);
-  out.of_acceleration += factors * (factors * (out.of_value + kOfFunction) + 2 * out.of_rate);
-  out.of_rate += factors * (out.of_value + kOfFunction);
-  return out;
-}
 
 }  // namespace
+
+void refuse_formula(const std::string& text, const std::string& why) {
+  throw Error::input("formula '" + text + "': " + why);
+}
+
+std::string Formula::refusal_of_name(const std::string& name) {
+  if (name.empty() || !is_letter(name[0]) || name[0] == '_')
+    return "the name of a constant begins with a letter";
+  for (const char c : name)
+    if (!is_letter(c) && !is_digit(c)) return "letters, digits and _ make the name of a constant";
+  if (name == "t") return "t is the time";
+  if (is_function(name)) return "this is a function";
+  for (const char* taken : {"pi", "I", "Pi", "Euler", "Catalan"})
+    if (name == taken) return "this name has a meaning in formulas already";
+  return "";
+}
 
 Formula::Formula(std::string text, const std::map<std::string, double>& constants)
     : text_(std::move(text)) {
@@ -318,65 +258,17 @@ Formula::Formula(std::string text, const std::map<std::string, double>& constant
     if (!why.empty()) throw Error::input("constant '" + name + "': " + why);
     if (!std::isfinite(value)) throw Error::input("constant '" + name + "': not a finite number");
   }
-  const GiNaC::realsymbol t("t");
-  const GiNaC::ex value = parsed(text_, constants, t);
-  auto program = std::make_shared<Program>();
-  Translator translator(text_, t);
+  Graph graph;
+  const Node value = Parser(text_, constants, graph).run();
   try {
-    const int result = translator.translate(value);
-    if (translator.chooses || size_of(value, t).of_acceleration > kMostSymbolic) {
-      program->results = append_derivatives(text_, result, translator.operations);
-    } else {
-      const GiNaC::ex rate = value.diff(t), acceleration = rate.diff(t);
-      program->results = {result, translator.translate(rate), translator.translate(acceleration)};
-    }
-  } catch (const Error&) {
-    throw;
-  } catch (const std::exception& e) {
-    refuse_formula(text_, words_of(e));
-  }
-  program->operations = std::move(translator.operations);
-  program_ = std::move(program);
-}
-
-void Formula::Program::run(double t, double* x) const {
-  double* out = x;
-  for (const Operation& o : operations) {
-    switch (o.op) {
-      case Op::constant:
-        *out = o.number;
-        break;
-      case Op::time:
-        *out = t;
-        break;
-      case Op::add:
-        *out = x[o.a] + x[o.b];
-        break;
-      case Op::multiply:
-        *out = x[o.a] * x[o.b];
-        break;
-      case Op::whole_power:
-        *out = whole_power(x[o.a], o.exponent);
-        break;
-      case Op::power:
-        *out = std::pow(x[o.a], x[o.b]);
-        break;
-      case Op::call:
-        *out = o.call(x[o.a]);
-        break;
-      case Op::atan2:
-        *out = std::atan2(x[o.a], x[o.b]);
-        break;
-      case Op::choose:
-        *out = x[o.a] >= 0 ? x[o.b] : x[o.c];
-        break;
-    }
-    ++out;
+    program_ = std::make_shared<const Program>(differentiated(value));
+  } catch (const std::logic_error& e) {
+    refuse_formula(text_, e.what());
   }
 }
 
 Jet Formula::operator()(double t) const {
-  double x[kMostOperations];  // NOLINT: no more of it is touched than the formula has operations
+  double x[kMaxOperations];  // NOLINT: no more is touched than the formula has operations
   program_->run(t, x);
   const auto& [value, rate, acceleration] = program_->results;
   return {x[value], x[rate], x[acceleration]};

@@ -17,7 +17,8 @@ struct Jet {
 /// A function of the time t as a person writes it, "0.5 + 0.1*sin(2*pi*t)^2".
 ///
 /// Known are + - * / ^, parentheses, numbers, the time t, pi, the constants that are given, and sin
-/// cos tan asin acos atan atan2 sinh cosh tanh exp log sqrt. a^b^c needs parentheses. With kinks:
+/// cos tan asin acos atan atan2 sinh cosh tanh exp log sqrt. -t^2 is -(t^2), a sign behind * / ^
+/// belongs to the next operand only (t^-2*3 is (t^-2)*3), and a^b^c needs parentheses. With kinks:
 ///
 ///   abs(x)  min(x, y)  max(x, y)   step(x)  0 for x < 0, else 1
 ///   smoothstep(x)                  0 for x < 0, 1 for x > 1, 3 x² - 2 x³ between
@@ -25,10 +26,9 @@ struct Jet {
 ///
 /// At a kink all of them are what they are behind it.
 ///
-/// Rate and acceleration are exact derivatives: GiNaC differentiates the expression, and value and
-/// derivatives become one list of operations on doubles, in which whatever they share is computed
-/// once. GiNaC is used by the constructor only, so formulas may be evaluated in several threads,
-/// but not made in several at once. Copies are cheap.
+/// Rate and acceleration are exact derivatives: the expression graph is differentiated, and value
+/// and derivatives become one list of operations on doubles, in which whatever they share is
+/// computed once. Formulas may be made and evaluated in several threads. Copies are cheap.
 class Formula {
  public:
   /// @param constants  by name; a name is a word, and none that the formula knows already

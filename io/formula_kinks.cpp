@@ -2,10 +2,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <tuple>
 
 #include "io/files.h"
-#include "io/formula_operations.h"
+#include "io/formula_graph.h"
 
 namespace flexmorph::io {
 namespace {
@@ -26,27 +27,17 @@ std::pair<double, double> jump_between(const Formula& f, double Jet::*entry, dou
   return {0.5 * (a + b), std::abs(at_b - at_a)};
 }
 
-/// What counts as a jump of value and rate.
-struct Least {
-  double value, rate;
-
-  Least(const Jet& largest, double end)
-      : value(kJump * largest.value),
-        // What moves by the last digit of its value until the end has a rate that is round-off.
-        rate(std::max(kJump * largest.rate, 1e-15 * largest.value / end)) {}
-
-  static constexpr double kJump = 1e-6;  // of the largest value; smooth functions leave 1e-9
-};
-
-Jet larger(const Jet& a, const Jet& b) {
-  return {std::max(a.value, std::abs(b.value)), std::max(a.rate, std::abs(b.rate)),
-          std::max(a.acceleration, std::abs(b.acceleration))};
-}
-
-Jet largest_of(const Formula& f, double end, int samples) {
-  Jet out;
-  for (int i = 0; i <= samples; ++i) out = larger(out, f(end * i / samples));
-  return out;
+/// What counts as a jump of value and rate between 0 and `end`.
+Jet least_jump(const Formula& f, double end, int samples) {
+  constexpr double kJump = 1e-6;  // of the largest value; smooth functions leave 1e-9
+  Jet largest;
+  for (int i = 0; i <= samples; ++i) {
+    const Jet x = f(end * i / samples);
+    largest.value = std::max(largest.value, std::abs(x.value));
+    largest.rate = std::max(largest.rate, std::abs(x.rate));
+  }
+  // What moves by the last digit of its value until the end has a rate that is round-off.
+  return {kJump * largest.value, std::max(kJump * largest.rate, 1e-15 * largest.value / end)};
 }
 
 void check_finite(const Formula& f, double t) {
@@ -59,88 +50,45 @@ void check_finite(const Formula& f, double t) {
                                    (std::isnan(number) ? " is no real number" : " is infinite"));
 }
 
-/// The arguments that decide which branch a formula takes.
-class Arguments {
- public:
-  Arguments(const std::string& text, const Formula::Program& program)
-      : text_(text), program_(program) {
-    for (const Operation& o : program.operations)
-      if (o.op == Op::choose) places_.push_back(o.a);
-    std::sort(places_.begin(), places_.end());
-    places_.erase(std::unique(places_.begin(), places_.end()), places_.end());
-  }
+/// The first time at which an argument has the sign that it has at b; at a it has the other one.
+template <class Argument>
+double change(const Argument& argument, double a, double b) {
+  const bool at_b = argument(b) >= 0;
+  for (double mid = 0.5 * (a + b); mid > a && mid < b; mid = 0.5 * (a + b))
+    ((argument(mid) >= 0) == at_b ? b : a) = mid;
+  return b;
+}
 
-  size_t size() const { return places_.size(); }
-  std::vector<double> at(double t) const {
-    const std::vector<double>& all = run(t);
-    std::vector<double> out;
-    for (const int place : places_) out.push_back(all[static_cast<size_t>(place)]);
-    return out;
+/// Where an argument with one extreme between a and b is nearest to zero there.
+template <class Argument>
+double nearest(const Argument& argument, double a, double b) {
+  constexpr double kGolden = 0.3819660112501051;
+  for (int k = 0; k < 60; ++k) {
+    const double c = a + kGolden * (b - a), d = b - kGolden * (b - a);
+    if (std::abs(argument(c)) < std::abs(argument(d)))
+      b = d;
+    else
+      a = c;
   }
-  double at(double t, size_t which) const { return run(t)[static_cast<size_t>(places_[which])]; }
-
-  /// The first time of the branch at b, where a has the other one.
-  double change(size_t which, double a, double b) const {
-    const bool at_b = at(b, which) >= 0;
-    for (double mid = 0.5 * (a + b); mid > a && mid < b; mid = 0.5 * (a + b))
-      ((at(mid, which) >= 0) == at_b ? b : a) = mid;
-    return b;
-  }
-
-  /// Where the argument is nearest to zero between a and b, where it has one extreme.
-  double nearest(size_t which, double a, double b) const {
-    constexpr double kGolden = 0.3819660112501051;
-    for (int k = 0; k < 60; ++k) {
-      const double c = a + kGolden * (b - a), d = b - kGolden * (b - a);
-      if (std::abs(at(c, which)) < std::abs(at(d, which)))
-        b = d;
-      else
-        a = c;
-    }
-    return 0.5 * (a + b);
-  }
-
- private:
-  const std::vector<double>& run(double t) const {
-    // A tenth of a second or two; some 60 of a formula for every kink.
-    constexpr double kMostWork = 1e8;
-    work_ += static_cast<double>(program_.operations.size());
-    if (work_ > kMostWork) refuse_formula(text_, "it has too many kinks for how long it is");
-    results_.resize(program_.operations.size());
-    program_.run(t, results_.data());
-    return results_;
-  }
-
-  const std::string& text_;
-  const Formula::Program& program_;
-  std::vector<int> places_;  // of the results
-  mutable double work_ = 0;  // operations so far
-  mutable std::vector<double> results_;
-};
+  return 0.5 * (a + b);
+}
 
 }  // namespace
 
 void Formula::check(double end, int samples) const {
-  std::vector<std::pair<double, double>> smooth;  // from one kink or sample to the next
   const std::vector<double> at_kinks = kinks(end);
-  auto kink = at_kinks.begin();
-  check_finite(*this, 0);
-  for (int i = 0; i < samples; ++i) {
-    double from = end * i / samples;
-    const double to = end * (i + 1) / samples;
-    for (; kink != at_kinks.end() && *kink <= to; from = *kink++) {
-      check_finite(*this, *kink);
-      if (before(*kink) > from) smooth.emplace_back(from, before(*kink));
-    }
-    check_finite(*this, to);
-    smooth.emplace_back(from, to);
-  }
-  const Least least(largest_of(*this, end, samples), end);
+  std::vector<double> times = at_kinks;
+  for (int i = 0; i <= samples; ++i) times.push_back(end * i / samples);
+  std::sort(times.begin(), times.end());
+  for (const double t : times) check_finite(*this, t);
+  const Jet least = least_jump(*this, end, samples);
   const std::tuple<double Jet::*, const char*, double> entries[] = {
       {&Jet::value, "value", least.value}, {&Jet::rate, "rate", least.rate}};
   for (const auto& [entry, what, allowed] : entries)
-    for (const auto& [a, b] : smooth) {
-      if (std::abs((*this)(b).*entry - (*this)(a).*entry) <= allowed) continue;
+    for (size_t i = 1; i < times.size(); ++i) {
+      const bool is_kink = std::binary_search(at_kinks.begin(), at_kinks.end(), times[i]);
+      const double a = times[i - 1], b = is_kink ? before(times[i]) : times[i];
+      if (b <= a || std::abs((*this)(b).*entry - (*this)(a).*entry) <= allowed) continue;
       const auto [t, jump] = jump_between(*this, entry, a, b);
       if (!(jump <= allowed))
         refuse_formula(text_, std::string("its ") + what + " jumps at t = " + to_text(t, 6) + " s");
@@ -148,28 +96,38 @@ void Formula::check(double end, int samples) const {
 }
 
 std::vector<double> Formula::kinks(double end) const {
-  constexpr int kLooks = 2000;
-  const Arguments arguments(text_, *program_);
+  constexpr int kSteps = 2000;
+  constexpr double kMaxWork = 1e8;  // operations: a tenth of a second or two
+  std::set<size_t> arguments;       // that decide which branch the formula takes, among its results
+  for (const Operation& o : program_->operations)
+    if (o.op == Op::choose) arguments.insert(static_cast<size_t>(o.a));
   std::vector<double> out;
-  if (arguments.size() == 0) return out;
-  const auto time = [&](int i) { return end * i / kLooks; };
-  std::vector<double> last, now = arguments.at(0), next = arguments.at(time(1));
-  for (int i = 1; i <= kLooks; ++i) {
-    last = std::move(now);
-    now = std::move(next);
-    next = arguments.at(time(std::min(i + 1, kLooks)));
-    for (size_t k = 0; k < arguments.size(); ++k) {
+  if (arguments.empty()) return out;
+  double work = 0;
+  const auto results = [&](double t) {
+    std::vector<double> x(program_->operations.size());
+    work += static_cast<double>(x.size());  // some 60 times for every kink
+    if (work > kMaxWork) refuse_formula(text_, "it has too many kinks for how long it is");
+    program_->run(t, x.data());
+    return x;
+  };
+  const auto time = [&](int i) { return end * std::min(i, kSteps) / kSteps; };
+  std::vector<double> last, now = results(0), next = results(time(1));
+  for (int i = 1; i <= kSteps; ++i) {
+    last = std::exchange(now, std::exchange(next, results(time(i + 1))));
+    for (const size_t k : arguments) {
+      const auto argument = [&](double t) { return results(t)[k]; };
       if ((last[k] >= 0) != (now[k] >= 0)) {
-        out.push_back(arguments.change(k, time(i - 1), time(i)));
+        out.push_back(change(argument, time(i - 1), time(i)));
         continue;
       }
       const bool dips =
           std::abs(now[k]) < std::abs(last[k]) && std::abs(now[k]) < std::abs(next[k]);
       if (!dips || (now[k] >= 0) != (next[k] >= 0)) continue;
-      const double t = arguments.nearest(k, time(i - 1), time(std::min(i + 1, kLooks)));
-      if ((arguments.at(t, k) >= 0) == (now[k] >= 0)) continue;
-      out.push_back(arguments.change(k, time(i - 1), t));
-      out.push_back(arguments.change(k, t, time(i + 1)));
+      const double t = nearest(argument, time(i - 1), time(i + 1));
+      if ((argument(t) >= 0) == (now[k] >= 0)) continue;
+      out.push_back(change(argument, time(i - 1), t));
+      out.push_back(change(argument, t, time(i + 1)));
     }
   }
   std::sort(out.begin(), out.end());
@@ -180,7 +138,7 @@ std::vector<double> Formula::kinks(double end) const {
 std::optional<Formula::Jump> Formula::first_jump(double end) const {
   const std::vector<double> at_kinks = kinks(end);
   if (at_kinks.empty()) return {};
-  const Least least(largest_of(*this, end, 1000), end);
+  const Jet least = least_jump(*this, end, 1000);
   for (const double t : at_kinks) {
     const Jet left = (*this)(before(t)), right = (*this)(t);
     if (std::abs(right.value - left.value) > least.value)

@@ -74,6 +74,23 @@ int lock_of(const std::string& list, int flags) {
   return -1;
 }
 
+[[noreturn]] void refuse_as_taken(const std::string& folder) {
+  refuse(folder, owner_of(folder) + " is filling it; wait for its end, or choose another with -o");
+}
+
+/// Opens and locks the list of a folder, and writes into it whose the folder is.
+/// @param empties  what stands in the list is removed
+int take_list(const std::string& folder, int flags, bool empties) {
+  const int list = lock_of(list_of(folder), O_RDWR | O_APPEND | O_NOFOLLOW | flags);
+  if (list < 0 && (errno == EEXIST || errno == EWOULDBLOCK)) refuse_as_taken(folder);
+  if (list < 0) refuse(folder, reason_of(errno));
+  const std::string line = kOwner + own_words() + "\n";
+  if ((empties && ftruncate(list, 0) != 0) ||
+      write(list, line.data(), line.size()) != static_cast<ssize_t>(line.size()))
+    refuse(folder, "its list cannot be written: " + reason_of(errno));
+  return list;
+}
+
 /// NAME.previous, or the first of NAME.previous.2, NAME.previous.3, ... that is free.
 std::string free_name(const std::string& path) {
   std::string out = path + ".previous";
@@ -89,7 +106,7 @@ OutputFolder::OutputFolder(std::string path, Begin begin) : path_(std::move(path
   try {
     make();
     if (begin == Begin::go_on && fs::is_regular_file(fs::symlink_status(list_of(path_)))) {
-      take(0);
+      list_ = take_list(path_, 0, false);
       read_list();
       return;
     }
@@ -100,7 +117,7 @@ OutputFolder::OutputFolder(std::string path, Begin begin) : path_(std::move(path
   } catch (const fs::filesystem_error& error) {
     refuse(path_, error.code().message());
   }
-  take(O_CREAT | O_EXCL);
+  list_ = take_list(path_, O_CREAT | O_EXCL, false);
 }
 
 OutputFolder::~OutputFolder() {
@@ -115,8 +132,7 @@ void OutputFolder::move_away() {
   if (!fs::is_regular_file(fs::symlink_status(list)))
     refuse(path_, "it is not empty, and no run has filled it; choose another with -o");
   const int lock = lock_of(list, O_RDWR | O_NOFOLLOW);
-  if (lock < 0 && errno == EWOULDBLOCK)
-    refuse(path_, owner_of(path_) + " is filling it; wait for its end, or choose another with -o");
+  if (lock < 0 && errno == EWOULDBLOCK) refuse_as_taken(path_);
   moved_to_ = free_name(path_);
   std::error_code code;
   fs::rename(path_, moved_to_, code);
@@ -130,16 +146,6 @@ void OutputFolder::read_list() {
   std::ifstream list(list_of(path_));
   for (std::string name; std::getline(list, name);)
     if (!name.starts_with(kOwner)) names_.insert(name);
-}
-
-void OutputFolder::take(int flags) {
-  list_ = lock_of(list_of(path_), O_RDWR | O_APPEND | O_NOFOLLOW | flags);
-  if (list_ < 0 && (errno == EEXIST || errno == EWOULDBLOCK))
-    refuse(path_, owner_of(path_) + " is filling it; wait for its end, or choose another with -o");
-  if (list_ < 0) refuse(path_, reason_of(errno));
-  const std::string line = kOwner + own_words() + "\n";
-  if (write(list_, line.data(), line.size()) != static_cast<ssize_t>(line.size()))
-    refuse(path_, "its list cannot be written: " + reason_of(errno));
 }
 
 std::string OutputFolder::file(const std::string& name) {
@@ -199,15 +205,7 @@ void require_study_folder(const std::string& folder) {
 
 FolderLock::FolderLock(const std::string& folder) {
   require_study_folder(folder);
-  list_ = lock_of(list_of(folder), O_RDWR | O_CREAT | O_APPEND | O_NOFOLLOW);
-  if (list_ < 0 && errno == EWOULDBLOCK)
-    refuse(folder,
-           owner_of(folder) + " is filling it; wait for its end, or choose another with -o");
-  if (list_ < 0) refuse(folder, reason_of(errno));
-  const std::string line = kOwner + own_words() + "\n";
-  if (ftruncate(list_, 0) != 0 ||
-      write(list_, line.data(), line.size()) != static_cast<ssize_t>(line.size()))
-    refuse(folder, "its list cannot be written: " + reason_of(errno));
+  list_ = take_list(folder, O_CREAT, true);
 }
 
 FolderLock::~FolderLock() {

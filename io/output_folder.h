@@ -45,7 +45,6 @@ class OutputFolder {
 
  private:
   void make();
-  void take(int flags);
   void read_list();
   void move_away();
 

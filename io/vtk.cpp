@@ -194,20 +194,14 @@ void write_png(const std::string& path, const Grid& grid, std::span<const double
     throw Error::numerical(path + ": " + std::to_string(cell_values.size()) + " values for " +
                            std::to_string(grid.n_cells()) + " cells");
   const int n = picture.pixels_per_cell;
-  const bool grey = picture.colors == Picture::Colors::grey;
-  Pixels pixels{grid.nx * n, grid.ny * n, grey ? 1 : 3};
+  Pixels pixels{grid.nx * n, grid.ny * n, 1};
   for (int y = grid.ny * n - 1; y >= 0; --y)
     for (int x = 0; x < grid.nx * n; ++x) {
       const double value = cell_values[grid.cell(x / n, y / n)];
       if (!std::isfinite(value)) throw Error::numerical(path + ": a value is not finite");
       const double share =
           std::clamp((value - picture.lower) / (picture.upper - picture.lower), 0.0, 1.0);
-      if (grey) {
-        pixels.values.push_back(static_cast<unsigned char>(std::lround(255 * (1 - share))));
-      } else {
-        const auto color = map_color(share);
-        pixels.values.insert(pixels.values.end(), color.begin(), color.end());
-      }
+      pixels.values.push_back(static_cast<unsigned char>(std::lround(255 * (1 - share))));
     }
   write_file(path, png(pixels));
 }

@@ -69,12 +69,10 @@ class Series {
   std::vector<std::string> frames_;
 };
 
-/// How a cell field becomes a picture.
+/// How a cell field becomes a picture in grey.
 struct Picture {
-  enum class Colors { grey, map };  ///< grey: lower white, upper black; map: dark blue to yellow
-  double lower = 0, upper = 1;      ///< values outside are clamped
+  double lower = 0, upper = 1;  ///< white and black; values outside are clamped
   int pixels_per_cell = 4;
-  Colors colors = Colors::grey;
 };
 
 /// Picture (.png) of one value per cell, y up, no axes.

@@ -39,8 +39,7 @@ set(may_cases ${below})
 set(may_tests ${below} cases)
 
 # Wrapped library (how its headers begin) -> the folder whose .cpp files may include it.
-set(libraries CGAL Boost SuiteSparse VTK NLopt Ipopt toml++ CLI11 GiNaC
-              SUNDIALS valijson)
+set(libraries CGAL Boost SuiteSparse VTK NLopt Ipopt toml++ CLI11 SUNDIALS valijson)
 set(headers_CGAL "CGAL/")
 set(headers_Boost "boost/")
 set(headers_SuiteSparse "cholmod|umfpack|klu|amd|colamd|SuiteSparse|Eigen/(Cholmod|UmfPack|KLU)")
@@ -49,7 +48,6 @@ set(headers_NLopt "nlopt")
 set(headers_Ipopt "Ip[A-Z]|coin/")
 set(headers_toml++ "toml")
 set(headers_CLI11 "CLI/")
-set(headers_GiNaC "(ginac|cln)/")
 set(headers_SUNDIALS "(ida|sundials|nvector|sunlinsol|sunmatrix)/")
 set(headers_valijson "valijson/")
 set(folder_CGAL geometry)
@@ -60,7 +58,6 @@ set(folder_NLopt optim)
 set(folder_Ipopt optim)
 set(folder_toml++ io)
 set(folder_CLI11 cases)
-set(folder_GiNaC io)
 set(folder_SUNDIALS tests)
 set(folder_valijson tests)
 
@@ -122,7 +119,6 @@ endforeach()
 foreach(pair io/vtk.h>vtkNew.h fem/solve/newton.cpp>CGAL/Polygon_2.h
              optim/nlopt.h>nlopt.hpp fem/model.h>Eigen/CholmodSupport
              fem/model.cpp>boost/numeric/odeint.hpp
-             io/formula.h>ginac/ginac.h cases/scene/scene.cpp>cln/cln.h
              fem/dynamics/integrator.cpp>ida/ida.h)
   string(REPLACE ">" ";" pair ${pair})
   judge_library(${pair} offence)

@@ -43,18 +43,16 @@ if(NOT NLOPT_CXX_INCLUDE_DIR)
 endif()
 flexmorph_library(NLopt 2.7 NLopt_FOUND)
 
-# Ipopt has a pkg-config file only; it carries a define that the headers need. GiNaC likewise.
+# Ipopt has a pkg-config file only; it carries a define that the headers need.
 find_package(PkgConfig QUIET)
 if(PkgConfig_FOUND)
   pkg_check_modules(IPOPT QUIET IMPORTED_TARGET GLOBAL ipopt>=3.11)
-  pkg_check_modules(GINAC QUIET IMPORTED_TARGET GLOBAL ginac>=1.8)
   # Drawings that are read: DXF, paths of SVG, and the XML around them.
   pkg_check_modules(DXFLIB QUIET IMPORTED_TARGET GLOBAL dxflib>=3.26)
   pkg_check_modules(GEOM2 QUIET IMPORTED_TARGET GLOBAL 2geom>=1.2)
   pkg_check_modules(LIBXML QUIET IMPORTED_TARGET GLOBAL libxml-2.0>=2.9)
 endif()
 flexmorph_library(IPOPT 3.11 IPOPT_FOUND)
-flexmorph_library(GINAC 1.8 GINAC_FOUND)
 flexmorph_library(DXFLIB 3.26 DXFLIB_FOUND)
 flexmorph_library(GEOM2 1.2 GEOM2_FOUND)
 flexmorph_library(LIBXML 2.9 LIBXML_FOUND)

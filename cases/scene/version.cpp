@@ -10,8 +10,7 @@ std::vector<std::pair<std::string, std::string>> library_versions() {
                             std::to_string(EIGEN_MINOR_VERSION);
   return {{"Eigen", eigen},           {"SuiteSparse", FLEXMORPH_SUITESPARSE},
           {"CGAL", FLEXMORPH_CGAL},   {"VTK", FLEXMORPH_VTK},
-          {"NLopt", FLEXMORPH_NLOPT}, {"Ipopt", FLEXMORPH_IPOPT},
-          {"GiNaC", FLEXMORPH_GINAC}};
+          {"NLopt", FLEXMORPH_NLOPT}, {"Ipopt", FLEXMORPH_IPOPT}};
 }
 
 }  // namespace flexmorph::cases

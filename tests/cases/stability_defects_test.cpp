@@ -181,8 +181,8 @@ TEST(Starts, AtTemperaturesThatJump) {
   EXPECT_GT(*std::min_element(end.begin(), end.end()), -5e-4);
 }
 
-// Sums in formulas were rounded in the order that GiNaC kept them in, which changed with the places
-// of libraries in memory: another one in every process.
+// The motion of a drive with a formula does not depend on where libraries lie in memory, which is
+// another place in every process.
 TEST(Starts, AreTheSameBitForBit) {
   const Scratch scratch;
   std::string first;

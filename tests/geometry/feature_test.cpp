@@ -301,6 +301,16 @@ std::vector<std::vector<Region>> shapes(const Region& domain) {
   return {unite(lattice, domain, {}), unite(outlines, domain, std::vector<Polygon>{hole})};
 }
 
+Features smallest_of(const std::vector<NarrowPlace>& places) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Features out{kInfinity, kInfinity};
+  for (const NarrowPlace& p : places) {
+    double& smallest = p.solid ? out.solid : out.gap;
+    smallest = std::min(smallest, p.width);
+  }
+  return out;
+}
+
 // Of a design and of what counts in it: the smallest of all its places, which are all looked at.
 TEST(SmallestFeature, IsTheSmallestOfAllPlaces) {
   const Region domain{box(0, 0, 2, 1), {}};
