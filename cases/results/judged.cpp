@@ -13,7 +13,7 @@ namespace flexmorph::cases {
 namespace {
 
 /// Displacement and stress of the worst load.
-void write_fields(const std::string& path, const judge::Judged& j) {
+void write_fields(const std::string& path, const verification::OutlineVerification& j) {
   const std::vector<double> mises = mises_of(j);
   std::vector<double> piece(j.mesh.piece.begin(), j.mesh.piece.end());
   const auto view = [](const auto& values) {
@@ -28,15 +28,16 @@ void write_fields(const std::string& path, const judge::Judged& j) {
 
 /// The last mesh of the judge with what it carries.
 void write_meshes(const Scene& scene, const mmc::BodyProblem& problem,
-                  std::span<const Region> regions, const judge::Judged& j, RunFolder& folder) {
+                  std::span<const Region> regions, const verification::OutlineVerification& j,
+                  RunFolder& folder) {
   const std::string stem = "design" + (scene.designs.size() > 1 ? "_" + problem.body : "");
   io::PlateModel model{j.mesh,
-                       j.triangles_left_out,
+                       j.omitted_triangles,
                        problem.section.thickness,
                        problem.section.youngs_modulus,
                        problem.section.poisson_ratio,
                        {}};
-  for (const judge::CarriedLoad& c : j.carried) {
+  for (const verification::MeshLoad& c : j.mesh_loads) {
     io::MeshLoad& load = model.loads.emplace_back();
     load.name = c.name;
     for (std::size_t k = 0; k < c.held.size(); ++k)
@@ -104,13 +105,14 @@ JudgedBody judge_body(const Scene& scene, const mmc::BodyProblem& problem,
   try {
     const std::vector<Region> regions = mmc::exported_regions(problem);
     find_narrow(problem, regions, out);
-    if (loads != nullptr) out.why_not = mmc::cannot_judge(problem);
+    if (loads != nullptr) out.why_not = mmc::reason_not_verifiable(problem);
     if (!out.why_not.empty()) return out;
-    const judge::Loads by_position =
-        loads != nullptr ? mmc::loads_by_position(problem, *loads) : judged_loads(scene, problem);
+    const verification::Loads by_position = loads != nullptr
+                                                ? mmc::loads_by_position(problem, *loads)
+                                                : loads_by_position(scene, problem);
     const Grid& g = problem.grid;
     out.volume = area(regions) / (mmc::plate_of(problem).n_domain_cells() * g.dx() * g.dy());
-    out.verdict = mmc::judge_design(problem, regions, by_position, go_on);
+    out.verdict = mmc::verify_design(problem, regions, by_position, go_on);
     write_meshes(scene, problem, regions, *out.verdict, folder);
   } catch (const Error& error) {
     out.verdict.reset();
@@ -123,9 +125,9 @@ JudgedBody judge_body(const Scene& scene, const mmc::BodyProblem& problem,
 std::string judged_words(const JudgedBody& judged, double sharp_compliance) {
   const std::string head = judged.body + ": ";
   if (!judged.verdict) return head + "no body-fitted compliance: " + judged.why_not;
-  const judge::Judged& j = *judged.verdict;
+  const verification::OutlineVerification& j = *judged.verdict;
   if (!std::isfinite(j.compliance))
-    return head + "body-fitted compliance infinite: load '" + j.loose_load +
+    return head + "body-fitted compliance infinite: load '" + j.unsupported_load +
            "' acts on nothing that is held";
   const double apart = 100 * (sharp_compliance / j.compliance - 1);
   std::string out =
@@ -135,9 +137,9 @@ std::string judged_words(const JudgedBody& judged, double sharp_compliance) {
       io::to_text(std::abs(apart), 2) + (apart < 0 ? " % less" : " % more") + "; largest stress " +
       io::to_text(j.largest_stress, 4) + " Pa at (" + io::to_text(j.largest_at.x(), 4) + ", " +
       io::to_text(j.largest_at.y(), 4) + ") m";
-  if (j.carried.empty()) out += "; springs hold its far edge, so there is no design.inp";
-  if (j.left_out > 0)
-    out += "; " + std::to_string(j.left_out) + " of " + std::to_string(j.pieces) +
+  if (j.mesh_loads.empty()) out += "; springs hold its far edge, so there is no design.inp";
+  if (j.n_omitted_pieces > 0)
+    out += "; " + std::to_string(j.n_omitted_pieces) + " of " + std::to_string(j.n_pieces) +
            " pieces are held by nothing";
   return out;
 }

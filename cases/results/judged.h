@@ -5,7 +5,7 @@
 #include <string>
 
 #include "cases/output/run_folder.h"
-#include "optim/mmc/judged_design.h"
+#include "optim/mmc/design_verification.h"
 
 /// The judge's part of a run: its verdict on every final design, and its mesh for other programs.
 namespace flexmorph::cases {
@@ -13,7 +13,7 @@ namespace flexmorph::cases {
 /// A final design as its outline says it is.
 struct JudgedBody {
   std::string body;
-  std::optional<judge::Judged> verdict;
+  std::optional<verification::OutlineVerification> verdict;
   std::string why_not;              ///< where there is no verdict
   double volume = 0;                ///< part of the domain, of the outline
   double seconds = 0;               ///< CPU seconds, files included

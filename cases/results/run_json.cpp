@@ -76,15 +76,15 @@ Json judged_results(const JudgedBody& judged, double sharp_compliance) {
     out["not_judged"] = judged.why_not;
     return out;
   }
-  const judge::Judged& j = *judged.verdict;
+  const verification::OutlineVerification& j = *judged.verdict;
   out["compliance"] = finite_or_words(j.compliance);
   out["volume"] = judged.volume;
-  out["islands"] = j.pieces - 1;
-  out["held_by_nothing"] = j.left_out;
+  out["islands"] = j.n_pieces - 1;
+  out["held_by_nothing"] = j.n_omitted_pieces;
   out["triangles"] = static_cast<int>(j.mesh.triangles.size());
   out["seconds"] = j.seconds;
   if (!std::isfinite(j.compliance)) {
-    out["loose_load"] = j.loose_load;
+    out["loose_load"] = j.unsupported_load;
     return out;
   }
   out["error"] = j.error;
@@ -94,12 +94,12 @@ Json judged_results(const JudgedBody& judged, double sharp_compliance) {
   out["largest_stress"] = j.largest_stress;
   out["largest_stress_at"] = {j.largest_at.x(), j.largest_at.y()};
   out["largest_stress_load"] = j.largest_load + 1;
-  if (!j.carried.empty()) {
+  if (!j.mesh_loads.empty()) {
     Json exported = Json::object();  // the first load of design.inp
-    exported["load"] = j.carried.front().load + 1;
-    exported["compliance"] = j.carried.front().compliance;
-    exported["largest_stress"] = j.carried_stress.value;
-    exported["largest_stress_at"] = {j.carried_stress.at.x(), j.carried_stress.at.y()};
+    exported["load"] = j.mesh_loads.front().load + 1;
+    exported["compliance"] = j.mesh_loads.front().compliance;
+    exported["largest_stress"] = j.shown_stress.value;
+    exported["largest_stress_at"] = {j.shown_stress.at.x(), j.shown_stress.at.y()};
     out["exported"] = std::move(exported);
   }
   return out;

@@ -179,7 +179,7 @@ std::vector<fem::EslSets> CycleMotions::loads(std::span<const fem::Factors> fact
   return std::move(motion.loads);
 }
 
-mmc::Judge CycleMotions::judge() {
+mmc::VerificationMotion CycleMotions::judge() {
   if (!scene_.judges_on_cells()) return {};
   return [this](std::span<const fem::Factors> factors) { return on_cells(factors); };
 }

@@ -36,7 +36,7 @@ class CycleMotions {
   /// The loads of all designs. @throws as run_motion()
   std::vector<fem::EslSets> loads(std::span<const fem::Factors> factors);
   /// Empty where the motions that make loads judge.
-  mmc::Judge judge();
+  mmc::VerificationMotion judge();
   /// What was judged last is the best so far: report.verified, with its table.
   void keep_judged();
 

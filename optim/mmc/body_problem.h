@@ -76,8 +76,8 @@ Features features_of(const BodyProblem& problem, std::span<const Region> regions
 /// share a vertex only stay apart.
 Connectivity connectivity_of(const BodyProblem& problem, std::span<const Region> regions);
 
-/// The compliance that stands for a design: that of compliance_row().
-double judged_compliance(const BodyProblem& problem, LoadResponse& loads,
+/// Returns the compliance that designs are compared by, which is that of compliance_row() [J].
+double design_compliance(const BodyProblem& problem, LoadResponse& loads,
                          const CellFactors& factors);
 
 /// Largest values of further_rows() of a goal, by key_of().

@@ -133,7 +133,7 @@ double compliance_on(int finer, BodyProblem problem) {
   const std::vector<LoadCase> load = {{"tip", 1, {{g.node(g.nx, g.ny / 2), Vec2(0, 1)}}}};
   FixedLoads loads(g, kSection, {}, held, load, false);
   const VectorXd fractions = fractions_of(problem, problem.design.components());
-  return judged_compliance(problem, loads, ersatz_of(problem).sharp(fractions));
+  return design_compliance(problem, loads, ersatz_of(problem).sharp(fractions));
 }
 
 // Both parts of a slanted bar that is cut hang on flanges: the union is one piece, and cells bridge

@@ -258,8 +258,8 @@ TEST(EslLoop, SolvesThoseTogetherThatShare) {
   EXPECT_EQ(stopped[0].body, "a");
 }
 
-// Three cycles: the table is complete after every judged one, changes are those of the designs, and
-// the best one by its motion is the result.
+// Three cycles: the table is complete after every verified one, changes are those of the designs,
+// and the best one by its motion is the result.
 TEST(EslLoop, CyclesMakeATable) {
   std::vector<BodyProblem> problems = {body("a"), body("b")};
   LoopSettings settings;

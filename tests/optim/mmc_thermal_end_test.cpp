@@ -9,8 +9,8 @@
 #include <cmath>
 
 #include "optim/gradient_check.h"
+#include "optim/mmc/design_verification.h"
 #include "optim/mmc/held_expansion.h"
-#include "optim/mmc/judged_design.h"
 #include "tests/optim/mmc_hot.h"
 #include "tests/support/errors.h"
 
@@ -144,17 +144,17 @@ fem::EslSets smooth_loads(int fine) {
   return loads;
 }
 
-// The judge's triangles hold the far edge of a full plate as its cells do. Energies of cells are
-// too large by half as much when there are twice as many: corners where what is held meets what is
-// free.
-TEST(HeldEnd, IsJudgedAsCellsSay) {
+// The triangles of the verification hold the far edge of a full plate as its cells do. Energies of
+// cells are too large by half as much when there are twice as many: corners where what is held
+// meets what is free.
+TEST(HeldEnd, VerificationAgreesWithCells) {
   const fem::EslSets coarse = smooth_loads(1), fine = smooth_loads(2);
   BodyProblem problem = body_of(Design(kGrid, layout(), kScale), {tdf_settings()});
   const Grid& g = problem.grid = fine.grid;
   problem.solid = {corners_of({{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}})};
-  ASSERT_EQ(cannot_judge(problem), "");
-  const judge::Judged judged =
-      judge_design(problem, exported_regions(problem), loads_by_position(problem, fine));
+  ASSERT_EQ(reason_not_verifiable(problem), "");
+  const verification::OutlineVerification verified =
+      verify_design(problem, exported_regions(problem), loads_by_position(problem, fine));
   const auto cells = [](const fem::EslSets& loads) -> VectorXd {
     const VectorXd ones = VectorXd::Ones(loads.grid.n_cells());
     return Compliance(loads, kSection, {}, ones, ones).individual(ones, ones);
@@ -162,7 +162,7 @@ TEST(HeldEnd, IsJudgedAsCellsSay) {
   const double sharpened = std::pow(2, 2 * 0.758) - 1;
   const VectorXd limit = cells(fine) - (cells(coarse) - cells(fine)) / sharpened;
   for (Eigen::Index l = 0; l < limit.size(); ++l)
-    EXPECT_NEAR(judged.compliances[static_cast<size_t>(l)], limit[l], 0.005 * limit[l]) << l;
+    EXPECT_NEAR(verified.compliances[static_cast<size_t>(l)], limit[l], 0.005 * limit[l]) << l;
 }
 
 // Heat that is held is relieved where material goes; f is linear in all of k but for the springs.

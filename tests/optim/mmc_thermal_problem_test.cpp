@@ -190,9 +190,9 @@ fem::EslSets load_of(HotDynamics& hot, const Grid& grid) {
   return {grid, {equivalent_static_load(hot.model, hot.x, hot.growth, grid, {}, {}, {})}};
 }
 
-// The judge of a design, 1/2 w . K w against the strain energy of the motion, and the deformation,
-// with another element, by another method. The stress at the corners of the edge is singular:
-// energies converge with about the first order of the cell size, from above.
+// Verification of a design: 1/2 w . K w against the strain energy of the motion, and the
+// deformation, with another element, by another method. The stress at the corners of the edge is
+// singular: energies converge with about the first order of the cell size, from above.
 TEST(HotDynamicsLoads, AnEdgeThatIsHeldHasTheStaticAnswer) {
   const double a = 1e-5;  // linear statics is compared
   HotDynamics hot(false, a);

@@ -11,6 +11,6 @@ namespace flexmorph::cases {
 std::string stress_plot(const JudgedBody& judged);
 
 /// Von Mises stress at the nodes of the judge's mesh (n) [Pa].
-std::vector<double> mises_of(const judge::Judged& judged);
+std::vector<double> mises_of(const verification::OutlineVerification& judged);
 
 }  // namespace flexmorph::cases
