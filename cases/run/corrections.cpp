@@ -9,7 +9,7 @@
 #include "io/files.h"
 #include "io/plots.h"
 #include "io/tables.h"
-#include "optim/mmc/link_compliance.h"
+#include "optim/mmc/compliance_evaluator.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -20,15 +20,15 @@ double degrees(double angle) { return angle * 180 / std::numbers::pi; }
 class LoadsOfDesigns {
  public:
   explicit LoadsOfDesigns(std::vector<fem::EslSets> loads) : loads_(std::move(loads)) {}
-  std::vector<std::unique_ptr<mmc::LoadResponse>> of(
+  std::vector<std::unique_ptr<mmc::ComplianceEvaluator>> of(
       const std::vector<mmc::BodyProblem>& problems) const {
-    std::vector<std::unique_ptr<mmc::LoadResponse>> out;
+    std::vector<std::unique_ptr<mmc::ComplianceEvaluator>> out;
     for (size_t k = 0; k < problems.size(); ++k) {
       const mmc::BodyProblem& p = problems[k];
       const mmc::CellFactors factors =
           mmc::ersatz_of(p).sharp(mmc::fractions_of(p, p.design.components()));
-      out.push_back(mmc::make_compliance(loads_[k], p.section, p.compliance, factors.stiffness,
-                                         factors.mass));
+      out.push_back(std::make_unique<mmc::ComplianceEvaluator>(loads_[k], p.section, p.compliance,
+                                                               factors.stiffness, factors.mass));
     }
     return out;
   }
@@ -208,7 +208,8 @@ class Correcting {
   }
 
   std::vector<mmc::BodyOutcome> outcomes(const LoadsOfDesigns& loads) {
-    const std::vector<std::unique_ptr<mmc::LoadResponse>> responses = loads.of(report_.problems);
+    const std::vector<std::unique_ptr<mmc::ComplianceEvaluator>> responses =
+        loads.of(report_.problems);
     std::vector<mmc::LoadedBody> bodies;
     for (size_t k = 0; k < responses.size(); ++k)
       bodies.push_back({report_.problems[k], *responses[k]});
@@ -265,7 +266,7 @@ void certify_by_motion(const Scene& scene, const Certify& wishes,
   progress.begin("certificate");
   SceneMotion motion(scene, {wishes.cell, wishes.step, wishes.checkpoints}, go_on);
   const LoadsOfDesigns kept({loads.begin(), loads.end()});
-  std::vector<std::unique_ptr<mmc::LoadResponse>> responses = kept.of(report.problems);
+  std::vector<std::unique_ptr<mmc::ComplianceEvaluator>> responses = kept.of(report.problems);
   // With copies: certifying leaves the designs as they are.
   std::vector<mmc::BodyProblem> problems = report.problems;
   std::vector<mmc::LoadedBody> bodies;

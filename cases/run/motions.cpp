@@ -5,7 +5,7 @@
 #include "fem/dynamics/side_by_side.h"
 #include "geometry/cpu_time.h"
 #include "io/files.h"
-#include "optim/mmc/link_compliance.h"
+#include "optim/mmc/compliance_evaluator.h"
 
 namespace flexmorph::cases {
 
@@ -108,9 +108,9 @@ MeshChoice verified_mesh(const Verify& verify) {
 EnergyComparison compared(const mmc::BodyProblem& problem, const fem::EslSets& loads) {
   const mmc::CellFactors sharp =
       mmc::ersatz_of(problem).sharp(mmc::fractions_of(problem, problem.design.components()));
-  const VectorXd each =
-      mmc::make_compliance(loads, problem.section, problem.compliance, sharp.stiffness, sharp.mass)
-          ->individual(sharp.stiffness, sharp.mass);
+  const VectorXd each = std::make_unique<mmc::ComplianceEvaluator>(
+                            loads, problem.section, problem.compliance, sharp.stiffness, sharp.mass)
+                            ->individual(sharp.stiffness, sharp.mass);
   EnergyComparison out;
   out.body = problem.body;
   double largest = 0;

@@ -161,7 +161,7 @@ void run_static(const Scene& scene, bool condition, RunFolder& folder, Progress&
   report.problems = build_problems(scene);
   for (const mmc::BodyProblem& problem : report.problems) folder.write_start(problem);
   mmc::BodyProblem& problem = report.problems.front();
-  const std::unique_ptr<mmc::LoadResponse> loads = build_static_loads(scene, problem);
+  const std::unique_ptr<mmc::ComplianceEvaluator> loads = build_static_loads(scene, problem);
   Memory memory(folder);
   bool going = true;
   const double most = extent_of(scene).iterations;

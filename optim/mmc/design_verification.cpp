@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "optim/mmc/held_expansion.h"
+#include "optim/mmc/restrained_expansion.h"
 
 namespace flexmorph::mmc {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "optim/mmc/link_compliance.h"
+#include "optim/mmc/compliance_evaluator.h"
 
 namespace flexmorph::mmc {
 namespace {
@@ -31,14 +31,14 @@ std::vector<std::vector<size_t>> groups_of(const std::vector<BodyProblem>& probl
 struct Start {
   VectorXd fractions;
   CellFactors factors;
-  std::unique_ptr<LoadResponse> compliance;
+  std::unique_ptr<ComplianceEvaluator> compliance;
   VectorXd energies;
 
   Start(const BodyProblem& p, const fem::EslSets& loads)
       : fractions(fractions_of(p, p.design.components())),
         factors(ersatz_of(p).sharp(fractions)),
-        compliance(
-            make_compliance(loads, p.section, p.compliance, factors.stiffness, factors.mass)),
+        compliance(std::make_unique<ComplianceEvaluator>(loads, p.section, p.compliance,
+                                                         factors.stiffness, factors.mass)),
         energies(compliance->individual(factors.stiffness, factors.mass)) {}
 };
 

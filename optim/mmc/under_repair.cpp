@@ -48,8 +48,8 @@ std::vector<Component> only_in_one(const std::vector<Component>& a,
 
 }  // namespace
 
-UnderRepair::UnderRepair(const BodyProblem& problem, LoadResponse& loads, const Widths& wanted,
-                         std::function<bool()> go_on)
+UnderRepair::UnderRepair(const BodyProblem& problem, ComplianceEvaluator& loads,
+                         const Widths& wanted, std::function<bool()> go_on)
     : parts(problem.design.components()),
       patch(parts.size(), false),
       problem_(problem),
@@ -254,7 +254,7 @@ std::vector<VectorXd> UnderRepair::displacements(int most) const {
 void UnderRepair::look_at_energy() {
   fractions_ = fractions(parts);
   const CellFactors sharp = ersatz_.sharp(fractions_);
-  LoadResponse::Value value;
+  ComplianceEvaluator::Value value;
   loads_.evaluate(sharp.stiffness, sharp.mass, value);
   compliance_ = design_compliance(problem_, loads_, sharp);
   density_ = value.d_stiffness.cwiseAbs();

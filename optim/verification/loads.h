@@ -53,7 +53,7 @@ struct Load {
 };
 
 /// What keeps the material on a line x = const straight and as wide as it is, wherever it goes:
-/// springs between neighbours in y, whatever is between them, as of HeldExpansion.
+/// springs between neighbours in y, whatever is between them, as of RestrainedExpansion.
 struct HeldEdge {
   double x = 0;          ///< [m]
   double stiffness = 0;  ///< times the distance of two neighbours: k Δy [N]

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "fem/section.h"
-#include "fem/solve/plate_solver.h"
+#include "fem/solve/static_solver.h"
 #include "optim/verification/loads.h"
 
 /// Finite-element verification of an exported outline: its compliance and stresses under its loads.

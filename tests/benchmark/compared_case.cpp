@@ -46,8 +46,8 @@ ComparedCase::ComparedCase(const std::string& path, std::span<const std::string>
   sets = loads_of_motion(scene, problem);
   const mmc::CellFactors first =
       mmc::ersatz_of(problem).sharp(mmc::fractions_of(problem, problem.design.components()));
-  loads = std::make_unique<mmc::Compliance>(sets, problem.section, problem.compliance,
-                                            first.stiffness, first.mass);
+  loads = std::make_unique<mmc::ComplianceEvaluator>(sets, problem.section, problem.compliance,
+                                                     first.stiffness, first.mass);
   by_position = mmc::loads_by_position(problem, sets);
 }
 

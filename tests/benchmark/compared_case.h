@@ -19,7 +19,7 @@ struct ComparedCase {
   cases::Scene scene;
   mmc::BodyProblem problem;
   fem::EslSets sets;  ///< of the motion; a plate at rest has none
-  std::unique_ptr<mmc::LoadResponse> loads;
+  std::unique_ptr<mmc::ComplianceEvaluator> loads;
   verification::Loads by_position;
 
   /// @param path  of a case file, or the name of a shipped case

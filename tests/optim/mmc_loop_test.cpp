@@ -78,7 +78,7 @@ TEST(EslLoop, MakesAFeasibleStifferDesign) {
 
   // And the outcome is that of the design left behind, computed afresh.
   const Ersatz ersatz(kGrid, 1e-3, problems[0].solid, {});
-  Compliance compliance(loads, kSection, {}, {}, {});
+  ComplianceEvaluator compliance(loads, kSection, {}, {}, {});
   MmcProblem again({kPlate, problems[0].design, ersatz, compliance}, whole(1), least_compliance());
   again.evaluate(problems[0].design.x());
   EXPECT_NEAR(again.compliance(), o.compliance, 1e-12 * o.compliance);
@@ -91,8 +91,8 @@ TEST(EslLoop, ComparesWithTheSameVolumeSpreadEvenly) {
     return std::vector<fem::EslSets>{turning_plate(2)};
   };
   const auto outcome = esl_loop(problems, simulate, quick(2), {});
-  Compliance compliance(turning_plate(2), kSection, {}, {}, {});
-  Compliance::Value value;
+  ComplianceEvaluator compliance(turning_plate(2), kSection, {}, {}, {});
+  ComplianceEvaluator::Value value;
   const VectorXd half = VectorXd::Constant(kGrid.n_cells(), 0.5);
   compliance.evaluate(half, half, value);
   // Two systems are solved, the second one with half of the stiffness. Their condition number is
@@ -114,7 +114,7 @@ TEST(EslLoop, RowsDescribeTheirIterates) {
       return std::vector<fem::EslSets>{loads};
     };
     const Ersatz ersatz(kGrid, 1e-3, problems[0].solid, {});
-    Compliance compliance(loads, kSection, {}, {}, {});
+    ComplianceEvaluator compliance(loads, kSection, {}, {}, {});
     int rows = 0, evaluations = 0, sharp = 0;
     LoopObserver observer;
     observer.iteration = [&](const IterationReport& r) {
