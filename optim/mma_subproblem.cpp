@@ -211,10 +211,10 @@ void MmaSolver::follow_barrier(const MmaSubproblem& p) {
   for (double epsilon = 1; epsilon > 0.5 * kLastEpsilon; epsilon *= 0.1) {
     stage(p, epsilon);  // one that fails leaves a start for the next
   }
-  judge(p);
+  measure_kkt(p);
 }
 
-void MmaSolver::judge(const MmaSubproblem& p) {
+void MmaSolver::measure_kkt(const MmaSubproblem& p) {
   solution_.kkt = residual(p, 0).largest;
   solution_.solved = solution_.kkt <= kSolved;
 }
@@ -228,7 +228,7 @@ const MmaSolution& MmaSolver::solve(const MmaSubproblem& p) {
   if (predictor_corrector_) {
     solution_.newton_steps = predictor_corrector_->solve(p, at_);
     refresh(p);
-    judge(p);
+    measure_kkt(p);
   }
   if (!solution_.solved) follow_barrier(p);
   solution_.x = at_.x;

@@ -67,7 +67,7 @@ class MmaSolver {
 
   void begin(const MmaSubproblem& p);
   void follow_barrier(const MmaSubproblem& p);
-  void judge(const MmaSubproblem& p);
+  void measure_kkt(const MmaSubproblem& p);
   void refresh(const MmaSubproblem& p);
   Residual residual(const MmaSubproblem& p, double epsilon);
   void newton_direction(const MmaSubproblem& p, double epsilon);

@@ -73,8 +73,8 @@ std::vector<std::vector<int>> static_places(const Scene& scene, const Grid& grid
                                             std::span<const signed char> outside);
 /// Supports and loads of a static scene on its design mesh.
 /// @throws Error (input) likewise.
-std::unique_ptr<mmc::LoadResponse> build_static_loads(const Scene& scene,
-                                                      const mmc::BodyProblem& problem);
+std::unique_ptr<mmc::ComplianceEvaluator> build_static_loads(const Scene& scene,
+                                                             const mmc::BodyProblem& problem);
 
 /// Load times: multiples of esl.every up to the end [s].
 std::vector<double> load_times(const Scene& scene);

@@ -120,15 +120,15 @@ StaticConditions static_conditions(const Scene& scene, const Grid& grid,
   return out;
 }
 
-std::unique_ptr<mmc::LoadResponse> build_static_loads(const Scene& scene,
-                                                      const mmc::BodyProblem& problem) {
+std::unique_ptr<mmc::ComplianceEvaluator> build_static_loads(const Scene& scene,
+                                                             const mmc::BodyProblem& problem) {
   const StaticConditions conditions = static_conditions(scene, problem.grid, problem.outside);
   // Rows with a value per load solve every load as it is.
   const std::vector<const mmc::ResponseRow*> rows = mmc::rows_of(problem.goal);
   const bool compress = std::none_of(rows.begin(), rows.end(),
                                      [](const mmc::ResponseRow* row) { return row->per_load; });
-  return std::make_unique<mmc::FixedLoads>(problem.grid, problem.section, problem.outside,
-                                           conditions.held, conditions.loads, compress);
+  return std::make_unique<mmc::ComplianceEvaluator>(mmc::plate_of(problem), conditions.held,
+                                                    conditions.loads, compress);
 }
 
 }  // namespace flexmorph::cases

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "cases/scene/scene.h"
+#include "optim/mmc/compliance_evaluator.h"
 #include "optim/mmc/design.h"
-#include "optim/mmc/fixed_loads.h"
 
 namespace flexmorph::cases {
 

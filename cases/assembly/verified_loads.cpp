@@ -3,20 +3,21 @@
 namespace flexmorph::cases {
 namespace {
 
-judge::Place place_of(const Place& place, const mmc::BodyProblem& problem) {
-  if (place.kind != Place::Kind::point) return judge::box_place(place.box);
-  return judge::point_place(place.box.lower, mmc::domain_of(problem), mmc::point_reach(problem));
+verification::Location place_of(const Place& place, const mmc::BodyProblem& problem) {
+  if (place.kind != Place::Kind::point) return verification::box_location(place.box);
+  return verification::point_location(place.box.lower, mmc::domain_of(problem),
+                                      mmc::point_reach(problem));
 }
 
 }  // namespace
 
-judge::Loads judged_loads(const Scene& scene, const mmc::BodyProblem& problem) {
-  judge::Loads out;
+verification::Loads loads_by_position(const Scene& scene, const mmc::BodyProblem& problem) {
+  verification::Loads out;
   out.worst = mmc::compliance_row(problem.goal).per_load;
   for (const PlaneSupport& s : scene.domain->supports)
     out.supports.push_back({out.add(place_of(s.place, problem)), s.x, s.y});
   for (const LoadCase& l : scene.domain->loads) {
-    judge::Load& load = out.loads.emplace_back();
+    verification::Load& load = out.loads.emplace_back();
     load.name = l.name;
     load.weight = l.weight;
     for (const PlaneForce& f : l.forces)

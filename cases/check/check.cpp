@@ -228,7 +228,7 @@ void describe_design(const Scene& scene, const BodyDesign& d, std::ostringstream
 void describe_static(const Scene& scene, std::ostringstream& out, const Machine& machine) {
   const Domain& domain = *scene.domain;
   const mmc::BodyProblem problem = build_problems(scene).front();
-  std::unique_ptr<mmc::LoadResponse> loads;
+  std::unique_ptr<mmc::ComplianceEvaluator> loads;
   if (problem.grid.n_cells() <= kMostBuilt) loads = build_static_loads(scene, problem);
   const BodyDesign& d = scene.designs.front();
   const Grid& g = d.grid;

@@ -6,7 +6,7 @@ namespace flexmorph::cases {
 namespace {
 
 /// Writes displacement and stress under the worst load.
-void write_fields(const std::string& path, const judge::Judged& j) {
+void write_fields(const std::string& path, const verification::OutlineVerification& j) {
   const std::vector<double> mises = mises_of(j);
   std::vector<double> piece(j.mesh.piece.begin(), j.mesh.piece.end());
   const auto view = [](const auto& values) {
@@ -22,16 +22,16 @@ void write_fields(const std::string& path, const judge::Judged& j) {
 }  // namespace
 
 void write_outline_meshes(const Scene& scene, const mmc::BodyProblem& problem,
-                          std::span<const Region> regions, const judge::Judged& j,
-                          RunFolder& folder) {
+                          std::span<const Region> regions,
+                          const verification::OutlineVerification& j, RunFolder& folder) {
   const std::string stem = "design" + (scene.designs.size() > 1 ? "_" + problem.body : "");
   io::PlateModel model{j.mesh,
-                       j.triangles_left_out,
+                       j.omitted_triangles,
                        problem.section.thickness,
                        problem.section.youngs_modulus,
                        problem.section.poisson_ratio,
                        {}};
-  for (const judge::CarriedLoad& c : j.carried) {
+  for (const verification::MeshLoad& c : j.mesh_loads) {
     io::MeshLoad& load = model.loads.emplace_back();
     load.name = c.name;
     for (std::size_t k = 0; k < c.held.size(); ++k)

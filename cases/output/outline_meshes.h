@@ -10,7 +10,7 @@ namespace flexmorph::cases {
 /// @param regions  of the outline
 /// @throws Error (numerical) when a file cannot be written
 void write_outline_meshes(const Scene& scene, const mmc::BodyProblem& problem,
-                          std::span<const Region> regions, const judge::Judged& verification,
-                          RunFolder& folder);
+                          std::span<const Region> regions,
+                          const verification::OutlineVerification& verification, RunFolder& folder);
 
 }  // namespace flexmorph::cases

@@ -196,7 +196,7 @@ void RunFolder::write_history_row(const mmc::IterationReport& r) {
     if (r.sharp->features && std::isfinite(r.sharp->features->solid))
       min_feature = r.sharp->features->solid;
   }
-  const mmc::LoadResponse::Seconds s = r.state.seconds();
+  const mmc::ComplianceEvaluator::Seconds s = r.state.seconds();
   const auto number = [](double v) { return std::isfinite(v) ? io::Cell(v) : io::Cell(); };
   std::vector<io::Cell> row = {r.problem.body,
                                r.cycle,

@@ -54,15 +54,15 @@ std::string objective_words(const mmc::BodyProblem& p) {
 Json outline_results(const VerifiedOutline& outline, double crisp_compliance) {
   Json out = object_of(outline_quantities(), outline);
   if (!outline.verification || !std::isfinite(outline.verification->compliance)) return out;
-  const judge::Judged& v = *outline.verification;
+  const verification::OutlineVerification& v = *outline.verification;
   out["cells_over_this"] = crisp_compliance / v.compliance - 1;
   out["largest_stress_at"] = {v.largest_at.x(), v.largest_at.y()};
-  if (!v.carried.empty()) {
+  if (!v.mesh_loads.empty()) {
     Json exported = Json::object();  // the first load of design.inp
-    exported["load"] = v.carried.front().load + 1;
-    exported["compliance"] = v.carried.front().compliance;
-    exported["largest_stress"] = v.carried_stress.value;
-    exported["largest_stress_at"] = {v.carried_stress.at.x(), v.carried_stress.at.y()};
+    exported["load"] = v.mesh_loads.front().load + 1;
+    exported["compliance"] = v.mesh_loads.front().compliance;
+    exported["largest_stress"] = v.shown_stress.value;
+    exported["largest_stress_at"] = {v.shown_stress.at.x(), v.shown_stress.at.y()};
     out["exported"] = std::move(exported);
   }
   return out;

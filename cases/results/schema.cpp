@@ -31,7 +31,7 @@ Value where_verified(const VerifiedOutline& o, const T& value) {
   if (!o.verification) return {};
   return value(*o.verification);
 }
-using Verification = judge::Judged;
+using Verification = verification::OutlineVerification;
 
 }  // namespace
 
@@ -137,11 +137,11 @@ std::span<const Quantity<VerifiedOutline>> outline_quantities() {
        [](const O& o) { return o.verification ? Value(o.volume) : Value(); }},
       {"islands", "-", "pieces of the outline less one",
        [](const O& o) {
-         return where_verified(o, [](const V& v) -> Value { return v.pieces - 1; });
+         return where_verified(o, [](const V& v) -> Value { return v.n_pieces - 1; });
        }},
       {"held_by_nothing", "-", "pieces that no support holds",
        [](const O& o) {
-         return where_verified(o, [](const V& v) -> Value { return v.left_out; });
+         return where_verified(o, [](const V& v) -> Value { return v.n_omitted_pieces; });
        }},
       {"triangles", "-", "six-node triangles of the last mesh",
        [](const O& o) {
@@ -153,7 +153,7 @@ std::span<const Quantity<VerifiedOutline>> outline_quantities() {
       {"loose_load", "", "load that acts on material that nothing holds",
        [](const O& o) {
          return where_verified(o, [](const V& v) -> Value {
-           return std::isfinite(v.compliance) ? Value() : Value(v.loose_load);
+           return std::isfinite(v.compliance) ? Value() : Value(v.unsupported_load);
          });
        }},
       {"error", "-", "estimated relative error of this compliance",

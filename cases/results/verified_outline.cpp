@@ -7,7 +7,7 @@
 
 namespace flexmorph::cases {
 
-std::vector<double> mises_of(const judge::Judged& verification) {
+std::vector<double> mises_of(const verification::OutlineVerification& verification) {
   std::vector<double> out(verification.mesh.points.size());
   for (std::size_t k = 0; k < out.size(); ++k)
     out[k] = fem::von_mises(verification.stress.col(static_cast<Eigen::Index>(k)));
@@ -42,9 +42,9 @@ std::vector<std::string> narrow_words(const VerifiedOutline& outline) {
 std::string outline_words(const VerifiedOutline& outline, double crisp_compliance) {
   const std::string head = outline.body + ": ";
   if (!outline.verification) return head + "no body-fitted compliance: " + outline.why_not;
-  const judge::Judged& j = *outline.verification;
+  const verification::OutlineVerification& j = *outline.verification;
   if (!std::isfinite(j.compliance))
-    return head + "body-fitted compliance infinite: load '" + j.loose_load +
+    return head + "body-fitted compliance infinite: load '" + j.unsupported_load +
            "' acts on nothing that is held";
   const double apart = 100 * (crisp_compliance / j.compliance - 1);
   std::string out =
@@ -54,9 +54,9 @@ std::string outline_words(const VerifiedOutline& outline, double crisp_complianc
       io::to_text(std::abs(apart), 2) + (apart < 0 ? " % less" : " % more") + "; largest stress " +
       io::to_text(j.largest_stress, 4) + " Pa at (" + io::to_text(j.largest_at.x(), 4) + ", " +
       io::to_text(j.largest_at.y(), 4) + ") m";
-  if (j.carried.empty()) out += "; springs hold its far edge, so there is no design.inp";
-  if (j.left_out > 0)
-    out += "; " + std::to_string(j.left_out) + " of " + std::to_string(j.pieces) +
+  if (j.mesh_loads.empty()) out += "; springs hold its far edge, so there is no design.inp";
+  if (j.n_omitted_pieces > 0)
+    out += "; " + std::to_string(j.n_omitted_pieces) + " of " + std::to_string(j.n_pieces) +
            " pieces are held by nothing";
   return out;
 }

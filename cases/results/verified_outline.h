@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "optim/mmc/judged_design.h"
+#include "optim/mmc/design_verification.h"
 
 /// The verification of final designs by their outlines.
 namespace flexmorph::cases {
@@ -12,7 +12,7 @@ namespace flexmorph::cases {
 /// The finite-element check of the exported outline of a final design.
 struct VerifiedOutline {
   std::string body;
-  std::optional<judge::Judged> verification;
+  std::optional<verification::OutlineVerification> verification;
   std::string why_not;              ///< where there is no verification
   double volume = 0;                ///< part of the domain that the outline covers [-]
   double seconds = 0;               ///< CPU seconds, files included
@@ -28,6 +28,6 @@ std::vector<std::string> narrow_words(const VerifiedOutline& outline);
 std::string outline_words(const VerifiedOutline& outline, double crisp_compliance);
 
 /// Von Mises stress at the nodes of the last mesh (n_nodes) [Pa].
-std::vector<double> mises_of(const judge::Judged& verification);
+std::vector<double> mises_of(const verification::OutlineVerification& verification);
 
 }  // namespace flexmorph::cases

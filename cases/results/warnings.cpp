@@ -68,9 +68,9 @@ void add_verification(const VerifiedOutline& outline, double sharp, Warnings& ou
     out.push_back({"body '" + outline.body + "': no body-fitted compliance: " + outline.why_not});
     return;
   }
-  const judge::Judged& j = *outline.verification;
+  const verification::OutlineVerification& j = *outline.verification;
   if (!std::isfinite(j.compliance))
-    out.push_back({"body '" + outline.body + "': load '" + j.loose_load +
+    out.push_back({"body '" + outline.body + "': load '" + j.unsupported_load +
                    "' acts on material that nothing holds, or on none: the body-fitted compliance "
                    "is infinite"});
   else if (!j.converged)
@@ -82,9 +82,9 @@ void add_verification(const VerifiedOutline& outline, double sharp, Warnings& ou
     out.push_back({"body '" + outline.body + "': the cells of the design say a compliance " +
                    io::to_text(100 * std::abs(apart), 2) + " % " + (apart < 0 ? "below" : "above") +
                    " the body-fitted one"});
-  if (j.left_out > 0)
-    out.push_back({"body '" + outline.body + "': " + std::to_string(j.left_out) + " of " +
-                   std::to_string(j.pieces) + " pieces are held by nothing"});
+  if (j.n_omitted_pieces > 0)
+    out.push_back({"body '" + outline.body + "': " + std::to_string(j.n_omitted_pieces) + " of " +
+                   std::to_string(j.n_pieces) + " pieces are held by nothing"});
 }
 
 /// What mending has left.

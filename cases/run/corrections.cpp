@@ -10,7 +10,7 @@
 #include "io/files.h"
 #include "io/plots.h"
 #include "io/tables.h"
-#include "optim/mmc/link_compliance.h"
+#include "optim/mmc/compliance_evaluator.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -19,15 +19,15 @@ namespace {
 class LoadsOfDesigns {
  public:
   explicit LoadsOfDesigns(std::vector<fem::EslSets> loads) : loads_(std::move(loads)) {}
-  std::vector<std::unique_ptr<mmc::LoadResponse>> of(
+  std::vector<std::unique_ptr<mmc::ComplianceEvaluator>> of(
       const std::vector<mmc::BodyProblem>& problems) const {
-    std::vector<std::unique_ptr<mmc::LoadResponse>> out;
+    std::vector<std::unique_ptr<mmc::ComplianceEvaluator>> out;
     for (size_t k = 0; k < problems.size(); ++k) {
       const mmc::BodyProblem& p = problems[k];
       const mmc::CellFactors factors =
           mmc::ersatz_of(p).sharp(mmc::fractions_of(p, p.design.components()));
-      out.push_back(mmc::make_compliance(loads_[k], p.section, p.compliance, factors.stiffness,
-                                         factors.mass));
+      out.push_back(std::make_unique<mmc::ComplianceEvaluator>(loads_[k], p.section, p.compliance,
+                                                               factors.stiffness, factors.mass));
     }
     return out;
   }
@@ -185,7 +185,8 @@ class Correcting {
   }
 
   std::vector<mmc::BodyOutcome> outcomes(const LoadsOfDesigns& loads) {
-    const std::vector<std::unique_ptr<mmc::LoadResponse>> responses = loads.of(design_.problems);
+    const std::vector<std::unique_ptr<mmc::ComplianceEvaluator>> responses =
+        loads.of(design_.problems);
     std::vector<mmc::LoadedBody> bodies;
     for (size_t k = 0; k < responses.size(); ++k)
       bodies.push_back({design_.problems[k], *responses[k]});
@@ -234,7 +235,7 @@ mmc::MotionCertificate certify_by_motion(const RunContext& run, const Certify& s
   const LoadsOfDesigns kept({loads.begin(), loads.end()});
   // Copies: a certificate leaves the designs as they are.
   std::vector<mmc::BodyProblem> problems(designs.begin(), designs.end());
-  std::vector<std::unique_ptr<mmc::LoadResponse>> responses = kept.of(problems);
+  std::vector<std::unique_ptr<mmc::ComplianceEvaluator>> responses = kept.of(problems);
   std::vector<mmc::LoadedBody> bodies;
   for (size_t k = 0; k < problems.size(); ++k) bodies.push_back({problems[k], *responses[k]});
   std::vector<mmc::Part> parts = mmc::parts_at_end(bodies);

@@ -157,7 +157,7 @@ void DesignRun::run_cycles(std::vector<fem::EslSets>& loads) {
 void DesignRun::design_at_rest() {
   const Scene& scene = run_.scene;
   mmc::BodyProblem& problem = design_.problems.front();
-  const std::unique_ptr<mmc::LoadResponse> loads = build_static_loads(scene, problem);
+  const std::unique_ptr<mmc::ComplianceEvaluator> loads = build_static_loads(scene, problem);
   KeptEvaluations kept(run_.folder);
   bool going = true;
   run_.progress.begin("design");

@@ -5,7 +5,7 @@
 #include "fem/dynamics/side_by_side.h"
 #include "geometry/cpu_time.h"
 #include "io/files.h"
-#include "optim/mmc/link_compliance.h"
+#include "optim/mmc/compliance_evaluator.h"
 
 namespace flexmorph::cases {
 
@@ -107,7 +107,7 @@ std::vector<fem::EslSets> CycleMotions::loads(std::span<const fem::Factors> fact
   return std::move(motion.loads);
 }
 
-mmc::Judge CycleMotions::judge() {
+mmc::VerificationMotion CycleMotions::judge() {
   if (!run_.scene.judges_on_cells()) return {};
   return
       [this](std::span<const fem::Factors> factors) { return strain_integral_on_cells(factors); };
@@ -160,9 +160,9 @@ void run_side_by_side(const RunContext& run, const std::vector<IndependentMotion
 EnergyComparison compared(const mmc::BodyProblem& problem, const fem::EslSets& loads) {
   const mmc::CellFactors sharp =
       mmc::ersatz_of(problem).sharp(mmc::fractions_of(problem, problem.design.components()));
-  const VectorXd each =
-      mmc::make_compliance(loads, problem.section, problem.compliance, sharp.stiffness, sharp.mass)
-          ->individual(sharp.stiffness, sharp.mass);
+  const VectorXd each = mmc::ComplianceEvaluator(loads, problem.section, problem.compliance,
+                                                 sharp.stiffness, sharp.mass)
+                            .individual(sharp.stiffness, sharp.mass);
   EnergyComparison out;
   out.body = problem.body;
   double largest = 0;

@@ -32,7 +32,7 @@ class CycleMotions {
   /// Computes the loads of all designs. @throws as run_motion()
   std::vector<fem::EslSets> loads(std::span<const fem::Factors> factors);
   /// The motion on cells that compares cycles; empty where the motions that make loads do.
-  mmc::Judge judge();
+  mmc::VerificationMotion judge();
   /// Keeps the last motion on cells, with its table, as that of the best design so far.
   void keep_assessed();
 

@@ -9,7 +9,7 @@
 #include "geometry/feature.h"
 #include "geometry/grid.h"
 #include "geometry/tdf.h"
-#include "optim/mmc/compliance.h"
+#include "optim/mmc/compliance_evaluator.h"
 #include "optim/mmc/corrected_cycles.h"
 #include "optim/mmc/goal.h"
 

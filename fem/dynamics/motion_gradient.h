@@ -10,7 +10,7 @@
 
 namespace flexmorph::fem {
 
-/// What a motion is judged by: the power mean of a measure over times t_i,
+/// The objective of a motion: the power mean of a measure over times t_i,
 ///
 ///   J = (Σ w_i m(t_i)^p)^(1/p),   Σ w_i = 1
 struct MotionObjective {

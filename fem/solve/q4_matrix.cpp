@@ -32,16 +32,6 @@ Q4Matrix::Q4Matrix(const Grid& grid, const PlaneSection& section, std::vector<in
       displacement_of_(inverse(rows_)),
       factor_(pattern(further)) {}
 
-std::array<int, 8> Q4Matrix::rows_of_cell(int i, int j) const {
-  std::array<int, 8> out{};
-  for (std::size_t a = 0; a < 4; ++a) {
-    const int node = grid_.node(i + kCornerI[a], j + kCornerJ[a]);
-    out[2 * a] = row(node, 0);
-    out[2 * a + 1] = row(node, 1);
-  }
-  return out;
-}
-
 /// Unknowns of the cells around a node, from `first` on, ascending.
 void Q4Matrix::unknowns_around(int node, int first, std::span<const char> inside,
                                std::vector<int>& out) const {

@@ -13,8 +13,8 @@
 namespace flexmorph::fem {
 
 /// Stiffness of bilinear plane-stress cells of a grid with its Cholesky factor, between unknowns in
-/// any order: what StaticSolver and PlateSolver have in common. Which order is best differs between
-/// them by a factor (fem/README.md, Static solver).
+/// any order. The two orders of StaticSolver differ in cost by a factor (fem/README.md, Static
+/// solver).
 class Q4Matrix {
  public:
   /// @param cells  those that have stiffness, ascending
@@ -25,15 +25,17 @@ class Q4Matrix {
            std::vector<int> rows, std::optional<std::pair<int, int>> further = {});
 
   int size() const { return static_cast<int>(displacement_of_.size()); }
-  /// Unknown of a displacement, or -1.
-  int row(int node, int component) const {
-    return rows_[2 * static_cast<std::size_t>(node) + static_cast<std::size_t>(component)];
-  }
+  /// Unknown of every displacement, or -1 (2 n_nodes).
+  std::span<const int> rows() const { return rows_; }
   int displacement_of(int unknown) const {  ///< 2 node + component
     return displacement_of_[static_cast<std::size_t>(unknown)];
   }
   /// Unknowns of the corners of cell (i, j), x and y interleaved.
-  std::array<int, 8> rows_of_cell(int i, int j) const;
+  std::array<int, 8> rows_of_cell(int i, int j) const {
+    const int* left = &rows_[2 * static_cast<std::size_t>(grid_.node(i, j))];
+    const int* right = left + 2 * (grid_.ny + 1);
+    return {left[0], left[1], right[0], right[1], right[2], right[3], left[2], left[3]};
+  }
   const Eigen::Matrix<double, 8, 8>& cell_stiffness() const { return cell_stiffness_; }
 
   /// Entry of the pattern for unknowns a >= b of a cell, by its place in `cells`; -1: held.

@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "fem/solve/grid_order.h"
 #include "fem/solve/q4_matrix.h"
 
 namespace flexmorph::fem {
@@ -32,44 +33,70 @@ std::pair<Eigen::Index, Eigen::Index> moving_loads(std::span<const int> root_col
 
 struct StaticSolver::Impl {
   Grid grid;
-  int first_root = 0;
   PlaneSection section;
-  std::optional<Q4Matrix> matrix;
-  VectorXd stiffness;  // factors of the last factorize()
+  int first_root = 0;  // of a plate with a clamp
   double edge_stiffness = 0;
+  std::vector<char> inside;  // by cell
+  std::optional<Q4Matrix> matrix;
 
   // Work space.
   mutable std::vector<int> active, order, all_active;
   mutable MatrixXd sorted_mix;
-  mutable VectorXd moved, held;
+  mutable VectorXd moved, held_values;
   mutable MatrixXd energy_of_load;  // a column per thread
 
+  Impl(const Grid& g, const PlaneSection& s)
+      : grid(g), section(s), inside(static_cast<std::size_t>(g.n_cells()), 1) {}
   int block_size() const { return 2 * (grid.ny + 1); }
-  int n_unknowns() const { return block_size() * (grid.nx - first_root); }
-  int row(int i, int j) const {
-    return i <= first_root ? -1 : 2 * ((grid.nx - i) * (grid.ny + 1) + j);
-  }
 
-  void number();
+  void number(std::span<const int> nodes, std::span<const HeldUnknown> held);
   void add_edge(std::span<double> values) const;
-  void check_roots(std::span<const int> root_columns, Eigen::Index n_loads) const;
-  bool arrange(std::span<const int> root_columns) const;
+  bool arrange(std::span<const int> root_columns, Eigen::Index n_loads) const;
   void to_order(MatrixXd& x) const;
   void from_order(MatrixXd& x) const;
+  void substitute(MatrixXd& x, std::span<const int> root_columns, int tail, bool back) const;
+  Q4Energy::Corners corner_values(const MatrixXd& u, int i, int j, Eigen::Index first_load) const;
+  template <class Use>
+  void each_cell(Use use) const;
 };
 
-/// Column by column from the free end to the root.
-void StaticSolver::Impl::number() {
-  std::vector<int> rows, cells;
-  for (int i = 0; i <= grid.nx; ++i)
-    for (int j = 0; j <= grid.ny; ++j) {
-      rows.push_back(row(i, j));
-      rows.push_back(i <= first_root ? -1 : row(i, j) + 1);
+/// Unknowns of the cells' nodes, but the held ones, in this order of all nodes: both of a node stay
+/// together.
+void StaticSolver::Impl::number(std::span<const int> nodes, std::span<const HeldUnknown> held) {
+  std::vector<char> exists(2 * static_cast<std::size_t>(grid.n_nodes()), 0);
+  std::vector<int> rows(exists.size(), -1), cells;
+  for (int cell = 0; cell < grid.n_cells(); ++cell) {
+    if (!inside[static_cast<std::size_t>(cell)]) continue;
+    cells.push_back(cell);
+    for (std::size_t a = 0; a < 4; ++a) {
+      const int node = grid.node(cell / grid.ny + kCornerI[a], cell % grid.ny + kCornerJ[a]);
+      std::fill_n(exists.begin() + 2 * node, 2, 1);
     }
-  for (int cell = grid.cell(first_root, 0); cell < grid.n_cells(); ++cell) cells.push_back(cell);
+  }
+  for (const HeldUnknown& h : held) {
+    if (h.node < 0 || h.node >= grid.n_nodes() || h.component < 0 || h.component > 1)
+      throw Error::input("static solver: node " + std::to_string(h.node) + ", component " +
+                         std::to_string(h.component) + " is not of this grid");
+    exists[2 * static_cast<std::size_t>(h.node) + static_cast<std::size_t>(h.component)] = 0;
+  }
+  int n = 0;
+  for (const int node : nodes)
+    for (std::size_t k = 2 * static_cast<std::size_t>(node), end = k + 2; k < end; ++k)
+      if (exists[k]) rows[k] = n++;
+  if (n == 0) throw Error::input("static solver: every displacement is held");
   std::optional<std::pair<int, int>> ends;  // of the edge, in x
-  if (edge_stiffness > 0) ends = {row(grid.nx, grid.ny), row(grid.nx, 0)};
+  const auto x_of = [&](int j) {
+    return rows[2 * static_cast<std::size_t>(grid.node(grid.nx, j))];
+  };
+  if (edge_stiffness > 0) ends = {x_of(grid.ny), x_of(0)};
   matrix.emplace(grid, section, std::move(cells), std::move(rows), ends);
+}
+
+template <class Use>
+void StaticSolver::Impl::each_cell(Use use) const {
+  for (int cell = 0; cell < grid.n_cells(); ++cell)
+    if (inside[static_cast<std::size_t>(cell)])
+      use(cell, matrix->rows_of_cell(cell / grid.ny, cell % grid.ny));
 }
 
 /// Neighbours on the edge are corners 1 and 2 of a cell: unknowns 2 and 4 (x), 3 and 5 (y) of it.
@@ -91,8 +118,13 @@ void StaticSolver::Impl::add_edge(std::span<double> values) const {
   values[static_cast<std::size_t>(matrix->further_entry())] += mean;
 }
 
-void StaticSolver::Impl::check_roots(std::span<const int> root_columns,
-                                     Eigen::Index n_loads) const {
+/// Sets `active` (unknowns in front of each load's clamp), sorted when the loads are not.
+/// @returns whether `order` (sorted load -> load) must be applied.
+bool StaticSolver::Impl::arrange(std::span<const int> root_columns, Eigen::Index n_loads) const {
+  if (root_columns.empty()) {
+    active.assign(static_cast<std::size_t>(n_loads), matrix->size());
+    return false;
+  }
   if (static_cast<Eigen::Index>(root_columns.size()) != n_loads) {
     throw Error::input("static solver: " + std::to_string(n_loads) + " loads, but " +
                        std::to_string(root_columns.size()) + " root columns");
@@ -103,11 +135,6 @@ void StaticSolver::Impl::check_roots(std::span<const int> root_columns,
                          std::to_string(first_root) + " and " + std::to_string(grid.nx));
     }
   }
-}
-
-/// Sets `active` (unknowns in front of each load's clamp), sorted when the loads are not.
-/// @returns whether `order` (sorted load -> load) must be applied.
-bool StaticSolver::Impl::arrange(std::span<const int> root_columns) const {
   order.resize(root_columns.size());
   std::iota(order.begin(), order.end(), 0);
   const bool sorted = std::is_sorted(root_columns.begin(), root_columns.end()) ||
@@ -144,9 +171,20 @@ void StaticSolver::Impl::from_order(MatrixXd& x) const {
   }
 }
 
+/// Forward substitution of loads that are zero but for the last `tail` of their active entries, and
+/// the backward one.
+void StaticSolver::Impl::substitute(MatrixXd& x, std::span<const int> root_columns, int tail,
+                                    bool back) const {
+  const bool reorder = arrange(root_columns, x.rows());
+  if (reorder) to_order(x);
+  matrix->factor().forward(x, active, tail);
+  if (back) matrix->factor().backward(x, active);
+  if (reorder) from_order(x);
+}
+
 StaticSolver::StaticSolver(const Grid& grid, const PlaneSection& section, int first_root,
                            double edge_stiffness)
-    : impl_(std::make_unique<Impl>()) {
+    : impl_(std::make_unique<Impl>(grid, section)) {
   if (first_root < 0 || first_root >= grid.nx) {
     throw Error::input("static solver: root column " + std::to_string(first_root) +
                        " leaves nothing of " + std::to_string(grid.nx) + " columns of cells");
@@ -154,19 +192,36 @@ StaticSolver::StaticSolver(const Grid& grid, const PlaneSection& section, int fi
   if (!std::isfinite(edge_stiffness) || edge_stiffness < 0)
     throw Error::input("static solver: the stiffness of an edge is at least 0, not " +
                        std::to_string(edge_stiffness));
-  impl_->edge_stiffness = edge_stiffness;
-  impl_->grid = grid;
   impl_->first_root = first_root;
-  impl_->section = section;
-  impl_->number();
+  impl_->edge_stiffness = edge_stiffness;
+  std::fill_n(impl_->inside.begin(), grid.cell(first_root, 0), 0);
+  std::vector<int> nodes;
+  std::vector<HeldUnknown> held;
+  for (int i = grid.nx; i >= 0; --i)
+    for (int j = 0; j <= grid.ny; ++j) nodes.push_back(grid.node(i, j));
+  for (int j = 0; j <= grid.ny; ++j)
+    for (int c = 0; c < 2; ++c) held.push_back({grid.node(first_root, j), c});
+  impl_->number(nodes, held);
+}
+
+StaticSolver::StaticSolver(const Grid& grid, const PlaneSection& section,
+                           std::span<const HeldUnknown> held, std::span<const signed char> outside)
+    : impl_(std::make_unique<Impl>(grid, section)) {
+  for (std::size_t c = 0; c < outside.size(); ++c) impl_->inside[c] = outside[c] == 0;
+  impl_->number(dissection_order(grid), held);
 }
 
 StaticSolver::~StaticSolver() = default;
 StaticSolver::StaticSolver(StaticSolver&&) noexcept = default;
 
 const Grid& StaticSolver::grid() const { return impl_->grid; }
-int StaticSolver::n_unknowns() const { return impl_->n_unknowns(); }
-int StaticSolver::row(int i, int j) const { return impl_->row(i, j); }
+const PlaneSection& StaticSolver::section() const { return impl_->section; }
+double StaticSolver::edge_stiffness() const { return impl_->edge_stiffness; }
+bool StaticSolver::has_cell(int cell) const {
+  return impl_->inside[static_cast<std::size_t>(cell)] != 0;
+}
+int StaticSolver::n_unknowns() const { return impl_->matrix->size(); }
+std::span<const int> StaticSolver::rows() const { return impl_->matrix->rows(); }
 
 double StaticSolver::condition() const { return impl_->matrix->factor().condition(); }
 
@@ -176,45 +231,36 @@ void StaticSolver::factorize(const VectorXd& stiffness_factor) {
     throw Error::numerical("static solver: the stiffness factors of " +
                            std::to_string(m.grid.n_cells()) + " cells are not all finite numbers");
   }
-  m.stiffness = stiffness_factor;
   const std::span<double> values = m.matrix->assemble(stiffness_factor);
   if (m.edge_stiffness > 0) m.add_edge(values);
   const int column = m.matrix->factor().factorize();
   if (column < 0) return;
-  const int node = column / 2, i = m.grid.nx - node / (m.grid.ny + 1);
-  throw Error::numerical("static solver: the stiffness is not positive definite at unknown " +
-                         std::to_string(column) + " (" + (column % 2 == 0 ? "x" : "y") +
-                         " of node column " + std::to_string(i) + ", row " +
-                         std::to_string(node % (m.grid.ny + 1)) +
-                         "): stiffness factors must be positive, and no part may float");
+  const int unknown = m.matrix->displacement_of(column), node = unknown / 2;
+  throw Error::numerical(
+      "static solver: the stiffness is not positive definite at the " +
+      std::string(unknown % 2 == 0 ? "x" : "y") + "-displacement of node column " +
+      std::to_string(node / (m.grid.ny + 1)) + ", row " + std::to_string(node % (m.grid.ny + 1)) +
+      ": stiffness factors must be positive, the supports must hold the plate against shifts and "
+      "turning, and no part may float");
 }
 
 void StaticSolver::solve(MatrixXd& loads, std::span<const int> root_columns) const {
-  const Impl& m = *impl_;
-  m.check_roots(root_columns, loads.rows());
-  const bool reorder = m.arrange(root_columns);
-  if (reorder) m.to_order(loads);
-  m.matrix->factor().forward(loads, m.active);
-  m.matrix->factor().backward(loads, m.active);
-  if (reorder) m.from_order(loads);
+  impl_->substitute(loads, root_columns, n_unknowns(), true);
 }
 
 void StaticSolver::solve_at_clamp(MatrixXd& loads, std::span<const int> root_columns) const {
-  const Impl& m = *impl_;
-  m.check_roots(root_columns, loads.rows());
-  const bool reorder = m.arrange(root_columns);
-  if (reorder) m.to_order(loads);
-  m.matrix->factor().forward(loads, m.active, m.block_size());
-  m.matrix->factor().backward(loads, m.active);
-  if (reorder) m.from_order(loads);
+  impl_->substitute(loads, root_columns, impl_->block_size(), true);
+}
+
+void StaticSolver::forward(MatrixXd& loads, std::span<const int> root_columns) const {
+  impl_->substitute(loads, root_columns, n_unknowns(), false);
 }
 
 void StaticSolver::solve_mixed(const MatrixXd& mix, MatrixXd& basis,
                                std::span<const int> root_columns, MatrixXd& displacements) const {
   const Impl& m = *impl_;
-  m.check_roots(root_columns, mix.rows());
-  const bool reorder = m.arrange(root_columns);
-  displacements.resize(mix.rows(), m.n_unknowns());
+  const bool reorder = m.arrange(root_columns, mix.rows());
+  displacements.resize(mix.rows(), n_unknowns());
   if (mix.rows() == 0) return;
   const int r = static_cast<int>(mix.cols()), ld = static_cast<int>(mix.rows());
   m.all_active.assign(static_cast<std::size_t>(r),
@@ -236,19 +282,19 @@ void StaticSolver::solve_mixed(const MatrixXd& mix, MatrixXd& basis,
   if (reorder) m.from_order(displacements);
 }
 
-void StaticSolver::forward(MatrixXd& loads) const {
-  const Impl& m = *impl_;
-  m.all_active.assign(static_cast<std::size_t>(loads.rows()), m.n_unknowns());
-  m.matrix->factor().forward(loads, m.all_active);
-}
-
-void StaticSolver::forward(MatrixXd& loads, std::span<const int> root_columns) const {
-  const Impl& m = *impl_;
-  m.check_roots(root_columns, loads.rows());
-  const bool reorder = m.arrange(root_columns);
-  if (reorder) m.to_order(loads);
-  m.matrix->factor().forward(loads, m.active);
-  if (reorder) m.from_order(loads);
+/// Displacements of the corners of a cell, from one load on.
+Q4Energy::Corners StaticSolver::Impl::corner_values(const MatrixXd& u, int i, int j,
+                                                    Eigen::Index first_load) const {
+  const auto cell = matrix->rows_of_cell(i, j);
+  const auto value = [&](int row) {
+    return row < 0 ? held_values.data() : u.data() + row * u.rows() + first_load;
+  };
+  Q4Energy::Corners x;
+  for (std::size_t a = 0; a < 4; ++a) {
+    x.u[a] = value(cell[2 * a]);
+    x.v[a] = value(cell[2 * a + 1]);
+  }
+  return x;
 }
 
 void StaticSolver::cell_energies(const MatrixXd& displacements, const VectorXd& weights,
@@ -256,38 +302,46 @@ void StaticSolver::cell_energies(const MatrixXd& displacements, const VectorXd& 
   const Impl& m = *impl_;
   const Grid& g = m.grid;
   const Q4Energy energy(m.section, g.dx(), g.dy());
-  const Eigen::Index ld = displacements.rows();
+  const Eigen::Index n_loads = displacements.rows();
   energies.setZero(g.n_cells());
-  m.held.setZero(ld);
+  m.held_values.setZero(n_loads);
   // Columns begin alike in memory: Eigen adds in an order that depends on it.
-  m.energy_of_load.resize((ld + 7) / 8 * 8, omp_get_max_threads());
+  m.energy_of_load.resize((n_loads + 7) / 8 * 8, omp_get_max_threads());
 
 #pragma omp parallel for schedule(static)
   for (int i = m.first_root; i < g.nx; ++i) {
-    const auto range = moving_loads(root_columns, i, ld);
+    const auto range = moving_loads(root_columns, i, n_loads);
     const auto begin = range.first, n = range.second;
     if (n == 0) continue;
     auto each = m.energy_of_load.col(omp_get_thread_num());
-    const auto value = [&](int column, int j, int k) {
-      const int row = m.row(column, j);
-      return row < 0 ? m.held.data() : displacements.data() + (row + k) * ld + begin;
-    };
     for (int j = 0; j < g.ny; ++j) {
-      Q4Energy::Corners x;
-      for (std::size_t a = 0; a < 4; ++a) {
-        x.u[a] = value(i + kCornerI[a], j + kCornerJ[a], 0);
-        x.v[a] = value(i + kCornerI[a], j + kCornerJ[a], 1);
-      }
-      energy.weighted(x, weights.data() + begin, n, each.data());
+      if (!m.inside[static_cast<std::size_t>(g.cell(i, j))]) continue;
+      energy.weighted(m.corner_values(displacements, i, j, begin), weights.data() + begin, n,
+                      each.data());
       energies(g.cell(i, j)) = each.head(n).sum();
     }
   }
 }
 
+void StaticSolver::cell_energies(const MatrixXd& displacements, MatrixXd& energies) const {
+  const Impl& m = *impl_;
+  const Grid& g = m.grid;
+  const Q4Energy energy(m.section, g.dx(), g.dy());
+  const VectorXd ones = VectorXd::Ones(displacements.rows());
+  energies.setZero(ones.size(), g.n_cells());
+  m.held_values.setZero(ones.size());
+
+#pragma omp parallel for schedule(static)
+  for (int cell = g.cell(m.first_root, 0); cell < g.n_cells(); ++cell)
+    if (m.inside[static_cast<std::size_t>(cell)])
+      energy.weighted(m.corner_values(displacements, cell / g.ny, cell % g.ny, 0), ones.data(),
+                      ones.size(), energies.col(cell).data());
+}
+
 double StaticSolver::edge_energy(const MatrixXd& displacements, const VectorXd& weights) const {
   const Impl& m = *impl_;
   if (m.edge_stiffness == 0) return 0;
-  const int ny = m.grid.ny, first = m.row(m.grid.nx, 0), last = m.row(m.grid.nx, ny);
+  const int ny = m.grid.ny, first = row(m.grid.node(m.grid.nx, 0), 0), last = first + 2 * ny;
   const auto w = [&](int row) { return displacements.col(row).array(); };
   Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(displacements.rows());
   const Eigen::ArrayXd mean = (w(last) - w(first)) / ny;
@@ -296,25 +350,46 @@ double StaticSolver::edge_energy(const MatrixXd& displacements, const VectorXd& 
   return m.edge_stiffness * sum.matrix().dot(weights);
 }
 
-void StaticSolver::apply(const MatrixXd& displacements, MatrixXd& forces) const {
+void StaticSolver::apply(const VectorXd& stiffness_factor, const MatrixXd& displacements,
+                         MatrixXd& forces) const {
   const Impl& m = *impl_;
-  if (m.stiffness.size() == 0) throw Error::numerical("static solver: factorize() comes first");
-  forces.setZero(displacements.rows(), m.n_unknowns());
-  for (int i = m.first_root; i < m.grid.nx; ++i) {
-    for (int j = 0; j < m.grid.ny; ++j) {
-      const auto rows = m.matrix->rows_of_cell(i, j);
-      const double factor = m.stiffness(m.grid.cell(i, j));
-      for (std::size_t a = 0; a < 8; ++a) {
-        if (rows[a] < 0) continue;
-        for (std::size_t b = 0; b < 8; ++b) {
-          if (rows[b] < 0) continue;
-          const double k =
-              factor * m.matrix->cell_stiffness()(static_cast<int>(a), static_cast<int>(b));
-          forces.col(rows[a]) += k * displacements.col(rows[b]);
-        }
+  forces.setZero(displacements.rows(), n_unknowns());
+  m.each_cell([&](int cell, const std::array<int, 8>& rows) {
+    for (std::size_t a = 0; a < 8; ++a) {
+      if (rows[a] < 0) continue;
+      for (std::size_t b = 0; b < 8; ++b) {
+        if (rows[b] < 0) continue;
+        const double k = stiffness_factor(cell) *
+                         m.matrix->cell_stiffness()(static_cast<int>(a), static_cast<int>(b));
+        forces.col(rows[a]) += k * displacements.col(rows[b]);
       }
     }
-  }
+  });
+}
+
+void StaticSolver::cell_forces(const VectorXd& displacements,
+                               const Eigen::SparseMatrix<double>& directions,
+                               MatrixXd& forces) const {
+  const Impl& m = *impl_;
+  Eigen::Matrix<double, 8, Eigen::Dynamic> each(8, m.grid.n_cells());
+  m.each_cell([&](int cell, const std::array<int, 8>& rows) {
+    Eigen::Matrix<double, 8, 1> u;
+    for (int k = 0; k < 8; ++k) {
+      const int row = rows[static_cast<std::size_t>(k)];
+      u[k] = row < 0 ? 0.0 : displacements[row];
+    }
+    each.col(cell).noalias() = m.matrix->cell_stiffness() * u;
+  });
+  forces.setZero(directions.cols(), n_unknowns());
+  for (Eigen::Index d = 0; d < directions.cols(); ++d)
+    for (Eigen::SparseMatrix<double>::InnerIterator at(directions, d); at; ++at) {
+      const int cell = static_cast<int>(at.row());
+      if (!has_cell(cell)) continue;
+      const auto rows = m.matrix->rows_of_cell(cell / m.grid.ny, cell % m.grid.ny);
+      for (int k = 0; k < 8; ++k)
+        if (const int row = rows[static_cast<std::size_t>(k)]; row >= 0)
+          forces(d, row) += at.value() * each(k, cell);
+    }
 }
 
 }  // namespace flexmorph::fem

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fem/section.h"
-#include "fem/solve/plate_solver.h"
+#include "fem/solve/static_solver.h"
 #include "geometry/part_mesh.h"
 
 namespace flexmorph::fem {

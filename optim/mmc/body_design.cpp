@@ -408,7 +408,7 @@ std::vector<BodyOutcome> design_bodies(std::span<const LoadedBody> bodies, int c
   return outcomes;
 }
 
-BodyOutcome design_body(BodyProblem& problem, LoadResponse& loads, int cycle,
+BodyOutcome design_body(BodyProblem& problem, ComplianceEvaluator& loads, int cycle,
                         const DesignSettings& settings, const IterationObserver& observe,
                         bool& going) {
   const LoadedBody body{problem, loads};

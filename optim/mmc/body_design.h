@@ -23,9 +23,9 @@ struct IterationReport {
   /// x is the body's own; all else is of the problem it is a part of. Seconds that bodies share are
   /// in the row of the first.
   const optim::Iterate& iterate;
-  const MmcProblem& state;           ///< values at the iterate's x
-  const LoadResponse::Value& value;  ///< compliance and its derivatives there
-  LoadResponse& loads;
+  const MmcProblem& state;                  ///< values at the iterate's x
+  const ComplianceEvaluator::Value& value;  ///< compliance and its derivatives there
+  ComplianceEvaluator& loads;
   const SharpDesign* sharp = nullptr;  ///< when evaluated
   /// What becomes of its components after this iteration.
   std::span<const ComponentEvent> events = {};
@@ -91,7 +91,7 @@ using IterationObserver = std::function<bool(const IterationReport&)>;
 /// A body and the loads it is designed under.
 struct LoadedBody {
   BodyProblem& problem;
-  LoadResponse& loads;
+  ComplianceEvaluator& loads;
 };
 
 /// The designs of bodies under given loads, over all stages of their bands: of one body, or of
@@ -105,7 +105,7 @@ std::vector<BodyOutcome> design_bodies(std::span<const LoadedBody> bodies, int c
                                        const DesignSettings& settings,
                                        const IterationObserver& observe, bool& going);
 /// The same of one body.
-BodyOutcome design_body(BodyProblem& problem, LoadResponse& loads, int cycle,
+BodyOutcome design_body(BodyProblem& problem, ComplianceEvaluator& loads, int cycle,
                         const DesignSettings& settings, const IterationObserver& observe,
                         bool& going);
 

@@ -10,7 +10,7 @@
 #include "optim/mmc/united_connectivity.h"
 
 namespace flexmorph::mmc {
-double judged_compliance(const BodyProblem& problem, LoadResponse& loads,
+double design_compliance(const BodyProblem& problem, ComplianceEvaluator& loads,
                          const CellFactors& factors) {
   if (compliance_row(problem.goal).per_load)
     return loads.individual(factors.stiffness, factors.mass).maxCoeff();
@@ -18,7 +18,7 @@ double judged_compliance(const BodyProblem& problem, LoadResponse& loads,
 }
 
 Figures further_values(const BodyProblem& problem, std::span<const Component> components,
-                       LoadResponse& loads, const CellFactors& factors) {
+                       ComplianceEvaluator& loads, const CellFactors& factors) {
   DesignState state(loads);
   Figures out;
   for (const ResponseRow* row : further_rows(problem.goal)) {
@@ -206,13 +206,13 @@ Connectivity united_connectivity(const BodyProblem& problem, std::span<const Com
 }
 
 SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> components,
-                         LoadResponse& loads) {
+                         ComplianceEvaluator& loads) {
   SharpDesign out;
   out.fractions = fractions_of(problem, components);
   const Ersatz ersatz = ersatz_of(problem);
   out.volume = out.fractions.sum() / ersatz.n_domain_cells();
   const CellFactors sharp = ersatz.sharp(out.fractions);
-  out.compliance = judged_compliance(problem, loads, sharp);
+  out.compliance = design_compliance(problem, loads, sharp);
   out.further = further_values(problem, components, loads, sharp);
   const double clock = thread_seconds();
   try {

@@ -11,7 +11,7 @@
 #include "geometry/outline.h"
 #include "geometry/part_mesh.h"
 #include "geometry/picture.h"
-#include "optim/mmc/compliance.h"
+#include "optim/mmc/compliance_evaluator.h"
 #include "optim/mmc/mmc_problem.h"
 
 namespace flexmorph::mmc {
@@ -76,14 +76,14 @@ Features features_of(const BodyProblem& problem, std::span<const Region> regions
 /// share a vertex only stay apart.
 Connectivity connectivity_of(const BodyProblem& problem, std::span<const Region> regions);
 
-/// The compliance that stands for a design: that of compliance_row().
-double judged_compliance(const BodyProblem& problem, LoadResponse& loads,
+/// Returns the compliance that designs are compared by, which is that of compliance_row() [J].
+double design_compliance(const BodyProblem& problem, ComplianceEvaluator& loads,
                          const CellFactors& factors);
 
 /// Largest values of further_rows() of a goal, by key_of().
 using Figures = std::map<std::string, double>;
 Figures further_values(const BodyProblem& problem, std::span<const Component> components,
-                       LoadResponse& loads, const CellFactors& factors);
+                       ComplianceEvaluator& loads, const CellFactors& factors);
 
 /// A design without blur: what its outlines enclose.
 struct SharpDesign {
@@ -97,7 +97,7 @@ struct SharpDesign {
   double seconds_outlines = 0;  ///< CPU seconds of the union, its pieces and widths
 };
 SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> components,
-                         LoadResponse& loads);
+                         ComplianceEvaluator& loads);
 
 /// Factors of the body for dynamics: the sharp picture with the void factors of dynamics.
 fem::Factors dynamic_factors(const BodyProblem& problem, std::span<const Component> components);

@@ -60,7 +60,7 @@ std::vector<NarrowPlace> places_of(UnderRepair& design) {
 
 class Cleaner {
  public:
-  Cleaner(BodyProblem& problem, LoadResponse& loads, const Widths& wanted, double max_volume,
+  Cleaner(BodyProblem& problem, ComplianceEvaluator& loads, const Widths& wanted, double max_volume,
           const std::function<bool()>& go_on)
       : problem_(problem),
         wanted_(wanted),
@@ -348,7 +348,7 @@ bool CleanUp::reached() const {
   return pieces_after == 1 && torn == 0 && part_reached() >= kWithin;
 }
 
-CleanUp look_over(const BodyProblem& problem, LoadResponse& loads, const Widths& wanted) {
+CleanUp look_over(const BodyProblem& problem, ComplianceEvaluator& loads, const Widths& wanted) {
   UnderRepair design(problem, loads, wanted);
   CleanUp out;
   out.wanted = wanted;
@@ -362,7 +362,7 @@ CleanUp look_over(const BodyProblem& problem, LoadResponse& loads, const Widths&
   return out;
 }
 
-CleanUp clean_up(BodyProblem& problem, LoadResponse& loads, const Widths& wanted,
+CleanUp clean_up(BodyProblem& problem, ComplianceEvaluator& loads, const Widths& wanted,
                  const RepairWishes& wishes) {
   const double by_goal = allowed_volume(problem.goal).value_or(kInfinity);
   return Cleaner(problem, loads, wanted, wishes.max_volume.value_or(by_goal), wishes.go_on)

@@ -51,12 +51,12 @@ struct RepairWishes {
 /// The design of `problem` is left at the result, or where it was when that costs more than a
 /// quarter of the compliance.
 /// @throws Error (numerical) from statics.
-CleanUp clean_up(BodyProblem& problem, LoadResponse& loads, const Widths& wanted,
+CleanUp clean_up(BodyProblem& problem, ComplianceEvaluator& loads, const Widths& wanted,
                  const RepairWishes& wishes = {});
 
 /// What a clean-up would find: `after` as `before`, and as many rounds as there are places to
 /// repair.
-CleanUp look_over(const BodyProblem& problem, LoadResponse& loads, const Widths& wanted);
+CleanUp look_over(const BodyProblem& problem, ComplianceEvaluator& loads, const Widths& wanted);
 
 /// Smallest half-thickness of components whose own middle is as thick as wanted, with room for
 /// their round ends and the tolerance of outlines.

@@ -299,7 +299,7 @@ class Corrector {
   MotionResponse& motion_;
   const CorrectionSettings& settings_;
   const SeeCycle& see_;
-  std::vector<std::unique_ptr<LoadResponse>> responses_;
+  std::vector<std::unique_ptr<ComplianceEvaluator>> responses_;
   std::vector<Part> parts_;
   CorrectedCycle now_;
   Secants secants_;

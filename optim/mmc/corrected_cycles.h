@@ -41,7 +41,7 @@ struct CorrectedCycle {
 };
 
 /// The loads of all bodies at their designs as they are.
-using LoadsAt = std::function<std::vector<std::unique_ptr<LoadResponse>>()>;
+using LoadsAt = std::function<std::vector<std::unique_ptr<ComplianceEvaluator>>()>;
 /// Sees every cycle; false ends them after it.
 using SeeCycle = std::function<bool(const CorrectedCycle&)>;
 

@@ -5,8 +5,8 @@
 
 namespace flexmorph::mmc {
 
-void DesignState::finish(LoadResponse::Value& value) {
-  const LoadResponse::Seconds last = loads_.seconds();
+void DesignState::finish(ComplianceEvaluator::Value& value) {
+  const ComplianceEvaluator::Seconds last = loads_.seconds();
   seconds_.factor += last.factor;
   seconds_.solve += last.solve;
   seconds_.sensitivity += last.sensitivity;
@@ -16,7 +16,7 @@ void DesignState::finish(LoadResponse::Value& value) {
 }
 
 void DesignState::sum(const CellFactors& factors, Values& out) {
-  LoadResponse::Value& value = solved_ ? other_ : value_;
+  ComplianceEvaluator::Value& value = solved_ ? other_ : value_;
   loads_.evaluate(factors.stiffness, factors.mass, value);
   finish(value);
   out.f = VectorXd::Constant(1, value.f);
@@ -25,7 +25,7 @@ void DesignState::sum(const CellFactors& factors, Values& out) {
 }
 
 void DesignState::each(const CellFactors& factors, Values& out) {
-  LoadResponse::Value& value = solved_ ? other_ : value_;
+  ComplianceEvaluator::Value& value = solved_ ? other_ : value_;
   loads_.evaluate_each(factors.stiffness, factors.mass, out);
   Eigen::Index worst = 0;
   value.f = out.f.maxCoeff(&worst);

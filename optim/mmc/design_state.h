@@ -2,14 +2,14 @@
 
 #include <limits>
 
+#include "optim/mmc/compliance_evaluator.h"
 #include "optim/mmc/ersatz.h"
-#include "optim/mmc/load_response.h"
 
 namespace flexmorph::mmc {
 
 /// m values of a response, with their derivatives by the factors of the cells (m x n_cells) and by
 /// the parameters of the components directly (m x 7 N). Without entries they are zero.
-struct Values : LoadResponse::Each {
+struct Values : ComplianceEvaluator::Each {
   MatrixXd d_parameters;
 };
 
@@ -18,7 +18,7 @@ struct Values : LoadResponse::Each {
 class DesignState {
  public:
   /// @param loads  lives longer
-  explicit DesignState(LoadResponse& loads) : loads_(loads) {}
+  explicit DesignState(ComplianceEvaluator& loads) : loads_(loads) {}
 
   /// Another design: nothing is solved yet.
   void begin() { solved_ = false; }
@@ -29,21 +29,21 @@ class DesignState {
   void each(const CellFactors& factors, Values& out);
 
   /// What the first of them saw, of many loads the worst: NaN when nothing was solved.
-  const LoadResponse::Value& value() const { return value_; }
+  const ComplianceEvaluator::Value& value() const { return value_; }
 
   int n_loads() const { return loads_.n_loads(); }
-  LoadResponse& loads() { return loads_; }
-  const LoadResponse& loads() const { return loads_; }
+  ComplianceEvaluator& loads() { return loads_; }
+  const ComplianceEvaluator& loads() const { return loads_; }
   /// CPU seconds since clear_seconds().
-  LoadResponse::Seconds seconds() const { return seconds_; }
+  ComplianceEvaluator::Seconds seconds() const { return seconds_; }
   void clear_seconds() { seconds_ = {}; }
 
  private:
-  void finish(LoadResponse::Value& value);
+  void finish(ComplianceEvaluator::Value& value);
 
-  LoadResponse& loads_;
-  LoadResponse::Value value_{std::numeric_limits<double>::quiet_NaN(), {}, {}, {}}, other_;
-  LoadResponse::Seconds seconds_;
+  ComplianceEvaluator& loads_;
+  ComplianceEvaluator::Value value_{std::numeric_limits<double>::quiet_NaN(), {}, {}, {}}, other_;
+  ComplianceEvaluator::Seconds seconds_;
   bool solved_ = false;
 };
 

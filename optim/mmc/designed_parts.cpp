@@ -15,7 +15,7 @@ SharpDesign without_outlines(const Part& p) {
   out.volume = out.fractions.sum() / p.ersatz.n_domain_cells();
   const CellFactors sharp = p.ersatz.sharp(out.fractions);
   const std::vector<Component> components = p.problem.design.components();
-  out.compliance = judged_compliance(p.problem, p.loads, sharp);
+  out.compliance = design_compliance(p.problem, p.loads, sharp);
   out.further = further_values(p.problem, components, p.loads, sharp);
   out.connectivity = united_connectivity(p.problem, components, out.fractions);
   return out;
@@ -29,7 +29,7 @@ void measure(Part& p) {
   // A goal without a compliance has never asked for one.
   p.outcome.compliance = std::isfinite(state.compliance())
                              ? state.compliance()
-                             : judged_compliance(p.problem, p.loads, state.factors());
+                             : design_compliance(p.problem, p.loads, state.factors());
   p.outcome.volume = state.volume();
   for (const ResponseRow* row : further_rows(p.problem.goal))
     p.outcome.further[key_of(*row)] = state.values(*row)->maxCoeff();
@@ -47,7 +47,7 @@ void finish_outcome(Part& p, bool analysed, bool condition) {
   // The paper's comparison: the volume that was allowed (or came out), spread evenly.
   const double volume = allowed_volume(p.problem.goal).value_or(out.sharp.volume);
   const VectorXd even = VectorXd::Constant(p.problem.grid.n_cells(), volume);
-  out.uniform_compliance = judged_compliance(p.problem, p.loads, {even, even});
+  out.uniform_compliance = design_compliance(p.problem, p.loads, {even, even});
   out.factorizations = p.loads.factorizations();
 }
 

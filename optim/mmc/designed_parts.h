@@ -16,7 +16,7 @@ namespace flexmorph::mmc {
 /// One of the bodies that are designed together.
 struct Part {
   BodyProblem& problem;
-  LoadResponse& loads;
+  ComplianceEvaluator& loads;
   Plate plate;
   Ersatz ersatz;
   const TdfSettings* tdf = nullptr;   // of the stage

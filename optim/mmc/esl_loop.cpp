@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "optim/mmc/link_compliance.h"
+#include "optim/mmc/compliance_evaluator.h"
 
 namespace flexmorph::mmc {
 namespace {
@@ -31,14 +31,14 @@ std::vector<std::vector<size_t>> groups_of(const std::vector<BodyProblem>& probl
 struct Start {
   VectorXd fractions;
   CellFactors factors;
-  std::unique_ptr<LoadResponse> compliance;
+  std::unique_ptr<ComplianceEvaluator> compliance;
   VectorXd energies;
 
   Start(const BodyProblem& p, const fem::EslSets& loads)
       : fractions(fractions_of(p, p.design.components())),
         factors(ersatz_of(p).sharp(fractions)),
-        compliance(
-            make_compliance(loads, p.section, p.compliance, factors.stiffness, factors.mass)),
+        compliance(std::make_unique<ComplianceEvaluator>(loads, p.section, p.compliance,
+                                                         factors.stiffness, factors.mass)),
         energies(compliance->individual(factors.stiffness, factors.mass)) {}
 };
 
@@ -128,7 +128,7 @@ class Verdicts {
     for (const BodyProblem& p : problems) designs.push_back(p.design);
   }
   /// @param strain_energy_integral  of a motion with the designs of the last cycle added
-  void judge(double strain_energy_integral) {
+  void record(double strain_energy_integral) {
     CycleVerdict& last = verdicts_.back();
     last.strain_energy_integral = strain_energy_integral;
     const size_t now = verdicts_.size() - 1;
@@ -156,18 +156,18 @@ class Verdicts {
 std::vector<BodyOutcome> esl_loop(std::vector<BodyProblem>& problems, const Simulate& simulate,
                                   const LoopSettings& settings, const LoopObserver& observer) {
   Verdicts verdicts;
-  const auto judge = [&](double strain_energy_integral) {
-    verdicts.judge(strain_energy_integral);
+  const auto record = [&](double strain_energy_integral) {
+    verdicts.record(strain_energy_integral);
     if (observer.verdict) observer.verdict(verdicts.all());
     return verdicts.last_is_best();
   };
   std::vector<BodyOutcome> outcome;
   for (int cycle = 1; cycle <= settings.max_cycles; ++cycle) {
     const std::vector<fem::Factors> factors = factors_of(problems);
-    if (cycle > 1 && settings.judge && !judge(settings.judge(factors)))
+    if (cycle > 1 && settings.verification_motion && !record(settings.verification_motion(factors)))
       return verdicts.take_best(problems);
     const std::vector<fem::EslSets> loads = simulate(factors);
-    if (cycle > 1 && !settings.judge && !judge(loads.front().strain_energy_integral))
+    if (cycle > 1 && !settings.verification_motion && !record(loads.front().strain_energy_integral))
       return verdicts.take_best(problems);
     if (observer.loads) observer.loads(cycle, loads);
 
@@ -182,8 +182,8 @@ std::vector<BodyOutcome> esl_loop(std::vector<BodyProblem>& problems, const Simu
   }
   if (verdicts.all().size() < 2) return outcome;
   const std::vector<fem::Factors> factors = factors_of(problems);
-  judge(settings.judge ? settings.judge(factors)
-                       : simulate(factors).front().strain_energy_integral);
+  record(settings.verification_motion ? settings.verification_motion(factors)
+                                      : simulate(factors).front().strain_energy_integral);
   return verdicts.take_best(problems);
 }
 

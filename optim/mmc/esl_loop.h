@@ -13,9 +13,9 @@ namespace flexmorph::mmc {
 /// Motion of the whole scene with these factors (one per problem) -> loads of every body.
 using Simulate = std::function<std::vector<fem::EslSets>(std::span<const fem::Factors>)>;
 
-/// ∫ U dt [J s] of another motion with these factors that judges designs better than the one loads
-/// come from (fem/README.md, Cells).
-using Judge = std::function<double(std::span<const fem::Factors>)>;
+/// Returns ∫ U dt [J s] of a motion with these factors on a finer model than the one that makes the
+/// loads (fem/README.md, Cells).
+using VerificationMotion = std::function<double(std::span<const fem::Factors>)>;
 
 /// What a cycle made of one body.
 struct BodyVerdict {
@@ -27,8 +27,8 @@ struct BodyVerdict {
   double design_change = 0;
 };
 
-/// A cycle as a whole, judged by a motion with its designs: that of LoopSettings::judge, or else
-/// the one that makes loads.
+/// A cycle as a whole, measured by a motion with its designs: LoopSettings::verification_motion, or
+/// else the one that makes loads.
 struct CycleVerdict {
   int cycle = 1;
   double objective = 0;             ///< Σ compliance of the bodies [J]
@@ -43,7 +43,8 @@ struct LoopSettings {
   double tolerance =
       0.01;  ///< stop when the sum of sharp compliances changes by less between cycles
   DesignSettings design;
-  Judge judge = {};  ///< of cycles where there are several; empty: the motion that makes loads
+  /// Compares cycles where there are several; empty: the motion that makes loads does.
+  VerificationMotion verification_motion = {};
 };
 
 /// Looks on; false stops the run after the current iteration: the outcomes of that cycle are then
@@ -53,7 +54,7 @@ struct LoopObserver {
   /// After the motion of a cycle: its loads, one entry per problem.
   std::function<void(int cycle, std::span<const fem::EslSets>)> loads;
   std::function<void(int cycle, std::span<const BodyOutcome>)> cycle;
-  /// In a run of several cycles whenever one more is judged, which is after the motion with its
+  /// In a run of several cycles whenever one more is measured, which is after the motion with its
   /// designs: all cycles so far.
   std::function<void(std::span<const CycleVerdict>)> verdict;
 };

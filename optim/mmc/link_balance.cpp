@@ -26,21 +26,9 @@ Vec2 position_of(const Grid& g, int node) {
 
 }  // namespace
 
-template <class Use>
-void LinkBalance::each_cell(Use use) const {
-  for (int i = 0; i < grid_.nx; ++i)
-    for (int j = 0; j < grid_.ny; ++j) {
-      std::array<int, 4> nodes{};
-      for (std::size_t a = 0; a < 4; ++a)
-        nodes[a] = grid_.node(i + fem::kCornerI[a], j + fem::kCornerJ[a]);
-      use(grid_.cell(i, j), nodes);
-    }
-}
-
 LinkBalance::LinkBalance(const Grid& grid, const fem::PlaneSection& section,
                          const std::array<int, 2>& pins, Support support)
     : grid_(grid),
-      section_(section),
       cell_mass_(fem::q4_mass(section, grid.dx(), grid.dy())),
       support_(support),
       rigid_(rigid_motions(grid)) {
@@ -54,27 +42,38 @@ LinkBalance::LinkBalance(const Grid& grid, const fem::PlaneSection& section,
   together_ = Eigen::Matrix3d(rigid_.transpose() * held_).inverse();
 }
 
+/// -M a (n x 2 n_nodes).
+void LinkBalance::inertia_forces(const VectorXd& mass, const MatrixXd& acceleration,
+                                 MatrixXd& F) const {
+  F.setZero(acceleration.rows(), acceleration.cols());
+  for (int cell = 0; cell < grid_.n_cells(); ++cell) {
+    std::array<int, 4> nodes{};
+    for (std::size_t a = 0; a < 4; ++a)
+      nodes[a] = grid_.node(cell / grid_.ny + fem::kCornerI[a], cell % grid_.ny + fem::kCornerJ[a]);
+    for (std::size_t a = 0; a < 4; ++a)
+      for (std::size_t b = 0; b < 4; ++b)
+        F.middleCols<2>(2 * nodes[a]) -= mass(cell) *
+                                         cell_mass_(static_cast<int>(a), static_cast<int>(b)) *
+                                         acceleration.middleCols<2>(2 * nodes[b]);
+  }
+}
+
+/// H and (Rᵀ H)⁻¹ of a floating link.
 void LinkBalance::set_mass(const VectorXd& mass) {
-  mass_ = mass;
   if (support_ != Support::floating) return;
   MatrixXd pushed;
-  inertia_forces(rigid_.transpose(), pushed);
+  inertia_forces(mass, rigid_.transpose(), pushed);
   held_ = -pushed.transpose();
   together_ = Eigen::Matrix3d(rigid_.transpose() * held_).inverse();
 }
 
-void LinkBalance::inertia_forces(const MatrixXd& acceleration, MatrixXd& F) const {
-  F.setZero(acceleration.rows(), acceleration.cols());
-  each_cell([&](int cell, const std::array<int, 4>& nodes) {
-    for (std::size_t a = 0; a < 4; ++a)
-      for (std::size_t b = 0; b < 4; ++b)
-        F.middleCols<2>(2 * nodes[a]) -= mass_(cell) *
-                                         cell_mass_(static_cast<int>(a), static_cast<int>(b)) *
-                                         acceleration.middleCols<2>(2 * nodes[b]);
-  });
-}
-
-void LinkBalance::balance(MatrixXd& F, MatrixXd& acceleration) const {
+void LinkBalance::forces(const StaticLoads& loads, const VectorXd& mass, MatrixXd& F,
+                         MatrixXd& acceleration) {
+  set_mass(mass);
+  acceleration = loads.acceleration;
+  inertia_forces(mass, acceleration, F);
+  for (std::size_t k = 0; k < loads.slots.size(); ++k)
+    F.col(loads.slots[k]) += loads.slot_forces.col(static_cast<Eigen::Index>(k));
   const MatrixXd c = F * rigid_ * together_.transpose();
   F.noalias() -= c * held_.transpose();
   if (support_ == Support::floating) acceleration.noalias() += c * rigid_.transpose();
@@ -83,35 +82,6 @@ void LinkBalance::balance(MatrixXd& F, MatrixXd& acceleration) const {
 void LinkBalance::choose(MatrixXd& u) const {
   const MatrixXd moved = u * held_ * together_;
   u.noalias() -= moved * rigid_.transpose();
-}
-
-void LinkBalance::products(const MatrixXd& z, const MatrixXd& a, const VectorXd& weights,
-                           VectorXd& product) const {
-  MatrixXd each;
-  products(z, a, each);
-  product = each.transpose() * weights;
-}
-
-void LinkBalance::products(const MatrixXd& z, const MatrixXd& a, MatrixXd& product) const {
-  const fem::Q4MassProduct mass(section_, grid_.dx(), grid_.dy());
-  const Eigen::Index n = z.rows();
-  product.setZero(n, grid_.n_cells());
-  VectorXd of_y(n);
-  each_cell([&](int cell, const std::array<int, 4>& nodes) {
-    for (int c = 0; c < 2; ++c) {
-      fem::Q4MassProduct::Corners z_corner{}, a_corner{};
-      for (std::size_t k = 0; k < 4; ++k) {
-        z_corner[k] = &z(0, 2 * nodes[k] + c);
-        a_corner[k] = &a(0, 2 * nodes[k] + c);
-      }
-      if (c == 0) {
-        mass.multiply(z_corner, a_corner, n, product.col(cell).data());
-      } else {
-        mass.multiply(z_corner, a_corner, n, of_y.data());
-        product.col(cell) += of_y;
-      }
-    }
-  });
 }
 
 }  // namespace flexmorph::mmc

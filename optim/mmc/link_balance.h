@@ -4,7 +4,7 @@
 
 #include "fem/section.h"
 #include "geometry/grid.h"
-#include "optim/mmc/compliance.h"
+#include "optim/mmc/static_loads.h"
 
 namespace flexmorph::mmc {
 
@@ -32,29 +32,19 @@ class LinkBalance {
   LinkBalance(const Grid& grid, const fem::PlaneSection& section, const std::array<int, 2>& pins,
               Support support);
 
-  /// M of a design. @param mass  factors (n_cells)
-  void set_mass(const VectorXd& mass);
-  /// -M a (n x 2 n_nodes).
-  void inertia_forces(const MatrixXd& acceleration, MatrixXd& F) const;
-  /// F₀ -> F, and a -> a + R c.
-  void balance(MatrixXd& F, MatrixXd& acceleration) const;
-  /// u -> the one with Hᵀ u = 0.
+  /// F = -M a + f of all displacements, balanced, and a -> a + R c.
+  /// @param mass  factors (n_cells)   @param loads  that follow the design
+  void forces(const StaticLoads& loads, const VectorXd& mass, MatrixXd& F, MatrixXd& acceleration);
+  /// Takes off the rigid motion of u that leaves Hᵀ u = 0.
   void choose(MatrixXd& u) const;
-  /// Σ_l w_l z_l · M_cell a_l of full mass for every cell (n_cells).
-  void products(const MatrixXd& z, const MatrixXd& a, const VectorXd& weights,
-                VectorXd& product) const;
-  /// The same of every load by itself (n x n_cells).
-  void products(const MatrixXd& z, const MatrixXd& a, MatrixXd& product) const;
 
  private:
-  template <class Use>
-  void each_cell(Use use) const;  // use(cell, its four nodes)
+  void set_mass(const VectorXd& mass);
+  void inertia_forces(const VectorXd& mass, const MatrixXd& acceleration, MatrixXd& F) const;
 
   Grid grid_;
-  fem::PlaneSection section_;
   Eigen::Matrix4d cell_mass_;
   Support support_;
-  VectorXd mass_;
   MatrixXd rigid_, held_;     // R, H (2 n_nodes x 3)
   Eigen::Matrix3d together_;  // (Rᵀ H)⁻¹
 };

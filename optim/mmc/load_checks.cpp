@@ -6,7 +6,9 @@
 namespace flexmorph::mmc {
 namespace {
 
-void refuse(const std::string& what) { throw Error::input("equivalent static loads: " + what); }
+[[noreturn]] void refuse(const std::string& what) {
+  throw Error::input("equivalent static loads: " + what);
+}
 
 void check_set(const fem::EslSet& set, const Grid& g, bool needs_deformation, int number) {
   const std::string where = "load " + std::to_string(number) + ": ";
@@ -31,7 +33,33 @@ void check_set(const fem::EslSet& set, const Grid& g, bool needs_deformation, in
   }
 }
 
+void check_link(const fem::EslSets& loads, const ComplianceSettings& settings) {
+  if (!loads.pins) refuse("a link has two pins, and these loads have none");
+  if (!is_of_link(settings.support))
+    refuse("a link has no root that 'moving_root' or 'far_end' could hold: 'pins' or 'floating'");
+  if (settings.loads == LoadDefinition::stiffness)
+    refuse("definition 'stiffness' is for plates with a root, a link has 'inertia' or 'frozen'");
+  for (const fem::EslSet& set : loads.sets)
+    if (set.root_column != 0 || set.thermal_stretch != 0)
+      refuse("a root column or heat, which links do not have");
+  for (const int pin : *loads.pins)
+    if (pin < 0 || pin >= loads.grid.n_nodes()) refuse("a pin is at no node of the grid");
+}
+
 }  // namespace
+
+void refuse(const LoadCase& load, const std::string& what) {
+  throw Error::input("load '" + load.name + "': " + what);
+}
+
+void check_load(const LoadCase& load, const Grid& grid) {
+  if (!(load.weight > 0) || !std::isfinite(load.weight)) refuse(load, "a weight is positive");
+  for (const fem::NodalForce& f : load.forces)
+    if (f.node < 0 || f.node >= grid.n_nodes() || !f.force.allFinite())
+      refuse(load, "a force is not finite or has no node");
+  if (!(load.thermal_stretch > -1) || !std::isfinite(load.thermal_stretch))
+    refuse(load, "a thermal stretch is a number above -1");
+}
 
 void check_loads(const fem::EslSets& loads, const ComplianceSettings& settings,
                  const VectorXd& stiffness0, const VectorXd& mass0) {
@@ -57,6 +85,7 @@ void check_loads(const fem::EslSets& loads, const ComplianceSettings& settings,
   }
   if (!(sum > 0)) refuse("all weights are 0");
   if (!(settings.compression_tolerance >= 0)) refuse("the compression tolerance is at least 0");
+  if (loads.pins || is_of_link(settings.support)) check_link(loads, settings);
   if (settings.loads == LoadDefinition::inertia) return;
   for (const VectorXd* factor : {&stiffness0, &mass0}) {
     if (factor->size() != loads.grid.n_cells() || !factor->allFinite()) {

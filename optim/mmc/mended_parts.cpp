@@ -34,7 +34,7 @@ Mended repaired(std::vector<Part>& parts, double gaps, bool trims,
       out.compliance += done->compliance_after;
     } else {
       const VectorXd fractions = fractions_of(p.problem, p.problem.design.components());
-      out.compliance += judged_compliance(p.problem, p.loads, p.ersatz.sharp(fractions));
+      out.compliance += design_compliance(p.problem, p.loads, p.ersatz.sharp(fractions));
     }
     out.designs.push_back(p.problem.design);
   }

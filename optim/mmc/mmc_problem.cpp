@@ -270,7 +270,7 @@ MatrixXd MmcProblem::curvature(const VectorXd& x, double sigma, const VectorXd& 
   if (sum.of_sum != 0 || sum.of_each.size() > 0) {
     const Eigen::SparseMatrix<double> directions =
         ersatz_.stiffness_slopes(tdf_.eroded()) * (tdf_.eroded_slopes().asDiagonal() * slopes);
-    LoadResponse& loads = state_.loads();
+    ComplianceEvaluator& loads = state_.loads();
     if (sum.of_sum != 0) own += sum.of_sum * loads.curvature(factors_.stiffness, directions, {});
     if (sum.of_each.size() > 0) own += loads.curvature(factors_.stiffness, directions, sum.of_each);
   }

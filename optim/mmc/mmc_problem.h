@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "geometry/tdf.h"
+#include "optim/mmc/compliance_evaluator.h"
 #include "optim/mmc/design.h"
 #include "optim/mmc/ersatz.h"
 #include "optim/mmc/goal.h"
-#include "optim/mmc/load_response.h"
 #include "optim/mmc/shape_limits.h"
 #include "optim/problem.h"
 
@@ -21,7 +21,7 @@ struct DesignedPlate {
   const Plate& plate;
   const Design& design;
   const Ersatz& ersatz;
-  LoadResponse& loads;
+  ComplianceEvaluator& loads;
   ShapeLimits* shape = nullptr;
   const MotionSeat* motion = nullptr;  ///< where rows of the goal ask for it
 };
@@ -83,7 +83,7 @@ class MmcProblem final : public optim::Problem {
   const VectorXd& x() const { return x_; }
   VectorXd design_part(const VectorXd& x) const { return x.head(design_.n_variables()); }
   /// Of compliance_row(), the weighted sum or the largest; NaN where no row asks for the state.
-  const LoadResponse::Value& value() const { return state_.value(); }
+  const ComplianceEvaluator::Value& value() const { return state_.value(); }
   double compliance() const { return value().f; }
   double volume() const { return volume_; }
   /// Values of a row of the goal (1, or n_loads); nothing for other rows.
@@ -94,7 +94,7 @@ class MmcProblem final : public optim::Problem {
   double band() const { return tdf_.settings().band; }
   // CPU seconds of all evaluations since clear_seconds().
   double seconds_tdf() const { return seconds_tdf_; }  ///< TDF and chain rule
-  LoadResponse::Seconds seconds() const { return state_.seconds(); }
+  ComplianceEvaluator::Seconds seconds() const { return state_.seconds(); }
   void clear_seconds();
 
  private:

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <utility>
 
 #include "fem/singular_values.h"
+#include "fem/solve/q4_cell.h"
 
 namespace flexmorph::mmc {
 
@@ -43,29 +45,29 @@ void apply_stencil(const Stencil& s, const std::array<const double*, 9>& a, Eige
 
 }  // namespace
 
-StaticLoads inertia_loads(const fem::EslSets& sets, const fem::StaticSolver& solver) {
-  const Grid& g = sets.grid;
+StaticLoads inertia_loads(const fem::EslSets& sets, std::span<const int> rows) {
   const auto n = static_cast<Eigen::Index>(sets.sets.size());
+  const auto row = [&](const fem::NodalForce& f) {
+    return rows[2 * static_cast<std::size_t>(f.node)];
+  };
   StaticLoads loads;
-  loads.acceleration.resize(n, 2 * g.n_nodes());
+  loads.acceleration.resize(n, 2 * sets.grid.n_nodes());
   for (Eigen::Index l = 0; l < n; ++l) {
     const fem::EslSet& set = sets.sets[static_cast<std::size_t>(l)];
     loads.acceleration.row(l) = set.acceleration.transpose();
-    for (const fem::NodalForce& f : set.forces) {
-      const int row = solver.row(f.node / (g.ny + 1), f.node % (g.ny + 1));
-      if (row < 0) continue;  // a force on a held node goes straight into the hub
-      loads.slots.push_back(row);
-      loads.slots.push_back(row + 1);
-    }
+    for (const fem::NodalForce& f : set.forces)
+      if (row(f) >= 0)  // a force on a held node goes straight into the hub
+        loads.slots.insert(loads.slots.end(), {row(f), row(f) + 1});
   }
+  if (*std::min_element(rows.begin(), rows.end()) >= 0)  // of a link
+    loads.slots.assign(rows.begin(), rows.end());
   std::sort(loads.slots.begin(), loads.slots.end());
   loads.slots.erase(std::unique(loads.slots.begin(), loads.slots.end()), loads.slots.end());
   loads.slot_forces.setZero(n, static_cast<Eigen::Index>(loads.slots.size()));
   for (Eigen::Index l = 0; l < n; ++l) {
     for (const fem::NodalForce& f : sets.sets[static_cast<std::size_t>(l)].forces) {
-      const int row = solver.row(f.node / (g.ny + 1), f.node % (g.ny + 1));
-      if (row < 0) continue;
-      const auto slot = std::lower_bound(loads.slots.begin(), loads.slots.end(), row);
+      if (row(f) < 0) continue;
+      const auto slot = std::lower_bound(loads.slots.begin(), loads.slots.end(), row(f));
       const auto k = static_cast<Eigen::Index>(slot - loads.slots.begin());
       loads.slot_forces.block<1, 2>(l, k) += f.force.transpose();
     }
@@ -85,20 +87,19 @@ StaticLoads combine(const MatrixXd& combination, const StaticLoads& loads) {
   return combined;
 }
 
-InertiaOperator::InertiaOperator(const fem::StaticSolver& solver, const fem::PlaneSection& section)
-    : solver_(solver),
+InertiaOperator::InertiaOperator(const Grid& grid, const fem::PlaneSection& section,
+                                 std::vector<int> rows)
+    : grid_(grid),
       section_(section),
-      cell_mass_(fem::q4_mass(section, solver.grid().dx(), solver.grid().dy())) {}
+      cell_mass_(fem::q4_mass(section, grid.dx(), grid.dy())),
+      rows_(std::move(rows)),
+      n_rows_(*std::max_element(rows_.begin(), rows_.end()) + 1) {}
 
 void InertiaOperator::forces(const StaticLoads& loads, const VectorXd& mass, MatrixXd& F) const {
-  if (!loads.follows_design()) {
-    F = loads.fixed;
-    return;
-  }
-  const Grid& g = solver_.grid();
+  const Grid& g = grid_;
   const Eigen::Index n = loads.acceleration.rows();
-  F.resize(n, solver_.n_unknowns());
-  for (int i = g.nx; i >= 0 && solver_.row(i, 0) >= 0; --i) {
+  F.resize(n, n_rows_);
+  for (int i = g.nx; i >= 0 && row(g.node(i, 0)) >= 0; --i) {
     for (int j = 0; j <= g.ny; ++j) {
       const Stencil s = mass_stencil(g, cell_mass_, mass, i, j);
       std::array<const double*, 9> a{};
@@ -106,7 +107,7 @@ void InertiaOperator::forces(const StaticLoads& loads, const VectorXd& mass, Mat
         const int ni = std::clamp(i + b % 3 - 1, 0, g.nx), nj = std::clamp(j + b / 3 - 1, 0, g.ny);
         a[static_cast<std::size_t>(b)] = &loads.acceleration(0, 2 * g.node(ni, nj));
       }
-      apply_stencil(s, a, 2 * n, &F(0, solver_.row(i, j)));
+      apply_stencil(s, a, 2 * n, &F(0, row(g.node(i, j))));
     }
   }
   for (std::size_t k = 0; k < loads.slots.size(); ++k) {
@@ -114,26 +115,38 @@ void InertiaOperator::forces(const StaticLoads& loads, const VectorXd& mass, Mat
   }
 }
 
-void InertiaOperator::products(const MatrixXd& z, const MatrixXd& a, VectorXd& product) const {
-  const Grid& g = solver_.grid();
+/// Calls use(cell, products of all loads in x, then in y) for every cell with nodes that move.
+template <class Use>
+void InertiaOperator::each_product(const MatrixXd& z, const MatrixXd& a, Use use) const {
+  const Grid& g = grid_;
   const Eigen::Index n = 2 * z.rows();  // x and y of a node are neighbours
   const fem::Q4MassProduct mass(section_, g.dx(), g.dy());
   held_.setZero(n);
   product_of_load_.resize(n);
-  product.setZero(g.n_cells());
-  for (int i = g.nx - 1; i >= 0 && solver_.row(i + 1, 0) >= 0; --i) {
+  for (int i = g.nx - 1; i >= 0 && row(g.node(i + 1, 0)) >= 0; --i) {
     for (int j = 0; j < g.ny; ++j) {
       fem::Q4MassProduct::Corners z_corner{}, a_corner{};
       for (std::size_t c = 0; c < 4; ++c) {
-        const int ni = i + fem::kCornerI[c], nj = j + fem::kCornerJ[c];
-        const int row = solver_.row(ni, nj);
-        z_corner[c] = row < 0 ? held_.data() : &z(0, row);
-        a_corner[c] = &a(0, 2 * g.node(ni, nj));
+        const int node = g.node(i + fem::kCornerI[c], j + fem::kCornerJ[c]);
+        z_corner[c] = row(node) < 0 ? held_.data() : &z(0, row(node));
+        a_corner[c] = &a(0, 2 * node);
       }
       mass.multiply(z_corner, a_corner, n, product_of_load_.data());
-      product(g.cell(i, j)) = product_of_load_.sum();
+      use(g.cell(i, j), product_of_load_);
     }
   }
+}
+
+void InertiaOperator::products(const MatrixXd& z, const MatrixXd& a, VectorXd& product) const {
+  product.setZero(grid_.n_cells());
+  each_product(z, a, [&](int cell, const VectorXd& of_load) { product(cell) = of_load.sum(); });
+}
+
+void InertiaOperator::products(const MatrixXd& z, const MatrixXd& a, MatrixXd& product) const {
+  product.setZero(z.rows(), grid_.n_cells());
+  each_product(z, a, [&](int cell, const VectorXd& of_load) {
+    product.col(cell) = of_load.head(z.rows()) + of_load.tail(z.rows());
+  });
 }
 
 MatrixXd leading_combinations(const MatrixXd& y, double tolerance) {

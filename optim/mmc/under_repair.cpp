@@ -48,8 +48,8 @@ std::vector<Component> only_in_one(const std::vector<Component>& a,
 
 }  // namespace
 
-UnderRepair::UnderRepair(const BodyProblem& problem, LoadResponse& loads, const Widths& wanted,
-                         std::function<bool()> go_on)
+UnderRepair::UnderRepair(const BodyProblem& problem, ComplianceEvaluator& loads,
+                         const Widths& wanted, std::function<bool()> go_on)
     : parts(problem.design.components()),
       patch(parts.size(), false),
       problem_(problem),
@@ -101,12 +101,12 @@ double UnderRepair::volume(const std::vector<Component>& of) const {
 }
 
 double UnderRepair::compliance(const std::vector<Component>& of) const {
-  return judged_compliance(problem_, loads_, ersatz_.sharp(fractions(of)));
+  return design_compliance(problem_, loads_, ersatz_.sharp(fractions(of)));
 }
 
 double UnderRepair::merit(const std::vector<Component>& of, double below) const {
   const VectorXd all = fractions(of);
-  const double out = judged_compliance(problem_, loads_, ersatz_.sharp(all)) * all.sum();
+  const double out = design_compliance(problem_, loads_, ersatz_.sharp(all)) * all.sum();
   if (!(out < below)) return kInfinity;  // before the union is asked for
   const Connectivity whole = connectivity_of(problem_, regions(of));
   return whole.connected && whole.islands <= islands_ ? out : kInfinity;
@@ -225,7 +225,7 @@ bool UnderRepair::looks_torn(const NarrowPlace& p) const {
 double UnderRepair::compliance_cut_at(const NarrowPlace& p) const {
   VectorXd cut = fractions_;
   for (const int cell : cells_between(p)) cut[cell] = 0;
-  return judged_compliance(problem_, loads_, ersatz_.sharp(cut));
+  return design_compliance(problem_, loads_, ersatz_.sharp(cut));
 }
 
 /// With full material from contact to contact.
@@ -239,7 +239,7 @@ double UnderRepair::compliance_filled_at(const NarrowPlace& p) const {
         std::abs(from.dot(along)) <= 0.5 * std::max(wanted_.solid, g.dx()))
       filled[cell] = 1;
   }
-  return judged_compliance(problem_, loads_, ersatz_.sharp(filled));
+  return design_compliance(problem_, loads_, ersatz_.sharp(filled));
 }
 
 std::vector<VectorXd> UnderRepair::displacements(int most) const {
@@ -254,9 +254,9 @@ std::vector<VectorXd> UnderRepair::displacements(int most) const {
 void UnderRepair::look_at_energy() {
   fractions_ = fractions(parts);
   const CellFactors sharp = ersatz_.sharp(fractions_);
-  LoadResponse::Value value;
+  ComplianceEvaluator::Value value;
   loads_.evaluate(sharp.stiffness, sharp.mass, value);
-  compliance_ = judged_compliance(problem_, loads_, sharp);
+  compliance_ = design_compliance(problem_, loads_, sharp);
   density_ = value.d_stiffness.cwiseAbs();
   density_ *= fractions_.sum() / fractions_.dot(density_);
 }

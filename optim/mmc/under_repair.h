@@ -15,7 +15,7 @@ class UnderRepair {
  public:
   /// @param go_on  asked between the steps of a repair, which may take a minute together; empty:
   ///               it does
-  UnderRepair(const BodyProblem& problem, LoadResponse& loads, const Widths& wanted,
+  UnderRepair(const BodyProblem& problem, ComplianceEvaluator& loads, const Widths& wanted,
               std::function<bool()> go_on = {});
 
   bool goes_on() const { return !go_on_ || go_on_(); }
@@ -84,7 +84,7 @@ class UnderRepair {
   Known& known(const std::vector<Component>& of) const;
 
   const BodyProblem& problem_;
-  LoadResponse& loads_;
+  ComplianceEvaluator& loads_;
   std::function<bool()> go_on_;
   mutable std::deque<Known> known_;  // newest first
   Widths wanted_;

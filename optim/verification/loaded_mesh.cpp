@@ -9,7 +9,7 @@
 
 #include "fem/triangles/t6.h"
 
-namespace flexmorph::judge {
+namespace flexmorph::verification {
 namespace {
 
 /// Does a side of the outline run along the line?
@@ -34,7 +34,7 @@ bool runs_along(const Segment& line, std::span<const Region> regions, double sma
   });
 }
 
-/// Collects what of a mesh lies at a place.
+/// Collects what of a mesh lies at a location.
 class Collector {
  public:
   explicit Collector(const PartMesh& mesh) : share_(mesh.points.size(), 0.0) {}
@@ -43,9 +43,9 @@ class Collector {
     if (share_[static_cast<std::size_t>(node)] == 0) nodes_.push_back(node);
     share_[static_cast<std::size_t>(node)] += share;
   }
-  /// Material that takes part, before loose pieces are known: all of it.
-  PlaceNodes take() {
-    PlaceNodes out;
+  /// Material that takes part, before unsupported pieces are known: all of it.
+  LocationNodes take() {
+    LocationNodes out;
     double sum = 0;
     std::sort(nodes_.begin(), nodes_.end());
     nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
@@ -70,10 +70,10 @@ bool lies_in(const Box& box, const Vec2& p, double small) {
 
 }  // namespace
 
-std::vector<Place> chosen_places(const Loads& loads, std::span<const Region> regions,
-                                 double small) {
-  std::vector<Place> out = loads.places;
-  for (Place& p : out) {
+std::vector<Location> chosen_locations(const Loads& loads, std::span<const Region> regions,
+                                       double small) {
+  std::vector<Location> out = loads.locations;
+  for (Location& p : out) {
     if (!p.box) continue;
     const bool on_lines = std::any_of(p.lines.begin(), p.lines.end(), [&](const Segment& s) {
       return runs_along(s, regions, small);
@@ -89,7 +89,7 @@ std::vector<Place> chosen_places(const Loads& loads, std::span<const Region> reg
 std::vector<Segment> LoadedMesh::lines_of(const Loads& loads, std::span<const Region> regions,
                                           double small) {
   std::vector<Segment> out;
-  for (const Place& p : chosen_places(loads, regions, small)) {
+  for (const Location& p : chosen_locations(loads, regions, small)) {
     out.insert(out.end(), p.lines.begin(), p.lines.end());
     if (!p.box) continue;
     const Vec2 &a = p.box->lower, &b = p.box->upper;
@@ -113,16 +113,16 @@ std::vector<Segment> LoadedMesh::lines_of(const Loads& loads, std::span<const Re
 }
 
 LoadedMesh::LoadedMesh(const PartMesh& mesh, const fem::PlaneSection& section, const Loads& loads,
-                       std::span<const Place> places, double small)
-    : mesh_(mesh), section_(section), loads_(loads), places_(places), small_(small) {
+                       std::span<const Location> locations, double small)
+    : mesh_(mesh), section_(section), loads_(loads), locations_(locations), small_(small) {
   sort_loads();
-  find_places();
-  leave_out_loose_pieces();
+  find_locations();
+  omit_unsupported_pieces();
   find_edge();
-  if (loose_load_ < 0)
+  if (unsupported_load_ < 0)
     plate_ = std::make_unique<fem::TrianglePlate>(
         mesh_, section_,
-        fem::TrianglePlateSupports{held_, clamp_lines_, small_, left_out_, springs_});
+        fem::TrianglePlateSupports{held_, clamp_lines_, small_, omitted_, springs_});
 }
 
 /// Clamps from the largest x on.
@@ -144,16 +144,16 @@ void LoadedMesh::sort_loads() {
   }
 }
 
-void LoadedMesh::find_places() {
+void LoadedMesh::find_locations() {
   Collector all(mesh_);
   std::vector<char> seen(mesh_.points.size());
-  for (const Place& place : places_) {
+  for (const Location& location : locations_) {
     std::fill(seen.begin(), seen.end(), 0);  // sides between two triangles count once
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
       const auto& n = mesh_.triangles[t];
-      if (place.box) {
+      if (location.box) {
         const auto [a, b, c] = mesh_.corners(t);
-        if (!lies_in(*place.box, (a + b + c) / 3, 0)) continue;
+        if (!lies_in(*location.box, (a + b + c) / 3, 0)) continue;
         // Corners have no share of a force over an area, but they are there.
         for (std::size_t k = 0; k < 6; ++k)
           all.add(n[k], k < 3 ? 0 : fem::T6(mesh_.corners(t)).area() / 3);
@@ -163,7 +163,7 @@ void LoadedMesh::find_places() {
         const int a = n[k], b = n[(k + 1) % 3], middle = n[3 + k];
         if (seen[static_cast<std::size_t>(middle)]) continue;
         const Vec2 &at_a = mesh_.point(a), &at_b = mesh_.point(b);
-        if (std::none_of(place.lines.begin(), place.lines.end(), [&](const Segment& s) {
+        if (std::none_of(location.lines.begin(), location.lines.end(), [&](const Segment& s) {
               return distance(s, at_a) <= small_ && distance(s, at_b) <= small_ &&
                      distance(s, mesh_.point(middle)) <= small_;
             }))
@@ -175,10 +175,10 @@ void LoadedMesh::find_places() {
         all.add(middle, 4 * length / 6);
       }
     }
-    at_places_.push_back(all.take());
+    at_locations_.push_back(all.take());
   }
   for (const Support& s : loads_.supports)
-    for (const auto& [node, share] : at_places_[static_cast<std::size_t>(s.place)].shares) {
+    for (const auto& [node, share] : at_locations_[static_cast<std::size_t>(s.location)].shares) {
       if (s.x) held_.push_back({node, 0});
       if (s.y) held_.push_back({node, 1});
     }
@@ -218,32 +218,33 @@ bool LoadedMesh::is_held(int piece) const {
   return values[0] > 1e-12 * values[2];
 }
 
-void LoadedMesh::leave_out_loose_pieces() {
-  std::vector<char> loose(static_cast<std::size_t>(mesh_.n_pieces), 0);
+void LoadedMesh::omit_unsupported_pieces() {
+  std::vector<char> unsupported(static_cast<std::size_t>(mesh_.n_pieces), 0);
   for (int piece = 0; piece < mesh_.n_pieces; ++piece)
-    loose[static_cast<std::size_t>(piece)] = !is_held(piece);
-  pieces_left_out_ = static_cast<int>(std::count(loose.begin(), loose.end(), 1));
+    unsupported[static_cast<std::size_t>(piece)] = !is_held(piece);
+  n_omitted_pieces_ = static_cast<int>(std::count(unsupported.begin(), unsupported.end(), 1));
   std::vector<char> carries(mesh_.points.size(), 0);
-  left_out_.resize(mesh_.triangles.size());
+  omitted_.resize(mesh_.triangles.size());
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-    left_out_[t] = static_cast<signed char>(loose[static_cast<std::size_t>(mesh_.piece[t])]);
-    if (left_out_[t] != 0) continue;
+    omitted_[t] = static_cast<signed char>(unsupported[static_cast<std::size_t>(mesh_.piece[t])]);
+    if (omitted_[t] != 0) continue;
     for (const int node : mesh_.triangles[t]) carries[static_cast<std::size_t>(node)] = 1;
   }
   // Forces go to what carries them.
-  for (PlaceNodes& place : at_places_) {
-    std::erase_if(place.shares,
+  for (LocationNodes& location : at_locations_) {
+    std::erase_if(location.shares,
                   [&](const auto& each) { return !carries[static_cast<std::size_t>(each.first)]; });
-    for (const auto& [node, share] : place.shares) place.held += share;
-    for (auto& [node, share] : place.shares) share /= place.held > 0 ? place.held : 1;
+    for (const auto& [node, share] : location.shares) location.held += share;
+    for (auto& [node, share] : location.shares) share /= location.held > 0 ? location.held : 1;
   }
   std::erase_if(
       held_, [&](const fem::HeldUnknown& h) { return !carries[static_cast<std::size_t>(h.node)]; });
-  if (std::none_of(carries.begin(), carries.end(), [](char c) { return c != 0; })) loose_load_ = 0;
-  for (std::size_t l = 0; l < loads_.loads.size() && loose_load_ < 0; ++l)
+  if (std::none_of(carries.begin(), carries.end(), [](char c) { return c != 0; }))
+    unsupported_load_ = 0;
+  for (std::size_t l = 0; l < loads_.loads.size() && unsupported_load_ < 0; ++l)
     for (const Force& f : loads_.loads[l].forces)
-      if (f.force != Vec2::Zero() && at_places_[static_cast<std::size_t>(f.place)].held < 0.5)
-        loose_load_ = static_cast<int>(l);
+      if (f.force != Vec2::Zero() && at_locations_[static_cast<std::size_t>(f.location)].held < 0.5)
+        unsupported_load_ = static_cast<int>(l);
 }
 
 /// Springs k Δy between neighbours on the edge. Straight in x, however it is turned: of elongations
@@ -254,7 +255,7 @@ void LoadedMesh::find_edge() {
   std::vector<char> carries(mesh_.points.size(), 0);
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
     for (const int node : mesh_.triangles[t])
-      if (left_out_[t] == 0) carries[static_cast<std::size_t>(node)] = 1;
+      if (omitted_[t] == 0) carries[static_cast<std::size_t>(node)] = 1;
   for (std::size_t k = 0; k < mesh_.points.size(); ++k)
     if (carries[k] && std::abs(mesh_.points[k].x() - loads_.held_edge->x) <= small_)
       edge_.push_back(static_cast<int>(k));
@@ -312,7 +313,7 @@ void LoadedMesh::add_inertia(std::span<const int> rows, MatrixXd& at_nodes) cons
   if (!any) return;
   MatrixXd here(n, 2);
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-    if (left_out_[t] != 0) continue;
+    if (omitted_[t] != 0) continue;
     const fem::T6 element(mesh_.corners(t));
     const double mass = section_.density * section_.thickness * element.area();
     for (const fem::WeightedPoint& w : fem::six_points()) {
@@ -340,7 +341,7 @@ VectorXd LoadedMesh::nodal_forces(int row) const {
   add_inertia(std::span<const int>(&row, 1), out);
   const Load& load = loads_.loads[static_cast<std::size_t>(order_[static_cast<std::size_t>(row)])];
   for (const Force& f : load.forces)
-    for (const auto& [node, share] : at_places_[static_cast<std::size_t>(f.place)].shares)
+    for (const auto& [node, share] : at_locations_[static_cast<std::size_t>(f.location)].shares)
       out.middleCols(2 * node, 2) += share * f.force.transpose();
   return out.row(0).transpose();
 }
@@ -380,7 +381,7 @@ MatrixXd LoadedMesh::forces() const {
   }
   for (std::size_t l = 0; l < n; ++l)
     for (const Force& f : loads_.loads[static_cast<std::size_t>(order_[l])].forces)
-      for (const auto& [node, share] : at_places_[static_cast<std::size_t>(f.place)].shares)
+      for (const auto& [node, share] : at_locations_[static_cast<std::size_t>(f.location)].shares)
         for (int c = 0; c < 2; ++c)
           if (const int row = plate_->row(node, c); row >= 0)
             out(static_cast<Eigen::Index>(l), row) += share * f.force[c];
@@ -393,7 +394,7 @@ MatrixXd LoadedMesh::forces() const {
   }
   if (given.size() == 0) return out;
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-    if (left_out_[t] != 0) continue;
+    if (omitted_[t] != 0) continue;
     MatrixXd local(given.rows(), 12);
     for (int a = 0; a < 12; ++a)
       local.col(a) = given.col(2 * mesh_.triangles[t][static_cast<std::size_t>(a / 2)] + a % 2);
@@ -418,4 +419,4 @@ std::vector<fem::HeldUnknown> LoadedMesh::held(int row) const {
   return out;
 }
 
-}  // namespace flexmorph::judge
+}  // namespace flexmorph::verification

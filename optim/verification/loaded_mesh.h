@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "fem/triangles/triangle_plate.h"
-#include "optim/verification/places.h"
+#include "optim/verification/loads.h"
 
-namespace flexmorph::judge {
+namespace flexmorph::verification {
 
-/// Nodes of a mesh at a place, with what share of an evenly spread force each has (sum 1).
-struct PlaceNodes {
+/// Nodes of a mesh at a location, with what share of an evenly spread force each has (sum 1).
+struct LocationNodes {
   std::vector<std::pair<int, double>> shares;
   double held = 0;  ///< part of the material there that takes part in the statics
 };
@@ -19,23 +19,23 @@ struct PlaceNodes {
 /// Loads and supports on one mesh of a part. Loads are in the order of their clamps.
 class LoadedMesh {
  public:
-  /// Lines and boxes of places that the mesh must follow.
+  /// Lines and boxes of locations that the mesh must follow.
   static std::vector<Segment> lines_of(const Loads& loads, std::span<const Region> regions,
                                        double small);
-  /// @param places  as chosen_places() makes them; all references live longer
+  /// @param locations  as chosen_locations() makes them; all references live longer
   LoadedMesh(const PartMesh& mesh, const fem::PlaneSection& section, const Loads& loads,
-             std::span<const Place> places, double small);
+             std::span<const Location> locations, double small);
 
-  /// Where no load is loose.
+  /// The statics of the part; only where unsupported_load() is -1.
   const fem::TrianglePlate& plate() const { return *plate_; }
   fem::TrianglePlate& plate() { return *plate_; }
   /// Number of the load in Loads, by its row here.
   const std::vector<int>& order() const { return order_; }
   const std::vector<int>& clamps() const { return clamps_; }  ///< of the rows, ascending
-  const std::vector<signed char>& left_out() const { return left_out_; }
-  int pieces_left_out() const { return pieces_left_out_; }
+  const std::vector<signed char>& omitted() const { return omitted_; }
+  int n_omitted_pieces() const { return n_omitted_pieces_; }
   /// The first load that acts on nothing that is held, or -1.
-  int loose_load() const { return loose_load_; }
+  int unsupported_load() const { return unsupported_load_; }
 
   MatrixXd forces() const;      ///< (n_loads x n_unknowns), prescribed displacements included
   MatrixXd prescribed() const;  ///< (n_loads x 2 n_nodes); empty: all zero
@@ -48,8 +48,8 @@ class LoadedMesh {
 
  private:
   void sort_loads();
-  void find_places();
-  void leave_out_loose_pieces();
+  void find_locations();
+  void omit_unsupported_pieces();
   void find_edge();
   double held_end_stretch(std::size_t row) const;
   bool is_held(int piece) const;
@@ -58,20 +58,21 @@ class LoadedMesh {
   const PartMesh& mesh_;
   fem::PlaneSection section_;
   const Loads& loads_;
-  std::span<const Place> places_;
+  std::span<const Location> locations_;
   double small_;
   std::vector<int> order_, clamps_;
   std::vector<double> clamp_lines_;
-  std::vector<PlaceNodes> at_places_;
+  std::vector<LocationNodes> at_locations_;
   std::vector<fem::HeldUnknown> held_;
   std::vector<int> edge_;  // nodes on the held edge that take part, upwards
   std::vector<fem::NodeSpring> springs_;
-  std::vector<signed char> left_out_;
-  int pieces_left_out_ = 0, loose_load_ = -1;
+  std::vector<signed char> omitted_;
+  int n_omitted_pieces_ = 0, unsupported_load_ = -1;
   std::unique_ptr<fem::TrianglePlate> plate_;
 };
 
-/// Lines or box of each place, whichever it is: only one of them is left.
-std::vector<Place> chosen_places(const Loads& loads, std::span<const Region> regions, double small);
+/// Lines or box of each location, whichever it is: only one of them is left.
+std::vector<Location> chosen_locations(const Loads& loads, std::span<const Region> regions,
+                                       double small);
 
-}  // namespace flexmorph::judge
+}  // namespace flexmorph::verification

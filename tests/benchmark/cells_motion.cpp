@@ -135,7 +135,7 @@ Moved move(const cases::Scene& scene, const fem::Factors& factors, const cases::
 /// Σ w F · u with the same factors as the motion.
 double compliance(const mmc::BodyProblem& problem, const fem::EslSets& loads,
                   const VectorXd& stiffness, const VectorXd& mass) {
-  mmc::Compliance all(loads, problem.section, problem.compliance, stiffness, mass);
+  mmc::ComplianceEvaluator all(loads, problem.section, problem.compliance, stiffness, mass);
   return all.sum(stiffness, mass);
 }
 

@@ -11,7 +11,7 @@
 #include "cases/run/motion_run.h"
 #include "geometry/cpu_time.h"
 #include "optim/mmc/body_design.h"
-#include "optim/mmc/judged_design.h"
+#include "optim/mmc/design_verification.h"
 
 namespace flexmorph::benchmark {
 namespace {
@@ -40,14 +40,14 @@ ComparedCase::ComparedCase(const std::string& path, std::span<const std::string>
     : scene(scene_of(path, changes)), problem(cases::build_problems(scene).at(0)) {
   if (scene.domain) {
     loads = cases::build_static_loads(scene, problem);
-    by_position = cases::judged_loads(scene, problem);
+    by_position = cases::loads_by_position(scene, problem);
     return;
   }
   sets = loads_of_motion(scene, problem);
   const mmc::CellFactors first =
       mmc::ersatz_of(problem).sharp(mmc::fractions_of(problem, problem.design.components()));
-  loads = std::make_unique<mmc::Compliance>(sets, problem.section, problem.compliance,
-                                            first.stiffness, first.mass);
+  loads = std::make_unique<mmc::ComplianceEvaluator>(sets, problem.section, problem.compliance,
+                                                     first.stiffness, first.mass);
   by_position = mmc::loads_by_position(problem, sets);
 }
 
@@ -59,11 +59,11 @@ double ComparedCase::domain_area() const {
 ComparedDesign compared(const ComparedCase& of, std::vector<Region> regions, double seconds) {
   ComparedDesign out;
   const double cell = mmc::point_reach(of.problem);
-  judge::Settings settings;
-  settings.tolerance = kJudgedWithin;
+  verification::Settings settings;
+  settings.tolerance = kVerificationTolerance;
   settings.size = 2 * cell;
   settings.reach = cell;
-  out.verdict = judge::judge(regions, of.problem.section, of.by_position, settings);
+  out.verdict = verification::verify_outline(regions, of.problem.section, of.by_position, settings);
   out.volume = area(regions) / of.domain_area();
   const Features features = mmc::features_of(of.problem, regions);
   out.feature = features.solid;

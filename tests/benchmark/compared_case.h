@@ -8,7 +8,7 @@
 #include "cases/scene/scene.h"
 #include "fem/esl_set.h"
 #include "optim/mmc/body_problem.h"
-#include "optim/verification/judge.h"
+#include "optim/verification/verification.h"
 
 /// A case whose problem several methods solve, and the judge of what they come to.
 namespace flexmorph::benchmark {
@@ -19,8 +19,8 @@ struct ComparedCase {
   cases::Scene scene;
   mmc::BodyProblem problem;
   fem::EslSets sets;  ///< of the motion; a plate at rest has none
-  std::unique_ptr<mmc::LoadResponse> loads;
-  judge::Loads by_position;
+  std::unique_ptr<mmc::ComplianceEvaluator> loads;
+  verification::Loads by_position;
 
   /// @param path  of a case file, or the name of a shipped case
   /// @throws Error from the case, or from its motion
@@ -34,14 +34,14 @@ struct ComparedCase {
 /// An outline as it is judged.
 struct ComparedDesign {
   std::vector<Region> regions;
-  judge::Judged verdict;
+  verification::OutlineVerification verdict;
   double volume = 0;   ///< part of the domain
   double feature = 0;  ///< smallest width of material that no given region makes [m]
   double gap = 0;      ///< likewise of the void
   double seconds = 0;  ///< CPU, of the design alone
 };
 /// Tighter than a run's judge: two methods may differ by less than that one's error.
-constexpr double kJudgedWithin = 0.001;
+constexpr double kVerificationTolerance = 0.001;
 ComparedDesign compared(const ComparedCase& of, std::vector<Region> regions, double seconds);
 
 /// The program's own design, as a run makes it.

@@ -91,7 +91,7 @@ TEST_P(BesideDensities, IsPrinted) {
   const ComparedDesign own = design_by_components(of);
   print("components", own, cell);
   EXPECT_TRUE(own.verdict.converged);
-  EXPECT_EQ(own.verdict.left_out, 0);
+  EXPECT_EQ(own.verdict.n_omitted_pieces, 0);
   EXPECT_NEAR(own.volume, *mmc::allowed_volume(of.problem.goal), 1e-3 * own.volume);
   // The stiffness of the densities themselves, and that of an eroded design: the second has wider
   // members.

@@ -96,7 +96,8 @@ Eigen::SparseMatrix<double> density_filter(const mmc::Plate& plate, double radiu
 }
 
 DensityProblem::DensityProblem(const DensityPlate& plate, const Eigen::SparseMatrix<double>& filter,
-                               mmc::LoadResponse& loads, const DensityStage& stage, VectorXd start)
+                               mmc::ComplianceEvaluator& loads, const DensityStage& stage,
+                               VectorXd start)
     : plate_(plate), filter_(filter), loads_(loads), stage_(stage), start_(std::move(start)) {
   for (int c = 0; c < plate.plate.grid.n_cells(); ++c)
     if (plate.designs(c)) designed_.push_back(c);
@@ -165,13 +166,13 @@ VectorXd DensityProblem::slope(const Densities& at, const VectorXd& d_stiffness,
 void DensityProblem::add_loads(const Densities& at, const mmc::CellFactors& cells, double bound,
                                optim::Response& out) {
   if (!plate_.worst) {
-    mmc::LoadResponse::Value value;
+    mmc::ComplianceEvaluator::Value value;
     loads_.evaluate(cells.stiffness, cells.mass, value);
     out.f = std::log(value.f);
     out.df = slope(at, value.d_stiffness, value.d_mass) / value.f;
     return;
   }
-  mmc::LoadResponse::Each each;
+  mmc::ComplianceEvaluator::Each each;
   loads_.evaluate_each(cells.stiffness, cells.mass, each);
   out.f = kLogPerUnit * bound;
   out.df = VectorXd::Zero(start_.size());
@@ -196,7 +197,8 @@ optim::Response DensityProblem::evaluate(const VectorXd& x) {
   return out;
 }
 
-std::vector<DensityDesign> design_by_densities(const DensityPlate& plate, mmc::LoadResponse& loads,
+std::vector<DensityDesign> design_by_densities(const DensityPlate& plate,
+                                               mmc::ComplianceEvaluator& loads,
                                                const DensitySettings& settings) {
   const double clock = cpu_seconds();
   const Eigen::SparseMatrix<double> filter =

@@ -68,7 +68,7 @@ class DensityProblem final : public optim::Problem {
   /// All references live longer.
   /// @param start  x (n_designed)
   DensityProblem(const DensityPlate& plate, const Eigen::SparseMatrix<double>& filter,
-                 mmc::LoadResponse& loads, const DensityStage& stage, VectorXd start);
+                 mmc::ComplianceEvaluator& loads, const DensityStage& stage, VectorXd start);
 
   int n_variables() const override { return static_cast<int>(start_.size()); }
   int n_constraints() const override { return 1 + (plate_.worst ? loads_.n_loads() : 0); }
@@ -88,7 +88,7 @@ class DensityProblem final : public optim::Problem {
 
   const DensityPlate& plate_;
   const Eigen::SparseMatrix<double>& filter_;
-  mmc::LoadResponse& loads_;
+  mmc::ComplianceEvaluator& loads_;
   DensityStage stage_;
   std::vector<int> designed_;  // cells of the variables
   VectorXd start_;
@@ -105,7 +105,8 @@ struct DensityDesign {
 /// The continuation from an even density, by the method of moving asymptotes.
 /// @return of every stage
 /// @throws Error (numerical) from the statics
-std::vector<DensityDesign> design_by_densities(const DensityPlate& plate, mmc::LoadResponse& loads,
+std::vector<DensityDesign> design_by_densities(const DensityPlate& plate,
+                                               mmc::ComplianceEvaluator& loads,
                                                const DensitySettings& settings);
 
 }  // namespace flexmorph::benchmark

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "optim/mmc/fixed_loads.h"
+#include "optim/mmc/compliance_evaluator.h"
 #include "tests/benchmark/density_outline.h"
 
 namespace flexmorph::benchmark {
@@ -19,7 +19,7 @@ namespace {
 /// void of four cells; a corner does not belong to the domain.
 struct SmallPlate {
   DensityPlate plate;
-  mmc::FixedLoads loads;
+  mmc::ComplianceEvaluator loads;
 
   explicit SmallPlate(bool worst) : plate(make(worst)), loads(load(plate.plate)) {}
 
@@ -40,14 +40,14 @@ struct SmallPlate {
     return out;
   }
 
-  static mmc::FixedLoads load(const mmc::Plate& plate) {
+  static mmc::ComplianceEvaluator load(const mmc::Plate& plate) {
     const Grid& g = plate.grid;
     std::vector<fem::HeldUnknown> held;
     for (int j = 0; j < g.ny; ++j)
       for (int c = 0; c < 2; ++c) held.push_back({g.node(0, j), c});
     const mmc::LoadCase loads[] = {{"tip", 1, {{g.node(12, 3), {0, -1}}}, 0},
                                    {"side", 2, {{g.node(8, 6), {0.5, 0.3}}}, 0}};
-    return {g, plate.section, plate.outside, held, loads, false};
+    return {plate, held, loads, false};
   }
 };
 
@@ -129,7 +129,7 @@ TEST(DensityMethod, BeatsEvenDensities) {
   ASSERT_EQ(found.size(), 3u);
   const VectorXd& rho = found.back().densities.projected;
   EXPECT_LE(rho.sum() / small.plate.plate.n_domain_cells(), small.plate.volume * (1 + 1e-4));
-  mmc::LoadResponse::Value even;
+  mmc::ComplianceEvaluator::Value even;
   const VectorXd eighth = VectorXd::Constant(rho.size(), std::pow(small.plate.volume, 3));
   small.loads.evaluate(eighth, eighth, even);
   EXPECT_LT(found.back().compliance, 0.6 * even.f);

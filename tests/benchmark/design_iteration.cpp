@@ -44,7 +44,8 @@ Iteration measure(const cases::Scene& scene, const mmc::BodyProblem& problem,
   const auto start = problem.design.components();
   const mmc::CellFactors first = ersatz.sharp(area_fractions(
       problem.grid, start, problem.stages.back().min_half_thickness, problem.solid, problem.empty));
-  mmc::Compliance compliance(loads, problem.section, settings, first.stiffness, first.mass);
+  mmc::ComplianceEvaluator compliance(loads, problem.section, settings, first.stiffness,
+                                      first.mass);
   const mmc::Plate plate = mmc::plate_of(problem);
   mmc::MmcProblem state({plate, problem.design, ersatz, compliance}, problem.stages.front(),
                         problem.goal);

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "fem/solve/plate_solver.h"
+#include "fem/solve/static_solver.h"
 #include "geometry/part_mesh.h"
 
 namespace flexmorph::benchmark {
@@ -110,7 +110,7 @@ double short_cantilever(const Grid& grid, const VectorXd& stiffness) {
     for (int c = 0; c < 2; ++c) held.push_back({grid.node(0, j), c});
   const fem::PlaneSection section{
       .thickness = 1, .youngs_modulus = 1, .poisson_ratio = 0.3, .density = 0};
-  fem::PlateSolver solver(grid, section, held);
+  fem::StaticSolver solver(grid, section, held);
   solver.factorize(stiffness);
   MatrixXd load = MatrixXd::Zero(1, solver.n_unknowns());
   const int loaded = solver.row(grid.node(grid.nx, grid.ny / 2), 1);

@@ -25,7 +25,7 @@ inline Iteration measure_iterations(mmc::MmcProblem& problem, const optim::Setti
   optim::make_optimizer(settings)->minimize(problem, [&](const optim::Iterate& iterate) {
     const double now = cpu_seconds();
     if (iterate.evaluations == evaluations + 1 && iterate.iteration > 2) {
-      const mmc::LoadResponse::Seconds s = problem.seconds();
+      const mmc::ComplianceEvaluator::Seconds s = problem.seconds();
       const double seconds[] = {problem.seconds_tdf(), s.factor,        s.solve,
                                 s.sensitivity,         iterate.seconds, now - mark};
       for (int k = 0; k < 6; ++k) parts[k].push_back(seconds[k]);

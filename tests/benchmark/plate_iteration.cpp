@@ -23,7 +23,7 @@
 #include <vector>
 
 #include "geometry/component.h"
-#include "optim/mmc/fixed_loads.h"
+#include "optim/mmc/compliance_evaluator.h"
 #include "optim/mmc/mmc_problem.h"
 #include "optim/optimizer.h"
 #include "tests/benchmark/cpu.h"
@@ -102,7 +102,7 @@ Iteration measure(const Plate& plate, const std::vector<mmc::LoadCase>& loads, b
   tdf.min_half_thickness = cell;
   const mmc::Ersatz ersatz(g, tdf.alpha, {}, {});
   const mmc::Design design = initial_design(plate, cell);
-  mmc::FixedLoads statics(g, kUnit, {}, clamped_left(g), loads, compress);
+  mmc::ComplianceEvaluator statics({g, kUnit, {}}, clamped_left(g), loads, compress);
   const mmc::Plate whole{g, kUnit, {}};
   const mmc::Goal goal{.limits = {{mmc::kVolume, 0.4, false, whole}}};
   mmc::MmcProblem problem({whole, design, ersatz, statics}, tdf, goal);

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "fem/solve/static_solver.h"
-#include "optim/mmc/compliance.h"
+#include "optim/mmc/compliance_evaluator.h"
 #include "tests/benchmark/cpu.h"
 #include "tests/benchmark/reference.h"
 
@@ -73,8 +73,8 @@ struct Times {
 Times iteration(const fem::EslSets& loads, const mmc::ComplianceSettings& settings) {
   const std::array<VectorXd, 2> k = {random_design(1, 1e-3), random_design(2, 1e-3)};
   const std::array<VectorXd, 2> m = {random_design(1, 0), random_design(2, 0)};
-  mmc::Compliance compliance(loads, kSection, settings, k[0], m[0]);
-  mmc::Compliance::Value value;
+  mmc::ComplianceEvaluator compliance(loads, kSection, settings, k[0], m[0]);
+  mmc::ComplianceEvaluator::Value value;
   std::size_t turn = 0;
   Times t{};
   t.total = milliseconds([&] {

@@ -6,7 +6,7 @@
 
 #include "cases/assembly/build.h"
 #include "cases/assembly/verified_loads.h"
-#include "optim/mmc/judged_design.h"
+#include "optim/mmc/design_verification.h"
 #include "tests/cases/program.h"
 
 namespace flexmorph::test {
@@ -106,8 +106,8 @@ TEST_F(Plates, AreJudgedAlike) {
   for (const std::string& path : {drawn("part.dxf", kDxf), pierced()}) {
     const cases::Scene scene = cases::read_scene(io::CaseFile(path));
     const mmc::BodyProblem p = cases::build_problems(scene).front();
-    const judge::Judged judged =
-        mmc::judge_design(p, mmc::exported_regions(p), cases::judged_loads(scene, p));
+    const verification::OutlineVerification judged =
+        mmc::verify_design(p, mmc::exported_regions(p), cases::loads_by_position(scene, p));
     EXPECT_LT(judged.error, 0.005);
     found.push_back(judged.compliance);
   }

@@ -153,7 +153,8 @@ TEST(HeatedBoom, ComplianceIsTheStrainEnergyOfTheMotion) {
   const HotProblem hot;
   const fem::EslSets& loads = hot.motion.loads.front();
   const VectorXd full = VectorXd::Ones(loads.grid.n_cells());
-  mmc::Compliance compliance(loads, hot.problem.section, hot.problem.compliance, full, full);
+  mmc::ComplianceEvaluator compliance(loads, hot.problem.section, hot.problem.compliance, full,
+                                      full);
   const VectorXd each = compliance.individual(full, full);
   for (size_t l = 2; l < loads.sets.size(); ++l) {
     EXPECT_GT(loads.sets[l].strain_energy, 0.2);
@@ -173,8 +174,9 @@ TEST(HeatedBoom, LoadsKnowTheHeldTip) {
   fem::EslSets loads = motion.loads.front();
   const VectorXd full = VectorXd::Ones(loads.grid.n_cells());
   const auto energies = [&] {
-    return VectorXd(0.5 * mmc::Compliance(loads, problem.section, problem.compliance, full, full)
-                              .individual(full, full));
+    return VectorXd(0.5 *
+                    mmc::ComplianceEvaluator(loads, problem.section, problem.compliance, full, full)
+                        .individual(full, full));
   };
   const VectorXd held = energies();
   for (fem::EslSet& set : loads.sets) {
@@ -198,7 +200,7 @@ TEST(HeatedBoom, GradientOfTheDesignProblem) {
   const mmc::BodyProblem& p = hot.problem;
   const fem::EslSets& loads = hot.motion.loads.front();
   const VectorXd full = VectorXd::Ones(loads.grid.n_cells());
-  mmc::Compliance compliance(loads, p.section, p.compliance, full, full);
+  mmc::ComplianceEvaluator compliance(loads, p.section, p.compliance, full, full);
   const mmc::Ersatz ersatz = mmc::ersatz_of(p);
   const mmc::Plate plate = mmc::plate_of(p);
   mmc::MmcProblem problem({plate, p.design, ersatz, compliance}, p.stages.front(), p.goal,

@@ -26,21 +26,13 @@ cases::Scene short_scene(std::vector<std::string> changes) {
   return cases::read_scene(io::CaseFile(FLEXMORPH_SHORT_CASE, changes));
 }
 
-/// Nobody asks for the statics of a design for its motion.
-class NoLoads final : public mmc::LoadResponse {
- public:
-  void evaluate(const VectorXd&, const VectorXd&, Value&) override { throw Error::input("none"); }
-  void evaluate_each(const VectorXd&, const VectorXd&, Each&) override {
-    throw Error::input("none");
-  }
-  VectorXd individual(const VectorXd&, const VectorXd&) override { return {}; }
-  VectorXd displacement(const VectorXd&, const VectorXd&, int) override { return {}; }
-  int n_loads() const override { return 0; }
-  int n_right_hand_sides() const override { return 0; }
-  int factorizations() const override { return 0; }
-  double condition() const override { return 1; }
-  Seconds seconds() const override { return {}; }
-};
+/// Statics that nobody asks for: a motion is all that the design is for.
+mmc::ComplianceEvaluator any_loads() {
+  const Grid cell;
+  const fem::HeldUnknown held[] = {{0, 0}, {0, 1}, {1, 0}};
+  const mmc::LoadCase loads[] = {{"tip", 1, {{3, {0, 1}}}, 0}};
+  return {{cell, {1, 1, 0.3, 1}, {}}, held, loads, false};
+}
 
 /// The design problem of a scene for its motion, at the layouts it starts with.
 class DesignedForMotion {
@@ -57,7 +49,8 @@ class DesignedForMotion {
   const mmc::Whole& whole() const { return whole_; }
 
  private:
-  static std::vector<mmc::Part> parts_of(std::vector<mmc::BodyProblem>& problems, NoLoads& loads) {
+  static std::vector<mmc::Part> parts_of(std::vector<mmc::BodyProblem>& problems,
+                                         mmc::ComplianceEvaluator& loads) {
     std::vector<mmc::Part> out;
     for (mmc::BodyProblem& problem : problems) {
       out.emplace_back(mmc::LoadedBody{problem, loads});
@@ -66,7 +59,7 @@ class DesignedForMotion {
     return out;
   }
 
-  NoLoads loads_;
+  mmc::ComplianceEvaluator loads_ = any_loads();
   cases::Scene scene_;
   std::vector<mmc::BodyProblem> problems_;
   std::vector<mmc::Part> parts_;

@@ -111,7 +111,7 @@ TEST(Quantities, OfAnOutlineDependOnItsVerification) {
   EXPECT_TRUE(std::holds_alternative<std::monostate>(found["compliance"]));
   outline.verification.emplace();
   outline.verification->compliance = INFINITY;
-  outline.verification->loose_load = "tip";
+  outline.verification->unsupported_load = "tip";
   read_all();
   EXPECT_EQ(std::get<std::string>(found["loose_load"]), "tip");
   EXPECT_TRUE(std::holds_alternative<std::monostate>(found["error"]));

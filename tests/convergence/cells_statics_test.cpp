@@ -11,7 +11,7 @@
 #include "fem/loads.h"
 #include "fem/solve/statics.h"
 #include "fem/terms.h"
-#include "optim/mmc/compliance.h"
+#include "optim/mmc/compliance_evaluator.h"
 #include "tests/support/designed_plate.h"
 #include "tests/support/models.h"
 
@@ -62,7 +62,7 @@ TEST(CellsAndStatics, EquilibriumHasTheComplianceOfTheDesignProblem) {
   set.acceleration.setZero(2 * kGrid.n_nodes());
   set.forces = {{kGrid.node(kGrid.nx, kGrid.ny / 2), {0.3, 1}},
                 {kGrid.node(kGrid.nx, kGrid.ny), {-0.5, 0.2}}};
-  mmc::Compliance compliance({kGrid, {set}}, kSection, {}, {}, {});
+  mmc::ComplianceEvaluator compliance({kGrid, {set}}, kSection, {}, {}, {});
   const double linear = compliance.individual(factors.stiffness, factors.mass)[0];
   double miss[2];
   for (const int k : {0, 1}) {
@@ -124,7 +124,7 @@ SlowMotion move_slowly(const fem::Factors& factors, double speed, ShapeSet shape
 }
 
 VectorXd compliances(const fem::EslSets& loads, const fem::Factors& factors) {
-  mmc::Compliance compliance(loads, kSection, {}, {}, {});
+  mmc::ComplianceEvaluator compliance(loads, kSection, {}, {}, {});
   return compliance.individual(factors.stiffness, factors.mass);
 }
 

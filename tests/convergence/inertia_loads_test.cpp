@@ -66,7 +66,7 @@ MatrixXd forces(const std::vector<EslSet>& sets, const StaticSolver& solver,
     for (const NodalForce& point : sets[l].forces) f.segment<2>(2 * point.node) += point.force;
     for (int i = 0; i <= g.nx; ++i)
       for (int j = 0; j <= g.ny; ++j)
-        if (const int row = solver.row(i, j); row >= 0)
+        if (const int row = solver.row(g.node(i, j), 0); row >= 0)
           out.row(static_cast<Eigen::Index>(l)).segment<2>(row) = f.segment<2>(2 * g.node(i, j));
   }
   return out;
@@ -100,7 +100,7 @@ Deflections compare(double omega, double step) {
     const int i = grid.nx, j = grid.ny / 2;
     out.time.push_back(sets[l].time);
     out.dynamic.push_back(sets[l].deformation[2 * grid.node(i, j) + 1]);
-    out.statics.push_back(u(static_cast<Eigen::Index>(l), solver.row(i, j) + 1));
+    out.statics.push_back(u(static_cast<Eigen::Index>(l), solver.row(grid.node(i, j), 1)));
   }
   return out;
 }

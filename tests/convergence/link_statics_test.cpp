@@ -8,7 +8,7 @@
 #include "fem/dynamics/esl.h"
 #include "fem/solve/statics.h"
 #include "fem/terms.h"
-#include "optim/mmc/link_compliance.h"
+#include "optim/mmc/compliance_evaluator.h"
 #include "tests/support/designed_plate.h"
 #include "tests/support/models.h"
 
@@ -69,8 +69,9 @@ TEST(LinkStatics, LoadsReturnTheStrainsOfTheMotion) {
       VectorXd odd_static, odd_motion;
       for (const double sign : {1.0, -1.0}) {
         const fem::EslSet set = load_of_motion(factors, sign * (k == 0 ? 1e-3 : 1e-4));
-        mmc::LinkCompliance statics({kGrid, {set}, 0, pins}, kSection,
-                                    {mmc::LoadDefinition::inertia, support, true, 1e-10}, {}, {});
+        mmc::ComplianceEvaluator statics({kGrid, {set}, 0, pins}, kSection,
+                                         {mmc::LoadDefinition::inertia, support, true, 1e-10}, {},
+                                         {});
         const double twice = statics.individual(factors.stiffness, factors.mass)[0];
         miss[k] += 0.5 * (twice / (2 * set.strain_energy) - 1);
         const VectorXd u = statics.displacement(factors.stiffness, factors.mass, 0);

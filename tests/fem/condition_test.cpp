@@ -9,7 +9,6 @@
 #include <limits>
 #include <random>
 
-#include "fem/solve/plate_solver.h"
 #include "fem/solve/static_solver.h"
 
 namespace flexmorph::fem {
@@ -89,7 +88,7 @@ TEST(Condition, OfPlatesIsThatOfTheirStiffness) {
   std::vector<HeldUnknown> held;
   for (int j = 0; j <= g.ny; ++j)
     for (int c = 0; c < 2; ++c) held.push_back({g.node(g.nx, j), c});
-  PlateSolver plate(g, section, held);
+  StaticSolver plate(g, section, held);
   StaticSolver clamped(g, section);
   double last = 0;
   for (const double thin : {0.5, 1e-3, 1e-6}) {

@@ -2,8 +2,6 @@
 // factorization of a matrix assembled here, a patch state, beam theory and symmetry. The factor and
 // the order of the nodes behind it: against dense algebra, for patterns of any kind.
 
-#include "fem/solve/plate_solver.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/SparseCholesky>
@@ -15,6 +13,7 @@
 
 #include "fem/solve/grid_order.h"
 #include "fem/solve/q4_cell.h"
+#include "fem/solve/static_solver.h"
 #include "fem/solve/supernodal_factor.h"
 
 namespace flexmorph::fem {
@@ -38,7 +37,7 @@ VectorXd random_factors(const Grid& g, unsigned seed) {
 }
 
 /// K over the unknowns of a solver, assembled cell by cell.
-Eigen::SparseMatrix<double> assembled(const PlateSolver& solver, const VectorXd& factor,
+Eigen::SparseMatrix<double> assembled(const StaticSolver& solver, const VectorXd& factor,
                                       const std::vector<signed char>& outside) {
   const Grid& g = solver.grid();
   const auto cell = q4_stiffness(kSection, g.dx(), g.dy());
@@ -63,7 +62,7 @@ Eigen::SparseMatrix<double> assembled(const PlateSolver& solver, const VectorXd&
 }
 
 // An L with a roller and a pin, stiffness at random, several loads.
-TEST(PlateSolver, AgreesWithAnotherFactorization) {
+TEST(StaticSolver, AgreesWithAnotherFactorization) {
   const Grid g{.x0 = -1, .y0 = 2, .width = 1.2, .height = 1, .nx = 12, .ny = 10};
   std::vector<signed char> outside(static_cast<std::size_t>(g.n_cells()), 0);
   for (int i = 5; i < g.nx; ++i)
@@ -71,7 +70,7 @@ TEST(PlateSolver, AgreesWithAnotherFactorization) {
   std::vector<HeldUnknown> held;
   for (int i = 0; i <= 5; ++i) held.push_back({g.node(i, g.ny), 1});
   held.push_back({g.node(2, g.ny), 0});
-  PlateSolver solver(g, kSection, held, outside);
+  StaticSolver solver(g, kSection, held, outside);
   int nodes = 0;
   for (int i = 0; i <= g.nx; ++i)
     for (int j = 0; j <= g.ny; ++j) nodes += i <= 5 || j <= 4 ? 1 : 0;
@@ -108,9 +107,9 @@ TEST(PlateSolver, AgreesWithAnotherFactorization) {
 }
 
 // Pulled at both ends by its own stress, held against rigid motion only: the exact linear field.
-TEST(PlateSolver, PassesThePatchTest) {
+TEST(StaticSolver, PassesThePatchTest) {
   const Grid g{.width = 2, .height = 1, .nx = 10, .ny = 6};
-  PlateSolver solver(
+  StaticSolver solver(
       g, kSection,
       std::vector<HeldUnknown>{{g.node(0, 0), 0}, {g.node(0, 0), 1}, {g.node(g.nx, 0), 1}});
   solver.factorize(VectorXd::Ones(g.n_cells()));
@@ -135,9 +134,9 @@ TEST(PlateSolver, PassesThePatchTest) {
 }
 
 // A slender cantilever under a tip force: Timoshenko's deflection, up to what the ends do.
-TEST(PlateSolver, CantileverDeflectsLikeABeam) {
+TEST(StaticSolver, CantileverDeflectsLikeABeam) {
   const Grid g{.width = 10, .height = 1, .nx = 200, .ny = 20};
-  PlateSolver solver(g, kSection, clamp_left(g));
+  StaticSolver solver(g, kSection, clamp_left(g));
   solver.factorize(VectorXd::Ones(g.n_cells()));
   MatrixXd u = MatrixXd::Zero(1, solver.n_unknowns());
   const int tip = solver.row(g.node(g.nx, g.ny / 2), 1);
@@ -151,15 +150,15 @@ TEST(PlateSolver, CantileverDeflectsLikeABeam) {
 }
 
 // Half of a beam with a roller along the plane of symmetry moves like the half of the whole.
-TEST(PlateSolver, RollersAreASymmetry) {
+TEST(StaticSolver, RollersAreASymmetry) {
   const Grid whole{.x0 = -2, .width = 4, .height = 1, .nx = 40, .ny = 10};
   const Grid half{.width = 2, .height = 1, .nx = 20, .ny = 10};
-  PlateSolver two(whole, kSection,
-                  std::vector<HeldUnknown>{
-                      {whole.node(0, 0), 1}, {whole.node(40, 0), 1}, {whole.node(20, 0), 0}});
+  StaticSolver two(whole, kSection,
+                   std::vector<HeldUnknown>{
+                       {whole.node(0, 0), 1}, {whole.node(40, 0), 1}, {whole.node(20, 0), 0}});
   std::vector<HeldUnknown> rollers{{half.node(20, 0), 1}};
   for (int j = 0; j <= 10; ++j) rollers.push_back({half.node(0, j), 0});
-  PlateSolver one(half, kSection, rollers);
+  StaticSolver one(half, kSection, rollers);
   two.factorize(VectorXd::Ones(whole.n_cells()));
   one.factorize(VectorXd::Ones(half.n_cells()));
   MatrixXd u2 = MatrixXd::Zero(1, two.n_unknowns()), u1 = MatrixXd::Zero(1, one.n_unknowns());
@@ -174,16 +173,16 @@ TEST(PlateSolver, RollersAreASymmetry) {
                   1e-9 * scale);
 }
 
-TEST(PlateSolver, RefusesPlatesThatFloat) {
+TEST(StaticSolver, RefusesPlatesThatFloat) {
   const Grid g{.width = 2, .height = 1, .nx = 8, .ny = 4};
-  PlateSolver turning(g, kSection, std::vector<HeldUnknown>{{g.node(0, 0), 0}, {g.node(0, 0), 1}});
+  StaticSolver turning(g, kSection, std::vector<HeldUnknown>{{g.node(0, 0), 0}, {g.node(0, 0), 1}});
   EXPECT_THROW(turning.factorize(VectorXd::Ones(g.n_cells())), Error);
-  PlateSolver held(g, kSection, clamp_left(g));
+  StaticSolver held(g, kSection, clamp_left(g));
   EXPECT_NO_THROW(held.factorize(VectorXd::Ones(g.n_cells())));
   VectorXd wrong = VectorXd::Ones(g.n_cells());
   wrong[3] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(held.factorize(wrong), Error);
-  EXPECT_THROW(PlateSolver(g, kSection, std::vector<HeldUnknown>{{1000, 0}}), Error);
+  EXPECT_THROW(StaticSolver(g, kSection, std::vector<HeldUnknown>{{1000, 0}}), Error);
 }
 
 // Every node once, and the first cut, the column of nodes in the middle, behind both halves.
@@ -269,9 +268,9 @@ TEST(SupernodalFactor, NamesTheColumnWithoutAPositivePivotAndRecovers) {
 }
 
 // The same matrix leads to the same bits, whatever was factored before.
-TEST(PlateSolver, RepeatsItselfBitForBit) {
+TEST(StaticSolver, RepeatsItselfBitForBit) {
   const Grid g{.width = 3, .height = 1, .nx = 30, .ny = 10};
-  PlateSolver solver(g, kSection, clamp_left(g));
+  StaticSolver solver(g, kSection, clamp_left(g));
   std::srand(3);
   const MatrixXd loads = MatrixXd::Random(4, solver.n_unknowns());
   MatrixXd first = loads, again = loads;
@@ -284,9 +283,9 @@ TEST(PlateSolver, RepeatsItselfBitForBit) {
 }
 
 // On a mesh that is large enough for wide blocks, one load and several: K u = F with K by cells.
-TEST(PlateSolver, SolvesWhatWasAskedOnALargerMesh) {
+TEST(StaticSolver, SolvesWhatWasAskedOnALargerMesh) {
   const Grid g{.width = 2, .height = 1, .nx = 60, .ny = 31};
-  PlateSolver solver(g, kSection, clamp_left(g));
+  StaticSolver solver(g, kSection, clamp_left(g));
   const VectorXd factor = random_factors(g, 4);
   solver.factorize(factor);
   const Eigen::SparseMatrix<double> K = assembled(solver, factor, {});

@@ -36,7 +36,7 @@ double volume_of(const std::vector<Component>& components) {
 }
 
 void expect_thick(BodyProblem& problem, double cost_at_most) {
-  FixedLoads loads = tip_load();
+  ComplianceEvaluator loads = tip_load();
   const double before = measured(problem).solid;
   ASSERT_LT(before, kWanted);
   const CleanUp done = clean_up(problem, loads, kWidths);
@@ -73,7 +73,7 @@ TEST(CleanUp, WidensAStripAlongTheBorder) {
 TEST(CleanUp, LeavesAThickDesignAlone) {
   const std::vector<Component> start = {bar({-0.1, 0}, {0.7, 0}, 0.02)};
   BodyProblem problem = problem_of(start, volume_of(start));
-  FixedLoads loads = tip_load();
+  ComplianceEvaluator loads = tip_load();
   const CleanUp done = clean_up(problem, loads, kWidths);
   EXPECT_FALSE(done.changed());
   EXPECT_TRUE(done.reached());
@@ -86,7 +86,7 @@ TEST(CleanUp, GivesBackVolumeThatIsLeft) {
   const std::vector<Component> start = {bar({-0.1, 0}, {0.7, 0}, 0.02)};
   const double allowed = 1.1 * volume_of(start);
   BodyProblem problem = problem_of(start, allowed);
-  FixedLoads loads = tip_load();
+  ComplianceEvaluator loads = tip_load();
   const CleanUp done = clean_up(problem, loads, kWidths);
   EXPECT_NEAR(done.volume_after, allowed, 1e-3 * allowed);
   EXPECT_LT(done.compliance_after, done.compliance_before);
@@ -100,7 +100,7 @@ TEST(CleanUp, LeavesNoGapBelowACell) {
                     bar({-0.1, -0.012 - slit / 2}, {0.7, -0.012 - slit / 2}, 0.012)},
                    0.9);
     ASSERT_NEAR(measured(problem).gap, slit, 1e-4);
-    FixedLoads loads = tip_load();
+    ComplianceEvaluator loads = tip_load();
     const CleanUp done = clean_up(problem, loads, {kWanted, kGrid.dx()});
     EXPECT_TRUE(done.reached());
     EXPECT_NEAR(done.before.gap, slit, 1e-4);
@@ -115,7 +115,7 @@ TEST(CleanUp, LeavesNoGapBelowACell) {
 TEST(CleanUp, ClosesACutThroughWhatCarries) {
   BodyProblem problem =
       problem_of({bar({-0.1, 0}, {0.295, 0}, 0.02), bar({0.306, 0}, {0.7, 0}, 0.02)}, 0.9);
-  FixedLoads loads = tip_load();
+  ComplianceEvaluator loads = tip_load();
   const CleanUp done = clean_up(problem, loads, {kWanted, kGrid.dx()});
   EXPECT_EQ(done.pieces_before, 2);  // the strip at the end hangs on the second bar
   EXPECT_EQ(done.pieces_after, 1);
@@ -131,9 +131,9 @@ double compliance_on(int finer, BodyProblem problem) {
   for (int j = 0; j <= g.ny; ++j)
     for (int c = 0; c < 2; ++c) held.push_back({g.node(0, j), c});
   const std::vector<LoadCase> load = {{"tip", 1, {{g.node(g.nx, g.ny / 2), Vec2(0, 1)}}}};
-  FixedLoads loads(g, kSection, {}, held, load, false);
+  ComplianceEvaluator loads({g, kSection, {}}, held, load, false);
   const VectorXd fractions = fractions_of(problem, problem.design.components());
-  return judged_compliance(problem, loads, ersatz_of(problem).sharp(fractions));
+  return design_compliance(problem, loads, ersatz_of(problem).sharp(fractions));
 }
 
 // Both parts of a slanted bar that is cut hang on flanges: the union is one piece, and cells bridge
@@ -157,7 +157,7 @@ TEST(CleanUp, ClosesACutThroughASlantedBarThatFillsNoCell) {
       }
       BodyProblem problem = problem_of(parts, 1);
       problem.goal.limits.clear();
-      FixedLoads loads = tip_load();
+      ComplianceEvaluator loads = tip_load();
       const Widths wanted{kBar, kGrid.dx()};
       const CleanUp found = look_over(problem, loads, wanted);
       EXPECT_EQ(found.pieces_after, 1);
@@ -199,7 +199,7 @@ TEST(CleanUp, ClosesACutBeforeTheLineThatHolds) {
     };
     ASSERT_EQ(to_root().size(), 1u);
     EXPECT_NEAR(to_root().front().width, short_of, 1e-4);
-    FixedLoads loads = tip_load();
+    ComplianceEvaluator loads = tip_load();
     const Widths wanted{kWanted, kGrid.dx()};
     EXPECT_FALSE(look_over(problem, loads, wanted).reached());
     if (short_of > kGrid.dx() / 4) {
@@ -217,7 +217,7 @@ TEST(CleanUp, LeavesTheDesignWhereItWasWhenItIsToStop) {
   BodyProblem problem =
       problem_of({bar({-0.1, 0}, {0.295, 0}, 0.02), bar({0.306, 0}, {0.7, 0}, 0.02)}, 0.9);
   const VectorXd before = problem.design.x();
-  FixedLoads loads = tip_load();
+  ComplianceEvaluator loads = tip_load();
   for (const int steps : {0, 1}) {
     int asked = 0;
     const CleanUp done =
@@ -236,7 +236,7 @@ TEST(CleanUp, TakesOutWhatCarriesNothing) {
                   brace = bar({-0.05, 0.04}, {0.3, -0.025}, 0.012);
   BodyProblem problem = problem_of({beam, idle, brace}, 1);
   problem.goal.limits.clear();
-  FixedLoads loads = tip_load();
+  ComplianceEvaluator loads = tip_load();
   const CleanUp done = clean_up(problem, loads, kWidths);
   EXPECT_EQ(done.idle, 1);
   EXPECT_EQ(problem.design.n_components(), 2);
@@ -249,7 +249,7 @@ TEST(CleanUp, CutsAStub) {
                   brace = bar({-0.1, -0.06}, {0.45, 0.045}, 0.012);
   BodyProblem problem = problem_of({beam, brace}, 1);
   problem.goal.limits.clear();
-  FixedLoads loads = tip_load();
+  ComplianceEvaluator loads = tip_load();
   const CleanUp done = clean_up(problem, loads, kWidths);
   EXPECT_GE(done.stubs, 1);
   EXPECT_LT(done.volume_after, done.volume_before - 0.01);
@@ -267,7 +267,7 @@ TEST(CleanUp, IsTheSameBitForBitWhereverTheHeapPutsThings) {
   for (int run = 0; run < 3; ++run) {
     heap.again();
     BodyProblem problem = problem_of(start, 1);
-    FixedLoads loads = tip_load();
+    ComplianceEvaluator loads = tip_load();
     const CleanUp done = clean_up(problem, loads, kWidths);
     const std::vector<Component>& now = problem.design.components();
     if (run == 0) {
@@ -298,7 +298,7 @@ TEST(CleanUp, GivesNoBodyTheVolumeOfAnotherUnlessTheyShareIt) {
       p->widths = kWidths;
       p->shares_mass = shares;
     }
-    FixedLoads loads_a = tip_load(), loads_b = tip_load();
+    ComplianceEvaluator loads_a = tip_load(), loads_b = tip_load();
     const LoadedBody bodies[] = {{a, loads_a}, {b, loads_b}};
     const std::vector<BodyOutcome> out = outcomes_of_corrected(bodies, {});
     const double of_a = out[0].sharp.volume, of_b = out[1].sharp.volume;
@@ -315,7 +315,7 @@ TEST(BodyDesign, OfAWantedFeatureIsThatThick) {
       body_of(Design(kGrid, random_layout(2), thick), {tdf_settings()}, least_compliance(0.75));
   problem.widths = kWidths;
   problem.stages[0].min_half_thickness = half_thickness_for(kWanted);
-  FixedLoads loads = tip_load();
+  ComplianceEvaluator loads = tip_load();
   DesignSettings settings;
   settings.optimizer.max_iterations = 36;
   bool going = true;

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "optim/mmc/compliance.h"
+#include "optim/mmc/compliance_evaluator.h"
 
 namespace flexmorph::mmc {
 namespace {
@@ -116,8 +116,9 @@ TEST_P(EveryLoadDefinition, TaylorRemainderIsOfSecondOrder) {
   for (bool compress : {false, true}) {
     for (unsigned seed : {1u, 2u, 3u}) {
       const SmoothDesign start(kGrid, seed + 10), design(kGrid, seed);
-      Compliance compliance(loads, kSection, settings(compress), start.stiffness(0), start.mass(0));
-      Compliance::Value at;
+      ComplianceEvaluator compliance(loads, kSection, settings(compress), start.stiffness(0),
+                                     start.mass(0));
+      ComplianceEvaluator::Value at;
       compliance.evaluate(design.stiffness(0), design.mass(0), at);
       const double f = at.f;
       const double slope =
@@ -150,8 +151,8 @@ std::pair<double, double> energy_inside(const fem::StaticSolver& solver, const V
   MatrixXd u(1, solver.n_unknowns());
   for (int i = 0; i <= g.nx; ++i) {
     for (int j = 0; j <= g.ny; ++j) {
-      if (solver.row(i, j) >= 0) {
-        u.block<1, 2>(0, solver.row(i, j)) = at_nodes.segment<2>(2 * g.node(i, j)).transpose();
+      if (const int row = solver.row(g.node(i, j), 0); row >= 0) {
+        u.block<1, 2>(0, row) = at_nodes.segment<2>(2 * g.node(i, j)).transpose();
       }
     }
   }
@@ -167,8 +168,8 @@ TEST(Recovery, StiffnessLoadsReturnTheDeformation) {
   for (double smallest : {1e-3, 1e-6}) {
     const VectorXd factor = random_factors(kGrid, smallest, 5);
     for (Support support : {Support::moving_root, Support::far_end}) {
-      Compliance compliance(loads, kSection, {LoadDefinition::stiffness, support, true, 1e-10},
-                            factor, factor);
+      ComplianceEvaluator compliance(
+          loads, kSection, {LoadDefinition::stiffness, support, true, 1e-10}, factor, factor);
       const fem::StaticSolver solver(kGrid, kSection);
       for (int l = 0; l < 4; ++l) {
         const fem::EslSet& set = loads.sets[static_cast<std::size_t>(l)];
@@ -186,10 +187,11 @@ TEST(Recovery, StiffnessLoadsReturnTheDeformation) {
 TEST(Recovery, FrozenLoadsAgreeBetweenSupports) {
   const fem::EslSets loads = growing_plate(kGrid, 4, 12, 2);
   const VectorXd stiffness = random_factors(kGrid, 1e-6, 6), mass = random_factors(kGrid, 1e-2, 7);
-  Compliance at_root(loads, kSection, {LoadDefinition::frozen, Support::moving_root, true, 1e-10},
-                     stiffness, mass);
-  Compliance far_end(loads, kSection, {LoadDefinition::frozen, Support::far_end, true, 1e-10},
-                     stiffness, mass);
+  ComplianceEvaluator at_root(loads, kSection,
+                              {LoadDefinition::frozen, Support::moving_root, true, 1e-10},
+                              stiffness, mass);
+  ComplianceEvaluator far_end(
+      loads, kSection, {LoadDefinition::frozen, Support::far_end, true, 1e-10}, stiffness, mass);
   const fem::StaticSolver solver(kGrid, kSection);
   for (int l = 0; l < 4; ++l) {
     const VectorXd expected = at_root.displacement(stiffness, mass, l);
@@ -206,10 +208,10 @@ TEST(Compliance, FrozenEqualsInertiaAtTheStart) {
   const fem::EslSets loads = growing_plate(kGrid, 5, 12, 2);
   const SmoothDesign design(kGrid, 4);
   const VectorXd k = design.stiffness(0), m = design.mass(0);
-  Compliance inertia(loads, kSection, {}, k, m);
-  Compliance frozen(loads, kSection, {LoadDefinition::frozen, Support::moving_root, true, 1e-10}, k,
-                    m);
-  Compliance::Value a, b;
+  ComplianceEvaluator inertia(loads, kSection, {}, k, m);
+  ComplianceEvaluator frozen(loads, kSection,
+                             {LoadDefinition::frozen, Support::moving_root, true, 1e-10}, k, m);
+  ComplianceEvaluator::Value a, b;
   inertia.evaluate(k, m, a);
   frozen.evaluate(k, m, b);
   EXPECT_NEAR(a.f, b.f, 1e-11 * b.f);
@@ -226,9 +228,9 @@ TEST(Compliance, ARodUnderItsOwnWeightHasTheCompliance) {
   loads.sets[0].acceleration = VectorXd::Zero(2 * g.n_nodes());
   for (int n = 0; n < g.n_nodes(); ++n) loads.sets[0].acceleration(2 * n) = -9.81;
   loads.sets[0].root_column = 80;  // 0.6 m are outside
-  Compliance compliance(loads, section, {}, {}, {});
+  ComplianceEvaluator compliance(loads, section, {}, {}, {});
   const VectorXd ones = VectorXd::Ones(g.n_cells());
-  Compliance::Value value;
+  ComplianceEvaluator::Value value;
   compliance.evaluate(ones, ones, value);
   // f = q^2 L^3 / (3 E A) for q per length; linear elements: 1 - 1/(4 n^2) of it
   const double A = 1e-4, q = 9.81 * 2700 * A, L = 0.6;
@@ -243,8 +245,8 @@ TEST(Compliance, ARodUnderItsOwnWeightHasTheCompliance) {
 TEST_P(EveryLoadDefinition, CompressionChangesNothing) {
   const fem::EslSets loads = growing_plate(kGrid, 40, 20, 1);
   const SmoothDesign start(kGrid, 20);
-  Compliance all(loads, kSection, settings(false), start.stiffness(0), start.mass(0));
-  Compliance few(loads, kSection, settings(true), start.stiffness(0), start.mass(0));
+  ComplianceEvaluator all(loads, kSection, settings(false), start.stiffness(0), start.mass(0));
+  ComplianceEvaluator few(loads, kSection, settings(true), start.stiffness(0), start.mass(0));
   EXPECT_EQ(all.n_right_hand_sides(), 40);
   if (GetParam().loads == LoadDefinition::inertia) {
     // x, y of the rotation, Coriolis and root speed, three modes, and the tip's own slots
@@ -261,7 +263,7 @@ TEST_P(EveryLoadDefinition, CompressionChangesNothing) {
         m(c) = solid ? 1 : 0;
       }
     }
-    Compliance::Value a, b;
+    ComplianceEvaluator::Value a, b;
     all.evaluate(k, m, a);
     few.evaluate(k, m, b);
     EXPECT_NEAR(a.f, b.f, 1e-8 * a.f);
@@ -284,12 +286,12 @@ TEST(Compression, FarEndWithFewRootColumns) {
   const fem::EslSets loads = growing_plate(kGrid, 40, 20, 0, 10);
   const SmoothDesign start(kGrid, 20), design(kGrid, 1);
   for (LoadDefinition definition : {LoadDefinition::frozen, LoadDefinition::stiffness}) {
-    Compliance all(loads, kSection, {definition, Support::far_end, false, 0}, start.stiffness(0),
-                   start.mass(0));
-    Compliance few(loads, kSection, {definition, Support::far_end, true, 1e-10}, start.stiffness(0),
-                   start.mass(0));
+    ComplianceEvaluator all(loads, kSection, {definition, Support::far_end, false, 0},
+                            start.stiffness(0), start.mass(0));
+    ComplianceEvaluator few(loads, kSection, {definition, Support::far_end, true, 1e-10},
+                            start.stiffness(0), start.mass(0));
     EXPECT_LT(few.n_right_hand_sides(), 25);
-    Compliance::Value a, b;
+    ComplianceEvaluator::Value a, b;
     all.evaluate(design.stiffness(0), design.mass(0), a);
     few.evaluate(design.stiffness(0), design.mass(0), b);
     EXPECT_NEAR(a.f, b.f, 1e-8 * a.f);
@@ -302,11 +304,11 @@ TEST(Compression, OneRootColumnNeedsFewSolves) {
   fem::EslSets loads = growing_plate(kGrid, 30, 4, 4);
   loads.sets[7].weight = 0;
   const SmoothDesign design(kGrid, 1);
-  Compliance all(loads, kSection, {LoadDefinition::inertia, Support::moving_root, false, 0}, {},
-                 {});
-  Compliance few(loads, kSection, {}, {}, {});
+  ComplianceEvaluator all(loads, kSection,
+                          {LoadDefinition::inertia, Support::moving_root, false, 0}, {}, {});
+  ComplianceEvaluator few(loads, kSection, {}, {}, {});
   EXPECT_LE(few.n_right_hand_sides(), 8);
-  Compliance::Value a, b;
+  ComplianceEvaluator::Value a, b;
   all.evaluate(design.stiffness(0), design.mass(0), a);
   few.evaluate(design.stiffness(0), design.mass(0), b);
   EXPECT_NEAR(a.f, b.f, 1e-8 * a.f);
@@ -320,10 +322,11 @@ TEST(Compression, ATinyPlate) {
   const fem::EslSets loads = growing_plate(g, 12, 1, 0);
   const VectorXd ones = VectorXd::Ones(2);
   for (Support support : {Support::moving_root, Support::far_end}) {
-    Compliance::Value a, b;
-    Compliance(loads, kSection, {LoadDefinition::frozen, support, false, 0}, ones, ones)
+    ComplianceEvaluator::Value a, b;
+    ComplianceEvaluator(loads, kSection, {LoadDefinition::frozen, support, false, 0}, ones, ones)
         .evaluate(ones, ones, a);
-    Compliance few(loads, kSection, {LoadDefinition::frozen, support, true, 1e-10}, ones, ones);
+    ComplianceEvaluator few(loads, kSection, {LoadDefinition::frozen, support, true, 1e-10}, ones,
+                            ones);
     few.evaluate(ones, ones, b);
     EXPECT_NEAR(a.f, b.f, 1e-8 * a.f);
     if (support == Support::far_end) {
@@ -336,10 +339,11 @@ TEST(Compression, OrderAndZeroWeightsDoNotMatter) {
   fem::EslSets loads = growing_plate(kGrid, 30, 20, 1);
   loads.sets[7].weight = 0;
   const SmoothDesign design(kGrid, 1);
-  Compliance::Value sorted, shuffled;
-  Compliance(loads, kSection, {}, {}, {}).evaluate(design.stiffness(0), design.mass(0), sorted);
+  ComplianceEvaluator::Value sorted, shuffled;
+  ComplianceEvaluator(loads, kSection, {}, {}, {})
+      .evaluate(design.stiffness(0), design.mass(0), sorted);
   std::shuffle(loads.sets.begin(), loads.sets.end(), std::mt19937(3));
-  Compliance few(loads, kSection, {}, {}, {});
+  ComplianceEvaluator few(loads, kSection, {}, {}, {});
   few.evaluate(design.stiffness(0), design.mass(0), shuffled);
   EXPECT_LT(few.n_right_hand_sides(), 10);
   EXPECT_NEAR(sorted.f, shuffled.f, 1e-9 * sorted.f);
@@ -354,7 +358,7 @@ TEST(Compliance, RefusesWithTheReason) {
   const auto message = [&](const fem::EslSets& loads, const ComplianceSettings& settings,
                            const VectorXd& k0) {
     try {
-      Compliance(loads, kSection, settings, k0, ones);
+      ComplianceEvaluator(loads, kSection, settings, k0, ones);
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), Error::Kind::input);
       return std::string(error.what());
@@ -380,8 +384,8 @@ TEST(Compliance, RefusesWithTheReason) {
   const ComplianceSettings frozen{LoadDefinition::frozen, Support::far_end, true, 1e-10};
   EXPECT_NE(message(good, frozen, VectorXd::Ones(3)).find("factors"), std::string::npos);
 
-  Compliance compliance(good, kSection, {}, ones, ones);
-  Compliance::Value value;
+  ComplianceEvaluator compliance(good, kSection, {}, ones, ones);
+  ComplianceEvaluator::Value value;
   EXPECT_THROW(compliance.evaluate(-ones, ones, value), Error);
   VectorXd nan = ones;
   nan(3 * kGrid.nx) = std::numeric_limits<double>::quiet_NaN();

@@ -8,7 +8,7 @@
 #include <memory>
 #include <random>
 
-#include "optim/mmc/fixed_loads.h"
+#include "optim/mmc/compliance_evaluator.h"
 #include "optim/mmc/mmc_problem.h"
 #include "tests/optim/mmc_small.h"
 #include "tests/support/rates.h"
@@ -33,22 +33,21 @@ std::vector<Choice> choices() {
 }
 
 /// Clamped at the left, two loads at the right.
-std::unique_ptr<FixedLoads> loads() {
+std::unique_ptr<ComplianceEvaluator> loads() {
   std::vector<fem::HeldUnknown> held;
   for (int j = 0; j <= kGrid.ny; ++j)
     for (const int c : {0, 1}) held.push_back({kGrid.node(0, j), c});
   const std::vector<LoadCase> cases = {
       {"down", 1, {{kGrid.node(kGrid.nx, kGrid.ny / 2), {0, -1e3}}}},
       {"along", 0.3, {{kGrid.node(kGrid.nx, 0), {4e3, 1e2}}}}};
-  return std::make_unique<FixedLoads>(kGrid, kSection, std::span<const signed char>{}, held, cases,
-                                      false);
+  return std::make_unique<ComplianceEvaluator>(Plate{kGrid, kSection, {}}, held, cases, false);
 }
 
 class EveryGoal : public ::testing::TestWithParam<Choice> {
  protected:
   const Design design{kGrid, random_layout(3), kScale};
   const Ersatz ersatz{kGrid, tdf_settings().alpha, strip(), {}};
-  const std::unique_ptr<FixedLoads> response = loads();
+  const std::unique_ptr<ComplianceEvaluator> response = loads();
   MmcProblem problem{{kPlate, design, ersatz, *response}, tdf_settings(2), GetParam().goal};
   const double sigma = 0.7;
   const VectorXd lambda = VectorXd::LinSpaced(problem.n_constraints(), 0.4, 1.3);

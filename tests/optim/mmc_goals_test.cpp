@@ -8,7 +8,7 @@
 #include <random>
 
 #include "optim/gradient_check.h"
-#include "optim/mmc/fixed_loads.h"
+#include "optim/mmc/compliance_evaluator.h"
 #include "tests/optim/mmc_small.h"
 
 namespace flexmorph::mmc::test {
@@ -33,8 +33,8 @@ std::vector<LoadCase> loads(int n) {
   return all;
 }
 
-FixedLoads plate(int n, bool compress) {
-  return FixedLoads(kGrid, kSection, {}, clamp(), loads(n), compress);
+ComplianceEvaluator plate(int n, bool compress) {
+  return ComplianceEvaluator({kGrid, kSection, {}}, clamp(), loads(n), compress);
 }
 
 VectorXd random_factors(unsigned seed) {
@@ -45,11 +45,11 @@ VectorXd random_factors(unsigned seed) {
   return f;
 }
 
-TEST(FixedLoads, DerivativesAgreeWithDifferences) {
-  FixedLoads plate4 = plate(4, false);
+TEST(ComplianceEvaluator, DerivativesAgreeWithDifferences) {
+  ComplianceEvaluator plate4 = plate(4, false);
   const VectorXd b = random_factors(1), mass = b;
-  LoadResponse::Value value, plus, minus;
-  LoadResponse::Each each, each_plus, each_minus;
+  ComplianceEvaluator::Value value, plus, minus;
+  ComplianceEvaluator::Each each, each_plus, each_minus;
   plate4.evaluate(b, mass, value);
   plate4.evaluate_each(b, mass, each);
   for (const int cell : {0, 77, 311, 599}) {
@@ -71,13 +71,13 @@ TEST(FixedLoads, DerivativesAgreeWithDifferences) {
   EXPECT_EQ(value.d_mass.norm(), 0);
 }
 
-TEST(FixedLoads, TheSumIsThatOfItsLoadsWithOrWithoutCompression) {
-  FixedLoads all = plate(9, false), few = plate(9, true);
+TEST(ComplianceEvaluator, TheSumIsThatOfItsLoadsWithOrWithoutCompression) {
+  ComplianceEvaluator all = plate(9, false), few = plate(9, true);
   EXPECT_EQ(all.n_right_hand_sides(), 9);
   EXPECT_EQ(few.n_right_hand_sides(), 3);
   const VectorXd b = random_factors(2);
-  LoadResponse::Value a, c;
-  LoadResponse::Each each;
+  ComplianceEvaluator::Value a, c;
+  ComplianceEvaluator::Each each;
   all.evaluate(b, b, a);
   few.evaluate(b, b, c);
   few.evaluate_each(b, b, each);
@@ -95,8 +95,8 @@ TEST(FixedLoads, TheSumIsThatOfItsLoadsWithOrWithoutCompression) {
   EXPECT_LT((few.individual(b, b) - each.f).norm(), 1e-9 * each.f.norm());
 }
 
-TEST(FixedLoads, ComplianceIsTheWorkOfTheForces) {
-  FixedLoads plate3 = plate(3, false);
+TEST(ComplianceEvaluator, ComplianceIsTheWorkOfTheForces) {
+  ComplianceEvaluator plate3 = plate(3, false);
   const VectorXd b = random_factors(3);
   const VectorXd C = plate3.individual(b, b);
   const std::vector<LoadCase> all = loads(3);
@@ -109,19 +109,19 @@ TEST(FixedLoads, ComplianceIsTheWorkOfTheForces) {
   }
 }
 
-TEST(FixedLoads, RefusesLoadsThatDoNothing) {
+TEST(ComplianceEvaluator, RefusesLoadsThatDoNothing) {
   std::vector<LoadCase> held = {{"held", 1, {{kGrid.node(0, 3), Vec2(1, 0)}}}};
-  EXPECT_THROW(FixedLoads(kGrid, kSection, {}, clamp(), held, false), Error);
-  EXPECT_THROW(FixedLoads(kGrid, kSection, {}, clamp(), {}, false), Error);
+  EXPECT_THROW(ComplianceEvaluator({kGrid, kSection, {}}, clamp(), held, false), Error);
+  EXPECT_THROW(ComplianceEvaluator({kGrid, kSection, {}}, clamp(), {}, false), Error);
 }
 
 // Loads that follow the design and a moving root, one by one against their sum and differences.
 TEST(Compliance, EveryLoadByItself) {
   const fem::EslSets sets = turning_plate(4);
-  Compliance compliance(sets, kSection, {}, {}, {});
+  ComplianceEvaluator compliance(sets, kSection, {}, {}, {});
   const VectorXd k = random_factors(4), m = random_factors(5);
-  LoadResponse::Value value;
-  LoadResponse::Each each, plus, minus;
+  ComplianceEvaluator::Value value;
+  ComplianceEvaluator::Each each, plus, minus;
   compliance.evaluate(k, m, value);
   compliance.evaluate_each(k, m, each);
   VectorXd by_k = VectorXd::Zero(kGrid.n_cells()), by_m = by_k;
@@ -165,7 +165,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_P(EveryGoal, GradientsAgreeWithDifferences) {
   const Design design(kGrid, random_layout(3), kScale);
   const Ersatz ersatz(kGrid, tdf_settings().alpha, strip(), {});
-  FixedLoads statics = plate(5, !compliance_row(GetParam().goal).per_load);
+  ComplianceEvaluator statics = plate(5, !compliance_row(GetParam().goal).per_load);
   MmcProblem problem({kPlate, design, ersatz, statics}, tdf_settings(), GetParam().goal);
   const VectorXd x = problem.start();
   ASSERT_EQ(x.size(), problem.n_variables());
@@ -189,7 +189,7 @@ TEST_P(EveryGoal, GradientsAgreeWithDifferences) {
 TEST(WorstCase, BoundsEveryLoadAndStartsAtTheLargest) {
   const Design design(kGrid, layout(), kScale);
   const Ersatz ersatz(kGrid, tdf_settings().alpha, strip(), {});
-  FixedLoads statics = plate(5, false);
+  ComplianceEvaluator statics = plate(5, false);
   MmcProblem problem({kPlate, design, ersatz, statics}, tdf_settings(),
                      least_compliance(0.5, kComplianceWorst));
   const optim::Response r = problem.evaluate(problem.start());
@@ -211,7 +211,7 @@ Designed designed(const Goal& goal, int n_loads, int iterations) {
   TdfSettings tdf = tdf_settings();
   tdf.erosion = 0;
   BodyProblem problem = body_of(Design(kGrid, layout(), kScale), {tdf}, goal);
-  FixedLoads statics = plate(n_loads, !compliance_row(goal).per_load);
+  ComplianceEvaluator statics = plate(n_loads, !compliance_row(goal).per_load);
   DesignSettings settings;
   settings.optimizer.max_iterations = iterations;
   bool going = true;
@@ -245,7 +245,7 @@ TEST(VolumeUnderCompliance, IsTheInverseOfComplianceUnderVolume) {
 TEST(Finish, MeetsTheKktConditions) {
   TdfSettings tdf = tdf_settings();
   tdf.erosion = 0;
-  FixedLoads statics = plate(2, true);
+  ComplianceEvaluator statics = plate(2, true);
   DesignSettings settings;
   settings.optimizer.max_iterations = 150;
   bool going = true;

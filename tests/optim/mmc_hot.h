@@ -6,8 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "optim/mmc/compliance.h"
-#include "optim/mmc/fixed_loads.h"
+#include "optim/mmc/compliance_evaluator.h"
 #include "tests/optim/mmc_small.h"
 
 /// Hot plates for tests.
@@ -79,9 +78,9 @@ inline VectorXd whole(const VectorXd& w, const fem::EslSet& set, const Grid& g) 
 template <class FoundOf>
 void expect_answers(const fem::EslSets& loads, const VectorXd& k, const VectorXd& m, bool compress,
                     const Allowed& allowed, const FoundOf& found) {
-  Compliance compliance(loads, kSection, {.compress = compress}, {}, {});
-  Compliance::Value value;
-  Compliance::Each each;
+  ComplianceEvaluator compliance(loads, kSection, {.compress = compress}, {}, {});
+  ComplianceEvaluator::Value value;
+  ComplianceEvaluator::Each each;
   compliance.evaluate(k, m, value);
   compliance.evaluate_each(k, m, each);
   const VectorXd individual = compliance.individual(k, m);

@@ -78,7 +78,7 @@ TEST(EslLoop, MakesAFeasibleStifferDesign) {
 
   // And the outcome is that of the design left behind, computed afresh.
   const Ersatz ersatz(kGrid, 1e-3, problems[0].solid, {});
-  Compliance compliance(loads, kSection, {}, {}, {});
+  ComplianceEvaluator compliance(loads, kSection, {}, {}, {});
   MmcProblem again({kPlate, problems[0].design, ersatz, compliance}, whole(1), least_compliance());
   again.evaluate(problems[0].design.x());
   EXPECT_NEAR(again.compliance(), o.compliance, 1e-12 * o.compliance);
@@ -91,8 +91,8 @@ TEST(EslLoop, ComparesWithTheSameVolumeSpreadEvenly) {
     return std::vector<fem::EslSets>{turning_plate(2)};
   };
   const auto outcome = esl_loop(problems, simulate, quick(2), {});
-  Compliance compliance(turning_plate(2), kSection, {}, {}, {});
-  Compliance::Value value;
+  ComplianceEvaluator compliance(turning_plate(2), kSection, {}, {}, {});
+  ComplianceEvaluator::Value value;
   const VectorXd half = VectorXd::Constant(kGrid.n_cells(), 0.5);
   compliance.evaluate(half, half, value);
   // Two systems are solved, the second one with half of the stiffness. Their condition number is
@@ -114,7 +114,7 @@ TEST(EslLoop, RowsDescribeTheirIterates) {
       return std::vector<fem::EslSets>{loads};
     };
     const Ersatz ersatz(kGrid, 1e-3, problems[0].solid, {});
-    Compliance compliance(loads, kSection, {}, {}, {});
+    ComplianceEvaluator compliance(loads, kSection, {}, {}, {});
     int rows = 0, evaluations = 0, sharp = 0;
     LoopObserver observer;
     observer.iteration = [&](const IterationReport& r) {
@@ -242,7 +242,7 @@ TEST(EslLoop, EndsWhenTheDesignRests) {
     EXPECT_EQ(change <= settings.tolerance, k == n - 1) << "cycle " << k + 1 << ": " << change;
   }
   ASSERT_EQ(verdicts.size(), n);
-  EXPECT_EQ(calls, static_cast<int>(n) + 1);  // the last designs are judged too
+  EXPECT_EQ(calls, static_cast<int>(n) + 1);  // the last designs are verified too
   for (const CycleVerdict& v : verdicts) {
     EXPECT_EQ(v.best, v.cycle == static_cast<int>(n));
     EXPECT_EQ(v.strain_energy_integral, 1.0 / (v.cycle + 1));
@@ -284,27 +284,28 @@ TEST(EslLoop, EndsWhenACycleDoesNotPay) {
   EXPECT_NE(sharp[1], sharp[2]);
 }
 
-// Where another motion judges, that of the loads has no say, and is not made where nothing follows.
-TEST(EslLoop, IsJudgedByAnotherMotion) {
+// Where another motion compares cycles, that of the loads has no say, and is not made where nothing
+// follows.
+TEST(EslLoop, IsVerifiedByAnotherMotion) {
   std::vector<BodyProblem> problems = one_body({1.5});
   LoopSettings settings = quick(5);
   settings.max_cycles = 12;
   settings.tolerance = 0;
   const double integral[] = {3, 2, 2.5};
-  int calls = 0, judged = 0;
+  int calls = 0, verified = 0;
   VectorXd seen;
   const auto simulate = [&](std::span<const fem::Factors> factors) {
-    EXPECT_EQ(calls == 0, judged == 0);
-    if (judged > 0) {
+    EXPECT_EQ(calls == 0, verified == 0);
+    if (verified > 0) {
       EXPECT_EQ(factors[0].stiffness, seen);
     }
     std::vector<fem::EslSets> out{turning_plate(2)};
     out[0].strain_energy_integral = ++calls;  // ever worse
     return out;
   };
-  settings.judge = [&](std::span<const fem::Factors> factors) {
+  settings.verification_motion = [&](std::span<const fem::Factors> factors) {
     seen = factors[0].stiffness;
-    return integral[judged++];
+    return integral[verified++];
   };
   std::vector<double> sharp;
   std::vector<CycleVerdict> verdicts;
@@ -317,7 +318,7 @@ TEST(EslLoop, IsJudgedByAnotherMotion) {
   };
   const auto outcome = esl_loop(problems, simulate, settings, observer);
   EXPECT_EQ(calls, 3);
-  EXPECT_EQ(judged, 3);
+  EXPECT_EQ(verified, 3);
   ASSERT_EQ(verdicts.size(), 3u);
   for (size_t k = 0; k < 3; ++k) {
     EXPECT_EQ(verdicts[k].strain_energy_integral, integral[k]);
@@ -328,9 +329,9 @@ TEST(EslLoop, IsJudgedByAnotherMotion) {
   // One cycle is not compared with any other.
   settings.max_cycles = 1;
   problems = one_body({1.5});
-  judged = calls = 0;
+  verified = calls = 0;
   esl_loop(problems, simulate, settings, {});
-  EXPECT_EQ(judged, 0);
+  EXPECT_EQ(verified, 0);
 }
 
 TEST(EslLoop, StopsWhenTheObserverSaysSo) {

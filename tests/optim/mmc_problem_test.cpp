@@ -32,7 +32,7 @@ const Choice kChoices[] = {
 struct Whole {
   Design design;
   Ersatz ersatz;
-  Compliance compliance;
+  ComplianceEvaluator compliance;
   MmcProblem problem;
 
   explicit Whole(const std::vector<Component>& start, const ComplianceSettings& settings = {},
@@ -139,7 +139,7 @@ TEST(MmcProblem, IsMadeOfItsParts) {
   EXPECT_EQ(problem.phi(), tdf.phi());
   EXPECT_EQ(problem.factors().stiffness, factors.stiffness);
   EXPECT_EQ(problem.factors().mass, factors.mass);
-  Compliance::Value value;
+  ComplianceEvaluator::Value value;
   whole.compliance.evaluate(factors.stiffness, factors.mass, value);
   EXPECT_EQ(problem.compliance(), value.f);
   EXPECT_EQ(r.f, std::log(value.f));

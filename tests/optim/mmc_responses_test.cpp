@@ -41,7 +41,7 @@ const ResponseRow kAxes{.name = "axes",
 struct Whole {
   Design design;
   Ersatz ersatz;
-  Compliance loads;
+  ComplianceEvaluator loads;
   MmcProblem problem;
 
   explicit Whole(const Goal& goal, unsigned seed = 3)
@@ -157,10 +157,10 @@ TEST(Responses, AreMadeOfWhatTheyMeasure) {
   Whole whole(all);
   const optim::Response r = whole.problem.evaluate(whole.problem.start());
   const CellFactors& b = whole.problem.factors();
-  Compliance again(turning_plate(4), kSection, {}, {}, {});
-  LoadResponse::Value value;
+  ComplianceEvaluator again(turning_plate(4), kSection, {}, {}, {});
+  ComplianceEvaluator::Value value;
   again.evaluate(b.stiffness, b.mass, value);
-  LoadResponse::Each each;
+  ComplianceEvaluator::Each each;
   again.evaluate_each(b.stiffness, b.mass, each);
   EXPECT_EQ((*whole.problem.values(kComplianceSum))[0], value.f);
   EXPECT_EQ(*whole.problem.values(kComplianceWorst), each.f);
@@ -202,7 +202,7 @@ TEST(Inertia, OfAFullPlateIsThatOfARectangle) {
   const double mass = 2700 * 0.01 * 0.6 * 0.1;
   const double whole = mass * (0.6 * 0.6 / 3 + 0.1 * 0.1 / 12);
   EXPECT_NEAR(row.full(plate), whole, 1e-14);
-  Compliance loads(turning_plate(1), kSection, {}, {}, {});
+  ComplianceEvaluator loads(turning_plate(1), kSection, {}, {}, {});
   DesignState state(loads);
   const VectorXd full = VectorXd::Ones(kGrid.n_cells());
   Values found;

@@ -44,7 +44,7 @@ DesignSettings settings_of(const std::string& optimizer, int iterations) {
 Designed designed(const std::string& optimizer, int iterations, double force_a, double force_b,
                   bool together) {
   Designed out{body("a"), body("b"), {}};
-  FixedLoads loads_a = tip_load(kSection, force_a), loads_b = tip_load(kSection, force_b);
+  ComplianceEvaluator loads_a = tip_load(kSection, force_a), loads_b = tip_load(kSection, force_b);
   const DesignSettings settings = settings_of(optimizer, iterations);
   bool going = true;
   if (together) {
@@ -104,8 +104,8 @@ TEST(DesignBodies, RowsDescribeTheirBodies) {
     BodyProblem a = body("a", {2, 1}), b = body("b", {3, 2, 1.5, 1});
     b.section = kOther;
     b.goal = least_compliance(0.3);
-    FixedLoads loads_a = tip_load(kSection, 2), loads_b = tip_load(kOther, 1);
-    FixedLoads again_a = tip_load(kSection, 2), again_b = tip_load(kOther, 1);
+    ComplianceEvaluator loads_a = tip_load(kSection, 2), loads_b = tip_load(kOther, 1);
+    ComplianceEvaluator again_a = tip_load(kSection, 2), again_b = tip_load(kOther, 1);
     const Ersatz ersatz = ersatz_of(a);
     std::map<int, std::pair<double, double>> sums;  // compliance, and mass over the budget
     std::map<std::string, std::vector<double>> bands;
@@ -171,7 +171,7 @@ TEST(DesignBodies, DropsOfOneBodyLeaveTheOtherWhereItIs) {
   a.drop_every = 4;
   b.drop_every = 0;
   const int before = a.design.n_components();
-  FixedLoads loads_a = tip_load(kSection, 1), loads_b = tip_load(kSection, 1);
+  ComplianceEvaluator loads_a = tip_load(kSection, 1), loads_b = tip_load(kSection, 1);
   std::vector<VectorXd> of_b;
   int changes = 0;
   const auto observe = [&](const IterationReport& r) {
@@ -204,7 +204,7 @@ TEST(DesignBodies, CleanUpsKeepTheBudget) {
         crossing_layout(kGrid.x0, kGrid.y0, kGrid.width, kGrid.height, 4, 1, 0.012, 0.09));
   a.widths.solid = kWanted;
   a.drop_every = b.drop_every = 0;
-  FixedLoads loads_a = tip_load(kSection, 3), loads_b = tip_load(kSection, 1);
+  ComplianceEvaluator loads_a = tip_load(kSection, 3), loads_b = tip_load(kSection, 1);
   bool going = true;
   const LoadedBody bodies[] = {{a, loads_a}, {b, loads_b}};
   const auto outcomes = design_bodies(bodies, 1, settings_of("mma", 30), {}, going);
@@ -258,8 +258,8 @@ TEST(EslLoop, SolvesThoseTogetherThatShare) {
   EXPECT_EQ(stopped[0].body, "a");
 }
 
-// Three cycles: the table is complete after every judged one, changes are those of the designs, and
-// the best one by its motion is the result.
+// Three cycles: the table is complete after every verified one, changes are those of the designs,
+// and the best one by its motion is the result.
 TEST(EslLoop, CyclesMakeATable) {
   std::vector<BodyProblem> problems = {body("a"), body("b")};
   LoopSettings settings;

@@ -17,8 +17,8 @@ namespace {
 struct Pair {
   Design design_a, design_b;
   Ersatz ersatz;
-  Compliance compliance_a;
-  FixedLoads compliance_b;
+  ComplianceEvaluator compliance_a;
+  ComplianceEvaluator compliance_b;
   MmcProblem a, b;
   SharedProblem shared;
 
@@ -81,13 +81,13 @@ TEST(SharedProblem, IsMadeOfItsParts) {
   const optim::Response r = pair.shared.evaluate(x);
   // Both compliances and masses afresh, from what the designs are.
   double compliance = 0, mass = 0;
-  const auto add = [&](const Design& design, LoadResponse& loads, double band,
+  const auto add = [&](const Design& design, ComplianceEvaluator& loads, double band,
                        const fem::PlaneSection& s) {
     UnionTdf tdf(kGrid, tdf_settings(band));
     tdf.evaluate(design.components());
     CellFactors factors;
     pair.ersatz.factors(tdf.density(), tdf.eroded(), factors);
-    LoadResponse::Value value;
+    ComplianceEvaluator::Value value;
     loads.evaluate(factors.stiffness, factors.mass, value);
     compliance += value.f;
     mass += s.density * s.thickness * kGrid.dx() * kGrid.dy() * factors.mass.sum();

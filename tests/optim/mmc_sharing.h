@@ -1,18 +1,21 @@
 #pragma once
 
-#include "optim/mmc/fixed_loads.h"
+#include "optim/mmc/compliance_evaluator.h"
 #include "tests/optim/mmc_small.h"
 
 /// Bodies that share mass, for tests.
 namespace flexmorph::mmc::test {
 
 /// The small plate, clamped, with a force at its tip.
-inline FixedLoads tip_load(const fem::PlaneSection& section, double force, double weight = 1) {
+inline ComplianceEvaluator tip_load(const fem::PlaneSection& section, double force,
+                                    double weight = 1) {
   std::vector<fem::HeldUnknown> held;
   for (int j = 0; j <= kGrid.ny; ++j)
     for (int c = 0; c < 2; ++c) held.push_back({kGrid.node(0, j), c});
   const int tip = kGrid.node(kGrid.nx, kGrid.ny / 2);
-  return {kGrid, section, {}, held, std::vector<LoadCase>{{"tip", weight, {{tip, {0, force}}}}},
+  return {{kGrid, section, {}},
+          held,
+          std::vector<LoadCase>{{"tip", weight, {{tip, {0, force}}}}},
           false};
 }
 

@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
+#include "optim/mmc/compliance_evaluator.h"
 #include "optim/mmc/esl_loop.h"
-#include "optim/mmc/fixed_loads.h"
 #include "tests/support/disturbance.h"
 
 /// A plate small enough for tests: 60 x 10 cells, 24 components, a few loads.
@@ -69,12 +69,12 @@ inline Component bar(const Vec2& from, const Vec2& to, double half_thickness) {
 }
 
 /// Held at its left edge, a unit force upwards at the middle of the right one.
-inline FixedLoads tip_load() {
+inline ComplianceEvaluator tip_load() {
   std::vector<fem::HeldUnknown> held;
   for (int j = 0; j <= kGrid.ny; ++j)
     for (int c = 0; c < 2; ++c) held.push_back({kGrid.node(0, j), c});
   const std::vector<LoadCase> loads = {{"tip", 1, {{kGrid.node(60, 5), Vec2(0, 1)}}}};
-  return {kGrid, kSection, {}, held, loads, false};
+  return {{kGrid, kSection, {}}, held, loads, false};
 }
 
 /// The small plate with a solid strip.

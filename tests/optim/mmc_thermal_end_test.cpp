@@ -9,8 +9,8 @@
 #include <cmath>
 
 #include "optim/gradient_check.h"
-#include "optim/mmc/held_expansion.h"
-#include "optim/mmc/judged_design.h"
+#include "optim/mmc/design_verification.h"
+#include "optim/mmc/restrained_expansion.h"
 #include "tests/optim/mmc_hot.h"
 #include "tests/support/errors.h"
 
@@ -144,25 +144,25 @@ fem::EslSets smooth_loads(int fine) {
   return loads;
 }
 
-// The judge's triangles hold the far edge of a full plate as its cells do. Energies of cells are
-// too large by half as much when there are twice as many: corners where what is held meets what is
-// free.
-TEST(HeldEnd, IsJudgedAsCellsSay) {
+// The triangles of the verification hold the far edge of a full plate as its cells do. Energies of
+// cells are too large by half as much when there are twice as many: corners where what is held
+// meets what is free.
+TEST(HeldEnd, VerificationAgreesWithCells) {
   const fem::EslSets coarse = smooth_loads(1), fine = smooth_loads(2);
   BodyProblem problem = body_of(Design(kGrid, layout(), kScale), {tdf_settings()});
   const Grid& g = problem.grid = fine.grid;
   problem.solid = {corners_of({{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}})};
-  ASSERT_EQ(cannot_judge(problem), "");
-  const judge::Judged judged =
-      judge_design(problem, exported_regions(problem), loads_by_position(problem, fine));
+  ASSERT_EQ(reason_not_verifiable(problem), "");
+  const verification::OutlineVerification verified =
+      verify_design(problem, exported_regions(problem), loads_by_position(problem, fine));
   const auto cells = [](const fem::EslSets& loads) -> VectorXd {
     const VectorXd ones = VectorXd::Ones(loads.grid.n_cells());
-    return Compliance(loads, kSection, {}, ones, ones).individual(ones, ones);
+    return ComplianceEvaluator(loads, kSection, {}, ones, ones).individual(ones, ones);
   };
   const double sharpened = std::pow(2, 2 * 0.758) - 1;
   const VectorXd limit = cells(fine) - (cells(coarse) - cells(fine)) / sharpened;
   for (Eigen::Index l = 0; l < limit.size(); ++l)
-    EXPECT_NEAR(judged.compliances[static_cast<size_t>(l)], limit[l], 0.005 * limit[l]) << l;
+    EXPECT_NEAR(verified.compliances[static_cast<size_t>(l)], limit[l], 0.005 * limit[l]) << l;
 }
 
 // Heat that is held is relieved where material goes; f is linear in all of k but for the springs.
@@ -174,8 +174,8 @@ TEST(HeldEnd, TakingMaterialOffRelievesHeldHeat) {
     set.forces.clear();
   }
   const VectorXd k = random_factors(kGrid, 1e-3, 4);
-  Compliance held(loads, kSection, {}, {}, {});
-  Compliance::Value value, free;
+  ComplianceEvaluator held(loads, kSection, {}, {}, {});
+  ComplianceEvaluator::Value value, free;
   held.evaluate(k, k, value);
   EXPECT_GE(value.d_stiffness.minCoeff(), 0);
   EXPECT_LT((value.d_stiffness - value.d_held).norm(), 1e-14 * value.d_held.norm());
@@ -183,7 +183,7 @@ TEST(HeldEnd, TakingMaterialOffRelievesHeldHeat) {
   EXPECT_LT(value.d_stiffness.dot(k), value.f);
   // A hold more is energy more.
   for (fem::EslSet& set : loads.sets) set.held_end_stretch = 0;
-  Compliance(loads, kSection, {}, {}, {}).evaluate(k, k, free);
+  ComplianceEvaluator(loads, kSection, {}, {}, {}).evaluate(k, k, free);
   EXPECT_GT(value.f, 1.05 * free.f);
 }
 
@@ -211,15 +211,15 @@ TEST(HeldEnd, RemaindersAreOfSecondOrder) {
   const VectorXd k = random_factors(kGrid, 1e-3, 23), m = random_factors(kGrid, 1e-2, 24);
   for (const LoadDefinition definition :
        {LoadDefinition::inertia, LoadDefinition::frozen, LoadDefinition::stiffness}) {
-    Compliance compliance(loads, kSection, {definition}, k0, m0);
-    Compliance::Value value;
+    ComplianceEvaluator compliance(loads, kSection, {definition}, k0, m0);
+    ComplianceEvaluator::Value value;
     compliance.evaluate(k, m, value);
     // Along ln k and ln m.
     const VectorXd p = random_factors(kGrid, 0.1, 25), r = random_factors(kGrid, 0.1, 26);
     const double slope =
         value.d_stiffness.dot(k.cwiseProduct(p)) + value.d_mass.dot(m.cwiseProduct(r));
     const auto f = [&](const VectorXd& s) {
-      Compliance::Value at;
+      ComplianceEvaluator::Value at;
       compliance.evaluate(k.cwiseProduct((s[0] * p).array().exp().matrix()),
                           m.cwiseProduct((s[0] * r).array().exp().matrix()), at);
       return at.f;
@@ -231,9 +231,9 @@ TEST(HeldEnd, RemaindersAreOfSecondOrder) {
 }
 
 TEST(HeldEnd, DerivativesAgreeWithDifferences) {
-  Compliance compliance(held_plate(4), kSection, {}, {}, {});
+  ComplianceEvaluator compliance(held_plate(4), kSection, {}, {}, {});
   const VectorXd k = random_factors(kGrid, 1e-2, 31), m = random_factors(kGrid, 1e-2, 32);
-  Compliance::Value value, plus, minus;
+  ComplianceEvaluator::Value value, plus, minus;
   compliance.evaluate(k, m, value);
   for (const int c : {kGrid.cell(7, 3), kGrid.cell(30, 9), kGrid.cell(58, 0), kGrid.cell(59, 0),
                       kGrid.cell(59, 5), kGrid.cell(59, 9)}) {
@@ -256,7 +256,7 @@ TEST(HeldEnd, DerivativesAgreeWithDifferences) {
 TEST(HeldEnd, StiffnessLoadsReturnTheDeformation) {
   const fem::EslSets loads = held_plate(4);
   const VectorXd k = random_factors(kGrid, 1e-3, 10);
-  Compliance compliance(loads, kSection, {LoadDefinition::stiffness}, k, k);
+  ComplianceEvaluator compliance(loads, kSection, {LoadDefinition::stiffness}, k, k);
   for (int l = 0; l < 4; ++l) {
     const fem::EslSet& set = loads.sets[static_cast<size_t>(l)];
     const VectorXd u = whole(set.deformation, set, kGrid);
@@ -269,7 +269,7 @@ TEST(HeldEnd, StiffnessLoadsReturnTheDeformation) {
 TEST(HeldEnd, LoadsOfOneKindShareTheirGrowth) {
   fem::EslSets loads = hot_plate(12, kStretch);
   const auto n = [&] {
-    return Compliance(loads, kSection, {.compress = false}, {}, {}).n_right_hand_sides();
+    return ComplianceEvaluator(loads, kSection, {.compress = false}, {}, {}).n_right_hand_sides();
   };
   for (fem::EslSet& set : loads.sets) set.root_column /= 4;
   EXPECT_EQ(n(), 12 + 3);
@@ -285,16 +285,17 @@ TEST(HeldEnd, RefusesWhatItDoesNotHold) {
   const VectorXd ones = VectorXd::Ones(kGrid.n_cells());
   fem::EslSets loads = hot_plate(2, kStretch);
   loads.sets[1].held_end_stretch = kStretch;
-  EXPECT_TRUE(says(
-      error_of(
-          Error::Kind::input,
-          [&] {
-            Compliance(loads, kSection, {LoadDefinition::frozen, Support::far_end}, ones, ones);
-          }),
-      "far edge"));
+  EXPECT_TRUE(says(error_of(Error::Kind::input,
+                            [&] {
+                              ComplianceEvaluator(loads, kSection,
+                                                  {LoadDefinition::frozen, Support::far_end}, ones,
+                                                  ones);
+                            }),
+                   "far edge"));
   loads.sets[1].held_end_stretch = std::nan("");
-  EXPECT_TRUE(says(error_of(Error::Kind::input, [&] { Compliance(loads, kSection, {}, {}, {}); }),
-                   "load 1: a thermal stretch"));
+  EXPECT_TRUE(
+      says(error_of(Error::Kind::input, [&] { ComplianceEvaluator(loads, kSection, {}, {}, {}); }),
+           "load 1: a thermal stretch"));
   for (const double bad : {-1.0, std::nan("")})
     EXPECT_TRUE(
         says(error_of(Error::Kind::input, [&] { fem::StaticSolver(kGrid, kSection, 0, bad); }),

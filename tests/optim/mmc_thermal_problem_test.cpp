@@ -76,26 +76,26 @@ TEST_P(HotLoads, RemaindersAreOfSecondOrder) {
   const fem::EslSets loads = hot_plate(4, kStretch, GetParam().edge_grows);
   for (const unsigned seed : {1u, 2u}) {
     const Line start(seed + 10), line(seed);
-    Compliance compliance(loads, kSection, {GetParam().loads, GetParam().support},
-                          start.stiffness(0), start.mass(0));
-    Compliance::Value value;
+    ComplianceEvaluator compliance(loads, kSection, {GetParam().loads, GetParam().support},
+                                   start.stiffness(0), start.mass(0));
+    ComplianceEvaluator::Value value;
     compliance.evaluate(line.stiffness(0), line.mass(0), value);
     const double slope =
         value.d_stiffness.dot(line.d_stiffness(0)) + value.d_mass.dot(line.d_mass(0));
     const auto sum = [&](double s) {
-      Compliance::Value at;
+      ComplianceEvaluator::Value at;
       compliance.evaluate(line.stiffness(s), line.mass(s), at);
       return at.f;
     };
     EXPECT_NEAR(taylor_order(sum, slope), 2, 0.05) << seed;
 
-    Compliance::Each each;
+    ComplianceEvaluator::Each each;
     compliance.evaluate_each(line.stiffness(0), line.mass(0), each);
     for (const int l : {0, 3}) {
       double of_load = each.d_stiffness.row(l).dot(line.d_stiffness(0));
       if (each.d_mass.size() > 0) of_load += each.d_mass.row(l).dot(line.d_mass(0));
       const auto one = [&](double s) {
-        Compliance::Each at;
+        ComplianceEvaluator::Each at;
         compliance.evaluate_each(line.stiffness(s), line.mass(s), at);
         return at.f(l);
       };
@@ -108,9 +108,10 @@ TEST_P(HotLoads, RemaindersAreOfSecondOrder) {
 TEST(HotCompliance, TheTestsWeighHeatAndLoadsAlike) {
   const Line line(1);
   for (const VectorXd& k : {line.stiffness(0), VectorXd(VectorXd::Ones(kGrid.n_cells()))}) {
-    Compliance::Value hot, cold;
-    Compliance(hot_plate(4, kStretch), kSection, {}, {}, {}).evaluate(k, line.mass(0), hot);
-    Compliance(hot_plate(4, 0), kSection, {}, {}, {}).evaluate(k, line.mass(0), cold);
+    ComplianceEvaluator::Value hot, cold;
+    ComplianceEvaluator(hot_plate(4, kStretch), kSection, {}, {}, {})
+        .evaluate(k, line.mass(0), hot);
+    ComplianceEvaluator(hot_plate(4, 0), kSection, {}, {}, {}).evaluate(k, line.mass(0), cold);
     const double share = (hot.f - cold.f) / hot.f;
     EXPECT_GT(share, 0.05);
     EXPECT_LT(share, 0.98);
@@ -190,9 +191,9 @@ fem::EslSets load_of(HotDynamics& hot, const Grid& grid) {
   return {grid, {equivalent_static_load(hot.model, hot.x, hot.growth, grid, {}, {}, {})}};
 }
 
-// The judge of a design, 1/2 w . K w against the strain energy of the motion, and the deformation,
-// with another element, by another method. The stress at the corners of the edge is singular:
-// energies converge with about the first order of the cell size, from above.
+// Verification of a design: 1/2 w . K w against the strain energy of the motion, and the
+// deformation, with another element, by another method. The stress at the corners of the edge is
+// singular: energies converge with about the first order of the cell size, from above.
 TEST(HotDynamicsLoads, AnEdgeThatIsHeldHasTheStaticAnswer) {
   const double a = 1e-5;  // linear statics is compared
   HotDynamics hot(false, a);
@@ -203,7 +204,7 @@ TEST(HotDynamicsLoads, AnEdgeThatIsHeldHasTheStaticAnswer) {
     grid.ny *= fine;
     const fem::EslSets loads = load_of(hot, grid);
     EXPECT_NEAR(loads.sets[0].held_stretch, a, 1e-9 * a);
-    Compliance compliance(loads, kSection, {}, {}, {});
+    ComplianceEvaluator compliance(loads, kSection, {}, {}, {});
     const VectorXd ones = VectorXd::Ones(grid.n_cells());
     ratios.push_back(0.5 * compliance.individual(ones, ones)(0) / hot.strain_energy);
     VectorXd u = compliance.displacement(ones, ones, 0);
@@ -222,25 +223,26 @@ TEST(HotDynamicsLoads, FreeGrowthHasNoAnswer) {
   const fem::EslSets loads = load_of(free, kGrid), others = load_of(held, kGrid);
   EXPECT_LT(loads.sets[0].deformation.norm(), 1e-10 * others.sets[0].deformation.norm());
   const VectorXd ones = VectorXd::Ones(kGrid.n_cells());
-  Compliance none(loads, kSection, {}, {}, {}), some(others, kSection, {}, {}, {});
+  ComplianceEvaluator none(loads, kSection, {}, {}, {}), some(others, kSection, {}, {}, {});
   EXPECT_LT(none.individual(ones, ones)(0), 1e-20 * some.individual(ones, ones)(0));
 }
 
 // ------------------------------------------------------------ design problems
 
 /// Both ends welded to walls, pulled at the middle, at three temperatures.
-FixedLoads both_ends_held() {
+ComplianceEvaluator both_ends_held() {
   std::vector<LoadCase> cases;
   for (int l = 0; l < 3; ++l)
     cases.push_back({"load", 1 + 0.5 * l, {{kGrid.node(30, 3 + 2 * l), {1.0 * l, 20}}}, 3e-4 * l});
-  return FixedLoads(kGrid, kSection, {}, edge(0, {0, 1}) + edge(kGrid.nx, {0, 1}), cases, true);
+  return ComplianceEvaluator({kGrid, kSection, {}}, edge(0, {0, 1}) + edge(kGrid.nx, {0, 1}), cases,
+                             true);
 }
 
 struct Whole {
   Design design;
   Ersatz ersatz;
-  Compliance turning;
-  FixedLoads resting;
+  ComplianceEvaluator turning;
+  ComplianceEvaluator resting;
   MmcProblem of_turning, of_resting;
 
   explicit Whole(const ResponseRow& row = kComplianceSum)

@@ -153,10 +153,10 @@ TEST(HotStatics, EnergiesAreThoseOfTheDenseEquations) {
                                  {"heat alone", 2.0, {}, -2e-3}};
   const VectorXd k = random_factors(g, 1e-2, 3);
   held.push_back({g.node(9, 3), 0});  // touches no cell of the domain
-  FixedLoads plate(g, kSection, outside, held, cases, true);
+  ComplianceEvaluator plate({g, kSection, outside}, held, cases, true);
   held.pop_back();
-  LoadResponse::Value value;
-  LoadResponse::Each each;
+  ComplianceEvaluator::Value value;
+  ComplianceEvaluator::Each each;
   plate.evaluate(k, k, value);
   plate.evaluate_each(k, k, each);
   double sum = 0;
@@ -202,9 +202,9 @@ TEST(HotStatics, APlateHeldAllAroundHasTheBiaxialEnergy) {
       for (const int c : {0, 1}) held.push_back({kGrid.node(i, j), c});
   const double a = 2e-3;
   const std::vector<LoadCase> heat = {{"heat", 1, {}, a}};
-  FixedLoads plate(kGrid, kSection, {}, held, heat, true);
+  ComplianceEvaluator plate({kGrid, kSection, {}}, held, heat, true);
   const VectorXd ones = VectorXd::Ones(kGrid.n_cells());
-  LoadResponse::Value value;
+  ComplianceEvaluator::Value value;
   plate.evaluate(ones, ones, value);
   const double volume = kGrid.width * kGrid.height * kSection.thickness;
   const double energy = kSection.youngs_modulus / (1 - kSection.poisson_ratio) * a * a * volume;
@@ -218,11 +218,11 @@ TEST(HotStatics, APlateHeldAllAroundHasTheBiaxialEnergy) {
 /// A bar of columns with stiffnesses k_i between two walls that let it grow across: one force
 /// N = a L / Σ dx/(E A k_i) goes through all, U = N a L / 2.
 struct Bar {
-  FixedLoads plate;
+  ComplianceEvaluator plate;
   double a, EA;
 
   explicit Bar(double stretch)
-      : plate(kGrid, section(), {},
+      : plate({kGrid, section(), {}},
               edge(0, {0}) + edge(kGrid.nx, {0}) + std::vector{fem::HeldUnknown{0, 1}},
               std::vector{LoadCase{"heat", 1, {}, stretch}}, true),
         a(stretch),
@@ -248,7 +248,7 @@ TEST(HotStatics, ABarBetweenWallsHasTheEnergyOfItsForce) {
   VectorXd columns(kGrid.nx);
   for (int i = 0; i < kGrid.nx; ++i) columns(i) = 0.3 + 0.7 * std::pow(std::sin(0.2 * i), 2);
   const VectorXd k = Bar::cells(columns);
-  LoadResponse::Value value;
+  ComplianceEvaluator::Value value;
   bar.plate.evaluate(k, k, value);
   const double energy = bar.energy(columns);
   EXPECT_NEAR(value.f, 2 * energy, 1e-10 * energy);
@@ -266,20 +266,20 @@ TEST(HotStatics, ABarBetweenWallsHasTheEnergyOfItsForce) {
 TEST(HotStatics, TakingMaterialOffAHeldPlateRelievesIt) {
   Bar bar(2e-3);
   VectorXd columns = VectorXd::Ones(kGrid.nx);
-  LoadResponse::Value full, weak;
+  ComplianceEvaluator::Value full, weak;
   bar.plate.evaluate(Bar::cells(columns), {}, full);
   EXPECT_GT(full.d_stiffness.minCoeff(), 0);
   columns(20) = 0.5;
   bar.plate.evaluate(Bar::cells(columns), {}, weak);
   EXPECT_NEAR(weak.f / full.f, 60.0 / 61.0, 1e-10);
   const VectorXd k = random_factors(kGrid, 1e-3, 4);
-  Compliance::Value value;
+  ComplianceEvaluator::Value value;
   fem::EslSets loads = hot_plate(3, kStretch);
   for (fem::EslSet& set : loads.sets) {
     set.acceleration.setZero();
     set.forces.clear();
   }
-  Compliance root(loads, kSection, {}, {}, {});
+  ComplianceEvaluator root(loads, kSection, {}, {}, {});
   root.evaluate(k, k, value);
   EXPECT_GT(value.f, 0);
   EXPECT_GE(value.d_stiffness.minCoeff(), 0);
@@ -292,10 +292,10 @@ TEST(HotStatics, FreeGrowthCostsNothing) {
   const int corner = kGrid.node(0, 0), slide = kGrid.node(0, kGrid.ny), tip = kGrid.node(60, 5);
   const std::vector<fem::HeldUnknown> held = {{corner, 0}, {corner, 1}, {slide, 0}};
   const auto cases = [&](double a) { return std::vector{LoadCase{"pull", 1, {{tip, {5, 1}}}, a}}; };
-  FixedLoads hot(kGrid, kSection, {}, held, cases(1e-2), true),
-      cold(kGrid, kSection, {}, held, cases(0), true);
+  ComplianceEvaluator hot({kGrid, kSection, {}}, held, cases(1e-2), true),
+      cold({kGrid, kSection, {}}, held, cases(0), true);
   const VectorXd k = random_factors(kGrid, 1e-3, 6);
-  LoadResponse::Value a, b;
+  ComplianceEvaluator::Value a, b;
   hot.evaluate(k, k, a);
   cold.evaluate(k, k, b);
   EXPECT_EQ(a.f, b.f);
@@ -307,12 +307,15 @@ TEST(HotStatics, FreeGrowthCostsNothing) {
     EXPECT_LT((growth.segment<2>(2 * n) - 1e-2 * at).norm(), 1e-12);
   }
   const std::string text = error_of(Error::Kind::input, [&] {
-    FixedLoads(kGrid, kSection, {}, held, std::vector{LoadCase{"sun", 1, {}, 1e-3}}, true);
+    ComplianceEvaluator({kGrid, kSection, {}}, held, std::vector{LoadCase{"sun", 1, {}, 1e-3}},
+                        true);
   });
   EXPECT_TRUE(says(text, "'sun'") && says(text, "grow")) << text;
   for (const double bad : {-1.0, std::nan("")})
     EXPECT_TRUE(says(error_of(Error::Kind::input,
-                              [&] { FixedLoads(kGrid, kSection, {}, held, cases(bad), true); }),
+                              [&] {
+                                ComplianceEvaluator({kGrid, kSection, {}}, held, cases(bad), true);
+                              }),
                      "thermal stretch"));
 }
 
@@ -326,11 +329,11 @@ TEST(HotCompliance, AClampedEdgeIsThatOfAPlateAtRest) {
   loads.sets[0].weight = 1;
   loads.sets[0].acceleration.setZero();
   loads.sets[0].forces = {{kGrid.node(60, 5), {1, 4}}};
-  Compliance moving(loads, kSection, {}, {}, {});
-  FixedLoads rest(kGrid, kSection, {}, edge(0, {0, 1}),
-                  std::vector{LoadCase{"hot", 1, loads.sets[0].forces, a}}, true);
+  ComplianceEvaluator moving(loads, kSection, {}, {}, {});
+  ComplianceEvaluator rest({kGrid, kSection, {}}, edge(0, {0, 1}),
+                           std::vector{LoadCase{"hot", 1, loads.sets[0].forces, a}}, true);
   const VectorXd k = random_factors(kGrid, 1e-3, 7);
-  LoadResponse::Value one, other;
+  ComplianceEvaluator::Value one, other;
   moving.evaluate(k, k, one);
   rest.evaluate(k, k, other);
   EXPECT_NEAR(one.f, other.f, 1e-9 * other.f);
@@ -344,9 +347,9 @@ TEST(HotCompliance, AClampedEdgeIsThatOfAPlateAtRest) {
 TEST(HotCompliance, FreeGrowthIsColdBitForBit) {
   const VectorXd k = random_factors(kGrid, 1e-3, 8), m = random_factors(kGrid, 1e-2, 9);
   for (const LoadDefinition definition : {LoadDefinition::inertia, LoadDefinition::frozen}) {
-    Compliance hot(hot_plate(4, kStretch, true), kSection, {definition}, k, m),
+    ComplianceEvaluator hot(hot_plate(4, kStretch, true), kSection, {definition}, k, m),
         cold(hot_plate(4, 0), kSection, {definition}, k, m);
-    Compliance::Value a, b;
+    ComplianceEvaluator::Value a, b;
     hot.evaluate(k, m, a);
     cold.evaluate(k, m, b);
     EXPECT_EQ(a.f, b.f);
@@ -362,8 +365,8 @@ TEST(HotCompliance, LoadsOfOneRootColumnShareItsGrowth) {
   for (fem::EslSet& set : loads.sets) set.root_column /= 4;
   fem::EslSets cold = loads;
   for (fem::EslSet& set : cold.sets) set.thermal_stretch = set.held_stretch = 0;
-  EXPECT_EQ(Compliance(loads, kSection, {}, {}, {}).n_right_hand_sides(),
-            Compliance(cold, kSection, {}, {}, {}).n_right_hand_sides() + 3);
+  EXPECT_EQ(ComplianceEvaluator(loads, kSection, {}, {}, {}).n_right_hand_sides(),
+            ComplianceEvaluator(cold, kSection, {}, {}, {}).n_right_hand_sides() + 3);
 }
 
 // Static analysis at the design of the motion returns its elastic deformation.
@@ -375,7 +378,7 @@ TEST(HotCompliance, StiffnessLoadsReturnTheDeformation) {
       set.deformation(2 * n + 1) = -set.held_stretch * kGrid.node_position(0, j).y();
     }
   const VectorXd k = random_factors(kGrid, 1e-3, 10);
-  Compliance compliance(loads, kSection, {LoadDefinition::stiffness}, k, k);
+  ComplianceEvaluator compliance(loads, kSection, {LoadDefinition::stiffness}, k, k);
   for (int l = 0; l < 3; ++l) {
     const fem::EslSet& set = loads.sets[static_cast<size_t>(l)];
     VectorXd u = set.deformation;
@@ -391,8 +394,9 @@ TEST(HotCompliance, RefusesStretchesThatAreNone) {
   for (const double bad : {-1.0, std::nan("")}) {
     fem::EslSets loads = hot_plate(2, kStretch);
     loads.sets[1].thermal_stretch = bad;
-    EXPECT_TRUE(says(error_of(Error::Kind::input, [&] { Compliance(loads, kSection, {}, {}, {}); }),
-                     "load 1: a thermal stretch"));
+    EXPECT_TRUE(says(
+        error_of(Error::Kind::input, [&] { ComplianceEvaluator(loads, kSection, {}, {}, {}); }),
+        "load 1: a thermal stretch"));
   }
 }
 

@@ -24,7 +24,7 @@ TEST(RenewedParts, PiecesOfABeamAreJoined) {
   for (int k = 0; k < 4; ++k)
     pieces.push_back(bar({-0.08 + 0.16 * k, 0.004}, {0.16 + 0.16 * k, 0.004}, 0.02));
   const BodyProblem problem = problem_of(pieces);
-  FixedLoads loads = tip_load();
+  ComplianceEvaluator loads = tip_load();
   UnderRepair design(problem, loads, kWidths);
   const double before = design.merit(pieces);
   const int joined = join_parts(design);
@@ -48,7 +48,7 @@ TEST(RenewedParts, CornersAndBranchesStay) {
                                         bar({-0.1, -0.03}, {0.6, 0.03}, 0.012),
                                         bar({0.3, -0.02}, {0.3, 0.03}, 0.012)};
   const BodyProblem problem = problem_of(frame);
-  FixedLoads loads = tip_load();
+  ComplianceEvaluator loads = tip_load();
   UnderRepair design(problem, loads, kWidths);
   EXPECT_EQ(join_parts(design), 0);
   EXPECT_EQ(design.parts.size(), frame.size());
@@ -61,7 +61,7 @@ TEST(RenewedParts, FlangesGetAWeb) {
       bar({-0.1, 0.037}, {0.3, 0.037}, 0.012), bar({0.26, 0.037}, {0.7, 0.037}, 0.012),
       bar({-0.1, -0.037}, {0.3, -0.037}, 0.012), bar({0.26, -0.037}, {0.7, -0.037}, 0.012)};
   const BodyProblem problem = problem_of(flanges);
-  FixedLoads loads = tip_load();
+  ComplianceEvaluator loads = tip_load();
   UnderRepair design(problem, loads, kWidths);
   const double compliance = design.compliance(design.parts), volume = design.volume(design.parts);
   EXPECT_GE(bear_parts(design), 1);
@@ -74,7 +74,7 @@ TEST(RenewedParts, FlangesGetAWeb) {
 
 TEST(RenewedParts, AFullPlateMissesNothing) {
   const BodyProblem problem = problem_of({bar({-0.1, 0}, {0.7, 0}, 0.06)});
-  FixedLoads loads = tip_load();
+  ComplianceEvaluator loads = tip_load();
   UnderRepair design(problem, loads, kWidths);
   EXPECT_EQ(bear_parts(design), 0);
 }

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/picture.h"
-#include "optim/mmc/fixed_loads.h"
+#include "optim/mmc/compliance_evaluator.h"
 #include "tests/optim/mmc_small.h"
 
 namespace flexmorph::mmc::test {
@@ -98,7 +98,7 @@ TEST(BodyDesign, GoesOnWithoutADeadComponent) {
   for (int j = 0; j <= kGrid.ny; ++j)
     for (int c = 0; c < 2; ++c) held.push_back({kGrid.node(0, j), c});
   const std::vector<LoadCase> loads = {{"tip", 1, {{kGrid.node(60, 5), Vec2(0, 1)}}}};
-  FixedLoads statics(kGrid, kSection, {}, held, loads, false);
+  ComplianceEvaluator statics({kGrid, kSection, {}}, held, loads, false);
   DesignSettings settings;
   settings.optimizer.max_iterations = 20;
   bool going = true;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "optim/mmc/body_design.h"
-#include "optim/mmc/fixed_loads.h"
+#include "optim/mmc/compliance_evaluator.h"
 #include "tests/optim/mmc_small.h"
 
 /// A designed plate with void, small enough for tests: 60 x 10 cells.
@@ -14,7 +14,7 @@ inline const mmc::BodyProblem& designed_plate() {
     band.erosion = 0;  // ten cells across are too few to take half a cell off all around
     mmc::BodyProblem problem = mmc::test::body_of(
         mmc::Design(mmc::test::kGrid, mmc::test::layout(), mmc::test::kScale), {band});
-    mmc::FixedLoads tip = mmc::test::tip_load();
+    mmc::ComplianceEvaluator tip = mmc::test::tip_load();
     mmc::DesignSettings settings;
     settings.optimizer.max_iterations = 60;
     bool going = true;

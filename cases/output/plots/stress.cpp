@@ -17,7 +17,7 @@ namespace {
 constexpr double kPeaks = 0.005;
 
 /// The stress that triangles of so much area exceed.
-double all_but_peaks(const judge::Judged& j, const std::vector<double>& mises) {
+double all_but_peaks(const verification::OutlineVerification& j, const std::vector<double>& mises) {
   std::vector<std::pair<double, double>> parts;  // stress, area
   double area = 0;
   for (std::size_t t = 0; t < j.mesh.triangles.size(); ++t) {
@@ -41,7 +41,7 @@ std::string times(double magnification) {
 
 std::string stress_plot(const VerifiedOutline& outline) {
   if (!outline.verification || outline.verification->displacement.size() == 0) return "";
-  const judge::Judged& j = *outline.verification;
+  const verification::OutlineVerification& j = *outline.verification;
   const std::vector<double> mises = mises_of(j);
   io::PartPicture picture;
   picture.upper = all_but_peaks(j, mises);
@@ -50,9 +50,9 @@ std::string stress_plot(const VerifiedOutline& outline) {
   picture.displacement = {j.displacement.data(), static_cast<std::size_t>(j.displacement.size())};
   picture.magnification = io::clear_magnification(j.mesh, picture.displacement);
   picture.unit = "Pa";
-  picture.left_out = j.triangles_left_out;
+  picture.left_out = j.omitted_triangles;
   picture.title = "von Mises stress under '" + j.shown_load + "', " +
-                  io::to_text(j.carried_stress.value, 3) +
+                  io::to_text(j.shown_stress.value, 3) +
                   " Pa at most away from where it acts; displaced " + times(picture.magnification);
   return io::part_svg(j.mesh, picture);
 }

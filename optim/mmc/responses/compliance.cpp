@@ -5,7 +5,7 @@
 namespace flexmorph::mmc {
 namespace {
 
-/// f = Σ w_l C_l [J], C_l the compliance of load l (LoadResponse).
+/// f = Σ w_l C_l [J], C_l the compliance of load l (ComplianceEvaluator).
 class Sum final : public Response {
  public:
   void evaluate(const Seen& at, Values& out) override { at.state.sum(at.factors, out); }

@@ -6,7 +6,7 @@
 #include "fem/dynamics/growth.h"
 #include "fem/elements/ancf_plate.h"
 #include "fem/solve/statics.h"
-#include "optim/mmc/fixed_loads.h"
+#include "optim/mmc/compliance_evaluator.h"
 #include "optim/mmc/mmc_problem.h"
 #include "parts.h"
 
@@ -44,7 +44,7 @@ bool gets_stiffer() {
   std::vector<fem::HeldUnknown> held;
   for (int i = 0; i <= 2 * grid.ny + 1; ++i) held.push_back({grid.node(0, i / 2), i % 2});
   const std::vector<mmc::LoadCase> tip{{"tip", 1, {{grid.node(grid.nx, grid.ny / 2), {0, 1}}}}};
-  mmc::FixedLoads loads(grid, section, {}, held, tip, false);
+  mmc::ComplianceEvaluator loads({grid, section, {}}, held, tip, false);
   const auto start = crossing_layout(0, -width / 2, length, width, 6, 1, 0.01, 0.06);
   const mmc::Design design(grid, start, {});
   const mmc::Ersatz ersatz(grid, 1e-3, {}, {});

@@ -6,60 +6,62 @@
 #include <vector>
 
 #include "fem/section.h"
-#include "fem/solve/plate_solver.h"
-#include "optim/verification/places.h"
+#include "fem/solve/static_solver.h"
+#include "optim/verification/loads.h"
 
-/// The judge of designs: what a part does under its loads, by its outline alone.
-namespace flexmorph::judge {
+/// Finite-element verification of an exported outline: its compliance and stresses under its loads.
+namespace flexmorph::verification {
 
 struct Settings {
-  double tolerance = 0.005;  ///< of the compliance, by the judge's own estimate
+  double tolerance = 0.005;  ///< of the compliance, by the estimate of the verification
   double size = 0;           ///< of the first triangles, at most [m]
-  /// What points stand for reaches so far; stresses within that distance of places do not count, as
-  /// they belong to the way loads are put on [m].
+  /// What points stand for reaches so far; stresses within that distance of locations do not count,
+  /// as they belong to the way loads are put on [m].
   double reach = 0;
-  int most_triangles = 400000;  ///< no mesh is refined beyond it
-  int most_meshes = 9;
-  std::function<bool()> go_on = {};  ///< asked after each mesh; none: yes
+  int max_triangles = 400000;  ///< no mesh is refined beyond it
+  int max_meshes = 9;
+  std::function<bool()> keep_running = {};  ///< asked after each mesh; none: yes
 };
 
 /// A load on the last mesh, as another program may read it.
-struct CarriedLoad {
+struct MeshLoad {
   std::string name;
-  int load = 0;  ///< place among Loads::loads
+  int load = 0;  ///< index in Loads::loads
   double compliance = 0;
   std::vector<fem::HeldUnknown> held;   ///< with those behind the clamp
   std::vector<double> prescribed;       ///< displacement of each of them [m]
   std::vector<fem::NodalForce> forces;  ///< consistent [N]
 };
 
-/// The largest von Mises stress of one load, away from places, its clamp and a held edge.
+/// The largest von Mises stress of one load, away from locations, its clamp and a held edge.
 struct LargestStress {
   double value = 0;  ///< [Pa]
   Vec2 at{0, 0};     ///< [m]
 };
 
-struct Judged {
+struct OutlineVerification {
   /// Weighted sum of the loads, or the largest; infinite where a load acts on nothing that is held.
   double compliance = 0;   ///< [J]
   double error = 0;        ///< its estimated error, relative; the compliance is too small by that
   bool converged = false;  ///< Is the error below the tolerance?
   std::vector<double> compliances;  ///< of each load [J]
-  std::string loose_load;     ///< name of a load that acts on nothing that is held; empty: none
-  double area = 0;            ///< of all pieces [m²]
-  double largest_stress = 0;  ///< von Mises, averaged at nodes, of all loads, away from places [Pa]
-  Vec2 largest_at{0, 0};      ///< where [m]
+  std::string unsupported_load;  ///< name of a load that acts on nothing that is held; empty: none
+  double area = 0;               ///< of all pieces [m²]
+  double largest_stress =
+      0;                  ///< von Mises, averaged at nodes, of all loads, away from locations [Pa]
+  Vec2 largest_at{0, 0};  ///< where [m]
   int largest_load = -1;
-  int pieces = 0, left_out = 0;  ///< in all; those that nothing holds are left out
-  int meshes = 0;                ///< that were solved
-  PartMesh mesh;                 ///< the last one
-  std::vector<signed char> triangles_left_out;
+  int n_pieces = 0;          ///< connected components of the mesh
+  int n_omitted_pieces = 0;  ///< those that nothing holds, which take no part
+  int meshes = 0;            ///< that were solved
+  PartMesh mesh;             ///< the last one
+  std::vector<signed char> omitted_triangles;
   MatrixXd stress;  ///< averaged at nodes, of the worst load (3 x n_nodes): σ₁₁, σ₂₂, σ₁₂ [Pa]
-  VectorXd displacement;  ///< of nodes under that load (2 n_nodes) [m]; of what is left out: 0
-  LargestStress carried_stress;  ///< of that load
-  std::string shown_load;        ///< its name
+  VectorXd displacement;       ///< of nodes under that load (2 n_nodes) [m]; of what is left out: 0
+  LargestStress shown_stress;  ///< of that load
+  std::string shown_load;      ///< its name
   /// All loads; where they have clamps the worst one; none where springs hold an edge.
-  std::vector<CarriedLoad> carried;
+  std::vector<MeshLoad> mesh_loads;
   double seconds = 0;  ///< CPU
 };
 
@@ -77,7 +79,8 @@ struct Judged {
 /// @param regions  as they are exported
 /// @throws Error (input) for no loads; Error (numerical) when the regions have no area or the
 ///         statics fail.
-Judged judge(std::span<const Region> regions, const fem::PlaneSection& section, const Loads& loads,
-             const Settings& settings);
+OutlineVerification verify_outline(std::span<const Region> regions,
+                                   const fem::PlaneSection& section, const Loads& loads,
+                                   const Settings& settings);
 
-}  // namespace flexmorph::judge
+}  // namespace flexmorph::verification

@@ -1,19 +1,17 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "fem/esl_set.h"
-#include "fem/section.h"
 #include "fem/solve/static_solver.h"
-#include "geometry/grid.h"
-#include "optim/mmc/load_response.h"
+#include "optim/mmc/compliance_evaluator.h"
 
 namespace flexmorph::mmc {
 
-/// What heat does to a plate whose supports do not grow with it, beside its other loads.
+/// Restrained thermal expansion: what heat does to a plate whose supports do not grow with it,
+/// beside its other loads.
 ///
 /// Elastic displacements w are counted from the plate as it would be had it grown freely, so that
 /// supports that stay as they are prescribe w_c = g τ_c at the held nodes, and K_ff w_f = F_f -
@@ -42,54 +40,44 @@ namespace flexmorph::mmc {
 ///
 /// Loads that hold the same lines in the same ratio share τ: however many there are, that is one
 /// right-hand side.
-class HeldExpansion {
+class RestrainedExpansion {
  public:
-  /// The plate and its held lines (n of them).
-  struct Plate {
-    Grid grid;
-    fem::PlaneSection section;
-    std::vector<int> rows;             ///< unknown of entry 2 node + c, or -1 (2 n_nodes)
-    int n_unknowns = 0;                ///< of the solver
-    MatrixXd held;                     ///< τ_c of each line, 0 elsewhere (n x 2 n_nodes) [m]
-    std::vector<int> first_columns;    ///< of cells in front of each line, ascending (n)
-    std::vector<signed char> outside;  ///< 1 for cells that do not exist; empty: all do
-    double edge_stiffness = 0;         ///< κ, which the solver has too [N/m]
-    VectorXd end_stretch{};            ///< d / dy of each line (n); empty: the far edge is free
+  /// The held lines (n of them), and what every load has of them.
+  struct Lines {
+    MatrixXd held = {};                  ///< τ_c of each line, 0 elsewhere (n x 2 n_nodes) [m]
+    std::vector<int> root_columns = {};  ///< clamp of each line, ascending (n); empty: supports
+    VectorXd end_stretch = {};           ///< d / dy of each line (n); empty: the far edge is free
+    std::vector<int> of_load = {};       ///< line of each load; -1 for loads with g = 0
+    VectorXd growth = {};                ///< g of each load [-]
   };
-  /// @param lines    held line of each load; -1 for loads with g = 0
-  /// @param growth   g of each load [-]
-  /// @param weights  w of each load
-  HeldExpansion(Plate plate, std::vector<int> lines, const VectorXd& growth,
-                const VectorXd& weights);
+  /// @param solver  must live longer   @param weights  w of each load
+  RestrainedExpansion(const fem::StaticSolver& solver, Lines lines, const VectorXd& weights);
 
-  /// K X = F in place (n x n_unknowns), rows are held lines; entries of F that a line holds are
-  /// without meaning.
-  using Solve = std::function<void(MatrixXd&)>;
-  /// τ and its energies at these stiffness factors (n_cells), which `solve` was factored for;
+  /// τ and its energies at these stiffness factors (n_cells), which the solver was factored for;
   /// nothing to do when they are those of the last call.
-  void update(const VectorXd& stiffness, const Solve& solve);
-  void update(const VectorXd& stiffness, const fem::StaticSolver& solver);
+  void update(const VectorXd& stiffness);
 
   // All of the following speak of the last update().
-  void add_to(LoadResponse::Value& value) const;  ///< Σ w g² τᵀ K τ and its derivative
-  void add_to(LoadResponse::Each& each) const;
+  void add_to(ComplianceEvaluator::Value& value) const;  ///< Σ w g² τᵀ K τ and its derivative
+  void add_to(ComplianceEvaluator::Each& each) const;
   void add_to(VectorXd& compliances) const;  ///< (n_loads)
   /// g τ of one load, node by node (2 n_nodes).
   VectorXd displacement(int load) const;
 
   void take_from(MatrixXd& u) const;  ///< u - g τ (n_loads x n_unknowns)
 
-  int n_lines() const { return static_cast<int>(plate_.held.rows()); }
+  int n_lines() const { return static_cast<int>(lines_.held.rows()); }
 
  private:
-  bool holds_end() const { return plate_.end_stretch.size() > 0; }
+  int line_of(Eigen::Index load) const { return lines_.of_load[static_cast<std::size_t>(load)]; }
+  bool holds_end() const { return lines_.end_stretch.size() > 0; }
   void forces(const VectorXd& stiffness);
   void add_edge_energies();
   void line_energies();
 
-  Plate plate_;
-  std::vector<int> lines_;
-  VectorXd growth_, line_weights_;
+  const fem::StaticSolver* solver_;
+  Lines lines_;
+  VectorXd line_weights_;
   std::vector<int> touched_;          // cells with held nodes that move
   VectorXd stiffness_;                // of the last update
   VectorXd compliances_;              // τᵀ K τ of each line
@@ -107,11 +95,25 @@ class HeldExpansion {
 /// (4e-3).
 double edge_stiffness(const fem::EslSets& sets, const fem::PlaneSection& section);
 
-/// The edges that hold back the growth of a hot plate: EslSet::held_stretch = g, τ_c = -(0, Y) on
-/// the root column of each load, and EslSet::held_end_stretch = g_e at the far end. Nothing where
-/// no load has any.
-std::optional<HeldExpansion> held_edges(const fem::EslSets& sets, const fem::PlaneSection& section,
-                                        const fem::StaticSolver& solver,
-                                        std::span<const int> columns, const VectorXd& weights);
+/// Returns the edges that hold back the growth of a hot plate: EslSet::held_stretch = g, τ_c =
+/// -(0, Y) on the root column of each load, and EslSet::held_end_stretch = g_e at the far end.
+/// Nothing where no load has any.
+std::optional<RestrainedExpansion> restrained_edges(const fem::EslSets& sets,
+                                                    const fem::StaticSolver& solver,
+                                                    std::span<const int> columns,
+                                                    const VectorXd& weights);
+
+/// Returns e + ρ of one unit of growth of a plate at rest (2 n_nodes) [m]: free growth about the
+/// middle of the plate, turned and shifted so that it leaves the held displacements as near to zero
+/// as it can; zero where no cell of the domain is.
+VectorXd growth_on_supports(const fem::StaticSolver& solver,
+                            std::span<const fem::HeldUnknown> held);
+
+/// Returns the supports that take off growth_on_supports() at held displacements, times the thermal
+/// stretch of each load; nothing where they let the plate grow.
+std::optional<RestrainedExpansion> restrained_supports(const fem::StaticSolver& solver,
+                                                       const VectorXd& growth,
+                                                       const VectorXd& stretch,
+                                                       const VectorXd& weights);
 
 }  // namespace flexmorph::mmc

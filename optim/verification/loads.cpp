@@ -1,10 +1,10 @@
-#include "optim/verification/places.h"
+#include "optim/verification/loads.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-namespace flexmorph::judge {
+namespace flexmorph::verification {
 namespace {
 
 /// The part of a segment in a box; nothing where that is a point or less.
@@ -29,8 +29,8 @@ std::optional<Segment> clipped(const Segment& s, const Box& box) {
 
 }  // namespace
 
-Place point_place(const Vec2& point, const Region& border, double reach) {
-  Place out;
+Location point_location(const Vec2& point, const Region& border, double reach) {
+  Location out;
   out.box = Box{point - Vec2::Constant(reach), point + Vec2::Constant(reach)};
   double near = INFINITY;
   for (const std::vector<Vec2>& ring : rings_of(border))
@@ -44,15 +44,15 @@ Place point_place(const Vec2& point, const Region& border, double reach) {
   return out;
 }
 
-Place box_place(const Box& box) {
+Location box_location(const Box& box) {
   const Vec2 size = box.upper - box.lower;
   if (size.minCoeff() > 0) return {{}, box};
   return {{{box.lower, box.upper}}, {}};
 }
 
-int Loads::add(Place place) {
-  places.push_back(std::move(place));
-  return static_cast<int>(places.size()) - 1;
+int Loads::add(Location location) {
+  locations.push_back(std::move(location));
+  return static_cast<int>(locations.size()) - 1;
 }
 
-}  // namespace flexmorph::judge
+}  // namespace flexmorph::verification

@@ -1,6 +1,7 @@
-// The judge against beams, a hole, a corner, a spinning rod, and itself on finer meshes.
+// The finite-element check of an outline against beams, a hole, a corner, a spinning rod, and
+// itself on finer meshes.
 
-#include "optim/verification/judge.h"
+#include "optim/verification/verification.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace flexmorph::judge {
+namespace flexmorph::verification {
 namespace {
 
 std::vector<Vec2> rectangle(double x0, double y0, double x1, double y1) {
@@ -21,10 +22,10 @@ constexpr double kLength = 8;
 /// A cantilever 8 x 1 of unit modulus, clamped at x = 0, pulled down at its end.
 Loads tip_load() {
   Loads out;
-  out.supports.push_back({out.add(box_place({{0, 0}, {0, 1}})), true, true});
+  out.supports.push_back({out.add(box_location({{0, 0}, {0, 1}})), true, true});
   Load load;
   load.name = "tip";
-  load.forces.push_back({out.add(box_place({{kLength, 0}, {kLength, 1}})), {0, -1}});
+  load.forces.push_back({out.add(box_location({{kLength, 0}, {kLength, 1}})), {0, -1}});
   out.loads.push_back(load);
   return out;
 }
@@ -37,14 +38,14 @@ double timoshenko(double length) {
   return std::pow(length, 3) / (3 * inertia) + 2 * (1 + nu) * length / kappa;
 }
 
-TEST(Judge, CantileverIsTimoshenkos) {
-  const Judged found =
-      judge(kBeam, kUnit, tip_load(), {.tolerance = 0.001, .size = 0.5, .reach = 0.1});
+TEST(OutlineVerification, CantileverIsTimoshenkos) {
+  const OutlineVerification found =
+      verify_outline(kBeam, kUnit, tip_load(), {.tolerance = 0.001, .size = 0.5, .reach = 0.1});
   EXPECT_TRUE(found.converged);
   EXPECT_NEAR(found.compliance, timoshenko(kLength), 0.004 * timoshenko(kLength));
   EXPECT_LE(found.error, 0.001);
-  EXPECT_EQ(found.pieces, 1);
-  EXPECT_EQ(found.left_out, 0);
+  EXPECT_EQ(found.n_pieces, 1);
+  EXPECT_EQ(found.n_omitted_pieces, 0);
   EXPECT_NEAR(found.area, kLength, 1e-12);
   // Away from the clamp by 0.1: 6 (L - x) / h².
   EXPECT_NEAR(found.largest_stress, 6 * (kLength - 0.1), 0.05 * 6 * kLength);
@@ -52,7 +53,7 @@ TEST(Judge, CantileverIsTimoshenkos) {
 
 // Tension of a plate with a small hole: three times the stress far away, Kirsch's solution;
 // with a hole of a twentieth of the width 3.008, by Heywood's formula.
-TEST(Judge, HoleHasThreeTimesTheStress) {
+TEST(OutlineVerification, HoleHasThreeTimesTheStress) {
   std::vector<Vec2> hole;
   constexpr int kSides = 240;
   for (int k = 0; k < kSides; ++k) {  // clockwise, with a vertex where the stress is largest
@@ -61,23 +62,24 @@ TEST(Judge, HoleHasThreeTimesTheStress) {
   }
   const std::vector<Region> plate = {{rectangle(-20, -20, 20, 20), {hole}}};
   Loads loads;
-  loads.supports.push_back({loads.add(box_place({{-20, -20}, {-20, 20}})), true, false});
+  loads.supports.push_back({loads.add(box_location({{-20, -20}, {-20, 20}})), true, false});
   const Region border{rectangle(-20, -20, 20, 20), {}};
-  loads.supports.push_back({loads.add(point_place({-20, -20}, border, 0.01)), false, true});
+  loads.supports.push_back({loads.add(point_location({-20, -20}, border, 0.01)), false, true});
   Load load;
-  load.forces.push_back({loads.add(box_place({{20, -20}, {20, 20}})), {40, 0}});
+  load.forces.push_back({loads.add(box_location({{20, -20}, {20, 20}})), {40, 0}});
   loads.loads.push_back(load);
-  const Judged found = judge(plate, kUnit, loads, {.tolerance = 2e-5, .size = 2, .reach = 1});
+  const OutlineVerification found =
+      verify_outline(plate, kUnit, loads, {.tolerance = 2e-5, .size = 2, .reach = 1});
   EXPECT_NEAR(found.largest_stress, 3.008, 0.03 * 3.008);
   EXPECT_NEAR(std::abs(found.largest_at.y()), 1, 0.02);
 }
 
 Loads bracket_load() {
   Loads out;
-  out.supports.push_back({out.add(box_place({{0, 1}, {0.4, 1}})), true, true});
+  out.supports.push_back({out.add(box_location({{0, 1}, {0.4, 1}})), true, true});
   Load load;
   load.name = "foot";
-  load.forces.push_back({out.add(box_place({{1, 0.3}, {1, 0.4}})), {0, -1}});
+  load.forces.push_back({out.add(box_location({{1, 0.3}, {1, 0.4}})), {0, -1}});
   out.loads.push_back(load);
   return out;
 }
@@ -87,14 +89,14 @@ const std::vector<Region> kBracket = {
 
 // At a corner that reaches around by 270 degrees, and at the ends of a clamp, stresses have no
 // limit: the estimate holds there, too.
-TEST(Judge, EstimatesItsErrorAtACorner) {
+TEST(OutlineVerification, EstimatesItsErrorAtACorner) {
   const auto at = [](double tolerance) {
-    return judge(kBracket, kUnit, bracket_load(),
-                 {.tolerance = tolerance, .size = 0.3, .reach = 0.02});
+    return verify_outline(kBracket, kUnit, bracket_load(),
+                          {.tolerance = tolerance, .size = 0.3, .reach = 0.02});
   };
   const double exact = at(1e-4).compliance;
   for (const double tolerance : {0.03, 0.005}) {
-    const Judged found = at(tolerance);
+    const OutlineVerification found = at(tolerance);
     const double error = exact / found.compliance - 1;
     EXPECT_TRUE(found.converged);
     EXPECT_LE(found.error, tolerance);
@@ -105,13 +107,13 @@ TEST(Judge, EstimatesItsErrorAtACorner) {
 }
 
 // A smooth field, uniform meshes: the energy that is missing falls with h⁴.
-TEST(Judge, CompliancesConvergeWithOrderFour) {
+TEST(OutlineVerification, CompliancesConvergeWithOrderFour) {
   // A square that spins about its corner, held by the two lines of symmetry.
   const std::vector<Region> square = {{rectangle(0, 0, 1, 1), {}}};
   const fem::PlaneSection heavy{1, 1, 0.3, 1};
   Loads loads;
-  loads.supports.push_back({loads.add(box_place({{0, 0}, {0, 1}})), true, false});
-  loads.supports.push_back({loads.add(box_place({{0, 0}, {1, 0}})), false, true});
+  loads.supports.push_back({loads.add(box_location({{0, 0}, {0, 1}})), true, false});
+  loads.supports.push_back({loads.add(box_location({{0, 0}, {1, 0}})), false, true});
   loads.grid = {0, 0, 1, 1, 1, 1};
   VectorXd acceleration(8);
   for (int node = 0; node < 4; ++node)
@@ -120,11 +122,11 @@ TEST(Judge, CompliancesConvergeWithOrderFour) {
   load.acceleration = &acceleration;
   loads.loads.push_back(load);
   const auto at = [&](double size) {
-    return judge(square, heavy, loads,
-                 {.tolerance = 1e-12, .size = size, .reach = 0.01, .most_meshes = 1});
+    return verify_outline(square, heavy, loads,
+                          {.tolerance = 1e-12, .size = size, .reach = 0.01, .max_meshes = 1});
   };
   const double exact = at(0.03).compliance;
-  const Judged coarse = at(0.24), fine = at(0.08);
+  const OutlineVerification coarse = at(0.24), fine = at(0.08);
   // Unstructured: by the mean size of triangles.
   const double ratio = static_cast<double>(fine.mesh.triangles.size()) /
                        static_cast<double>(coarse.mesh.triangles.size());
@@ -157,13 +159,14 @@ struct SpinningRod {
 };
 
 // Without Poisson's effect the rod is one-dimensional: N = ρ A (L² - x²) / 2, C = ∫ N² dx / (E A).
-TEST(Judge, SpinningRodFromClampToClamp) {
+TEST(OutlineVerification, SpinningRodFromClampToClamp) {
   const double length = 2, area = 0.2;
   const fem::PlaneSection section{1, 7, 0, 3};
   const std::vector<double> clamps = {0.5, 1.1, 0, 0.5};  // in any order, one of them twice
   const SpinningRod rod(length, clamps);
   const std::vector<Region> bar = {{rectangle(0, -0.1, length, 0.1), {}}};
-  const Judged found = judge(bar, section, rod.loads, {.size = 0.2, .reach = 0.01});
+  const OutlineVerification found =
+      verify_outline(bar, section, rod.loads, {.size = 0.2, .reach = 0.01});
   ASSERT_EQ(found.compliances.size(), 4u);
   double sum = 0;
   for (std::size_t l = 0; l < clamps.size(); ++l) {
@@ -177,61 +180,63 @@ TEST(Judge, SpinningRodFromClampToClamp) {
     sum += exact;
   }
   EXPECT_NEAR(found.compliance, sum, 1e-4 * sum);
-  // The worst load is carried to others, with what is behind its clamp held.
-  ASSERT_EQ(found.carried.size(), 1u);
-  EXPECT_EQ(found.carried[0].load, 2);
+  // The worst load is mesh_loads to others, with what is behind its clamp held.
+  ASSERT_EQ(found.mesh_loads.size(), 1u);
+  EXPECT_EQ(found.mesh_loads[0].load, 2);
   double force = 0;
-  for (const fem::NodalForce& f : found.carried[0].forces) force += f.force.x();
+  for (const fem::NodalForce& f : found.mesh_loads[0].forces) force += f.force.x();
   EXPECT_NEAR(force, 3 * area * length * length / 2, 1e-9);
 }
 
-TEST(Judge, LoadsOfOneBodyAreThoseOfMany) {
+TEST(OutlineVerification, LoadsOfOneBodyAreThoseOfMany) {
   Loads two = tip_load();
   Load pull;
   pull.name = "pull";
   pull.weight = 3;
-  pull.forces.push_back({two.add(box_place({{kLength, 0}, {kLength, 1}})), {5, 0}});
+  pull.forces.push_back({two.add(box_location({{kLength, 0}, {kLength, 1}})), {5, 0}});
   two.loads.push_back(pull);
   const Settings settings{.size = 0.5, .reach = 0.1};
-  const Judged both = judge(kBeam, kUnit, two, settings);
+  const OutlineVerification both = verify_outline(kBeam, kUnit, two, settings);
   EXPECT_NEAR(both.compliance, both.compliances[0] + 3 * both.compliances[1],
               1e-12 * both.compliance);
   EXPECT_NEAR(both.compliances[1], 25 * kLength, 0.01 * 25 * kLength);
   two.worst = true;
-  const Judged worst = judge(kBeam, kUnit, two, settings);
+  const OutlineVerification worst = verify_outline(kBeam, kUnit, two, settings);
   EXPECT_EQ(worst.compliance,
             *std::max_element(worst.compliances.begin(), worst.compliances.end()));
-  EXPECT_EQ(worst.carried.size(), 2u);
+  EXPECT_EQ(worst.mesh_loads.size(), 2u);
 }
 
-TEST(Judge, PointsAreSpreadOverACell) {
+TEST(OutlineVerification, PointsAreSpreadOverACell) {
   const Region border{rectangle(0, 0, kLength, 1), {}};
-  const Place middle = point_place({kLength, 0.5}, border, 0.1);
+  const Location middle = point_location({kLength, 0.5}, border, 0.1);
   ASSERT_EQ(middle.lines.size(), 1u);
   EXPECT_NEAR((middle.lines[0].b - middle.lines[0].a).norm(), 0.2, 1e-15);
-  const Place corner = point_place({0, 1}, border, 0.1);
+  const Location corner = point_location({0, 1}, border, 0.1);
   ASSERT_EQ(corner.lines.size(), 2u);
   for (const Segment& s : corner.lines) EXPECT_NEAR((s.b - s.a).norm(), 0.1, 1e-15);
-  const Place inside = point_place({4, 0.5}, border, 0.1);
+  const Location inside = point_location({4, 0.5}, border, 0.1);
   EXPECT_TRUE(inside.lines.empty());
   ASSERT_TRUE(inside.box);
   // Wherever the unit force is spread over the end, the beam bends alike.
   Loads loads = tip_load();
-  loads.places[1] = middle;
-  const Judged found = judge(kBeam, kUnit, loads, {.size = 0.5, .reach = 0.1});
+  loads.locations[1] = middle;
+  const OutlineVerification found =
+      verify_outline(kBeam, kUnit, loads, {.size = 0.5, .reach = 0.1});
   EXPECT_NEAR(found.compliance, timoshenko(kLength), 0.01 * timoshenko(kLength));
-  loads.places[1] = point_place({kLength - 0.3, 0.5}, border, 0.1);
-  EXPECT_LT(judge(kBeam, kUnit, loads, {.size = 0.5, .reach = 0.1}).compliance, found.compliance);
+  loads.locations[1] = point_location({kLength - 0.3, 0.5}, border, 0.1);
+  EXPECT_LT(verify_outline(kBeam, kUnit, loads, {.size = 0.5, .reach = 0.1}).compliance,
+            found.compliance);
 }
 
-TEST(Judge, PiecesThatNothingHoldsAreLeftOut) {
+TEST(OutlineVerification, PiecesThatNothingHoldsAreLeftOut) {
   std::vector<Region> regions = kBeam;
   regions.push_back({rectangle(3, 2, 4, 3), {}});
   const Settings settings{.size = 0.5, .reach = 0.1};
-  const Judged alone = judge(kBeam, kUnit, tip_load(), settings);
-  const Judged found = judge(regions, kUnit, tip_load(), settings);
-  EXPECT_EQ(found.pieces, 2);
-  EXPECT_EQ(found.left_out, 1);
+  const OutlineVerification alone = verify_outline(kBeam, kUnit, tip_load(), settings);
+  const OutlineVerification found = verify_outline(regions, kUnit, tip_load(), settings);
+  EXPECT_EQ(found.n_pieces, 2);
+  EXPECT_EQ(found.n_omitted_pieces, 1);
   EXPECT_NEAR(found.compliance, alone.compliance, 0.01 * alone.compliance);
   EXPECT_NEAR(found.area, kLength + 1, 1e-12);
 }
@@ -239,7 +244,7 @@ TEST(Judge, PiecesThatNothingHoldsAreLeftOut) {
 // What is hot and held at the root of a part, with its far edge cold and held, is the mirror image
 // of what is hot and held at its far edge: a rigid motion apart. One is prescribed, the other one
 // is done by springs, over the gap between two legs as well.
-TEST(Judge, HeldEdgeIsTheMirrorOfAHotClamp) {
+TEST(OutlineVerification, HeldEdgeIsTheMirrorOfAHotClamp) {
   constexpr double kHot = 2e-3, kEnd = 2;
   const std::vector<Vec2> outer = {{0, -0.5}, {1, -0.4}, {kEnd, -0.6}, {kEnd, 0.3}, {1, 0.5},
                                    {0, 0.4},  {0, 0.2},  {0.7, 0.1},   {0.7, -0.2}, {0, -0.3}};
@@ -254,10 +259,10 @@ TEST(Judge, HeldEdgeIsTheMirrorOfAHotClamp) {
     load.held_end_stretch = end;
     loads.loads.push_back(load);
     loads.held_edge = {kEnd, 1e4 * section.youngs_modulus * section.thickness};
-    const Judged found =
-        judge(std::vector<Region>{{part, {}}}, section, loads,
-              {.tolerance = 5e-4, .size = 0.1, .reach = 0.05, .most_triangles = 40000});
-    EXPECT_TRUE(found.carried.empty());
+    const OutlineVerification found =
+        verify_outline(std::vector<Region>{{part, {}}}, section, loads,
+                       {.tolerance = 5e-4, .size = 0.1, .reach = 0.05, .max_triangles = 40000});
+    EXPECT_TRUE(found.mesh_loads.empty());
     return found.compliance;
   };
   const double hot_root = compliance(outer, kHot, 0), hot_end = compliance(mirrored, 0, kHot);
@@ -266,46 +271,49 @@ TEST(Judge, HeldEdgeIsTheMirrorOfAHotClamp) {
 }
 
 // A piece that could turn about its only hold is not held.
-TEST(Judge, LoadsOnLoosePiecesMakeTheComplianceInfinite) {
+TEST(OutlineVerification, LoadsOnLoosePiecesMakeTheComplianceInfinite) {
   const std::vector<Region> parts = {{rectangle(0, 0, 3, 1), {}}, {rectangle(4, 0, 8, 1), {}}};
-  const Judged loose = judge(parts, kUnit, tip_load(), {.size = 0.5, .reach = 0.1});
+  const OutlineVerification loose =
+      verify_outline(parts, kUnit, tip_load(), {.size = 0.5, .reach = 0.1});
   EXPECT_EQ(loose.compliance, INFINITY);
-  EXPECT_EQ(loose.loose_load, "tip");
-  EXPECT_EQ(loose.left_out, 1);
+  EXPECT_EQ(loose.unsupported_load, "tip");
+  EXPECT_EQ(loose.n_omitted_pieces, 1);
   Loads sliding = tip_load();
   sliding.supports[0].y = false;
-  EXPECT_EQ(judge(kBeam, kUnit, sliding, {.size = 0.5, .reach = 0.1}).compliance, INFINITY);
+  EXPECT_EQ(verify_outline(kBeam, kUnit, sliding, {.size = 0.5, .reach = 0.1}).compliance,
+            INFINITY);
   Loads nowhere = tip_load();
-  nowhere.places[1] = box_place({{20, 0}, {20, 1}});
-  EXPECT_EQ(judge(kBeam, kUnit, nowhere, {.size = 0.5, .reach = 0.1}).compliance, INFINITY);
+  nowhere.locations[1] = box_location({{20, 0}, {20, 1}});
+  EXPECT_EQ(verify_outline(kBeam, kUnit, nowhere, {.size = 0.5, .reach = 0.1}).compliance,
+            INFINITY);
 }
 
-TEST(Judge, IsTheSameBitForBit) {
+TEST(OutlineVerification, IsTheSameBitForBit) {
   const Settings settings{.tolerance = 0.001, .size = 0.2, .reach = 0.02};
-  const Judged a = judge(kBracket, kUnit, bracket_load(), settings);
+  const OutlineVerification a = verify_outline(kBracket, kUnit, bracket_load(), settings);
   std::vector<std::vector<double>> other;  // elsewhere in memory
   for (int k = 1; k < 2000; ++k) other.emplace_back(static_cast<std::size_t>(k % 97 + 1));
-  const Judged b = judge(kBracket, kUnit, bracket_load(), settings);
+  const OutlineVerification b = verify_outline(kBracket, kUnit, bracket_load(), settings);
   EXPECT_EQ(a.compliance, b.compliance);
   EXPECT_EQ(a.error, b.error);
   EXPECT_EQ(a.mesh.points, b.mesh.points);
   EXPECT_EQ(a.largest_stress, b.largest_stress);
 }
 
-TEST(Judge, EndsWhenItIsAskedTo) {
+TEST(OutlineVerification, EndsWhenItIsAskedTo) {
   int asked = 0;
   const Settings settings{
-      .tolerance = 1e-5, .size = 0.2, .reach = 0.02, .go_on = [&] { return ++asked < 3; }};
-  const Judged found = judge(kBracket, kUnit, bracket_load(), settings);
+      .tolerance = 1e-5, .size = 0.2, .reach = 0.02, .keep_running = [&] { return ++asked < 3; }};
+  const OutlineVerification found = verify_outline(kBracket, kUnit, bracket_load(), settings);
   EXPECT_EQ(found.meshes, 3);
   EXPECT_FALSE(found.converged);
   EXPECT_GT(found.compliance, 0);
 }
 
-TEST(Judge, SaysWhatItLacks) {
-  EXPECT_THROW(judge(kBeam, kUnit, {}, {.size = 0.5}), Error);
-  EXPECT_THROW(judge({}, kUnit, tip_load(), {.size = 0.5}), Error);
+TEST(OutlineVerification, SaysWhatItLacks) {
+  EXPECT_THROW(verify_outline(kBeam, kUnit, {}, {.size = 0.5}), Error);
+  EXPECT_THROW(verify_outline({}, kUnit, tip_load(), {.size = 0.5}), Error);
 }
 
 }  // namespace
-}  // namespace flexmorph::judge
+}  // namespace flexmorph::verification

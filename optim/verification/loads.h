@@ -9,11 +9,11 @@
 #include "geometry/part_mesh.h"
 
 /// Loads and supports of a part by position: nothing of them knows of cells or meshes.
-namespace flexmorph::judge {
+namespace flexmorph::verification {
 
 /// Where a part is held or pulled: the material on lines. Where there is none on any of them, the
 /// material in the box, when there is a box.
-struct Place {
+struct Location {
   std::vector<Segment> lines = {};
   std::optional<Box> box = {};
 };
@@ -23,16 +23,16 @@ struct Place {
 /// (A point has no limit in two dimensions: its displacement under a force grows with every finer
 /// mesh.)
 /// @param border  of the domain, with its holes   @param reach  [m]
-Place point_place(const Vec2& point, const Region& border, double reach);
+Location point_location(const Vec2& point, const Region& border, double reach);
 /// A box, or a line where it has no width: as it is.
-Place box_place(const Box& box);
+Location box_location(const Box& box);
 
 struct Support {
-  int place = 0;  ///< of Loads
+  int location = 0;  ///< of Loads
   bool x = false, y = false;
 };
 struct Force {
-  int place = 0;
+  int location = 0;
   Vec2 force{0, 0};  ///< in all, spread evenly over the material there [N]
 };
 
@@ -53,21 +53,21 @@ struct Load {
 };
 
 /// What keeps the material on a line x = const straight and as wide as it is, wherever it goes:
-/// springs between neighbours in y, whatever is between them, as of HeldExpansion.
+/// springs between neighbours in y, whatever is between them, as of RestrainedExpansion.
 struct HeldEdge {
   double x = 0;          ///< [m]
   double stiffness = 0;  ///< times the distance of two neighbours: k Δy [N]
 };
 
 struct Loads {
-  std::vector<Place> places;
+  std::vector<Location> locations;
   std::vector<Support> supports;
   std::vector<Load> loads;
   std::optional<HeldEdge> held_edge = {};  ///< in front of all clamps; of all loads
   Grid grid;                               ///< of accelerations
   bool worst = false;  ///< What counts is the largest compliance, not the weighted sum.
 
-  int add(Place place);  ///< @return its number
+  int add(Location location);  ///< @return its number
 };
 
-}  // namespace flexmorph::judge
+}  // namespace flexmorph::verification

@@ -1,4 +1,4 @@
-#include "optim/verification/judge.h"
+#include "optim/verification/verification.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 #include "geometry/cpu_time.h"
 #include "optim/verification/loaded_mesh.h"
 
-namespace flexmorph::judge {
+namespace flexmorph::verification {
 namespace {
 
 // Corners that reach around by more have stresses without a limit: triangles are small there from
@@ -34,7 +34,7 @@ Box bounds_of(std::span<const Region> regions) {
 }
 
 /// What one mesh says.
-struct Look {
+struct MeshResult {
   VectorXd compliances, errors;      // by rows of LoadedMesh [J]
   VectorXd by_triangle;              // what counts of the errors [J]
   double compliance = 0, error = 0;  // what counts of all loads [J]
@@ -46,15 +46,15 @@ struct Look {
   LargestStress worst_stress;  // likewise
 };
 
-class Judge {
+class OutlineVerifier {
  public:
-  Judge(std::span<const Region> regions, const fem::PlaneSection& section, const Loads& loads,
-        const Settings& settings)
+  OutlineVerifier(std::span<const Region> regions, const fem::PlaneSection& section,
+                  const Loads& loads, const Settings& settings)
       : section_(section),
         loads_(loads),
         settings_(settings),
         small_(1e-9 * (bounds_of(regions).upper - bounds_of(regions).lower).norm()),
-        places_(chosen_places(loads, regions, small_)),
+        locations_(chosen_locations(loads, regions, small_)),
         mesher_(regions, LoadedMesh::lines_of(loads, regions, small_)),
         sizes_(bounds_of(regions), settings.size) {
     const double fine = kAtCorners * settings.size;
@@ -62,17 +62,17 @@ class Judge {
     out_.area = area(regions);
   }
 
-  Judged go() {
+  OutlineVerification run() {
     const double start = cpu_seconds();
     std::size_t before = 0;
-    for (int k = 0; k < settings_.most_meshes; ++k) {
+    for (int k = 0; k < settings_.max_meshes; ++k) {
       mesher_.refine(sizes_);
       out_.mesh = mesher_.mesh();
       const std::size_t n = out_.mesh.triangles.size();
       if (n == before) break;  // nothing is left to refine
-      LoadedMesh mesh(out_.mesh, section_, loads_, places_, small_);
-      if (mesh.loose_load() >= 0) return loose(mesh);
-      Look now = look(mesh);
+      LoadedMesh mesh(out_.mesh, section_, loads_, locations_, small_);
+      if (mesh.unsupported_load() >= 0) return unsupported(mesh);
+      MeshResult now = analyse(mesh);
       double error = now.error;
       if (k > 0) {
         const double growth = static_cast<double>(n) / static_cast<double>(before) - 1;
@@ -81,8 +81,8 @@ class Judge {
       keep(mesh, now, error, k + 1);
       before = n;
       out_.converged = k > 0 && out_.error <= settings_.tolerance;
-      if (out_.converged || n > static_cast<std::size_t>(settings_.most_triangles)) break;
-      if (settings_.go_on && !settings_.go_on()) break;
+      if (out_.converged || n > static_cast<std::size_t>(settings_.max_triangles)) break;
+      if (settings_.keep_running && !settings_.keep_running()) break;
       refine(now, error);
     }
     out_.seconds = cpu_seconds() - start;
@@ -90,32 +90,33 @@ class Judge {
   }
 
  private:
-  Look look(LoadedMesh& mesh) const;
-  void look_at_stress(const LoadedMesh& mesh, const fem::RecoveredStress::Outcome& found,
-                      Eigen::Index first, const std::vector<char>& counts, Look& out) const;
-  std::vector<char> away_from_places(const LoadedMesh& mesh) const;
+  MeshResult analyse(LoadedMesh& mesh) const;
+  void update_largest_stress(const LoadedMesh& mesh, const fem::RecoveredStress::Outcome& found,
+                             Eigen::Index first, const std::vector<char>& counts,
+                             MeshResult& out) const;
+  std::vector<char> away_from_locations(const LoadedMesh& mesh) const;
   LargestStress largest_of(const LoadedMesh& mesh, int row, const MatrixXd& stress,
                            const std::vector<char>& counts) const;
-  void keep(const LoadedMesh& mesh, Look& now, double error, int meshes);
-  void refine(const Look& now, double error);
-  Judged loose(const LoadedMesh& mesh);
+  void keep(const LoadedMesh& mesh, MeshResult& now, double error, int meshes);
+  void refine(const MeshResult& now, double error);
+  OutlineVerification unsupported(const LoadedMesh& mesh);
 
   fem::PlaneSection section_;
   const Loads& loads_;
   Settings settings_;
   double small_;
-  std::vector<Place> places_;
+  std::vector<Location> locations_;
   PartMesher mesher_;
   SizeField sizes_;
-  Judged out_;
+  OutlineVerification out_;
 };
 
 /// Nodes whose stress is no matter of how a force is put on, or a support.
-std::vector<char> Judge::away_from_places(const LoadedMesh& mesh) const {
+std::vector<char> OutlineVerifier::away_from_locations(const LoadedMesh& mesh) const {
   const PartMesh& m = mesh.plate().mesh();
   std::vector<char> out(m.points.size(), 1);
   for (std::size_t k = 0; k < m.points.size(); ++k)
-    for (const Place& p : places_) {
+    for (const Location& p : locations_) {
       const Vec2& at = m.points[k];
       const bool on_line = std::any_of(p.lines.begin(), p.lines.end(), [&](const Segment& s) {
         return distance(s, at) <= settings_.reach;
@@ -127,8 +128,10 @@ std::vector<char> Judge::away_from_places(const LoadedMesh& mesh) const {
   return out;
 }
 
-void Judge::look_at_stress(const LoadedMesh& mesh, const fem::RecoveredStress::Outcome& found,
-                           Eigen::Index first, const std::vector<char>& counts, Look& out) const {
+void OutlineVerifier::update_largest_stress(const LoadedMesh& mesh,
+                                            const fem::RecoveredStress::Outcome& found,
+                                            Eigen::Index first, const std::vector<char>& counts,
+                                            MeshResult& out) const {
   for (Eigen::Index l = 0; l < found.energies.size(); ++l) {
     const int row = static_cast<int>(first + l);
     const LargestStress of_load =
@@ -139,8 +142,8 @@ void Judge::look_at_stress(const LoadedMesh& mesh, const fem::RecoveredStress::O
   }
 }
 
-LargestStress Judge::largest_of(const LoadedMesh& mesh, int row, const MatrixXd& stress,
-                                const std::vector<char>& counts) const {
+LargestStress OutlineVerifier::largest_of(const LoadedMesh& mesh, int row, const MatrixXd& stress,
+                                          const std::vector<char>& counts) const {
   const PartMesh& m = mesh.plate().mesh();
   const int load = mesh.order()[static_cast<std::size_t>(row)];
   const std::optional<double>& clamp = loads_.loads[static_cast<std::size_t>(load)].clamp;
@@ -163,16 +166,16 @@ VectorXd displacement_of(LoadedMesh& mesh, const VectorXd& unknowns) {
   return out;
 }
 
-Look Judge::look(LoadedMesh& mesh) const {
+MeshResult OutlineVerifier::analyse(LoadedMesh& mesh) const {
   mesh.plate().factorize();
   MatrixXd u = mesh.forces();
   mesh.plate().solve(u, mesh.clamps());
   const MatrixXd given = mesh.prescribed();
   const fem::RecoveredStress recovery(mesh.plate());
-  const std::vector<char> counts = away_from_places(mesh);
+  const std::vector<char> counts = away_from_locations(mesh);
   const VectorXd edge = mesh.edge_energies(u);
   const Eigen::Index n = u.rows();
-  Look out;
+  MeshResult out;
   out.compliances = out.errors = VectorXd::Zero(n);
   out.by_triangle = VectorXd::Zero(static_cast<Eigen::Index>(mesh.plate().mesh().triangles.size()));
   for (Eigen::Index first = 0; first < n; first += kBlock) {
@@ -184,7 +187,7 @@ Look Judge::look(LoadedMesh& mesh) const {
     if (given.size() > 0) some = given.middleRows(first, count);
     const fem::RecoveredStress::Outcome found =
         recovery.evaluate(u.middleRows(first, count), clamps, some);
-    look_at_stress(mesh, found, first, counts, out);
+    update_largest_stress(mesh, found, first, counts, out);
     for (Eigen::Index l = 0; l < count; ++l) {
       const int load = mesh.order()[static_cast<std::size_t>(first + l)];
       const double compliance = found.energies[l] + edge[first + l];
@@ -209,11 +212,11 @@ Look Judge::look(LoadedMesh& mesh) const {
   if (given.size() > 0) out.displacement += given.row(out.worst_row).transpose();
   out.worst_stress = largest_of(mesh, out.worst_row, out.stress, counts);
   if (!std::isfinite(out.compliance) || !std::isfinite(out.error))
-    throw Error::numerical("judge: the compliance is not finite");
+    throw Error::numerical("verification: the compliance is not finite");
   return out;
 }
 
-void Judge::keep(const LoadedMesh& mesh, Look& now, double error, int meshes) {
+void OutlineVerifier::keep(const LoadedMesh& mesh, MeshResult& now, double error, int meshes) {
   const auto n = static_cast<std::size_t>(now.compliances.size());
   out_.compliance = now.compliance;
   out_.error = error / now.compliance;
@@ -225,21 +228,21 @@ void Judge::keep(const LoadedMesh& mesh, Look& now, double error, int meshes) {
   out_.largest_at = now.largest.at;
   out_.largest_load =
       now.largest_row < 0 ? -1 : mesh.order()[static_cast<std::size_t>(now.largest_row)];
-  out_.pieces = out_.mesh.n_pieces;
-  out_.left_out = mesh.pieces_left_out();
+  out_.n_pieces = out_.mesh.n_pieces;
+  out_.n_omitted_pieces = mesh.n_omitted_pieces();
   out_.meshes = meshes;
-  out_.triangles_left_out = mesh.left_out();
+  out_.omitted_triangles = mesh.omitted();
   out_.stress = std::move(now.stress);
   out_.displacement = std::move(now.displacement);
-  out_.carried_stress = now.worst_stress;
+  out_.shown_stress = now.worst_stress;
   const int worst = mesh.order()[static_cast<std::size_t>(now.worst_row)];
   out_.shown_load = loads_.loads[static_cast<std::size_t>(worst)].name;
-  out_.carried.clear();
+  out_.mesh_loads.clear();
   const bool clamped = std::any_of(loads_.loads.begin(), loads_.loads.end(),
                                    [](const Load& l) { return l.clamp.has_value(); });
   for (std::size_t row = 0; row < n && !loads_.held_edge; ++row) {
     if (clamped && static_cast<int>(row) != now.worst_row) continue;
-    CarriedLoad& each = out_.carried.emplace_back();
+    MeshLoad& each = out_.mesh_loads.emplace_back();
     each.load = mesh.order()[row];
     each.name = loads_.loads[static_cast<std::size_t>(each.load)].name;
     each.compliance = now.compliances[static_cast<Eigen::Index>(row)];
@@ -254,14 +257,13 @@ void Judge::keep(const LoadedMesh& mesh, Look& now, double error, int meshes) {
         each.forces.push_back({static_cast<int>(k / 2), forces.segment<2>(k)});
   }
   // The stress that is kept belongs to the worst one.
-  std::stable_sort(out_.carried.begin(), out_.carried.end(),
-                   [&](const CarriedLoad& a, const CarriedLoad& b) {
-                     return (a.load == worst) > (b.load == worst);
-                   });
+  std::stable_sort(
+      out_.mesh_loads.begin(), out_.mesh_loads.end(),
+      [&](const MeshLoad& a, const MeshLoad& b) { return (a.load == worst) > (b.load == worst); });
 }
 
 /// Smaller triangles where the error is, so that all have an equal part of what is allowed.
-void Judge::refine(const Look& now, double error) {
+void OutlineVerifier::refine(const MeshResult& now, double error) {
   const double wanted =
       std::min(0.5 * settings_.tolerance * now.compliance, 0.25 * std::max(now.error, 0.1 * error));
   const double part = wanted / static_cast<double>(out_.mesh.triangles.size());
@@ -276,23 +278,24 @@ void Judge::refine(const Look& now, double error) {
   }
 }
 
-Judged Judge::loose(const LoadedMesh& mesh) {
+OutlineVerification OutlineVerifier::unsupported(const LoadedMesh& mesh) {
   out_.compliance = INFINITY;
-  out_.loose_load = loads_.loads[static_cast<std::size_t>(mesh.loose_load())].name;
+  out_.unsupported_load = loads_.loads[static_cast<std::size_t>(mesh.unsupported_load())].name;
   out_.converged = true;
-  out_.pieces = out_.mesh.n_pieces;
-  out_.left_out = mesh.pieces_left_out();
-  out_.triangles_left_out = mesh.left_out();
+  out_.n_pieces = out_.mesh.n_pieces;
+  out_.n_omitted_pieces = mesh.n_omitted_pieces();
+  out_.omitted_triangles = mesh.omitted();
   return std::move(out_);
 }
 
 }  // namespace
 
-Judged judge(std::span<const Region> regions, const fem::PlaneSection& section, const Loads& loads,
-             const Settings& settings) {
-  if (loads.loads.empty()) throw Error::input("judge: there are no loads");
-  if (regions.empty()) throw Error::numerical("judge: there is no material");
-  return Judge(regions, section, loads, settings).go();
+OutlineVerification verify_outline(std::span<const Region> regions,
+                                   const fem::PlaneSection& section, const Loads& loads,
+                                   const Settings& settings) {
+  if (loads.loads.empty()) throw Error::input("verification: there are no loads");
+  if (regions.empty()) throw Error::numerical("verification: there is no material");
+  return OutlineVerifier(regions, section, loads, settings).run();
 }
 
-}  // namespace flexmorph::judge
+}  // namespace flexmorph::verification
