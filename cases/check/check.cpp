@@ -5,7 +5,7 @@
 #include "cases/assembly/build.h"
 #include "cases/assembly/twin.h"
 #include "cases/check/check_cost.h"
-#include "cases/check/check_figures.h"
+#include "cases/check/plausibility.h"
 #include "cases/run/run.h"
 #include "cases/scene/design/goal.h"
 #include "cases/scene/elements/row.h"
