@@ -102,7 +102,7 @@ CLI::App* add_accuracy(CLI::App& app, AccuracyOptions& options) {
 
 CLI::App* add_stability(CLI::App& app, StabilityOptions& options) {
   CLI::App* command = app.add_subcommand(
-      "stability", "makes cases stiff, extreme and empty, and judges what becomes of them");
+      "stability", "makes cases stiff and extreme, runs them, and gives every run a verdict");
   command->add_option("case", options.cases, "case files or names (default: all shipped cases)");
   command->add_option("--suites", options.suites, "names, with commas (default: all but long)")
       ->delimiter(',')

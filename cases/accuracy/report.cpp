@@ -12,250 +12,216 @@ namespace {
 using io::to_text;
 using Rows = std::vector<std::vector<std::string>>;
 
-constexpr double kLeastError = 1e-12;  // in pictures: less is rounding
+constexpr double kMinError = 1e-12;  // in plots: less is rounding
 
 std::string percent(double share) {
   return std::isfinite(share) ? to_text(100 * share, 2) + " %" : "?";
 }
 
-std::string name_of(const AccuracyStudy& study, const Ladder& ladder) {
-  const bool twice = std::count_if(study.ladders.begin(), study.ladders.end(),
-                                   [&](const Ladder& l) { return l.knob == ladder.knob; }) > 1;
-  return ladder.knob->name + (twice ? " (" + to_string(ladder.part) + ")" : "");
-}
-
-/// Quantities of a ladder's part.
-std::vector<size_t> quantities_of(const AccuracyStudy& study, const Ladder& ladder) {
+/// Returns the indices of the quantities of a part.
+std::vector<size_t> quantities_of(const AccuracyStudy& study, Part part) {
   std::vector<size_t> out;
   for (size_t q = 0; q < study.parts.size(); ++q)
-    if (study.parts[q] == ladder.part) out.push_back(q);
+    if (study.parts[q] == part) out.push_back(q);
   return out;
 }
 
-/// The order that the triple with this rung as its finest one has.
-std::string order_at(const Ladder& ladder, size_t rung, size_t q) {
-  if (!ladder.rungs[rung].measured() || ladder.limits[q].orders.empty()) return "";
-  size_t place = 0;
-  for (size_t i = 0; i < rung; ++i) place += ladder.rungs[i].measured();
-  if (place < 2 || place - 2 >= ladder.limits[q].orders.size()) return "";
-  const double order = ladder.limits[q].orders[place - 2];
-  return std::isfinite(order) ? to_text(order, 3) : "-";
+/// Returns the order of the triple whose finest level this is.
+std::string order_at(const Series& series, size_t level, size_t q) {
+  const std::vector<double>& orders = series.limits[q].orders;
+  size_t before = 0;
+  for (size_t i = 0; i < level; ++i) before += series.levels[i].measured();
+  if (!series.levels[level].measured() || before < 2 || before - 2 >= orders.size()) return "";
+  return std::isfinite(orders[before - 2]) ? to_text(orders[before - 2], 3) : "-";
 }
 
 Rows quantity_rows(const AccuracyStudy& study) {
   Rows rows = {{"quantity", "value", "limit", "known to", "off by", "reference", "limit off by"}};
-  for (size_t q = 0; q < study.truths.size(); ++q) {
-    const Truth& t = study.truths[q];
-    std::vector<std::string>& row = rows.emplace_back();
-    row = {study.interests[q].words(),
-           to_text(t.own, 9),
-           !t.has_limit                   ? "none"
-           : std::isfinite(t.uncertainty) ? to_text(t.value, 9)
-                                          : "?",
-           percent(t.uncertainty),
-           percent(std::abs(t.own - t.value) / t.scale),
-           "",
-           ""};
-    if (!t.reference) continue;
-    row[5] = to_text(*t.reference, 9) + " (" + study.interests[q].source + ")";
-    row[6] = percent(std::abs(t.value - *t.reference) / t.scale);
+  for (size_t q = 0; q < study.estimates.size(); ++q) {
+    const Estimate& e = study.estimates[q];
+    const std::string limit = !e.has_limit                   ? "none"
+                              : std::isfinite(e.uncertainty) ? to_text(e.value, 9)
+                                                             : "?";
+    const std::optional<double>& reference = study.references[q];
+    rows.push_back(
+        {study.interests[q].words(), to_text(e.own, 9), limit, percent(e.uncertainty),
+         percent(std::abs(e.own - e.value) / e.scale),
+         reference ? to_text(*reference, 9) + " (" + study.interests[q].source + ")" : "",
+         reference ? percent(std::abs(e.value - *reference) / e.scale) : ""});
   }
   return rows;
 }
 
-Rows ladder_rows(const AccuracyStudy& study, const Ladder& ladder) {
-  const std::vector<size_t> quantities = quantities_of(study, ladder);
-  Rows rows = {{ladder.knob->name}};
+Rows series_rows(const AccuracyStudy& study, const Series& series) {
+  const std::vector<size_t> quantities = quantities_of(study, series.part);
+  Rows rows = {{series.parameter->name}};
   for (const size_t q : quantities) {
     const std::string of = quantities.size() > 1 ? " of " + study.interests[q].words() : "";
     rows[0].insert(rows[0].end(), {study.interests[q].words(), "error" + of, "order" + of});
   }
-  for (const char* name : {"unknowns", "CPU s", "wall s", "MB", ""}) rows[0].emplace_back(name);
-  for (size_t i = 0; i < ladder.rungs.size(); ++i) {
-    const Rung& rung = ladder.rungs[i];
-    if (rung.status == "refused") continue;
+  rows[0].insert(rows[0].end(), {"unknowns", "CPU s", "MB", ""});
+  for (size_t i = 0; i < series.levels.size(); ++i) {
+    const LevelRun& run = series.levels[i];
+    if (run.status == "refused") continue;
+    const bool measured = run.measured();
+    const std::string predicted = measured ? "" : "~";
     std::vector<std::string>& row = rows.emplace_back();
-    row.push_back(rung.level.name + (rung.is_own() ? " *" : ""));
+    row.push_back(run.level.name + (run.is_case() ? " *" : ""));
     for (const size_t q : quantities) {
-      row.push_back(rung.measured() ? to_text(rung.values[q], 9) : "");
-      const double error = rung.errors[q];
-      row.push_back(
-          !std::isfinite(error) ? "" : std::string(rung.measured() ? "" : "~") + to_text(error, 2));
-      row.push_back(order_at(ladder, i, q));
+      row.push_back(measured ? to_text(run.values[q], 9) : "");
+      row.push_back(std::isfinite(run.errors[q]) ? predicted + to_text(run.errors[q], 2) : "");
+      row.push_back(order_at(series, i, q));
     }
-    const bool measured = rung.measured();
-    row.push_back(rung.unknowns > 0 ? to_text(rung.unknowns) : "");
-    row.push_back(
-        measured
-            ? to_text(rung.seconds_cpu, 3)
-            : (rung.predicted_cpu > 0 ? std::string("~") + to_text(rung.predicted_cpu, 2) : ""));
-    row.push_back(measured ? to_text(rung.seconds_wall, 3) : "");
-    row.push_back(measured ? to_text(1e-6 * rung.memory, 3) : "");
-    row.push_back(measured ? "" : rung.status + (rung.message.empty() ? "" : ": " + rung.message));
+    row.push_back(run.unknowns > 0 ? to_text(run.unknowns) : "");
+    row.push_back(measured || run.status == "cut"
+                      ? predicted + to_text(series.seconds(i), measured ? 3 : 2)
+                      : "");
+    row.push_back(measured ? to_text(1e-6 * run.memory, 3) : "");
+    row.push_back(measured ? "" : run.status + (run.message.empty() ? "" : ": " + run.message));
   }
   return rows;
 }
 
-/// One sentence per quantity.
-std::vector<std::string> ladder_words(const AccuracyStudy& study, const Ladder& ladder) {
+/// Returns a sentence per quantity, and one on the levels that were cut.
+std::vector<std::string> series_sentences(const AccuracyStudy& study, const Series& series) {
+  const std::string& group = series.parameter->group;
+  if (!series.parameter->has_limit)
+    return {"errors against the limit of " + group + "; no limit of its own"};
+  const Series* leader = leader_of(study, group, series.part);
   std::vector<std::string> out;
-  if (!ladder.knob->is_ladder)
-    return {"errors against the limit of " + ladder.knob->group + "; no limit of its own"};
-  for (const size_t q : quantities_of(study, ladder)) {
-    const Limit& limit = ladder.limits[q];
-    std::string words = study.interests[q].words() + ": " +
-                        (limit.converged ? "converged, " : "not converged: ") + limit.sentence;
-    if (!ladder.leads()) {
-      for (const Ladder& leader : study.ladders)
-        if (leader.leads() && leader.knob->group == ladder.knob->group &&
-            leader.part == ladder.part && std::isfinite(limit.value))
-          words += "; its limit differs from that of " + leader.knob->name + " by " +
-                   percent(std::abs(limit.value - leader.limits[q].value) / study.truths[q].scale);
-    }
-    out.push_back(words);
+  for (const size_t q : quantities_of(study, series.part)) {
+    const Limit& limit = series.limits[q];
+    out.push_back(study.interests[q].words() + ": " +
+                  (limit.converged ? "converged, " : "not converged: ") + limit.sentence);
+    if (leader && leader != &series && std::isfinite(limit.value))
+      out.back() +=
+          "; its limit differs from that of " + group + " by " +
+          percent(std::abs(limit.value - leader->limits[q].value) / study.estimates[q].scale);
   }
-  if (const size_t cut = ladder.count("cut"); cut > 0)
+  if (const size_t cut = series.count("cut"); cut > 0)
     out.push_back("cut by the budget: " + std::to_string(cut) + " of " +
-                  std::to_string(ladder.rungs.size() - ladder.count("refused")) + " levels");
+                  std::to_string(series.levels.size() - series.count("refused")) + " levels");
   return out;
 }
 
 Rows recommendation_rows(const AccuracyStudy& study) {
-  Rows rows = {{"promise", "settings", "predicted error", "measured error", "CPU s predicted",
+  Rows rows = {{"target", "settings", "predicted error", "measured error", "CPU s predicted",
                 "CPU s", "verdict", "file"}};
-  const auto largest = [](const std::vector<double>& errors) {
-    double out = 0;
-    for (const double e : errors) out = std::isnan(e) ? e : std::max(out, e);
-    return percent(out);
-  };
   for (const Recommendation& r : study.recommendations) {
-    std::vector<double> found;
-    for (size_t q = 0; q < r.found.size(); ++q)
-      if (r.covers[q]) found.push_back(r.found[q]);
     std::string names;
     for (const std::string& name : r.names) names += (names.empty() ? "" : "; ") + name;
-    rows.push_back({percent(r.promise), names, r.choice ? largest(r.choice->errors) : "",
-                    r.verified ? largest(found) : "", r.choice ? to_text(r.choice->cost, 3) : "",
+    const bool found = !r.names.empty();
+    rows.push_back({percent(r.target), names, found ? percent(r.error) : "",
+                    r.verified ? percent(r.measured_error) : "", found ? to_text(r.seconds, 3) : "",
                     r.verified ? to_text(r.seconds_cpu, 3) : "", r.sentence, r.file});
   }
   return rows;
 }
 
-std::string absent_words(const AccuracyStudy& study) {
-  std::string out;
-  for (const auto& [name, why] : study.absent)
-    out += (out.empty() ? "" : "; ") + name + " (" + why + ")";
-  return out;
-}
-
-std::string composed(const AccuracyStudy& study, bool markdown) {
+std::string report_of(const AccuracyStudy& study, bool markdown) {
   const auto table = [&](const Rows& rows) {
     return (markdown ? io::markdown_table(rows) : io::aligned_table(rows)) + "\n";
   };
-  const std::string head = markdown ? "## " : "";
-  std::string out = (markdown ? "# " : "") + study.title + "\n\n";
-  out += table(quantity_rows(study));
-  for (const Ladder& ladder : study.ladders) {
-    out += head + name_of(study, ladder) + "\n" + (markdown ? "\n" : "");
-    out += table(ladder_rows(study, ladder));
-    for (const std::string& words : ladder_words(study, ladder))
+  const auto heading = [&](const std::string& words) {
+    return markdown ? "## " + words + "\n\n" : words + "\n";
+  };
+  std::string out = (markdown ? "# " : "") + study.title + "\n\n" + table(quantity_rows(study));
+  for (const Series& series : study.series) {
+    const bool twice =
+        std::count_if(study.series.begin(), study.series.end(),
+                      [&](const Series& s) { return s.parameter == series.parameter; }) > 1;
+    out += heading(series.parameter->name + (twice ? " (" + to_string(series.part) + ")" : "")) +
+           table(series_rows(study, series));
+    for (const std::string& words : series_sentences(study, series))
       out += (markdown ? "- " : "  ") + words + "\n";
     out += "\n";
   }
-  if (!study.absent.empty())
-    out += std::string(markdown ? "Absent: " : "absent: ") + absent_words(study) + "\n\n";
-  out += head + "Cheapest settings\n" + (markdown ? "\n" : "");
-  out += table(recommendation_rows(study));
+  for (const auto& [name, why] : study.absent) out += "absent: " + name + " (" + why + ")\n\n";
+  out += heading("Cheapest settings") + table(recommendation_rows(study));
   if (markdown)
     out +=
-        "A star marks the case as it is; `~` what the fitted order predicts. The error of a "
-        "level is that against the limit of its own ladder, other knobs as in the case. Limits "
-        "add what is missing to each ladder's limit to the value of the case; a promise is the "
-        "sum of the errors over all knobs and of what the limits are uncertain by. The promise "
-        "covers these knobs only.\n";
+        "A star marks the case as it is; `~` marks what the fitted order predicts. The error of a "
+        "level is the one against the limit of its own ladder, with the other parameters as in the "
+        "case. A limit is the value of the case and what is missing to the limits of all ladders. "
+        "An error of settings is the sum over these parameters, and of what the limits are "
+        "uncertain by; it covers no other parameter.\n";
   return out;
 }
 
-/// Error of the whole run, where its limit is bounded, against the time it takes.
+io::Curve curve_of(const std::string& name, std::optional<size_t> color, bool dashed) {
+  io::Curve out;
+  out.name = name;
+  out.color = color;
+  out.dashed = dashed;
+  out.markers = !dashed;
+  return out;
+}
+
+/// Plots the error of the whole run, where its limit is known, against its CPU time.
 io::Panel times_panel(const AccuracyStudy& study, size_t q) {
-  const Truth& truth = study.truths[q];
-  const bool whole = truth.has_limit && std::isfinite(truth.uncertainty);
+  const Estimate& estimate = study.estimates[q];
+  const bool whole = estimate.has_limit && std::isfinite(estimate.uncertainty);
   io::Panel out;
   out.title = study.interests[q].words() + ": error against CPU time";
   out.x = {"CPU time [s]", true};
-  out.y = {whole ? "error of all knobs together [-]" : "error against the ladder's limit [-]",
+  out.y = {whole ? "error of all parameters together [-]" : "error against the ladder's limit [-]",
            true};
   std::vector<std::pair<double, double>> points;
   size_t color = 0;
-  for (const Ladder& ladder : study.ladders) {
-    if (ladder.part != study.parts[q]) continue;
-    io::Curve curve;
-    for (const Rung& rung : ladder.rungs) {
-      if (!rung.measured()) continue;
+  for (const Series& series : study.series) {
+    if (series.part != study.parts[q]) continue;
+    io::Curve curve = curve_of(series.parameter->name, color++, false);
+    curve.line = series.parameter->has_limit;
+    for (const LevelRun& run : series.levels) {
+      if (!run.measured()) continue;
       const double error =
-          whole ? std::abs(rung.values[q] - truth.value) / truth.scale : rung.errors[q];
-      if (!(error > kLeastError)) continue;
-      curve.x.push_back(rung.seconds_cpu);
+          whole ? std::abs(run.values[q] - estimate.value) / estimate.scale : run.errors[q];
+      if (!(error > kMinError)) continue;
+      curve.x.push_back(run.seconds_cpu);
       curve.y.push_back(error);
-      points.emplace_back(rung.seconds_cpu, error);
+      points.emplace_back(run.seconds_cpu, error);
     }
-    curve.name = ladder.knob->name;
-    curve.markers = true;
-    curve.line = ladder.knob->is_ladder;
-    curve.color = color++;
     if (!curve.x.empty()) out.curves.push_back(curve);
   }
-  const auto dashed = [&](const std::string& name) {
-    io::Curve curve;
-    curve.name = name;
-    curve.dashed = true;
-    curve.color = color++;
-    return curve;
-  };
-  io::Curve front = dashed("Pareto front");
+  io::Curve front = curve_of("Pareto front", color++, true);
   for (const size_t i : pareto_front(points)) {
     front.x.push_back(points[i].first);
     front.y.push_back(points[i].second);
   }
   if (front.x.size() > 1) out.curves.push_back(front);
-  if (whole && truth.uncertainty > kLeastError && !points.empty()) {
+  if (whole && estimate.uncertainty > kMinError && !points.empty()) {
     const auto [first, last] = std::minmax_element(points.begin(), points.end());
-    io::Curve known = dashed("what the limit is known to");
+    io::Curve known = curve_of("what the limit is known to", color, true);
     known.x = {first->first, last->first};
-    known.y = {truth.uncertainty, truth.uncertainty};
+    known.y = {estimate.uncertainty, estimate.uncertainty};
     out.curves.push_back(known);
   }
   return out;
 }
 
-/// Errors against the limits of the ladders, with the orders of those that converge.
-io::Panel knobs_panel(const AccuracyStudy& study, size_t q) {
+/// Plots errors against the limits of the series, with the orders of those that converge.
+io::Panel parameters_panel(const AccuracyStudy& study, size_t q) {
   io::Panel out;
-  out.title = study.interests[q].words() + ": error against the knobs";
-  out.x = {"knob, relative to the case", true};
+  out.title = study.interests[q].words() + ": error against the parameters";
+  out.x = {"parameter, relative to the case", true};
   out.y = {"error against the ladder's limit [-]", true};
   size_t color = 0;
-  for (const Ladder& ladder : study.ladders) {
-    if (ladder.part != study.parts[q]) continue;
-    io::Curve curve, fit;
-    for (const Rung& rung : ladder.rungs) {
-      if (!rung.measured() || !(rung.errors[q] > kLeastError)) continue;
-      curve.x.push_back(rung.level.h);
-      curve.y.push_back(rung.errors[q]);
+  for (const Series& series : study.series) {
+    if (series.part != study.parts[q]) continue;
+    io::Curve curve = curve_of(series.parameter->name, color++, false);
+    for (const LevelRun& run : series.levels) {
+      if (!run.measured() || !(run.errors[q] > kMinError)) continue;
+      curve.x.push_back(run.level.h);
+      curve.y.push_back(run.errors[q]);
     }
-    curve.name = ladder.knob->name;
-    curve.markers = true;
-    curve.color = fit.color = color++;
-    if (!ladder.knob->is_ladder || curve.x.empty()) continue;
+    if (!series.parameter->has_limit || curve.x.empty()) continue;
     out.curves.push_back(curve);
-    const Limit& limit = ladder.limits[q];
-    if (!ladder.leads() || !limit.converged || !std::isfinite(limit.order) || curve.x.size() < 2)
+    const Limit& limit = series.limits[q];
+    if (!series.leads() || !limit.converged || !std::isfinite(limit.order) || curve.x.size() < 2)
       continue;
-    fit.name = "order " + to_text(limit.order, 3);
-    fit.dashed = true;
+    io::Curve fit = curve_of("order " + to_text(limit.order, 3), curve.color, true);
     fit.x = {curve.x.front(), curve.x.back()};
-    const double end = curve.y.back();
-    fit.y = {end * std::pow(fit.x[0] / fit.x[1], limit.order), end};
+    fit.y = {curve.y.back() * std::pow(fit.x[0] / fit.x[1], limit.order), curve.y.back()};
     out.curves.push_back(fit);
   }
   return out;
@@ -263,35 +229,41 @@ io::Panel knobs_panel(const AccuracyStudy& study, size_t q) {
 
 }  // namespace
 
-std::string accuracy_text(const AccuracyStudy& study) { return composed(study, false); }
-std::string accuracy_markdown(const AccuracyStudy& study) { return composed(study, true); }
+std::string accuracy_text(const AccuracyStudy& study) { return report_of(study, false); }
+std::string accuracy_markdown(const AccuracyStudy& study) { return report_of(study, true); }
 
 void write_accuracy_csv(const AccuracyStudy& study, const std::string& path) {
   const std::vector<std::string> columns = {
-      "part",        "ladder",      "level",    "h",       "status",
-      "quantity",    "value",       "error",    "order",   "limit",
-      "uncertainty", "converged",   "unknowns", "message", "peak_memory_bytes",
-      "seconds_cpu", "seconds_wall"};
+      "part",        "ladder",    "level",    "h",       "status",
+      "quantity",    "value",     "error",    "order",   "limit",
+      "uncertainty", "converged", "unknowns", "message", "peak_memory_bytes",
+      "seconds_cpu"};
   io::CsvWriter csv(path, columns);
   const auto cell = [](double value) {
     return std::isfinite(value) ? io::Cell(value) : io::Cell();
   };
-  for (const Ladder& ladder : study.ladders)
-    for (size_t i = 0; i < ladder.rungs.size(); ++i) {
-      const Rung& rung = ladder.rungs[i];
-      for (const size_t q : quantities_of(study, ladder)) {
-        const Limit& limit = ladder.limits[q];
-        std::vector<io::Cell> row = {
-            to_string(ladder.part), ladder.knob->name, rung.level.name,
-            rung.level.h,           rung.status,       study.interests[q].words()};
-        row.push_back(rung.measured() ? cell(rung.values[q]) : io::Cell());
-        row.push_back(cell(rung.errors[q]));
-        row.emplace_back(order_at(ladder, i, q));
-        row.insert(row.end(), {cell(limit.value), cell(limit.uncertainty), limit.converged,
-                               rung.unknowns, rung.message});
-        const bool measured = rung.measured();
-        for (const double value : {rung.memory, rung.seconds_cpu, rung.seconds_wall})
-          row.push_back(measured ? io::Cell(value) : io::Cell());
+  for (const Series& series : study.series)
+    for (size_t i = 0; i < series.levels.size(); ++i) {
+      const LevelRun& run = series.levels[i];
+      const bool measured = run.measured();
+      for (const size_t q : quantities_of(study, series.part)) {
+        const Limit& limit = series.limits[q];
+        const std::vector<io::Cell> row = {to_string(series.part),
+                                           series.parameter->name,
+                                           run.level.name,
+                                           run.level.h,
+                                           run.status,
+                                           study.interests[q].words(),
+                                           measured ? cell(run.values[q]) : io::Cell(),
+                                           cell(run.errors[q]),
+                                           order_at(series, i, q),
+                                           cell(limit.value),
+                                           cell(limit.uncertainty),
+                                           limit.converged,
+                                           run.unknowns,
+                                           run.message,
+                                           measured ? io::Cell(run.memory) : io::Cell(),
+                                           measured ? io::Cell(run.seconds_cpu) : io::Cell()};
         csv.row(row);
       }
     }
@@ -303,9 +275,21 @@ std::string accuracy_svg(const AccuracyStudy& study) {
   figure.panel_height = 360;
   for (size_t q = 0; q < study.interests.size(); ++q) {
     figure.panels.push_back(times_panel(study, q));
-    figure.panels.push_back(knobs_panel(study, q));
+    figure.panels.push_back(parameters_panel(study, q));
   }
   return io::plot_svg(figure);
+}
+
+std::vector<size_t> pareto_front(const std::vector<std::pair<double, double>>& points) {
+  std::vector<size_t> order;
+  for (size_t i = 0; i < points.size(); ++i)
+    if (std::isfinite(points[i].first) && std::isfinite(points[i].second)) order.push_back(i);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](size_t a, size_t b) { return points[a] < points[b]; });
+  std::vector<size_t> out;
+  for (const size_t i : order)
+    if (out.empty() || points[i].second < points[out.back()].second) out.push_back(i);
+  return out;
 }
 
 }  // namespace flexmorph::cases

@@ -3,102 +3,95 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "cases/accuracy/budget.h"
-#include "cases/accuracy/choice.h"
-#include "cases/accuracy/knobs.h"
+#include "cases/accuracy/parameters.h"
 #include "cases/study/study.h"
 
-/// Ladders of one case as data: what was measured, and what follows from it.
+/// The refinement series of one case as data: what was measured, and what follows from it.
 namespace flexmorph::cases {
 
-/// A level of a ladder, and what its run came to.
-struct Rung {
+/// A level of a series, and the result of its run.
+struct LevelRun {
   Level level;
-  std::string status = "open";                           ///< "measured", "cut", "refused", "failed"
-  std::string message;                                   ///< why refused or failed
-  double seconds_cpu = 0, seconds_wall = 0, memory = 0;  ///< [s], [s], [bytes]
+  std::string status = "open";         ///< "measured", "cut", "refused", "failed"
+  std::string message;                 ///< why refused or failed
+  double seconds_cpu = 0, memory = 0;  ///< [s], [bytes]
   int unknowns = 0;
   std::vector<double> values;  ///< of all quantities; NaN of the other part, or not measured
-  /// Likewise, relative to their scales, against the limit of the group: the largest one of this
-  /// level and all finer ones.
+  /// Of all quantities, relative to their scales, against the limit of the group: the largest error
+  /// of this level and all finer ones.
   std::vector<double> errors;
-  double predicted_cpu = 0;  ///< [s], of levels that were cut
 
   bool measured() const { return status == "measured"; }
-  bool is_own() const { return level.overrides.empty(); }  ///< the case as it is
+  bool is_case() const { return level.overrides.empty(); }
 };
 
-/// The levels of a knob in one part, and their limits.
-struct Ladder {
-  const Knob* knob = nullptr;
+/// The levels of a parameter in one part, and their limits.
+struct Series {
+  const Parameter* parameter = nullptr;
   Part part = Part::motion;
+  double first_guess = 0;  ///< run time at h = 1 where no level was measured [s]
+  double cost_factor = 1;  ///< of the cost exponent of the parameter
   std::vector<std::optional<Theory>> theories;  ///< of all quantities
-  std::vector<Rung> rungs;                      ///< coarse to fine
-  std::vector<Limit> limits;  ///< of all quantities; those of the other part are empty
-  bool leads() const { return knob->name == knob->group; }
+  std::vector<LevelRun> levels;                 ///< coarse to fine
+  std::vector<Limit> limits;                    ///< of all quantities; NaN of the other part
+
+  bool leads() const { return parameter->name == parameter->group; }
   size_t count(const std::string& status) const;
+  /// Returns the run time of a level [s]: measured, or by the power law through its two nearest
+  /// measured levels, its exponent within a factor 2 of the one of the parameter.
+  double seconds(size_t level) const;
 };
 
-/// What all ladders together say of a quantity.
-struct Truth {
+/// What all series together say of a quantity.
+struct Estimate {
   double own = 0;          ///< value of the case as it is
   double scale = 1;        ///< of its errors
-  double value = 0;        ///< own + Σ over knobs of what is missing to their limits
+  double value = 0;        ///< own + Σ over groups of what is missing to their limits
   double uncertainty = 0;  ///< Σ, relative to the scale; infinite where a limit is not bounded
-  std::optional<double> reference;
-  std::string unbounded;  ///< knobs without a bounded limit
-  bool has_limit = true;  ///< false: theory knows of none, and no promise covers it
+  std::string unbounded;   ///< parameters without a bounded limit
+  bool has_limit = true;   ///< false: theory knows of no limit, and no recommendation covers it
 };
 
-/// Settings for a promised error.
+/// The cheapest settings for an error.
 struct Recommendation {
-  double promise = 0;
-  std::optional<Choice> choice;
-  std::vector<std::string> overrides, names;  ///< of the groups' levels
-  bool verified = false;
-  std::vector<bool> covers;   ///< of all quantities: is the promise about it?
-  std::vector<double> found;  ///< measured errors, relative, against the truths
-  double seconds_cpu = 0;     ///< measured
-  bool withdrawn = false;
+  double target = 0;                          ///< largest error [-]
+  std::vector<std::string> overrides, names;  ///< of the levels; empty: none reaches the target
+  double error = 0, seconds = 0;              ///< predicted, of the worst quantity [-], [s]
+  bool verified = false, withdrawn = false;
+  std::vector<bool> covers;                    ///< of all quantities: is it about them?
+  double measured_error = 0, seconds_cpu = 0;  ///< of the run that verified it [-], [s]
   std::string sentence, file;
 };
 
 struct AccuracyStudy {
-  std::string case_name, title;
+  std::string title;
   std::vector<Interest> interests;
-  std::vector<Part> parts;  ///< of each quantity
-  std::vector<Ladder> ladders;
-  std::vector<std::pair<std::string, std::string>> absent;  ///< knobs, and why
-  std::map<Part, Rung> own;                                 ///< the case as it is, in each part
-  std::vector<Truth> truths;
+  std::vector<std::optional<double>> references;  ///< of each quantity
+  std::vector<Part> parts;                        ///< of each quantity
+  std::vector<Series> series;
+  std::vector<std::pair<std::string, std::string>> absent;  ///< parameters, and why
+  std::map<Part, LevelRun> own;                             ///< the case as it is, in each part
+  std::vector<Estimate> estimates;                          ///< of each quantity
   std::vector<Recommendation> recommendations;
-  double budget = 0;  ///< [s]
-
-  bool has(Part part) const { return own.contains(part); }
 };
 
-/// Limits, errors of rungs, truths: all that follows from measured values.
-/// @param references  of each quantity
-void evaluate(AccuracyStudy& study, const std::vector<std::optional<double>>& references);
+/// Returns the series that has the limit of a group in a part; null: there is none.
+const Series* leader_of(const AccuracyStudy& study, const std::string& group, Part part);
 
-/// What a promise can be about: quantities whose limits are known to it.
-std::vector<bool> covered(const AccuracyStudy& study, double promise);
+/// Series with so many measured levels wait for those with fewer.
+inline constexpr size_t kEnoughLevels = 5;
 
-/// Groups of knobs that matter to what is covered, with the levels that may be recommended:
-/// measured ones, and those cut by the budget where the order predicts their errors. A ladder that
-/// is not converged is not extrapolated: it offers its finest level, and coarser measured ones by
-/// their distance from it where the limit's uncertainty is at most promise / kClearance.
-inline constexpr double kClearance = 10;
-std::vector<Group> groups_of(const AccuracyStudy& study, double promise);
+/// Returns the next level to measure, as series and level: of the coarsest open levels of all
+/// series the one with the shortest run time; it counts four times as long in a series that does
+/// not lead its group, and twice as long for each level beyond kEnoughLevels. Levels that would
+/// take longer than `left` [s] are cut, with all finer ones. Nothing: no level is open.
+std::optional<std::pair<size_t, size_t>> next_level(std::vector<Series>& series, double left);
 
-/// The cheapest settings for a promise whose errors add up to `share` of it at most.
-Recommendation recommend(const AccuracyStudy& study, double promise, double share = 1);
-
-/// Judges a recommendation by what its run found: kept within kPromiseFactor, or withdrawn.
-inline constexpr double kPromiseFactor = 1.5;
-void judge(Recommendation& r, const AccuracyStudy& study, const std::vector<double>& values,
-           double seconds_cpu);
+/// Fills limits, errors of levels, and estimates from the measured values.
+/// @throws Error (input) for a quantity that is 0 and has no scale.
+void evaluate(AccuracyStudy& study);
 
 }  // namespace flexmorph::cases

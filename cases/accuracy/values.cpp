@@ -14,16 +14,17 @@ namespace flexmorph::cases {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
 bool holds(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// A number of run.json by its path.
+/// Is the quantity a number of run.json?
 bool is_of_run(const Scene& scene, const std::string& name) {
   return name.starts_with(scene.statics ? "static." : "motion.");
 }
 
-/// Lagrange's polynomial through rows first .. first + count - 1.
+/// Returns the value of Lagrange's polynomial through rows first .. first + count - 1.
 double interpolated(const std::vector<double>& x, const std::vector<double>& y, size_t first,
                     size_t count, double at) {
   double out = 0;
@@ -36,6 +37,7 @@ double interpolated(const std::vector<double>& x, const std::vector<double>& y, 
   return out;
 }
 
+/// Returns the largest size, by a parabola through the largest row and its neighbours.
 double largest_size(const std::vector<double>& x, const std::vector<double>& y) {
   size_t top = 0;
   for (size_t i = 0; i < y.size(); ++i)
@@ -50,7 +52,7 @@ double largest_size(const std::vector<double>& x, const std::vector<double>& y) 
   return c < 0 ? peak - slope * slope / (4 * c) : peak;
 }
 
-/// Columns of a table: one row per place; a mesh that changes leaves two rows at one time.
+/// Returns the value of a column; where a mesh changes, the second of two rows at one time counts.
 double column_value(const io::CsvTable& table, const std::string& abscissa,
                     const Interest& interest) {
   const std::vector<double> x = table.numbers(abscissa), y = table.numbers(interest.name);
@@ -66,6 +68,7 @@ double column_value(const io::CsvTable& table, const std::string& abscissa,
   return places.empty() ? kNone : value_at(places, values, interest);
 }
 
+/// Returns the number of a JSON object at a path with dots; NaN: there is none.
 double json_value(const nlohmann::json& run, const std::string& path) {
   const nlohmann::json* here = &run;
   for (size_t begin = 0; begin <= path.size();) {
@@ -83,6 +86,7 @@ double json_value(const nlohmann::json& run, const std::string& path) {
   return here->is_number() ? here->get<double>() : kNone;
 }
 
+/// Returns a figure of the first design, or of the one of a body ("arm.volume").
 double design_value(const nlohmann::json& run, const std::string& name) {
   const size_t dot = name.find('.');
   const std::string body = dot == std::string::npos ? "" : name.substr(0, dot);

@@ -19,7 +19,7 @@ namespace {
 constexpr double kAny = std::numeric_limits<double>::infinity();
 constexpr double kNumber = 8;
 
-// Measured, see room.h: the program with its libraries and a report; a number of a table; of a
+// Measured, see extent_of(): the program with its libraries and a report; a number of a table; of a
 // frame for ParaView its head, its points in the plane and in space, cells and components of
 // designs; of pictures in space.
 constexpr double kProgram = 36e6, kReport = 5e5, kCsvNumber = 17;

@@ -4,7 +4,7 @@
 
 #include "cases/assembly/build.h"
 #include "cases/check/check_cost.h"
-#include "cases/check/check_figures.h"
+#include "cases/check/plausibility.h"
 #include "cases/check/ready.h"
 #include "cases/scene/design/goal.h"
 #include "cases/scene/elements/row.h"

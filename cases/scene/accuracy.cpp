@@ -22,7 +22,7 @@ const Key& kName = io::key("accuracy.quantity", "name")
 const Key& kLadders = io::key("accuracy", "ladders")
                           .texts("a ladder")
                           .otherwise_as("all that apply")
-                          .says("The knobs that are turned.");
+                          .says("The parameters that are refined, one after the other.");
 const io::Choice<bool> kDesign(
     io::key("accuracy", "design").otherwise("start").says("Designs as they start, or as they end."),
     "a design", {{"start", false}, {"optimized", true}});

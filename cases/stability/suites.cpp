@@ -6,7 +6,6 @@
 
 #include "cases/scene/elements/row.h"
 #include "cases/scene/joints/row.h"
-#include "cases/stability/overrides.h"
 #include "cases/study/study.h"
 #include "io/files.h"
 
@@ -16,7 +15,29 @@ namespace {
 using io::to_text;
 using Rows = std::vector<Perturbation>;
 
-constexpr int kShortSteps = 40;  // of a row that is about nothing else
+constexpr int kShortSteps = 40;     // of a motion whose length no suite changes
+constexpr double kLongSteps = 1e5;  // of the suite "long"
+
+/// Returns "body.0.thickness=0.0001".
+std::string entry(const std::string& list, size_t index, const std::string& key,
+                  const std::string& value) {
+  return list + "." + std::to_string(index) + "." + key + "=" + value;
+}
+std::string entry(const std::string& list, size_t index, const std::string& key, double value) {
+  return entry(list, index, key, to_text(value));
+}
+
+std::string list_of(const VectorXd& v) {
+  std::string out = "[";
+  for (int i = 0; i < v.size(); ++i) out.append(i > 0 ? ", " : "").append(to_text(v[i]));
+  return out + "]";
+}
+
+bool moves(const Scene& scene) { return !scene.domain && !scene.statics; }
+
+std::string end_after(const Scene& scene, double step) {
+  return "time.end=" + to_text(std::max(step, std::min(scene.time.end, kShortSteps * step)));
+}
 
 Rows stiffness(const Scene& scene) {
   if (scene.domain || scene.bodies.empty()) return {};
@@ -28,8 +49,7 @@ Rows stiffness(const Scene& scene) {
       if (modulus > 0) row.overrides.push_back(entry("body", i, "youngs_modulus", modulus));
       if (thickness > 0)
         row.overrides.push_back(entry("body", i, scene.bodies[i].row->thinnest, thickness));
-      if (density > 0 && !scene.statics)
-        row.overrides.push_back(entry("body", i, "density", density));
+      if (density > 0) row.overrides.push_back(entry("body", i, "density", density));
     }
   };
   add("E = 2e11 Pa", 2e11, 0, 0);
@@ -42,91 +62,55 @@ Rows stiffness(const Scene& scene) {
   return out;
 }
 
-/// Elements next to the root of a fraction of their neighbours: by a line of their own, or, where
-/// material flows, by how much of them has gone into the hub at the end.
-Rows boundary(const Scene& scene) {
-  Rows out;
-  if (scene.domain) return out;
-  for (const double fraction : {1e-6, 1e-4, 1e-2, 0.5}) {
-    Perturbation row;
-    row.parameter = "boundary element = " + to_text(fraction) + " of its neighbour";
-    const double end = std::min(scene.time.end, kShortSteps * scene.time.step);
-    for (size_t i = 0; i < scene.bodies.size(); ++i) {
-      const Body& body = scene.bodies[i];
-      const double element = body.length / body.elements[0];
-      if (!body.row->lines || body.elements[0] < 2 || body.is_even()) continue;
-      if (body.flow && body.flow->length.drive.empty()) {
-        row.overrides.push_back(entry("body", i, "flow.speed", -element * (1 - fraction) / end));
-        row.overrides.push_back(entry("body", i, "flow.min_length", 0.5 * fraction * element));
-      } else if (!body.flow && body.lines.empty()) {
-        // From line 1 to line 2 it is the rest of two elements.
-        row.overrides.push_back(entry_text(
-            "body", i, "line",
-            "[{ index = 1, at = " + to_text(2 * element * fraction / (1 + fraction)) + " }]"));
-      } else if (!body.flow && body.lines.size() == 1 && body.lines[0].free && body.lines[0].at) {
-        const int line = body.lines[0].index;
-        const double before = element * (line - 1), after = element * (line + 1);
-        row.overrides.push_back("body." + to_text(static_cast<int>(i)) + ".line.0.at=" +
-                                to_text(before + (after - before) * fraction / (1 + fraction)));
-      }
-    }
-    if (!row.overrides.empty()) out.push_back(std::move(row));
-  }
-  return out;
-}
-
 Rows step(const Scene& scene) {
   Rows out;
   if (scene.statics)
     for (const int steps : {1, 2, 100})
       out.push_back({to_text(steps) + " steps", {"static.steps=" + to_text(steps)}});
-  if (scene.domain || scene.statics) return out;
-  for (const double h : {1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1}) {
-    if (h > scene.time.end) continue;
-    out.push_back({"h = " + to_text(h) + " s",
-                   {"time.step=" + to_text(h), end_after(scene, h, kShortSteps)}});
-  }
+  if (!moves(scene)) return out;
+  for (const double h : {1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1})
+    if (h <= scene.time.end)
+      out.push_back({"h = " + to_text(h) + " s", {"time.step=" + to_text(h), end_after(scene, h)}});
   return out;
 }
 
 Rows rho_inf(const Scene& scene) {
   Rows out;
-  if (scene.domain || scene.statics || scene.time.integrator != "generalized_alpha") return out;
-  for (const double rho : {0.0, 0.5, 1.0}) {
+  if (!moves(scene) || scene.time.integrator != "generalized_alpha") return out;
+  for (const double rho : {0.0, 0.5, 1.0})
     out.push_back({"rho_inf = " + to_text(rho), {"time.rho_inf=" + to_text(rho)}});
-    out.back().demand = Demand::runs;
+  return out;
+}
+
+/// Overrides by which all hubs and driven cranks turn with a constant rate [rad/s]; empty: nothing
+/// turns.
+std::vector<std::string> turning(const Scene& scene, double omega) {
+  std::vector<std::string> out;
+  for (size_t i = 0; i < scene.hubs.size(); ++i)
+    if (scene.hubs[i].turn.drive.empty()) out.push_back(entry("hub", i, "angular_velocity", omega));
+  for (const Joint& joint : scene.joints) {
+    if (!joint.row->drives_angle || joint.laws.empty()) continue;
+    for (size_t i = 0; i < scene.drives.size(); ++i) {
+      const Drive& drive = scene.drives[i];
+      if (drive.from_trajectory || drive.name != joint.laws[0].drive) continue;
+      std::string formula = "\"" + to_text(drive.motion(0).value);
+      formula.append(" + ").append(to_text(omega)).append("*t\"");
+      out.push_back(entry("drive", i, "formula", formula));
+    }
   }
   return out;
 }
 
-/// Hubs and cranks at so many turns per second, at the step of the case and at 200 to a turn.
+/// Turns at the step of the case, and at 200 steps to a turn.
 Rows spin(const Scene& scene) {
   Rows out;
-  if (scene.domain || scene.statics) return out;
+  if (!moves(scene)) return out;
   for (const double turns : {1.0, 10.0, 100.0})
-    for (const bool fine : {false, true}) {
-      Perturbation row;
-      const double omega = 2 * std::numbers::pi * turns;
-      for (size_t i = 0; i < scene.hubs.size(); ++i)
-        if (scene.hubs[i].turn.drive.empty())
-          row.overrides.push_back(entry("hub", i, "angular_velocity", omega));
-      for (const Joint& joint : scene.joints)
-        for (size_t i = 0; joint.row->drives_angle && i < scene.drives.size(); ++i) {
-          const Drive& drive = scene.drives[i];
-          if (drive.from_trajectory || joint.laws.empty() || drive.name != joint.laws[0].drive)
-            continue;
-          row.overrides.push_back(entry_text("drive", i, "formula",
-                                             std::string("\"")
-                                                 .append(to_text(drive.motion(0).value))
-                                                 .append(" + ")
-                                                 .append(to_text(omega))
-                                                 .append("*t\"")));
-        }
+    for (const double h : {scene.time.step, 1 / (200 * turns)}) {
+      Perturbation row{to_text(turns) + " rev/s, h = " + to_text(h, 3) + " s",
+                       turning(scene, 2 * std::numbers::pi * turns)};
       if (row.overrides.empty()) return out;
-      const double h = fine ? 1 / (200 * turns) : scene.time.step;
-      row.parameter = to_text(turns) + " rev/s, h = " + to_text(h, 3) + " s";
-      row.overrides.push_back("time.step=" + to_text(h));
-      row.overrides.push_back(end_after(scene, h, kShortSteps));
+      row.overrides.insert(row.overrides.end(), {"time.step=" + to_text(h), end_after(scene, h)});
       out.push_back(std::move(row));
     }
   return out;
@@ -135,84 +119,90 @@ Rows spin(const Scene& scene) {
 Rows temperature(const Scene& scene) {
   Rows out;
   if (scene.domain) return out;
-  const auto add = [&](const std::string& name, const auto& change) {
-    Perturbation row;
-    row.parameter = name;
+  const auto add = [&](const std::string& name, const std::string& key, const std::string& value) {
+    Perturbation row{name, {}};
     for (size_t i = 0; i < scene.bodies.size(); ++i)
       if (const auto& heat = scene.bodies[i].heat; heat && heat->rise.drive.empty())
-        change(row, i, *heat);
+        row.overrides.push_back(entry("body", i, "heat." + key, value));
     if (!row.overrides.empty()) out.push_back(std::move(row));
   };
-  for (const double rise : {0.0, 1e-9, 1000.0, -1000.0, 1e4})
-    add("rise = " + to_text(rise) + " K", [&](Perturbation& row, size_t i, const BodyHeat&) {
-      row.overrides.push_back(entry("body", i, "heat.rise", rise));
-      if (rise == 0 && !scene.statics) row.demand = Demand::runs;  // an arc of nothing is refused
-    });
-  add("1 + expansion rise = -0.01", [](Perturbation& row, size_t i, const BodyHeat& heat) {
-    row.overrides.push_back(entry("body", i, "heat.rise", -1.01 / heat.expansion));
-    row.demand = Demand::refused;
-  });
+  for (const double rise : {1000.0, -1000.0, 1e4})
+    add("rise = " + to_text(rise) + " K", "rise", to_text(rise));
   if (scene.statics) return out;
   for (const char* profile : {"step", "linear", "cosine"})
-    add(std::string("profile ") + profile, [&](Perturbation& row, size_t i, const BodyHeat&) {
-      row.overrides.push_back(entry_text("body", i, "heat.profile", profile));
-    });
-  add("settles within a step", [&](Perturbation& row, size_t i, const BodyHeat&) {
-    row.overrides.push_back(entry("body", i, "heat.settle", scene.time.step));
-  });
+    add(std::string("profile ") + profile, "profile", profile);
+  add("settles within a step", "settle", to_text(scene.time.step));
   return out;
 }
 
-/// Starts far from consistent: rigid bodies off their places, with velocities no joint allows; or
-/// another way to start.
-Rows start(const Scene& scene) {
+/// Gravity and all constant loads times a factor.
+Rows loads(const Scene& scene) {
   Rows out;
-  if (scene.domain || scene.statics) return out;
-  for (const char* name : {"rigid", "prestretched", "hub_at_rest"})
-    out.push_back({std::string("start ") + name, {std::string("time.start=") + name}});
-  for (const double off : {1e-6, 1e-2, 0.3, 10.0}) {
-    Perturbation row;
-    row.parameter = "rigid bodies off by " + to_text(off) + " m";
-    for (size_t i = 0; i < scene.rigid_bodies.size(); ++i) {
-      const Vec2 at = scene.rigid_bodies[i].position;
-      row.overrides.push_back(entry_text("rigid_body", i, "position",
-                                         vector_of(Vec2(at.x() + off, at.y() - 0.7 * off))));
+  for (const double factor : {0.01, 100.0}) {
+    Perturbation row{"loads times " + to_text(factor), {}};
+    if (scene.gravity && !scene.gravity_law().varies())
+      row.overrides.push_back("gravity=" + list_of(factor * *scene.gravity));
+    for (size_t i = 0; i < scene.loads.size(); ++i) {
+      const BodyLoad& load = scene.loads[i];
+      if (load.law.varies()) continue;
+      row.overrides.push_back(
+          load.force.size() > 0 ? entry("load", i, load.row->key.name, list_of(factor * load.force))
+                                : entry("load", i, load.row->key.name, factor * load.size));
     }
     if (!row.overrides.empty()) out.push_back(std::move(row));
   }
-  Perturbation turned{"rigid bodies turned by 1 rad", {}}, fast{"rigid bodies at 100 m/s", {}};
-  for (size_t i = 0; i < scene.rigid_bodies.size(); ++i) {
-    turned.overrides.push_back(entry("rigid_body", i, "angle", scene.rigid_bodies[i].angle + 1));
-    fast.overrides.push_back(entry_text("rigid_body", i, "velocity", "[100, -70]"));
+  return out;
+}
+
+/// Gives the void of all designs the same small factor.
+Rows voids(const Scene& scene) {
+  Rows out;
+  for (const double factor : {1e-3, 1e-5, 1e-7, 1e-9}) {
+    Perturbation row{"void of " + to_text(factor), {}, Part::design};
+    for (size_t i = 0; i < scene.designs.size(); ++i) {
+      row.overrides.push_back(entry("design", i, "alpha", factor));
+      if (!scene.domain) row.overrides.push_back(entry("design", i, "stiffness_void", factor));
+    }
+    if (!row.overrides.empty()) out.push_back(std::move(row));
   }
-  if (!turned.overrides.empty()) out.insert(out.end(), {turned, fast});
+  return out;
+}
+
+/// 1e5 steps with one element per body, of motions that nothing drives.
+Rows long_runs(const Scene& scene) {
+  Rows out;
+  if (!moves(scene) || scene.has_free_lines() || scene.has_heat() || !scene.hubs.empty() ||
+      !scene.drives.empty() || !scene.loads.empty())
+    return out;
+  const auto add = [&](const std::string& name, double step, const std::string& scheme) {
+    Perturbation& row = out.emplace_back();
+    row.parameter = "1e5 steps, " + name;
+    for (size_t i = 0; i < scene.bodies.size(); ++i)
+      row.overrides.push_back(
+          entry("body", i, "elements", scene.bodies[i].row->across ? "[1, 1]" : "1"));
+    row.overrides.insert(row.overrides.end(), {scheme, "time.step=" + to_text(step),
+                                               "time.end=" + to_text(kLongSteps * step)});
+  };
+  for (const std::string scheme : {"time.rho_inf=1", "time.rho_inf=0.9"}) {
+    add(scheme, scene.time.step, scheme);
+    add(scheme + ", a tenth of the step", 0.1 * scene.time.step, scheme);
+  }
+  add("energy_momentum", scene.time.step, "time.integrator=energy_momentum");
   return out;
 }
 
 }  // namespace
 
 const std::vector<Suite>& suites() {
-  static const std::vector<Suite> kSuites = [] {
-    std::vector<Suite> out = {
-        {"stiffness", "stiff, soft, thin and massless bodies", false, Part::motion, stiffness},
-        {"boundary", "elements at the root that are tiny beside their neighbours", false,
-         Part::motion, boundary},
-        {"step", "steps from 1e-6 to 0.1 s; few and many steps of load", false, Part::motion, step},
-        {"rho_inf", "spectral radii 0, 0.5, 1", false, Part::motion, rho_inf},
-        {"spin", "hubs and cranks at 1 to 100 turns per second", false, Part::motion, spin},
-        {"temperature", "steps, large and negative rises", false, Part::motion, temperature},
-        {"start", "starts far from consistent", false, Part::motion, start}};
-    for (const auto& more : {event_suites(), design_suites()})
-      out.insert(out.end(), more.begin(), more.end());
-    return out;
-  }();
+  static const std::vector<Suite> kSuites = {{"stiffness", false, stiffness},
+                                             {"step", false, step},
+                                             {"rho_inf", false, rho_inf},
+                                             {"spin", false, spin},
+                                             {"temperature", false, temperature},
+                                             {"loads", false, loads},
+                                             {"void", false, voids},
+                                             {"long", true, long_runs}};
   return kSuites;
-}
-
-std::vector<std::string> suite_names() {
-  std::vector<std::string> out;
-  for (const Suite& each : suites()) out.push_back(each.name);
-  return out;
 }
 
 const Suite& suite(const std::string& name) {
@@ -226,40 +216,21 @@ const Suite& suite(const std::string& name) {
 
 std::vector<std::string> short_overrides(const Scene& scene, Part part) {
   std::vector<std::string> out = lean_overrides(scene, part);
-  out.insert(out.end(), {"accuracy="});
-  if (scene.domain || scene.statics) return out;
+  out.emplace_back("accuracy=");
+  if (!moves(scene)) return out;
   if (part == Part::motion) {
-    out.push_back(end_after(scene, scene.time.step, kShortSteps));
-  } else {  // one load
-    out.push_back("time.end=" + to_text(scene.esl->every));
-    // Cells have to divide the longest length, which the end decides: so many of them always do.
-    for (size_t i = 0; i < scene.designs.size(); ++i)
-      if (const auto& flow = scene.body(scene.designs[i].body).flow;
-          flow && !flow->length.drive.empty()) {
-        out.push_back(entry_text("design", i, "cell", ""));
-        out.push_back(entry_text("design", i, "cells", "[120, 20]"));
-      }
+    out.push_back(end_after(scene, scene.time.step));
+    return out;
   }
+  out.push_back("time.end=" + to_text(scene.esl->every));  // one load
+  // Cells have to divide the longest length, which the end decides: 120 by 20 cells always do.
+  for (size_t i = 0; i < scene.designs.size(); ++i)
+    if (const auto& flow = scene.body(scene.designs[i].body).flow;
+        flow && !flow->length.drive.empty()) {
+      out.push_back(entry("design", i, "cell", ""));
+      out.push_back(entry("design", i, "cells", "[120, 20]"));
+    }
   return out;
-}
-
-std::string end_after(const Scene& scene, double step, int steps) {
-  return "time.end=" + to_text(std::max(step, std::min(scene.time.end, steps * step)));
-}
-
-std::string entry(const std::string& list, size_t index, const std::string& key, double value) {
-  return entry_text(list, index, key, to_text(value));
-}
-
-std::string vector_of(const VectorXd& v) {
-  std::string out = "[";
-  for (int i = 0; i < v.size(); ++i) out.append(i > 0 ? ", " : "").append(to_text(v[i]));
-  return out + "]";
-}
-
-std::string entry_text(const std::string& list, size_t index, const std::string& key,
-                       const std::string& value) {
-  return list + "." + std::to_string(index) + "." + key + "=" + value;
 }
 
 }  // namespace flexmorph::cases

@@ -37,7 +37,7 @@ Comparison plan(CompareOptions& options) {
   const Scene scene = read_scene(io::CaseFile(find_case(study.case_name), study.overrides));
   if (scene.designs.empty())
     throw Error::input("case '" + scene.name + "' has no [[design]]: there is nothing to compare");
-  for (const BodyDesign& d : scene.designs) out.goals.push_back(d.goal);
+  out.table.names = {"run", "optimizer", "start"};
   if (study.directory.empty()) study.directory = "runs/compare_" + scene.name;
   const int budget = options.budget > 0 ? options.budget : scene.optimizer.max_iterations + 1;
   const std::string solves = std::to_string(budget);
@@ -54,6 +54,8 @@ Comparison plan(CompareOptions& options) {
         v.overrides.push_back(key + ".jitter=" + io::to_text(options.jitter));
         v.overrides.push_back(key + ".seed=" + std::to_string(start - 1));
       }
+      out.table.values.push_back({v.name, optimizer, std::to_string(start)});
+      for (const BodyDesign& d : scene.designs) out.table.goals.push_back(d.goal);
       out.variants.push_back(std::move(v));
     }
   return out;

@@ -10,19 +10,13 @@
 namespace flexmorph::cases {
 namespace {
 
-/// NaN when it is not there.
-double figure(const mmc::Figures& figures, const std::string& name) {
-  const auto found = figures.find(name);
-  return found == figures.end() ? std::nan("") : found->second;
-}
-
 using Rows = std::vector<std::vector<std::string>>;
 
-/// The figure of a run; of several bodies the geometric mean, which no body's size dominates.
-double figure_of(const VariantResult& run, const Comparison& plan) {
+/// Returns the figure of a run; of several bodies the geometric mean, which no body dominates.
+double mean_figure(const VariantResult& run, const Comparison& plan) {
   double logs = 0;
   for (size_t b = 0; b < run.bodies.size(); ++b)
-    logs += std::log(cases::figure_of(run.bodies[b], plan.goals.at(b)));
+    logs += std::log(figure_of(run.bodies[b], plan.table.goal(0, b)));
   return run.bodies.empty() ? std::nan("")
                             : std::exp(logs / static_cast<double>(run.bodies.size()));
 }
@@ -54,7 +48,7 @@ std::vector<int> wins(const Comparison& plan, std::span<const VariantResult> run
     std::optional<size_t> winner;
     for (size_t o = 0; o < out.size(); ++o) {
       const VariantResult& run = runs[o * static_cast<size_t>(plan.starts) + s];
-      const double figure = run.done() ? figure_of(run, plan) : std::nan("");
+      const double figure = run.done() ? mean_figure(run, plan) : std::nan("");
       if (!(figure < best)) continue;
       best = figure;
       winner = o;
@@ -62,103 +56,6 @@ std::vector<int> wins(const Comparison& plan, std::span<const VariantResult> run
     if (winner) ++out[*winner];
   }
   return out;
-}
-
-const std::vector<std::string> kColumns = {"run",
-                                           "optimizer",
-                                           "start",
-                                           "status",
-                                           "body",
-                                           "figure",
-                                           "compliance",
-                                           "volume",
-                                           "sharp_compliance",
-                                           "sharp_volume",
-                                           "body_fitted",
-                                           "body_fitted_error",
-                                           "body_fitted_volume",
-                                           "violation",
-                                           "kkt",
-                                           "connected",
-                                           "min_feature",
-                                           "iterations",
-                                           "state_solves",
-                                           "gradients",
-                                           "factorizations",
-                                           "seconds_cpu",
-                                           "seconds_wall",
-                                           "seconds_design",
-                                           "seconds_optimizer",
-                                           "peaks",
-                                           "disconnected",
-                                           "converged",
-                                           "stop"};
-
-void write_csv(const Comparison& plan, std::span<const VariantResult> runs,
-               const std::string& path) {
-  io::CsvWriter csv(path, kColumns);
-  const auto starts = static_cast<size_t>(plan.starts);
-  for (size_t k = 0; k < runs.size(); ++k) {
-    const VariantResult& run = runs[k];
-    const std::vector<io::Cell> head = {run.name, plan.optimizers[k / starts],
-                                        static_cast<int>(k % starts) + 1, run.status};
-    for (size_t b = 0; b < run.bodies.size(); ++b) {
-      const BodyResult& r = run.bodies[b];
-      std::vector<io::Cell> row = head;
-      // One solve gives values and gradients: there are as many of these.
-      for (const io::Cell& cell : std::initializer_list<io::Cell>{
-               r.body,
-               cases::figure_of(r, plan.goals.at(b)),
-               r.compliance,
-               r.volume,
-               r.sharp_compliance,
-               r.sharp_volume,
-               r.body_fitted,
-               r.body_fitted_error,
-               r.body_fitted_volume,
-               violation_of(r, plan.goals.at(b)),
-               r.kkt,
-               r.connected,
-               r.min_feature ? io::Cell(*r.min_feature) : io::Cell(),
-               r.iterations,
-               r.solves,
-               r.solves,
-               r.factorizations,
-               run.seconds_cpu,
-               run.seconds_wall,
-               r.history_seconds.empty() ? 0.0 : r.history_seconds.back(),
-               r.seconds_optimizer,
-               r.peaks,
-               r.disconnected,
-               r.converged(),
-               r.stop})
-        row.push_back(cell);
-      csv.row(row);
-    }
-    if (!run.bodies.empty()) continue;
-    std::vector<io::Cell> row = head;
-    row.resize(kColumns.size());
-    row.back() = run.message;
-    csv.row(row);
-  }
-}
-
-Rows rows_of(const Comparison& plan, std::span<const VariantResult> runs) {
-  Rows rows = {{"run", "status", "figure", "body-fitted compliance", "sharp compliance",
-                "sharp volume", "violation", "kkt", "solves", "CPU s", "peaks", "stopped"}};
-  for (const VariantResult& run : runs) {
-    if (run.bodies.empty()) {
-      rows.push_back({run.name, run.words(), "", "", "", "", "", "", "", "", "", run.message});
-      continue;
-    }
-    const BodyResult& b = run.bodies.front();
-    rows.push_back(
-        {run.name, run.words(), io::to_text(figure_of(run, plan), 5), io::to_text(b.body_fitted, 5),
-         io::to_text(b.sharp_compliance, 5), io::to_text(b.sharp_volume, 5),
-         io::to_text(violation_of(b, plan.goals.front()), 2), io::to_text(b.kkt, 2),
-         io::to_text(b.solves), io::to_text(run.seconds_cpu, 3), io::to_text(b.peaks), b.stop});
-  }
-  return rows;
 }
 
 /// One row of the summary.
@@ -176,7 +73,7 @@ std::vector<std::string> summary_row(const Comparison& plan, std::span<const Var
     return io::to_text(median(values_of(plan, runs, o, of_first(member))), digits);
   };
   const auto figures =
-      values_of(plan, runs, o, [&](const VariantResult& r) { return figure_of(r, plan); });
+      values_of(plan, runs, o, [&](const VariantResult& r) { return mean_figure(r, plan); });
   const auto [least, most] = std::minmax_element(figures.begin(), figures.end());
   const auto joined = values_of(plan, runs, o, connected);
   const int whole = static_cast<int>(std::count(joined.begin(), joined.end(), 1.0));
@@ -227,29 +124,6 @@ std::vector<std::pair<const VariantResult*, int>> runs_of(const Comparison& plan
   return out;
 }
 
-double figure_of(const BodyResult& result, const mmc::Goal& goal) {
-  if (goal.objective == &mmc::kVolume) return result.sharp_volume;
-  if (!goal.objective->needs_state())
-    return figure(result.further, "sharp_" + mmc::key_of(*goal.objective));
-  const std::optional<double> allowed = mmc::allowed_volume(goal);
-  const bool judged = !std::isnan(result.body_fitted);
-  const double compliance = judged ? result.body_fitted : result.sharp_compliance,
-               volume = judged ? result.body_fitted_volume : result.sharp_volume;
-  return allowed ? compliance * volume / *allowed : compliance;
-}
-
-double violation_of(const BodyResult& result, const mmc::Goal& goal) {
-  double out = 0;
-  for (const mmc::Limit& limit : goal.limits) {
-    const bool judged = limit.row == &mmc::compliance_row(goal);
-    const double beyond = limit.excess(limit.row == &mmc::kVolume ? result.volume
-                                       : judged                   ? result.compliance
-                                                : figure(result.further, mmc::key_of(*limit.row)));
-    if (!(beyond <= out)) out = beyond;  // what is missing is no number, and said so
-  }
-  return out;
-}
-
 std::vector<std::vector<std::string>> summary_of(const Comparison& plan,
                                                  std::span<const VariantResult> runs) {
   Rows rows = {{"optimizer", "done", "converged", "figure: median", "range", "over best",
@@ -259,7 +133,7 @@ std::vector<std::vector<std::string>> summary_of(const Comparison& plan,
   std::vector<double> best;
   for (size_t o = 0; o < plan.optimizers.size(); ++o) {
     const auto figures =
-        values_of(plan, runs, o, [&](const VariantResult& r) { return figure_of(r, plan); });
+        values_of(plan, runs, o, [&](const VariantResult& r) { return mean_figure(r, plan); });
     if (!figures.empty() && (best.empty() || median(figures) < median(best))) best = figures;
   }
   const std::vector<int> won = wins(plan, runs);
@@ -273,7 +147,7 @@ std::vector<std::vector<std::string>> summary_of(const Comparison& plan,
 void write_comparison(const Comparison& plan, std::span<const VariantResult> runs,
                       const std::string& directory) {
   const std::string stem = directory + "/compare";
-  write_csv(plan, runs, stem + ".csv");
+  write_results(plan.table, runs, stem + ".csv");
   io::write_file(
       stem + ".md",
       "# " + plan.case_name + "\n\n" + io::markdown_table(summary_of(plan, runs)) +
@@ -284,7 +158,7 @@ void write_comparison(const Comparison& plan, std::span<const VariantResult> run
           "of the other; where it says no, the starts spread too far for a verdict. One state "
           "solve gives values and gradients. Peaks stand out by more than 2 % of the best "
           "compliance so far.\n\n" +
-          io::markdown_table(rows_of(plan, runs)) + convergence_note(runs));
+          io::markdown_table(result_rows(plan.table, runs)) + convergence_note(runs));
   io::write_file(stem + ".svg", comparison_svg(plan, runs));
 }
 

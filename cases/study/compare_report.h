@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cases/scene/scene.h"
-#include "cases/study/study.h"
+#include "cases/study/result_table.h"
 
 namespace flexmorph::cases {
 
@@ -15,17 +15,9 @@ struct Comparison {
   std::string case_name;
   std::vector<std::string> optimizers;
   int starts = 0;
-  std::vector<mmc::Goal> goals;  ///< of every designed body
+  ResultTable table;
   std::vector<Variant> variants;
 };
-
-/// What designs are ranked by: body-fitted compliance x volume / volume allowed, because volumes
-/// differ a little [J]; of designs that were not judged the same of the sharp one. Where another
-/// response is minimized, that of the sharp design.
-double figure_of(const BodyResult& result, const mmc::Goal& goal);
-
-/// How far the final design is beyond what is allowed, relative; 0 when it is feasible.
-double violation_of(const BodyResult& result, const mmc::Goal& goal);
 
 /// A row per optimizer, the first row is the header: medians over the starts, the range of the
 /// figure, and whether the spread tells an optimizer from the best one.

@@ -8,12 +8,12 @@
 /// Orders of convergence of a sequence of values, and what they say of its limit.
 namespace flexmorph::cases {
 
-/// A value at one level of a knob; h (> 0) falls from coarse to fine.
+/// A value at one level of a parameter; h (> 0) falls from coarse to fine.
 struct LevelValue {
   double h = 0, value = 0;
 };
 
-/// How values of a knob come to their limit.
+/// How the values of a parameter approach their limit.
 enum class Approach {
   power,  ///< Q(h) = Q* + C h^p
   fast    ///< faster than any power: the finest level stands for the limit
@@ -28,7 +28,7 @@ struct Theory {
   bool has_no_limit() const { return order == 0; }
 };
 
-/// Orders of neighbouring triples differ by no more, or the ladder is not called converged.
+/// Orders of neighbouring triples differ by no more, or the series is not called converged.
 inline constexpr double kOrderSpread = 0.3;
 /// The finest order differs from theory by no more.
 inline constexpr double kTheorySpread = 0.15;
@@ -41,7 +41,7 @@ inline constexpr double kFarthest = 1000;
 /// three where differences fall, else four; Eca & Hoekstra (2014), J. Comput. Phys. 262, 104-130.
 inline constexpr double kSwing = 3;
 
-/// The limit of a ladder.
+/// The limit of a refinement series.
 struct Limit {
   bool converged = false;      ///< orders agree: errors of single levels are known
   std::vector<double> orders;  ///< of triples of neighbours, coarse to fine; NaN: there is none
@@ -61,15 +61,15 @@ double order_of(const LevelValue& coarse, const LevelValue& middle, const LevelV
 /// Richardson's extrapolation with order p: Q* = Q₂ + (Q₂ - Q₁) h₂ᵖ/(h₁ᵖ - h₂ᵖ).
 double extrapolated(const LevelValue& coarse, const LevelValue& fine, double order);
 
-/// The limit of a ladder, coarse to fine. It is converged when the orders of the two finest triples
-/// agree (kOrderSpread) and the finest is that of theory (kTheorySpread), where there is one; or
-/// when all differences are below the floor. The uncertainty of an extrapolated limit is its
-/// difference from the one before it, at most the extrapolation itself. Else the finest level
-/// stands; its uncertainty is what first order (or the lower one that was seen) would leave, at
-/// least the last difference, where differences per ratio of h fall; what a logarithm would add
-/// (kFarthest) where they stay; that of kSwing where they change their sign or scatter; infinite
-/// where they grow, and where theory knows of no limit. Source: Roache (1994), J. Fluids Eng. 116,
-/// 405-413.
+/// Returns the limit of a refinement series, coarse to fine. It is converged when the orders of the
+/// two finest triples agree (kOrderSpread) and the finest is that of theory (kTheorySpread), where
+/// there is one; or when all differences are below the floor. The uncertainty of an extrapolated
+/// limit is its difference from the one before it, at most the extrapolation itself. Else the
+/// finest level stands; its uncertainty is what first order (or the lower one that was seen) would
+/// leave, at least the last difference, where differences per ratio of h fall; what a logarithm
+/// would add (kFarthest) where they stay; that of kSwing where they change their sign or scatter;
+/// infinite where they grow, and where theory knows of no limit. Source: Roache (1994), J. Fluids
+/// Eng. 116, 405-413.
 /// @param scale  of the values (> 0), see kFloor
 Limit limit_of(std::span<const LevelValue> levels, Approach approach,
                const std::optional<Theory>& theory, double scale);

@@ -30,7 +30,8 @@ const std::string& case_name_of(const StudyOptions& options, const Variant& vari
 }
 
 bool finished(const StudyOptions& options, const Variant& variant, const VariantResult& result) {
-  return result.done() && keeps_case(folder_of(options, variant), case_of(options, variant));
+  const bool ended = result.done() || (options.keeps_failures && result.status == "failed");
+  return ended && keeps_case(folder_of(options, variant), case_of(options, variant));
 }
 
 /// A run of the variant by this very program; its words go to a log beside its folder.
@@ -40,6 +41,7 @@ Child child_of(const StudyOptions& options, const Variant& variant) {
   out.log = folder + ".log";
   out.words = {"run",       case_name_of(options, variant), "-o", folder, "--quiet",
                "--threads", io::to_text(options.threads)};
+  out.words.insert(out.words.end(), options.arguments.begin(), options.arguments.end());
   // What was killed goes on; what was changed begins anew, beside it.
   if (keeps_case(folder, case_of(options, variant))) out.words.emplace_back("--resume");
   for (const std::string& change : overrides_of(options, variant)) {
@@ -58,6 +60,7 @@ void say(const StudyOptions& options, const std::string& line) {
 /// The result of a run that has just ended. A run that could not say so itself has failed.
 VariantResult result_of(const StudyOptions& options, const Variant& variant, const Ending& ending) {
   VariantResult out = read_result(options, variant);
+  out.ending = ending;
   if (ending.over_time) {
     out.status = "failed";
     out.message = "ended after " + io::to_text(options.time_limit, 3) + " CPU seconds";
@@ -147,6 +150,7 @@ StudyOutcome run_variants(const StudyOptions& options, std::span<const Variant> 
     result.name = variants[i].name;
     result.directory = folder_of(options, variants[i]);
     wanted.push_back(i);
+    make_folder(fs::path(result.directory).parent_path().string());
     children.push_back(child_of(options, variants[i]));
   }
   const auto begin = std::chrono::steady_clock::now();
@@ -162,15 +166,16 @@ StudyOutcome run_variants(const StudyOptions& options, std::span<const Variant> 
     say(options, std::to_string(before + ended) + "/" + std::to_string(variants.size()) + " " +
                      result.name + ": " + result.words() +
                      (part < 1 ? time_left(seconds, part) : ""));
-    if (result.status == "failed") {
+    if (result.status == "failed" && !options.keeps_failures) {
       out.exit_code = 3;
       std::fprintf(stderr, "flexmorph: %s: %s\n", result.name.c_str(), result.message.c_str());
     }
     changed(out.results);
   };
   const auto started = [&](size_t at) { say(options, variants[wanted[at]].name + ": started"); };
-  const bool whole = run_children(children, options.jobs, {.seconds = options.time_limit},
-                                  {.started = started, .ended = collect});
+  const ChildLimits limits{.seconds = options.time_limit, .memory = options.memory_limit};
+  const bool whole =
+      run_children(children, options.jobs, limits, {.started = started, .ended = collect});
   changed(out.results);
   if (!whole) out.exit_code = 4;
   return out;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cases/results/quantities.h"
+#include "cases/study/processes.h"
 #include "io/case_file.h"
 #include "optim/mmc/body_problem.h"
 
@@ -20,7 +21,12 @@ struct StudyOptions {
   int jobs = 1;                        ///< processes at a time
   int threads = 1;                     ///< of each
   bool quiet = false;
-  double time_limit = 0;  ///< CPU time after which a run is ended [s]; 0: none
+  double time_limit = 0;               ///< CPU time after which a run is ended [s]; 0: none
+  double memory_limit = 0;             ///< address space of a run [bytes]; 0: no limit
+  std::vector<std::string> arguments;  ///< further ones of every `flexmorph run`
+  /// A run that fails is a result: it is not run again with the same case, and not reported as an
+  /// error.
+  bool keeps_failures = false;
 };
 
 struct Variant {
@@ -61,6 +67,7 @@ struct VariantResult {
       "missing";  ///< "done", "done, not usable", "failed", "interrupted", "running" (its process
                   ///< lives), "killed" (it does not), "missing"
   std::string message;  ///< why it failed
+  Ending ending;        ///< how its process ended; of a run of an earlier study the exit code
   double seconds_cpu = 0, seconds_wall = 0, peak_memory_bytes = 0;
   std::vector<BodyResult> bodies;
 

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "cases/results/warnings.h"
+#include "cases/run/run.h"
 #include "cases/study/statistics.h"
 #include "cases/study/study.h"
 #include "io/output_folder.h"
@@ -117,6 +118,11 @@ void read_run(const std::string& text, VariantResult& out) {
   out.seconds_cpu = number(run, "seconds_cpu");
   out.seconds_wall = number(run, "seconds_wall");
   out.peak_memory_bytes = number(run, "peak_memory_bytes");
+  const std::string kind = run.value("failure", nlohmann::json::object()).value("kind", "");
+  out.ending.code = out.done() ? (out.status == "done" ? 0 : kMissed)
+                               : (kind == "defect"  ? 1
+                                  : kind == "input" ? 2
+                                                    : 3);
   for (const nlohmann::json& r : run.value("results", nlohmann::json::array()))
     out.bodies.push_back(read_body(r));
   if (!out.bodies.empty()) read_history(out.directory + "/history.csv", out.bodies);

@@ -48,8 +48,8 @@ std::vector<Motions> motions_of(const Sweep& sweep, std::span<const VariantResul
 /// The table on the terminal, designs or motions.
 std::vector<std::vector<std::string>> summary_of(const Sweep& sweep,
                                                  std::span<const VariantResult> runs) {
-  return sweep.goals.empty() ? motion_table(motions_of(sweep, runs), runs)
-                             : design_table(sweep, runs);
+  return sweep.table.goals.empty() ? motion_table(motions_of(sweep, runs), runs)
+                                   : result_rows(sweep.table, runs);
 }
 
 std::optional<double> number_of(const std::string& text) {
@@ -95,7 +95,7 @@ void write_motions(const Sweep& sweep, std::span<const VariantResult> runs,
 void write_all(const Sweep& sweep, std::span<const VariantResult> runs,
                const std::string& directory) {
   const std::string stem = directory + "/sweep";
-  if (sweep.goals.empty())
+  if (sweep.table.goals.empty())
     write_motions(sweep, runs, stem);
   else
     write_designs(sweep, runs, stem);
@@ -211,8 +211,15 @@ int sweep_case(const SweepOptions& options) {
     return run_variant(study, one);
   }
   check_variants(study, sweep.variants);
-  sweep.goals = goals_of(study, sweep.variants);
-  if (!options.reference.empty() && !sweep.goals.empty())
+  sweep.table.goals = goals_of(study, sweep.variants);
+  sweep.table.names = {"variant"};
+  for (const Varied& v : sweep.varied) sweep.table.names.push_back(v.key);
+  for (size_t k = 0; k < sweep.variants.size(); ++k) {
+    std::vector<std::string>& values = sweep.table.values.emplace_back();
+    values.push_back(sweep.variants[k].name);
+    for (size_t v = 0; v < sweep.varied.size(); ++v) values.push_back(sweep.value(k, v));
+  }
+  if (!options.reference.empty() && !sweep.table.goals.empty())
     throw Error::input("sweep: --reference is for scenes without a [[design]]");
   sweep.reference = read_reference(options.reference);
   const StudyOutcome outcome = run_variants(

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <optional>
 
-#include "cases/study/compare_report.h"
 #include "cases/study/sweep_plan.h"
 #include "io/files.h"
 #include "io/plots.h"
@@ -11,95 +10,6 @@
 
 namespace flexmorph::cases {
 namespace {
-
-/// A body's tip in the motion of its design, on the mesh that verifies it where there is one.
-struct Deflection {
-  std::vector<double> time, value;  // [s], [m]
-};
-
-std::optional<Deflection> deflection_of(const VariantResult& run, const std::string& body) {
-  const Motions motion = read_design_motion(run.directory);
-  const std::vector<double>* value = motion.column(body + ".tip_deflection");
-  if (!value) return {};
-  return Deflection{motion.columns[0], *value};
-}
-
-double largest(const Deflection& deflection) {
-  double out = 0;
-  for (const double y : deflection.value) out = std::max(out, std::abs(y));
-  return out;
-}
-
-void write_csv(const Sweep& sweep, std::span<const VariantResult> runs, const std::string& path) {
-  std::vector<std::string> columns = {"variant"};
-  for (const Varied& v : sweep.varied) columns.push_back(v.key);
-  for (const char* name : {"status",
-                           "body",
-                           "compliance",
-                           "volume",
-                           "sharp_compliance",
-                           "sharp_volume",
-                           "body_fitted",
-                           "body_fitted_error",
-                           "body_fitted_volume",
-                           "figure",
-                           "uniform_compliance",
-                           "kkt",
-                           "connected",
-                           "min_feature",
-                           "largest_tip_deflection",
-                           "components",
-                           "peaks",
-                           "disconnected",
-                           "iterations",
-                           "state_solves",
-                           "seconds_cpu",
-                           "converged",
-                           "stop",
-                           "message"})
-    columns.emplace_back(name);
-  io::CsvWriter csv(path, columns);
-  for (size_t k = 0; k < runs.size(); ++k) {
-    std::vector<io::Cell> head = {runs[k].name};
-    for (size_t v = 0; v < sweep.varied.size(); ++v) head.emplace_back(sweep.value(k, v));
-    head.emplace_back(runs[k].status);
-    for (size_t i = 0; i < runs[k].bodies.size(); ++i) {
-      const BodyResult& b = runs[k].bodies[i];
-      const auto deflection = deflection_of(runs[k], b.body);
-      std::vector<io::Cell> row = head;
-      for (const io::Cell& cell :
-           std::initializer_list<io::Cell>{b.body,
-                                           b.compliance,
-                                           b.volume,
-                                           b.sharp_compliance,
-                                           b.sharp_volume,
-                                           b.body_fitted,
-                                           b.body_fitted_error,
-                                           b.body_fitted_volume,
-                                           sweep.figure(k, b, i),
-                                           b.uniform_compliance,
-                                           b.kkt,
-                                           b.connected,
-                                           b.min_feature ? io::Cell(*b.min_feature) : io::Cell(),
-                                           deflection ? io::Cell(largest(*deflection)) : io::Cell(),
-                                           b.components,
-                                           b.peaks,
-                                           b.disconnected,
-                                           b.iterations,
-                                           b.solves,
-                                           runs[k].seconds_cpu,
-                                           b.converged(),
-                                           b.stop,
-                                           runs[k].message})
-        row.push_back(cell);
-      csv.row(row);
-    }
-    if (!runs[k].bodies.empty()) continue;
-    head.resize(columns.size());
-    head.back() = runs[k].message;
-    csv.row(head);
-  }
-}
 
 std::string history_picture(const BodyResult& b, double lowest, double highest) {
   io::Figure figure;
@@ -186,7 +96,7 @@ std::string sheet_of(const Sweep& sweep, std::span<const VariantResult> runs) {
   for (size_t first = 0; first < runs.size(); first += sweep.n_last()) {
     io::SheetEntry entry;
     entry.title = sweep.title_of(first, sweep.varied.size() - 1);
-    for (size_t i = 0; i < sweep.n_bodies(); ++i)
+    for (size_t i = 0; i < sweep.table.n_bodies(); ++i)
       if (const std::string picture = deflection_picture(sweep, runs, first, i); !picture.empty())
         entry.pictures.push_back(picture);
     if (!entry.pictures.empty()) entries.push_back(std::move(entry));
@@ -205,10 +115,6 @@ const std::string& Sweep::value(size_t variant, size_t key) const {
   return values[variant % values.size()];
 }
 
-double Sweep::figure(size_t variant, const BodyResult& result, size_t body) const {
-  return figure_of(result, goals.at(variant * n_bodies() + body));
-}
-
 std::string Sweep::title_of(size_t variant, size_t n_keys) const {
   std::string out;
   for (size_t v = 0; v < n_keys; ++v)
@@ -218,53 +124,15 @@ std::string Sweep::title_of(size_t variant, size_t n_keys) const {
 
 std::string last_part(const std::string& key) { return key.substr(key.rfind('.') + 1); }
 
-std::vector<std::vector<std::string>> design_table(const Sweep& sweep,
-                                                   std::span<const VariantResult> runs) {
-  std::vector<std::vector<std::string>> rows(1);
-  for (const Varied& v : sweep.varied) rows[0].push_back(v.key);
-  const bool several = sweep.n_bodies() > 1;
-  if (several) rows[0].emplace_back("body");
-  for (const char* name : {"status", "compliance", "volume", "sharp compliance", "sharp volume",
-                           "body-fitted compliance", "figure", "sharp/uniform", "connected",
-                           "smallest feature", "largest tip deflection", "components", "peaks",
-                           "kkt", "iterations", "solves", "CPU s", "stopped by"})
-    rows[0].emplace_back(name);
-  for (size_t k = 0; k < runs.size(); ++k) {
-    std::vector<std::string> head;
-    for (size_t v = 0; v < sweep.varied.size(); ++v) head.push_back(sweep.value(k, v));
-    for (size_t i = 0; i < runs[k].bodies.size(); ++i) {
-      const BodyResult& b = runs[k].bodies[i];
-      const auto deflection = deflection_of(runs[k], b.body);
-      std::vector<std::string>& row = rows.emplace_back(head);
-      if (several) row.push_back(b.body);
-      row.insert(row.end(),
-                 {runs[k].words(), io::to_text(b.compliance, 5), io::to_text(b.volume, 5),
-                  io::to_text(b.sharp_compliance, 5), io::to_text(b.sharp_volume, 5),
-                  io::to_text(b.body_fitted, 5), io::to_text(sweep.figure(k, b, i), 5),
-                  io::to_text(b.sharp_compliance / b.uniform_compliance, 4),
-                  b.connected ? "yes" : "no", b.min_feature ? io::to_text(*b.min_feature, 4) : "-",
-                  deflection ? io::to_text(largest(*deflection), 4) : "-",
-                  io::to_text(b.components), io::to_text(b.peaks), io::to_text(b.kkt, 2),
-                  io::to_text(b.iterations), io::to_text(b.solves),
-                  io::to_text(runs[k].seconds_cpu, 3), b.stop.substr(0, b.stop.find(':'))});
-    }
-    if (!runs[k].bodies.empty()) continue;
-    std::vector<std::string>& row = rows.emplace_back(head);
-    if (several) row.emplace_back("");
-    row.push_back(runs[k].words() + (runs[k].message.empty() ? "" : ": " + runs[k].message));
-    row.resize(rows[0].size());
-  }
-  return rows;
-}
-
 void write_designs(const Sweep& sweep, std::span<const VariantResult> runs,
                    const std::string& stem) {
-  write_csv(sweep, runs, stem + ".csv");
+  write_results(sweep.table, runs, stem + ".csv");
   io::write_file(
       stem + ".md",
-      "# " + sweep.case_name + "\n\n" + io::markdown_table(design_table(sweep, runs)) +
-          "\nFigure: sharp compliance x sharp volume / volume allowed (what is minimized, "
-          "of the sharp design, where that is no compliance).\n" +
+      "# " + sweep.case_name + "\n\n" + io::markdown_table(result_rows(sweep.table, runs)) +
+          "\nFigure: body-fitted compliance x volume / volume allowed, of designs without a "
+          "body-fitted one the sharp compliance (where another response is minimized, its value "
+          "of the sharp design).\n" +
           convergence_note(runs));
   io::write_file(stem + ".svg", sheet_of(sweep, runs));
 }

@@ -1,6 +1,7 @@
 #include "cases/study/sweep_motion.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "io/tables.h"
@@ -43,8 +44,16 @@ Motions read_motions(const std::string& directory, const std::string& label) {
   return first_of({"/motion.csv", "/path.csv"}, directory, label);
 }
 
-Motions read_design_motion(const std::string& directory) {
-  return first_of({"/motion_verified.csv", "/motion.csv"}, directory, "");
+double Deflection::largest() const {
+  double out = 0;
+  for (const double y : value) out = std::max(out, std::abs(y));
+  return out;
+}
+
+std::optional<Deflection> deflection_of(const VariantResult& run, const std::string& body) {
+  const Motions motion = first_of({"/motion_verified.csv", "/motion.csv"}, run.directory, "");
+  const std::vector<double>* value = motion.column(body + ".tip_deflection");
+  return value ? std::optional(Deflection{motion.columns[0], *value}) : std::nullopt;
 }
 
 Motions read_reference(const std::string& path) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,9 +23,14 @@ struct Motions {
 };
 /// Of a run folder. @throws Error (input) when a file cannot be parsed.
 Motions read_motions(const std::string& directory, const std::string& label);
-/// Of the motion of a designed run: that which verifies the design where there is one.
-/// @throws Error (input) when a file cannot be parsed.
-Motions read_design_motion(const std::string& directory);
+/// The deflection of a body's tip in the motion of its design.
+struct Deflection {
+  std::vector<double> time, value;  // [s], [m]
+  double largest() const;           ///< size [m]
+};
+/// Returns the deflection on the mesh that verifies the design where there is one; none for a body
+/// without a tip. @throws Error (input) when a file cannot be parsed.
+std::optional<Deflection> deflection_of(const VariantResult& run, const std::string& body);
 /// Of a file of the same form. @throws Error (input) when it cannot be read.
 Motions read_reference(const std::string& path);
 

@@ -121,7 +121,7 @@ TEST(Orders, TheFloorOfRoundingIsNoOrder) {
   EXPECT_TRUE(limit.converged) << limit.sentence;
   EXPECT_NEAR(limit.value, 1, 1e-9);
   EXPECT_TRUE(std::isnan(limit.orders.back()));
-  // No difference at all: independent of the knob.
+  // No difference at all: independent of the parameter.
   const auto same = sequence(kHalves, [](double) { return 5.0; });
   const Limit none = limit_of(same, Approach::power, kSecond, 5);
   EXPECT_TRUE(none.converged);

@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <set>
 
-#include "cases/accuracy/budget.h"
-#include "cases/accuracy/choice.h"
-#include "cases/accuracy/study.h"
+#include "cases/accuracy/accuracy.h"
+#include "cases/accuracy/recommendation.h"
+#include "cases/accuracy/report.h"
 #include "cases/check/ready.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"
@@ -31,35 +31,33 @@ TEST(Budget, ReadsTimes) {
     EXPECT_THROW(read_budget(bad), Error) << bad;
 }
 
-/// Ladders of runs that take known times, on a clock of their own.
+/// Series of runs that take known times.
 struct Runs {
-  double now = 100;
-  std::vector<Track> tracks;
-  std::vector<std::pair<size_t, size_t>> ran, cut;
+  double spent = 0;
+  std::vector<Parameter> parameters;
+  std::vector<Series> series;
+  std::vector<std::pair<size_t, size_t>> ran;
 
+  Runs() { parameters.reserve(2); }
   void add(const std::vector<double>& h, double cost_exponent) {
-    Track t;
-    t.h = h;
-    t.seconds.resize(h.size());
-    t.closed.resize(h.size());
-    t.cost_exponent = cost_exponent;
-    t.first_guess = 1;
-    tracks.push_back(t);
+    parameters.push_back({"a", "a", Approach::power, cost_exponent});
+    Series& s = series.emplace_back();
+    s.parameter = &parameters.back();
+    s.first_guess = 1;
+    for (const double each : h) s.levels.emplace_back().level.h = each;
   }
-  /// @param seconds  of ladder and h
+  /// @param seconds  of series and h
   template <class Time>
   void go(double budget, const Time& seconds) {
-    const Budget clock(budget, [&] { return now; });
-    while (const auto next = next_level(tracks, clock.left(),
-                                        [&](size_t t, size_t i) { cut.emplace_back(t, i); })) {
-      const auto [t, i] = *next;
-      const double took = seconds(t, tracks[t].h[i]);
-      now += took;
-      tracks[t].seconds[i] = took;
-      tracks[t].closed[i] = true;
+    while (const auto next = next_level(series, std::max(0.0, budget - spent))) {
+      LevelRun& run = series[next->first].levels[next->second];
+      run.seconds_cpu = seconds(next->first, run.level.h);
+      run.status = "measured";
+      spent += run.seconds_cpu;
       ran.push_back(*next);
     }
   }
+  bool is_cut(size_t s, size_t level) const { return series[s].levels[level].status == "cut"; }
 };
 
 TEST(Budget, CoarseLevelsFirstAndTheLadderIsCut) {
@@ -70,12 +68,10 @@ TEST(Budget, CoarseLevelsFirstAndTheLadderIsCut) {
   const auto seconds = [](size_t t, double h) { return std::pow(h, t == 0 ? -1 : -3); };
   runs.go(10, seconds);
   // In all 0.125 + 0.25 + 0.5 + 1 + 1 + 2 + 4 = 8.875; 8 more of either ladder do not fit.
-  EXPECT_EQ(runs.now - 100, 8.875);
+  EXPECT_EQ(runs.spent, 8.875);
   EXPECT_EQ(runs.ran.front(), (std::pair<size_t, size_t>{1, 0}));
-  const std::vector<std::pair<size_t, size_t>> cut = {{1, 2}, {1, 3}, {0, 5}};
-  for (const auto& each : cut)
-    EXPECT_NE(std::find(runs.cut.begin(), runs.cut.end(), each), runs.cut.end());
-  EXPECT_EQ(runs.cut.size(), cut.size());
+  EXPECT_TRUE(runs.is_cut(1, 2) && runs.is_cut(1, 3) && runs.is_cut(0, 5));
+  EXPECT_EQ(runs.series[0].count("cut") + runs.series[1].count("cut"), 3U);
   for (size_t t = 0; t < 2; ++t)  // coarse to fine
     for (size_t i = 1; i < runs.ran.size(); ++i)
       for (size_t j = 0; j < i; ++j)
@@ -91,8 +87,8 @@ TEST(Budget, IsKeptWhenTimesGrowFasterThanThought) {
   runs.go(18, seconds);
   // 0.02 + 0.07 + 0.27 + 1 + 3.7; the next would take 14, which the measured growth foresees.
   EXPECT_EQ(runs.ran.size(), 5U);
-  EXPECT_LT(runs.now - 100, 18);
-  EXPECT_NEAR(runs.tracks[0].predicted(5), std::pow(0.25, -1.9), 1e-9);
+  EXPECT_LT(runs.spent, 18);
+  EXPECT_NEAR(runs.series[0].seconds(5), std::pow(0.25, -1.9), 1e-9);
 }
 
 TEST(Budget, WithoutTimeNothingRuns) {
@@ -100,7 +96,7 @@ TEST(Budget, WithoutTimeNothingRuns) {
   runs.add({2, 1, 0.5}, 1);
   runs.go(0.1, [](size_t, double h) { return 1 / h; });
   EXPECT_TRUE(runs.ran.empty());
-  EXPECT_EQ(runs.cut.size(), 3U);
+  EXPECT_EQ(runs.series[0].count("cut"), 3U);
 }
 
 TEST(ParetoFront, KeepsWhatNothingBeats) {
@@ -112,7 +108,7 @@ TEST(ParetoFront, KeepsWhatNothingBeats) {
 
 Candidate candidate(double error, double cost) { return {"", {}, {error}, {cost}}; }
 
-TEST(Cheapest, SplitsThePromiseOverTheKnobs) {
+TEST(Cheapest, SplitsTheTargetOverTheParameters) {
   const std::vector<Group> groups = {
       {"a", {candidate(8e-3, 0.1), candidate(4e-3, 0.3), candidate(1e-3, 1), candidate(1e-4, 9)}},
       {"b", {candidate(5e-3, 0.5), candidate(1e-3, 1), candidate(2e-4, 2)}}};
@@ -170,101 +166,102 @@ AccuracyStudy known_study() {
   study.interests.emplace_back().name = "q";
   study.parts = {Part::motion};
   const auto value = [](double h, double g) { return 1 + 0.02 * h * h + 0.1 * std::pow(g, 4); };
-  Rung own;
+  LevelRun own;
   own.status = "measured";
   own.values = {value(1, 1)};
   own.seconds_cpu = 1;
   study.own[Part::motion] = own;
   for (const bool mesh : {true, false}) {
-    Ladder& ladder = study.ladders.emplace_back();
-    ladder.knob = &knob(mesh ? "elements" : "step");
-    ladder.theories = {Theory{mesh ? 4.0 : 2.0, ""}};
+    Series& series = study.series.emplace_back();
+    series.parameter = &parameter(mesh ? "elements" : "step");
+    series.theories = {Theory{mesh ? 4.0 : 2.0, ""}};
     for (const double h : kHalves) {
-      Rung& rung = ladder.rungs.emplace_back();
-      rung.level.h = h;
-      rung.level.name = std::to_string(h);
-      if (h != 1) rung.level.overrides = {(mesh ? "g=" : "h=") + std::to_string(h)};
-      rung.status = "measured";
-      rung.seconds_cpu = std::pow(h, mesh ? -3 : -1);
-      rung.values = {mesh ? value(1, h) : value(h, 1)};
+      LevelRun& run = series.levels.emplace_back();
+      run.level.h = h;
+      run.level.name = std::to_string(h);
+      if (h != 1) run.level.overrides = {(mesh ? "g=" : "h=") + std::to_string(h)};
+      run.status = "measured";
+      run.seconds_cpu = std::pow(h, mesh ? -3 : -1);
+      run.values = {mesh ? value(1, h) : value(h, 1)};
     }
   }
-  evaluate(study, {1.0});
+  study.references = {1.0};
+  evaluate(study);
   return study;
 }
 
 TEST(Study, AddsWhatIsMissingToTheLimits) {
   const AccuracyStudy study = known_study();
-  const Truth& truth = study.truths[0];
-  EXPECT_NEAR(truth.value, 1, 1e-9);  // 1.12 less both terms
-  EXPECT_LT(truth.uncertainty, 1e-9);
-  for (const Ladder& ladder : study.ladders)
-    for (const Rung& rung : ladder.rungs) {
-      const bool mesh = ladder.knob->name == "elements";
-      // Against the ladder's own limit: the other knob's error is not in it.
+  const Estimate& estimate = study.estimates[0];
+  EXPECT_NEAR(estimate.value, 1, 1e-9);  // 1.12 less both terms
+  EXPECT_LT(estimate.uncertainty, 1e-9);
+  for (const Series& series : study.series)
+    for (const LevelRun& run : series.levels) {
+      const bool mesh = series.parameter->name == "elements";
+      // Against the own limit of the series: the error of the other parameter is not in it.
       const double error =
-          mesh ? 0.1 * std::pow(rung.level.h, 4) : 0.02 * std::pow(rung.level.h, 2);
-      EXPECT_NEAR(rung.errors[0], error / 1.12, 1e-9);
+          mesh ? 0.1 * std::pow(run.level.h, 4) : 0.02 * std::pow(run.level.h, 2);
+      EXPECT_NEAR(run.errors[0], error / 1.12, 1e-9);
     }
 }
 
-TEST(Study, RecommendsWhatKeepsThePromiseAndWithdrawsWhatDoesNot) {
+TEST(Study, RecommendsWhatReachesTheTargetAndWithdrawsWhatDoesNot) {
   const AccuracyStudy study = known_study();
   const std::vector<Recommendation> all = {recommend(study, 1e-2), recommend(study, 1e-5)};
-  ASSERT_TRUE(all[0].choice);
+  ASSERT_FALSE(all[0].names.empty());
   // By hand: mesh 1/2 (0.56 %, 8 s) with step 1/2 (0.45 %, x 2) is over 1 %, so mesh 1/2 and step
   // 1/4 (0.11 %, x 4), or mesh 1/4 (0.03 %, 64 s) and step 1/2: the first is cheaper.
   EXPECT_EQ(all[0].overrides, (Words{"g=0.500000", "h=0.250000"}));
-  EXPECT_NEAR(all[0].choice->cost, 32, 1e-9);
-  EXPECT_FALSE(all[1].choice);
+  EXPECT_NEAR(all[0].seconds, 32, 1e-9);
+  EXPECT_TRUE(all[1].names.empty());
   EXPECT_FALSE(all[1].sentence.empty());
   // With 0.3 % only mesh 1/4 (0.03 %) and step 1/4 (0.11 %) are left of the cheap ones.
   const Recommendation careful = recommend(study, 1e-2, 0.3);
-  ASSERT_TRUE(careful.choice);
+  ASSERT_FALSE(careful.names.empty());
   EXPECT_EQ(careful.overrides, (Words{"g=0.250000", "h=0.250000"}));
   Recommendation kept = all[0];
-  judge(kept, study, {1 + 0.02 / 16 + 0.1 / 16}, 1);
+  verify(study, {1 + 0.02 / 16 + 0.1 / 16}, 1, kept);
   EXPECT_FALSE(kept.withdrawn) << kept.sentence;
   for (const double wrong : {1.02, std::nan("")}) {
     Recommendation broken = all[0];
-    judge(broken, study, {wrong}, 1);
+    verify(study, {wrong}, 1, broken);
     EXPECT_TRUE(broken.withdrawn);
     EXPECT_NE(broken.sentence.find("withdrawn"), std::string::npos);
   }
 }
 
-TEST(Study, ALadderThatIsNotConvergedOffersItsFinestLevel) {
+TEST(Study, ASeriesThatIsNotConvergedOffersItsFinestLevel) {
   AccuracyStudy study = known_study();
-  for (Rung& rung : study.ladders[1].rungs)  // the order of the step is 1.3, not 2
-    rung.values[0] = 1.1 + 0.02 * std::pow(rung.level.h, 1.3);
-  evaluate(study, {std::nullopt});
-  EXPECT_FALSE(study.ladders[1].limits[0].converged);
-  // Coarser levels count where the limit is known ten times better than is promised.
-  const double unsure = study.ladders[1].limits[0].uncertainty / study.truths[0].scale;
-  for (const double promise : {9 * unsure, 11 * unsure})
-    for (const Group& group : groups_of(study, promise)) {
+  for (LevelRun& run : study.series[1].levels)  // the order of the step is 1.3, not 2
+    run.values[0] = 1.1 + 0.02 * std::pow(run.level.h, 1.3);
+  evaluate(study);
+  EXPECT_FALSE(study.series[1].limits[0].converged);
+  // Coarser levels count where the limit is known ten times better than is targetd.
+  const double unsure = study.series[1].limits[0].uncertainty / study.estimates[0].scale;
+  for (const double target : {9 * unsure, 11 * unsure})
+    for (const Group& group : groups_of(study, target)) {
       size_t usable = 0;
       for (const Candidate& c : group.candidates) usable += std::isfinite(c.errors[0]);
-      EXPECT_EQ(usable, group.name == "step" && promise < 10 * unsure ? 1U : 5U) << group.name;
+      EXPECT_EQ(usable, group.name == "step" && target < 10 * unsure ? 1U : 5U) << group.name;
     }
 }
 
-// What has no limit is in no promise.
-TEST(Study, APromiseLeavesOutWhatHasNoLimit) {
+// No target is about a quantity without a limit.
+TEST(Study, ATargetLeavesOutWhatHasNoLimit) {
   AccuracyStudy study = known_study();
-  for (Ladder& ladder : study.ladders) ladder.theories = {Theory{0, "a point load"}};
-  evaluate(study, {std::nullopt});
-  EXPECT_FALSE(study.truths[0].has_limit);
+  for (Series& series : study.series) series.theories = {Theory{0, "a point load"}};
+  evaluate(study);
+  EXPECT_FALSE(study.estimates[0].has_limit);
   const Recommendation r = recommend(study, 1e-2);
-  EXPECT_FALSE(r.choice);
+  EXPECT_TRUE(r.names.empty());
   EXPECT_NE(r.sentence.find("limit"), std::string::npos);
 }
 
-TEST(Knobs, AreThoseOfTheScene) {
+TEST(Parameters, AreThoseOfTheScene) {
   const auto present = [](const std::string& name, Part part) {
     const Scene scene = read_scene(io::CaseFile(find_case(name)));
     Words out;
-    for (const Knob& each : knobs())
+    for (const Parameter& each : parameters())
       if (each.absent(scene, part).empty()) out.push_back(each.name);
     return out;
   };
@@ -282,10 +279,10 @@ TEST(Knobs, AreThoseOfTheScene) {
             (Words{"elements", "step", "loads", "design_mesh", "void", "sharpness", "band"}));
 }
 
-TEST(Knobs, LevelsOfOneKnobLeaveTheOthersAlone) {
+TEST(Parameters, LevelsOfOneParameterLeaveTheOthersAlone) {
   const io::CaseFile file(find_case("short_beam"));
   const Scene scene = read_scene(file);
-  for (const Level& level : knob("design_mesh").levels(scene, file)) {
+  for (const Level& level : parameter("design_mesh").levels(scene, file)) {
     const Scene finer = read_scene(io::CaseFile(find_case("short_beam"), level.overrides));
     const BodyDesign &a = scene.designs[0], &b = finer.designs[0];
     EXPECT_NEAR(b.grid.dx(), level.h * a.grid.dx(), 1e-12);
@@ -297,7 +294,7 @@ TEST(Knobs, LevelsOfOneKnobLeaveTheOthersAlone) {
 
 // Every shipped case says what is measured of it, on three ladders at least; where all bodies are
 // rigid there is no mesh, and two are left.
-TEST(Knobs, OfShippedCases) {
+TEST(Parameters, OfShippedCases) {
   for (const std::string& name_of_case : shipped_cases()) {
     const Scene scene = read_scene(io::CaseFile(find_case(name_of_case)));
     ASSERT_TRUE(scene.accuracy) << name_of_case;
@@ -305,7 +302,7 @@ TEST(Knobs, OfShippedCases) {
     for (const std::string& name : scene.accuracy->ladders) {
       bool present = false;
       for (const Interest& interest : scene.accuracy->quantities)
-        present = present || knob(name).absent(scene, part_of(scene, interest)).empty();
+        present = present || parameter(name).absent(scene, part_of(scene, interest)).empty();
       EXPECT_TRUE(present) << name_of_case << ": " << name;
       ladders += present;
     }
@@ -315,11 +312,11 @@ TEST(Knobs, OfShippedCases) {
 }
 
 // The other beam model on the same meshes; elements of beams are one number.
-TEST(Knobs, ModelsOfBeams) {
+TEST(Parameters, ModelsOfBeams) {
   const std::string name = "slider_crank_heated";
   const io::CaseFile file(find_case(name));
   const Scene scene = read_scene(file);
-  for (const Level& level : knob("model").levels(scene, file)) {
+  for (const Level& level : parameter("model").levels(scene, file)) {
     const Scene other = read_scene(io::CaseFile(find_case(name), level.overrides));
     const std::set<std::string> terms(other.bodies[0].terms.begin(), other.bodies[0].terms.end());
     EXPECT_EQ(terms, (std::set<std::string>{"ecm", "inertia"}));
@@ -328,18 +325,18 @@ TEST(Knobs, ModelsOfBeams) {
 }
 
 // A step of the case itself is not among the tolerances, and each is a case that can be read.
-TEST(Knobs, StepsThatAdapt) {
+TEST(Parameters, StepsThatAdapt) {
   const std::string name = "slider_crank_heated";
   const io::CaseFile file(find_case(name));
   const Scene scene = read_scene(file);
   double last = 1;
-  for (const Level& level : knob("adaptive").levels(scene, file)) {
+  for (const Level& level : parameter("adaptive").levels(scene, file)) {
     const Scene other = read_scene(io::CaseFile(find_case(name), level.overrides));
     ASSERT_TRUE(other.time.tolerance.has_value());
     EXPECT_LT(*other.time.tolerance, last);
     last = *other.time.tolerance;
   }
-  for (const Level& level : knob("minimal_coordinates").levels(scene, file))
+  for (const Level& level : parameter("minimal_coordinates").levels(scene, file))
     EXPECT_EQ(read_scene(io::CaseFile(find_case(name), level.overrides)).time.integrator,
               "minimal_coordinates");
 }

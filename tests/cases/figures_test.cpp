@@ -1,6 +1,6 @@
 // Figures that make wrong units visible: against the tangents of the models themselves, and the
 // mistakes that they are for.
-#include "cases/results/figures.h"
+#include "cases/check/plausibility.h"
 
 #include <gtest/gtest.h>
 

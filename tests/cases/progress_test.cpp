@@ -5,7 +5,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cases/stability/judge.h"
 #include "tests/cases/program.h"
 
 namespace flexmorph::cases {
@@ -83,11 +82,6 @@ TEST(Failures, AreDataInRunJson) {
     EXPECT_TRUE(failure[row.place].is_number()) << failure;
     EXPECT_EQ(failure["kind"], "numerical");
     EXPECT_TRUE(contains(ended.err, failure["cause"].get<std::string>()));
-    Evidence evidence;
-    evidence.folder = out;
-    evidence.path = "another.toml";
-    evidence.words = "flexmorph: in words that nobody knows\n";
-    EXPECT_TRUE(names_cause(evidence));
   }
 }
 

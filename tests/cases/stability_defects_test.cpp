@@ -101,10 +101,10 @@ TEST(ConditionOfARun, OfPathsGrowsWithTheMesh) {
 TEST(Tables, AreThereBeforeTheEnd) {
   const Scratch scratch;
   const std::string folder = scratch / "out", table = folder + "/stability.csv";
-  const pid_t check = test::start(
-      scratch, {"stability", "plate_pendulum", "-o", folder, "--suites",
-                "rest,joints,stiffness,step,start,rho_inf", "--set", "body.elements=[2, 2]"});
-  for (int k = 0; k < 3000 && !std::filesystem::exists(table); ++k)
+  const pid_t check =
+      test::start(scratch, {"stability", "plate_pendulum", "-o", folder, "--suites",
+                            "stiffness,step,rho_inf", "--set", "body.elements=[2, 2]"});
+  for (int k = 0; k < 12000 && !std::filesystem::exists(table); ++k)
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   kill(check, SIGKILL);
   waitpid(check, nullptr, 0);
@@ -112,42 +112,6 @@ TEST(Tables, AreThereBeforeTheEnd) {
   const io::CsvTable rows = io::read_csv(table);  // refuses lines that are cut
   EXPECT_GE(rows.n_rows(), 10u);
   EXPECT_EQ(rows.texts("suite")[0], "base");
-}
-
-// The scene at rest took the drive's file away and left the column behind: "unknown key", WRONG.
-TEST(Rest, OfDrivesThatComeFromTables) {
-  const Scratch scratch;
-  scratch.write("swing.csv", "t,angle\n0,0\n0.1,0.02\n0.2,0.05\n0.3,0.05\n0.4,0.02\n0.5,0\n");
-  const auto arm = [&](const std::string& drive) {
-    return scratch.write("arm.toml", R"toml(
-time = { end = 0.02, step = 1e-3, start = "rigid" }
-[[rigid_body]]
-name = "arm"
-mass = 1.0
-size = [0.2, 0.1]
-[[joint]]
-type = "revolute"
-b = "arm"
-[[joint]]
-type = "angle_drive"
-b = "arm"
-angle = "swing"
-[[drive]]
-name = "swing"
-)toml" + drive);
-  };
-  for (const char* drive :
-       {"csv = \"swing.csv\"\ntime = \"t\"\ncolumn = \"angle\"\n",
-        "table = [[0, 0], [0.1, 0.02], [0.2, 0.05], [0.3, 0.05], [0.4, 0.02], [0.5, 0.0]]\n"}) {
-    const std::string folder = scratch / "out";
-    const Ended ended = test::flexmorph(
-        scratch, {"stability", arm(drive), "-o", folder, "--suites", "rest", "--quiet"});
-    EXPECT_EQ(ended.code, 0) << ended.out << ended.err;
-    const io::CsvTable rows = io::read_csv(folder + "/stability.csv");
-    EXPECT_EQ(rows.texts("suite").back(), "rest");
-    EXPECT_EQ(rows.texts("verdict").back(), "stable");
-    std::filesystem::remove_all(folder);
-  }
 }
 
 // The rate of the start's shape was a difference over 2e-4 s: beyond the end of this motion, where
@@ -255,21 +219,6 @@ TEST(Starts, OutsideOfTheDomainAreRefused) {
       test::flexmorph(scratch, {"check", "short_beam", "--set", "design.start='" + start + "'"});
   EXPECT_EQ(ended.code, 2);
   EXPECT_TRUE(contains(ended.err, "the centre of component 2 lies in the domain, [0, 2] x [0, 1]"));
-}
-
-// What changes within eight steps, or one, is not resolved, and that is what a row says.
-TEST(BoundsOfAScene, KnowSpinUpsAndWarming) {
-  const auto bounds = [](const std::string& name, const Words& changes) {
-    return bounds_of(read_scene(io::CaseFile(find_case(name), changes)));
-  };
-  const Bounds spun = bounds("rotating_plate_v01", {"time.start=hub_at_rest", "time.spin_up=8e-3"});
-  EXPECT_EQ(spun.fastest, "the spin-up");
-  EXPECT_NEAR(spun.omega, 785.4, 0.1);  // 2 π / 8e-3 s
-  const Bounds warmed = bounds("heated_boom", {"body.heat.settle=2e-3"});
-  EXPECT_EQ(warmed.fastest, "the warming of 'plate'");
-  EXPECT_NEAR(warmed.h_omega(), 6.283, 1e-3);  // one step
-  // Nobody takes velocities that miss their constraints by more than a tenth for good.
-  EXPECT_NEAR(warmed.velocity(0.5 * warmed.mass), 0.1, 1e-12);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "cases/accuracy/knobs.h"
+#include "cases/accuracy/parameters.h"
 #include "cases/scene/elements/row.h"
 #include "cases/scene/joints/row.h"
 #include "fem/elements/ancf_plate.h"
@@ -19,7 +19,7 @@ namespace flexmorph {
 namespace cases {
 extern const ElementRow kGradedPlate;
 extern const JointRow kParallel;
-extern const Knob kSpinUp;
+extern const Parameter kSpinUp;
 }  // namespace cases
 namespace fem {
 const TermRow& cords_row();

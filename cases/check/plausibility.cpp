@@ -1,9 +1,12 @@
-#include "cases/results/figures.h"
+#include "cases/check/plausibility.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
+#include <utility>
 
+#include "cases/check/check_cost.h"
 #include "cases/scene/elements/row.h"
 #include "cases/scene/joints/row.h"
 #include "cases/scene/read.h"
@@ -44,19 +47,19 @@ Support support_of(const Scene& scene, const Body& body) {
 /// In statics without weight nobody asks for it, and it is not given.
 bool has_density(const Scene& scene) { return !scene.statics || scene.gravity; }
 
-/// √c of the two lowest bending frequencies.
+/// Returns the words on a support.
+std::string to_string(Support support) {
+  static const std::array<const char*, 4> kWords = {"free", "about one pin", "as a cantilever",
+                                                    "between pins"};
+  return kWords[static_cast<size_t>(support)];
+}
+
+/// Returns √c of the two lowest bending frequencies.
 std::array<double, 2> roots_of(Support support) {
-  switch (support) {
-    case Support::cantilever:
-      return {1.8751, 4.6941};
-    case Support::two_places:
-      return {std::numbers::pi, 2 * std::numbers::pi};
-    case Support::one_point:
-      return {3.9266, 7.0686};
-    case Support::none:
-      break;
-  }
-  return {4.7300, 7.8532};
+  constexpr double pi = std::numbers::pi;
+  static const std::array<std::array<double, 2>, 4> kRoots = {
+      {{4.7300, 7.8532}, {3.9266, 7.0686}, {1.8751, 4.6941}, {pi, 2 * pi}}};
+  return kRoots[static_cast<size_t>(support)];
 }
 
 /// From the line that is held to the farther end.
@@ -148,55 +151,48 @@ bool looks_like_degrees(double angle) {
   return std::abs(angle) >= 15 && std::abs(std::remainder(angle, 15)) < 1e-9 * std::abs(angle);
 }
 
-class Remarks {
- public:
-  explicit Remarks(const Scene& scene) : scene_(scene) {}
+struct Remarks {
+  const Scene& scene;
+  std::vector<std::string> out = {};
 
   void add(const std::string& key, const std::string& words) {
-    out.push_back((scene_.file ? scene_.file->where(key) : key) + ": " + words);
+    out.push_back((scene.file ? scene.file->where(key) : key) + ": " + words);
   }
   void check(const std::string& key, double found, const Usual& usual, const std::string& noun) {
     if (!usual.holds(found)) add(key, noun + "; " + usual.words());
   }
-  std::vector<std::string> out;
-
- private:
-  const Scene& scene_;
 };
 
-void remark_body(const Scene& scene, const Body& body, const BendingFigures& f, Remarks& out) {
-  const std::string path = "body." + body.name + ".";
-  out.check(path + "youngs_modulus", body.youngs_modulus, kModulus,
+void remark_body(const Body& body, const BendingFigures& f, Remarks& out) {
+  const Scene& scene = out.scene;
+  const std::string path = "body." + body.name + ".", modulus = path + "youngs_modulus";
+  out.check(modulus, body.youngs_modulus, kModulus,
             "Young's modulus of " + to_text(body.youngs_modulus, 3) + " Pa");
   if (has_density(scene))
     out.check(path + "density", body.density, kDensity,
               "a density of " + to_text(body.density, 3) + " kg/m^3");
   const bool beam = !body.row->across;
-  const std::string depth = beam              ? "height"
-                            : body.in_space() ? "thickness"
-                                              : "width",
-                    other = beam              ? "width"
-                            : body.in_space() ? "width"
-                                              : "thickness";
+  std::string depth = "height", other = "width";
+  if (!beam && body.in_space()) depth = "thickness";
+  if (!beam && !body.in_space()) std::tie(depth, other) = std::pair("width", "thickness");
   const double across = body.in_space() ? body.width : body.thickness;
-  out.check(path + depth, f.slenderness(), kSlenderness,
-            "length / " + depth + " = " + to_text(f.slenderness(), 3));
-  const Usual& second = body.in_space() ? Usual{0.1, 5000} : kThinness;
-  out.check(path + other, f.length / across, second,
-            "length / " + other + " = " + to_text(f.length / across, 3));
+  const auto check_ratio = [&](const std::string& size, double ratio, const Usual& usual) {
+    out.check(path + size, ratio, usual, "length / " + size + " = " + to_text(ratio, 3));
+  };
+  check_ratio(depth, f.slenderness(), kSlenderness);
+  check_ratio(other, f.length / across, body.in_space() ? Usual{0.1, 5000} : kThinness);
+  const double frequency = f.frequencies[0], periods = frequency * scene.time.end;
+  const std::string lowest = "the lowest bending, " + to_text(frequency, 3) + " Hz, has ";
   if (f.step_frequency > kFastest)
-    out.add(path + "youngs_modulus", "the lowest bending, " + to_text(f.frequencies[0], 3) +
-                                         " Hz, has " + to_text(f.step_frequency, 3) +
-                                         " periods in every time step: nearly rigid");
-  if (!scene.statics && f.frequencies[0] > 0 && f.frequencies[0] * scene.time.end < kSlowest)
-    out.add(path + "youngs_modulus",
-            "the lowest bending, " + to_text(f.frequencies[0], 3) + " Hz, has a period of " +
-                to_text(1 / (f.frequencies[0] * scene.time.end), 3) + " runs: nearly a cloth");
+    out.add(modulus,
+            lowest + to_text(f.step_frequency, 3) + " periods in every time step: nearly rigid");
+  if (!scene.statics && frequency > 0 && periods < kSlowest)
+    out.add(modulus, lowest + "a period of " + to_text(1 / periods, 3) + " runs: nearly a cloth");
   if (f.sag && *f.sag > kSag)
-    out.add(path + "youngs_modulus",
+    out.add(modulus,
             "hangs by " + to_text(*f.sag, 3) + " of its length under gravity, by linear theory");
   if (f.bend && *f.bend > kBend)
-    out.add(path + "youngs_modulus",
+    out.add(modulus,
             "bends by " + to_text(*f.bend, 3) + " of its length under its loads, by linear theory");
 }
 
@@ -205,8 +201,8 @@ void remark_start(const std::string& key, double angle, Remarks& out) {
     out.add(key, "an angle of " + to_text(angle, 4) + " rad, more than a turn: angles are radians");
 }
 
-void remark_turns(const Scene& scene, Remarks& out) {
-  for (const TurnFigures& turn : turn_figures(scene)) {
+void remark_turns(Remarks& out) {
+  for (const TurnFigures& turn : turn_figures(out.scene)) {
     const std::string words = turn.what + " turns by " + to_text(turn.angle, 4) + " rad, " +
                               to_text(turn.angle / (2 * std::numbers::pi), 3) + " turns";
     if (turn.per_step > kTurnPerStep)
@@ -216,21 +212,41 @@ void remark_turns(const Scene& scene, Remarks& out) {
   }
 }
 
-}  // namespace
-
-std::string to_string(Support support) {
-  switch (support) {
-    case Support::cantilever:
-      return "as a cantilever";
-    case Support::two_places:
-      return "between pins";
-    case Support::one_point:
-      return "about one pin";
-    case Support::none:
-      break;
-  }
-  return "free";
+std::string bending_text(const BendingFigures& f) {
+  std::string out;
+  const std::string what = "bending of " + f.body;
+  std::string words = "a strip of length / depth " + to_text(f.slenderness(), 3);
+  if (f.frequencies[0] > 0)
+    words = "lowest " + to_text(f.frequencies[0], 3) + " and " + to_text(f.frequencies[1], 3) +
+            " Hz, " + to_string(f.support) + ", " + words;
+  else
+    words += ", " + to_string(f.support);
+  out = summary_row(what, words);
+  words.clear();
+  const auto add = [&](const std::string& more) { words += (words.empty() ? "" : "; ") + more; };
+  if (f.step_frequency > 0) add("time step times frequency " + to_text(f.step_frequency, 2));
+  if (f.sag) add("hangs by " + to_text(*f.sag, 2) + " of its length under gravity");
+  if (f.bend) add("bends by " + to_text(*f.bend, 2) + " of its length under its loads, if linear");
+  return words.empty() ? out : out + summary_row("", words);
 }
+
+std::string of_all(double bytes, double all) {
+  return bytes_text(bytes) + (std::isfinite(all) ? " of " + bytes_text(all) : "");
+}
+
+std::string room_text(const Scene& scene, const Mechanism* mechanism, const Machine& machine) {
+  const Extent extent = extent_of(scene);
+  const bool most = extent.iterations > 0 || extent.step_key == "static.max_steps",
+             least = scene.time.tolerance.has_value();
+  const std::string bound = most ? "at most about " : least ? "at least about " : "about ";
+  return summary_row("expected", "memory about " + of_all(extent.memory_bytes(), machine.memory) +
+                                     ", time " + bound +
+                                     duration_text(expected_seconds(scene, mechanism)) +
+                                     ", files " + (most ? "at most about " : "about ") +
+                                     of_all(extent.disk_bytes(), machine.disk) + " free");
+}
+
+}  // namespace
 
 std::vector<BendingFigures> bending_figures(const Scene& scene) {
   std::vector<BendingFigures> out;
@@ -263,9 +279,8 @@ std::vector<TurnFigures> turn_figures(const Scene& scene) {
 }
 
 std::vector<std::string> odd_remarks(const Scene& scene) {
-  Remarks out(scene);
-  const std::vector<BendingFigures> figures = bending_figures(scene);
-  for (size_t i = 0; i < figures.size(); ++i) remark_body(scene, scene.bodies[i], figures[i], out);
+  Remarks out{scene};
+  for (const Body& body : scene.bodies) remark_body(body, figures_of(scene, body), out);
   if (scene.gravity && scene.gravity->norm() > 0)
     out.check("gravity", scene.gravity->norm(), kGravity,
               "gravity of " + to_text(scene.gravity->norm(), 3) + " m/s^2");
@@ -275,8 +290,29 @@ std::vector<std::string> odd_remarks(const Scene& scene) {
     remark_start("rigid_body." + body.name + ".angle", body.angle, out);
   for (const Body& body : scene.bodies)
     remark_start("body." + body.name + ".angle", body.angle, out);
-  remark_turns(scene, out);
-  return std::move(out.out);
+  remark_turns(out);
+  return out.out;
+}
+
+std::string summary_row(const std::string& what, const std::string& words) {
+  constexpr size_t kColumn = 22;
+  const size_t gap = what.size() < kColumn ? kColumn - what.size() : 1;
+  return "  " + what + std::string(gap, ' ') + words + "\n";
+}
+
+std::string figures_text(const Scene& scene, const Mechanism* mechanism, const Machine& machine) {
+  std::string out = "\nfigures\n";
+  for (const BendingFigures& f : bending_figures(scene)) out += bending_text(f);
+  for (const TurnFigures& turn : turn_figures(scene))
+    out +=
+        summary_row(turn.what, "turns by up to " + to_text(turn.angle, 4) + " rad, " +
+                                   to_text(turn.angle * 180 / std::numbers::pi, 4) + " degrees, " +
+                                   to_text(turn.angle / (2 * std::numbers::pi), 3) + " turns");
+  out += room_text(scene, mechanism, machine);
+  const std::vector<std::string> odd = odd_remarks(scene);
+  if (!odd.empty()) out += "\nout of the ordinary\n";
+  for (const std::string& each : odd) out += "  " + each + "\n";
+  return out;
 }
 
 }  // namespace flexmorph::cases

@@ -1,9 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
-#include "cases/accuracy/knobs.h"
+#include "cases/accuracy/parameters.h"
 #include "cases/scene/design/keys.h"
 #include "cases/scene/tables.h"
 #include "io/files.h"
@@ -13,12 +12,7 @@ namespace {
 
 using io::to_text;
 using Overrides = std::vector<std::string>;
-
-std::string pair(int a, int b) {
-  return std::string("[").append(to_text(a)).append(", ").append(to_text(b)).append("]");
-}
-
-Theory no_order(const std::string& why) { return {std::numeric_limits<double>::quiet_NaN(), why}; }
+using Levels = std::vector<Level>;
 
 std::string no_loads(const Scene& scene, Part part) {
   if (part == Part::motion) return "of designs only";
@@ -26,15 +20,13 @@ std::string no_loads(const Scene& scene, Part part) {
 }
 
 /// Whole numbers of loads up to the very end: else the last load moves.
-std::vector<Level> load_levels(const Scene& scene, const io::CaseFile&) {
-  std::vector<Level> out;
+Levels load_levels(const Scene& scene, const io::CaseFile&) {
+  Levels out;
   for (const double factor : {20.0, 10.0, 5.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.2, 0.1}) {
     const double every = scene.esl->every * factor, count = scene.time.end / every;
     if (factor != 1 && (count < 1.5 || std::abs(count - std::round(count)) > 1e-6)) continue;
-    Level& level = out.emplace_back();
-    level.h = factor;
-    level.name = "every " + to_text(every) + " s";
-    if (factor != 1) level.overrides = {"esl.every=" + to_text(every)};
+    out.push_back(make_level(factor, "every " + to_text(every) + " s", factor == 1,
+                             {"esl.every=" + to_text(every)}));
   }
   return out;
 }
@@ -51,13 +43,6 @@ std::string design_key(size_t design, const std::string& rest) {
   return "design." + std::to_string(design) + "." + rest + "=";
 }
 
-std::string scaled_list(const std::vector<double>& values, double factor) {
-  std::string out = "[";
-  for (size_t i = 0; i < values.size(); ++i)
-    out += (i > 0 ? ", " : "") + to_text(values[i] * factor);
-  return out + "]";
-}
-
 /// Overrides of one design on cells `size`/`own` times as many in each direction. The band, the
 /// erosion and the smooth maximum stay as many cells: finer cells show sharper components.
 void refine_design(const BodyDesign& d, const io::Table& t, size_t index, int own, int size,
@@ -65,7 +50,7 @@ void refine_design(const BodyDesign& d, const io::Table& t, size_t index, int ow
   const double finer = static_cast<double>(size) / own;
   const int nx = d.grid.nx / own * size, ny = d.grid.ny / own * size;
   if (t.has(design_keys::kCells))
-    out.push_back(design_key(index, "cells") + pair(nx, ny));
+    out.push_back(design_key(index, "cells") + list_of({1.0 * nx, 1.0 * ny}));
   else
     out.push_back(design_key(index, "cell") + to_text(d.grid.width / nx));
   out.push_back(design_key(index, "min_thickness") + to_text(d.min_thickness));
@@ -84,11 +69,11 @@ void refine_design(const BodyDesign& d, const io::Table& t, size_t index, int ow
   strips(empty, "void");
 }
 
-std::vector<Level> cell_levels(const Scene& scene, const io::CaseFile& file) {
+Levels cell_levels(const Scene& scene, const io::CaseFile& file) {
   int own = 0;
   for (const BodyDesign& d : scene.designs) own = std::gcd(own, std::gcd(d.grid.nx, d.grid.ny));
   const std::vector<io::Table> tables = file.root().tables(tables::kDesign);
-  std::vector<Level> out;
+  Levels out;
   for (const int quarters : {1, 2, 3, 4, 6, 8, 10, 12, 16, 24, 32}) {
     if (own * quarters % 4 != 0) continue;
     const int size = own * quarters / 4;
@@ -110,55 +95,55 @@ std::string no_band(const Scene& scene, Part part) {
   return no_design(scene, part);
 }
 
-std::vector<Level> band_levels(const Scene& scene, const io::CaseFile&) {
-  std::vector<Level> out;
-  for (const double factor : {4.0, 2.0 * std::sqrt(2.0), 2.0, std::sqrt(2.0), 1.0, std::sqrt(0.5),
-                              0.5, 0.5 * std::sqrt(0.5)}) {
-    Level& level = out.emplace_back();
-    level.h = factor;
-    for (size_t i = 0; i < scene.designs.size(); ++i) {
-      const double band = scene.designs[i].band.back() * factor;
-      level.name += (i > 0 ? ", " : "") + to_text(band, 4) + " cells";
-      if (factor != 1)
-        level.overrides.push_back(design_key(i, "band") +
-                                  scaled_list(scene.designs[i].band, factor));
-    }
-  }
-  return out;
-}
-
-/// Levels of a number that every design has.
-std::vector<Level> number_levels(const Scene& scene, const std::string& name,
-                                 const std::vector<double>& factors,
-                                 double (*own)(const BodyDesign& design)) {
-  std::vector<Level> out;
+/// Returns levels of a value of all designs times factors.
+/// @param h      of a factor
+/// @param value  of a design and a factor: its name, and its text in a case file
+Levels scaled_levels(const Scene& scene, const std::string& key, const std::vector<double>& factors,
+                     double (*h)(double factor),
+                     std::pair<std::string, std::string> (*value)(const BodyDesign& design,
+                                                                  double factor)) {
+  Levels out;
   for (const double factor : factors) {
-    Level& level = out.emplace_back();
+    std::string names;
+    Overrides changes;
     for (size_t i = 0; i < scene.designs.size(); ++i) {
-      const double value = own(scene.designs[i]) * factor;
-      level.name += (i > 0 ? ", " : "") + to_text(value, 4);
-      if (factor != 1) level.overrides.push_back(design_key(i, name) + to_text(value));
+      const auto [name, text] = value(scene.designs[i], factor);
+      names += (i > 0 ? ", " : "") + name;
+      changes.push_back(design_key(i, key) + text);
     }
+    out.push_back(make_level(h(factor), names, factor == 1, changes));
   }
   return out;
 }
 
-std::vector<Level> void_levels(const Scene& scene, const io::CaseFile&) {
-  const std::vector<double> factors = {16, 8, 4, 2, 1, 0.5, 0.25, 0.125};
-  std::vector<Level> out =
-      number_levels(scene, "alpha", factors, [](const BodyDesign& d) { return d.tdf.alpha; });
-  for (size_t i = 0; i < out.size(); ++i) out[i].h = factors[i];
-  return out;
+double as_factor(double factor) { return factor; }
+
+Levels band_levels(const Scene& scene, const io::CaseFile&) {
+  const double root = std::sqrt(2.0), half = std::sqrt(0.5);
+  return scaled_levels(scene, "band", {4, 2 * root, 2, root, 1, half, 0.5, 0.5 * half}, as_factor,
+                       [](const BodyDesign& d, double factor) {
+                         std::vector<double> bands = d.band;
+                         for (double& band : bands) band *= factor;
+                         return std::pair(to_text(bands.back(), 4) + " cells", list_of(bands));
+                       });
+}
+
+Levels void_levels(const Scene& scene, const io::CaseFile&) {
+  return scaled_levels(scene, "alpha", {16, 8, 4, 2, 1, 0.5, 0.25, 0.125}, as_factor,
+                       [](const BodyDesign& d, double factor) {
+                         const double alpha = d.tdf.alpha * factor;
+                         return std::pair(to_text(alpha, 4), to_text(alpha));
+                       });
 }
 
 /// The smooth maximum over components: ln(n) / sharpness above the maximum of n equal ones.
-std::vector<Level> sharpness_levels(const Scene& scene, const io::CaseFile&) {
-  const std::vector<double> factors = {0.25, 0.5, 1, 2, 4, 8, 16};
-  std::vector<Level> out = number_levels(scene, "sharpness", factors, [](const BodyDesign& d) {
-    return d.tdf.sharpness * d.grid.dx();  // as the case gives it, per cell
-  });
-  for (size_t i = 0; i < out.size(); ++i) out[i].h = 1 / factors[i];
-  return out;
+Levels sharpness_levels(const Scene& scene, const io::CaseFile&) {
+  return scaled_levels(
+      scene, "sharpness", {0.25, 0.5, 1, 2, 4, 8, 16}, [](double factor) { return 1 / factor; },
+      [](const BodyDesign& d, double factor) {
+        const double sharpness = d.tdf.sharpness * d.grid.dx() * factor;  // per cell, as in a case
+        return std::pair(to_text(sharpness, 4), to_text(sharpness));
+      });
 }
 
 std::optional<Theory> void_theory(const Scene&, Part, const std::string&) {
@@ -189,7 +174,7 @@ std::optional<Theory> band_theory(const Scene&, Part, const std::string&) {
 
 }  // namespace
 
-std::vector<Knob> design_knobs() {
+std::vector<Parameter> design_parameters() {
   const auto power = Approach::power;
   return {
       {"loads", "loads", power, 0.5, true, no_loads, load_levels, load_theory},

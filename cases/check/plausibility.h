@@ -6,18 +6,18 @@
 #include <vector>
 
 #include "cases/assembly/build.h"
+#include "cases/assembly/resource_estimate.h"
 
-/// Figures by which a wrong unit shows: 5 Pa, 50 m, degrees for radians.
+/// Numbers by which a wrong unit shows: 5 Pa, 50 m, degrees for radians.
 namespace flexmorph::cases {
 
-/// How a strip is held, as far as its bending asks.
+/// How a strip is held, as far as its bending depends on it.
 enum class Support {
   none,        ///< free
-  one_point,   ///< turns about one place
+  one_point,   ///< turns about one point
   cantilever,  ///< one edge is held, with its direction
-  two_places   ///< between two or more, taken for pins
+  two_places   ///< between two or more points, taken for pins
 };
-std::string to_string(Support support);
 
 /// Bending of a plate or beam as of a slender strip of its longest length L and the depth d that it
 /// bends by (thickness in space, width in the plane): f = c / (2 π L²) √(E/ρ) d/√12, with c of its
@@ -34,7 +34,7 @@ struct BendingFigures {
 };
 std::vector<BendingFigures> bending_figures(const Scene& scene);
 
-/// What turns: a hub, or the drive of an angle.
+/// Rotation of a hub, or of the drive of an angle.
 struct TurnFigures {
   std::string what, key;
   double angle = 0;     ///< largest size over the run, from the start [rad]
@@ -42,7 +42,15 @@ struct TurnFigures {
 };
 std::vector<TurnFigures> turn_figures(const Scene& scene);
 
-/// A sentence to everything out of the ordinary, with its place in the case.
+/// Returns a sentence on every number that is out of the ordinary, with its place in the case.
 std::vector<std::string> odd_remarks(const Scene& scene);
+
+/// Returns a line of a summary.
+std::string summary_row(const std::string& what, const std::string& words);
+
+/// Returns the part of a summary that makes mistakes visible: lowest frequencies, deflections,
+/// turns, what the run will take, and what is out of the ordinary.
+/// @param mechanism  of a scene that moves, else null
+std::string figures_text(const Scene& scene, const Mechanism* mechanism, const Machine& machine);
 
 }  // namespace flexmorph::cases

@@ -1,8 +1,8 @@
-#include "cases/accuracy/knobs.h"
+#include "cases/accuracy/parameters.h"
 #include "io/case_file.h"
 #include "io/files.h"
 
-/// A ladder, whole: how slowly hubs take up their speed.
+/// A parameter of `flexmorph accuracy`: how slowly hubs take up their speed.
 namespace flexmorph::cases {
 namespace {
 
@@ -24,7 +24,7 @@ std::optional<Theory> theory(const Scene&, Part, const std::string&) { return {}
 
 }  // namespace
 
-extern const Knob kSpinUp;
-const Knob kSpinUp{"spin_up", "spin_up", Approach::power, 0, true, absent, levels, theory};
+extern const Parameter kSpinUp;
+const Parameter kSpinUp{"spin_up", "spin_up", Approach::power, 0, true, absent, levels, theory};
 
 }  // namespace flexmorph::cases

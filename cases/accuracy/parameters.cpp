@@ -1,4 +1,4 @@
-#include "cases/accuracy/knobs.h"
+#include "cases/accuracy/parameters.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace flexmorph::cases {
 namespace {
 
 using io::to_text;
-using Overrides = std::vector<std::string>;
+using Levels = std::vector<Level>;
 
 const std::string kPoints = "bending_points";
 
@@ -26,6 +26,11 @@ bool bends(const Scene& scene) {
                                               [](const Body& b) { return b.number(kPoints) > 0; });
 }
 
+bool mesh_changes(const Scene& scene) {
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                     [](const Body& b) { return b.mesh_changes(); });
+}
+
 /// Is there a motion behind this part?
 bool moves(const Scene& scene) { return !scene.domain && !scene.statics; }
 
@@ -33,19 +38,13 @@ std::string key(const std::string& body, const std::string& rest) {
   return "body." + body + "." + rest + "=";
 }
 
-std::string pair(int a, int b) {
-  return std::string("[").append(to_text(a)).append(", ").append(to_text(b)).append("]");
+size_t count_beams(const Scene& scene) {
+  return static_cast<size_t>(
+      std::count_if(scene.bodies.begin(), scene.bodies.end(),
+                    [](const Body& b) { return b.place() == fem::TermPlace::beam; }));
 }
-
-bool any_beams(const Scene& scene) {
-  return std::any_of(scene.bodies.begin(), scene.bodies.end(),
-                     [](const Body& b) { return b.place() == fem::TermPlace::beam; });
-}
-
 bool all_beams(const Scene& scene) {
-  return !scene.bodies.empty() &&
-         std::all_of(scene.bodies.begin(), scene.bodies.end(),
-                     [](const Body& b) { return b.place() == fem::TermPlace::beam; });
+  return !scene.bodies.empty() && count_beams(scene) == scene.bodies.size();
 }
 
 /// A number of elements `factor` times as large; nothing where that is no whole number.
@@ -67,16 +66,15 @@ std::string no_elements(const Scene& scene, Part) {
   return "";
 }
 
-constexpr int kMostAlong =
-    64;  // elements along a plate, where that is more than four times its own
+constexpr int kMaxAlong = 64;  // elements of levels that are more than four times as fine
 
 /// All bodies refined together, limits of boundary elements with them.
-std::vector<Level> mesh_levels(const Scene& scene, const io::CaseFile&) {
-  std::vector<Level> out;
+Levels mesh_levels(const Scene& scene, const io::CaseFile&) {
+  Levels out;
   for (const double factor : {0.25, 0.375, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0}) {
     Level level;
     level.h = 1 / factor;
-    bool whole = factor <= 4 || scene.bodies.front().elements[0] * factor <= kMostAlong;
+    bool whole = factor <= 4 || scene.bodies.front().elements[0] * factor <= kMaxAlong;
     for (const Body& b : scene.bodies) {
       const std::optional<int> m = times(b.elements[0], factor), n = across(b, factor);
       whole = whole && m && n;
@@ -85,7 +83,7 @@ std::vector<Level> mesh_levels(const Scene& scene, const io::CaseFile&) {
                     (b.row->across ? " x " + to_text(*n) : " elements");
       if (factor == 1) continue;
       level.overrides.push_back(key(b.name, "elements") +
-                                (b.row->across ? pair(*m, *n) : to_text(*m)));
+                                (b.row->across ? list_of({1.0 * *m, 1.0 * *n}) : to_text(*m)));
       if (!b.flow || b.is_even()) continue;
       level.overrides.push_back(key(b.name, "flow.max_length") +
                                 to_text(b.flow->max_length * level.h));
@@ -97,22 +95,19 @@ std::vector<Level> mesh_levels(const Scene& scene, const io::CaseFile&) {
   return out;
 }
 
-Theory no_order(const std::string& why) { return {std::numeric_limits<double>::quiet_NaN(), why}; }
-
 std::optional<Theory> mesh_theory(const Scene& scene, Part part, const std::string&) {
   if (part == Part::design) return no_order("the motion is only where the loads come from");
   if (all_beams(scene))
     return Theory{2,
                   "smooth motions, gradients across the axis being linear along it: "
                   "2 (1 + 1 - 1), Strang & Fix 1973"};
-  if (any_beams(scene)) return {};
+  if (count_beams(scene) > 0) return {};
   if (std::any_of(scene.joints.begin(), scene.joints.end(),
                   [](const Joint& j) { return j.row->holds_point; }) ||
       std::any_of(scene.loads.begin(), scene.loads.end(),
                   [](const BodyLoad& l) { return l.row->at_point; }))
     return no_order("stresses are singular at pins and point loads");
-  if (std::any_of(scene.bodies.begin(), scene.bodies.end(),
-                  [](const Body& b) { return b.mesh_changes(); }))
+  if (mesh_changes(scene))
     return no_order(
         "the mesh changes at times that depend on it, and the corners of held edges are singular");
   if (!bends(scene)) return no_order("stresses are singular at the corners of held edges");
@@ -127,14 +122,14 @@ std::string other_shape(const Scene& scene) {
 
 std::string no_shape(const Scene& scene, Part part) {
   if (part == Part::design) return "designs are analysed with cells";
-  if (any_beams(scene)) return "beams have one shape set";
+  if (count_beams(scene) > 0) return "beams have one shape set";
   for (const Body& b : scene.bodies)
     if (b.shape != scene.bodies.front().shape) return "bodies have different shape sets";
   return no_elements(scene, part);
 }
 
-std::vector<Level> shape_levels(const Scene& scene, const io::CaseFile& file) {
-  std::vector<Level> out = mesh_levels(scene, file);
+Levels shape_levels(const Scene& scene, const io::CaseFile& file) {
+  Levels out = mesh_levels(scene, file);
   for (Level& level : out) {
     level.name = other_shape(scene) + " " + level.name;
     for (const Body& b : scene.bodies)
@@ -151,8 +146,8 @@ std::string no_model(const Scene& scene, Part) {
 
 /// The other beam model on all meshes: not an approximation of the case's own, so its errors are
 /// the difference of the models.
-std::vector<Level> model_levels(const Scene& scene, const io::CaseFile& file) {
-  std::vector<Level> out = mesh_levels(scene, file);
+Levels model_levels(const Scene& scene, const io::CaseFile& file) {
+  Levels out = mesh_levels(scene, file);
   for (Level& level : out) {
     std::string models;
     for (const Body& b : scene.bodies) {
@@ -176,32 +171,21 @@ std::string no_time_or_design(const Scene& scene, Part part) {
   return part == Part::design ? "of the motion only" : no_time(scene, part);
 }
 
-Level step_level(const Scene& scene, double factor) {
-  Level level;
-  level.h = factor;
-  const double step = scene.time.step * factor;
-  level.name = to_text(step) + " s";
-  const bool adapts = scene.time.tolerance || scene.time.integrator == "minimal_coordinates";
-  if (factor == 1 && !adapts) return level;
-  level.overrides = {"time.step=" + to_text(step)};
-  if (scene.time.tolerance)
-    level.overrides.insert(level.overrides.end(), {"time.tolerance=", "time.largest_step="});
-  if (scene.time.integrator == "minimal_coordinates")
-    level.overrides.insert(level.overrides.end(),
-                           {"time.integrator='generalized_alpha'", "time.tolerance="});
-  return level;
-}
-
-std::vector<Level> step_levels(const Scene& scene, const io::CaseFile&) {
-  std::vector<Level> out;
-  for (const double factor : {4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625})
-    if (scene.time.step * factor <= scene.time.end / 4) out.push_back(step_level(scene, factor));
+Levels step_levels(const Scene& scene, const io::CaseFile&) {
+  const bool is_explicit = scene.time.integrator == "minimal_coordinates";
+  Levels out;
+  for (const double factor : {4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625}) {
+    const double step = scene.time.step * factor;
+    if (step > scene.time.end / 4) continue;
+    std::vector<std::string> changes = {"time.step=" + to_text(step)};
+    if (scene.time.tolerance)
+      changes.insert(changes.end(), {"time.tolerance=", "time.largest_step="});
+    if (is_explicit)
+      changes.insert(changes.end(), {"time.integrator='generalized_alpha'", "time.tolerance="});
+    const bool is_case = factor == 1 && !scene.time.tolerance && !is_explicit;
+    out.push_back(make_level(factor, to_text(step) + " s", is_case, changes));
+  }
   return out;
-}
-
-bool mesh_changes(const Scene& scene) {
-  return std::any_of(scene.bodies.begin(), scene.bodies.end(),
-                     [](const Body& b) { return b.mesh_changes(); });
 }
 
 std::optional<Theory> step_theory(const Scene& scene, Part part, const std::string&) {
@@ -226,32 +210,28 @@ std::string no_explicit(const Scene& scene, Part part) {
   return no_time_or_design(scene, part);
 }
 
-/// Tolerances from coarse to fine, of steps that adapt.
-std::vector<Level> tolerance_levels(const std::vector<double>& tolerances, double own,
-                                    const std::string& name,
-                                    const std::vector<std::string>& others) {
-  std::vector<Level> out;
-  for (const double tolerance : tolerances) {
-    Level& level = out.emplace_back();
-    level.h = tolerance / tolerances[tolerances.size() / 2];
-    level.name = name + " " + to_text(tolerance);
-    if (tolerance == own) continue;
-    level.overrides = others;
-    level.overrides.push_back("time.tolerance=" + to_text(tolerance));
-  }
+/// Returns levels of steps that adapt.
+/// @param own  tolerance of the case itself; 0: its steps do not adapt in this way
+Levels tolerance_levels(const std::vector<double>& tolerances, double own,
+                        const std::string& change) {
+  Levels out;
+  for (const double tolerance : tolerances)
+    out.push_back(make_level(tolerance / tolerances[tolerances.size() / 2],
+                             "tolerance " + to_text(tolerance), tolerance == own,
+                             {change, "time.tolerance=" + to_text(tolerance)}));
   return out;
 }
 
-std::vector<Level> adaptive_levels(const Scene& scene, const io::CaseFile&) {
+Levels adaptive_levels(const Scene& scene, const io::CaseFile&) {
   return tolerance_levels({1e-2, 1e-3, 1e-4, 1e-5, 1e-6}, scene.time.tolerance.value_or(0),
-                          "tolerance", {"time.step='adaptive'"});
+                          "time.step='adaptive'");
 }
 
-std::vector<Level> explicit_levels(const Scene& scene, const io::CaseFile&) {
+Levels explicit_levels(const Scene& scene, const io::CaseFile&) {
   const bool own = scene.time.integrator == "minimal_coordinates";
   return tolerance_levels({1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8},
-                          own ? scene.time.explicit_tolerance : 0, "tolerance",
-                          {"time.integrator='minimal_coordinates'"});
+                          own ? scene.time.explicit_tolerance : 0,
+                          "time.integrator='minimal_coordinates'");
 }
 
 std::optional<Theory> tolerance_theory(const Scene&, Part, const std::string&) {
@@ -263,16 +243,14 @@ std::string no_rho(const Scene& scene, Part part) {
   return no_time_or_design(scene, part);
 }
 
-std::vector<Level> rho_levels(const Scene& scene, const io::CaseFile&) {
+Levels rho_levels(const Scene& scene, const io::CaseFile&) {
   std::vector<double> values = {0, 0.2, 0.4, 0.6, 0.8, 0.9, 1, scene.time.rho_inf};
   std::sort(values.begin(), values.end());
   values.erase(std::unique(values.begin(), values.end()), values.end());
-  std::vector<Level> out;
-  for (const double rho : values) {
-    Level& level = out.emplace_back();
-    level.name = to_text(rho);
-    if (rho != scene.time.rho_inf) level.overrides = {"time.rho_inf=" + to_text(rho)};
-  }
+  Levels out;
+  for (const double rho : values)
+    out.push_back(
+        make_level(1, to_text(rho), rho == scene.time.rho_inf, {"time.rho_inf=" + to_text(rho)}));
   return out;
 }
 
@@ -283,10 +261,10 @@ std::string no_integrator(const Scene& scene, Part part) {
   return no_time_or_design(scene, part);
 }
 
-std::vector<Level> integrator_levels(const Scene& scene, const io::CaseFile& file) {
+Levels integrator_levels(const Scene& scene, const io::CaseFile& file) {
   const std::string other =
       scene.time.integrator == "generalized_alpha" ? "energy_momentum" : "generalized_alpha";
-  std::vector<Level> out = step_levels(scene, file);
+  Levels out = step_levels(scene, file);
   for (Level& level : out) {
     level.name = other + " " + level.name;
     level.overrides.push_back("time.integrator=" + other);
@@ -298,16 +276,14 @@ std::string no_bending(const Scene& scene, Part part) {
   return part == Part::motion && bends(scene) ? "" : "there is no bending at Gauss points";
 }
 
-std::vector<Level> quadrature_levels(const Scene& scene, const io::CaseFile&) {
+Levels quadrature_levels(const Scene& scene, const io::CaseFile&) {
   const int own = static_cast<int>(scene.bodies.front().number(kPoints));
-  std::vector<Level> out;
+  Levels out;
   for (int points = std::min(3, own); points <= std::max(11, own); ++points) {
-    Level& level = out.emplace_back();
-    level.h = static_cast<double>(own) / points;
-    level.name = to_text(points) + " x " + to_text(points);
-    if (points == own) continue;
-    for (const Body& b : scene.bodies)
-      level.overrides.push_back(key(b.name, kPoints) + to_text(points));
+    std::vector<std::string> changes;
+    for (const Body& b : scene.bodies) changes.push_back(key(b.name, kPoints) + to_text(points));
+    out.push_back(make_level(static_cast<double>(own) / points,
+                             to_text(points) + " x " + to_text(points), points == own, changes));
   }
   return out;
 }
@@ -316,60 +292,61 @@ std::string no_path(const Scene& scene, Part part) {
   return scene.statics && part == Part::motion ? "" : "there is no path of equilibria";
 }
 
-std::vector<Level> path_levels(const Scene& scene, const io::CaseFile&) {
-  std::vector<Level> out;
+Levels path_levels(const Scene& scene, const io::CaseFile&) {
+  Levels out;
   const int own = scene.statics->steps;
   for (const double factor : {0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0}) {
     const auto steps = static_cast<int>(std::lround(own * factor));
     if (steps < 1 || (!out.empty() && out.back().h == static_cast<double>(own) / steps)) continue;
-    Level& level = out.emplace_back();
-    level.h = static_cast<double>(own) / steps;
-    level.name = to_text(steps) + " steps";
-    if (steps != own) level.overrides = {"static.steps=" + to_text(steps)};
+    out.push_back(make_level(static_cast<double>(own) / steps, to_text(steps) + " steps",
+                             steps == own, {"static.steps=" + to_text(steps)}));
   }
   return out;
 }
 
 }  // namespace
 
-const std::vector<Knob>& knobs() {
-  static const std::vector<Knob> table = [] {
-    std::vector<Knob> rows = {
-        {"elements", "elements", Approach::power, 2.5, true, no_elements, mesh_levels, mesh_theory},
-        {"shape", "elements", Approach::power, 2.5, true, no_shape, shape_levels, no_theory},
-        {"model", "elements", Approach::power, 2.5, true, no_model, model_levels, mesh_theory,
-         false},
-        {"step", "step", Approach::power, 1, true, no_time, step_levels, step_theory},
-        {"adaptive", "step", Approach::power, 0.4, true, no_adaptive, adaptive_levels,
+const std::vector<Parameter>& parameters() {
+  static const std::vector<Parameter> table = [] {
+    const auto power = Approach::power, fast = Approach::fast;
+    std::vector<Parameter> rows = {
+        {"elements", "elements", power, 2.5, true, no_elements, mesh_levels, mesh_theory},
+        {"shape", "elements", power, 2.5, true, no_shape, shape_levels, no_theory},
+        {"model", "elements", power, 2.5, true, no_model, model_levels, mesh_theory, false},
+        {"step", "step", power, 1, true, no_time, step_levels, step_theory},
+        {"adaptive", "step", power, 0.4, true, no_adaptive, adaptive_levels, tolerance_theory},
+        {"minimal_coordinates", "step", power, 0.2, true, no_explicit, explicit_levels,
          tolerance_theory},
-        {"minimal_coordinates", "step", Approach::power, 0.2, true, no_explicit, explicit_levels,
-         tolerance_theory},
-        {"rho_inf", "step", Approach::power, 0, false, no_rho, rho_levels, no_theory},
-        {"integrator", "step", Approach::power, 1, true, no_integrator, integrator_levels,
-         step_theory},
-        {"quadrature", "quadrature", Approach::fast, 1, true, no_bending, quadrature_levels,
-         no_theory},
-        {"load_steps", "load_steps", Approach::fast, 1, true, no_path, path_levels, no_theory},
-    };
-    for (Knob& row : design_knobs()) rows.push_back(std::move(row));
+        {"rho_inf", "step", power, 0, false, no_rho, rho_levels, no_theory},
+        {"integrator", "step", power, 1, true, no_integrator, integrator_levels, step_theory},
+        {"quadrature", "quadrature", fast, 1, true, no_bending, quadrature_levels, no_theory},
+        {"load_steps", "load_steps", fast, 1, true, no_path, path_levels, no_theory}};
+    for (Parameter& row : design_parameters()) rows.push_back(std::move(row));
     return rows;
   }();
   return table;
 }
 
-std::vector<std::string> knob_names() {
-  std::vector<std::string> out;
-  for (const Knob& each : knobs()) out.push_back(each.name);
-  return out;
-}
-
-const Knob& knob(const std::string& name) {
+const Parameter& parameter(const std::string& name) {
   std::string known;
-  for (const Knob& each : knobs()) {
+  for (const Parameter& each : parameters()) {
     if (each.name == name) return each;
     known += (known.empty() ? "" : ", ") + each.name;
   }
   throw Error::input("ladder '" + name + "' is not known; there are: " + known);
+}
+
+Level make_level(double h, const std::string& name, bool is_case,
+                 const std::vector<std::string>& overrides) {
+  return {h, name, is_case ? std::vector<std::string>() : overrides};
+}
+
+Theory no_order(const std::string& why) { return {std::numeric_limits<double>::quiet_NaN(), why}; }
+
+std::string list_of(const std::vector<double>& values) {
+  std::string out;
+  for (const double value : values) out += (out.empty() ? "[" : ", ") + to_text(value);
+  return out + "]";
 }
 
 }  // namespace flexmorph::cases

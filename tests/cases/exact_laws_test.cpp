@@ -1,0 +1,166 @@
+// Laws that runs of the program keep exactly: how a compliance changes with the material and the
+// loads, that nothing moves at rest, when lines of nodes are inserted; and changes of a case that
+// have no meaning and are refused.
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "cases/assembly/build.h"
+#include "cases/run/run.h"
+#include "io/files.h"
+#include "io/tables.h"
+#include "tests/cases/program.h"
+
+namespace flexmorph::cases {
+namespace {
+
+using nlohmann::json;
+using test::Ended;
+using test::Words;
+using Components = std::vector<Component>;
+
+/// Returns run.json of a run that ends well.
+json run(const Scratch& scratch, const std::string& name, const Words& changes) {
+  const std::string folder = scratch / "run";
+  Words all = {"accuracy=", "output.vtk=false", "output.plots=false"};
+  all.insert(all.end(), changes.begin(), changes.end());
+  const Ended ended = test::run(scratch, name, folder, all);
+  EXPECT_TRUE(ended.code == 0 || ended.code == test::kTooFew) << ended.err;
+  return json::parse(contents_of(folder + "/run.json"));
+}
+
+/// Returns the first result of the short beam as it starts.
+json start_of_short_beam(const Scratch& scratch, const Words& changes) {
+  Words all = {"optimizer.max_iterations=0", "design.cell=0.05", "output.sharp_every=0"};
+  all.insert(all.end(), changes.begin(), changes.end());
+  return run(scratch, "short_beam", all)["results"][0];
+}
+
+void expect_ratio(const json& changed, const json& own, const std::string& key, double ratio) {
+  const double value = own[key].get<double>() * ratio;
+  EXPECT_NEAR(changed[key].get<double>(), value, 1e-8 * value) << key;
+}
+
+TEST(ExactLaws, ComplianceIsProportionalToTheLoadSquaredAndInverseToTheStiffness) {
+  const Scratch scratch;
+  const Scene scene = read_scene(io::CaseFile(find_case("short_beam")));
+  const json own = start_of_short_beam(scratch, {});
+  const double modulus = scene.domain->youngs_modulus, thickness = scene.domain->thickness;
+  const json stiff = start_of_short_beam(scratch, {"domain.youngs_modulus=2e11"}),
+             soft = start_of_short_beam(scratch, {"domain.youngs_modulus=1e-6"}),
+             thin = start_of_short_beam(scratch, {"domain.thickness=1e-4"});
+  const Vec2 force = 1e6 * scene.domain->loads[0].forces[0].force;
+  const json loaded = start_of_short_beam(
+      scratch,
+      {"load.0.force.0.force=[" + io::to_text(force.x()) + ", " + io::to_text(force.y()) + "]"});
+  for (const char* key : {"compliance", "sharp_compliance"}) {
+    expect_ratio(stiff, own, key, modulus / 2e11);
+    expect_ratio(soft, own, key, modulus / 1e-6);
+    expect_ratio(thin, own, key, thickness / 1e-4);
+    expect_ratio(loaded, own, key, 1e12);
+  }
+}
+
+std::string csv_of(const Components& components) {
+  std::string out = "X0,Y0,half_length,angle,c1,c2,c3\n";
+  for (const Component& c : components) {
+    std::string row;
+    for (const double p : c.parameters()) row.append(row.empty() ? "" : ",").append(io::to_text(p));
+    out.append(row).append("\n");
+  }
+  return out;
+}
+
+// Components that lie on others, and components turned by whole half turns, add nothing.
+TEST(ExactLaws, TheSameUnionHasTheSameSharpDesign) {
+  const Scratch scratch;
+  const Components own =
+      build_problems(read_scene(io::CaseFile(find_case("short_beam")))).front().design.components();
+  Components twice = own, turned = own;
+  twice.insert(twice.end(), own.begin(), own.end());
+  for (Component& c : turned) c.angle += 1000 * std::numbers::pi;
+  const auto start = [&](const Components& list) {
+    return start_of_short_beam(scratch,
+                               {"design.start='" + scratch.write("start.csv", csv_of(list)) + "'"});
+  };
+  const json unchanged = start(own);
+  for (const Components& list : {twice, turned})
+    for (const char* key : {"sharp_volume", "sharp_compliance"})
+      expect_ratio(start(list), unchanged, key, 1);
+}
+
+TEST(ExactLaws, NothingMovesAtRest) {
+  const Scratch scratch;
+  const std::string folder = scratch / "run";
+  const Ended ended =
+      test::run(scratch, "plate_pendulum", folder,
+                {"gravity=", "time.end=0.04", "body.elements=[2, 2]", "output.plots=false"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const io::CsvTable motion = io::read_csv(folder + "/motion.csv");
+  // E V is 90 J: the energy of strains of 1e-13, which are round-off, is far below 1e-16 J.
+  for (const char* column : {"energy.kinetic", "energy.strain"})
+    for (const double energy : motion.numbers(column)) EXPECT_LT(std::abs(energy), 1e-16);
+}
+
+// The first elements are a thousandth of their neighbours.
+TEST(TinyElements, KeepTheConstraintsAndTheEnergy) {
+  const Scratch scratch;
+  const json motion = run(
+      scratch, "plate_pendulum",
+      {"body.elements=[2, 2]", "body.line=[{ index = 1, at = 3e-4 }]", "time.end=0.01"})["motion"];
+  EXPECT_LT(motion["constraint_drift"].get<double>(), 1e-8);
+  EXPECT_LT(motion["energy_defect"].get<double>(), 0.01);
+}
+
+// The first line is due when the boundary element reaches max_length; its half then grows for as
+// long as (max_length / 2) / speed. Steps do not fall on these times.
+TEST(ExactLaws, LinesComeInWhenMaxLengthIsReached) {
+  const Scratch scratch;
+  const std::string name = "rotating_plate_v01";
+  const Scene scene = read_scene(io::CaseFile(find_case(name)));
+  const Body& body = scene.bodies.front();
+  const double element = body.length / body.elements[0], speed = body.flow->speed;
+  const double first = (body.flow->max_length - element) / speed,
+               again = 0.5 * body.flow->max_length / speed;
+  struct Row {
+    double step, end;
+    size_t events;
+  };
+  for (const Row& row :
+       {Row{0.37 * first, first + 0.4 * again, 1}, Row{first / 30, first + 0.4 * again, 1},
+        Row{0.05 * (first + 0.4 * again), first + 1.4 * again, 2}, Row{first / 25, first, 0}}) {
+    const json out = run(
+        scratch, name,
+        {"design=", "optimizer=", "cycle=", "verify=", "esl=", "time.step=" + io::to_text(row.step),
+         "time.end=" + io::to_text(row.end)});
+    EXPECT_EQ(out["motion"].value("events", json::array()).size(), row.events) << row.step;
+  }
+}
+
+TEST(WhatHasNoMeaning, IsRefusedWithItsPlace) {
+  const Scratch scratch;
+  const std::string header = "X0,Y0,half_length,angle,c1,c2,c3\n";
+  const std::string empty = scratch.write("empty.csv", header),
+                    bad = scratch.write("nan.csv", header + "0.1,0,0.05,0,nan,0.01,0.01\n");
+  const std::string pendulum = contents_of(find_case("plate_pendulum"));
+  const std::string twice = scratch.write(
+      "twice.toml", pendulum.substr(0, pendulum.find("[expect]")) +
+                        "[[joint]]\ntype = \"pin\"\nbody = \"plate\"\npoint = [0.0, 0.0]\n");
+  for (const Words& words : {Words{"short_beam", "--set", "design.start='" + empty + "'"},
+                             Words{"short_beam", "--set", "design.start='" + bad + "'"},
+                             Words{"short_beam", "--set", "support.0.fix=[]"}, Words{twice},
+                             Words{"plate_pendulum", "--set", "joint.0.components=[]"},
+                             Words{"rotating_plate_v05", "--set", "joint.0.edges=[]"},
+                             Words{"free_beam_heated", "--set", "body.heat.rise=-1e9"}}) {
+    Words all = {"check"};
+    all.insert(all.end(), words.begin(), words.end());
+    const Ended ended = test::flexmorph(scratch, all);
+    EXPECT_EQ(ended.code, 2) << words.back() << ": " << ended.out << ended.err;
+    EXPECT_FALSE(ended.err.empty());
+  }
+}
+
+}  // namespace
+}  // namespace flexmorph::cases
