@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <new>
 #include <system_error>
 
@@ -193,11 +194,13 @@ void finish_output() {
     throw Error::input("the output cannot be written: " + std::generic_category().message(errno));
 }
 
-int parse_and_run(int argc, char** argv) {
-  CLI::App app("Topology optimization of flexible mechanisms", "flexmorph");
-  app.set_version_flag("--version", std::string("flexmorph ") + kVersion);
-  app.require_subcommand(1);
-  RunOptions options;
+/// A command of the program: its options, and what it does.
+struct Command {
+  CLI::App* app;
+  std::function<int()> run;
+};
+
+Command run_command(CLI::App& app, RunOptions& options) {
   CLI::App* run = app.add_subcommand("run", "runs a case and writes its run folder");
   add_case(*run, options.case_name, options.overrides);
   run->add_option("-o,--output", options.directory, "run folder (default runs/<name>)");
@@ -210,37 +213,96 @@ int parse_and_run(int argc, char** argv) {
   run->add_flag("--quiet", options.quiet, "no progress");
   run->add_flag("--resume", options.resume,
                 "goes on with a run of this case that did not come to its end");
+  return {run, [&] { return run_case(options); }};
+}
+
+Command check_command(CLI::App& app, RunOptions& options) {
   CLI::App* check =
       app.add_subcommand("check", "validates a case; says what it contains and costs");
   add_case(*check, options.case_name, options.overrides);
   check->add_flag("--explain", options.explain, "prints the case with all its defaults instead");
-  CompareOptions compare_options;
-  std::vector<std::string> compared_cycles;
-  CLI::App* compare = add_compare(app, compare_options, compared_cycles);
-  SweepOptions sweep_options;
-  CLI::App* sweep = add_sweep(app, sweep_options);
-  AccuracyOptions accuracy_options;
-  CLI::App* accuracy = add_accuracy(app, accuracy_options);
-  StabilityOptions stability_options;
-  CLI::App* stability = add_stability(app, stability_options);
-  CertifyOptions certify_options;
+  return {check, [&] {
+            std::fputs(check_case(options.case_name, options.overrides, options.explain).c_str(),
+                       stdout);
+            return 0;
+          }};
+}
+
+Command certify_command(CLI::App& app, CertifyOptions& options) {
   CLI::App* certify =
       app.add_subcommand("certify", "what the motion itself says of the designs of a finished run");
-  certify->add_option("run", certify_options.directory, "folder of the run")->required();
-  certify->add_option("--set", certify_options.overrides, "KEY=VALUE, changes the case")
+  certify->add_option("run", options.directory, "folder of the run")->required();
+  certify->add_option("--set", options.overrides, "KEY=VALUE, changes the case")
       ->take_all()
       ->allow_extra_args(false);
-  certify->add_flag("--quiet", certify_options.quiet, "only the certificate");
-  CLI::App* cases = app.add_subcommand("cases", "lists the shipped cases");
-  KeysOptions keys_options;
-  CLI::App* keys = add_keys(app, keys_options);
-  std::string shell;
+  certify->add_flag("--quiet", options.quiet, "only the certificate");
+  return {certify, [&] { return certify_run(options); }};
+}
+
+Command cases_command(CLI::App& app) {
+  return {app.add_subcommand("cases", "lists the shipped cases"), [] {
+            for (const std::string& name : shipped_cases()) std::printf("%s\n", name.c_str());
+            return 0;
+          }};
+}
+
+Command completion_command(CLI::App& app, std::string& shell) {
   CLI::App* completion = app.add_subcommand("completion", "a script that completes commands");
   completion->add_option("shell", shell, "bash or zsh")
       ->required()
       ->check(CLI::IsMember({"bash", "zsh"}));
+  return {completion, [&] {
+            std::fputs(completion_script(shell, command_words(app)).c_str(), stdout);
+            return 0;
+          }};
+}
+
+/// Options of all commands.
+struct AllOptions {
+  RunOptions run;
+  CompareOptions compare;
+  std::vector<std::string> compared_cycles;
+  SweepOptions sweep;
+  AccuracyOptions accuracy;
+  StabilityOptions stability;
+  CertifyOptions certify;
+  KeysOptions keys;
+  std::string shell;
+};
+
+/// The commands in the order in which the help lists them.
+std::vector<Command> commands_of(CLI::App& app, AllOptions& all) {
+  std::vector<Command> out = {run_command(app, all.run), check_command(app, all.run)};
+  out.push_back({add_compare(app, all.compare, all.compared_cycles), [&] {
+                   if (all.compared_cycles.empty()) return compare_case(all.compare);
+                   return compare_cycles({all.compare.study, all.compared_cycles});
+                 }});
+  out.push_back({add_sweep(app, all.sweep), [&] { return sweep_case(all.sweep); }});
+  out.push_back({add_accuracy(app, all.accuracy), [&] { return accuracy_case(all.accuracy); }});
+  out.push_back(
+      {add_stability(app, all.stability), [&] { return check_stability(all.stability); }});
+  out.push_back(certify_command(app, all.certify));
+  out.push_back(cases_command(app));
+  out.push_back({add_keys(app, all.keys), [&] {
+                   print_keys(all.keys);
+                   return 0;
+                 }});
+  out.push_back(completion_command(app, all.shell));
+  return out;
+}
+
+int parse_and_run(int argc, char** argv) {
+  CLI::App app("Topology optimization of flexible mechanisms", "flexmorph");
+  app.set_version_flag("--version", std::string("flexmorph ") + kVersion);
+  app.require_subcommand(1);
+  AllOptions options;
+  std::vector<Command> commands = commands_of(app, options);
   CLI::App* help = app.add_subcommand("help", "this list");
   const std::string all_help = app.help();  // later it would be that of one command
+  commands.push_back({help, [&] {
+                        std::fputs(all_help.c_str(), stdout);
+                        return 0;
+                      }});
   if (argc > 1)
     refuse_unknown_command(app, argv[1]);
   else
@@ -250,22 +312,9 @@ int parse_and_run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  flexmorph::settle_processor(*run ? options.threads : 1, argv);
-  if (*run) return run_case(options);
-  if (*compare && !compared_cycles.empty())
-    return compare_cycles({compare_options.study, compared_cycles});
-  if (*compare) return compare_case(compare_options);
-  if (*sweep) return sweep_case(sweep_options);
-  if (*accuracy) return accuracy_case(accuracy_options);
-  if (*stability) return check_stability(stability_options);
-  if (*certify) return certify_run(certify_options);
-  if (*help) std::fputs(all_help.c_str(), stdout);
-  if (*keys) print_keys(keys_options);
-  if (*completion) std::fputs(completion_script(shell, command_words(app)).c_str(), stdout);
-  if (*check)
-    std::fputs(check_case(options.case_name, options.overrides, options.explain).c_str(), stdout);
-  if (*cases)
-    for (const std::string& name : shipped_cases()) std::printf("%s\n", name.c_str());
+  flexmorph::settle_processor(*commands.front().app ? options.run.threads : 1, argv);
+  for (const Command& command : commands)
+    if (*command.app) return command.run();
   return 0;
 }
 

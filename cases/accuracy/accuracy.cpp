@@ -33,8 +33,9 @@ const char* const kEnded = "ended after";  // the message of runs that exceeded 
 
 struct Interrupted {};
 
-int unknowns_of(const Scene& scene, Part part) {
-  if (part == Part::motion) return build_mechanism(scene).model.n_dofs();
+int unknowns_of(const PreparedCase& prepared, Part part) {
+  if (part == Part::motion) return prepared.mechanism().model.n_dofs();
+  const Scene& scene = prepared.scene();
   int out = 0;
   for (const BodyDesign& d : scene.designs) out += 2 * (d.grid.nx + 1) * (d.grid.ny + 1);
   return out;
@@ -53,9 +54,10 @@ class Measurement {
   explicit Measurement(const AccuracyOptions& options)
       : options_(options),
         file_(find_case(options.study.case_name), options.study.overrides),
-        scene_(read_scene(file_)),
+        prepared_(read_scene(file_)),
+        scene_(prepared_.scene()),
         budget_(read_budget(options.budget)) {
-    build_scene(scene_);
+    require_buildable(prepared_);
     runs_.directory =
         options.study.directory.empty() ? "runs/accuracy_" + scene_.name : options.study.directory;
     runs_.case_name = options.study.case_name;
@@ -94,10 +96,10 @@ class Measurement {
       throw Error::input(file_.path() +
                          ": an [accuracy] with a `quantity` is missing (or --set "
                          "'accuracy.quantity=\"...\"'); there are: " +
-                         all_candidates(scene_));
+                         all_candidates(prepared_));
     for (const Interest& interest : scene_.accuracy->quantities) {
       study_.interests.push_back(interest);
-      study_.parts.push_back(part_of(scene_, interest));
+      study_.parts.push_back(part_of(prepared_, interest));
       study_.references.push_back(interest.has_reference() ? std::optional(reference_of(interest))
                                                            : std::nullopt);
       study_.own[study_.parts.back()];
@@ -147,7 +149,8 @@ class Measurement {
       LevelRun& run = series.levels.emplace_back();
       run.level = std::move(level);
       try {
-        run.unknowns = unknowns_of(read_scene(case_of(runs_, variant(part, "", run.level))), part);
+        run.unknowns = unknowns_of(
+            PreparedCase(read_scene(case_of(runs_, variant(part, "", run.level)))), part);
       } catch (const Error& error) {
         run.status = "refused";
         run.message = error.what();
@@ -321,7 +324,8 @@ class Measurement {
 
   AccuracyOptions options_;
   io::CaseFile file_;
-  Scene scene_;
+  PreparedCase prepared_;
+  const Scene& scene_;
   StudyOptions runs_;
   double budget_ = 0, spent_ = 0;  // CPU time of all runs [s]
   int n_runs_ = 0;

@@ -98,10 +98,11 @@ double design_value(const nlohmann::json& run, const std::string& name) {
 
 }  // namespace
 
-Part part_of(const Scene& scene, const Interest& interest) {
+Part part_of(const PreparedCase& prepared, const Interest& interest) {
+  const Scene& scene = prepared.scene();
   const std::string what = "accuracy.quantity = \"" + interest.name + "\": ";
   for (const Part part : parts_of(scene)) {
-    const bool known = holds(candidates(scene, part), interest.name) ||
+    const bool known = holds(candidates(prepared, part), interest.name) ||
                        (part == Part::motion && is_of_run(scene, interest.name));
     if (!known) continue;
     if (interest.at != Interest::At::end &&
@@ -113,7 +114,8 @@ Part part_of(const Scene& scene, const Interest& interest) {
                          io::to_text(end));
     return part;
   }
-  throw Error::input(what + "this case has no such quantity; there are: " + all_candidates(scene) +
+  throw Error::input(what +
+                     "this case has no such quantity; there are: " + all_candidates(prepared) +
                      ", and numbers of run.json such as motion.constraint_drift");
 }
 

@@ -11,7 +11,7 @@ namespace flexmorph::cases {
 /// Returns the part that a quantity belongs to.
 /// @throws Error (input) with the candidates for a name that no part knows, for a time outside of
 ///         the run, and for a design's figure with a time.
-Part part_of(const Scene& scene, const Interest& interest);
+Part part_of(const PreparedCase& prepared, const Interest& interest);
 
 /// Returns the value of a column at a time, by cubic interpolation between four rows; its largest
 /// size by a parabola through the largest row and its neighbours.

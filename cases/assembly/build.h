@@ -1,5 +1,6 @@
 #pragma once
 
+#include <compare>
 #include <memory>
 #include <span>
 
@@ -31,6 +32,8 @@ struct MeshChoice {
   std::optional<double> step;
   int cells = 0;   ///< designed bodies move on their design's cells, each in so many parts each way
   int coarse = 1;  ///< or on cells that are so many of them each way
+
+  auto operator<=>(const MeshChoice&) const = default;
 };
 
 /// The scene with its designed bodies on the cells of their designs, each in so many parts each

@@ -39,11 +39,12 @@ VectorXd spread(const Grid& fine, int n, const VectorXd& all) {
 
 }  // namespace
 
-SceneMotion::SceneMotion(const Scene& scene, const Settings& settings, std::function<bool()> go_on)
-    : scene_(scene), settings_(settings), go_on_(std::move(go_on)) {
-  if (!scene.is_mechanism()) return;
-  rigid_ = settings.rigid ? *settings.rigid : rigid_kinematics(scene);
-}
+SceneMotion::SceneMotion(const PreparedCase& prepared, const Settings& settings,
+                         std::function<bool()> go_on)
+    : prepared_(prepared),
+      scene_(prepared.scene()),
+      settings_(settings),
+      go_on_(std::move(go_on)) {}
 
 int SceneMotion::coarse(size_t design) const {
   const double cell = settings_.cell;
@@ -55,7 +56,7 @@ Mechanism SceneMotion::mechanism_with(std::span<const mmc::CellFactors> factors)
   mesh.cells = 1;
   mesh.coarse = coarse(0);
   if (settings_.step > 0) mesh.step = settings_.step;
-  Mechanism out = build_mechanism(scene_, mesh, rigid_ ? &*rigid_ : nullptr);
+  Mechanism out = prepared_.mechanism(mesh);
   for (size_t d = 0; d < factors.size(); ++d) {
     const BodyDesign& design = scene_.designs[d];
     for (fem::Body& body : out.model.bodies())

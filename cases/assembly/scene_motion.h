@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cases/assembly/build.h"
+#include "cases/assembly/prepared_case.h"
 #include "fem/dynamics/motion_gradient.h"
 #include "optim/mmc/motion_response.h"
 
@@ -13,11 +13,10 @@ class SceneMotion final : public mmc::MotionResponse {
     double cell = 0;  ///< of the motion [m]; 0: those of the designs
     double step = 0;  ///< [s]
     int checkpoints = 0;
-    const fem::RigidKinematics* rigid = nullptr;  ///< of the scene; null: it is built here
   };
-  /// @param scene  lives longer; the rigid kinematic model is copied
+  /// @param prepared  lives longer
   /// @param go_on  asked at every step; false ends a motion with StoppedMotion
-  SceneMotion(const Scene& scene, const Settings& settings, std::function<bool()> go_on);
+  SceneMotion(const PreparedCase& prepared, const Settings& settings, std::function<bool()> go_on);
 
   std::vector<Value> evaluate(std::span<const mmc::MotionRow> rows,
                               std::span<const mmc::CellFactors> factors) override;
@@ -33,9 +32,9 @@ class SceneMotion final : public mmc::MotionResponse {
   Mechanism mechanism_with(std::span<const mmc::CellFactors> factors) const;
   int coarse(size_t design) const;
 
+  const PreparedCase& prepared_;
   const Scene& scene_;
   Settings settings_;
-  std::optional<fem::RigidKinematics> rigid_;  // where joints say where the bodies are
   std::function<bool()> go_on_;
   int motions_ = 0;
   fem::MotionGradients last_;

@@ -225,9 +225,11 @@ void describe_design(const Scene& scene, const BodyDesign& d, std::ostringstream
                      io::to_text(1e-9 * factor * (2 * g.ny + 5 + 3.0 * loads), 2) + " Gflop");
 }
 
-void describe_static(const Scene& scene, std::ostringstream& out, const Machine& machine) {
+void describe_static(const PreparedCase& prepared, std::ostringstream& out,
+                     const Machine& machine) {
+  const Scene& scene = prepared.scene();
   const Domain& domain = *scene.domain;
-  const mmc::BodyProblem problem = build_problems(scene).front();
+  const mmc::BodyProblem& problem = prepared.design_problems().front();
   std::unique_ptr<mmc::ComplianceEvaluator> loads;
   if (problem.grid.n_cells() <= kMostBuilt) loads = build_static_loads(scene, problem);
   const BodyDesign& d = scene.designs.front();
@@ -291,18 +293,18 @@ void describe_absent(const Scene& scene, std::ostringstream& out) {
 
 std::string check_case(const std::string& name, std::span<const std::string> overrides,
                        bool explain) {
-  const auto [file, scene] = ready_case(name, overrides);
+  const auto [file, prepared] = ready_case(name, overrides);
   if (explain) return file.explained();
+  const Scene& scene = prepared.scene();
   const Machine machine = this_machine(scene.output.directory);
   std::ostringstream out;
   out << scene.name << ": " << scene.title << "\n\nactive\n";
   if (scene.domain) {
-    describe_static(scene, out, machine);
+    describe_static(prepared, out, machine);
     return out.str();
   }
-  std::optional<fem::RigidKinematics> rigid;
-  if (scene.is_mechanism()) rigid = rigid_kinematics(scene);
-  Mechanism mechanism = build_mechanism(scene, {}, rigid ? &*rigid : nullptr);
+  const fem::RigidKinematics* rigid = prepared.rigid();
+  const Mechanism& mechanism = prepared.mechanism();
   describe_course(scene, out);
   for (const Drive& drive : scene.drives) {
     const std::array<double, 2> range = range_of(drive.motion, scene.time.end);

@@ -42,23 +42,22 @@ void require_start(Mechanism& mechanism) {
                        " m: bodies that are not deformed do not reach their joints");
 }
 
-void build_parts(const Scene& scene) {
+void require_parts(const PreparedCase& prepared) {
+  const Scene& scene = prepared.scene();
   if (!scene.domain) {
+    // The joints of the rigid model have the names of the case.
+    if (const fem::RigidKinematics* rigid = prepared.rigid())
+      fem::require_motion(*rigid, scene.time.end);
     // One evaluation: loads and terms find their places, or say what they cannot do.
-    std::optional<fem::RigidKinematics> rigid;
-    if (scene.is_mechanism()) {
-      rigid = rigid_kinematics(scene);
-      fem::require_motion(*rigid, scene.time.end);  // its joints have the names of the case
-    }
-    Mechanism mechanism = build_mechanism(scene, {}, rigid ? &*rigid : nullptr);
+    Mechanism mechanism = prepared.mechanism();
     if (mechanism.model.n_constraints() > 0) require_start(mechanism);
     const fem::State x = mechanism.model.reference();
     VectorXd force;
     mechanism.model.force(x, force);
     if (scene.time.integrator == "energy_momentum") mechanism.model.mean_force(x, x.q, x.q, force);
   }
-  check_expectations(scene);
-  const std::vector<mmc::BodyProblem> problems = build_problems(scene);
+  check_expectations(prepared);
+  const std::vector<mmc::BodyProblem>& problems = prepared.design_problems();
   if (!scene.domain) return;
   const mmc::BodyProblem& problem = problems.front();
   if (problem.grid.n_cells() <= kMostBuilt)
@@ -105,11 +104,12 @@ std::string located_refusal(const Scene& scene, const std::string& message) {
   return scene.file->where(named.path()) + ": " + message;
 }
 
-void build_scene(const Scene& scene, const std::string& directory, int threads) {
+void require_buildable(const PreparedCase& prepared, const std::string& directory, int threads) {
+  const Scene& scene = prepared.scene();
   fem::reserve_blas(threads);
   require_room(scene, this_machine(directory.empty() ? scene.output.directory : directory));
   try {
-    build_parts(scene);
+    require_parts(prepared);
   } catch (const Error& error) {
     const std::string words = located_refusal(scene, error.what());
     throw error.kind() == Error::Kind::input ? Error::input(words) : Error::numerical(words);
@@ -119,9 +119,9 @@ void build_scene(const Scene& scene, const std::string& directory, int threads) 
 ReadyCase ready_case(const std::string& name, std::span<const std::string> overrides,
                      const std::string& directory, int threads) {
   io::CaseFile file(find_case(name), overrides);
-  Scene scene = read_scene(file);
-  build_scene(scene, directory, threads);
-  return {std::move(file), std::move(scene)};
+  PreparedCase prepared(read_scene(file));
+  require_buildable(prepared, directory, threads);
+  return {std::move(file), std::move(prepared)};
 }
 
 std::vector<std::string> shipped_cases() {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "cases/assembly/build.h"
+#include "cases/assembly/prepared_case.h"
 
 namespace flexmorph::cases {
 
@@ -15,7 +15,7 @@ inline constexpr int kMostBuilt = 200'000;
 /// A case that can be run: read, of a size for this machine, and built once.
 struct ReadyCase {
   io::CaseFile file;
-  Scene scene;
+  PreparedCase prepared;
 };
 /// @param name  path, or name of a shipped case
 /// @param directory  of the run folder, whose disk it must fit on; empty: as the case says
@@ -30,10 +30,11 @@ std::string find_case(const std::string& name);
 /// Names of the shipped cases.
 std::vector<std::string> shipped_cases();
 
-/// Builds everything a run of the scene would build: what cannot be built is refused here, and
-/// before that what is too large for this machine (see require_room()).
-/// @throws Error, which names the case file where the scene comes from one.
-void build_scene(const Scene& scene, const std::string& directory = "", int threads = 1);
+/// Builds what a run of the case builds first: what cannot be built is refused here, and before
+/// that what is too large for this machine (see require_room()).
+/// @throws Error, which names the case file where the scene comes from one
+void require_buildable(const PreparedCase& prepared, const std::string& directory = "",
+                       int threads = 1);
 
 /// The message with the place in the case file in front: that of the joint, body, spring, drive or
 /// load that it names first in quotes, else the file alone. As it is where it begins with a place.

@@ -78,17 +78,16 @@ std::vector<io::Field> views_of(const std::vector<OwnField>& fields) {
 
 }  // namespace
 
-void RunFolder::write_part(const std::string& body, const io::QuadMesh& mesh,
-                           std::vector<io::Field> cells, std::span<const io::Field> points,
-                           double time, int part) {
-  const std::vector<double> number(mesh.quads.size(), part);
-  cells.push_back({"body", number});
-  write_frame([this, file = numbered("motion_" + body + "_", ++motion_frames_, ".vtu"), mesh,
-               of_cells = copies_of(cells), of_points = copies_of(points), time, part] {
+void RunFolder::write_part(const std::string& body, FramePart part) {
+  const std::vector<double> number(part.mesh.quads.size(), part.number);
+  part.cells.push_back({"body", number});
+  write_frame([this, file = numbered("motion_" + body + "_", ++motion_frames_, ".vtu"),
+               mesh = part.mesh, of_cells = copies_of(part.cells),
+               of_points = copies_of(part.points), time = part.time, n = part.number] {
     io::write_quad_mesh(folder_.file("motion/" + file), mesh, views_of(of_cells),
                         views_of(of_points));
-    motion_.add(time, file, part);
-    frames_.push_back({file, time, part});
+    motion_.add(time, file, n);
+    frames_.push_back({file, time, n});
   });
 }
 
@@ -112,10 +111,10 @@ std::vector<std::string> RunFolder::frames() const {
 
 void RunFolder::add_surface_frame(const std::string& body, const Surface& surface, double time,
                                   int part) {
-  const io::Field points[] = {{"displacement", surface.displacement, surface.mesh.dimension}};
+  const io::Field displacement{"displacement", surface.displacement, surface.mesh.dimension};
   std::vector<io::Field> cells = {{"strain_energy", surface.energy}};
   if (!surface.strain.empty()) cells.push_back({"elastic_strain", surface.strain, 3});
-  write_part(body, surface.mesh, std::move(cells), points, time, part);
+  write_part(body, {surface.mesh, std::move(cells), {displacement}, time, part});
   if (part == 0 && surface.mesh.dimension == 3)
     shapes_.push_back(
         {(scene_.statics ? "step " : "t = ") + io::to_text(time, 4) + (scene_.statics ? "" : " s"),
@@ -124,14 +123,17 @@ void RunFolder::add_surface_frame(const std::string& body, const Surface& surfac
 
 void RunFolder::add_rigid_frame(const std::string& name, const io::QuadMesh& mesh, double time,
                                 int part) {
-  write_part(name, mesh, {}, {}, time, part);
+  write_part(name, {mesh, {}, {}, time, part});
 }
 
 void RunFolder::add_motion_frame(const std::string& body, const DesignedSurface& surface,
                                  double time, int part) {
-  const io::Field points[] = {{"displacement", surface.displacement, 2}};
-  write_part(body, surface.mesh, {{"density", surface.density}, {"strain_energy", surface.energy}},
-             points, time, part);
+  const io::Field displacement{"displacement", surface.displacement, 2};
+  write_part(body, {surface.mesh,
+                    {{"density", surface.density}, {"strain_energy", surface.energy}},
+                    {displacement},
+                    time,
+                    part});
 }
 
 std::vector<io::SurfaceFrame> RunFolder::shapes(size_t most) const {

@@ -118,8 +118,14 @@ class RunFolder {
  private:
   History& history_of(const std::string& body);
   DesignPictures& pictures_of(const std::string& body);
-  void write_part(const std::string& body, const io::QuadMesh& mesh, std::vector<io::Field> cells,
-                  std::span<const io::Field> points, double time, int part);
+  /// A part of a frame of the motion: its fields, and when it is shown.
+  struct FramePart {
+    const io::QuadMesh& mesh;
+    std::vector<io::Field> cells, points;
+    double time;
+    int number;
+  };
+  void write_part(const std::string& body, FramePart part);
   /// Does the task, now or beside the run; a frame that cannot be written is counted.
   void write_frame(std::function<void()> task);
   void add_events(const std::string& body, int cycle, int iteration,

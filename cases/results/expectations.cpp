@@ -115,7 +115,8 @@ std::vector<Expected> compare_expectations(const Scene& scene, const RunResult& 
   return out;
 }
 
-void check_expectations(const Scene& scene) {
+void check_expectations(const PreparedCase& prepared) {
+  const Scene& scene = prepared.scene();
   if (scene.expect.empty()) return;
   std::vector<std::string> known;
   for (const Part part : parts_of(scene)) {
@@ -126,7 +127,7 @@ void check_expectations(const Scene& scene) {
         for (const char* prefix : {"", "sharp_"}) known.push_back(prefix + mmc::key_of(*row));
       if (!scene.domain) known.insert(known.end(), {kAmplitude, kMotionRatio});
     } else {
-      for (const std::string& column : candidates(scene, part)) known.push_back(column);
+      for (const std::string& column : candidates(prepared, part)) known.push_back(column);
     }
   }
   const bool turns = scene.statics && scene.statics->path == fem::StaticSettings::Path::arc_length;

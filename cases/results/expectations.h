@@ -1,7 +1,7 @@
 #pragma once
 
+#include "cases/assembly/prepared_case.h"
 #include "cases/results/run_result.h"
-#include "cases/scene/scene.h"
 
 /// `[expect]` of a case and what its run found.
 namespace flexmorph::cases {
@@ -11,6 +11,6 @@ std::vector<Expected> compare_expectations(const Scene& scene, const RunResult& 
 
 /// @throws Error (input), with place and the names that exist, for an expectation of a number that
 ///         no run of the scene has
-void check_expectations(const Scene& scene);
+void check_expectations(const PreparedCase& prepared);
 
 }  // namespace flexmorph::cases

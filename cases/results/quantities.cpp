@@ -30,22 +30,24 @@ std::vector<Part> parts_of(const Scene& scene) {
   return out;
 }
 
-std::vector<std::string> candidates(const Scene& scene, Part part) {
+std::vector<std::string> candidates(const PreparedCase& prepared, Part part) {
+  const Scene& scene = prepared.scene();
   std::vector<std::string> out;
   if (part == Part::motion)
     return names_of(scene.statics
                         ? path_columns(scene)
-                        : MotionColumns(scene, build_mechanism(scene).growths, true).columns());
+                        : MotionColumns(scene, prepared.mechanism().growths, true).columns());
   for (const BodyDesign& design : scene.designs)
     for (const std::string& figure : kFigures)
       out.push_back(scene.designs.size() > 1 ? design.body + "." + figure : figure);
   return out;
 }
 
-std::string all_candidates(const Scene& scene) {
+std::string all_candidates(const PreparedCase& prepared) {
   std::string out;
-  for (const Part part : parts_of(scene))
-    for (const std::string& name : candidates(scene, part)) out += (out.empty() ? "" : ", ") + name;
+  for (const Part part : parts_of(prepared.scene()))
+    for (const std::string& name : candidates(prepared, part))
+      out += (out.empty() ? "" : ", ") + name;
   return out;
 }
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "cases/scene/scene.h"
+#include "cases/assembly/prepared_case.h"
 
 /// Numbers that a run of a scene comes to, by name: what expectations and accuracy may ask for.
 namespace flexmorph::cases {
@@ -18,9 +18,9 @@ std::vector<Part> parts_of(const Scene& scene);
 
 /// Names of quantities that a scene offers: columns of motion.csv or path.csv, and figures of
 /// designs. Numbers of run.json ("motion.energy_defect") come on top of them.
-std::vector<std::string> candidates(const Scene& scene, Part part);
+std::vector<std::string> candidates(const PreparedCase& prepared, Part part);
 
 /// "there are: ..." for messages.
-std::string all_candidates(const Scene& scene);
+std::string all_candidates(const PreparedCase& prepared);
 
 }  // namespace flexmorph::cases

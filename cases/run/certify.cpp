@@ -53,17 +53,18 @@ std::vector<fem::EslSets> loads_of(const RunContext& run,
   request.loads = true;
   request.balance = false;
   run.progress.begin(request.phase);
-  return run_motion(run.scene, request, run.folder).loads;
+  return run_motion(run.prepared, request, run.folder).loads;
 }
 
 }  // namespace
 
 int certify_run(const CertifyOptions& options) {
-  const Scene scene = finished_scene(options);
+  const PreparedCase prepared(finished_scene(options));
+  const Scene& scene = prepared.scene();
   RunFolder folder(options.directory, scene, false, RunFolder::Begin::go_on);
   Progress progress(options.quiet);
-  const RunContext run{scene, folder, progress, [] { return true; }};
-  const std::vector<mmc::BodyProblem> problems = build_problems(scene);
+  const RunContext run{prepared, folder, progress, [] { return true; }};
+  const std::vector<mmc::BodyProblem>& problems = prepared.design_problems();
   const mmc::MotionCertificate certificate =
       certify_by_motion(run, *scene.certify, loads_of(run, problems), problems);
   const std::string path = folder.file("run.json");

@@ -96,7 +96,7 @@ void write_certificate(const Scene& scene, const mmc::MotionCertificate& certifi
 namespace {
 
 /// Computes the loads of the motion with the designs of these problems, on their grids.
-LoadsOfDesigns loads_of(const RunContext& run, const Scene& scene,
+LoadsOfDesigns loads_of(const RunContext& run, const PreparedCase& prepared,
                         const std::vector<mmc::BodyProblem>& problems) {
   MotionRequest request;
   for (const mmc::BodyProblem& p : problems)
@@ -105,7 +105,7 @@ LoadsOfDesigns loads_of(const RunContext& run, const Scene& scene,
   request.balance = false;
   request.go_on = run.go_on;
   request.table = "motion_corrected.csv";
-  return LoadsOfDesigns(run_motion(scene, request, run.folder).loads);
+  return LoadsOfDesigns(run_motion(prepared, request, run.folder).loads);
 }
 
 /// The scene with designs on cells of another size; their bands are as many of them.
@@ -130,7 +130,7 @@ void take_designs(const std::vector<mmc::BodyProblem>& from, std::vector<mmc::Bo
 
 /// J of the crisp outlines of the designs, on the cells of the case.
 double crisp_value(const RunContext& run, const std::vector<mmc::BodyProblem>& problems) {
-  SceneMotion motion(run.scene, {0, run.scene.time.step, 0}, run.go_on);
+  SceneMotion motion(run.prepared, {0, run.scene().time.step, 0}, run.go_on);
   return mmc::sharp_objective(problems, motion);
 }
 
@@ -147,7 +147,7 @@ class Correcting {
       design_.problems = plain;
       return;
     }
-    LoadsOfDesigns last = loads_of(run_, run_.scene, design_.problems);
+    LoadsOfDesigns last = loads_of(run_, run_.prepared, design_.problems);
     std::vector<mmc::BodyOutcome> found = outcomes(last);
     design_.corrected = {.before = crisp_value(run_, plain),
                          .after = crisp_value(run_, design_.problems)};
@@ -163,10 +163,10 @@ class Correcting {
  private:
   /// Runs the cycles; the designs of the result are then the corrected ones.
   void correct() {
-    const Scene& scene = run_.scene;
-    const Scene coarse = with_cells(scene, scene.cycle.cell);
+    const Scene& scene = run_.scene();
+    const PreparedCase coarse(with_cells(scene, scene.cycle.cell));
     SceneMotion motion(coarse, {0, scene.cycle.step, scene.cycle.checkpoints}, run_.go_on);
-    std::vector<mmc::BodyProblem> problems = build_problems(coarse);
+    std::vector<mmc::BodyProblem> problems = coarse.design_problems();
     take_designs(design_.problems, problems);
     std::optional<LoadsOfDesigns> current;
     const mmc::LoadsAt loads_at = [&] {
@@ -231,7 +231,7 @@ mmc::MotionCertificate certify_by_motion(const RunContext& run, const Certify& s
                                          std::span<const fem::EslSets> loads,
                                          std::span<const mmc::BodyProblem> designs) {
   run.progress.begin("certificate");
-  SceneMotion motion(run.scene, {settings.cell, settings.step, settings.checkpoints}, run.go_on);
+  SceneMotion motion(run.prepared, {settings.cell, settings.step, settings.checkpoints}, run.go_on);
   const LoadsOfDesigns kept({loads.begin(), loads.end()});
   // Copies: a certificate leaves the designs as they are.
   std::vector<mmc::BodyProblem> problems(designs.begin(), designs.end());
@@ -241,11 +241,11 @@ mmc::MotionCertificate certify_by_motion(const RunContext& run, const Certify& s
   std::vector<mmc::Part> parts = mmc::parts_at_end(bodies);
   mmc::MotionCertificate out;
   try {
-    out = mmc::certify(parts, motion, run.scene.optimizer.move_limit);
+    out = mmc::certify(parts, motion, run.scene().optimizer.move_limit);
   } catch (const StoppedMotion&) {
     throw Interrupted();
   }
-  write_certificate(run.scene, out, problems, run.folder);
+  write_certificate(run.scene(), out, problems, run.folder);
   run.progress.say("certificate: " + certificate_words(out));
   return out;
 }

@@ -1,6 +1,5 @@
 #include "cases/run/design_run.h"
 
-#include "cases/assembly/resource_estimate.h"
 #include "cases/results/warnings.h"
 #include "cases/run/corrections.h"
 #include "cases/run/motions.h"
@@ -45,7 +44,7 @@ class KeptEvaluations {
 };
 
 mmc::DesignSettings settings_of(const RunContext& run, KeptEvaluations& kept) {
-  const Scene& scene = run.scene;
+  const Scene& scene = run.scene();
   return {scene.output.sharp_every,
           scene.optimizer,
           run.condition,
@@ -56,7 +55,7 @@ mmc::DesignSettings settings_of(const RunContext& run, KeptEvaluations& kept) {
 
 /// Writes every iteration and shows it.
 mmc::IterationObserver iteration_observer(const RunContext& run) {
-  return [&run, most = extent_of(run.scene).iterations](const mmc::IterationReport& r) {
+  return [&run, most = run.prepared.extent().iterations](const mmc::IterationReport& r) {
     run.folder.add_iteration(r);
     run.progress.iteration(r, most);
     return run.go_on();
@@ -66,16 +65,16 @@ mmc::IterationObserver iteration_observer(const RunContext& run) {
 }  // namespace
 
 void DesignRun::run() {
-  design_.problems = build_problems(run_.scene);
+  design_.problems = run_.prepared.design_problems();
   for (const mmc::BodyProblem& problem : design_.problems) run_.folder.write_start(problem);
-  if (run_.scene.domain)
+  if (run_.scene().domain)
     design_at_rest();
   else
     design_moving();
 }
 
 void DesignRun::design_moving() {
-  const Scene& scene = run_.scene;
+  const Scene& scene = run_.scene();
   std::vector<fem::EslSets> loads;
   run_cycles(loads);
   const bool analysed = scene.optimizer.max_iterations == 0;
@@ -98,7 +97,7 @@ void DesignRun::design_moving() {
 }
 
 void DesignRun::run_cycles(std::vector<fem::EslSets>& loads) {
-  const Scene& scene = run_.scene;
+  const Scene& scene = run_.scene();
   CycleMotions motions(run_);
   KeptEvaluations kept(run_.folder);
   std::vector<fem::EslSets> best_loads;
@@ -155,7 +154,7 @@ void DesignRun::run_cycles(std::vector<fem::EslSets>& loads) {
 }
 
 void DesignRun::design_at_rest() {
-  const Scene& scene = run_.scene;
+  const Scene& scene = run_.scene();
   mmc::BodyProblem& problem = design_.problems.front();
   const std::unique_ptr<mmc::ComplianceEvaluator> loads = build_static_loads(scene, problem);
   KeptEvaluations kept(run_.folder);
@@ -177,7 +176,7 @@ void DesignRun::verify_outlines(std::span<const fem::EslSets> loads) {
   run_.progress.begin("judge");
   for (size_t i = 0; i < design_.outcomes.size(); ++i) {
     VerifiedOutline found =
-        verify_outline_of(run_.scene, design_.problems[i], loads.empty() ? nullptr : &loads[i],
+        verify_outline_of(run_.scene(), design_.problems[i], loads.empty() ? nullptr : &loads[i],
                           run_.go_on, run_.folder);
     if (!run_.go_on()) throw Interrupted();  // it was not done to the end
     design_.outlines.push_back(std::move(found));

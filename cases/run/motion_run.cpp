@@ -180,9 +180,10 @@ class Resuming {
   std::optional<MotionCheckpoint> checkpoint_;
 };
 
-/// The mechanism of a scene with the designs and the settings of a request.
-Mechanism mechanism_of(const Scene& scene, const MotionRequest& request) {
-  Mechanism out = build_mechanism(scene, request.mesh);
+/// A copy of the mechanism of a case with the designs and the settings of a request.
+Mechanism mechanism_of(const PreparedCase& prepared, const MotionRequest& request) {
+  const Scene& scene = prepared.scene();
+  Mechanism out = prepared.mechanism(request.mesh);
   for (size_t i = 0; i < request.factors.size(); ++i)
     for (fem::Body& body : out.model.bodies())
       if (body.name == scene.designs[i].body) out.model.set_factors(body, request.factors[i]);
@@ -198,10 +199,11 @@ Mechanism mechanism_of(const Scene& scene, const MotionRequest& request) {
 
 }  // namespace
 
-MotionOutcome run_motion(const Scene& scene, const MotionRequest& request, RunFolder& folder) {
-  Mechanism mechanism = mechanism_of(scene, request);
+MotionOutcome run_motion(const PreparedCase& prepared, const MotionRequest& request,
+                         RunFolder& folder) {
+  Mechanism mechanism = mechanism_of(prepared, request);
   MotionOutcome out;
-  StepSequence steps(scene, request, mechanism, folder, out);
+  StepSequence steps(prepared.scene(), request, mechanism, folder, out);
   Resuming resuming(request, out, steps, folder);
   try {
     resuming.connect(mechanism.motion);

@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "cases/assembly/build.h"
+#include "cases/assembly/prepared_case.h"
 #include "cases/output/run_folder.h"
 #include "cases/results/motion_record.h"
 
@@ -40,9 +40,10 @@ struct MotionOutcome {
   std::vector<fem::EslSets> loads;  ///< one entry per design, where loads were asked for
 };
 
-/// Builds the mechanism of a scene and integrates its motion.
+/// Integrates the motion of a copy of the mechanism of a case.
 /// @param folder  receives the table of steps and the frames
 /// @throws FailedRun or Interrupted; the steps before are in the table, the checkpoint is written
-MotionOutcome run_motion(const Scene& scene, const MotionRequest& request, RunFolder& folder);
+MotionOutcome run_motion(const PreparedCase& prepared, const MotionRequest& request,
+                         RunFolder& folder);
 
 }  // namespace flexmorph::cases

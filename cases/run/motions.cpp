@@ -51,7 +51,7 @@ MotionRequest resumable_request(const RunContext& run, const std::string& phase,
   out.phase = phase;
   out.table = table;
   out.go_on = run.go_on;
-  out.reached = [&run, phase, end = run.scene.time.end](double t) {
+  out.reached = [&run, phase, end = run.scene().time.end](double t) {
     run.progress.way(phase, t / end,
                      "t = " + io::to_text(t, 4) + " of " + io::to_text(end, 4) + " s");
   };
@@ -64,9 +64,9 @@ MotionRequest resumable_request(const RunContext& run, const std::string& phase,
 MotionRequest result_request(const RunContext& run, const std::string& phase) {
   constexpr int kSnapshots = 4;
   MotionRequest out = resumable_request(run, phase, "motion.csv");
-  const Output& output = run.scene.output;
+  const Output& output = run.scene().output;
   out.frames_every = output.vtk ? output.motion_every : 0;
-  out.snapshots = run.scene.is_mechanism() && output.plots ? kSnapshots : 0;
+  out.snapshots = run.scene().is_mechanism() && output.plots ? kSnapshots : 0;
   out.condition = run.condition;
   return out;
 }
@@ -83,7 +83,7 @@ void remove_checkpoints(const FilesOf& files_of) {
 MotionOutcome CycleMotions::run_one(const MotionRequest& request) {
   run_.progress.begin(request.phase);
   const double begin = cpu_seconds();
-  MotionOutcome motion = run_motion(run_.scene, request, run_.folder);
+  MotionOutcome motion = run_motion(run_.prepared, request, run_.folder);
   seconds_ += cpu_seconds() - begin;
   const fem::MotionResult& result = motion.record.result;
   run_.progress.say(request.phase + ": " + std::to_string(result.counts.steps) + " steps, " +
@@ -93,7 +93,7 @@ MotionOutcome CycleMotions::run_one(const MotionRequest& request) {
 }
 
 std::vector<fem::EslSets> CycleMotions::loads(std::span<const fem::Factors> factors) {
-  const bool analysed = run_.scene.optimizer.max_iterations == 0;
+  const bool analysed = run_.scene().optimizer.max_iterations == 0;
   const bool first = ++n_loads_ == 1;
   MotionRequest request = resumable_request(run_, "motion", "motion.csv");
   // Every cycle has a checkpoint: designs of earlier cycles come back from their evaluations.
@@ -108,7 +108,7 @@ std::vector<fem::EslSets> CycleMotions::loads(std::span<const fem::Factors> fact
 }
 
 mmc::VerificationMotion CycleMotions::judge() {
-  if (!run_.scene.judges_on_cells()) return {};
+  if (!run_.scene().judges_on_cells()) return {};
   return
       [this](std::span<const fem::Factors> factors) { return strain_integral_on_cells(factors); };
 }
@@ -117,7 +117,7 @@ double CycleMotions::strain_integral_on_cells(std::span<const fem::Factors> fact
   MotionRequest request = resumable_request(run_, "motion on cells", kOnCells);
   request.checkpoint = "motion_judged_" + io::to_text(++n_assessed_) + kCheckpoint;
   request.factors.assign(factors.begin(), factors.end());
-  request.mesh = verified_mesh(*run_.scene.verify);
+  request.mesh = verified_mesh(*run_.scene().verify);
   request.balance = false;
   last_on_cells_ = run_one(request).record;
   return last_on_cells_->strain_integral();
@@ -149,7 +149,7 @@ void run_side_by_side(const RunContext& run, const std::vector<IndependentMotion
         {motion.request.phase, motion.cost, [&run, &motion](const std::function<bool()>& others) {
            MotionRequest request = motion.request;
            request.go_on = [&] { return run.go_on() && others(); };
-           MotionOutcome found = run_motion(run.scene, request, run.folder);
+           MotionOutcome found = run_motion(run.prepared, request, run.folder);
            *motion.record = std::move(found.record);
            if (motion.loads) *motion.loads = std::move(found.loads);
          }});
@@ -187,7 +187,7 @@ std::vector<EnergyComparison> compared_energies(std::span<const mmc::BodyProblem
 std::vector<fem::EslSets> assess_by_motion(const RunContext& run,
                                            std::span<const mmc::BodyProblem> problems,
                                            MotionResults& motions) {
-  const Scene& scene = run.scene;
+  const Scene& scene = run.scene();
   const bool on_cells = scene.judges_on_cells();
   std::vector<fem::EslSets> loads;
   std::vector<IndependentMotion> all;

@@ -93,8 +93,9 @@ class PathSteps {
 
 }  // namespace
 
-PathRecord run_path(const Scene& scene, RunFolder& folder, const PathRequest& request) {
-  Mechanism mechanism = build_mechanism(scene);
+PathRecord run_path(const PreparedCase& prepared, RunFolder& folder, const PathRequest& request) {
+  const Scene& scene = prepared.scene();
+  Mechanism mechanism = prepared.mechanism();
   fem::Workspace& model = mechanism.model;
   fem::State x =
       fem::start_state(model, mechanism.growths, 0, fem::Start::rigid, mechanism.motion.placement);

@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "cases/assembly/prepared_case.h"
 #include "cases/output/run_folder.h"
 #include "cases/results/motion_record.h"
 
@@ -17,6 +18,6 @@ struct PathRequest {
 /// Follows the equilibria of a [static] analysis from load factor 0.
 /// @param folder  receives path.csv, and with output.vtk a frame per equilibrium
 /// @throws FailedRun or Interrupted, with the equilibria before it in the table
-PathRecord run_path(const Scene& scene, RunFolder& folder, const PathRequest& request);
+PathRecord run_path(const PreparedCase& prepared, RunFolder& folder, const PathRequest& request);
 
 }  // namespace flexmorph::cases

@@ -38,7 +38,7 @@ using Clock = std::chrono::steady_clock;
 std::atomic<bool> interrupted = false;  // set by a signal, read by every motion
 
 PathRecord run_statics(const RunContext& run) {
-  const double to = run.scene.statics->to;
+  const double to = run.scene().statics->to;
   run.progress.begin("statics");
   PathRequest request;
   request.condition = run.condition;
@@ -47,7 +47,7 @@ PathRecord run_statics(const RunContext& run) {
     run.progress.way("statics", std::clamp(factor / to, 0.0, 1.0),
                      "load factor " + io::to_text(factor, 4) + " of " + io::to_text(to, 4));
   };
-  PathRecord out = run_path(run.scene, run.folder, request);
+  PathRecord out = run_path(run.prepared, run.folder, request);
   run.progress.say("statics: load factor " + io::to_text(out.result.factor, 5) + " after " +
                    std::to_string(out.result.steps) + " steps, " +
                    std::to_string(out.result.iterations) + " Newton iterations");
@@ -58,45 +58,11 @@ MotionRecord run_only_motion(const RunContext& run) {
   MotionRequest request = result_request(run, "motion");
   request.say = [&](const std::string& words) { run.progress.say(words); };
   run.progress.begin(request.phase);
-  MotionRecord out = run_motion(run.scene, request, run.folder).record;
+  MotionRecord out = run_motion(run.prepared, request, run.folder).record;
   const fem::MotionResult& result = out.result;
   run.progress.say("motion: " + std::to_string(result.counts.steps) + " steps, " +
                    std::to_string(result.counts.newton) + " Newton iterations, " +
                    std::to_string(result.events.size()) + " changes of the mesh");
-  return out;
-}
-
-/// The result of a run that may have ended early: what was computed, and why it ended.
-struct EndedRun {
-  RunResult result;
-  std::exception_ptr error;  ///< null where the run came to its end
-};
-
-/// Runs the parts of a case. An error is numerical also where memory runs out: the estimate of
-/// resource_estimate.h is within a factor.
-EndedRun run_scene(const RunContext& run) {
-  const Scene& scene = run.scene;
-  EndedRun out;
-  DesignRun designs(run);
-  try {
-    if (!scene.designs.empty() || scene.domain)
-      designs.run();
-    else if (scene.statics)
-      out.result.path = run_statics(run);
-    else
-      out.result.motions.motion = run_only_motion(run);
-    run.folder.finish();
-    out.result.info.lost_frames = run.folder.lost_frames();
-    out.result.info.missing_exports = run.folder.missing_exports();
-  } catch (const std::bad_alloc&) {
-    out.error = std::make_exception_ptr(Error::numerical(out_of_memory_words(extent_of(scene))));
-  } catch (...) {
-    out.error = std::current_exception();
-  }
-  if (!scene.designs.empty() || scene.domain) {
-    out.result.design = designs.take_design();
-    out.result.motions = designs.take_motions();
-  }
   return out;
 }
 
@@ -264,11 +230,39 @@ int say_end(const RunResult& result, bool is_case, Progress& progress, const std
 
 }  // namespace
 
+EndedRun run_prepared(const RunContext& run) {
+  const Scene& scene = run.scene();
+  EndedRun out;
+  DesignRun designs(run);
+  try {
+    if (!scene.designs.empty() || scene.domain)
+      designs.run();
+    else if (scene.statics)
+      out.result.path = run_statics(run);
+    else
+      out.result.motions.motion = run_only_motion(run);
+    run.folder.finish();
+    out.result.info.lost_frames = run.folder.lost_frames();
+    out.result.info.missing_exports = run.folder.missing_exports();
+  } catch (const std::bad_alloc&) {
+    out.error =
+        std::make_exception_ptr(Error::numerical(out_of_memory_words(run.prepared.extent())));
+  } catch (...) {
+    out.error = std::current_exception();
+  }
+  if (!scene.designs.empty() || scene.domain) {
+    out.result.design = designs.take_design();
+    out.result.motions = designs.take_motions();
+  }
+  return out;
+}
+
 int run_case(const RunOptions& options) {
   const Clock::time_point begin = Clock::now();
   // What cannot be built, or is too large, is refused before a folder exists.
-  const auto [file, scene] =
+  const auto [file, prepared] =
       ready_case(options.case_name, options.overrides, options.directory, options.threads);
+  const Scene& scene = prepared.scene();
   std::string directory = options.directory;
   if (directory.empty()) directory = scene.output.directory;
   if (directory.empty()) directory = "runs/" + scene.name;
@@ -291,8 +285,8 @@ int run_case(const RunOptions& options) {
     progress.say("the run that was there is now " + folder.moved_to());
   RunFiles files(scene, folder, options.threads, begin);
   files.write({}, "running", "");
-  EndedRun ended = run_scene({scene, folder, progress, [] { return !interrupted; }, options.threads,
-                              options.condition, options.resume});
+  EndedRun ended = run_prepared({prepared, folder, progress, [] { return !interrupted; },
+                                 options.threads, options.condition, options.resume});
   if (ended.error) return end_early(ended, files, progress, folder);
   const RunResult result = end_well(ended.result, files, progress);
   remove_progress([&](const std::string& ending) { return folder.files_of(ending); });

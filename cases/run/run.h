@@ -1,9 +1,24 @@
 #pragma once
 
+#include <exception>
 #include <string>
 #include <vector>
 
+#include "cases/results/run_result.h"
+#include "cases/run/run_context.h"
+
 namespace flexmorph::cases {
+
+/// The result of a run that may have ended early: what was computed, and why it ended.
+struct EndedRun {
+  RunResult result;
+  std::exception_ptr error;  ///< null where the run came to its end; else Error or Interrupted
+};
+
+/// Runs a prepared case into its folder, as far as it gets. Status, warnings and expectations of
+/// the result are not yet filled. Where memory runs out the error is numerical: the estimate of
+/// resource_estimate.h is within a factor.
+EndedRun run_prepared(const RunContext& run);
 
 /// Options of the command `run`.
 struct RunOptions {

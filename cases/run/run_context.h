@@ -1,20 +1,22 @@
 #pragma once
 
+#include "cases/assembly/prepared_case.h"
 #include "cases/output/run_folder.h"
 #include "cases/run/progress.h"
-#include "cases/scene/scene.h"
 
 namespace flexmorph::cases {
 
 /// What all parts of a run share.
 struct RunContext {
-  const Scene& scene;
+  const PreparedCase& prepared;
   RunFolder& folder;
   Progress& progress;
   std::function<bool()> go_on;  ///< asked at every step and iteration; false interrupts the run
   int threads = 1;
   bool condition = false;  ///< whether conditions of matrices are estimated at the end
   bool resume = false;     ///< whether the run resumes what is in its folder
+
+  const Scene& scene() const { return prepared.scene(); }
 };
 
 }  // namespace flexmorph::cases

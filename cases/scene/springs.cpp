@@ -102,7 +102,8 @@ bool is_flexible(const Table& t, const Scene& scene) {
 /// Both places; of two axes that of b may be none's where it is a point of a plate.
 void read_places(const Table& t, const Scene& scene, const SpringRow& row, Spring& spring) {
   if (!row.axes || row.needs_axis_b) {
-    read_anchors(t, scene, row.points, row.axes, spring.a, spring.b);
+    const auto [a, b] = read_anchors(t, scene, row.points, row.axes);
+    spring.a = a, spring.b = b;
     return;
   }
   const bool rigid_b = !is_flexible(t, scene);

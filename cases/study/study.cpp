@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <sstream>
 
+#include "cases/check/ready.h"
 #include "cases/output/kept_case.h"
 #include "cases/run/progress.h"
-#include "cases/check/ready.h"
 #include "cases/run/run.h"
 #include "cases/study/processes.h"
 #include "io/files.h"
@@ -103,7 +103,8 @@ io::CaseFile case_of(const StudyOptions& options, const Variant& variant) {
 }
 
 void check_variants(const StudyOptions& options, std::span<const Variant> variants) {
-  for (const Variant& v : variants) build_scene(read_scene(case_of(options, v)));
+  for (const Variant& v : variants)
+    require_buildable(PreparedCase(read_scene(case_of(options, v))));
 }
 
 int run_variant(const StudyOptions& options, const Variant& variant) {

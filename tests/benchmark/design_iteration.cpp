@@ -25,12 +25,12 @@ using namespace flexmorph::benchmark;
 /// Loads of the motion of the scene's first design.
 fem::EslSets loads_of(const cases::Scene& scene, const mmc::BodyProblem& problem) {
   const auto folder = std::filesystem::temp_directory_path() / "flexmorph_design_iteration";
-  cases::MotionRequest wishes;
-  wishes.factors = {mmc::dynamic_factors(problem, problem.design.components())};
-  wishes.loads = true;
-  wishes.balance = false;
+  cases::MotionRequest request;
+  request.factors = {mmc::dynamic_factors(problem, problem.design.components())};
+  request.loads = true;
+  request.balance = false;
   cases::RunFolder files(folder.string(), scene, "");
-  cases::MotionOutcome motion = cases::run_motion(scene, wishes, files);
+  cases::MotionOutcome motion = cases::run_motion(cases::PreparedCase(scene), request, files);
   std::filesystem::remove_all(folder);
   return std::move(motion.loads.at(0));
 }

@@ -26,15 +26,15 @@ Changes quick(const Changes& more = {}) {
 MotionOutcome move(const Scene& scene, bool loads = false) {
   const Scratch scratch;
   RunFolder folder(scratch / "out", scene);
-  MotionRequest wishes;
-  wishes.loads = loads;
-  return run_motion(scene, wishes, folder);
+  MotionRequest request;
+  request.loads = loads;
+  return run_motion(PreparedCase(scene), request, folder);
 }
 
 TEST(HeatedBoom, ScenesAreBuilt) {
   for (const char* name : {"heated_boom", "heated_boom_held"}) {
     const Scene scene = read(name);
-    build_scene(scene);
+    require_buildable(PreparedCase(scene));
     ASSERT_TRUE(scene.body("plate").heat) << name;
     EXPECT_NEAR(scene.body("plate").heat->expansion * scene.body("plate").heat->rise.value, 0.02,
                 1e-15);

@@ -47,7 +47,7 @@ TEST(Indeterminate, LeesFrameSnapsAtItsCriticalLoad) {
       joint("pin", "body = \"beam\"\npoint = [1.2, 0.0]") +
       "\n[[load]]\ntype = \"point\"\nbody = \"beam\"\npoint = [0.24, 0.0]\nforce = [0.0, "
       "-2500.0]\n");
-  build_scene(scene);
+  require_buildable(PreparedCase(scene));
   EXPECT_TRUE(fem::RigidMotion(rigid_kinematics(scene)).is_indeterminate());
   Mechanism m = build_mechanism(scene);
   fem::State x = fem::start_state(m.model, m.growths, 0, fem::Start::rigid, m.motion.placement);
@@ -91,7 +91,7 @@ const char* const kCoupler =
 // The third crank says what the other two say already: all turn alike, the coupler keeps upright.
 TEST(Indeterminate, ParallelogramOfThreeCranks) {
   const Scene scene = scene_of(cranks(3, "pi/2 + 3*t^2") + kCoupler);
-  build_scene(scene);
+  require_buildable(PreparedCase(scene));
   Mechanism m = build_mechanism(scene);
   EXPECT_EQ(m.motion.start, fem::Start::prestretched);
   double worst = 0;
@@ -110,7 +110,7 @@ TEST(Indeterminate, DrivesMayContradictTheRigidModel) {
       scene_of(cranks(3, "pi/2 - 0.001*sin(3*t)") + kCoupler +
                "\n[[drive]]\nname = \"back\"\nformula = \"pi/2 + 0.001*sin(3*t)\"\n" +
                joint("angle_drive", "name = \"other\"\nb = \"crank2\"\nangle = \"back\""));
-  build_scene(scene);
+  require_buildable(PreparedCase(scene));
   Mechanism m = build_mechanism(scene);
   EXPECT_EQ(m.motion.start, fem::Start::rigid);
   const fem::MotionResult end =
@@ -125,7 +125,7 @@ TEST(Indeterminate, RigidBodiesAreRefusedAsBefore) {
   const Scene scene = scene_of(cranks(3, "pi/2 + 3*t^2") +
                                "\n[[rigid_body]]\nname = \"coupler\"\nmass = 1.0\nsize = [1.0, "
                                "0.04]\nposition = [0.0, 0.2]\n");
-  EXPECT_THROW(build_scene(scene), Error);
+  EXPECT_THROW(require_buildable(PreparedCase(scene)), Error);
 }
 
 // What bends may be held too often as well: the same pin twice.
@@ -135,7 +135,7 @@ TEST(Indeterminate, FlexibleBodiesAreRefusedWhereTheyAreHeldTwice) {
                                      "name = \"again\"\na = \"crank1\"\npoint_a = [0.2, 0.0]\nb = "
                                      "\"coupler\"\npoint_b = [0.5, 0.0]"));
   try {
-    build_scene(scene);
+    require_buildable(PreparedCase(scene));
     FAIL() << "not refused";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), Error::Kind::input);
@@ -160,7 +160,7 @@ std::string strip_between_hubs(const std::string& place) {
 // across stiffen it at its ends, and its tension everywhere, by less than 2 %.
 TEST(Indeterminate, PlateBetweenTwoHubs) {
   const Scene scene = scene_of(strip_between_hubs("[0.5, 0.0]"));
-  build_scene(scene);
+  require_buildable(PreparedCase(scene));
   Mechanism m = build_mechanism(scene);
   const fem::MotionResult end =
       fem::integrate(m.model, m.growths, m.motion, [](const fem::MotionStep&) {});
@@ -170,7 +170,7 @@ TEST(Indeterminate, PlateBetweenTwoHubs) {
 
 TEST(Indeterminate, PlateThatDoesNotReachItsHub) {
   try {
-    build_scene(scene_of(strip_between_hubs("[0.52, 0.0]")));
+    require_buildable(PreparedCase(scene_of(strip_between_hubs("[0.52, 0.0]"))));
     FAIL() << "not refused";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), Error::Kind::input);

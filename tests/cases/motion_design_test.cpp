@@ -38,10 +38,10 @@ mmc::ComplianceEvaluator any_loads() {
 class DesignedForMotion {
  public:
   explicit DesignedForMotion(cases::Scene scene)
-      : scene_(std::move(scene)),
-        problems_(cases::build_problems(scene_)),
+      : prepared_(std::move(scene)),
+        problems_(prepared_.design_problems()),
         parts_(parts_of(problems_, loads_)),
-        motion_(scene_, {.cell = 0, .step = 2e-3, .checkpoints = 0}, {}),
+        motion_(prepared_, {.cell = 0, .step = 2e-3, .checkpoints = 0}, {}),
         state_(mmc::motion_state_of(parts_, motion_)),
         whole_(parts_, state_) {}
 
@@ -60,7 +60,7 @@ class DesignedForMotion {
   }
 
   mmc::ComplianceEvaluator loads_ = any_loads();
-  cases::Scene scene_;
+  cases::PreparedCase prepared_;
   std::vector<mmc::BodyProblem> problems_;
   std::vector<mmc::Part> parts_;
   SceneMotion motion_;

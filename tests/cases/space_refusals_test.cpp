@@ -9,7 +9,7 @@ namespace {
 
 std::string complaint(const std::string& name, const Changes& changes) {
   try {
-    build_scene(read(name, changes));
+    require_buildable(PreparedCase(read(name, changes)));
   } catch (const Error& e) {
     EXPECT_EQ(e.kind(), Error::Kind::input);
     return e.what();

@@ -19,7 +19,7 @@ MotionRecord motion_of(const std::string& name, const Changes& changes = {}) {
   const Scratch scratch;
   const Scene scene = read(name, changes);
   RunFolder folder(scratch / "out", scene);
-  return run_motion(scene, {}, folder).record;
+  return run_motion(PreparedCase(scene), {}, folder).record;
 }
 
 PathRecord path_of(const std::string& name, Changes changes = {}) {
@@ -27,7 +27,7 @@ PathRecord path_of(const std::string& name, Changes changes = {}) {
   changes.emplace_back("output.vtk=false");
   const Scene scene = read(name, changes);
   RunFolder folder(scratch / "out", scene);
-  return run_path(scene, folder, {});
+  return run_path(PreparedCase(scene), folder, {});
 }
 
 double largest(const std::vector<double>& values) {
@@ -187,7 +187,7 @@ TEST(HotBeam, RidesOnARigidBodyAsInAHub) {
     const Scene scene =
         read_scene(io::CaseFile(scratch.write("arm.toml", time + rest + kArm + weld)));
     RunFolder folder(scratch / "out", scene);
-    const MotionRecord r = run_motion(scene, {}, folder).record;
+    const MotionRecord r = run_motion(PreparedCase(scene), {}, folder).record;
     return Vec2(r.table.at("arm.end_ux").back(), r.table.at("arm.end_uy").back());
   };
   for (const char* mode : {"partial", "edge", "full"}) {

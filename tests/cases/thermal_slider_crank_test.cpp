@@ -20,7 +20,7 @@ MotionRecord run(const Changes& changes) {
   const Scratch scratch;
   const Scene scene = read("slider_crank_heated", changes);
   RunFolder folder(scratch / "out", scene);
-  return run_motion(scene, {}, folder).record;
+  return run_motion(PreparedCase(scene), {}, folder).record;
 }
 
 double largest(const std::vector<double>& values) {
@@ -137,8 +137,8 @@ TEST(SliderCrank, HeatMovesTheSliderAndLeavesNoStress) {
 TEST(SliderCrank, ThermalVolumeDecidesTheTrendOfTheDeflection) {
   const auto deflection = [](const char* volume, const char* rise) {
     return largest(run({std::string("body.heat.rise=") + rise, "time.step=2e-3",
-                         std::string("body.heat.volume=") + volume})
-                        .table.at("rod.midpoint_deflection"));
+                        std::string("body.heat.volume=") + volume})
+                       .table.at("rod.midpoint_deflection"));
   };
   const double cold = deflection("grown", "0");
   const double grown = deflection("grown", "200"), plane = deflection("grown_plane", "200"),

@@ -11,7 +11,8 @@ const io::Key& kAngle = io::key("joint", "angle")
                             .says("From the first axis of `a` to that of `b`; a number holds it.");
 
 void read(const io::Table& t, const Scene& scene, Joint& joint) {
-  read_anchors(t, scene, false, true, joint.a, joint.b);
+  const auto [a, b] = read_anchors(t, scene, false, true);
+  joint.a = a, joint.b = b;
   joint.laws = {read_law(t, kAngle, scene)};
   name_between(t, scene, joint);
 }

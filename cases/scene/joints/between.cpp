@@ -6,12 +6,14 @@ namespace flexmorph::cases {
 namespace {
 
 void read_revolute(const io::Table& t, const Scene& scene, Joint& joint) {
-  read_anchors(t, scene, true, false, joint.a, joint.b);
+  const auto [a, b] = read_anchors(t, scene, true, false);
+  joint.a = a, joint.b = b;
   name_between(t, scene, joint);
 }
 
 void read_slider(const io::Table& t, const Scene& scene, Joint& joint) {
-  read_anchors(t, scene, true, true, joint.a, joint.b);
+  const auto [a, b] = read_anchors(t, scene, true, true);
+  joint.a = a, joint.b = b;
   name_between(t, scene, joint);
 }
 

@@ -11,7 +11,8 @@ const io::Key& kDistanceKey = io::key("joint", "distance")
                                   .says("Between the points; a number is a massless rod.");
 
 void read(const io::Table& t, const Scene& scene, Joint& joint) {
-  read_anchors(t, scene, true, false, joint.a, joint.b);
+  const auto [a, b] = read_anchors(t, scene, true, false);
+  joint.a = a, joint.b = b;
   joint.laws = {read_law(t, kDistanceKey, scene)};
   name_between(t, scene, joint);
 }

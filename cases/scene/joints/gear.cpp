@@ -15,7 +15,8 @@ const io::Key& kInner = io::key("joint", "inner")
                             .says("One wheel has its teeth inside: both turn the same way.");
 
 void read(const io::Table& t, const Scene& scene, Joint& joint) {
-  read_anchors(t, scene, false, true, joint.a, joint.b);
+  const auto [a, b] = read_anchors(t, scene, false, true);
+  joint.a = a, joint.b = b;
   if (joint.a.on_ground() || joint.b.on_ground())
     t.fail("a gear has two rigid bodies, `a` and `b`; their axles are joints of their own");
   const std::vector<int> teeth = t.integers(kTeeth);

@@ -114,13 +114,14 @@ Anchor read_anchor(const Table& t, const AnchorKeys& keys, const Scene& scene, b
   return anchor;
 }
 
-void read_anchors(const Table& t, const Scene& scene, bool points, bool axes, Anchor& a,
-                  Anchor& b) {
-  a = read_anchor(t, kAnchorA, scene, points, axes);
-  b = read_anchor(t, kAnchorB, scene, points, axes);
+std::array<Anchor, 2> read_anchors(const Table& t, const Scene& scene, bool with_points,
+                                   bool with_axes) {
+  const Anchor a = read_anchor(t, kAnchorA, scene, with_points, with_axes),
+               b = read_anchor(t, kAnchorB, scene, with_points, with_axes);
   if (a.on_ground() && b.on_ground())
     t.fail("a body is missing: `a`, `b` or both name one; what is left out is the ground");
   if (a.body == b.body && !a.on_ground()) t.fail(kAnchorB.body, "a joint is between two bodies");
+  return {a, b};
 }
 
 void name_between(const Table& t, const Scene& scene, Joint& joint) {

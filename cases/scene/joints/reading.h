@@ -16,9 +16,11 @@ extern const AnchorKeys kAnchorA, kAnchorB;
 /// @param with_point, with_axis  does it look at points, at axes? Only rigid bodies have axes.
 Anchor read_anchor(const io::Table& t, const AnchorKeys& keys, const Scene& scene, bool with_point,
                    bool with_axis);
-/// Both, on two bodies of which one may be the ground.
-void read_anchors(const io::Table& t, const Scene& scene, bool points, bool axes, Anchor& a,
-                  Anchor& b);
+/// Reads the anchors a and b, on two bodies of which one may be the ground.
+/// @param with_points, with_axes  as of read_anchor()
+/// @throws Error (input) where both are on the ground or on one body
+std::array<Anchor, 2> read_anchors(const io::Table& t, const Scene& scene, bool with_points,
+                                   bool with_axes);
 /// Its `name`, or one made of its type and bodies, unlike all others.
 void name_between(const io::Table& t, const Scene& scene, Joint& joint);
 

@@ -109,20 +109,24 @@ void read_welded_edge(const io::Table& t, const Scene& scene, Joint& joint) {
   refuse_second_weld(t, joint_keys::kEdge, scene, joint);
 }
 
+/// The keys of an edge of a weld: of its body, and of the edge.
+struct EdgeKeys {
+  const io::Key &body, &edge;
+};
+
 /// The end of a plate or beam as a place of a weld: in the plane, of material that stays.
-/// @param edge_key  where the edge is said
-Anchor anchor_at(const io::Table& t, const io::Key& body_key, const io::Key& edge_key,
-                 const Body& body, double run_end, const std::string& edge) {
-  if (body.in_space()) t.fail(body_key, "plates in space are not welded to other bodies");
+Anchor anchor_at(const io::Table& t, const EdgeKeys& keys, const Body& body, double run_end,
+                 const std::string& edge) {
+  if (body.in_space()) t.fail(keys.body, "plates in space are not welded to other bodies");
   const bool root = edge == "root";
   const bool moves =
       (root && body.flow) || std::any_of(body.lines.begin(), body.lines.end(), [&](const auto& l) {
         return l.index == (root ? 0 : body.elements[0]);
       });
   if (moves)
-    t.fail(edge_key, "this edge of '" + body.name +
-                         "' moves through the material: it sits in a hub, in a sleeve or on a "
-                         "rigid body");
+    t.fail(keys.edge, "this edge of '" + body.name +
+                          "' moves through the material: it sits in a hub, in a sleeve or on a "
+                          "rigid body");
   return {body.name, {root ? 0 : body.longest(run_end), 0}, root ? 0 : body.arc};
 }
 
@@ -148,8 +152,8 @@ void read_joined_edges(const io::Table& t, const Scene& scene, Joint& joint) {
   if (&a == &b) t.fail(kTo, "a weld is between two bodies");
   joint.edge_a = t.choice(kToEdge);
   joint.edge_b = t.choice(kOwnEdge);
-  joint.a = anchor_at(t, kTo, kToEdge, a, scene.time.end, joint.edge_a);
-  joint.b = anchor_at(t, joint_keys::kBody, kOwnEdge, b, scene.time.end, joint.edge_b);
+  joint.a = anchor_at(t, {kTo, kToEdge}, a, scene.time.end, joint.edge_a);
+  joint.b = anchor_at(t, {joint_keys::kBody, kOwnEdge}, b, scene.time.end, joint.edge_b);
   const bool beams = !a.row->across && !b.row->across, plates = a.row->across && b.row->across;
   const double angle =
       t.number(kTurn, std::optional(joint.edge_a == joint.edge_b ? std::numbers::pi : 0.0));
@@ -173,7 +177,8 @@ void read(const io::Table& t, const Scene& scene, Joint& joint) {
     read_welded_edge(t, scene, joint);
     return;
   }
-  read_anchors(t, scene, true, true, joint.a, joint.b);
+  const auto [a, b] = read_anchors(t, scene, true, true);
+  joint.a = a, joint.b = b;
   name_between(t, scene, joint);
 }
 
