@@ -157,11 +157,10 @@ std::optional<Theory> sharpness_theory(const Scene&, Part, const std::string&) {
 
 /// Displacements under a force at a point of a plane continuum are infinite, and so is its work.
 std::optional<Theory> cell_theory(const Scene& scene, Part, const std::string& quantity) {
+  const auto is_point = [](const PlaneForce& f) { return f.place.kind == Place::Kind::point; };
   const bool points =
-      scene.domain &&
-      std::any_of(scene.domain->loads.begin(), scene.domain->loads.end(), [](const LoadCase& load) {
-        return std::any_of(load.forces.begin(), load.forces.end(),
-                           [](const PlaneForce& f) { return f.place.kind == Place::Kind::point; });
+      scene.domain && std::ranges::any_of(scene.domain->loads, [&](const LoadCase& load) {
+        return std::ranges::any_of(load.forces, is_point);
       });
   if (points && quantity.ends_with("compliance"))
     return Theory{0, "under a force at a point it grows with the logarithm of the cells"};

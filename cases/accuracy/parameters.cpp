@@ -17,34 +17,27 @@ using Levels = std::vector<Level>;
 const std::string kPoints = "bending_points";
 
 bool any_lines(const Scene& scene) {
-  return std::any_of(scene.bodies.begin(), scene.bodies.end(),
-                     [](const Body& b) { return !b.lines.empty(); });
+  return std::ranges::any_of(scene.bodies, [](const Body& b) { return !b.lines.empty(); });
 }
-
 bool bends(const Scene& scene) {
-  return !scene.bodies.empty() && std::all_of(scene.bodies.begin(), scene.bodies.end(),
-                                              [](const Body& b) { return b.number(kPoints) > 0; });
+  const auto bends = [](const Body& b) { return b.number(kPoints) > 0; };
+  return !scene.bodies.empty() && std::ranges::all_of(scene.bodies, bends);
 }
-
 bool mesh_changes(const Scene& scene) {
-  return std::any_of(scene.bodies.begin(), scene.bodies.end(),
-                     [](const Body& b) { return b.mesh_changes(); });
+  return std::ranges::any_of(scene.bodies, &Body::mesh_changes);
 }
+bool is_beam(const Body& b) { return b.place() == fem::TermPlace::beam; }
+bool any_beams(const Scene& scene) { return std::ranges::any_of(scene.bodies, is_beam); }
+bool all_beams(const Scene& scene) {
+  return !scene.bodies.empty() && std::ranges::all_of(scene.bodies, is_beam);
+}
+bool is_explicit(const Scene& scene) { return scene.time.integrator == "minimal_coordinates"; }
 
 /// Is there a motion behind this part?
 bool moves(const Scene& scene) { return !scene.domain && !scene.statics; }
 
 std::string key(const std::string& body, const std::string& rest) {
   return "body." + body + "." + rest + "=";
-}
-
-size_t count_beams(const Scene& scene) {
-  return static_cast<size_t>(
-      std::count_if(scene.bodies.begin(), scene.bodies.end(),
-                    [](const Body& b) { return b.place() == fem::TermPlace::beam; }));
-}
-bool all_beams(const Scene& scene) {
-  return !scene.bodies.empty() && count_beams(scene) == scene.bodies.size();
 }
 
 /// A number of elements `factor` times as large; nothing where that is no whole number.
@@ -101,11 +94,9 @@ std::optional<Theory> mesh_theory(const Scene& scene, Part part, const std::stri
     return Theory{2,
                   "smooth motions, gradients across the axis being linear along it: "
                   "2 (1 + 1 - 1), Strang & Fix 1973"};
-  if (count_beams(scene) > 0) return {};
-  if (std::any_of(scene.joints.begin(), scene.joints.end(),
-                  [](const Joint& j) { return j.row->holds_point; }) ||
-      std::any_of(scene.loads.begin(), scene.loads.end(),
-                  [](const BodyLoad& l) { return l.row->at_point; }))
+  if (any_beams(scene)) return {};
+  if (std::ranges::any_of(scene.joints, [](const Joint& j) { return j.row->holds_point; }) ||
+      std::ranges::any_of(scene.loads, [](const BodyLoad& l) { return l.row->at_point; }))
     return no_order("stresses are singular at pins and point loads");
   if (mesh_changes(scene))
     return no_order(
@@ -122,7 +113,7 @@ std::string other_shape(const Scene& scene) {
 
 std::string no_shape(const Scene& scene, Part part) {
   if (part == Part::design) return "designs are analysed with cells";
-  if (count_beams(scene) > 0) return "beams have one shape set";
+  if (any_beams(scene)) return "beams have one shape set";
   for (const Body& b : scene.bodies)
     if (b.shape != scene.bodies.front().shape) return "bodies have different shape sets";
   return no_elements(scene, part);
@@ -172,7 +163,6 @@ std::string no_time_or_design(const Scene& scene, Part part) {
 }
 
 Levels step_levels(const Scene& scene, const io::CaseFile&) {
-  const bool is_explicit = scene.time.integrator == "minimal_coordinates";
   Levels out;
   for (const double factor : {4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625}) {
     const double step = scene.time.step * factor;
@@ -180,9 +170,9 @@ Levels step_levels(const Scene& scene, const io::CaseFile&) {
     std::vector<std::string> changes = {"time.step=" + to_text(step)};
     if (scene.time.tolerance)
       changes.insert(changes.end(), {"time.tolerance=", "time.largest_step="});
-    if (is_explicit)
+    if (is_explicit(scene))
       changes.insert(changes.end(), {"time.integrator='generalized_alpha'", "time.tolerance="});
-    const bool is_case = factor == 1 && !scene.time.tolerance && !is_explicit;
+    const bool is_case = factor == 1 && !scene.time.tolerance && !is_explicit(scene);
     out.push_back(make_level(factor, to_text(step) + " s", is_case, changes));
   }
   return out;
@@ -228,9 +218,8 @@ Levels adaptive_levels(const Scene& scene, const io::CaseFile&) {
 }
 
 Levels explicit_levels(const Scene& scene, const io::CaseFile&) {
-  const bool own = scene.time.integrator == "minimal_coordinates";
   return tolerance_levels({1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8},
-                          own ? scene.time.explicit_tolerance : 0,
+                          is_explicit(scene) ? scene.time.explicit_tolerance : 0,
                           "time.integrator='minimal_coordinates'");
 }
 
@@ -256,8 +245,7 @@ Levels rho_levels(const Scene& scene, const io::CaseFile&) {
 
 std::string no_integrator(const Scene& scene, Part part) {
   if (scene.has_free_lines()) return "free lines need \"generalized_alpha\"";
-  if (scene.time.tolerance || scene.time.integrator == "minimal_coordinates")
-    return "the steps of the case adapt";
+  if (scene.time.tolerance || is_explicit(scene)) return "the steps of the case adapt";
   return no_time_or_design(scene, part);
 }
 

@@ -15,7 +15,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 std::string percent(double share) { return io::to_text(100 * share, 2) + " %"; }
 
 bool all_finite(const std::vector<double>& values) {
-  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+  return std::ranges::all_of(values, [](double v) { return std::isfinite(v); });
 }
 
 double worst(const std::vector<double>& errors) {
@@ -30,9 +30,7 @@ struct Search {
   std::optional<Choice> best = {};
 
   void visit(const std::vector<double>& costs) {
-    if (std::any_of(now.errors.begin(), now.errors.end(),
-                    [&](double error) { return !(error <= target); }))
-      return;
+    if (!std::ranges::all_of(now.errors, [&](double error) { return error <= target; })) return;
     const size_t depth = now.picked.size();
     if (depth == groups.size()) {
       now.cost = std::accumulate(costs.begin(), costs.end(), 0.0);

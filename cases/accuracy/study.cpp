@@ -73,8 +73,7 @@ void add_limits(const AccuracyStudy& study, size_t q, Estimate& out) {
 }  // namespace
 
 size_t Series::count(const std::string& status) const {
-  return static_cast<size_t>(std::count_if(
-      levels.begin(), levels.end(), [&](const LevelRun& run) { return run.status == status; }));
+  return static_cast<size_t>(std::ranges::count(levels, status, &LevelRun::status));
 }
 
 double Series::seconds(size_t level) const {
@@ -110,8 +109,7 @@ std::optional<std::pair<size_t, size_t>> next_level(std::vector<Series>& all, do
   double shortest = 0;
   for (size_t s = 0; s < all.size(); ++s) {
     std::vector<LevelRun>& levels = all[s].levels;
-    const auto open = std::find_if(levels.begin(), levels.end(),
-                                   [](const LevelRun& run) { return run.status == "open"; });
+    const auto open = std::ranges::find(levels, std::string("open"), &LevelRun::status);
     if (open == levels.end()) continue;
     const auto level = static_cast<size_t>(open - levels.begin());
     const double seconds = all[s].seconds(level);

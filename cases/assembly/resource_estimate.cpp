@@ -188,7 +188,8 @@ void add_design(const Scene& scene, const BodyDesign& d, Extent& out) {
   const double components = d.n_components();
   out.disk.push_back({"exports of '" + d.body + "'", cell, kDesignExports * cells});
   const double every = scene.output.vtk ? scene.output.design_every : 0;
-  const double frames = every > 0 ? std::ceil(out.iterations / every) : 0;
+  const double iterations = out.iterations / static_cast<double>(scene.designs.size());
+  const double frames = every > 0 ? std::ceil(iterations / every) : 0;
   out.disk.push_back({"frames of the design of '" + d.body + "'", "optimizer.max_iterations",
                       frames * (kDesignCell * cells + kDesignComponent * components)});
 }
@@ -212,16 +213,12 @@ double allowed_memory() {
   return out;
 }
 
-const Share& largest(const std::vector<Share>& shares) {
-  return *std::max_element(shares.begin(), shares.end(),
-                           [](const Share& a, const Share& b) { return a.bytes < b.bytes; });
-}
-
+/// @throws Error (input) at the key of the largest share when they take more than there is.
 void refuse_more(const Scene& scene, const std::vector<Share>& shares, double there,
                  const std::string& what, const std::string& where) {
   const double bytes = sum_of(shares);
   if (!(bytes > there)) return;
-  const Share& most = largest(shares);
+  const Share& most = *std::ranges::max_element(shares, {}, &Share::bytes);
   scene.refuse(most.key, "the run takes about " + bytes_text(bytes) + what + ", " +
                              bytes_text(most.bytes) + " of it for " + most.what + "; " + where +
                              bytes_text(there));
@@ -248,14 +245,7 @@ Extent extent_of(const Scene& scene) {
     add_course(scene, out);
     add_motions(scene, out);
   }
-  for (const BodyDesign& d : scene.designs) {
-    Extent own = out;  // every body has its own iterations
-    own.iterations /= static_cast<double>(scene.designs.size());
-    own.memory.clear(), own.disk.clear();
-    add_design(scene, d, own);
-    out.memory.insert(out.memory.end(), own.memory.begin(), own.memory.end());
-    out.disk.insert(out.disk.end(), own.disk.begin(), own.disk.end());
-  }
+  for (const BodyDesign& d : scene.designs) add_design(scene, d, out);
   return out;
 }
 

@@ -64,6 +64,8 @@ StepOperations step_operations(const Scene& scene, const Mechanism& mechanism) {
   return out;
 }
 
+namespace {
+
 double design_operations(const Scene& scene, const BodyDesign& d) {
   const Grid& g = d.grid;
   const double n = 2.0 * (g.nx + 1) * (g.ny + 1);
@@ -76,8 +78,6 @@ double design_operations(const Scene& scene, const BodyDesign& d) {
   const double band = 2.0 * g.ny + 5, loads = scene.esl->count(scene.time.end);
   return n * band * (band + 3 * loads);
 }
-
-namespace {
 
 /// Of motions on the cells of the designs: one a cycle, at most, and that with uniform material.
 double cells_seconds(const Scene& scene, const Extent& extent) {
