@@ -140,7 +140,7 @@ class Measurement {
   }
 
   void add_series(const Parameter& each, Part part) {
-    Series& series = study_.series.emplace_back();
+    RefinementSeries& series = study_.series.emplace_back();
     series.parameter = &each;
     series.part = part;
     for (const Interest& q : study_.interests)
@@ -229,7 +229,7 @@ class Measurement {
 
   /// Measures levels, short ones first, as far as the budget goes.
   void measure_levels() {
-    for (Series& series : study_.series) {
+    for (RefinementSeries& series : study_.series) {
       const LevelRun& own = study_.own.at(series.part);
       const std::string& group = series.parameter->group;
       const bool of_motion = group == "elements" || group == "step";
@@ -246,7 +246,7 @@ class Measurement {
     }
     const double reserve = options_.verify ? kReserve * budget_ : 0;
     while (const auto next = next_level(study_.series, left() - reserve)) {
-      Series& series = study_.series[next->first];
+      RefinementSeries& series = study_.series[next->first];
       const double limit = std::max(kMinTimeLimit, kPatience * series.seconds(next->second));
       const std::string name = to_string(series.part) + "_" + series.parameter->name + "_" +
                                std::to_string(next->second + 1);

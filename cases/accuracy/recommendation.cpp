@@ -55,9 +55,9 @@ struct Search {
 };
 
 /// May a level be recommended by its error in this quantity?
-bool is_sound(const AccuracyStudy& study, const Series& series, const LevelRun& run, size_t q,
-              double target) {
-  const Series* leader = leader_of(study, series.parameter->group, series.part);
+bool is_sound(const AccuracyStudy& study, const RefinementSeries& series, const LevelRun& run,
+              size_t q, double target) {
+  const RefinementSeries* leader = leader_of(study, series.parameter->group, series.part);
   if (!leader || !series.parameter->is_setting) return false;
   const Limit& limit = leader->limits[q];
   if (limit.converged) return run.measured() || run.status == "cut";
@@ -67,9 +67,11 @@ bool is_sound(const AccuracyStudy& study, const Series& series, const LevelRun& 
 }
 
 /// Returns the level of a parameter with these settings in a part, with its series.
-std::pair<const Series*, size_t> level_in(const AccuracyStudy& study, const Parameter* parameter,
-                                          const std::vector<std::string>& overrides, Part part) {
-  for (const Series& series : study.series)
+std::pair<const RefinementSeries*, size_t> level_in(const AccuracyStudy& study,
+                                                    const Parameter* parameter,
+                                                    const std::vector<std::string>& overrides,
+                                                    Part part) {
+  for (const RefinementSeries& series : study.series)
     for (size_t i = 0; i < series.levels.size(); ++i)
       if (series.parameter == parameter && series.part == part &&
           series.levels[i].level.overrides == overrides)
@@ -134,7 +136,7 @@ std::optional<Choice> cheapest(const std::vector<Group>& groups, std::span<const
 std::vector<Group> groups_of(const AccuracyStudy& study, double target) {
   std::vector<Group> out;
   const std::vector<bool> covers = covered(study, target);
-  for (const Series& series : study.series) {
+  for (const RefinementSeries& series : study.series) {
     const std::string& name = series.parameter->group;
     bool matters = false;
     for (size_t q = 0; q < covers.size(); ++q)

@@ -27,7 +27,7 @@ std::vector<size_t> quantities_of(const AccuracyStudy& study, Part part) {
 }
 
 /// Returns the order of the triple whose finest level this is.
-std::string order_at(const Series& series, size_t level, size_t q) {
+std::string order_at(const RefinementSeries& series, size_t level, size_t q) {
   const std::vector<double>& orders = series.limits[q].orders;
   size_t before = 0;
   for (size_t i = 0; i < level; ++i) before += series.levels[i].measured();
@@ -52,7 +52,7 @@ Rows quantity_rows(const AccuracyStudy& study) {
   return rows;
 }
 
-Rows series_rows(const AccuracyStudy& study, const Series& series) {
+Rows series_rows(const AccuracyStudy& study, const RefinementSeries& series) {
   const std::vector<size_t> quantities = quantities_of(study, series.part);
   Rows rows = {{series.parameter->name}};
   for (const size_t q : quantities) {
@@ -83,11 +83,12 @@ Rows series_rows(const AccuracyStudy& study, const Series& series) {
 }
 
 /// Returns a sentence per quantity, and one on the levels that were cut.
-std::vector<std::string> series_sentences(const AccuracyStudy& study, const Series& series) {
+std::vector<std::string> series_sentences(const AccuracyStudy& study,
+                                          const RefinementSeries& series) {
   const std::string& group = series.parameter->group;
   if (!series.parameter->has_limit)
     return {"errors against the limit of " + group + "; no limit of its own"};
-  const Series* leader = leader_of(study, group, series.part);
+  const RefinementSeries* leader = leader_of(study, group, series.part);
   std::vector<std::string> out;
   for (const size_t q : quantities_of(study, series.part)) {
     const Limit& limit = series.limits[q];
@@ -126,10 +127,11 @@ std::string report_of(const AccuracyStudy& study, bool markdown) {
     return markdown ? "## " + words + "\n\n" : words + "\n";
   };
   std::string out = (markdown ? "# " : "") + study.title + "\n\n" + table(quantity_rows(study));
-  for (const Series& series : study.series) {
+  for (const RefinementSeries& series : study.series) {
     const bool twice =
-        std::count_if(study.series.begin(), study.series.end(),
-                      [&](const Series& s) { return s.parameter == series.parameter; }) > 1;
+        std::count_if(study.series.begin(), study.series.end(), [&](const RefinementSeries& s) {
+          return s.parameter == series.parameter;
+        }) > 1;
     out += heading(series.parameter->name + (twice ? " (" + to_string(series.part) + ")" : "")) +
            table(series_rows(study, series));
     for (const std::string& words : series_sentences(study, series))
@@ -168,7 +170,7 @@ io::Panel times_panel(const AccuracyStudy& study, size_t q) {
            true};
   std::vector<std::pair<double, double>> points;
   size_t color = 0;
-  for (const Series& series : study.series) {
+  for (const RefinementSeries& series : study.series) {
     if (series.part != study.parts[q]) continue;
     io::Curve curve = curve_of(series.parameter->name, color++, false);
     curve.line = series.parameter->has_limit;
@@ -206,7 +208,7 @@ io::Panel parameters_panel(const AccuracyStudy& study, size_t q) {
   out.x = {"parameter, relative to the case", true};
   out.y = {"error against the ladder's limit [-]", true};
   size_t color = 0;
-  for (const Series& series : study.series) {
+  for (const RefinementSeries& series : study.series) {
     if (series.part != study.parts[q]) continue;
     io::Curve curve = curve_of(series.parameter->name, color++, false);
     for (const LevelRun& run : series.levels) {
@@ -242,7 +244,7 @@ void write_accuracy_csv(const AccuracyStudy& study, const std::string& path) {
   const auto cell = [](double value) {
     return std::isfinite(value) ? io::Cell(value) : io::Cell();
   };
-  for (const Series& series : study.series)
+  for (const RefinementSeries& series : study.series)
     for (size_t i = 0; i < series.levels.size(); ++i) {
       const LevelRun& run = series.levels[i];
       const bool measured = run.measured();

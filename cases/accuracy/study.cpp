@@ -10,8 +10,8 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// Fills the errors of levels against the limit of their group; of cut ones by its order.
-void find_errors(const AccuracyStudy& study, Series& series, size_t q) {
-  const Series* leader = leader_of(study, series.parameter->group, series.part);
+void find_errors(const AccuracyStudy& study, RefinementSeries& series, size_t q) {
+  const RefinementSeries* leader = leader_of(study, series.parameter->group, series.part);
   if (!leader || !std::isfinite(leader->limits[q].value)) return;
   const Limit& limit = leader->limits[q];
   const auto error_of = [&](const LevelRun& run) {
@@ -37,7 +37,7 @@ void find_errors(const AccuracyStudy& study, Series& series, size_t q) {
   }
 }
 
-void find_limits(AccuracyStudy& study, Series& series) {
+void find_limits(AccuracyStudy& study, RefinementSeries& series) {
   series.limits.assign(study.interests.size(), {});
   for (LevelRun& run : series.levels) run.errors.assign(study.interests.size(), kNone);
   for (size_t q = 0; q < study.interests.size(); ++q) {
@@ -55,7 +55,7 @@ void find_limits(AccuracyStudy& study, Series& series) {
 /// Adds up what is missing to the limits of all groups.
 void add_limits(const AccuracyStudy& study, size_t q, Estimate& out) {
   out.value = out.own;
-  for (const Series& series : study.series) {
+  for (const RefinementSeries& series : study.series) {
     if (!series.leads() || series.part != study.parts[q]) continue;
     const Limit& limit = series.limits[q];
     const std::optional<Theory>& theory = series.theories[q];
@@ -72,11 +72,11 @@ void add_limits(const AccuracyStudy& study, size_t q, Estimate& out) {
 
 }  // namespace
 
-size_t Series::count(const std::string& status) const {
+size_t RefinementSeries::count(const std::string& status) const {
   return static_cast<size_t>(std::ranges::count(levels, status, &LevelRun::status));
 }
 
-double Series::seconds(size_t level) const {
+double RefinementSeries::seconds(size_t level) const {
   if (levels[level].measured()) return levels[level].seconds_cpu;
   const auto h = [&](size_t i) { return levels[i].level.h; };
   const double guessed = cost_factor * parameter->cost_exponent;
@@ -97,14 +97,16 @@ double Series::seconds(size_t level) const {
   return nearest * std::pow(h(known[0]) / h(level), exponent);
 }
 
-const Series* leader_of(const AccuracyStudy& study, const std::string& group, Part part) {
-  const auto at = std::find_if(study.series.begin(), study.series.end(), [&](const Series& s) {
-    return s.leads() && s.parameter->group == group && s.part == part;
-  });
+const RefinementSeries* leader_of(const AccuracyStudy& study, const std::string& group, Part part) {
+  const auto at =
+      std::find_if(study.series.begin(), study.series.end(), [&](const RefinementSeries& s) {
+        return s.leads() && s.parameter->group == group && s.part == part;
+      });
   return at == study.series.end() ? nullptr : &*at;
 }
 
-std::optional<std::pair<size_t, size_t>> next_level(std::vector<Series>& all, double left) {
+std::optional<std::pair<size_t, size_t>> next_level(std::vector<RefinementSeries>& all,
+                                                    double left) {
   std::optional<std::pair<size_t, size_t>> best;
   double shortest = 0;
   for (size_t s = 0; s < all.size(); ++s) {
@@ -139,8 +141,8 @@ void evaluate(AccuracyStudy& study) {
       throw Error::input("accuracy: " + study.interests[q].words() +
                          " is 0: its errors need a `scale`");
   }
-  for (Series& series : study.series) find_limits(study, series);
-  for (Series& series : study.series)
+  for (RefinementSeries& series : study.series) find_limits(study, series);
+  for (RefinementSeries& series : study.series)
     for (size_t q = 0; q < study.parts.size(); ++q)
       if (study.parts[q] == series.part) find_errors(study, series, q);
   for (size_t q = 0; q < study.parts.size(); ++q) add_limits(study, q, study.estimates[q]);

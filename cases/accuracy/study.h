@@ -29,7 +29,7 @@ struct LevelRun {
 };
 
 /// The levels of a parameter in one part, and their limits.
-struct Series {
+struct RefinementSeries {
   const Parameter* parameter = nullptr;
   Part part = Part::motion;
   double first_guess = 0;  ///< run time at h = 1 where no level was measured [s]
@@ -71,7 +71,7 @@ struct AccuracyStudy {
   std::vector<Interest> interests;
   std::vector<std::optional<double>> references;  ///< of each quantity
   std::vector<Part> parts;                        ///< of each quantity
-  std::vector<Series> series;
+  std::vector<RefinementSeries> series;
   std::vector<std::pair<std::string, std::string>> absent;  ///< parameters, and why
   std::map<Part, LevelRun> own;                             ///< the case as it is, in each part
   std::vector<Estimate> estimates;                          ///< of each quantity
@@ -79,7 +79,7 @@ struct AccuracyStudy {
 };
 
 /// Returns the series that has the limit of a group in a part; null: there is none.
-const Series* leader_of(const AccuracyStudy& study, const std::string& group, Part part);
+const RefinementSeries* leader_of(const AccuracyStudy& study, const std::string& group, Part part);
 
 /// Series with so many measured levels wait for those with fewer.
 inline constexpr size_t kEnoughLevels = 5;
@@ -88,7 +88,8 @@ inline constexpr size_t kEnoughLevels = 5;
 /// series the one with the shortest run time; it counts four times as long in a series that does
 /// not lead its group, and twice as long for each level beyond kEnoughLevels. Levels that would
 /// take longer than `left` [s] are cut, with all finer ones. Nothing: no level is open.
-std::optional<std::pair<size_t, size_t>> next_level(std::vector<Series>& series, double left);
+std::optional<std::pair<size_t, size_t>> next_level(std::vector<RefinementSeries>& series,
+                                                    double left);
 
 /// Fills limits, errors of levels, and estimates from the measured values.
 /// @throws Error (input) for a quantity that is 0 and has no scale.

@@ -55,8 +55,8 @@ int last_stage(std::span<const VariantResult> runs) {
 }
 
 /// Feasible designs of one stage: those of another had another problem, and do not compare.
-Progress progress_of(const VariantResult& run, int stage) {
-  Progress out;
+SolveHistory progress_of(const VariantResult& run, int stage) {
+  SolveHistory out;
   if (!run.done() || run.bodies.empty()) return out;
   const BodyResult& b = run.bodies.front();
   for (size_t i = 0; i < b.history_solves.size(); ++i)
@@ -74,7 +74,7 @@ io::Panel profile_panel(const Comparison& plan, std::span<const VariantResult> r
                 " % of the best compliance found from them";
   panel.x.label = "state solves";
   panel.y = {"share of the starts", false, 0.0, 1.05};
-  std::vector<std::vector<Progress>> all(plan.optimizers.size());
+  std::vector<std::vector<SolveHistory>> all(plan.optimizers.size());
   const int stage = last_stage(runs);
   double last = 1;
   for (size_t k = 0; k < runs.size(); ++k) {

@@ -65,7 +65,7 @@ std::vector<double> best_so_far(std::span<const double> values, std::span<const 
   return out;
 }
 
-std::vector<std::vector<double>> data_profile(std::span<const std::vector<Progress>> runs,
+std::vector<std::vector<double>> data_profile(std::span<const std::vector<SolveHistory>> runs,
                                               double tolerance) {
   const size_t n_problems = runs.empty() ? 0 : runs.front().size();
   std::vector<std::vector<double>> out(runs.size());
@@ -74,7 +74,7 @@ std::vector<std::vector<double>> data_profile(std::span<const std::vector<Progre
     for (const auto& solver : runs)
       for (const double value : solver[p].values) best = std::min(best, value);
     for (size_t s = 0; s < runs.size(); ++s) {
-      const Progress& progress = runs[s][p];
+      const SolveHistory& progress = runs[s][p];
       for (size_t i = 0; i < progress.values.size(); ++i)
         if (progress.values[i] <= best * (1 + tolerance)) {
           out[s].push_back(progress.solves[i]);

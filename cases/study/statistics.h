@@ -28,7 +28,7 @@ std::vector<double> best_so_far(std::span<const double> values, std::span<const 
                                 std::span<const int> stage, double feasibility);
 
 /// What one solver made of one problem, for a data profile.
-struct Progress {
+struct SolveHistory {
   std::vector<double> solves, values;  ///< state solves and objective of its feasible iterates
 };
 
@@ -38,7 +38,7 @@ struct Progress {
 /// @param runs  [solver][problem]
 /// @return per solver the sorted numbers of solves at which a problem was solved; those it did not
 ///         solve are absent
-std::vector<std::vector<double>> data_profile(std::span<const std::vector<Progress>> runs,
+std::vector<std::vector<double>> data_profile(std::span<const std::vector<SolveHistory>> runs,
                                               double tolerance);
 
 }  // namespace flexmorph::cases

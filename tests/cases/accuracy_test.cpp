@@ -1,13 +1,14 @@
 // Accuracy: levels under a budget with a clock of its own, cheapest combinations against
 // enumeration by hand, values of columns.
 
+#include "cases/accuracy/accuracy.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
 #include <set>
 
-#include "cases/accuracy/accuracy.h"
 #include "cases/accuracy/recommendation.h"
 #include "cases/accuracy/report.h"
 #include "cases/check/ready.h"
@@ -35,13 +36,13 @@ TEST(Budget, ReadsTimes) {
 struct Runs {
   double spent = 0;
   std::vector<Parameter> parameters;
-  std::vector<Series> series;
+  std::vector<RefinementSeries> series;
   std::vector<std::pair<size_t, size_t>> ran;
 
   Runs() { parameters.reserve(2); }
   void add(const std::vector<double>& h, double cost_exponent) {
     parameters.push_back({"a", "a", Approach::power, cost_exponent});
-    Series& s = series.emplace_back();
+    RefinementSeries& s = series.emplace_back();
     s.parameter = &parameters.back();
     s.first_guess = 1;
     for (const double each : h) s.levels.emplace_back().level.h = each;
@@ -172,7 +173,7 @@ AccuracyStudy known_study() {
   own.seconds_cpu = 1;
   study.own[Part::motion] = own;
   for (const bool mesh : {true, false}) {
-    Series& series = study.series.emplace_back();
+    RefinementSeries& series = study.series.emplace_back();
     series.parameter = &parameter(mesh ? "elements" : "step");
     series.theories = {Theory{mesh ? 4.0 : 2.0, ""}};
     for (const double h : kHalves) {
@@ -195,12 +196,11 @@ TEST(Study, AddsWhatIsMissingToTheLimits) {
   const Estimate& estimate = study.estimates[0];
   EXPECT_NEAR(estimate.value, 1, 1e-9);  // 1.12 less both terms
   EXPECT_LT(estimate.uncertainty, 1e-9);
-  for (const Series& series : study.series)
+  for (const RefinementSeries& series : study.series)
     for (const LevelRun& run : series.levels) {
       const bool mesh = series.parameter->name == "elements";
       // Against the own limit of the series: the error of the other parameter is not in it.
-      const double error =
-          mesh ? 0.1 * std::pow(run.level.h, 4) : 0.02 * std::pow(run.level.h, 2);
+      const double error = mesh ? 0.1 * std::pow(run.level.h, 4) : 0.02 * std::pow(run.level.h, 2);
       EXPECT_NEAR(run.errors[0], error / 1.12, 1e-9);
     }
 }
@@ -249,7 +249,7 @@ TEST(Study, ASeriesThatIsNotConvergedOffersItsFinestLevel) {
 // No target is about a quantity without a limit.
 TEST(Study, ATargetLeavesOutWhatHasNoLimit) {
   AccuracyStudy study = known_study();
-  for (Series& series : study.series) series.theories = {Theory{0, "a point load"}};
+  for (RefinementSeries& series : study.series) series.theories = {Theory{0, "a point load"}};
   evaluate(study);
   EXPECT_FALSE(study.estimates[0].has_limit);
   const Recommendation r = recommend(study, 1e-2);

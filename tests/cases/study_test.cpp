@@ -73,7 +73,7 @@ TEST(BestSoFar, CountsFeasibleRowsOfTheStage) {
 
 TEST(DataProfile, CountsProblemsSolvedToATolerance) {
   // Two solvers, two problems: best values 1 and 10.
-  const std::vector<std::vector<Progress>> runs = {
+  const std::vector<std::vector<SolveHistory>> runs = {
       {{{1, 2, 3}, {3, 1.04, 1}}, {{5, 9}, {12, 10}}},
       {{{1, 2, 3}, {4, 2, 1.5}}, {{5, 9}, {10.2, 10.2}}},
   };
