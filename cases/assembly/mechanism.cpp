@@ -315,10 +315,10 @@ Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh,
   add_joints(scene, finer, place, out);
   set_motion(scene, mesh, out.motion);
   if (scene.is_mechanism()) {
-    const auto motion =
-        std::make_shared<fem::RigidMotion>(rigid ? *rigid : rigid_kinematics(scene));
-    out.motion.start = start_of(scene, *motion);
-    out.motion.placement = fem::rigid_configuration(motion);
+    const fem::RigidKinematics kinematics = rigid ? *rigid : rigid_kinematics(scene);
+    fem::RigidMotion motion(kinematics);
+    out.motion.start = start_of(scene, motion);
+    out.motion.placement = fem::rigid_configuration(kinematics);
   } else {
     place_alone(scene, out.motion);
   }

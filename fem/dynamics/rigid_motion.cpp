@@ -55,15 +55,33 @@ void require_motion(RigidKinematics kinematics, double end) {
     if (!motion.follow(end * k / kTimes, kMaxSteps)) return;
 }
 
-Placement rigid_configuration(std::shared_ptr<RigidMotion> motion) {
-  return [motion = std::move(motion)](double t) {
-    const State& x = motion->at(t);
-    const RigidKinematics& kinematics = motion->kinematics();
+namespace {
+
+/// The configuration of a rigid motion; a copy begins anew.
+class Configuration {
+ public:
+  explicit Configuration(RigidKinematics kinematics) : kinematics_(std::move(kinematics)) {}
+  Configuration(const Configuration& other) : kinematics_(other.kinematics_) {}
+  Configuration& operator=(const Configuration&) = delete;
+
+  std::vector<Placed> operator()(double t) {
+    if (!motion_) motion_ = std::make_unique<RigidMotion>(kinematics_);
+    const State& x = motion_->at(t);
     std::vector<Placed> out;
-    for (const MechanismBody& b : kinematics.mechanism().bodies)
-      if (b.is_placed) out.push_back({b.name, kinematics.frame(b.name, x), b.line});
+    for (const MechanismBody& b : kinematics_.mechanism().bodies)
+      if (b.is_placed) out.push_back({b.name, motion_->kinematics().frame(b.name, x), b.line});
     return out;
-  };
+  }
+
+ private:
+  RigidKinematics kinematics_;
+  std::unique_ptr<RigidMotion> motion_;
+};
+
+}  // namespace
+
+Placement rigid_configuration(RigidKinematics kinematics) {
+  return Configuration(std::move(kinematics));
 }
 
 }  // namespace flexmorph::fem

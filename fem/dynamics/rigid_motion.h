@@ -54,7 +54,9 @@ class RigidMotion {
 void require_motion(RigidKinematics kinematics, double end);
 
 /// Returns where the bodies of a mechanism are at a time that ride in no hub: those with
-/// MechanismBody::is_placed. All copies of it share one motion.
-Placement rigid_configuration(std::shared_ptr<RigidMotion> motion);
+/// MechanismBody::is_placed. Every copy of it has a motion of its own, which begins when it is asked
+/// for the first time: motions at the same time do not know of each other.
+/// @throws Error as RigidMotion, when it is asked
+Placement rigid_configuration(RigidKinematics kinematics);
 
 }  // namespace flexmorph::fem

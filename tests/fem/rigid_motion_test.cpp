@@ -181,13 +181,18 @@ TEST(RigidMotion, ListsTheBodiesThatRideInNoHub) {
   RigidMechanism mechanism = slider_crank(0.2, 0.5, 1.1);
   mechanism.bodies[1].line = 0.5;
   mechanism.bodies[2].is_placed = false;
-  const Placement where =
-      rigid_configuration(std::make_shared<RigidMotion>(RigidKinematics(mechanism)));
+  const Placement where = rigid_configuration(RigidKinematics(mechanism));
   const std::vector<Placed> bodies = where(0);
   ASSERT_EQ(bodies.size(), 2u);
   EXPECT_EQ(bodies[1].body, "rod");
   EXPECT_EQ(bodies[1].line, 0.5);
   EXPECT_NEAR(bodies[0].frame.angle, 1.1, 1e-12);
+  // A copy that goes elsewhere leaves it where it is, and comes to the same positions.
+  const Placement copy = where;
+  copy(0.3);
+  const std::vector<Placed> again = where(0), later = where(0.3), other = copy(0.3);
+  EXPECT_EQ(again[1].frame.origin, bodies[1].frame.origin);
+  EXPECT_NEAR((later[1].frame.origin - other[1].frame.origin).norm(), 0, 1e-12);
 }
 
 /// A carriage on an arm that turns about the origin, and a hand that turns on the carriage: the
