@@ -1,13 +1,14 @@
 // Accuracy: levels under a budget with a clock of its own, cheapest combinations against
 // enumeration by hand, values of columns.
 
+#include "cases/accuracy/accuracy.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
 #include <set>
 
-#include "cases/accuracy/accuracy.h"
 #include "cases/accuracy/recommendation.h"
 #include "cases/accuracy/report.h"
 #include "cases/run/run.h"
@@ -199,8 +200,7 @@ TEST(Study, AddsWhatIsMissingToTheLimits) {
     for (const LevelRun& run : series.levels) {
       const bool mesh = series.parameter->name == "elements";
       // Against the own limit of the series: the error of the other parameter is not in it.
-      const double error =
-          mesh ? 0.1 * std::pow(run.level.h, 4) : 0.02 * std::pow(run.level.h, 2);
+      const double error = mesh ? 0.1 * std::pow(run.level.h, 4) : 0.02 * std::pow(run.level.h, 2);
       EXPECT_NEAR(run.errors[0], error / 1.12, 1e-9);
     }
 }
