@@ -64,7 +64,7 @@ void take_result(const VariantResult& result, StabilityRow& row) {
   if (row.has_run || (!result.done() && result.status != "failed")) return;
   row.has_run = true;
   row.exit_code = result.ending.code;
-  row.seconds_cpu = std::isfinite(result.seconds_cpu) ? result.seconds_cpu : result.ending.seconds;
+  row.seconds_cpu = std::fmax(result.seconds_cpu, result.ending.seconds);  // one may be unknown
   row.assessment = assess(result);
 }
 

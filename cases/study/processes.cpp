@@ -62,6 +62,7 @@ double cpu_seconds_of(pid_t pid) {
 struct Running {
   size_t place = 0;
   Clock::time_point begin = Clock::now(), asked = {};
+  double asked_at_cpu = 0;  // CPU time when it was asked to end [s]
   bool over_time = false, told = false;
 };
 
@@ -82,7 +83,9 @@ Ending ending_of(int status, const rusage& usage, const Running& child) {
 void keep_limits(std::map<pid_t, Running>& running, const ChildLimits& limits) {
   for (auto& [pid, child] : running) {
     if (child.over_time || child.told) {
-      if (since(child.asked) > limits.grace) kill(pid, SIGKILL);
+      const bool late = cpu_seconds_of(pid) > child.asked_at_cpu + limits.grace ||
+                        since(child.asked) > (child.told ? 1 : 10) * limits.grace;
+      if (late) kill(pid, SIGKILL);
       continue;
     }
     const bool over = limits.seconds > 0 && (cpu_seconds_of(pid) > limits.seconds ||
@@ -90,6 +93,7 @@ void keep_limits(std::map<pid_t, Running>& running, const ChildLimits& limits) {
     if (!over && !interrupted) continue;
     (over ? child.over_time : child.told) = true;
     child.asked = Clock::now();
+    child.asked_at_cpu = cpu_seconds_of(pid);
     kill(pid, SIGINT);
   }
 }

@@ -11,7 +11,9 @@ namespace flexmorph::cases {
 struct ChildLimits {
   /// CPU time; then it is asked to end (SIGINT). Ten times that on the clock likewise. 0: no limit.
   double seconds = 0;
-  double grace = 10;  ///< seconds on the clock to do so; then it is ended
+  /// CPU time to do so, or ten times that on the clock (that on the clock after an interruption);
+  /// then it is killed.
+  double grace = 10;
   double memory = 0;  ///< address space [bytes]; 0: no limit
 };
 

@@ -1,13 +1,12 @@
 // Figures that make wrong units visible: against the tangents of the models themselves, and the
 // mistakes that they are for.
-#include "cases/check/plausibility.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <cmath>
 #include <numbers>
 
+#include "cases/check/plausibility.h"
 #include "cases/check/ready.h"
 #include "tests/cases/scenes.h"
 #include "tests/io/scratch.h"
