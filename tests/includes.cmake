@@ -109,7 +109,7 @@ foreach(pair geometry/grid.h>io/vtk.h io/vtk.cpp>fem/model.h fem/element.h>fem/m
   endif()
 endforeach()
 foreach(pair fem/terms/inertia.cpp>fem/element.h fem/dynamics/esl.cpp>fem/model.h
-             optim/mmc/compliance.h>fem/solve/statics.h tests/fem/model_test.cpp>fem/model.h)
+             optim/mmc/compliance_evaluator.h>fem/solve/statics.h tests/fem/model_test.cpp>fem/model.h)
   string(REPLACE ">" ";" pair ${pair})
   judge_room(${pair} offence)
   if(offence)

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "geometry/base.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"
 

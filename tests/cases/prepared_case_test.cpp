@@ -2,6 +2,7 @@
 // the prepared mechanism as it is, and that a prepared case builds nothing that nobody asks for.
 #include <gtest/gtest.h>
 
+#include "cases/run/motion_run.h"
 #include "cases/run/run.h"
 #include "tests/cases/scenes.h"
 #include "tests/io/scratch.h"
