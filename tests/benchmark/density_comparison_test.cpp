@@ -60,7 +60,7 @@ ComparedDesign best_by_densities(ComparedCase& of, double allowed, double thresh
                  stages.back().seconds);
     std::printf("    projection %2.0f: cells %.5g, outline %.5g, %d pieces\n",
                 stage.stage.projection, stage.compliance, found.verdict.compliance,
-                found.verdict.pieces);
+                found.verdict.n_pieces);
     if (found.verdict.compliance < best.verdict.compliance) best = std::move(found);
   }
   return best;

@@ -296,13 +296,14 @@ TEST(Parameters, LevelsOfOneParameterLeaveTheOthersAlone) {
 // rigid there is no mesh, and two are left.
 TEST(Parameters, OfShippedCases) {
   for (const std::string& name_of_case : shipped_cases()) {
-    const Scene scene = read_scene(io::CaseFile(find_case(name_of_case)));
+    const PreparedCase prepared(read_scene(io::CaseFile(find_case(name_of_case))));
+    const Scene& scene = prepared.scene();
     ASSERT_TRUE(scene.accuracy) << name_of_case;
     size_t ladders = 0;
     for (const std::string& name : scene.accuracy->ladders) {
       bool present = false;
       for (const Interest& interest : scene.accuracy->quantities)
-        present = present || parameter(name).absent(scene, part_of(scene, interest)).empty();
+        present = present || parameter(name).absent(scene, part_of(prepared, interest)).empty();
       EXPECT_TRUE(present) << name_of_case << ": " << name;
       ladders += present;
     }

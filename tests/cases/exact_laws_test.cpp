@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "cases/assembly/build.h"
+#include "cases/check/ready.h"
 #include "cases/run/run.h"
 #include "io/files.h"
 #include "io/tables.h"

@@ -32,7 +32,8 @@ const JointRow kParallel = {
     .sentence = "The first axes of two bodies stay parallel.",
     .read =
         [](const io::Table& t, const Scene& scene, Joint& joint) {
-          read_anchors(t, scene, false, true, joint.a, joint.b);
+          const auto [a, b] = read_anchors(t, scene, false, true);
+          joint.a = a, joint.b = b;
           name_between(t, scene, joint);
         },
     .make = [](const Joint& j, const JointParts& parts) -> std::unique_ptr<fem::Joint> {
