@@ -5,11 +5,11 @@
 /// Sentences on corrected cycles and certificates.
 namespace flexmorph::cases {
 
-/// "strain energy in motion 0.0044 (sharp 0.0046), KKT residual 0.1, ..."
+/// Says the objective of a certificate, its KKT residual, the angle and what is left.
 std::string certificate_words(const mmc::MotionCertificate& certificate);
-/// "cycle 2 of the motion: J 0.0044, KKT residual 0.1, ..."
+/// Says what a corrected cycle found: objective, KKT residual, predicted and actual decrease.
 std::string corrected_words(const mmc::CorrectedCycle& cycle);
-/// "corrected, J of the outlines on the cells of the case is 0.0044 instead of 0.0048"
+/// Says the objective of the outlines before and after the corrected cycles.
 std::string corrected_words(const CorrectedMotion& corrected);
 
 }  // namespace flexmorph::cases
