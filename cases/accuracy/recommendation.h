@@ -24,6 +24,7 @@ struct Group {
   std::vector<Candidate> candidates;
 };
 
+/// A combination of levels, one of each group, with its errors and its cost.
 struct Choice {
   std::vector<size_t> picked;  ///< a candidate of each group
   std::vector<double> errors;  ///< of each quantity: sum over groups and its uncertainty
@@ -36,11 +37,16 @@ struct Choice {
 std::optional<Choice> cheapest(const std::vector<Group>& groups, std::span<const double> base_costs,
                                std::span<const double> uncertainties, double target);
 
+/// Levels of a series that is not converged count where its limit's uncertainty is at most the
+/// target over this number.
+inline constexpr double kClearance = 10;
+/// The error of a verified recommendation over its target that still keeps it.
+inline constexpr double kTargetFactor = 1.5;
+
 /// Returns the groups that matter to what the target covers, with the levels that may be
 /// recommended: measured ones, and those cut by the budget where the order predicts their errors. A
 /// series that is not converged offers its finest level, and coarser measured ones by their
 /// distance from it where the limit's uncertainty is at most target / kClearance.
-inline constexpr double kClearance = 10;
 std::vector<Group> groups_of(const AccuracyStudy& study, double target);
 
 /// Returns the cheapest settings whose errors add up to `share` of the target at most. The target
@@ -49,7 +55,6 @@ Recommendation recommend(const AccuracyStudy& study, double target, double share
 
 /// Compares a recommendation with the values of its run: errors up to kTargetFactor times the
 /// target keep it, larger ones withdraw it.
-inline constexpr double kTargetFactor = 1.5;
 void verify(const AccuracyStudy& study, const std::vector<double>& values, double seconds_cpu,
             Recommendation& out);
 

@@ -40,8 +40,8 @@ struct MeshChoice {
 /// way.
 Scene on_cells(Scene scene, int parts);
 
-/// Scene -> model, joints and integrator settings. Stops for loads and output are left empty. The
-/// model of a [static] analysis has the same bodies, joints and loads.
+/// Builds the model, the joints and the settings of the integrator of a scene. Stops for loads and
+/// output are left empty. The model of a [static] analysis has the same bodies, joints and loads.
 /// @param rigid  the rigid kinematic model of the scene, which is copied; null: it is built here
 /// @throws Error (input) for combinations the tables of elements, terms and joints do not have.
 Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh = {},
