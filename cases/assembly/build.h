@@ -29,7 +29,6 @@ struct Mechanism {
 struct MeshChoice {
   std::optional<std::array<int, 2>> elements;
   int refine = 1;  ///< parts of every element in each direction
-  std::optional<double> step;
   int cells = 0;   ///< designed bodies move on their design's cells, each in so many parts each way
   int coarse = 1;  ///< or on cells that are so many of them each way
 
@@ -46,6 +45,11 @@ Scene on_cells(Scene scene, int parts);
 /// @throws Error (input) for combinations the tables of elements, terms and joints do not have.
 Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh = {},
                           const fem::RigidKinematics* rigid = nullptr);
+
+/// Sets the time step of a motion and the times at which a step has to end. A motion with a step
+/// other than the scene's keeps that step: it does not adapt.
+/// @param step  [s]
+void set_step(const Scene& scene, double step, fem::MotionSettings& motion);
 
 /// Energy of strains of 1e-13, which slopes of size one have by round-off [J].
 double stress_round_off(const Scene& scene);

@@ -264,18 +264,9 @@ void add_joints(const Scene& scene, const std::function<double(const Body&)>& fi
   for (const Body& body : scene.bodies) add_holds(scene, body, out.model);
 }
 
-void set_motion(const Scene& scene, const MeshChoice& mesh, fem::MotionSettings& out) {
+void set_motion(const Scene& scene, fem::MotionSettings& out) {
   out.end = scene.time.end;
-  out.step = mesh.step.value_or(scene.time.step);
-  // A run with a step of its own has that.
-  if (scene.time.tolerance && out.step == scene.time.step) {
-    out.adaptive = fem::AdaptiveStep{};
-    out.adaptive->tolerance = *scene.time.tolerance;
-    out.adaptive->largest = scene.time.largest_step;
-    if (scene.time.start == Start::hub_at_rest) out.kinks = {scene.time.spin_up};
-  }
-  for (const Drive& drive : scene.drives)
-    out.kinks.insert(out.kinks.end(), drive.kinks.begin(), drive.kinks.end());
+  set_step(scene, scene.time.step, out);
   out.start =
       scene.time.start == Start::prestretched ? fem::Start::prestretched : fem::Start::rigid;
   out.integrator = scene.time.integrator;
@@ -286,6 +277,20 @@ void set_motion(const Scene& scene, const MeshChoice& mesh, fem::MotionSettings&
 }
 
 }  // namespace
+
+void set_step(const Scene& scene, double step, fem::MotionSettings& motion) {
+  motion.step = step;
+  motion.adaptive.reset();
+  motion.kinks.clear();
+  if (scene.time.tolerance && step == scene.time.step) {
+    motion.adaptive = fem::AdaptiveStep{};
+    motion.adaptive->tolerance = *scene.time.tolerance;
+    motion.adaptive->largest = scene.time.largest_step;
+    if (scene.time.start == Start::hub_at_rest) motion.kinks = {scene.time.spin_up};
+  }
+  for (const Drive& drive : scene.drives)
+    motion.kinks.insert(motion.kinks.end(), drive.kinks.begin(), drive.kinks.end());
+}
 
 Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh,
                           const fem::RigidKinematics* rigid) {
@@ -313,7 +318,7 @@ Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh,
   for (auto& load : rigid_loads(scene)) out.model.add_link(std::move(load));
   add_outlets(scene, out.model);
   add_joints(scene, finer, place, out);
-  set_motion(scene, mesh, out.motion);
+  set_motion(scene, out.motion);
   if (scene.is_mechanism()) {
     const fem::RigidKinematics kinematics = rigid ? *rigid : rigid_kinematics(scene);
     fem::RigidMotion motion(kinematics);

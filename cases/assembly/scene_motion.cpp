@@ -55,8 +55,8 @@ Mechanism SceneMotion::mechanism_with(std::span<const mmc::CellFactors> factors)
   MeshChoice mesh;
   mesh.cells = 1;
   mesh.coarse = coarse(0);
-  if (settings_.step > 0) mesh.step = settings_.step;
   Mechanism out = prepared_.mechanism(mesh);
+  if (settings_.step > 0) set_step(scene_, settings_.step, out.motion);
   for (size_t d = 0; d < factors.size(); ++d) {
     const BodyDesign& design = scene_.designs[d];
     for (fem::Body& body : out.model.bodies())

@@ -123,7 +123,8 @@ std::string bytes_of(const MotionRequest& request) {
   bool loads = request.loads, balance = request.balance, condition = request.condition;
   double every = request.frames_every;
   int snapshots = request.snapshots;
-  m(mesh.elements, mesh.refine, mesh.step, loads, balance, condition, every, snapshots);
+  std::optional<double> step = request.step;
+  m(mesh.elements, mesh.refine, step, loads, balance, condition, every, snapshots);
   for (fem::Factors factors : request.factors) m(factors.stiffness, factors.mass);
   return m.bytes();
 }
@@ -184,6 +185,7 @@ class Resuming {
 Mechanism mechanism_of(const PreparedCase& prepared, const MotionRequest& request) {
   const Scene& scene = prepared.scene();
   Mechanism out = prepared.mechanism(request.mesh);
+  if (request.step) set_step(scene, *request.step, out.motion);
   for (size_t i = 0; i < request.factors.size(); ++i)
     for (fem::Body& body : out.model.bodies())
       if (body.name == scene.designs[i].body) out.model.set_factors(body, request.factors[i]);

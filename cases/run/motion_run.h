@@ -13,6 +13,7 @@ struct MotionRequest {
   std::vector<fem::Factors>
       factors;  ///< scale factors of the cells, per design; empty: full material
   MeshChoice mesh;
+  std::optional<double> step;        ///< time step other than the scene's [s]
   bool loads = false;                ///< whether equivalent static loads are collected
   double frames_every = 0;           ///< spacing of frames for ParaView [s]; 0: no frames
   int snapshots = 0;                 ///< number of pictures of a mechanism; 0, or at least 2

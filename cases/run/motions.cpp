@@ -31,8 +31,11 @@ std::vector<fem::Factors> final_factors(std::span<const mmc::BodyProblem> proble
   return out;
 }
 
-MeshChoice verified_mesh(const Verify& verify) {
-  return {verify.mesh, verify.refine, verify.step, verify.cells};
+/// Gives a motion the mesh and the time step of a verification.
+void set_verified(const Verify& verify, MotionRequest& request) {
+  request.mesh = {verify.mesh, verify.refine, verify.cells};
+  request.step = verify.step;
+  request.balance = false;
 }
 
 /// Links between two pins have no tip.
@@ -117,8 +120,7 @@ double CycleMotions::strain_integral_on_cells(std::span<const fem::Factors> fact
   MotionRequest request = resumable_request(run_, "motion on cells", kOnCells);
   request.checkpoint = "motion_judged_" + io::to_text(++n_assessed_) + kCheckpoint;
   request.factors.assign(factors.begin(), factors.end());
-  request.mesh = verified_mesh(*run_.scene().verify);
-  request.balance = false;
+  set_verified(*run_.scene().verify, request);
   last_on_cells_ = run_one(request).record;
   return last_on_cells_->strain_integral();
 }
@@ -205,14 +207,12 @@ std::vector<fem::EslSets> assess_by_motion(const RunContext& run,
     request =
         resumable_request(run, "verification with uniform material", "motion_verified_uniform.csv");
     request.factors = uniform_factors(problems);
-    request.mesh = verified_mesh(*scene.verify);
-    request.balance = false;
+    set_verified(*scene.verify, request);
     all.push_back({finer, request, &motions.verified_uniform});
     if (!motions.verified) {
       MotionRequest designed = resumable_request(run, "verification with the design", kVerified);
       designed.factors = final_factors(problems);
-      designed.mesh = request.mesh;
-      designed.balance = false;
+      set_verified(*scene.verify, designed);
       all.push_back({finer, designed, &motions.verified});
     }
   }

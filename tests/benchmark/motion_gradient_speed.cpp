@@ -38,7 +38,8 @@ void measure(const std::string& cell, double step, const std::string& what, size
   const Scene scene =
       read_scene(io::CaseFile(std::string(FLEXMORPH_CASES) + "/rotating_plate_v05.toml",
                               std::vector<std::string>{"design.cell=" + cell}));
-  Mechanism m = build_mechanism(scene, {.elements = {}, .refine = 1, .step = step, .cells = 1});
+  Mechanism m = build_mechanism(scene, {.elements = {}, .refine = 1, .cells = 1});
+  set_step(scene, step, m.motion);
   const mmc::BodyProblem problem = build_problems(scene).front();
   m.model.set_factors(m.model.bodies()[0],
                       mmc::dynamic_factors(problem, problem.design.components()));

@@ -37,8 +37,9 @@ TEST(AdaptiveScene, LandsOnTheEndOfTheSpinUp) {
 // A verification has the scene's kind of steps, or equal ones where it names their size.
 TEST(AdaptiveScene, VerificationMayHaveItsOwnSteps) {
   const auto adapts = [](const Scene& scene) {
-    const MeshChoice mesh{scene.verify->mesh, scene.verify->refine, scene.verify->step};
-    return build_mechanism(scene, mesh).motion.adaptive.has_value();
+    Mechanism mechanism = build_mechanism(scene);
+    if (scene.verify->step) set_step(scene, *scene.verify->step, mechanism.motion);
+    return mechanism.motion.adaptive.has_value();
   };
   EXPECT_TRUE(adapts(read({})));
   EXPECT_FALSE(adapts(read({"verify.step=5e-4"})));

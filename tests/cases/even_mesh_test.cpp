@@ -35,7 +35,7 @@ const fem::LineGrid& grid_of(const Mechanism& m, const std::string& body) {
 /// Lines i/n of the length L(t) behind the root, with their rates and accelerations.
 void expect_equal_elements(const Scene& scene, const Body& body, std::array<int, 2> count,
                            int refine) {
-  const Mechanism m = build_mechanism(scene, {.elements = {}, .refine = refine, .step = {}});
+  const Mechanism m = build_mechanism(scene, {.elements = {}, .refine = refine});
   const std::unique_ptr<fem::LineGrid> mesh = grid_of(m, body.name).copy();
   ASSERT_EQ(mesh->n_m(), refine * count[0]);
   const double end = body.longest(scene.time.end), h = 1e-3;
@@ -103,7 +103,8 @@ TEST_P(EvenMotion, BalancesItsEnergyWithOrderTwo) {
   const Moved& c = GetParam();
   const Scene scene = read(c.scene, even(c.changes));
   const testing::Rate rate = testing::fit_rate(c.steps, [&](double h) {
-    Mechanism m = build_mechanism(scene, {.elements = {}, .step = h});
+    Mechanism m = build_mechanism(scene);
+    set_step(scene, h, m.motion);
     if (c.designed) give_factors(scene, m);
     const fem::MotionResult r =
         fem::integrate(m.model, m.growths, m.motion, [](const fem::MotionStep&) {});
@@ -137,8 +138,8 @@ struct Path {
   std::vector<Vec3> tip;
   fem::MotionResult result;
 };
-Path path(const Scene& scene, const MeshChoice& mesh = {}) {
-  Mechanism m = build_mechanism(scene, mesh);
+Path path(const Scene& scene) {
+  Mechanism m = build_mechanism(scene);
   const Body& body = scene.body(m.growths.at(0).body);
   const Vec2 tip(body.longest(scene.time.end), 0);
   for (int i = 1; i <= 8; ++i) m.motion.stops.push_back(i * m.motion.end / 8);
@@ -213,7 +214,8 @@ TEST(EvenMesh, MakesTheLoadsOfSplitOnes) {
 TEST(EvenMesh, HasTheExactGradientOfItsMotion) {
   const Scene scene =
       read("rotating_plate_v05", even(with(kFull, {"body.0.elements=[5, 1]", "time.end=0.05"})));
-  Mechanism m = build_mechanism(scene, {.elements = {}, .step = 2.5e-3});
+  Mechanism m = build_mechanism(scene);
+  set_step(scene, 2.5e-3, m.motion);
   give_factors(scene, m);
   m.motion.alpha.tolerance = 1e-13;
   m.motion.stops = {0.02, 0.05};

@@ -73,8 +73,8 @@ class Designed {
   explicit Designed(const Shipped& shipped)
       : scene_(read(shipped.scene, shipped.changes)),
         problems_(build_problems(scene_)),
-        mechanism_(build_mechanism(
-            scene_, {.elements = {}, .refine = 1, .step = shipped.step, .cells = 1})) {
+        mechanism_(build_mechanism(scene_, {.elements = {}, .refine = 1, .cells = 1})) {
+    set_step(scene_, shipped.step, mechanism_.motion);
     fem::MotionSettings& motion = mechanism_.motion;
     motion.end = shipped.end;
     motion.alpha.tolerance = 1e-13;
