@@ -172,6 +172,7 @@ void RunFolder::write_design_frame(const mmc::IterationReport& r) {
 }
 
 void RunFolder::add_iteration(const mmc::IterationReport& r) {
+  if (!old_rows_.empty()) forget_old_rows();
   ++rows_;
   if (wants_frame(r.iteration)) write_design_frame(r);
   History& h = history_of(r.problem.body);

@@ -2,13 +2,15 @@
 // to what those come to that nobody disturbs, byte for byte, and their files can be read all the
 // while.
 //
-//   FLEXMORPH_KILLS=200        kills of shortened cases, evenly spread over them; 6 without
+//   FLEXMORPH_KILLS=200        kills of shortened cases, evenly spread over them; 6 without. Given,
+//                              runs are also killed at every call of their final writing
 //   FLEXMORPH_WHOLE_KILLS=10   kills of whole runs of rotating_plate_v01; none without
 //   FLEXMORPH_SEED=1
 #include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <fstream>
 #include <iostream>
 #include <optional>
 #include <random>
@@ -146,6 +148,80 @@ TEST(Kills, AtRandomMomentsChangeNothing) {
   int n = 0;
   for (const Victim& v : all) n += kill_and_resume(v, each, engine);
   EXPECT_GE(n, kills);
+}
+
+/// A system call of a run: its name, and how many of this name came before and with it.
+struct Call {
+  std::string name;
+  int number;
+};
+
+constexpr const char* kChanging = "rename,renameat,renameat2,unlink,unlinkat,fsync,fdatasync";
+
+/// Runs the program under strace with these options of strace.
+Ended trace(const Scratch& scratch, const Words& options, const Words& arguments) {
+  Words words = {"strace", "-f", "-qq", "--seccomp-bpf"};
+  words.insert(words.end(), options.begin(), options.end());
+  words.emplace_back(FLEXMORPH_PROGRAM);
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return end_of(scratch, start_command(scratch, words));
+}
+
+/// Calls that the run makes after its last frame of a design is in its place.
+std::vector<Call> calls_of_final_writing(const std::string& log) {
+  std::vector<Call> out;
+  std::map<std::string, int> numbers;
+  std::ifstream in(log);
+  for (std::string line; std::getline(in, line);) {
+    const size_t begin = line.find_first_not_of("0123456789 "), end = line.find('(');
+    if (begin >= end || end == std::string::npos) continue;
+    const std::string name = line.substr(begin, end - begin);
+    out.push_back({name, ++numbers[name]});
+    if (line.find("/design/") != std::string::npos) out.clear();
+  }
+  return out;
+}
+
+// A kill at a call comes before the call: what the call before has left is on the disk then.
+TEST(Kills, AtCallsOfTheFinalWritingChangeNothing) {
+  if (std::system("strace -qq -o /dev/null true 2>/dev/null") != 0)
+    GTEST_SKIP() << "strace cannot watch processes here";
+  const Scratch scratch;
+  const Victim victim{"short", FLEXMORPH_SHORT_CASE, {"optimizer.max_iterations=2"}, {}};
+  const std::string whole = scratch / "whole", log = scratch / "calls";
+  const int code = trace(scratch, {"-o", log, "-e", std::string("trace=") + kChanging},
+                         victim.words(whole, false))
+                       .code;
+  const auto undisturbed = lasting(whole);
+  std::vector<Call> calls = calls_of_final_writing(log);
+  ASSERT_GT(calls.size(), 20u);
+  if (number_from("FLEXMORPH_KILLS", 0) == 0) {
+    // The one that makes run.json say "done", and the one that removes the first log behind it.
+    std::erase_if(calls, [&](const Call& call) {
+      const int first = call.name == "unlink" ? 1 : -1;
+      const bool last_rename =
+          call.name == "rename" && std::none_of(calls.begin(), calls.end(), [&](const Call& other) {
+            return other.name == "rename" && other.number > call.number;
+          });
+      return call.number != first && !last_rename;
+    });
+  }
+  std::cout << "  " << calls.size() << " kills" << std::endl;
+  for (const Call& call : calls) {
+    const std::string folder = scratch / "out";
+    const Ended killed =
+        trace(scratch,
+              {"-o", "/dev/null", "-e",
+               "inject=" + call.name + ":signal=KILL:when=" + std::to_string(call.number)},
+              victim.words(folder, false));
+    EXPECT_EQ(killed.code, -1) << call.name << " " << call.number;
+    expect_readable(folder);
+    const Ended ended = flexmorph(scratch, victim.words(folder, true));
+    EXPECT_EQ(ended.code, code) << call.name << " " << call.number << " " << ended.err;
+    expect_same(lasting(folder), undisturbed);
+    if (::testing::Test::HasFailure()) break;
+    fs::remove_all(folder);
+  }
 }
 
 TEST(Kills, OfWholeRunsChangeNothing) {

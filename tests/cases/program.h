@@ -25,20 +25,27 @@ inline Words lines_of(const std::string& text) {
   return out;
 }
 
-/// Starts the program with these arguments, its output in files of the scratch folder.
-inline pid_t start(const Scratch& scratch, const Words& arguments) {
+/// Starts a command, its output in files of the scratch folder.
+inline pid_t start_command(const Scratch& scratch, const Words& words) {
   const std::string out = scratch / "stdout", err = scratch / "stderr";
-  std::vector<char*> argv = {const_cast<char*>(FLEXMORPH_PROGRAM)};
-  for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
+  std::vector<char*> argv;
+  for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
   argv.push_back(nullptr);
   const pid_t child = fork();
   if (child == 0) {
     if (!std::freopen(out.c_str(), "w", stdout) || !std::freopen(err.c_str(), "w", stderr))
       _exit(126);
-    execv(argv[0], argv.data());
+    execvp(argv[0], argv.data());
     _exit(127);
   }
   return child;
+}
+
+/// Starts the program with these arguments, its output in files of the scratch folder.
+inline pid_t start(const Scratch& scratch, const Words& arguments) {
+  Words words = {FLEXMORPH_PROGRAM};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return start_command(scratch, words);
 }
 
 /// Exit code of a run that is whole, but ended after so few iterations that its design is worse

@@ -4,6 +4,7 @@
 #include <csignal>
 #include <thread>
 
+#include "io/files.h"
 #include "tests/cases/resumed.h"
 
 namespace flexmorph::test {
@@ -92,6 +93,20 @@ TEST(Resume, RefusesAnotherCase) {
   EXPECT_EQ(ended.code, 2);
   EXPECT_NE(ended.err.find("a run of another case"), std::string::npos) << ended.err;
   EXPECT_EQ(contents_of(folder + "/history.csv"), before);
+}
+
+// Without its log a run solves every iteration again, and the rows of before are written anew.
+TEST(Resume, HasEveryRowOnceWithoutItsLog) {
+  const Scratch scratch;
+  const std::string whole = scratch / "whole", folder = scratch / "out";
+  const int code = flexmorph(scratch, words_of(FLEXMORPH_SHORT_CASE, whole, {})).code;
+  fs::copy(whole, folder, fs::copy_options::recursive);
+  json run = json::parse(contents_of(folder + "/run.json"));
+  run["status"] = "running";
+  io::write_file(folder + "/run.json", run.dump());
+  EXPECT_EQ(flexmorph(scratch, words_of(FLEXMORPH_SHORT_CASE, folder, {}, true)).code, code);
+  EXPECT_EQ(io::read_csv(folder + "/history.csv").n_rows(), 6u);
+  expect_same(lasting(folder), lasting(whole));
 }
 
 TEST(Resume, LeavesWhatIsDone) {
