@@ -89,22 +89,22 @@ class SampleColumn {
 /// Pieces of material joined over edges, found one by one.
 class Pieces {
  public:
-  Pieces(const Grid& grid, const VectorXd& fractions, std::span<const std::vector<int>> places)
+  Pieces(const Grid& grid, const VectorXd& fractions, std::span<const HeldOrLoaded> places)
       : grid_(grid),
         open_(static_cast<std::size_t>(grid.n_cells())),
         places_of_cell_(static_cast<std::size_t>(grid.n_cells())),
         touched_(places.size()) {
     for (int c = 0; c < grid.n_cells(); ++c) open_[c] = fractions[c] >= 0.5;
     for (std::size_t p = 0; p < places.size(); ++p) {
-      for (const int cell : places[p]) places_of_cell_[cell].push_back(static_cast<int>(p));
+      for (const int cell : places[p].cells) places_of_cell_[cell].push_back(static_cast<int>(p));
     }
   }
 
   bool is_open(int i, int j) const { return open_[grid_.cell(i, j)]; }
 
   /// Removes the piece that holds a cell.
-  /// @returns whether it touches every place.
-  bool take(int i, int j) {
+  /// @returns which places it touches.
+  const std::vector<bool>& take(int i, int j) {
     std::fill(touched_.begin(), touched_.end(), false);
     enter(i, j);
     while (!front_.empty()) {
@@ -117,7 +117,7 @@ class Pieces {
       if (row > 0) enter(column, row - 1);
       if (row < grid_.ny - 1) enter(column, row + 1);
     }
-    return std::all_of(touched_.begin(), touched_.end(), [](bool touched) { return touched; });
+    return touched_;
   }
 
  private:
@@ -135,17 +135,16 @@ class Pieces {
   std::vector<int> front_;
 };
 
-/// The first and the last column of cells.
-std::vector<std::vector<int>> ends(const Grid& grid) {
-  std::vector<std::vector<int>> both(2);
+}  // namespace
+
+std::vector<HeldOrLoaded> ends_of(const Grid& grid) {
+  std::vector<HeldOrLoaded> both = {{"first edge", true, {}}, {"last edge", false, {}}};
   for (int j = 0; j < grid.ny; ++j) {
-    both[0].push_back(grid.cell(0, j));
-    both[1].push_back(grid.cell(grid.nx - 1, j));
+    both[0].cells.push_back(grid.cell(0, j));
+    both[1].cells.push_back(grid.cell(grid.nx - 1, j));
   }
   return both;
 }
-
-}  // namespace
 
 std::vector<int> cells_within(const Grid& grid, const Region& region) {
   std::vector<int> cells;
@@ -206,22 +205,36 @@ void update_area_fractions(const Grid& grid, std::span<const Component> componen
   fractions.segment(grid.cell(first, 0), (last - first + 1) * grid.ny) /= samples * samples;
 }
 
-Connectivity connectivity(const Grid& grid, const VectorXd& fractions,
-                          std::span<const std::vector<int>> places) {
-  assert(fractions.size() == grid.n_cells());
-  const std::vector<std::vector<int>> both_ends = ends(grid);
-  Pieces pieces(grid, fractions, places.empty() ? both_ends : places);
-  Connectivity result;
-  int count = 0;
-  for (int i = 0; i < grid.nx; ++i) {
-    for (int j = 0; j < grid.ny; ++j) {
-      if (!pieces.is_open(i, j)) continue;
-      ++count;
-      result.connected = pieces.take(i, j) || result.connected;
-    }
+Connectivity connectivity_of(const std::vector<std::vector<bool>>& touched,
+                             std::span<const HeldOrLoaded> places) {
+  Connectivity out;
+  out.islands = std::max(0, static_cast<int>(touched.size()) - 1);
+  for (std::size_t p = 0; p < places.size(); ++p) {
+    const bool joined = std::any_of(touched.begin(), touched.end(), [&](const auto& piece) {
+      if (!piece[p]) return false;
+      for (std::size_t other = 0; other < places.size(); ++other)
+        if (piece[other] && places[other].is_support != places[p].is_support) return true;
+      return false;
+    });
+    if (!joined)
+      (places[p].is_support ? out.unused_supports : out.loose_loads).push_back(places[p].name);
   }
-  result.islands = std::max(0, count - 1);
-  return result;
+  out.connected = out.loose_loads.empty();
+  return out;
+}
+
+Connectivity connectivity(const Grid& grid, const VectorXd& fractions,
+                          std::span<const HeldOrLoaded> places) {
+  assert(fractions.size() == grid.n_cells());
+  const std::vector<HeldOrLoaded> ends =
+      places.empty() ? ends_of(grid) : std::vector<HeldOrLoaded>();
+  if (places.empty()) places = ends;
+  Pieces pieces(grid, fractions, places);
+  std::vector<std::vector<bool>> touched;
+  for (int i = 0; i < grid.nx; ++i)
+    for (int j = 0; j < grid.ny; ++j)
+      if (pieces.is_open(i, j)) touched.push_back(pieces.take(i, j));
+  return connectivity_of(touched, places);
 }
 
 }  // namespace flexmorph

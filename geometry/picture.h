@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "geometry/component.h"
@@ -27,19 +28,32 @@ void update_area_fractions(const Grid& grid, std::span<const Component> componen
                            std::span<const std::vector<Vec2>> empty, double left, double right,
                            VectorXd& fractions, int samples = 8);
 
-/// What hangs together in a sharp picture.
-///
-/// Cells with fraction >= 0.5 are material; those that share an edge (not only a corner) belong
-/// to one piece. The main piece is the largest, by cells, of those that reach from the first to
-/// the last column of cells, or the largest of all when none does. Where places are named instead
-/// (loaded and held ones), the main piece is the one that touches most of them.
-struct Connectivity {
-  bool connected = false;  ///< one piece touches both end columns, or every named place
-  int islands = 0;         ///< pieces other than the main piece
+/// Cells that a support holds or that a load acts on. A piece of material touches them when one of
+/// the cells is material of the piece.
+struct HeldOrLoaded {
+  std::string name;         ///< for messages
+  bool is_support = false;  ///< whether the cells are held; otherwise a load acts on them
+  std::vector<int> cells;
 };
-/// @param places  cells of each place (touched when one of them is material); none: the ends
+/// The first column of cells as a support and the last one as a load.
+std::vector<HeldOrLoaded> ends_of(const Grid& grid);
+
+/// Which loads of a design have a way through its material to a support.
+struct Connectivity {
+  bool connected = false;  ///< whether every load touches a piece that touches a support
+  int islands = 0;         ///< number of pieces less one
+  std::vector<std::string> loose_loads;      ///< loads without a way to a support
+  std::vector<std::string> unused_supports;  ///< supports without a way to a load
+};
+/// Joins what pieces of material touch.
+/// @param touched  for every piece which places it touches (n_pieces x n_places)
+Connectivity connectivity_of(const std::vector<std::vector<bool>>& touched,
+                             std::span<const HeldOrLoaded> places);
+/// Connectivity of a sharp picture: cells with a fraction of at least 0.5 are material; those that
+/// share an edge (not only a corner) belong to one piece.
+/// @param places  empty: ends_of(grid)
 Connectivity connectivity(const Grid& grid, const VectorXd& fractions,
-                          std::span<const std::vector<int>> places = {});
+                          std::span<const HeldOrLoaded> places = {});
 
 /// Cells whose centre lies in a region or on its boundary, in ascending order.
 std::vector<int> cells_within(const Grid& grid, const Region& region);

@@ -13,7 +13,7 @@
 namespace flexmorph::optim {
 namespace {
 
-const std::string kHead = "flexmorph evaluations 1\n";
+const std::string kHead = "flexmorph evaluations 2\n";
 constexpr std::uint64_t kLargest = 1ULL << 32;  // bytes of a record: more is damage
 constexpr auto kSyncEvery = std::chrono::seconds(5);
 
@@ -78,6 +78,8 @@ std::vector<char> packed(const Evaluation& e) {
   put(out, e.response.df);
   put(out, e.response.g);
   put(out, e.response.dg);
+  put(out, &e.response.first_bound, sizeof e.response.first_bound);
+  put(out, &e.response.n_bounds, sizeof e.response.n_bounds);
   return out;
 }
 
@@ -91,7 +93,9 @@ std::optional<Evaluation> unpacked(const std::vector<char>& data) {
   e.failure.resize(static_cast<size_t>(letters));
   if (!in.take(e.failure.data(), e.failure.size()) || !in.take(acceptable) || !in.take(e.memory) ||
       !in.take(&e.response.f, sizeof e.response.f) || !in.take(e.response.df) ||
-      !in.take(e.response.g) || !in.take(e.response.dg))
+      !in.take(e.response.g) || !in.take(e.response.dg) ||
+      !in.take(&e.response.first_bound, sizeof e.response.first_bound) ||
+      !in.take(&e.response.n_bounds, sizeof e.response.n_bounds))
     return {};
   e.acceptable = acceptable != 0;
   return e;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "optim/problem.h"
+#include "optim/verdict.h"
 
 namespace flexmorph::optim {
 
@@ -60,6 +61,7 @@ struct Result {
   int iterations = 0, evaluations = 0;
   Stop stop = Stop::failed;
   std::string message;  ///< one sentence: why it stopped
+  Verdict verdict;      ///< on the best design
 };
 
 class Optimizer {

@@ -10,7 +10,16 @@ struct Response {
   VectorXd df;   ///< its gradient (n)
   VectorXd g;    ///< constraints g <= 0 (m)
   MatrixXd dg;   ///< their gradients, one row each (m x n)
+  /// Rows of g that bound the objective by an auxiliary variable, as f_l - z <= 0 does of
+  /// f = max f_l: they limit no design. The objective that a design has is f plus the largest of
+  /// them (a constraint of the same scale).
+  Eigen::Index first_bound = 0, n_bounds = 0;
 };
+
+/// Returns the objective that a design has, whatever its auxiliary variable is.
+double attained_objective(const Response& response);
+/// Returns the largest violation of a constraint that limits the design, at least 0.
+double design_violation(const Response& response);
 
 /// minimize f(x) subject to g(x) <= 0, lower <= x <= upper.
 ///

@@ -31,6 +31,17 @@ double violation(const Response& response) {
   return response.g.size() == 0 ? 0 : std::max(0.0, response.g.maxCoeff());
 }
 
+double attained_objective(const Response& r) {
+  return r.n_bounds == 0 ? r.f : r.f + r.g.segment(r.first_bound, r.n_bounds).maxCoeff();
+}
+
+double design_violation(const Response& r) {
+  double out = 0;
+  for (Eigen::Index i = 0; i < r.g.size(); ++i)
+    if (i < r.first_bound || i >= r.first_bound + r.n_bounds) out = std::max(out, r.g[i]);
+  return out;
+}
+
 std::string scientific(double value) {
   std::array<char, 32> text;
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value,
@@ -122,12 +133,17 @@ bool Search::feasible(const Response& response) const {
   return violation(response) <= settings_.feasibility;
 }
 
+bool Search::usable(const Response& response) const {
+  return design_violation(response) <= settings_.feasibility;
+}
+
 bool Search::better(const Response& r, bool acceptable) const {
   if (best_.point.x.size() == 0) return true;
   if (acceptable != best_.acceptable) return acceptable;
   const Response& b = best_.point.response;
-  if (feasible(r) != feasible(b)) return feasible(r);
-  return feasible(r) ? r.f < b.f : violation(r) < violation(b);
+  if (usable(r) != usable(b)) return usable(r);
+  return usable(r) ? attained_objective(r) < attained_objective(b)
+                   : design_violation(r) < design_violation(b);
 }
 
 bool Search::row(int iteration, const Point& point) {
@@ -141,7 +157,7 @@ bool Search::row(int iteration, const Point& point) {
   it.kkt = kkt.residual;
   it.violation = violation(point.response);
   it.change = previous_row_.size() == 0 ? 0 : (point.x - previous_row_).lpNorm<Eigen::Infinity>();
-  it.improved = best_is_new_ && feasible(point.response) && point.x == best_.point.x;
+  it.improved = best_is_new_ && usable(point.response) && point.x == best_.point.x;
   if (it.improved) best_is_new_ = false;
   const double now = cpu_seconds();
   it.seconds = std::max(0.0, now - mark_ - inside_problem_);
@@ -152,6 +168,10 @@ bool Search::row(int iteration, const Point& point) {
   previous_row_ = point.x;
   objectives_.push_back(point.response.f);
   if (objectives_.size() > static_cast<size_t>(settings_.rest.rows) + 1) objectives_.pop_front();
+  const bool found = best_.point.x.size() > 0 && usable(best_.point.response);
+  best_objectives_.push_back(found ? attained_objective(best_.point.response)
+                                   : std::numeric_limits<double>::infinity());
+  if (best_objectives_.size() > Verdict::kPlateauRows + 1) best_objectives_.pop_front();
   if (go_on)
     end_or_go_on(it, point, kkt.lambda.sum());
   else
@@ -201,7 +221,8 @@ double Search::recent_change() const {
 
 /// Takes the last row for the best where that is better by no more than `slack`.
 void Search::keep_last(const Point& point, double slack) {
-  if (point.response.f <= best_.point.response.f + slack) best_.point = point;
+  if (attained_objective(point.response) <= attained_objective(best_.point.response) + slack)
+    best_.point = point;
 }
 
 bool Search::spent() const {
@@ -227,6 +248,28 @@ void Search::stop(Stop stop, const std::string& message) {
   message_ = message;
 }
 
+/// By how much the objective of the best usable design fell over the last rows; NaN where there
+/// were fewer, or no usable design before them.
+double Search::improvement_over(int rows) const {
+  const auto n = static_cast<size_t>(rows);
+  if (best_objectives_.size() <= n) return std::numeric_limits<double>::quiet_NaN();
+  const double before = best_objectives_[best_objectives_.size() - 1 - n];
+  return std::isfinite(before) ? before - best_objectives_.back()
+                               : std::numeric_limits<double>::quiet_NaN();
+}
+
+Verdict Search::verdict_on(const Result& result) const {
+  Verdict out;
+  out.kkt = result.kkt;
+  out.improvement = improvement_over(Verdict::kImprovementRows);
+  if (result.violation > settings_.feasibility) return out;
+  if (result.kkt <= settings_.kkt_tolerance)
+    out.kind = Verdict::Kind::converged;
+  else if (improvement_over(Verdict::kPlateauRows) < Verdict::kPlateau)  // false for NaN
+    out.kind = Verdict::Kind::stagnated;
+  return out;
+}
+
 Result Search::result() {
   if (last_x_ != best_.point.x) {
     const Point kept = best_.point;
@@ -238,11 +281,12 @@ Result Search::result() {
   result.x = best_.point.x;
   result.response = best_.point.response;
   result.kkt = kkt_point(result.response, result.x, lower_, upper_, kActiveTolerance).residual;
-  result.violation = violation(result.response);
+  result.violation = design_violation(result.response);
   result.iterations = rows_;
   result.evaluations = evaluations_;
   result.stop = stop_;
   result.message = message_;
+  result.verdict = verdict_on(result);
   return result;
 }
 

@@ -22,9 +22,10 @@ std::string scientific(double value);        ///< for messages: 1.2e-05
 /// What all optimizers share: guarded and counted evaluations, the best design met, the rows of
 /// the history, and the reasons to stop.
 ///
-/// Designs are ordered: acceptable ones first, then feasible ones (violation <= feasibility) by
-/// their objective, then the others by their violation. Once an acceptable design was met,
-/// unacceptable ones are refused; before that (the start itself has come apart) they pass.
+/// Designs are ordered: acceptable ones first, then usable ones by the objective that they attain,
+/// then the others by their violation (bounds of an auxiliary variable do not count). Once an
+/// acceptable design was met, unacceptable ones are refused; before that (the start itself has come
+/// apart) they pass.
 class Search {
  public:
   /// @throws Error (input) for no variables, bounds that cross or are not finite, a start
@@ -63,6 +64,7 @@ class Search {
   bool stopped() const { return stopped_; }
 
   const Point& best() const { return best_.point; }
+  /// Tells whether all constraints hold, those of an auxiliary variable among them.
   bool feasible(const Response& response) const;
 
   /// The best design; the problem's last evaluation is there, too.
@@ -73,12 +75,15 @@ class Search {
     Point point;
     bool acceptable = false;
   };
+  bool usable(const Response& response) const;  ///< the design meets its own constraints
   bool better(const Response& response, bool acceptable) const;
   void check(const Response& response) const;
   bool rests(double change, double violation);
   double recent_change() const;
   void end_or_go_on(const Iterate& it, const Point& point, double price);
   void keep_last(const Point& point, double slack);
+  double improvement_over(int rows) const;
+  Verdict verdict_on(const Result& result) const;
 
   Problem& problem_;
   const Settings& settings_;
@@ -91,6 +96,7 @@ class Search {
   VectorXd last_x_, previous_row_;
   int evaluations_ = 0, rows_ = 0, resting_ = 0, refused_in_a_row_ = 0;
   std::deque<double> objectives_;         // of the last rows, at most settings_.rest.rows + 1
+  std::deque<double> best_objectives_;    // of the best usable design at the last rows
   double mark_ = 0, inside_problem_ = 0;  // CPU seconds
   std::string refusal_;
 

@@ -59,22 +59,22 @@ void shake(std::vector<Component>& components, double jitter, int seed) {
   }
 }
 
-/// Cells at the pins of a link.
-std::vector<std::vector<int>> pin_places(const Link& link, const Grid& g) {
-  std::vector<std::vector<int>> out(2);
+/// Cells at the pins of a link. One pin counts as its support, the other one as its load.
+std::vector<HeldOrLoaded> pin_places(const Link& link, const Grid& g) {
+  std::vector<HeldOrLoaded> out = {{"first pin", true, {}}, {"second pin", false, {}}};
   for (size_t k = 0; k < 2; ++k) {
     const int node = fem::node_at(g, link.pins[k]), i = node / (g.ny + 1), j = node % (g.ny + 1);
     for (const int ci : {i - 1, i})
       for (const int cj : {j - 1, j})
-        if (ci >= 0 && ci < g.nx && cj >= 0 && cj < g.ny) out[k].push_back(g.cell(ci, cj));
+        if (ci >= 0 && ci < g.nx && cj >= 0 && cj < g.ny) out[k].cells.push_back(g.cell(ci, cj));
   }
   return out;
 }
 
-std::vector<std::vector<int>> places_of(const Scene& scene, const BodyDesign& design,
-                                        std::span<const signed char> outside) {
+std::vector<HeldOrLoaded> places_of(const Scene& scene, const BodyDesign& design,
+                                    std::span<const signed char> outside) {
   if (scene.domain) return static_places(scene, design.grid, outside);
-  return design.link ? pin_places(*design.link, design.grid) : std::vector<std::vector<int>>{};
+  return design.link ? pin_places(*design.link, design.grid) : std::vector<HeldOrLoaded>{};
 }
 
 mmc::ComplianceSettings settings_of(const Scene& scene, const BodyDesign& design) {

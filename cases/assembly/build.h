@@ -74,10 +74,10 @@ std::vector<fem::AttachedForce> applied_forces(const Scene& scene, const std::st
 /// Scene -> design problems, with the initial layout.
 std::vector<mmc::BodyProblem> build_problems(const Scene& scene);
 
-/// Cells of every held and every loaded place of a static scene.
+/// Cells of every support and of every force of a static scene, with names for messages.
 /// @throws Error (input) for a place without a node of the domain.
-std::vector<std::vector<int>> static_places(const Scene& scene, const Grid& grid,
-                                            std::span<const signed char> outside);
+std::vector<HeldOrLoaded> static_places(const Scene& scene, const Grid& grid,
+                                        std::span<const signed char> outside);
 /// Supports and loads of a static scene on its design mesh.
 /// @throws Error (input) likewise.
 std::unique_ptr<mmc::ComplianceEvaluator> build_static_loads(const Scene& scene,

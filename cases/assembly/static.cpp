@@ -81,16 +81,22 @@ std::string force_path(size_t load, size_t force) {
 
 }  // namespace
 
-std::vector<std::vector<int>> static_places(const Scene& scene, const Grid& grid,
-                                            std::span<const signed char> outside) {
+Vec2 weight_of(const Scene& scene) {
+  return scene.gravity ? Vec2(*scene.gravity) : Vec2(Vec2::Zero());
+}
+
+std::vector<HeldOrLoaded> static_places(const Scene& scene, const Grid& grid,
+                                        std::span<const signed char> outside) {
   const NodeFinder find(scene, grid, outside);
-  std::vector<std::vector<int>> places;
+  std::vector<HeldOrLoaded> places;
   const Domain& domain = *scene.domain;
   for (size_t s = 0; s < domain.supports.size(); ++s)
-    places.push_back(find.at(domain.supports[s].place, support_path(s)).cells);
+    places.push_back({"support " + std::to_string(s + 1), true,
+                      find.at(domain.supports[s].place, support_path(s)).cells});
   for (size_t l = 0; l < domain.loads.size(); ++l)
     for (size_t f = 0; f < domain.loads[l].forces.size(); ++f)
-      places.push_back(find.at(domain.loads[l].forces[f].place, force_path(l, f)).cells);
+      places.push_back({"load '" + domain.loads[l].name + "'", false,
+                        find.at(domain.loads[l].forces[f].place, force_path(l, f)).cells});
   return places;
 }
 
@@ -128,7 +134,7 @@ std::unique_ptr<mmc::ComplianceEvaluator> build_static_loads(const Scene& scene,
   const bool compress = std::none_of(rows.begin(), rows.end(),
                                      [](const mmc::ResponseRow* row) { return row->per_load; });
   return std::make_unique<mmc::ComplianceEvaluator>(mmc::plate_of(problem), conditions.held,
-                                                    conditions.loads, compress);
+                                                    conditions.loads, compress, weight_of(scene));
 }
 
 }  // namespace flexmorph::cases

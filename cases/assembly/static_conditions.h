@@ -17,6 +17,8 @@ struct StaticConditions {
 /// @throws Error (input) for a place without a node of the domain.
 StaticConditions static_conditions(const Scene& scene, const Grid& grid,
                                    std::span<const signed char> outside);
+/// Gravity of a plate at rest; zero where the case gives none [m/s^2].
+Vec2 weight_of(const Scene& scene);
 /// The middle lines of a static scene's grid that its domain, regions, supports and loads are
 /// symmetric to; a load case may be another one's image, or the image of its opposite. Nothing for
 /// a scene that moves.

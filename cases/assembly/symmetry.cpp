@@ -47,8 +47,10 @@ bool keeps_held(const GridImage& image, const std::vector<fem::HeldUnknown>& hel
   return all == images;
 }
 
-/// Every load's image is one of them, or the opposite of one.
-bool keeps_loads(const GridImage& image, const std::vector<mmc::LoadCase>& loads) {
+/// Tells whether every load's image is one of them, or the opposite of one.
+/// @param opposites  whether opposite loads are as good: weight that acts with them makes them
+/// others
+bool keeps_loads(const GridImage& image, const std::vector<mmc::LoadCase>& loads, bool opposites) {
   const auto nodal = [&](const mmc::LoadCase& load, bool mirrored) {
     VectorXd out = VectorXd::Zero(2 * image.grid.n_nodes());
     for (const fem::NodalForce& f : load.forces) {
@@ -66,7 +68,7 @@ bool keeps_loads(const GridImage& image, const std::vector<mmc::LoadCase>& loads
       const VectorXd found = nodal(other, false);
       return std::abs(other.weight - load.weight) <= kSame * load.weight &&
              ((found - wanted).cwiseAbs().maxCoeff() <= small ||
-              (found + wanted).cwiseAbs().maxCoeff() <= small);
+              (opposites && (found + wanted).cwiseAbs().maxCoeff() <= small));
     });
   });
 }
@@ -78,6 +80,7 @@ mmc::Symmetry symmetry_of(const Scene& scene, const BodyDesign& design,
   if (!scene.domain) return {};
   const Grid& g = design.grid;
   const StaticConditions conditions = static_conditions(scene, g, outside);
+  const Vec2 weight = weight_of(scene);
   std::vector<VectorXd> areas = {covered(g, design.solid), covered(g, design.empty)};
   if (!scene.domain->shape.outer.empty())
     for (const std::vector<Vec2>& ring : rings_of(scene.domain->shape))
@@ -86,8 +89,10 @@ mmc::Symmetry symmetry_of(const Scene& scene, const BodyDesign& design,
   for (size_t k = 2; k < areas.size(); ++k) whole += areas[k];
   const auto symmetric = [&](bool in_x) {
     const GridImage image{g, in_x};
+    if (weight[in_x ? 0 : 1] != 0) return false;
     return image.keeps(areas[0]) && image.keeps(areas[1]) && image.keeps(whole) &&
-           keeps_held(image, conditions.held) && keeps_loads(image, conditions.loads);
+           keeps_held(image, conditions.held) &&
+           keeps_loads(image, conditions.loads, weight == Vec2::Zero());
   };
   mmc::Symmetry out;
   if (symmetric(true)) out.x = g.x0 + 0.5 * g.width;

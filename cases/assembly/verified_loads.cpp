@@ -1,5 +1,7 @@
 #include "cases/assembly/verified_loads.h"
 
+#include "cases/assembly/static_conditions.h"
+
 namespace flexmorph::cases {
 namespace {
 
@@ -16,8 +18,14 @@ verification::Loads loads_by_position(const Scene& scene, const mmc::BodyProblem
   out.worst = mmc::compliance_row(problem.goal).per_load;
   for (const PlaneSupport& s : scene.domain->supports)
     out.supports.push_back({out.add(place_of(s.place, problem)), s.x, s.y});
+  if (const Vec2 weight = weight_of(scene); weight != Vec2::Zero()) {
+    out.grid = problem.grid;
+    const VectorXd field = (-weight).replicate(problem.grid.n_nodes(), 1);
+    out.uniform_acceleration = std::make_shared<const VectorXd>(field);
+  }
   for (const LoadCase& l : scene.domain->loads) {
     verification::Load& load = out.loads.emplace_back();
+    load.acceleration = out.uniform_acceleration.get();
     load.name = l.name;
     load.weight = l.weight;
     for (const PlaneForce& f : l.forces)

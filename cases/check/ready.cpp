@@ -42,6 +42,21 @@ void require_start(Mechanism& mechanism) {
                        " m: bodies that are not deformed do not reach their joints");
 }
 
+/// Refuses limits that the full design misses under its fixed loads.
+void require_attainable(const Scene& scene, const mmc::BodyProblem& problem,
+                        mmc::ComplianceEvaluator& loads) {
+  if (scene.gravity) return;  // more material weighs more
+  const mmc::Figures full = mmc::full_values(problem, loads);
+  for (const mmc::Limit& limit : problem.goal.limits) {
+    if (!limit.wants_material()) continue;
+    const double found = full.at(mmc::key_of(*limit.row));
+    if (limit.excess(found) > 0)
+      scene.refuse(limit.key_path, "no design has so little: with all of the domain full the " +
+                                       std::string(limit.row->words) + " is " +
+                                       io::to_text(found, 6) + " " + std::string(limit.row->unit));
+  }
+}
+
 void require_parts(const PreparedCase& prepared) {
   const Scene& scene = prepared.scene();
   if (!scene.domain) {
@@ -61,7 +76,7 @@ void require_parts(const PreparedCase& prepared) {
   if (!scene.domain) return;
   const mmc::BodyProblem& problem = problems.front();
   if (problem.grid.n_cells() <= kMostBuilt)
-    build_static_loads(scene, problem);
+    require_attainable(scene, problem, *build_static_loads(scene, problem));
   else
     static_places(scene, problem.grid, problem.outside);
 }

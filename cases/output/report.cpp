@@ -41,7 +41,7 @@ io::ReportSection results_section(const Scene& scene, const DesignResult& design
   out.rows.push_back({"body", "compliance [J]", "volume", "sharp compliance [J]", "sharp volume",
                       "body-fitted compliance [J]", "estimated error", "body-fitted volume",
                       "uniform compliance [J]", "sharp / uniform", "connected", "iterations",
-                      "state solves", "stopped"});
+                      "state solves", "verdict", "stopped"});
   for (const VerifiedOutline& v : design.outlines)
     for (const mmc::BodyOutcome& o : design.outcomes)
       if (o.body == v.body)
@@ -53,7 +53,7 @@ io::ReportSection results_section(const Scene& scene, const DesignResult& design
                         outline[0], outline[1], outline[2], io::to_text(o.uniform_compliance, 6),
                         io::to_text(o.sharp.compliance / o.uniform_compliance, 4),
                         o.sharp.connectivity.connected ? "yes" : "no", io::to_text(o.iterations),
-                        io::to_text(o.evaluations), o.stop});
+                        io::to_text(o.evaluations), optim::words_of(o.verdict), o.stop});
   }
   for (const mmc::ResponseRow* row : further_rows(scene)) {
     const std::string name = mmc::key_of(*row);

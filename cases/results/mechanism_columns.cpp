@@ -91,7 +91,7 @@ void MechanismColumns::describe_joints() {
              {{"force_x", "N", "force of the joint on its body b along x"},
               {"force_y", "N", "force of the joint on its body b along y"},
               {"moment", "N m", "moment of the joint on its body b about the joint's point"}});
-    if (driven)
+    if (driven && !scene_.statics)
       describe(joint.name, {{"power", "W", "power that the drive puts into the mechanism"}});
   }
 }
@@ -104,8 +104,9 @@ void MechanismColumns::describe_hubs() {
     if (!watched.joints.empty()) watched.drive = hub_drive(scene_, *watched.joints[0]);
     describe(hub.name, {{"force_x", "N", "force of the hub on what it holds along x"},
                         {"force_y", "N", "force of the hub on what it holds along y"},
-                        {"moment", "N m", "moment of the hub on what it holds about its point"},
-                        {"power", "W", "power that the hub's drive puts into the mechanism"}});
+                        {"moment", "N m", "moment of the hub on what it holds about its point"}});
+    if (!scene_.statics)
+      describe(hub.name, {{"power", "W", "power that the hub's drive puts into the mechanism"}});
     if (scene_.in_space())
       describe(hub.name, {{"force_z", "N", "force of the hub on what it holds along z"},
                           {"moment_x", "N m", "moment of the hub on what it holds about x"},
@@ -114,14 +115,15 @@ void MechanismColumns::describe_hubs() {
 }
 
 void MechanismColumns::describe_springs() {
-  for (const Spring& spring : scene_.springs)
-    if (spring.named)
-      describe(spring.name,
-               {{"force_x", "N", "force of the spring on its body b along x"},
-                {"force_y", "N", "force of the spring on its body b along y"},
-                {"moment", "N m", "moment of the spring on its body b about its point"},
-                {"energy", "J", "energy that is stored in the spring"},
-                {"power", "W", "other power that enters through the spring"}});
+  for (const Spring& spring : scene_.springs) {
+    if (!spring.named) continue;
+    describe(spring.name, {{"force_x", "N", "force of the spring on its body b along x"},
+                           {"force_y", "N", "force of the spring on its body b along y"},
+                           {"moment", "N m", "moment of the spring on its body b about its point"},
+                           {"energy", "J", "energy that is stored in the spring"}});
+    if (!scene_.statics)
+      describe(spring.name, {{"power", "W", "other power that enters through the spring"}});
+  }
 }
 
 namespace {
@@ -142,7 +144,8 @@ void append_spring(const Scene& scene, const Spring& spring, fem::Workspace& mod
   const Vec2 about = model.place_motion({at.body, at.point, 0, {}}, x).position;
   const std::string& body = spring.b.on_ground() ? spring.a.body : spring.b.body;
   append_wrench(fem::wrench_on(model.body(body), force, {about.x(), about.y(), 0}, x), row);
-  row.insert(row.end(), {(*found)->strain_energy(x), (*found)->power(x)});
+  row.push_back((*found)->strain_energy(x));
+  if (!scene.statics) row.push_back((*found)->power(x));
 }
 
 }  // namespace
@@ -168,7 +171,7 @@ void MechanismColumns::append(fem::Workspace& model, const fem::State& x,
         model.place_motion({watched.about.body, watched.about.point, 0, {}}, x).position;
     const std::string& body = joint.b.on_ground() ? joint.a.body : joint.b.body;
     append_wrench(model.joint_wrench(index, body, {about.x(), about.y(), 0}, x), row);
-    if (watched.driven) row.push_back(drive_power(model, index, x));
+    if (watched.driven && !scene_.statics) row.push_back(drive_power(model, index, x));
   }
   for (const WatchedHub& hub : hubs_) append_hub(hub, model, x, row);
   for (const Spring& spring : scene_.springs)
@@ -202,10 +205,10 @@ void MechanismColumns::append_hub(const WatchedHub& hub, fem::Workspace& model, 
     const fem::Wrench wrench = model.joint_wrench(index, joint->body, {about.x(), about.y(), 0}, x);
     sum.force += wrench.force;
     sum.moment += wrench.moment;
-    power += drive_power(model, index, x);
+    if (!scene_.statics) power += drive_power(model, index, x);
   }
   append_wrench(sum, row);
-  row.push_back(power);
+  if (!scene_.statics) row.push_back(power);
   if (scene_.in_space()) row.insert(row.end(), {sum.force.z(), sum.moment.x(), sum.moment.y()});
 }
 

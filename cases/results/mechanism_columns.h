@@ -10,8 +10,8 @@
 
 namespace flexmorph::cases {
 
-/// Computes the columns of a motion's table that describe a mechanism; columns() says what each of
-/// them holds. Moments of joints are about the joint's point: that of body b, the driven one of
+/// Computes the columns that describe a mechanism in the table of a motion, and without powers in
+/// that of a [static] analysis; columns() says what each of them holds. Moments of joints are about the joint's point: that of body b, the driven one of
 /// point_drive; where b is the ground, the joint acts on its body a. Powers of drives are λ ·
 /// ∂Φ/∂t.
 class MechanismColumns {

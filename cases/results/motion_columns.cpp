@@ -54,6 +54,8 @@ std::vector<ColumnInfo> path_columns(const Scene& scene) {
   describe_points(scene, "u", "displacement", out);
   const std::vector<ColumnInfo> measured = BodyMeasures::columns(scene);
   out.insert(out.end(), measured.begin(), measured.end());
+  const MechanismColumns mechanism(scene);
+  out.insert(out.end(), mechanism.columns().begin(), mechanism.columns().end());
   out.push_back({kStrainColumn, "J", "strain energy of all bodies", ColumnGroup::energy});
   out.push_back({"iterations", "-", "iterations of Newton's method", ColumnGroup::solver});
   return out;

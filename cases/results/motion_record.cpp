@@ -1,5 +1,6 @@
 #include "cases/results/motion_record.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace flexmorph {
@@ -25,6 +26,22 @@ std::optional<double> MotionRecord::amplitude(const std::string& body) const {
   const std::vector<double>* deflection = table.find(body + kDeflectionEnding);
   if (!deflection) return {};
   return largest_size(*deflection);
+}
+
+Variation variation_of(std::span<const double> time, std::span<const double> values) {
+  const auto mean_of = [&](const auto& f) {
+    double sum = 0;
+    for (std::size_t i = 1; i < time.size(); ++i)
+      sum += 0.5 * (time[i] - time[i - 1]) * (f(values[i - 1]) + f(values[i]));
+    return sum / (time.back() - time.front());
+  };
+  Variation out;
+  out.mean = mean_of([](double v) { return v; });
+  out.rms = std::sqrt(mean_of([&](double v) { return (v - out.mean) * (v - out.mean); }));
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  out.peak_to_peak = *most - *least;
+  out.largest = largest_size(values);
+  return out;
 }
 
 LargestError largest_error(const MotionRecord& motion, const std::string& body,

@@ -38,6 +38,18 @@ struct MotionRecord {
   std::optional<double> amplitude(const std::string& body) const;
 };
 
+/// Says how a quantity varies over a motion.
+struct Variation {
+  double mean = 0;          ///< over time
+  double rms = 0;           ///< root mean square about the mean, over time
+  double peak_to_peak = 0;  ///< largest less smallest value
+  double largest = 0;       ///< largest size
+};
+/// Integrates over time by the trapezoidal rule.
+/// @param time    [s] (n), rising, at least two
+/// @param values  (n)
+Variation variation_of(std::span<const double> time, std::span<const double> values);
+
 /// The result of a [static] analysis: a row per equilibrium.
 struct PathRecord {
   Series table;             ///< columns of path_columns()

@@ -95,6 +95,8 @@ Json body_results(const RunResult& result, size_t i) {
   if (o.clean_up) out["clean_up"] = object_of(clean_up_quantities(), *o.clean_up);
   out["thinnest_component"] = thinnest(design.problems[i]);
   add_amplitudes(out, result.motions, o.body);
+  if (const auto tip = tip_variation(result.motions, o.body))
+    out["tip"] = object_of(tip_quantities(), *tip);
   for (const EnergyComparison& e : design.energies)
     if (e.body == o.body) out["energies"] = object_of(energy_quantities(), e);
   out["scaled_objective"] = objective_words(design.problems[i]);

@@ -93,6 +93,19 @@ struct MotionResults {
   }
 };
 
+/// How the tip of a designed body deflects in its motion, and with uniform material.
+struct TipVariation {
+  Variation designed, uniform;
+
+  /// Parts of uniform material's that a design is warned of from.
+  static constexpr double kLargestRatio = 1.05;
+  double rms_ratio() const { return designed.rms / uniform.rms; }
+  double peak_to_peak_ratio() const { return designed.peak_to_peak / uniform.peak_to_peak; }
+};
+/// Variation of the tip deflection of a body in the motions that designs are assessed by; nothing
+/// where the body has no tip, or one of the motions is missing.
+std::optional<TipVariation> tip_variation(const MotionResults& motions, const std::string& body);
+
 /// Everything a run knows at its end, or when it fails.
 struct RunResult {
   RunInfo info;

@@ -1,5 +1,6 @@
 #include "cases/results/schema.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "cases/keys/book.h"
@@ -77,7 +78,14 @@ std::span<const Quantity<mmc::BodyOutcome>> design_quantities() {
        [](const O& o) -> Value { return o.n_right_hand_sides; }},
       {"component_changes", "-", "components that were removed, split or inserted",
        [](const O& o) -> Value { return static_cast<int>(o.events.size()); }},
-      {"stop", "", "why the optimizer stopped", [](const O& o) -> Value { return o.stop; }}};
+      {"stop", "", "why the optimizer stopped", [](const O& o) -> Value { return o.stop; }},
+      {"verdict", "", "converged, stagnated, unfinished or evaluated",
+       [](const O& o) -> Value { return optim::to_string(o.verdict.kind); }},
+      {"improvement", "-", "part by which the objective fell over the last 20 iterations",
+       [](const O& o) -> Value {
+         if (std::isnan(o.verdict.improvement)) return {};
+         return o.verdict.improvement;
+       }}};
   return kTable;
 }
 
@@ -184,6 +192,28 @@ std::span<const Quantity<EnergyComparison>> energy_quantities() {
       {"worst_static_over_motion", "-", "ratio of the energies that is furthest from 1",
        [](const E& e) -> Value { return e.ratio; }},
       {"worst_time", "s", "time of this load", [](const E& e) -> Value { return e.time; }}};
+  return kTable;
+}
+
+std::span<const Quantity<TipVariation>> tip_quantities() {
+  using T = TipVariation;
+  static const Quantity<T> kTable[] = {
+      {"mean", "m", "mean over time of the tip deflection",
+       [](const T& t) -> Value { return t.designed.mean; }},
+      {"rms", "m", "root mean square about the mean",
+       [](const T& t) -> Value { return t.designed.rms; }},
+      {"peak_to_peak", "m", "largest less smallest deflection",
+       [](const T& t) -> Value { return t.designed.peak_to_peak; }},
+      {"largest", "m", "largest size of the deflection",
+       [](const T& t) -> Value { return t.designed.largest; }},
+      {"mean_ratio", "-", "mean over that of uniform material",
+       [](const T& t) -> Value { return t.designed.mean / t.uniform.mean; }},
+      {"rms_ratio", "-", "rms over that of uniform material",
+       [](const T& t) -> Value { return t.rms_ratio(); }},
+      {"peak_to_peak_ratio", "-", "peak_to_peak over that of uniform material",
+       [](const T& t) -> Value { return t.peak_to_peak_ratio(); }},
+      {"largest_ratio", "-", "largest over that of uniform material",
+       [](const T& t) -> Value { return t.designed.largest / t.uniform.largest; }}};
   return kTable;
 }
 
@@ -325,6 +355,7 @@ std::string results_as_markdown() {
   append_table("`results[].body_fitted`: verification of the outline", outline_quantities(), out);
   append_table("`results[].energies`: static energies against those of the motion",
                energy_quantities(), out);
+  append_table("`results[].tip`: tip deflection in the motion", tip_quantities(), out);
   append_table("`motion`: a motion", motion_quantities(), out);
   append_table("`static`: a path of equilibria", path_quantities(), out);
   append_table("`cycles`: an entry per cycle", cycle_quantities(), out);

@@ -12,6 +12,7 @@ namespace {
 
 using Warnings = std::vector<Warning>;
 
+constexpr double kLargestLoss = 0.01;   // of the largest energy, by the time integration
 constexpr double kLargestDefect = 0.1;  // of the balance of energy before a motion is warned of
 constexpr double kCellsApart = 0.02;    // sharp compliances from body-fitted ones
 // Compliance of the blurred design over that of the sharp one. Where the start of a design is
@@ -33,14 +34,19 @@ void add_limits(const mmc::BodyProblem& p, const mmc::BodyOutcome& o, Warnings& 
   for (const mmc::Limit& limit : p.goal.limits) {
     if (p.shares_mass && limit.volume && !limit.at_least) continue;
     const double found = found_of(*limit.row, p, o);
+    const std::string key = mmc::key_of(*limit.row);
     const double scale = limit.row->full ? limit.row->full(mmc::plate_of(p)) : limit.value;
     const double beyond = limit.at_least ? limit.value - found : found - limit.value;
     if (!(beyond > 1e-3 * scale)) continue;
-    out.push_back({"body '" + o.body + "': the " + std::string(limit.row->words) + " " +
-                   io::to_text(found, 4) + " is " +
-                   (limit.at_least ? "below what is wanted, " : "above what is allowed, ") +
-                   io::to_text(limit.value, 4) + ": no design that was found " +
-                   (limit.row->even && !limit.at_least ? "is as light" : "keeps to it")});
+    out.push_back(
+        {"body '" + o.body + "': the " + std::string(limit.row->words) + " " +
+             io::to_text(found, 4) + " is " +
+             (limit.at_least ? "below what is wanted, " : "above what is allowed, ") +
+             io::to_text(limit.value, 4) + ": no design that was found " +
+             (limit.row->even && !limit.at_least ? "is as light" : "keeps to it") +
+             (limit.wants_material() ? "; the full design has " + io::to_text(o.full.at(key), 4)
+                                     : std::string()),
+         true});
   }
 }
 
@@ -87,6 +93,16 @@ void add_verification(const VerifiedOutline& outline, double sharp, Warnings& ou
                    std::to_string(j.n_pieces) + " pieces are held by nothing"});
 }
 
+/// Names, each once, separated by commas.
+std::string list_of(std::vector<std::string> names) {
+  std::string out;
+  for (size_t k = 0; k < names.size(); ++k)
+    if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(k), names[k]) ==
+        names.begin() + static_cast<std::ptrdiff_t>(k))
+      out += (out.empty() ? "" : ", ") + names[k];
+  return out;
+}
+
 /// What mending has left.
 std::string not_mended(const mmc::BodyOutcome& o) {
   const mmc::CleanUp& c = *o.clean_up;
@@ -110,10 +126,12 @@ std::string not_mended(const mmc::BodyOutcome& o) {
 
 void add_designs(const DesignResult& design, Warnings& out) {
   for (const mmc::BodyOutcome& o : design.outcomes) {
-    if (!o.sharp.connectivity.connected)
-      out.push_back(
-          {"body '" + o.body + "': no piece of material joins what is held and what is loaded",
-           true});
+    if (const std::string loads = list_of(o.sharp.connectivity.loose_loads); !loads.empty())
+      out.push_back({"body '" + o.body + "': no material joins " + loads + " to a support", true});
+    else if (const std::string unused = list_of(o.sharp.connectivity.unused_supports);
+             !unused.empty())
+      out.push_back({"body '" + o.body + "': the design does not use " + unused +
+                     ": no material joins it to a load"});
     if (o.clean_up && !o.clean_up->reached()) out.push_back({not_mended(o)});
     if (o.sharp.compliance > 1.15 * o.compliance)
       out.push_back({"body '" + o.body +
@@ -173,6 +191,29 @@ void add_energies(const DesignResult& design, Warnings& out) {
            "large; [verify] cells = 1 moves the cells themselves"});
 }
 
+/// Designs whose tip varies more in the motion than that of uniform material.
+void add_variations(const DesignResult& design, const MotionResults& motions, Warnings& out) {
+  for (const mmc::BodyOutcome& o : design.outcomes) {
+    const std::optional<TipVariation> tip = tip_variation(motions, o.body);
+    if (!tip || o.iterations == 0) continue;
+    const double rms = tip->rms_ratio(), range = tip->peak_to_peak_ratio();
+    if (std::max(rms, range) > TipVariation::kLargestRatio)
+      out.push_back({"body '" + o.body +
+                     "': its tip vibrates more than with uniform material of this mass: " +
+                     io::to_text(rms, 3) + " times in root mean square about the mean, " +
+                     io::to_text(range, 3) + " times peak to peak"});
+  }
+}
+
+/// The part of the largest energy that the time integration has taken out of the motion.
+double dissipated_part(const MotionRecord& motion) {
+  const std::vector<double>& defect = motion.table.at(kDefectColumn);
+  const double largest = largest_size(defect);
+  if (!(largest > 0)) return 0;
+  const double lowest = *std::min_element(defect.begin(), defect.end());
+  return -lowest / largest * motion.result.energy_defect;
+}
+
 /// Of bodies whose temperature jumps on the way; nothing where none does.
 std::string jump_words(const Scene& scene) {
   std::string jumps;
@@ -214,6 +255,11 @@ void add_motion(const Scene& scene, const MotionRecord& motion, Warnings& out) {
         {"the balance of energy is missed by " + io::to_text(100 * motion.result.energy_defect, 3) +
          " % of the largest energy: " +
          (jumps.empty() ? "do not trust this motion; a smaller time.step helps" : jumps)});
+  else if (const double part = dissipated_part(motion);
+           part > kLargestLoss && jumps.empty() &&
+           largest_size(motion.table.at(kDefectColumn)) > stress_round_off(scene))
+    out.push_back({"the time integration dissipates " + io::to_text(100 * part, 2) +
+                   " % of the largest energy: a smaller time.step dissipates less"});
 }
 
 }  // namespace
@@ -229,6 +275,7 @@ Warnings warnings_of(const Scene& scene, const RunResult& result) {
                    io::to_text(design.corrected->before, 5) +
                    "; cycle.cell of the design itself sees what it sees"});
   add_energies(design, out);
+  add_variations(design, result.motions, out);
   if (result.motions.motion) add_motion(scene, *result.motions.motion, out);
   if (!result.info.lost_frames.empty()) out.push_back({result.info.lost_frames});
   if (!result.info.missing_exports.empty()) out.push_back({result.info.missing_exports});

@@ -201,6 +201,7 @@ class Correcting {
     found.iterations = before.iterations;
     found.evaluations = before.evaluations;
     found.kkt = before.kkt;
+    found.verdict = before.verdict;
     found.stop = before.stop + "; then corrected by " +
                  std::to_string(design_.corrections.back().motions) + " motions";
     if (!found.clean_up) found.clean_up = before.clean_up;

@@ -44,6 +44,7 @@ class PathSteps {
       : scene_(scene),
         model_(mechanism.model),
         measures_(scene, mechanism.model, start),
+        mechanism_(scene),
         scales_(mechanism.model.scales()),
         before_(start.q),
         shapes_(scene, {}),
@@ -74,6 +75,7 @@ class PathSteps {
     }
     const double strain = model_.energies(step.x).strain;
     measures_.append(model_, step.x, heating, row_);
+    mechanism_.append(model_, step.x, row_);
     row_.insert(row_.end(), {strain, static_cast<double>(step.iterations)});
     const StepRecord record{model_, step.x, row_, static_cast<double>(step.number), heating};
     for (const auto& writer : writers_) writer->add(record);
@@ -83,6 +85,7 @@ class PathSteps {
   const Scene& scene_;
   fem::Workspace& model_;
   BodyMeasures measures_;
+  MechanismColumns mechanism_;
   VectorXd scales_, before_;
   BodyShapes shapes_;
   PathRecord& out_;

@@ -21,6 +21,7 @@
 #include "cases/output/paraview_script.h"
 #include "cases/output/report.h"
 #include "cases/results/expectations.h"
+#include "cases/results/summary.h"
 #include "cases/results/warnings.h"
 #include "cases/run/design_run.h"
 #include "cases/run/motions.h"
@@ -222,7 +223,8 @@ int say_end(const RunResult& result, bool is_case, Progress& progress, const std
     missed += is_case;
     progress.object(is_case ? "missed" : "not as the case without --set", expected.words);
   }
-  progress.say(result.info.status + counted(result.warnings.size(), "warning", "warnings") +
+  progress.say(result.info.status + ": " + summary_words(result) +
+               counted(result.warnings.size(), "warning", "warnings") +
                counted(missed, "expectation missed", "expectations missed") + ": " + path +
                "/report.html");
   return missed > 0 || !usable(result.warnings) ? kMissed : 0;

@@ -174,6 +174,20 @@ LoadCase read_load(const Table& t, const Domain& domain) {
   return load;
 }
 
+/// Self weight acts in every load case; without one it is a load case by itself.
+void read_weight(const Table& root, Domain& domain, Scene& scene) {
+  scene.gravity_laws = read_load_laws(root, tables::kGravity.counted(2), scene);
+  if (scene.gravity_law().varies())
+    root.fail(tables::kGravity, "the gravity of a plate at rest is two numbers [m/s^2]");
+  scene.gravity = scene.gravity_law().now();
+  if (domain.density == 0)
+    root.fail(tables::kGravity, "a plate without a density has no weight: domain.density [kg/m^3]");
+  if (domain.loads.empty() && !scene.gravity->isZero(0)) {
+    domain.loads.emplace_back();
+    domain.loads.back().name = "weight";
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> overrides_of_outline(const Table& root) {
@@ -186,7 +200,7 @@ std::vector<std::string> overrides_of_outline(const Table& root) {
 void read_static(const Table& root, Scene& scene) {
   for (const Key* key :
        {&tables::kTime, &tables::kBody, &tables::kHub, &tables::kJoint, &tables::kPointMass,
-        &tables::kEsl, &tables::kCycle, &tables::kVerify, &tables::kCertificate, &tables::kGravity})
+        &tables::kEsl, &tables::kCycle, &tables::kVerify, &tables::kCertificate})
     if (root.has(*key))
       root.fail(*key, "a scene with a [domain] rests: it has no '" + key->name + "'");
   const Table t = root.table(tables::kDomain);
@@ -202,7 +216,9 @@ void read_static(const Table& root, Scene& scene) {
   if (domain.supports.empty())
     root.fail(tables::kSupport, "a plate at rest has one or more [[support]]");
   for (const Table& l : root.tables(tables::kLoad)) domain.loads.push_back(read_load(l, domain));
-  if (domain.loads.empty()) root.fail(tables::kLoad, "a plate at rest has one or more [[load]]");
+  if (root.has(tables::kGravity)) read_weight(root, domain, scene);
+  if (domain.loads.empty())
+    root.fail(tables::kLoad, "a plate at rest has one or more [[load]], or `gravity`");
   scene.domain = std::move(domain);
 }
 

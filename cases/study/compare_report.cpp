@@ -64,7 +64,7 @@ std::vector<std::string> summary_row(const Comparison& plan, std::span<const Var
   const auto done = runs_of(plan, runs, o);
   const std::string starts = std::string("/").append(io::to_text(plan.starts));
   const auto met = std::count_if(done.begin(), done.end(),
-                                 [](const auto& each) { return each.first->converged(); });
+                                 [](const auto& each) { return !each.first->unfinished(); });
   std::vector<std::string> row = {plan.optimizers[o],
                                   io::to_text(static_cast<int>(done.size())) + starts,
                                   io::to_text(static_cast<int>(met)) + starts};
@@ -126,7 +126,7 @@ std::vector<std::pair<const VariantResult*, int>> runs_of(const Comparison& plan
 
 std::vector<std::vector<std::string>> summary_of(const Comparison& plan,
                                                  std::span<const VariantResult> runs) {
-  Rows rows = {{"optimizer", "done", "converged", "figure: median", "range", "over best",
+  Rows rows = {{"optimizer", "done", "finished", "figure: median", "range", "over best",
                 "told apart", "best in", "body-fitted compliance", "sharp compliance", "compliance",
                 "kkt", "solves", "factorizations", "CPU s", "optimizer's share", "peaks",
                 "connected", "smallest feature"}};

@@ -54,8 +54,7 @@ const std::vector<NumberColumn>& number_columns() {
        [](const Entry& e) {
          return e.body.history_seconds.empty() ? 0.0 : e.body.history_seconds.back();
        }},
-      {"seconds_optimizer", 0, [](const Entry& e) { return e.body.seconds_optimizer; }},
-      {"converged", 0, [](const Entry& e) { return 1.0 * e.body.converged(); }}};
+      {"seconds_optimizer", 0, [](const Entry& e) { return e.body.seconds_optimizer; }}};
   return kColumns;
 }
 
@@ -108,7 +107,7 @@ void write_results(const ResultTable& table, std::span<const VariantResult> runs
   std::vector<std::string> names = table.names;
   names.insert(names.end(), {"status", "body"});
   for (const NumberColumn& column : number_columns()) names.emplace_back(column.name);
-  names.insert(names.end(), {"stop", "message"});
+  names.insert(names.end(), {"verdict", "stop", "message"});
   io::CsvWriter csv(path, names);
   for_rows(table, runs, [&](const auto& head, const VariantResult& run, const Entry* entry) {
     std::vector<io::Cell> row(head.begin(), head.end());
@@ -118,6 +117,7 @@ void write_results(const ResultTable& table, std::span<const VariantResult> runs
       const double value = entry ? column.value(*entry) : std::nan("");
       row.push_back(std::isnan(value) ? io::Cell() : io::Cell(value));
     }
+    row.emplace_back(entry ? entry->body.verdict : "");
     row.emplace_back(entry ? entry->body.stop : "");
     row.emplace_back(run.message);
     csv.row(row);

@@ -37,6 +37,7 @@ struct Variant {
 
 /// One designed body of a run: results of run.json and columns of history.csv.
 struct BodyResult {
+  std::string verdict;  ///< on its design: optim::to_string(Verdict::Kind)
   std::string body, stop;
   double compliance = 0, volume = 0, sharp_compliance = 0, sharp_volume = 0, uniform_compliance = 0;
   /// Of the outline (NaN: not judged, infinite: a load acts on nothing that is held), its estimated
@@ -56,8 +57,7 @@ struct BodyResult {
   std::vector<int> history_stage;
   std::vector<double> sharp_iteration, sharp_history;  ///< where evaluated
 
-  /// Did its optimizer meet its tolerances? What was analysed as it starts was not asked: yes.
-  bool converged() const;
+  bool unfinished() const;  ///< whether the verdict on its design says so
 };
 
 /// What a run folder says.
@@ -74,12 +74,13 @@ struct VariantResult {
   int warnings = 0;  ///< that it gave
 
   bool done() const { return status.starts_with("done"); }
-  bool converged() const;  ///< all its designs
-  /// The status, whether it is a result that did not converge, and that there are warnings.
+  bool unfinished() const;       ///< whether the verdict on one of its designs says so
+  std::string verdicts() const;  ///< those on its designs, each once
+  /// The status, the verdicts and the number of warnings.
   std::string words() const;
 };
 
-/// What tables of a study end with: a paragraph on its runs that did not converge; empty: none.
+/// What tables of a study end with: a paragraph on its runs that are unfinished; empty: none.
 std::string convergence_note(std::span<const VariantResult> runs);
 
 /// Reads every variant's case and builds what it would build.

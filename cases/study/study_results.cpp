@@ -24,6 +24,7 @@ BodyResult read_body(const nlohmann::json& r) {
   BodyResult out;
   out.body = r.value("body", "");
   out.stop = r.value("stop", "");
+  out.verdict = r.value("verdict", "");
   out.compliance = number(r, "compliance");
   out.volume = number(r, "volume");
   out.sharp_compliance = number(r, "sharp_compliance");
@@ -134,27 +135,35 @@ std::string folder_of(const StudyOptions& options, const Variant& variant) {
   return options.directory + "/" + variant.name;
 }
 
-bool BodyResult::converged() const {
-  return iterations == 0 || stop.starts_with(optim::to_string(optim::Stop::converged));
+bool BodyResult::unfinished() const {
+  return verdict == optim::to_string(optim::Verdict::Kind::unfinished);
 }
 
-bool VariantResult::converged() const {
-  return std::all_of(bodies.begin(), bodies.end(),
-                     [](const BodyResult& body) { return body.converged(); });
+bool VariantResult::unfinished() const {
+  return std::any_of(bodies.begin(), bodies.end(),
+                     [](const BodyResult& body) { return body.unfinished(); });
+}
+
+std::string VariantResult::verdicts() const {
+  std::string out;
+  for (const BodyResult& body : bodies)
+    if (out.empty() || out.find(body.verdict) == std::string::npos)
+      out += (out.empty() ? "" : ", ") + body.verdict;
+  return out;
 }
 
 std::string convergence_note(std::span<const VariantResult> runs) {
   const auto missed = std::count_if(runs.begin(), runs.end(), [](const VariantResult& run) {
-    return run.done() && !run.converged();
+    return run.done() && run.unfinished();
   });
   if (missed == 0) return "";
   return "\n" + std::to_string(missed) + " of " + std::to_string(runs.size()) +
-         " runs did not converge (see \"stopped\"): their numbers are those of a design on its "
-         "way.\n";
+         " runs are unfinished (see \"verdict\"): their designs still improved.\n";
 }
 
 std::string VariantResult::words() const {
-  return status + (done() && !converged() ? ", NOT CONVERGED" : "") +
+  const std::string found = verdicts();
+  return status + (done() && !found.empty() ? ", " + found : "") +
          counted(static_cast<size_t>(warnings), "warning", "warnings");
 }
 

@@ -81,8 +81,8 @@ std::string sheet_of(const Sweep& sweep, std::span<const VariantResult> runs) {
     entry.title = sweep.title_of(k);
     if (!run.done())
       entry.title += " (" + run.status + ")";
-    else if (!run.converged())
-      entry.title += " (NOT CONVERGED)";
+    else if (!run.bodies.empty())
+      entry.title += " (" + run.verdicts() + ")";
     for (size_t i = 0; i < run.bodies.size(); ++i) {
       const std::string stem = run.bodies.size() > 1 ? "/design_" + run.bodies[i].body : "/design";
       const std::string design = text_of(run.directory + stem + ".svg");

@@ -190,7 +190,9 @@ class Designer {
     const double tolerance = settings_.optimizer.feasibility;
     const bool feasible_a = a.violation <= tolerance, feasible_b = b.violation <= tolerance;
     if (feasible_a != feasible_b) return feasible_a;
-    return feasible_a ? a.response.f <= b.response.f : a.violation <= b.violation;
+    return feasible_a
+               ? optim::attained_objective(a.response) <= optim::attained_objective(b.response)
+               : a.violation <= b.violation;
   }
 
   /// Takes the best designs of a stage.
@@ -203,6 +205,7 @@ class Designer {
             {ComponentEvent::Kind::restored, 0, best.designs[k].n_components()});
       p.outcome.change = best.changes[k];
       p.outcome.kkt = best.result.kkt;
+      p.outcome.verdict = best.result.verdict;
       p.stopped = best.result.stop;
       p.outcome.stop = optim::to_string(best.result.stop) +
                        (best.result.message.empty() ? "" : ": " + best.result.message);
@@ -324,7 +327,12 @@ class Designer {
     constexpr double kActive = 1e-3;
     const double kkt =
         optim::kkt_residual(problem.evaluate(x), x, problem.lower(), problem.upper(), kActive);
-    for (Part& p : parts_) p.outcome.kkt = kkt;
+    for (Part& p : parts_) {
+      p.outcome.kkt = p.outcome.verdict.kkt = kkt;
+      if (p.outcome.verdict.kind == optim::Verdict::Kind::converged &&
+          kkt > settings_.optimizer.kkt_tolerance)
+        p.outcome.verdict.kind = optim::Verdict::Kind::unfinished;
+    }
   }
 
   bool see(Whole& whole, const optim::Iterate& iterate) {
@@ -376,6 +384,10 @@ class Designer {
     out.iterations = iterations_;
     out.evaluations = evaluations_;
     const bool analysed = settings_.optimizer.max_iterations == 0;
+    if (analysed)
+      out.verdict.kind = optim::Verdict::Kind::evaluated;
+    else if (!going_)
+      out.verdict.kind = optim::Verdict::Kind::unfinished;
     // Stages and changes of components stop the optimizer, too: that is no reason of the whole.
     if (!going_)
       out.stop = "interrupted after " + std::to_string(iterations_) + " iterations";

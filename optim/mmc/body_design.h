@@ -39,12 +39,14 @@ struct BodyOutcome {
   SharpDesign sharp;
   double worst_compliance = 0;    ///< largest of the loads, of the sharp design
   double uniform_compliance = 0;  ///< same loads, uniform material of the same volume
+  Figures full;                   ///< full_values() under the loads of the cycle
   double kkt = 0, change = 0;
   int iterations = 0, evaluations = 0, n_loads = 0, n_right_hand_sides = 0;
   int start = 1;  ///< whose design it is, of the problem's starts
   int factorizations = 0;
   std::optional<double> condition;  ///< of the stiffness of the sharp design, when asked for
   std::string stop;                 ///< why the optimizer stopped
+  optim::Verdict verdict;           ///< on the last stage
   std::vector<ComponentEvent> events;
   std::optional<CleanUp> clean_up;       ///< when a smallest feature was wanted
   std::vector<double> load_compliances;  ///< F_i . u_i of the sharp design

@@ -29,6 +29,22 @@ Figures further_values(const BodyProblem& problem, std::span<const Component> co
   return out;
 }
 
+Figures full_values(const BodyProblem& problem, ComplianceEvaluator& loads) {
+  const std::vector<Limit>& limits = problem.goal.limits;
+  if (std::none_of(limits.begin(), limits.end(), [](const Limit& l) { return l.wants_material(); }))
+    return {};
+  const Grid& grid = problem.grid;
+  const double size = grid.width + grid.height;
+  const Component all{
+      {grid.x0 + grid.width / 2, grid.y0 + grid.height / 2}, size, 0, size, size, size};
+  const CellFactors full = ersatz_of(problem).sharp(fractions_of(problem, {&all, 1}));
+  Figures values = further_values(problem, {&all, 1}, loads, full), out;
+  values[key_of(compliance_row(problem.goal))] = design_compliance(problem, loads, full);
+  for (const Limit& limit : limits)
+    if (limit.wants_material()) out[key_of(*limit.row)] = values.at(key_of(*limit.row));
+  return out;
+}
+
 Plate plate_of(const BodyProblem& p) { return {p.grid, p.section, p.outside}; }
 
 double full_mass_of(const BodyProblem& p) { return plate_of(p).full_mass(); }
@@ -91,16 +107,9 @@ bool bounds(std::span<const Vec2> polygon, const Vec2& p, double small) {
   return false;
 }
 
-/// Cells of the places that must hang together.
-std::vector<std::vector<int>> places_of(const BodyProblem& problem) {
-  if (!problem.places.empty()) return problem.places;
-  const Grid& g = problem.grid;
-  std::vector<std::vector<int>> ends(2);
-  for (int j = 0; j < g.ny; ++j) {
-    ends[0].push_back(g.cell(0, j));
-    ends[1].push_back(g.cell(g.nx - 1, j));
-  }
-  return ends;
+/// What holds and what loads the body.
+std::vector<HeldOrLoaded> places_of(const BodyProblem& problem) {
+  return problem.places.empty() ? ends_of(problem.grid) : problem.places;
 }
 
 /// Has the cell material of the region? Looked at in 4 x 4 points, its border included.
@@ -182,16 +191,15 @@ Features features_of(const BodyProblem& problem, std::span<const Region> regions
 }
 
 Connectivity connectivity_of(const BodyProblem& problem, std::span<const Region> regions) {
-  const std::vector<std::vector<int>> places = places_of(problem);
-  Connectivity out;
-  out.islands = std::max(0, static_cast<int>(regions.size()) - 1);
-  out.connected = std::any_of(regions.begin(), regions.end(), [&](const Region& r) {
-    return std::all_of(places.begin(), places.end(), [&](const std::vector<int>& place) {
-      return std::any_of(place.begin(), place.end(),
-                         [&](int cell) { return touches(problem.grid, r, cell); });
-    });
-  });
-  return out;
+  const std::vector<HeldOrLoaded> places = places_of(problem);
+  std::vector<std::vector<bool>> touched;
+  for (const Region& region : regions) {
+    std::vector<bool>& piece = touched.emplace_back();
+    for (const HeldOrLoaded& place : places)
+      piece.push_back(std::any_of(place.cells.begin(), place.cells.end(),
+                                  [&](int cell) { return touches(problem.grid, region, cell); }));
+  }
+  return flexmorph::connectivity_of(touched, places);
 }
 
 Connectivity united_connectivity(const BodyProblem& problem, std::span<const Component> components,

@@ -29,12 +29,12 @@ struct BodyProblem {
   Goal motion_goal = {};                           ///< of the motion itself
   double stiffness_void = 1e-4, mass_void = 1e-3;  ///< in dynamics
   ComplianceSettings compliance = {};
-  Region domain = {};                         ///< without an outer ring: the whole grid
-  std::vector<signed char> outside = {};      ///< cells_outside() of it; empty: none
-  std::vector<std::vector<int>> places = {};  ///< cells of loaded and held places; empty: both ends
-  std::vector<Segment> held = {};             ///< lines of the border that hold what touches them
-  int drop_every = 25;  ///< iterations between looks for dead components; 0: none
-  bool refill = false;  ///< long components are split in place of dropped ones
+  Region domain = {};                     ///< without an outer ring: the whole grid
+  std::vector<signed char> outside = {};  ///< cells_outside() of it; empty: none
+  std::vector<HeldOrLoaded> places = {};  ///< empty: ends_of() the grid
+  std::vector<Segment> held = {};         ///< lines of the border that hold what touches them
+  int drop_every = 25;                    ///< iterations between looks for dead components; 0: none
+  bool refill = false;                    ///< long components are split in place of dropped ones
   /// Smallest widths that the result is mended to.
   Widths widths = {};
   /// Its mass comes from one budget for all bodies that say so: what each is allowed, together.
@@ -84,6 +84,11 @@ double design_compliance(const BodyProblem& problem, ComplianceEvaluator& loads,
 using Figures = std::map<std::string, double>;
 Figures further_values(const BodyProblem& problem, std::span<const Component> components,
                        ComplianceEvaluator& loads, const CellFactors& factors);
+
+/// Values of the responses that limits of the goal bound and that fall with material, by key_of(),
+/// when all of the domain that may be material is: under loads that do not depend on the design, no
+/// design has less. Empty where no limit bounds such a response.
+Figures full_values(const BodyProblem& problem, ComplianceEvaluator& loads);
 
 /// A design without blur: what its outlines enclose.
 struct SharpDesign {

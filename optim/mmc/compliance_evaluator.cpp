@@ -89,13 +89,15 @@ ComplianceEvaluator::ComplianceEvaluator(const fem::EslSets& loads,
 }
 
 ComplianceEvaluator::ComplianceEvaluator(const Plate& plate, std::span<const fem::HeldUnknown> held,
-                                         std::span<const LoadCase> loads, bool compress)
+                                         std::span<const LoadCase> loads, bool compress,
+                                         const Vec2& gravity)
     : impl_(std::make_unique<Impl>(
           fem::StaticSolver(plate.grid, plate.section, held, plate.outside), false)) {
   constexpr double kLeftOut = 1e-10;  // part of the energy that compression may leave out
   if (loads.empty()) throw Error::input("static loads: there are none");
   Impl& m = *impl_;
   m.at_rest = true;
+  if (!gravity.isZero(0)) m.weight.emplace(m.solver, gravity, plate.outside);
   const auto n = static_cast<Eigen::Index>(loads.size());
   m.loads.fixed.setZero(n, m.solver.n_unknowns());
   m.weights.resize(n);
@@ -108,7 +110,7 @@ ComplianceEvaluator::ComplianceEvaluator(const Plate& plate, std::span<const fem
     for (const fem::NodalForce& f : load.forces)
       for (int c = 0; c < 2; ++c)
         if (const int row = m.solver.row(f.node, c); row >= 0) m.loads.fixed(l, row) += f.force[c];
-    if (m.loads.fixed.row(l).isZero(0) && stretch(l) == 0)
+    if (m.loads.fixed.row(l).isZero(0) && stretch(l) == 0 && !m.weight)
       refuse(load, "nothing of it acts on a displacement that is free");
   }
   if (!stretch.isZero(0)) {
@@ -121,7 +123,7 @@ ComplianceEvaluator::ComplianceEvaluator(const Plate& plate, std::span<const fem
                "heat alone, and the supports let the plate grow: nothing is strained");
   }
   m.solved_weights = m.weights;
-  if (compress) m.compress(kLeftOut);
+  if (compress && !m.weight) m.compress(kLeftOut);  // weight changes with the design
 }
 
 ComplianceEvaluator::~ComplianceEvaluator() = default;
@@ -151,6 +153,8 @@ void ComplianceEvaluator::evaluate(const VectorXd& stiffness, const VectorXd& ma
       m.inertia.products(m.Z, m.solved().acceleration, m.products);
     }
     value.d_mass = -2 * m.products;
+  } else if (m.weight) {
+    value.d_mass = 2 * (m.weight->work(m.U).transpose() * m.solved_weights);
   }
   if (m.restrained) m.restrained->add_to(value);
   if (!std::isfinite(value.f) || !value.d_stiffness.allFinite() || !value.d_mass.allFinite())
@@ -190,6 +194,8 @@ void ComplianceEvaluator::evaluate_each(const VectorXd& stiffness, const VectorX
   if (m.loads.follows_design()) {
     m.inertia.products(u, m.balance ? m.a_link : m.loads.acceleration, each.d_mass);
     each.d_mass *= -2;
+  } else if (m.weight) {
+    each.d_mass = 2 * m.weight->work(u);
   }
   if (m.restrained) m.restrained->add_to(each);
   if (!each.f.allFinite() || !each.d_stiffness.allFinite() || !each.d_mass.allFinite())
@@ -198,7 +204,7 @@ void ComplianceEvaluator::evaluate_each(const VectorXd& stiffness, const VectorX
 }
 
 bool ComplianceEvaluator::has_curvature() const {
-  return impl_->at_rest && impl_->free_growth.size() == 0;
+  return impl_->at_rest && impl_->free_growth.size() == 0 && !impl_->weight;
 }
 
 MatrixXd ComplianceEvaluator::curvature(const VectorXd& stiffness,

@@ -31,6 +31,7 @@ struct LoadCase {
 ///   frozen     F_l = -M(b₀) a_l + f_l         df = -Σ w_l u_lᵀ dK u_l
 ///   stiffness  F_l = K(b₀) u_l of the motion  df = -Σ w_l u_lᵀ dK u_l
 ///   at rest    F_l given                      df = -Σ w_l u_lᵀ dK u_l
+///              F_l + weight(b)                df = Σ w_l (2 u_lᵀ dF - u_lᵀ dK u_l)
 ///
 /// Factors are per cell: stiffness (n_cells, 0..1), mass (n_cells, 0..1, 0 in the void).
 ///
@@ -60,13 +61,15 @@ class ComplianceEvaluator {
   /// A plate at rest, held at these displacements under all loads. A hot plate is held where it was
   /// while cold: supports prescribe what a rigid motion leaves of its growth, so that supports that
   /// let the plate grow cost nothing.
+  /// @param gravity  of the plate's own weight, which acts with every load [m/s^2]
   /// @param compress  f depends on Σ w F Fᵀ only: evaluate() solves as many right-hand sides as
   /// that
   ///        has directions (optim/README.md, Compression)
   /// @throws Error (input) for no loads, loads that are zero or act where nothing can move, heat
   ///         alone on a plate that its supports let grow, weights that are not positive.
   ComplianceEvaluator(const Plate& plate, std::span<const fem::HeldUnknown> held,
-                      std::span<const LoadCase> loads, bool compress);
+                      std::span<const LoadCase> loads, bool compress,
+                      const Vec2& gravity = Vec2::Zero());
   ~ComplianceEvaluator();
   ComplianceEvaluator(ComplianceEvaluator&&) noexcept;
 
@@ -96,7 +99,7 @@ class ComplianceEvaluator {
   /// @throws Error (numerical) as evaluate().
   void evaluate_each(const VectorXd& stiffness, const VectorXd& mass, Each& each);
 
-  /// Are there second derivatives? Of cold plates at rest there are.
+  /// Are there second derivatives? Of cold plates at rest without weight there are.
   bool has_curvature() const;
   /// Second derivatives along directions of the stiffness factors.
   /// The first one along direction i is -u · K_i u, K_i = Σ_c D_ci K_c, and from K u_i = -K_i u

@@ -48,6 +48,7 @@ void finish_outcome(Part& p, bool analysed, bool condition) {
   const double volume = allowed_volume(p.problem.goal).value_or(out.sharp.volume);
   const VectorXd even = VectorXd::Constant(p.problem.grid.n_cells(), volume);
   out.uniform_compliance = design_compliance(p.problem, p.loads, {even, even});
+  out.full = full_values(p.problem, p.loads);
   out.factorizations = p.loads.factorizations();
 }
 

@@ -15,6 +15,7 @@ struct Limit {
   bool at_least = false;
   /// The volume fraction it stands for, where every piece of material counts alike.
   std::optional<double> volume;
+  std::string key_path = {};  ///< of the bound in its case file, for messages; empty: there is none
 
   Limit(const ResponseRow& response, double bound, bool from_below, const Plate& plate)
       : row(&response), value(bound), at_least(from_below) {
@@ -22,6 +23,9 @@ struct Limit {
   }
   /// How far a value of the response is beyond the bound, as a part of it: <= 0 when it is allowed.
   double excess(double found) const { return at_least ? 1 - found / value : found / value - 1; }
+  /// Tells whether more material always brings the response closer to the bound, and loads decide
+  /// how close: the full design may miss such a bound.
+  bool wants_material() const { return !at_least && row->needs_state() && !row->of_motion; }
 };
 
 /// A number of the motion that is minimized besides another one.

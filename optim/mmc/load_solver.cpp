@@ -40,7 +40,12 @@ void LoadSolver::factorize(const VectorXd& stiffness) {
 }
 
 const MatrixXd& LoadSolver::forces(const StaticLoads& of, const VectorXd& mass) {
-  if (!of.follows_design()) return of.fixed;
+  if (!of.follows_design()) {
+    if (!weight) return of.fixed;
+    F = of.fixed;
+    weight->add(mass, F);
+    return F;
+  }
   if (balance)
     balance->forces(of, mass, F, a_link);
   else

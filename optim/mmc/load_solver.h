@@ -6,6 +6,7 @@
 
 #include "fem/solve/static_solver.h"
 #include "optim/mmc/link_balance.h"
+#include "optim/mmc/self_weight.h"
 #include "optim/mmc/static_loads.h"
 
 namespace flexmorph::mmc {
@@ -21,6 +22,7 @@ struct LoadSolver {
   fem::StaticSolver solver;
   InertiaOperator inertia;
   std::optional<LinkBalance> balance = {};     ///< of a link
+  std::optional<SelfWeight> weight = {};       ///< acts in every load case of a plate at rest
   StaticLoads loads = {};                      ///< all of them
   std::optional<StaticLoads> basis = {};       ///< what is solved instead
   MatrixXd mix = {}, weighted_mix = {};        ///< (n x r), and mixᵀ diag(w) (r x n)

@@ -24,7 +24,7 @@ constexpr double kLogPerUnit = 10, kReachOfBound = 3;
 }  // namespace
 
 MmcProblem::MmcProblem(const DesignedPlate& plate, const TdfSettings& tdf, Goal goal,
-                       std::vector<std::vector<int>> places)
+                       std::vector<HeldOrLoaded> places)
     : plate_(plate.plate),
       design_(plate.design),
       ersatz_(plate.ersatz),
@@ -180,6 +180,8 @@ void MmcProblem::add_objective(optim::Response& out) const {
     out.df[n] = kLogPerUnit;
     add_each(e, out.f, first_row, out);
     out.dg.col(n).segment(first_row, e.values.f.size()).setConstant(-kLogPerUnit);
+    out.first_bound = first_row;
+    out.n_bounds = e.values.f.size();
   } else if (const double f = e.values.f[0]; e.row->full) {
     const double full = e.row->full(plate_);
     out.f = f / full;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "geometry/picture.h"
 #include "geometry/tdf.h"
 #include "optim/mmc/compliance_evaluator.h"
 #include "optim/mmc/design.h"
@@ -42,9 +43,9 @@ struct DesignedPlate {
 /// all rows that ask for the state; where none does, none is solved.
 class MmcProblem final : public optim::Problem {
  public:
-  /// @param places  cells of every loaded and every held place, see connectivity()
+  /// @param places  as those of connectivity()
   MmcProblem(const DesignedPlate& plate, const TdfSettings& tdf, Goal goal,
-             std::vector<std::vector<int>> places = {});
+             std::vector<HeldOrLoaded> places = {});
 
   int n_variables() const override { return design_.n_variables() + (bounded() ? 1 : 0); }
   /// Those of the limits in their order, then those of the bound, then those of the shape.
@@ -135,7 +136,7 @@ class MmcProblem final : public optim::Problem {
   UnionTdf tdf_;
   Goal goal_;
   std::vector<Entry> entries_;  // the objective first
-  std::vector<std::vector<int>> places_;
+  std::vector<HeldOrLoaded> places_;
   VectorXd start_;
   std::vector<Component> components_;
   CellFactors factors_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -63,6 +64,8 @@ struct Loads {
   std::vector<Location> locations;
   std::vector<Support> supports;
   std::vector<Load> loads;
+  /// What Load::acceleration of loads points to where they all have the same uniform one.
+  std::shared_ptr<const VectorXd> uniform_acceleration = {};
   std::optional<HeldEdge> held_edge = {};  ///< in front of all clamps; of all loads
   Grid grid;                               ///< of accelerations
   bool worst = false;  ///< What counts is the largest compliance, not the weighted sum.

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "io/files.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"
 
@@ -53,6 +55,46 @@ TEST(GoalRun, TheLightestPlateThatIsStiffEnough) {
   EXPECT_NE(report.find("mass [kg]"), std::string::npos);
 }
 
+// Under loads that are given, the full plate has the least compliance.
+TEST(GoalRun, RefusesALimitThatTheFullPlateMisses) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const auto ended = [&](const std::string& limit) {
+    return run(scratch, "short_beam", folder,
+               {"design.cell=0.1", "design.min_thickness=0.1",
+                "design.max_volume=", "design.minimize=volume", "design.max_compliance=" + limit,
+                "optimizer.max_iterations=1"});
+  };
+  const Ended refused = ended("30.0");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.err.find("design.max_compliance=30"), std::string::npos) << refused.err;
+  EXPECT_FALSE(std::filesystem::exists(folder));
+  // A beam with shear, up to the clamped end of a beam twice as long as high: C = F u.
+  const double beam = 8 / (3 * (1. / 12)) + 2 / (5. / 6 / 2.6);
+  const std::string words = "the summed compliance is ";
+  const size_t at = refused.err.find(words);
+  ASSERT_NE(at, std::string::npos) << refused.err;
+  EXPECT_NEAR(std::stod(refused.err.substr(at + words.size())), beam, 0.1 * beam);
+  EXPECT_NE(ended("60.0").code, 2);
+}
+
+// A design from a file, as it is: bars from the left edge to the load. The second support holds
+// nothing that is loaded; without the bar at the load the load has no way.
+TEST(GoalRun, NamesWhatTheDesignDoesNotUse) {
+  const Scratch scratch;
+  const auto words = [&](const std::string& bars, int code) {
+    io::write_file(scratch / "bars.csv", "X0,Y0,half_length,angle,c1,c2,c3\n" + bars);
+    const Ended ended = run(scratch, FLEXMORPH_UNUSED_SUPPORT, scratch / "out",
+                            {"design.start=\"" + (scratch / "bars.csv") + "\""});
+    EXPECT_EQ(ended.code, code) << ended.err;
+    return ended.err;
+  };
+  EXPECT_NE(words("0.3,0.5,0.4,0,0.1,0.1,0.1\n", 0).find("does not use support 2"),
+            std::string::npos);
+  EXPECT_NE(words("1.5,0.5,0.2,0,0.1,0.1,0.1\n", 5).find("no material joins load"),
+            std::string::npos);
+}
+
 // Of no interest to anybody, but a whole run without one state solved for its design: as much as is
 // wanted, and no more.
 TEST(GoalRun, WithoutAStateNoneIsSolved) {
@@ -72,15 +114,17 @@ TEST(GoalRun, WithoutAStateNoneIsSolved) {
   for (const std::string& cell : history.texts("compliance")) EXPECT_EQ(cell, "");
 }
 
-// A limit that no design keeps to is warned of.
+// Two limits that exclude each other make a design that is not usable.
 TEST(GoalRun, SaysWhatIsNotKept) {
   const Scratch scratch;
-  const nlohmann::json run = run_beam(
-      scratch, scratch / "out",
-      {"design.minimize=volume", "design.max_compliance=1.0", "optimizer.max_iterations=5"});
+  const nlohmann::json run =
+      run_beam(scratch, scratch / "out",
+               {"design.minimize=volume", "optimizer.max_iterations=5",
+                "design.constraint=[{response='compliance', at_most=45.0}, {response='mass', "
+                "at_most=200.0}]"},
+               5);
   const std::string warnings = run["warnings"].dump();
-  EXPECT_NE(warnings.find("the summed compliance"), std::string::npos) << warnings;
-  EXPECT_NE(warnings.find("is above what is allowed, 1: no design"), std::string::npos) << warnings;
+  EXPECT_NE(warnings.find("is above what is allowed, "), std::string::npos) << warnings;
 }
 
 // A design that joins nothing ends as what it is: on the screen, in its exit code, first in the
@@ -96,11 +140,12 @@ TEST(GoalRun, SaysWhatNobodyCanUse) {
   EXPECT_EQ(ended.code, 5);
   const auto json = nlohmann::json::parse(contents_of(folder + "/run.json"));
   EXPECT_EQ(json["status"], "done, not usable");
-  const std::string words = "no piece of material joins what is held and what is loaded";
+  const std::string words = "no material joins load 'tip' to a support";
   EXPECT_NE(ended.err.find("flexmorph: not usable: body 'beam': " + words), std::string::npos)
       << ended.err;
   const std::string counted = ", " + std::to_string(json["warnings"].size()) + " warnings: ";
-  EXPECT_NE(ended.out.find("done, not usable" + counted + folder), std::string::npos) << ended.out;
+  EXPECT_NE(ended.out.find("done, not usable: volume 0.0"), std::string::npos) << ended.out;
+  EXPECT_NE(ended.out.find(counted + folder), std::string::npos) << ended.out;
   const std::string report = contents_of(folder + "/report.html");
   EXPECT_LT(report.find(words), report.find("<table")) << "first in the report";
 }

@@ -2,12 +2,15 @@
 // trapezoidal rule, and that everything a run writes has a name of its own, a unit and a meaning.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <set>
 
 #include "cases/check/ready.h"
 #include "cases/results/motion_columns.h"
 #include "cases/results/schema.h"
+#include "cases/results/warnings.h"
 #include "tests/cases/scenes.h"
 
 namespace flexmorph::cases {
@@ -37,6 +40,63 @@ TEST(MotionRecord, IntegratesTheStrainEnergy) {
     record.table.add_row(std::vector<double>{t, 2 + 3 * t});
   EXPECT_NEAR(record.strain_integral(), 10, 1e-14);
   EXPECT_FALSE(record.amplitude("arm"));
+}
+
+/// A motion whose tip deflects as mean + size sin(2 pi t) over two periods, with an energy defect
+/// that falls to -loss of the largest energy, 1 J.
+MotionRecord swinging(double mean, double size, double loss = 0) {
+  MotionRecord record;
+  record.table = Series({{kTimeColumn, "s", "time", ColumnGroup::abscissa},
+                         {"plate" + kDeflectionEnding, "m", "tip", ColumnGroup::deflection},
+                         {kStrainColumn, "J", "strain energy", ColumnGroup::energy},
+                         {kDefectColumn, "J", "defect", ColumnGroup::energy}});
+  for (int k = 0; k <= 2000; ++k) {
+    const double t = 1e-3 * k;
+    const double tip = mean + size * std::sin(2 * std::numbers::pi * t);
+    record.table.add_row(std::vector<double>{t, tip, 1, -loss * t / 2});
+  }
+  record.result.energy_defect = loss;
+  return record;
+}
+
+// Over whole periods a sine has the root mean square size / sqrt(2); the trapezoidal rule is exact
+// for it on equal steps.
+TEST(Variation, OfASine) {
+  const MotionRecord motion = swinging(-2, 3);
+  const Variation found = variation_of(motion.time(), motion.table.values[1]);
+  EXPECT_NEAR(found.mean, -2, 1e-12);
+  EXPECT_NEAR(found.rms, 3 / std::numbers::sqrt2, 1e-12);
+  EXPECT_NEAR(found.peak_to_peak, 6, 1e-12);
+  EXPECT_NEAR(found.largest, 5, 1e-12);
+}
+
+/// Number of warnings with these words.
+std::ptrdiff_t count(const std::vector<Warning>& warnings, const std::string& words) {
+  return std::count_if(warnings.begin(), warnings.end(),
+                       [&](const Warning& w) { return w.words.find(words) != std::string::npos; });
+}
+
+TEST(Warnings, OfVibrationAndDissipation) {
+  const Scene scene = read("rotating_plate_v01");
+  RunResult result;
+  result.design.outcomes.emplace_back();
+  result.design.outcomes[0].body = "plate";
+  result.design.outcomes[0].iterations = 1;
+  result.design.outcomes[0].sharp.connectivity.connected = true;
+  const auto warned = [&](double size, double loss) {
+    result.motions.motion = swinging(0.1, size, loss);
+    result.motions.uniform = swinging(0.5, 1);
+    return warnings_of(scene, result);
+  };
+  EXPECT_EQ(count(warned(1.06, 0), "vibrates more than with uniform material"), 1);
+  EXPECT_EQ(count(warned(1.04, 0), "vibrates more"), 0);
+  EXPECT_EQ(count(warned(1, 0.011), "dissipates 1.1 % of the largest energy"), 1);
+  EXPECT_EQ(count(warned(1, 0.009), "dissipates"), 0);
+  const std::optional<TipVariation> tip = tip_variation(result.motions, "plate");
+  ASSERT_TRUE(tip);
+  EXPECT_NEAR(tip->rms_ratio(), 1, 1e-12);
+  EXPECT_NEAR(tip->designed.mean / tip->uniform.mean, 0.2, 1e-12);
+  EXPECT_FALSE(tip_variation(result.motions, "arm"));
 }
 
 void expect_described(const std::vector<ColumnInfo>& columns, const std::string& name) {

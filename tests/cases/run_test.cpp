@@ -349,8 +349,8 @@ TEST(Run, SaysWhichExpectationsItMisses) {
   EXPECT_NE(ended.err.find("missed: volume = 0."), std::string::npos) << ended.err;
   EXPECT_NE(ended.err.find("expected at most 0.1"), std::string::npos) << ended.err;
   EXPECT_EQ(ended.err.find("tip_deflection"), std::string::npos) << ended.err;
-  EXPECT_NE(ended.out.find("done, not usable, 5 warnings, 1 expectation missed"), std::string::npos)
-      << ended.out;
+  EXPECT_NE(ended.out.find("done, not usable: mass 0.6"), std::string::npos) << ended.out;
+  EXPECT_NE(ended.out.find(" s, 5 warnings, 1 expectation missed"), std::string::npos) << ended.out;
   const std::string report = contents_of(folder + "/report.html");
   EXPECT_LT(report.find("MISSED"), report.find("<h2>Results"));
   const nlohmann::json run = run_json(folder);

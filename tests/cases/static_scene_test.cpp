@@ -80,6 +80,34 @@ TEST(StaticScene, IsSymmetricWhereEverythingIs) {
   EXPECT_NE(start(0.1).x(), start(0).x());
 }
 
+// Weight acts with every load, is a load by itself, and is symmetric across its own direction only.
+TEST(StaticScene, HasItsOwnWeight) {
+  const std::vector<std::string> weight = {"gravity=[0.0, -10.0]", "domain.density=2.0"};
+  const auto read_with = [&](std::vector<std::string> changes) {
+    changes.insert(changes.begin(), weight.begin(), weight.end());
+    return read("short_beam", changes);
+  };
+  const Scene s = read_with({});
+  const mmc::BodyProblem problem = build_problems(s).front();
+  EXPECT_EQ(problem.design.n_images(), 1u);  // the load points along the weight
+  const VectorXd full = VectorXd::Ones(problem.grid.n_cells());
+  const VectorXd with = build_static_loads(s, problem)->displacement(full, full, 0),
+                 force =
+                     build_static_loads(read("short_beam"), problem)->displacement(full, full, 0);
+  const Scene alone = read_with({"load="});
+  ASSERT_EQ(alone.domain->loads.size(), 1u);
+  const VectorXd own = build_static_loads(alone, problem)->displacement(full, full, 0);
+  EXPECT_LT((with - force - own).norm(), 1e-12 * with.norm());
+  // Beam theory: q L^4 / (8 E I) with q = rho g A, and the shear of q L^2 / (2 kappa G A).
+  const double q = 2 * 10 * 1, beam = q * 16 / (8 * (1. / 12)) + q * 4 / (2 * (5. / 6 / 2.6));
+  const int tip = problem.grid.node(problem.grid.nx, problem.grid.ny / 2);
+  EXPECT_NEAR(-own[2 * tip + 1], beam, 0.05 * beam);
+  EXPECT_EQ(build_problems(read_with({"gravity=[-10.0, 0.0]", "load="})).front().design.n_images(),
+            2u);
+  EXPECT_THROW(read("short_beam", {"gravity=[0.0, -10.0]"}), Error);  // no density
+  EXPECT_THROW(read_with({"load=", "gravity=[0.0, 0.0]"}), Error);
+}
+
 TEST(StaticScene, LBracketKeepsOutOfWhatIsNotThere) {
   const Scene s = read("l_bracket");
   const mmc::BodyProblem problem = build_problems(s).front();

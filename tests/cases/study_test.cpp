@@ -149,12 +149,12 @@ TEST(Sweep, RunsCollectsAndSkips) {
   // How far it is, and what to think of designs that had no time.
   for (int n = 1; n <= 4; ++n)
     EXPECT_EQ(lines_with(first.out, std::to_string(n) + "/4 "), 1U) << first.out;
-  EXPECT_EQ(table.texts("converged"), Words(4, "0"));
-  EXPECT_EQ(lines_with(contents_of(folder + "/sweep.md"), "NOT CONVERGED"), 4U);
-  EXPECT_EQ(lines_with(contents_of(folder + "/sweep.md"), "4 of 4 runs did not converge"), 1U);
-  EXPECT_EQ(lines_with(first.out, "4 of 4 runs did not converge"), 1U);
+  EXPECT_EQ(table.texts("verdict"), Words(4, "unfinished"));
+  EXPECT_EQ(lines_with(contents_of(folder + "/sweep.md"), ", unfinished"), 4U);
+  EXPECT_EQ(lines_with(contents_of(folder + "/sweep.md"), "4 of 4 runs are unfinished"), 1U);
+  EXPECT_EQ(lines_with(first.out, "4 of 4 runs are unfinished"), 1U);
   const std::string sheet = contents_of(folder + "/sweep.svg");
-  EXPECT_EQ(lines_with(sheet, "max_iterations = 3 (NOT CONVERGED)</text>"), 2U);
+  EXPECT_EQ(lines_with(sheet, "max_iterations = 3 (unfinished)</text>"), 2U);
 
   const Ended second = test::flexmorph(scratch, small("sweep", folder, vary));
   EXPECT_EQ(second.code, 0);
@@ -265,7 +265,7 @@ TEST(Compare, MakesATableOfOptimizersFromTheSameStarts) {
   EXPECT_NE(contents_of(folder + "/compare.svg").find("Data profile"), std::string::npos);
   // Eight solves are no time to converge in.
   EXPECT_NE(contents_of(folder + "/compare.md").find("| mma | 2/2 | 0/2 |"), std::string::npos);
-  EXPECT_EQ(lines_with(contents_of(folder + "/compare.md"), "NOT CONVERGED"), 4U);
+  EXPECT_EQ(lines_with(contents_of(folder + "/compare.md"), ", unfinished"), 4U);
   EXPECT_EQ(test::lines_of(ended.out).size(), 6U) << ended.out;
 
   // Figures are what the columns say.

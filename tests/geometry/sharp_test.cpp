@@ -141,13 +141,35 @@ TEST(Connectivity, NamedPlacesMustBeJoined) {
   const Grid grid{.nx = 4, .ny = 3};
   VectorXd fractions = VectorXd::Zero(grid.n_cells());
   for (int i = 0; i < 4; ++i) fractions[grid.cell(i, 0)] = 1;
-  const std::vector<std::vector<int>> low = {{grid.cell(0, 0), grid.cell(0, 1)}, {grid.cell(2, 0)}};
-  const std::vector<std::vector<int>> high = {{grid.cell(0, 0)},
-                                              {grid.cell(3, 2), grid.cell(2, 2)}};
+  const std::vector<HeldOrLoaded> low = {{"left", true, {grid.cell(0, 0), grid.cell(0, 1)}},
+                                         {"right", false, {grid.cell(2, 0)}}};
+  const std::vector<HeldOrLoaded> high = {{"left", true, {grid.cell(0, 0)}},
+                                          {"top", false, {grid.cell(3, 2), grid.cell(2, 2)}}};
   EXPECT_TRUE(connectivity(grid, fractions, low).connected);
   EXPECT_FALSE(connectivity(grid, fractions, high).connected);
   for (int j = 0; j < 3; ++j) fractions[grid.cell(2, j)] = 1;
   EXPECT_TRUE(connectivity(grid, fractions, high).connected);
+}
+
+// A support that no load needs is named, and makes nothing loose; a load on a piece of its own is
+// loose.
+TEST(Connectivity, NamesLooseLoadsAndUnusedSupports) {
+  const Grid grid{.nx = 5, .ny = 3};
+  VectorXd fractions = VectorXd::Zero(grid.n_cells());
+  for (int i = 0; i < 3; ++i) fractions[grid.cell(i, 0)] = 1;
+  fractions[grid.cell(4, 2)] = 1;
+  std::vector<HeldOrLoaded> places = {{"left", true, {grid.cell(0, 0)}},
+                                      {"top", true, {grid.cell(4, 2)}},
+                                      {"tip", false, {grid.cell(2, 0), grid.cell(2, 1)}}};
+  const Connectivity whole = connectivity(grid, fractions, places);
+  EXPECT_TRUE(whole.connected);
+  EXPECT_EQ(whole.islands, 1);
+  EXPECT_EQ(whole.unused_supports, std::vector<std::string>{"top"});
+  places[1].is_support = false;
+  const Connectivity torn = connectivity(grid, fractions, places);
+  EXPECT_FALSE(torn.connected);
+  EXPECT_EQ(torn.loose_loads, std::vector<std::string>{"top"});
+  EXPECT_TRUE(torn.unused_supports.empty());
 }
 
 // Samples are in a triangle, or not, one by one.

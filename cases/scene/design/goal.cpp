@@ -114,6 +114,7 @@ void read_limit(const Table& t, const Key& key, const ResponseRow& row, const mm
   Key of_row = key.measured_in(std::string(row.unit));
   if (row.full) of_row = of_row.within(0, without_round_off(row.full(plate)));
   goal.limits.emplace_back(row, t.number(of_row), key.name == kAtLeast.name, plate);
+  goal.limits.back().key_path = t.path() + "." + key.name;
 }
 
 std::string noun_of(const ResponseRow& row) { return std::string("a ").append(row.words); }

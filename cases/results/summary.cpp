@@ -1,0 +1,82 @@
+#include "cases/results/summary.h"
+
+#include <cmath>
+
+#include "io/files.h"
+
+namespace flexmorph::cases {
+namespace {
+
+/// Mass of all designs; their volume fractions where a plate has no density.
+std::string mass_words(const DesignResult& design) {
+  double mass = 0;
+  std::string volumes;
+  for (const mmc::BodyProblem& problem : design.problems)
+    for (const mmc::BodyOutcome& outcome : design.outcomes)
+      if (outcome.body == problem.body) {
+        mass += outcome.sharp.volume * mmc::full_mass_of(problem);
+        volumes += (volumes.empty() ? "volume " : " and ") + io::to_text(outcome.sharp.volume, 4);
+      }
+  return mass > 0 ? "mass " + io::to_text(mass, 4) + " kg" : volumes;
+}
+
+std::string gain(double designed, double uniform) {
+  const double change = 100 * (designed / uniform - 1);
+  return io::to_text(std::abs(change), 3) + (change < 0 ? " % below" : " % above") +
+         " uniform material of this mass";
+}
+
+/// How the designs compare with uniform material: in the motion, or under the loads of a plate at
+/// rest.
+std::string gain_words(const RunResult& result) {
+  const std::optional<MotionRecord>&motion = result.motions.assessed(),
+        &uniform = result.motions.assessed_uniform();
+  if (motion && uniform)
+    return "strain energy integral of the motion " +
+           gain(motion->strain_integral(), uniform->strain_integral());
+  double designed = 0, even = 0;
+  for (const mmc::BodyOutcome& outcome : result.design.outcomes) {
+    designed += outcome.sharp.compliance;
+    even += outcome.uniform_compliance;
+  }
+  return even > 0 ? "compliance " + gain(designed, even) : "";
+}
+
+std::string verdict_words(const DesignResult& design) {
+  std::string out;
+  for (const mmc::BodyOutcome& outcome : design.outcomes)
+    out += (out.empty() ? "" : ", ") +
+           (design.outcomes.size() > 1 ? "'" + outcome.body + "' " : std::string()) +
+           optim::to_string(outcome.verdict.kind);
+  return out;
+}
+
+}  // namespace
+
+std::optional<TipVariation> tip_variation(const MotionResults& motions, const std::string& body) {
+  const auto of = [&](const std::optional<MotionRecord>& motion) -> std::optional<Variation> {
+    const std::vector<double>* tip =
+        motion ? motion->table.find(body + kDeflectionEnding) : nullptr;
+    if (!tip || tip->size() < 2) return {};
+    return variation_of(motion->time(), *tip);
+  };
+  const std::optional<Variation> designed = of(motions.assessed()),
+                                 uniform = of(motions.assessed_uniform());
+  if (!designed || !uniform) return {};
+  return TipVariation{*designed, *uniform};
+}
+
+std::string summary_words(const RunResult& result) {
+  std::string out;
+  const auto add = [&](const std::string& words) {
+    if (!words.empty()) out += words + ", ";
+  };
+  if (!result.design.outcomes.empty()) {
+    add(mass_words(result.design));
+    add(gain_words(result));
+    add(verdict_words(result.design));
+  }
+  return out + io::to_text(result.info.seconds_wall, 3) + " s";
+}
+
+}  // namespace flexmorph::cases
