@@ -25,6 +25,7 @@
 #include "cases/study/sweep.h"
 #include "geometry/plain_numbers.h"
 #include "geometry/processor.h"
+#include "geometry/text.h"
 #include "io/case_document.h"
 #include "io/case_parser.h"
 #include "io/files.h"
@@ -181,10 +182,9 @@ void refuse_unknown_command(const CLI::App& app, const std::string& word) {
       std::find(shipped.begin(), shipped.end(), word) != shipped.end())
     throw Error::input("'" + word + "' is a case: flexmorph run " + word);
   const std::string close = flexmorph::io::nearest(word, names);
-  std::string known;
-  for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
   throw Error::input("'" + word + "' is no command" +
-                     (close.empty() ? "; there are " + known : ", did you mean '" + close + "'?"));
+                     (close.empty() ? "; there are " + flexmorph::joined(names)
+                                    : ", did you mean '" + close + "'?"));
 }
 
 /// What stands in buffers goes out, or is missed: a full disk, a closed pipe.

@@ -1,6 +1,9 @@
 #include "fem/terms.h"
 
 #include <algorithm>
+#include <ranges>
+
+#include "geometry/text.h"
 
 namespace flexmorph::fem {
 
@@ -89,12 +92,10 @@ std::vector<std::string> term_names(TermPlace place) {
 }
 
 const TermRow& term_row(const std::string& name) {
-  std::string known;
-  for (const TermRow* row : term_rows()) {
+  for (const TermRow* row : term_rows())
     if (row->name == name) return *row;
-    known += (known.empty() ? "" : ", ") + row->name;
-  }
-  throw Error::input("term '" + name + "' is unknown; known are: " + known);
+  throw Error::input("term '" + name + "' is unknown; known are: " +
+                     joined(std::views::transform(term_rows(), &TermRow::name)));
 }
 
 std::vector<std::string> alternatives(const TermRow& row, TermPlace place) {

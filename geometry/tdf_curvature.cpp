@@ -1,5 +1,4 @@
 #include <cassert>
-#include <cmath>
 
 #include "geometry/component_tdf.h"
 #include "geometry/tdf.h"

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "geometry/base.h"
+#include "geometry/text.h"
 #include "io/case_forms.h"
 #include "io/case_parser.h"
 
@@ -50,7 +51,6 @@ std::string trimmed(const std::string& s) {
 /// The entry of a list that KEY means; steps over its label when there is one.
 CaseNode& entry_of(CaseNode& list, const std::string& so_far, const std::vector<std::string>& keys,
                    size_t& next, const std::string& option) {
-  std::string known;
   const std::vector<std::string> labels = entry_labels(list);
   for (size_t i = 0; i < list.entries.size(); ++i) {
     const std::string& label = labels[i];
@@ -58,11 +58,10 @@ CaseNode& entry_of(CaseNode& list, const std::string& so_far, const std::vector<
       ++next;
       return list.entries[i];
     }
-    known += (i ? ", " : "") + label;
   }
   if (list.entries.size() == 1) return list.entries[0];
   throw Error::input(option + ": " + so_far + " has " + std::to_string(list.entries.size()) +
-                     " entries; write " + so_far + ".ENTRY.KEY with one of " + known);
+                     " entries; write " + so_far + ".ENTRY.KEY with one of " + joined(labels));
 }
 
 void collect_unknown(const CaseNode& node, const std::string& path,

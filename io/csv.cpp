@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "geometry/base.h"
+#include "geometry/text.h"
 #include "io/files.h"
 #include "io/tables.h"
 
@@ -68,9 +69,8 @@ size_t add_cells(char* begin, char* line_end, char separator, std::vector<std::s
 size_t place_of(const CsvTable& table, const std::string& column) {
   const auto found = std::find(table.columns.begin(), table.columns.end(), column);
   if (found != table.columns.end()) return static_cast<size_t>(found - table.columns.begin());
-  std::string known;
-  for (const std::string& name : table.columns) known += (known.empty() ? "'" : ", '") + name + "'";
-  throw Error::input("table: there is no column '" + column + "'; its columns are " + known);
+  throw Error::input("table: there is no column '" + column + "'; its columns are " +
+                     joined(table.columns, ", ", "'"));
 }
 
 double number_of(std::string_view text) {

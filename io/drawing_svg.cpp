@@ -6,7 +6,6 @@
 #include <libxml/parser.h>
 #include <libxml/tree.h>
 
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <memory>

@@ -1,6 +1,5 @@
 // Where formulas of time jump, have corners or no values.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 #include <tuple>

@@ -1,6 +1,5 @@
 #include "io/key.h"
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "io/case_parser.h"

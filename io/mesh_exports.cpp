@@ -1,7 +1,6 @@
 #include "io/mesh_exports.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 #include "io/files.h"

@@ -212,27 +212,6 @@ FolderLock::~FolderLock() {
   if (list_ >= 0) close(list_);
 }
 
-void remove_listed(const std::string& folder) {
-  const int lock = lock_of(list_of(folder), O_RDWR | O_NOFOLLOW);
-  if (lock < 0 && errno == EWOULDBLOCK) refuse(folder, owner_of(folder) + " is filling it");
-  if (lock < 0) return;  // without a list nothing in it is ours
-  std::ifstream list(list_of(folder));
-  std::error_code none;
-  std::set<fs::path> folders;
-  std::string name;
-  std::getline(list, name);  // who wrote it
-  while (std::getline(list, name)) {
-    if (leaves_folder(name)) continue;
-    const fs::path path = fs::path(folder) / name;
-    if (fs::is_regular_file(fs::symlink_status(path, none))) fs::remove(path, none);
-    folders.insert(path.parent_path());
-  }
-  fs::remove(list_of(folder), none);
-  close(lock);
-  folders.insert(fs::path(folder));
-  for (auto at = folders.rbegin(); at != folders.rend(); ++at) fs::remove(*at, none);
-}
-
 bool is_being_filled(const std::string& folder) {
   const int list = open(list_of(folder).c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
   if (list < 0) return false;

@@ -75,11 +75,6 @@ class FolderLock {
   int list_ = -1;
 };
 
-/// Removes the files of a folder that stand in its list, then folders in it that are empty, and
-/// itself if it is. What else is in it stays.
-/// @throws Error (input) when a living process fills it.
-void remove_listed(const std::string& folder);
-
 /// Does a living process fill this folder?
 bool is_being_filled(const std::string& folder);
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "geometry/text.h"
 #include "io/files.h"
 #include "io/png.h"
 #include "io/tables.h"
@@ -124,8 +124,7 @@ std::string bar(const PartPicture& picture, double x, double y, double width) {
   std::string out;
   for (int k = 0; k < kSteps; ++k) {
     const auto color = map_color((k + 0.5) / kSteps);
-    char hex[8];
-    std::snprintf(hex, sizeof hex, "#%02x%02x%02x", color[0], color[1], color[2]);
+    const std::string hex = formatted("#%02x%02x%02x", color[0], color[1], color[2]);
     out += "<rect x=\"" + to_text(x + k * width / kSteps, 6) + "\" y=\"" + number(y) +
            "\" width=\"" + to_text(1.05 * width / kSteps, 6) + "\" height=\"12\" fill=\"" + hex +
            "\"/>\n";

@@ -1,8 +1,10 @@
 #include <cmath>
 #include <functional>
 #include <locale>
+#include <ranges>
 #include <sstream>
 
+#include "geometry/text.h"
 #include "optim/makers.h"
 
 namespace flexmorph::optim {
@@ -17,12 +19,6 @@ const std::map<std::string, Maker>& table() {
                                                       {"nlopt_ccsaq", make_nlopt},
                                                       {"ipopt", make_ipopt}};
   return makers;
-}
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
 }
 
 std::string number(double value) {
@@ -83,12 +79,9 @@ Options with_defaults(const Settings& settings, const Options& defaults) {
   Options options = defaults;
   for (const auto& [name, value] : settings.options) {
     const auto known = options.find(name);
-    if (known == options.end()) {
-      std::vector<std::string> names;
-      for (const auto& [allowed, unused] : defaults) names.push_back(allowed);
+    if (known == options.end())
       throw Error::input("optimizer '" + settings.name + "': option '" + name +
-                         "' is not known; there are: " + joined(names));
-    }
+                         "' is not known; there are: " + joined(std::views::keys(defaults)));
     if (!std::isfinite(value)) {
       throw Error::input("optimizer '" + settings.name + "': option '" + name + "' is not finite");
     }

@@ -43,10 +43,11 @@ std::string design_key(size_t design, const std::string& rest) {
   return "design." + std::to_string(design) + "." + rest + "=";
 }
 
-/// Overrides of one design on cells `size`/`own` times as many in each direction. The band, the
-/// erosion and the smooth maximum stay as many cells: finer cells show sharper components.
-void refine_design(const BodyDesign& d, const io::Table& t, size_t index, int own, int size,
-                   Overrides& out) {
+/// Returns the overrides of one design on cells `size`/`own` times as many in each direction. The
+/// band, the erosion and the smooth maximum stay as many cells: finer cells show sharper
+/// components.
+Overrides refine_design(const BodyDesign& d, const io::Table& t, size_t index, int own, int size) {
+  Overrides out;
   const double finer = static_cast<double>(size) / own;
   const int nx = d.grid.nx / own * size, ny = d.grid.ny / own * size;
   if (t.has(design_keys::kCells))
@@ -67,6 +68,7 @@ void refine_design(const BodyDesign& d, const io::Table& t, size_t index, int ow
   };
   strips(solid, "solid");
   strips(empty, "void");
+  return out;
 }
 
 Levels cell_levels(const Scene& scene, const io::CaseFile& file) {
@@ -83,7 +85,9 @@ Levels cell_levels(const Scene& scene, const io::CaseFile& file) {
       const Grid& g = scene.designs[i].grid;
       level.name +=
           (i > 0 ? ", " : "") + to_text(g.nx / own * size) + " x " + to_text(g.ny / own * size);
-      if (size != own) refine_design(scene.designs[i], tables[i], i, own, size, level.overrides);
+      if (size == own) continue;
+      const Overrides finer = refine_design(scene.designs[i], tables[i], i, own, size);
+      level.overrides.insert(level.overrides.end(), finer.begin(), finer.end());
     }
   }
   return out;

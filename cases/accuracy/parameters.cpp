@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ranges>
 
 #include "cases/scene/elements/row.h"
 #include "cases/scene/joints/row.h"
+#include "geometry/text.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
@@ -316,12 +318,10 @@ const std::vector<Parameter>& parameters() {
 }
 
 const Parameter& parameter(const std::string& name) {
-  std::string known;
-  for (const Parameter& each : parameters()) {
+  for (const Parameter& each : parameters())
     if (each.name == name) return each;
-    known += (known.empty() ? "" : ", ") + each.name;
-  }
-  throw Error::input("ladder '" + name + "' is not known; there are: " + known);
+  throw Error::input("ladder '" + name + "' is not known; there are: " +
+                     joined(std::views::transform(parameters(), &Parameter::name)));
 }
 
 Level make_level(double h, const std::string& name, bool is_case,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/text.h"
 #include "io/plots.h"
 #include "io/tables.h"
 
@@ -109,10 +110,8 @@ Rows recommendation_rows(const AccuracyStudy& study) {
   Rows rows = {{"target", "settings", "predicted error", "measured error", "CPU s predicted",
                 "CPU s", "verdict", "file"}};
   for (const Recommendation& r : study.recommendations) {
-    std::string names;
-    for (const std::string& name : r.names) names += (names.empty() ? "" : "; ") + name;
     const bool found = !r.names.empty();
-    rows.push_back({percent(r.target), names, found ? percent(r.error) : "",
+    rows.push_back({percent(r.target), joined(r.names, "; "), found ? percent(r.error) : "",
                     r.verified ? percent(r.measured_error) : "", found ? to_text(r.seconds, 3) : "",
                     r.verified ? to_text(r.seconds_cpu, 3) : "", r.sentence, r.file});
   }

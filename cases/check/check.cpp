@@ -12,6 +12,7 @@
 #include "cases/scene/joints/row.h"
 #include "cases/scene/read.h"
 #include "fem/dynamics/rigid_motion.h"
+#include "geometry/text.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
@@ -72,10 +73,7 @@ void describe_course(const Scene& scene, std::ostringstream& out) {
 }
 
 std::string measure_words(const Measure& measure) {
-  std::string out;
-  for (const std::string& quantity : measure.quantities)
-    out += (out.empty() ? "" : ", ") + quantity;
-  return out + " of " + measure.body;
+  return joined(measure.quantities) + " of " + measure.body;
 }
 
 std::string load_words(const BodyLoad& load) {
@@ -98,9 +96,7 @@ void describe_body(const Body& body, const Mechanism& mechanism, std::ostringstr
              body.row->name + mesh + " elements, " + std::to_string(n) + " unknowns, about " +
                  millions(built.element->n_elements() * (each.force + each.tangent)) +
                  " Mflop for a force and tangent");
-  std::string terms;
-  for (const std::string& t : body.terms) terms += (terms.empty() ? "" : ", ") + t;
-  out << row("", "terms: " + terms);
+  out << row("", "terms: " + joined(body.terms));
   if (body.arc != 0) out << row("", "undeformed an arc of " + io::to_text(body.arc, 4) + " rad");
   if (body.heat) {
     out << row("heat of " + body.name, temperature_words(*body.heat) + ", expansion " +

@@ -9,6 +9,7 @@
 #include "fem/dynamics/rigid_motion.h"
 #include "fem/solve/blas_room.h"
 #include "fem/solve/scaled_constraints.h"
+#include "geometry/text.h"
 #include "io/case_document.h"
 #include "io/files.h"
 
@@ -158,10 +159,9 @@ std::string find_case(const std::string& name) {
   if (std::filesystem::exists(name)) return name;
   const std::string stem = std::filesystem::path(name).stem().string();
   const std::string close = io::nearest(stem, shipped);
-  std::string known;
-  for (const std::string& each : shipped) known += (known.empty() ? "" : ", ") + each;
-  throw Error::input("case '" + name + "': no such file, and not a shipped case" +
-                     (close.empty() ? " (" + known + ")" : ", did you mean '" + close + "'?"));
+  throw Error::input(
+      "case '" + name + "': no such file, and not a shipped case" +
+      (close.empty() ? " (" + joined(shipped) + ")" : ", did you mean '" + close + "'?"));
 }
 
 }  // namespace flexmorph::cases

@@ -8,6 +8,7 @@
 #include "cases/scene/body_keys.h"
 #include "cases/scene/tables.h"
 #include "geometry/base.h"
+#include "geometry/text.h"
 #include "io/case_document.h"
 #include "io/files.h"
 
@@ -172,11 +173,9 @@ const KeyTable& table_of_keys(const std::string& path) {
       return table;
   const std::vector<std::string> known = key_table_names();
   const std::string close = io::nearest(path, known);
-  std::string all;
-  for (const std::string& each : known) all += (all.empty() ? "" : ", ") + each;
   throw Error::input(
       "there is no table '" + path + "'" +
-      (close.empty() ? "; the tables are " + all : ", did you mean '" + close + "'?"));
+      (close.empty() ? "; the tables are " + joined(known) : ", did you mean '" + close + "'?"));
 }
 
 std::string type_words(const io::Key& key) {

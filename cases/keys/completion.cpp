@@ -4,6 +4,7 @@
 #include <set>
 
 #include "cases/keys/book.h"
+#include "geometry/text.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -47,35 +48,30 @@ std::vector<Settable> settable_keys() {
   return out;
 }
 
-std::string joined(const std::vector<std::string>& words, const std::string& between = " ") {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : between) + word;
-  return text;
-}
-
 /// What both shells know, as functions that print words.
 std::string shared_functions(const std::vector<CommandWords>& commands) {
   std::string out = "_flexmorph_words() {  # of a key\n  case \"$1\" in\n";
   std::string keys;
   for (const Settable& each : settable_keys()) {
     keys += " " + each.key + "=";
-    if (!each.words.empty()) out += "    " + each.key + ") echo " + joined(each.words) + " ;;\n";
+    if (!each.words.empty())
+      out += "    " + each.key + ") echo " + joined(each.words, " ") + " ;;\n";
   }
   out += "  esac\n}\n_flexmorph_keys() { echo" + keys + "; }\n";
-  out += "_flexmorph_tables() { echo " + joined(key_table_names()) + "; }\n";
+  out += "_flexmorph_tables() { echo " + joined(key_table_names(), " ") + "; }\n";
   std::string names, options, positionals;
   std::set<std::string> valued;
   for (const CommandWords& command : commands) {
     names += " " + command.name;
-    options += "    " + command.name + ") echo " + joined(command.options) + " ;;\n";
+    options += "    " + command.name + ") echo " + joined(command.options, " ") + " ;;\n";
     positionals += "    " + command.name + ") echo \"" + command.positional + "\" ;;\n";
     valued.insert(command.valued.begin(), command.valued.end());
   }
   out += "_flexmorph_commands() { echo" + names + " --help --version; }\n";
   out += "_flexmorph_options() {  # of a command\n  case \"$1\" in\n" + options + "  esac\n}\n";
   out += "_flexmorph_follows() {  # a command\n  case \"$1\" in\n" + positionals + "  esac\n}\n";
-  out += "_flexmorph_is_valued() {\n  case \"$1\" in\n    " +
-         joined({valued.begin(), valued.end()}, "|") + ") return 0 ;;\n  esac\n  return 1\n}\n";
+  out += "_flexmorph_is_valued() {\n  case \"$1\" in\n    " + joined(valued, "|") +
+         ") return 0 ;;\n  esac\n  return 1\n}\n";
   return out;
 }
 

@@ -2,10 +2,7 @@
 
 #include <array>
 
-#include "cases/output/plots/measured.h"
-#include "cases/output/plots/mechanism.h"
-#include "cases/output/plots/run.h"
-#include "cases/output/plots/stress.h"
+#include "cases/output/plots/plots.h"
 #include "cases/results/correction_messages.h"
 #include "cases/results/run_json.h"
 #include "cases/scene/design/goal.h"

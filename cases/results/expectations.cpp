@@ -1,11 +1,11 @@
 #include "cases/results/expectations.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "cases/results/limit_points.h"
 #include "cases/results/quantities.h"
 #include "cases/results/schema.h"
+#include "geometry/text.h"
 #include "io/tables.h"
 
 namespace flexmorph::cases {
@@ -137,10 +137,8 @@ void check_expectations(const PreparedCase& prepared) {
     const std::string column =
         name.ends_with(kLargest) ? name.substr(0, name.size() - kLargest.size()) : name;
     if (std::find(known.begin(), known.end(), column) != known.end()) continue;
-    std::string all;
-    for (const std::string& each : known) all += (all.empty() ? "" : ", ") + each;
     throw Error::input(wanted.place + ": expect.\"" + name +
-                       "\": a run of this case has no such number; there are: " + all +
+                       "\": a run of this case has no such number; there are: " + joined(known) +
                        "; of columns also their largest size, COLUMN.largest (--set expect= "
                        "leaves them out)");
   }

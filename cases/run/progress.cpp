@@ -8,18 +8,13 @@
 #include <cstdlib>
 
 #include "cases/assembly/resource_estimate.h"
+#include "geometry/text.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
 namespace {
 
 constexpr double kTerminal = 0.1, kElsewhere = 30;  // seconds between lines
-
-std::string one(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 /// Of the terminal.
 int columns() {
@@ -91,8 +86,9 @@ void Progress::iteration(const mmc::IterationReport& r, double most) {
   text += time_left(since_begin(), iterations_ / (iterations_ + most - all_));
   // Goals without a compliance have none.
   if (std::isfinite(r.state.compliance()))
-    text += ", compliance " + one("%.5g", r.state.compliance());
-  text += ", volume " + one("%.4f", r.state.volume()) + ", kkt " + one("%.1e", r.iterate.kkt);
+    text += ", compliance " + formatted("%.5g", r.state.compliance());
+  text += ", volume " + formatted("%.4f", r.state.volume()) + ", kkt " +
+          formatted("%.1e", r.iterate.kkt);
   line(text, r.iteration == 1 || r.iteration % 25 == 0);
 }
 
@@ -102,9 +98,9 @@ void Progress::way(const std::string& phase, double part, const std::string& wor
   const double pause = std::chrono::duration<double>(Clock::now() - shown_).count();
   if (pause < (terminal_ ? kTerminal : kElsewhere)) return;
   shown_ = Clock::now();
-  line(
-      phase + ": " + words + ", " + one("%.0f", 100 * part) + " %" + time_left(since_begin(), part),
-      true);
+  line(phase + ": " + words + ", " + formatted("%.0f", 100 * part) + " %" +
+           time_left(since_begin(), part),
+       true);
 }
 
 Failure Progress::where() const {

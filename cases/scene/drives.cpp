@@ -4,6 +4,7 @@
 #include "cases/scene/body_keys.h"
 #include "cases/scene/read.h"
 #include "cases/scene/tables.h"
+#include "geometry/text.h"
 #include "io/files.h"
 #include "io/formula.h"
 #include "io/smooth_table.h"
@@ -149,10 +150,8 @@ std::function<fem::Motion(double)> read_csv_drive(const Table& t, double end, st
     try {
       return csv.numbers(wanted);
     } catch (const Error& error) {
-      std::string known;
-      for (const std::string& each : csv.columns)
-        known += (known.empty() ? "'" : ", '") + each + "'";
-      t.fail(key, "'" + name + "' has no column '" + wanted + "'; its columns are " + known);
+      t.fail(key, "'" + name + "' has no column '" + wanted + "'; its columns are " +
+                      joined(csv.columns, ", ", "'"));
     }
   };
   io::CsvTable csv;

@@ -1,12 +1,13 @@
 #include "cases/stability/suites.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
+#include <ranges>
 
 #include "cases/scene/elements/row.h"
 #include "cases/scene/joints/row.h"
 #include "cases/study/study.h"
+#include "geometry/text.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
@@ -206,12 +207,10 @@ const std::vector<Suite>& suites() {
 }
 
 const Suite& suite(const std::string& name) {
-  std::string known;
-  for (const Suite& each : suites()) {
+  for (const Suite& each : suites())
     if (each.name == name) return each;
-    known += (known.empty() ? "" : ", ") + each.name;
-  }
-  throw Error::input("--suites " + name + ": no such suite; there are: " + known);
+  throw Error::input("--suites " + name + ": no such suite; there are: " +
+                     joined(std::views::transform(suites(), &Suite::name)));
 }
 
 std::vector<std::string> short_overrides(const Scene& scene, Part part) {

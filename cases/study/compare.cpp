@@ -6,6 +6,7 @@
 #include "cases/check/ready.h"
 #include "cases/run/run.h"
 #include "cases/study/compare_report.h"
+#include "geometry/text.h"
 #include "io/tables.h"
 #include "optim/optimizer.h"
 
@@ -16,11 +17,10 @@ namespace {
 std::vector<std::string> optimizers_of(const CompareOptions& options) {
   const std::vector<std::string> known = optim::optimizer_names();
   if (options.optimizers.empty()) return known;
-  std::string all;
-  for (const std::string& name : known) all += (all.empty() ? "" : ", ") + name;
   for (const std::string& name : options.optimizers) {
     if (std::find(known.begin(), known.end(), name) == known.end())
-      throw Error::input("compare: --optimizers: '" + name + "' is unknown; there are " + all);
+      throw Error::input("compare: --optimizers: '" + name + "' is unknown; there are " +
+                         joined(known));
     if (std::count(options.optimizers.begin(), options.optimizers.end(), name) > 1)
       throw Error::input("compare: --optimizers: '" + name + "' is there twice");
   }

@@ -1,9 +1,9 @@
 #include "fem/dynamics/dense_output.h"
 
 #include <cmath>
-#include <cstdio>
 
 #include "fem/solve/scaled_constraints.h"
+#include "geometry/text.h"
 
 namespace flexmorph::fem {
 
@@ -75,12 +75,10 @@ void DenseOutput::project_position(State& x) {
     if (moved <= kOnto || (pass > 2 && moved < kRoundOff && moved > 0.5 * last)) return;
     last = moved;
     if (pass < kMost && std::isfinite(moved)) continue;
-    char text[160];
-    std::snprintf(text, sizeof text,
-                  "dense output: the state at t = %.6g s does not reach its constraints: it moves "
+    throw Error::numerical(
+        formatted("dense output: the state at t = %.6g s does not reach its constraints: it moves "
                   "by %.1e of the model's size",
-                  x.t, moved);
-    throw Error::numerical(text);
+                  x.t, moved));
   }
 }
 

@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <cstdio>
 
 #include "fem/body_joints.h"
 #include "fem/dynamics/rigid_kinematics.h"
 #include "fem/solve/assembly.h"
+#include "geometry/text.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -15,11 +15,7 @@ struct Given {
   std::string words;
 };
 
-std::string text_of(double value, int digits = 6) {
-  char out[32];
-  std::snprintf(out, sizeof out, "%.*g", digits, value);
-  return out;
-}
+std::string text_of(double value, int digits = 6) { return formatted("%.*g", digits, value); }
 
 /// Adds joints that drive all bodies with their given velocities.
 std::vector<Given> drive_as_given(const RigidMechanism& mechanism, const State& x,

@@ -1,10 +1,12 @@
 #include "fem/dynamics/integrator.h"
 
 #include <map>
+#include <ranges>
 
 #include "fem/dynamics/energy_momentum.h"
 #include "fem/dynamics/generalized_alpha.h"
 #include "fem/dynamics/minimal_coordinates.h"
+#include "geometry/text.h"
 
 namespace flexmorph::fem {
 
@@ -42,11 +44,9 @@ double Integrator::first_step(const State&, double, double longest) { return lon
 
 std::unique_ptr<Integrator> make_integrator(Workspace& model, const IntegratorSettings& settings) {
   const auto row = table().find(settings.name);
-  if (row == table().end()) {
-    std::string known;
-    for (const auto& [name, maker] : table()) known += (known.empty() ? "" : ", ") + name;
-    throw Error::input("integrator '" + settings.name + "' is unknown; known are: " + known);
-  }
+  if (row == table().end())
+    throw Error::input("integrator '" + settings.name +
+                       "' is unknown; known are: " + joined(std::views::keys(table())));
   return row->second(model, settings);
 }
 

@@ -4,11 +4,11 @@
 #include <boost/numeric/odeint/stepper/controlled_runge_kutta.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "fem/dynamics/acceleration_solver.h"
 #include "fem/dynamics/coordinate_partition.h"
+#include "geometry/text.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -66,12 +66,6 @@ class ErrorInScaledUnits {
 };
 
 using Stepper = odeint::controlled_runge_kutta<DormandPrince, ErrorInScaledUnits>;
-
-std::string text(const char* format, auto... values) {
-  char out[256];
-  std::snprintf(out, sizeof out, format, values...);
-  return out;
-}
 
 }  // namespace
 
@@ -180,7 +174,7 @@ void MinimalCoordinates::Impl::find_positions(double motion) {
       at.q[dependent[k]] += correction[static_cast<Eigen::Index>(k)];
     before = now;
   }
-  throw Error::numerical(text("the dependent positions were not found at t = %.9g s", at.t));
+  throw Error::numerical(formatted("the dependent positions were not found at t = %.9g s", at.t));
 }
 
 /// Φ_q q̇ = -Φ_t for the dependent velocities of `at`.
@@ -281,16 +275,16 @@ double MinimalCoordinates::Impl::fastest_vibration(const State& x) {
 }
 
 void MinimalCoordinates::Impl::give_up(const State& x, double h, const std::string& reason) {
-  std::string message = text("minimal_coordinates: at t = %.9g s, step %d, step size %.3g s ", x.t,
-                             counts.steps + 1, h);
+  std::string message = formatted("minimal_coordinates: at t = %.9g s, step %d, step size %.3g s ",
+                                  x.t, counts.steps + 1, h);
   if (!reason.empty()) throw Error::numerical(message + "is too small to go on: " + reason);
   const double omega = fastest_vibration(x);
   if (h * omega > 0.1)
     throw Error::numerical(
-        message + text("is limited by stability: the model is stiff, its fastest vibration of "
-                       "%.2g rad/s allows explicit steps of %.2g s. integrator = "
-                       "\"generalized_alpha\" is not bound by it.",
-                       omega, 1 / omega));
+        message + formatted("is limited by stability: the model is stiff, its fastest vibration of "
+                            "%.2g rad/s allows explicit steps of %.2g s. integrator = "
+                            "\"generalized_alpha\" is not bound by it.",
+                            omega, 1 / omega));
   throw Error::numerical(message +
                          "is too small to go on: does a drive or a load jump there? A larger "
                          "time.tolerance may help.");

@@ -1,17 +1,15 @@
 #include "fem/dynamics/motion_failures.h"
 
-#include <cstdio>
+#include "geometry/text.h"
 
 namespace flexmorph::fem {
 
 Error collapsed(double t, int step, double ratio) {
-  char text[300];
-  std::snprintf(text, sizeof text,
-                "motion: the material has collapsed at t = %.6g s, step %d: smallest area ratio "
+  return Error::numerical(
+      formatted("motion: the material has collapsed at t = %.6g s, step %d: smallest area ratio "
                 "|r_m x r_n| = %.2e. It is too soft for its loads or too hot, or time.step is too "
                 "long for what changes in it: then a smaller one helps.",
-                t, step, ratio);
-  return Error::numerical(text);
+                t, step, ratio));
 }
 
 Error gained_energy(const MotionSettings& settings, double t, int step, double defect,
@@ -25,9 +23,7 @@ Error gained_energy(const MotionSettings& settings, double t, int step, double d
   } else {
     remedy += " helps";
   }
-  char text[300];
-  std::snprintf(
-      text, sizeof text,
+  const std::string text = formatted(
       "motion: no drive brings energy in, but by t = %.6g s, step %d, the energy has grown by "
       "%.3g J, %.0f %% of the largest (by more than 10 %% from t = %.6g s on): the "
       "steps do not follow the motion. ",

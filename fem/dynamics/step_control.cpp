@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "geometry/base.h"
+#include "geometry/text.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -72,10 +72,8 @@ void StepControl::shorten(double h, double t, const char* why) {
   last_ = 0;
   wish_ = h;
   if (h >= smallest_) return;
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "adaptive step: at t = %.6g s %s: the next step would be %.2e s long", t, why, h);
-  throw Error::numerical(text);
+  throw Error::numerical(
+      formatted("adaptive step: at t = %.6g s %s: the next step would be %.2e s long", t, why, h));
 }
 
 void StepControl::rejected(double h, double error, double t) {

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "fem/solve/condition.h"
 #include "fem/solve/scaled_constraints.h"
+#include "geometry/text.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -204,9 +204,7 @@ bool StepSolver::newton(double h) {
     largest_correction_ = std::max(largest_correction_, correction);
     ++counts_.newton;
     fresh_iterations_ += fresh;
-    char text[80];
-    std::snprintf(text, sizeof text, "%d: |r| %.1e, |dq| %.1e; ", iteration, r, correction);
-    history_ += text;
+    history_ += formatted("%d: |r| %.1e, |dq| %.1e; ", iteration, r, correction);
     if (!std::isfinite(r) || !std::isfinite(correction)) return false;
     mu_ /= scale();
     correct(dq_, mu_);
@@ -226,11 +224,10 @@ bool StepSolver::newton(double h) {
 }
 
 void StepSolver::give_up(const State& x, double h, int failures) const {
-  char text[200];
-  std::snprintf(text, sizeof text,
-                ": no convergence at t = %.6g s, step %d, step size %.2e s after %d halvings, "
-                "smallest area ratio %.2e (",
-                x.t, counts_.steps + 1, h, failures - 1, model_.smallest_area_ratio(x));
+  const std::string text = formatted(
+      ": no convergence at t = %.6g s, step %d, step size %.2e s after %d halvings, "
+      "smallest area ratio %.2e (",
+      x.t, counts_.steps + 1, h, failures - 1, model_.smallest_area_ratio(x));
   throw Error::numerical(name_ + text + history_ + "). " + advice_ +
                          " An area ratio near zero means that the material has collapsed.");
 }

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "fem/body_joints.h"
 #include "fem/joints/pair_joint.h"
+#include "geometry/text.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -68,11 +68,10 @@ class Path final : public PairJoint {
   void check_end(double t, double s) const {
     const double until = curve_.until();
     if (curve_.is_closed() || (s > -0.05 * until && s < 1.05 * until)) return;
-    char where[160];
-    std::snprintf(where, sizeof where,
-                  "': at t = %.6g s its point is beyond an end of its curve, at parameter %.6g of "
-                  "0 to %.6g",
-                  t, s, until);
+    const std::string where = formatted(
+        "': at t = %.6g s its point is beyond an end of its curve, at parameter %.6g of "
+        "0 to %.6g",
+        t, s, until);
     throw Error::numerical("joint '" + name() + where);
   }
 

@@ -1,4 +1,3 @@
-#include <array>
 
 #include "fem/line_grid.h"
 #include "fem/stored_matrices.h"

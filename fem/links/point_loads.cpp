@@ -1,4 +1,3 @@
-#include <cmath>
 
 #include "fem/links/pair_link.h"
 

@@ -1,25 +1,22 @@
 #include "fem/solve/assembly.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 
 #include "fem/solve/diagnosis.h"
 #include "fem/solve/linear_solver.h"
+#include "geometry/text.h"
 
 namespace flexmorph::fem {
 namespace {
 
+constexpr int kMostIterations = 60;
+constexpr double kTolerance = 1e-12;        // what joints may miss by, in parts of the model's size
 constexpr double kCompliance = 1e-9;        // δ of the first Newton step
 constexpr double kLeastCompliance = 1e-14;  // after steps that went well, and for velocities
 constexpr double kMostCompliance = 1e6;     // of the most careful step
 constexpr double kPartOfIdentity = 1e-8;    // added to the masses
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
+std::string number(double value) { return formatted("%.3g", value); }
 
 /// Smallest corrections in the mass norm, in displacements S q and scaled rows.
 class Correction {
@@ -97,8 +94,7 @@ class Correction {
 
 class Assembler {
  public:
-  Assembler(Workspace& model, State& x, const AssemblySettings& settings)
-      : model_(model), x_(x), settings_(settings), correction_(model) {}
+  Assembler(Workspace& model, State& x) : model_(model), x_(x), correction_(model) {}
 
   Assembly run() {
     const State start = x_;
@@ -121,8 +117,8 @@ class Assembler {
     for (report_.iterations = 0;; ++report_.iterations) {
       const VectorXd miss = rows_.misses();
       report_.miss = miss.lpNorm<Eigen::Infinity>();
-      if (report_.miss <= settings_.tolerance * model_size(rows_.scales(), x_.q)) return;
-      if (report_.iterations >= settings_.max_iterations || idle > 5 || delta > kMostCompliance)
+      if (report_.miss <= kTolerance * model_size(rows_.scales(), x_.q)) return;
+      if (report_.iterations >= kMostIterations || idle > 5 || delta > kMostCompliance)
         fail(model_, x_, miss, report_.iterations);
       correction_.factorize(x_, rows_, delta);
       const double part = search(correction_.solve(miss), miss);
@@ -177,7 +173,6 @@ class Assembler {
 
   Workspace& model_;
   State& x_;
-  AssemblySettings settings_;
   Correction correction_;
   ScaledConstraints rows_;
   Constraints trial_;
@@ -186,14 +181,14 @@ class Assembler {
 
 }  // namespace
 
-Assembly assemble(Workspace& model, State& x, const AssemblySettings& settings) {
+Assembly assemble(Workspace& model, State& x) {
   if (x.q.size() != model.n_dofs() || x.v.size() != model.n_dofs())
     throw Error::input("assembly: a state of " + std::to_string(x.q.size()) +
                        " unknowns for a model of " + std::to_string(model.n_dofs()));
   if (!x.q.allFinite() || !x.v.allFinite())
     throw Error::input("assembly: the start holds numbers that are not finite");
   if (x.a.size() != model.n_dofs()) x.a.setZero(model.n_dofs());
-  return Assembler(model, x, settings).run();
+  return Assembler(model, x).run();
 }
 
 }  // namespace flexmorph::fem

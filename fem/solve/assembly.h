@@ -4,11 +4,6 @@
 
 namespace flexmorph::fem {
 
-struct AssemblySettings {
-  int max_iterations = 60;
-  double tolerance = 1e-12;  ///< what joints may miss by, in parts of the model's size
-};
-
 struct Assembly {
   int iterations = 0;
   double miss = 0;             ///< largest |R Φ| left [m] (ScaledConstraints)
@@ -40,6 +35,6 @@ struct Assembly {
 /// @param x  in: t, near q, near v; out: q and v of the assembled model.
 /// @throws Error (numerical) naming the joint that misses most, by how much, and the iterations,
 /// when no assembled position is found, or no velocity that all joints allow.
-Assembly assemble(Workspace& model, State& x, const AssemblySettings& settings = {});
+Assembly assemble(Workspace& model, State& x);
 
 }  // namespace flexmorph::fem

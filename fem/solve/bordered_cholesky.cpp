@@ -3,7 +3,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -57,7 +56,7 @@ struct BorderedCholesky::Impl {
   std::vector<int> places;  // in the matrix, of the values of the factor
   std::vector<BorderEntry> border_entries;
   std::optional<Multifrontal> factor;  // none: to be analysed
-  MatrixXd updates, unturned, schur;   // -X Xᵀ, S of a, S as it is solved, rows scaled
+  MatrixXd updates, schur;             // -X Xᵀ, S of a, S as it is solved, rows scaled
   VectorXd row_scales;
   struct Turn {
     int x, y;  // places of the entries of a vector

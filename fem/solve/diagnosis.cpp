@@ -3,9 +3,9 @@
 #include <Eigen/SparseQR>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
-#include <numeric>
+
+#include "geometry/text.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -20,11 +20,7 @@ constexpr double kShift = 1e-14;     // of the Gram matrix of the watch
 constexpr double kSurelyNew = 1e-4;  // of a row, above which the Gram matrix tells it as well
 constexpr double kOwn = 0.1;         // entry of a row in a column of its own that sets it apart
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
+std::string number(double value) { return formatted("%.3g", value); }
 
 using Entry = std::pair<int, double>;
 /// A null vector of the rows: (row, entry), rows ascending, largest entry 1.

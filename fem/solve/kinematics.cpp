@@ -2,20 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "fem/solve/assembly.h"
+#include "geometry/text.h"
 
 namespace flexmorph::fem {
 namespace {
 
 constexpr double kSingular = 300;  // condition from which a failure is put down to it
 
-std::string time_text(double t) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.7g", t);
-  return text;
-}
+std::string time_text(double t) { return formatted("%.7g", t); }
 
 }  // namespace
 

@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "fem/solve/condition.h"
 #include "fem/solve/linear_solver.h"
 #include "fem/solve/statics.h"
+#include "geometry/text.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -328,14 +328,9 @@ class Path {
   [[noreturn]] void fail(const std::string& why) {
     model_.scale_loads(factor_);
     std::string residuals;
-    char number[40];
-    for (const double r : history_) {
-      std::snprintf(number, sizeof number, " %.2e", r);
-      residuals += number;
-    }
-    char where[160];
-    std::snprintf(where, sizeof where,
-                  " after the load factor %.6g (%d steps, %d rejected, smallest area ratio %.3g)",
+    for (const double r : history_) residuals += formatted(" %.2e", r);
+    const std::string where =
+        formatted(" after the load factor %.6g (%d steps, %d rejected, smallest area ratio %.3g)",
                   factor_, result_.steps, result_.rejected, model_.smallest_area_ratio(x_));
     throw Error::numerical("statics: " + why + where +
                            "; residuals of the last attempt:" + residuals);

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "geometry/text.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -120,12 +121,9 @@ class Heated final : public StrainTerm {
   void update() {
     s_ = 1 + factor_ * rise_.value;
     rate_ = factor_ * rise_.rate;
-    if (!(s_ > 0) || !std::isfinite(s_) || !std::isfinite(rate_)) {
-      char text[120];
-      std::snprintf(text, sizeof text, "heat: 1 + alpha dT = %.6g at t = %.6g s, must be positive",
-                    s_, t_);
-      throw Error::numerical(text);
-    }
+    if (!(s_ > 0) || !std::isfinite(s_) || !std::isfinite(rate_))
+      throw Error::numerical(
+          formatted("heat: 1 + alpha dT = %.6g at t = %.6g s, must be positive", s_, t_));
     energy_scale_ = std::pow(s_, power_);
     force_scale_ = energy_scale_ / s_;
     tangent_scale_ = force_scale_ / s_;

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <ranges>
+
+#include "geometry/text.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -53,9 +56,8 @@ Motion shape(Profile profile, double u) {
 Profile profile_of(const std::string& name) {
   const auto row = table().find(name);
   if (row != table().end()) return row->second;
-  std::string known;
-  for (const auto& [each, profile] : table()) known += (known.empty() ? "" : ", ") + each;
-  throw Error::input("temperature profile '" + name + "' is unknown; known are: " + known);
+  throw Error::input("temperature profile '" + name +
+                     "' is unknown; known are: " + joined(std::views::keys(table())));
 }
 
 std::function<Motion(double t)> make_temperature(const TemperatureRise& rise) {

@@ -6,10 +6,10 @@
 
 #include "cases/check/ready.h"
 #include "cases/run/motion_run.h"
-#include "optim/gradient_check.h"
 #include "optim/mmc/mmc_problem.h"
 #include "tests/cases/scenes.h"
 #include "tests/io/scratch.h"
+#include "tests/support/gradient_check.h"
 
 namespace flexmorph::cases {
 namespace {

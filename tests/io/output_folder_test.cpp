@@ -154,30 +154,6 @@ TEST(OutputFolder, IsFilledByOneProcess) {
   EXPECT_EQ(contents_of(scratch / "run.previous/run.json"), "running");
 }
 
-TEST(OutputFolder, IsRemovedAsFarAsItIsOurs) {
-  const Scratch scratch;
-  {
-    OutputFolder folder(scratch / "run");
-    for (const char* name : {"run.json", "plots/design.png", "loads/plate.csv"})
-      std::ofstream(folder.file(name)) << "ours";
-    folder.file("never_written.csv");
-  }
-  scratch.write("run/loads/mine.csv", "mine");
-  scratch.write("run/design_of_mine.svg", "mine");
-  scratch.write("precious", "mine");
-  std::ofstream(scratch / "run/.flexmorph", std::ios::app) << "../precious\n";
-  remove_listed(scratch / "run");
-  for (const char* ours : {"run.json", "plots", "loads/plate.csv", ".flexmorph"})
-    EXPECT_FALSE(fs::exists(scratch / (std::string("run/") + ours))) << ours;
-  EXPECT_EQ(contents_of(scratch / "run/loads/mine.csv"), "mine");
-  EXPECT_EQ(contents_of(scratch / "run/design_of_mine.svg"), "mine");
-  EXPECT_EQ(contents_of(scratch / "precious"), "mine");
-  fill(scratch / "other", "");
-  remove_listed(scratch / "other");
-  EXPECT_FALSE(fs::exists(scratch / "other"));
-  remove_listed(scratch / "nowhere");
-}
-
 // A study goes on with what is in its folder, alone.
 TEST(FolderLock, LeavesWhatIsThere) {
   const Scratch scratch;

@@ -1,6 +1,6 @@
 // The Taylor test tells right gradients (order 2) from wrong ones (order 1).
 
-#include "optim/gradient_check.h"
+#include "tests/support/gradient_check.h"
 
 #include <gtest/gtest.h>
 

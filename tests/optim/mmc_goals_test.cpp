@@ -7,9 +7,9 @@
 #include <cmath>
 #include <random>
 
-#include "optim/gradient_check.h"
 #include "optim/mmc/compliance_evaluator.h"
 #include "tests/optim/mmc_small.h"
+#include "tests/support/gradient_check.h"
 
 namespace flexmorph::mmc::test {
 namespace {

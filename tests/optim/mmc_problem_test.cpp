@@ -7,8 +7,8 @@
 #include <cmath>
 #include <functional>
 
-#include "optim/gradient_check.h"
 #include "tests/optim/mmc_small.h"
+#include "tests/support/gradient_check.h"
 
 namespace flexmorph::mmc::test {
 namespace {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <functional>
 
-#include "optim/gradient_check.h"
 #include "optim/mmc/goal.h"
 #include "tests/optim/mmc_small.h"
+#include "tests/support/gradient_check.h"
 
 namespace flexmorph::mmc {
 extern const ResponseRow kFirstMoment;  // tests/examples/response.cpp

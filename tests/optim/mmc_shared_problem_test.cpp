@@ -6,9 +6,9 @@
 #include <cmath>
 #include <functional>
 
-#include "optim/gradient_check.h"
 #include "optim/mmc/shared_problem.h"
 #include "tests/optim/mmc_sharing.h"
+#include "tests/support/gradient_check.h"
 
 namespace flexmorph::mmc::test {
 namespace {

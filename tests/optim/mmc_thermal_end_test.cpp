@@ -8,11 +8,11 @@
 #include <array>
 #include <cmath>
 
-#include "optim/gradient_check.h"
 #include "optim/mmc/design_verification.h"
 #include "optim/mmc/restrained_expansion.h"
 #include "tests/optim/mmc_hot.h"
 #include "tests/support/errors.h"
+#include "tests/support/gradient_check.h"
 
 namespace flexmorph::mmc::test {
 namespace {

@@ -12,9 +12,9 @@
 #include "fem/dynamics/esl.h"
 #include "fem/elements/ancf_plate.h"
 #include "fem/terms.h"
-#include "optim/gradient_check.h"
 #include "optim/mmc/shared_problem.h"
 #include "tests/optim/mmc_hot.h"
+#include "tests/support/gradient_check.h"
 
 namespace flexmorph::mmc::test {
 namespace {

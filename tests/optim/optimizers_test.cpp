@@ -8,9 +8,9 @@
 #include <array>
 #include <cmath>
 
-#include "optim/gradient_check.h"
 #include "optim/optimizer.h"
 #include "tests/optim/problems.h"
+#include "tests/support/gradient_check.h"
 
 namespace flexmorph::optim::test {
 namespace {

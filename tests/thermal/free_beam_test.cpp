@@ -136,7 +136,7 @@ TEST_P(Profiles, ErrorsAreOfSecondOrder) {
 /// The elastic strain as T (26) prints it: of u_s = r - X - u_Θ, u_Θ in directions of the
 /// reference.
 double printed_strain(const Element& element, const MatrixXd& q, double a) {
-  const MatrixXd all = q - element.reference() - thermal_displacement(element, a),
+  const MatrixXd all = q - element.reference() - a * thermal_matrices(element, 1).from_centre(),
                  e_s = testing::rows_of_element(element, all, 0);
   ShapeTable t;
   element.tabulate(0, 4, Tabulate::gradient, {}, FactorKind::none, t);
@@ -150,7 +150,7 @@ TEST(TurningBeam, IsNotStrainedByItsHeat) {
   Workspace model = beam.model();
   model.prepare(1.0);
   const Element& element = *model.bodies()[0].element;
-  const MatrixXd hot = element.reference() + thermal_displacement(element, kStretch);
+  const MatrixXd hot = element.reference() + kStretch * thermal_matrices(element, 1).from_centre();
   State x = model.reference();
   x.t = 1;
   const double held = model.energies(x).strain;  // as it were held at its cold size

@@ -1,7 +1,7 @@
-#include "cases/output/plots/measured.h"
-
 #include <algorithm>
 #include <cmath>
+
+#include "cases/output/plots/plots.h"
 
 namespace flexmorph::cases {
 namespace {

@@ -1,9 +1,5 @@
-#include "cases/output/plots/mechanism.h"
-
-#include <cmath>
-
+#include "cases/output/plots/plots.h"
 #include "cases/scene/joints/row.h"
-#include "io/plots.h"
 
 namespace flexmorph::cases {
 namespace {

@@ -1,6 +1,4 @@
-#include "cases/output/plots/run.h"
-
-#include "cases/output/plots/measured.h"
+#include "cases/output/plots/plots.h"
 
 namespace flexmorph::cases {
 namespace {

@@ -1,9 +1,8 @@
-#include "cases/output/plots/stress.h"
-
 #include <algorithm>
 #include <functional>
 #include <utility>
 
+#include "cases/output/plots/plots.h"
 #include "fem/triangles/t6.h"
 #include "io/files.h"
 #include "io/part_picture.h"

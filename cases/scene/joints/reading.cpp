@@ -4,6 +4,7 @@
 
 #include "cases/scene/elements/row.h"
 #include "cases/scene/joints/row.h"
+#include "geometry/text.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
@@ -164,11 +165,8 @@ std::string read_edge(const Table& t, const Key& key, const Body& body,
   if (std::find(names.begin(), names.end(), edge) != names.end()) return edge;
   const bool moves = body.flow || body.mesh_changes();
   if (!moves && line_of(edge, body) >= 0) return edge;
-  std::string known;
-  for (const std::string& name : names) known += "'" + name + "', ";
-  t.fail(key, moves
-                  ? "an edge is " + known.substr(0, known.size() - 2)
-                  : "an edge is " + known + "'line 0' to 'line " + to_text(body.elements[0]) + "'");
+  const std::string lines = ", 'line 0' to 'line " + to_text(body.elements[0]) + "'";
+  t.fail(key, "an edge is " + joined(names, ", ", "'") + (moves ? "" : lines));
 }
 
 Vec2 read_point(const Table& t, const Key& key, const Body& body, double end) {
