@@ -15,10 +15,13 @@ constexpr const char* kDefaults = "all its defaults";
 
 }  // namespace
 
-const io::Key& kGravity = io::key("", "gravity")
-                              .numbers_or_names(io::any_number("gravity", "m/s^2"), "a drive", 2, 3)
-                              .otherwise_as("nothing weighs")
-                              .says("Two entries in the plane, three in space.");
+const io::Key& kGravity =
+    io::key("", "gravity")
+        .numbers_or_names(io::any_number("gravity", "m/s^2"), "a drive", 2, 3)
+        .otherwise_as("nothing weighs")
+        .says(
+            "Two entries in the plane, three in space. Of a [domain] it is the weight of the "
+            "design, which acts with every load.");
 const io::Key& kConstants =
     one("constants").says("Numbers with names, for the formulas of drives.");
 const io::Key& kTime = one("time").says("How long the motion lasts, and its steps.");

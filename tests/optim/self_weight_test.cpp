@@ -22,7 +22,7 @@ std::vector<fem::HeldUnknown> held_edge(const Grid& grid, bool top) {
 TEST(SelfWeight, OfAHangingColumn) {
   const fem::PlaneSection section{0.02, 2e9, 0, 1800};
   const double g = 9.81, length = 2, width = 0.3;
-  const Grid grid{.nx = 3, .ny = 8, .x0 = 0, .y0 = 0, .width = width, .height = length};
+  const Grid grid{.width = width, .height = length, .nx = 3, .ny = 8};
   const Plate plate{grid, section, {}};
   const LoadCase alone{"weight", 1, {}};
   ComplianceEvaluator column(plate, held_edge(grid, true), {&alone, 1}, true, Vec2(0, -g));
@@ -38,7 +38,7 @@ TEST(SelfWeight, OfAHangingColumn) {
 }
 
 struct Bracket {
-  Grid grid{.nx = 7, .ny = 5, .x0 = 0, .y0 = 0, .width = 0.7, .height = 0.4};
+  Grid grid{.width = 0.7, .height = 0.4, .nx = 7, .ny = 5};
   Plate plate{grid, {0.01, 1e8, 0.3, 2700}, {}};
   std::vector<LoadCase> loads = {{"tip", 1.5, {{grid.node(7, 2), Vec2(3, -20)}}},
                                  {"top", 0.5, {{grid.node(4, 5), Vec2(-8, 5)}}}};
