@@ -220,6 +220,14 @@ Connectivity connectivity_of(const std::vector<std::vector<bool>>& touched,
       (places[p].is_support ? out.unused_supports : out.loose_loads).push_back(places[p].name);
   }
   out.connected = out.loose_loads.empty();
+  // Loads of all material, as weight, have no place: every support that material reaches serves
+  // them.
+  if (std::all_of(places.begin(), places.end(), [](const auto& p) { return p.is_support; })) {
+    out.unused_supports.clear();
+    out.connected = std::any_of(touched.begin(), touched.end(), [](const auto& piece) {
+      return std::find(piece.begin(), piece.end(), true) != piece.end();
+    });
+  }
   return out;
 }
 

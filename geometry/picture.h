@@ -40,8 +40,10 @@ std::vector<HeldOrLoaded> ends_of(const Grid& grid);
 
 /// Which loads of a design have a way through its material to a support.
 struct Connectivity {
-  bool connected = false;  ///< whether every load touches a piece that touches a support
-  int islands = 0;         ///< number of pieces less one
+  /// Whether every load touches a piece that touches a support; where no load has a place, as of
+  /// weight alone, whether a piece touches a support.
+  bool connected = false;
+  int islands = 0;                           ///< number of pieces less one
   std::vector<std::string> loose_loads;      ///< loads without a way to a support
   std::vector<std::string> unused_supports;  ///< supports without a way to a load
 };

@@ -170,6 +170,9 @@ TEST(Connectivity, NamesLooseLoadsAndUnusedSupports) {
   EXPECT_FALSE(torn.connected);
   EXPECT_EQ(torn.loose_loads, std::vector<std::string>{"top"});
   EXPECT_TRUE(torn.unused_supports.empty());
+  const Connectivity weighs = connectivity(grid, fractions, std::span(places).first(1));
+  EXPECT_TRUE(weighs.connected && weighs.unused_supports.empty());
+  EXPECT_FALSE(connectivity(grid, 0 * fractions, std::span(places).first(1)).connected);
 }
 
 // Samples are in a triangle, or not, one by one.
