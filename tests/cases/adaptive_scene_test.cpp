@@ -38,7 +38,7 @@ TEST(AdaptiveScene, LandsOnTheEndOfTheSpinUp) {
 TEST(AdaptiveScene, VerificationMayHaveItsOwnSteps) {
   const auto adapts = [](const Scene& scene) {
     Mechanism mechanism = build_mechanism(scene);
-    if (scene.verify->step) set_step(scene, *scene.verify->step, mechanism.motion);
+    set_step(scene, scene.verify->step, mechanism.motion);
     return mechanism.motion.adaptive.has_value();
   };
   EXPECT_TRUE(adapts(read({})));
