@@ -141,9 +141,30 @@ void add_holds(const Scene& scene, const Body& body, fem::Model& model) {
 /// What the prestretched start looks ahead by, at most (fem::start_state()) [s].
 constexpr double kAhead = 2e-4;
 
+/// How a mechanism starts that is to start steady: in equilibrium under the inertia forces of the
+/// motion that drives determine (rigid where only plates that bend can follow them), or at rest in
+/// equilibrium where nothing moves.
+/// @throws Error (input) where it moves and drives do not determine how.
+fem::Start steady_start(const Scene& scene, fem::RigidMotion& rigid) {
+  constexpr double kStill = 1e-6;  // [m/s]
+  if (rigid.degrees_of_freedom() == 0)
+    return scene.bodies.empty() || !rigid.reaches(kAhead) ? fem::Start::rigid : fem::Start::steady;
+  if (!rigid.is_indeterminate() && rigid.start_speed() < kStill) return fem::Start::at_rest;
+  scene.refuse("time.start",
+               rigid.is_indeterminate()
+                   ? "\"steady\" needs a motion of the rigid mechanism, but its joints hold more "
+                     "than it has freedoms: start = \"rigid\""
+                   : "\"steady\" needs drives that determine all motion, or a mechanism at rest; "
+                     "drives leave " +
+                         std::to_string(rigid.degrees_of_freedom()) +
+                         " freedoms of this one, which sets off with " +
+                         io::to_text(rigid.start_speed(), 3) + " m/s: start = \"rigid\"");
+}
+
 /// How a mechanism starts: at rest in equilibrium where its drives do not determine it all.
 /// @throws Error (input) when that is asked for but it does not rest.
 fem::Start start_of(const Scene& scene, fem::RigidMotion& rigid) {
+  if (scene.time.start == Start::steady) return steady_start(scene, rigid);
   // Where nothing bends nothing is stretched.
   if (scene.time.start != Start::prestretched || scene.bodies.empty()) return fem::Start::rigid;
   if (rigid.degrees_of_freedom() == 0)
@@ -267,8 +288,9 @@ void add_joints(const Scene& scene, const std::function<double(const Body&)>& fi
 void set_motion(const Scene& scene, fem::MotionSettings& out) {
   out.end = scene.time.end;
   set_step(scene, scene.time.step, out);
-  out.start =
-      scene.time.start == Start::prestretched ? fem::Start::prestretched : fem::Start::rigid;
+  out.start = scene.time.start == Start::prestretched ? fem::Start::prestretched
+              : scene.time.start == Start::steady     ? fem::Start::steady
+                                                      : fem::Start::rigid;
   out.integrator = scene.time.integrator;
   out.alpha.rho_inf = scene.time.rho_inf;
   out.minimal_coordinates.tolerance = scene.time.explicit_tolerance;

@@ -1,5 +1,6 @@
 #include "cases/run/start_remarks.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -32,13 +33,20 @@ std::string moved_words(const RigidBody& body, const fem::FrameMotion& frame) {
   return out.empty() ? "" : "'" + body.name + "' " + out;
 }
 
-std::string speed_words(const RigidBody& body, const fem::FrameMotion& frame) {
+/// @param largest  grows to the largest difference to a given velocity of a point [m/s]
+std::string speed_words(const RigidBody& body, const fem::FrameMotion& frame, double& largest) {
   std::string out;
-  if (body.velocity && (frame.origin_rate - *body.velocity).norm() > kSaid)
-    out = "velocity [" + io::to_text(frame.origin_rate.x(), 6) + ", " +
-          io::to_text(frame.origin_rate.y(), 6) + "]";
-  if (body.angular_velocity && std::abs(frame.angle_rate - *body.angular_velocity) > kSaid)
-    out += (out.empty() ? "" : ", ") + ("angular_velocity " + io::to_text(frame.angle_rate, 6));
+  if (body.velocity)
+    if (const double by = (frame.origin_rate - *body.velocity).norm(); by > kSaid) {
+      out = "velocity [" + io::to_text(frame.origin_rate.x(), 6) + ", " +
+            io::to_text(frame.origin_rate.y(), 6) + "], " + io::to_text(by, 3) +
+            " m/s from the given one";
+      largest = std::max(largest, by);
+    }
+  if (body.angular_velocity)
+    if (const double by = std::abs(frame.angle_rate - *body.angular_velocity); by > kSaid)
+      out += (out.empty() ? "" : ", ") + ("angular_velocity " + io::to_text(frame.angle_rate, 6)) +
+             ", " + io::to_text(by, 3) + " rad/s from the given one";
   return out.empty() ? "" : "'" + body.name + "' " + out;
 }
 
@@ -47,11 +55,13 @@ std::string speed_words(const RigidBody& body, const fem::FrameMotion& frame) {
 std::vector<std::string> start_remarks(const Scene& scene, const fem::Model& model,
                                        const fem::State& x, double change) {
   std::vector<std::string> moved, faster, out;
+  double largest = 0;
   for (const RigidBody& body : scene.rigid_bodies) {
     const fem::FrameMotion frame = fem::frame_of(model.body(body.name), x);
     if (body.is_placed)
       if (std::string words = moved_words(body, frame); !words.empty()) moved.push_back(words);
-    if (std::string words = speed_words(body, frame); !words.empty()) faster.push_back(words);
+    if (std::string words = speed_words(body, frame, largest); !words.empty())
+      faster.push_back(words);
   }
   if (!moved.empty())
     out.push_back("at the start joints moved bodies from where the case puts them: " +
@@ -60,8 +70,8 @@ std::vector<std::string> start_remarks(const Scene& scene, const fem::Model& mod
     out.push_back("the start has other velocities than the case gives: " + list_of(faster));
   const double speed = model.scales().cwiseProduct(x.v).lpNorm<Eigen::Infinity>();
   if (change > kSaid + kDifference * speed)
-    out.push_back("velocities of the start were changed by up to " + io::to_text(change, 3) +
-                  " m/s, so that joints allow them");
+    out.push_back("velocities of the start were changed by up to " +
+                  io::to_text(std::max(change, largest), 3) + " m/s, so that joints allow them");
   return out;
 }
 

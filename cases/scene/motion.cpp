@@ -58,9 +58,12 @@ const io::Key& kRhoInf =
 const io::Choice<Start> kStart(
     io::key("time", "start")
         .otherwise_as("`prestretched`; `rigid` without a hub or with free lines")
-        .says("How a driven scene starts: in equilibrium as it turns, unstrained, or at rest."),
+        .says(
+            "How a scene starts: in equilibrium as it turns (`prestretched`: in hubs without flow "
+            "and Euler forces) or moves (`steady`), unstrained, or with hubs at rest."),
     "a start",
     {{"prestretched", Start::prestretched},
+     {"steady", Start::steady},
      {"rigid", Start::rigid},
      {"hub_at_rest", Start::hub_at_rest}});
 const io::Key& kSpinUp = io::key("time", "spin_up")
@@ -258,6 +261,13 @@ void settle_start(const Table& root, Scene& scene) {
         kStart,
         "\"hub_at_rest\" spins up hubs; the drives of a scene with rigid bodies, or with bodies "
         "welded to each other, say themselves how they start");
+  if (scene.time.start == Start::steady && scene.has_free_lines())
+    time.fail(kStart, "\"steady\" is for bodies whose lines are not free: start = \"rigid\"");
+  if (time.has(kStart) && scene.time.start == Start::prestretched && scene.bodies.empty())
+    time.fail(kStart,
+              "\"prestretched\" stretches bodies that bend, of which the scene has none; "
+              "\"steady\" starts springs and rigid bodies in equilibrium, \"rigid\" where they "
+              "are put");
   if (scene.time.integrator != "generalized_alpha" && scene.has_free_lines())
     time.fail(kIntegrator, "free material lines ([[body.line]]) need \"generalized_alpha\": \"" +
                                scene.time.integrator + "\" does not know them");

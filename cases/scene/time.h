@@ -11,7 +11,9 @@ namespace flexmorph::cases {
 
 /// How a driven scene starts (fem/README.md, Starts).
 enum class Start {
-  prestretched,  ///< velocity of the rigid, extending body, in equilibrium in the turning frame
+  prestretched,  ///< velocity of the rigid, extending body, in equilibrium in the turning frame:
+                 ///< in hubs under -ω² x alone
+  steady,        ///< in equilibrium under all inertia forces of the rigid motion, and moving with it
   rigid,         ///< the same velocity, unstrained: sets off axial ringing
   hub_at_rest    ///< smooth spin-up of the hub from rest
 };

@@ -40,6 +40,30 @@ void GeneralizedAlpha::begin(const State& x, double h) {
   next_.v = start_v_ + h * ((1 - scheme_.gamma) * start_alpha_ + scheme_.gamma * next_alpha_);
 }
 
+void GeneralizedAlpha::begin_motion(const State& x, double h) {
+  constexpr double kPart = 1e-3;    // of a step
+  constexpr double kChange = 0.25;  // of a smooth q⃛
+  set_scales();
+  start_ = {};
+  StartJerk found;
+  found.after = kPart * h;
+  const auto ahead = [&](double s) {
+    State later = x;
+    later.t += s;
+    later.q += s * x.v + 0.5 * s * s * x.a;
+    later.v += s * x.a;
+    solve_accelerations(later);
+    return later;
+  };
+  const State twice = ahead(2 * found.after);
+  found.later = ahead(found.after);
+  found.jerk = (found.later.a - x.a) / found.after;
+  const VectorXd next = (twice.a - found.later.a) / found.after;
+  if (!(displacement(next - found.jerk) <= kChange * displacement(found.jerk))) return;
+  found.held = held_part(x, found.jerk);
+  start_ = std::move(found);
+}
+
 void GeneralizedAlpha::cross_kink(State& x) {
   change_ = alpha_ - x.a;
   make_consistent(x);
@@ -47,6 +71,7 @@ void GeneralizedAlpha::cross_kink(State& x) {
 }
 
 void GeneralizedAlpha::change_mesh(const MeshMap& map, const State& before) {
+  start_ = {};
   if (alpha_.size() == map.n_before()) alpha_ = map.acceleration(before.q, before.v, alpha_);
 }
 
@@ -60,6 +85,10 @@ void GeneralizedAlpha::set_start(const State& x) {
   if (alpha_.size() != x.a.size()) alpha_ = x.a;
   start_alpha_ = alpha_;
   start_v_ = x.v;
+  if (start_.jerk.size() > 0) {
+    start_alpha_ += shift() * h_ * start_.jerk;
+    start_v_ += error_constant() * h_ * h_ * start_.held;
+  }
   if (last_h_ < 0) return;
   const bool same_mesh = jerk_version_ == model().pattern_version();
   if (same_mesh && h_ == last_h_) return;

@@ -16,6 +16,13 @@ struct AlphaScheme {
   }
 };
 
+/// The third derivative that the first step of a motion starts with.
+struct StartJerk {
+  double after = 0;  ///< s: jerk = (later.a - q̈_0) / s [s]
+  State later;       ///< q_0 + s q̇_0 + ½ s² q̈_0, q̇_0 + s q̈_0, with consistent q̈ and λ
+  VectorXd jerk, held;  ///< q⃛_0 and P q⃛_0; empty where it is not smooth
+};
+
 /// Generalized-alpha for index-3 equations of motion, Arnold & Brüls (2007).
 ///
 ///   (1 - α_m) a_{n+1} + α_m a_n = (1 - α_f) q̈_{n+1} + α_f q̈_n
@@ -48,7 +55,11 @@ struct AlphaScheme {
 ///     nothing, and starts that follow it would feed it with every change of the step, until
 ///     Newton's method fails. A q⃛ that turns round from step to step is left alone.
 ///
-/// Fixed steps (advance()) start from a_0 = q̈_0 and take no notice of their size.
+/// Fixed steps (advance()) take no notice of their size but in the first step of a motion, which
+/// begin_motion() prepares: it starts from a_0 = q̈_0 + δ h q⃛_0 and q̇_0 + C h² P q⃛_0, P q⃛_0 what
+/// joints hold of q⃛_0: [M Φ_qᵀ; Φ_q 0] (P q⃛, μ) = (0, Φ_q q⃛). Without it multipliers miss by O(h)
+/// for some 50 steps. q⃛_0 is the difference of consistent accelerations over a thousandth of the
+/// step, and not used where it changes as much over the next one: of ringing its sign says nothing.
 ///
 /// Source: Arnold, Brüls (2007), Multibody Syst. Dyn. 18, 185-202; fem/README.md, Time integration.
 /// Start and error terms: Arnold, Brüls, Cardona (2015), Numer. Math. 129, 149-179; filter:
@@ -60,6 +71,9 @@ class GeneralizedAlpha final : public StepSolver {
 
   /// From q⃛_0 by a difference of consistent accelerations; the first step starts with it.
   double first_step(const State& x, double allowed, double longest) override;
+  void begin_motion(const State& x, double h) override;
+  /// What begin_motion() found, until the first step is made.
+  const StartJerk& start_jerk() const { return start_; }
   /// δ: the algorithmic acceleration is that of the time t + δ h.
   double shift() const { return scheme_.alpha_m - scheme_.alpha_f; }
   /// The algorithmic acceleration that the next step starts from: q̈ after make_consistent(), else
@@ -86,8 +100,14 @@ class GeneralizedAlpha final : public StepSolver {
   /// @param balance  the residual there; empty: zero
   void filter(VectorXd& e, const VectorXd& balance);
   void finish(State& x) override;
-  void keep() override { alpha_.swap(next_alpha_); }
-  void restart(const State& x) override { alpha_ = x.a; }
+  void keep() override {
+    alpha_.swap(next_alpha_);
+    start_ = {};
+  }
+  void restart(const State& x) override {
+    alpha_ = x.a;
+    start_ = {};
+  }
   /// The algorithmic acceleration at the end of the step, which belongs to the true one.
   void set_end_alpha(const State& x);
   /// Velocity and algorithmic acceleration that the step starts from.
@@ -101,6 +121,7 @@ class GeneralizedAlpha final : public StepSolver {
   State next_;                      // the iterate
   VectorXd next_alpha_;             // its algorithmic acceleration
   VectorXd start_v_, start_alpha_;  // as the step takes them
+  StartJerk start_;                 // of the first step, where it does not adapt
   // Of steps that adapt: the size of the last one (0: none so far; negative: steps are fixed), q⃛
   // there, and the pattern of the model that q⃛ belongs to.
   double last_h_ = -1;

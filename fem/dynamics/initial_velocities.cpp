@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <cmath>
 
 #include "fem/body_joints.h"
+#include "fem/dynamics/integrator.h"
 #include "fem/dynamics/rigid_kinematics.h"
 #include "fem/solve/assembly.h"
 #include "geometry/text.h"
@@ -49,9 +51,38 @@ std::vector<Given> drive_as_given(const RigidMechanism& mechanism, const State& 
   return out;
 }
 
+/// Returns by how much the nearest velocity that joints and drives allow (in the mass norm) differs
+/// from the given one, at most over the bodies with a given one [m/s]; turning counts times the
+/// size of the body. Nothing where joints depend on each other.
+std::optional<double> largest_difference(const RigidKinematics& kinematics, State x) {
+  Workspace model(kinematics.model());
+  VectorXd given = VectorXd::Zero(model.n_dofs());
+  std::vector<std::pair<int, int>> rows;  // first unknown and number of unknowns
+  for (const MechanismBody& b : kinematics.mechanism().bodies) {
+    const int at = model.body(b.name).first_dof;
+    const Vec2 u = x.q.segment<2>(at + 2);
+    if (b.velocity) given.segment<2>(at) = *b.velocity;
+    if (b.angular_velocity) given.segment<2>(at + 2) = *b.angular_velocity * Vec2(-u.y(), u.x());
+    if (b.velocity) rows.emplace_back(at, 2);
+    if (b.angular_velocity) rows.emplace_back(at + 2, 2);
+  }
+  x.v = given;
+  try {
+    make_integrator(model, {})->project_velocity(x);
+  } catch (const Error&) {
+    return {};
+  }
+  const VectorXd difference = model.scales().cwiseProduct(x.v - given);
+  double out = 0;
+  for (const auto& [at, n] : rows) out = std::max(out, difference.segment(at, n).norm());
+  return std::isfinite(out) && out > 0 ? std::optional(out) : std::nullopt;
+}
+
 /// Returns the error about the first group of rows that miss each other in velocity and have a
 /// given one among them; nothing where there is none.
-std::optional<Error> contradiction(const std::vector<Given>& given, const Diagnosis& diagnosis) {
+/// @param difference  of a given velocity to one that joints allow [m/s]; nothing: what rows miss
+std::optional<Error> contradiction(const std::vector<Given>& given, const Diagnosis& diagnosis,
+                                   std::optional<double> difference) {
   for (const DependentGroup& group : diagnosis.groups) {
     if (!(group.rate_miss > 0)) continue;
     std::string words, source;
@@ -70,7 +101,7 @@ std::optional<Error> contradiction(const std::vector<Given>& given, const Diagno
     return Error::input(
         source + words + ": " +
         (joints.empty() ? "they contradict each other" : "contradicts " + list_joints(joints)) +
-        " by " + text_of(group.rate_miss, 3) +
+        " by " + text_of(difference.value_or(group.rate_miss), 3) +
         " m/s. Velocities that are not given follow from those that are");
   }
   return {};
@@ -85,7 +116,9 @@ void give_initial_velocities(const RigidKinematics& kinematics, State& x) {
   try {
     assemble(model, x);
   } catch (const Error&) {
-    if (const auto why = contradiction(given, diagnose(model, x))) throw *why;
+    const Diagnosis diagnosis = diagnose(model, x);
+    if (const auto why = contradiction(given, diagnosis, largest_difference(kinematics, x)))
+      throw *why;
     throw;
   }
 }

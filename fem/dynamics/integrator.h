@@ -69,7 +69,10 @@ class Integrator {
   /// state (the algorithmic acceleration of generalized-alpha) starts from there.
   /// @throws Error (numerical) when the constraints are redundant.
   virtual void make_consistent(State& x) = 0;
-  /// The same for velocities that miss Φ_q q̇ + Φ_t = 0 a little: the nearest in the mass norm.
+  /// The motion begins at x, which make_consistent() has seen, with steps of about h that do not
+  /// adapt: the first step starts so that multipliers are those of a smooth solution from then on.
+  virtual void begin_motion(const State& /*x*/, double /*h*/) {}
+  /// Moves velocities that miss Φ_q q̇ + Φ_t = 0 a little to the nearest in the mass norm.
   virtual void project_velocity(State& x) = 0;
 
   /// The last step ended just before a kink of drives or loads, x.t is its time now: accelerations

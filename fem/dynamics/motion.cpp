@@ -72,7 +72,10 @@ class Run {
     if (settings_.balance && settings_.energy_round_off)
       growth_.begin(e, *settings_.energy_round_off);
     see(x_, e, false);
-    if (!control_) return;
+    if (!control_) {
+      integrator_->begin_motion(x_, settings_.step);
+      return;
+    }
     const double first = first_step();
     control_->begin(settings_.adaptive->first > 0 ? settings_.adaptive->first : first);
   }

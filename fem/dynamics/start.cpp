@@ -212,7 +212,77 @@ State carried_equilibrium(Workspace& model, std::span<const Growth> growths,
   return s;
 }
 
+SteadyEquilibrium steady_equilibrium(Workspace& model, std::span<const Growth> growths,
+                                     const Placement& placement, double t) {
+  model.move_lines(t);
+  SteadyEquilibrium out;
+  out.rigid = rigid_state(model, growths, placement, t);
+  out.turning.resize(model.bodies().size());
+  out.angle.resize(model.bodies().size());
+  const auto take = [&](const std::string& name, const FrameMotion& frame) {
+    const auto b = static_cast<size_t>(&model.body(name) - model.bodies().data());
+    out.turning[b] = {frame.angle_rate, frame.angle_acceleration};
+    out.angle[b] = frame.angle;
+  };
+  if (placement)
+    for (const Placed& p : placement(t)) take(p.body, p.frame);
+  for (const Growth& g : growths) take(g.body, g.hub.at(model, out.rigid));
+  out.strained = out.rigid;
+  solve_steady_equilibrium(model, out.turning, out.strained);
+  return out;
+}
+
+bool rest_in_equilibrium(Workspace& model, State& x) {
+  constexpr double kNear = 0.02;  // of the model's size; what the hold keeps of the way is less
+  solve_resting_equilibrium(model, x);
+  State exact = x;
+  try {
+    solve_carried_equilibrium(model, exact);
+  } catch (const Error& error) {
+    if (error.kind() != Error::Kind::numerical) throw;
+    return false;
+  }
+  const VectorXd moved = model.scales().cwiseProduct(exact.q - x.q);
+  if (!(moved.lpNorm<Eigen::Infinity>() <= kNear * x.q.lpNorm<Eigen::Infinity>())) return false;
+  x = exact;
+  return true;
+}
+
+void turn_by(const Model& model, const std::vector<double>& angles, VectorXd& vectors) {
+  for (size_t b = 0; b < angles.size(); ++b) {
+    const Body& body = model.bodies()[b];
+    const Eigen::Matrix2d turn = rotation(angles[b]);
+    for (int k = 0; k < body.element->n_vectors(); ++k) {
+      const int at = body.first_dof + body.element->dim() * k;
+      vectors.segment<2>(at) = (turn * vectors.segment<2>(at)).eval();
+    }
+  }
+}
+
 namespace {
+
+/// The rate of the shape is taken in the axes of the bodies, from equilibria a little later: what
+/// drives a motion need not be defined before its start.
+State steady_state(Workspace& model, std::span<const Growth> growths, const Placement& placement,
+                   double t, double delta) {
+  VectorXd rate = VectorXd::Zero(model.n_dofs());
+  std::vector<SteadyEquilibrium> at;
+  for (const int k : {0, 1, 2})
+    at.push_back(steady_equilibrium(model, growths, placement, t + k * delta));
+  for (const int k : {1, 0, 2}) {
+    const SteadyEquilibrium& then = at[static_cast<size_t>(k)];
+    VectorXd u = then.strained.q - then.rigid.q;
+    std::vector<double> back = at[0].angle;
+    for (size_t b = 0; b < back.size(); ++b) back[b] -= then.angle[b];
+    turn_by(model, back, u);
+    rate += kForward[k] / (2 * delta) * u;
+  }
+  model.move_lines(t);
+  State x = at[0].strained;  // its velocities turn with the bodies
+  x.v += rate;
+  x.a.setZero();
+  return x;
+}
 
 /// Its rate as the body grows comes from equilibria a little earlier and later.
 void stretch_in_hubs(Workspace& model, std::span<const Growth> growths, double delta, State& x) {
@@ -266,6 +336,11 @@ State start_state(Workspace& model, std::span<const Growth> growths, double t, S
     solve_resting_equilibrium(model, x);
     return x;
   }
+  if (kind == Start::at_rest) {
+    start::rest_in_equilibrium(model, x);
+    return x;
+  }
+  if (kind == Start::steady) return start::steady_state(model, growths, placement, t, delta);
   if (start::rides_in_hubs(growths, placement))
     start::stretch_in_hubs(model, growths, delta, x);
   else

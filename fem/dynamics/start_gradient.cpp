@@ -19,6 +19,13 @@ class Equilibria {
     see_(s, -psi_);
   }
 
+  void derive_carried(const start::SteadyEquilibrium& s, const VectorXd& by_q) {
+    TransposedSystem system(model_);
+    system.set_carried(s.strained, s.turning);
+    system.solve(by_q, VectorXd::Zero(model_.n_constraints()), psi_, chi_);
+    see_(s.strained, -psi_);
+  }
+
   /// Where material damps, velocities follow the shape: F(q, v(q)) with v' = T.
   void derive_turning(const State& s, const std::vector<double>& spins, const VectorXd& by_q) {
     constexpr int kPasses = 100;
@@ -76,6 +83,29 @@ void derive_mechanism(Workspace& model, std::span<const Growth> growths, const P
   }
 }
 
+/// As steady_state() of start.cpp, transposed.
+void derive_steady(Workspace& model, std::span<const Growth> growths, const Placement& placement,
+                   double t, double delta, const VectorXd& by_q, const VectorXd& by_v,
+                   Equilibria& equilibria) {
+  std::vector<double> now;
+  for (const int k : {0, 1, 2}) {
+    const start::SteadyEquilibrium s =
+        start::steady_equilibrium(model, growths, placement, t + k * delta);
+    if (k == 0) now = s.angle;
+    std::vector<double> on = s.angle, spins;
+    for (size_t b = 0; b < on.size(); ++b) on[b] -= now[b];
+    VectorXd seed = start::kForward[k] / (2 * delta) * by_v;
+    start::turn_by(model, on, seed);
+    if (k == 0) {
+      seed += by_q;
+      for (const Turning& turning : s.turning) spins.push_back(turning.rate);
+      start::add_turns(model, spins, by_v, -1, seed);
+    }
+    equilibria.derive_carried(s, seed);
+  }
+  model.move_lines(t);
+}
+
 }  // namespace
 
 void derive_start(Workspace& model, std::span<const Growth> growths, double t, Start kind,
@@ -83,15 +113,20 @@ void derive_start(Workspace& model, std::span<const Growth> growths, double t, S
                   const VectorXd& by_v, const SeeWork& see) {
   if (kind == Start::rigid) return;
   Equilibria equilibria(model, see);
-  if (kind == Start::settled) {
+  if (kind == Start::settled || kind == Start::at_rest) {
     model.move_lines(t);
     State s = start::rigid_state(model, growths, placement, t);
     const VectorXd rigid = s.q;
-    solve_resting_equilibrium(model, s);
+    if (kind == Start::settled)
+      solve_resting_equilibrium(model, s);
+    else if (start::rest_in_equilibrium(model, s))
+      return equilibria.derive(s, {1, 0, 0}, {}, by_q);
     s.a = kLastHold * (s.q - rigid);
     equilibria.derive(s, {1, 0, kLastHold}, {}, by_q);
     return;
   }
+  if (kind == Start::steady)
+    return derive_steady(model, growths, placement, t, delta, by_q, by_v, equilibria);
   if (start::rides_in_hubs(growths, placement))
     derive_in_hubs(model, growths, t, delta, by_q, by_v, equilibria);
   else

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "fem/dynamics/start.h"
+#include "fem/solve/statics.h"
 
 /// The equilibria that a prestretched start is made of: for start_state(), and for who derives it.
 namespace flexmorph::fem::start {
@@ -49,7 +50,21 @@ std::vector<double> spins(const Model& model, const State& rigid);
 void add_turns(const Model& model, const std::vector<double>& spins, const VectorXd& change,
                double sign, VectorXd& rate);
 
-/// Weights of the equilibria at t, t + δ and t + 2 δ in the rate of the start of a mechanism, by
+/// The equilibrium of a steady start at t, where the model's lines are left.
+struct SteadyEquilibrium {
+  State rigid, strained;
+  std::vector<Turning> turning;  ///< of every body
+  std::vector<double> angle;     ///< that every body is turned by [rad]
+};
+SteadyEquilibrium steady_equilibrium(Workspace& model, std::span<const Growth> growths,
+                                     const Placement& placement, double t);
+/// Static equilibrium at rest from a rigid state.
+/// @return is it exact? Else kLastHold holds what forces hardly bring back.
+bool rest_in_equilibrium(Workspace& model, State& x);
+/// Turns the vectors of every body by an angle.
+void turn_by(const Model& model, const std::vector<double>& angles, VectorXd& vectors);
+
+/// Weights of the equilibria at t, t + δ and t + 2 δ in the rate of a start, by
 /// 1 / (2 δ).
 inline constexpr double kForward[] = {-3, 4, -1};
 

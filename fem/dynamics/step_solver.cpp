@@ -111,6 +111,16 @@ void StepSolver::project_velocity(State& x) {
   x.v += solution_.head(model_.n_dofs()).cwiseQuotient(scales_);
 }
 
+VectorXd StepSolver::held_part(const State& x, const VectorXd& w) {
+  model_.constraints(x, constraints_);
+  constraint_.setZero(model_.n_constraints());
+  for (const auto& entry : constraints_.jacobian)
+    constraint_[entry.row()] += entry.value() * w[entry.col()];
+  force_.setZero(model_.n_dofs());
+  solve_mass(x, force_, constraint_);
+  return solution_.head(model_.n_dofs()).cwiseQuotient(scales_);
+}
+
 void StepSolver::solve_kept(const VectorXd& force, const VectorXd& constraint, VectorXd& dq,
                             VectorXd& mu) {
   right_.resize(kkt_.rows());

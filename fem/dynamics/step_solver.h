@@ -67,6 +67,9 @@ class StepSolver : public Integrator {
   /// Consistent q̈ and λ at x; the scheme does not start anew.
   void solve_accelerations(State& x);
 
+  /// What joints hold of a vector w: [M Φ_qᵀ; Φ_q 0] (P w, μ) = (0, Φ_q w) at x.
+  VectorXd held_part(const State& x, const VectorXd& w);
+
   /// Of the model as it is now: displacement() and size() stand on them. Steps do so themselves.
   void set_scales();
   Workspace& model() { return model_; }

@@ -28,6 +28,19 @@ void TransposedSystem::set(const State& x, const Weights& w, double scale, const
         if (matrix_.innerIndexPtr()[p] < model_.n_dofs())
           matrix_.valuePtr()[p] -= spin[column] * mass_.valuePtr()[p];
   }
+  take(x, w);
+}
+
+void TransposedSystem::set_carried(const State& x, std::span<const Turning> turning) {
+  const Weights w{1, 0, 0};
+  model_.constraints(x, constraints_);
+  model_.kkt(x, constraints_, w, 1, matrix_);
+  add_turning_tangent(model_, x, constraints_, turning, matrix_);
+  take(x, w);
+}
+
+/// Scales the matrix, which belongs to x, and makes use of the factor that is kept.
+void TransposedSystem::take(const State& x, const Weights& w) {
   q_ = x.q;
   weights_ = w;
   if (version_ != model_.pattern_version()) make_room();

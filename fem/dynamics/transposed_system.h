@@ -4,6 +4,7 @@
 
 #include "fem/dynamics/body_turns.h"
 #include "fem/solve/linear_solver.h"
+#include "fem/solve/statics.h"
 #include "fem/workspace.h"
 
 namespace flexmorph::fem {
@@ -25,6 +26,8 @@ class TransposedSystem {
   /// Puts J at x together. Accelerations are not looked at: forces are linear in them.
   /// @param spin  ω² of every unknown, whose M ω² is taken off (n_dofs), or empty
   void set(const State& x, const Weights& w, double scale, const VectorXd& spin = {});
+  /// Puts the matrix of solve_steady_equilibrium() at its x together.
+  void set_carried(const State& x, std::span<const Turning> turning);
 
   /// Jᵀ (ψ, χ) = (seed, rows).
   /// @param seed  (n_dofs)   @param rows  (n_constraints)
@@ -46,6 +49,7 @@ class TransposedSystem {
  private:
   static constexpr int kMostDirections = 12;
 
+  void take(const State& x, const Weights& w);
   VectorXd part(const State& x, const Weights& w, const VectorXd& psi);
   void make_room();
   void factorize();

@@ -19,6 +19,7 @@ class Path {
     x_.v = x_.a = VectorXd::Zero(n_);
     if (x_.lambda.size() != m_) x_.lambda = VectorXd::Zero(m_);
     size_ = extent();
+    start_ = here();
     range_ = std::abs(settings.to - settings.from);
     direction_ = settings.to < settings.from ? -1 : 1;
   }
@@ -26,7 +27,7 @@ class Path {
   StaticResult run() {
     check();
     factor_ = settings_.from;
-    if (!newton(factor_)) fail("no equilibrium at the start");
+    if (!newton(factor_) && !bring_on()) fail("no equilibrium at the start");
     result_.factor = factor_;
     if (!accepted()) return result_;
     if (range_ == 0) {
@@ -47,6 +48,32 @@ class Path {
     VectorXd q, lambda;
     double factor;
   };
+
+  /// Equilibrium at the first factor by steps that take a part of the forces which do not act yet,
+  /// each from the equilibrium before it: springs that are far from their free lengths.
+  bool bring_on() {
+    constexpr double kFirst = 0.1, kGrowth = 1.5;
+    Point last = start_;
+    last.factor = factor_;
+    double part = kFirst;
+    bool found = false;
+    while (!found && part > settings_.smallest_step) {
+      go(last);
+      model_.force(x_, held_);
+      held_ *= 1 - part;
+      x_.lambda.setZero();
+      if (!newton(factor_)) {
+        part *= 0.5;
+        continue;
+      }
+      model_.follow_turns(x_);
+      last = here();
+      found = part == 1;
+      part = std::min(1.0, kGrowth * part);
+    }
+    held_.resize(0);
+    return found;
+  }
 
   void check() const {
     const StaticSettings& s = settings_;
@@ -103,6 +130,7 @@ class Path {
     model_.scale_loads(factor_);
     model_.constraints(x_, c_);
     model_.force(x_, force_);
+    if (held_.size() > 0) force_ -= held_;
     model_.add_constraint_force(c_, x_.lambda, force_);
     right_.resize(n_ + m_);
     right_ << -force_, -c_.value;
@@ -348,6 +376,8 @@ class Path {
   SparseMatrix kkt_;
   UnsymmetricSolver solver_;
   VectorXd force_, right_;
+  VectorXd held_;  // forces that do not act yet, while the start is sought; else empty
+  Point start_;
   std::vector<double> history_;  // |residual| of the iterations of a step
 };
 

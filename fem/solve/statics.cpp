@@ -14,9 +14,11 @@ namespace {
 /// @param soften      adds to the tangent what that depends on q by
 /// @param size        of the model [m]
 /// @param tolerance   of a correction that does not get smaller any more, in parts of the size
+/// @param more        forces beside those of the model (n_dofs), or empty
 template <class Accelerate, class Soften>
 void find_equilibrium(Workspace& model, State& x, double size, const Accelerate& accelerate,
-                      const Soften& soften, const char* failure, double tolerance = 0) {
+                      const Soften& soften, const char* failure, double tolerance = 0,
+                      const VectorXd& more = {}) {
   model.prepare(x);  // for the scales
   const int n = model.n_dofs(), m = model.n_constraints();
   const VectorXd scales = model.scales();
@@ -29,6 +31,7 @@ void find_equilibrium(Workspace& model, State& x, double size, const Accelerate&
     const bool may_end = accelerate(x);
     model.constraints(x, c);
     model.force(x, residual);
+    if (more.size() > 0) residual += more;
     model.add_constraint_force(c, x.lambda, residual);
     model.kkt(x, c, {1, 0, 0}, 1, kkt);
     soften(x, c, kkt);
@@ -44,6 +47,50 @@ void find_equilibrium(Workspace& model, State& x, double size, const Accelerate&
   }
   if (correction < tolerance * size) return;  // NaN is not
   throw Error::numerical(failure);
+}
+
+/// Calls solve(part, x), which lets that part of the forces at x act: at once where it can, else in
+/// steps that take a part of what is left, each from the equilibrium before it. Forces that do not
+/// act yet so turn with the bodies.
+/// @param solve  throws Error (numerical) where it finds none; x is anywhere then
+/// @return were there steps?
+template <class Solve>
+bool bring_on(State& x, const Solve& solve) {
+  constexpr double kFirst = 0.1, kSmallest = 1e-4, kGrowth = 1.5;
+  State last = x;
+  try {
+    solve(1.0, x);
+    return false;
+  } catch (const Error& error) {
+    if (error.kind() != Error::Kind::numerical) throw;
+  }
+  for (double part = kFirst;;) {
+    x = last;
+    try {
+      solve(part, x);
+      if (part == 1) return true;
+      last = x;
+      part = std::min(1.0, kGrowth * part);
+    } catch (const Error& error) {
+      if (error.kind() != Error::Kind::numerical || part < kSmallest) throw;
+      part *= 0.5;
+    }
+  }
+}
+
+/// Adds factor × (column `from` of a) to the column `to` of b, rows below n; where b has no entry a
+/// has none that is not 0.
+void add_column(const SparseMatrix& a, int from, double factor, int to, int n, SparseMatrix& b) {
+  if (factor == 0) return;
+  int p = b.outerIndexPtr()[to];
+  const int end = b.outerIndexPtr()[to + 1];
+  for (SparseMatrix::InnerIterator entry(a, from); entry && entry.row() < n; ++entry) {
+    if (entry.value() == 0) continue;
+    while (p < end && b.innerIndexPtr()[p] < entry.row()) ++p;
+    if (p == end || b.innerIndexPtr()[p] != entry.row())
+      throw Error::numerical("statics: a force that couples one direction alone cannot be carried");
+    b.valuePtr()[p] += factor * entry.value();
+  }
 }
 
 }  // namespace
@@ -77,24 +124,100 @@ void solve_carried_equilibrium(Workspace& model, State& x) {
       "the bodies are too soft for them, or nothing holds a part of them");
 }
 
+void add_turning_tangent(Workspace& model, const State& x, const Constraints& c,
+                         std::span<const Turning> turning, SparseMatrix& kkt) {
+  SparseMatrix mass, damping;
+  model.kkt(x, c, {0, 0, 1}, 1, mass);
+  model.kkt(x, c, {0, 1, 0}, 1, damping);
+  const int n = model.n_dofs();
+  for (size_t b = 0; b < turning.size(); ++b) {
+    const Body& body = model.bodies()[b];
+    const auto [w, w_t] = turning[b];
+    for (int k = 0; k < body.element->n_vectors(); ++k) {
+      const int at = body.first_dof + body.element->dim() * k;
+      for (const int first : {0, 1}) {  // J (1, 0) = (0, 1), J (0, 1) = (-1, 0)
+        const int own = at + first, other = at + 1 - first, sign = first == 0 ? 1 : -1;
+        add_column(damping, other, sign * w, own, n, kkt);
+        add_column(mass, other, sign * w_t, own, n, kkt);
+        add_column(mass, own, -w * w, own, n, kkt);
+      }
+    }
+  }
+}
+
+void solve_steady_equilibrium(Workspace& model, std::span<const Turning> turning, State& x) {
+  const State rigid = x;
+  const auto carry = [&](State& s) {
+    s.v = rigid.v;
+    s.a = rigid.a;
+    for (size_t b = 0; b < turning.size(); ++b) {
+      const Body& body = model.bodies()[b];
+      const auto [w, w_t] = turning[b];
+      for (int k = 0; k < body.element->n_vectors(); ++k) {
+        const int at = body.first_dof + body.element->dim() * k;
+        const Vec2 u = s.q.segment<2>(at) - rigid.q.segment<2>(at), turned(-u.y(), u.x());
+        s.v.segment<2>(at) += w * turned;
+        s.a.segment<2>(at) += w_t * turned - w * w * u;
+      }
+    }
+    return true;
+  };
+  const auto turn = [&](const State& s, const Constraints& c, SparseMatrix& kkt) {
+    add_turning_tangent(model, s, c, turning, kkt);
+  };
+  const double size = std::max(1e-300, x.q.lpNorm<Eigen::Infinity>());
+  bring_on(x, [&](double part, State& s) {
+    VectorXd idle;
+    if (part < 1) {
+      carry(s);
+      model.force(s, idle);
+      idle *= part - 1;
+      s.lambda.setZero();
+    }
+    find_equilibrium(
+        model, s, size, carry, turn,
+        "statics: no equilibrium under the inertia forces of the start, t = 0, after 40 "
+        "iterations: the bodies are too soft for them, or nothing holds a part of them",
+        0, idle);
+  });
+  carry(x);
+}
+
 void solve_resting_equilibrium(Workspace& model, State& x) {
   constexpr double kFirst = 1e4;  // κ [1/s²]
-  const VectorXd start = x.q;
-  double hold = 10 * kFirst;
+  constexpr double kFar = 100;    // sizes of the model: nothing brings it back
   x.v.setZero();
-  // a = κ (q - q₀): its inertia force is that of the hold.
-  const auto accelerate = [&](State& s) {
-    hold = std::max(0.1 * hold, kLastHold);
-    s.a = hold * (s.q - start);
-    return hold == kLastHold;
+  const State start = x;
+  const double size = std::max(1e-300, x.q.lpNorm<Eigen::Infinity>());
+  const auto rest = [&](double part, State& s) {
+    const VectorXd center = s.q;
+    double hold = 10 * kFirst;
+    // a = κ (q - q₀): its inertia force is that of the hold.
+    const auto accelerate = [&](State& at) {
+      hold = std::max(0.1 * hold, kLastHold);
+      at.a = hold * (at.q - center);
+      return hold == kLastHold;
+    };
+    const auto soften = [&](const State& at, const Constraints& c, SparseMatrix& kkt) {
+      model.kkt(at, c, {1, 0, hold}, 1, kkt);
+    };
+    VectorXd idle;
+    if (part < 1) {
+      s.a.setZero(model.n_dofs());
+      model.force(s, idle);
+      idle *= part - 1;
+      s.lambda.setZero();
+    }
+    // Along a freedom that only the hold keeps, forces are zero up to the round-off of stiff ones.
+    find_equilibrium(model, s, size, accelerate, soften,
+                     "statics: no equilibrium at rest after 40 iterations", 1e-7, idle);
+    s.a.setZero();
+    model.follow_turns(s);
   };
-  const auto soften = [&](const State& s, const Constraints& c, SparseMatrix& kkt) {
-    model.kkt(s, c, {1, 0, hold}, 1, kkt);
-  };
-  // Along a freedom that only the hold keeps, forces are zero up to the round-off of stiff ones.
-  find_equilibrium(model, x, std::max(1e-300, x.q.lpNorm<Eigen::Infinity>()), accelerate, soften,
-                   "statics: no equilibrium at rest after 40 iterations", 1e-7);
-  x.a.setZero();
+  if (bring_on(x, rest)) rest(1, x);  // what the last step was held by is gone
+  if (model.scales().cwiseProduct(x.q - start.q).lpNorm<Eigen::Infinity>() > kFar * size)
+    throw Error::numerical(
+        "statics: no equilibrium at rest: nothing brings a body back that its forces move");
 }
 
 }  // namespace flexmorph::fem

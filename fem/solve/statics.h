@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 
 #include "fem/workspace.h"
 
@@ -23,6 +24,30 @@ void solve_rotating_equilibrium(Workspace& model, const VectorXd& spin, const Ve
 /// @throws Error (numerical) likewise.
 void solve_carried_equilibrium(Workspace& model, State& x);
 
+/// How a body turns: angular velocity [rad/s] and angular acceleration [rad/s²].
+struct Turning {
+  double rate = 0, acceleration = 0;
+};
+
+/// Equilibrium of bodies that are carried along, inertia taken where the strained bodies are: with
+/// u = q - q_R, the unknowns less those of the rigid motion,
+///
+///   F(q, q̇, q̈) + Φ_qᵀ λ = 0,   Φ(q, x.t) = 0
+///   q̇ = q̇_R + ω J u,   q̈ = q̈_R + (ω' J - ω² I) u,   J a quarter turn
+///
+/// for every vector of a body that turns with ω and ω': the displacements turn with the body. Where
+/// Newton's method does not find it at once, the forces at x are brought on in steps.
+///
+/// @param turning  of every body of the model
+/// @param x  in: the rigid motion q_R, q̇_R, q̈_R; out: the equilibrium, with its q̇ and q̈
+/// @throws Error (numerical) when no equilibrium is found.
+void solve_steady_equilibrium(Workspace& model, std::span<const Turning> turning, State& x);
+
+/// Adds C ∂q̇/∂u + M ∂q̈/∂u of solve_steady_equilibrium() to a tangent with F_q alone.
+/// @param kkt  of Workspace::kkt() with the weights {1, 0, 0} and scale 1
+void add_turning_tangent(Workspace& model, const State& x, const Constraints& c,
+                         std::span<const Turning> turning, SparseMatrix& kkt);
+
 /// Static equilibrium of a model that joints leave free to move (a load that hangs): F(q, 0, 0) +
 /// Φ_qᵀ λ = 0, Φ(q, x.t) = 0, by Newton's method near x.
 ///
@@ -31,8 +56,11 @@ void solve_carried_equilibrium(Workspace& model, State& x);
 /// ten per iteration to 0.01 s⁻² and stays there. A freedom with frequency ω misses its
 /// equilibrium by 0.01/ω² of what it moved; one that nothing brings back stays where it is.
 ///
+/// Where it does not converge, the forces at x are brought on in steps, each held by the
+/// equilibrium before it: a spring that is far from its free length, or wound up by turns.
+///
 /// @param x  in: near the equilibrium; out: q and λ of it, v = a = 0.
-/// @throws Error (numerical) likewise.
+/// @throws Error (numerical) likewise, and where a body leaves by 100 sizes of the model.
 void solve_resting_equilibrium(Workspace& model, State& x);
 /// κ of its last iterations [1/s²].
 inline constexpr double kLastHold = 1e-2;

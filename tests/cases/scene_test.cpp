@@ -270,7 +270,7 @@ const Bad kBadInputs[] = {
      "an optimizer is one of 'gcmma', 'ipopt', 'mma', 'nlopt_ccsaq', 'nlopt_mma'"},
     {"unknown_start",
      {"time.start=rigit"},
-     "a start is one of 'prestretched', 'rigid', 'hub_at_rest', did you mean 'rigid'?"},
+     "a start is one of 'prestretched', 'steady', 'rigid', 'hub_at_rest', did you mean 'rigid'?"},
     {"spin_up_of_another_start", {"time.spin_up=0.1"}, "only start = \"hub_at_rest\" spins up"},
     {"rho_inf", {"time.rho_inf=1.1"}, "a spectral radius lies between 0 and 1"},
     {"long_step", {"time.step=2"}, "a time step is no longer than time.end [s]"},

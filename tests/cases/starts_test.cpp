@@ -131,6 +131,8 @@ const Case kCases[] = {
          joint("revolute", "a = \"b\"\npoint_a = [0.2, 0.0]\nb = \"rod\"\npoint_b = [1.0, 0.0]")},
     {"against_a_pin", rigid("a", "position = [0.2, 0.0]\nvelocity = [1.0, 0.0]") + kPendulum, false,
      "rigid_body.a.velocity = [1, 0]: contradicts joint "},
+    {"against_a_pin_by_all_of_it",
+     rigid("a", "position = [0.2, 0.0]\nvelocity = [0.5, 0.0]") + kPendulum, false, " by 0.5 m/s"},
     {"against_a_drive",
      rigid("a", "position = [0.2, 0.0]\nangular_velocity = 4.0") + kPendulum +
          "\n[[drive]]\nname = \"turn\"\nformula = \"2*t\"\n" +

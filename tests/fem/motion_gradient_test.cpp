@@ -120,12 +120,15 @@ INSTANTIATE_TEST_SUITE_P(Gradients, EveryMotion,
                                            std::tuple(ShapeSet::q4, 0.5, Start::rigid),
                                            std::tuple(ShapeSet::q4, 0.5, Start::prestretched),
                                            std::tuple(ShapeSet::q4, -0.5, Start::prestretched),
-                                           std::tuple(ShapeSet::h16, 0.5, Start::prestretched)));
+                                           std::tuple(ShapeSet::h16, 0.5, Start::prestretched),
+                                           std::tuple(ShapeSet::q4, 0.5, Start::steady),
+                                           std::tuple(ShapeSet::q4, -0.5, Start::steady),
+                                           std::tuple(ShapeSet::h16, 0.5, Start::steady)));
 
 // A beam that is welded to the free end of the plate across it goes with its motion, and so do the
 // forces between them.
 TEST(MotionGradient, PassesThroughAWeldBetweenBodies) {
-  for (const Start start : {Start::rigid, Start::prestretched}) {
+  for (const Start start : {Start::rigid, Start::prestretched, Start::steady}) {
     Growing motion(ShapeSet::h16, 0, start);
     static constexpr double kOmega = 2 * std::numbers::pi, kTip = 0.5;
     constexpr double kStep = 2e-3, kRoundOff = 1e-12;  // of values: what Newton's method leaves
