@@ -41,12 +41,11 @@ void GeneralizedAlpha::begin(const State& x, double h) {
 }
 
 void GeneralizedAlpha::begin_motion(const State& x, double h) {
-  constexpr double kPart = 1e-3;    // of a step
+  // Parts of a step: short against the motion, long enough for round-off of stiff bodies.
+  constexpr double kParts[] = {1e-3, 1e-2, 1e-1};
   constexpr double kChange = 0.25;  // of a smooth q⃛
   set_scales();
   start_ = {};
-  StartJerk found;
-  found.after = kPart * h;
   const auto ahead = [&](double s) {
     State later = x;
     later.t += s;
@@ -55,13 +54,18 @@ void GeneralizedAlpha::begin_motion(const State& x, double h) {
     solve_accelerations(later);
     return later;
   };
-  const State twice = ahead(2 * found.after);
-  found.later = ahead(found.after);
-  found.jerk = (found.later.a - x.a) / found.after;
-  const VectorXd next = (twice.a - found.later.a) / found.after;
-  if (!(displacement(next - found.jerk) <= kChange * displacement(found.jerk))) return;
-  found.held = held_part(x, found.jerk);
-  start_ = std::move(found);
+  for (const double part : kParts) {
+    StartJerk found;
+    found.after = part * h;
+    const State twice = ahead(2 * found.after);
+    found.later = ahead(found.after);
+    found.jerk = (found.later.a - x.a) / found.after;
+    const VectorXd next = (twice.a - found.later.a) / found.after;
+    if (!(displacement(next - found.jerk) <= kChange * displacement(found.jerk))) continue;
+    found.held = held_part(x, found.jerk);
+    start_ = std::move(found);
+    return;
+  }
 }
 
 void GeneralizedAlpha::cross_kink(State& x) {
