@@ -19,33 +19,33 @@ constexpr double kCellsApart = 0.02;    // sharp compliances from body-fitted on
 // analysed it is about 2; 10 is no design any more but heavy, soft edges.
 constexpr double kHangingMass = 10;
 
-/// What a row of the goal came to. Volumes of mended designs are limited as they are, without blur.
-double found_of(const mmc::ResponseRow& row, const mmc::BodyProblem& p, const mmc::BodyOutcome& o) {
-  const bool sharp = o.clean_up && row.even;
-  if (&row == &mmc::kVolume) return sharp ? o.sharp.volume : o.volume;
-  if (&row == &mmc::compliance_row(p.goal)) return o.compliance;
-  return (sharp ? o.sharp.further : o.further).at(mmc::key_of(row));
+/// Part of a limit that a crisp design may be beyond it.
+constexpr double kLimitTolerance = 5e-3;
+
+/// The value of a response of the goal, of the crisp design.
+double crisp_value(const mmc::ResponseRow& row, const mmc::BodyProblem& p,
+                   const mmc::BodyOutcome& o) {
+  if (&row == &mmc::kVolume) return o.sharp.volume;
+  if (&row == &mmc::compliance_row(p.goal)) return o.sharp.compliance;
+  return o.sharp.further.at(mmc::key_of(row));
 }
 
-/// Has the optimizer left a design that is not feasible? (One that is analysed as it starts was not
-/// asked; what bodies share is no limit of one.)
+/// Limits that the crisp design violates. (A design that is evaluated as it starts was not asked;
+/// what bodies share is no limit of one.)
 void add_limits(const mmc::BodyProblem& p, const mmc::BodyOutcome& o, Warnings& out) {
   if (o.iterations == 0) return;
   for (const mmc::Limit& limit : p.goal.limits) {
     if (p.shares_mass && limit.volume && !limit.at_least) continue;
-    const double found = found_of(*limit.row, p, o);
-    const std::string key = mmc::key_of(*limit.row);
-    const double scale = limit.row->full ? limit.row->full(mmc::plate_of(p)) : limit.value;
-    const double beyond = limit.at_least ? limit.value - found : found - limit.value;
-    if (!(beyond > 1e-3 * scale)) continue;
+    const double found = crisp_value(*limit.row, p, o);
+    if (!(limit.excess(found) > kLimitTolerance)) continue;
     out.push_back(
         {"body '" + o.body + "': the " + std::string(limit.row->words) + " " +
-             io::to_text(found, 4) + " is " +
-             (limit.at_least ? "below what is wanted, " : "above what is allowed, ") +
-             io::to_text(limit.value, 4) + ": no design that was found " +
-             (limit.row->even && !limit.at_least ? "is as light" : "keeps to it") +
-             (limit.wants_material() ? "; the full design has " + io::to_text(o.full.at(key), 4)
-                                     : std::string()),
+             io::to_text(found, 4) +
+             (limit.at_least ? " is below what is wanted, " : " is above what is allowed, ") +
+             io::to_text(limit.value, 4) + ": no design that was found keeps to it" +
+             (limit.wants_material()
+                  ? "; the full design has " + io::to_text(o.full.at(mmc::key_of(*limit.row)), 4)
+                  : std::string()),
          true});
   }
 }

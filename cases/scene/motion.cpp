@@ -57,10 +57,9 @@ const io::Key& kRhoInf =
         .says("Spectral radius of generalized-alpha at infinite frequency: 1 damps nothing.");
 const io::Choice<Start> kStart(
     io::key("time", "start")
-        .otherwise_as("`prestretched`; `rigid` without a hub or with free lines")
-        .says(
-            "How a scene starts: in equilibrium as it turns (`prestretched`: in hubs without flow "
-            "and Euler forces) or moves (`steady`), unstrained, or with hubs at rest."),
+        .otherwise_as(
+            "`prestretched`; `rigid` without a hub, with free lines or where nothing bends")
+        .says("How a driven scene starts: in equilibrium, unstrained, or with hubs at rest."),
     "a start",
     {{"prestretched", Start::prestretched},
      {"steady", Start::steady},
@@ -263,11 +262,15 @@ void settle_start(const Table& root, Scene& scene) {
         "welded to each other, say themselves how they start");
   if (scene.time.start == Start::steady && scene.has_free_lines())
     time.fail(kStart, "\"steady\" is for bodies whose lines are not free: start = \"rigid\"");
-  if (time.has(kStart) && scene.time.start == Start::prestretched && scene.bodies.empty())
-    time.fail(kStart,
-              "\"prestretched\" stretches bodies that bend, of which the scene has none; "
-              "\"steady\" starts springs and rigid bodies in equilibrium, \"rigid\" where they "
-              "are put");
+  if (scene.time.start == Start::prestretched && scene.bodies.empty()) {
+    if (time.has(kStart))
+      time.fail(kStart,
+                "\"prestretched\" stretches bodies that bend, of which the scene has none; "
+                "\"steady\" starts springs and rigid bodies in equilibrium, \"rigid\" where they "
+                "are put");
+    scene.time.start = Start::rigid;
+    time.settle(kStart, "rigid");
+  }
   if (scene.time.integrator != "generalized_alpha" && scene.has_free_lines())
     time.fail(kIntegrator, "free material lines ([[body.line]]) need \"generalized_alpha\": \"" +
                                scene.time.integrator + "\" does not know them");

@@ -20,8 +20,7 @@ const io::Key& kGravity =
         .numbers_or_names(io::any_number("gravity", "m/s^2"), "a drive", 2, 3)
         .otherwise_as("nothing weighs")
         .says(
-            "Two entries in the plane, three in space. Of a [domain] it is the weight of the "
-            "design, which acts with every load.");
+            "Two entries in the plane, three in space; with a [domain] the weight of the design.");
 const io::Key& kConstants =
     one("constants").says("Numbers with names, for the formulas of drives.");
 const io::Key& kTime = one("time").says("How long the motion lasts, and its steps.");

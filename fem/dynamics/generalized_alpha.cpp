@@ -46,13 +46,20 @@ void GeneralizedAlpha::begin_motion(const State& x, double h) {
   constexpr double kChange = 0.25;  // of a smooth q⃛
   set_scales();
   start_ = {};
-  const auto ahead = [&](double s) {
+  const auto ahead = [&](double s, const VectorXd* jerk = nullptr) {
     State later = x;
     later.t += s;
     later.q += s * x.v + 0.5 * s * s * x.a;
     later.v += s * x.a;
+    if (jerk) {
+      later.q += s * s * s / 6 * *jerk;
+      later.v += 0.5 * s * s * *jerk;
+    }
     solve_accelerations(later);
     return later;
+  };
+  const auto is_near = [&](const VectorXd& other, const VectorXd& jerk) {
+    return displacement(other - jerk) <= kChange * displacement(jerk);
   };
   for (const double part : kParts) {
     StartJerk found;
@@ -61,7 +68,12 @@ void GeneralizedAlpha::begin_motion(const State& x, double h) {
     found.later = ahead(found.after);
     found.jerk = (found.later.a - x.a) / found.after;
     const VectorXd next = (twice.a - found.later.a) / found.after;
-    if (!(displacement(next - found.jerk) <= kChange * displacement(found.jerk))) continue;
+    if (!is_near(next, found.jerk)) continue;
+    // What decays within a part of the step is smooth over a shorter time only.
+    const double longest = kParts[std::size(kParts) - 1] * h;
+    if (found.after < longest &&
+        !is_near((ahead(longest, &found.jerk).a - x.a) / longest, found.jerk))
+      return;
     found.held = held_part(x, found.jerk);
     start_ = std::move(found);
     return;

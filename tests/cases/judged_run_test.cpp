@@ -30,7 +30,8 @@ nlohmann::json verified(const Scratch& scratch, const std::string& name, const s
                   "optimizer.max_iterations=1", "optimizer.move_limit=1e-9",
                   "output.design_every=0", "output.plots=false"});
   const Ended ended = run(scratch, name, folder, changes);
-  EXPECT_EQ(ended.code, 0) << ended.err;
+  // Designs of the data may lie above the volume that the case allows.
+  EXPECT_TRUE(ended.code == 0 || ended.code == kTooFew) << ended.err;
   return nlohmann::json::parse(contents_of(folder + "/run.json"))["results"][0]["body_fitted"];
 }
 
