@@ -74,7 +74,7 @@ std::vector<fem::AttachedForce> applied_forces(const Scene& scene, const std::st
 /// Scene -> design problems, with the initial layout.
 std::vector<mmc::BodyProblem> build_problems(const Scene& scene);
 
-/// Cells of every support and of every force of a static scene, with names for messages.
+/// Finds the cells of every support and of every force of a static scene, with names for messages.
 /// @throws Error (input) for a place without a node of the domain.
 std::vector<HeldOrLoaded> static_places(const Scene& scene, const Grid& grid,
                                         std::span<const signed char> outside);

@@ -59,8 +59,9 @@ struct StartJerk {
 /// begin_motion() prepares: it starts from a_0 = q̈_0 + δ h q⃛_0 and q̇_0 + C h² P q⃛_0, P q⃛_0 what
 /// joints hold of q⃛_0: [M Φ_qᵀ; Φ_q 0] (P q⃛, μ) = (0, Φ_q q⃛). Without it multipliers miss by O(h)
 /// for some 50 steps. q⃛_0 is the difference of consistent accelerations over a thousandth, a
-/// hundredth or a tenth of the step, the first that hardly changes over the next one; where all
-/// change it is not used: of ringing and round-off its sign says nothing.
+/// hundredth or a tenth of the step, the first that hardly changes over the next one. It is not
+/// used where all change (of ringing and round-off its sign says nothing), or where it changes over
+/// a tenth of the step: stiff damping ends it within the step.
 ///
 /// Source: Arnold, Brüls (2007), Multibody Syst. Dyn. 18, 185-202; fem/README.md, Time integration.
 /// Start and error terms: Arnold, Brüls, Cardona (2015), Numer. Math. 129, 149-179; filter:

@@ -50,12 +50,14 @@ std::vector<double> spins(const Model& model, const State& rigid);
 void add_turns(const Model& model, const std::vector<double>& spins, const VectorXd& change,
                double sign, VectorXd& rate);
 
-/// The equilibrium of a steady start at t, where the model's lines are left.
+/// The equilibrium of a steady start at a time, at which the model's lines are left.
 struct SteadyEquilibrium {
   State rigid, strained;
   std::vector<Turning> turning;  ///< of every body
   std::vector<double> angle;     ///< that every body is turned by [rad]
 };
+/// Finds the equilibrium of a steady start at t. @throws Error (numerical) as
+/// solve_steady_equilibrium()
 SteadyEquilibrium steady_equilibrium(Workspace& model, std::span<const Growth> growths,
                                      const Placement& placement, double t);
 /// Static equilibrium at rest from a rigid state.

@@ -60,7 +60,8 @@ void add_turning_tangent(Workspace& model, const State& x, const Constraints& c,
 /// equilibrium before it: a spring that is far from its free length, or wound up by turns.
 ///
 /// @param x  in: near the equilibrium; out: q and λ of it, v = a = 0.
-/// @throws Error (numerical) likewise, and where a body leaves by 100 sizes of the model.
+/// @throws Error (numerical) when no equilibrium is found, or a body leaves by 100 sizes of the
+///         model.
 void solve_resting_equilibrium(Workspace& model, State& x);
 /// κ of its last iterations [1/s²].
 inline constexpr double kLastHold = 1e-2;

@@ -101,7 +101,7 @@ TEST(SteadyStart, WhatItDoesNotFitIsRefused) {
                      "[0.2, 0.0]\nangular_velocity = 4.0\n[[joint]]\ntype = \"revolute\"\nb = "
                      "\"a\"\npoint_b = [-0.2, 0.0]\n",
                  "leave 1 freedoms");
-  // What falls along its slide rests nowhere.
+  // A body that falls along its slide has no equilibrium.
   Mechanism m = build_mechanism(
       scene_of(timed("steady") +
                "\n[[rigid_body]]\nname = \"a\"\nmass = 1.0\nsize = [0.4, 0.1]\n[[joint]]\ntype = "

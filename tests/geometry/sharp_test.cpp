@@ -166,10 +166,10 @@ TEST(Connectivity, NamesLooseLoadsAndUnusedSupports) {
   EXPECT_EQ(whole.islands, 1);
   EXPECT_EQ(whole.unused_supports, std::vector<std::string>{"top"});
   places[1].is_support = false;
-  const Connectivity torn = connectivity(grid, fractions, places);
-  EXPECT_FALSE(torn.connected);
-  EXPECT_EQ(torn.loose_loads, std::vector<std::string>{"top"});
-  EXPECT_TRUE(torn.unused_supports.empty());
+  const Connectivity apart = connectivity(grid, fractions, places);
+  EXPECT_FALSE(apart.connected);
+  EXPECT_EQ(apart.loose_loads, std::vector<std::string>{"top"});
+  EXPECT_TRUE(apart.unused_supports.empty());
   const Connectivity weighs = connectivity(grid, fractions, std::span(places).first(1));
   EXPECT_TRUE(weighs.connected && weighs.unused_supports.empty());
   EXPECT_FALSE(connectivity(grid, 0 * fractions, std::span(places).first(1)).connected);

@@ -16,11 +16,13 @@ std::string convergence_plot(const RunFolder::History& history);
 /// Deflection of the tip of every body against time: P Fig. 23.
 std::string deflection_plot(const MotionRecord& design, const std::optional<MotionRecord>& uniform);
 
+/// Draws the coordinates of observed points against time.
 std::string observed_plot(const MotionRecord& motion);
 
 /// Displacements and strain energy against the load factor; along an arc the factor may go back.
 std::string path_plot(const PathRecord& path);
 
+/// Draws the energies of the model against time.
 std::string energy_plot(const Scene& scene, const MotionRecord& motion);
 
 /// The drives that follow from the trajectory (without one: all that something uses) against time,
