@@ -45,9 +45,6 @@ struct EslSet {
 struct EslSets {
   Grid grid;  ///< design mesh over the longest extent, root side at x0
   std::vector<EslSet> sets;
-  /// ∫ U dt of the motion the loads come from, all bodies [J s]: what cycles are compared by where
-  /// no other motion does.
-  double strain_energy_integral = 0;
   std::optional<std::array<int, 2>> pins = {};  ///< nodes of a link between two pins
 };
 

@@ -28,7 +28,15 @@ struct Iterate {
 /// Looks on; returns false to stop the run.
 using Observer = std::function<bool(const Iterate&)>;
 
-enum class Stop { converged, iteration_limit, evaluation_limit, observer, stalled, failed };
+enum class Stop {
+  converged,
+  plateau,
+  iteration_limit,
+  evaluation_limit,
+  observer,
+  stalled,
+  failed
+};
 std::string to_string(Stop stop);
 
 /// When a search has come to rest: over the last rows the objective has kept within a band, and the
@@ -49,7 +57,10 @@ struct Settings {
   double feasibility = 1e-5;    ///< ... the violation are below these
   double change_tolerance = 0;  ///< stop after 3 iterations with less change (0: off)
   Rest rest = {};               ///< stop there, too
-  double move_limit = 0.05;     ///< largest change of a variable per iteration (mma), box (NLopt)
+  /// Stop when the best usable design has improved by less than Verdict::kPlateau over
+  /// Verdict::kPlateauRows rows.
+  bool plateau = false;
+  double move_limit = 0.05;  ///< largest change of a variable per iteration (mma), box (NLopt)
   /// Settings of one optimizer, by name (see its file for the names); unknown names are errors.
   std::map<std::string, double> options;
 };

@@ -38,6 +38,8 @@ std::string to_string(Stop stop) {
   switch (stop) {
     case Stop::converged:
       return "converged";
+    case Stop::plateau:
+      return "plateau";
     case Stop::iteration_limit:
       return "iteration limit";
     case Stop::evaluation_limit:

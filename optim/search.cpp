@@ -198,6 +198,8 @@ void Search::end_or_go_on(const Iterate& it, const Point& point, double price) {
     stop(Stop::converged, "the objective changed by " + scientific(change) + " over " +
                               std::to_string(rest.rows) + " iterations" + residual);
     if (std::isfinite(rest.kkt)) keep_last(point, rest.objective);
+  } else if (settings_.plateau && at_plateau()) {
+    stop(Stop::plateau, plateau_words() + residual);
   } else if (rows_ > 1 && rests(it.change, it.violation)) {
     stop(Stop::converged, "three iterations in a row changed no variable by " +
                               scientific(settings_.change_tolerance) + residual);
@@ -258,6 +260,10 @@ double Search::improvement_over(int rows) const {
                                : std::numeric_limits<double>::quiet_NaN();
 }
 
+bool Search::at_plateau() const {
+  return improvement_over(Verdict::kPlateauRows) < Verdict::kPlateau;  // false for NaN
+}
+
 Verdict Search::verdict_on(const Result& result) const {
   Verdict out;
   out.kkt = result.kkt;
@@ -265,7 +271,7 @@ Verdict Search::verdict_on(const Result& result) const {
   if (result.violation > settings_.feasibility) return out;
   if (result.kkt <= settings_.kkt_tolerance)
     out.kind = Verdict::Kind::converged;
-  else if (improvement_over(Verdict::kPlateauRows) < Verdict::kPlateau)  // false for NaN
+  else if (at_plateau())
     out.kind = Verdict::Kind::stagnated;
   return out;
 }

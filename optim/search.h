@@ -83,6 +83,7 @@ class Search {
   void end_or_go_on(const Iterate& it, const Point& point, double price);
   void keep_last(const Point& point, double slack);
   double improvement_over(int rows) const;
+  bool at_plateau() const;  ///< of the best usable design
   Verdict verdict_on(const Result& result) const;
 
   Problem& problem_;

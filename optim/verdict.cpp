@@ -16,6 +16,11 @@ std::string percent(double part) {
 
 }  // namespace
 
+std::string plateau_words() {
+  return "the objective fell by less than " + percent(Verdict::kPlateau) + " over " +
+         std::to_string(Verdict::kPlateauRows) + " iterations";
+}
+
 std::string to_string(Verdict::Kind kind) {
   switch (kind) {
     case Verdict::Kind::evaluated:
@@ -39,8 +44,7 @@ std::string words_of(const Verdict& verdict) {
     case Verdict::Kind::converged:
       return out + ": " + residual;
     case Verdict::Kind::stagnated:
-      return out + ": the objective fell by less than " + percent(Verdict::kPlateau) + " over " +
-             std::to_string(Verdict::kPlateauRows) + " iterations, " + residual;
+      return out + ": " + plateau_words() + ", " + residual;
     case Verdict::Kind::unfinished:
       break;
   }

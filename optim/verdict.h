@@ -13,7 +13,9 @@ struct Verdict {
     converged    ///< the design is feasible and meets the KKT conditions
   };
   static constexpr int kPlateauRows = 30;      ///< iterations of a plateau
-  static constexpr double kPlateau = 1e-3;     ///< improvement over them, a part of the objective
+  /// Improvement over them, a part of the objective; of a volume or a mass, of that of the full
+  /// domain.
+  static constexpr double kPlateau = 1e-3;
   static constexpr int kImprovementRows = 20;  ///< iterations of `improvement`
 
   Kind kind = Kind::unfinished;
@@ -23,6 +25,8 @@ struct Verdict {
   double improvement = 0;
 };
 
+/// "the objective fell by less than 0.1 % over 30 iterations".
+std::string plateau_words();
 /// "converged", "stagnated", "unfinished" or "evaluated".
 std::string to_string(Verdict::Kind kind);
 /// The kind of a verdict and the numbers behind it: "unfinished: the objective fell by 2.1 % over

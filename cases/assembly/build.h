@@ -23,6 +23,7 @@ struct Mechanism {
   fem::Workspace model;              ///< with the room of one motion
   std::vector<fem::Growth> growths;  ///< one per plate that sits in a hub or sleeve
   fem::MotionSettings motion;
+  std::string start_words;  ///< how it starts, where the case leaves that to the program
 };
 
 /// Mesh of a run other than the scene's own (see Verify); limits of boundary elements scale along.

@@ -5,6 +5,7 @@
 #include "cases/assembly/build.h"
 #include "cases/assembly/heat.h"
 #include "cases/assembly/joints.h"
+#include "cases/assembly/start.h"
 #include "cases/assembly/stored.h"
 #include "cases/scene/elements/row.h"
 #include "cases/scene/joints/row.h"
@@ -138,54 +139,6 @@ void add_holds(const Scene& scene, const Body& body, fem::Model& model) {
   if (!all.empty()) model.add_joint(fem::make_hold(body.name + ".held", body.name, std::move(all)));
 }
 
-/// What the prestretched start looks ahead by, at most (fem::start_state()) [s].
-constexpr double kAhead = 2e-4;
-
-/// How a mechanism starts that is to start steady: in equilibrium under the inertia forces of the
-/// motion that drives determine (rigid where only plates that bend can follow them), or at rest in
-/// equilibrium where nothing moves.
-/// @throws Error (input) where it moves and drives do not determine how.
-fem::Start steady_start(const Scene& scene, fem::RigidMotion& rigid) {
-  constexpr double kStill = 1e-6;  // [m/s]
-  if (rigid.degrees_of_freedom() == 0)
-    return scene.bodies.empty() || !rigid.reaches(kAhead) ? fem::Start::rigid : fem::Start::steady;
-  if (!rigid.is_indeterminate() && rigid.start_speed() < kStill) return fem::Start::at_rest;
-  scene.refuse("time.start",
-               rigid.is_indeterminate()
-                   ? "\"steady\" needs a motion of the rigid mechanism, but its joints hold more "
-                     "than it has freedoms: start = \"rigid\""
-                   : "\"steady\" needs drives that determine all motion, or a mechanism at rest; "
-                     "drives leave " +
-                         std::to_string(rigid.degrees_of_freedom()) +
-                         " freedoms of this one, which sets off with " +
-                         io::to_text(rigid.start_speed(), 3) + " m/s: start = \"rigid\"");
-}
-
-/// How a mechanism starts: at rest in equilibrium where its drives do not determine it all.
-/// @throws Error (input) when that is asked for but it does not rest.
-fem::Start start_of(const Scene& scene, fem::RigidMotion& rigid) {
-  if (scene.time.start == Start::steady) return steady_start(scene, rigid);
-  // Where nothing bends nothing is stretched.
-  if (scene.time.start != Start::prestretched || scene.bodies.empty()) return fem::Start::rigid;
-  if (rigid.degrees_of_freedom() == 0)
-    return rigid.reaches(kAhead) ? fem::Start::prestretched : fem::Start::rigid;
-  if (rigid.is_indeterminate())
-    throw Error::input(
-        "time.start: \"prestretched\" needs a motion of the rigid mechanism, but its joints hold "
-        "more than it has freedoms: start = \"rigid\"");
-  // What is left of it is the start of a swing; the equilibrium of the plates ends it.
-  const double nearly = 0.05 * std::max(1.0, scene.gravity ? scene.gravity->norm() : 0.0);
-  const double speed = rigid.start_speed(), acceleration = rigid.start_acceleration();
-  if (speed < 1e-6 && acceleration < nearly) return fem::Start::settled;
-  scene.refuse("time.start",
-               "\"prestretched\" puts a mechanism whose drives leave freedoms (" +
-                   std::to_string(rigid.degrees_of_freedom()) +
-                   " here) into its equilibrium at rest, but this one sets off with " +
-                   io::to_text(speed, 3) + " m/s and " + io::to_text(acceleration, 3) +
-                   " m/s²: bodies where they hang at rest and drives that begin at rest, or start "
-                   "= \"rigid\"");
-}
-
 /// Without rigid bodies: where beams are, as the case says or with their hubs.
 void place_alone(const Scene& scene, fem::MotionSettings& motion) {
   struct Frame {
@@ -288,9 +241,6 @@ void add_joints(const Scene& scene, const std::function<double(const Body&)>& fi
 void set_motion(const Scene& scene, fem::MotionSettings& out) {
   out.end = scene.time.end;
   set_step(scene, scene.time.step, out);
-  out.start = scene.time.start == Start::prestretched ? fem::Start::prestretched
-              : scene.time.start == Start::steady     ? fem::Start::steady
-                                                      : fem::Start::rigid;
   out.integrator = scene.time.integrator;
   out.alpha.rho_inf = scene.time.rho_inf;
   out.minimal_coordinates.tolerance = scene.time.explicit_tolerance;
@@ -344,10 +294,11 @@ Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh,
   if (scene.is_mechanism()) {
     const fem::RigidKinematics kinematics = rigid ? *rigid : rigid_kinematics(scene);
     fem::RigidMotion motion(kinematics);
-    out.motion.start = start_of(scene, motion);
     out.motion.placement = fem::rigid_configuration(kinematics);
+    set_start(scene, &motion, out);
   } else {
     place_alone(scene, out.motion);
+    set_start(scene, nullptr, out);
   }
   if (scene.has_heat()) add_heat(scene, out);
   return out;

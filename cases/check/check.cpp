@@ -302,6 +302,7 @@ std::string check_case(const std::string& name, std::span<const std::string> ove
   const fem::RigidKinematics* rigid = prepared.rigid();
   const Mechanism& mechanism = prepared.mechanism();
   describe_course(scene, out);
+  if (!mechanism.start_words.empty()) out << row("start", mechanism.start_words);
   for (const Drive& drive : scene.drives) {
     const std::array<double, 2> range = range_of(drive.motion, scene.time.end);
     out << row("drive " + drive.name, drive.words + ", from " + io::to_text(range[0], 6) + " to " +

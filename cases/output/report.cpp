@@ -101,6 +101,11 @@ io::ReportSection design_section(const RunFolder::DesignPictures& pictures, cons
   return out;
 }
 
+std::string measure_title(const Cycle& cycle) {
+  return cycle.compare_by == CycleMeasure::strain_energy ? "strain energy over time [J s]"
+                                                         : "deflection of the tip [m]";
+}
+
 /// Cycles beside each other: did the motion get better, and not only the loads' compliance?
 io::ReportSection cycles_section(const Scene& scene, const DesignResult& design) {
   io::ReportSection out;
@@ -108,15 +113,15 @@ io::ReportSection cycles_section(const Scene& scene, const DesignResult& design)
   out.words = "Judged by the motion on " +
               (scene.judges_on_cells() ? scene.verify->words() : std::string("the scene's mesh")) +
               ".";
-  out.rows.push_back({"cycle", "compliance of all [J]", "strain energy over time [J s]", "best"});
+  out.rows.push_back({"cycle", "compliance of all [J]", measure_title(scene.cycle), "best"});
   std::vector<std::string>& header = out.rows.front();
   for (const mmc::BodyVerdict& b : design.verdicts.front().bodies)
     for (const char* what : {": compliance [J]", ": sharp compliance [J]", ": change of design"})
       header.push_back(b.body + what);
   for (const mmc::CycleVerdict& v : design.verdicts) {
     std::vector<std::string>& row = out.rows.emplace_back();
-    row = {io::to_text(v.cycle), io::to_text(v.objective, 6),
-           io::to_text(v.strain_energy_integral, 6), v.best ? "yes" : ""};
+    row = {io::to_text(v.cycle), io::to_text(v.objective, 6), io::to_text(v.measure, 6),
+           v.best ? "yes" : ""};
     for (const mmc::BodyVerdict& b : v.bodies)
       for (const double value : {b.compliance, b.sharp_compliance, b.design_change})
         row.push_back(io::to_text(value, 5));

@@ -122,9 +122,8 @@ void RunFolder::keep_outline(const mmc::BodyProblem& problem, const std::string&
 
 void RunFolder::write_cycles(std::span<const mmc::CycleVerdict> cycles,
                              std::span<const mmc::CorrectedCycle> corrected) {
-  std::vector<std::string> columns = {
-      "cycle", "body", "compliance", "sharp_compliance", "design_change", "strain_energy_integral",
-      "best"};
+  std::vector<std::string> columns = {"cycle",         "body",    "compliance", "sharp_compliance",
+                                      "design_change", "measure", "best"};
   const size_t n = columns.size();
   if (!corrected.empty())
     for (const char* name : {"objective", "kkt", "angle", "radius", "predicted", "actual",
@@ -133,10 +132,8 @@ void RunFolder::write_cycles(std::span<const mmc::CycleVerdict> cycles,
   io::CsvWriter csv(folder_.file("cycles.csv"), columns);
   for (const mmc::CycleVerdict& c : cycles)
     for (const mmc::BodyVerdict& b : c.bodies) {
-      std::vector<io::Cell> row = {c.cycle,         b.body,
-                                   b.compliance,    b.sharp_compliance,
-                                   b.design_change, c.strain_energy_integral,
-                                   c.best};
+      std::vector<io::Cell> row = {c.cycle,         b.body,    b.compliance, b.sharp_compliance,
+                                   b.design_change, c.measure, c.best};
       row.resize(columns.size());
       csv.row(row);
     }

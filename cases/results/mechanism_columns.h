@@ -11,9 +11,9 @@
 namespace flexmorph::cases {
 
 /// Computes the columns that describe a mechanism in the table of a motion, and without powers in
-/// that of a [static] analysis; columns() says what each of them holds. Moments of joints are about the joint's point: that of body b, the driven one of
-/// point_drive; where b is the ground, the joint acts on its body a. Powers of drives are λ ·
-/// ∂Φ/∂t.
+/// that of a [static] analysis; columns() says what each of them holds. Moments of joints are about
+/// the joint's point: that of body b, the driven one of point_drive; where b is the ground, the
+/// joint acts on its body a. Powers of drives are λ · ∂Φ/∂t.
 class MechanismColumns {
  public:
   /// Tells whether all bodies move in the plane and none is held by the ground or a hub: forces

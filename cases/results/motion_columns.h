@@ -48,7 +48,8 @@ class MotionColumns {
 std::vector<std::string> columns_of_terms(const Scene& scene);
 
 /// Describes the columns of path.csv: number and load factor of an equilibrium, displacements of
-/// observed points, measured quantities, rigid bodies, joints and springs, strain energy, and iterations of Newton's method.
+/// observed points, measured quantities, rigid bodies, joints and springs, strain energy, and
+/// iterations of Newton's method.
 std::vector<ColumnInfo> path_columns(const Scene& scene);
 
 /// Tip deflection of a body with a moving root: coordinate of the middle of its free end across the

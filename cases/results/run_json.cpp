@@ -97,8 +97,8 @@ Json body_results(const RunResult& result, size_t i) {
   add_amplitudes(out, result.motions, o.body);
   if (const auto tip = tip_variation(result.motions, o.body))
     out["tip"] = object_of(tip_quantities(), *tip);
-  for (const EnergyComparison& e : design.energies)
-    if (e.body == o.body) out["energies"] = object_of(energy_quantities(), e);
+  for (const mmc::LoadDifference& d : design.load_differences)
+    if (d.body == o.body) out["load_difference"] = object_of(load_difference_quantities(), d);
   out["scaled_objective"] = objective_words(design.problems[i]);
   out["cycles"] = design.cycles;
   Json active = Json::array();  // loads within 1 % of the worst, from 1

@@ -12,26 +12,6 @@
 /// What a run found. Drivers return its parts; once it is complete it is const.
 namespace flexmorph::cases {
 
-/// Compares the static energy of a crisp design under its own loads with the strain energy of the
-/// motion with this design, load by load: coarse elements of a motion bridge what the cells of a
-/// design resolve (fem/README.md, Cells).
-struct EnergyComparison {
-  static constexpr double kTolerance = 0.2;  ///< relative difference of a load's energies
-  /// Loads with less than this part of the largest energy are left out: the motion passes through
-  /// rest there.
-  static constexpr double kLeast = 0.01;
-
-  std::string body;
-  int compared = 0, apart = 0;  ///< loads, and those that differ by more than kTolerance
-  double ratio = 1, time = 0;  ///< static energy over that of the motion, furthest from 1; when [s]
-
-  void add(double at, double found) {
-    ++compared;
-    if (std::abs(found - 1) > kTolerance) ++apart;
-    if (std::abs(found - 1) > std::abs(ratio - 1)) ratio = found, time = at;
-  }
-};
-
 /// Objective of the crisp outlines on the cells of the case before and after corrected cycles.
 struct CorrectedMotion {
   double before = 0, after = 0;
@@ -74,7 +54,8 @@ struct DesignResult {
   std::vector<mmc::CorrectedCycle> corrections;  ///< the design they begin with, then every cycle
   std::optional<CorrectedMotion> corrected;
   std::optional<mmc::MotionCertificate> certificate;
-  std::vector<EnergyComparison> energies;  ///< of designs whose verification is not on cells
+  /// How far the loads of the designs are from those of the motion with them.
+  std::vector<mmc::LoadDifference> load_differences;
   int cycles = 0;
   /// CPU seconds: post-processing of designs; motions that make loads; motions with final designs
   /// and with uniform material.

@@ -182,16 +182,14 @@ std::span<const Quantity<VerifiedOutline>> outline_quantities() {
   return kTable;
 }
 
-std::span<const Quantity<EnergyComparison>> energy_quantities() {
-  using E = EnergyComparison;
-  static const Quantity<E> kTable[] = {
-      {"loads_compared", "-", "loads whose static energy is compared with that of the motion",
-       [](const E& e) -> Value { return e.compared; }},
-      {"loads_apart", "-", "loads whose energies differ by more than 20 %",
-       [](const E& e) -> Value { return e.apart; }},
-      {"worst_static_over_motion", "-", "ratio of the energies that is furthest from 1",
-       [](const E& e) -> Value { return e.ratio; }},
-      {"worst_time", "s", "time of this load", [](const E& e) -> Value { return e.time; }}};
+std::span<const Quantity<mmc::LoadDifference>> load_difference_quantities() {
+  using D = mmc::LoadDifference;
+  static const Quantity<D> kTable[] = {
+      {"loads", "-", "part of the energy by which its loads differ from those of its own motion",
+       [](const D& d) -> Value { return d.loads; }},
+      {"geometric", "-",
+       "part by which energies of small displacements differ from those of the motion",
+       [](const D& d) -> Value { return d.geometric; }}};
   return kTable;
 }
 
@@ -272,9 +270,12 @@ std::span<const Quantity<mmc::CycleVerdict>> cycle_quantities() {
       {"cycle", "-", "number of the cycle, from 1", [](const V& v) -> Value { return v.cycle; }},
       {"objective", "J", "sum of the compliances of the bodies",
        [](const V& v) -> Value { return v.objective; }},
-      {"strain_energy_integral", "J s", "strain energy of the motion, integrated over time",
-       [](const V& v) -> Value { return v.strain_energy_integral; }},
-      {"best", "", "whether this integral is the least so far",
+      {"measure", "J s or m", "what cycles are compared by (cycle.compare_by)",
+       [](const V& v) -> Value { return v.measure; }},
+      {"violation", "-",
+       "largest part by which a crisp design is beyond its limits; null: loose loads",
+       [](const V& v) { return std::isfinite(v.violation) ? Value(v.violation) : Value(nullptr); }},
+      {"best", "", "whether this cycle is the best so far",
        [](const V& v) -> Value { return v.best; }}};
   return kTable;
 }
@@ -353,8 +354,8 @@ std::string results_as_markdown() {
   append_table("`results`: an entry per designed body", design_quantities(), out);
   append_table("`results[].clean_up`: length-scale post-processing", clean_up_quantities(), out);
   append_table("`results[].body_fitted`: verification of the outline", outline_quantities(), out);
-  append_table("`results[].energies`: static energies against those of the motion",
-               energy_quantities(), out);
+  append_table("`results[].load_difference`: loads against the motion with the design",
+               load_difference_quantities(), out);
   append_table("`results[].tip`: tip deflection in the motion", tip_quantities(), out);
   append_table("`motion`: a motion", motion_quantities(), out);
   append_table("`static`: a path of equilibria", path_quantities(), out);

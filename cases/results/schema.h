@@ -25,7 +25,7 @@ struct Quantity {
 std::span<const Quantity<mmc::BodyOutcome>> design_quantities();
 std::span<const Quantity<mmc::CleanUp>> clean_up_quantities();
 std::span<const Quantity<VerifiedOutline>> outline_quantities();
-std::span<const Quantity<EnergyComparison>> energy_quantities();
+std::span<const Quantity<mmc::LoadDifference>> load_difference_quantities();
 std::span<const Quantity<TipVariation>> tip_quantities();
 std::span<const Quantity<fem::MotionResult>> motion_quantities();
 std::span<const Quantity<PathRecord>> path_quantities();

@@ -6,6 +6,7 @@
 
 #include "cases/assembly/build.h"
 #include "io/files.h"
+#include "optim/mmc/usability.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -19,25 +20,14 @@ constexpr double kCellsApart = 0.02;    // sharp compliances from body-fitted on
 // analysed it is about 2; 10 is no design any more but heavy, soft edges.
 constexpr double kHangingMass = 10;
 
-/// Part of a limit that a crisp design may be beyond it.
-constexpr double kLimitTolerance = 5e-3;
-
-/// The value of a response of the goal, of the crisp design.
-double crisp_value(const mmc::ResponseRow& row, const mmc::BodyProblem& p,
-                   const mmc::BodyOutcome& o) {
-  if (&row == &mmc::kVolume) return o.sharp.volume;
-  if (&row == &mmc::compliance_row(p.goal)) return o.sharp.compliance;
-  return o.sharp.further.at(mmc::key_of(row));
-}
-
 /// Limits that the crisp design violates. (A design that is evaluated as it starts was not asked;
 /// what bodies share is no limit of one.)
 void add_limits(const mmc::BodyProblem& p, const mmc::BodyOutcome& o, Warnings& out) {
   if (o.iterations == 0) return;
   for (const mmc::Limit& limit : p.goal.limits) {
-    if (p.shares_mass && limit.volume && !limit.at_least) continue;
-    const double found = crisp_value(*limit.row, p, o);
-    if (!(limit.excess(found) > kLimitTolerance)) continue;
+    if (!mmc::binds_body(limit, p)) continue;
+    const double found = mmc::crisp_value(*limit.row, p.goal, o.sharp);
+    if (!(limit.excess(found) > mmc::kLimitTolerance)) continue;
     out.push_back(
         {"body '" + o.body + "': the " + std::string(limit.row->words) + " " +
              io::to_text(found, 4) +
@@ -156,39 +146,26 @@ void add_designs(const DesignResult& design, Warnings& out) {
   }
 }
 
-/// Cycles that ended at their limit, while they still changed the designs and made the motion
-/// better.
-void add_cycles(const Cycle& cycle, std::span<const mmc::CycleVerdict> verdicts, Warnings& out) {
-  if (verdicts.size() < 2 || static_cast<int>(verdicts.size()) < cycle.max_cycles ||
-      !verdicts.back().best)
-    return;
-  const auto sum = [](const mmc::CycleVerdict& v) {
-    double all = 0;
-    for (const mmc::BodyVerdict& b : v.bodies) all += b.sharp_compliance;
-    return all;
-  };
-  const double before = sum(verdicts[verdicts.size() - 2]);
-  const double change = std::abs(sum(verdicts.back()) - before) / before;
-  if (change > cycle.tolerance)
-    out.push_back(
-        {"cycle.max_cycles = " + std::to_string(cycle.max_cycles) +
-         " ended the cycles while they still made the motion better: the last one changed "
-         "sharp compliances by " +
-         io::to_text(100 * change, 2) + " %"});
-}
-
-/// Designs whose static energies are far from those of a motion that is all that judges them.
-void add_energies(const DesignResult& design, Warnings& out) {
-  for (const EnergyComparison& e : design.energies)
-    if (e.apart > 0)
-      out.push_back(
-          {"body '" + e.body + "': at " + std::to_string(e.apart) + " of " +
-           std::to_string(e.compared) + " loads the static energy of its cells is more than " +
-           io::to_text(100 * EnergyComparison::kTolerance, 2) +
-           " % off the strain energy of its motion, at t = " + io::to_text(e.time, 4) + " s " +
-           io::to_text(e.ratio, 3) +
-           " times as much: elements of the motion bridge what is cut or thin, or deflections are "
-           "large; [verify] cells = 1 moves the cells themselves"});
+/// Designs whose loads are not those of their motion, and designs whose cells a coarse motion does
+/// not resolve where that motion is all that judges them.
+void add_load_differences(const Scene& scene, const DesignResult& design, Warnings& out) {
+  constexpr double kLargest = mmc::LoadDifference::kLargest;
+  const double allowed = std::max(kLargest, scene.cycle.load_difference);
+  for (const mmc::LoadDifference& d : design.load_differences) {
+    if (d.loads > allowed)
+      out.push_back({"body '" + d.body + "': the loads that it was designed for are " +
+                     io::to_text(100 * d.loads, 2) +
+                     " % of the energy off those of the motion with it: " +
+                     (scene.cycle.max_cycles > static_cast<int>(design.verdicts.size())
+                          ? "no cycle brings them closer and is better"
+                          : "more cycles (cycle.max_cycles) bring them closer")});
+    if (d.geometric > kLargest && !scene.judges_on_cells())
+      out.push_back({"body '" + d.body + "': static energies of its cells are " +
+                     io::to_text(100 * d.geometric, 2) +
+                     " % off the strain energies of its motion: elements of the motion bridge what "
+                     "is cut or thin, or deflections are large; [verify] cells = 1 moves the cells "
+                     "themselves"});
+  }
 }
 
 /// Designs whose tip varies more in the motion than that of uniform material.
@@ -268,13 +245,12 @@ Warnings warnings_of(const Scene& scene, const RunResult& result) {
   Warnings out;
   const DesignResult& design = result.design;
   add_designs(design, out);
-  add_cycles(scene.cycle, design.verdicts, out);
   if (design.corrected && !design.corrected->improves())
     out.push_back({"corrected cycles did not pay on the cells of the case and were taken back: J " +
                    io::to_text(design.corrected->after, 5) + " instead of " +
                    io::to_text(design.corrected->before, 5) +
                    "; cycle.cell of the design itself sees what it sees"});
-  add_energies(design, out);
+  add_load_differences(scene, design, out);
   add_variations(design, result.motions, out);
   if (result.motions.motion) add_motion(scene, *result.motions.motion, out);
   if (!result.info.lost_frames.empty()) out.push_back({result.info.lost_frames});

@@ -8,20 +8,6 @@
 #include "io/files.h"
 
 namespace flexmorph::cases {
-namespace {
-
-std::string summary(const mmc::BodyOutcome& o) {
-  return o.body + ": compliance " + io::to_text(o.compliance, 5) + ", sharp " +
-         io::to_text(o.sharp.compliance, 5) + " at volume " + io::to_text(o.sharp.volume, 4) +
-         ", uniform material " + io::to_text(o.uniform_compliance, 5);
-}
-
-std::string verdict_words(const mmc::CycleVerdict& v) {
-  return "cycle " + std::to_string(v.cycle) + ": compliance of all bodies " +
-         io::to_text(v.objective, 5) + ", strain energy over time " +
-         io::to_text(v.strain_energy_integral, 5) + " J s" +
-         (v.best ? ", the least so far" : ", no less than before: the last one");
-}
 
 /// The evaluations of designs, kept in the folder while the run is not done.
 class KeptEvaluations {
@@ -42,6 +28,38 @@ class KeptEvaluations {
   optim::EvaluationLog log_;
   mmc::Past past_;
 };
+
+namespace {
+
+std::string summary(const mmc::BodyOutcome& o) {
+  return o.body + ": compliance " + io::to_text(o.compliance, 5) + ", sharp " +
+         io::to_text(o.sharp.compliance, 5) + " at volume " + io::to_text(o.sharp.volume, 4) +
+         ", uniform material " + io::to_text(o.uniform_compliance, 5);
+}
+
+std::string measure_words(const Cycle& cycle, double value) {
+  if (cycle.compare_by == CycleMeasure::strain_energy)
+    return "strain energy over time " + io::to_text(value, 5) + " J s";
+  const char* what = cycle.compare_by == CycleMeasure::rms            ? "root mean square"
+                     : cycle.compare_by == CycleMeasure::peak_to_peak ? "peak to peak"
+                                                                      : "mean";
+  return std::string(what) + " of the tip of '" + cycle.compare_point + "' " +
+         io::to_text(value, 5) + " m";
+}
+
+/// "loads of 'plate' and its motion are 31 % apart, 5 % more by geometry".
+std::string difference_words(const mmc::LoadDifference& d) {
+  return "loads of '" + d.body + "' and its motion are " + io::to_text(100 * d.loads, 2) +
+         " % apart, geometry (large deflections, coarse elements) " +
+         io::to_text(100 * d.geometric, 2) + " %";
+}
+
+std::string verdict_words(const Cycle& cycle, const mmc::CycleVerdict& v) {
+  return "cycle " + std::to_string(v.cycle) + ": compliance of all bodies " +
+         io::to_text(v.objective, 5) + ", " + measure_words(cycle, v.measure) +
+         (v.violation > 0 ? ", limits are violated" : "") +
+         (v.best ? ", the best so far" : ", no better than before: the last one");
+}
 
 mmc::DesignSettings settings_of(const RunContext& run, KeptEvaluations& kept) {
   const Scene& scene = run.scene();
@@ -86,26 +104,34 @@ void DesignRun::design_moving() {
   if (!analysed || corrected) {
     verify_outlines(loads);
     const double begin = cpu_seconds();
-    const std::vector<fem::EslSets> last = assess_by_motion(run_, design_.problems, motions_);
-    design_.energies = compared_energies(design_.problems, last);
+    compare_loads(assess_by_motion(run_, design_.problems, motions_));
     design_.seconds_verification = cpu_seconds() - begin;
   } else {
-    design_.energies = compared_energies(design_.problems, loads);
+    compare_loads(loads);
   }
   if (scene.certify)
     design_.certificate = certify_by_motion(run_, *scene.certify, loads, design_.problems);
 }
 
-void DesignRun::run_cycles(std::vector<fem::EslSets>& loads) {
-  const Scene& scene = run_.scene();
-  CycleMotions motions(run_);
-  KeptEvaluations kept(run_.folder);
-  std::vector<fem::EslSets> best_loads;
+void DesignRun::compare_loads(std::span<const fem::EslSets> own) {
+  for (size_t i = 0; i < own.size(); ++i)
+    design_.load_differences.push_back(
+        mmc::load_difference(design_.problems[i], design_.outcomes[i].load_compliances, own[i]));
+}
+
+/// The loads of the cycle that goes on, and of the best one so far.
+struct DesignRun::CycleLoads {
+  std::vector<fem::EslSets>& now;
+  std::vector<fem::EslSets> best;
+};
+
+mmc::LoopObserver DesignRun::cycle_observer(CycleMotions& motions, const KeptEvaluations& kept,
+                                            CycleLoads& loads) {
   mmc::LoopObserver observer;
   observer.loads = [&](int, std::span<const fem::EslSets> sets) {
-    loads.assign(sets.begin(), sets.end());
+    loads.now.assign(sets.begin(), sets.end());
     for (size_t i = 0; i < sets.size(); ++i)
-      run_.folder.write_loads(scene.designs[i].body, sets[i], nullptr);
+      run_.folder.write_loads(run_.scene().designs[i].body, sets[i], nullptr);
   };
   observer.iteration = iteration_observer(run_);
   observer.cycle = [&](int cycle, std::span<const mmc::BodyOutcome> outcomes) {
@@ -113,7 +139,7 @@ void DesignRun::run_cycles(std::vector<fem::EslSets>& loads) {
     design_.outcomes.assign(outcomes.begin(), outcomes.end());
     for (size_t i = 0; i < outcomes.size(); ++i) {
       design_.seconds_clean_up += outcomes[i].seconds_mending;
-      run_.folder.write_loads(outcomes[i].body, loads[i], &outcomes[i]);
+      run_.folder.write_loads(outcomes[i].body, loads.now[i], &outcomes[i]);
       run_.folder.write_design(design_.problems[i], outcomes[i]);
       run_.progress.say(summary(outcomes[i]) + kept.words());
     }
@@ -122,14 +148,28 @@ void DesignRun::run_cycles(std::vector<fem::EslSets>& loads) {
     design_.verdicts.assign(verdicts.begin(), verdicts.end());
     run_.folder.write_cycles(verdicts, {});
     if (verdicts.back().best) {
-      best_loads = loads;  // the next cycle has others
+      loads.best = loads.now;  // the next cycle has others
       motions.keep_assessed();
     }
-    run_.progress.say(verdict_words(verdicts.back()));
+    run_.progress.say(verdict_words(run_.scene().cycle, verdicts.back()));
   };
+  observer.difference = [this](int cycle, std::span<const mmc::LoadDifference> all) {
+    for (const mmc::LoadDifference& d : all)
+      run_.progress.say("cycle " + std::to_string(cycle) + ": " + difference_words(d));
+  };
+  return observer;
+}
+
+void DesignRun::run_cycles(std::vector<fem::EslSets>& loads) {
+  const Scene& scene = run_.scene();
+  CycleMotions motions(run_);
+  KeptEvaluations kept(run_.folder);
+  CycleLoads cycle_loads{loads, {}};
+  const mmc::LoopObserver observer = cycle_observer(motions, kept, cycle_loads);
   const bool analysed = scene.optimizer.max_iterations == 0;
   const mmc::LoopSettings settings{analysed ? 1 : scene.cycle.max_cycles, scene.cycle.tolerance,
-                                   settings_of(run_, kept), motions.judge()};
+                                   scene.cycle.load_difference, settings_of(run_, kept),
+                                   motions.judge()};
   // What was computed is kept also when a cycle fails.
   const auto keep = [&] {
     design_.seconds_motion = motions.seconds();
@@ -149,7 +189,7 @@ void DesignRun::run_cycles(std::vector<fem::EslSets>& loads) {
   if (!run_.go_on()) throw Interrupted();
   if (design_.verdicts.empty()) return;
   design_.outcomes = best;
-  loads = std::move(best_loads);
+  loads = std::move(cycle_loads.best);
   for (size_t i = 0; i < best.size(); ++i) run_.folder.write_design(design_.problems[i], best[i]);
 }
 

@@ -8,6 +8,9 @@ namespace flexmorph::cases {
 /// The end of the names of files that keep the evaluations of designs until a run is done.
 inline constexpr const char* kEvaluations = "evaluations.log";
 
+class CycleMotions;
+class KeptEvaluations;
+
 /// A run with designs: cycles of motions and designs, or the design of a plate at rest; then the
 /// verification of the outlines, the motions with the final designs, and the certificate.
 class DesignRun {
@@ -24,7 +27,11 @@ class DesignRun {
  private:
   void design_moving();
   void design_at_rest();
+  struct CycleLoads;
   void run_cycles(std::vector<fem::EslSets>& loads);
+  mmc::LoopObserver cycle_observer(CycleMotions& motions, const KeptEvaluations& kept,
+                                   CycleLoads& loads);
+  void compare_loads(std::span<const fem::EslSets> own);
   void verify_outlines(std::span<const fem::EslSets> loads);
 
   const RunContext& run_;

@@ -15,7 +15,7 @@ void remember(Memory& memory, EslSet& s) {
 }
 
 /// All but the grid and the pins, which are those of the case.
-void remember(Memory& memory, EslSets& loads) { memory(loads.sets, loads.strain_energy_integral); }
+void remember(Memory& memory, EslSets& loads) { memory(loads.sets); }
 
 }  // namespace fem
 
@@ -25,7 +25,7 @@ LoadCollector::LoadCollector(const Scene& scene, std::span<const fem::Growth> gr
                              std::vector<fem::EslSets>& loads)
     : scene_(scene), growths_(growths), loads_(loads) {
   for (const BodyDesign& d : scene.designs) {
-    fem::EslSets& sets = loads_.emplace_back(fem::EslSets{d.grid, {}, 0});
+    fem::EslSets& sets = loads_.emplace_back(fem::EslSets{d.grid, {}});
     if (d.link)
       sets.pins = {fem::node_at(d.grid, d.link->pins[0]), fem::node_at(d.grid, d.link->pins[1])};
   }

@@ -17,8 +17,9 @@ namespace {
 /// Says what is unusual about a motion: its start, alternating multipliers, steps that are cut.
 class MotionMessages {
  public:
-  MotionMessages(const Scene& scene, const MotionRequest& request, MotionRecord& record)
-      : scene_(scene), request_(request), record_(record) {}
+  MotionMessages(const Scene& scene, const MotionRequest& request, const std::string& start_words,
+                 MotionRecord& record)
+      : scene_(scene), request_(request), start_words_(start_words), record_(record) {}
 
   void add(const fem::MotionStep& step) {
     if (record_.table.n_rows() == 0) start(step);
@@ -38,12 +39,15 @@ class MotionMessages {
   }
   void start(const fem::MotionStep& step) {
     record_.remarks = start_remarks(scene_, step.model, step.x, step.so_far.start_change);
+    if (!start_words_.empty())
+      record_.remarks.insert(record_.remarks.begin(), "start: " + start_words_);
     for (const std::string& each : record_.remarks) say(each);
     if (damps_no_multipliers(scene_)) say(undamped_words(scene_));
   }
 
   const Scene& scene_;
   const MotionRequest& request_;
+  const std::string& start_words_;
   MotionRecord& record_;
   bool said_alternation_ = false, said_cut_ = false;
 };
@@ -62,7 +66,7 @@ class StepSequence {
       : request_(request),
         model_(mechanism.model),
         columns_(scene, mechanism.growths, request.balance),
-        messages_(scene, request, out.record),
+        messages_(scene, request, mechanism.start_words, out.record),
         shapes_(scene, densities_of(request)) {
     if (!scene.measures.empty())
       columns_.set_undeformed(fem::start_state(mechanism.model, mechanism.growths, 0,
@@ -214,7 +218,6 @@ MotionOutcome run_motion(const PreparedCase& prepared, const MotionRequest& requ
   } catch (const Error& error) {
     throw FailedRun(error, failure_in(request, out.record));
   }
-  for (fem::EslSets& sets : out.loads) sets.strain_energy_integral = out.record.strain_integral();
   return out;
 }
 

@@ -5,7 +5,6 @@
 #include "fem/dynamics/side_by_side.h"
 #include "geometry/cpu_time.h"
 #include "io/files.h"
-#include "optim/mmc/compliance_evaluator.h"
 
 namespace flexmorph::cases {
 
@@ -36,6 +35,21 @@ void set_verified(const Verify& verify, MotionRequest& request) {
   request.mesh = {verify.mesh, verify.refine, verify.cells};
   request.step = verify.step;
   request.balance = false;
+}
+
+/// The number that cycles are compared by.
+double measure_of(const Cycle& cycle, const MotionRecord& record) {
+  if (cycle.compare_by == CycleMeasure::strain_energy) return record.strain_integral();
+  const Variation tip =
+      variation_of(record.time(), record.table.at(cycle.compare_point + kDeflectionEnding));
+  switch (cycle.compare_by) {
+    case CycleMeasure::rms:
+      return tip.rms;
+    case CycleMeasure::peak_to_peak:
+      return tip.peak_to_peak;
+    default:
+      return std::abs(tip.mean);
+  }
 }
 
 /// Links between two pins have no tip.
@@ -95,7 +109,7 @@ MotionOutcome CycleMotions::run_one(const MotionRequest& request) {
   return motion;
 }
 
-std::vector<fem::EslSets> CycleMotions::loads(std::span<const fem::Factors> factors) {
+mmc::CycleMotion CycleMotions::loads(std::span<const fem::Factors> factors) {
   const bool analysed = run_.scene().optimizer.max_iterations == 0;
   const bool first = ++n_loads_ == 1;
   MotionRequest request = resumable_request(run_, "motion", "motion.csv");
@@ -106,23 +120,23 @@ std::vector<fem::EslSets> CycleMotions::loads(std::span<const fem::Factors> fact
   request.condition = run_.condition && analysed;
   if (first) request.say = [this](const std::string& words) { run_.progress.say(words); };
   MotionOutcome motion = run_one(request);
+  const double measure = measure_of(run_.scene().cycle, motion.record);
   if (analysed) results_.motion = std::move(motion.record);
-  return std::move(motion.loads);
+  return {std::move(motion.loads), measure};
 }
 
 mmc::VerificationMotion CycleMotions::judge() {
   if (!run_.scene().judges_on_cells()) return {};
-  return
-      [this](std::span<const fem::Factors> factors) { return strain_integral_on_cells(factors); };
+  return [this](std::span<const fem::Factors> factors) { return measure_on_cells(factors); };
 }
 
-double CycleMotions::strain_integral_on_cells(std::span<const fem::Factors> factors) {
+double CycleMotions::measure_on_cells(std::span<const fem::Factors> factors) {
   MotionRequest request = resumable_request(run_, "motion on cells", kOnCells);
   request.checkpoint = "motion_judged_" + io::to_text(++n_assessed_) + kCheckpoint;
   request.factors.assign(factors.begin(), factors.end());
   set_verified(*run_.scene().verify, request);
   last_on_cells_ = run_one(request).record;
-  return last_on_cells_->strain_integral();
+  return measure_of(run_.scene().cycle, *last_on_cells_);
 }
 
 void CycleMotions::keep_assessed() {
@@ -158,33 +172,7 @@ void run_side_by_side(const RunContext& run, const std::vector<IndependentMotion
   fem::side_by_side(run.threads, jobs);
 }
 
-/// ½ F · u of every load of the sharp design over the strain energy of the motion with it.
-EnergyComparison compared(const mmc::BodyProblem& problem, const fem::EslSets& loads) {
-  const mmc::CellFactors sharp =
-      mmc::ersatz_of(problem).sharp(mmc::fractions_of(problem, problem.design.components()));
-  const VectorXd each = mmc::ComplianceEvaluator(loads, problem.section, problem.compliance,
-                                                 sharp.stiffness, sharp.mass)
-                            .individual(sharp.stiffness, sharp.mass);
-  EnergyComparison out;
-  out.body = problem.body;
-  double largest = 0;
-  for (const fem::EslSet& set : loads.sets) largest = std::max(largest, set.strain_energy);
-  for (size_t l = 0; l < loads.sets.size(); ++l) {
-    const fem::EslSet& set = loads.sets[l];
-    if (set.strain_energy > EnergyComparison::kLeast * largest)
-      out.add(set.time, 0.5 * each[static_cast<Eigen::Index>(l)] / set.strain_energy);
-  }
-  return out;
-}
-
 }  // namespace
-
-std::vector<EnergyComparison> compared_energies(std::span<const mmc::BodyProblem> problems,
-                                                std::span<const fem::EslSets> loads) {
-  std::vector<EnergyComparison> out;
-  for (size_t i = 0; i < loads.size(); ++i) out.push_back(compared(problems[i], loads[i]));
-  return out;
-}
 
 std::vector<fem::EslSets> assess_by_motion(const RunContext& run,
                                            std::span<const mmc::BodyProblem> problems,
@@ -195,7 +183,7 @@ std::vector<fem::EslSets> assess_by_motion(const RunContext& run,
   std::vector<IndependentMotion> all;
   MotionRequest request = result_request(run, "motion with the design");
   request.factors = final_factors(problems);
-  request.loads = !on_cells;
+  request.loads = true;
   all.push_back({1, request, &motions.motion, &loads});
   request = resumable_request(run, "motion with uniform material", "motion_uniform.csv");
   request.factors = uniform_factors(problems);

@@ -29,8 +29,8 @@ class CycleMotions {
  public:
   explicit CycleMotions(const RunContext& run) : run_(run) {}
 
-  /// Computes the loads of all designs. @throws as run_motion()
-  std::vector<fem::EslSets> loads(std::span<const fem::Factors> factors);
+  /// Computes the loads of all designs, and the measure of the motion. @throws as run_motion()
+  mmc::CycleMotion loads(std::span<const fem::Factors> factors);
   /// The motion on cells that compares cycles; empty where the motions that make loads do.
   mmc::VerificationMotion judge();
   /// Keeps the last motion on cells, with its table, as that of the best design so far.
@@ -42,7 +42,7 @@ class CycleMotions {
   double seconds() const { return seconds_; }
 
  private:
-  double strain_integral_on_cells(std::span<const fem::Factors> factors);
+  double measure_on_cells(std::span<const fem::Factors> factors);
   MotionOutcome run_one(const MotionRequest& request);
 
   const RunContext& run_;
@@ -52,15 +52,10 @@ class CycleMotions {
   std::optional<MotionRecord> last_on_cells_;
 };
 
-/// Compares the static energies of crisp designs with those of the motion that their loads are of.
-/// @throws Error (numerical) from statics
-std::vector<EnergyComparison> compared_energies(std::span<const mmc::BodyProblem> problems,
-                                                std::span<const fem::EslSets> loads);
-
 /// Computes the motions that assess designs: with the design, with uniform material of the same
 /// volume, and both on the mesh of [verify]. A verification that `motions` holds already is kept.
 /// @param motions  receives them as far as they were computed
-/// @return loads of the motion with the design; none where the verification is on cells
+/// @return loads of the motion with the design
 /// @throws as run_motion()
 std::vector<fem::EslSets> assess_by_motion(const RunContext& run,
                                            std::span<const mmc::BodyProblem> problems,

@@ -41,8 +41,9 @@ VerifiedOutline verify_outline_of(const Scene& scene, const mmc::BodyProblem& pr
     find_narrow(problem, regions, out);
     if (loads != nullptr) out.why_not = mmc::reason_not_verifiable(problem);
     if (!out.why_not.empty()) return out;
-    const verification::Loads by_position =
-        loads != nullptr ? mmc::loads_by_position(problem, *loads) : loads_by_position(scene, problem);
+    const verification::Loads by_position = loads != nullptr
+                                                ? mmc::loads_by_position(problem, *loads)
+                                                : loads_by_position(scene, problem);
     const Grid& g = problem.grid;
     out.volume = area(regions) / (mmc::plate_of(problem).n_domain_cells() * g.dx() * g.dy());
     out.verification = mmc::verify_design(problem, regions, by_position, go_on);

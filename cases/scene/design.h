@@ -12,6 +12,7 @@
 #include "optim/mmc/compliance_evaluator.h"
 #include "optim/mmc/corrected_cycles.h"
 #include "optim/mmc/goal.h"
+#include "optim/mmc/load_difference.h"
 
 /// [[design]], and what goes on around it.
 namespace flexmorph::cases {
@@ -73,9 +74,15 @@ struct Scene;
 /// density.
 mmc::Plate plate_of(const Scene& scene, const BodyDesign& design);
 
+/// The measures of a motion that cycles are compared by.
+enum class CycleMeasure { strain_energy, rms, peak_to_peak, mean };
+
 struct Cycle {
-  int max_cycles = 1;
-  double tolerance = 0.01;  ///< stop when the objective changes by less between cycles [-]
+  int max_cycles = 6;
+  double tolerance = 0.01;  ///< cycles end when one improves the measure by less than this part
+  double load_difference = mmc::LoadDifference::kLargest;  ///< see mmc::LoopSettings
+  CycleMeasure compare_by = CycleMeasure::strain_energy;
+  std::string compare_point;  ///< the body whose tip is meant; empty with strain_energy
   /// What follows the cycles of equivalent static loads: see mmc::correct_designs().
   mmc::CorrectionSettings correction;
   double cell = 0;      ///< of the motions that correct [m]; 0: the designs' own

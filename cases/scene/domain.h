@@ -36,7 +36,7 @@ struct LoadCase {
 struct Domain {
   std::string name;
   Box bounds;                 ///< of the design mesh [m]
-  Region shape;  ///< the domain within; without an outer ring: all of it
+  Region shape;               ///< the domain within; without an outer ring: all of it
   double thickness = 1;       ///< [m]
   double youngs_modulus = 1;  ///< [Pa]
   double poisson_ratio = 0.3;

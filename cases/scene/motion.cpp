@@ -57,11 +57,11 @@ const io::Key& kRhoInf =
         .says("Spectral radius of generalized-alpha at infinite frequency: 1 damps nothing.");
 const io::Choice<Start> kStart(
     io::key("time", "start")
-        .otherwise_as(
-            "`prestretched`; `rigid` without a hub, with free lines or where nothing bends")
-        .says("How a driven scene starts: in equilibrium, unstrained, or with hubs at rest."),
+        .otherwise_as("`automatic`; `rigid` without a hub, with free lines or where nothing bends")
+        .says("`automatic`: equilibrium at rest where nothing moves at the start, else `steady`."),
     "a start",
-    {{"prestretched", Start::prestretched},
+    {{"automatic", Start::automatic},
+     {"prestretched", Start::prestretched},
      {"steady", Start::steady},
      {"rigid", Start::rigid},
      {"hub_at_rest", Start::hub_at_rest}});
@@ -104,7 +104,7 @@ TimeSpan read_time(const Table& t) {
   time.integrator = t.choice(kIntegrator);
   read_step(t, time);
   time.rho_inf = t.number(kRhoInf);
-  time.start = t.choice(kStart, std::optional(Start::prestretched));
+  time.start = t.choice(kStart, std::optional(Start::automatic));
   if (time.start == Start::hub_at_rest)
     time.spin_up = t.number(kSpinUp.within(0, time.end), 0.2 * time.end);
   else if (t.has(kSpinUp))
@@ -262,26 +262,22 @@ void settle_start(const Table& root, Scene& scene) {
         "welded to each other, say themselves how they start");
   if (scene.time.start == Start::steady && scene.has_free_lines())
     time.fail(kStart, "\"steady\" is for bodies whose lines are not free: start = \"rigid\"");
-  if (scene.time.start == Start::prestretched && scene.bodies.empty()) {
-    if (time.has(kStart))
-      time.fail(kStart,
-                "\"prestretched\" stretches bodies that bend, of which the scene has none; "
-                "\"steady\" starts springs and rigid bodies in equilibrium, \"rigid\" where they "
-                "are put");
-    scene.time.start = Start::rigid;
-    time.settle(kStart, "rigid");
-  }
+  if (scene.time.start == Start::prestretched && scene.bodies.empty())
+    time.fail(kStart,
+              "\"prestretched\" stretches bodies that bend, of which the scene has none; "
+              "\"steady\" starts springs and rigid bodies in equilibrium, \"rigid\" where they "
+              "are put");
   if (scene.time.integrator != "generalized_alpha" && scene.has_free_lines())
     time.fail(kIntegrator, "free material lines ([[body.line]]) need \"generalized_alpha\": \"" +
                                scene.time.integrator + "\" does not know them");
   // Without a hub there is nothing to be stretched by, and a free line starts where it is put.
-  if (!scene.is_mechanism() && (scene.hubs.empty() || scene.has_free_lines())) {
-    if (time.has(kStart) && scene.time.start == Start::prestretched)
-      time.fail(kStart, "\"prestretched\" is for bodies in hubs whose lines are not free");
-    if (scene.time.start == Start::prestretched) {
-      scene.time.start = Start::rigid;
-      time.settle(kStart, "rigid");
-    }
+  const bool in_hubs = !scene.hubs.empty() && !scene.has_free_lines();
+  if (!scene.is_mechanism() && !in_hubs && scene.time.start == Start::prestretched)
+    time.fail(kStart, "\"prestretched\" is for bodies in hubs whose lines are not free");
+  const bool unstrained = scene.bodies.empty() || (!scene.is_mechanism() && !in_hubs);
+  if (unstrained && scene.time.start == Start::automatic) {
+    scene.time.start = Start::rigid;
+    time.settle(kStart, "rigid");
   }
 }
 

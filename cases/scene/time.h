@@ -11,11 +11,12 @@ namespace flexmorph::cases {
 
 /// How a driven scene starts (fem/README.md, Starts).
 enum class Start {
+  automatic,     ///< equilibrium at rest where nothing moves at the start, else steady
   prestretched,  ///< velocity of the rigid, extending body, in equilibrium in the turning frame:
                  ///< in hubs under -ω² x alone
-  steady,        ///< in equilibrium under all inertia forces of the rigid motion, and moving with it
-  rigid,         ///< the same velocity, unstrained: sets off axial ringing
-  hub_at_rest    ///< smooth spin-up of the hub from rest
+  steady,      ///< in equilibrium under all inertia forces of the rigid motion, and moving with it
+  rigid,       ///< the same velocity, unstrained: sets off axial ringing
+  hub_at_rest  ///< smooth spin-up of the hub from rest
 };
 
 /// Steps of a motion or a path are counted in an int.
@@ -30,7 +31,7 @@ struct TimeSpan {
   std::string integrator = "generalized_alpha";  ///< see fem::make_integrator()
   double explicit_tolerance = 1e-8;              ///< of the steps of `minimal_coordinates`
   double rho_inf = 0.8;  ///< spectral radius of generalized-alpha at infinite frequency, 0..1
-  Start start = Start::prestretched;
+  Start start = Start::automatic;
   double spin_up = 0;  ///< duration of the spin-up [s], 0 unless `hub_at_rest`
 };
 

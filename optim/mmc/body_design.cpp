@@ -9,6 +9,7 @@
 #include "geometry/cpu_time.h"
 #include "optim/mmc/designed_parts.h"
 #include "optim/mmc/mended_parts.h"
+#include "optim/mmc/usability.h"
 #include "optim/search.h"
 
 namespace flexmorph::mmc {
@@ -16,6 +17,10 @@ namespace {
 
 /// Where widths are wanted, so many times a part of the iterations follows a clean-up.
 constexpr int kPolishes = 3, kPolishShare = 8;
+/// A design is brought to its limits in so many tries at most, each of at least so many iterations.
+constexpr int kLimitTries = 6, kFewestLimitIterations = 15;
+/// A limit of a blurred design is active that is met by less than this part.
+constexpr double kBinding = 0.02;
 /// Gaps that are narrower than this part of what is wanted are closed before the polishes, which
 /// open the others.
 constexpr double kClosed = 0.5;
@@ -48,6 +53,7 @@ class Designer {
       else
         last_solve(solves);
     }
+    if (going_ && !analysed) meet_limits();
     std::vector<BodyOutcome> out;
     parts_.front().outcome.seconds_mending = mending_;
     for (Part& p : parts_) {
@@ -167,6 +173,7 @@ class Designer {
   Candidate run(int iterations, int solves) {
     optim::Settings settings = *solver_;
     settings.max_iterations = iterations;
+    settings.plateau = drops_;  // a last solve goes to the KKT conditions
     // Who comes last sees to the KKT conditions.
     if (settings_.finish && drops_) settings.rest.kkt = std::numeric_limits<double>::infinity();
     settings.max_evaluations = solves > 0 ? solves - evaluations_ : 0;
@@ -235,7 +242,7 @@ class Designer {
         p.widths.reset();
         const std::optional<CleanUp>& done = last.clean_ups[k];
         if (done && !done->given_up) p.widths.emplace(p.problem, p.problem.widths);
-        p.follow_sharp_volume();
+        follow_crisp(p);
       }
       run_stage(settings_.optimizer.max_iterations / kPolishShare,
                 budget - (polishes - round) * (budget / kPolishShare));
@@ -277,7 +284,7 @@ class Designer {
     for (int k = 0; k < kFinishTries && going_; ++k) {
       for (Part& p : parts_) {
         p.widths.reset();
-        p.follow_sharp_volume();
+        follow_crisp(p);
       }
       last_solve(solves);
       const Mended found = looked_over(parts_);
@@ -290,6 +297,39 @@ class Designer {
       p.outcome.stop += "; the last solve made widths too small and was taken back";
   }
 
+  /// Brings crisp designs to their limits on responses of the loads: an active one is met within
+  /// kLimitTolerance from either side.
+  void meet_limits() {
+    if (std::none_of(parts_.begin(), parts_.end(), limits_state)) return;
+    drops_ = false;
+    for (int k = 0; k < kLimitTries && going_; ++k) {
+      bool met = true;
+      for (Part& p : parts_) met = crisp_limits_met(p) && met;
+      if (met) break;
+      for (Part& p : parts_) follow_crisp(p);
+      run_stage(std::max(kFewestLimitIterations, settings_.optimizer.max_iterations / kPolishShare),
+                0);
+    }
+    drops_ = true;
+  }
+
+  /// Tells whether the crisp design keeps to its limits, and uses those that bind the blurred one.
+  static bool crisp_limits_met(Part& p) {
+    const Goal& goal = p.problem.goal;
+    const Goal seen = blurred(goal, p.crisp_ratios);
+    const SharpDesign crisp = crisp_figures(p);
+    MmcProblem state = p.state();
+    state.evaluate(state.start());
+    for (size_t i = 0; i < goal.limits.size(); ++i) {
+      const Limit& limit = goal.limits[i];
+      if (!limit.row->needs_state() || limit.row->of_motion) continue;
+      const double excess = limit.excess(crisp_value(*limit.row, goal, crisp));
+      const bool binds = seen.limits[i].excess(state.values(*limit.row)->maxCoeff()) > -kBinding;
+      if (excess > kLimitTolerance || (binds && excess < -kLimitTolerance)) return false;
+    }
+    return true;
+  }
+
   /// Is the sharp volume what is allowed, or less because more serves nothing?
   static bool keeps_volume(const Part& p) {
     constexpr double kOff = 5e-4;
@@ -297,7 +337,8 @@ class Designer {
     const double sharp =
         fractions_of(p.problem, p.problem.design.components()).sum() / p.ersatz.n_domain_cells();
     // What the solver saw.
-    const double seen = p.volume_ratio * p.outcome.volume;
+    const auto ratio = p.crisp_ratios.find(key_of(kVolume));
+    const double seen = (ratio == p.crisp_ratios.end() ? 1 : ratio->second) * p.outcome.volume;
     return !allowed || p.problem.shares_mass || std::abs(sharp - seen) <= kOff * *allowed;
   }
 
@@ -315,7 +356,7 @@ class Designer {
     take(mended);
     for (size_t k = 0; k < parts_.size(); ++k) {
       Part& p = parts_[k];
-      p.follow_sharp_volume();
+      follow_crisp(p);
       p.widths.reset();
       if (const auto& done = mended.clean_ups[k]; done && !done->given_up)
         p.widths.emplace(p.problem, p.problem.widths);

@@ -97,9 +97,11 @@ struct LoadedBody {
 };
 
 /// The designs of bodies under given loads, over all stages of their bands: of one body, or of
-/// several that share one budget of mass (see SharedProblem). These have one optimizer; every body
-/// keeps its own bands (of fewer stages each lasts longer), solid regions, drops and clean-up, and
-/// rows of its own in every iteration. The designs of the problems are left at the result.
+/// several that share one budget of mass (see SharedProblem). A stage ends at a plateau (see
+/// optim::Verdict), at the latest when its share of the iterations is used. These have one
+/// optimizer; every body keeps its own bands (of fewer stages each lasts longer), solid regions,
+/// drops and clean-up, and rows of its own in every iteration. The designs of the problems are left
+/// at the result.
 /// @param going  comes back false when the observer stopped the run
 /// @throws Error (numerical) from statics; rows reported before it stand. Error (input) from
 ///         SharedProblem.

@@ -335,7 +335,7 @@ std::vector<BodyOutcome> outcomes_of_corrected(std::span<const LoadedBody> bodie
   }
   std::vector<BodyOutcome> out;
   for (Part& p : parts) {
-    p.follow_sharp_volume();
+    follow_crisp(p);
     measure(p);
     p.outcome.body = p.problem.body;
     p.outcome.n_loads = p.loads.n_loads();

@@ -1,8 +1,10 @@
 #include "optim/mmc/designed_parts.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "optim/mmc/united_connectivity.h"
+#include "optim/mmc/usability.h"
 
 namespace flexmorph::mmc {
 namespace {
@@ -10,18 +12,49 @@ namespace {
 /// The sharp design by its cells, without the widths of its outlines, which cost more than an
 /// analysis does. What hangs together shows in the outlines here, too.
 SharpDesign without_outlines(const Part& p) {
-  SharpDesign out;
-  out.fractions = fractions_of(p.problem, p.problem.design.components());
-  out.volume = out.fractions.sum() / p.ersatz.n_domain_cells();
-  const CellFactors sharp = p.ersatz.sharp(out.fractions);
-  const std::vector<Component> components = p.problem.design.components();
-  out.compliance = design_compliance(p.problem, p.loads, sharp);
-  out.further = further_values(p.problem, components, p.loads, sharp);
-  out.connectivity = united_connectivity(p.problem, components, out.fractions);
+  SharpDesign out = crisp_figures(p);
+  out.connectivity = united_connectivity(p.problem, p.problem.design.components(), out.fractions);
   return out;
 }
 
 }  // namespace
+
+bool limits_state(const Part& p) {
+  const std::vector<Limit>& limits = p.problem.goal.limits;
+  return std::any_of(limits.begin(), limits.end(), [](const Limit& limit) {
+    return limit.row->needs_state() && !limit.row->of_motion;
+  });
+}
+
+SharpDesign crisp_figures(const Part& p) {
+  SharpDesign out;
+  const std::vector<Component> components = p.problem.design.components();
+  out.fractions = fractions_of(p.problem, components);
+  out.volume = out.fractions.sum() / p.ersatz.n_domain_cells();
+  const CellFactors sharp = p.ersatz.sharp(out.fractions);
+  out.compliance = design_compliance(p.problem, p.loads, sharp);
+  out.further = further_values(p.problem, components, p.loads, sharp);
+  return out;
+}
+
+void follow_crisp(Part& p) {
+  UnionTdf union_tdf(p.problem.grid, *p.tdf);
+  const std::vector<Component> components = p.problem.design.components();
+  union_tdf.evaluate(components);
+  CellFactors factors;
+  p.ersatz.factors(union_tdf.density(), union_tdf.eroded(), factors);
+  p.crisp_ratios.clear();
+  p.crisp_ratios[key_of(kVolume)] = fractions_of(p.problem, components).sum() / factors.mass.sum();
+  if (!limits_state(p)) return;
+  const SharpDesign crisp = crisp_figures(p);
+  const Goal& goal = p.problem.goal;
+  MmcProblem state = p.state();
+  state.evaluate(state.start());
+  for (const Limit& limit : goal.limits)
+    if (limit.row->needs_state() && !limit.row->of_motion)
+      p.crisp_ratios[key_of(*limit.row)] =
+          crisp_value(*limit.row, goal, crisp) / state.values(*limit.row)->maxCoeff();
+}
 
 void measure(Part& p) {
   MmcProblem state = p.state();

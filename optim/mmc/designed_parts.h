@@ -22,7 +22,7 @@ struct Part {
   const TdfSettings* tdf = nullptr;   // of the stage
   std::optional<Turnover> turnover;   // of the stage
   std::optional<WidthLimits> widths;  // limits of the stage, once the design was mended
-  double volume_ratio = 1;            // of the mended design: its sharp volume by the blurred one
+  Figures crisp_ratios;  // of limited responses: of the crisp design by the blurred one
   BodyOutcome outcome;
   optim::Stop stopped = optim::Stop::failed;  // the optimizer, last
   Design next;                                // when a list of components changed: where to go on
@@ -39,19 +39,17 @@ struct Part {
   MmcProblem state(const Goal& goal, const MotionSeat* seat) {
     return {{plate, problem.design, ersatz, loads, widths ? &*widths : nullptr, seat},
             *tdf,
-            blurred(goal, volume_ratio),
+            blurred(goal, crisp_ratios),
             problem.places};
   }
-  /// Limits of the volume hold of the sharp one of the design as it is.
-  void follow_sharp_volume() {
-    UnionTdf union_tdf(problem.grid, *tdf);
-    const std::vector<Component> components = problem.design.components();
-    union_tdf.evaluate(components);
-    CellFactors factors;
-    ersatz.factors(union_tdf.density(), union_tdf.eroded(), factors);
-    volume_ratio = fractions_of(problem, components).sum() / factors.mass.sum();
-  }
 };
+
+/// Tells whether a limit speaks of a response of the loads, whose blurred and crisp values differ.
+bool limits_state(const Part& p);
+/// Figures of the crisp design under the loads; without its outlines and what hangs together.
+SharpDesign crisp_figures(const Part& p);
+/// Makes limits hold of the crisp design: see blurred().
+void follow_crisp(Part& p);
 
 /// Blurred figures of a design, into its outcome.
 void measure(Part& p);

@@ -1,12 +1,13 @@
 #include "optim/mmc/esl_loop.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
 
 #include "optim/mmc/compliance_evaluator.h"
+#include "optim/mmc/usability.h"
 
 namespace flexmorph::mmc {
 namespace {
@@ -95,17 +96,6 @@ class CycleDesigner {
   std::vector<std::optional<BodyOutcome>> outcomes_;
 };
 
-bool rests(std::span<const BodyOutcome> now, std::span<const BodyOutcome> before,
-           double tolerance) {
-  if (now.size() != before.size()) return false;
-  const auto sum = [](std::span<const BodyOutcome> all) {
-    double out = 0;
-    for (const BodyOutcome& o : all) out += o.sharp.compliance;
-    return out;
-  };
-  return std::abs(sum(now) - sum(before)) <= tolerance * sum(before);
-}
-
 std::vector<fem::Factors> factors_of(const std::vector<BodyProblem>& problems) {
   std::vector<fem::Factors> out;
   for (const BodyProblem& p : problems) out.push_back(dynamic_factors(p, p.design.components()));
@@ -119,72 +109,119 @@ class Verdicts {
            const std::vector<BodyOutcome>& outcome) {
     CycleVerdict& v = verdicts_.emplace_back();
     v.cycle = cycle;
-    for (const BodyOutcome& o : outcome) {
+    for (size_t k = 0; k < outcome.size(); ++k) {
+      const BodyOutcome& o = outcome[k];
       v.objective += o.compliance;
+      v.violation = std::max(v.violation, crisp_violation(problems[k], o.sharp));
       v.bodies.push_back({o.body, o.compliance, o.sharp.compliance, o.design_change});
     }
     outcomes_.push_back(outcome);
     auto& designs = designs_.emplace_back();
     for (const BodyProblem& p : problems) designs.push_back(p.design);
   }
-  /// @param strain_energy_integral  of a motion with the designs of the last cycle added
-  void record(double strain_energy_integral) {
+  /// @param measure  of a motion with the designs of the last cycle added
+  void record(double measure) {
     CycleVerdict& last = verdicts_.back();
-    last.strain_energy_integral = strain_energy_integral;
+    last.measure = measure;
     const size_t now = verdicts_.size() - 1;
-    if (now > 0 && !(last.strain_energy_integral < verdicts_[best_].strain_energy_integral)) return;
+    if (now > 0 && !better(last, verdicts_[best_])) return;
     verdicts_[best_].best = false;
     best_ = now;
     last.best = true;
+  }
+  /// Tells whether the last cycle recorded improves on the ones before, by more than a part of
+  /// their least measure or by less violated limits.
+  bool improved(double part) const {
+    if (verdicts_.size() < 2) return true;
+    const CycleVerdict& last = verdicts_.back();
+    if (!last.best) return false;
+    double least = std::numeric_limits<double>::infinity();
+    for (size_t k = 0; k + 1 < verdicts_.size(); ++k)
+      if (verdicts_[k].violation <= last.violation) least = std::min(least, verdicts_[k].measure);
+    return last.measure < (1 - part) * least;
   }
   std::vector<BodyOutcome> take_best(std::vector<BodyProblem>& problems) const {
     for (size_t k = 0; k < problems.size(); ++k) problems[k].design = designs_[best_][k];
     return outcomes_[best_];
   }
   const std::vector<CycleVerdict>& all() const { return verdicts_; }
-  bool last_is_best() const { return best_ + 1 == verdicts_.size(); }
 
  private:
+  static bool better(const CycleVerdict& a, const CycleVerdict& b) {
+    return a.violation == b.violation ? a.measure < b.measure : a.violation < b.violation;
+  }
+
   std::vector<CycleVerdict> verdicts_;
   std::vector<std::vector<BodyOutcome>> outcomes_;
   std::vector<std::vector<Design>> designs_;
   size_t best_ = 0;
 };
 
+/// The cycles of a run.
+class Loop {
+ public:
+  Loop(std::vector<BodyProblem>& problems, const Simulate& simulate, const LoopSettings& settings,
+       const LoopObserver& observer)
+      : problems_(problems), simulate_(simulate), settings_(settings), observer_(observer) {}
+
+  std::vector<BodyOutcome> go() {
+    CycleMotion motion = simulate_(factors_of(problems_));
+    for (int cycle = 1;; ++cycle) {
+      if (observer_.loads) observer_.loads(cycle, motion.loads);
+      if (!design(cycle, motion.loads)) return outcome_;
+      if (settings_.max_cycles == 1) return outcome_;
+      const bool last = cycle == settings_.max_cycles;
+      const std::vector<fem::Factors> factors = factors_of(problems_);
+      if (settings_.verification_motion) record(settings_.verification_motion(factors));
+      if (settings_.verification_motion && (last || !verdicts_.improved(settings_.tolerance)))
+        break;
+      motion = simulate_(factors);
+      if (!settings_.verification_motion) record(motion.measure);
+      if (last || !verdicts_.improved(settings_.tolerance) || loads_fit(cycle, motion.loads)) break;
+    }
+    return verdicts_.take_best(problems_);
+  }
+
+ private:
+  /// @return false when the observer stopped it
+  bool design(int cycle, const std::vector<fem::EslSets>& loads) {
+    CycleDesigner designer(problems_, loads);
+    const bool going = designer.go(cycle, settings_, observer_);
+    outcome_ = designer.outcomes();
+    if (observer_.cycle) observer_.cycle(cycle, outcome_);
+    if (going) verdicts_.add(cycle, problems_, outcome_);
+    return going;
+  }
+
+  void record(double measure) {
+    verdicts_.record(measure);
+    if (observer_.verdict) observer_.verdict(verdicts_.all());
+  }
+
+  /// Tells whether the loads of the cycle are those of the motion with its designs.
+  bool loads_fit(int cycle, const std::vector<fem::EslSets>& own) const {
+    std::vector<LoadDifference> all;
+    for (size_t k = 0; k < problems_.size(); ++k)
+      all.push_back(load_difference(problems_[k], outcome_[k].load_compliances, own[k]));
+    if (observer_.difference) observer_.difference(cycle, all);
+    return std::all_of(all.begin(), all.end(), [this](const LoadDifference& d) {
+      return d.loads < settings_.load_difference;
+    });
+  }
+
+  std::vector<BodyProblem>& problems_;
+  const Simulate& simulate_;
+  const LoopSettings& settings_;
+  const LoopObserver& observer_;
+  Verdicts verdicts_;
+  std::vector<BodyOutcome> outcome_;
+};
+
 }  // namespace
 
 std::vector<BodyOutcome> esl_loop(std::vector<BodyProblem>& problems, const Simulate& simulate,
                                   const LoopSettings& settings, const LoopObserver& observer) {
-  Verdicts verdicts;
-  const auto record = [&](double strain_energy_integral) {
-    verdicts.record(strain_energy_integral);
-    if (observer.verdict) observer.verdict(verdicts.all());
-    return verdicts.last_is_best();
-  };
-  std::vector<BodyOutcome> outcome;
-  for (int cycle = 1; cycle <= settings.max_cycles; ++cycle) {
-    const std::vector<fem::Factors> factors = factors_of(problems);
-    if (cycle > 1 && settings.verification_motion && !record(settings.verification_motion(factors)))
-      return verdicts.take_best(problems);
-    const std::vector<fem::EslSets> loads = simulate(factors);
-    if (cycle > 1 && !settings.verification_motion && !record(loads.front().strain_energy_integral))
-      return verdicts.take_best(problems);
-    if (observer.loads) observer.loads(cycle, loads);
-
-    const std::vector<BodyOutcome> before = std::move(outcome);
-    CycleDesigner designer(problems, loads);
-    const bool going = designer.go(cycle, settings, observer);
-    outcome = designer.outcomes();
-    if (observer.cycle) observer.cycle(cycle, outcome);
-    if (!going) return outcome;
-    verdicts.add(cycle, problems, outcome);
-    if (rests(outcome, before, settings.tolerance)) break;
-  }
-  if (verdicts.all().size() < 2) return outcome;
-  const std::vector<fem::Factors> factors = factors_of(problems);
-  record(settings.verification_motion ? settings.verification_motion(factors)
-                                      : simulate(factors).front().strain_energy_integral);
-  return verdicts.take_best(problems);
+  return Loop(problems, simulate, settings, observer).go();
 }
 
 }  // namespace flexmorph::mmc

@@ -7,13 +7,20 @@
 
 #include "fem/esl_set.h"
 #include "optim/mmc/body_design.h"
+#include "optim/mmc/load_difference.h"
 
 namespace flexmorph::mmc {
 
-/// Motion of the whole scene with these factors (one per problem) -> loads of every body.
-using Simulate = std::function<std::vector<fem::EslSets>(std::span<const fem::Factors>)>;
+/// What a motion of the whole scene leaves to a cycle.
+struct CycleMotion {
+  std::vector<fem::EslSets> loads;  ///< one per problem
+  double measure = 0;               ///< what cycles are compared by; smaller is better
+};
 
-/// Returns ∫ U dt [J s] of a motion with these factors on a finer model than the one that makes the
+/// Computes a motion of the whole scene with these factors (one per problem).
+using Simulate = std::function<CycleMotion(std::span<const fem::Factors>)>;
+
+/// Returns the measure of a motion with these factors on a finer model than the one that makes the
 /// loads (fem/README.md, Cells).
 using VerificationMotion = std::function<double(std::span<const fem::Factors>)>;
 
@@ -33,15 +40,17 @@ struct CycleVerdict {
   int cycle = 1;
   double objective = 0;             ///< Σ compliance of the bodies [J]
   std::vector<BodyVerdict> bodies;  ///< one per problem
-  // Measures of that motion; smaller is better.
-  double strain_energy_integral = 0;  ///< ∫ U dt [J s]: what cycles are compared by
-  bool best = false;                  ///< of all cycles so far: its designs are the result
+  double measure = 0;               ///< of that motion; smaller is better
+  /// Largest crisp_violation() of the bodies; 0: the designs are usable.
+  double violation = 0;
+  bool best = false;  ///< of all cycles so far: its designs are the result
 };
 
 struct LoopSettings {
   int max_cycles = 1;
-  double tolerance =
-      0.01;  ///< stop when the sum of sharp compliances changes by less between cycles
+  double tolerance = 0.01;  ///< cycles end when one improves the measure by less than this part
+  /// They end when the loads of all bodies differ by less than this part from their motion's.
+  double load_difference = LoadDifference::kLargest;
   DesignSettings design;
   /// Compares cycles where there are several; empty: the motion that makes loads does.
   VerificationMotion verification_motion = {};
@@ -57,12 +66,17 @@ struct LoopObserver {
   /// In a run of several cycles whenever one more is measured, which is after the motion with its
   /// designs: all cycles so far.
   std::function<void(std::span<const CycleVerdict>)> verdict;
+  /// After the motion with the designs of a cycle, where another cycle may follow: one entry per
+  /// problem.
+  std::function<void(int cycle, std::span<const LoadDifference>)> difference;
 };
 
-/// dynamics -> ESL -> design problem -> dynamics ..., until the designs rest, or a cycle makes the
-/// motion no better (optim/README.md, Cycles). Bodies that share mass are one design problem, the
-/// others have one each. The designs of `problems` are left at the result, that of the best cycle,
-/// and the outcomes belong to it.
+/// Repeats motion, equivalent static loads and design until the loads are those of the motion with
+/// the designs (LoopSettings::load_difference), a cycle improves the measure by less than the
+/// tolerance, or the number of cycles is reached (optim/README.md, Cycles). Bodies that share mass
+/// are one design problem, the others have one each. The designs of `problems` are left at the
+/// result, that of the best usable cycle (of the least violation, where none is usable), and the
+/// outcomes belong to it.
 /// @throws Error (numerical) from dynamics or statics; rows reported before it stand.
 std::vector<BodyOutcome> esl_loop(std::vector<BodyProblem>& problems, const Simulate& simulate,
                                   const LoopSettings& settings, const LoopObserver& observer);

@@ -31,11 +31,12 @@ std::optional<double> allowed_volume(const Goal& goal) {
   return least;
 }
 
-Goal blurred(Goal goal, double ratio) {
+Goal blurred(Goal goal, const std::map<std::string, double>& ratios) {
   for (Limit& limit : goal.limits) {
-    if (!limit.volume) continue;
-    limit.value /= ratio;
-    *limit.volume /= ratio;
+    const auto found = ratios.find(key_of(limit.volume ? kVolume : *limit.row));
+    if (found == ratios.end()) continue;
+    limit.value /= found->second;
+    if (limit.volume) *limit.volume /= found->second;
   }
   return goal;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -54,9 +55,10 @@ std::vector<const ResponseRow*> further_rows(const Goal& goal);
 /// The largest volume fraction that the limits leave; nothing when none speaks of it.
 std::optional<double> allowed_volume(const Goal& goal);
 
-/// The goal of a design whose blurred volume is a part 1 / ratio of its sharp one, for limits that
-/// hold of the sharp one.
-Goal blurred(Goal goal, double ratio);
+/// The goal of a blurred design, with limits that hold of its crisp one.
+/// @param ratios  values of limited responses of the crisp design over those of the blurred one, by
+///                key_of(); that of the volume as `volume`; 1 where there is none
+Goal blurred(Goal goal, const std::map<std::string, double>& ratios);
 
 /// Does it ask for numbers of the motion?
 bool has_motion(const Goal& goal);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "optim/mmc/renewed_parts.h"
+#include "optim/mmc/usability.h"
 
 namespace flexmorph::mmc {
 
@@ -31,11 +32,10 @@ Mended repaired(std::vector<Part>& parts, double gaps, bool trims,
       done->wanted = p.problem.widths;
       out.reached = out.reached && done->reached();
       out.changed = out.changed || done->changed();
-      out.compliance += done->compliance_after;
-    } else {
-      const VectorXd fractions = fractions_of(p.problem, p.problem.design.components());
-      out.compliance += design_compliance(p.problem, p.loads, p.ersatz.sharp(fractions));
     }
+    const SharpDesign crisp = crisp_figures(p);
+    out.objective += crisp_value(*p.problem.goal.objective, p.problem.goal, crisp);
+    out.violation = std::max(out.violation, crisp_violation(p.problem, crisp));
     out.designs.push_back(p.problem.design);
   }
   return out;

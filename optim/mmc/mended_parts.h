@@ -13,10 +13,12 @@ struct Mended {
   std::vector<std::optional<CleanUp>> clean_ups;
   std::vector<Design> designs;
   bool reached = true, changed = false;
-  double compliance = 0;  ///< of all sharp designs
+  double objective = 0;  ///< sum of the objectives of all crisp designs
+  double violation = 0;  ///< largest crisp_violation() of limits
 
   bool better_than(const Mended& other) const {
-    return reached != other.reached ? reached : compliance < other.compliance;
+    if (reached != other.reached) return reached;
+    return violation == other.violation ? objective < other.objective : violation < other.violation;
   }
 };
 

@@ -59,7 +59,7 @@ std::vector<Part> parts_at_end(std::span<const LoadedBody> bodies) {
     p.problem.design = p.problem.design.without_symmetry();
     p.next = p.problem.design;
     p.tdf = &p.problem.stages.back();
-    p.follow_sharp_volume();
+    follow_crisp(p);
     if (p.problem.widths.any()) p.widths.emplace(p.problem, p.problem.widths);
   }
   return out;

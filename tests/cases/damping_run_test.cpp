@@ -18,7 +18,7 @@ const Words kDamped = {"body.terms=[\"inertia\", \"membrane\", \"damping\"]",
 Words still(Words more) {
   Words out = kDamped;
   for (const char* change :
-       {"body.element=ancf_plate", "body.flow=", "design=", "esl=", "optimizer="})
+       {"body.element=ancf_plate", "body.flow=", "design=", "esl=", "optimizer=", "cycle="})
     out.emplace_back(change);
   out.insert(out.end(), more.begin(), more.end());
   return out;

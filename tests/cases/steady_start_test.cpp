@@ -146,5 +146,44 @@ TEST(SteadyStart, DesignedPlateIsBentByCoriolisForces) {
   EXPECT_NEAR(tip_deflection(m.model, m.growths[0], start_of(m)), -0.399e-3, 0.02 * 0.399e-3);
 }
 
+// Without time.start what nothing moves begins at rest, what moves begins steady, and what drives
+// leave free begins where it is put.
+TEST(AutomaticStart, FollowsThePrescribedVelocities) {
+  const auto of = [](const std::string& name, const std::vector<std::string>& changes) {
+    Mechanism m = build_mechanism(read(name, changes));
+    return std::pair(m.motion.start, m.start_words);
+  };
+  const auto expect = [&](const std::string& name, std::vector<std::string> changes,
+                          fem::Start start, const std::string& words) {
+    changes.emplace_back("time.start=automatic");
+    const auto [found, said] = of(name, changes);
+    EXPECT_EQ(found, start) << name << ": " << said;
+    EXPECT_NE(said.find(words), std::string::npos) << said;
+  };
+  expect("rotating_plate_v01", {}, fem::Start::steady, "not zero");
+  expect("four_bar", {}, fem::Start::at_rest, "are zero");
+  expect("telescopic_crane", {"gravity=[3.0, -9.81]"}, fem::Start::rigid, "sets off");
+  Mechanism lever_of = build_mechanism(scene_of(timed("") + lever(-0.3)));
+  EXPECT_EQ(lever_of.motion.start, fem::Start::rigid);
+  EXPECT_TRUE(lever_of.start_words.empty());
+}
+
+// A plate in a hub that does not move hangs under its weight and stays there: a cantilever, whose
+// shear deflection is 0.3 % here.
+TEST(AutomaticStart, PlateInAStillHubHangsAsACantilever) {
+  const double length = 0.5, width = 0.02, modulus = 1e9, density = 2700;
+  Mechanism m = build_mechanism(scene_of(
+      timed("") +
+      "[[hub]]\nname = \"hub\"\n[[body]]\nname = \"plate\"\nelement = \"ancf_plate\"\nterms = "
+      "[\"inertia\", \"membrane\"]\nlength = 0.5\nwidth = 0.02\nthickness = 0.01\ndensity = "
+      "2700.0\nyoungs_modulus = 1e9\npoisson_ratio = 0.0\nelements = [20, 1]\n[[joint]]\ntype = "
+      "\"weld\"\nbody = \"plate\"\nedge = \"root\"\nto = \"hub\"\n"));
+  EXPECT_EQ(m.motion.start, fem::Start::at_rest);
+  const double sag = -density * kG * std::pow(length, 4) / (8 * modulus * width * width / 12);
+  fem::integrate(m.model, m.growths, m.motion, [&](const fem::MotionStep& step) {
+    EXPECT_NEAR(tip_deflection(step.model, m.growths[0], step.x), sag, 0.02 * std::abs(sag));
+  });
+}
+
 }  // namespace
 }  // namespace flexmorph::cases

@@ -69,7 +69,7 @@ TEST(LinkStatics, LoadsReturnTheStrainsOfTheMotion) {
       VectorXd odd_static, odd_motion;
       for (const double sign : {1.0, -1.0}) {
         const fem::EslSet set = load_of_motion(factors, sign * (k == 0 ? 1e-3 : 1e-4));
-        mmc::ComplianceEvaluator statics({kGrid, {set}, 0, pins}, kSection,
+        mmc::ComplianceEvaluator statics({kGrid, {set}, pins}, kSection,
                                          {mmc::LoadDefinition::inertia, support, true, 1e-10}, {},
                                          {});
         const double twice = statics.individual(factors.stiffness, factors.mass)[0];

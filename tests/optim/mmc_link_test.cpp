@@ -47,7 +47,7 @@ struct SmoothDesign {
 /// A link that turns and swings n times, with forces at its pins and a mass between them. Nothing
 /// of that balances.
 fem::EslSets swinging_link(int n) {
-  fem::EslSets loads{kGrid, {}, 0, kPins};
+  fem::EslSets loads{kGrid, {}, kPins};
   for (int k = 0; k < n; ++k) {
     const double t = 0.37 * k, spin = 9 * std::sin(2 * t), turn = 40 * std::cos(2 * t);
     fem::EslSet set;
@@ -222,7 +222,7 @@ struct Slender {
 
   /// Accelerated across, with what its pins would hold it with.
   fem::EslSets loads(bool with_forces) const {
-    fem::EslSets out{grid, {{}}, 0, pins};
+    fem::EslSets out{grid, {{}}, pins};
     out.sets[0].acceleration = VectorXd::Zero(2 * grid.n_nodes());
     for (int n = 0; n < grid.n_nodes(); ++n) out.sets[0].acceleration(2 * n + 1) = 50;
     const Vec2 half(0, 0.5 * q * grid.width);

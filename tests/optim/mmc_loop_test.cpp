@@ -43,7 +43,7 @@ TEST(EslLoop, MakesAFeasibleStifferDesign) {
     // The void factors of dynamics, not those of statics.
     EXPECT_NEAR(factors[0].stiffness.minCoeff(), 1e-4, 1e-15);
     EXPECT_NEAR(factors[0].mass.minCoeff(), 1e-3, 1e-15);
-    return std::vector<fem::EslSets>{turning_plate(3)};
+    return CycleMotion{{turning_plate(3)}};
   };
   double first = 0, last = 0;
   LoopObserver observer;
@@ -88,7 +88,7 @@ TEST(EslLoop, MakesAFeasibleStifferDesign) {
 TEST(EslLoop, ComparesWithTheSameVolumeSpreadEvenly) {
   std::vector<BodyProblem> problems = one_body();
   const auto simulate = [](std::span<const fem::Factors>) {
-    return std::vector<fem::EslSets>{turning_plate(2)};
+    return CycleMotion{{turning_plate(2)}};
   };
   const auto outcome = esl_loop(problems, simulate, quick(2), {});
   ComplianceEvaluator compliance(turning_plate(2), kSection, {}, {}, {});
@@ -110,9 +110,7 @@ TEST(EslLoop, RowsDescribeTheirIterates) {
   for (const char* name : {"mma", "nlopt_mma", "ipopt"}) {
     std::vector<BodyProblem> problems = one_body();
     const fem::EslSets loads = turning_plate(3);
-    const auto simulate = [&](std::span<const fem::Factors>) {
-      return std::vector<fem::EslSets>{loads};
-    };
+    const auto simulate = [&](std::span<const fem::Factors>) { return CycleMotion{{loads}}; };
     const Ersatz ersatz(kGrid, 1e-3, problems[0].solid, {});
     ComplianceEvaluator compliance(loads, kSection, {}, {}, {});
     int rows = 0, evaluations = 0, sharp = 0;
@@ -154,7 +152,7 @@ TEST(EslLoop, RowsDescribeTheirIterates) {
 TEST(EslLoop, EveryStageHasItsBandAndItsShare) {
   std::vector<BodyProblem> problems = one_body({3, 2, 1});
   const auto simulate = [](std::span<const fem::Factors>) {
-    return std::vector<fem::EslSets>{turning_plate(2)};
+    return CycleMotion{{turning_plate(2)}};
   };
   std::vector<int> per_band(4, 0);
   LoopObserver observer;
@@ -169,7 +167,7 @@ TEST(EslLoop, EveryStageHasItsBandAndItsShare) {
 // What comes of the best of several starts is what comes of that start alone.
 TEST(EslLoop, TakesTheBestOfItsStarts) {
   const auto simulate = [](std::span<const fem::Factors>) {
-    return std::vector<fem::EslSets>{turning_plate(2)};
+    return CycleMotion{{turning_plate(2)}};
   };
   std::vector<int> bands;
   LoopObserver observer;
@@ -204,84 +202,132 @@ TEST(EslLoop, TakesTheBestOfItsStarts) {
   }
 }
 
-// The loads answer to the design: after the first cycle they no longer change, so the third one
-// finds little to do and the loop ends long before its limit.
-TEST(EslLoop, EndsWhenTheDesignRests) {
-  std::vector<BodyProblem> problems = one_body({1.5});
-  LoopSettings settings = quick(60);
-  settings.max_cycles = 12;
-  settings.tolerance = 0.02;
-  std::vector<double> sharp;
-  int loads_seen = 0;
-  LoopObserver observer;
-  observer.loads = [&](int cycle, std::span<const fem::EslSets> sets) {
-    EXPECT_EQ(cycle, ++loads_seen);
-    EXPECT_EQ(sets.size(), 1u);
-  };
-  observer.cycle = [&](int cycle, std::span<const BodyOutcome> outcomes) {
-    EXPECT_EQ(cycle, loads_seen);
-    sharp.push_back(outcomes[0].sharp.compliance);
-  };
-  // Every cycle makes the motion better.
-  int calls = 0;
-  const auto simulate = [&](std::span<const fem::Factors>) {
-    std::vector<fem::EslSets> out{turning_plate(2, ++calls == 1 ? 1 : 1.2)};
-    out[0].strain_energy_integral = 1.0 / calls;
-    return out;
-  };
-  std::vector<CycleVerdict> verdicts;
-  observer.verdict = [&](std::span<const CycleVerdict> all) {
-    verdicts.assign(all.begin(), all.end());
-  };
-  const auto outcome = esl_loop(problems, simulate, settings, observer);
-  ASSERT_GE(sharp.size(), 3u);
-  ASSERT_LT(sharp.size(), 12u);
-  const size_t n = sharp.size();
-  for (size_t k = 1; k < n; ++k) {
-    const double change = std::abs(sharp[k] / sharp[k - 1] - 1);
-    EXPECT_EQ(change <= settings.tolerance, k == n - 1) << "cycle " << k + 1 << ": " << change;
-  }
-  ASSERT_EQ(verdicts.size(), n);
-  EXPECT_EQ(calls, static_cast<int>(n) + 1);  // the last designs are verified too
-  for (const CycleVerdict& v : verdicts) {
-    EXPECT_EQ(v.best, v.cycle == static_cast<int>(n));
-    EXPECT_EQ(v.strain_energy_integral, 1.0 / (v.cycle + 1));
-  }
-  EXPECT_EQ(outcome[0].sharp.compliance, sharp.back());
+/// Loads of a motion whose strain energies are the static energies of a design, so that nothing of
+/// them is geometry. Loads of every second call bend the plate three times as much.
+CycleMotion alternating(std::vector<BodyProblem>& problems, int call, double measure) {
+  CycleMotion out{{turning_plate(2, call % 2 == 0 ? 1 : 3)}, measure};
+  const CellFactors sharp =
+      ersatz_of(problems[0]).sharp(fractions_of(problems[0], problems[0].design.components()));
+  const VectorXd each = ComplianceEvaluator(out.loads[0], kSection, {}, sharp.stiffness, sharp.mass)
+                            .individual(sharp.stiffness, sharp.mass);
+  for (size_t k = 0; k < out.loads[0].sets.size(); ++k)
+    out.loads[0].sets[k].strain_energy = 0.5 * each[static_cast<Eigen::Index>(k)];
+  return out;
 }
 
-// The motion before cycle 4 is the one with the designs of cycle 3: worse than that before.
-TEST(EslLoop, EndsWhenACycleDoesNotPay) {
+// From the third motion on the loads no longer change: the second cycle was made for those of its
+// own motion, and no third one follows.
+TEST(EslLoop, EndsWhenTheLoadsAreThoseOfTheMotion) {
   std::vector<BodyProblem> problems = one_body({1.5});
   LoopSettings settings = quick(5);
   settings.max_cycles = 12;
   settings.tolerance = 0;
-  std::vector<double> sharp;
-  LoopObserver observer;
-  observer.cycle = [&](int, std::span<const BodyOutcome> outcomes) {
-    sharp.push_back(outcomes[0].sharp.compliance);
-  };
-  const double integral[] = {9, 3, 2, 2.5};
   int calls = 0;
   const auto simulate = [&](std::span<const fem::Factors>) {
-    std::vector<fem::EslSets> out{turning_plate(2)};
-    out[0].strain_energy_integral = integral[calls++];
-    return out;
+    const int call = calls++;
+    return alternating(problems, call == 0 ? 0 : 1, 1.0 / calls);
+  };
+  std::vector<double> differences;
+  LoopObserver observer;
+  observer.difference = [&](int cycle, std::span<const LoadDifference> all) {
+    ASSERT_EQ(all.size(), 1u);
+    EXPECT_EQ(cycle, static_cast<int>(differences.size()) + 1);
+    EXPECT_EQ(all[0].body, "plate");
+    EXPECT_NEAR(all[0].geometric, 0, 1e-12);
+    differences.push_back(all[0].loads);
+  };
+  esl_loop(problems, simulate, settings, observer);
+  EXPECT_EQ(calls, 3);
+  ASSERT_EQ(differences.size(), 2u);
+  EXPECT_GT(differences[0], LoadDifference::kLargest);
+  EXPECT_NEAR(differences[1], 0, 1e-9);
+}
+
+// The motion after cycle 3 is worse than the one after cycle 2: loads that still differ make no
+// fourth one. Where a cycle improves the measure by less than the tolerance it is the last one.
+TEST(EslLoop, EndsWhenACycleDoesNotPay) {
+  for (const double tolerance : {0.0, 0.5}) {
+    std::vector<BodyProblem> problems = one_body({1.5});
+    LoopSettings settings = quick(5);
+    settings.max_cycles = 12;
+    settings.tolerance = tolerance;
+    std::vector<double> sharp;
+    LoopObserver observer;
+    observer.cycle = [&](int, std::span<const BodyOutcome> outcomes) {
+      sharp.push_back(outcomes[0].sharp.compliance);
+    };
+    const double measure[] = {9, 3, 2, 2.5};
+    int calls = 0;
+    const auto simulate = [&](std::span<const fem::Factors>) {
+      const int call = calls++;
+      return alternating(problems, call, measure[call]);
+    };
+    std::vector<CycleVerdict> verdicts;
+    observer.verdict = [&](std::span<const CycleVerdict> all) {
+      verdicts.assign(all.begin(), all.end());
+    };
+    const auto outcome = esl_loop(problems, simulate, settings, observer);
+    const size_t cycles = tolerance == 0 ? 3 : 2;
+    EXPECT_EQ(calls, static_cast<int>(cycles) + 1);
+    ASSERT_EQ(sharp.size(), cycles);
+    ASSERT_EQ(verdicts.size(), cycles);
+    for (const CycleVerdict& v : verdicts) {
+      EXPECT_EQ(v.best, v.cycle == 2);
+      EXPECT_EQ(v.measure, measure[v.cycle]);
+    }
+    EXPECT_EQ(outcome[0].sharp.compliance, sharp[1]);
+    if (cycles == 3) {
+      EXPECT_NE(sharp[1], sharp[2]);
+    }
+  }
+}
+
+// A design beyond its limit is worse than any that keeps to it, whatever its motion.
+TEST(EslLoop, DeliversTheBestUsableCycle) {
+  std::vector<BodyProblem> problems = one_body({1.5});
+  LoopSettings settings = quick(5);
+  settings.max_cycles = 3;
+  settings.tolerance = 0;
+  LoopObserver observer;
+  // What the first cycle made may use the whole plate; what the second made is ten times too much.
+  observer.cycle = [&](int cycle, std::span<const BodyOutcome>) {
+    for (Limit& limit : problems[0].goal.limits) limit.value = cycle == 1 ? 1 : 0.05;
+  };
+  int calls = 0;
+  const auto simulate = [&](std::span<const fem::Factors>) {
+    const int call = calls++;
+    return alternating(problems, call, 1.0 / calls);
   };
   std::vector<CycleVerdict> verdicts;
   observer.verdict = [&](std::span<const CycleVerdict> all) {
     verdicts.assign(all.begin(), all.end());
   };
-  const auto outcome = esl_loop(problems, simulate, settings, observer);
-  EXPECT_EQ(calls, 4);
-  ASSERT_EQ(sharp.size(), 3u);
-  ASSERT_EQ(verdicts.size(), 3u);
-  for (const CycleVerdict& v : verdicts) {
-    EXPECT_EQ(v.best, v.cycle == 2);
-    EXPECT_EQ(v.strain_energy_integral, integral[v.cycle]);
+  esl_loop(problems, simulate, settings, observer);
+  ASSERT_EQ(verdicts.size(), 2u);
+  EXPECT_EQ(verdicts[0].violation, 0);
+  EXPECT_GT(verdicts[1].violation, 1);
+  EXPECT_LT(verdicts[1].measure, verdicts[0].measure);
+  EXPECT_TRUE(verdicts[0].best);
+}
+
+// Loads of half the energy, with and without a motion that is stiffer by half as its deflections
+// are large: w |U_s - U| / w U by hand.
+TEST(LoadDifference, IsWhatTheSecantStiffnessLeaves) {
+  std::vector<fem::EslSet> motion(2);
+  motion[0].weight = 1;
+  motion[1].weight = 3;
+  const double own[] = {2, 4}, made_for[] = {1, 6};
+  for (const double stiffer : {1.0, 1.5}) {
+    for (size_t k = 0; k < 2; ++k) motion[k].strain_energy = 0.5 * own[k] / stiffer;
+    const LoadDifference found = load_difference(made_for, own, motion);
+    EXPECT_NEAR(found.loads, (1 * 0.5 + 3 * 1) / (1 * 1 + 3 * 2.0), 1e-14);
+    EXPECT_NEAR(found.geometric, stiffer - 1, 1e-14);
   }
-  EXPECT_EQ(outcome[0].sharp.compliance, sharp[1]);
-  EXPECT_NE(sharp[1], sharp[2]);
+  // Where the motion passes through rest there is no secant: energies are compared as they are.
+  motion[0].strain_energy = 0;
+  EXPECT_NEAR(load_difference(made_for, own, motion).loads,
+              (0.5 + 3 * (4 / 3.0) * 0.5) / (3 * 4 / 3.0), 1e-14);
+  EXPECT_THROW(load_difference({made_for, 1}, own, motion), Error);
 }
 
 // Where another motion compares cycles, that of the loads has no say, and is not made where nothing
@@ -299,9 +345,8 @@ TEST(EslLoop, IsVerifiedByAnotherMotion) {
     if (verified > 0) {
       EXPECT_EQ(factors[0].stiffness, seen);
     }
-    std::vector<fem::EslSets> out{turning_plate(2)};
-    out[0].strain_energy_integral = ++calls;  // ever worse
-    return out;
+    const int call = calls++;
+    return alternating(problems, call, calls);  // ever worse
   };
   settings.verification_motion = [&](std::span<const fem::Factors> factors) {
     seen = factors[0].stiffness;
@@ -321,7 +366,7 @@ TEST(EslLoop, IsVerifiedByAnotherMotion) {
   EXPECT_EQ(verified, 3);
   ASSERT_EQ(verdicts.size(), 3u);
   for (size_t k = 0; k < 3; ++k) {
-    EXPECT_EQ(verdicts[k].strain_energy_integral, integral[k]);
+    EXPECT_EQ(verdicts[k].measure, integral[k]);
     EXPECT_EQ(verdicts[k].best, k == 1);
   }
   EXPECT_EQ(outcome[0].sharp.compliance, sharp[1]);
@@ -344,7 +389,7 @@ TEST(EslLoop, StopsWhenTheObserverSaysSo) {
   const auto simulate = [&](std::span<const fem::Factors> factors) {
     ++calls;
     EXPECT_EQ(factors.size(), 2u);
-    return std::vector<fem::EslSets>{turning_plate(2), turning_plate(2)};
+    return CycleMotion{{turning_plate(2), turning_plate(2)}};
   };
   LoopObserver observer;
   observer.iteration = [&](const IterationReport&) { return ++rows < 5; };
@@ -369,9 +414,9 @@ TEST(EslLoop, DynamicsThatFailEndIt) {
   settings.max_cycles = 3;
   settings.tolerance = 0;
   int rows = 0, calls = 0;
-  const auto simulate = [&](std::span<const fem::Factors>) -> std::vector<fem::EslSets> {
+  const auto simulate = [&](std::span<const fem::Factors>) -> CycleMotion {
     if (++calls == 2) throw Error::numerical("no convergence");
-    return {turning_plate(2)};
+    return {{turning_plate(2)}};
   };
   LoopObserver observer;
   observer.iteration = [&](const IterationReport&) { return ++rows > 0; };

@@ -74,6 +74,32 @@ Verdict verdict_after(const std::vector<double>& values, double limit) {
   return search.result().verdict;
 }
 
+/// The row at which a search stops by itself, of 100 rows that fall by so much each.
+int last_row(double per_row, double limit, bool plateau) {
+  test::Analytic problem(
+      "line", VectorXd::Constant(1, -10), VectorXd::Constant(1, 10), VectorXd::Constant(1, 1), 1,
+      [limit](const VectorXd& x, Response& r) {
+        r.f = x[0];
+        r.df = VectorXd::Ones(1);
+        r.g = VectorXd::Constant(1, x[0] - limit);
+        r.dg = MatrixXd::Ones(1, 1);
+      },
+      -10);
+  Settings settings;
+  settings.plateau = plateau;
+  settings.rest.rows = 0;
+  const Observer none;
+  Search search(problem, settings, none);
+  Point point = search.start();
+  int row = 0;
+  do {
+    ++row;
+    point.x = VectorXd::Constant(1, 1 - per_row * row);
+    search.evaluate(point.x, point.response);
+  } while (search.row(row, point) && row < 100);
+  return row;
+}
+
 std::vector<double> falling(int n, double per_row) {
   std::vector<double> out;
   for (int k = 0; k < n; ++k) out.push_back(1 - per_row * k);
@@ -92,6 +118,15 @@ TEST(Verdict, TellsPlateausFromDesignsOnTheirWay) {
   EXPECT_EQ(never.kind, Verdict::Kind::unfinished);
   EXPECT_TRUE(std::isnan(never.improvement));
   EXPECT_EQ(verdict_after({1, -10}, 5).kind, Verdict::Kind::converged);  // at its lower bound
+}
+
+// 30 rows in which the objective falls by less than 1e-3 end a search, of designs that keep to
+// their limits.
+TEST(Verdict, PlateauEndsASearchThatIsAskedTo) {
+  EXPECT_EQ(last_row(3e-5, 5, true), 31);
+  EXPECT_EQ(last_row(4e-5, 5, true), 100);
+  EXPECT_EQ(last_row(3e-5, 5, false), 100);
+  EXPECT_EQ(last_row(3e-5, 0.5, true), 100);
 }
 
 TEST(Verdict, SaysItsNumbers) {

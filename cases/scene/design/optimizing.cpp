@@ -4,6 +4,7 @@
 #include "cases/scene/design/keys.h"
 #include "cases/scene/read.h"
 #include "cases/scene/tables.h"
+#include "geometry/text.h"
 #include "io/files.h"
 
 /// What goes on around designs: [esl], [optimizer], [cycle], [verify].
@@ -123,11 +124,29 @@ const Key& kFinishOption = io::key("optimizer.finish_options", "*")
 const Key& kMaxCycles = io::key("cycle", "max_cycles")
                             .integer("a number of cycles", 1, 1000)
                             .otherwise(Cycle().max_cycles)
-                            .says("Motions with the designs of the one before.");
+                            .says("Motions with the designs of the one before, at most.");
 const Key& kTolerance = io::key("cycle", "tolerance")
                             .number(not_negative("a tolerance"))
                             .otherwise(Cycle().tolerance)
-                            .says("It stops when sharp compliances change by less than this part.");
+                            .says("Cycles end when one improves `compare_by` by a smaller part.");
+const Key& kLoadDifference =
+    io::key("cycle", "load_difference")
+        .number(not_negative("a part of the strain energy"))
+        .otherwise(Cycle().load_difference)
+        .says("Cycles end when loads differ by a smaller part from those of their own motion.");
+const io::Choice<CycleMeasure> kCompareBy(
+    io::key("cycle", "compare_by")
+        .otherwise("strain_energy")
+        .says("What cycles are compared by: strain energy over time, or how a tip deflects."),
+    "a measure of the motion",
+    {{"strain_energy", CycleMeasure::strain_energy},
+     {"rms", CycleMeasure::rms},
+     {"peak_to_peak", CycleMeasure::peak_to_peak},
+     {"mean", CycleMeasure::mean}});
+const Key& kComparePoint = io::key("cycle", "compare_point")
+                               .name_of("a body with a tip")
+                               .otherwise_as("the only designed body with a tip")
+                               .says("The designed body whose tip `compare_by` means.");
 
 const Key& kRefine = io::key("verify", "refine")
                          .integer("a number of parts of an element", 2, 100)
@@ -290,6 +309,34 @@ Verify read_verify(const Table& t, const Scene& scene) {
   return verify;
 }
 
+/// The designed body whose tip cycles are compared by.
+std::string read_compare_point(const Table& cycle, const Scene& scene) {
+  std::vector<std::string> tips;
+  for (const BodyDesign& design : scene.designs)
+    if (!design.link) tips.push_back(design.body);
+  const std::string known = tips.empty() ? "none of the designs has a tip: `compare_by` is "
+                                           "\"strain_energy\""
+                                         : "the designed bodies with a tip are " + joined(tips);
+  if (!cycle.has(kComparePoint)) {
+    if (tips.size() != 1) cycle.fail(kCompareBy, "it needs `compare_point`: " + known);
+    return tips.front();
+  }
+  const std::string name = cycle.string(kComparePoint);
+  if (std::find(tips.begin(), tips.end(), name) == tips.end()) cycle.fail(kComparePoint, known);
+  return name;
+}
+
+void read_cycle(const Table& cycle, Scene& scene) {
+  scene.cycle.max_cycles = cycle.integer(kMaxCycles);
+  scene.cycle.tolerance = cycle.number(kTolerance);
+  scene.cycle.load_difference = cycle.number(kLoadDifference);
+  scene.cycle.compare_by = cycle.choice(kCompareBy);
+  if (scene.cycle.compare_by != CycleMeasure::strain_energy)
+    scene.cycle.compare_point = read_compare_point(cycle, scene);
+  else if (cycle.has(kComparePoint))
+    cycle.fail(kComparePoint, "with compare_by = \"strain_energy\" this does nothing");
+}
+
 }  // namespace
 
 void read_designs(const Table& root, Scene& scene) {
@@ -322,8 +369,7 @@ void read_designs(const Table& root, Scene& scene) {
   }
   scene.esl = read_esl(root.table(tables::kEsl), scene);
   const Table cycle = root.table_or_empty(tables::kCycle);
-  scene.cycle.max_cycles = cycle.integer(kMaxCycles);
-  scene.cycle.tolerance = cycle.number(kTolerance);
+  read_cycle(cycle, scene);
   if (root.has(tables::kVerify)) scene.verify = read_verify(root.table(tables::kVerify), scene);
   read_correction(root, scene);
 }
