@@ -96,14 +96,15 @@ MotionOutcome CycleMotions::run_one(const MotionRequest& request) {
 }
 
 std::vector<fem::EslSets> CycleMotions::loads(std::span<const fem::Factors> factors) {
+  // Where nothing is optimized, the motion that makes loads is the one with the design.
   const bool analysed = run_.scene().optimizer.max_iterations == 0;
   const bool first = ++n_loads_ == 1;
-  MotionRequest request = resumable_request(run_, "motion", "motion.csv");
+  MotionRequest request = analysed ? result_request(run_, "motion with the design")
+                                   : resumable_request(run_, "motion", "motion.csv");
   // Every cycle has a checkpoint: designs of earlier cycles come back from their evaluations.
   request.checkpoint = "motion_" + io::to_text(n_loads_) + kCheckpoint;
   request.factors.assign(factors.begin(), factors.end());
   request.loads = true;
-  request.condition = run_.condition && analysed;
   if (first) request.say = [this](const std::string& words) { run_.progress.say(words); };
   MotionOutcome motion = run_one(request);
   if (analysed) results_.motion = std::move(motion.record);
@@ -188,16 +189,19 @@ std::vector<EnergyComparison> compared_energies(std::span<const mmc::BodyProblem
 
 std::vector<fem::EslSets> assess_by_motion(const RunContext& run,
                                            std::span<const mmc::BodyProblem> problems,
+                                           std::vector<fem::EslSets> loads,
                                            MotionResults& motions) {
   const Scene& scene = run.scene();
   const bool on_cells = scene.judges_on_cells();
-  std::vector<fem::EslSets> loads;
   std::vector<IndependentMotion> all;
-  MotionRequest request = result_request(run, "motion with the design");
-  request.factors = final_factors(problems);
-  request.loads = !on_cells;
-  all.push_back({1, request, &motions.motion, &loads});
-  request = resumable_request(run, "motion with uniform material", "motion_uniform.csv");
+  if (!motions.motion) {
+    MotionRequest designed = result_request(run, "motion with the design");
+    designed.factors = final_factors(problems);
+    designed.loads = !on_cells;
+    all.push_back({1, designed, &motions.motion, &loads});
+  }
+  MotionRequest request =
+      resumable_request(run, "motion with uniform material", "motion_uniform.csv");
   request.factors = uniform_factors(problems);
   all.push_back({1, request, &motions.uniform});
   if (scene.verify) {
@@ -218,6 +222,7 @@ std::vector<fem::EslSets> assess_by_motion(const RunContext& run,
   }
   run.progress.begin(scene.verify ? "verification" : "motion with the design");
   run_side_by_side(run, all);
+  if (on_cells) loads.clear();  // cells have no loads, and nothing to compare
   return loads;
 }
 

@@ -2,26 +2,7 @@
 
 #include <cmath>
 
-#include "optim/mmc/united_connectivity.h"
-
 namespace flexmorph::mmc {
-namespace {
-
-/// The sharp design by its cells, without the widths of its outlines, which cost more than an
-/// analysis does. What hangs together shows in the outlines here, too.
-SharpDesign without_outlines(const Part& p) {
-  SharpDesign out;
-  out.fractions = fractions_of(p.problem, p.problem.design.components());
-  out.volume = out.fractions.sum() / p.ersatz.n_domain_cells();
-  const CellFactors sharp = p.ersatz.sharp(out.fractions);
-  const std::vector<Component> components = p.problem.design.components();
-  out.compliance = design_compliance(p.problem, p.loads, sharp);
-  out.further = further_values(p.problem, components, p.loads, sharp);
-  out.connectivity = united_connectivity(p.problem, components, out.fractions);
-  return out;
-}
-
-}  // namespace
 
 void measure(Part& p) {
   MmcProblem state = p.state();
@@ -35,10 +16,9 @@ void measure(Part& p) {
     p.outcome.further[key_of(*row)] = state.values(*row)->maxCoeff();
 }
 
-void finish_outcome(Part& p, bool analysed, bool condition) {
+void finish_outcome(Part& p, bool condition) {
   BodyOutcome& out = p.outcome;
-  out.sharp = analysed ? without_outlines(p)
-                       : sharp_design(p.problem, p.problem.design.components(), p.loads);
+  out.sharp = sharp_design(p.problem, p.problem.design.components(), p.loads);
   const CellFactors sharp = p.ersatz.sharp(out.sharp.fractions);
   const VectorXd each = p.loads.individual(sharp.stiffness, sharp.mass);
   out.load_compliances.assign(each.data(), each.data() + each.size());

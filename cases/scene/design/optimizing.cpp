@@ -52,7 +52,7 @@ const Key& kMaxIterations = io::key("optimizer", "max_iterations")
                                 .otherwise(kSettings.max_iterations)
                                 .says(
                                     "Iterations of all stages together, of the polishes after "
-                                    "repairs as well; 0 analyses the start.");
+                                    "repairs as well; 0 evaluates the start.");
 const Key& kMaxSolves = io::key("optimizer", "max_solves")
                             .integer("a number of state solves", 0, 100'000'000)
                             .otherwise(kSettings.max_evaluations)
