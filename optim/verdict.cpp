@@ -40,7 +40,7 @@ std::string words_of(const Verdict& verdict) {
   std::string out = to_string(verdict.kind);
   switch (verdict.kind) {
     case Verdict::Kind::evaluated:
-      return out + " as it starts";
+      return out + ": nothing was optimized, " + residual;
     case Verdict::Kind::converged:
       return out + ": " + residual;
     case Verdict::Kind::stagnated:

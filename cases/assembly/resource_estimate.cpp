@@ -241,7 +241,7 @@ Extent extent_of(const Scene& scene) {
   for (const BodyDesign& d : scene.designs)
     out.iterations += 1.0 * (d.starts - 1) * scene.optimizer.max_iterations;
   if (!scene.domain) {
-    if (out.iterations > 0) out.motions = scene.verify ? 4 : 2;
+    if (!scene.designs.empty()) out.motions = scene.verify ? 4 : 2;
     add_course(scene, out);
     add_motions(scene, out);
   }

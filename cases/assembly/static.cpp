@@ -3,25 +3,34 @@
 
 #include "cases/assembly/build.h"
 #include "cases/assembly/static_conditions.h"
+#include "geometry/picture.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
 namespace {
 
-/// Nodes of the domain at a place, each with its share of a force spread evenly over the place.
+/// Nodes at a place, each with its share of a force spread evenly over the place.
 struct PlaceNodes {
   std::vector<int> nodes;
   std::vector<double> shares;  // sum 1
-  std::vector<int> cells;      // of the domain, that touch these nodes
+  std::vector<int> cells;      // that can be material and touch these nodes
 };
 
+/// Finds the nodes of places. Only nodes that touch a cell that can be material count: cells
+/// outside of the domain and those of void regions cannot.
 class NodeFinder {
  public:
   NodeFinder(const Scene& scene, const Grid& grid, std::span<const signed char> outside)
-      : scene_(scene), grid_(grid), outside_(outside) {}
+      : scene_(scene), grid_(grid), outside_(outside.begin(), outside.end()) {
+    outside_.resize(static_cast<size_t>(grid.n_cells()), 0);
+    for (const BodyDesign& design : scene.designs)
+      for (const std::vector<Vec2>& ring : design.empty)
+        for (const int cell : cells_within(grid, {ring, {}}))
+          outside_[static_cast<size_t>(cell)] = 1;
+  }
 
-  /// @param path  of the place in the case, for messages
-  /// @throws Error (input) when no node of the domain is there.
+  /// @param path  of the table with the place in the case, for messages
+  /// @throws Error (input) when no node is there that can be material.
   PlaceNodes at(const Place& place, const std::string& path) const {
     const double small = 1e-6 * grid_.dx();
     Box box = place.box;
@@ -39,8 +48,10 @@ class NodeFinder {
         out.shares.push_back(place.kind == Place::Kind::edge ? cells : 1.0);
       }
     if (out.nodes.empty())
-      scene_.refuse(path, "no node of the domain is there; the cells are " +
-                              io::to_text(grid_.dx()) + " m wide");
+      scene_.refuse(path + "." + key_of(place.kind),
+                    "no material can be there: a place has a node of the domain, outside of void "
+                    "regions; the cells are " +
+                        io::to_text(grid_.dx()) + " m wide");
     double sum = 0;
     for (const double s : out.shares) sum += s;
     for (double& s : out.shares) s /= sum;
@@ -55,13 +66,24 @@ class NodeFinder {
     const Vec2 p = grid_.node_position(i, j);
     return {p, p};
   }
-  /// Adds the cells of the domain around a node. @return their number
+  static const char* key_of(Place::Kind kind) {
+    switch (kind) {
+      case Place::Kind::edge:
+        return "edge";
+      case Place::Kind::point:
+        return "point";
+      case Place::Kind::box:
+        break;
+    }
+    return "box";
+  }
+  /// Adds the cells around a node that can be material. @return their number
   int touch(int i, int j, std::vector<int>& cells) const {
     int count = 0;
     for (int ci = std::max(0, i - 1); ci <= std::min(grid_.nx - 1, i); ++ci)
       for (int cj = std::max(0, j - 1); cj <= std::min(grid_.ny - 1, j); ++cj) {
         const int cell = grid_.cell(ci, cj);
-        if (!outside_.empty() && outside_[static_cast<size_t>(cell)]) continue;
+        if (outside_[static_cast<size_t>(cell)]) continue;
         cells.push_back(cell);
         ++count;
       }
@@ -70,8 +92,18 @@ class NodeFinder {
 
   const Scene& scene_;
   const Grid& grid_;
-  std::span<const signed char> outside_;
+  std::vector<signed char> outside_;  // 1: the cell cannot be material
 };
+
+/// Sum of the area fractions of the cells around a node [cells].
+double material_around(const Grid& grid, int node, const VectorXd& fractions) {
+  const int i = node / (grid.ny + 1), j = node % (grid.ny + 1);
+  double out = 0;
+  for (int ci = std::max(0, i - 1); ci <= std::min(grid.nx - 1, i); ++ci)
+    for (int cj = std::max(0, j - 1); cj <= std::min(grid.ny - 1, j); ++cj)
+      out += fractions[grid.cell(ci, cj)];
+  return out;
+}
 
 std::string support_path(size_t support) { return "support." + std::to_string(support); }
 
@@ -98,6 +130,27 @@ std::vector<HeldOrLoaded> static_places(const Scene& scene, const Grid& grid,
       places.push_back({"load '" + domain.loads[l].name + "'", false,
                         find.at(domain.loads[l].forces[f].place, force_path(l, f)).cells});
   return places;
+}
+
+std::vector<LoadOnVoid> loads_on_void(const Scene& scene, const mmc::BodyProblem& problem,
+                                      const VectorXd& fractions) {
+  constexpr double kLeastMaterial = 0.5;  // cells around a node that carries a force
+  const Domain& domain = *scene.domain;
+  const NodeFinder find(scene, problem.grid, problem.outside);
+  std::vector<LoadOnVoid> out;
+  for (size_t l = 0; l < domain.loads.size(); ++l) {
+    LoadOnVoid found{domain.loads[l].name, 0};
+    for (size_t f = 0; f < domain.loads[l].forces.size(); ++f) {
+      const PlaceNodes place = find.at(domain.loads[l].forces[f].place, force_path(l, f));
+      double on_void = 0;
+      for (size_t k = 0; k < place.nodes.size(); ++k)
+        if (material_around(problem.grid, place.nodes[k], fractions) < kLeastMaterial)
+          on_void += place.shares[k];
+      found.part = std::max(found.part, on_void);
+    }
+    if (found.part > 0) out.push_back(found);
+  }
+  return out;
 }
 
 StaticConditions static_conditions(const Scene& scene, const Grid& grid,

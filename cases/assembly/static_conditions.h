@@ -1,11 +1,11 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "cases/scene/scene.h"
-#include "optim/mmc/compliance_evaluator.h"
-#include "optim/mmc/design.h"
+#include "optim/mmc/body_problem.h"
 
 namespace flexmorph::cases {
 
@@ -14,9 +14,20 @@ struct StaticConditions {
   std::vector<fem::HeldUnknown> held;
   std::vector<mmc::LoadCase> loads;
 };
-/// @throws Error (input) for a place without a node of the domain.
+/// @throws Error (input) for a place without a node that can be material: void regions are none.
 StaticConditions static_conditions(const Scene& scene, const Grid& grid,
                                    std::span<const signed char> outside);
+/// A load case of which a part acts where a design has no material.
+struct LoadOnVoid {
+  std::string name;
+  double part = 0;  ///< of a force of the load, the largest such part [-]
+};
+/// Finds the load cases that act on void: a node carries a force when the cells around it have at
+/// least half a cell of material. Cells of void are solved as a soft material, so that such a load
+/// has an energy that the design does not have.
+/// @param fractions  area fractions of the crisp design (n_cells)
+std::vector<LoadOnVoid> loads_on_void(const Scene& scene, const mmc::BodyProblem& problem,
+                                      const VectorXd& fractions);
 /// Gravity of a plate at rest; zero where the case gives none [m/s^2].
 Vec2 weight_of(const Scene& scene);
 /// The middle lines of a static scene's grid that its domain, regions, supports and loads are

@@ -5,6 +5,7 @@
 #include "cases/output/plots/plots.h"
 #include "cases/results/correction_messages.h"
 #include "cases/results/run_json.h"
+#include "cases/results/schema.h"
 #include "cases/scene/design/goal.h"
 #include "cases/scene/heat/heat.h"
 #include "io/case_parser.h"
@@ -65,6 +66,26 @@ io::ReportSection results_section(const Scene& scene, const DesignResult& design
   return out;
 }
 
+/// The load cases of a plate at rest.
+io::ReportSection loads_section(const DesignResult& design) {
+  io::ReportSection out;
+  out.heading = "Load cases";
+  std::vector<std::string>& header = out.rows.emplace_back();
+  for (const Quantity<StaticLoad>& q : static_load_quantities()) {
+    const std::string unit = q.unit;
+    header.push_back(q.name + (unit.empty() ? unit : " [" + unit + "]"));
+  }
+  for (const StaticLoad& load : design.static_loads) {
+    std::vector<std::string>& row = out.rows.emplace_back();
+    for (const Quantity<StaticLoad>& q : static_load_quantities()) {
+      const Value value = q.value(load);
+      const double* number = std::get_if<double>(&value);
+      row.push_back(number ? io::to_text(*number, 5) : text_of(value));
+    }
+  }
+  return out;
+}
+
 /// Expectations that were missed come before everything else.
 io::ReportSection expect_section(const std::vector<Expected>& expectations) {
   io::ReportSection out;
@@ -103,7 +124,7 @@ io::ReportSection design_section(const RunFolder::DesignPictures& pictures, cons
 
 std::string measure_title(const Cycle& cycle) {
   return cycle.compare_by == CycleMeasure::strain_energy ? "strain energy over time [J s]"
-                                                         : "deflection of the tip [m]";
+                                                         : "deflection [m]";
 }
 
 /// Cycles beside each other: did the motion get better, and not only the loads' compliance?
@@ -209,6 +230,7 @@ void add_tables(const Scene& scene, const RunResult& result, const RunFolder& fo
     out.add(expect_section(result.expectations));
   if (scene.has_heat()) out.add(heat_section(scene));
   if (!design.outcomes.empty()) out.add(results_section(scene, design));
+  if (!design.static_loads.empty()) out.add(loads_section(design));
   if (!design.verdicts.empty()) out.add(cycles_section(scene, design));
   if (!design.corrections.empty()) out.add(corrections_section(design, folder));
   if (design.certificate) out.add(certificate_section(design, folder));

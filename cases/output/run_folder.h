@@ -3,11 +3,13 @@
 #include <atomic>
 #include <deque>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "cases/assembly/build.h"
 #include "cases/output/surface.h"
+#include "cases/results/static_loads.h"
 #include "fem/dynamics/motion.h"
 #include "geometry/memory.h"
 #include "io/background.h"
@@ -65,9 +67,8 @@ class RunFolder {
   /// loads/<body>.csv: one row per load set.
   void write_loads(const std::string& body, const fem::EslSets& loads,
                    const mmc::BodyOutcome* outcome);
-  /// The same for a plate at rest: one row per load, with its compliance; `active` loads are
-  /// within 1 % of the largest.
-  void write_static_loads(const Domain& domain, const mmc::BodyOutcome& outcome);
+  /// Writes loads/<domain>.csv of a plate at rest: one row per load case.
+  void write_static_loads(const Domain& domain, std::span<const StaticLoad> loads);
   /// A part of a frame of motion/motion.pvd, which has one file per part and time; the field `body`
   /// is its number. The deformed body with the density of its design, displacements and strain
   /// energy per area:

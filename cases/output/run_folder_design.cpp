@@ -1,4 +1,5 @@
 #include "cases/output/run_folder.h"
+#include "cases/results/schema.h"
 #include "io/exports.h"
 #include "io/files.h"
 #include "io/plots.h"
@@ -70,12 +71,16 @@ void RunFolder::write_loads(const std::string& body, const fem::EslSets& loads,
   }
 }
 
-void RunFolder::write_static_loads(const Domain& domain, const mmc::BodyOutcome& outcome) {
-  const std::vector<std::string> columns = {"load", "weight", "compliance", "active"};
+void RunFolder::write_static_loads(const Domain& domain, std::span<const StaticLoad> loads) {
+  std::vector<std::string> columns;
+  for (const Quantity<StaticLoad>& q : static_load_quantities()) columns.emplace_back(q.name);
   io::CsvWriter csv(folder_.file("loads/" + domain.name + ".csv"), columns);
-  for (size_t l = 0; l < domain.loads.size(); ++l)
-    csv.row({domain.loads[l].name, domain.loads[l].weight, outcome.load_compliances[l],
-             outcome.load_compliances[l] >= 0.99 * outcome.worst_compliance});
+  for (const StaticLoad& load : loads) {
+    std::vector<io::Cell> row;
+    for (const Quantity<StaticLoad>& q : static_load_quantities())
+      row.emplace_back(text_of(q.value(load)));
+    csv.row(row);
+  }
 }
 
 RunFolder::DesignPictures& RunFolder::pictures_of(const std::string& body) {

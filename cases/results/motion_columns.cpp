@@ -38,6 +38,25 @@ double tip_deflection(const fem::Model& model, const fem::Growth& growth, const 
   return Vec2(-std::sin(hub.angle), std::cos(hub.angle)).dot(tip - hub.origin);
 }
 
+double deflection_across(const fem::Model& model, const DeflectingPoint& at, const fem::State& x) {
+  const fem::Body& body = model.body(at.point->body);
+  Vec2 origin, material(0, 0);
+  double angle;
+  if (at.growth) {
+    const fem::FrameMotion hub = at.growth->hub.at(model, x);
+    origin = hub.origin, angle = hub.angle;
+  } else {
+    const auto direction = [](const Vec2& d) { return std::atan2(d.y(), d.x()); };
+    material = at.line[0];
+    origin = fem::point_position(body, x, at.line[0]).head<2>();
+    const Vec2 end = fem::point_position(body, x, at.line[1]).head<2>();
+    angle = direction(end - origin) - direction(at.line[1] - at.line[0]);
+  }
+  const Vec2 p = fem::point_position(body, x, at.point->point).head<2>();
+  return Vec2(-std::sin(angle), std::cos(angle)).dot(p - origin) -
+         (at.point->point.y() - material.y());
+}
+
 std::vector<std::string> columns_of_terms(const Scene& scene) {
   std::vector<std::string> out;
   for (const Body& body : scene.bodies)
@@ -66,6 +85,7 @@ MotionColumns::MotionColumns(const Scene& scene, std::span<const fem::Growth> gr
   describe(kTimeColumn, "s", "time", ColumnGroup::abscissa);
   describe_bodies(growths);
   describe_points(scene, "", "position", columns_);
+  describe_deflecting_points(growths);
   for (const Body& body : scene.bodies)
     for (const BodyLine& line : body.lines)
       if (line.free)
@@ -96,6 +116,22 @@ void MotionColumns::describe_bodies(std::span<const fem::Growth> growths) {
   for (const Body* body : flowing_)
     describe(body->name + ".length", "m", "length of the body outside of its hub or sleeve",
              ColumnGroup::length);
+}
+
+void MotionColumns::describe_deflecting_points(std::span<const fem::Growth> growths) {
+  for (const Observe& o : scene_.observed)
+    for (const BodyDesign& design : scene_.designs) {
+      const Body& body = scene_.body(o.body);
+      if (design.body != o.body || body.in_space()) continue;
+      DeflectingPoint at{&o, nullptr, {Vec2(0, body.low()), Vec2(0, body.low() + body.width)}};
+      for (const fem::Growth& growth : growths)
+        if (growth.body == o.body) at.growth = &growth;
+      if (design.link) at.line = design.link->pins;
+      points_.push_back(at);
+      describe(o.body + "." + o.name + kAcrossEnding, "m",
+               "displacement of the observed point across its undeformed body",
+               ColumnGroup::across);
+    }
 }
 
 void MotionColumns::describe_energies() {
@@ -143,6 +179,8 @@ void MotionColumns::append_bodies(const fem::MotionStep& step) {
     const Vec3 r = fem::point_position(step.model.body(o.body), step.x, o.point);
     for (int c = 0; c < scene_.body(o.body).dim(); ++c) row_.push_back(r[c]);
   }
+  for (const DeflectingPoint& at : points_)
+    row_.push_back(deflection_across(step.model, at, step.x));
   for (const fem::Body& body : step.model.bodies())
     for (int k = 0; k < body.element->n_scalars(); ++k)
       row_.push_back(step.x.q[body.first_scalar() + k]);

@@ -7,6 +7,17 @@
 /// The columns of motion.csv and path.csv.
 namespace flexmorph::cases {
 
+/// An observed point of a designed body, and the frame that its deflection is counted in: that of
+/// the hub or sleeve that carries the body; of a link the line through its pins; otherwise the
+/// root edge of the body.
+struct DeflectingPoint {
+  const Observe* point = nullptr;
+  const fem::Growth* growth = nullptr;  ///< of the hub or sleeve; null: `line` makes the frame
+  std::array<Vec2, 2> line{};           ///< two material points of the body [m]
+};
+/// Returns the displacement of the point across the undeformed body, in that frame [m].
+double deflection_across(const fem::Model& model, const DeflectingPoint& at, const fem::State& x);
+
 /// Computes the rows of motion.csv.
 class MotionColumns {
  public:
@@ -28,6 +39,7 @@ class MotionColumns {
  private:
   void describe(const std::string& name, const char* unit, std::string meaning, ColumnGroup group);
   void describe_bodies(std::span<const fem::Growth> growths);
+  void describe_deflecting_points(std::span<const fem::Growth> growths);
   void describe_energies();
   void append_bodies(const fem::MotionStep& step);
   void append_energies(const fem::MotionStep& step);
@@ -35,6 +47,7 @@ class MotionColumns {
   const Scene& scene_;
   bool balance_;
   std::vector<const fem::Growth*> deflecting_;    // bodies with a tip deflection
+  std::vector<DeflectingPoint> points_;           // of designed bodies
   std::vector<const Body*> flowing_;              // bodies with a column for their length
   std::vector<double fem::MotionStep::*> terms_;  // energies that the columns of terms hold
   MechanismColumns mechanism_;

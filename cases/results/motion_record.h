@@ -22,6 +22,8 @@ inline constexpr const char *kTimeColumn = "time", *kKineticColumn = "energy.kin
                             *kDefectColumn = "energy.defect", *kFactorColumn = "load_factor";
 /// The end of the names of columns with tip deflections.
 inline const std::string kDeflectionEnding = ".tip_deflection";
+/// The end of the names of columns with deflections of observed points.
+inline const std::string kAcrossEnding = "_across";
 
 /// The result of a motion: a row per step, pictures, remarks on its start, and the counts of the
 /// time integration.

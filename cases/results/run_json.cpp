@@ -96,7 +96,11 @@ Json body_results(const RunResult& result, size_t i) {
   out["thinnest_component"] = thinnest(design.problems[i]);
   add_amplitudes(out, result.motions, o.body);
   if (const auto tip = tip_variation(result.motions, o.body))
-    out["tip"] = object_of(tip_quantities(), *tip);
+    out["tip"] = object_of(point_quantities(), *tip);
+  for (const PointVariation& point : point_variations(result.motions, o.body))
+    out["points"].push_back(object_of(point_quantities(), point));
+  for (const StaticLoad& load : design.static_loads)
+    out["load_cases"].push_back(object_of(static_load_quantities(), load));
   for (const mmc::LoadDifference& d : design.load_differences)
     if (d.body == o.body) out["load_difference"] = object_of(load_difference_quantities(), d);
   out["scaled_objective"] = objective_words(design.problems[i]);

@@ -5,6 +5,7 @@
 
 #include "cases/results/failure.h"
 #include "cases/results/motion_record.h"
+#include "cases/results/static_loads.h"
 #include "cases/results/verified_outline.h"
 #include "optim/mmc/corrected_cycles.h"
 #include "optim/mmc/esl_loop.h"
@@ -50,6 +51,7 @@ struct DesignResult {
   std::vector<mmc::BodyProblem> problems;
   std::vector<mmc::BodyOutcome> outcomes;
   std::vector<VerifiedOutline> outlines;         ///< of final designs, in the order of the outcomes
+  std::vector<StaticLoad> static_loads;          ///< of the final design of a plate at rest
   std::vector<mmc::CycleVerdict> verdicts;       ///< of a run of several cycles
   std::vector<mmc::CorrectedCycle> corrections;  ///< the design they begin with, then every cycle
   std::optional<CorrectedMotion> corrected;
@@ -74,8 +76,9 @@ struct MotionResults {
   }
 };
 
-/// How the tip of a designed body deflects in its motion, and with uniform material.
-struct TipVariation {
+/// How a point of a designed body deflects in its motion, and with uniform material.
+struct PointVariation {
+  std::string name;  ///< of the observed point; empty: the tip
   Variation designed, uniform;
 
   /// Parts of uniform material's that a design is warned of from.
@@ -85,7 +88,10 @@ struct TipVariation {
 };
 /// Variation of the tip deflection of a body in the motions that designs are assessed by; nothing
 /// where the body has no tip, or one of the motions is missing.
-std::optional<TipVariation> tip_variation(const MotionResults& motions, const std::string& body);
+std::optional<PointVariation> tip_variation(const MotionResults& motions, const std::string& body);
+/// Variations of the deflections of the observed points of a designed body in the motions that
+/// designs are assessed by; none where one of the motions is missing.
+std::vector<PointVariation> point_variations(const MotionResults& motions, const std::string& body);
 
 /// Everything a run knows at its end, or when it fails.
 struct RunResult {

@@ -4,199 +4,20 @@
 #include <nlohmann/json.hpp>
 
 #include "cases/keys/book.h"
+#include "io/files.h"
 
 namespace flexmorph::cases {
-namespace {
-
-/// A width of an outline: infinite where nothing bounds it, unknown where outlines could not be
-/// united.
-Value width(const mmc::BodyOutcome& o, double Features::*which) {
-  if (o.sharp.features) return (*o.sharp.features).*which;
-  return nullptr;
-}
-
 Value optional_number(const std::optional<double>& number) {
   if (number && std::isfinite(*number)) return *number;
   return {};
 }
 
-/// Numbers that only a bounded compliance has.
-template <class T>
-Value where_bounded(const VerifiedOutline& o, const T& value) {
-  if (!o.verification || !std::isfinite(o.verification->compliance)) return {};
-  return value(*o.verification);
-}
-/// Numbers that only a verification has.
-template <class T>
-Value where_verified(const VerifiedOutline& o, const T& value) {
-  if (!o.verification) return {};
-  return value(*o.verification);
-}
-using Verification = verification::OutlineVerification;
-
-}  // namespace
-
-std::span<const Quantity<mmc::BodyOutcome>> design_quantities() {
-  using O = mmc::BodyOutcome;
-  static const Quantity<O> kTable[] = {
-      {"compliance", "J", "compliance of the regularized design under its loads",
-       [](const O& o) -> Value { return o.compliance; }},
-      {"volume", "-", "volume fraction of the regularized design",
-       [](const O& o) -> Value { return o.volume; }},
-      {"sharp_compliance", "J", "compliance of the crisp design under its loads",
-       [](const O& o) -> Value { return o.sharp.compliance; }},
-      {"sharp_volume", "-", "volume fraction of the crisp design",
-       [](const O& o) -> Value { return o.sharp.volume; }},
-      {"uniform_compliance", "J", "compliance of uniform material of this volume",
-       [](const O& o) -> Value { return o.uniform_compliance; }},
-      {"compliance_ratio", "-", "sharp_compliance over uniform_compliance",
-       [](const O& o) -> Value { return o.sharp.compliance / o.uniform_compliance; }},
-      {"sharp_ratio", "-", "sharp_compliance over compliance",
-       [](const O& o) -> Value { return o.sharp.compliance / o.compliance; }},
-      {"connected", "", "whether one piece of material joins supports and loads",
-       [](const O& o) -> Value { return o.sharp.connectivity.connected; }},
-      {"islands", "-", "pieces of material besides the one that joins supports and loads",
-       [](const O& o) -> Value { return o.sharp.connectivity.islands; }},
-      {"min_feature", "m", "smallest width of material of the outline",
-       [](const O& o) { return width(o, &Features::solid); }},
-      {"min_gap", "m", "smallest width of a gap of the outline",
-       [](const O& o) { return width(o, &Features::gap); }},
-      {"iterations", "-", "design iterations", [](const O& o) -> Value { return o.iterations; }},
-      {"start", "-", "number of the start that the design comes from",
-       [](const O& o) -> Value { return o.start; }},
-      {"state_solves", "-", "evaluations of the static problem",
-       [](const O& o) -> Value { return o.evaluations; }},
-      {"kkt", "-", "KKT residual of the design problem", [](const O& o) -> Value { return o.kkt; }},
-      {"factorizations", "-", "factorizations of the stiffness matrix",
-       [](const O& o) -> Value { return o.factorizations; }},
-      {"worst_compliance", "J", "largest compliance of a load, of the crisp design",
-       [](const O& o) -> Value { return o.worst_compliance; }},
-      {"condition", "-", "estimated condition of the stiffness matrix (--condition)",
-       [](const O& o) { return optional_number(o.condition); }},
-      {"loads", "-", "number of load sets", [](const O& o) -> Value { return o.n_loads; }},
-      {"right_hand_sides", "-", "right-hand sides per state solve",
-       [](const O& o) -> Value { return o.n_right_hand_sides; }},
-      {"component_changes", "-", "components that were removed, split or inserted",
-       [](const O& o) -> Value { return static_cast<int>(o.events.size()); }},
-      {"stop", "", "why the optimizer stopped", [](const O& o) -> Value { return o.stop; }},
-      {"verdict", "", "converged, stagnated, unfinished or evaluated",
-       [](const O& o) -> Value { return optim::to_string(o.verdict.kind); }},
-      {"improvement", "-", "part by which the objective fell over the last 20 iterations",
-       [](const O& o) -> Value {
-         if (std::isnan(o.verdict.improvement)) return {};
-         return o.verdict.improvement;
-       }}};
-  return kTable;
-}
-
-std::span<const Quantity<mmc::CleanUp>> clean_up_quantities() {
-  using C = mmc::CleanUp;
-  static const Quantity<C> kTable[] = {
-      {"min_feature_wanted", "m", "width of material that was asked for",
-       [](const C& c) -> Value { return c.wanted.solid; }},
-      {"min_feature_before", "m", "smallest width of material before",
-       [](const C& c) -> Value { return c.before.solid; }},
-      {"min_gap_wanted", "m", "width of gaps that was asked for",
-       [](const C& c) -> Value { return c.wanted.gap; }},
-      {"min_gap_before", "m", "smallest width of a gap before",
-       [](const C& c) -> Value { return c.before.gap; }},
-      {"pieces_before", "-", "pieces of the outline before",
-       [](const C& c) -> Value { return c.pieces_before; }},
-      {"pieces", "-", "pieces of the outline after it",
-       [](const C& c) -> Value { return c.pieces_after; }},
-      {"compliance_before", "J", "compliance of the crisp design before",
-       [](const C& c) -> Value { return c.compliance_before; }},
-      {"compliance_cost", "-", "relative change of this compliance",
-       [](const C& c) -> Value { return c.compliance_after / c.compliance_before - 1; }},
-      {"patches", "-", "components that were added over narrow places",
-       [](const C& c) -> Value { return c.patches; }},
-      {"dropped", "-", "components that were removed at narrow places",
-       [](const C& c) -> Value { return c.dropped; }},
-      {"idle", "-", "unloaded components that were removed",
-       [](const C& c) -> Value { return c.idle; }},
-      {"stubs", "-", "unloaded ends of components that were removed",
-       [](const C& c) -> Value { return c.stubs; }},
-      {"joined", "-", "components that were merged with collinear ones",
-       [](const C& c) -> Value { return c.joined; }},
-      {"born", "-", "bars that were inserted across the void",
-       [](const C& c) -> Value { return c.born; }},
-      {"rounds", "-", "rounds of the post-processing",
-       [](const C& c) -> Value { return c.rounds; }},
-      {"torn_gaps", "-", "gaps below the size of a cell that are left",
-       [](const C& c) -> Value { return c.torn; }},
-      {"reached", "", "whether all widths are as asked for",
-       [](const C& c) -> Value { return c.reached(); }},
-      {"given_up", "", "whether it would have cost too much compliance and was taken back",
-       [](const C& c) -> Value { return c.given_up; }}};
-  return kTable;
-}
-
-std::span<const Quantity<VerifiedOutline>> outline_quantities() {
-  using O = VerifiedOutline;
-  using V = Verification;
-  static const Quantity<O> kTable[] = {
-      {"not_judged", "", "why there is no verification",
-       [](const O& o) { return o.verification ? Value() : Value(o.why_not); }},
-      {"compliance", "J", "compliance of the exported outline",
-       [](const O& o) {
-         return where_verified(o, [](const V& v) -> Value { return v.compliance; });
-       }},
-      {"volume", "-", "part of the domain that the outline covers",
-       [](const O& o) { return o.verification ? Value(o.volume) : Value(); }},
-      {"islands", "-", "pieces of the outline less one",
-       [](const O& o) {
-         return where_verified(o, [](const V& v) -> Value { return v.n_pieces - 1; });
-       }},
-      {"held_by_nothing", "-", "pieces that no support holds",
-       [](const O& o) {
-         return where_verified(o, [](const V& v) -> Value { return v.n_omitted_pieces; });
-       }},
-      {"triangles", "-", "six-node triangles of the last mesh",
-       [](const O& o) {
-         return where_verified(
-             o, [](const V& v) -> Value { return static_cast<int>(v.mesh.triangles.size()); });
-       }},
-      {"seconds", "s", "CPU time",
-       [](const O& o) { return where_verified(o, [](const V& v) -> Value { return v.seconds; }); }},
-      {"loose_load", "", "load that acts on material that nothing holds",
-       [](const O& o) {
-         return where_verified(o, [](const V& v) -> Value {
-           return std::isfinite(v.compliance) ? Value() : Value(v.unsupported_load);
-         });
-       }},
-      {"error", "-", "estimated relative error of this compliance",
-       [](const O& o) { return where_bounded(o, [](const V& v) -> Value { return v.error; }); }},
-      {"converged", "", "whether the error is below its tolerance",
-       [](const O& o) {
-         return where_bounded(o, [](const V& v) -> Value { return v.converged; });
-       }},
-      {"meshes", "-", "meshes that were solved",
-       [](const O& o) { return where_bounded(o, [](const V& v) -> Value { return v.meshes; }); }},
-      {"largest_stress", "Pa", "largest von Mises stress away from supports and loads",
-       [](const O& o) {
-         return where_bounded(o, [](const V& v) -> Value { return v.largest_stress; });
-       }},
-      {"largest_stress_load", "-", "number of its load, from 1", [](const O& o) {
-         return where_bounded(o, [](const V& v) -> Value { return v.largest_load + 1; });
-       }}};
-  return kTable;
-}
-
-std::span<const Quantity<mmc::LoadDifference>> load_difference_quantities() {
-  using D = mmc::LoadDifference;
-  static const Quantity<D> kTable[] = {
-      {"loads", "-", "part of the energy by which its loads differ from those of its own motion",
-       [](const D& d) -> Value { return d.loads; }},
-      {"geometric", "-",
-       "part by which energies of small displacements differ from those of the motion",
-       [](const D& d) -> Value { return d.geometric; }}};
-  return kTable;
-}
-
-std::span<const Quantity<TipVariation>> tip_quantities() {
-  using T = TipVariation;
+std::span<const Quantity<PointVariation>> point_quantities() {
+  using T = PointVariation;
   static const Quantity<T> kTable[] = {
-      {"mean", "m", "mean over time of the tip deflection",
+      {"point", "", "name of the observed point",
+       [](const T& t) { return t.name.empty() ? Value() : Value(t.name); }},
+      {"mean", "m", "mean over time of the deflection",
        [](const T& t) -> Value { return t.designed.mean; }},
       {"rms", "m", "root mean square about the mean",
        [](const T& t) -> Value { return t.designed.rms; }},
@@ -320,6 +141,22 @@ std::span<const Quantity<mmc::MotionCertificate>> certificate_quantities() {
   return kTable;
 }
 
+std::string text_of(const Value& value) {
+  return std::visit(
+      [](const auto& v) -> std::string {
+        using T = std::decay_t<decltype(v)>;
+        if constexpr (std::is_same_v<T, std::monostate> || std::is_same_v<T, std::nullptr_t>)
+          return "";
+        else if constexpr (std::is_same_v<T, bool>)
+          return v ? "1" : "0";
+        else if constexpr (std::is_same_v<T, std::string>)
+          return v;
+        else
+          return io::to_text(v);
+      },
+      value);
+}
+
 nlohmann::ordered_json json_of(const Value& value) {
   return std::visit(
       [](const auto& v) -> nlohmann::ordered_json {
@@ -354,9 +191,14 @@ std::string results_as_markdown() {
   append_table("`results`: an entry per designed body", design_quantities(), out);
   append_table("`results[].clean_up`: length-scale post-processing", clean_up_quantities(), out);
   append_table("`results[].body_fitted`: verification of the outline", outline_quantities(), out);
+  append_table("`results[].load_cases`, `loads/`: an entry per load case of a plate at rest",
+               static_load_quantities(), out);
   append_table("`results[].load_difference`: loads against the motion with the design",
                load_difference_quantities(), out);
-  append_table("`results[].tip`: tip deflection in the motion", tip_quantities(), out);
+  append_table(
+      "`results[].tip`, `results[].points`: deflections of the tip and of every observed point in "
+      "the motion",
+      point_quantities(), out);
   append_table("`motion`: a motion", motion_quantities(), out);
   append_table("`static`: a path of equilibria", path_quantities(), out);
   append_table("`cycles`: an entry per cycle", cycle_quantities(), out);

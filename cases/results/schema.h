@@ -15,6 +15,9 @@ namespace flexmorph::cases {
 /// A value of a number; std::monostate where a run has no such number, nullptr where it is unknown.
 using Value = std::variant<std::monostate, std::nullptr_t, bool, int, double, std::string>;
 
+/// Returns a number, or nothing where it is absent or not finite.
+Value optional_number(const std::optional<double>& number);
+
 /// A number (or flag, or word) that a part of a result has.
 template <class Source>
 struct Quantity {
@@ -25,14 +28,17 @@ struct Quantity {
 std::span<const Quantity<mmc::BodyOutcome>> design_quantities();
 std::span<const Quantity<mmc::CleanUp>> clean_up_quantities();
 std::span<const Quantity<VerifiedOutline>> outline_quantities();
+std::span<const Quantity<StaticLoad>> static_load_quantities();
 std::span<const Quantity<mmc::LoadDifference>> load_difference_quantities();
-std::span<const Quantity<TipVariation>> tip_quantities();
+std::span<const Quantity<PointVariation>> point_quantities();
 std::span<const Quantity<fem::MotionResult>> motion_quantities();
 std::span<const Quantity<PathRecord>> path_quantities();
 std::span<const Quantity<mmc::CycleVerdict>> cycle_quantities();
 std::span<const Quantity<mmc::CorrectedCycle>> corrected_cycle_quantities();
 std::span<const Quantity<mmc::MotionCertificate>> certificate_quantities();
 
+/// A value as text, empty where there is none; numbers in full precision.
+std::string text_of(const Value& value);
 /// A value as JSON: "infinite" of an infinite number, null of one that is not a number.
 nlohmann::ordered_json json_of(const Value& value);
 

@@ -11,6 +11,7 @@ namespace flexmorph::cases {
 enum class ColumnGroup {
   abscissa,    ///< time, number of the equilibrium, load factor
   deflection,  ///< tip deflections of bodies
+  across,      ///< deflections of observed points of designed bodies
   length,      ///< lengths of bodies whose material flows
   observed,    ///< observed points, and free material lines
   measured,    ///< quantities of [[measure]]

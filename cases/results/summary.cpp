@@ -53,17 +53,42 @@ std::string verdict_words(const DesignResult& design) {
 
 }  // namespace
 
-std::optional<TipVariation> tip_variation(const MotionResults& motions, const std::string& body) {
+namespace {
+
+/// Variation of a column in the motions that designs are assessed by; nothing where one of them
+/// lacks it.
+std::optional<PointVariation> column_variation(const MotionResults& motions,
+                                               const std::string& column, const std::string& name) {
   const auto of = [&](const std::optional<MotionRecord>& motion) -> std::optional<Variation> {
-    const std::vector<double>* tip =
-        motion ? motion->table.find(body + kDeflectionEnding) : nullptr;
-    if (!tip || tip->size() < 2) return {};
-    return variation_of(motion->time(), *tip);
+    const std::vector<double>* values = motion ? motion->table.find(column) : nullptr;
+    if (!values || values->size() < 2) return {};
+    return variation_of(motion->time(), *values);
   };
   const std::optional<Variation> designed = of(motions.assessed()),
                                  uniform = of(motions.assessed_uniform());
   if (!designed || !uniform) return {};
-  return TipVariation{*designed, *uniform};
+  return PointVariation{name, *designed, *uniform};
+}
+
+}  // namespace
+
+std::optional<PointVariation> tip_variation(const MotionResults& motions, const std::string& body) {
+  return column_variation(motions, body + kDeflectionEnding, "");
+}
+
+std::vector<PointVariation> point_variations(const MotionResults& motions,
+                                             const std::string& body) {
+  std::vector<PointVariation> out;
+  if (!motions.assessed()) return out;
+  const Series& table = motions.assessed()->table;
+  for (const size_t c : table.of_group(ColumnGroup::across)) {
+    const std::string& column = table.columns[c].name;
+    if (!column.starts_with(body + ".")) continue;
+    const size_t begin = body.size() + 1;
+    const std::string name = column.substr(begin, column.size() - begin - kAcrossEnding.size());
+    if (const auto found = column_variation(motions, column, name)) out.push_back(*found);
+  }
+  return out;
 }
 
 std::string summary_words(const RunResult& result) {

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "cases/assembly/build.h"
+#include "cases/assembly/static_conditions.h"
 #include "io/files.h"
 #include "optim/mmc/usability.h"
 
@@ -20,10 +21,11 @@ constexpr double kCellsApart = 0.02;    // sharp compliances from body-fitted on
 // analysed it is about 2; 10 is no design any more but heavy, soft edges.
 constexpr double kHangingMass = 10;
 
-/// Limits that the crisp design violates. (A design that is evaluated as it starts was not asked;
-/// what bodies share is no limit of one.)
+/// Part of a force that may act on void before a design is of no use.
+constexpr double kLargestPartOnVoid = 0.05;
+
+/// Limits that the crisp design violates. (What bodies share is no limit of one.)
 void add_limits(const mmc::BodyProblem& p, const mmc::BodyOutcome& o, Warnings& out) {
-  if (o.iterations == 0) return;
   for (const mmc::Limit& limit : p.goal.limits) {
     if (!mmc::binds_body(limit, p)) continue;
     const double found = mmc::crisp_value(*limit.row, p.goal, o.sharp);
@@ -32,7 +34,8 @@ void add_limits(const mmc::BodyProblem& p, const mmc::BodyOutcome& o, Warnings& 
         {"body '" + o.body + "': the " + std::string(limit.row->words) + " " +
              io::to_text(found, 4) +
              (limit.at_least ? " is below what is wanted, " : " is above what is allowed, ") +
-             io::to_text(limit.value, 4) + ": no design that was found keeps to it" +
+             io::to_text(limit.value, 4) +
+             (o.iterations > 0 ? ": no design that was found keeps to it" : "") +
              (limit.wants_material()
                   ? "; the full design has " + io::to_text(o.full.at(mmc::key_of(*limit.row)), 4)
                   : std::string()),
@@ -46,15 +49,35 @@ bool misses_energy(const Scene& scene, const MotionRecord& motion) {
          largest_size(motion.table.at(kDefectColumn)) > stress_round_off(scene);
 }
 
-/// A design for a compliance that is worse than the same material spread evenly. (One that is
-/// analysed as it starts was not asked.)
+/// Tells whether a design is to meet what the case asks of it: it was optimized, or the case gives
+/// it. (The layout of boxes that a design starts from where the case gives none is no design.)
+bool is_judged(const Scene& scene, const mmc::BodyOutcome& o) {
+  return o.iterations > 0 ||
+         std::any_of(scene.designs.begin(), scene.designs.end(),
+                     [&](const BodyDesign& d) { return d.body == o.body && !d.start.empty(); });
+}
+
+/// A design for a compliance that is worse than the same material spread evenly: of no use where it
+/// was optimized.
 void add_worse(const mmc::BodyProblem& p, const mmc::BodyOutcome& o, Warnings& out) {
-  if (o.iterations == 0 || p.goal.objective != &mmc::compliance_row(p.goal)) return;
+  if (p.goal.objective != &mmc::compliance_row(p.goal)) return;
   if (!(o.sharp.compliance > o.uniform_compliance)) return;
   out.push_back({"body '" + o.body + "': the sharp compliance " +
                      io::to_text(o.sharp.compliance, 4) + " J is above that of uniform material, " +
                      io::to_text(o.uniform_compliance, 4) + " J: the design is worse than none",
-                 true});
+                 o.iterations > 0});
+}
+
+/// Loads of a plate at rest that act where the design is void: the energy of its cells is that of
+/// the soft void, and the outline spreads the force over the material that is left of the place.
+void add_loads_on_void(const Scene& scene, const mmc::BodyProblem& p, const mmc::BodyOutcome& o,
+                       Warnings& out) {
+  for (const LoadOnVoid& load : loads_on_void(scene, p, o.sharp.fractions))
+    out.push_back({"body '" + o.body + "': " + io::to_text(100 * load.part, 3) + " % of load '" +
+                       load.name +
+                       "' acts on void, which carries nothing; a [[design.solid]] at the place of "
+                       "the load carries it",
+                   load.part > kLargestPartOnVoid});
 }
 
 /// Warns of what the verification found.
@@ -114,7 +137,7 @@ std::string not_mended(const mmc::BodyOutcome& o) {
                     : "more iterations may help");
 }
 
-void add_designs(const DesignResult& design, Warnings& out) {
+void add_designs(const Scene& scene, const DesignResult& design, Warnings& out) {
   for (const mmc::BodyOutcome& o : design.outcomes) {
     if (const std::string loads = list_of(o.sharp.connectivity.loose_loads); !loads.empty())
       out.push_back({"body '" + o.body + "': no material joins " + loads + " to a support", true});
@@ -136,6 +159,8 @@ void add_designs(const DesignResult& design, Warnings& out) {
   for (const mmc::BodyProblem& p : design.problems)
     for (const mmc::BodyOutcome& o : design.outcomes)
       if (o.body == p.body) {
+        if (!is_judged(scene, o)) continue;
+        if (scene.domain) add_loads_on_void(scene, p, o, out);
         add_limits(p, o, out);
         add_worse(p, o, out);
       }
@@ -168,17 +193,23 @@ void add_load_differences(const Scene& scene, const DesignResult& design, Warnin
   }
 }
 
-/// Designs whose tip varies more in the motion than that of uniform material.
-void add_variations(const DesignResult& design, const MotionResults& motions, Warnings& out) {
-  for (const mmc::BodyOutcome& o : design.outcomes) {
-    const std::optional<TipVariation> tip = tip_variation(motions, o.body);
-    if (!tip || o.iterations == 0) continue;
-    const double rms = tip->rms_ratio(), range = tip->peak_to_peak_ratio();
-    if (std::max(rms, range) > TipVariation::kLargestRatio)
-      out.push_back({"body '" + o.body +
-                     "': its tip vibrates more than with uniform material of this mass: " +
-                     io::to_text(rms, 3) + " times in root mean square about the mean, " +
-                     io::to_text(range, 3) + " times peak to peak"});
+/// Designs of which the tip or an observed point varies more in the motion than that of uniform
+/// material.
+void add_variations(const Scene& scene, const RunResult& result, Warnings& out) {
+  const MotionResults& motions = result.motions;
+  for (const mmc::BodyOutcome& o : result.design.outcomes) {
+    if (!is_judged(scene, o)) continue;
+    std::vector<PointVariation> points = point_variations(motions, o.body);
+    if (const auto tip = tip_variation(motions, o.body)) points.insert(points.begin(), *tip);
+    for (const PointVariation& point : points) {
+      const double rms = point.rms_ratio(), range = point.peak_to_peak_ratio();
+      if (std::max(rms, range) > PointVariation::kLargestRatio)
+        out.push_back({"body '" + o.body + "': its " +
+                       (point.name.empty() ? "tip" : "observed point '" + point.name + "'") +
+                       " vibrates more than with uniform material of this mass: " +
+                       io::to_text(rms, 3) + " times in root mean square about the mean, " +
+                       io::to_text(range, 3) + " times peak to peak"});
+    }
   }
 }
 
@@ -244,14 +275,14 @@ void add_motion(const Scene& scene, const MotionRecord& motion, Warnings& out) {
 Warnings warnings_of(const Scene& scene, const RunResult& result) {
   Warnings out;
   const DesignResult& design = result.design;
-  add_designs(design, out);
+  add_designs(scene, design, out);
   if (design.corrected && !design.corrected->improves())
     out.push_back({"corrected cycles did not pay on the cells of the case and were taken back: J " +
                    io::to_text(design.corrected->after, 5) + " instead of " +
                    io::to_text(design.corrected->before, 5) +
                    "; cycle.cell of the design itself sees what it sees"});
   add_load_differences(scene, design, out);
-  add_variations(design, result.motions, out);
+  add_variations(scene, result, out);
   if (result.motions.motion) add_motion(scene, *result.motions.motion, out);
   if (!result.info.lost_frames.empty()) out.push_back({result.info.lost_frames});
   if (!result.info.missing_exports.empty()) out.push_back({result.info.missing_exports});

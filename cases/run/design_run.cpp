@@ -43,7 +43,7 @@ std::string measure_words(const Cycle& cycle, double value) {
   const char* what = cycle.compare_by == CycleMeasure::rms            ? "root mean square"
                      : cycle.compare_by == CycleMeasure::peak_to_peak ? "peak to peak"
                                                                       : "mean";
-  return std::string(what) + " of the tip of '" + cycle.compare_point + "' " +
+  return std::string(what) + " deflection of '" + cycle.compare_point + "' " +
          io::to_text(value, 5) + " m";
 }
 
@@ -95,20 +95,14 @@ void DesignRun::design_moving() {
   const Scene& scene = run_.scene();
   std::vector<fem::EslSets> loads;
   run_cycles(loads);
-  const bool analysed = scene.optimizer.max_iterations == 0;
-  const bool corrected = scene.cycle.correction.kind != mmc::Correction::none;
-  if (corrected) {
+  if (scene.cycle.correction.kind != mmc::Correction::none) {
     correct_by_motion(run_, loads, design_);
-    motions_.verified.reset();  // it is that of the design before
+    motions_ = {};  // they are those of the design before
   }
-  if (!analysed || corrected) {
-    verify_outlines(loads);
-    const double begin = cpu_seconds();
-    compare_loads(assess_by_motion(run_, design_.problems, motions_));
-    design_.seconds_verification = cpu_seconds() - begin;
-  } else {
-    compare_loads(loads);
-  }
+  verify_outlines(loads);
+  const double begin = cpu_seconds();
+  compare_loads(assess_by_motion(run_, design_.problems, loads, motions_));
+  design_.seconds_verification = cpu_seconds() - begin;
   if (scene.certify)
     design_.certificate = certify_by_motion(run_, *scene.certify, loads, design_.problems);
 }
@@ -205,11 +199,16 @@ void DesignRun::design_at_rest() {
   design_.cycles = 1;
   design_.outcomes = {outcome};
   design_.seconds_clean_up = outcome.seconds_mending;
-  run_.folder.write_static_loads(*scene.domain, outcome);
+  const auto write_loads = [&](const VerifiedOutline* outline) {
+    design_.static_loads = static_loads_of(*scene.domain, problem, *loads, outcome, outline);
+    run_.folder.write_static_loads(*scene.domain, design_.static_loads);
+  };
+  write_loads(nullptr);
   run_.folder.write_design(problem, outcome);
   run_.progress.say(summary(outcome) + kept.words());
   if (!run_.go_on()) throw Interrupted();
-  if (scene.optimizer.max_iterations > 0) verify_outlines({});
+  verify_outlines({});
+  write_loads(&design_.outlines.front());
 }
 
 void DesignRun::verify_outlines(std::span<const fem::EslSets> loads) {

@@ -40,15 +40,16 @@ void set_verified(const Verify& verify, MotionRequest& request) {
 /// The number that cycles are compared by.
 double measure_of(const Cycle& cycle, const MotionRecord& record) {
   if (cycle.compare_by == CycleMeasure::strain_energy) return record.strain_integral();
-  const Variation tip =
-      variation_of(record.time(), record.table.at(cycle.compare_point + kDeflectionEnding));
+  const std::vector<double>* tip = record.table.find(cycle.compare_point + kDeflectionEnding);
+  const Variation point = variation_of(
+      record.time(), tip ? *tip : record.table.at(cycle.compare_point + kAcrossEnding));
   switch (cycle.compare_by) {
     case CycleMeasure::rms:
-      return tip.rms;
+      return point.rms;
     case CycleMeasure::peak_to_peak:
-      return tip.peak_to_peak;
+      return point.peak_to_peak;
     default:
-      return std::abs(tip.mean);
+      return std::abs(point.mean);
   }
 }
 
@@ -110,14 +111,15 @@ MotionOutcome CycleMotions::run_one(const MotionRequest& request) {
 }
 
 mmc::CycleMotion CycleMotions::loads(std::span<const fem::Factors> factors) {
+  // Where nothing is optimized, the motion that makes loads is the one with the design.
   const bool analysed = run_.scene().optimizer.max_iterations == 0;
   const bool first = ++n_loads_ == 1;
-  MotionRequest request = resumable_request(run_, "motion", "motion.csv");
+  MotionRequest request = analysed ? result_request(run_, "motion with the design")
+                                   : resumable_request(run_, "motion", "motion.csv");
   // Every cycle has a checkpoint: designs of earlier cycles come back from their evaluations.
   request.checkpoint = "motion_" + io::to_text(n_loads_) + kCheckpoint;
   request.factors.assign(factors.begin(), factors.end());
   request.loads = true;
-  request.condition = run_.condition && analysed;
   if (first) request.say = [this](const std::string& words) { run_.progress.say(words); };
   MotionOutcome motion = run_one(request);
   const double measure = measure_of(run_.scene().cycle, motion.record);
@@ -176,16 +178,19 @@ void run_side_by_side(const RunContext& run, const std::vector<IndependentMotion
 
 std::vector<fem::EslSets> assess_by_motion(const RunContext& run,
                                            std::span<const mmc::BodyProblem> problems,
+                                           std::vector<fem::EslSets> loads,
                                            MotionResults& motions) {
   const Scene& scene = run.scene();
   const bool on_cells = scene.judges_on_cells();
-  std::vector<fem::EslSets> loads;
   std::vector<IndependentMotion> all;
-  MotionRequest request = result_request(run, "motion with the design");
-  request.factors = final_factors(problems);
-  request.loads = true;
-  all.push_back({1, request, &motions.motion, &loads});
-  request = resumable_request(run, "motion with uniform material", "motion_uniform.csv");
+  if (!motions.motion) {
+    MotionRequest designed = result_request(run, "motion with the design");
+    designed.factors = final_factors(problems);
+    designed.loads = true;
+    all.push_back({1, designed, &motions.motion, &loads});
+  }
+  MotionRequest request =
+      resumable_request(run, "motion with uniform material", "motion_uniform.csv");
   request.factors = uniform_factors(problems);
   all.push_back({1, request, &motions.uniform});
   if (scene.verify) {
@@ -206,6 +211,7 @@ std::vector<fem::EslSets> assess_by_motion(const RunContext& run,
   }
   run.progress.begin(scene.verify ? "verification" : "motion with the design");
   run_side_by_side(run, all);
+  if (on_cells) loads.clear();  // cells have no loads, and nothing to compare
   return loads;
 }
 

@@ -36,7 +36,8 @@ class CycleMotions {
   /// Keeps the last motion on cells, with its table, as that of the best design so far.
   void keep_assessed();
 
-  /// The motion of a run that only analyses its start; the motion on cells of the best design.
+  /// The motion with the design of a run that optimizes nothing; the motion on cells of the best
+  /// design.
   MotionResults take_results() { return std::move(results_); }
   /// CPU seconds of all motions so far.
   double seconds() const { return seconds_; }
@@ -53,12 +54,13 @@ class CycleMotions {
 };
 
 /// Computes the motions that assess designs: with the design, with uniform material of the same
-/// volume, and both on the mesh of [verify]. A verification that `motions` holds already is kept.
+/// volume, and both on the mesh of [verify]. Those that `motions` holds already are kept.
+/// @param loads    of the last motion of the cycles
 /// @param motions  receives them as far as they were computed
 /// @return loads of the motion with the design
 /// @throws as run_motion()
 std::vector<fem::EslSets> assess_by_motion(const RunContext& run,
                                            std::span<const mmc::BodyProblem> problems,
-                                           MotionResults& motions);
+                                           std::vector<fem::EslSets> loads, MotionResults& motions);
 
 }  // namespace flexmorph::cases

@@ -82,7 +82,8 @@ struct Cycle {
   double tolerance = 0.01;  ///< cycles end when one improves the measure by less than this part
   double load_difference = mmc::LoadDifference::kLargest;  ///< see mmc::LoopSettings
   CycleMeasure compare_by = CycleMeasure::strain_energy;
-  std::string compare_point;  ///< the body whose tip is meant; empty with strain_energy
+  /// "BODY" of its tip, "BODY.NAME" of an observed point; empty with strain_energy.
+  std::string compare_point;
   /// What follows the cycles of equivalent static loads: see mmc::correct_designs().
   mmc::CorrectionSettings correction;
   double cell = 0;      ///< of the motions that correct [m]; 0: the designs' own

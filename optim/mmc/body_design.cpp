@@ -53,14 +53,13 @@ class Designer {
       else
         last_solve(solves);
     }
-    if (going_ && !analysed) meet_limits();
+    if (analysed)
+      evaluate();
+    else if (going_)
+      meet_limits();
     std::vector<BodyOutcome> out;
     parts_.front().outcome.seconds_mending = mending_;
     for (Part& p : parts_) {
-      if (analysed) {
-        measure(p);
-        p.outcome.stop = "analysed as it starts";
-      }
       finish(p);
       out.push_back(std::move(p.outcome));
     }
@@ -351,6 +350,17 @@ class Designer {
     }
   }
 
+  /// Evaluates the designs as they are, as delivered ones are: without an iteration.
+  void evaluate() {
+    for (Part& p : parts_) {
+      measure(p);
+      p.outcome.stop = "evaluated: nothing was optimized";
+      follow_crisp(p);
+      if (p.problem.widths.any()) p.widths.emplace(p.problem, p.problem.widths);
+    }
+    record_kkt();
+  }
+
   /// Takes them with the KKT residual that they have as they are, widths and sharp volume included.
   void deliver(const Mended& mended) {
     take(mended);
@@ -361,6 +371,15 @@ class Designer {
       if (const auto& done = mended.clean_ups[k]; done && !done->given_up)
         p.widths.emplace(p.problem, p.problem.widths);
     }
+    record_kkt();
+    for (Part& p : parts_)
+      if (p.outcome.verdict.kind == optim::Verdict::Kind::converged &&
+          p.outcome.kkt > settings_.optimizer.kkt_tolerance)
+        p.outcome.verdict.kind = optim::Verdict::Kind::unfinished;
+  }
+
+  /// Computes the KKT residual of the designs as they are.
+  void record_kkt() {
     Whole whole(parts_);
     optim::Problem& problem = whole.problem();
     const VectorXd x = problem.start();
@@ -368,12 +387,7 @@ class Designer {
     constexpr double kActive = 1e-3;
     const double kkt =
         optim::kkt_residual(problem.evaluate(x), x, problem.lower(), problem.upper(), kActive);
-    for (Part& p : parts_) {
-      p.outcome.kkt = p.outcome.verdict.kkt = kkt;
-      if (p.outcome.verdict.kind == optim::Verdict::Kind::converged &&
-          kkt > settings_.optimizer.kkt_tolerance)
-        p.outcome.verdict.kind = optim::Verdict::Kind::unfinished;
-    }
+    for (Part& p : parts_) p.outcome.kkt = p.outcome.verdict.kkt = kkt;
   }
 
   bool see(Whole& whole, const optim::Iterate& iterate) {
@@ -436,7 +450,7 @@ class Designer {
              (p.stopped == optim::Stop::iteration_limit || p.stopped == optim::Stop::observer))
       out.stop = "iteration limit: " + std::to_string(iterations_) + " iterations, KKT residual " +
                  optim::scientific(out.kkt);
-    finish_outcome(p, analysed, settings_.condition);
+    finish_outcome(p, settings_.condition);
   }
 
   std::vector<Part> parts_;

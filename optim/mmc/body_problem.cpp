@@ -7,7 +7,6 @@
 #include "geometry/cpu_time.h"
 #include "geometry/line_gaps.h"
 #include "geometry/part_mesh.h"
-#include "optim/mmc/united_connectivity.h"
 
 namespace flexmorph::mmc {
 double design_compliance(const BodyProblem& problem, ComplianceEvaluator& loads,
@@ -200,17 +199,6 @@ Connectivity connectivity_of(const BodyProblem& problem, std::span<const Region>
                                   [&](int cell) { return touches(problem.grid, region, cell); }));
   }
   return flexmorph::connectivity_of(touched, places);
-}
-
-Connectivity united_connectivity(const BodyProblem& problem, std::span<const Component> components,
-                                 const VectorXd& fractions) {
-  try {
-    return connectivity_of(problem,
-                           regions_of(problem, components, kOutlineTolerance * problem.grid.dx()));
-  } catch (const Error& error) {
-    if (error.kind() == Error::Kind::input) throw;
-    return connectivity(problem.grid, fractions, problem.places);
-  }
 }
 
 SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> components,

@@ -340,7 +340,7 @@ std::vector<BodyOutcome> outcomes_of_corrected(std::span<const LoadedBody> bodie
     p.outcome.body = p.problem.body;
     p.outcome.n_loads = p.loads.n_loads();
     p.outcome.n_right_hand_sides = p.loads.n_right_hand_sides();
-    finish_outcome(p, false, false);
+    finish_outcome(p, false);
     out.push_back(std::move(p.outcome));
   }
   return out;

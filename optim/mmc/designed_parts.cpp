@@ -3,21 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "optim/mmc/united_connectivity.h"
 #include "optim/mmc/usability.h"
 
 namespace flexmorph::mmc {
-namespace {
-
-/// The sharp design by its cells, without the widths of its outlines, which cost more than an
-/// analysis does. What hangs together shows in the outlines here, too.
-SharpDesign without_outlines(const Part& p) {
-  SharpDesign out = crisp_figures(p);
-  out.connectivity = united_connectivity(p.problem, p.problem.design.components(), out.fractions);
-  return out;
-}
-
-}  // namespace
 
 bool limits_state(const Part& p) {
   const std::vector<Limit>& limits = p.problem.goal.limits;
@@ -68,10 +56,9 @@ void measure(Part& p) {
     p.outcome.further[key_of(*row)] = state.values(*row)->maxCoeff();
 }
 
-void finish_outcome(Part& p, bool analysed, bool condition) {
+void finish_outcome(Part& p, bool condition) {
   BodyOutcome& out = p.outcome;
-  out.sharp = analysed ? without_outlines(p)
-                       : sharp_design(p.problem, p.problem.design.components(), p.loads);
+  out.sharp = sharp_design(p.problem, p.problem.design.components(), p.loads);
   const CellFactors sharp = p.ersatz.sharp(out.sharp.fractions);
   const VectorXd each = p.loads.individual(sharp.stiffness, sharp.mass);
   out.load_compliances.assign(each.data(), each.data() + each.size());

@@ -54,8 +54,7 @@ void follow_crisp(Part& p);
 /// Blurred figures of a design, into its outcome.
 void measure(Part& p);
 /// The sharp design of an outcome, and its figures under the loads.
-/// @param analysed  a design as it starts: without the widths of its outlines
-void finish_outcome(Part& p, bool analysed, bool condition);
+void finish_outcome(Part& p, bool condition);
 
 /// The problem of all parts at their designs: that of the only one, or the shared one.
 class Whole {

@@ -35,9 +35,11 @@ Box bounds_of(std::span<const Region> regions) {
 
 /// What one mesh says.
 struct MeshResult {
-  VectorXd compliances, errors;      // by rows of LoadedMesh [J]
-  VectorXd by_triangle;              // what counts of the errors [J]
-  double compliance = 0, error = 0;  // what counts of all loads [J]
+  VectorXd compliances, errors;         // by rows of LoadedMesh [J]
+  VectorXd by_triangle;                 // what counts of the errors [J]
+  double compliance = 0, error = 0;     // what counts of all loads [J]
+  std::vector<LargestStress> stresses;  // by rows of LoadedMesh
+  std::vector<double> displacements;    // likewise, of any node [m]
   LargestStress largest;
   int largest_row = -1;
   int worst_row = 0;
@@ -136,6 +138,7 @@ void OutlineVerifier::update_largest_stress(const LoadedMesh& mesh,
     const int row = static_cast<int>(first + l);
     const LargestStress of_load =
         largest_of(mesh, row, found.averaged.middleRows(3 * l, 3), counts);
+    out.stresses.push_back(of_load);
     if (!(of_load.value > out.largest.value)) continue;
     out.largest = of_load;
     out.largest_row = row;
@@ -208,8 +211,13 @@ MeshResult OutlineVerifier::analyse(LoadedMesh& mesh) const {
     out.compliance = out.compliances[out.worst_row];
     out.error = out.errors[out.worst_row];
   }
-  out.displacement = displacement_of(mesh, u.row(out.worst_row));
-  if (given.size() > 0) out.displacement += given.row(out.worst_row).transpose();
+  for (Eigen::Index row = 0; row < n; ++row) {
+    VectorXd at_nodes = displacement_of(mesh, u.row(row));
+    if (given.size() > 0) at_nodes += given.row(row).transpose();
+    out.displacements.push_back(
+        at_nodes.reshaped(2, at_nodes.size() / 2).colwise().norm().maxCoeff());
+    if (row == out.worst_row) out.displacement = std::move(at_nodes);
+  }
   out.worst_stress = largest_of(mesh, out.worst_row, out.stress, counts);
   if (!std::isfinite(out.compliance) || !std::isfinite(out.error))
     throw Error::numerical("verification: the compliance is not finite");
@@ -221,9 +229,14 @@ void OutlineVerifier::keep(const LoadedMesh& mesh, MeshResult& now, double error
   out_.compliance = now.compliance;
   out_.error = error / now.compliance;
   out_.compliances.assign(n, 0);
-  for (std::size_t row = 0; row < n; ++row)
-    out_.compliances[static_cast<std::size_t>(mesh.order()[row])] =
-        now.compliances[static_cast<Eigen::Index>(row)];
+  out_.largest_displacements.assign(n, 0);
+  out_.largest_stresses.assign(n, {});
+  for (std::size_t row = 0; row < n; ++row) {
+    const auto load = static_cast<std::size_t>(mesh.order()[row]);
+    out_.compliances[load] = now.compliances[static_cast<Eigen::Index>(row)];
+    out_.largest_displacements[load] = now.displacements[row];
+    out_.largest_stresses[load] = now.stresses[row];
+  }
   out_.largest_stress = now.largest.value;
   out_.largest_at = now.largest.at;
   out_.largest_load =

@@ -44,7 +44,9 @@ struct OutlineVerification {
   double compliance = 0;   ///< [J]
   double error = 0;        ///< its estimated error, relative; the compliance is too small by that
   bool converged = false;  ///< Is the error below the tolerance?
-  std::vector<double> compliances;  ///< of each load [J]
+  std::vector<double> compliances;              ///< of each load [J]
+  std::vector<double> largest_displacements;    ///< of any node, of each load [m]
+  std::vector<LargestStress> largest_stresses;  ///< of each load
   std::string unsupported_load;  ///< name of a load that acts on nothing that is held; empty: none
   double area = 0;               ///< of all pieces [m²]
   double largest_stress =

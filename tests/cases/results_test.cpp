@@ -92,7 +92,7 @@ TEST(Warnings, OfVibrationAndDissipation) {
   EXPECT_EQ(count(warned(1.04, 0), "vibrates more"), 0);
   EXPECT_EQ(count(warned(1, 0.011), "dissipates 1.1 % of the largest energy"), 1);
   EXPECT_EQ(count(warned(1, 0.009), "dissipates"), 0);
-  const std::optional<TipVariation> tip = tip_variation(result.motions, "plate");
+  const std::optional<PointVariation> tip = tip_variation(result.motions, "plate");
   ASSERT_TRUE(tip);
   EXPECT_NEAR(tip->rms_ratio(), 1, 1e-12);
   EXPECT_NEAR(tip->designed.mean / tip->uniform.mean, 0.2, 1e-12);

@@ -53,7 +53,7 @@ const Key& kMaxIterations = io::key("optimizer", "max_iterations")
                                 .otherwise(kSettings.max_iterations)
                                 .says(
                                     "Iterations of all stages together, of the polishes after "
-                                    "repairs as well; 0 analyses the start.");
+                                    "repairs as well; 0 evaluates the start.");
 const Key& kMaxSolves = io::key("optimizer", "max_solves")
                             .integer("a number of state solves", 0, 100'000'000)
                             .otherwise(kSettings.max_evaluations)
@@ -137,16 +137,16 @@ const Key& kLoadDifference =
 const io::Choice<CycleMeasure> kCompareBy(
     io::key("cycle", "compare_by")
         .otherwise("strain_energy")
-        .says("What cycles are compared by: strain energy over time, or how a tip deflects."),
+        .says("What cycles are compared by: strain energy over time, or how a point deflects."),
     "a measure of the motion",
     {{"strain_energy", CycleMeasure::strain_energy},
      {"rms", CycleMeasure::rms},
      {"peak_to_peak", CycleMeasure::peak_to_peak},
      {"mean", CycleMeasure::mean}});
 const Key& kComparePoint = io::key("cycle", "compare_point")
-                               .name_of("a body with a tip")
-                               .otherwise_as("the only designed body with a tip")
-                               .says("The designed body whose tip `compare_by` means.");
+                               .name_of("a tip or an observed point")
+                               .otherwise_as("the only one of the designs")
+                               .says("What `compare_by` means: BODY for its tip, or BODY.NAME.");
 
 const Key& kRefine = io::key("verify", "refine")
                          .integer("a number of parts of an element", 2, 100)
@@ -309,20 +309,26 @@ Verify read_verify(const Table& t, const Scene& scene) {
   return verify;
 }
 
-/// The designed body whose tip cycles are compared by.
+/// The point whose deflection cycles are compared by: "BODY" of a tip, "BODY.NAME" of an observed
+/// point of a designed body.
 std::string read_compare_point(const Table& cycle, const Scene& scene) {
-  std::vector<std::string> tips;
-  for (const BodyDesign& design : scene.designs)
-    if (!design.link) tips.push_back(design.body);
-  const std::string known = tips.empty() ? "none of the designs has a tip: `compare_by` is "
-                                           "\"strain_energy\""
-                                         : "the designed bodies with a tip are " + joined(tips);
+  std::vector<std::string> points;
+  for (const BodyDesign& design : scene.designs) {
+    if (!design.link) points.push_back(design.body);
+    for (const Observe& o : scene.observed)
+      if (o.body == design.body) points.push_back(o.body + "." + o.name);
+  }
+  const std::string known = points.empty()
+                                ? "no design has a tip or an observed point: `compare_by` is "
+                                  "\"strain_energy\""
+                                : "tips and observed points of designs are " + joined(points);
   if (!cycle.has(kComparePoint)) {
-    if (tips.size() != 1) cycle.fail(kCompareBy, "it needs `compare_point`: " + known);
-    return tips.front();
+    if (points.size() != 1) cycle.fail(kCompareBy, "it needs `compare_point`: " + known);
+    return points.front();
   }
   const std::string name = cycle.string(kComparePoint);
-  if (std::find(tips.begin(), tips.end(), name) == tips.end()) cycle.fail(kComparePoint, known);
+  if (std::find(points.begin(), points.end(), name) == points.end())
+    cycle.fail(kComparePoint, known);
   return name;
 }
 

@@ -1,0 +1,116 @@
+// `optimizer.max_iterations = 0` evaluates a design that is given: with all numbers and files of a
+// run whose optimizer has moved it by next to nothing.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "io/tables.h"
+#include "tests/cases/program.h"
+
+namespace flexmorph::test {
+namespace {
+
+using nlohmann::json;
+
+struct Runs {
+  json evaluated, optimized;  // run.json
+  std::string folder;         // of the evaluated run
+};
+
+/// Runs a case with a design, evaluated as it is, and with an iteration that may move a variable by
+/// 1e-9 of its range. Files that only iterations make may be missing in the first run.
+Runs run_both(const Scratch& scratch, const std::string& name, const std::string& design,
+              Words changes) {
+  changes.insert(changes.end(), {"design.start='" + design + "'", "design.mend=false"});
+  Runs out;
+  std::set<std::string> files[2];
+  for (const int iterations : {0, 1}) {
+    const std::string folder = scratch / ("run_" + std::to_string(iterations));
+    Words all = changes;
+    all.insert(all.end(), {"optimizer.max_iterations=" + std::to_string(iterations),
+                           "optimizer.move_limit=1e-9", "output.design_every=0"});
+    const Ended ended = run(scratch, name, folder, all);
+    EXPECT_TRUE(ended.code == 0 || ended.code == kTooFew) << ended.err;
+    json& found = iterations == 0 ? out.evaluated : out.optimized;
+    found = json::parse(contents_of(folder + "/run.json"));
+    EXPECT_EQ(found["status"] == "done", ended.code == 0) << found["status"];
+    if (iterations == 0) out.folder = folder;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+      files[iterations].insert(std::filesystem::relative(entry.path(), folder).string());
+  }
+  for (const std::string& file : files[1])
+    EXPECT_TRUE(files[0].contains(file) || file == "history.csv" ||
+                file.starts_with("plots/convergence"))
+        << file;
+  EXPECT_EQ(out.evaluated["status"], out.optimized["status"]);
+  const json& result = out.evaluated["results"][0];
+  EXPECT_EQ(result["verdict"], "evaluated");
+  EXPECT_NE(result["stop"].get<std::string>().find("nothing was optimized"), std::string::npos);
+  EXPECT_GT(result["kkt"].get<double>(), 0);
+  return out;
+}
+
+/// Compares numbers that the two runs share. A change of 1e-9 of the variables moves samples of the
+/// area fractions of a few cells at most.
+void expect_same(const json& evaluated, const json& optimized, const Words& names) {
+  for (const std::string& name : names) {
+    ASSERT_TRUE(evaluated.contains(name)) << name;
+    const double value = optimized[name].get<double>();
+    EXPECT_NEAR(evaluated[name].get<double>(), value, 1e-5 * std::abs(value)) << name;
+  }
+}
+
+TEST(EvaluatedRun, OfAPlateAtRestIsThatOfAnOptimizedOne) {
+  const Scratch scratch;
+  const Runs runs = run_both(scratch, "short_beam", FLEXMORPH_DATA "/short_beam.csv", {});
+  const json &a = runs.evaluated["results"][0], &b = runs.optimized["results"][0];
+  expect_same(a, b,
+              {"compliance", "volume", "sharp_compliance", "sharp_volume", "uniform_compliance",
+               "min_feature", "min_gap", "worst_compliance"});
+  EXPECT_EQ(a["connected"], b["connected"]);
+  EXPECT_EQ(a["islands"], b["islands"]);
+  expect_same(a["body_fitted"], b["body_fitted"], {"compliance", "volume", "largest_stress"});
+  expect_same(a["load_cases"][0], b["load_cases"][0],
+              {"strain_energy", "largest_displacement", "largest_stress"});
+}
+
+TEST(EvaluatedRun, OfAMotionIsThatOfAnOptimizedOne) {
+  const Scratch scratch;
+  // Two bars side by side: the full plate, without its corners.
+  const std::string bars = scratch.write("bars.csv",
+                                         "X0,Y0,half_length,angle,c1,c2,c3\n"
+                                         "0.28,-0.025,0.3,0,0.02,0.02,0.02\n"
+                                         "0.28,0.025,0.3,0,0.02,0.02,0.02\n");
+  const Runs runs = run_both(
+      scratch, FLEXMORPH_SHORT_CASE, bars,
+      {"observe=[{name='end', body='plate', at='free_end'}]", "verify={refine=2, step=1e-3}"});
+  const json &a = runs.evaluated["results"][0], &b = runs.optimized["results"][0];
+  expect_same(a, b,
+              {"sharp_compliance", "uniform_compliance", "dynamic_amplitude",
+               "uniform_dynamic_amplitude", "scene_mesh_amplitude"});
+  expect_same(a["body_fitted"], b["body_fitted"], {"compliance", "volume"});
+  expect_same(a["energies"], b["energies"], {"loads_compared", "worst_static_over_motion"});
+  expect_same(runs.evaluated["motion"], runs.optimized["motion"],
+              {"strain_energy_integral", "uniform_strain_energy_integral", "energy_defect"});
+  const Words numbers = {"mean",       "rms",       "peak_to_peak",       "largest",
+                         "mean_ratio", "rms_ratio", "peak_to_peak_ratio", "largest_ratio"};
+  expect_same(a["tip"], b["tip"], numbers);
+  // The observed point is the tip, whose deflection has a column of its own.
+  ASSERT_EQ(a["points"].size(), 1u);
+  EXPECT_EQ(a["points"][0]["point"], "end");
+  for (const std::string& name : numbers)
+    EXPECT_NEAR(a["points"][0][name].get<double>(), a["tip"][name].get<double>(),
+                1e-9 * std::abs(a["tip"][name].get<double>()))
+        << name;
+  const io::CsvTable motion = io::read_csv(runs.folder + "/motion.csv");
+  const std::vector<double> across = motion.numbers("plate.end_across"),
+                            tip = motion.numbers("plate.tip_deflection");
+  ASSERT_EQ(across.size(), tip.size());
+  for (size_t k = 0; k < tip.size(); ++k) EXPECT_NEAR(across[k], tip[k], 1e-14);
+}
+
+}  // namespace
+}  // namespace flexmorph::test
