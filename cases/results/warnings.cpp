@@ -16,6 +16,7 @@ using Warnings = std::vector<Warning>;
 
 constexpr double kLargestLoss = 0.01;   // of the largest energy, by the time integration
 constexpr double kLargestDefect = 0.1;  // of the balance of energy before a motion is warned of
+constexpr double kLargestMove = 0.05;   // of the largest strain energy, by a change of a mesh
 constexpr double kCellsApart = 0.02;    // sharp compliances from body-fitted ones
 // Compliance of the blurred design over that of the sharp one. Where the start of a design is
 // analysed it is about 2; 10 is no design any more but heavy, soft edges.
@@ -236,6 +237,31 @@ std::string jump_words(const Scene& scene) {
          "a power";
 }
 
+/// Adds a warning where changes of a mesh move strain energy: what follows is in part the answer
+/// to them. @param subject  names the motion
+void add_mesh_changes(const MotionRecord& motion, const std::string& subject, Warnings& out) {
+  double largest = largest_size(motion.table.at(kStrainColumn));
+  for (const fem::MeshEvent& event : motion.result.events)
+    largest = std::max(largest, std::abs(event.before.strain));
+  const auto moved = [](const fem::MeshEvent& e) {
+    return std::abs(e.after.strain - e.before.strain);
+  };
+  const fem::MeshEvent* worst = nullptr;
+  int number = 0;
+  for (const fem::MeshEvent& event : motion.result.events) {
+    if (!(moved(event) > kLargestMove * largest)) continue;
+    ++number;
+    if (!worst || moved(event) > moved(*worst)) worst = &event;
+  }
+  if (!worst) return;
+  out.push_back({std::to_string(number) + " of " + std::to_string(motion.result.events.size()) +
+                 " changes of the mesh move more than " + io::to_text(100 * kLargestMove, 2) +
+                 " % of the largest strain energy of " + subject + ", " + io::to_text(largest, 4) +
+                 " J; the worst, at t = " + io::to_text(worst->time, 4) + " s in body '" +
+                 worst->body + "', " + io::to_text(moved(*worst), 4) +
+                 " J: more elements, or body.flow.mesh = \"even\" where elements are no cells"});
+}
+
 void add_motion(const Scene& scene, const MotionRecord& motion, Warnings& out) {
   const std::string jumps = jump_words(scene);
   for (const fem::Conditioning& c : motion.result.near_singular) out.push_back({fem::describe(c)});
@@ -283,7 +309,12 @@ Warnings warnings_of(const Scene& scene, const RunResult& result) {
                    "; cycle.cell of the design itself sees what it sees"});
   add_load_differences(scene, design, out);
   add_variations(scene, result, out);
-  if (result.motions.motion) add_motion(scene, *result.motions.motion, out);
+  if (result.motions.motion) {
+    add_motion(scene, *result.motions.motion, out);
+    add_mesh_changes(*result.motions.motion, "the motion", out);
+  }
+  if (result.motions.verified)
+    add_mesh_changes(*result.motions.verified, "the motion on cells", out);
   if (!result.info.lost_frames.empty()) out.push_back({result.info.lost_frames});
   if (!result.info.missing_exports.empty()) out.push_back({result.info.missing_exports});
   return out;

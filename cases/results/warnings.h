@@ -7,7 +7,8 @@
 namespace flexmorph::cases {
 
 /// Finds designs in pieces or worse than uniform material, bridged gaps, limits that are violated,
-/// nearly singular joints, and energy that is lost or gained.
+/// nearly singular joints, energy that is lost or gained, and changes of a mesh that move more than
+/// 5 % of the largest strain energy.
 std::vector<Warning> warnings_of(const Scene& scene, const RunResult& result);
 
 /// Tells whether the integrator hardly damps multipliers. With constraints, generalized_alpha is

@@ -48,11 +48,12 @@ class EnergyBalance {
     loss_ = p.loss;
     known_ = true;
   }
-  /// After a change of the mesh: what accelerations and multipliers were carried over do not belong
-  /// to the new one (a root element of half the length takes half the weight), nor does their
-  /// power. The next step counts with the power at its end alone: once per change, an error of
-  /// second order.
-  void restart() { known_ = false; }
+  /// Goes on with the power p after a change of the mesh. What the change did to the energy is a
+  /// part of the defect.
+  void go_on(const Powers& p) {
+    power_ = p.total();
+    loss_ = p.loss;
+  }
   /// After a step: trapezoidal rule.
   void add(double t, const Energies& e, const Powers& p) {
     work_ += 0.5 * (t - t_) * ((known_ ? power_ : p.total()) + p.total());
@@ -67,7 +68,7 @@ class EnergyBalance {
   }
   /// After a step whose powers are those of its middle: mid-point rule.
   void add_mean(double t, const Energies& e, const Powers& p) {
-    restart();
+    known_ = false;
     add(t, e, p);
   }
   double work() const { return work_; }              ///< of all powers [J]

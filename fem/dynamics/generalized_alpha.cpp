@@ -86,9 +86,11 @@ void GeneralizedAlpha::cross_kink(State& x) {
   alpha_ += change_;
 }
 
-void GeneralizedAlpha::change_mesh(const MeshMap& map, const State& before) {
+void GeneralizedAlpha::change_mesh(const MeshMap& map, const State& before,
+                                   const VectorXd& change) {
   start_ = {};
-  if (alpha_.size() == map.n_before()) alpha_ = map.acceleration(before.q, before.v, alpha_);
+  if (alpha_.size() == map.n_before())
+    alpha_ = map.acceleration(before.q, before.v, alpha_) + change;
 }
 
 void GeneralizedAlpha::remember(Memory& memory) {

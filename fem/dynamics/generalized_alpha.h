@@ -84,7 +84,7 @@ class GeneralizedAlpha final : public StepSolver {
   void set_alpha(VectorXd alpha) { alpha_ = std::move(alpha); }
   /// The algorithmic acceleration stays as far from the true one as it was: it belongs to t + δ h.
   void cross_kink(State& x) override;
-  void change_mesh(const MeshMap& map, const State& before) override;
+  void change_mesh(const MeshMap& map, const State& before, const VectorXd& change) override;
   void remember(Memory& memory) override;
   /// C: the local error of the position is -C h³ q⃛.
   double error_constant() const { return 1.0 / 6 - scheme_.beta - 0.5 * shift(); }

@@ -70,7 +70,8 @@ std::optional<MeshChange> change_due(const Body& body, const Growth& growth);
 /// Insertion: new nodes take position, slopes, and material velocity with its derivatives from the
 /// field at the fixed material point; accelerations likewise (N q̈ + 2 Ṅ q̇ + N̈ q). With h16 the
 /// field of position and velocity does not change at all. Removal keeps the values of the
-/// remaining nodes (a loss, of the size of the interpolation error). Multipliers keep their values.
+/// remaining nodes (it misses by the interpolation error). Multipliers keep their values. Forces
+/// are not in balance then: balance_forces().
 ///
 /// @returns what was done to the vectors of the state.
 ///

@@ -79,9 +79,12 @@ class Integrator {
   /// and multipliers jump to those behind it, and what the scheme carries besides with them.
   virtual void cross_kink(State& x) { make_consistent(x); }
 
-  /// The mesh changed between two steps, the state was carried over by `map`: so is what the scheme
-  /// carries besides it. @param before  the state before the change
-  virtual void change_mesh(const MeshMap& /*map*/, const State& /*before*/) {}
+  /// Carries over what the scheme carries besides the state, which `map` and balance_forces() have
+  /// taken across a change of the mesh.
+  /// @param before  the state before the change
+  /// @param change  of the accelerations by balance_forces() (n_dofs)
+  virtual void change_mesh(const MeshMap& /*map*/, const State& /*before*/,
+                           const VectorXd& /*change*/) {}
 
   /// Advances x to t_end: in one step, halved and retried where Newton fails, growing back later;
   /// or in as many as the tolerance of the integrator asks for.

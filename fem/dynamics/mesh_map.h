@@ -29,8 +29,8 @@ double inserted_line(const LineGrid& lines, double cell);
 /// B and C their first and second rates at fixed material point, which are zero unless the lines of
 /// the element move. With h16 the field does not change at all.
 ///
-/// What follows a change in a motion is no part of it: velocities are moved onto the constraints
-/// (Integrator::project_velocity()), accelerations and multipliers found by the next step.
+/// What follows a change in a motion is no part of it: forces are balanced (balance_forces()), and
+/// velocities moved onto the constraints (Integrator::project_velocity()).
 ///
 /// Source: P Fig. 3, 4; fem/README.md, Insertion and removal.
 class MeshMap {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "fem/dynamics/dense_output.h"
+#include "fem/dynamics/force_balance.h"
 #include "fem/dynamics/landings.h"
 #include "fem/dynamics/motion_failures.h"
 #include "fem/dynamics/motion_memory.h"
@@ -391,13 +392,14 @@ class Run {
     const double line =
         change == MeshChange::insertion ? inserted_line(lines, growth.cell) : lines.line_m(1).value;
     MeshMap map = change_mesh(model_, *body, change, x_, growth.cell);
-    integrator_->change_mesh(map, before);
+    integrator_->change_mesh(map, before, balance_forces(model_, x_, separating_frequency(*body)));
     event.after = model_.energies(x_);
     event.momentum_after = momentum_in_space(model_, x_);
     event.tip_jump = (point_position(*body, x_, tip) - tip_before).norm();
     result_.events.push_back(event);
     integrator_->project_velocity(x_);
-    balance_.restart();
+    powers_ = measure(x_);
+    balance_.go_on(powers_);
     if (settings_.keep == Keep::nothing) return;
     Trajectory& kept = result_.trajectory;
     kept.changes.push_back(

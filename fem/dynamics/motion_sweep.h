@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "fem/dynamics/force_balance.h"
 #include "fem/dynamics/generalized_alpha.h"
 #include "fem/dynamics/motion_gradient.h"
 #include "fem/dynamics/transposed_system.h"
@@ -166,6 +167,9 @@ class Sweep {
     const VectorXd given = change.map.apply({before.q, before.v, before.a}).v;
     system.set(after, {0, 0, 1}, 1);
     back_through_projection(after, given, system);
+    State balanced = after;
+    balanced.v = given;
+    back_through_balance(balanced, separating_frequency(model_->body(change.body)), system);
     for (Swept& s : all_) {
       const MeshMap::Vectors x = change.map.apply_transposed({s.by.q, s.by.v, s.by.a});
       const VectorXd none = VectorXd::Zero(s.alpha.size());
@@ -176,6 +180,25 @@ class Sweep {
       s.alpha = alpha.a;
     }
     undo(change);
+  }
+
+  /// Of balance_forces(): with q = q* + δ, q̈ = q̈* + ω² δ, α = α* + ω² δ it is a step whose
+  /// velocities stay.
+  /// @param x  the state in balance
+  void back_through_balance(const State& x, double frequency, TransposedSystem& system) {
+    const double stiffness = frequency * frequency, scale = 1 / stiffness;
+    system.set(x, {1, 0, stiffness}, scale);
+    for (Swept& s : all_) {
+      const VectorXd seed = s.by.q + stiffness * (s.by.a + s.alpha);
+      system.solve(seed, s.by.lambda / scale, psi_, chi_);
+      psi_ *= scale;
+      add_work(x, -psi_, s.out);
+      const VectorXd of_a = system.by_acceleration(x, psi_);
+      s.by.q += stiffness * of_a - seed;
+      s.by.v -= system.by_velocity(x, psi_);
+      s.by.a -= of_a;
+      s.by.lambda.setZero();
+    }
   }
 
   /// Of velocities moved onto the constraints, [M Φ_qᵀ; Φ_q 0] (q̇ - given, μ) = (0, ...).

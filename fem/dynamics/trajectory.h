@@ -24,7 +24,8 @@ struct Trajectory {
     bool stop = false;  ///< at one of the stops, or the end
   };
   /// A change of a mesh. With Keep::steps `map` was applied to points[after].x, and
-  /// points[after + 1].x is what became of it when its velocity was moved onto the constraints.
+  /// points[after + 1].x is what balance_forces() made of it, its velocity moved onto the
+  /// constraints.
   struct Change {
     double time = 0;  ///< [s]
     std::string body;

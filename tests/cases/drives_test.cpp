@@ -59,6 +59,7 @@ elements = [9, 1]
 
 [body.flow]
 length = "out"
+mesh = "split"
 max_length = 0.1
 
 [[joint]]

@@ -99,6 +99,33 @@ TEST(Warnings, OfVibrationAndDissipation) {
   EXPECT_FALSE(tip_variation(result.motions, "arm"));
 }
 
+// A change of the mesh is warned of by what it moves against the largest strain energy of the
+// motion, with its time and value.
+TEST(Warnings, OfChangesOfTheMeshThatMoveStrainEnergy) {
+  const Scene scene = read("rotating_plate_v01");
+  const auto warned = [&](std::vector<double> moved) {
+    RunResult result;
+    result.motions.motion = swinging(0.1, 1);
+    std::vector<double>& strain = result.motions.motion->table.values[2];
+    std::fill(strain.begin(), strain.end(), 0.5);
+    strain.back() = 2;
+    for (size_t k = 0; k < moved.size(); ++k) {
+      fem::MeshEvent event;
+      event.time = 0.25 * static_cast<double>(k + 1);
+      event.body = "plate";
+      event.before.strain = 0.5;
+      event.after.strain = 0.5 + moved[k];
+      result.motions.motion->result.events.push_back(event);
+    }
+    return warnings_of(scene, result);
+  };
+  EXPECT_EQ(count(warned({}), "changes of the mesh"), 0);
+  EXPECT_EQ(count(warned({0.099, -0.099}), "changes of the mesh"), 0);
+  const std::vector<Warning> found = warned({0.05, -0.3, 0.2});
+  EXPECT_EQ(count(found, "2 of 3 changes of the mesh"), 1);
+  EXPECT_EQ(count(found, "the motion, 2 J; the worst, at t = 0.5 s in body 'plate', 0.3 J"), 1);
+}
+
 void expect_described(const std::vector<ColumnInfo>& columns, const std::string& name) {
   std::set<std::string> names;
   for (const ColumnInfo& c : columns) {

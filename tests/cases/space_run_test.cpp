@@ -184,32 +184,11 @@ TEST(SpaceRun, ALineThatReachesItsNeighbourSaysSo) {
   EXPECT_GT(io::read_csv(folder + "/motion.csv").n_rows(), 5u);
 }
 
-// A new line leaves the plate as it is. Its bending energy is rational in the unknowns: what it
-// seems to jump by is the error of its quadrature, and goes with more points. (Assumed membrane
-// strains are interpolated anew, so their energy does change.)
-TEST(SpaceRun, NewLinesDoNotChangeTheEnergyButForItsQuadrature) {
-  const auto jump = [](const char* points) {
-    const Scratch scratch;
-    const std::string folder = scratch / "out";
-    const Ended ended = run(scratch, "deploying_plate", folder,
-                            {"time.end=0.12", "body.terms=['inertia', 'membrane', 'bending']",
-                             std::string("body.bending_points=") + points});
-    EXPECT_EQ(ended.code, 0) << ended.err;
-    const auto motion = nlohmann::json::parse(contents_of(folder + "/run.json")).at("motion");
-    double strain = 0;
-    for (const double u : io::read_csv(folder + "/motion.csv").numbers("energy.strain"))
-      strain = std::max(strain, u);
-    EXPECT_EQ(motion.at("events").size(), 1u);
-    return std::abs(motion.at("events").at(0).at("strain_jump").get<double>()) / strain;
-  };
-  EXPECT_LT(jump("5"), 1e-6);
-  EXPECT_LT(jump("11"), 1e-10);
-}
-
 TEST(SpaceRun, PlateDeploysAndGetsNewLines) {
   const Scratch scratch;
   const std::string folder = scratch / "out";
-  const Ended ended = run(scratch, "deploying_plate", folder, {"time.end=0.15"});
+  const Ended ended =
+      run(scratch, "deploying_plate", folder, {"time.end=0.15", "body.flow.mesh=split"});
   ASSERT_EQ(ended.code, 0) << ended.err;
   const io::CsvTable motion = io::read_csv(folder + "/motion.csv");
   EXPECT_EQ(motion.columns, columns({"time", "plate.length", "plate.tip_x", "plate.tip_y",
@@ -238,8 +217,10 @@ TEST(SpaceRun, PlateDeploysAndGetsNewLines) {
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0]["change"], "insertion");
   EXPECT_NEAR(events[0]["time"].get<double>(), 0.1, 1e-12);
-  EXPECT_LT(events[0]["momentum_jump"].get<double>(), 1e-12);
-  EXPECT_LT(events[0]["tip_jump"].get<double>(), 1e-12);
+  // The mesh sags as far as before, and has the momentum that it had, but for what the old mesh was
+  // too stiff at the root.
+  EXPECT_LT(events[0]["tip_jump"].get<double>(), 1e-3 * -motion.numbers("plate.tip_z")[0]);
+  EXPECT_LT(events[0]["momentum_jump"].get<double>(), 1e-5 * 2700 * 0.005 * 0.1 * 0.45 * 0.5);
 }
 
 TEST(SpaceRun, CheckListsTheNewParts) {

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include "fem/dynamics/force_balance.h"
+#include "fem/dynamics/motion.h"
 #include "fem/terms.h"
 #include "tests/support/models.h"
 
@@ -217,6 +219,61 @@ TEST(NextChange, MergesShrinkingPlatesOnlyWhereTheyDoNotChatter) {
   testing::Scene again = testing::make_scene(p);
   growth.min_length = 0.0499;
   EXPECT_EQ(next_change(again.model.bodies()[0], growth, 0, 0.4, 1e-3).t, kInfinity);
+}
+
+/// A chequered plate that turns and is drawn in, at the time when a line goes.
+struct Retracting {
+  testing::Scene scene;
+  State x;
+
+  Retracting() {
+    RotatingPlate p;
+    p.speed = -0.5;
+    p.factors = testing::chequered(p);
+    scene = testing::make_scene(p);
+    MotionSettings settings;
+    settings.end = 0.04;
+    x = integrate(scene.model, scene.growths, settings, [](const MotionStep&) {}).final;
+  }
+  double strain() { return scene.model.energies(x).strain; }
+};
+
+// A line that goes leaves slopes that hold for a longer element: forces in balance take most of
+// that back. The equations of motion and the constraints hold afterwards.
+TEST(ForceBalance, KeepsTheStrainEnergyOfARemoval) {
+  Retracting plate;
+  Workspace& model = plate.scene.model;
+  Body& body = model.bodies()[0];
+  const double before = plate.strain();
+  change_mesh(model, body, MeshChange::removal, plate.x);
+  const double carried = plate.strain();
+  const VectorXd change = balance_forces(model, plate.x, separating_frequency(body));
+  EXPECT_GT(std::abs(carried - before), 5 * std::abs(plate.strain() - before));
+  EXPECT_LT(std::abs(plate.strain() - before), 0.02 * before);
+  EXPECT_EQ(change.size(), model.n_dofs());
+  Constraints c;
+  model.constraints(plate.x, c);
+  EXPECT_LT(c.value.lpNorm<Eigen::Infinity>(), 1e-13);
+  VectorXd force, inertia;
+  model.force(plate.x, force);
+  Workspace::add_constraint_force(c, plate.x.lambda, force);
+  State still = plate.x;
+  still.a.setZero();
+  model.force(still, inertia);
+  EXPECT_LT(force.norm(), 1e-8 * inertia.norm());
+}
+
+// Forces that are in balance stay so: nothing is left to do.
+TEST(ForceBalance, LeavesABalancedStateAsItIs) {
+  Retracting plate;
+  Workspace& model = plate.scene.model;
+  Body& body = model.bodies()[0];
+  change_mesh(model, body, MeshChange::removal, plate.x);
+  balance_forces(model, plate.x, separating_frequency(body));
+  const State once = plate.x;
+  balance_forces(model, plate.x, 3 * separating_frequency(body));
+  const VectorXd moved = (plate.x.q - once.q).cwiseProduct(model.scales());
+  EXPECT_LT(moved.lpNorm<Eigen::Infinity>(), 1e-11);
 }
 
 }  // namespace

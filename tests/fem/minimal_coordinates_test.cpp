@@ -281,8 +281,7 @@ TEST(MinimalCoordinates, FollowsAFlexiblePlateWithItsEnergy) {
 }
 
 // A plate that turns with a hub and grows out of it: the mass changes in time, the root is driven.
-// With a node that comes at 0.037 s too, after which generalized_alpha converges more slowly (it
-// interpolates accelerations), but to the same.
+// With a node that comes at 0.037 s, too: what the old mesh was too stiff is missed in the energy.
 TEST(MinimalCoordinates, FollowsMaterialThatFlows) {
   testing::RotatingPlate plate;
   plate.section = {0.01, 1e6, 0.3, 2700};
@@ -312,9 +311,13 @@ TEST(MinimalCoordinates, FollowsMaterialThatFlows) {
               << " m/s, energy defect " << r.energy_defect << ", generalized_alpha is off by "
               << coarse << " and " << fine << " m\n";
     EXPECT_EQ(r.events.size(), node ? 1U : 0U);
-    EXPECT_GT(coarse, (node ? 2 : 3) * fine);
-    EXPECT_LT(fine, node ? 5e-4 : 1e-5);
-    EXPECT_LT(r.energy_defect, 1e-6);
+    EXPECT_GT(coarse, 3 * fine);
+    EXPECT_LT(fine, 1e-5);
+    double released = 0;  // of the kinetic energy, the largest
+    for (const MeshEvent& e : r.events)
+      released += std::abs(e.after.total() - e.before.total()) / e.before.kinetic;
+    EXPECT_LT(released, 1e-5);
+    EXPECT_LT(r.energy_defect, released + 1e-6);
     EXPECT_LT(r.constraint_drift, 1e-14);
     EXPECT_LT(r.velocity_drift, 1e-12);
   }

@@ -13,6 +13,7 @@
 #include "fem/terms.h"
 #include "tests/support/differences.h"
 #include "tests/support/models.h"
+#include "tests/support/rates.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -47,7 +48,7 @@ struct Growing {
     p.shapes = shapes;
     p.speed = speed;
     p.longest = 1.0;
-    p.nx = shapes == ShapeSet::q4 ? 20 : 5;
+    p.nx = shapes == ShapeSet::q4 ? 20 : 10;
     p.ny = shapes == ShapeSet::q4 ? 4 : 1;
     p.factors.grid = {0, -0.05, 1.0, 0.1, 40, 4};
     const int n = p.factors.grid.n_cells();
@@ -121,9 +122,29 @@ INSTANTIATE_TEST_SUITE_P(Gradients, EveryMotion,
                                            std::tuple(ShapeSet::q4, 0.5, Start::prestretched),
                                            std::tuple(ShapeSet::q4, -0.5, Start::prestretched),
                                            std::tuple(ShapeSet::h16, 0.5, Start::prestretched),
+                                           std::tuple(ShapeSet::h16, -0.5, Start::prestretched),
                                            std::tuple(ShapeSet::q4, 0.5, Start::steady),
                                            std::tuple(ShapeSet::q4, -0.5, Start::steady),
                                            std::tuple(ShapeSet::h16, 0.5, Start::steady)));
+
+// Lines of nodes come at 0.5 m/s and go at -0.5 m/s; forces are balanced after each of them.
+TEST(MotionGradient, HasTaylorRemaindersOfOrderTwoThroughChangesOfTheMesh) {
+  for (const double speed : {0.5, -0.5}) {
+    const Growing motion(ShapeSet::h16, speed, Start::prestretched);
+    const MotionGradients found = motion.gradients();
+    EXPECT_GE(found.motion.events.size(), 1U) << speed;
+    const FactorSlopes direction = random_direction(motion.scene.model.bodies()[0].factors, 7);
+    for (size_t k = 0; k < motion.objectives.size(); ++k) {
+      const double slope = product(found.of[k].by_factors[0], direction);
+      const testing::Rate remainder =
+          testing::fit_rate({1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5}, [&](double by) {
+            return std::abs(motion.values(direction, by)[k] - found.of[k].value - by * slope);
+          });
+      EXPECT_NEAR(remainder.order(), 2, 0.05) << speed << ", objective " << k << '\n'
+                                              << remainder.table();
+    }
+  }
+}
 
 // A beam that is welded to the free end of the plate across it goes with its motion, and so do the
 // forces between them.
