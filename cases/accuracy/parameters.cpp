@@ -79,11 +79,13 @@ Levels mesh_levels(const Scene& scene, const io::CaseFile&) {
       if (factor == 1) continue;
       level.overrides.push_back(key(b.name, "elements") +
                                 (b.row->across ? list_of({1.0 * *m, 1.0 * *n}) : to_text(*m)));
-      if (!b.flow || b.is_even()) continue;
-      level.overrides.push_back(key(b.name, "flow.max_length") +
-                                to_text(b.flow->max_length * level.h));
-      level.overrides.push_back(key(b.name, "flow.min_length") +
-                                to_text(b.flow->min_length * level.h));
+      if (!b.flow) continue;
+      if (b.flow->max_length > 0)
+        level.overrides.push_back(key(b.name, "flow.max_length") +
+                                  to_text(b.flow->max_length * level.h));
+      if (b.flow->min_length > 0)
+        level.overrides.push_back(key(b.name, "flow.min_length") +
+                                  to_text(b.flow->min_length * level.h));
     }
     if (whole) out.push_back(std::move(level));
   }

@@ -84,7 +84,25 @@ std::string load_words(const BodyLoad& load) {
          (load.law.varies() ? ", varies" : "");
 }
 
-void describe_body(const Body& body, const Mechanism& mechanism, std::ostringstream& out) {
+/// How material leaves a body, and what its mesh does then.
+void describe_flow(const Body& body, double end, std::ostringstream& out) {
+  const Flow& flow = *body.flow;
+  const double shortest = body.shortest(end), longest = body.longest(end);
+  out << row("", flow.motion ? "material leaves and enters the hub as '" + flow.length.drive +
+                                   "' says, length " + io::to_text(shortest, 6) + " to " +
+                                   io::to_text(longest, 6) + " m"
+                             : "material leaves the hub at " + io::to_text(flow.speed) + " m/s");
+  const int n = body.elements[0], refreshed = body.elements[1] * (body.is_even() ? n : 1);
+  const std::string mesh = body.is_even()
+                               ? "mesh \"even\": " + std::to_string(n) + " elements along it, " +
+                                     io::to_text(shortest / n, 4) + " to " +
+                                     io::to_text(longest / n, 4) + " m long"
+                               : "mesh \"split\": lines of nodes come and go";
+  out << row("", mesh + ", " + std::to_string(refreshed) + " elements refreshed per step");
+}
+
+void describe_body(const Body& body, double end, const Mechanism& mechanism,
+                   std::ostringstream& out) {
   const fem::Body& built = mechanism.model.body(body.name);
   const int n = built.n_dofs();
   const std::string mesh = body.row->across
@@ -111,16 +129,7 @@ void describe_body(const Body& body, const Mechanism& mechanism, std::ostringstr
     if (line.free)
       out << row("", "free material line " + std::to_string(line.index) +
                          ": one more unknown; all elements evaluated one at a time");
-  if (body.flow)
-    out << row("", (body.flow->motion
-                        ? "material leaves and enters the hub as '" + body.flow->length.drive +
-                              "' says, length " + io::to_text(body.flow->shortest, 6) + " to " +
-                              io::to_text(body.flow->longest, 6) + " m"
-                        : "material leaves the hub at " + io::to_text(body.flow->speed) + " m/s") +
-                       (body.is_even() ? ": all lines move, elements stay equal, "
-                                       : ": one prescribed material line, ") +
-                       std::to_string(body.elements[1] * (body.is_even() ? body.elements[0] : 1)) +
-                       " elements refreshed per step");
+  if (body.flow) describe_flow(body, end, out);
 }
 
 std::string optimizer_words(const Scene& scene) {
@@ -308,7 +317,7 @@ std::string check_case(const std::string& name, std::span<const std::string> ove
     out << row("drive " + drive.name, drive.words + ", from " + io::to_text(range[0], 6) + " to " +
                                           io::to_text(range[1], 6) + kinks_of(drive));
   }
-  for (const Body& body : scene.bodies) describe_body(body, mechanism, out);
+  for (const Body& body : scene.bodies) describe_body(body, scene.time.end, mechanism, out);
   if (rigid) describe_mechanism(scene, *rigid, out);
   out << row("joints", std::to_string(scene.joints.size()) + ", " +
                            std::to_string(mechanism.model.n_constraints()) + " constraint rows" +

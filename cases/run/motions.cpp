@@ -1,5 +1,6 @@
 #include "cases/run/motions.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "fem/dynamics/side_by_side.h"
@@ -98,6 +99,12 @@ void remove_checkpoints(const FilesOf& files_of) {
   for (const std::string& path : files_of(kOnCells)) std::filesystem::remove(path, none);
 }
 
+std::string mesh_words(const Scene& scene, const fem::MotionResult& result) {
+  const auto is_even = [](const Body& body) { return body.is_even(); };
+  if (result.events.empty() && std::ranges::any_of(scene.bodies, is_even)) return "even mesh";
+  return std::to_string(result.events.size()) + " changes of the mesh";
+}
+
 MotionOutcome CycleMotions::run_one(const MotionRequest& request) {
   run_.progress.begin(request.phase);
   const double begin = cpu_seconds();
@@ -105,8 +112,7 @@ MotionOutcome CycleMotions::run_one(const MotionRequest& request) {
   seconds_ += cpu_seconds() - begin;
   const fem::MotionResult& result = motion.record.result;
   run_.progress.say(request.phase + ": " + std::to_string(result.counts.steps) + " steps, " +
-                    std::to_string(result.events.size()) + " changes of the mesh" +
-                    deflection_words(motion.record));
+                    mesh_words(run_.prepared.scene(), result) + deflection_words(motion.record));
   return motion;
 }
 

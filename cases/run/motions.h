@@ -16,6 +16,10 @@ MotionRequest resumable_request(const RunContext& run, const std::string& phase,
 /// and the options want them.
 MotionRequest result_request(const RunContext& run, const std::string& phase);
 
+/// Says what the meshes of a motion did: "16 changes of the mesh", or "even mesh" where bodies flow
+/// and nothing changed.
+std::string mesh_words(const Scene& scene, const fem::MotionResult& result);
+
 /// Paths of the files that a run made in its folder, by the ending of their names.
 using FilesOf = std::function<std::vector<std::string>(const std::string& ending)>;
 

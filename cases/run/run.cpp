@@ -63,7 +63,7 @@ MotionRecord run_only_motion(const RunContext& run) {
   const fem::MotionResult& result = out.result;
   run.progress.say("motion: " + std::to_string(result.counts.steps) + " steps, " +
                    std::to_string(result.counts.newton) + " Newton iterations, " +
-                   std::to_string(result.events.size()) + " changes of the mesh");
+                   mesh_words(run.prepared.scene(), result));
   return out;
 }
 

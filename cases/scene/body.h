@@ -28,9 +28,13 @@ struct Flow {
   Law length;        ///< or the drive of the length outside of the hub; `speed` is 0 then
   std::function<fem::Motion(double)> motion;  ///< that drive; empty: constant speed
   double longest = 0, shortest = 0;           ///< with that drive: over the run [m]
-  bool even = false;      ///< all lines move, and elements stay equal; the limits are 0 then
-  double max_length = 0;  ///< a longer boundary element is split in the middle [m]
-  double min_length = 0;  ///< a shorter one is merged with its neighbour [m]
+  bool even = false;                          ///< all lines move, and elements stay equal
+  /// No element is longer: boundary elements are split, of an even mesh there are as many elements
+  /// as that takes [m]; 0: there is no limit, of an even mesh.
+  double max_length = 0;
+  /// No element is shorter: boundary elements are merged with their neighbours, an even mesh is
+  /// refused [m]; 0: there is no limit, of an even mesh.
+  double min_length = 0;
   Stored stored = Stored::none;
   std::optional<Vec2> stored_at;        ///< in the axes of the carrier; none: the outlet [m]
   std::optional<double> stored_length;  ///< at the start; none: what leaves until the longest [m]

@@ -68,17 +68,21 @@ const io::Key& kLength = io::key("body.flow", "length")
 const io::Key& kMesh =
     io::key("body.flow", "mesh")
         .word("a rule of the mesh", {"split", "even"})
-        .otherwise("split")
+        .otherwise_as("`even` where the length changes by less than a factor of 4, else `split`")
         .says("`split`: lines of nodes come and go; `even`: elements stay equal.");
 const io::Key& kMaxLength = io::key("body.flow", "max_length")
                                 .number(positive("a length", "m"))
-                                .when("`mesh = \"split\"`, and `shape` is not \"q4\"")
-                                .says("A longer element at the root is split in the middle.");
+                                .otherwise_as("no limit; `split` needs one")
+                                .when("`shape` is not \"q4\"")
+                                .says(
+                                    "No element is longer: `split` inserts lines, `even` has "
+                                    "enough `elements`.");
 const io::Key& kMinLength =
     io::key("body.flow", "min_length")
         .number(positive("a length", "m"))
-        .otherwise_as("0.3 `max_length`")
-        .says("A shorter element at the root is merged with its neighbour.");
+        .otherwise_as("no limit; of `split`: 0.3 `max_length`")
+        .when("`shape` is not \"q4\"")
+        .says("No element is shorter: `split` removes lines, `even` is refused.");
 const io::Key& kStored =
     io::key("body.flow", "stored")
         .word("where material is before it leaves", {"none", "coil", "rod"})

@@ -210,42 +210,6 @@ double extreme(const std::function<fem::Motion(double)>& motion, double a, doubl
   return motion(0.5 * (a + b)).value;
 }
 
-/// Limits of the boundary element. They must not chatter: two halves that were just split must
-/// not be short enough to be merged again, nor a merged element long enough to be split.
-void check_limits(const Table& t, const Body& body, double end) {
-  const Flow& flow = *body.flow;
-  if (body.on_cells()) return;  // they are as long as they are
-  const double element = body.length / body.elements[0];
-  const double shortest = body.shortest(end);
-  if (body.is_even()) {
-    if (!(shortest > 0))
-      t.fail(flow.motion ? flow_keys::kLength : flow_keys::kSpeed,
-             "some of the body stays outside of the hub, but " + to_text(shortest, 4) +
-                 " m are left at " + (flow.motion ? "its shortest" : "time.end"));
-    return;
-  }
-  if (element > flow.max_length * (1 + 1e-9))
-    t.fail(flow_keys::kMaxLength,
-           "the elements are " + to_text(element, 4) +
-               " m long at the start: more elements, or a larger max_length [m]");
-  const Key& min_key = t.has(flow_keys::kMinLength) ? flow_keys::kMinLength : flow_keys::kMaxLength;
-  if (element < flow.min_length * (1 - 1e-9))
-    t.fail(min_key, "the elements are " + to_text(element, 4) +
-                        " m long at the start, shorter than min_length = " +
-                        to_text(flow.min_length, 4) + " m, and would be merged at once");
-  // Elements of the start are merged only where the body gets shorter than it was.
-  const double neighbour = shortest < body.length * (1 - 1e-12)
-                               ? std::max(element, 0.5 * flow.max_length)
-                               : 0.5 * flow.max_length;
-  if (flow.min_length + neighbour > 0.9 * flow.max_length * (1 + 1e-9))
-    t.fail(min_key, "min_length + the neighbour's " + to_text(neighbour, 4) +
-                        " m stays below 0.9 max_length, or elements are split and merged in turn");
-  if (shortest < flow.min_length)
-    t.fail(flow.motion ? flow_keys::kLength : flow_keys::kSpeed,
-           "the body keeps at least min_length, but " + to_text(shortest, 4) + " m are left at " +
-               (flow.motion ? "its shortest" : "time.end"));
-}
-
 }  // namespace
 
 std::vector<std::string> overrides_of_drive_files(const Table& root) {
@@ -324,7 +288,6 @@ void follow_length(const Table& body_table, const Scene& scene, Body& body) {
     flow.shortest = range[0];
     flow.longest = range[1];
   }
-  check_limits(t, body, scene.time.end);
   const double leaves = body.longest(scene.time.end) - body.length;
   if (flow.stored_length && *flow.stored_length < leaves * (1 - 1e-9))
     t.fail(flow_keys::kStoredLength, "the material runs out: " + to_text(leaves, 4) +

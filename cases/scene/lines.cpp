@@ -69,8 +69,7 @@ std::vector<BodyLine> read_lines(const Table& body_table, const Body& body) {
     for (const BodyLine& other : out)
       if (other.index == line.index) t.fail(kIndex, "there is another line of this number");
     if (body.flow)
-      t.fail("material flows through '" + body.name + "': its lines " +
-             (body.is_even() ? "move with it" : "come and go"));
+      t.fail("material flows through '" + body.name + "': its lines move with it, or come and go");
     if (t.has(kMaxLength) || t.has(kMinLength)) read_limits(t, body, line);
     out.push_back(line);
   }

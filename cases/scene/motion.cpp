@@ -4,6 +4,7 @@
 #include "cases/scene/elements/row.h"
 #include "cases/scene/heat/heat.h"
 #include "cases/scene/joints/reading.h"
+#include "cases/scene/mesh_rule.h"
 #include "cases/scene/read.h"
 #include "cases/scene/tables.h"
 #include "fem/dynamics/step_control.h"
@@ -316,6 +317,8 @@ void read_motion(const Table& root, const Follow& follow, Scene& scene) {
   read_loads(root, scene);
   read_observed(root, scene);
   read_measures(root, scene);
+  for (size_t i = 0; i < bodies.size(); ++i)
+    if (scene.bodies[i].flow) settle_mesh(bodies[i], scene, scene.bodies[i]);
   if (scene.statics)
     read_growing(root, scene);
   else

@@ -70,6 +70,30 @@ TEST(EvenMesh, KeepsElementsEqual) {
   expect_equal_elements(plate, plate.bodies[0], plate.bodies[0].elements, 1);
 }
 
+// The length changes from 0.5 m by the speed in 1 s. Elements of an even mesh are no longer than
+// max_length, 0.1 m, when the plate is longest, and no shorter than a given min_length.
+TEST(EvenMesh, IsTheDefaultWhereTheLengthChangesByLessThanAFactorOfFour) {
+  struct Row {
+    Changes changes;
+    int elements;  // 0: split
+  };
+  for (const Row& row : {Row{{}, 10}, Row{{"body.0.flow.max_length="}, 10},
+                         Row{{"body.0.flow.speed=1.4"}, 19}, Row{{"body.0.flow.speed=1.6"}, 0},
+                         Row{{"body.0.flow.speed=-0.37"}, 10}, Row{{"body.0.flow.speed=-0.38"}, 0},
+                         Row{{"body.0.flow.speed=-0.3", "body.0.flow.min_length=0.03"}, 0},
+                         Row{{"body.0.flow.speed=-0.3", "body.0.flow.min_length=0.02"}, 10}}) {
+    const Scene scene =
+        read("rotating_plate_v05", with(with(kFull, {"body.0.flow.mesh="}), row.changes));
+    const Body& body = scene.bodies[0];
+    const std::string which = row.changes.empty() ? "as it is" : row.changes.back();
+    EXPECT_EQ(body.is_even(), row.elements > 0) << which;
+    EXPECT_EQ(build_mechanism(scene).growths.at(0).max_length < 1, row.elements == 0) << which;
+    if (row.elements > 0) {
+      EXPECT_EQ(body.elements[0], row.elements) << which;
+    }
+  }
+}
+
 /// Bars aslant, of as much material in every column of cells of 5 mm; no line of the mesh stays on
 /// one. (Columns that differ at random set off ringing as they enter, which is no error.)
 void give_factors(const Scene& scene, Mechanism& m) {
@@ -173,9 +197,9 @@ TEST(EvenMesh, MovesAsSplitMeshesDo) {
        2e-4},
       {"rotating_plate_v05",
        with(kFull, {"time.end=0.5", "time.step=adaptive", "time.tolerance=1e-4"}), even(), 2e-4},
-      {"deploying_plate", {"time.end=0.3"}, even(), 1e-4},
+      {"deploying_plate", {"time.end=0.3", "body.0.flow.mesh=split"}, even(), 1e-4},
       {"motion_platform", with(kFull, platform), with(even(), even({}, "body.1")), 2e-5},
-      {"telescopic_crane", with(kFull, {"time.end=0.3"}), even(), 2e-4},
+      {"telescopic_crane", with(kFull, {"time.end=0.3", "body.0.flow.mesh=split"}), even(), 2e-4},
   };
   for (const Pair& p : pairs) {
     const Path split = path(read(p.scene, p.changes)),
@@ -257,12 +281,16 @@ std::string complaint(const std::string& name, const Changes& changes) {
 TEST(EvenMesh, IsRefusedWhereItCannotBe) {
   const std::vector<std::pair<Changes, std::string>> wrong = {
       {{"body.0.flow.mesh=uneven"}, "a rule of the mesh is one of 'split', 'even'"},
-      {{"body.0.flow.mesh=even"}, "an \"even\" mesh has no limits: its lines neither come nor go"},
-      {even({"body.0.flow.min_length=0.03"}), "an \"even\" mesh has no limits"},
+      {{"body.0.flow.mesh=", "body.0.flow.speed=1.6", "body.0.flow.max_length="},
+       "`max_length` is missing: the mesh is \"split\""},
+      {{"body.0.flow.mesh=even", "body.0.flow.min_length=0.06"},
+       "the 10 elements of an even mesh are 0.05 m long when the body is shortest"},
+      {{"body.0.flow.mesh=even", "body.0.flow.max_length=1e-5"},
+       "an even mesh with it has more than 100000 elements"},
       {even({"body.0.shape=q4"}), "lie where they lie in the design"},
       {even({"body.0.flow.speed=-0.5"}),
        "some of the body stays outside of the hub, but 0 m are left at time.end"},
-      {even({"body.0.line=[{index=1, at=0.1}]"}), "its lines move with it"},
+      {even({"body.0.line=[{index=1, at=0.1}]"}), "its lines move with it, or come and go"},
       {even({"joint.0.edge=\"line 3\""}), "an edge is"},
   };
   for (const auto& [changes, words] : wrong) {

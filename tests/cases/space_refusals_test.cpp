@@ -147,7 +147,7 @@ const Bad kBad[] = {
     {"free_line_of_a_growing_body",
      kDeploy,
      {"body.line=[{index=3, free=true}]"},
-     "material flows through 'plate': its lines come and go"},
+     "material flows through 'plate': its lines move with it, or come and go"},
     {"limits_of_an_inner_line",
      kSleeve,
      {"body.line=[{index=3, free=true, max_length=0.2}]"},

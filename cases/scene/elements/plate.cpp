@@ -64,7 +64,7 @@ Flow read_flow(const Table& t, const Scene& scene, bool on_cells) {
     flow.speed = t.number(flow_keys::kSpeed);
   }
   read_stored(t, flow);
-  flow.even = t.choice(flow_keys::kMesh) == "even";
+  flow.even = t.has(flow_keys::kMesh) && t.choice(flow_keys::kMesh) == "even";
   if (on_cells) {
     if (flow.even)
       t.fail(flow_keys::kMesh,
@@ -73,14 +73,9 @@ Flow read_flow(const Table& t, const Scene& scene, bool on_cells) {
       if (t.has(*limit)) t.fail(*limit, "cells (shape \"q4\") have no limits of their own");
     return flow;
   }
-  if (flow.even) {
-    for (const Key* limit : {&flow_keys::kMaxLength, &flow_keys::kMinLength})
-      if (t.has(*limit))
-        t.fail(*limit, "an \"even\" mesh has no limits: its lines neither come nor go");
-    return flow;
-  }
-  flow.max_length = t.number(flow_keys::kMaxLength);
-  flow.min_length = t.number(flow_keys::kMinLength, 0.3 * flow.max_length);
+  // What is not given, settle_mesh() settles.
+  if (t.has(flow_keys::kMaxLength)) flow.max_length = t.number(flow_keys::kMaxLength);
+  if (t.has(flow_keys::kMinLength)) flow.min_length = t.number(flow_keys::kMinLength, 0.0);
   return flow;
 }
 

@@ -1,0 +1,120 @@
+#include "cases/scene/mesh_rule.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cases/scene/body_keys.h"
+#include "cases/scene/joints/row.h"
+#include "io/files.h"
+
+namespace flexmorph::cases {
+namespace {
+
+using io::Key;
+using io::Table;
+using io::to_text;
+
+/// The key that says how long the body is.
+const Key& length_key(const Flow& flow) {
+  return flow.motion ? flow_keys::kLength : flow_keys::kSpeed;
+}
+
+/// Elements of an even mesh: none is longer than max_length when the body is longest.
+int even_elements(const Body& body, double end) {
+  if (!(body.flow->max_length > 0)) return body.elements[0];
+  const double needed = std::ceil(body.longest(end) / body.flow->max_length - 1e-9);
+  return static_cast<int>(std::max<double>(body.elements[0], std::min(needed, 1e6)));
+}
+
+/// Does an even mesh keep to the limits, with some of the body outside at all times?
+bool can_be_even(const Body& body, double end) {
+  return body.shortest(end) > 0 &&
+         body.shortest(end) / even_elements(body, end) >= body.flow->min_length * (1 - 1e-9);
+}
+
+void set_even_mesh(const Table& t, Body& body, double end) {
+  constexpr int kMaxElements = 100'000;
+  const double shortest = body.shortest(end);
+  if (!(shortest > 0))
+    t.fail(length_key(*body.flow), "some of the body stays outside of the hub, but " +
+                                       to_text(shortest, 4) + " m are left at " +
+                                       (body.flow->motion ? "its shortest" : "time.end"));
+  const int count = even_elements(body, end);
+  if (count > kMaxElements / body.elements[1])
+    t.fail(flow_keys::kMaxLength,
+           "an even mesh with it has more than " + to_text(kMaxElements) + " elements");
+  if (!can_be_even(body, end))
+    t.fail(flow_keys::kMinLength,
+           "the " + std::to_string(count) + " elements of an even mesh are " +
+               to_text(shortest / count, 4) +
+               " m long when the body is shortest: fewer elements, "
+               "a smaller min_length or a larger max_length, or mesh = \"split\" [m]");
+  body.elements[0] = count;
+}
+
+/// Limits of the boundary element. They must not chatter: two halves that were just split must
+/// not be short enough to be merged again, nor a merged element long enough to be split.
+void set_split_mesh(const Table& t, Body& body, double end) {
+  Flow& flow = *body.flow;
+  if (!t.has(flow_keys::kMaxLength))
+    t.fail(
+        "`max_length` is missing: the mesh is \"split\", unless mesh = \"even\", where the "
+        "length changes from " +
+        to_text(body.shortest(end), 4) + " to " + to_text(body.longest(end), 4) + " m");
+  flow.min_length = t.number(flow_keys::kMinLength, 0.3 * flow.max_length);
+  const double element = body.length / body.elements[0];
+  const double shortest = body.shortest(end);
+  if (element > flow.max_length * (1 + 1e-9))
+    t.fail(flow_keys::kMaxLength,
+           "the elements are " + to_text(element, 4) +
+               " m long at the start: more elements, or a larger max_length [m]");
+  const Key& min_key = t.has(flow_keys::kMinLength) ? flow_keys::kMinLength : flow_keys::kMaxLength;
+  if (element < flow.min_length * (1 - 1e-9))
+    t.fail(min_key, "the elements are " + to_text(element, 4) +
+                        " m long at the start, shorter than min_length = " +
+                        to_text(flow.min_length, 4) + " m, and would be merged at once");
+  // Elements of the start are merged only where the body gets shorter than it was.
+  const double neighbour = shortest < body.length * (1 - 1e-12)
+                               ? std::max(element, 0.5 * flow.max_length)
+                               : 0.5 * flow.max_length;
+  if (flow.min_length + neighbour > 0.9 * flow.max_length * (1 + 1e-9))
+    t.fail(min_key, "min_length + the neighbour's " + to_text(neighbour, 4) +
+                        " m stays below 0.9 max_length, or elements are split and merged in turn");
+  if (shortest < flow.min_length)
+    t.fail(length_key(flow), "the body keeps at least min_length, but " + to_text(shortest, 4) +
+                                 " m are left at " + (flow.motion ? "its shortest" : "time.end"));
+}
+
+/// Does a load, a spring, a joint or a mass act at a place of a body besides its welded edges?
+/// Terms and markers of such a place refuse elements whose lines move.
+bool is_held_inside(const Scene& scene, const std::string& body) {
+  const auto at = [&](const Anchor& anchor) { return anchor.body == body; };
+  return std::ranges::any_of(scene.loads, [&](const BodyLoad& l) { return l.body == body; }) ||
+         std::ranges::any_of(scene.springs, [&](const Spring& s) { return at(s.a) || at(s.b); }) ||
+         std::ranges::any_of(scene.joints,
+                             [&](const Joint& j) {
+                               return at(j.a) || at(j.b) || (j.body == body && j.row->holds_point);
+                             }) ||
+         std::ranges::any_of(scene.point_masses,
+                             [&](const PointMass& m) { return m.body == body && !m.at_end; });
+}
+
+}  // namespace
+
+void settle_mesh(const Table& body_table, const Scene& scene, Body& body) {
+  constexpr double kLargestChange = 4;
+  if (body.on_cells()) return;  // they lie where they lie in the design
+  const Table t = body_table.table(body_keys::kFlow);
+  const double end = scene.time.end;
+  if (!t.has(flow_keys::kMesh)) {
+    body.flow->even = body.longest(end) < kLargestChange * body.shortest(end) &&
+                      can_be_even(body, end) && !is_held_inside(scene, body.name);
+    t.settle(flow_keys::kMesh, body.flow->even ? "even" : "split");
+  }
+  if (body.flow->even)
+    set_even_mesh(t, body, end);
+  else
+    set_split_mesh(t, body, end);
+}
+
+}  // namespace flexmorph::cases
