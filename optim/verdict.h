@@ -7,7 +7,7 @@ namespace flexmorph::optim {
 /// Says how far a design has come when its optimization ends, with the numbers behind it.
 struct Verdict {
   enum class Kind {
-    evaluated,   ///< the start was evaluated as it is: no iteration was asked for
+    evaluated,   ///< the design was evaluated as it is: nothing was optimized
     unfinished,  ///< the design still improved, or was not feasible
     stagnated,   ///< the design is feasible and improved by less than kPlateau over kPlateauRows
     converged    ///< the design is feasible and meets the KKT conditions

@@ -11,11 +11,22 @@ double degrees(double angle) { return angle * 180 / std::numbers::pi; }
 
 }  // namespace
 
+namespace {
+
+std::string certified_words(const mmc::CertifiedDesign& d, double move_limit) {
+  return io::to_text(d.value, 5) + ", KKT residual " + io::to_text(d.kkt, 3) +
+         ", gradients of motion and loads " + io::to_text(degrees(d.angle), 3) +
+         " degrees apart, at most " + io::to_text(100 * d.left, 3) + " % left within a move of " +
+         io::to_text(move_limit, 3) + ", largest violation of a limit " +
+         io::to_text(d.violation, 2);
+}
+
+}  // namespace
+
 std::string certificate_words(const mmc::MotionCertificate& c) {
-  return c.objective + " " + io::to_text(c.value, 5) + " (sharp " + io::to_text(c.sharp_value, 5) +
-         "), KKT residual " + io::to_text(c.kkt, 3) + ", gradients of motion and loads " +
-         io::to_text(degrees(c.angle), 3) + " degrees apart, at most " +
-         io::to_text(100 * c.left, 3) + " % left within a move of " + io::to_text(c.move_limit, 3);
+  return c.objective + " of the regularized design " +
+         certified_words(c.regularized, c.move_limit) + "; of the crisp design " +
+         certified_words(c.crisp, c.move_limit);
 }
 
 std::string corrected_words(const mmc::CorrectedCycle& c) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "optim/mmc/body_design.h"
+#include "optim/mmc/crisp_picture.h"
 #include "optim/mmc/motion_response.h"
 #include "optim/mmc/shared_problem.h"
 #include "optim/mmc/width_limits.h"
@@ -23,6 +24,7 @@ struct Part {
   std::optional<Turnover> turnover;   // of the stage
   std::optional<WidthLimits> widths;  // limits of the stage, once the design was mended
   Figures crisp_ratios;  // of limited responses: of the crisp design by the blurred one
+  std::optional<CrispPicture> crisp;  // the design is seen as its outlines enclose it
   BodyOutcome outcome;
   optim::Stop stopped = optim::Stop::failed;  // the optimizer, last
   Design next;                                // when a list of components changed: where to go on
@@ -37,7 +39,8 @@ struct Part {
   MmcProblem state() { return state(problem.goal, nullptr); }
   /// With another goal, which may ask for the motion.
   MmcProblem state(const Goal& goal, const MotionSeat* seat) {
-    return {{plate, problem.design, ersatz, loads, widths ? &*widths : nullptr, seat},
+    return {{plate, problem.design, ersatz, loads, widths ? &*widths : nullptr, seat,
+             crisp ? &*crisp : nullptr},
             *tdf,
             blurred(goal, crisp_ratios),
             problem.places};

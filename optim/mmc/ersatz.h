@@ -55,6 +55,8 @@ class Ersatz {
   /// Factors of a sharp picture (area fractions of the true union, n_cells): material where it is,
   /// the void stiffness of factors() elsewhere.
   CellFactors sharp(const VectorXd& fractions) const;
+  /// Derivative of a stiffness factor of sharp() by its area fraction; that of a mass factor is 1.
+  double sharp_stiffness_slope() const { return 1 - alpha_ * alpha_; }
   /// The same for dynamics with its own void factors.
   static CellFactors dynamic(const VectorXd& fractions, double stiffness_void, double mass_void);
 

@@ -7,6 +7,7 @@
 
 #include "geometry/cpu_time.h"
 #include "geometry/picture.h"
+#include "optim/mmc/crisp_picture.h"
 #include "optim/mmc/motion_response.h"
 
 namespace flexmorph::mmc {
@@ -31,6 +32,7 @@ MmcProblem::MmcProblem(const DesignedPlate& plate, const TdfSettings& tdf, Goal 
       state_(plate.loads),
       shape_(plate.shape),
       motion_(plate.motion),
+      crisp_(plate.crisp),
       tdf_(plate_.grid, tdf),
       goal_(std::move(goal)),
       places_(std::move(places)),
@@ -86,8 +88,14 @@ void MmcProblem::look(const VectorXd& x) {
   const double clock = cpu_seconds();
   x_ = x;
   design_.components(design_part(x), components_);
-  tdf_.evaluate(components_);
-  ersatz_.factors(tdf_.density(), tdf_.eroded(), factors_);
+  if (crisp_) {
+    factors_ = ersatz_.sharp(crisp_->fractions(components_));
+    crisp_slopes_ =
+        std::make_unique<const Eigen::SparseMatrix<double>>(crisp_->slopes(components_));
+  } else {
+    tdf_.evaluate(components_);
+    ersatz_.factors(tdf_.density(), tdf_.eroded(), factors_);
+  }
   volume_ = factors_.mass.sum() / ersatz_.n_domain_cells();
   seconds_tdf_ += cpu_seconds() - clock;
   solved_ = differentiated_ = false;
@@ -110,13 +118,23 @@ void MmcProblem::recall(const VectorXd& x, const VectorXd& memory) {
   if (memory.size() > 0) lowest_ = memory[0];
 }
 
+MatrixXd MmcProblem::pull_back_crisp(const MatrixXd& d_stiffness, const MatrixXd& d_mass) const {
+  MatrixXd by_fraction = ersatz_.sharp_stiffness_slope() * d_stiffness;
+  if (d_mass.size() > 0) by_fraction += d_mass;
+  return by_fraction * *crisp_slopes_;
+}
+
 /// Derivatives by cell factors and by components -> by components, of many values by the variables
 /// of the design.
 void MmcProblem::pull_back(Entry& e) {
   const Values& v = e.values;
   if (e.row->per_load) {
-    ersatz_.pull_back(tdf_.eroded(), v.d_stiffness, v.d_mass, many_by_h_, many_by_eroded_);
-    tdf_.pull_back(many_by_h_, many_by_eroded_, e.slopes);
+    if (crisp_) {
+      e.slopes = pull_back_crisp(v.d_stiffness, v.d_mass);
+    } else {
+      ersatz_.pull_back(tdf_.eroded(), v.d_stiffness, v.d_mass, many_by_h_, many_by_eroded_);
+      tdf_.pull_back(many_by_h_, many_by_eroded_, e.slopes);
+    }
     if (v.d_parameters.size() > 0) e.slopes += v.d_parameters;
     design_.scale_gradients(e.slopes);
     return;
@@ -125,9 +143,14 @@ void MmcProblem::pull_back(Entry& e) {
     if (d.size() == 0) return zero_;
     return copy = d.row(0);
   };
-  ersatz_.pull_back(tdf_.eroded(), or_zero(v.d_stiffness, d_stiffness_), or_zero(v.d_mass, d_mass_),
-                    d_h_, d_eroded_);
-  tdf_.pull_back(d_h_, d_eroded_, e.slope);
+  const VectorXd &d_stiffness = or_zero(v.d_stiffness, d_stiffness_),
+                 &d_mass = or_zero(v.d_mass, d_mass_);
+  if (crisp_) {
+    e.slope = pull_back_crisp(d_stiffness.transpose(), d_mass.transpose()).transpose();
+  } else {
+    ersatz_.pull_back(tdf_.eroded(), d_stiffness, d_mass, d_h_, d_eroded_);
+    tdf_.pull_back(d_h_, d_eroded_, e.slope);
+  }
   if (v.d_parameters.size() > 0) e.slope += v.d_parameters.row(0).transpose();
 }
 
@@ -140,9 +163,14 @@ VectorXd MmcProblem::gradient(const Entry& e, double divisor) const {
 }
 
 VectorXd MmcProblem::slope_of(const CellFactors& by_factors) {
-  ersatz_.pull_back(tdf_.eroded(), by_factors.stiffness, by_factors.mass, d_h_, d_eroded_);
   VectorXd out;
-  tdf_.pull_back(d_h_, d_eroded_, out);
+  if (crisp_) {
+    out =
+        pull_back_crisp(by_factors.stiffness.transpose(), by_factors.mass.transpose()).transpose();
+  } else {
+    ersatz_.pull_back(tdf_.eroded(), by_factors.stiffness, by_factors.mass, d_h_, d_eroded_);
+    tdf_.pull_back(d_h_, d_eroded_, out);
+  }
   design_.scale_gradient(out);
   return out;
 }
@@ -216,7 +244,7 @@ optim::Response MmcProblem::evaluate(const VectorXd& x) {
 }
 
 bool MmcProblem::has_curvature() const {
-  if (shape_) return false;
+  if (shape_ || crisp_) return false;
   return tdf_.settings().kind == TdfSettings::Kind::distance &&
          std::all_of(entries_.begin(), entries_.end(), [&](const Entry& e) {
            return e.row->linear || (e.row->needs_state() && state_.loads().has_curvature());

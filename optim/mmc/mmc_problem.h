@@ -16,6 +16,8 @@
 
 namespace flexmorph::mmc {
 
+class CrispPicture;
+
 /// What a design problem is about: `design`, `ersatz`, `loads` and `shape` live longer than the
 /// problem.
 struct DesignedPlate {
@@ -25,6 +27,8 @@ struct DesignedPlate {
   ComplianceEvaluator& loads;
   ShapeLimits* shape = nullptr;
   const MotionSeat* motion = nullptr;  ///< where rows of the goal ask for it
+  /// Makes cells of what the outlines enclose, in place of the regularized design; null: this one.
+  const CrispPicture* crisp = nullptr;
 };
 
 /// The design problem of one plate under given loads, P (34) in the variables of a Design: a row of
@@ -113,6 +117,9 @@ class MmcProblem final : public optim::Problem {
   const Entry& entry(const ResponseRow& row) const;
   void solve(const VectorXd& x);
   void pull_back(Entry& entry);
+  /// Derivatives by the factors of the cells of the crisp design (m x n_cells) -> by the parameters
+  /// of components (m x 7 N). An empty d_mass stands for zeros.
+  MatrixXd pull_back_crisp(const MatrixXd& d_stiffness, const MatrixXd& d_mass) const;
   /// What the rows add to the second derivatives of a Lagrangian.
   struct Lagrangian {
     VectorXd d_stiffness, d_mass;  ///< of the weighted values, by the factors
@@ -133,6 +140,8 @@ class MmcProblem final : public optim::Problem {
   DesignState state_;
   ShapeLimits* shape_;
   const MotionSeat* motion_;
+  const CrispPicture* crisp_;
+  std::unique_ptr<const Eigen::SparseMatrix<double>> crisp_slopes_;  // at the last design
   UnionTdf tdf_;
   Goal goal_;
   std::vector<Entry> entries_;  // the objective first

@@ -70,29 +70,53 @@ double angle_between(const VectorXd& a, const VectorXd& b) {
   return sizes > 0 ? std::acos(std::clamp(a.dot(b) / sizes, -1.0, 1.0)) : 0;
 }
 
-MotionCertificate certify(std::vector<Part>& parts, MotionResponse& motion, double move_limit) {
-  const double begin = cpu_seconds();
-  MotionState state = motion_state_of(parts, motion);
-  Whole moved(parts, state), loaded = Whole::smooth(parts);
+namespace {
+
+/// What the motion says of the designs as the parts see them.
+CertifiedDesign certified(Whole& moved, std::vector<Part>& parts, double move_limit) {
   optim::Problem& problem = moved.problem();
   const VectorXd x = problem.start(), lower = problem.lower(), upper = problem.upper();
   const optim::Response of_motion = problem.evaluate(x);
   const optim::KktPoint point = optim::kkt_point(of_motion, x, lower, upper, kActiveLimits);
-
-  MotionCertificate out;
-  out.objective = objective_words(parts.front().problem.motion_goal);
+  Whole loaded = Whole::smooth(parts);
+  CertifiedDesign out;
   out.value = std::exp(of_motion.f);
   out.kkt = point.residual;
   out.angle = angle_between(of_motion.df, loaded.problem().evaluate(x).df);
-  out.move_limit = move_limit;
   out.left = left_within(of_motion, x, lower, upper, point.lambda, move_limit);
-  std::vector<BodyProblem> problems;
-  for (size_t b = 0; b < parts.size(); ++b) {
-    problems.push_back(parts[b].problem);
-    out.bodies.push_back({problems.back().body, moved.states[b].components(),
-                          moved.states[b].objective_slopes() / out.value});
+  if (of_motion.g.size() > 0) out.violation = std::max(0.0, of_motion.g.maxCoeff());
+  return out;
+}
+
+/// The parts with the crisp picture of their designs: limits of the volume are those of the case.
+std::vector<Part> crisp_parts(std::vector<Part>& parts) {
+  std::vector<Part> out;
+  for (Part& p : parts) {
+    Part& crisp = out.emplace_back(LoadedBody{p.problem, p.loads});
+    crisp.tdf = p.tdf;
+    crisp.crisp.emplace(p.problem);
+    if (p.widths) crisp.widths.emplace(p.problem, p.problem.widths);
   }
-  out.sharp_value = sharp_objective(problems, motion);
+  return out;
+}
+
+}  // namespace
+
+MotionCertificate certify(std::vector<Part>& parts, MotionResponse& motion, double move_limit) {
+  const double begin = cpu_seconds();
+  MotionCertificate out;
+  out.objective = objective_words(parts.front().problem.motion_goal);
+  out.move_limit = move_limit;
+  MotionState state = motion_state_of(parts, motion);
+  Whole moved(parts, state);
+  out.regularized = certified(moved, parts, move_limit);
+  for (size_t b = 0; b < parts.size(); ++b)
+    out.bodies.push_back({parts[b].problem.body, moved.states[b].components(),
+                          moved.states[b].objective_slopes() / out.regularized.value});
+  std::vector<Part> crisp = crisp_parts(parts);
+  MotionState crisp_state = motion_state_of(crisp, motion);
+  Whole crisp_moved(crisp, crisp_state);
+  out.crisp = certified(crisp_moved, crisp, move_limit);
   out.seconds = cpu_seconds() - begin;
   return out;
 }

@@ -7,18 +7,25 @@
 
 namespace flexmorph::mmc {
 
-/// What the motion itself says of a design that equivalent static loads have made. With J a number
-/// of the motion (goal_of_motion()) and C the compliance, both of the blurred design of the last
-/// stage:
-struct MotionCertificate {
-  std::string objective;   ///< "strain energy in motion"
-  double value = 0;        ///< J
-  double sharp_value = 0;  ///< of what the outlines enclose
-  double kkt = 0;          ///< KKT residual of log J under the limits of the design
-  double angle = 0;        ///< between the gradients of J and C by the scaled variables [rad]
+/// What the motion says of one picture of the designs, with J a number of the motion
+/// (goal_of_motion()) and C the compliance under the loads.
+struct CertifiedDesign {
+  double value = 0;  ///< J
+  double kkt = 0;    ///< KKT residual of log J under the limits of the design
+  double angle = 0;  ///< between the gradients of J and C by the scaled variables [rad]
   /// How far J can fall at most within the move limit, to first order, as a part of itself: of the
   /// linear problem's dual at the multipliers of `kkt`.
   double left = 0;
+  double violation = 0;  ///< of the limits of the design, the largest: g of optim::Response [-]
+};
+
+/// What the motion itself says of a design that equivalent static loads have made: of the
+/// regularized design of the last stage, which optimizers see, and of the crisp one, which is
+/// exactly what the outlines enclose. Gradients of the crisp one are shape derivatives, see
+/// CrispPicture.
+struct MotionCertificate {
+  std::string objective;  ///< "strain energy in motion"
+  CertifiedDesign regularized, crisp;
   double move_limit = 0;
   double seconds = 0;  ///< CPU
 
@@ -31,6 +38,7 @@ struct MotionCertificate {
   std::vector<Body> bodies;
 };
 
+/// Computes the certificate: two motions with their adjoints.
 /// @param parts   at their designs and the band of their last stage
 /// @param motion  of the mechanism they are parts of
 /// @throws Error (numerical) from the motion or statics.
@@ -43,7 +51,7 @@ MotionState motion_state_of(const std::vector<Part>& parts, MotionResponse& moti
 /// @throws Error (numerical) from the motion.
 double sharp_objective(std::span<const BodyProblem> problems, MotionResponse& motion);
 
-/// The first-order bound of MotionCertificate::left.
+/// The first-order bound of CertifiedDesign::left.
 /// @param lambda  multipliers, >= 0
 double left_within(const optim::Response& r, const VectorXd& x, const VectorXd& lower,
                    const VectorXd& upper, const VectorXd& lambda, double move_limit);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -110,6 +111,63 @@ TEST(EvaluatedRun, OfAMotionIsThatOfAnOptimizedOne) {
                             tip = motion.numbers("plate.tip_deflection");
   ASSERT_EQ(across.size(), tip.size());
   for (size_t k = 0; k < tip.size(); ++k) EXPECT_NEAR(across[k], tip[k], 1e-14);
+}
+
+/// motion.csv of the first steps of a case whose body is a few crossing bars.
+io::CsvTable first_steps(const Scratch& scratch, const std::string& name, Words changes) {
+  const std::string folder = scratch / name;
+  changes.insert(changes.end(), {"optimizer.max_iterations=0", "verify=", "cycle=", "time.end=0.03",
+                                 "esl.every=0.01", "design.cell=0.005", "design.components=[4, 1]",
+                                 "design.half_length=0.075", "design.min_thickness=0.008",
+                                 "output.vtk=false", "output.plots=false"});
+  const Ended ended = run(scratch, name, folder, changes);
+  EXPECT_TRUE(ended.code == 0 || ended.code == kTooFew) << ended.err;
+  return io::read_csv(folder + "/motion.csv");
+}
+
+// The rocker is welded to a shaft whose first axis it goes on: displacements across it are those in
+// the axes of the shaft.
+TEST(PointsAcross, OfAWeldedBodyAreInTheAxesOfItsCarrier) {
+  const Scratch scratch;
+  const io::CsvTable motion = first_steps(scratch, "four_bar", {});
+  const std::vector<double> x = motion.numbers("rocker.tip_x"), y = motion.numbers("rocker.tip_y"),
+                            across = motion.numbers("rocker.tip_across"),
+                            shaft_x = motion.numbers("shaft.x"),
+                            shaft_y = motion.numbers("shaft.y"),
+                            angle = motion.numbers("shaft.angle");
+  ASSERT_GT(across.size(), 20u);
+  double largest = 0;
+  for (size_t k = 0; k < across.size(); ++k) {
+    const double expected =
+        std::cos(angle[k]) * (y[k] - shaft_y[k]) - std::sin(angle[k]) * (x[k] - shaft_x[k]);
+    EXPECT_NEAR(across[k], expected, 1e-9);
+    largest = std::max(largest, std::abs(expected));
+  }
+  EXPECT_GT(largest, 1e-7);
+}
+
+// A connecting rod has the line between its pins: the distance of its middle from their chord.
+TEST(PointsAcross, OfALinkAreCountedFromTheLineOfItsPins) {
+  const Scratch scratch;
+  const io::CsvTable motion =
+      first_steps(scratch, "slider_crank_designed",
+                  {"design.band=[1.5]",
+                   "observe=[{name='a', body='rod', point=[0.025, 0.0]}, {name='b', body='rod', "
+                   "point=[0.575, 0.0]}, {name='middle', body='rod', point=[0.3, 0.0]}]"});
+  const auto column = [&](const std::string& name) { return motion.numbers("rod." + name); };
+  const std::vector<double> ax = column("a_x"), ay = column("a_y"), bx = column("b_x"),
+                            by = column("b_y"), x = column("middle_x"), y = column("middle_y"),
+                            across = column("middle_across");
+  ASSERT_GT(across.size(), 20u);
+  double largest = 0;
+  for (size_t k = 0; k < across.size(); ++k) {
+    const double length = std::hypot(bx[k] - ax[k], by[k] - ay[k]);
+    const double expected =
+        ((bx[k] - ax[k]) * (y[k] - ay[k]) - (by[k] - ay[k]) * (x[k] - ax[k])) / length;
+    EXPECT_NEAR(across[k], expected, 1e-9);
+    largest = std::max(largest, std::abs(expected));
+  }
+  EXPECT_GT(largest, 1e-8);
 }
 
 }  // namespace

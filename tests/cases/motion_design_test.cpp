@@ -198,6 +198,10 @@ TEST_P(EveryCorrection, LowersWhatTheMotionSays) {
   EXPECT_LT(least, 0.5 * cycles[0]["objective"].get<double>());
   EXPECT_GT(run["certificate"]["kkt"].get<double>(), 0);
   EXPECT_GT(run["certificate"]["left"].get<double>(), 0);
+  // The crisp design has numbers of its own beside it.
+  for (const char* name : {"sharp_value", "sharp_kkt", "sharp_left"})
+    EXPECT_GT(run["certificate"][name].get<double>(), 0) << name;
+  EXPECT_NE(run["certificate"]["sharp_kkt"], run["certificate"]["kkt"]);
   const io::CsvTable table = io::read_csv(folder + "/cycles.csv");
   EXPECT_EQ(table.numbers("objective").size(), cycles.size());
   const io::CsvTable arrows = io::read_csv(folder + "/certificate.csv");

@@ -169,7 +169,9 @@ TEST(Quantities, HaveNamesOfTheirOwnAndMeanings) {
   expect_quantities(design_quantities());
   expect_quantities(clean_up_quantities());
   expect_quantities(outline_quantities());
+  expect_quantities(static_load_quantities());
   expect_quantities(load_difference_quantities());
+  expect_quantities(point_quantities());
   expect_quantities(motion_quantities());
   expect_quantities(path_quantities());
   expect_quantities(cycle_quantities());
