@@ -297,36 +297,48 @@ class Designer {
   }
 
   /// Brings crisp designs to their limits on responses of the loads: an active one is met within
-  /// kLimitTolerance from either side.
+  /// kLimitTolerance from either side. Where no try comes so far the closest one is taken.
   void meet_limits() {
     if (std::none_of(parts_.begin(), parts_.end(), limits_state)) return;
     drops_ = false;
-    for (int k = 0; k < kLimitTries && going_; ++k) {
-      bool met = true;
-      for (Part& p : parts_) met = crisp_limits_met(p) && met;
-      if (met) break;
+    double least = std::numeric_limits<double>::infinity();
+    Mended closest;
+    for (int k = 0; going_; ++k) {
+      double miss = 0;
+      for (Part& p : parts_) miss = std::max(miss, crisp_miss(p));
+      if (miss < least) {
+        least = miss;
+        closest = as_they_are(parts_);
+      }
+      if (least <= kLimitTolerance || k == kLimitTries) break;
       for (Part& p : parts_) follow_crisp(p);
       run_stage(std::max(kFewestLimitIterations, settings_.optimizer.max_iterations / kPolishShare),
                 0);
     }
+    for (size_t k = 0; k < parts_.size() && !closest.designs.empty(); ++k) {
+      parts_[k].problem.design = closest.designs[k];
+      measure(parts_[k]);
+    }
     drops_ = true;
   }
 
-  /// Tells whether the crisp design keeps to its limits, and uses those that bind the blurred one.
-  static bool crisp_limits_met(Part& p) {
+  /// Part by which the crisp design is beyond its limits on responses of the loads, or does not use
+  /// one that binds the blurred design: the largest.
+  static double crisp_miss(Part& p) {
     const Goal& goal = p.problem.goal;
     const Goal seen = blurred(goal, p.crisp_ratios);
     const SharpDesign crisp = crisp_figures(p);
     MmcProblem state = p.state();
     state.evaluate(state.start());
+    double out = 0;
     for (size_t i = 0; i < goal.limits.size(); ++i) {
       const Limit& limit = goal.limits[i];
       if (!limit.row->needs_state() || limit.row->of_motion) continue;
       const double excess = limit.excess(crisp_value(*limit.row, goal, crisp));
       const bool binds = seen.limits[i].excess(state.values(*limit.row)->maxCoeff()) > -kBinding;
-      if (excess > kLimitTolerance || (binds && excess < -kLimitTolerance)) return false;
+      out = std::max(out, binds ? std::abs(excess) : excess);
     }
-    return true;
+    return out;
   }
 
   /// Is the sharp volume what is allowed, or less because more serves nothing?

@@ -54,6 +54,25 @@ TEST(GoalRun, TheLightestPlateThatIsStiffEnough) {
   EXPECT_NE(report.find("mass [kg]"), std::string::npos);
 }
 
+// Volume under the compliance that a design of 40 % has reached is about 40 % again.
+TEST(GoalRun, VolumeUnderComplianceIsTheInverseOfComplianceUnderVolume) {
+  const Scratch scratch;
+  const Words mesh = {"design.cell=0.05", "design.min_thickness=0.05",
+                      "optimizer.max_iterations=60", "output.vtk=false", "output.plots=false"};
+  const auto designed = [&](const std::string& folder, Words changes) {
+    changes.insert(changes.end(), mesh.begin(), mesh.end());
+    const Ended ended = run(scratch, "short_beam", scratch / folder, changes);
+    EXPECT_TRUE(ended.code == 0 || ended.code == kTooFew) << ended.err;
+    return nlohmann::json::parse(contents_of(scratch / (folder + "/run.json")))["results"][0];
+  };
+  const double compliance = designed("stiff", {"expect="})["sharp_compliance"];
+  const nlohmann::json light =
+      designed("light", {"expect=", "design.max_volume=", "design.minimize=volume",
+                         "design.max_compliance=" + io::to_text(compliance)});
+  EXPECT_NEAR(light["sharp_compliance"].get<double>(), compliance, 5e-3 * compliance);
+  EXPECT_NEAR(light["sharp_volume"].get<double>(), 0.4, 0.03);
+}
+
 // Under loads that are given, the full plate has the least compliance.
 TEST(GoalRun, RefusesALimitThatTheFullPlateMisses) {
   const Scratch scratch;

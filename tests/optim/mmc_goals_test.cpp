@@ -8,7 +8,6 @@
 #include <random>
 
 #include "optim/mmc/compliance_evaluator.h"
-#include "optim/mmc/usability.h"
 #include "tests/optim/mmc_small.h"
 #include "tests/support/gradient_check.h"
 
@@ -231,14 +230,6 @@ TEST(WorstCase, HasALowerWorstLoadThanTheSum) {
   EXPECT_LE(worst.outcome.volume, 0.5 * (1 + 1e-4));
   EXPECT_LT(worst.worst, sum.worst);
   EXPECT_NEAR(worst.worst, worst.outcome.compliance, 1e-10 * worst.worst);
-}
-
-// Volume under the crisp compliance that a design of 50 % has reached: about 50 % again.
-TEST(VolumeUnderCompliance, IsTheInverseOfComplianceUnderVolume) {
-  const BodyOutcome stiff = designed(least_compliance(), 3, 100).outcome;
-  const BodyOutcome light = designed(least_volume(stiff.sharp.compliance), 3, 150).outcome;
-  EXPECT_LE(light.sharp.compliance, stiff.sharp.compliance * (1 + kLimitTolerance));
-  EXPECT_NEAR(light.volume, 0.5, 0.03);
 }
 
 // A last solve with second derivatives meets the KKT conditions as no first-order method does, on
