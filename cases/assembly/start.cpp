@@ -61,10 +61,6 @@ struct Choice {
 /// The start of a mechanism that the case leaves to the program.
 Choice automatic_start(const Scene& scene, fem::RigidMotion& rigid) {
   if (scene.bodies.empty()) return {fem::Start::rigid, ""};
-  if (rigid.is_indeterminate())
-    return {fem::Start::rigid,
-            "\"rigid\": joints hold more than the mechanism has freedoms, so that no motion of the "
-            "rigid mechanism gives an equilibrium"};
   const bool still = rigid.start_speed() < kStill;
   if (rigid.degrees_of_freedom() == 0) {
     if (still)
@@ -74,6 +70,10 @@ Choice automatic_start(const Scene& scene, fem::RigidMotion& rigid) {
       return {fem::Start::steady, "\"steady\": prescribed velocities are not zero"};
     return {fem::Start::rigid, "\"rigid\": the drives end at the start"};
   }
+  if (rigid.is_indeterminate())
+    return {fem::Start::rigid,
+            "\"rigid\": joints hold more than the mechanism has freedoms, so that no motion of the "
+            "rigid mechanism gives an equilibrium"};
   const double nearly = 0.05 * std::max(1.0, scene.gravity ? scene.gravity->norm() : 0.0);
   if (still && rigid.start_acceleration() < nearly)
     return {fem::Start::settled, "equilibrium at rest: nothing moves at the start"};

@@ -5,7 +5,7 @@
 
 namespace flexmorph::cases {
 
-/// Sets how the motion of a mechanism starts (cases/README.md, Starts), and the words that say so
+/// Sets how the motion of a mechanism starts (fem/README.md, Starts), and the words that say so
 /// where the case leaves it to the program.
 /// @param rigid      motion of the rigid mechanism; null where the scene is none
 /// @param mechanism  receives `motion.start` and `start_words`; all else is set

@@ -217,7 +217,6 @@ std::vector<fem::EslSets> assess_by_motion(const RunContext& run,
   }
   run.progress.begin(scene.verify ? "verification" : "motion with the design");
   run_side_by_side(run, all);
-  if (on_cells) loads.clear();  // cells have no loads, and nothing to compare
   return loads;
 }
 

@@ -18,7 +18,7 @@ namespace {
 /// Where widths are wanted, so many times a part of the iterations follows a clean-up.
 constexpr int kPolishes = 3, kPolishShare = 8;
 /// A design is brought to its limits in so many tries at most, each of at least so many iterations.
-constexpr int kLimitTries = 6, kFewestLimitIterations = 15;
+constexpr int kLimitTries = 4, kFewestLimitIterations = 15;
 /// A limit of a blurred design is active that is met by less than this part.
 constexpr double kBinding = 0.02;
 /// Gaps that are narrower than this part of what is wanted are closed before the polishes, which
@@ -317,28 +317,63 @@ class Designer {
     }
     for (size_t k = 0; k < parts_.size() && !closest.designs.empty(); ++k) {
       parts_[k].problem.design = closest.designs[k];
+      if (least > kLimitTolerance && limits_state(parts_[k])) thicken_to_limits(parts_[k]);
       measure(parts_[k]);
     }
     drops_ = true;
   }
 
-  /// Part by which the crisp design is beyond its limits on responses of the loads, or does not use
-  /// one that binds the blurred design: the largest.
+  /// Makes all components thicker or thinner by the same amount, at most a cell, until the crisp
+  /// design just keeps to its limits on responses of the loads.
+  static void thicken_to_limits(Part& p) {
+    constexpr int kHalvings = 12;
+    const Design from = p.problem.design;
+    const std::vector<Component> components = from.components();
+    const double thinnest = p.tdf->min_half_thickness;
+    const auto excess_with = [&](double more) {
+      std::vector<Component> thicker = components;
+      for (Component& c : thicker)
+        for (double* half : {&c.c1, &c.c2, &c.c3})
+          *half = std::max(*half + more, std::min(*half, thinnest));
+      p.problem.design = from.with(thicker);
+      const SharpDesign crisp = crisp_figures(p);
+      double out = -1;
+      for (const Limit& limit : p.problem.goal.limits)
+        if (limit.row->needs_state() && !limit.row->of_motion)
+          out = std::max(out, limit.excess(crisp_value(*limit.row, p.problem.goal, crisp)));
+      return out;
+    };
+    double thin = -p.problem.grid.dx(), thick = -thin;
+    if (excess_with(thick) > 0 || excess_with(thin) < 0) {
+      p.problem.design = from;
+      return;
+    }
+    for (int k = 0; k < kHalvings; ++k) {
+      const double middle = 0.5 * (thin + thick);
+      (excess_with(middle) > 0 ? thin : thick) = middle;
+    }
+    excess_with(thick);
+  }
+
+  /// Largest part by which the crisp design is beyond its limits on responses of the loads. Where
+  /// less material is wanted the limit that is nearest has to be used; elsewhere one that binds the
+  /// blurred design has to.
   static double crisp_miss(Part& p) {
     const Goal& goal = p.problem.goal;
     const Goal seen = blurred(goal, p.crisp_ratios);
     const SharpDesign crisp = crisp_figures(p);
     MmcProblem state = p.state();
     state.evaluate(state.start());
-    double out = 0;
+    double beyond = -1, unused = 0;
     for (size_t i = 0; i < goal.limits.size(); ++i) {
       const Limit& limit = goal.limits[i];
       if (!limit.row->needs_state() || limit.row->of_motion) continue;
       const double excess = limit.excess(crisp_value(*limit.row, goal, crisp));
-      const bool binds = seen.limits[i].excess(state.values(*limit.row)->maxCoeff()) > -kBinding;
-      out = std::max(out, binds ? std::abs(excess) : excess);
+      beyond = std::max(beyond, excess);
+      if (seen.limits[i].excess(state.values(*limit.row)->maxCoeff()) > -kBinding)
+        unused = std::max(unused, -excess);
     }
-    return out;
+    return goal.objective->falls_with_material() ? std::max(beyond, unused) : std::abs(beyond);
   }
 
   /// Is the sharp volume what is allowed, or less because more serves nothing?

@@ -106,7 +106,7 @@ TEST_F(Crane, DoesNotRing) {
 }
 
 TEST(MechanismStart, WhatSetsOffIsRefusedInWords) {
-  const Scene scene = read("telescopic_crane", {"gravity=[3.0, -9.81]"});
+  const Scene scene = read("telescopic_crane", {"gravity=[3.0, -9.81]", "time.start=prestretched"});
   EXPECT_THROW(
       {
         try {
@@ -121,7 +121,8 @@ TEST(MechanismStart, WhatSetsOffIsRefusedInWords) {
   EXPECT_EQ(build_mechanism(read("telescopic_crane", {"gravity=[3.0, -9.81]", "time.start=rigid"}))
                 .motion.start,
             fem::Start::rigid);
-  EXPECT_EQ(build_mechanism(read("four_bar")).motion.start, fem::Start::prestretched);
+  EXPECT_EQ(build_mechanism(read("four_bar", {"time.start=prestretched"})).motion.start,
+            fem::Start::prestretched);
 }
 
 // The pendulum of the crane sets off with m g l sin φ / (J + m l²), as the equations of the rigid

@@ -268,9 +268,9 @@ TEST(Run, RepeatsItselfByteForByte) {
 TEST(Run, AFailureKeepsWhatCameBefore) {
   const Scratch scratch;
   const std::string folder = scratch / "out";
-  const Ended ended =
-      flexmorph(scratch, short_run(folder, {"hub.angular_velocity=1e5", "time.start=rigid",
-                                            "time.step=0.12", "body.elements=[5, 1]"}));
+  const Ended ended = flexmorph(
+      scratch, short_run(folder, {"hub.angular_velocity=1e5", "time.start=rigid", "time.step=0.12",
+                                  "body.elements=[5, 1]", "body.flow.max_length=0.3"}));
   EXPECT_EQ(ended.code, 3) << ended.out;
   EXPECT_TRUE(starts(ended.err, "flexmorph: "));
   const nlohmann::json run = run_json(folder);

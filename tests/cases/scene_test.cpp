@@ -43,7 +43,7 @@ TEST_P(ShippedCase, HasTheDataOfThePaper) {
   EXPECT_EQ(s.name, GetParam());
   EXPECT_EQ(s.time.end, 1);
   EXPECT_EQ(s.time.step, 1e-3);
-  EXPECT_EQ(s.time.start, Start::prestretched);
+  EXPECT_EQ(s.time.start, Start::automatic);
   EXPECT_FALSE(s.gravity);
   ASSERT_EQ(s.hubs.size(), 1u);
   EXPECT_EQ(s.hubs[0].angular_velocity, 2 * std::numbers::pi);
@@ -270,7 +270,8 @@ const Bad kBadInputs[] = {
      "an optimizer is one of 'gcmma', 'ipopt', 'mma', 'nlopt_ccsaq', 'nlopt_mma'"},
     {"unknown_start",
      {"time.start=rigit"},
-     "a start is one of 'prestretched', 'steady', 'rigid', 'hub_at_rest', did you mean 'rigid'?"},
+     "a start is one of 'automatic', 'prestretched', 'steady', 'rigid', 'hub_at_rest', did you "
+     "mean 'rigid'?"},
     {"spin_up_of_another_start", {"time.spin_up=0.1"}, "only start = \"hub_at_rest\" spins up"},
     {"rho_inf", {"time.rho_inf=1.1"}, "a spectral radius lies between 0 and 1"},
     {"long_step", {"time.step=2"}, "a time step is no longer than time.end [s]"},
@@ -448,7 +449,7 @@ TEST(SceneReader, RefusesGradientsWhereLinesAreFree) {
   for (const char* change : {"cycle.correct=first_order", "certificate.checkpoints=0"}) {
     std::string message;
     try {
-      const Changes changes = {change, "design.0.coupling=none"};
+      const Changes changes = {change, "design.0.coupling=none", "time.start=rigid"};
       read_scene(io::CaseFile(path, changes));
     } catch (const Error& error) {
       message = error.what();

@@ -174,7 +174,8 @@ TEST(AutomaticStart, PlateInAStillHubHangsAsACantilever) {
   const double length = 0.5, width = 0.02, modulus = 1e9, density = 2700;
   Mechanism m = build_mechanism(scene_of(
       timed("") +
-      "[[hub]]\nname = \"hub\"\n[[body]]\nname = \"plate\"\nelement = \"ancf_plate\"\nterms = "
+      "[[hub]]\nname = \"hub\"\nangular_velocity = 0.0\n[[body]]\nname = \"plate\"\nelement = "
+      "\"ancf_plate\"\nterms = "
       "[\"inertia\", \"membrane\"]\nlength = 0.5\nwidth = 0.02\nthickness = 0.01\ndensity = "
       "2700.0\nyoungs_modulus = 1e9\npoisson_ratio = 0.0\nelements = [20, 1]\n[[joint]]\ntype = "
       "\"weld\"\nbody = \"plate\"\nedge = \"root\"\nto = \"hub\"\n"));

