@@ -63,12 +63,12 @@ Choice automatic_start(const Scene& scene, fem::RigidMotion& rigid) {
   if (scene.bodies.empty()) return {fem::Start::rigid, ""};
   const bool still = rigid.start_speed() < kStill;
   if (rigid.degrees_of_freedom() == 0) {
+    if (!rigid.reaches(kAhead))
+      return {fem::Start::rigid, "\"rigid\": bodies have to bend to follow the drives"};
     if (still)
       return {fem::Start::at_rest,
               "equilibrium at rest under weight and given forces: prescribed velocities are zero"};
-    if (rigid.reaches(kAhead))
-      return {fem::Start::steady, "\"steady\": prescribed velocities are not zero"};
-    return {fem::Start::rigid, "\"rigid\": the drives end at the start"};
+    return {fem::Start::steady, "\"steady\": prescribed velocities are not zero"};
   }
   if (rigid.is_indeterminate())
     return {fem::Start::rigid,
