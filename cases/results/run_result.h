@@ -86,8 +86,8 @@ struct PointVariation {
   double rms_ratio() const { return designed.rms / uniform.rms; }
   double peak_to_peak_ratio() const { return designed.peak_to_peak / uniform.peak_to_peak; }
 };
-/// Variation of the tip deflection of a body in the motions that designs are assessed by; nothing
-/// where the body has no tip, or one of the motions is missing.
+/// Returns the variation of the tip deflection of a body in the motions that designs are assessed
+/// by; nothing where the body has no tip, or one of the motions is missing.
 std::optional<PointVariation> tip_variation(const MotionResults& motions, const std::string& body);
 /// Variations of the deflections of the observed points of a designed body in the motions that
 /// designs are assessed by; none where one of the motions is missing.

@@ -302,25 +302,31 @@ class Designer {
     if (std::none_of(parts_.begin(), parts_.end(), limits_state)) return;
     drops_ = false;
     double least = std::numeric_limits<double>::infinity();
-    Mended closest;
-    for (int k = 0; going_; ++k) {
+    std::vector<Design> closest;
+    int k = 0;
+    for (; going_; ++k) {
       double miss = 0;
       for (Part& p : parts_) miss = std::max(miss, crisp_miss(p));
       if (miss < least) {
         least = miss;
-        closest = as_they_are(parts_);
+        closest.clear();
+        for (const Part& p : parts_) closest.push_back(p.problem.design);
       }
       if (least <= kLimitTolerance || k == kLimitTries) break;
       for (Part& p : parts_) follow_crisp(p);
       run_stage(std::max(kFewestLimitIterations, settings_.optimizer.max_iterations / kPolishShare),
                 0);
     }
-    for (size_t k = 0; k < parts_.size() && !closest.designs.empty(); ++k) {
-      parts_[k].problem.design = closest.designs[k];
-      if (least > kLimitTolerance && limits_state(parts_[k])) thicken_to_limits(parts_[k]);
-      measure(parts_[k]);
-    }
     drops_ = true;
+    if (k == 0) return;  // limits are met as they are
+    for (size_t i = 0; i < parts_.size(); ++i) {
+      Part& p = parts_[i];
+      p.problem.design = closest[i];
+      if (least > kLimitTolerance && limits_state(p)) thicken_to_limits(p);
+      measure(p);
+      follow_crisp(p);
+    }
+    record_kkt();
   }
 
   /// Makes all components thicker or thinner by the same amount, at most a cell, until the crisp
@@ -419,13 +425,10 @@ class Designer {
         p.widths.emplace(p.problem, p.problem.widths);
     }
     record_kkt();
-    for (Part& p : parts_)
-      if (p.outcome.verdict.kind == optim::Verdict::Kind::converged &&
-          p.outcome.kkt > settings_.optimizer.kkt_tolerance)
-        p.outcome.verdict.kind = optim::Verdict::Kind::unfinished;
   }
 
-  /// Computes the KKT residual of the designs as they are.
+  /// Computes the KKT residual of the designs as they are; above the tolerance they have not
+  /// converged.
   void record_kkt() {
     Whole whole(parts_);
     optim::Problem& problem = whole.problem();
@@ -434,7 +437,12 @@ class Designer {
     constexpr double kActive = 1e-3;
     const double kkt =
         optim::kkt_residual(problem.evaluate(x), x, problem.lower(), problem.upper(), kActive);
-    for (Part& p : parts_) p.outcome.kkt = p.outcome.verdict.kkt = kkt;
+    for (Part& p : parts_) {
+      p.outcome.kkt = p.outcome.verdict.kkt = kkt;
+      if (p.outcome.verdict.kind == optim::Verdict::Kind::converged &&
+          kkt > settings_.optimizer.kkt_tolerance)
+        p.outcome.verdict.kind = optim::Verdict::Kind::unfinished;
+    }
   }
 
   bool see(Whole& whole, const optim::Iterate& iterate) {

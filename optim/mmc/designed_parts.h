@@ -54,9 +54,9 @@ SharpDesign crisp_figures(const Part& p);
 /// Makes limits hold of the crisp design: see blurred().
 void follow_crisp(Part& p);
 
-/// Blurred figures of a design, into its outcome.
+/// Computes the blurred figures of a design into its outcome.
 void measure(Part& p);
-/// The sharp design of an outcome, and its figures under the loads.
+/// Computes the sharp design of an outcome and its figures under the loads.
 void finish_outcome(Part& p, bool condition);
 
 /// The problem of all parts at their designs: that of the only one, or the shared one.

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "io/tables.h"
 #include "tests/cases/program.h"
 
 namespace flexmorph::test {
@@ -159,6 +160,34 @@ TEST(Run, WritesItsFolder) {
   const Ended check = flexmorph(scratch, {"check", folder + "/case.toml"});
   EXPECT_EQ(check.code, 0) << check.err;
   EXPECT_TRUE(contains(check.out, "24 components, 168 variables, 112 x 20 cells"));
+}
+
+// The measure of the best cycle is that of the motion which the run leaves, by its own definition.
+TEST(Run, ComparesCyclesByTheDeflectionOfATip) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const Ended ended =
+      flexmorph(scratch, {"run", FLEXMORPH_TWO_PLATES, "-o", folder, "--set",
+                          "cycle.compare_by=peak_to_peak", "--set", "cycle.compare_point=heavy"});
+  ASSERT_EQ(ended.code, kTooFew) << ended.err;
+  const std::vector<double> tip =
+      io::read_csv(folder + "/motion.csv").numbers("heavy.tip_deflection");
+  const auto [least, largest] = std::minmax_element(tip.begin(), tip.end());
+  bool found = false;
+  const nlohmann::json run = run_json(folder);
+  for (const nlohmann::json& cycle : run["cycles"]) {
+    if (!cycle["best"].get<bool>()) continue;
+    found = true;
+    EXPECT_NEAR(cycle["measure"].get<double>(), *largest - *least, 1e-12 * (*largest - *least));
+  }
+  EXPECT_TRUE(found);
+  for (const char* change : {"cycle.compare_point=heavy", "cycle.compare_by=rms"}) {
+    const Ended refused =
+        flexmorph(scratch, {"run", FLEXMORPH_TWO_PLATES, "-o", scratch / "other", "--set", change});
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_NE(refused.err.find("compare_"), std::string::npos) << refused.err;
+    EXPECT_FALSE(std::filesystem::exists(scratch / "other"));
+  }
 }
 
 // Two designs, one budget of mass, three cycles: what stays of it.

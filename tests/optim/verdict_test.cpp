@@ -50,18 +50,25 @@ TEST(Search, RanksDesignsByTheObjectiveThatTheyAttain) {
   EXPECT_NEAR(violation(result.response), 0.1, 1e-12);
 }
 
+/// minimize x <= limit, from -10 on.
+test::Analytic line(double start, double limit) {
+  return {"line",
+          VectorXd::Constant(1, -10),
+          VectorXd::Constant(1, 10),
+          VectorXd::Constant(1, start),
+          1,
+          [limit](const VectorXd& x, Response& r) {
+            r.f = x[0];
+            r.df = VectorXd::Ones(1);
+            r.g = VectorXd::Constant(1, x[0] - limit);
+            r.dg = MatrixXd::Ones(1, 1);
+          },
+          -10};
+}
+
 /// The verdict after rows at these values of x, which is minimized.
 Verdict verdict_after(const std::vector<double>& values, double limit) {
-  test::Analytic problem(
-      "line", VectorXd::Constant(1, -10), VectorXd::Constant(1, 10),
-      VectorXd::Constant(1, values.front()), 1,
-      [limit](const VectorXd& x, Response& r) {
-        r.f = x[0];
-        r.df = VectorXd::Ones(1);
-        r.g = VectorXd::Constant(1, x[0] - limit);
-        r.dg = MatrixXd::Ones(1, 1);
-      },
-      -10);
+  test::Analytic problem = line(values.front(), limit);
   const Settings settings;
   const Observer none;
   Search search(problem, settings, none);
@@ -76,15 +83,7 @@ Verdict verdict_after(const std::vector<double>& values, double limit) {
 
 /// The row at which a search stops by itself, of 100 rows that fall by so much each.
 int last_row(double per_row, double limit, bool plateau) {
-  test::Analytic problem(
-      "line", VectorXd::Constant(1, -10), VectorXd::Constant(1, 10), VectorXd::Constant(1, 1), 1,
-      [limit](const VectorXd& x, Response& r) {
-        r.f = x[0];
-        r.df = VectorXd::Ones(1);
-        r.g = VectorXd::Constant(1, x[0] - limit);
-        r.dg = MatrixXd::Ones(1, 1);
-      },
-      -10);
+  test::Analytic problem = line(1, limit);
   Settings settings;
   settings.plateau = plateau;
   settings.rest.rows = 0;

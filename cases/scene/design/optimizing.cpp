@@ -318,18 +318,13 @@ std::string read_compare_point(const Table& cycle, const Scene& scene) {
     for (const Observe& o : scene.observed)
       if (o.body == design.body) points.push_back(o.body + "." + o.name);
   }
-  const std::string known = points.empty()
-                                ? "no design has a tip or an observed point: `compare_by` is "
-                                  "\"strain_energy\""
-                                : "tips and observed points of designs are " + joined(points);
-  if (!cycle.has(kComparePoint)) {
-    if (points.size() != 1) cycle.fail(kCompareBy, "it needs `compare_point`: " + known);
-    return points.front();
-  }
-  const std::string name = cycle.string(kComparePoint);
-  if (std::find(points.begin(), points.end(), name) == points.end())
-    cycle.fail(kComparePoint, known);
-  return name;
+  if (points.empty())
+    cycle.fail(kCompareBy,
+               "no design has a tip or an observed point: `compare_by` is \"strain_energy\"");
+  if (cycle.has(kComparePoint)) return cycle.choice(kComparePoint, points);
+  if (points.size() > 1)
+    cycle.fail(kCompareBy, "it needs `compare_point`, one of " + joined(points));
+  return points.front();
 }
 
 void read_cycle(const Table& cycle, Scene& scene) {
