@@ -214,13 +214,13 @@ void add_variations(const Scene& scene, const RunResult& result, Warnings& out) 
   }
 }
 
-/// The part of the largest energy that the time integration has taken out of the motion.
-double dissipated_part(const MotionRecord& motion) {
+/// The part of the largest energy that the time integration has brought into the motion, at the
+/// instant where the balance of energy is missed by most; negative where it has taken energy out.
+double integrated_part(const MotionRecord& motion) {
   const std::vector<double>& defect = motion.table.at(kDefectColumn);
-  const double largest = largest_size(defect);
-  if (!(largest > 0)) return 0;
-  const double lowest = *std::min_element(defect.begin(), defect.end());
-  return -lowest / largest * motion.result.energy_defect;
+  if (!(largest_size(defect) > 0)) return 0;
+  const auto [lowest, highest] = std::minmax_element(defect.begin(), defect.end());
+  return -*lowest > *highest ? -motion.result.energy_defect : motion.result.energy_defect;
 }
 
 /// Of bodies whose temperature jumps on the way; nothing where none does.
@@ -289,11 +289,13 @@ void add_motion(const Scene& scene, const MotionRecord& motion, Warnings& out) {
         {"the balance of energy is missed by " + io::to_text(100 * motion.result.energy_defect, 3) +
          " % of the largest energy: " +
          (jumps.empty() ? "do not trust this motion; a smaller time.step helps" : jumps)});
-  else if (const double part = dissipated_part(motion);
-           part > kLargestLoss && jumps.empty() &&
+  else if (const double part = integrated_part(motion);
+           std::abs(part) > kLargestLoss && jumps.empty() &&
            largest_size(motion.table.at(kDefectColumn)) > stress_round_off(scene))
-    out.push_back({"the time integration dissipates " + io::to_text(100 * part, 2) +
-                   " % of the largest energy: a smaller time.step dissipates less"});
+    out.push_back({std::string("the time integration ") + (part > 0 ? "adds " : "dissipates ") +
+                   io::to_text(100 * std::abs(part), 2) +
+                   " % of the largest energy: a smaller time.step " +
+                   (part > 0 ? "adds less" : "dissipates less")});
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ MotionRecord swinging(double mean, double size, double loss = 0) {
     const double tip = mean + size * std::sin(2 * std::numbers::pi * t);
     record.table.add_row(std::vector<double>{t, tip, 1, -loss * t / 2});
   }
-  record.result.energy_defect = loss;
+  record.result.energy_defect = std::abs(loss);
   return record;
 }
 
@@ -92,6 +92,8 @@ TEST(Warnings, OfVibrationAndDissipation) {
   EXPECT_EQ(count(warned(1.04, 0), "vibrates more"), 0);
   EXPECT_EQ(count(warned(1, 0.011), "dissipates 1.1 % of the largest energy"), 1);
   EXPECT_EQ(count(warned(1, 0.009), "dissipates"), 0);
+  EXPECT_EQ(count(warned(1, -0.02), "adds 2 % of the largest energy"), 1);
+  EXPECT_EQ(count(warned(1, -0.009), "adds"), 0);
   const std::optional<PointVariation> tip = tip_variation(result.motions, "plate");
   ASSERT_TRUE(tip);
   EXPECT_NEAR(tip->rms_ratio(), 1, 1e-12);
