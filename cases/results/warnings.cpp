@@ -61,8 +61,7 @@ bool is_judged(const Scene& scene, const mmc::BodyOutcome& o) {
 /// A design for a compliance that is worse than the same material spread evenly: of no use where it
 /// was optimized.
 void add_worse(const mmc::BodyProblem& p, const mmc::BodyOutcome& o, Warnings& out) {
-  if (p.goal.objective != &mmc::compliance_row(p.goal)) return;
-  if (!(o.sharp.compliance > o.uniform_compliance)) return;
+  if (!mmc::worse_than_uniform(p, o)) return;
   out.push_back({"body '" + o.body + "': the sharp compliance " +
                      io::to_text(o.sharp.compliance, 4) + " J is above that of uniform material, " +
                      io::to_text(o.uniform_compliance, 4) + " J: the design is worse than none",

@@ -177,7 +177,8 @@ class Loop {
         break;
       motion = simulate_(factors);
       if (!settings_.verification_motion) record(motion.measure);
-      if (last || !verdicts_.improved(settings_.tolerance) || loads_fit(cycle, motion.loads)) break;
+      const bool fits = loads_fit(cycle, motion.loads);
+      if (last || !verdicts_.improved(settings_.tolerance) || (fits && of_use())) break;
     }
     return verdicts_.take_best(problems_);
   }
@@ -207,6 +208,14 @@ class Loop {
     return std::all_of(all.begin(), all.end(), [this](const LoadDifference& d) {
       return d.loads < settings_.load_difference;
     });
+  }
+
+  /// Tells whether the designs of the last cycle are stiffer than uniform material: if not, another
+  /// cycle continues them, whatever their loads.
+  bool of_use() const {
+    for (size_t k = 0; k < problems_.size(); ++k)
+      if (worse_than_uniform(problems_[k], outcome_[k])) return false;
+    return true;
   }
 
   std::vector<BodyProblem>& problems_;

@@ -72,11 +72,11 @@ struct LoopObserver {
 };
 
 /// Repeats motion, equivalent static loads and design until the loads are those of the motion with
-/// the designs (LoopSettings::load_difference), a cycle improves the measure by less than the
-/// tolerance, or the number of cycles is reached (optim/README.md, Cycles). Bodies that share mass
-/// are one design problem, the others have one each. The designs of `problems` are left at the
-/// result, that of the best usable cycle (of the least violation, where none is usable), and the
-/// outcomes belong to it.
+/// the designs (LoopSettings::load_difference) and the designs are of use (worse_than_uniform()), a
+/// cycle improves the measure by less than the tolerance, or the number of cycles is reached
+/// (optim/README.md, Cycles). Bodies that share mass are one design problem, the others have one
+/// each. The designs of `problems` are left at the result, that of the best usable cycle (of the
+/// least violation, where none is usable), and the outcomes belong to it.
 /// @throws Error (numerical) from dynamics or statics; rows reported before it stand.
 std::vector<BodyOutcome> esl_loop(std::vector<BodyProblem>& problems, const Simulate& simulate,
                                   const LoopSettings& settings, const LoopObserver& observer);

@@ -24,4 +24,9 @@ double crisp_violation(const BodyProblem& problem, const SharpDesign& crisp) {
   return out > kLimitTolerance ? out : 0;
 }
 
+bool worse_than_uniform(const BodyProblem& problem, const BodyOutcome& outcome) {
+  return problem.goal.objective == &compliance_row(problem.goal) &&
+         outcome.sharp.compliance > outcome.uniform_compliance;
+}
+
 }  // namespace flexmorph::mmc

@@ -17,4 +17,8 @@ bool binds_body(const Limit& limit, const BodyProblem& problem);
 /// all of them within kLimitTolerance, infinite where no material joins a load to a support.
 double crisp_violation(const BodyProblem& problem, const SharpDesign& crisp);
 
+/// Tells whether a body that is optimized for its compliance is more compliant, crisp, than uniform
+/// material of the same volume under the same loads: such a design is of no use.
+bool worse_than_uniform(const BodyProblem& problem, const BodyOutcome& outcome);
+
 }  // namespace flexmorph::mmc

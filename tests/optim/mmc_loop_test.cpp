@@ -219,7 +219,8 @@ CycleMotion alternating(std::vector<BodyProblem>& problems, int call, double mea
 // own motion, and no third one follows.
 TEST(EslLoop, EndsWhenTheLoadsAreThoseOfTheMotion) {
   std::vector<BodyProblem> problems = one_body({1.5});
-  LoopSettings settings = quick(5);
+  problems[0].goal.limits[0].value = 0.9;  // of the volume: stiffer than uniform material
+  LoopSettings settings = quick(30);
   settings.max_cycles = 12;
   settings.tolerance = 0;
   int calls = 0;
@@ -241,6 +242,33 @@ TEST(EslLoop, EndsWhenTheLoadsAreThoseOfTheMotion) {
   ASSERT_EQ(differences.size(), 2u);
   EXPECT_GT(differences[0], LoadDifference::kLargest);
   EXPECT_NEAR(differences[1], 0, 1e-9);
+}
+
+// The loads are those of the motion from the first cycle on, but cycles of three iterations make
+// designs that are more compliant than uniform material at first: cycles go on until one is not.
+TEST(EslLoop, GoesOnWhileTheDesignIsOfNoUse) {
+  std::vector<BodyProblem> problems = one_body({1.5});
+  problems[0].goal.limits[0].value = 0.9;  // of the volume: enough to join load and support soon
+  LoopSettings settings = quick(3);
+  settings.max_cycles = 40;
+  settings.tolerance = 0;
+  int calls = 0;
+  const auto simulate = [&](std::span<const fem::Factors>) {
+    return alternating(problems, 0, 1.0 / ++calls);
+  };
+  std::vector<bool> worse;
+  LoopObserver observer;
+  observer.cycle = [&](int, std::span<const BodyOutcome> outcomes) {
+    worse.push_back(outcomes[0].sharp.compliance > outcomes[0].uniform_compliance);
+  };
+  observer.difference = [&](int, std::span<const LoadDifference> all) {
+    EXPECT_LT(all[0].loads, LoadDifference::kLargest);
+  };
+  esl_loop(problems, simulate, settings, observer);
+  ASSERT_GT(worse.size(), 1u);
+  EXPECT_LT(worse.size(), 40u);
+  for (size_t k = 0; k + 1 < worse.size(); ++k) EXPECT_TRUE(worse[k]) << k;
+  EXPECT_FALSE(worse.back());
 }
 
 // The motion after cycle 3 is worse than the one after cycle 2: loads that still differ make no
