@@ -94,6 +94,15 @@ std::vector<Segment> held_lines(const Scene& scene, const BodyDesign& design) {
   return out;
 }
 
+/// The design that an optimization starts from. A design that is only evaluated stays as its file
+/// says: a delivered one has parts that are shorter than those of a start.
+mmc::Design design_of(const Scene& scene, const Grid& grid, const std::vector<Component>& layout,
+                      const mmc::DesignScale& scale, const mmc::Symmetry& symmetry) {
+  if (scene.optimizer.max_iterations == 0)
+    return mmc::Design(grid, {}, scale, symmetry).with(layout);
+  return mmc::Design(grid, layout, scale, symmetry);
+}
+
 }  // namespace
 
 std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
@@ -126,7 +135,7 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
     out.push_back({.body = d.body,
                    .grid = g,
                    .section = plate.section,
-                   .design = mmc::Design(g, layout, scale, symmetry),
+                   .design = design_of(scene, g, layout, scale, symmetry),
                    .further_starts = std::move(further),
                    .solid = d.solid,
                    .empty = d.empty,

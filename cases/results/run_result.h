@@ -85,6 +85,8 @@ struct PointVariation {
   static constexpr double kLargestRatio = 1.05;
   double rms_ratio() const { return designed.rms / uniform.rms; }
   double peak_to_peak_ratio() const { return designed.peak_to_peak / uniform.peak_to_peak; }
+  /// Tells whether the point of the design moves by more than rounding errors do.
+  bool moves() const { return designed.peak_to_peak > 1e-9 * designed.largest; }
 };
 /// Returns the variation of the tip deflection of a body in the motions that designs are assessed
 /// by; nothing where the body has no tip, or one of the motions is missing.

@@ -203,7 +203,7 @@ void add_variations(const Scene& scene, const RunResult& result, Warnings& out) 
     if (const auto tip = tip_variation(motions, o.body)) points.insert(points.begin(), *tip);
     for (const PointVariation& point : points) {
       const double rms = point.rms_ratio(), range = point.peak_to_peak_ratio();
-      if (std::max(rms, range) > PointVariation::kLargestRatio)
+      if (point.moves() && std::max(rms, range) > PointVariation::kLargestRatio)
         out.push_back({"body '" + o.body + "': its " +
                        (point.name.empty() ? "tip" : "observed point '" + point.name + "'") +
                        " vibrates more than with uniform material of this mass: " +

@@ -78,6 +78,31 @@ TEST(EvaluatedRun, OfAPlateAtRestIsThatOfAnOptimizedOne) {
               {"strain_energy", "largest_displacement", "largest_stress"});
 }
 
+// A delivered design has bars that are shorter and thicker than those of a start may be; they stay
+// what they are, but for rounding: variables are scaled.
+TEST(EvaluatedRun, TakesADesignAsItsFileHasIt) {
+  const Scratch scratch;
+  const std::string rows =
+      "X0,Y0,half_length,angle,c1,c2,c3\n"
+      "1,0.15,1,0,0.1500001,0.15,0.1500002\n"
+      "1,0.85,1,0,0.15,0.15,0.15\n"
+      "1,0.5,0.01,1.5,0.011,0.013,0.012\n";
+  const std::string bars = scratch.write("bars.csv", rows), folder = scratch / "run";
+  const Ended ended =
+      run(scratch, "short_beam", folder,
+          {"design.start='" + bars + "'", "optimizer.max_iterations=0", "design.min_thickness=0.02",
+           "design.half_length=0.2", "design.cell=0.05", "output.vtk=false", "output.plots=false"});
+  EXPECT_TRUE(ended.code == 0 || ended.code == kTooFew) << ended.err;
+  const io::CsvTable given = io::read_csv(bars), found = io::read_csv(folder + "/components.csv");
+  ASSERT_EQ(found.columns, given.columns);
+  ASSERT_EQ(found.n_rows(), given.n_rows());
+  for (const std::string& column : given.columns) {
+    const std::vector<double> is = found.numbers(column), was = given.numbers(column);
+    for (size_t k = 0; k < was.size(); ++k)
+      EXPECT_NEAR(is[k], was[k], 1e-15 * std::abs(was[k])) << column;
+  }
+}
+
 TEST(EvaluatedRun, OfAMotionIsThatOfAnOptimizedOne) {
   const Scratch scratch;
   // Two bars side by side: the full plate, without its corners.
