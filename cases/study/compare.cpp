@@ -27,6 +27,18 @@ std::vector<std::string> optimizers_of(const CompareOptions& options) {
   return options.optimizers;
 }
 
+/// Changes of the case for an optimizer. The case's own one runs as `flexmorph run` does, to the
+/// same design and verdict, unless a budget is asked for; the others may solve as many states.
+std::vector<std::string> changes_for(const std::string& optimizer, const optim::Settings& own,
+                                     int budget) {
+  std::vector<std::string> out = {"optimizer.name=" + optimizer};
+  if (budget == 0 && optimizer == own.name) return out;
+  const std::string solves = std::to_string(budget > 0 ? budget : own.max_iterations + 1);
+  out.push_back("optimizer.max_iterations=" + solves);
+  out.push_back("optimizer.max_solves=" + solves);
+  return out;
+}
+
 /// Plans the runs; chooses the folder where none is given.
 Comparison plan(CompareOptions& options) {
   StudyOptions& study = options.study;
@@ -39,16 +51,13 @@ Comparison plan(CompareOptions& options) {
     throw Error::input("case '" + scene.name + "' has no [[design]]: there is nothing to compare");
   out.table.names = {"run", "optimizer", "start"};
   if (study.directory.empty()) study.directory = "runs/compare_" + scene.name;
-  const int budget = options.budget > 0 ? options.budget : scene.optimizer.max_iterations + 1;
-  const std::string solves = std::to_string(budget);
   // Pictures of every iteration of every run are more than anybody looks at; --set output.vtk=true
   // brings them back.
   study.overrides.insert(study.overrides.begin(), "output.vtk=false");
   for (const std::string& optimizer : out.optimizers)
     for (int start = 1; start <= options.starts; ++start) {
       Variant v{optimizer + "_" + std::to_string(start),
-                {"optimizer.name=" + optimizer, "optimizer.max_iterations=" + solves,
-                 "optimizer.max_solves=" + solves}};
+                changes_for(optimizer, scene.optimizer, options.budget)};
       for (size_t d = 0; start > 1 && d < scene.designs.size(); ++d) {
         const std::string key = "design." + std::to_string(d);
         v.overrides.push_back(key + ".jitter=" + io::to_text(options.jitter));

@@ -9,7 +9,9 @@ struct CompareOptions {
   std::vector<std::string> optimizers;  ///< empty: all of the table
   int starts = 5;                       ///< the case's own, and this many less one jittered ones
   double jitter = 0.1;                  ///< of those, see design.jitter
-  int budget = 0;                       ///< state solves of each run; 0: the case's iterations + 1
+  /// State solves of each run. 0: the case's iterations + 1; its own optimizer runs as it does
+  /// alone.
+  int budget = 0;
 };
 
 /// Runs a case with several optimizers from the same starts, under the same stopping measure (KKT

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <csignal>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "cases/study/statistics.h"
 #include "cases/study/sweep.h"
@@ -280,6 +281,25 @@ TEST(Compare, MakesATableOfOptimizersFromTheSameStarts) {
     EXPECT_NEAR(figure[i], judged[i] * volume[i] / 0.4, 1e-12 * figure[i]);  // two roundings
     EXPECT_LE(error[i], 0.005);
   }
+}
+
+// Without a budget the optimizer of the case runs as it does alone: the same design, the same
+// verdict.
+TEST(Compare, RunsTheOptimizerOfTheCaseAsARunDoes) {
+  const Scratch scratch;
+  const std::string compared = scratch / "compare", folder = scratch / "run";
+  const Words fewer = {"--set", "optimizer.max_iterations=9"};
+  Words words = {"--optimizers", "mma", "--starts", "1", "--quiet"};
+  words.insert(words.end(), fewer.begin(), fewer.end());
+  ASSERT_EQ(test::flexmorph(scratch, small("compare", compared, words)).code, 0);
+  const Ended ended = test::flexmorph(scratch, small("run", folder, fewer));
+  EXPECT_TRUE(ended.code == 0 || ended.code == test::kTooFew) << ended.err;
+  EXPECT_EQ(contents_of(compared + "/mma_1/components.csv"),
+            contents_of(folder + "/components.csv"));
+  const auto verdict_of = [](const std::string& run) {
+    return nlohmann::json::parse(contents_of(run + "/run.json"))["results"][0]["verdict"];
+  };
+  EXPECT_EQ(verdict_of(compared + "/mma_1"), verdict_of(folder));
 }
 
 TEST(Compare, RefusesNamesThatAreUnknownOrTwice) {
