@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "cases/assembly/build.h"
 #include "cases/assembly/static_conditions.h"
 #include "geometry/picture.h"
 #include "io/files.h"
+#include "optim/verification/force_spread.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -15,6 +17,25 @@ struct PlaceNodes {
   std::vector<double> shares;  // sum 1
   std::vector<int> cells;      // that can be material and touch these nodes
 };
+
+/// Angle that each point of a rim stands for: half of the gaps to its neighbours, none wider than
+/// given.
+std::vector<double> sectors(const std::vector<Vec2>& rim, const Vec2& center, double widest) {
+  std::vector<std::pair<double, size_t>> angles;
+  for (size_t k = 0; k < rim.size(); ++k)
+    angles.emplace_back(std::atan2(rim[k].y() - center.y(), rim[k].x() - center.x()), k);
+  std::sort(angles.begin(), angles.end());
+  std::vector<double> out(rim.size(), 0);
+  for (size_t k = 0; k < angles.size(); ++k) {
+    const auto& [angle, index] = angles[k];
+    const auto& [next, next_index] = angles[(k + 1) % angles.size()];
+    const double turn = k + 1 < angles.size() ? 0 : 2 * std::numbers::pi;
+    const double half = 0.5 * std::min(widest, next + turn - angle);
+    out[index] += half;
+    out[next_index] += half;
+  }
+  return out;
+}
 
 /// Finds the nodes of places. Only nodes that touch a cell that can be material count: cells
 /// outside of the domain and those of void regions cannot.
@@ -35,20 +56,50 @@ class NodeFinder {
     const double small = 1e-6 * grid_.dx();
     Box box = place.box;
     if (place.kind == Place::Kind::point) box = nearest(box.lower);
+    const bool is_disc = place.kind == Place::Kind::disc;
+    if (const std::vector<Vec2>* bore = is_disc ? bore_of(scene_, place.disc, grid_) : nullptr)
+      return at_rim(*bore, path);
     PlaceNodes out;
     for (int i = 0; i <= grid_.nx; ++i)
       for (int j = 0; j <= grid_.ny; ++j) {
         const Vec2 p = grid_.node_position(i, j);
         if (((box.lower - p).array() > small).any() || ((p - box.upper).array() > small).any())
           continue;
+        if (is_disc && (p - place.disc.center).norm() > place.disc.radius + small) continue;
         const int cells = touch(i, j, out.cells);
         if (cells == 0) continue;
         out.nodes.push_back(grid_.node(i, j));
         // Along an edge a node carries the traction of the half cells beside it.
         out.shares.push_back(place.kind == Place::Kind::edge ? cells : 1.0);
       }
+    return whole(std::move(out), path + "." + key_of(place.kind));
+  }
+
+ private:
+  /// Nodes between cells in the bore and cells that can be material, each with the part of the rim
+  /// that is around it.
+  PlaceNodes at_rim(const std::vector<Vec2>& bore, const std::string& path) const {
+    std::vector<signed char> in_bore(static_cast<size_t>(grid_.n_cells()), 0);
+    for (const int cell : cells_within(grid_, {bore, {}})) in_bore[static_cast<size_t>(cell)] = 1;
+    PlaceNodes out;
+    std::vector<Vec2> rim;
+    const Disc disc = disc_like(bore);
+    const double reach = disc.radius + 2 * grid_.dx();
+    for (int i = 0; i <= grid_.nx; ++i)
+      for (int j = 0; j <= grid_.ny; ++j) {
+        const Vec2 p = grid_.node_position(i, j);
+        if ((p - disc.center).norm() > reach || !touches(i, j, in_bore)) continue;
+        if (touch(i, j, out.cells) == 0) continue;
+        out.nodes.push_back(grid_.node(i, j));
+        rim.push_back(p);
+      }
+    out.shares = sectors(rim, disc.center, 4 * grid_.dx() / disc.radius);
+    return whole(std::move(out), path + ".disc");
+  }
+  /// Shares in all 1. @throws Error (input) without a node
+  PlaceNodes whole(PlaceNodes out, const std::string& key) const {
     if (out.nodes.empty())
-      scene_.refuse(path + "." + key_of(place.kind),
+      scene_.refuse(key,
                     "no material can be there: a place has a node of the domain, outside of void "
                     "regions; the cells are " +
                         io::to_text(grid_.dx()) + " m wide");
@@ -57,8 +108,12 @@ class NodeFinder {
     for (double& s : out.shares) s /= sum;
     return out;
   }
-
- private:
+  bool touches(int i, int j, const std::vector<signed char>& cells) const {
+    for (int ci = std::max(0, i - 1); ci <= std::min(grid_.nx - 1, i); ++ci)
+      for (int cj = std::max(0, j - 1); cj <= std::min(grid_.ny - 1, j); ++cj)
+        if (cells[static_cast<size_t>(grid_.cell(ci, cj))]) return true;
+    return false;
+  }
   Box nearest(const Vec2& point) const {
     const auto clamp = [](double v, int n) { return std::clamp(std::lround(v), 0L, long(n)); };
     const auto i = static_cast<int>(clamp((point.x() - grid_.x0) / grid_.dx(), grid_.nx));
@@ -72,6 +127,8 @@ class NodeFinder {
         return "edge";
       case Place::Kind::point:
         return "point";
+      case Place::Kind::disc:
+        return "disc";
       case Place::Kind::box:
         break;
     }
@@ -105,6 +162,29 @@ double material_around(const Grid& grid, int node, const VectorXd& fractions) {
   return out;
 }
 
+/// Forces at the nodes of a place [N].
+/// @param path  of the table of the force. @throws Error (input) where its nodes cannot carry it
+std::vector<Vec2> forces_at(const Scene& scene, const Grid& grid, const PlaneForce& force,
+                            const PlaceNodes& place, const std::string& path) {
+  if (force.bearing && bore_of(scene, force.place.disc, grid) == nullptr)
+    scene.refuse(path + ".bearing",
+                 "a pin wants a bore: no hole and no void region has this centre and this radius, "
+                 "to half a cell, " +
+                     io::to_text(0.5 * grid.dx()) + " m");
+  std::vector<Vec2> points;
+  for (const int node : place.nodes)
+    points.push_back(grid.node_position(node / (grid.ny + 1), node % (grid.ny + 1)));
+  const std::vector<Vec2> out = verification::spread(
+      {force.force, force.moment, force.bearing, force.place.disc.center}, points, place.shares);
+  if (out.empty())
+    scene.refuse(
+        path + (force.moment != 0 ? ".moment" : ".bearing"),
+        "the nodes there cannot carry it: a moment wants two nodes, a pin a rim before it; "
+        "the cells are " +
+            io::to_text(grid.dx()) + " m wide");
+  return out;
+}
+
 std::string support_path(size_t support) { return "support." + std::to_string(support); }
 
 std::string force_path(size_t load, size_t force) {
@@ -112,6 +192,16 @@ std::string force_path(size_t load, size_t force) {
 }
 
 }  // namespace
+
+const std::vector<Vec2>* bore_of(const Scene& scene, const Disc& disc, const Grid& grid) {
+  const double half_cell = 0.5 * grid.dx();
+  for (const std::vector<Vec2>& hole : scene.domain->shape.holes)
+    if (matches(hole, disc, half_cell)) return &hole;
+  for (const BodyDesign& design : scene.designs)
+    for (const std::vector<Vec2>& region : design.empty)
+      if (matches(region, disc, half_cell)) return &region;
+  return nullptr;
+}
 
 Vec2 weight_of(const Scene& scene) {
   return scene.gravity ? Vec2(*scene.gravity) : Vec2(Vec2::Zero());
@@ -142,11 +232,15 @@ std::vector<LoadOnVoid> loads_on_void(const Scene& scene, const mmc::BodyProblem
     LoadOnVoid found{domain.loads[l].name, 0};
     for (size_t f = 0; f < domain.loads[l].forces.size(); ++f) {
       const PlaceNodes place = find.at(domain.loads[l].forces[f].place, force_path(l, f));
-      double on_void = 0;
-      for (size_t k = 0; k < place.nodes.size(); ++k)
+      const std::vector<Vec2> forces =
+          forces_at(scene, problem.grid, domain.loads[l].forces[f], place, force_path(l, f));
+      double on_void = 0, all = 0;
+      for (size_t k = 0; k < place.nodes.size(); ++k) {
+        all += forces[k].norm();
         if (material_around(problem.grid, place.nodes[k], fractions) < kLeastMaterial)
-          on_void += place.shares[k];
-      found.part = std::max(found.part, on_void);
+          on_void += forces[k].norm();
+      }
+      found.part = std::max(found.part, on_void / all);
     }
     if (found.part > 0) out.push_back(found);
   }
@@ -172,8 +266,9 @@ StaticConditions static_conditions(const Scene& scene, const Grid& grid,
     for (size_t f = 0; f < domain.loads[l].forces.size(); ++f) {
       const PlaneForce& force = domain.loads[l].forces[f];
       const PlaceNodes place = find.at(force.place, force_path(l, f));
+      const std::vector<Vec2> forces = forces_at(scene, grid, force, place, force_path(l, f));
       for (size_t k = 0; k < place.nodes.size(); ++k)
-        load.forces.push_back({place.nodes[k], place.shares[k] * force.force});
+        load.forces.push_back({place.nodes[k], forces[k]});
     }
   }
   return out;

@@ -28,6 +28,9 @@ struct LoadOnVoid {
 /// @param fractions  area fractions of the crisp design (n_cells)
 std::vector<LoadOnVoid> loads_on_void(const Scene& scene, const mmc::BodyProblem& problem,
                                       const VectorXd& fractions);
+/// Returns the hole or the void region that a disc is the bore of: centre and radius agree within
+/// half a cell; null: the disc is no bore.
+const std::vector<Vec2>* bore_of(const Scene& scene, const Disc& disc, const Grid& grid);
 /// Gravity of a plate at rest; zero where the case gives none [m/s^2].
 Vec2 weight_of(const Scene& scene);
 /// The middle lines of a static scene's grid that its domain, regions, supports and loads are

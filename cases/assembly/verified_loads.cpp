@@ -5,7 +5,16 @@
 namespace flexmorph::cases {
 namespace {
 
-verification::Location place_of(const Place& place, const mmc::BodyProblem& problem) {
+constexpr double kRoundness = 0.01;  ///< of a disc's polygon, in cells
+
+verification::Location place_of(const Scene& scene, const Place& place,
+                                const mmc::BodyProblem& problem) {
+  if (place.kind == Place::Kind::disc) {
+    if (const std::vector<Vec2>* bore = bore_of(scene, place.disc, problem.grid))
+      return verification::border_location(*bore);
+    return {{},
+            circle_within(place.disc.center, place.disc.radius, kRoundness * problem.grid.dx())};
+  }
   if (place.kind != Place::Kind::point) return verification::box_location(place.box);
   return verification::point_location(place.box.lower, mmc::domain_of(problem),
                                       mmc::point_reach(problem));
@@ -17,7 +26,7 @@ verification::Loads loads_by_position(const Scene& scene, const mmc::BodyProblem
   verification::Loads out;
   out.worst = mmc::compliance_row(problem.goal).per_load;
   for (const PlaneSupport& s : scene.domain->supports)
-    out.supports.push_back({out.add(place_of(s.place, problem)), s.x, s.y});
+    out.supports.push_back({out.add(place_of(scene, s.place, problem)), s.x, s.y});
   if (const Vec2 weight = weight_of(scene); weight != Vec2::Zero()) {
     out.grid = problem.grid;
     const VectorXd field = (-weight).replicate(problem.grid.n_nodes(), 1);
@@ -29,7 +38,8 @@ verification::Loads loads_by_position(const Scene& scene, const mmc::BodyProblem
     load.name = l.name;
     load.weight = l.weight;
     for (const PlaneForce& f : l.forces)
-      load.forces.push_back({out.add(place_of(f.place, problem)), f.force});
+      load.forces.push_back({out.add(place_of(scene, f.place, problem)), f.force, f.moment,
+                             f.bearing, f.place.disc.center});
   }
   return out;
 }

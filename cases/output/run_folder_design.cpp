@@ -24,8 +24,10 @@ struct Outlines {
   std::string picture() const { return io::outline_svg(regions, frame, 5); }
 };
 
-/// A place as a drawing shows it: a point, a line or a box.
+/// A place as a drawing shows it: a point, a line, a box or a circle.
 std::vector<Vec2> shape_of(const Place& place) {
+  if (place.kind == Place::Kind::disc)
+    return circle_within(place.disc.center, place.disc.radius, 0.01 * place.disc.radius);
   const Vec2 &a = place.box.lower, &b = place.box.upper;
   if (a == b) return {a};
   if ((b - a).minCoeff() == 0) return {a, b};

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/disc.h"
 #include "geometry/outline.h"
 
 /// [domain], [[support]], [[load]]: a plate at rest.
@@ -10,9 +11,10 @@ namespace flexmorph::cases {
 
 /// Where a plate at rest is held or pulled.
 struct Place {
-  enum class Kind { edge, point, box };
+  enum class Kind { edge, point, box, disc };
   Kind kind = Kind::point;
-  Box box;  ///< an edge is a box without width [m]
+  Box box;    ///< an edge is a box without width; of a disc the box around it [m]
+  Disc disc;  ///< of its kind: the rim of a bore that it matches, otherwise all within
 };
 
 struct PlaneSupport {
@@ -20,9 +22,12 @@ struct PlaneSupport {
   bool x = false, y = false;  ///< held directions
 };
 
+/// A force and a moment on a place.
 struct PlaneForce {
   Place place;
-  Vec2 force{0, 0};  ///< in all, spread evenly over the place [N]
+  Vec2 force{0, 0};      ///< in all [N]
+  double moment = 0;     ///< in all, counterclockwise [N m]
+  bool bearing = false;  ///< whether a pin presses the force on half of a bore, else it is even
 };
 
 /// Forces that act at the same time.

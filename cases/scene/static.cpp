@@ -66,16 +66,21 @@ const Key& kDensity = io::key("domain", "density")
 
 const Key& kEdge = io::shared_key({"support", "load.force"}, "edge")
                        .word("an edge", {"left", "right", "bottom", "top"})
-                       .otherwise_as("`point` or `box` is given")
+                       .otherwise_as("`point`, `box` or `disc` is given")
                        .says("Where: an edge of the domain's bounding box.");
 const Key& kPoint = io::shared_key({"support", "load.force"}, "point")
                         .numbers(any_number("coordinates", "m"), 2, 2)
-                        .otherwise_as("`edge` or `box` is given")
+                        .otherwise_as("`edge`, `box` or `disc` is given")
                         .says("Or a point.");
 const Key& kBox = io::shared_key({"support", "load.force"}, "box")
                       .numbers(any_number("coordinates", "m"), 4, 4)
-                      .otherwise_as("`edge` or `point` is given")
+                      .otherwise_as("`edge`, `point` or `disc` is given")
                       .says("Or the nodes in a box: x0, y0, x1, y1.");
+const Key& kDisc =
+    io::shared_key({"support", "load.force"}, "disc")
+        .numbers(any_number("x, y, radius of a disc", "m"), 3, 3)
+        .otherwise_as("`edge`, `point` or `box` is given")
+        .says("Or the rim of the bore that it matches to half a cell, else the nodes in it.");
 const Key& kFix = io::key("support", "fix")
                       .words("a direction", {"x", "y"})
                       .says("The directions that are held.");
@@ -95,7 +100,19 @@ const Key& kForces = io::key("load", "force")
                          .says("The forces that act at the same time.");
 const Key& kForce = io::key("load.force", "force")
                         .numbers(any_number("a force", "N"), 2, 2)
+                        .otherwise_as("`moment` is given")
                         .says("In all, spread evenly over the place.");
+const Key& kMoment = io::key("load.force", "moment")
+                         .number(any_number("a moment", "N m"))
+                         .otherwise(0.0)
+                         .says("Counterclockwise, of forces around the middle of the place.");
+const Key& kBearing =
+    io::key("load.force", "bearing")
+        .boolean()
+        .otherwise(false)
+        .when("`disc` is given")
+        .says(
+            "A pin presses on the half of a bore before it: pressure as the cosine of the angle.");
 
 Region read_outline(const Table& t) {
   io::DrawingSettings settings;
@@ -124,28 +141,58 @@ void read_shape(const Table& t, Domain& domain) {
   domain.bounds = bounds_of(domain.shape.outer);
 }
 
-/// Where something holds or pulls: an edge of the domain's bounding box, a point or a box.
+/// Where something holds or pulls: an edge of the domain's bounding box, a point, a box or a disc.
 Place read_place(const Table& t, const Domain& domain) {
-  const int given = t.has(kEdge) + t.has(kPoint) + t.has(kBox);
-  if (given != 1) t.fail("a place is one of `edge`, `point`, `box`");
+  const int given = t.has(kEdge) + t.has(kPoint) + t.has(kBox) + t.has(kDisc);
+  if (given != 1) t.fail("a place is one of `edge`, `point`, `box`, `disc`");
   const Box& b = domain.bounds;
   if (t.has(kEdge)) {
     const std::string side = t.choice(kEdge);
-    if (side == "left") return {Place::Kind::edge, {b.lower, {b.lower.x(), b.upper.y()}}};
-    if (side == "right") return {Place::Kind::edge, {{b.upper.x(), b.lower.y()}, b.upper}};
-    if (side == "bottom") return {Place::Kind::edge, {b.lower, {b.upper.x(), b.lower.y()}}};
-    return {Place::Kind::edge, {{b.lower.x(), b.upper.y()}, b.upper}};
+    if (side == "left") return {Place::Kind::edge, {b.lower, {b.lower.x(), b.upper.y()}}, {}};
+    if (side == "right") return {Place::Kind::edge, {{b.upper.x(), b.lower.y()}, b.upper}, {}};
+    if (side == "bottom") return {Place::Kind::edge, {b.lower, {b.upper.x(), b.lower.y()}}, {}};
+    return {Place::Kind::edge, {{b.lower.x(), b.upper.y()}, b.upper}, {}};
   }
-  const bool is_point = t.has(kPoint);
-  const Key& key = is_point ? kPoint : kBox;
+  Place place;
+  const Key& key = t.has(kPoint) ? kPoint : t.has(kDisc) ? kDisc : kBox;
   const std::vector<double> v = t.numbers(key);
-  const Box box = is_point ? Box{{v[0], v[1]}, {v[0], v[1]}} : Box{{v[0], v[1]}, {v[2], v[3]}};
-  if (!is_point && (v[0] > v[2] || v[1] > v[3])) t.fail(key, "x0 <= x1 and y0 <= y1 [m]");
+  const Vec2 first(v[0], v[1]);
+  if (t.has(kPoint)) {
+    place = {Place::Kind::point, {first, first}, {}};
+  } else if (t.has(kDisc)) {
+    if (v[2] <= 0) t.fail(key, "a radius is positive, in the order x, y, radius [m]");
+    const Vec2 half(v[2], v[2]);
+    place = {Place::Kind::disc, {first - half, first + half}, {first, v[2]}};
+  } else {
+    place = {Place::Kind::box, {first, {v[2], v[3]}}, {}};
+    if (v[0] > v[2] || v[1] > v[3]) t.fail(key, "x0 <= x1 and y0 <= y1 [m]");
+  }
+  const Box& box = place.box;
   if ((box.upper - b.lower).minCoeff() < 0 || (b.upper - box.lower).minCoeff() < 0)
     t.fail(key, "a place lies in the domain, [" + to_text(b.lower.x()) + ", " +
                     to_text(b.upper.x()) + "] x [" + to_text(b.lower.y()) + ", " +
                     to_text(b.upper.y()) + "] [m]");
-  return {is_point ? Place::Kind::point : Place::Kind::box, box};
+  return place;
+}
+
+PlaneForce read_force(const Table& t, const Domain& domain) {
+  PlaneForce out;
+  out.place = read_place(t, domain);
+  out.moment = t.number(kMoment);
+  if (t.has(kForce)) {
+    const std::vector<double> force = t.numbers(kForce);
+    out.force = {force[0], force[1]};
+  }
+  if (out.force.norm() == 0 && out.moment == 0)
+    t.has(kForce) ? t.fail(kForce, "a force is not zero [N]")
+                  : t.fail("a [[load.force]] has a `force` [N] or a `moment` [N m]");
+  if (out.moment != 0 && out.place.kind == Place::Kind::point)
+    t.fail(kMoment, "a moment acts on an `edge`, a `box` or a `disc`: a point has no lever");
+  out.bearing = t.boolean(kBearing);
+  if (out.bearing && out.place.kind != Place::Kind::disc)
+    t.fail(kBearing, "a pin bears on the rim of a `disc`");
+  if (out.bearing && out.force.norm() == 0) t.fail(kBearing, "a pin presses with a `force` [N]");
+  return out;
 }
 
 PlaneSupport read_support(const Table& t, const Domain& domain) {
@@ -165,11 +212,7 @@ LoadCase read_load(const Table& t, const Domain& domain) {
       t.has(kLoadName) ? t.fail(kLoadName, taken) : t.fail(taken);
     }
   load.weight = t.number(kWeight);
-  for (const Table& f : t.tables(kForces)) {
-    const std::vector<double> force = f.numbers(kForce);
-    load.forces.push_back({read_place(f, domain), Vec2(force[0], force[1])});
-    if (load.forces.back().force.norm() == 0) f.fail(kForce, "a force is not zero [N]");
-  }
+  for (const Table& f : t.tables(kForces)) load.forces.push_back(read_force(f, domain));
   if (load.forces.empty()) t.fail("a load has one or more [[load.force]]");
   return load;
 }

@@ -2,12 +2,12 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
 
 #include "fem/triangles/t6.h"
+#include "optim/verification/force_spread.h"
 
 namespace flexmorph::verification {
 namespace {
@@ -63,23 +63,18 @@ class Collector {
   std::vector<int> nodes_;
 };
 
-bool lies_in(const Box& box, const Vec2& p, double small) {
-  return (p.array() >= box.lower.array() - small).all() &&
-         (p.array() <= box.upper.array() + small).all();
-}
-
 }  // namespace
 
 std::vector<Location> chosen_locations(const Loads& loads, std::span<const Region> regions,
                                        double small) {
   std::vector<Location> out = loads.locations;
   for (Location& p : out) {
-    if (!p.box) continue;
+    if (p.area.empty()) continue;
     const bool on_lines = std::any_of(p.lines.begin(), p.lines.end(), [&](const Segment& s) {
       return runs_along(s, regions, small);
     });
     if (on_lines)
-      p.box.reset();
+      p.area.clear();
     else
       p.lines.clear();
   }
@@ -91,10 +86,8 @@ std::vector<Segment> LoadedMesh::lines_of(const Loads& loads, std::span<const Re
   std::vector<Segment> out;
   for (const Location& p : chosen_locations(loads, regions, small)) {
     out.insert(out.end(), p.lines.begin(), p.lines.end());
-    if (!p.box) continue;
-    const Vec2 &a = p.box->lower, &b = p.box->upper;
-    const std::array<Vec2, 4> corners = {a, Vec2(b.x(), a.y()), b, Vec2(a.x(), b.y())};
-    for (std::size_t k = 0; k < 4; ++k) out.push_back({corners[k], corners[(k + 1) % 4]});
+    for (std::size_t k = 0; k < p.area.size(); ++k)
+      out.push_back({p.area[k], p.area[(k + 1) % p.area.size()]});
   }
   double lowest = INFINITY, highest = -INFINITY;
   for (const Region& r : regions)
@@ -151,9 +144,9 @@ void LoadedMesh::find_locations() {
     std::fill(seen.begin(), seen.end(), 0);  // sides between two triangles count once
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
       const auto& n = mesh_.triangles[t];
-      if (location.box) {
+      if (!location.area.empty()) {
         const auto [a, b, c] = mesh_.corners(t);
-        if (!lies_in(*location.box, (a + b + c) / 3, 0)) continue;
+        if (!contains({location.area, {}}, (a + b + c) / 3)) continue;
         // Corners have no share of a force over an area, but they are there.
         for (std::size_t k = 0; k < 6; ++k)
           all.add(n[k], k < 3 ? 0 : fem::T6(mesh_.corners(t)).area() / 3);
@@ -243,8 +236,26 @@ void LoadedMesh::omit_unsupported_pieces() {
     unsupported_load_ = 0;
   for (std::size_t l = 0; l < loads_.loads.size() && unsupported_load_ < 0; ++l)
     for (const Force& f : loads_.loads[l].forces)
-      if (f.force != Vec2::Zero() && at_locations_[static_cast<std::size_t>(f.location)].held < 0.5)
+      if ((f.force != Vec2::Zero() || f.moment != 0) &&
+          (at_locations_[static_cast<std::size_t>(f.location)].held < 0.5 ||
+           forces_at_nodes(f).empty()))
         unsupported_load_ = static_cast<int>(l);
+}
+
+/// Nodes and their forces [N]; nothing where the material there cannot carry the force.
+std::vector<std::pair<int, Vec2>> LoadedMesh::forces_at_nodes(const Force& force) const {
+  const auto& at = at_locations_[static_cast<std::size_t>(force.location)].shares;
+  std::vector<Vec2> points;
+  std::vector<double> shares;
+  for (const auto& [node, share] : at) {
+    points.push_back(mesh_.point(node));
+    shares.push_back(share);
+  }
+  const std::vector<Vec2> forces =
+      spread({force.force, force.moment, force.bearing, force.center}, points, shares);
+  std::vector<std::pair<int, Vec2>> out;
+  for (std::size_t k = 0; k < forces.size(); ++k) out.emplace_back(at[k].first, forces[k]);
+  return out;
 }
 
 /// Springs k Δy between neighbours on the edge. Straight in x, however it is turned: of elongations
@@ -341,8 +352,8 @@ VectorXd LoadedMesh::nodal_forces(int row) const {
   add_inertia(std::span<const int>(&row, 1), out);
   const Load& load = loads_.loads[static_cast<std::size_t>(order_[static_cast<std::size_t>(row)])];
   for (const Force& f : load.forces)
-    for (const auto& [node, share] : at_locations_[static_cast<std::size_t>(f.location)].shares)
-      out.middleCols(2 * node, 2) += share * f.force.transpose();
+    for (const auto& [node, at_node] : forces_at_nodes(f))
+      out.middleCols(2 * node, 2) += at_node.transpose();
   return out.row(0).transpose();
 }
 
@@ -381,10 +392,10 @@ MatrixXd LoadedMesh::forces() const {
   }
   for (std::size_t l = 0; l < n; ++l)
     for (const Force& f : loads_.loads[static_cast<std::size_t>(order_[l])].forces)
-      for (const auto& [node, share] : at_locations_[static_cast<std::size_t>(f.location)].shares)
+      for (const auto& [node, at_node] : forces_at_nodes(f))
         for (int c = 0; c < 2; ++c)
           if (const int row = plate_->row(node, c); row >= 0)
-            out(static_cast<Eigen::Index>(l), row) += share * f.force[c];
+            out(static_cast<Eigen::Index>(l), row) += at_node[c];
   for (std::size_t l = 0; l < n; ++l) {
     const double g = held_end_stretch(l);
     if (g == 0) continue;

@@ -19,7 +19,7 @@ struct LocationNodes {
 /// Loads and supports on one mesh of a part. Loads are in the order of their clamps.
 class LoadedMesh {
  public:
-  /// Lines and boxes of locations that the mesh must follow.
+  /// Lines and areas of locations that the mesh must follow.
   static std::vector<Segment> lines_of(const Loads& loads, std::span<const Region> regions,
                                        double small);
   /// @param locations  as chosen_locations() makes them; all references live longer
@@ -52,6 +52,7 @@ class LoadedMesh {
   void omit_unsupported_pieces();
   void find_edge();
   double held_end_stretch(std::size_t row) const;
+  std::vector<std::pair<int, Vec2>> forces_at_nodes(const Force& force) const;
   bool is_held(int piece) const;
   void add_inertia(std::span<const int> rows, MatrixXd& at_nodes) const;
 
@@ -71,7 +72,7 @@ class LoadedMesh {
   std::unique_ptr<fem::TrianglePlate> plate_;
 };
 
-/// Lines or box of each location, whichever it is: only one of them is left.
+/// Lines or area of each location, whichever it is: only one of them is left.
 std::vector<Location> chosen_locations(const Loads& loads, std::span<const Region> regions,
                                        double small);
 

@@ -31,13 +31,14 @@ std::optional<Segment> clipped(const Segment& s, const Box& box) {
 
 Location point_location(const Vec2& point, const Region& border, double reach) {
   Location out;
-  out.box = Box{point - Vec2::Constant(reach), point + Vec2::Constant(reach)};
+  const Box box{point - Vec2::Constant(reach), point + Vec2::Constant(reach)};
+  out.area = corners_of(box);
   double near = INFINITY;
   for (const std::vector<Vec2>& ring : rings_of(border))
     for (std::size_t k = 0; k < ring.size(); ++k) {
       const Segment side{ring[k], ring[(k + 1) % ring.size()]};
       near = std::min(near, distance(side, point));
-      if (const auto part = clipped(side, *out.box)) out.lines.push_back(*part);
+      if (const auto part = clipped(side, box)) out.lines.push_back(*part);
     }
   // Points are said to a fraction of a cell.
   if (near > 0.5 * reach) out.lines.clear();
@@ -46,8 +47,15 @@ Location point_location(const Vec2& point, const Region& border, double reach) {
 
 Location box_location(const Box& box) {
   const Vec2 size = box.upper - box.lower;
-  if (size.minCoeff() > 0) return {{}, box};
+  if (size.minCoeff() > 0) return {{}, corners_of(box)};
   return {{{box.lower, box.upper}}, {}};
+}
+
+Location border_location(const std::vector<Vec2>& ring) {
+  Location out;
+  for (std::size_t k = 0; k < ring.size(); ++k)
+    out.lines.push_back({ring[k], ring[(k + 1) % ring.size()]});
+  return out;
 }
 
 int Loads::add(Location location) {

@@ -13,10 +13,10 @@
 namespace flexmorph::verification {
 
 /// Where a part is held or pulled: the material on lines. Where there is none on any of them, the
-/// material in the box, when there is a box.
+/// material in the area, when there is one.
 struct Location {
   std::vector<Segment> lines = {};
-  std::optional<Box> box = {};
+  std::vector<Vec2> area = {};  ///< corners of a polygon; empty: none [m]
 };
 
 /// What a point stands for: the border of the domain as far as `reach` to each side of it, in x and
@@ -27,6 +27,8 @@ struct Location {
 Location point_location(const Vec2& point, const Region& border, double reach);
 /// A box, or a line where it has no width: as it is.
 Location box_location(const Box& box);
+/// The border of a polygon: the rim of a bore.
+Location border_location(const std::vector<Vec2>& ring);
 
 struct Support {
   int location = 0;  ///< of Loads
@@ -34,7 +36,10 @@ struct Support {
 };
 struct Force {
   int location = 0;
-  Vec2 force{0, 0};  ///< in all, spread evenly over the material there [N]
+  Vec2 force{0, 0};      ///< in all, spread over the material there [N]
+  double moment = 0;     ///< see ForceSpread [N m]
+  bool bearing = false;  ///< of a pin in a bore, otherwise even
+  Vec2 center{0, 0};     ///< of the bore [m]
 };
 
 /// What acts at the same time.

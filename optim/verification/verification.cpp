@@ -113,6 +113,15 @@ class OutlineVerifier {
   OutlineVerification out_;
 };
 
+/// Tells whether a point lies in a polygon or nearer to its border than the reach.
+bool is_near(const std::vector<Vec2>& area, const Vec2& at, double reach) {
+  if (area.empty()) return false;
+  if (contains({area, {}}, at)) return true;
+  for (std::size_t k = 0; k < area.size(); ++k)
+    if (distance(Segment{area[k], area[(k + 1) % area.size()]}, at) <= reach) return true;
+  return false;
+}
+
 /// Nodes whose stress is no matter of how a force is put on, or a support.
 std::vector<char> OutlineVerifier::away_from_locations(const LoadedMesh& mesh) const {
   const PartMesh& m = mesh.plate().mesh();
@@ -123,9 +132,7 @@ std::vector<char> OutlineVerifier::away_from_locations(const LoadedMesh& mesh) c
       const bool on_line = std::any_of(p.lines.begin(), p.lines.end(), [&](const Segment& s) {
         return distance(s, at) <= settings_.reach;
       });
-      const bool in_box = p.box && (at.array() >= p.box->lower.array() - settings_.reach).all() &&
-                          (at.array() <= p.box->upper.array() + settings_.reach).all();
-      if (on_line || in_box) out[k] = 0;
+      if (on_line || is_near(p.area, at, settings_.reach)) out[k] = 0;
     }
   return out;
 }

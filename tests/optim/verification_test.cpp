@@ -217,7 +217,7 @@ TEST(OutlineVerification, PointsAreSpreadOverACell) {
   for (const Segment& s : corner.lines) EXPECT_NEAR((s.b - s.a).norm(), 0.1, 1e-15);
   const Location inside = point_location({4, 0.5}, border, 0.1);
   EXPECT_TRUE(inside.lines.empty());
-  ASSERT_TRUE(inside.box);
+  ASSERT_EQ(inside.area.size(), 4u);
   // Wherever the unit force is spread over the end, the beam bends alike.
   Loads loads = tip_load();
   loads.locations[1] = middle;

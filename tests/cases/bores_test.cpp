@@ -1,0 +1,177 @@
+// Bolts and pins in the bores of a plate at rest: which nodes are held and loaded, what their
+// forces come to, and cells against outlines.
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "cases/assembly/build.h"
+#include "cases/assembly/static_conditions.h"
+#include "io/tables.h"
+#include "tests/cases/program.h"
+
+namespace flexmorph::test {
+namespace {
+
+// A plate of 80 mm x 50 mm with bores of 5 mm and 8 mm radius, all of it material.
+const std::string kHead = R"(
+[domain]
+name = "plate"
+size = [0.08, 0.05]
+thickness = 0.004
+youngs_modulus = 70e9
+
+[[support]]
+disc = [0.02, 0.025, 0.005]
+fix = ["x", "y"]
+
+[[load]]
+name = "pin"
+[[load.force]]
+disc = [0.05, 0.025, 0.008]
+force = [300.0, -400.0]
+bearing = true
+
+[[load]]
+name = "torque"
+[[load.force]]
+disc = [0.0501, 0.0249, 0.0081]
+moment = 12.0
+
+[[load]]
+name = "inside"
+[[load.force]]
+disc = [0.07, 0.01, 0.0041]
+force = [0.0, -100.0]
+
+[[design]]
+cell = 0.001
+components = [1, 1]
+max_volume = 0.999
+start = "all.csv"
+[[design.void]]
+disc = [0.02, 0.025, 0.005]
+[[design.void]]
+disc = [0.05, 0.025, 0.008]
+[optimizer]
+max_iterations = 0
+[output]
+plots = false
+vtk = false
+)";
+
+struct Bores : ::testing::Test {
+  Scratch scratch;
+  Bores() {
+    scratch.write("all.csv", "X0,Y0,half_length,angle,c1,c2,c3\n0.04,0.025,0.2,0,0.1,0.1,0.1\n");
+  }
+  /// The case with a line in the place of another one.
+  std::string with(const std::string& old, const std::string& line) const {
+    std::string text = kHead;
+    text.replace(text.find(old), old.size(), line);
+    return scratch.write("bores.toml", text);
+  }
+};
+
+TEST_F(Bores, AreHeldAndLoadedAtTheirRims) {
+  const cases::Scene scene = cases::read_scene(io::CaseFile(with("vtk", "vtk")));
+  const mmc::BodyProblem problem = cases::build_problems(scene).front();
+  const Grid& grid = problem.grid;
+  const cases::StaticConditions found = cases::static_conditions(scene, grid, problem.outside);
+  const auto place = [&](int node) {
+    return grid.node_position(node / (grid.ny + 1), node % (grid.ny + 1));
+  };
+  const Vec2 bolt(0.02, 0.025), pin(0.05, 0.025), disc(0.07, 0.01);
+  // Two unknowns for each node; the rim has about as many nodes as its box has sides of cells.
+  EXPECT_GE(found.held.size(), 2 * 28u);
+  EXPECT_LE(found.held.size(), 2 * 44u);
+  for (const fem::HeldUnknown& held : found.held)
+    EXPECT_NEAR((place(held.node) - bolt).norm(), 0.005, 0.001);
+  ASSERT_EQ(found.loads.size(), 3u);
+  const auto resultant = [&](const mmc::LoadCase& load) {
+    Vec2 sum = Vec2::Zero();
+    for (const fem::NodalForce& f : load.forces) sum += f.force;
+    return sum;
+  };
+  const auto moment = [&](const mmc::LoadCase& load) {
+    double sum = 0;
+    for (const fem::NodalForce& f : load.forces) {
+      const Vec2 arm = place(f.node) - pin;
+      sum += arm.x() * f.force.y() - arm.y() * f.force.x();
+    }
+    return sum;
+  };
+  EXPECT_NEAR((resultant(found.loads[0]) - Vec2(300, -400)).norm(), 0, 1e-9);
+  EXPECT_NEAR(moment(found.loads[0]), 0, 1e-9);
+  EXPECT_NEAR(resultant(found.loads[1]).norm(), 0, 1e-9);
+  EXPECT_NEAR(moment(found.loads[1]), 12, 1e-9);
+  for (const size_t l : {0u, 1u})
+    for (const fem::NodalForce& f : found.loads[l].forces)
+      if (f.force.norm() > 0) {
+        EXPECT_NEAR((place(f.node) - pin).norm(), 0.008, 0.001);
+      }
+  // The pin does not pull: its forces go outwards, and where it is there are none behind.
+  for (const fem::NodalForce& f : found.loads[0].forces)
+    EXPECT_GE(f.force.dot(place(f.node) - pin), -1e-12);
+  // A disc in the material: all nodes within, 52 of them in a radius of 4.1 cells about a node.
+  EXPECT_NEAR((resultant(found.loads[2]) - Vec2(0, -100)).norm(), 0, 1e-9);
+  int within = 0;
+  for (int i = -5; i <= 5; ++i)
+    for (int j = -5; j <= 5; ++j) within += i * i + j * j <= 4.1 * 4.1;
+  EXPECT_EQ(found.loads[2].forces.size(), static_cast<size_t>(within));
+  for (const fem::NodalForce& f : found.loads[2].forces)
+    EXPECT_LE((place(f.node) - disc).norm(), 0.0041);
+}
+
+// Rims of cells are stairs, those of outlines are round: two discretizations of the same loads that
+// meet as cells shrink.
+TEST_F(Bores, HaveTheSameEnergiesOnCellsAndOnOutlines) {
+  std::vector<double> last;
+  for (const char* cell : {"0.001", "0.0005"}) {
+    const std::string folder = scratch / cell;
+    const Ended ended = flexmorph(
+        scratch,
+        {"run", with("cell = 0.001", std::string("cell = ") + cell), "-o", folder, "--quiet"});
+    ASSERT_TRUE(ended.code == 0 || ended.code == kTooFew) << ended.err;
+    const io::CsvTable table = io::read_csv(folder + "/loads/plate.csv");
+    EXPECT_EQ(table.texts("source"), (Words{"outline", "outline", "outline"}));
+    const std::vector<double> cells = table.numbers("compliance"),
+                              outline = table.numbers("strain_energy");
+    std::vector<double> off;
+    for (size_t l = 0; l < cells.size(); ++l)
+      off.push_back(std::abs(cells[l] / (2 * outline[l]) - 1));
+    for (size_t l = 0; l < last.size(); ++l) EXPECT_LT(off[l], 0.7 * last[l]) << cell << " " << l;
+    last = off;
+  }
+  for (const double off : last) EXPECT_LT(off, 0.05);
+}
+
+TEST_F(Bores, RefuseWhatTheyCannotCarry) {
+  const auto refused = [&](const std::string& old, const std::string& line) {
+    const Ended ended = flexmorph(scratch, {"check", with(old, line)});
+    EXPECT_EQ(ended.code, 2) << line;
+    EXPECT_EQ(lines_of(ended.err).size(), 1u) << ended.err;
+    return ended.err;
+  };
+  const std::string force = "force = [300.0, -400.0]\n";
+  EXPECT_TRUE(contains(refused(force, "moment = 1.0\n"), "a pin presses with a `force` [N]"));
+  EXPECT_TRUE(contains(refused("moment = 12.0", "moment = 0.0"),
+                       "a [[load.force]] has a `force` [N] or a `moment` [N m]"));
+  EXPECT_TRUE(contains(refused("disc = [0.05, 0.025, 0.008]\nforce", "edge = \"right\"\nforce"),
+                       "a pin bears on the rim of a `disc`"));
+  EXPECT_TRUE(contains(refused("disc = [0.0501, 0.0249, 0.0081]", "point = [0.05, 0.01]"),
+                       "a point has no lever"));
+  EXPECT_TRUE(
+      contains(refused("disc = [0.05, 0.025, 0.008]\nforce", "disc = [0.05, 0.025, 0.012]\nforce"),
+               "a pin wants a bore"));
+  EXPECT_TRUE(contains(refused("disc = [0.07, 0.01, 0.0041]", "disc = [0.07, 0.01, 0.0]"),
+                       "a radius is positive"));
+  EXPECT_TRUE(contains(refused("disc = [0.07, 0.01, 0.0041]", "disc = [0.02, 0.025, 0.003]"),
+                       "no material can be there"));
+  EXPECT_TRUE(
+      contains(refused("disc = [0.0501, 0.0249, 0.0081]", "disc = [0.0604, 0.0104, 0.0004]"),
+               "no material can be there"));
+}
+
+}  // namespace
+}  // namespace flexmorph::test
