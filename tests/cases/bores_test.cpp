@@ -113,7 +113,7 @@ TEST_F(Bores, AreHeldAndLoadedAtTheirRims) {
   // The pin does not pull: its forces go outwards, and where it is there are none behind.
   for (const fem::NodalForce& f : found.loads[0].forces)
     EXPECT_GE(f.force.dot(place(f.node) - pin), -1e-12);
-  // A disc in the material: all nodes within, 52 of them in a radius of 4.1 cells about a node.
+  // A disc in the material: all nodes within a radius of 4.1 cells about a node, 49 of them.
   EXPECT_NEAR((resultant(found.loads[2]) - Vec2(0, -100)).norm(), 0, 1e-9);
   int within = 0;
   for (int i = -5; i <= 5; ++i)
@@ -124,7 +124,8 @@ TEST_F(Bores, AreHeldAndLoadedAtTheirRims) {
 }
 
 // Rims of cells are stairs, those of outlines are round: two discretizations of the same loads that
-// meet as cells shrink.
+// meet as cells shrink. Nodes of a stair lie outside of the circle by up to a cell, so that the
+// difference is about proportional to the cell (measured: 0.44 to 0.47 of it with half the cell).
 TEST_F(Bores, HaveTheSameEnergiesOnCellsAndOnOutlines) {
   std::vector<double> last;
   for (const char* cell : {"0.001", "0.0005"}) {

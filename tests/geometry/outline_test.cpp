@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/disc.h"
 #include "geometry/triangulate.h"
 #include "tests/geometry/random_components.h"
 
@@ -176,6 +177,37 @@ TEST(Circle, SidesStayWithinTheTolerance) {
     }
   EXPECT_THROW(circle_within({0, 0}, 0, 1), Error);
   EXPECT_THROW(circle_within({0, 0}, 1, NAN), Error);
+}
+
+// A regular polygon of n corners on a circle of radius r has the area n r^2 sin(2 pi / n) / 2.
+TEST(Disc, HasTheAreaAndTheCentroidOfAPolygon) {
+  const Vec2 center(300, -2);
+  for (const int n : {3, 8, 200}) {
+    std::vector<Vec2> ring;
+    for (int k = 0; k < n; ++k) {
+      const double angle = -2 * std::numbers::pi * k / n;  // clockwise, as holes are
+      ring.emplace_back(center + 0.7 * Vec2(std::cos(angle), std::sin(angle)));
+    }
+    const Disc found = disc_like(ring);
+    EXPECT_NEAR((found.center - center).norm(), 0, 1e-12);
+    const double area = 0.5 * n * 0.7 * 0.7 * std::sin(2 * std::numbers::pi / n);
+    EXPECT_NEAR(found.radius, std::sqrt(area / std::numbers::pi), 1e-12);
+  }
+  // The centroid of a triangle is the mean of its corners.
+  const Disc triangle = disc_like({{1, 1}, {4, 1}, {1, 7}});
+  EXPECT_NEAR((triangle.center - Vec2(2, 3)).norm(), 0, 1e-14);
+}
+
+TEST(Disc, MatchesARoundPolygonOnly) {
+  const std::vector<Vec2> round = circle_within({1, 2}, 3, 1e-4);
+  EXPECT_TRUE(matches(round, {{1, 2}, 3}, 1e-3));
+  EXPECT_TRUE(matches(round, {{1.04, 2}, 3.04}, 0.05));
+  EXPECT_FALSE(matches(round, {{1.06, 2}, 3}, 0.05));
+  EXPECT_FALSE(matches(round, {{1, 2}, 2.94}, 0.05));
+  const double half = 0.5 * std::sqrt(std::numbers::pi) * 3;  // a square of the same area
+  const std::vector<Vec2> square = {
+      {1 - half, 2 - half}, {1 + half, 2 - half}, {1 + half, 2 + half}, {1 - half, 2 + half}};
+  EXPECT_FALSE(matches(square, {{1, 2}, 3}, 0.05));
 }
 
 }  // namespace
