@@ -13,7 +13,7 @@
 namespace flexmorph::optim {
 namespace {
 
-const std::string kHead = "flexmorph evaluations 2\n";
+const std::string kHead = "flexmorph evaluations 3\n";
 constexpr std::uint64_t kLargest = 1ULL << 32;  // bytes of a record: more is damage
 constexpr auto kSyncEvery = std::chrono::seconds(5);
 
@@ -73,7 +73,6 @@ std::vector<char> packed(const Evaluation& e) {
   put(out, static_cast<std::int64_t>(e.failure.size()));
   put(out, e.failure.data(), e.failure.size());
   put(out, static_cast<std::int64_t>(e.acceptable));
-  put(out, e.memory);
   put(out, &e.response.f, sizeof e.response.f);
   put(out, e.response.df);
   put(out, e.response.g);
@@ -91,7 +90,7 @@ std::optional<Evaluation> unpacked(const std::vector<char>& data) {
       letters > static_cast<std::int64_t>(data.size()))
     return {};
   e.failure.resize(static_cast<size_t>(letters));
-  if (!in.take(e.failure.data(), e.failure.size()) || !in.take(acceptable) || !in.take(e.memory) ||
+  if (!in.take(e.failure.data(), e.failure.size()) || !in.take(acceptable) ||
       !in.take(&e.response.f, sizeof e.response.f) || !in.take(e.response.df) ||
       !in.take(e.response.g) || !in.take(e.response.dg) ||
       !in.take(&e.response.first_bound, sizeof e.response.first_bound) ||
@@ -182,7 +181,6 @@ void EvaluationLog::append(const Evaluation& evaluation) {
 
 Response RecordedProblem::evaluate(const VectorXd& x) {
   if (std::optional<Evaluation> known = log_.next(x)) {
-    problem_.recall(x, known->memory);
     acceptable_ = known->acceptable;
     if (!known->failure.empty()) throw Error::numerical(known->failure);
     return std::move(known->response);
@@ -196,7 +194,6 @@ Response RecordedProblem::evaluate(const VectorXd& x) {
     if (error.kind() != Error::Kind::numerical) throw;
     now.failure = error.what();
   }
-  now.memory = problem_.memory();
   acceptable_ = now.acceptable;
   log_.append(now);
   if (!now.failure.empty()) throw Error::numerical(now.failure);

@@ -16,7 +16,6 @@ struct Evaluation {
   std::string failure;  ///< why the state could not be solved; empty: it was, and
   Response response;    ///< is what it came to
   bool acceptable = true;
-  VectorXd memory;  ///< Problem::memory() afterwards
 };
 
 /// Evaluations in the order in which an optimizer asked for them, in a file that outlives the

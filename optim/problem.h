@@ -51,13 +51,6 @@ class Problem {
   /// May this design be an iterate? (A structure that has come apart may not.) Asked after
   /// evaluate() at the same x; an optimizer that can step back does so when the answer is no.
   virtual bool acceptable(const VectorXd&) { return true; }
-
-  /// What answers to later designs hang on besides them, (k): a problem that remembers earlier ones
-  /// says so here, and takes it over in recall().
-  virtual VectorXd memory() const { return {}; }
-  /// x was evaluated by an earlier run, which is not done again.
-  /// @param memory  as memory() was then; empty: stays as it is
-  virtual void recall(const VectorXd& /*x*/, const VectorXd& /*memory*/) {}
 };
 
 }  // namespace flexmorph::optim

@@ -168,6 +168,7 @@ bool Search::row(int iteration, const Point& point) {
   previous_row_ = point.x;
   objectives_.push_back(point.response.f);
   if (objectives_.size() > static_cast<size_t>(settings_.rest.rows) + 1) objectives_.pop_front();
+  if (usable(point.response)) last_usable_row_ = rows_;
   const bool found = best_.point.x.size() > 0 && usable(best_.point.response);
   best_objectives_.push_back(found ? attained_objective(best_.point.response)
                                    : std::numeric_limits<double>::infinity());
@@ -261,7 +262,9 @@ double Search::improvement_over(int rows) const {
 }
 
 bool Search::at_plateau() const {
-  return improvement_over(Verdict::kPlateauRows) < Verdict::kPlateau;  // false for NaN
+  constexpr int kLate = 10;  // where all late iterates are infeasible, nothing has ended
+  return rows_ - last_usable_row_ < kLate &&
+         improvement_over(Verdict::kPlateauRows) < Verdict::kPlateau;  // false for NaN
 }
 
 Verdict Search::verdict_on(const Result& result) const {

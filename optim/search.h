@@ -95,7 +95,7 @@ class Search {
   Ranked best_;
   bool best_is_new_ = false;
   VectorXd last_x_, previous_row_;
-  int evaluations_ = 0, rows_ = 0, resting_ = 0, refused_in_a_row_ = 0;
+  int evaluations_ = 0, rows_ = 0, last_usable_row_ = 0, resting_ = 0, refused_in_a_row_ = 0;
   std::deque<double> objectives_;         // of the last rows, at most settings_.rest.rows + 1
   std::deque<double> best_objectives_;    // of the best usable design at the last rows
   double mark_ = 0, inside_problem_ = 0;  // CPU seconds

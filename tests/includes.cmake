@@ -99,7 +99,7 @@ endfunction()
 # The tables must be able to refuse: known offences first, then known good ones.
 foreach(pair geometry/grid.h>io/vtk.h io/vtk.cpp>fem/model.h fem/element.h>fem/model.h
              fem/terms/inertia.cpp>fem/elements/ale_ancf_plate.h fem/model.cpp>fem/terms/terms.h
-             fem/solve/newton.cpp>fem/dynamics/esl.h optim/mma.cpp>optim/mmc/design.h
+             fem/solve/newton.cpp>fem/dynamics/esl.h optim/mma.cpp>optim/mmc/problem/design.h
              fem/thermal/heated.cpp>fem/elements/ancf_plate.h
              optim/mma.cpp>fem/model.h cases/run/run.h>tests/support/rate.h)
   string(REPLACE ">" ";" pair ${pair})
@@ -109,7 +109,7 @@ foreach(pair geometry/grid.h>io/vtk.h io/vtk.cpp>fem/model.h fem/element.h>fem/m
   endif()
 endforeach()
 foreach(pair fem/terms/inertia.cpp>fem/element.h fem/dynamics/esl.cpp>fem/model.h
-             optim/mmc/compliance_evaluator.h>fem/solve/statics.h tests/fem/model_test.cpp>fem/model.h)
+             optim/mmc/loads/compliance_evaluator.h>fem/solve/statics.h tests/fem/model_test.cpp>fem/model.h)
   string(REPLACE ">" ";" pair ${pair})
   judge_room(${pair} offence)
   if(offence)

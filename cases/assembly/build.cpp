@@ -117,8 +117,8 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
                       ? crossing_layout(g.x0, g.y0, g.width, g.height, d.components[0],
                                         d.components[1], d.half_thickness, d.half_length)
                       : d.start;
-    std::vector<TdfSettings> stages;
-    for (size_t i = 0; i < d.band.size(); ++i) stages.push_back(d.stage(i));
+    std::vector<TdfSettings> bands;
+    for (size_t i = 0; i < d.band.size(); ++i) bands.push_back(d.at_band(i));
     const mmc::Plate plate = plate_of(scene, d);
     mmc::Symmetry symmetry;
     if (d.symmetric) symmetry = symmetry_of(scene, d, plate.outside);
@@ -139,7 +139,8 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
                    .further_starts = std::move(further),
                    .solid = d.solid,
                    .empty = d.empty,
-                   .stages = stages,
+                   .bands = bands,
+                   .erosion = d.erosion,
                    .goal = d.goal,
                    .motion_goal = d.motion_goal,
                    .stiffness_void = d.stiffness_void,
@@ -149,8 +150,6 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
                    .outside = plate.outside,
                    .places = places_of(scene, d, plate.outside),
                    .held = held_lines(scene, d),
-                   .drop_every = d.drop_every,
-                   .refill = d.refill,
                    .widths = d.widths,
                    .shares_mass = d.shares_mass});
   }

@@ -8,7 +8,7 @@
 #include "cases/scene/scene.h"
 #include "fem/dynamics/esl.h"
 #include "fem/dynamics/motion.h"
-#include "optim/mmc/esl_loop.h"
+#include "optim/mmc/cycles/esl_loop.h"
 
 namespace flexmorph::cases {
 

@@ -235,8 +235,6 @@ Extent extent_of(const Scene& scene) {
   out.memory.push_back({"the program", "title", kProgram});
   out.disk.push_back({"the report", "title", kReport});
   out.iterations = 1.0 * scene.optimizer.max_iterations * static_cast<double>(scene.designs.size());
-  if (scene.finish && out.iterations > 0)
-    out.iterations += 1.0 * mmc::kFinishTries * scene.finish->max_iterations;
   if (!scene.domain) out.iterations *= scene.cycle.max_cycles;
   for (const BodyDesign& d : scene.designs)
     out.iterations += 1.0 * (d.starts - 1) * scene.optimizer.max_iterations;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "optim/mmc/responses/rows.h"
+#include "optim/mmc/problem/responses/rows.h"
 
 namespace flexmorph::cases {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "cases/assembly/prepared_case.h"
 #include "fem/dynamics/motion_gradient.h"
-#include "optim/mmc/motion_response.h"
+#include "optim/mmc/problem/motion_response.h"
 
 namespace flexmorph::cases {
 

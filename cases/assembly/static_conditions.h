@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cases/scene/scene.h"
-#include "optim/mmc/body_problem.h"
+#include "optim/mmc/problem/body_problem.h"
 
 namespace flexmorph::cases {
 

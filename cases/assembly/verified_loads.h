@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cases/scene/scene.h"
-#include "optim/mmc/design_verification.h"
+#include "optim/mmc/cycles/design_verification.h"
 
 namespace flexmorph::cases {
 

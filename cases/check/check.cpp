@@ -133,10 +133,8 @@ void describe_body(const Body& body, double end, const Mechanism& mechanism,
 }
 
 std::string optimizer_words(const Scene& scene) {
-  const auto words = [](const optim::Settings& s) {
-    return s.name + ", at most " + std::to_string(s.max_iterations) + " iterations";
-  };
-  return words(scene.optimizer) + (scene.finish ? ", then " + words(*scene.finish) : "");
+  return scene.optimizer.name + ", at most " + std::to_string(scene.optimizer.max_iterations) +
+         " iterations";
 }
 
 std::string thickness_words(const BodyDesign& d) {

@@ -18,8 +18,8 @@
 #include "io/surfaces.h"
 #include "io/tables.h"
 #include "io/vtk.h"
-#include "optim/mmc/corrected_cycles.h"
-#include "optim/mmc/esl_loop.h"
+#include "optim/mmc/cycles/corrected_cycles.h"
+#include "optim/mmc/cycles/esl_loop.h"
 
 namespace flexmorph::cases {
 
@@ -129,8 +129,6 @@ class RunFolder {
   void write_part(const std::string& body, FramePart part);
   /// Does the task, now or beside the run; a frame that cannot be written is counted.
   void write_frame(std::function<void()> task);
-  void add_events(const std::string& body, int cycle, int iteration,
-                  std::span<const mmc::ComponentEvent> events);
   void begin_history(Begin begin);
   void keep_row(const mmc::RowOfHistory& row, const std::vector<std::string>& old);
   void forget_old_rows();
@@ -141,7 +139,7 @@ class RunFolder {
 
   io::OutputFolder folder_;
   const Scene& scene_;
-  std::unique_ptr<io::CsvWriter> history_, events_;  // events.csv: from the first one on
+  std::unique_ptr<io::CsvWriter> history_;
   /// An index of frames, listed as a file of the run with its first one.
   class FrameIndex {
    public:

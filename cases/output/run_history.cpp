@@ -134,7 +134,6 @@ void RunFolder::keep_row(const mmc::RowOfHistory& row, const std::vector<std::st
     h.sharp_row.push_back(h.row.back());
     h.sharp_compliance.push_back(sharp);
   }
-  add_events(row.body, row.cycle, row.iteration, row.events);
 }
 
 /// VTK files of a design on its way.
@@ -154,7 +153,7 @@ void RunFolder::write_design_frame(const mmc::IterationReport& r) {
                energy = VectorXd(0.5 * by_stiffness.cwiseProduct(factors.stiffness)),
                phi = VectorXd(r.state.phi()), displacement = std::move(shown),
                components = r.state.components(),
-               min_half_thickness = r.problem.stages.back().min_half_thickness] {
+               min_half_thickness = r.problem.bands.back().min_half_thickness] {
     const double clock = thread_seconds();
     const auto view = [](const VectorXd& v) {
       return std::span<const double>(v.data(), static_cast<size_t>(v.size()));
@@ -184,7 +183,6 @@ void RunFolder::add_iteration(const mmc::IterationReport& r) {
     h.sharp_row.push_back(h.row.back());
     h.sharp_compliance.push_back(r.sharp->compliance);
   }
-  add_events(r.problem.body, r.cycle, r.iteration, r.events);
   write_history_row(r);
 }
 
@@ -235,18 +233,6 @@ RunFolder::History& RunFolder::history_of(const std::string& body) {
     if (h.body == body) return h;
   histories_.emplace_back().body = body;
   return histories_.back();
-}
-
-void RunFolder::add_events(const std::string& body, int cycle, int iteration,
-                           std::span<const mmc::ComponentEvent> events) {
-  if (events.empty()) return;
-  if (!events_) {
-    const std::vector<std::string> columns = {"body",  "cycle",     "iteration",
-                                              "event", "component", "components"};
-    events_ = std::make_unique<io::CsvWriter>(folder_.file("events.csv"), columns);
-  }
-  for (const mmc::ComponentEvent& e : events)
-    events_->row({body, cycle, iteration, to_string(e.kind), e.component + 1, e.n_components});
 }
 
 }  // namespace flexmorph::cases

@@ -69,8 +69,6 @@ std::span<const Quantity<mmc::BodyOutcome>> design_quantities() {
       {"loads", "-", "number of load sets", [](const O& o) -> Value { return o.n_loads; }},
       {"right_hand_sides", "-", "right-hand sides per state solve",
        [](const O& o) -> Value { return o.n_right_hand_sides; }},
-      {"component_changes", "-", "components that were removed, split or inserted",
-       [](const O& o) -> Value { return static_cast<int>(o.events.size()); }},
       {"stop", "", "why the optimizer stopped", [](const O& o) -> Value { return o.stop; }},
       {"verdict", "", "converged, stagnated, unfinished or evaluated",
        [](const O& o) -> Value { return optim::to_string(o.verdict.kind); }},
@@ -82,45 +80,17 @@ std::span<const Quantity<mmc::BodyOutcome>> design_quantities() {
   return kTable;
 }
 
-std::span<const Quantity<mmc::CleanUp>> clean_up_quantities() {
-  using C = mmc::CleanUp;
-  static const Quantity<C> kTable[] = {
+std::span<const Quantity<mmc::BodyOutcome>> length_scale_quantities() {
+  using O = mmc::BodyOutcome;
+  static const Quantity<O> kTable[] = {
       {"min_feature_wanted", "m", "width of material that was asked for",
-       [](const C& c) -> Value { return c.wanted.solid; }},
-      {"min_feature_before", "m", "smallest width of material before",
-       [](const C& c) -> Value { return c.before.solid; }},
+       [](const O& o) -> Value { return o.length_scale->wanted.solid; }},
       {"min_gap_wanted", "m", "width of gaps that was asked for",
-       [](const C& c) -> Value { return c.wanted.gap; }},
-      {"min_gap_before", "m", "smallest width of a gap before",
-       [](const C& c) -> Value { return c.before.gap; }},
-      {"pieces_before", "-", "pieces of the outline before",
-       [](const C& c) -> Value { return c.pieces_before; }},
-      {"pieces", "-", "pieces of the outline after it",
-       [](const C& c) -> Value { return c.pieces_after; }},
-      {"compliance_before", "J", "compliance of the crisp design before",
-       [](const C& c) -> Value { return c.compliance_before; }},
-      {"compliance_cost", "-", "relative change of this compliance",
-       [](const C& c) -> Value { return c.compliance_after / c.compliance_before - 1; }},
-      {"patches", "-", "components that were added over narrow places",
-       [](const C& c) -> Value { return c.patches; }},
-      {"dropped", "-", "components that were removed at narrow places",
-       [](const C& c) -> Value { return c.dropped; }},
-      {"idle", "-", "unloaded components that were removed",
-       [](const C& c) -> Value { return c.idle; }},
-      {"stubs", "-", "unloaded ends of components that were removed",
-       [](const C& c) -> Value { return c.stubs; }},
-      {"joined", "-", "components that were merged with collinear ones",
-       [](const C& c) -> Value { return c.joined; }},
-      {"born", "-", "bars that were inserted across the void",
-       [](const C& c) -> Value { return c.born; }},
-      {"rounds", "-", "rounds of the post-processing",
-       [](const C& c) -> Value { return c.rounds; }},
-      {"torn_gaps", "-", "gaps below the size of a cell that are left",
-       [](const C& c) -> Value { return c.torn; }},
-      {"reached", "", "whether all widths are as asked for",
-       [](const C& c) -> Value { return c.reached(); }},
-      {"given_up", "", "whether it would have cost too much compliance and was taken back",
-       [](const C& c) -> Value { return c.given_up; }}};
+       [](const O& o) -> Value { return o.length_scale->wanted.gap; }},
+      {"removed", "-", "components that carried nothing and were removed",
+       [](const O& o) -> Value { return o.length_scale->removed; }},
+      {"reached", "", "whether the outline is one piece with these widths, within a hundredth",
+       [](const O& o) -> Value { return o.reaches_length_scale(); }}};
   return kTable;
 }
 

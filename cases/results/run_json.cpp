@@ -38,7 +38,7 @@ double thinnest(const mmc::BodyProblem& problem) {
     for (int k = 0; k <= 200; ++k)
       out = std::min(
           out,
-          profile(c, c.half_length * (k / 100.0 - 1), problem.stages.back().min_half_thickness).g);
+          profile(c, c.half_length * (k / 100.0 - 1), problem.bands.back().min_half_thickness).g);
   return out;
 }
 
@@ -92,7 +92,7 @@ Json body_results(const RunResult& result, size_t i) {
   }
   if (i < design.outlines.size())
     out["body_fitted"] = outline_results(design.outlines[i], o.sharp.compliance);
-  if (o.clean_up) out["clean_up"] = object_of(clean_up_quantities(), *o.clean_up);
+  if (o.length_scale) out["length_scale"] = object_of(length_scale_quantities(), o);
   out["thinnest_component"] = thinnest(design.problems[i]);
   add_amplitudes(out, result.motions, o.body);
   if (const auto tip = tip_variation(result.motions, o.body))

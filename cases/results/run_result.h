@@ -7,8 +7,8 @@
 #include "cases/results/motion_record.h"
 #include "cases/results/static_loads.h"
 #include "cases/results/verified_outline.h"
-#include "optim/mmc/corrected_cycles.h"
-#include "optim/mmc/esl_loop.h"
+#include "optim/mmc/cycles/corrected_cycles.h"
+#include "optim/mmc/cycles/esl_loop.h"
 
 /// What a run found. Drivers return its parts; once it is complete it is const.
 namespace flexmorph::cases {
@@ -61,7 +61,7 @@ struct DesignResult {
   int cycles = 0;
   /// CPU seconds: post-processing of designs; motions that make loads; motions with final designs
   /// and with uniform material.
-  double seconds_clean_up = 0, seconds_motion = 0, seconds_verification = 0;
+  double seconds_idle = 0, seconds_motion = 0, seconds_verification = 0;
 };
 
 /// The motions of a run: with the design (or full material), with uniform material of the same

@@ -200,7 +200,7 @@ void append_table(const std::string& title, std::span<const Quantity<Source>> ta
 std::string results_as_markdown() {
   std::string out;
   append_table("`results`: an entry per designed body", design_quantities(), out);
-  append_table("`results[].clean_up`: length-scale post-processing", clean_up_quantities(), out);
+  append_table("`results[].length_scale`: widths of the outline", length_scale_quantities(), out);
   append_table("`results[].body_fitted`: verification of the outline", outline_quantities(), out);
   append_table("`results[].load_cases`, `loads/`: an entry per load case of a plate at rest",
                static_load_quantities(), out);

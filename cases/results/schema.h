@@ -26,7 +26,8 @@ struct Quantity {
 };
 
 std::span<const Quantity<mmc::BodyOutcome>> design_quantities();
-std::span<const Quantity<mmc::CleanUp>> clean_up_quantities();
+/// Of designs whose widths are limited.
+std::span<const Quantity<mmc::BodyOutcome>> length_scale_quantities();
 std::span<const Quantity<VerifiedOutline>> outline_quantities();
 std::span<const Quantity<StaticLoad>> static_load_quantities();
 std::span<const Quantity<mmc::LoadDifference>> load_difference_quantities();

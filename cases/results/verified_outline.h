@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "optim/mmc/design_verification.h"
+#include "optim/mmc/cycles/design_verification.h"
 
 /// The verification of final designs by their outlines.
 namespace flexmorph::cases {

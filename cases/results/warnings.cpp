@@ -7,7 +7,7 @@
 #include "cases/assembly/build.h"
 #include "cases/assembly/static_conditions.h"
 #include "io/files.h"
-#include "optim/mmc/usability.h"
+#include "optim/mmc/cycles/usability.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -116,25 +116,24 @@ std::string list_of(std::vector<std::string> names) {
   return out;
 }
 
-/// What mending has left.
-std::string not_mended(const mmc::BodyOutcome& o) {
-  const mmc::CleanUp& c = *o.clean_up;
-  std::string out = "body '" + o.body + "' could not be mended: ";
-  const auto add = [&](const std::string& what, double found, double wanted) {
-    if (found < wanted)
-      out += "its smallest " + what + " is " + io::to_text(found, 4) + " m where " +
-             io::to_text(wanted, 4) + " m was wanted; ";
+/// What is narrower than it was asked for, or stands alone.
+std::string length_scale_words(const mmc::BodyOutcome& o) {
+  const Widths& wanted = o.length_scale->wanted;
+  std::vector<std::string> out;
+  const auto add = [&](const std::string& what, double found, double asked) {
+    if (found < asked)
+      out.push_back("its smallest " + what + " is " + io::to_text(found, 4) + " m where " +
+                    io::to_text(asked, 4) + " m was asked for");
   };
-  add("feature", c.after.solid, c.wanted.solid);
-  add("gap", c.after.gap, c.wanted.gap);
-  if (c.torn > 0)
-    out += "loads pass through " + std::to_string(c.torn) +
-           " of its gaps, by its cells only, or would pass to what holds it; ";
-  if (c.pieces_after != 1) out += "it has " + std::to_string(c.pieces_after) + " pieces; ";
-  return out + (c.given_up
-                    ? "repairs would have cost more than a quarter of the compliance, and were "
-                      "taken back: more iterations help"
-                    : "more iterations may help");
+  if (o.sharp.features) {
+    add("feature", o.sharp.features->solid, wanted.solid);
+    add("gap", o.sharp.features->gap, wanted.gap);
+  } else {
+    out.push_back("its outlines cannot be united");
+  }
+  if (o.sharp.connectivity.islands > 0)
+    out.push_back("it has " + std::to_string(o.sharp.connectivity.islands + 1) + " pieces");
+  return "body '" + o.body + "': " + list_of(out) + "; more iterations may help";
 }
 
 void add_designs(const Scene& scene, const DesignResult& design, Warnings& out) {
@@ -145,7 +144,7 @@ void add_designs(const Scene& scene, const DesignResult& design, Warnings& out) 
              !unused.empty())
       out.push_back({"body '" + o.body + "': the design does not use " + unused +
                      ": no material joins it to a load"});
-    if (o.clean_up && !o.clean_up->reached()) out.push_back({not_mended(o)});
+    if (!o.reaches_length_scale()) out.push_back({length_scale_words(o)});
     if (o.sharp.compliance > 1.15 * o.compliance)
       out.push_back({"body '" + o.body +
                      "': the sharp compliance is far above the blurred one: gaps are bridged"});

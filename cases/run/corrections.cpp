@@ -10,7 +10,7 @@
 #include "io/files.h"
 #include "io/plots.h"
 #include "io/tables.h"
-#include "optim/mmc/compliance_evaluator.h"
+#include "optim/mmc/loads/compliance_evaluator.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -116,8 +116,7 @@ Scene with_cells(Scene scene, double cell) {
     d.grid.nx /= n;
     d.grid.ny /= n;
     d.tdf.sharpness /= n;
-    d.tdf.erosion *= n;
-    d.tdf = d.stage(d.band.size() - 1);
+    d.tdf = d.at_band(d.band.size() - 1);
   }
   return scene;
 }
@@ -125,7 +124,7 @@ Scene with_cells(Scene scene, double cell) {
 /// Corrected designs of other problems, on their own grids.
 void take_designs(const std::vector<mmc::BodyProblem>& from, std::vector<mmc::BodyProblem>& to) {
   for (size_t k = 0; k < to.size(); ++k)
-    to[k].design = to[k].design.without_symmetry().with(from[k].design.components());
+    to[k].design = to[k].design.with(from[k].design.components());
 }
 
 /// J of the crisp outlines of the designs, on the cells of the case.
@@ -190,7 +189,7 @@ class Correcting {
     std::vector<mmc::LoadedBody> bodies;
     for (size_t k = 0; k < responses.size(); ++k)
       bodies.push_back({design_.problems[k], *responses[k]});
-    std::vector<mmc::BodyOutcome> out = mmc::outcomes_of_corrected(bodies, run_.go_on);
+    std::vector<mmc::BodyOutcome> out = mmc::outcomes_of_corrected(bodies);
     if (!run_.go_on()) throw Interrupted();
     return out;
   }
@@ -204,7 +203,7 @@ class Correcting {
     found.verdict = before.verdict;
     found.stop = before.stop + "; then corrected by " +
                  std::to_string(design_.corrections.back().motions) + " motions";
-    if (!found.clean_up) found.clean_up = before.clean_up;
+    if (found.length_scale) found.length_scale = before.length_scale;
     for (size_t l = 0; l < loads.sets.size(); ++l)
       found.energy_ratios.push_back(0.5 * found.load_compliances[l] / loads.sets[l].strain_energy);
     before = std::move(found);
@@ -239,10 +238,9 @@ mmc::MotionCertificate certify_by_motion(const RunContext& run, const Certify& s
   std::vector<std::unique_ptr<mmc::ComplianceEvaluator>> responses = kept.of(problems);
   std::vector<mmc::LoadedBody> bodies;
   for (size_t k = 0; k < problems.size(); ++k) bodies.push_back({problems[k], *responses[k]});
-  std::vector<mmc::Part> parts = mmc::parts_at_end(bodies);
   mmc::MotionCertificate out;
   try {
-    out = mmc::certify(parts, motion, run.scene().optimizer.move_limit);
+    out = mmc::certify(bodies, motion, run.scene().optimizer.move_limit);
   } catch (const StoppedMotion&) {
     throw Interrupted();
   }

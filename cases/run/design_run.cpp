@@ -63,12 +63,7 @@ std::string verdict_words(const Cycle& cycle, const mmc::CycleVerdict& v) {
 
 mmc::DesignSettings settings_of(const RunContext& run, KeptEvaluations& kept) {
   const Scene& scene = run.scene();
-  return {scene.output.sharp_every,
-          scene.optimizer,
-          run.condition,
-          kept.past(),
-          scene.finish,
-          run.go_on};
+  return {scene.output.sharp_every, scene.optimizer, run.condition, kept.past(), run.go_on};
 }
 
 /// Writes every iteration and shows it.
@@ -132,7 +127,7 @@ mmc::LoopObserver DesignRun::cycle_observer(CycleMotions& motions, const KeptEva
     design_.cycles = cycle;
     design_.outcomes.assign(outcomes.begin(), outcomes.end());
     for (size_t i = 0; i < outcomes.size(); ++i) {
-      design_.seconds_clean_up += outcomes[i].seconds_mending;
+      add_idle_seconds(outcomes[i]);
       run_.folder.write_loads(outcomes[i].body, loads.now[i], &outcomes[i]);
       run_.folder.write_design(design_.problems[i], outcomes[i]);
       run_.progress.say(summary(outcomes[i]) + kept.words());
@@ -152,6 +147,10 @@ mmc::LoopObserver DesignRun::cycle_observer(CycleMotions& motions, const KeptEva
       run_.progress.say("cycle " + std::to_string(cycle) + ": " + difference_words(d));
   };
   return observer;
+}
+
+void DesignRun::add_idle_seconds(const mmc::BodyOutcome& outcome) {
+  if (outcome.length_scale) design_.seconds_idle += outcome.length_scale->seconds;
 }
 
 void DesignRun::run_cycles(std::vector<fem::EslSets>& loads) {
@@ -198,7 +197,7 @@ void DesignRun::design_at_rest() {
                                                     iteration_observer(run_), going);
   design_.cycles = 1;
   design_.outcomes = {outcome};
-  design_.seconds_clean_up = outcome.seconds_mending;
+  add_idle_seconds(outcome);
   const auto write_loads = [&](const VerifiedOutline* outline) {
     design_.static_loads = static_loads_of(*scene.domain, problem, *loads, outcome, outline);
     run_.folder.write_static_loads(*scene.domain, design_.static_loads);

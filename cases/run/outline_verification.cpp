@@ -15,8 +15,8 @@ constexpr double kWithin = 0.99;
 void find_narrow(const mmc::BodyProblem& problem, std::span<const Region> regions,
                  VerifiedOutline& out) {
   out.cell = std::min(problem.grid.dx(), problem.grid.dy());
-  out.thickness = problem.widths.solid > 0 ? problem.widths.solid
-                                           : 2 * problem.stages.back().min_half_thickness;
+  out.thickness =
+      problem.widths.solid > 0 ? problem.widths.solid : 2 * problem.bands.back().min_half_thickness;
   // Discs side by side are one place: the narrowest stands for them.
   for (const NarrowPlace& p :
        mmc::narrow_places_of(problem, regions, kWithin * std::max(out.cell, out.thickness))) {

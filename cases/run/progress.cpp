@@ -61,11 +61,6 @@ double Progress::since_begin() const {
 }
 
 void Progress::iteration(const mmc::IterationReport& r, double most) {
-  if (!quiet_)
-    for (const mmc::ComponentEvent& e : r.events)
-      say(r.problem.body + " iteration " + std::to_string(r.iteration) + ": component " +
-          std::to_string(e.component + 1) + " " + to_string(e.kind) + ", " +
-          std::to_string(e.n_components) + " components");
   const std::lock_guard guard(lock_);
   if (where_.phase != "design") {
     where_.phase = "design";

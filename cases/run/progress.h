@@ -5,7 +5,7 @@
 #include <string>
 
 #include "cases/results/failure.h"
-#include "optim/mmc/esl_loop.h"
+#include "optim/mmc/cycles/esl_loop.h"
 
 namespace flexmorph::cases {
 

@@ -77,7 +77,7 @@ Seconds phases_of(const DesignResult& design, const RunFolder& folder) {
       for (const mmc::BodyOutcome& o : design.outcomes) seconds += o.sharp.seconds_outlines;
   double outlines = 0;
   for (const VerifiedOutline& v : design.outlines) outlines += v.seconds;
-  out.emplace_back("mending", design.seconds_clean_up);
+  out.emplace_back("idle_components", design.seconds_idle);
   out.emplace_back("motion", design.seconds_motion);
   out.emplace_back("judge", outlines);
   out.emplace_back("verification", design.seconds_verification);

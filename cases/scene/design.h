@@ -9,10 +9,10 @@
 #include "geometry/feature.h"
 #include "geometry/grid.h"
 #include "geometry/tdf.h"
-#include "optim/mmc/compliance_evaluator.h"
-#include "optim/mmc/corrected_cycles.h"
-#include "optim/mmc/goal.h"
-#include "optim/mmc/load_difference.h"
+#include "optim/mmc/cycles/corrected_cycles.h"
+#include "optim/mmc/cycles/load_difference.h"
+#include "optim/mmc/loads/compliance_evaluator.h"
+#include "optim/mmc/problem/goal.h"
 
 /// [[design]], and what goes on around it.
 namespace flexmorph::cases {
@@ -42,12 +42,13 @@ struct BodyDesign {
   mmc::Goal motion_goal;                ///< of the motion itself, see Cycle::correct
   bool asks_motion = false;             ///< does the case name numbers of the motion?
   double min_thickness = 0;             ///< c_min: smallest half-thickness of a component [m]
-  Widths widths;                        ///< what the union is mended to
+  Widths widths;                        ///< smallest widths of the union [m]; 0: any
   double half_length = 0;               ///< of the initial components [m]
   double half_thickness = 0;            ///< of the initial components [m]
   /// Half-widths of the Heaviside band, coarse to fine [cells]; of tdf = "paper" [-].
   std::vector<double> band;
-  TdfSettings tdf;               ///< in metres, with the band of the last, finest stage
+  TdfSettings tdf;               ///< in metres, with the last, finest band
+  double erosion = 0;            ///< depth of the eroded design in stage 2 [m]
   double stiffness_void = 1e-4;  ///< stiffness factor of the void in dynamics [-]
   double mass_void = 1e-3;       ///< mass factor of the void in dynamics [-]
   std::vector<Component> start;  ///< empty: boxes of two crossing components
@@ -55,8 +56,6 @@ struct BodyDesign {
   int seed = 1;                  ///< of the jitter
   int starts = 1;                ///< this one, and others that are jittered
   bool symmetric = true;         ///< where the scene is, and the start
-  int drop_every = 25;           ///< iterations between looks for dead components, 0: none
-  bool refill = false;           ///< long components are split in place of dropped ones
   bool shares_mass = false;      ///< with the other designs that do: see mmc::SharedProblem
   /// Polygons; a cell belongs to a region that holds its centre [m].
   std::vector<std::vector<Vec2>> solid, empty;
@@ -64,8 +63,8 @@ struct BodyDesign {
   int n_components() const {
     return start.empty() ? 2 * components[0] * components[1] : static_cast<int>(start.size());
   }
-  /// Settings of one stage of the continuation.
-  TdfSettings stage(size_t index) const;
+  /// Settings at one band of the continuation, without erosion.
+  TdfSettings at_band(size_t index) const;
 };
 
 struct Scene;

@@ -104,12 +104,10 @@ Expectation read_expectation(const io::Table& t) {
 
 }  // namespace
 
-TdfSettings BodyDesign::stage(size_t index) const {
+TdfSettings BodyDesign::at_band(size_t index) const {
   TdfSettings settings = tdf;
   settings.band =
       tdf.kind == TdfSettings::Kind::paper ? band.at(index) : band.at(index) * grid.dx();
-  // The topology is found without erosion; the last stage closes the slits that it leaves.
-  if (index + 1 < band.size()) settings.erosion = 0;
   return settings;
 }
 

@@ -49,7 +49,6 @@ struct Scene {
   std::optional<Esl> esl;           ///< always there when bodies that move are designed
   std::vector<BodyDesign> designs;  ///< one per designed body
   optim::Settings optimizer;
-  std::optional<optim::Settings> finish;  ///< who solves last, from what it reached
   Cycle cycle;
   std::optional<Verify> verify;
   std::optional<Certify> certify;

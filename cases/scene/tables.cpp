@@ -84,7 +84,6 @@ const std::vector<std::string>& order() {
                                                   "design.void",
                                                   "optimizer",
                                                   "optimizer.options",
-                                                  "optimizer.finish_options",
                                                   "cycle",
                                                   "verify",
                                                   "certificate",

@@ -9,7 +9,7 @@
 #include "cases/results/quantities.h"
 #include "cases/study/processes.h"
 #include "io/case_file.h"
-#include "optim/mmc/body_problem.h"
+#include "optim/mmc/problem/body_problem.h"
 
 /// Many runs of one case with changes: each a process of its own with a run folder of its own.
 namespace flexmorph::cases {

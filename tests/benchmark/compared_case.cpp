@@ -10,8 +10,8 @@
 #include "cases/check/ready.h"
 #include "cases/run/motion_run.h"
 #include "geometry/cpu_time.h"
-#include "optim/mmc/body_design.h"
-#include "optim/mmc/design_verification.h"
+#include "optim/mmc/cycles/body_design.h"
+#include "optim/mmc/cycles/design_verification.h"
 
 namespace flexmorph::benchmark {
 namespace {
@@ -76,7 +76,7 @@ ComparedDesign compared(const ComparedCase& of, std::vector<Region> regions, dou
 ComparedDesign design_by_components(ComparedCase& of) {
   const double clock = cpu_seconds();
   bool going = true;
-  const mmc::DesignSettings settings{0, of.scene.optimizer, false, nullptr, of.scene.finish};
+  const mmc::DesignSettings settings{0, of.scene.optimizer, false, nullptr};
   mmc::design_body(
       of.problem, *of.loads, 1, settings, [](const auto&) { return true; }, going);
   const double seconds = cpu_seconds() - clock;

@@ -7,7 +7,7 @@
 
 #include "cases/scene/scene.h"
 #include "fem/esl_set.h"
-#include "optim/mmc/body_problem.h"
+#include "optim/mmc/problem/body_problem.h"
 #include "optim/verification/verification.h"
 
 /// A case whose problem several methods solve, and the judge of what they come to.

@@ -35,7 +35,7 @@ components = [12, 2]
 max_volume = 0.5
 min_thickness = 0.005
 band = [2.5, 1.5]
-erosion = 0.0
+erosion_width = 0.0
 [optimizer]
 name = "mma"
 max_iterations = 300
@@ -83,8 +83,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, BesideDensities,
 TEST_P(BesideDensities, IsPrinted) {
   const std::string name = GetParam();
   const Scratch scratch;
-  const std::vector<std::string> mended = {"design.mend=true"};
-  ComparedCase of(name == "strip" ? scratch.write("strip.toml", kStrip) : name, mended);
+  ComparedCase of(name == "strip" ? scratch.write("strip.toml", kStrip) : name, {});
   const double cell = of.problem.grid.dx();
   std::printf("%s, %d x %d cells\n", name.c_str(), of.problem.grid.nx, of.problem.grid.ny);
   // First, as the loads of a motion belong to the design that the case begins with.

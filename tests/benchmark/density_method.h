@@ -3,7 +3,7 @@
 #include <Eigen/SparseCore>
 #include <vector>
 
-#include "optim/mmc/body_problem.h"
+#include "optim/mmc/problem/body_problem.h"
 #include "optim/optimizer.h"
 
 /// What a user would take instead of components: a density for every cell, filtered and projected.

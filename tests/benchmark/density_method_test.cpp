@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "optim/mmc/compliance_evaluator.h"
+#include "optim/mmc/loads/compliance_evaluator.h"
 #include "tests/benchmark/density_outline.h"
 
 namespace flexmorph::benchmark {
@@ -140,7 +140,7 @@ mmc::BodyProblem empty_problem(const Grid& grid) {
           .grid = grid,
           .section = {},
           .design = {grid, {Component{}}, {}},
-          .stages = {}};
+          .bands = {}};
 }
 
 /// A field that falls linearly with the distance from a point, at the centres of cells.

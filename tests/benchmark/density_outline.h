@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "optim/mmc/body_problem.h"
+#include "optim/mmc/problem/body_problem.h"
 #include "tests/benchmark/density_method.h"
 
 /// From densities to an outline that can be made: what another program would be handed.

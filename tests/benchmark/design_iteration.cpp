@@ -40,14 +40,14 @@ Iteration measure(const cases::Scene& scene, const mmc::BodyProblem& problem,
                   const fem::EslSets& loads, const mmc::ComplianceSettings& settings,
                   VectorXd* stiffness) {
   constexpr int kIterations = 25;
-  const mmc::Ersatz ersatz(problem.grid, problem.stages.back().alpha, problem.solid, problem.empty);
+  const mmc::Ersatz ersatz(problem.grid, problem.bands.back().alpha, problem.solid, problem.empty);
   const auto start = problem.design.components();
   const mmc::CellFactors first = ersatz.sharp(area_fractions(
-      problem.grid, start, problem.stages.back().min_half_thickness, problem.solid, problem.empty));
+      problem.grid, start, problem.bands.back().min_half_thickness, problem.solid, problem.empty));
   mmc::ComplianceEvaluator compliance(loads, problem.section, settings, first.stiffness,
                                       first.mass);
   const mmc::Plate plate = mmc::plate_of(problem);
-  mmc::MmcProblem state({plate, problem.design, ersatz, compliance}, problem.stages.front(),
+  mmc::MmcProblem state({plate, problem.design, ersatz, compliance}, problem.bands.front(),
                         problem.goal);
   optim::Settings optimizer = scene.optimizer;
   optimizer.max_iterations = kIterations;

@@ -44,7 +44,8 @@ cell = 0.25
 components = [3, 3]
 min_thickness = 0.5
 band = [2.5, 1.5]
-erosion = 0.0
+erosion_width = 0.0
+min_feature = 0.0
 [optimizer]
 name = "mma"
 max_iterations = 320
@@ -138,7 +139,7 @@ TEST(EighteenBars, InThePublishedMeasure) {
   const std::vector<Component> components = second->problem.design.components();
   std::printf("body-fitted %.4g at volume %.4f, %zu components, CPU %.1f s\n",
               own.verdict.compliance, own.volume, components.size(), early.seconds + own.seconds);
-  const double least = second->problem.stages.back().min_half_thickness;
+  const double least = second->problem.bands.back().min_half_thickness;
   for (const auto& [name, how] : {std::pair{"each component", Elements::each_component},
                                   std::pair{"their union", Elements::their_union},
                                   std::pair{"area fractions", Elements::area_fractions}}) {

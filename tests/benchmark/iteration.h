@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "geometry/cpu_time.h"
-#include "optim/mmc/mmc_problem.h"
+#include "optim/mmc/problem/mmc_problem.h"
 #include "optim/optimizer.h"
 
 /// Where the time of a design iteration goes.

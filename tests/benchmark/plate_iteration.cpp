@@ -23,8 +23,8 @@
 #include <vector>
 
 #include "geometry/component.h"
-#include "optim/mmc/compliance_evaluator.h"
-#include "optim/mmc/mmc_problem.h"
+#include "optim/mmc/loads/compliance_evaluator.h"
+#include "optim/mmc/problem/mmc_problem.h"
 #include "optim/optimizer.h"
 #include "tests/benchmark/cpu.h"
 #include "tests/benchmark/iteration.h"

@@ -50,10 +50,10 @@ INSTANTIATE_TEST_SUITE_P(Cases, ShippedCase, ::testing::ValuesIn(choices()), [](
   return test.param.plate + "_" + test.param.optimizer;
 });
 
-// As the paper's designs are: not mended, of one cycle.
+// As the paper's designs are: without widths, of one cycle.
 TEST_P(ShippedCase, EndsWithAGoodDesign) {
   const nlohmann::json result =
-      run(" --set design.mend=false --set cycle.max_cycles=1")["results"].at(0);
+      run(" --set design.min_feature=0 --set cycle.max_cycles=1")["results"].at(0);
   const auto value = [&](const char* key) {
     EXPECT_TRUE(result.at(key).is_number()) << key;
     return result.at(key).get<double>();

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "fem/solve/static_solver.h"
-#include "optim/mmc/compliance_evaluator.h"
+#include "optim/mmc/loads/compliance_evaluator.h"
 #include "tests/benchmark/cpu.h"
 #include "tests/benchmark/reference.h"
 

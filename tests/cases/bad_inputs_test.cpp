@@ -30,7 +30,7 @@ const std::string kLatin = "title = \"Tr\xe4ger\"\n", kMark = "\xef\xbb\xbf";
 
 const Tried kTyped[] = {
     {"misspelt_key", "thickness = 0.01", "thicknes = 0.01", ":19:12", "did you mean 'thickness'?"},
-    {"misspelt_table", "[optimizer]", "[optimiser]", ":56:1", "did you mean 'optimizer'?"},
+    {"misspelt_table", "[optimizer]", "[optimiser]", ":57:1", "did you mean 'optimizer'?"},
     {"misspelt_word", "\"weld\"", "\"wedl\"", ":30:8", "did you mean 'weld'?"},
     {"misspelt_body", "body = \"plate\"\nat", "body = \"palte\"\nat", ":36:8",
      "did you mean 'plate'?"},
@@ -41,9 +41,9 @@ const Tried kTyped[] = {
      "in `length = 0.5 m`: numbers are in SI units, which are not written"},
     {"unit_in_quotes", "width = 0.1", "width = \"100 mm\"", ":18:9",
      "a number stands without quotes"},
-    {"no_quotes", "name = \"mma\"", "name = mma", ":57:8",
+    {"no_quotes", "name = \"mma\"", "name = mma", ":58:8",
      "in `name = mma`: texts stand in quotes"},
-    {"open_quote", "\"mma\"", "\"mma", ":57:12", "a quote is open"},
+    {"open_quote", "\"mma\"", "\"mma", ":58:12", "a quote is open"},
     {"open_bracket", "[10, 2]", "[10, 2", ":25:1", "not TOML"},
     {"key_twice", "width = 0.1", "width = 0.1\nwidth = 0.2", ":19:9", "not TOML"},
     {"table_twice", "[esl]", "[time]\n[esl]", ":40:1", "not TOML"},

@@ -6,7 +6,7 @@
 
 #include "cases/assembly/build.h"
 #include "cases/assembly/verified_loads.h"
-#include "optim/mmc/design_verification.h"
+#include "optim/mmc/cycles/design_verification.h"
 #include "tests/cases/program.h"
 
 namespace flexmorph::test {

@@ -25,7 +25,7 @@ struct Runs {
 /// 1e-9 of its range. Files that only iterations make may be missing in the first run.
 Runs run_both(const Scratch& scratch, const std::string& name, const std::string& design,
               Words changes) {
-  changes.insert(changes.end(), {"design.start='" + design + "'", "design.mend=false"});
+  changes.insert(changes.end(), {"design.start='" + design + "'", "design.min_feature=0"});
   Runs out;
   std::set<std::string> files[2];
   for (const int iterations : {0, 1}) {

@@ -6,7 +6,7 @@
 
 #include "cases/check/ready.h"
 #include "cases/run/motion_run.h"
-#include "optim/mmc/mmc_problem.h"
+#include "optim/mmc/problem/mmc_problem.h"
 #include "tests/cases/scenes.h"
 #include "tests/io/scratch.h"
 #include "tests/support/gradient_check.h"
@@ -113,8 +113,9 @@ TEST(HeatedBoom, EnergyBalanceIsOfSecondOrder) {
 // A split of the hot root element changes neither energies nor momentum, before forces are
 // balanced.
 TEST(HeatedBoom, SplitsAreExact) {
-  const Scene scene = read(
-      "heated_boom", quick({"time.end=0.1", "time.step=4e-3", "body.heat.settle=0.2", "esl.every=0.02"}));
+  const Scene scene =
+      read("heated_boom",
+           quick({"time.end=0.1", "time.step=4e-3", "body.heat.settle=0.2", "esl.every=0.02"}));
   Mechanism m = build_mechanism(scene);
   fem::State x = fem::integrate(m.model, m.growths, m.motion, [](const fem::MotionStep&) {}).final;
   const fem::Energies before = m.model.energies(x);
@@ -205,8 +206,7 @@ TEST(HeatedBoom, GradientOfTheDesignProblem) {
   mmc::ComplianceEvaluator compliance(loads, p.section, p.compliance, full, full);
   const mmc::Ersatz ersatz = mmc::ersatz_of(p);
   const mmc::Plate plate = mmc::plate_of(p);
-  mmc::MmcProblem problem({plate, p.design, ersatz, compliance}, p.stages.front(), p.goal,
-                          p.places);
+  mmc::MmcProblem problem({plate, p.design, ersatz, compliance}, p.bands.front(), p.goal, p.places);
   const VectorXd x = problem.start();
   const optim::Response at = problem.evaluate(x);
   for (const int component : {0, 7, 19}) {

@@ -26,7 +26,7 @@ namespace {
 nlohmann::json verified(const Scratch& scratch, const std::string& name, const std::string& folder,
                         Words changes = {}) {
   changes.insert(changes.end(),
-                 {"design.start='" FLEXMORPH_DATA "/" + name + ".csv'", "design.mend=false",
+                 {"design.start='" FLEXMORPH_DATA "/" + name + ".csv'", "design.min_feature=0",
                   "optimizer.max_iterations=1", "optimizer.move_limit=1e-9",
                   "output.design_every=0", "output.plots=false"});
   const Ended ended = run(scratch, name, folder, changes);

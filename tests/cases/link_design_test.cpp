@@ -17,7 +17,7 @@ class Link : public ::testing::TestWithParam<const char*> {
   nlohmann::json run_link(const Scratch& scratch, Words changes, int other_code = 0) const {
     const std::string folder = scratch / "out";
     changes.insert(changes.end(), {std::string("design.0.support=\"") + GetParam() + "\"",
-                                   "design.0.mend=false", "time.end=0.15", "cycle.max_cycles=1",
+                                   "design.0.min_feature=0", "time.end=0.15", "cycle.max_cycles=1",
                                    "output.plots=false", "output.design_every=0"});
     const Ended ended = run(scratch, "slider_crank_designed", folder, changes);
     EXPECT_TRUE(ended.code == 0 || ended.code == other_code) << ended.err;

@@ -10,7 +10,7 @@
 #include "cases/assembly/scene_motion.h"
 #include "io/case_file.h"
 #include "io/tables.h"
-#include "optim/mmc/motion_certificate.h"
+#include "optim/mmc/cycles/motion_certificate.h"
 #include "tests/cases/program.h"
 #include "tests/support/differences.h"
 
@@ -41,9 +41,10 @@ class DesignedForMotion {
       : prepared_(std::move(scene)),
         problems_(prepared_.design_problems()),
         parts_(parts_of(problems_, loads_)),
+        formulations_(formulations_of(problems_)),
         motion_(prepared_, {.cell = 0, .step = 2e-3, .checkpoints = 0}, {}),
         state_(mmc::motion_state_of(parts_, motion_)),
-        whole_(parts_, state_) {}
+        whole_(parts_, mmc::designs_of(parts_), formulations_, state_) {}
 
   optim::Problem& problem() { return whole_.problem(); }
   const mmc::Whole& whole() const { return whole_; }
@@ -52,10 +53,13 @@ class DesignedForMotion {
   static std::vector<mmc::Part> parts_of(std::vector<mmc::BodyProblem>& problems,
                                          mmc::ComplianceEvaluator& loads) {
     std::vector<mmc::Part> out;
-    for (mmc::BodyProblem& problem : problems) {
-      out.emplace_back(mmc::LoadedBody{problem, loads});
-      out.back().tdf = &problem.stages.back();
-    }
+    for (mmc::BodyProblem& problem : problems) out.emplace_back(mmc::LoadedBody{problem, loads});
+    return out;
+  }
+  static std::vector<mmc::Formulation> formulations_of(
+      const std::vector<mmc::BodyProblem>& problems) {
+    std::vector<mmc::Formulation> out;
+    for (const mmc::BodyProblem& problem : problems) out.push_back(mmc::eroded(problem));
     return out;
   }
 
@@ -63,6 +67,7 @@ class DesignedForMotion {
   cases::PreparedCase prepared_;
   std::vector<mmc::BodyProblem> problems_;
   std::vector<mmc::Part> parts_;
+  std::vector<mmc::Formulation> formulations_;
   SceneMotion motion_;
   mmc::MotionState state_;
   mmc::Whole whole_;

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "fem/dynamics/motion_gradient.h"
-#include "optim/mmc/body_problem.h"
+#include "optim/mmc/problem/body_problem.h"
 #include "tests/cases/scenes.h"
 #include "tests/support/differences.h"
 #include "tests/support/rates.h"
@@ -25,7 +25,7 @@ class DesignChain {
   explicit DesignChain(const mmc::BodyProblem& problem)
       : problem_(problem),
         ersatz_(mmc::ersatz_of(problem)),
-        tdf_(problem.grid, problem.stages.back()) {}
+        tdf_(problem.grid, half_a_cell_thinner(problem)) {}
 
   fem::Factors factors(const VectorXd& x) {
     std::vector<Component> components;
@@ -50,6 +50,13 @@ class DesignChain {
   }
 
  private:
+  /// At the last band, eroded: stiffness and mass have different derivatives.
+  static TdfSettings half_a_cell_thinner(const mmc::BodyProblem& problem) {
+    TdfSettings out = problem.bands.back();
+    out.erosion = 0.5 * problem.grid.dx();
+    return out;
+  }
+
   const mmc::BodyProblem& problem_;
   mmc::Ersatz ersatz_;
   UnionTdf tdf_;

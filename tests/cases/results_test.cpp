@@ -171,7 +171,7 @@ void expect_quantities(std::span<const Quantity<Source>> table) {
 
 TEST(Quantities, HaveNamesOfTheirOwnAndMeanings) {
   expect_quantities(design_quantities());
-  expect_quantities(clean_up_quantities());
+  expect_quantities(length_scale_quantities());
   expect_quantities(outline_quantities());
   expect_quantities(static_load_quantities());
   expect_quantities(load_difference_quantities());

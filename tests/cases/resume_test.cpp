@@ -58,8 +58,7 @@ INSTANTIATE_TEST_SUITE_P(
         Design{"two_bodies_three_cycles", FLEXMORPH_TWO_PLATES, {}, {3, 14, 23}, 30},
         Design{"components_that_go",
                "short_beam",
-               {"optimizer.max_iterations=40", "design.drop_every=5", "design.min_feature=0.03",
-                "output.design_every=3"},
+               {"optimizer.max_iterations=40", "design.min_feature=0.03", "output.design_every=3"},
                {10, 26, 33},
                40}),
     [](const auto& info) { return std::string(info.param.name); });

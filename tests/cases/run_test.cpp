@@ -85,7 +85,8 @@ void expect_run_json(const nlohmann::json& run) {
   EXPECT_EQ(run["threads"], 1);
   EXPECT_GT(run["peak_memory_bytes"].get<double>(), 1e6);
   double phases = 0;  // they are parts of the whole
-  for (const char* name : {"solve", "output", "mending", "motion", "judge", "verification"}) {
+  for (const char* name :
+       {"solve", "output", "idle_components", "motion", "judge", "verification"}) {
     ASSERT_TRUE(run["seconds_by_phase"].contains(std::string("seconds_") + name)) << name;
     phases += run["seconds_by_phase"][std::string("seconds_") + name].get<double>();
   }

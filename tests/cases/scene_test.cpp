@@ -80,7 +80,10 @@ TEST_P(ShippedCase, HasTheDataOfThePaper) {
   EXPECT_EQ(d.min_thickness, 0.005);
   EXPECT_DOUBLE_EQ(d.tdf.band, d.band.back() * 0.0025);
   EXPECT_DOUBLE_EQ(d.tdf.sharpness, 1500);
-  EXPECT_EQ(d.tdf.min_half_thickness, mmc::half_thickness_for(2 * 0.005));  // mended
+  EXPECT_EQ(d.tdf.min_half_thickness, mmc::half_thickness_for(2 * 0.005));
+  EXPECT_EQ(d.widths.solid, 2 * 0.005);
+  EXPECT_EQ(d.widths.gap, 3 * 0.0025);
+  EXPECT_DOUBLE_EQ(d.erosion, (slow ? 0.25 : 0.375) * d.widths.solid);
   // Two columns of cells under the tip mass.
   ASSERT_EQ(d.solid.size(), 1u);
   EXPECT_NEAR(area({d.solid[0], {}}), 0.005 * 0.1, 1e-16);
@@ -105,18 +108,8 @@ TEST(SceneReader, OptionalPartsAreAbsentUntilListed) {
   EXPECT_EQ(more.verify->step, more.time.step);
   EXPECT_DOUBLE_EQ(more.time.spin_up, 0.2);
   EXPECT_EQ(more.optimizer.options.at("asyinit"), 0.1);
-  EXPECT_FALSE(more.finish);
   EXPECT_EQ(more.optimizer.rest.rows, 15);
-  const Scene last =
-      read("rotating_plate_v01", {"optimizer.finish=ipopt", "optimizer.feasibility=1e-4",
-                                  "optimizer.finish_options.history=9"});
-  EXPECT_EQ(last.finish->name, "ipopt");
-  EXPECT_EQ(last.finish->max_iterations, 1000);
-  EXPECT_EQ(last.finish->kkt_tolerance, 1e-6);
-  EXPECT_EQ(last.finish->feasibility, 1e-4);
-  EXPECT_EQ(last.finish->options.at("history"), 9);
-  EXPECT_EQ(last.finish->rest.rows, 0);  // its own tolerance ends it
-  EXPECT_DOUBLE_EQ(more.designs[0].stage(0).band, 3 * 0.0025);
+  EXPECT_DOUBLE_EQ(more.designs[0].at_band(0).band, 3 * 0.0025);
   EXPECT_DOUBLE_EQ(more.designs[0].tdf.band, 1.5 * 0.0025);
   EXPECT_TRUE(more.expect.at("compliance").holds(1.81));
   EXPECT_FALSE(more.expect.at("compliance").holds(1.79));
@@ -368,15 +361,9 @@ const Bad kBadInputs[] = {
      {"optimizer.options.boxes=0.1", "optimizer.name=ipopt"},
      "optimizer 'ipopt': option 'boxes' is not known; there are: bound_push, box, exact, history, "
      "mu_init, restart"},
-    {"unknown_finish",
-     {"optimizer.finish=newton"},
-     "an optimizer is one of 'gcmma', 'ipopt', 'mma', 'nlopt_ccsaq', 'nlopt_mma'"},
-    {"option_of_a_finish_out_of_its_range",
-     {"optimizer.finish_options.history=0", "optimizer.finish=ipopt"},
-     "optimizer 'ipopt': option 'history' = 0: it lies between 1 and 1000"},
-    {"tolerance_of_no_finish",
-     {"optimizer.finish_tolerance=1e-5"},
-     "without `finish` this does nothing"},
+    {"widths_of_the_papers_tdf",
+     {"design.min_feature=0.01", "design.tdf=paper"},
+     "`tdf = \"paper\"` is no distance, and has no widths: 0"},
     {"option_out_of_its_range",
      {"optimizer.options.asydecr=1.5"},
      "optimizer 'mma': option 'asydecr' = 1.5: it lies between 0.01 and 1"},

@@ -8,7 +8,7 @@
 #include "fem/dynamics/esl.h"
 #include "fem/solve/statics.h"
 #include "fem/terms.h"
-#include "optim/mmc/compliance_evaluator.h"
+#include "optim/mmc/loads/compliance_evaluator.h"
 #include "tests/support/designed_plate.h"
 #include "tests/support/models.h"
 

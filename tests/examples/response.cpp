@@ -1,4 +1,4 @@
-#include "optim/mmc/response.h"
+#include "optim/mmc/problem/response.h"
 
 /// A response, whole: the first moment of the material about the left edge, as objective or limit.
 namespace flexmorph::mmc {

@@ -1,13 +1,13 @@
 // Derivatives of what outlines enclose: against exact areas of the union of moved components, and
 // against the compliance of moved crisp designs.
 
-#include "optim/mmc/crisp_picture.h"
+#include "optim/mmc/problem/crisp_picture.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "optim/mmc/designed_parts.h"
+#include "optim/mmc/cycles/designed_parts.h"
 #include "tests/optim/mmc_small.h"
 
 namespace flexmorph::mmc::test {
@@ -77,10 +77,11 @@ TEST(CrispPicture, TheComplianceChangesAsItsGradientSays) {
   tdf.alpha = 0.5;
   BodyProblem body = body_of(design, {tdf});
   ComplianceEvaluator loads = tip_load();
-  Part part(LoadedBody{body, loads});
-  part.tdf = &body.stages.back();
-  part.crisp.emplace(body);
-  MmcProblem problem = part.state();
+  const Ersatz ersatz = ersatz_of(body);
+  const CrispPicture picture(body);
+  MmcProblem problem(
+      {.plate = kPlate, .design = body.design, .ersatz = ersatz, .loads = loads, .crisp = &picture},
+      tdf, body.goal);
   const VectorXd x = problem.start(), unit = cells_of(design);
   const double log_c = problem.evaluate(x).f;
   const CellFactors crisp = ersatz_of(body).sharp(fractions_of(body, body.design.components()));

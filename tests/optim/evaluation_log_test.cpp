@@ -43,20 +43,12 @@ class Valley final : public Problem {
     value_ = out.f;
     return out;
   }
-  bool acceptable(const VectorXd&) override {
-    const bool good = value_ < 5 * least_;
-    if (good) least_ = std::min(least_, value_);
-    return good;
-  }
-  VectorXd memory() const override { return VectorXd::Constant(1, least_); }
-  void recall(const VectorXd&, const VectorXd& memory) override {
-    if (memory.size() > 0) least_ = memory[0];
-  }
+  bool acceptable(const VectorXd&) override { return value_ < 5; }
   int solved = 0;
 
  private:
   int left_;
-  double shift_, value_ = 0, least_ = 1e300;
+  double shift_, value_ = 0;
 };
 
 Settings settings_of(const std::string& name) {
@@ -159,8 +151,8 @@ TEST(EvaluationLog, KnowsOnlyTheVeryDesign) {
   known.x = VectorXd::Constant(2, 0.5);
   known.response.f = 3;
   known.response.df = known.x;
+  known.response.g = VectorXd::Constant(1, -0.0);
   known.acceptable = false;
-  known.memory = VectorXd::Constant(1, -0.0);
   first.append(known);
   known.x[1] = 0.25;
   known.failure = "no state";
@@ -171,7 +163,7 @@ TEST(EvaluationLog, KnowsOnlyTheVeryDesign) {
   ASSERT_TRUE(found.has_value());
   EXPECT_EQ(found->response.f, 3);
   EXPECT_FALSE(found->acceptable);
-  EXPECT_TRUE(std::signbit(found->memory[0]));
+  EXPECT_TRUE(std::signbit(found->response.g[0]));
   EXPECT_TRUE(again.knew_last());
   EXPECT_FALSE(again.next(VectorXd::Constant(2, std::nextafter(0.5, 1))).has_value());
   EXPECT_FALSE(again.knew_last());

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "optim/mmc/compliance_evaluator.h"
+#include "optim/mmc/loads/compliance_evaluator.h"
 
 namespace flexmorph::mmc {
 namespace {

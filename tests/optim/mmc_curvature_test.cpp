@@ -8,8 +8,8 @@
 #include <memory>
 #include <random>
 
-#include "optim/mmc/compliance_evaluator.h"
-#include "optim/mmc/mmc_problem.h"
+#include "optim/mmc/loads/compliance_evaluator.h"
+#include "optim/mmc/problem/mmc_problem.h"
 #include "tests/optim/mmc_small.h"
 #include "tests/support/rates.h"
 

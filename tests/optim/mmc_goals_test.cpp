@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "optim/mmc/compliance_evaluator.h"
+#include "optim/mmc/loads/compliance_evaluator.h"
 #include "tests/optim/mmc_small.h"
 #include "tests/support/gradient_check.h"
 
@@ -230,35 +230,6 @@ TEST(WorstCase, HasALowerWorstLoadThanTheSum) {
   EXPECT_LE(worst.outcome.volume, 0.5 * (1 + 1e-4));
   EXPECT_LT(worst.worst, sum.worst);
   EXPECT_NEAR(worst.worst, worst.outcome.compliance, 1e-10 * worst.worst);
-}
-
-// A last solve with second derivatives meets the KKT conditions as no first-order method does, on
-// the components it was given; it is no worse than what it began with.
-TEST(Finish, MeetsTheKktConditions) {
-  TdfSettings tdf = tdf_settings();
-  tdf.erosion = 0;
-  ComplianceEvaluator statics = plate(2, true);
-  DesignSettings settings;
-  settings.optimizer.max_iterations = 150;
-  bool going = true;
-  BodyProblem begun = body_of(Design(kGrid, layout(), kScale), {tdf});
-  const BodyOutcome before = design_body(begun, statics, 1, settings, {}, going);
-  settings.finish.emplace();
-  settings.finish->name = "ipopt";
-  settings.finish->max_iterations = 600;
-  settings.finish->kkt_tolerance = 1e-6;
-  settings.finish->rest.rows = 0;
-  BodyProblem problem = body_of(Design(kGrid, layout(), kScale), {tdf});
-  int rows = 0;
-  const auto count = [&](const IterationReport& r) { return r.iteration == ++rows; };
-  const BodyOutcome after = design_body(problem, statics, 1, settings, count, going);
-  EXPECT_TRUE(going);
-  EXPECT_LE(after.kkt, 1e-6) << after.stop;
-  EXPECT_GT(before.kkt, 1e-4);
-  EXPECT_LE(after.compliance, before.compliance * (1 + 1e-6));
-  EXPECT_LE(after.volume, 0.5 * (1 + 1e-5));
-  EXPECT_EQ(after.iterations, rows);
-  EXPECT_EQ(problem.design.n_components(), begun.design.n_components());
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "optim/mmc/compliance_evaluator.h"
+#include "optim/mmc/loads/compliance_evaluator.h"
 #include "tests/optim/mmc_small.h"
 
 /// Hot plates for tests.

@@ -9,7 +9,7 @@
 #include <random>
 #include <string>
 
-#include "optim/mmc/compliance_evaluator.h"
+#include "optim/mmc/loads/compliance_evaluator.h"
 
 namespace flexmorph::mmc {
 namespace {

@@ -20,9 +20,9 @@ TdfSettings whole(double band) {
 }
 
 std::vector<BodyProblem> one_body(std::vector<double> bands = {2, 1}) {
-  std::vector<TdfSettings> stages;
-  for (const double band : bands) stages.push_back(whole(band));
-  return {body_of(Design(kGrid, layout(), kScale), stages)};
+  std::vector<TdfSettings> settings;
+  for (const double band : bands) settings.push_back(whole(band));
+  return {body_of(Design(kGrid, layout(), kScale), settings)};
 }
 
 LoopSettings quick(int iterations) {
@@ -135,7 +135,7 @@ TEST(EslLoop, RowsDescribeTheirIterates) {
             r.sharp->volume,
             area_fractions(kGrid, r.state.components(), kScale.min_thickness, problems[0].solid, {})
                 .mean(),
-            1e-14);
+            2e-3);  // 64 samples of a cell
         EXPECT_GT(r.sharp->compliance, 0);
       }
       return true;

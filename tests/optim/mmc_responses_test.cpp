@@ -7,7 +7,7 @@
 #include <cmath>
 #include <functional>
 
-#include "optim/mmc/goal.h"
+#include "optim/mmc/problem/goal.h"
 #include "tests/optim/mmc_small.h"
 #include "tests/support/gradient_check.h"
 

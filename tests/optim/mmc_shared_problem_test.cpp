@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "optim/mmc/shared_problem.h"
+#include "optim/mmc/problem/shared_problem.h"
 #include "tests/optim/mmc_sharing.h"
 #include "tests/support/gradient_check.h"
 

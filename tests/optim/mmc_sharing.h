@@ -1,6 +1,6 @@
 #pragma once
 
-#include "optim/mmc/compliance_evaluator.h"
+#include "optim/mmc/loads/compliance_evaluator.h"
 #include "tests/optim/mmc_small.h"
 
 /// Bodies that share mass, for tests.

@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
-#include "optim/mmc/compliance_evaluator.h"
-#include "optim/mmc/esl_loop.h"
+#include "optim/mmc/cycles/esl_loop.h"
+#include "optim/mmc/loads/compliance_evaluator.h"
 #include "tests/support/disturbance.h"
 
 /// A plate small enough for tests: 60 x 10 cells, 24 components, a few loads.
@@ -78,14 +78,14 @@ inline ComplianceEvaluator tip_load() {
 }
 
 /// The small plate with a solid strip.
-inline BodyProblem body_of(const Design& design, const std::vector<TdfSettings>& stages,
+inline BodyProblem body_of(const Design& design, const std::vector<TdfSettings>& bands,
                            const Goal& goal = least_compliance()) {
   return {.body = "plate",
           .grid = kGrid,
           .section = kSection,
           .design = design,
           .solid = strip(),
-          .stages = stages,
+          .bands = bands,
           .goal = goal};
 }
 

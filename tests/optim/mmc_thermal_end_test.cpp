@@ -8,8 +8,8 @@
 #include <array>
 #include <cmath>
 
-#include "optim/mmc/design_verification.h"
-#include "optim/mmc/restrained_expansion.h"
+#include "optim/mmc/cycles/design_verification.h"
+#include "optim/mmc/loads/restrained_expansion.h"
 #include "tests/optim/mmc_hot.h"
 #include "tests/support/errors.h"
 #include "tests/support/gradient_check.h"

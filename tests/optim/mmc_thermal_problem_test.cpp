@@ -12,7 +12,7 @@
 #include "fem/dynamics/esl.h"
 #include "fem/elements/ancf_plate.h"
 #include "fem/terms.h"
-#include "optim/mmc/shared_problem.h"
+#include "optim/mmc/problem/shared_problem.h"
 #include "tests/optim/mmc_hot.h"
 #include "tests/support/gradient_check.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "optim/mmc/compliance_evaluator.h"
+#include "optim/mmc/loads/compliance_evaluator.h"
 
 namespace flexmorph::mmc {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "optim/mmc/body_design.h"
-#include "optim/mmc/compliance_evaluator.h"
+#include "optim/mmc/cycles/body_design.h"
+#include "optim/mmc/loads/compliance_evaluator.h"
 #include "tests/optim/mmc_small.h"
 
 /// A designed plate with void, small enough for tests: 60 x 10 cells.
@@ -10,8 +10,7 @@ namespace flexmorph::testing {
 /// Stiff under a force at its tip, after 60 iterations, half of it void. Made once.
 inline const mmc::BodyProblem& designed_plate() {
   static const mmc::BodyProblem made = [] {
-    TdfSettings band = mmc::test::tdf_settings(1.0);
-    band.erosion = 0;  // ten cells across are too few to take half a cell off all around
+    const TdfSettings band = mmc::test::tdf_settings(1.0);
     mmc::BodyProblem problem = mmc::test::body_of(
         mmc::Design(mmc::test::kGrid, mmc::test::layout(), mmc::test::kScale), {band});
     mmc::ComplianceEvaluator tip = mmc::test::tip_load();

@@ -4,7 +4,7 @@
 #include "cases/scene/read.h"
 #include "cases/scene/tables.h"
 #include "io/files.h"
-#include "optim/mmc/motion_response.h"
+#include "optim/mmc/problem/motion_response.h"
 
 /// What follows the cycles of equivalent static loads: corrected cycles, and the certificate.
 namespace flexmorph::cases {

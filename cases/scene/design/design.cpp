@@ -7,8 +7,7 @@
 #include "cases/scene/tables.h"
 #include "io/exports.h"
 #include "io/files.h"
-#include "optim/mmc/body_design.h"
-#include "optim/mmc/clean_up.h"
+#include "optim/mmc/length_scale/outline_limits.h"
 
 namespace flexmorph::cases {
 
@@ -55,18 +54,15 @@ const Key& kMinThickness = io::key("design", "min_thickness")
                                         .lower_open = true})
                                .otherwise_as("a cell")
                                .says("Lower bound of the half-thicknesses of components.");
-const Key& kMinFeature =
-    io::key("design", "min_feature")
-        .number(not_negative("a smallest feature", "m"))
-        .word("a smallest feature in words", {"twice_min_thickness"})
-        .otherwise_as("twice `min_thickness`; 0 of `mend = false`")
-        .says("Smallest solid feature of the union; its price is `clean_up` of run.json.");
-const Key& kMend = io::key("design", "mend")
-                       .boolean()
-                       .otherwise_as("true from 40 iterations on")
-                       .says(
-                           "Repairs narrow places, loose pieces and gaps below a cell; `false` "
-                           "warns of them.");
+const Key& kMinFeature = io::key("design", "min_feature")
+                             .number(not_negative("a smallest feature", "m"))
+                             .word("a smallest feature in words", {"twice_min_thickness"})
+                             .otherwise_as("twice `min_thickness`; of `tdf = \"paper\"` 0")
+                             .says("Smallest solid feature of the union of components; 0: any.");
+const Key& kMinGap = io::key("design", "min_gap")
+                         .number(not_negative("a smallest gap", "m"))
+                         .otherwise_as("half of `min_feature`, three cells or more")
+                         .says("Smallest gap between material of the union.");
 const Key& kHalfLength = io::key("design", "half_length")
                              .number(positive("a half-length", "m"))
                              .otherwise_as("half the diagonal of a box")
@@ -91,37 +87,28 @@ const Key& kStarts =
     io::key("design", "starts")
         .integer("a number of starts", 1, 100)
         .otherwise(1)
-        .says("The best of so many, further ones jittered, is mended; each has all iterations.");
+        .says("The best of so many, further ones jittered, goes on to the last stage.");
 const io::Choice<bool> kSymmetry(
     io::key("design", "symmetry")
         .otherwise("auto")
         .says("Designs are symmetric where domain, regions, supports, loads and start are."),
     "a symmetry", {{"auto", true}, {"none", false}});
-const Key& kDropEvery =
-    io::key("design", "drop_every")
-        .integer("a number of iterations", 0, 1'000'000)
-        .otherwise(25)
-        .says("Iterations between looks for components outside or under others, to drop; 0: none.");
-const Key& kRefill = io::key("design", "refill")
-                         .boolean()
-                         .otherwise(false)
-                         .says("Splits long components in place of dropped ones.");
-
 const io::Choice<TdfSettings::Kind> kTdf(
     io::key("design", "tdf").otherwise("distance").says("Topology description function."), "a TDF",
     {{"distance", TdfSettings::Kind::distance}, {"paper", TdfSettings::Kind::paper}});
 const Key& kBand = io::key("design", "band")
                        .numbers(positive("half the width of the band", "cells"))
-                       .otherwise(std::vector<double>{1.5})
+                       .otherwise(std::vector<double>{2.5, 1.5})
                        .says("Half the width of the blur, a stage each, coarse to fine.");
 const Key& kSharpness = io::key("design", "sharpness")
                             .number(positive("a sharpness", "1/cell"))
                             .otherwise(3.75)
                             .says("Of the smooth maximum that unites components.");
-const Key& kErosion = io::key("design", "erosion")
-                          .number(not_negative("an erosion", "cells"))
-                          .otherwise_as("0.5; of `tdf = \"paper\"` 0")
-                          .says("In the last stage components count as so much thinner.");
+const Key& kErosionWidth =
+    io::key("design", "erosion_width")
+        .number(between("an erosion", "", 0, 0.5))
+        .otherwise_as("0.25; of `tdf = \"paper\"` 0")
+        .says("Stage 2 makes components thinner by this part of `min_feature`: it closes slits.");
 const Key& kAlpha = io::key("design", "alpha")
                         .number(fraction("the Heaviside function of the void", 0.5))
                         .otherwise(1e-3)
@@ -205,24 +192,28 @@ void check_loads(const Table& t, const Scene& scene, const BodyDesign& design) {
   }
 }
 
-/// What the union of components is mended to.
-Widths read_widths(const Table& t, const Body& body, const Scene& scene, const BodyDesign& design) {
-  // Designs that are only analysed were mended, most of them.
-  const int iterations = scene.optimizer.max_iterations;
-  const bool mend = t.boolean(kMend, iterations == 0 || iterations >= mmc::kFewestMendedIterations);
+/// Smallest widths of the union of components.
+Widths read_widths(const Table& t, const Body& body, const BodyDesign& design) {
   const double thick = std::min(2 * design.min_thickness, 0.5 * body.width);
+  const bool paper = design.tdf.kind == TdfSettings::Kind::paper;
   Widths out;
-  if (mend) out.gap = std::min(design.grid.dx(), design.grid.dy());
   if (t.is_string(kMinFeature)) {
     t.choice(kMinFeature);
     out.solid = thick;
   } else {
-    out.solid = t.number(kMinFeature.within(0, 0.5 * body.width), mend ? thick : 0.0);
+    out.solid = t.number(kMinFeature.within(0, 0.5 * body.width), paper ? 0.0 : thick);
   }
+  // Loads pass through gaps that are narrower than three cells.
+  const double seen = std::min(3 * std::max(design.grid.dx(), design.grid.dy()), 0.5 * body.width);
+  out.gap = t.number(kMinGap.within(0, 0.5 * body.width),
+                     out.solid > 0 ? std::max(0.5 * out.solid, seen) : 0.0);
+  if (paper && out.any())
+    t.fail(out.solid > 0 ? kMinFeature : kMinGap,
+           "`tdf = \"paper\"` is no distance, and has no widths: 0");
   return out;
 }
 
-void read_components(const Table& t, const Body& body, const Scene& scene, BodyDesign& design) {
+void read_components(const Table& t, const Body& body, BodyDesign& design) {
   const double cell = design.grid.dx();
   const std::vector<int> boxes = t.integers(kComponents);
   design.components = {boxes[0], boxes[1]};
@@ -231,7 +222,8 @@ void read_components(const Table& t, const Body& body, const Scene& scene, BodyD
   design.min_thickness =
       t.number(kMinThickness.within(0, 0.5 * body.width), std::min(cell, 0.5 * body.width));
 
-  design.widths = read_widths(t, body, scene, design);
+  design.tdf.kind = t.choice(kTdf);
+  design.widths = read_widths(t, body, design);
 
   const double wide = design.grid.width / boxes[0], high = design.grid.height / boxes[1];
   const double diagonal = std::hypot(wide, high);
@@ -262,24 +254,22 @@ void read_components(const Table& t, const Body& body, const Scene& scene, BodyD
   design.seed = t.integer(kSeed);
   design.starts = t.integer(kStarts);
   design.symmetric = t.choice(kSymmetry);
-  design.drop_every = t.integer(kDropEvery);
-  design.refill = t.boolean(kRefill);
 }
 
 void read_tdf(const Table& t, BodyDesign& design) {
   const double cell = design.grid.dx();
-  design.tdf.kind = t.choice(kTdf);
   const bool paper = design.tdf.kind == TdfSettings::Kind::paper;
   design.band = t.numbers(paper ? kBand.measured_in("") : kBand);
   for (size_t i = 1; i < design.band.size(); ++i)
     if (design.band[i] >= design.band[i - 1]) t.fail(kBand, "bands go from coarse to fine");
   design.tdf.sharpness = t.number(kSharpness) / cell;
-  design.tdf.erosion =
-      t.number(paper ? kErosion.measured_in("") : kErosion, paper ? 0.0 : 0.5) * (paper ? 1 : cell);
+  // Where any width is allowed, components have one of their own.
+  const double width = design.widths.solid > 0 ? design.widths.solid : 2 * design.min_thickness;
+  design.erosion = t.number(kErosionWidth, paper ? 0.0 : 0.25) * (paper ? 1 : width);
   design.tdf.alpha = t.number(kAlpha);
   design.tdf.min_half_thickness =
       std::max(design.min_thickness, mmc::half_thickness_for(design.widths.solid));
-  design.tdf = design.stage(design.band.size() - 1);
+  design.tdf = design.at_band(design.band.size() - 1);
   design.stiffness_void = t.number(kStiffnessVoid);
   design.mass_void = t.number(kMassVoid);
 }
@@ -303,7 +293,7 @@ BodyDesign read_static_design(const Table& t, const Scene& scene) {
   design.goal = read_goal(t, plate_of(scene, design));
   if (mmc::has_motion(design.goal)) t.fail("a plate at rest has no motion to minimize or to limit");
   read_coupling(t, design);
-  read_components(t, body, scene, design);
+  read_components(t, body, design);
   read_tdf(t, design);
   read_regions(t, body, scene, design);
   return design;
@@ -364,7 +354,7 @@ BodyDesign read_design(const Table& t, const Scene& scene) {
   design.grid = read_grid(t, body, scene.time.end);
   read_goals(t, scene, design);
   read_coupling(t, design);
-  read_components(t, body, scene, design);
+  read_components(t, body, design);
   read_tdf(t, design);
   read_regions(t, body, scene, design);
   check_loads(t, scene, design);

@@ -7,7 +7,7 @@
 #include "cases/scene/scene.h"
 #include "geometry/picture.h"
 #include "io/files.h"
-#include "optim/mmc/shared_problem.h"
+#include "optim/mmc/problem/shared_problem.h"
 
 namespace flexmorph::cases {
 

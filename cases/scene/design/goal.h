@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "io/case_file.h"
-#include "optim/mmc/goal.h"
+#include "optim/mmc/problem/goal.h"
 
 /// What a [[design]] is to be good at: `minimize`, `loads`, `max_volume`, `max_compliance`,
 /// [[design.constraint]].

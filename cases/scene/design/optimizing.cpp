@@ -51,9 +51,7 @@ const Key& kName = io::key("optimizer", "name")
 const Key& kMaxIterations = io::key("optimizer", "max_iterations")
                                 .integer("a number of iterations", 0, 1'000'000)
                                 .otherwise(kSettings.max_iterations)
-                                .says(
-                                    "Iterations of all stages together, of the polishes after "
-                                    "repairs as well; 0 evaluates the start.");
+                                .says("Iterations of all stages together; 0 evaluates the start.");
 const Key& kMaxSolves = io::key("optimizer", "max_solves")
                             .integer("a number of state solves", 0, 100'000'000)
                             .otherwise(kSettings.max_evaluations)
@@ -88,9 +86,7 @@ const Key& kRestObjective =
 const Key& kRestKkt = io::key("optimizer", "rest_kkt")
                           .number(not_negative("a tolerance"))
                           .otherwise(kSettings.rest.kkt)
-                          .says(
-                              "... and the KKT residual is below this, which `finish` sees to "
-                              "where there is one.");
+                          .says("... and the KKT residual is below this.");
 const Key& kOptions = io::key("optimizer", "options")
                           .table()
                           .otherwise_as("none")
@@ -98,28 +94,6 @@ const Key& kOptions = io::key("optimizer", "options")
 const Key& kOption = io::key("optimizer.options", "*")
                          .number(io::any_number("an option"))
                          .says("Its names and ranges are in the file of the optimizer.");
-
-const Key& kFinish = io::key("optimizer", "finish")
-                         .word("an optimizer", optim::optimizer_names)
-                         .otherwise_as("none")
-                         .says(
-                             "Who goes on from the last stage; `ipopt` uses second derivatives "
-                             "where loads are fixed.");
-const Key& kFinishIterations = io::key("optimizer", "finish_iterations")
-                                   .integer("a number of iterations", 1, 1'000'000)
-                                   .otherwise(1000)
-                                   .says("Iterations of `finish`, besides `max_iterations`.");
-const Key& kFinishTolerance = io::key("optimizer", "finish_tolerance")
-                                  .number(not_negative("a tolerance"))
-                                  .otherwise(1e-6)
-                                  .says("`finish` stops when the KKT residual is below this.");
-const Key& kFinishOptions = io::key("optimizer", "finish_options")
-                                .table()
-                                .otherwise_as("none")
-                                .says("Settings of `finish`, as `options`.");
-const Key& kFinishOption = io::key("optimizer.finish_options", "*")
-                               .number(io::any_number("an option"))
-                               .says("Its names and ranges are in the file of the optimizer.");
 
 const Key& kMaxCycles = io::key("cycle", "max_cycles")
                             .integer("a number of cycles", 1, 1000)
@@ -243,28 +217,6 @@ optim::Settings read_optimizer(const Table& t) {
   return s;
 }
 
-std::optional<optim::Settings> read_finish(const Table& t, const optim::Settings& stages) {
-  if (!t.has(kFinish)) {
-    for (const Key* key : {&kFinishIterations, &kFinishTolerance, &kFinishOptions})
-      if (t.has(*key)) t.fail(*key, "without `finish` this does nothing");
-    return {};
-  }
-  optim::Settings s;
-  s.name = t.choice(kFinish);
-  s.max_iterations = t.integer(kFinishIterations);
-  s.move_limit = stages.move_limit;
-  s.kkt_tolerance = t.number(kFinishTolerance);
-  s.feasibility = stages.feasibility;
-  s.rest.rows = 0;
-  read_options(t, kFinishOptions, kFinishOption, s);
-  return s;
-}
-
-void read_optimizers(const Table& t, Scene& scene) {
-  scene.optimizer = read_optimizer(t);
-  scene.finish = read_finish(t, scene.optimizer);
-}
-
 constexpr const char* kNoHeat = "heat does not know cells";
 constexpr const char* kNoDiscreteGradient =
     "void on cells has no discrete gradient for \"energy_momentum\"";
@@ -348,7 +300,7 @@ void read_designs(const Table& root, Scene& scene) {
     if (body.heat) scene.refuse("body.heat", kNoHeat);
   }
   if (root.has(tables::kDesign))  // designs ask how many iterations there are
-    read_optimizers(root.table_or_empty(tables::kOptimizer), scene);
+    scene.optimizer = read_optimizer(root.table_or_empty(tables::kOptimizer));
   std::vector<Table> sharing;
   for (const Table& t : root.tables(tables::kDesign)) {
     scene.designs.push_back(read_design(t, scene));

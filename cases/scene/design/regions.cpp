@@ -2,7 +2,7 @@
 #include "cases/scene/read.h"
 #include "geometry/picture.h"
 #include "io/files.h"
-#include "optim/mmc/body_problem.h"
+#include "optim/mmc/problem/body_problem.h"
 
 /// [[design.solid]], [[design.void]].
 namespace flexmorph::cases {

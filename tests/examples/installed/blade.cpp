@@ -6,8 +6,8 @@
 #include "fem/dynamics/growth.h"
 #include "fem/elements/ancf_plate.h"
 #include "fem/solve/statics.h"
-#include "optim/mmc/compliance_evaluator.h"
-#include "optim/mmc/mmc_problem.h"
+#include "optim/mmc/loads/compliance_evaluator.h"
+#include "optim/mmc/problem/mmc_problem.h"
 #include "parts.h"
 
 using namespace flexmorph;

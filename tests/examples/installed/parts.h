@@ -1,7 +1,7 @@
 #pragma once
 
 #include "fem/terms.h"
-#include "optim/mmc/response.h"
+#include "optim/mmc/problem/response.h"
 #include "optim/optimizer.h"
 
 /// The parts that the example adds, which stand in the files beside it.

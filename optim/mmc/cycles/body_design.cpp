@@ -1,0 +1,204 @@
+#include "optim/mmc/cycles/body_design.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "geometry/cpu_time.h"
+#include "optim/mmc/cycles/stages.h"
+#include "optim/mmc/cycles/usability.h"
+#include "optim/search.h"
+
+namespace flexmorph::mmc {
+namespace {
+
+/// Outlines and round-off take as much from a width that is wanted.
+constexpr double kWithin = 0.99;
+
+/// What the stages of a cycle may spend, in equal shares.
+class Shares {
+ public:
+  Shares(const optim::Settings& settings, int n_stages, int n_shares)
+      : settings_(settings), n_stages_(n_stages), n_shares_(n_shares) {}
+
+  /// @param stage  of those from one start, from 0
+  Share of(int stage) {
+    ++used_;
+    const auto until = [&](int k) { return settings_.max_iterations * k / n_stages_; };
+    const auto solves =
+        static_cast<int>(static_cast<double>(settings_.max_evaluations) * used_ / n_shares_);
+    return {until(stage + 1) - until(stage),
+            settings_.max_evaluations > 0 ? std::max(1, solves) : 0};
+  }
+
+ private:
+  const optim::Settings& settings_;
+  int n_stages_, n_shares_, used_ = 0;
+};
+
+size_t most_bands(std::span<const Part> parts) {
+  size_t out = 0;
+  for (const Part& p : parts) out = std::max(out, p.problem.bands.size());
+  return out;
+}
+
+/// The layouts of all starts of a body, the case's own first.
+std::vector<std::vector<Design>> starts_of(std::span<const Part> parts, int cycle) {
+  size_t n = 1;
+  for (const Part& p : parts)
+    if (cycle == 1) n = std::max(n, 1 + p.problem.further_starts.size());
+  std::vector<std::vector<Design>> out(n);
+  for (const Part& p : parts) {
+    const std::vector<Design>& further = p.problem.further_starts;
+    for (size_t s = 0; s < n; ++s)
+      out[s].push_back(s == 0 || further.empty() ? p.problem.design
+                                                 : further[std::min(s, further.size()) - 1]);
+  }
+  return out;
+}
+
+/// A result and the number of its start, from 1.
+struct FromStart {
+  StageResult result;
+  int start = 1;
+};
+
+/// Stages 1 to 4.
+FromStart staged(StageRunner& run, int cycle) {
+  const std::vector<Part>& parts = run.parts();
+  const bool wide =
+      std::any_of(parts.begin(), parts.end(), [](const Part& p) { return p.problem.widths.any(); });
+  const auto coarse = static_cast<int>(most_bands(parts)) - 1;
+  const int n_stages = coarse + 1 + (wide ? 1 : 0);
+  const std::vector<std::vector<Design>> starts = starts_of(parts, cycle);
+  const int n_shares =
+      static_cast<int>(starts.size()) * (n_stages - (wide ? 1 : 0)) + (wide ? 1 : 0);
+  Shares shares(run.settings().optimizer, n_stages, n_shares);
+  std::optional<FromStart> best;
+  for (size_t s = 0; s < starts.size() && run.going(); ++s) {
+    StageResult now = first_designs(parts);
+    now.designs = starts[s];
+    for (int band = 0; band < coarse; ++band) {
+      const Share share = shares.of(band);
+      if (cycle == 1) now = at_band(run, now, static_cast<size_t>(band), share);
+    }
+    const Share share = shares.of(coarse);
+    now = wide ? with_erosion(run, now, share) : last_stage(run, now, share);
+    // One that was stopped on its way compares with none.
+    if (!best || (run.going() &&
+                  is_better(now.result, best->result.result, run.settings().optimizer.feasibility)))
+      best = {std::move(now), static_cast<int>(s) + 1};
+  }
+  StageResult& now = best->result;
+  if (wide && run.going()) {
+    now = without_idle(run, now);
+    now = last_stage(run, now, shares.of(n_stages - 1));
+  }
+  return *best;
+}
+
+/// The designs as they are: nothing is optimized.
+StageResult evaluated(const std::vector<Part>& parts) {
+  StageResult out = first_designs(parts);
+  for (size_t k = 0; k < parts.size(); ++k)
+    out.formulations[k] = last_formulation(parts[k].problem);
+  Whole whole(parts, out.designs, out.formulations);
+  optim::Problem& problem = whole.problem();
+  const VectorXd x = problem.start();
+  // A crisp volume meets its limit to a thousandth only, and counts as an active limit.
+  constexpr double kActive = 1e-3;
+  out.result.kkt = out.result.verdict.kkt =
+      optim::kkt_residual(problem.evaluate(x), x, problem.lower(), problem.upper(), kActive);
+  out.result.verdict.kind = optim::Verdict::Kind::evaluated;
+  return out;
+}
+
+std::string stop_words(const StageRunner& run, const optim::Result& result) {
+  if (!run.going()) return "interrupted after " + std::to_string(run.iterations()) + " iterations";
+  if (result.verdict.kind == optim::Verdict::Kind::evaluated)
+    return "evaluated: nothing was optimized";
+  if (result.stop == optim::Stop::iteration_limit)
+    return "iteration limit: " + std::to_string(run.iterations()) + " iterations, KKT residual " +
+           optim::scientific(result.kkt);
+  return optim::to_string(result.stop) + (result.message.empty() ? "" : ": " + result.message);
+}
+
+}  // namespace
+
+bool BodyOutcome::reaches_length_scale() const {
+  if (!length_scale) return true;
+  const Widths& wanted = length_scale->wanted;
+  return sharp.connectivity.islands == 0 && sharp.features &&
+         sharp.features->solid >= kWithin * wanted.solid &&
+         sharp.features->gap >= kWithin * wanted.gap;
+}
+
+BodyOutcome outcome_of(const Part& p, const Design& design, const Formulation& formulation,
+                       bool condition) {
+  BodyOutcome out;
+  out.body = p.problem.body;
+  MmcProblem state({p.plate, design, p.ersatz, p.loads}, formulation.tdf, p.problem.goal);
+  state.evaluate(state.start());
+  // A goal without a compliance has never asked for one.
+  out.compliance = std::isfinite(state.compliance())
+                       ? state.compliance()
+                       : design_compliance(p.problem, p.loads, state.factors());
+  out.volume = state.volume();
+  for (const ResponseRow* row : further_rows(p.problem.goal))
+    out.further[key_of(*row)] = state.values(*row)->maxCoeff();
+  out.sharp = sharp_design(p.problem, design.components(), p.loads);
+  const CellFactors sharp = p.ersatz.sharp(out.sharp.fractions);
+  const VectorXd each = p.loads.individual(sharp.stiffness, sharp.mass);
+  out.load_compliances.assign(each.data(), each.data() + each.size());
+  out.worst_compliance = each.maxCoeff();
+  if (condition) out.condition = p.loads.condition();
+  // The paper's comparison: the volume that was allowed (or came out), spread evenly.
+  const double volume = allowed_volume(p.problem.goal).value_or(out.sharp.volume);
+  const VectorXd even = VectorXd::Constant(p.problem.grid.n_cells(), volume);
+  out.uniform_compliance = design_compliance(p.problem, p.loads, {even, even});
+  out.full = full_values(p.problem, p.loads);
+  out.n_loads = p.loads.n_loads();
+  out.n_right_hand_sides = p.loads.n_right_hand_sides();
+  out.factorizations = p.loads.factorizations();
+  if (p.problem.widths.any()) out.length_scale = {.wanted = p.problem.widths};
+  return out;
+}
+
+std::vector<BodyOutcome> design_bodies(std::span<const LoadedBody> bodies, int cycle,
+                                       const DesignSettings& settings,
+                                       const IterationObserver& observe, bool& going) {
+  StageRunner run(bodies, cycle, settings, observe);
+  const FromStart last = settings.optimizer.max_iterations == 0 ? FromStart{evaluated(run.parts())}
+                                                                : staged(run, cycle);
+  const StageResult& now = last.result;
+  std::vector<BodyOutcome> out;
+  for (size_t k = 0; k < bodies.size(); ++k) {
+    bodies[k].problem.design = now.designs[k];
+    BodyOutcome& o = out.emplace_back(
+        outcome_of(run.parts()[k], now.designs[k], now.formulations[k], settings.condition));
+    o.start = last.start;
+    o.kkt = now.result.kkt;
+    o.change = now.changes[k];
+    o.verdict = now.result.verdict;
+    if (!run.going()) o.verdict.kind = optim::Verdict::Kind::unfinished;
+    o.stop = stop_words(run, now.result);
+    o.iterations = run.iterations();
+    o.evaluations = run.evaluations();
+    if (o.length_scale) {
+      o.length_scale->removed = now.removed[k].components;
+      o.length_scale->seconds = now.removed[k].seconds;
+    }
+  }
+  going = run.going();
+  return out;
+}
+
+BodyOutcome design_body(BodyProblem& problem, ComplianceEvaluator& loads, int cycle,
+                        const DesignSettings& settings, const IterationObserver& observe,
+                        bool& going) {
+  const LoadedBody body{problem, loads};
+  return design_bodies({&body, 1}, cycle, settings, observe, going).front();
+}
+
+}  // namespace flexmorph::mmc

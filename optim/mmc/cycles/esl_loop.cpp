@@ -1,0 +1,236 @@
+#include "optim/mmc/cycles/esl_loop.h"
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "optim/mmc/cycles/usability.h"
+#include "optim/mmc/loads/compliance_evaluator.h"
+
+namespace flexmorph::mmc {
+namespace {
+
+/// Problems by their place that are solved together: those that share mass, in the place of the
+/// first of them, and each of the others by itself.
+std::vector<std::vector<size_t>> groups_of(const std::vector<BodyProblem>& problems) {
+  std::vector<std::vector<size_t>> out;
+  std::optional<size_t> sharing;
+  for (size_t i = 0; i < problems.size(); ++i) {
+    if (problems[i].shares_mass && sharing) {
+      out[*sharing].push_back(i);
+      continue;
+    }
+    if (problems[i].shares_mass) sharing = out.size();
+    out.push_back({i});
+  }
+  return out;
+}
+
+/// A body under the loads of a motion, and its design before the cycle.
+struct Start {
+  VectorXd fractions;
+  CellFactors factors;
+  std::unique_ptr<ComplianceEvaluator> compliance;
+  VectorXd energies;
+
+  Start(const BodyProblem& p, const fem::EslSets& loads)
+      : fractions(fractions_of(p, p.design.components())),
+        factors(ersatz_of(p).sharp(fractions)),
+        compliance(std::make_unique<ComplianceEvaluator>(loads, p.section, p.compliance,
+                                                         factors.stiffness, factors.mass)),
+        energies(compliance->individual(factors.stiffness, factors.mass)) {}
+};
+
+/// The designs of all bodies in one cycle, up to the group that was stopped.
+class CycleDesigner {
+ public:
+  CycleDesigner(std::vector<BodyProblem>& problems, const std::vector<fem::EslSets>& loads)
+      : problems_(problems), loads_(loads), outcomes_(problems.size()) {}
+
+  /// @return false when the observer stopped it
+  bool go(int cycle, const LoopSettings& settings, const LoopObserver& observer) {
+    bool going = true;
+    for (const std::vector<size_t>& group : groups_of(problems_)) {
+      design(group, cycle, settings, observer, going);
+      if (!going) break;
+    }
+    return going;
+  }
+
+  /// Of the bodies up to the first one without.
+  std::vector<BodyOutcome> outcomes() {
+    std::vector<BodyOutcome> out;
+    for (std::optional<BodyOutcome>& o : outcomes_) {
+      if (!o) break;
+      out.push_back(std::move(*o));
+    }
+    return out;
+  }
+
+ private:
+  void design(const std::vector<size_t>& group, int cycle, const LoopSettings& settings,
+              const LoopObserver& observer, bool& going) {
+    std::vector<std::unique_ptr<Start>> starts;
+    std::vector<LoadedBody> bodies;
+    for (const size_t i : group) {
+      starts.push_back(std::make_unique<Start>(problems_[i], loads_[i]));
+      bodies.push_back({problems_[i], *starts.back()->compliance});
+    }
+    std::vector<BodyOutcome> found =
+        design_bodies(bodies, cycle, settings.design, observer.iteration, going);
+    for (size_t k = 0; k < group.size(); ++k) {
+      BodyOutcome& outcome = outcomes_[group[k]].emplace(std::move(found[k]));
+      const std::vector<fem::EslSet>& sets = loads_[group[k]].sets;
+      for (size_t l = 0; l < sets.size(); ++l)
+        outcome.energy_ratios.push_back(0.5 * starts[k]->energies[static_cast<Eigen::Index>(l)] /
+                                        sets[l].strain_energy);
+      outcome.design_change = (outcome.sharp.fractions - starts[k]->fractions).cwiseAbs().sum() /
+                              ersatz_of(problems_[group[k]]).n_domain_cells();
+    }
+  }
+
+  std::vector<BodyProblem>& problems_;
+  const std::vector<fem::EslSets>& loads_;
+  std::vector<std::optional<BodyOutcome>> outcomes_;
+};
+
+std::vector<fem::Factors> factors_of(const std::vector<BodyProblem>& problems) {
+  std::vector<fem::Factors> out;
+  for (const BodyProblem& p : problems) out.push_back(dynamic_factors(p, p.design.components()));
+  return out;
+}
+
+/// Designs and outcomes of the cycles so far, and which one is best.
+class Verdicts {
+ public:
+  void add(int cycle, const std::vector<BodyProblem>& problems,
+           const std::vector<BodyOutcome>& outcome) {
+    CycleVerdict& v = verdicts_.emplace_back();
+    v.cycle = cycle;
+    for (size_t k = 0; k < outcome.size(); ++k) {
+      const BodyOutcome& o = outcome[k];
+      v.objective += o.compliance;
+      v.violation = std::max(v.violation, crisp_violation(problems[k], o.sharp));
+      v.bodies.push_back({o.body, o.compliance, o.sharp.compliance, o.design_change});
+    }
+    outcomes_.push_back(outcome);
+    auto& designs = designs_.emplace_back();
+    for (const BodyProblem& p : problems) designs.push_back(p.design);
+  }
+  /// @param measure  of a motion with the designs of the last cycle added
+  void record(double measure) {
+    CycleVerdict& last = verdicts_.back();
+    last.measure = measure;
+    const size_t now = verdicts_.size() - 1;
+    if (now > 0 && !better(last, verdicts_[best_])) return;
+    verdicts_[best_].best = false;
+    best_ = now;
+    last.best = true;
+  }
+  /// Tells whether the last cycle recorded improves on the ones before, by more than a part of
+  /// their least measure or by less violated limits.
+  bool improved(double part) const {
+    if (verdicts_.size() < 2) return true;
+    const CycleVerdict& last = verdicts_.back();
+    if (!last.best) return false;
+    double least = std::numeric_limits<double>::infinity();
+    for (size_t k = 0; k + 1 < verdicts_.size(); ++k)
+      if (verdicts_[k].violation <= last.violation) least = std::min(least, verdicts_[k].measure);
+    return last.measure < (1 - part) * least;
+  }
+  std::vector<BodyOutcome> take_best(std::vector<BodyProblem>& problems) const {
+    for (size_t k = 0; k < problems.size(); ++k) problems[k].design = designs_[best_][k];
+    return outcomes_[best_];
+  }
+  const std::vector<CycleVerdict>& all() const { return verdicts_; }
+
+ private:
+  static bool better(const CycleVerdict& a, const CycleVerdict& b) {
+    return a.violation == b.violation ? a.measure < b.measure : a.violation < b.violation;
+  }
+
+  std::vector<CycleVerdict> verdicts_;
+  std::vector<std::vector<BodyOutcome>> outcomes_;
+  std::vector<std::vector<Design>> designs_;
+  size_t best_ = 0;
+};
+
+/// The cycles of a run.
+class Loop {
+ public:
+  Loop(std::vector<BodyProblem>& problems, const Simulate& simulate, const LoopSettings& settings,
+       const LoopObserver& observer)
+      : problems_(problems), simulate_(simulate), settings_(settings), observer_(observer) {}
+
+  std::vector<BodyOutcome> go() {
+    CycleMotion motion = simulate_(factors_of(problems_));
+    for (int cycle = 1;; ++cycle) {
+      if (observer_.loads) observer_.loads(cycle, motion.loads);
+      if (!design(cycle, motion.loads)) return outcome_;
+      if (settings_.max_cycles == 1) return outcome_;
+      const bool last = cycle == settings_.max_cycles;
+      const std::vector<fem::Factors> factors = factors_of(problems_);
+      if (settings_.verification_motion) record(settings_.verification_motion(factors));
+      if (settings_.verification_motion && (last || !verdicts_.improved(settings_.tolerance)))
+        break;
+      motion = simulate_(factors);
+      if (!settings_.verification_motion) record(motion.measure);
+      const bool fits = loads_fit(cycle, motion.loads);
+      if (last || !verdicts_.improved(settings_.tolerance) || (fits && of_use())) break;
+    }
+    return verdicts_.take_best(problems_);
+  }
+
+ private:
+  /// @return false when the observer stopped it
+  bool design(int cycle, const std::vector<fem::EslSets>& loads) {
+    CycleDesigner designer(problems_, loads);
+    const bool going = designer.go(cycle, settings_, observer_);
+    outcome_ = designer.outcomes();
+    if (observer_.cycle) observer_.cycle(cycle, outcome_);
+    if (going) verdicts_.add(cycle, problems_, outcome_);
+    return going;
+  }
+
+  void record(double measure) {
+    verdicts_.record(measure);
+    if (observer_.verdict) observer_.verdict(verdicts_.all());
+  }
+
+  /// Tells whether the loads of the cycle are those of the motion with its designs.
+  bool loads_fit(int cycle, const std::vector<fem::EslSets>& own) const {
+    std::vector<LoadDifference> all;
+    for (size_t k = 0; k < problems_.size(); ++k)
+      all.push_back(load_difference(problems_[k], outcome_[k].load_compliances, own[k]));
+    if (observer_.difference) observer_.difference(cycle, all);
+    return std::all_of(all.begin(), all.end(), [this](const LoadDifference& d) {
+      return d.loads < settings_.load_difference;
+    });
+  }
+
+  /// Tells whether the designs of the last cycle are stiffer than uniform material: if not, another
+  /// cycle continues them, whatever their loads.
+  bool of_use() const {
+    for (size_t k = 0; k < problems_.size(); ++k)
+      if (worse_than_uniform(problems_[k], outcome_[k])) return false;
+    return true;
+  }
+
+  std::vector<BodyProblem>& problems_;
+  const Simulate& simulate_;
+  const LoopSettings& settings_;
+  const LoopObserver& observer_;
+  Verdicts verdicts_;
+  std::vector<BodyOutcome> outcome_;
+};
+
+}  // namespace
+
+std::vector<BodyOutcome> esl_loop(std::vector<BodyProblem>& problems, const Simulate& simulate,
+                                  const LoopSettings& settings, const LoopObserver& observer) {
+  return Loop(problems, simulate, settings, observer).go();
+}
+
+}  // namespace flexmorph::mmc

@@ -1,0 +1,135 @@
+#include "optim/mmc/cycles/stages.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "geometry/cpu_time.h"
+#include "optim/mmc/length_scale/idle_components.h"
+
+namespace flexmorph::mmc {
+namespace {
+
+/// Limits that were not there before are met at any price: with full steps a design tears at its
+/// narrow places before these are wide.
+void begin_gently(optim::Settings& settings) {
+  constexpr double kMove = 0.4, kAsymptotes = 0.01;
+  settings.move_limit *= kMove;
+  if (settings.name == "mma" || settings.name == "gcmma")
+    settings.options.try_emplace("asyinit", kAsymptotes);
+}
+
+}  // namespace
+
+StageRunner::StageRunner(std::span<const LoadedBody> bodies, int cycle,
+                         const DesignSettings& settings, const IterationObserver& observe)
+    : parts_(bodies.begin(), bodies.end()), cycle_(cycle), settings_(settings), observe_(observe) {}
+
+StageResult StageRunner::optimize(const StageResult& from, std::vector<Formulation> formulations,
+                                  const Share& share) {
+  if (share.iterations <= 0 || !going_ || (share.solves > 0 && evaluations_ >= share.solves))
+    return from;
+  optim::Settings settings = settings_.optimizer;
+  settings.max_iterations = share.iterations;
+  settings.plateau = true;
+  if (share.gentle) begin_gently(settings);
+  settings.max_evaluations = share.solves > 0 ? share.solves - evaluations_ : 0;
+  Whole whole(parts_, from.designs, formulations);
+  std::optional<optim::RecordedProblem> recorded;
+  if (settings_.past) recorded.emplace(whole.problem(), settings_.past->log);
+  optim::Problem& problem = recorded ? *recorded : whole.problem();
+  StageResult out = from;
+  out.formulations = std::move(formulations);
+  out.result = optim::make_optimizer(settings)->minimize(
+      problem, [&](const optim::Iterate& iterate) { return see(whole, iterate); });
+  evaluations_ += out.result.evaluations;
+  out.designs = whole.designs_at(out.result.x);
+  out.changes.clear();
+  for (size_t k = 0; k < parts_.size(); ++k)
+    out.changes.push_back((out.designs[k].x() - from.designs[k].x()).lpNorm<Eigen::Infinity>());
+  return out;
+}
+
+bool StageRunner::see(Whole& whole, const optim::Iterate& iterate) {
+  ++iterations_;
+  for (size_t k = 0; k < parts_.size(); ++k) {
+    MmcProblem& state = whole.states[k];
+    const VectorXd x = whole.part_of(*iterate.x, k);
+    // A trial came after it, or its answer was known.
+    if (state.x().size() != x.size() || state.x() != x) state.recall(x);
+    see(parts_[k], state, iterate, k == 0);
+  }
+  return going_;
+}
+
+void StageRunner::see(const Part& p, MmcProblem& state, const optim::Iterate& iterate, bool first) {
+  const Past* past = settings_.past;
+  if (past && past->log.knew_last() && past->has_row({p.problem.body, cycle_, iterations_})) return;
+  if (!state.is_solved()) state.evaluate(VectorXd(state.x()));
+  SharpDesign sharp;
+  const bool wanted = settings_.sharp_every > 0 && iterations_ % settings_.sharp_every == 0;
+  if (wanted) sharp = sharp_design(p.problem, state.components(), p.loads);
+  optim::Iterate own = iterate;
+  own.x = &state.x();
+  if (!first) own.seconds = 0;
+  if (observe_ && !observe_({p.problem, cycle_, iterations_, evaluations_ + iterate.evaluations,
+                             own, state, state.value(), p.loads, wanted ? &sharp : nullptr}))
+    going_ = false;
+  state.clear_seconds();
+}
+
+StageResult first_designs(std::span<const Part> parts) {
+  StageResult out;
+  out.designs = designs_of(parts);
+  for (const Part& p : parts) out.formulations.push_back(eroded(p.problem));
+  out.changes.assign(parts.size(), 0);
+  out.removed.assign(parts.size(), {});
+  return out;
+}
+
+StageResult at_band(StageRunner& run, const StageResult& from, size_t band, const Share& share) {
+  size_t most = 0;
+  for (const Part& p : run.parts()) most = std::max(most, p.problem.bands.size());
+  std::vector<Formulation> formulations;
+  for (const Part& p : run.parts())
+    formulations.push_back(nominal(p.problem, band * p.problem.bands.size() / most));
+  return run.optimize(from, std::move(formulations), share);
+}
+
+StageResult with_erosion(StageRunner& run, const StageResult& from, const Share& share) {
+  std::vector<Formulation> formulations;
+  for (const Part& p : run.parts()) formulations.push_back(eroded(p.problem));
+  return run.optimize(from, std::move(formulations), share);
+}
+
+StageResult without_idle(StageRunner& run, const StageResult& from) {
+  StageResult out = from;
+  for (size_t k = 0; k < run.parts().size(); ++k) {
+    const Part& p = run.parts()[k];
+    // A goal without loads does not say what carries.
+    if (!p.problem.widths.any() || !asks_state(p.problem.goal) || !run.goes_on()) continue;
+    const double begin = cpu_seconds();
+    const std::vector<int> removed =
+        remove_idle(p.problem, p.loads, out.designs[k], [&] { return run.goes_on(); });
+    out.removed[k].components += static_cast<int>(removed.size());
+    out.removed[k].seconds += cpu_seconds() - begin;
+  }
+  return out;
+}
+
+StageResult last_stage(StageRunner& run, const StageResult& from, const Share& share) {
+  std::vector<Formulation> formulations;
+  for (const Part& p : run.parts()) formulations.push_back(last_formulation(p.problem));
+  const bool gentle = std::any_of(formulations.begin(), formulations.end(),
+                                  [](const Formulation& f) { return f.outline.has_value(); });
+  return run.optimize(from, std::move(formulations), {share.iterations, share.solves, gentle});
+}
+
+bool is_better(const optim::Result& a, const optim::Result& b, double feasibility) {
+  const bool feasible_a = a.violation <= feasibility, feasible_b = b.violation <= feasibility;
+  if (feasible_a != feasible_b) return feasible_a;
+  return feasible_a ? optim::attained_objective(a.response) <= optim::attained_objective(b.response)
+                    : a.violation <= b.violation;
+}
+
+}  // namespace flexmorph::mmc

@@ -1,0 +1,225 @@
+#include "optim/mmc/length_scale/outline_limits.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace flexmorph::mmc {
+namespace {
+
+/// Places wider than so many times what is wanted are far from being a limit.
+constexpr double kLook = 1.5;
+/// Places narrower than this part of what is wanted have no direction.
+constexpr double kNoWidth = 1e-3;
+/// A hundredth of a width is a hundredth of this in g; widths that are aimed at, in parts of those
+/// wanted: what Settings::feasibility = 1e-5 forgives of them is 3e-3.
+constexpr double kScale = 0.003, kAim = 1.002;
+/// Outlines whose normals differ by less than this cross nowhere in particular [-], a sine.
+constexpr double kCrossing = 0.05;
+
+/// An outline that passes through a contact.
+struct Through {
+  Vec2 normal{0, 0};    // into the material
+  double distance = 0;  // of the contact from the outline, positive in the material [m]
+  int component = -1;   // -1: fixed
+  std::array<double, Component::kParameters> speed = {};  // of the outline along -normal, by p
+};
+
+/// Sides that no component moves.
+std::vector<std::array<Vec2, 2>> fixed_sides(const BodyProblem& problem) {
+  std::vector<std::vector<Vec2>> rings = rings_of(domain_of(problem));
+  rings.insert(rings.end(), problem.solid.begin(), problem.solid.end());
+  rings.insert(rings.end(), problem.empty.begin(), problem.empty.end());
+  std::vector<std::array<Vec2, 2>> out;
+  for (const std::vector<Vec2>& ring : rings)
+    for (size_t k = 0; k < ring.size(); ++k) out.push_back({ring[k], ring[(k + 1) % ring.size()]});
+  return out;
+}
+
+class Contacts {
+ public:
+  Contacts(const BodyProblem& problem, std::span<const Component> components)
+      : components_(components),
+        tdf_(problem.bands.back()),
+        sides_(fixed_sides(problem)),
+        near_(3 * kOutlineTolerance * problem.grid.dx()) {
+    for (const Component& c : components)
+      boxes_.push_back(bounding_box(c, tdf_.min_half_thickness, near_));
+  }
+
+  /// Adds s e · (position and speed of the contact at p) to a width.
+  void add(const Vec2& p, const Vec2& e, double s, WidthSlope& out) const {
+    for (const Share& share : shares_at(p, e)) {
+      const Through& t = share.of;
+      if (t.component < 0) continue;
+      out.width -= s * share.part * t.distance;
+      for (int q = 0; q < Component::kParameters; ++q)
+        out.slope[Component::kParameters * t.component + q] -=
+            s * share.part * t.speed[static_cast<size_t>(q)];
+    }
+  }
+
+  /// Adds what the contact at p contributes where the disc moves along the material with the
+  /// components, as the last disc of an end does.
+  /// @param along  unit vector along the material
+  /// @param rate   of the width, when all outlines move along it [-]
+  /// @param slide  speed of the disc along it, by the parameters of components (7 N)
+  void add_slide(const Vec2& p, const Vec2& e, double s, const Vec2& along, double& rate,
+                 VectorXd& slide) const {
+    const std::vector<Share> shares = shares_at(p, e);
+    for (const Share& share : shares) {
+      rate += s * share.part * share.of.normal.dot(along);
+      if (share.of.component < 0) continue;
+      const Component& c = components_[static_cast<size_t>(share.of.component)];
+      const Vec2 axis(std::cos(c.angle), std::sin(c.angle)), arm = p - c.center;
+      const double part = 0.5 / static_cast<double>(shares.size());
+      const auto first = Component::kParameters * static_cast<Eigen::Index>(share.of.component);
+      slide[first] += part * along.x();
+      slide[first + 1] += part * along.y();
+      slide[first + 2] += part * along.dot(axis) * axis.dot(arm) / c.half_length;
+      slide[first + 3] += part * along.dot(Vec2(-arm.y(), arm.x()));
+    }
+  }
+
+ private:
+  /// An outline through a contact and its part of e, e · v = Σ part n · v for all v that the
+  /// outlines allow.
+  struct Share {
+    Through of;
+    double part = 0;
+  };
+  std::vector<Share> shares_at(const Vec2& p, const Vec2& e) const {
+    const std::vector<Through> through = outlines_through(p);
+    if (through.empty()) return {};
+    if (through.size() == 1) return {{through[0], through[0].normal.dot(e)}};
+    Eigen::Matrix2d normals;
+    normals << through[0].normal, through[1].normal;
+    const Vec2 both = normals.inverse() * e;
+    return {{through[0], both[0]}, {through[1], both[1]}};
+  }
+
+  /// One outline, or two that cross: what is fixed first, then those nearest.
+  std::vector<Through> outlines_through(const Vec2& p) const {
+    std::vector<Through> found;
+    for (size_t c = 0; c < components_.size(); ++c) add_component(static_cast<int>(c), p, found);
+    for (const auto& [a, b] : sides_) add_side(a, b, p, found);
+    std::stable_sort(found.begin(), found.end(), [](const Through& x, const Through& y) {
+      const bool fixed_x = x.component < 0, fixed_y = y.component < 0;
+      return fixed_x != fixed_y ? fixed_x : std::abs(x.distance) < std::abs(y.distance);
+    });
+    std::vector<Through> out;
+    for (const Through& t : found) {
+      if (out.size() == 2) break;
+      const auto across = [&](const Through& o) {
+        return std::abs(o.normal.x() * t.normal.y() - o.normal.y() * t.normal.x());
+      };
+      if (out.empty() || across(out[0]) > kCrossing) out.push_back(t);
+    }
+    return out;
+  }
+
+  void add_component(int index, const Vec2& p, std::vector<Through>& found) const {
+    const Box& box = boxes_[static_cast<size_t>(index)];
+    if ((p.array() < box.lower.array()).any() || (p.array() > box.upper.array()).any()) return;
+    const Component& c = components_[static_cast<size_t>(index)];
+    Through t;
+    const double phi = component_tdf(c, tdf_, p.x(), p.y(), t.speed.data());
+    const Vec2 gradient(-t.speed[0], -t.speed[1]);  // φ depends on X - X0
+    const double size = gradient.norm();
+    if (!(size > 0) || !(std::abs(phi) < near_ * size)) return;
+    t.normal = gradient / size;
+    t.distance = phi / size;
+    t.component = index;
+    for (double& each : t.speed) each /= size;
+    found.push_back(t);
+  }
+
+  void add_side(const Vec2& a, const Vec2& b, const Vec2& p, std::vector<Through>& found) const {
+    const Vec2 along = (b - a).normalized(), normal(-along.y(), along.x());
+    const double at = along.dot(p - a), far = near_ / 3;
+    if (at < -far || at > (b - a).norm() + far || std::abs(normal.dot(p - a)) > 1e-3 * far) return;
+    found.push_back({normal, 0, -1, {}});
+  }
+
+  std::span<const Component> components_;
+  TdfSettings tdf_;
+  std::vector<std::array<Vec2, 2>> sides_;
+  double near_;
+  std::vector<Box> boxes_;
+};
+
+/// The narrowest places by what is wanted of them, one for each neighbourhood.
+std::vector<NarrowPlace> narrowest(const BodyProblem& problem, std::span<const Region> regions,
+                                   const Widths& wanted, size_t most) {
+  std::vector<NarrowPlace> all = narrow_places_of(problem, regions, kLook * wanted.largest());
+  const auto part = [&](const NarrowPlace& p) { return p.width / wanted.of(p); };
+  std::erase_if(all, [&](const NarrowPlace& p) { return !(part(p) < kLook); });
+  std::stable_sort(all.begin(), all.end(),
+                   [&](const auto& p, const auto& q) { return part(p) < part(q); });
+  std::vector<NarrowPlace> out;
+  for (const NarrowPlace& p : all) {
+    const bool known = std::any_of(out.begin(), out.end(), [&](const NarrowPlace& q) {
+      return q.solid == p.solid && (q.center - p.center).norm() < wanted.of(p);
+    });
+    if (!known) out.push_back(p);
+    if (out.size() == most) break;
+  }
+  return out;
+}
+
+/// Room of components for their round ends and the tolerance of outlines.
+constexpr double kRoom = 1.06;
+
+}  // namespace
+
+double half_thickness_for(double min_feature) { return 0.5 * kRoom * min_feature; }
+
+namespace {
+
+WidthSlope width_slope_at(const Contacts& contacts, size_t n, const NarrowPlace& place) {
+  WidthSlope out;
+  out.slope.setZero(Component::kParameters * static_cast<Eigen::Index>(n));
+  out.width = place.width;
+  const Vec2 e = (place.a - place.b).normalized();
+  contacts.add(place.a, e, 1, out);
+  contacts.add(place.b, e, -1, out);
+  if (place.kind != NarrowPlace::Kind::bar) return out;
+  const Vec2 along(-e.y(), e.x());
+  double rate = 0;
+  VectorXd slide = VectorXd::Zero(out.slope.size());
+  contacts.add_slide(place.a, e, 1, along, rate, slide);
+  contacts.add_slide(place.b, e, -1, along, rate, slide);
+  out.slope -= rate * slide;
+  return out;
+}
+
+}  // namespace
+
+WidthSlope width_slope(const BodyProblem& problem, std::span<const Component> components,
+                       const NarrowPlace& place) {
+  return width_slope_at(Contacts(problem, components), components.size(), place);
+}
+
+OutlineLimits::OutlineLimits(const BodyProblem& problem, const Widths& wanted)
+    : problem_(problem), wanted_(wanted), domain_area_(area(domain_of(problem))) {}
+
+void OutlineLimits::evaluate(std::span<const Component> components, Values& out) {
+  const std::vector<Region> regions =
+      regions_of(problem_, components, kOutlineTolerance * problem_.grid.dx());
+  out.volume = area(regions) / domain_area_;
+  out.g.setConstant(count(), kScale * (1 - kLook));
+  out.dg.setZero(count(), Component::kParameters * static_cast<Eigen::Index>(components.size()));
+  if (!wanted_.any()) return;
+  const Contacts contacts(problem_, components);
+  Eigen::Index k = 0;
+  for (const NarrowPlace& place : narrowest(problem_, regions, wanted_, kPlaces)) {
+    WidthSlope w = width_slope_at(contacts, components.size(), place);
+    if (place.width < kNoWidth * wanted_.of(place)) w.slope.setZero();
+    const double wanted = kAim * wanted_.of(place);
+    out.g[k] = kScale * (1 - w.width / wanted);
+    out.dg.row(k++) = -kScale / wanted * w.slope.transpose();
+  }
+}
+
+}  // namespace flexmorph::mmc

@@ -1,0 +1,236 @@
+#include "optim/mmc/problem/body_problem.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "geometry/cpu_time.h"
+#include "geometry/line_gaps.h"
+#include "geometry/part_mesh.h"
+
+namespace flexmorph::mmc {
+double design_compliance(const BodyProblem& problem, ComplianceEvaluator& loads,
+                         const CellFactors& factors) {
+  if (compliance_row(problem.goal).per_load)
+    return loads.individual(factors.stiffness, factors.mass).maxCoeff();
+  return loads.sum(factors.stiffness, factors.mass);
+}
+
+Figures further_values(const BodyProblem& problem, std::span<const Component> components,
+                       ComplianceEvaluator& loads, const CellFactors& factors) {
+  DesignState state(loads);
+  Figures out;
+  for (const ResponseRow* row : further_rows(problem.goal)) {
+    Values values;
+    row->make(plate_of(problem))->evaluate({factors, components, state}, values);
+    out[key_of(*row)] = values.f.maxCoeff();
+  }
+  return out;
+}
+
+Figures full_values(const BodyProblem& problem, ComplianceEvaluator& loads) {
+  const std::vector<Limit>& limits = problem.goal.limits;
+  if (std::none_of(limits.begin(), limits.end(), [](const Limit& l) { return l.wants_material(); }))
+    return {};
+  const Grid& grid = problem.grid;
+  const double size = grid.width + grid.height;
+  const Component all{
+      {grid.x0 + grid.width / 2, grid.y0 + grid.height / 2}, size, 0, size, size, size};
+  const CellFactors full = ersatz_of(problem).sharp(fractions_of(problem, {&all, 1}));
+  Figures values = further_values(problem, {&all, 1}, loads, full), out;
+  values[key_of(compliance_row(problem.goal))] = design_compliance(problem, loads, full);
+  for (const Limit& limit : limits)
+    if (limit.wants_material()) out[key_of(*limit.row)] = values.at(key_of(*limit.row));
+  return out;
+}
+
+Plate plate_of(const BodyProblem& p) { return {p.grid, p.section, p.outside}; }
+
+double full_mass_of(const BodyProblem& p) { return plate_of(p).full_mass(); }
+
+Ersatz ersatz_of(const BodyProblem& p) {
+  return {p.grid, p.bands.back().alpha, p.solid, p.empty, p.outside};
+}
+
+namespace {
+
+void leave_out(const std::vector<signed char>& outside, VectorXd& fractions) {
+  for (size_t c = 0; c < outside.size(); ++c)
+    if (outside[c]) fractions[static_cast<Eigen::Index>(c)] = 0;
+}
+
+}  // namespace
+
+VectorXd fractions_of(const BodyProblem& p, std::span<const Component> components) {
+  VectorXd out =
+      area_fractions(p.grid, components, p.bands.back().min_half_thickness, p.solid, p.empty);
+  leave_out(p.outside, out);
+  return out;
+}
+
+void update_fractions(const BodyProblem& p, std::span<const Component> components,
+                      std::span<const Component> changed, VectorXd& fractions) {
+  if (changed.empty()) return;
+  const double floor = p.bands.back().min_half_thickness;
+  double left = std::numeric_limits<double>::infinity(), right = -left;
+  for (const Component& c : changed) {
+    const Box box = bounding_box(c, floor, 0);
+    left = std::min(left, box.lower.x());
+    right = std::max(right, box.upper.x());
+  }
+  update_area_fractions(p.grid, components, floor, p.solid, p.empty, left, right, fractions);
+  leave_out(p.outside, fractions);
+}
+
+Region domain_of(const BodyProblem& p) {
+  if (!p.domain.outer.empty()) return p.domain;
+  const Grid& g = p.grid;
+  return {corners_of({{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}}), {}};
+}
+
+std::vector<Region> regions_of(const BodyProblem& p, std::span<const Component> components,
+                               double tolerance) {
+  std::vector<std::vector<Vec2>> outlines;
+  for (const Component& c : components)
+    outlines.push_back(outline_within(c, p.bands.back().min_half_thickness, tolerance));
+  outlines.insert(outlines.end(), p.solid.begin(), p.solid.end());
+  return unite(outlines, domain_of(p), p.empty);
+}
+
+namespace {
+
+/// Is the point on the polygon?
+bool bounds(std::span<const Vec2> polygon, const Vec2& p, double small) {
+  for (size_t k = 0; k < polygon.size(); ++k)
+    if (distance({polygon[k], polygon[(k + 1) % polygon.size()]}, p) < small) return true;
+  return false;
+}
+
+/// What holds and what loads the body.
+std::vector<HeldOrLoaded> places_of(const BodyProblem& problem) {
+  return problem.places.empty() ? ends_of(problem.grid) : problem.places;
+}
+
+/// Has the cell material of the region? Looked at in 4 x 4 points, its border included.
+bool touches(const Grid& grid, const Region& region, int cell) {
+  constexpr int kPoints = 4;
+  const Vec2 size(grid.dx(), grid.dy());
+  const Vec2 corner = grid.cell_center(cell / grid.ny, cell % grid.ny) - 0.5 * size;
+  for (int k = 0; k < kPoints * kPoints; ++k) {
+    const Vec2 share(k % kPoints / (kPoints - 1.0), k / kPoints / (kPoints - 1.0));
+    if (contains(region, corner + share.cwiseProduct(size))) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+namespace {
+
+/// Do passive regions make the place by themselves? Both its contacts are on the outline of one, or
+/// void that is given is on both sides of the material.
+bool is_given(const BodyProblem& problem, const NarrowPlace& place) {
+  const double small = 1e-6 * problem.grid.dx();
+  const auto touches = [&](const std::vector<Vec2>& ring, const Vec2& p) {
+    return bounds(ring, p, small);
+  };
+  const auto within = [&](const std::vector<Vec2>& region) {
+    return touches(region, place.a) && touches(region, place.b);
+  };
+  const auto& regions = place.solid ? problem.solid : problem.empty;
+  if (std::any_of(regions.begin(), regions.end(), within)) return true;
+  if (!place.solid) return false;
+  std::vector<std::vector<Vec2>> rings = rings_of(domain_of(problem));
+  rings.insert(rings.end(), problem.empty.begin(), problem.empty.end());
+  const auto ring_at = [&](const Vec2& p) {
+    return std::find_if(rings.begin(), rings.end(),
+                        [&](const std::vector<Vec2>& ring) { return touches(ring, p); });
+  };
+  const auto a = ring_at(place.a), b = ring_at(place.b);
+  return a != rings.end() && b != rings.end() && a != b;
+}
+
+/// Gaps to held lines, but those that a passive region leaves.
+std::vector<NarrowPlace> held_gaps(const BodyProblem& problem, std::span<const Region> regions,
+                                   double limit) {
+  std::vector<NarrowPlace> out = line_gaps(regions, problem.held, limit);
+  const double small = 1e-6 * problem.grid.dx();
+  const auto ends = [&](const std::vector<Vec2>& region, const Vec2& p) {
+    return bounds(region, p, small);
+  };
+  std::erase_if(out, [&](const NarrowPlace& gap) {
+    const auto any = [&](const std::vector<std::vector<Vec2>>& of) {
+      return std::any_of(of.begin(), of.end(), [&](const auto& r) { return ends(r, gap.b); });
+    };
+    return any(problem.solid) || any(problem.empty) || !contains(domain_of(problem), gap.a);
+  });
+  return out;
+}
+
+}  // namespace
+
+std::vector<NarrowPlace> narrow_places_of(const BodyProblem& problem,
+                                          std::span<const Region> regions, double limit) {
+  std::vector<NarrowPlace> out = narrow_places(regions, domain_of(problem), limit);
+  std::erase_if(out, [&](const NarrowPlace& place) { return is_given(problem, place); });
+  const std::vector<NarrowPlace> to_held = held_gaps(problem, regions, limit);
+  out.insert(out.end(), to_held.begin(), to_held.end());
+  std::stable_sort(out.begin(), out.end(),
+                   [](const NarrowPlace& x, const NarrowPlace& y) { return x.width < y.width; });
+  return out;
+}
+
+Features features_of(const BodyProblem& problem, std::span<const Region> regions) {
+  Features out = smallest_features(regions, domain_of(problem), [&](const NarrowPlace& place) {
+    return !is_given(problem, place);
+  });
+  for (const NarrowPlace& gap : held_gaps(problem, regions, out.gap))
+    out.gap = std::min(out.gap, gap.width);
+  return out;
+}
+
+Connectivity connectivity_of(const BodyProblem& problem, std::span<const Region> regions) {
+  const std::vector<HeldOrLoaded> places = places_of(problem);
+  std::vector<std::vector<bool>> touched;
+  for (const Region& region : regions) {
+    std::vector<bool>& piece = touched.emplace_back();
+    for (const HeldOrLoaded& place : places)
+      piece.push_back(std::any_of(place.cells.begin(), place.cells.end(),
+                                  [&](int cell) { return touches(problem.grid, region, cell); }));
+  }
+  return flexmorph::connectivity_of(touched, places);
+}
+
+SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> components,
+                         ComplianceEvaluator& loads) {
+  SharpDesign out;
+  out.fractions = fractions_of(problem, components);
+  const Ersatz ersatz = ersatz_of(problem);
+  out.volume = out.fractions.sum() / ersatz.n_domain_cells();
+  const CellFactors sharp = ersatz.sharp(out.fractions);
+  out.compliance = design_compliance(problem, loads, sharp);
+  out.further = further_values(problem, components, loads, sharp);
+  const double clock = thread_seconds();
+  try {
+    const std::vector<Region> regions =
+        regions_of(problem, components, kOutlineTolerance * problem.grid.dx());
+    out.volume = area(regions) / area(domain_of(problem));
+    for (const ResponseRow* row : further_rows(problem.goal))
+      if (row->even) out.further[key_of(*row)] = out.volume * row->full(plate_of(problem));
+    out.connectivity = connectivity_of(problem, regions);
+    out.features = features_of(problem, regions);
+  } catch (const Error& error) {
+    if (error.kind() == Error::Kind::input) throw;
+    out.connectivity = connectivity(problem.grid, out.fractions, problem.places);
+  }
+  out.seconds_outlines = thread_seconds() - clock;
+  return out;
+}
+
+fem::Factors dynamic_factors(const BodyProblem& problem, std::span<const Component> components) {
+  CellFactors f =
+      Ersatz::dynamic(fractions_of(problem, components), problem.stiffness_void, problem.mass_void);
+  return {problem.grid, std::move(f.stiffness), std::move(f.mass)};
+}
+
+}  // namespace flexmorph::mmc

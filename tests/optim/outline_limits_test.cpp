@@ -1,0 +1,182 @@
+// Widths of narrow places and how they change with components: against distances that follow from
+// straight flanks and crossings, and against widths measured anew of moved components.
+
+#include "optim/mmc/length_scale/outline_limits.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/optim/mmc_small.h"
+
+namespace flexmorph::mmc::test {
+namespace {
+
+enum Parameter { X0, Y0, L, angle, c1, c2, c3 };
+
+Component bar(const Vec2& center, double half_length, double turn, double half) {
+  return {center, half_length, turn, half, half, half};
+}
+
+BodyProblem problem_of(const std::vector<Component>& components) {
+  BodyProblem p = body_of(Design(kGrid, components, kScale), {tdf_settings()});
+  p.solid.clear();
+  return p;
+}
+
+NarrowPlace narrowest(const BodyProblem& p, const std::vector<Component>& components, bool solid,
+                      double limit) {
+  const auto regions = regions_of(p, components, kOutlineTolerance * p.grid.dx());
+  for (const NarrowPlace& place : narrow_places_of(p, regions, limit))
+    if (place.solid == solid) return place;
+  ADD_FAILURE() << "no narrow place";
+  return {};
+}
+
+double slope(const WidthSlope& w, int component, Parameter p) {
+  return w.slope[Component::kParameters * component + p];
+}
+
+/// The sides of bars are straight in their middle: (x/L)^6 there is below 1e-3.
+TEST(WidthSlope, OfASlitIsThatOfTwoFlanks) {
+  const std::vector<Component> bars = {bar({0.3, 0.02}, 0.2, 0, 0.012),
+                                       bar({0.3, -0.015}, 0.2, 0, 0.015)};
+  const BodyProblem p = problem_of(bars);
+  const NarrowPlace slit = narrowest(p, bars, false, 0.02);
+  const WidthSlope w = width_slope(p, bars, slit);
+  EXPECT_NEAR(w.width, 0.008, 1e-6);
+  EXPECT_NEAR(slope(w, 0, Y0), 1, 1e-3);
+  EXPECT_NEAR(slope(w, 1, Y0), -1, 1e-3);
+  EXPECT_NEAR(slope(w, 0, X0), 0, 1e-3);
+  for (const int k : {0, 1}) {  // half-thicknesses of the profile add up to its change
+    EXPECT_NEAR(slope(w, k, c1) + slope(w, k, c2) + slope(w, k, c3), -1, 1e-3);
+    const double arm = slit.center.x() - 0.3;
+    EXPECT_NEAR(slope(w, k, angle), k == 0 ? arm : -arm, 1e-3 * 0.2);
+  }
+}
+
+/// Two equal bars that cross at an angle 2 β: what is between two of their reflex corners is
+/// 2 g / cos β wide.
+TEST(WidthSlope, OfACrossingIsThatOfItsCorners) {
+  const double g = 0.01, beta = 25 * std::numbers::pi / 180;
+  const std::vector<Component> bars = {bar({0.3, 0}, 0.12, beta, g), bar({0.3, 0}, 0.12, -beta, g)};
+  const BodyProblem p = problem_of(bars);
+  // The corners beside the acute angle, over and under the center.
+  const double width = 2 * g / std::cos(beta);
+  const NarrowPlace place{NarrowPlace::Kind::neck, true, width, {0.3, 0}, {0.3, 0.5 * width},
+                          {0.3, -0.5 * width}};
+  const WidthSlope w = width_slope(p, bars, place);
+  EXPECT_NEAR(w.width, width, 1e-6);
+  // Both half-thicknesses by the same amount.
+  double by_g = 0;
+  for (const int k : {0, 1})
+    for (const Parameter c : {c1, c2, c3}) by_g += slope(w, k, c);
+  EXPECT_NEAR(by_g, 2 / std::cos(beta), 2e-3);
+  // One bar turns by an angle: β by half of it.
+  const double by_beta = 2 * g * std::sin(beta) / (std::cos(beta) * std::cos(beta));
+  EXPECT_NEAR(slope(w, 0, angle), 0.5 * by_beta, 1e-5);
+  EXPECT_NEAR(slope(w, 1, angle), -0.5 * by_beta, 1e-5);
+  // They move apart: the corners move alike.
+  EXPECT_NEAR(slope(w, 0, Y0), 0, 1e-3);
+}
+
+/// A bar along the border, half of it outside: its only flank that moves is the inner one.
+TEST(WidthSlope, CountsNoBorder) {
+  const std::vector<Component> bars = {bar({0.3, -0.05}, 0.2, 0, 0.012)};
+  const BodyProblem p = problem_of(bars);
+  const NarrowPlace strip{NarrowPlace::Kind::bar, true,          0.012,
+                          {0.3, -0.044},          {0.3, -0.038}, {0.3, -0.05}};
+  const WidthSlope w = width_slope(p, bars, strip);
+  EXPECT_NEAR(w.width, 0.012, 1e-6);
+  EXPECT_NEAR(slope(w, 0, Y0), 1, 1e-3);
+  EXPECT_NEAR(slope(w, 0, c3), 1, 1e-3);
+}
+
+/// The last disc of a free end moves with the bar: rigid motions leave its width, and what changes
+/// the end changes it as a disc that is looked for anew.
+TEST(WidthSlope, OfAFreeEndKnowsNoRigidMotion) {
+  const Component tapered{{0.3, 0.004}, 0.1, 0.2, 0.02, 0.008, 0.014};
+  const BodyProblem p = problem_of({tapered});
+  const auto end_of = [&](const Component& c) {
+    const std::vector<Component> one = {c};
+    const auto regions = regions_of(p, one, kOutlineTolerance * p.grid.dx());
+    NarrowPlace out;
+    for (const NarrowPlace& place : narrow_places_of(p, regions, 0.03))
+      if (place.kind == NarrowPlace::Kind::bar && place.center.x() > out.center.x()) out = place;
+    return std::pair(out, width_slope(p, one, out));
+  };
+  const auto [place, w] = end_of(tapered);
+  ASSERT_GT(place.center.x(), 0.35);
+  EXPECT_LT(w.width, 0.016);
+  for (const Parameter q : {X0, Y0}) EXPECT_NEAR(slope(w, 0, q), 0, 1e-9) << q;
+  EXPECT_NEAR(slope(w, 0, angle), 0, 1e-9);
+  const double h = 2e-4;
+  Component up = tapered, down = tapered;
+  up.c2 += h;
+  down.c2 -= h;
+  const double found = (end_of(up).second.width - end_of(down).second.width) / (2 * h);
+  EXPECT_GT(found, 1);
+  // The end takes another shape, which the mean motion of its contacts does not know.
+  EXPECT_NEAR(slope(w, 0, c2), found, 0.3 * found);
+}
+
+/// Components in general position: limits of designs moved along a direction, against the slope.
+/// Outlines are polygons within t = 0.01 cells of the true ones; a Newton step leaves t² κ / 2 of
+/// them, 1e-6 m at curvatures κ of 200/m, and contacts that slide: 2 % of a slope at a step of 1
+/// mm.
+TEST(OutlineLimits, FollowTheWidthsOfMovedComponents) {
+  const Widths wanted{0.02, 0.01};
+  int tested = 0;
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    std::vector<Component> some = random_layout(seed);
+    some.resize(8);
+    const BodyProblem p = problem_of(some);
+    OutlineLimits limits(p, wanted);
+    ShapeLimits::Values here, up, down;
+    limits.evaluate(some, here);
+    const auto moved = [&](double step) {
+      std::vector<Component> out = some;
+      for (size_t k = 0; k < out.size(); ++k)
+        for (double* c : {&out[k].c1, &out[k].c2, &out[k].c3}) *c += step * (k % 2 == 0 ? 1 : 0.5);
+      return out;
+    };
+    const double h = 5e-4;
+    limits.evaluate(moved(h), up);
+    limits.evaluate(moved(-h), down);
+    // Rows have no lasting order: the narrowest place is one and the same while it stays alone.
+    Eigen::Index row, row_up, row_down;
+    const double worst = here.g.maxCoeff(&row);
+    const double change = (up.g.maxCoeff(&row_up) - down.g.maxCoeff(&row_down)) / (2 * h);
+    const bool kink = std::abs(up.g.maxCoeff() + down.g.maxCoeff() - 2 * worst) > 0.05 * h * change;
+    if (worst < 0 || kink) continue;
+    double by_slope = 0;
+    for (size_t k = 0; k < some.size(); ++k)
+      for (const Parameter c : {c1, c2, c3})
+        by_slope += here.dg(row, static_cast<Eigen::Index>(7 * k) + c) * (k % 2 == 0 ? 1 : 0.5);
+    EXPECT_NEAR(by_slope, change, 0.05 * std::abs(change)) << seed;
+    ++tested;
+  }
+  EXPECT_GE(tested, 4);
+}
+
+TEST(OutlineLimits, AreNoLimitsWhereAllIsWide) {
+  const std::vector<Component> one = {bar({0.3, 0}, 0.35, 0, 0.03)};
+  const BodyProblem p = problem_of(one);
+  OutlineLimits limits(p, {0.02, 0.01});
+  ShapeLimits::Values found;
+  limits.evaluate(one, found);
+  EXPECT_LT(found.g.maxCoeff(), 0);
+  EXPECT_EQ(found.dg.cwiseAbs().maxCoeff(), 0);
+  // What a superellipse of order 6, longer than the domain, has within it.
+  double height = 0;
+  constexpr int kStrips = 1000;
+  for (int k = 0; k < kStrips; ++k) {
+    const double x = 0.6 * (k + 0.5) / kStrips - 0.3;
+    height += 0.06 * std::pow(1 - std::pow(x / 0.35, 6), 1. / 6) / kStrips;
+  }
+  EXPECT_NEAR(found.volume, height / kGrid.height, 1e-3);
+}
+
+}  // namespace
+}  // namespace flexmorph::mmc::test
