@@ -5,9 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "geometry/cpu_time.h"
 #include "optim/mmc/cycles/stages.h"
-#include "optim/mmc/cycles/usability.h"
 #include "optim/search.h"
 
 namespace flexmorph::mmc {

@@ -36,8 +36,8 @@ struct Part {
 struct Formulation {
   TdfSettings tdf;
   /// Widths of the crisp outline are limited, and the limit on the volume is on what it encloses;
-  /// absent: that limit is on the volume of the regularized design. (Limits on responses of the loads are
-  /// on those of the crisp design always, but with the TDF of the paper.)
+  /// absent: that limit is on the volume of the regularized design. (Limits on responses of the
+  /// loads are on those of the crisp design always, but with the TDF of the paper.)
   std::optional<Widths> outline = {};
   bool crisp = false;  ///< the design is seen as its outlines enclose it, see CrispPicture
 };
@@ -46,10 +46,11 @@ struct Formulation {
 Formulation nominal(const BodyProblem& problem, size_t band);
 /// The last band, with the stiffness of the eroded design.
 Formulation eroded(const BodyProblem& problem);
-/// The last stage's, which delivered designs are measured by: nominal stiffness at the last band and
-/// limits of the outline; eroded() where no widths are wanted.
+/// The last stage's, which delivered designs are measured by: nominal stiffness at the last band
+/// and limits of the outline; eroded() where no widths are wanted.
 Formulation last_formulation(const BodyProblem& problem);
 
+/// Returns the designs of the bodies as they are now, in the order of the parts.
 std::vector<Design> designs_of(std::span<const Part> parts);
 
 /// Tells whether a limit speaks of a response of the loads, whose regularized and crisp values

@@ -38,14 +38,15 @@ struct MotionCertificate {
   std::vector<Body> bodies;
 };
 
-/// Computes the certificate: two motions with their adjoints.
+/// Computes the certificate of the designs of these bodies, which takes two motions with their
+/// adjoints.
 /// @param bodies  at their designs, under their loads
 /// @param motion  of the mechanism they are parts of
 /// @throws Error (numerical) from the motion or statics.
 MotionCertificate certify(std::span<const LoadedBody> bodies, MotionResponse& motion,
                           double move_limit);
 
-/// The state of the motion for these parts.
+/// Returns the state of the motion that the goals of these parts ask for.
 MotionState motion_state_of(std::span<const Part> parts, MotionResponse& motion);
 
 /// J of what the outlines of these designs enclose.

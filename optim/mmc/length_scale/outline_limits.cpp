@@ -168,12 +168,13 @@ std::vector<NarrowPlace> narrowest(const BodyProblem& problem, std::span<const R
   return out;
 }
 
-/// Room of components for their round ends and the tolerance of outlines.
-constexpr double kRoom = 1.06;
+/// Components are thicker than the smallest feature by this factor: their ends are round, and
+/// outlines have a tolerance.
+constexpr double kAllowance = 1.06;
 
 }  // namespace
 
-double half_thickness_for(double min_feature) { return 0.5 * kRoom * min_feature; }
+double half_thickness_for(double min_feature) { return 0.5 * kAllowance * min_feature; }
 
 namespace {
 

@@ -42,8 +42,8 @@ class OutlineLimits final : public ShapeLimits {
   double domain_area_;
 };
 
-/// Smallest half-thickness of components whose own middle is as thick as wanted, with room for
-/// their round ends and the tolerance of outlines.
+/// Returns the smallest half-thickness [m] of components whose union may be as thick as wanted: half
+/// the feature and an allowance for round ends and the tolerance of outlines.
 double half_thickness_for(double min_feature);
 
 /// A width and how it changes with the parameters of components.
