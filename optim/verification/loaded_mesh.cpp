@@ -110,8 +110,10 @@ LoadedMesh::LoadedMesh(const PartMesh& mesh, const fem::PlaneSection& section, c
     : mesh_(mesh), section_(section), loads_(loads), locations_(locations), small_(small) {
   sort_loads();
   find_locations();
+  hold_at_pins();
   omit_unsupported_pieces();
   find_edge();
+  if (unsupported_load_ < 0) find_balance();
   if (unsupported_load_ < 0)
     plate_ = std::make_unique<fem::TrianglePlate>(
         mesh_, section_,
@@ -177,6 +179,51 @@ void LoadedMesh::find_locations() {
     }
 }
 
+/// Balanced forces have no reactions: what is held only says which of the displacements that differ
+/// by a rigid motion is meant. The nodes farthest apart of both pins do.
+void LoadedMesh::hold_at_pins() {
+  if (!loads_.balance) return;
+  const auto& pins = loads_.balance->pins;
+  const auto& first = at_locations_[static_cast<std::size_t>(pins[0].location)].shares;
+  const auto& second = at_locations_[static_cast<std::size_t>(pins[1].location)].shares;
+  if (first.empty() || second.empty()) return;
+  const Vec2 line = pins[1].center - pins[0].center;
+  held_.push_back({first.front().first, 0});
+  held_.push_back({first.front().first, 1});
+  held_.push_back({second.front().first, std::abs(line.x()) >= std::abs(line.y()) ? 1 : 0});
+}
+
+void LoadedMesh::find_balance() {
+  if (!loads_.balance) return;
+  if (!loads_.balance->floating) {
+    std::array<PinNodes, 2> pins;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Pin& pin = loads_.balance->pins[k];
+      pins[k] = {at_locations_[static_cast<std::size_t>(pin.location)].shares, pin};
+    }
+    balance_.emplace(mesh_, std::move(pins));
+    return;
+  }
+  MatrixXd inertia = MatrixXd::Zero(2 * static_cast<Eigen::Index>(mesh_.points.size()), 3);
+  const MatrixXd rigid = PartBalance::rigid_motions(mesh_);
+  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+    if (omitted_[t] != 0) continue;
+    const fem::T6 element(mesh_.corners(t));
+    const double mass = section_.density * section_.thickness * element.area();
+    for (const fem::WeightedPoint& w : fem::six_points()) {
+      const Eigen::Matrix<double, 6, 1> shapes = fem::t6_shapes(w.at);
+      Eigen::Matrix<double, 2, 3> here = Eigen::Matrix<double, 2, 3>::Zero();
+      for (int k = 0; k < 6; ++k)
+        here +=
+            shapes[k] * rigid.middleRows<2>(2 * mesh_.triangles[t][static_cast<std::size_t>(k)]);
+      for (int k = 0; k < 6; ++k)
+        inertia.middleRows<2>(2 * mesh_.triangles[t][static_cast<std::size_t>(k)]) +=
+            w.weight * mass * shapes[k] * here;
+    }
+  }
+  balance_.emplace(mesh_, inertia);
+}
+
 /// Do supports, or clamps, keep the piece from moving as a whole?
 bool LoadedMesh::is_held(int piece) const {
   std::vector<char> own(mesh_.points.size(), 0);
@@ -234,6 +281,9 @@ void LoadedMesh::omit_unsupported_pieces() {
       held_, [&](const fem::HeldUnknown& h) { return !carries[static_cast<std::size_t>(h.node)]; });
   if (std::none_of(carries.begin(), carries.end(), [](char c) { return c != 0; }))
     unsupported_load_ = 0;
+  if (loads_.balance)
+    for (const Pin& pin : loads_.balance->pins)
+      if (at_locations_[static_cast<std::size_t>(pin.location)].held < 0.5) unsupported_load_ = 0;
   for (std::size_t l = 0; l < loads_.loads.size() && unsupported_load_ < 0; ++l)
     for (const Force& f : loads_.loads[l].forces)
       if ((f.force != Vec2::Zero() || f.moment != 0) &&
@@ -354,7 +404,9 @@ VectorXd LoadedMesh::nodal_forces(int row) const {
   for (const Force& f : load.forces)
     for (const auto& [node, at_node] : forces_at_nodes(f))
       out.middleCols(2 * node, 2) += at_node.transpose();
-  return out.row(0).transpose();
+  VectorXd forces = out.row(0).transpose();
+  if (balance_) balance_->apply(forces);
+  return forces;
 }
 
 MatrixXd LoadedMesh::prescribed() const {
@@ -377,6 +429,15 @@ MatrixXd LoadedMesh::forces() const {
   constexpr std::size_t kBlock = 16;  // forces at all nodes are there for so many loads at a time
   const auto n = order_.size();
   MatrixXd out = MatrixXd::Zero(static_cast<Eigen::Index>(n), plate_->n_unknowns());
+  if (balance_) {
+    for (std::size_t l = 0; l < n; ++l) {
+      const VectorXd at_nodes = nodal_forces(static_cast<int>(l));
+      for (Eigen::Index k = 0; k < at_nodes.size(); ++k)
+        if (const int row = plate_->row(static_cast<int>(k / 2), static_cast<int>(k % 2)); row >= 0)
+          out(static_cast<Eigen::Index>(l), row) = at_nodes[k];
+    }
+    return out;
+  }
   const MatrixXd given = prescribed();
   for (std::size_t first = 0; first < n; first += kBlock) {
     std::vector<int> rows;

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "fem/triangles/triangle_plate.h"
+#include "optim/verification/balance.h"
 #include "optim/verification/loads.h"
 
 namespace flexmorph::verification {
@@ -49,6 +51,8 @@ class LoadedMesh {
  private:
   void sort_loads();
   void find_locations();
+  void hold_at_pins();
+  void find_balance();
   void omit_unsupported_pieces();
   void find_edge();
   double held_end_stretch(std::size_t row) const;
@@ -69,6 +73,7 @@ class LoadedMesh {
   std::vector<fem::NodeSpring> springs_;
   std::vector<signed char> omitted_;
   int n_omitted_pieces_ = 0, unsupported_load_ = -1;
+  std::optional<PartBalance> balance_;
   std::unique_ptr<fem::TrianglePlate> plate_;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -65,6 +66,18 @@ struct HeldEdge {
   double stiffness = 0;  ///< times the distance of two neighbours: k Δy [N]
 };
 
+/// Where a joint holds a link.
+struct Pin {
+  int location = 0;      ///< of Loads
+  Vec2 center{0, 0};     ///< [m]
+  bool bearing = false;  ///< Does it press on the rim of a bore?
+};
+/// What balances the loads of a link, see PartBalance.
+struct Balance {
+  bool floating = false;  ///< its own inertia; otherwise reactions at the pins
+  std::array<Pin, 2> pins{};
+};
+
 struct Loads {
   std::vector<Location> locations;
   std::vector<Support> supports;
@@ -72,6 +85,7 @@ struct Loads {
   /// What Load::acceleration of loads points to where they all have the same uniform one.
   std::shared_ptr<const VectorXd> uniform_acceleration = {};
   std::optional<HeldEdge> held_edge = {};  ///< in front of all clamps; of all loads
+  std::optional<Balance> balance = {};     ///< of a part without supports and clamps
   Grid grid;                               ///< of accelerations
   bool worst = false;  ///< What counts is the largest compliance, not the weighted sum.
 

@@ -51,6 +51,94 @@ TEST(OutlineVerification, CantileverIsTimoshenkos) {
   EXPECT_NEAR(found.largest_stress, 6 * (kLength - 0.1), 0.05 * 6 * kLength);
 }
 
+/// A beam 20 x 1 with pins at the middle of its ends, which nothing clamps.
+Loads link_loads(bool floating, const Grid& grid) {
+  Loads out;
+  out.grid = grid;
+  const Region border{rectangle(0, 0, 20, 1), {}};
+  Balance& balance = out.balance.emplace();
+  balance.floating = floating;
+  for (size_t k = 0; k < 2; ++k) {
+    const Vec2 at(k == 0 ? 0.0 : 20.0, 0.5);
+    balance.pins[k] = {out.add(point_location(at, border, 0.25)), at, false};
+  }
+  return out;
+}
+
+// A link between two pins under its own inertia, M = q x (L - x) / 2, and one that a force at its
+// middle accelerates, M = P x² / (2 L) up to the middle: 2 U = ∫ M² / EI + ∫ V² / (κ G A).
+TEST(OutlineVerification, LinksBetweenTwoPinsAreBeams) {
+  const std::vector<Region> beam = {{rectangle(0, 0, 20, 1), {}}};
+  const double L = 20, EI = 1. / 12, shear = 2 * (1 + kUnit.poisson_ratio) * 1.2;
+  Grid grid{.x0 = 0, .y0 = 0, .width = 20, .height = 1};
+  grid.nx = 20;
+  grid.ny = 1;
+  fem::PlaneSection section = kUnit;
+  section.density = 1;
+  VectorXd acceleration = VectorXd::Zero(2 * grid.n_nodes());
+  for (Eigen::Index k = 1; k < acceleration.size(); k += 2) acceleration[k] = 3;
+  const Settings settings{.tolerance = 0.001, .size = 0.5, .reach = 0.5};
+
+  Loads pinned = link_loads(false, grid);
+  pinned.loads.push_back({.name = "inertia", .acceleration = &acceleration});
+  const double q = 3;
+  const double between = q * q * (std::pow(L, 5) / (120 * EI) + std::pow(L, 3) * shear / 12);
+  EXPECT_NEAR(verify_outline(beam, section, pinned, settings).compliance, between, 0.01 * between);
+
+  Loads floating = link_loads(true, grid);
+  Load& push = floating.loads.emplace_back();
+  push.name = "push";
+  const Region border{rectangle(0, 0, 20, 1), {}};
+  push.forces.push_back({floating.add(box_location({{9.9, 0}, {10.1, 1}})), {0, -2}});
+  push.acceleration = &acceleration;  // a motion as a whole bends nothing
+  const double bent = 4 * (std::pow(L, 3) / (320 * EI) + L * shear / 12);
+  EXPECT_NEAR(verify_outline(beam, section, floating, settings).compliance, bent, 0.01 * bent);
+}
+
+// Pins press on the rims of bores: the compliance of a link that turns is that of its middle part
+// under centrifugal forces, and half a rim in front of each pin is pressed.
+TEST(OutlineVerification, PinsPressOnTheRimsOfBores) {
+  Loads loads;
+  loads.grid = {.x0 = 0, .y0 = -1, .width = 12, .height = 2};
+  loads.grid.nx = 12;
+  loads.grid.ny = 2;
+  Balance& balance = loads.balance.emplace();
+  Region link{rectangle(0, -1, 12, 1), {}};
+  for (size_t k = 0; k < 2; ++k) {
+    const Vec2 at(k == 0 ? 1.0 : 11.0, 0);
+    std::vector<Vec2> bore = circle_within(at, 0.4, 1e-3);
+    std::reverse(bore.begin(), bore.end());
+    link.holes.push_back(bore);
+    balance.pins[k] = {loads.add(border_location(bore)), at, true};
+  }
+  VectorXd acceleration = VectorXd::Zero(2 * loads.grid.n_nodes());
+  for (int k = 0; k < loads.grid.n_nodes(); ++k)
+    acceleration[2 * k] = -(k / 3);  // towards the first pin's end: -X
+  loads.loads.push_back({.name = "turning", .acceleration = &acceleration});
+  fem::PlaneSection section = kUnit;
+  section.density = 1;
+  const std::vector<Region> regions = {link};
+  const OutlineVerification found =
+      verify_outline(regions, section, loads, {.tolerance = 0.002, .size = 0.3, .reach = 0.1});
+  ASSERT_EQ(found.mesh_loads.size(), 1u);
+  Vec2 sum = Vec2::Zero();
+  double moment = 0, pressed = 0;
+  for (const fem::NodalForce& f : found.mesh_loads[0].forces) {
+    const Vec2& p = found.mesh.point(f.node);
+    sum += f.force;
+    moment += p.x() * f.force.y() - p.y() * f.force.x();
+    if ((p - Vec2(1, 0)).norm() < 0.401 && f.force.x() < -1e-3) {
+      EXPECT_LT(p.x(), 1 + 1e-6);  // the pin of the first bore pulls to the left
+      pressed -= f.force.x();
+    }
+  }
+  EXPECT_LT(sum.norm(), 1e-9 * pressed);
+  EXPECT_LT(std::abs(moment), 1e-9 * pressed * 12);
+  // All of ρ x dA is carried by the first pin: 12² of the plate, less the bores.
+  const double bores = std::numbers::pi * 0.16 * (1 + 11);
+  EXPECT_NEAR(pressed, 144 - bores, 0.02 * 144);
+}
+
 // Tension of a plate with a small hole: three times the stress far away, Kirsch's solution;
 // with a hole of a twentieth of the width 3.008, by Heywood's formula.
 TEST(OutlineVerification, HoleHasThreeTimesTheStress) {
