@@ -21,6 +21,10 @@ VectorXd area_fractions(const Grid& grid, std::span<const Component> components,
                         double min_half_thickness, std::span<const std::vector<Vec2>> solid,
                         std::span<const std::vector<Vec2>> empty, int samples = 8);
 
+/// Area fractions of polygons in every cell, by the exact integral over their sides (n_cells).
+/// Polygons do not overlap and lie in the domain of the grid.
+VectorXd area_fractions(const Grid& grid, std::span<const Region> regions);
+
 /// Samples columns of cells anew where components have changed: all others are as they were.
 /// @param left, right  between which they have [m]
 void update_area_fractions(const Grid& grid, std::span<const Component> components,

@@ -50,11 +50,14 @@ if(PkgConfig_FOUND)
   # Drawings that are read: DXF, paths of SVG, and the XML around them.
   pkg_check_modules(DXFLIB QUIET IMPORTED_TARGET GLOBAL dxflib>=3.26)
   pkg_check_modules(GEOM2 QUIET IMPORTED_TARGET GLOBAL 2geom>=1.2)
+  # Offsets of outlines.
+  pkg_check_modules(GEOS QUIET IMPORTED_TARGET GLOBAL geos>=3.11)
   pkg_check_modules(LIBXML QUIET IMPORTED_TARGET GLOBAL libxml-2.0>=2.9)
 endif()
 flexmorph_library(IPOPT 3.11 IPOPT_FOUND)
 flexmorph_library(DXFLIB 3.26 DXFLIB_FOUND)
 flexmorph_library(GEOM2 1.2 GEOM2_FOUND)
+flexmorph_library(GEOS 3.11 GEOS_FOUND)
 flexmorph_library(LIBXML 2.9 LIBXML_FOUND)
 
 # SuiteSparse 5 has neither CMake nor pkg-config files.

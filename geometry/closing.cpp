@@ -1,0 +1,241 @@
+#include "geometry/closing.h"
+
+#include <geos_c.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <utility>
+
+namespace flexmorph {
+namespace {
+
+/// Vertices of results that are so near to one of the given regions are that one; parts of the
+/// fillets' radius. Vertices nearer to the line through their neighbours than the second are none.
+constexpr double kSame = 2e-3, kStraight = 1e-6;
+/// Width of the lattice on which coincident sides are found [radii].
+constexpr double kLattice = 1e-7;
+
+/// A context of GEOS, whose last message says what went wrong.
+class Geos {
+ public:
+  Geos() : handle_(GEOS_init_r()) {
+    GEOSContext_setErrorMessageHandler_r(handle_, &Geos::note, this);
+  }
+  ~Geos() { GEOS_finish_r(handle_); }
+  Geos(const Geos&) = delete;
+  Geos& operator=(const Geos&) = delete;
+
+  GEOSContextHandle_t handle() const { return handle_; }
+  [[noreturn]] void fail() const {
+    throw Error::numerical("fillets of an outline: GEOS says: " +
+                           (said_.empty() ? "no result" : said_));
+  }
+
+ private:
+  static void note(const char* message, void* self) { static_cast<Geos*>(self)->said_ = message; }
+
+  GEOSContextHandle_t handle_;
+  std::string said_;
+};
+
+class Shape {
+ public:
+  Shape(const Geos& geos, GEOSGeometry* geometry) : geos_(&geos), geometry_(geometry) {
+    if (geometry == nullptr) geos.fail();
+  }
+  ~Shape() {
+    if (geometry_ != nullptr) GEOSGeom_destroy_r(geos_->handle(), geometry_);
+  }
+  Shape(Shape&& other) noexcept
+      : geos_(other.geos_), geometry_(std::exchange(other.geometry_, nullptr)) {}
+  Shape(const Shape&) = delete;
+  Shape& operator=(const Shape&) = delete;
+  Shape& operator=(Shape&&) = delete;
+
+  const GEOSGeometry* get() const { return geometry_; }
+  GEOSGeometry* release() { return std::exchange(geometry_, nullptr); }
+  Shape grown(double by, int segments) const {
+    return {*geos_, GEOSBuffer_r(geos_->handle(), geometry_, by, segments)};
+  }
+  Shape united(const Shape& other, double lattice) const {
+    return {*geos_, GEOSUnionPrec_r(geos_->handle(), geometry_, other.geometry_, lattice)};
+  }
+  Shape without(const Shape& other, double lattice) const {
+    return {*geos_, GEOSDifferencePrec_r(geos_->handle(), geometry_, other.geometry_, lattice)};
+  }
+  Shape common(const Shape& other, double lattice) const {
+    return {*geos_, GEOSIntersectionPrec_r(geos_->handle(), geometry_, other.geometry_, lattice)};
+  }
+  Shape simplified(double tolerance) const {
+    return {*geos_, GEOSTopologyPreserveSimplify_r(geos_->handle(), geometry_, tolerance)};
+  }
+  double area() const {
+    double out = 0;
+    if (GEOSArea_r(geos_->handle(), geometry_, &out) == 0) geos_->fail();
+    return out;
+  }
+
+ private:
+  const Geos* geos_;
+  GEOSGeometry* geometry_;
+};
+
+GEOSGeometry* ring_of(const Geos& geos, const std::vector<Vec2>& ring) {
+  const auto n = static_cast<unsigned>(ring.size());
+  GEOSCoordSequence* points = GEOSCoordSeq_create_r(geos.handle(), n + 1, 2);
+  for (unsigned k = 0; k <= n; ++k)
+    GEOSCoordSeq_setXY_r(geos.handle(), points, k, ring[k % n].x(), ring[k % n].y());
+  return GEOSGeom_createLinearRing_r(geos.handle(), points);
+}
+
+Shape shape_of(const Geos& geos, std::span<const Region> regions) {
+  std::vector<GEOSGeometry*> pieces;
+  for (const Region& r : regions) {
+    std::vector<GEOSGeometry*> holes;
+    for (const std::vector<Vec2>& hole : r.holes) holes.push_back(ring_of(geos, hole));
+    pieces.push_back(GEOSGeom_createPolygon_r(geos.handle(), ring_of(geos, r.outer), holes.data(),
+                                              static_cast<unsigned>(holes.size())));
+  }
+  return {geos, GEOSGeom_createCollection_r(geos.handle(), GEOS_MULTIPOLYGON, pieces.data(),
+                                            static_cast<unsigned>(pieces.size()))};
+}
+
+/// Sides of a quarter of a circle that stay within the tolerance.
+int segments(double radius, double tolerance) {
+  const double part = std::min(tolerance / radius, 0.1);
+  return std::max(16, static_cast<int>(std::ceil(0.25 * std::numbers::pi / std::acos(1 - part))));
+}
+
+Shape filled(const Geos& geos, std::span<const Region> regions, const Region& domain,
+             const Fillets& fillets, double tolerance) {
+  const Shape given = shape_of(geos, regions), within = shape_of(geos, {&domain, 1});
+  const int n = segments(fillets.radius, tolerance);
+  const double thin = 0.5 * fillets.thinnest, lattice = kLattice * fillets.radius;
+  const Shape closed = given.grown(fillets.radius, n).grown(-fillets.radius, n),
+              around = within.grown(2 * thin + lattice, 1).without(within, lattice),
+              opened = closed.united(around, lattice).grown(-thin, n).grown(thin, n);
+  // Sides of the opening beside those of the regions leave jags that are lower than the tolerance.
+  return given.united(opened, lattice).common(within, lattice).simplified(0.5 * tolerance);
+}
+
+/// Vertices of the given regions by their x, to be found by their place.
+class Vertices {
+ public:
+  explicit Vertices(std::span<const Region> regions) {
+    for (const Region& r : regions) {
+      add(r.outer);
+      for (const std::vector<Vec2>& hole : r.holes) add(hole);
+    }
+    std::sort(all_.begin(), all_.end(), [](const Vec2& a, const Vec2& b) {
+      return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y());
+    });
+  }
+
+  /// The nearest one within a distance, else the point itself.
+  Vec2 near(const Vec2& p, double distance) const {
+    Vec2 out = p;
+    auto at = std::lower_bound(all_.begin(), all_.end(), p.x() - distance,
+                               [](const Vec2& v, double x) { return v.x() < x; });
+    for (; at != all_.end() && at->x() <= p.x() + distance; ++at)
+      if (const double d = (*at - p).norm(); d <= distance) {
+        distance = d;
+        out = *at;
+      }
+    return out;
+  }
+
+ private:
+  void add(const std::vector<Vec2>& ring) { all_.insert(all_.end(), ring.begin(), ring.end()); }
+
+  std::vector<Vec2> all_;
+};
+
+/// A ring of GEOS with the vertices of the given regions, without those that are none.
+std::vector<Vec2> cleaned(const std::vector<Vec2>& ring, const Vertices& vertices, double radius) {
+  std::vector<Vec2> snapped;
+  for (const Vec2& p : ring) {
+    const Vec2 at = vertices.near(p, kSame * radius);
+    if (snapped.empty() || at != snapped.back()) snapped.push_back(at);
+  }
+  while (snapped.size() > 1 && snapped.front() == snapped.back()) snapped.pop_back();
+  std::vector<Vec2> out;
+  for (size_t k = 0; k < snapped.size(); ++k) {
+    const Vec2 &before = out.empty() ? snapped.back() : out.back(), &p = snapped[k],
+               &after = snapped[(k + 1) % snapped.size()];
+    const Vec2 along = after - before;
+    const double off = std::abs(along.x() * (p - before).y() - along.y() * (p - before).x());
+    const bool between = (p - before).dot(along) > 0 && (after - p).dot(along) > 0;
+    if (!between || off > kStraight * radius * along.norm()) out.push_back(p);
+  }
+  return out;
+}
+
+std::vector<Vec2> points_of(const Geos& geos, const GEOSGeometry* ring) {
+  const GEOSCoordSequence* sequence = GEOSGeom_getCoordSeq_r(geos.handle(), ring);
+  unsigned n = 0;
+  if (sequence == nullptr || GEOSCoordSeq_getSize_r(geos.handle(), sequence, &n) == 0) geos.fail();
+  std::vector<Vec2> out(n > 0 ? n - 1 : 0);
+  for (unsigned k = 0; k + 1 < n; ++k)
+    GEOSCoordSeq_getXY_r(geos.handle(), sequence, k, &out[k].x(), &out[k].y());
+  return out;
+}
+
+double signed_area(const std::vector<Vec2>& ring) {
+  double twice = 0;
+  for (size_t k = 0; k < ring.size(); ++k) {
+    const Vec2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
+    twice += a.x() * b.y() - a.y() * b.x();
+  }
+  return 0.5 * twice;
+}
+
+/// Sets the sense of rotation; false where nothing is left of the ring.
+bool orient(std::vector<Vec2>& ring, bool outer) {
+  if (ring.size() < 3) return false;
+  const double a = signed_area(ring);
+  if ((a > 0) != outer) std::reverse(ring.begin(), ring.end());
+  return a != 0;
+}
+
+}  // namespace
+
+std::vector<Region> with_fillets(std::span<const Region> regions, const Region& domain,
+                                 const Fillets& fillets, double tolerance) {
+  if (!(fillets.radius > 0) || regions.empty()) return {regions.begin(), regions.end()};
+  const Geos geos;
+  const Shape shape = filled(geos, regions, domain, fillets, tolerance);
+  std::vector<Region> given(regions.begin(), regions.end());
+  given.push_back(domain);
+  const Vertices vertices(given);
+  std::vector<Region> out;
+  const int n = GEOSGetNumGeometries_r(geos.handle(), shape.get());
+  for (int k = 0; k < n; ++k) {
+    const GEOSGeometry* piece = GEOSGetGeometryN_r(geos.handle(), shape.get(), k);
+    // Where the opening meets the border of the domain, they have lines in common.
+    if (GEOSGeomTypeId_r(geos.handle(), piece) != GEOS_POLYGON) continue;
+    Region region;
+    region.outer = cleaned(points_of(geos, GEOSGetExteriorRing_r(geos.handle(), piece)), vertices,
+                           fillets.radius);
+    if (!orient(region.outer, true)) continue;
+    for (int h = 0; h < GEOSGetNumInteriorRings_r(geos.handle(), piece); ++h) {
+      std::vector<Vec2> hole =
+          cleaned(points_of(geos, GEOSGetInteriorRingN_r(geos.handle(), piece, h)), vertices,
+                  fillets.radius);
+      if (orient(hole, false)) region.holes.push_back(std::move(hole));
+    }
+    out.push_back(std::move(region));
+  }
+  return out;
+}
+
+double area_with_fillets(std::span<const Region> regions, const Region& domain,
+                         const Fillets& fillets, double tolerance) {
+  if (!(fillets.radius > 0) || regions.empty()) return area(regions);
+  const Geos geos;
+  return filled(geos, regions, domain, fillets, tolerance).area();
+}
+
+}  // namespace flexmorph

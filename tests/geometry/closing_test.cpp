@@ -1,0 +1,123 @@
+// Fillets of outlines against areas and radii that are known, and area fractions of polygons
+// against the areas of shapes.
+#include "geometry/closing.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "geometry/feature.h"
+#include "geometry/picture.h"
+
+namespace flexmorph {
+namespace {
+
+std::vector<Vec2> box(double x0, double y0, double x1, double y1) {
+  return corners_of({{x0, y0}, {x1, y1}});
+}
+
+const Region kSheet{box(-10, -10, 10, 10), {}};
+
+std::vector<Region> united(const std::vector<std::vector<Vec2>>& polygons) {
+  return unite(polygons, kSheet, {});
+}
+
+/// Largest turn to the right of counterclockwise outlines within an arc of a length [rad].
+double sharpest(const std::vector<Vec2>& ring, double arc) {
+  double worst = 0;
+  const size_t n = ring.size();
+  const auto turn = [&](size_t k) {
+    const Vec2 a = ring[k] - ring[(k + n - 1) % n], b = ring[(k + 1) % n] - ring[k];
+    return std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+  };
+  for (size_t k = 0; k < n; ++k) {
+    double length = 0, sum = 0;
+    for (size_t m = k; length <= arc; ++m) {
+      sum += turn(m % n);
+      worst = std::min(worst, sum);
+      length += (ring[(m + 1) % n] - ring[m % n]).norm();
+    }
+  }
+  return -worst;
+}
+
+// A corner of 90 degrees is filled by r² (1 - π/4). All other vertices stay.
+TEST(Fillets, FillCorners) {
+  const std::vector<Region> tee = united({box(-3, 0, 3, 1), box(-0.5, 1, 0.5, 4)});
+  ASSERT_EQ(tee.size(), 1u);
+  const double r = 0.8, filled = 2 * r * r * (1 - std::numbers::pi / 4);
+  const std::vector<Region> found = with_fillets(tee, kSheet, {r, 0.9}, 1e-4);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NEAR(area(found), area(tee) + filled, 1e-3 * filled);
+  EXPECT_NEAR(area_with_fillets(tee, kSheet, {r, 0.9}, 1e-4), area(found), 1e-6);
+  for (const Vec2& corner : {Vec2(-3, 0), Vec2(3, 0), Vec2(3, 1), Vec2(0.5, 4), Vec2(-0.5, 4)})
+    EXPECT_EQ(std::count(found[0].outer.begin(), found[0].outer.end(), corner), 1);
+  EXPECT_LT(sharpest(found[0].outer, 0.25), 20 * std::numbers::pi / 180);
+  EXPECT_GT(sharpest(tee[0].outer, 0.25), 1.5);
+}
+
+// Gaps below the diameter close, wider ones stay; a blade across a gap that two rounds make does
+// not.
+TEST(Fillets, CloseGapsWithoutBlades) {
+  const double r = 0.5;
+  for (const double gap : {0.6, 1.4}) {
+    const std::vector<Region> fork =
+        united({box(-3, 0, -2, 5), box(-2, 0, 3, 1), box(-2, 1 + gap, 3, 3 + gap)});
+    const std::vector<Region> found = with_fillets(fork, kSheet, {r, 0.9}, 1e-4);
+    const double added = area(found) - area(fork);
+    if (gap < 2 * r)
+      EXPECT_GT(added, 0.8 * 5 * gap);
+    else
+      EXPECT_NEAR(added, 3 * r * r * (1 - std::numbers::pi / 4), 0.01);
+  }
+  // Two discs 0.82 apart: what fills the gap is a blade of 0.024 in its middle.
+  const std::vector<Vec2> left = circle_within({-1.41, 0}, 1, 1e-4),
+                          right = circle_within({1.41, 0}, 1, 1e-4);
+  const std::vector<Region> discs = united({left, right});
+  const std::vector<Region> joined = with_fillets(discs, kSheet, {r, 0}, 1e-4);
+  EXPECT_EQ(joined.size(), 1u);
+  const std::vector<Region> apart = with_fillets(discs, kSheet, {r, 0.9}, 1e-4);
+  EXPECT_EQ(apart.size(), 2u);
+  EXPECT_LT(area(apart) - area(discs), 0.5 * (area(joined) - area(discs)));
+}
+
+// Without a radius nothing changes. Holes stay holes.
+TEST(Fillets, KeepWhatTheyDoNotFill) {
+  const std::vector<std::vector<Vec2>> outer = {box(0, 0, 6, 4)}, hole = {box(2, 1, 4, 3)};
+  const std::vector<Region> plate = unite(outer, kSheet, hole);
+  ASSERT_EQ(plate.size(), 1u);
+  const std::vector<Region> same = with_fillets(plate, kSheet, {0, 0.9}, 1e-4);
+  EXPECT_EQ(same[0].outer, plate[0].outer);
+  const std::vector<Region> found = with_fillets(plate, kSheet, {0.5, 0.9}, 1e-4);
+  ASSERT_EQ(found.size(), 1u);
+  ASSERT_EQ(found[0].holes.size(), 1u);
+  EXPECT_NEAR(area(found), 20 + 4 * 0.25 * (1 - std::numbers::pi / 4), 1e-3);
+  EXPECT_TRUE(with_fillets({}, kSheet, {1, 1}, 1e-3).empty());
+}
+
+// The sum over all cells is the area, a cell that a side halves is half full, and a hole is void.
+TEST(Coverage, OfPolygonsIsExact) {
+  Grid grid{.x0 = -1, .y0 = 0, .width = 6, .height = 4};
+  grid.nx = 12;
+  grid.ny = 8;
+  const Region triangle{{{-1, 0}, {5, 0}, {5, 4}}, {}};
+  const std::vector<Region> one = {triangle};
+  const VectorXd f = area_fractions(grid, one);
+  EXPECT_NEAR(f.sum() * grid.dx() * grid.dy(), 12, 1e-12);
+  EXPECT_EQ(f[grid.cell(11, 0)], 1);
+  EXPECT_EQ(f[grid.cell(0, 7)], 0);
+  // The diagonal passes from (0, 0) to (3, 2) in halves of a cell.
+  EXPECT_NEAR(f[grid.cell(0, 0)], 1. / 3, 1e-12);
+  Region holed{box(-1, 0, 5, 4), {circle_within({2, 2}, 1.1, 1e-3)}};
+  std::reverse(holed.holes[0].begin(), holed.holes[0].end());
+  const std::vector<Region> two = {holed};
+  const VectorXd g = area_fractions(grid, two);
+  EXPECT_NEAR(g.sum() * grid.dx() * grid.dy(), area(two), 1e-12);
+  EXPECT_EQ(g[grid.cell(6, 4)], 0);
+  EXPECT_EQ(g[grid.cell(0, 0)], 1);
+  EXPECT_GE(g.minCoeff(), 0);
+}
+
+}  // namespace
+}  // namespace flexmorph
