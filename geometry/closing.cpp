@@ -16,7 +16,7 @@ namespace {
 /// fillets' radius. Vertices nearer to the line through their neighbours than the second are none.
 constexpr double kSame = 2e-3, kStraight = 1e-6;
 /// Width of the lattice on which coincident sides are found [radii].
-constexpr double kLattice = 1e-7;
+constexpr double kLattice = 1e-9;
 
 /// A context of GEOS, whose last message says what went wrong.
 class Geos {
@@ -53,7 +53,10 @@ class Shape {
       : geos_(other.geos_), geometry_(std::exchange(other.geometry_, nullptr)) {}
   Shape(const Shape&) = delete;
   Shape& operator=(const Shape&) = delete;
-  Shape& operator=(Shape&&) = delete;
+  Shape& operator=(Shape&& other) noexcept {
+    std::swap(geometry_, other.geometry_);
+    return *this;
+  }
 
   const GEOSGeometry* get() const { return geometry_; }
   GEOSGeometry* release() { return std::exchange(geometry_, nullptr); }
@@ -61,17 +64,24 @@ class Shape {
     return {*geos_, GEOSBuffer_r(geos_->handle(), geometry_, by, segments)};
   }
   Shape united(const Shape& other, double lattice) const {
-    return {*geos_, GEOSUnionPrec_r(geos_->handle(), geometry_, other.geometry_, lattice)};
+    return polygons_of(GEOSUnionPrec_r(geos_->handle(), geometry_, other.geometry_, lattice));
   }
   Shape without(const Shape& other, double lattice) const {
-    return {*geos_, GEOSDifferencePrec_r(geos_->handle(), geometry_, other.geometry_, lattice)};
+    return polygons_of(GEOSDifferencePrec_r(geos_->handle(), geometry_, other.geometry_, lattice));
   }
   Shape common(const Shape& other, double lattice) const {
-    return {*geos_, GEOSIntersectionPrec_r(geos_->handle(), geometry_, other.geometry_, lattice)};
+    return polygons_of(
+        GEOSIntersectionPrec_r(geos_->handle(), geometry_, other.geometry_, lattice));
   }
   Shape simplified(double tolerance) const {
     return {*geos_, GEOSTopologyPreserveSimplify_r(geos_->handle(), geometry_, tolerance)};
   }
+  int n_pieces() const { return GEOSGetNumGeometries_r(geos_->handle(), geometry_); }
+  Shape piece(int k) const {
+    return {*geos_,
+            GEOSGeom_clone_r(geos_->handle(), GEOSGetGeometryN_r(geos_->handle(), geometry_, k))};
+  }
+  bool is_valid() const { return GEOSisValid_r(geos_->handle(), geometry_) == 1; }
   double area() const {
     double out = 0;
     if (GEOSArea_r(geos_->handle(), geometry_, &out) == 0) geos_->fail();
@@ -79,6 +89,19 @@ class Shape {
   }
 
  private:
+  /// The polygons of a result: where shapes only touch, it has lines and points, too.
+  Shape polygons_of(GEOSGeometry* result) const {
+    const Shape all{*geos_, result};
+    std::vector<GEOSGeometry*> polygons;
+    for (int k = 0; k < all.n_pieces(); ++k) {
+      const GEOSGeometry* piece = GEOSGetGeometryN_r(geos_->handle(), all.geometry_, k);
+      if (GEOSGeomTypeId_r(geos_->handle(), piece) == GEOS_POLYGON)
+        polygons.push_back(GEOSGeom_clone_r(geos_->handle(), piece));
+    }
+    return {*geos_, GEOSGeom_createCollection_r(geos_->handle(), GEOS_MULTIPOLYGON, polygons.data(),
+                                                static_cast<unsigned>(polygons.size()))};
+  }
+
   const Geos* geos_;
   GEOSGeometry* geometry_;
 };
@@ -109,16 +132,61 @@ int segments(double radius, double tolerance) {
   return std::max(16, static_cast<int>(std::ceil(0.25 * std::numbers::pi / std::acos(1 - part))));
 }
 
+/// Fills inner corners and gaps of shapes within a domain.
+class Filling {
+ public:
+  Filling(const Shape& domain, const Fillets& fillets, double tolerance)
+      : domain_(domain),
+        radius_(fillets.radius),
+        thin_(0.5 * fillets.thinnest),
+        lattice_(kLattice * fillets.radius),
+        sides_(segments(fillets.radius, tolerance)),
+        around_(domain.grown(2 * thin_ + lattice_, 1).without(domain, lattice_)) {}
+
+  Shape of(const Shape& given) const {
+    const Shape closed = given.grown(radius_, sides_).grown(-radius_, sides_);
+    Shape filled = rounded(given, closed);
+    const std::vector<Shape> bridges = bridges_of(closed, filled);
+    if (bridges.empty()) return filled;
+    Shape joined = std::move(filled);
+    for (const Shape& bridge : bridges) joined = joined.united(bridge, lattice_);
+    return rounded(joined, joined.grown(radius_, sides_).grown(-radius_, sides_));
+  }
+
+ private:
+  /// A shape and what of its closing is not thin.
+  Shape rounded(const Shape& given, const Shape& closed) const {
+    const Shape opened =
+        closed.united(around_, lattice_).grown(-thin_, sides_).grown(thin_, sides_);
+    return given.united(opened, lattice_).common(domain_, lattice_);
+  }
+
+  /// Blades across gaps, as thick as a filling has to be. A blade that touches what is filled on
+  /// one side only is the tip of a filling, and stays away.
+  std::vector<Shape> bridges_of(const Shape& closed, const Shape& filled) const {
+    constexpr double kReach = 1e-3, kTiny = 1e-4;  // radii, of the radius squared
+    std::vector<Shape> out;
+    const Shape left = closed.without(filled, lattice_).common(domain_, lattice_);
+    for (int k = 0; k < left.n_pieces(); ++k) {
+      Shape blade = left.piece(k);
+      if (blade.area() < kTiny * radius_ * radius_) continue;
+      const Shape contacts = blade.grown(kReach * radius_, 4).common(filled, lattice_);
+      if (contacts.n_pieces() > 1) out.push_back(blade.grown(thin_, sides_));
+    }
+    return out;
+  }
+
+  const Shape& domain_;
+  double radius_, thin_, lattice_;
+  int sides_;
+  Shape around_;
+};
+
 Shape filled(const Geos& geos, std::span<const Region> regions, const Region& domain,
              const Fillets& fillets, double tolerance) {
   const Shape given = shape_of(geos, regions), within = shape_of(geos, {&domain, 1});
-  const int n = segments(fillets.radius, tolerance);
-  const double thin = 0.5 * fillets.thinnest, lattice = kLattice * fillets.radius;
-  const Shape closed = given.grown(fillets.radius, n).grown(-fillets.radius, n),
-              around = within.grown(2 * thin + lattice, 1).without(within, lattice),
-              opened = closed.united(around, lattice).grown(-thin, n).grown(thin, n);
   // Sides of the opening beside those of the regions leave jags that are lower than the tolerance.
-  return given.united(opened, lattice).common(within, lattice).simplified(0.5 * tolerance);
+  return Filling(within, fillets, tolerance).of(given).simplified(0.5 * tolerance);
 }
 
 /// Vertices of the given regions by their x, to be found by their place.
@@ -200,6 +268,34 @@ bool orient(std::vector<Vec2>& ring, bool outer) {
   return a != 0;
 }
 
+/// A polygon of GEOS. Vertices of the given regions are in it where it stays valid with them.
+Region region_of(const Geos& geos, const GEOSGeometry* piece, const Vertices& vertices,
+                 double radius) {
+  std::vector<std::vector<Vec2>> rings = {
+      points_of(geos, GEOSGetExteriorRing_r(geos.handle(), piece))};
+  for (int h = 0; h < GEOSGetNumInteriorRings_r(geos.handle(), piece); ++h)
+    rings.push_back(points_of(geos, GEOSGetInteriorRingN_r(geos.handle(), piece, h)));
+  const auto oriented = [&](bool with_vertices) {
+    Region out;
+    for (const std::vector<Vec2>& ring : rings) {
+      const bool outer = &ring == rings.data();
+      std::vector<Vec2> own = with_vertices ? cleaned(ring, vertices, radius) : ring;
+      if (!orient(own, outer)) {
+        if (outer) return Region{};
+        continue;
+      }
+      if (outer)
+        out.outer = std::move(own);
+      else
+        out.holes.push_back(std::move(own));
+    }
+    return out;
+  };
+  Region out = oriented(true);
+  if (!out.outer.empty() && !shape_of(geos, {&out, 1}).is_valid()) out = oriented(false);
+  return out;
+}
+
 }  // namespace
 
 std::vector<Region> with_fillets(std::span<const Region> regions, const Region& domain,
@@ -214,28 +310,10 @@ std::vector<Region> with_fillets(std::span<const Region> regions, const Region& 
   const int n = GEOSGetNumGeometries_r(geos.handle(), shape.get());
   for (int k = 0; k < n; ++k) {
     const GEOSGeometry* piece = GEOSGetGeometryN_r(geos.handle(), shape.get(), k);
-    // Where the opening meets the border of the domain, they have lines in common.
-    if (GEOSGeomTypeId_r(geos.handle(), piece) != GEOS_POLYGON) continue;
-    Region region;
-    region.outer = cleaned(points_of(geos, GEOSGetExteriorRing_r(geos.handle(), piece)), vertices,
-                           fillets.radius);
-    if (!orient(region.outer, true)) continue;
-    for (int h = 0; h < GEOSGetNumInteriorRings_r(geos.handle(), piece); ++h) {
-      std::vector<Vec2> hole =
-          cleaned(points_of(geos, GEOSGetInteriorRingN_r(geos.handle(), piece, h)), vertices,
-                  fillets.radius);
-      if (orient(hole, false)) region.holes.push_back(std::move(hole));
-    }
-    out.push_back(std::move(region));
+    Region region = region_of(geos, piece, vertices, fillets.radius);
+    if (!region.outer.empty()) out.push_back(std::move(region));
   }
   return out;
-}
-
-double area_with_fillets(std::span<const Region> regions, const Region& domain,
-                         const Fillets& fillets, double tolerance) {
-  if (!(fillets.radius > 0) || regions.empty()) return area(regions);
-  const Geos geos;
-  return filled(geos, regions, domain, fillets, tolerance).area();
 }
 
 }  // namespace flexmorph

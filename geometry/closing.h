@@ -8,10 +8,10 @@
 /// Fillets at the inner corners of outlines.
 namespace flexmorph {
 
-/// Radius of fillets, and the width below which a filling between material is left out [m].
+/// Sizes of fillets [m].
 struct Fillets {
   double radius = 0;    ///< 0: none
-  double thinnest = 0;  ///< of what fills corners and gaps
+  double thinnest = 0;  ///< smallest width of what fills corners and gaps
 };
 
 /// Returns the regions with fillets: the union of the regions R with what is left of their closing
@@ -30,10 +30,5 @@ struct Fillets {
 /// @throws Error (numerical) when GEOS finds no result.
 std::vector<Region> with_fillets(std::span<const Region> regions, const Region& domain,
                                  const Fillets& fillets, double tolerance);
-
-/// Area of with_fillets() [m²], without the cost of its outlines.
-/// @throws Error (numerical) as with_fillets().
-double area_with_fillets(std::span<const Region> regions, const Region& domain,
-                         const Fillets& fillets, double tolerance);
 
 }  // namespace flexmorph

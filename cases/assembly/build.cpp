@@ -1,5 +1,6 @@
 #include "cases/assembly/build.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -59,10 +60,17 @@ void shake(std::vector<Component>& components, double jitter, int seed) {
   }
 }
 
-/// Cells at the pins of a link. One pin counts as its support, the other one as its load.
+/// Cells at the pins of a link: those of their eyes, or those around the node of the pin. One pin
+/// counts as its support, the other one as its load.
 std::vector<HeldOrLoaded> pin_places(const Link& link, const Grid& g) {
   std::vector<HeldOrLoaded> out = {{"first pin", true, {}}, {"second pin", false, {}}};
   for (size_t k = 0; k < 2; ++k) {
+    if (link.bores[k] > 0) {
+      const double round = mmc::kOutlineTolerance * g.dx();
+      out[k].cells = cells_within(g, {circle_within(link.pins[k], link.eyes[k], round),
+                                      {circle_within(link.pins[k], link.bores[k], round)}});
+      continue;
+    }
     const int node = fem::node_at(g, link.pins[k]), i = node / (g.ny + 1), j = node % (g.ny + 1);
     for (const int ci : {i - 1, i})
       for (const int cj : {j - 1, j})
@@ -94,6 +102,29 @@ std::vector<Segment> held_lines(const Scene& scene, const BodyDesign& design) {
   return out;
 }
 
+/// Fillings of corners and gaps that are narrower than this part of the smallest feature stay away.
+constexpr double kThinnestFilling = 0.9;
+
+/// The bores in the eyes of a link, counterclockwise.
+std::vector<std::vector<Vec2>> bores_of(const BodyDesign& design) {
+  std::vector<std::vector<Vec2>> out;
+  if (!design.link) return out;
+  for (size_t k = 0; k < 2; ++k)
+    if (design.link->bores[k] > 0)
+      out.push_back(circle_within(design.link->pins[k], design.link->bores[k],
+                                  mmc::kOutlineTolerance * design.grid.dx()));
+  return out;
+}
+
+/// The plate of a link without the bores in its eyes; empty where it has none.
+Region with_bores(const BodyDesign& design) {
+  const Grid& g = design.grid;
+  Region out{corners_of({{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}}), bores_of(design)};
+  if (out.holes.empty()) return {};
+  for (std::vector<Vec2>& bore : out.holes) std::reverse(bore.begin(), bore.end());
+  return out;
+}
+
 /// The design that an optimization starts from. A design that is only evaluated stays as its file
 /// says: a delivered one has parts that are shorter than those of a start.
 mmc::Design design_of(const Scene& scene, const Grid& grid, const std::vector<Component>& layout,
@@ -120,9 +151,7 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
     std::vector<TdfSettings> bands;
     for (size_t i = 0; i < d.band.size(); ++i) bands.push_back(d.at_band(i));
     const mmc::Plate plate = plate_of(scene, d);
-    mmc::Symmetry symmetry;
-    if (d.symmetric) symmetry = symmetry_of(scene, d, plate.outside);
-    if (!mmc::is_symmetric(layout, symmetry)) symmetry = {};
+    const mmc::Symmetry symmetry = symmetry_of(scene, d, plate.outside, layout);
     layout = mmc::one_side(layout, symmetry);
     std::vector<mmc::Design> further;
     for (int k = 1; k < d.starts; ++k) {
@@ -146,11 +175,13 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
                    .stiffness_void = d.stiffness_void,
                    .mass_void = d.mass_void,
                    .compliance = settings_of(scene, d),
-                   .domain = scene.domain ? scene.domain->shape : Region{},
+                   .domain = scene.domain ? scene.domain->shape : with_bores(d),
                    .outside = plate.outside,
                    .places = places_of(scene, d, plate.outside),
                    .held = held_lines(scene, d),
                    .widths = d.widths,
+                   .fillets = {d.fillet_radius, kThinnestFilling * d.widths.solid},
+                   .bores = bores_of(d),
                    .shares_mass = d.shares_mass});
   }
   return out;

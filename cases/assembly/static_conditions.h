@@ -33,9 +33,13 @@ std::vector<LoadOnVoid> loads_on_void(const Scene& scene, const mmc::BodyProblem
 const std::vector<Vec2>* bore_of(const Scene& scene, const Disc& disc, const Grid& grid);
 /// Gravity of a plate at rest; zero where the case gives none [m/s^2].
 Vec2 weight_of(const Scene& scene);
-/// The middle lines of a static scene's grid that its domain, regions, supports and loads are
-/// symmetric to; a load case may be another one's image, or the image of its opposite. Nothing for
-/// a scene that moves.
+/// Returns the middle lines of its grid that a design is symmetric to: those that `design.symmetry`
+/// asks for, or all that domain, regions, supports, loads and start of a plate at rest are symmetric
+/// to. A load case may be the image of another one, or the image of its opposite.
+/// @param outside  cells outside of the domain (n_cells)
+/// @param start    components of the start
+/// @throws Error (input) that says what is not symmetric to a line that is asked for
 mmc::Symmetry symmetry_of(const Scene& scene, const BodyDesign& design,
-                          std::span<const signed char> outside);
+                          std::span<const signed char> outside,
+                          const std::vector<Component>& start);
 }  // namespace flexmorph::cases

@@ -3,7 +3,9 @@
 #include <utility>
 
 #include "cases/assembly/static_conditions.h"
+#include "fem/dynamics/esl.h"
 #include "geometry/picture.h"
+#include "io/files.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -73,30 +75,94 @@ bool keeps_loads(const GridImage& image, const std::vector<mmc::LoadCase>& loads
   });
 }
 
+constexpr const char *kLoads = "the set of loads is not symmetric",
+                     *kMotion = "the loads of a motion are not symmetric";
+
+/// What is known of a design before its optimization, and whether it is symmetric to a middle line.
+class Symmetries {
+ public:
+  Symmetries(const Scene& scene, const BodyDesign& design, std::span<const signed char> outside,
+             const std::vector<Component>& start)
+      : scene_(scene), design_(design), start_(start) {
+    if (scene.domain) conditions_ = static_conditions(scene, design.grid, outside);
+  }
+
+  mmc::Symmetry line(bool in_x) const {
+    const Grid& g = design_.grid;
+    mmc::Symmetry out;
+    if (in_x)
+      out.x = g.x0 + 0.5 * g.width;
+    else
+      out.y = g.y0 + 0.5 * g.height;
+    return out;
+  }
+  /// Returns what is not symmetric; empty: everything is.
+  std::string obstacle(bool in_x, bool despite_loads) const {
+    const GridImage image{design_.grid, in_x};
+    if (!keeps_domain(image)) return "the domain is not symmetric";
+    for (const auto* polygons : {&design_.solid, &design_.empty})
+      if (!image.keeps(covered(design_.grid, *polygons)))
+        return polygons == &design_.solid ? "the solid regions are not symmetric"
+                                          : "the void regions are not symmetric";
+    if (!keeps_supports(image)) return "the supports are not symmetric";
+    if (!despite_loads && !scene_.domain) return kMotion;
+    if (!despite_loads && !keeps_static_loads(image)) return kLoads;
+    if (!mmc::is_symmetric(start_, line(in_x)))
+      return "the components of the start are not symmetric";
+    return "";
+  }
+
+ private:
+  bool keeps_domain(const GridImage& image) const {
+    if (!scene_.domain || scene_.domain->shape.outer.empty()) return true;
+    VectorXd sum = VectorXd::Zero(image.grid.n_cells());  // rings may be one another's images
+    for (const std::vector<Vec2>& ring : rings_of(scene_.domain->shape))
+      sum += covered(image.grid, {ring});
+    return image.keeps(sum);
+  }
+  /// A moving plate is clamped at its root, at the left; a link is held by its two pins.
+  bool keeps_supports(const GridImage& image) const {
+    if (scene_.domain) return keeps_held(image, conditions_.held);
+    if (!design_.link) return !image.in_x;
+    const auto [a, b] = design_.link->pins;
+    const int first = fem::node_at(image.grid, a), second = fem::node_at(image.grid, b);
+    return image.node(first) == second ||
+           (image.node(first) == first && image.node(second) == second);
+  }
+  bool keeps_static_loads(const GridImage& image) const {
+    const Vec2 weight = weight_of(scene_);
+    return weight[image.in_x ? 0 : 1] == 0 &&
+           keeps_loads(image, conditions_.loads, weight == Vec2::Zero());
+  }
+
+  const Scene& scene_;
+  const BodyDesign& design_;
+  const std::vector<Component>& start_;
+  StaticConditions conditions_;
+};
+
 }  // namespace
 
 mmc::Symmetry symmetry_of(const Scene& scene, const BodyDesign& design,
-                          std::span<const signed char> outside) {
-  if (!scene.domain) return {};
-  const Grid& g = design.grid;
-  const StaticConditions conditions = static_conditions(scene, g, outside);
-  const Vec2 weight = weight_of(scene);
-  std::vector<VectorXd> areas = {covered(g, design.solid), covered(g, design.empty)};
-  if (!scene.domain->shape.outer.empty())
-    for (const std::vector<Vec2>& ring : rings_of(scene.domain->shape))
-      areas.push_back(covered(g, {ring}));
-  VectorXd whole = areas.front();  // rings of a drawing may be one another's images
-  for (size_t k = 2; k < areas.size(); ++k) whole += areas[k];
-  const auto symmetric = [&](bool in_x) {
-    const GridImage image{g, in_x};
-    if (weight[in_x ? 0 : 1] != 0) return false;
-    return image.keeps(areas[0]) && image.keeps(areas[1]) && image.keeps(whole) &&
-           keeps_held(image, conditions.held) &&
-           keeps_loads(image, conditions.loads, weight == Vec2::Zero());
-  };
+                          std::span<const signed char> outside,
+                          const std::vector<Component>& start) {
+  const WantedSymmetry& wanted = design.symmetry;
   mmc::Symmetry out;
-  if (symmetric(true)) out.x = g.x0 + 0.5 * g.width;
-  if (symmetric(false)) out.y = g.y0 + 0.5 * g.height;
+  if (wanted.automatic ? !scene.domain : !wanted.x && !wanted.y) return out;
+  const Symmetries symmetries(scene, design, outside, start);
+  for (const bool in_x : {true, false}) {
+    if (!wanted.automatic && !(in_x ? wanted.x : wanted.y)) continue;
+    const std::string obstacle = symmetries.obstacle(in_x, wanted.despite_loads);
+    const mmc::Symmetry line = symmetries.line(in_x);
+    if (!obstacle.empty() && !wanted.automatic) {
+      const bool loads = obstacle == kLoads || obstacle == kMotion;
+      scene.refuse("design." + std::to_string(&design - scene.designs.data()) + ".symmetry",
+                   obstacle + " to the line " +
+                       (in_x ? "x = " + io::to_text(*line.x) : "y = " + io::to_text(*line.y)) +
+                       " m" + (loads ? "; symmetry_despite_loads = true enforces it" : ""));
+    }
+    if (obstacle.empty()) (in_x ? out.x : out.y) = in_x ? line.x : line.y;
+  }
   return out;
 }
 

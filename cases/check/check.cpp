@@ -213,7 +213,18 @@ std::string components_words(const BodyDesign& d) {
          (d.starts > 1 ? ", the best of " + std::to_string(d.starts) + " starts" : "");
 }
 
-void describe_design(const Scene& scene, const BodyDesign& d, std::ostringstream& out) {
+/// The line of a symmetric design; empty: it is none.
+std::string symmetry_row(const mmc::Design& design) {
+  const mmc::Symmetry& s = design.symmetry();
+  if (!s.any()) return "";
+  std::string lines;
+  if (s.x) lines = "x = " + io::to_text(*s.x) + " m";
+  if (s.y) lines += (s.x ? " and y = " : "y = ") + io::to_text(*s.y) + " m";
+  return row("symmetry", "designs are mirrored in " + lines);
+}
+
+void describe_design(const Scene& scene, const mmc::BodyProblem& problem, const BodyDesign& d,
+                     std::ostringstream& out) {
   const Grid& g = d.grid;
   const int n = 2 * g.nx * (g.ny + 1), loads = scene.esl->count(scene.time.end);
   // Natural order from the free end: a band of ny + 2 nodes.
@@ -223,6 +234,7 @@ void describe_design(const Scene& scene, const BodyDesign& d, std::ostringstream
                                         " static unknowns");
   out << row("", std::to_string(loads) + " loads, " + limit_words(d.goal) +
                      (d.shares_mass ? " on average, mass is shared, " : ", ") + thickness_words(d));
+  out << symmetry_row(problem.design);
   out << row("", "factor about " + io::to_text(8e-6 * factor, 3) + " MB, loads and displacements " +
                      io::to_text(8e-6 * 3.0 * n * loads, 3) + " MB; an iteration about " +
                      io::to_text(1e-9 * factor * (2 * g.ny + 5 + 3.0 * loads), 2) + " Gflop");
@@ -245,6 +257,7 @@ void describe_static(const PreparedCase& prepared, std::ostringstream& out,
                  (loads ? ", solved as " + std::to_string(loads->n_right_hand_sides()) : ""));
   out << row("design", components_words(d) + "; " + goal_words(d.goal));
   out << row("", thickness_words(d));
+  out << symmetry_row(problem.design);
   out << row("optimizer", optimizer_words(scene));
   out << figures_text(scene, nullptr, machine);
   out << "\nabsent: not built, costs nothing\n";
@@ -330,7 +343,8 @@ std::string check_case(const std::string& name, std::span<const std::string> ove
   if (scene.gravity) out << row("gravity", scene.gravity_law().varies() ? "varies" : "on");
   if (!scene.observed.empty()) out << row("observed points", std::to_string(scene.observed.size()));
   for (const Measure& measure : scene.measures) out << row("measured", measure_words(measure));
-  for (const BodyDesign& d : scene.designs) describe_design(scene, d, out);
+  for (size_t k = 0; k < scene.designs.size(); ++k)
+    describe_design(scene, prepared.design_problems()[k], scene.designs[k], out);
   if (!scene.designs.empty())
     out << row("optimizer", optimizer_words(scene) + ", " + std::to_string(scene.cycle.max_cycles) +
                                 " cycle(s)");

@@ -9,14 +9,13 @@
 namespace flexmorph::cases {
 namespace {
 
-/// The union of a design's components in its domain, to a tolerance in cells.
+/// The part that a design stands for, to a tolerance in cells.
 struct Outlines {
   std::vector<Region> regions;
   Box frame;
 
   explicit Outlines(const mmc::BodyProblem& problem, double tolerance = mmc::kOutlineTolerance)
-      : regions(
-            mmc::regions_of(problem, problem.design.components(), tolerance * problem.grid.dx())) {
+      : regions(mmc::part_of(problem, problem.design.components(), tolerance * problem.grid.dx())) {
     const Grid& g = problem.grid;
     frame = {{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}};
   }

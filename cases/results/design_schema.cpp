@@ -50,6 +50,8 @@ std::span<const Quantity<mmc::BodyOutcome>> design_quantities() {
        [](const O& o) -> Value { return o.sharp.connectivity.connected; }},
       {"islands", "-", "pieces of material besides the one that joins supports and loads",
        [](const O& o) -> Value { return o.sharp.connectivity.islands; }},
+      {"symmetry", "", "mirrored in the middle line along y (x), along x (y), in both, or none",
+       [](const O& o) -> Value { return to_string(o.symmetry); }},
       {"min_feature", "m", "smallest width of material of the outline",
        [](const O& o) { return width(o, &Features::solid); }},
       {"min_gap", "m", "smallest width of a gap of the outline",

@@ -25,7 +25,7 @@ class LoadsOfDesigns {
     for (size_t k = 0; k < problems.size(); ++k) {
       const mmc::BodyProblem& p = problems[k];
       const mmc::CellFactors factors =
-          mmc::ersatz_of(p).sharp(mmc::fractions_of(p, p.design.components()));
+          mmc::ersatz_of(p).sharp(mmc::part_fractions(p, p.design.components()));
       out.push_back(std::make_unique<mmc::ComplianceEvaluator>(loads_[k], p.section, p.compliance,
                                                                factors.stiffness, factors.mass));
     }
@@ -45,8 +45,8 @@ std::string picture_of(const mmc::BodyProblem& problem,
   constexpr double kArrow = 0.05;  // of the picture: as much room is around it
   const Vec2 corner(g.x0, g.y0), room = Vec2::Constant(kArrow * std::max(g.width, g.height));
   const Box frame{corner - room, corner + Vec2(g.width, g.height) + room};
-  std::string svg = io::outline_svg(
-      mmc::regions_of(problem, problem.design.components(), 0.05 * g.dx()), frame, 5);
+  std::string svg =
+      io::outline_svg(mmc::part_of(problem, problem.design.components(), 0.05 * g.dx()), frame, 5);
   double longest = 0;
   const auto pull = [&](size_t c) {
     return Vec2(-certified.slopes.segment<2>(static_cast<Eigen::Index>(7 * c)));

@@ -44,8 +44,7 @@ VerifiedOutline verify_outline_of(const Scene& scene, const mmc::BodyProblem& pr
     const verification::Loads by_position = loads != nullptr
                                                 ? mmc::loads_by_position(problem, *loads)
                                                 : loads_by_position(scene, problem);
-    const Grid& g = problem.grid;
-    out.volume = area(regions) / (mmc::plate_of(problem).n_domain_cells() * g.dx() * g.dy());
+    out.volume = area(regions) / area(mmc::domain_of(problem));
     out.verification = mmc::verify_design(problem, regions, by_position, go_on);
     write_outline_meshes(scene, problem, regions, *out.verification, folder);
   } catch (const Error& error) {

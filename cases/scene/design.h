@@ -29,7 +29,19 @@ struct Esl {
 /// A designed body that nothing clamps: joints hold it at two points.
 struct Link {
   std::array<Vec2, 2> pins{};  ///< material points, at nodes of the design mesh [m]
+  /// Radii of the solid eyes around the pins, and of the bores in them; 0: none [m].
+  std::array<double, 2> eyes{}, bores{};
   mmc::Support support = mmc::Support::pins;
+};
+
+/// The middle lines of its grid that a design is asked to be symmetric to.
+struct WantedSymmetry {
+  bool automatic = true;       ///< those that the scene and the start are symmetric to
+  bool x = false;              ///< the middle line that is parallel to the y axis
+  bool y = false;              ///< the middle line that is parallel to the x axis
+  bool despite_loads = false;  ///< loads need not be symmetric
+
+  bool operator==(const WantedSymmetry&) const = default;
 };
 
 /// The design of one body, on its design domain: the body at its longest.
@@ -43,6 +55,7 @@ struct BodyDesign {
   bool asks_motion = false;             ///< does the case name numbers of the motion?
   double min_thickness = 0;             ///< c_min: smallest half-thickness of a component [m]
   Widths widths;                        ///< smallest widths of the union [m]; 0: any
+  double fillet_radius = 0;             ///< at inner corners of the part [m]; 0: none
   double half_length = 0;               ///< of the initial components [m]
   double half_thickness = 0;            ///< of the initial components [m]
   /// Half-widths of the Heaviside band, coarse to fine [cells]; of tdf = "paper" [-].
@@ -55,8 +68,8 @@ struct BodyDesign {
   double jitter = 0;             ///< of the initial components, in parts of their sizes [-]
   int seed = 1;                  ///< of the jitter
   int starts = 1;                ///< this one, and others that are jittered
-  bool symmetric = true;         ///< where the scene is, and the start
-  bool shares_mass = false;      ///< with the other designs that do: see mmc::SharedProblem
+  WantedSymmetry symmetry;
+  bool shares_mass = false;  ///< with the other designs that do: see mmc::SharedProblem
   /// Polygons; a cell belongs to a region that holds its centre [m].
   std::vector<std::vector<Vec2>> solid, empty;
 

@@ -103,6 +103,9 @@ void check_joint_points(const io::Table& t, const io::Key& key, const Scene& sce
                         const BodyDesign& design);
 /// Both pins of a link sit in solid regions: without them they would end up in the void.
 void check_pins_solid(const io::Table& t, const BodyDesign& design);
+/// Reads the eyes around the pins of a link and the bores in them; eyes are solid regions.
+/// @throws Error (input) for eyes beyond the plate or with thin walls, and for other bodies
+void read_eyes(const io::Table& t, BodyDesign& design);
 
 /// [[design]], [esl], [optimizer], [cycle], [verify]; needs what read_motion() read.
 void read_designs(const io::Table& root, Scene& scene);

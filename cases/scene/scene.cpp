@@ -115,7 +115,7 @@ int Esl::count(double end) const { return static_cast<int>(std::floor(end / ever
 
 bool Expectation::holds(double found) const {
   // Written so that NaN holds nowhere.
-  return std::isfinite(found) && (!value || std::abs(found - *value) <= tolerance) &&
+  return !std::isnan(found) && (!value || std::abs(found - *value) <= tolerance) &&
          (!at_least || found >= *at_least) && (!at_most || found <= *at_most);
 }
 

@@ -81,8 +81,13 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"between_nodes", kRod, "joint.2.point_b=[0.026, 0.0]",
               "at a node of its design mesh"},
         Wrong{"one_pin", kRod, "joint.3.point_b=[0.025, 0.0]", "is held at 1"},
-        Wrong{"in_the_void", kRod, "design.0.solid.1.disc=[0.3, 0.0, 0.01]",
-              "needs solid material"},
+        Wrong{"in_the_void", kRod,
+              "design.0.bore_radius=,design.0.eye_radius=", "needs solid material"},
+        Wrong{"wide_eye", kRod, "design.0.eye_radius=[0.03, 0.012]", "a radius of at most 0.025 m"},
+        Wrong{"thin_wall", kRod, "design.0.bore_radius=[0.006, 0.01]",
+              "a bore of at most 0.007 m in an eye of 0.012 m"},
+        Wrong{"no_eye", kRod, "design.0.eye_radius=", "`eye_radius` is missing"},
+        Wrong{"no_link", "four_bar", "design.0.eye_radius=[0.01, 0.01]", "only a link"},
         Wrong{"stiffness", kRod, "esl.definition=\"stiffness\"", "is a link between two pins"}),
     [](const auto& wrong) { return std::string(wrong.param.name); });
 

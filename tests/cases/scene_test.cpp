@@ -82,7 +82,7 @@ TEST_P(ShippedCase, HasTheDataOfThePaper) {
   EXPECT_DOUBLE_EQ(d.tdf.sharpness, 1500);
   EXPECT_EQ(d.tdf.min_half_thickness, mmc::half_thickness_for(2 * 0.005));
   EXPECT_EQ(d.widths.solid, 2 * 0.005);
-  EXPECT_EQ(d.widths.gap, 3 * 0.0025);
+  EXPECT_EQ(d.widths.gap, 2 * 0.0025);
   EXPECT_DOUBLE_EQ(d.erosion, (slow ? 0.25 : 0.375) * d.widths.solid);
   // Two columns of cells under the tip mass.
   ASSERT_EQ(d.solid.size(), 1u);

@@ -3,10 +3,12 @@
 // where and why.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "cases/assembly/build.h"
 #include "io/exports.h"
+#include "optim/mmc/cycles/design_verification.h"
 #include "tests/cases/scenes.h"
 #include "tests/io/scratch.h"
 
@@ -78,6 +80,88 @@ TEST(StaticScene, IsSymmetricWhereEverythingIs) {
   };
   EXPECT_TRUE(mmc::is_symmetric(start(0.1).components(), start(0).symmetry()));
   EXPECT_NE(start(0.1).x(), start(0).x());
+}
+
+/// Area that one of two regions covers alone, in parts of the first one's.
+double difference(std::span<const Region> a, std::span<const Region> b) {
+  double common = 0;
+  for (const Region& piece : a)
+    for (const Region& other : b) {
+      const std::vector<std::vector<Vec2>> outer = {other.outer};
+      common += area(unite(outer, piece, other.holes));
+    }
+  return (area(a) + area(b) - 2 * common) / area(a);
+}
+
+// What is exported of a symmetric design is its own mirror image. The start is disturbed, and
+// nothing else of it is symmetric.
+TEST(StaticScene, ExportsOfSymmetricDesignsAreMirrorImages) {
+  for (const std::string wanted : {"x", "y", "both"}) {
+    const mmc::BodyProblem problem =
+        build_problems(
+            read("short_beam",
+                 {"design.symmetry='" + wanted + "'", "design.symmetry_despite_loads=true",
+                  "support.edge=", "support.box=[0.0, 0.0, 2.0, 1.0]", "design.jitter=0.2"}))
+            .front();
+    EXPECT_EQ(to_string(problem.design.symmetry()), wanted);
+    const std::vector<Region> regions = mmc::exported_regions(problem);
+    for (const bool in_x : {true, false}) {
+      std::vector<Region> mirrored = regions;
+      const auto mirror = [&](std::vector<Vec2>& ring) {
+        for (Vec2& p : ring) p[in_x ? 0 : 1] = (in_x ? 2 : 1) - p[in_x ? 0 : 1];
+        std::reverse(ring.begin(), ring.end());
+      };
+      for (Region& r : mirrored) {
+        mirror(r.outer);
+        for (std::vector<Vec2>& hole : r.holes) mirror(hole);
+      }
+      const bool kept = in_x ? wanted != "y" : wanted != "x";
+      if (kept)
+        EXPECT_LT(difference(regions, mirrored), 1e-9) << wanted << in_x;
+      else
+        EXPECT_GT(difference(regions, mirrored), 1e-3) << wanted << in_x;
+    }
+  }
+}
+
+// A symmetry that is asked for holds, or the message says what is not symmetric.
+TEST(StaticScene, SymmetryThatIsAskedForIsThereOrRefused) {
+  const auto symmetry = [](const std::string& name, const Changes& changes) {
+    return to_string(build_problems(read(name, changes)).front().design.symmetry());
+  };
+  EXPECT_EQ(symmetry("short_beam", {}), "y");
+  EXPECT_EQ(symmetry("short_beam", {"design.symmetry='y'"}), "y");
+  EXPECT_EQ(symmetry("bridge", {}), "x");
+  EXPECT_EQ(
+      symmetry("rotating_plate_v01", {"design.symmetry='y'", "design.symmetry_despite_loads=true"}),
+      "y");
+  EXPECT_EQ(symmetry("rotating_plate_v01", {}), "none");
+  const Changes low = {"load.0.force.0.point=[2.0, 0.25]", "design.symmetry='y'"};
+  EXPECT_TRUE(contains(complaint("short_beam", low),
+                       "the set of loads is not symmetric to the line y = 0.5 m"));
+  const Changes enforced = {"load.0.force.0.point=[2.0, 0.25]", "design.symmetry='y'",
+                            "design.symmetry_despite_loads=true"};
+  EXPECT_EQ(symmetry("short_beam", enforced), "y");
+  for (const auto& [changes, said] : std::vector<std::pair<Changes, std::string>>{
+           {{"design.symmetry='x'"}, "the supports are not symmetric to the line x = 1 m"},
+           {{"design.symmetry='both'"}, "the supports are"},
+           {{"design.symmetry='y'", "design.solid=[{ box = [0.5, 0.0, 0.75, 0.25] }]"},
+            "the solid regions are"},
+           {{"design.symmetry='y'", "design.void=[{ box = [0.5, 0.0, 0.75, 0.25] }]"},
+            "the void regions are"},
+           {{"design.symmetry_despite_loads=true"}, "it enforces"}}) {
+    const std::string message = complaint("short_beam", changes);
+    EXPECT_TRUE(contains(message, said)) << message;
+    EXPECT_TRUE(contains(message, "design.symmetry")) << message;
+  }
+  EXPECT_TRUE(
+      contains(complaint("l_bracket", {"design.symmetry='y'"}), "the domain is not symmetric"));
+  try {
+    symmetry("rotating_plate_v01", {"design.symmetry='y'"});
+    ADD_FAILURE();
+  } catch (const Error& e) {
+    EXPECT_TRUE(contains(e.what(), "the loads of a motion are not symmetric")) << e.what();
+  }
 }
 
 // Weight acts with every load, is a load by itself, and is symmetric across its own direction only.

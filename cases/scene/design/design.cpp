@@ -61,8 +61,13 @@ const Key& kMinFeature = io::key("design", "min_feature")
                              .says("Smallest solid feature of the union of components; 0: any.");
 const Key& kMinGap = io::key("design", "min_gap")
                          .number(not_negative("a smallest gap", "m"))
-                         .otherwise_as("half of `min_feature`, three cells or more")
+                         .otherwise_as("half of `min_feature`, two cells or more")
                          .says("Smallest gap between material of the union.");
+const Key& kFilletRadius =
+    io::key("design", "fillet_radius")
+        .number(not_negative("the radius of fillets", "m"))
+        .otherwise_as("0.8 of `min_feature`")
+        .says("Of the inner corners of the part, as far as they fit; 0: none.");
 const Key& kHalfLength = io::key("design", "half_length")
                              .number(positive("a half-length", "m"))
                              .otherwise_as("half the diagonal of a box")
@@ -88,11 +93,20 @@ const Key& kStarts =
         .integer("a number of starts", 1, 100)
         .otherwise(1)
         .says("The best of so many, further ones jittered, goes on to the last stage.");
-const io::Choice<bool> kSymmetry(
+const io::Choice<WantedSymmetry> kSymmetry(
     io::key("design", "symmetry")
         .otherwise("auto")
-        .says("Designs are symmetric where domain, regions, supports, loads and start are."),
-    "a symmetry", {{"auto", true}, {"none", false}});
+        .says("`x` mirrors in the middle line parallel to the y axis; `auto`: where all else is."),
+    "a symmetry",
+    {{"auto", {}},
+     {"none", {.automatic = false}},
+     {"x", {.automatic = false, .x = true}},
+     {"y", {.automatic = false, .y = true}},
+     {"both", {.automatic = false, .x = true, .y = true}}});
+const Key& kDespiteLoads = io::key("design", "symmetry_despite_loads")
+                               .boolean()
+                               .otherwise(false)
+                               .says("Enforces `symmetry` although loads are not symmetric.");
 const io::Choice<TdfSettings::Kind> kTdf(
     io::key("design", "tdf").otherwise("distance").says("Topology description function."), "a TDF",
     {{"distance", TdfSettings::Kind::distance}, {"paper", TdfSettings::Kind::paper}});
@@ -203,8 +217,8 @@ Widths read_widths(const Table& t, const Body& body, const BodyDesign& design) {
   } else {
     out.solid = t.number(kMinFeature.within(0, 0.5 * body.width), paper ? 0.0 : thick);
   }
-  // Loads pass through gaps that are narrower than three cells.
-  const double seen = std::min(3 * std::max(design.grid.dx(), design.grid.dy()), 0.5 * body.width);
+  // The crisp design on cells sees no gap that is narrower than two cells.
+  const double seen = std::min(2 * std::max(design.grid.dx(), design.grid.dy()), 0.5 * body.width);
   out.gap = t.number(kMinGap.within(0, 0.5 * body.width),
                      out.solid > 0 ? std::max(0.5 * out.solid, seen) : 0.0);
   if (paper && out.any())
@@ -224,6 +238,12 @@ void read_components(const Table& t, const Body& body, BodyDesign& design) {
 
   design.tdf.kind = t.choice(kTdf);
   design.widths = read_widths(t, body, design);
+
+  constexpr double kRadius = 0.8;  // features: an arc of a quarter feature turns by 18 degrees
+  design.fillet_radius = t.number(kFilletRadius.within(0, 0.5 * body.width),
+                                  std::min(kRadius * design.widths.solid, 0.5 * body.width));
+  if (design.fillet_radius > 0 && design.widths.solid == 0)
+    t.fail(kFilletRadius, "fillets need a smallest width of material: `min_feature`");
 
   const double wide = design.grid.width / boxes[0], high = design.grid.height / boxes[1];
   const double diagonal = std::hypot(wide, high);
@@ -253,7 +273,10 @@ void read_components(const Table& t, const Body& body, BodyDesign& design) {
   design.jitter = t.number(kJitter);
   design.seed = t.integer(kSeed);
   design.starts = t.integer(kStarts);
-  design.symmetric = t.choice(kSymmetry);
+  design.symmetry = t.choice(kSymmetry);
+  design.symmetry.despite_loads = t.boolean(kDespiteLoads);
+  if (design.symmetry.despite_loads && !design.symmetry.x && !design.symmetry.y)
+    t.fail(kDespiteLoads, "it enforces `symmetry = \"x\"`, \"y\" or \"both\"");
 }
 
 void read_tdf(const Table& t, BodyDesign& design) {
@@ -356,6 +379,7 @@ BodyDesign read_design(const Table& t, const Scene& scene) {
   read_coupling(t, design);
   read_components(t, body, design);
   read_tdf(t, design);
+  read_eyes(t, design);
   read_regions(t, body, scene, design);
   check_loads(t, scene, design);
   check_joint_points(t, kBody, scene, design);

@@ -4,6 +4,7 @@
 #include "cases/scene/read.h"
 #include "geometry/picture.h"
 #include "io/files.h"
+#include "optim/mmc/problem/body_problem.h"
 
 /// Designed bodies that nothing clamps: links between two pins.
 namespace flexmorph::cases {
@@ -18,6 +19,18 @@ const io::Choice<Support> kSupport(
         .when("joints hold the body at two points")
         .says("What balances the loads of a link: reactions at its pins, or its own inertia."),
     "a support of a link", {{"pins", Support::pins}, {"floating", Support::floating}});
+
+const io::Key& kEyes =
+    io::key("design", "eye_radius")
+        .numbers(io::positive("the radius of an eye", "m"), 2, 2)
+        .otherwise_as("no eyes")
+        .when("joints hold the body at two points")
+        .says("Material around the pins: of the first and of the second joint's.");
+const io::Key& kBores = io::key("design", "bore_radius")
+                            .numbers(io::positive("the radius of a bore", "m"), 2, 2)
+                            .otherwise_as("no bores")
+                            .when("joints hold the body at two points")
+                            .says("Bores in the eyes, which pins fill in motions and loads.");
 
 /// Cells around a pin that are solid: those whose centres are nearer [cells].
 constexpr double kSolidReach = 1.5;
@@ -50,7 +63,7 @@ Link read_link(const Table& t, const io::Key& key, const Body& body, const Scene
                                         : "; '" + body.name + "' is held at " +
                                               std::to_string(points.size())));
   if (body.heat) t.fail(key, "a designed link between two pins stays cold: no [body.heat]");
-  return {{points[0], points[1]}, t.choice(kSupport)};
+  return {.pins = {points[0], points[1]}, .support = t.choice(kSupport)};
 }
 
 void check_joint_points(const Table& t, const io::Key& key, const Scene& scene,
@@ -81,8 +94,38 @@ void check_pins_solid(const Table& t, const BodyDesign& design) {
           t.fail("the pin of '" + design.body + "' at " + words(pin) +
                  " needs solid material: [[design.solid]] with disc = [" + io::to_text(pin.x()) +
                  ", " + io::to_text(pin.y()) + ", " + io::to_text(2 * std::max(g.dx(), g.dy())) +
-                 "] or larger");
+                 "] or larger, or `eye_radius`");
       }
+}
+
+void read_eyes(const Table& t, BodyDesign& design) {
+  if (!design.link) {
+    for (const io::Key* key : {&kEyes, &kBores})
+      if (t.has(*key)) t.fail(*key, "only a link, which joints hold at two points, has eyes");
+    return;
+  }
+  if (t.has(kBores) && !t.has(kEyes)) t.fail(kBores, "bores lie in eyes: `eye_radius` is missing");
+  if (!t.has(kEyes)) return;
+  const Grid& g = design.grid;
+  const std::vector<double> eyes = t.numbers(kEyes),
+                            bores = t.has(kBores) ? t.numbers(kBores) : std::vector<double>(2, 0);
+  for (size_t k = 0; k < 2; ++k) {
+    const Vec2& pin = design.link->pins[k];
+    const double room = std::min(
+        {pin.x() - g.x0, g.x0 + g.width - pin.x(), pin.y() - g.y0, g.y0 + g.height - pin.y()});
+    if (eyes[k] > room * (1 + 1e-9))
+      t.fail(kEyes, "the eye around the pin at " + words(pin) +
+                        " lies in the plate: a radius of at most " + io::to_text(room) + " m");
+    const double wall = std::max(design.widths.solid, std::min(g.dx(), g.dy()));
+    if (bores[k] > 0 && eyes[k] - bores[k] < wall * (1 - 1e-9))
+      t.fail(kBores, "the wall of an eye is at least " + io::to_text(wall) +
+                         " m thick (`min_feature`): a bore of at most " +
+                         io::to_text(eyes[k] - wall) + " m in an eye of " + io::to_text(eyes[k]) +
+                         " m");
+    design.link->eyes[k] = eyes[k];
+    design.link->bores[k] = bores[k];
+    design.solid.push_back(circle_within(pin, eyes[k], mmc::kOutlineTolerance * g.dx()));
+  }
 }
 
 }  // namespace flexmorph::cases

@@ -136,6 +136,7 @@ BodyOutcome outcome_of(const Part& p, const Design& design, const Formulation& f
                        bool condition) {
   BodyOutcome out;
   out.body = p.problem.body;
+  out.symmetry = design.symmetry();
   MmcProblem state({p.plate, design, p.ersatz, p.loads}, formulation.tdf, p.problem.goal);
   state.evaluate(state.start());
   // A goal without a compliance has never asked for one.

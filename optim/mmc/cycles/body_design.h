@@ -38,6 +38,7 @@ struct LengthScale {
 /// What a body's design came to in one cycle.
 struct BodyOutcome {
   std::string body;
+  Symmetry symmetry;                  ///< that all stages kept
   double compliance = 0, volume = 0;  ///< regularized, at the last band
   Figures further;                    ///< likewise
   SharpDesign sharp;
@@ -94,9 +95,9 @@ using IterationObserver = std::function<bool(const IterationReport&)>;
 ///   4. the last band: nominal stiffness, widths as limits, limits of the crisp design.
 ///
 /// Later cycles begin with stage 2 and have as many iterations for each stage as the first one.
-/// Without wanted widths there are stages 1 and 2 only. Every stage has an equal share of the iterations and ends at a plateau
-/// (optim::Verdict), at the latest when its share is used. The designs of the problems are left at
-/// the result.
+/// Without wanted widths there are stages 1 and 2 only. Every stage has an equal share of the
+/// iterations and ends at a plateau (optim::Verdict), at the latest when its share is used. The
+/// designs of the problems are left at the result.
 /// @param going  comes back false when the observer stopped the run
 /// @throws Error (numerical) from statics; rows reported before it stand. Error (input) from
 ///         SharedProblem.

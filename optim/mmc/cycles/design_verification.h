@@ -19,7 +19,7 @@ std::string reason_not_verifiable(const BodyProblem& problem);
 /// @param loads  lives longer
 verification::Loads loads_by_position(const BodyProblem& problem, const fem::EslSets& loads);
 
-/// The outline as it is exported, see regions_of().
+/// The outline as it is exported, see part_of().
 std::vector<Region> exported_regions(const BodyProblem& problem);
 
 /// The design of a problem, as it is exported, under its loads. First triangles are two cells

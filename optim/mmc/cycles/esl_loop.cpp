@@ -36,7 +36,7 @@ struct Start {
   VectorXd energies;
 
   Start(const BodyProblem& p, const fem::EslSets& loads)
-      : fractions(fractions_of(p, p.design.components())),
+      : fractions(part_fractions(p, p.design.components())),
         factors(ersatz_of(p).sharp(fractions)),
         compliance(std::make_unique<ComplianceEvaluator>(loads, p.section, p.compliance,
                                                          factors.stiffness, factors.mass)),

@@ -33,7 +33,7 @@ LoadDifference load_difference(std::span<const double> made_for, std::span<const
 LoadDifference load_difference(const BodyProblem& problem, std::span<const double> made_for,
                                const fem::EslSets& motion) {
   const CellFactors sharp =
-      ersatz_of(problem).sharp(fractions_of(problem, problem.design.components()));
+      ersatz_of(problem).sharp(part_fractions(problem, problem.design.components()));
   const VectorXd own =
       ComplianceEvaluator(motion, problem.section, problem.compliance, sharp.stiffness, sharp.mass)
           .individual(sharp.stiffness, sharp.mass);

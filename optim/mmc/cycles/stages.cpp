@@ -99,7 +99,7 @@ StageResult at_band(StageRunner& run, const StageResult& from, size_t band, cons
 StageResult with_erosion(StageRunner& run, const StageResult& from, const Share& share) {
   std::vector<Formulation> formulations;
   for (const Part& p : run.parts()) formulations.push_back(eroded(p.problem));
-  return run.optimize(from, std::move(formulations), share);
+  return run.optimize(from, std::move(formulations), {share.iterations, share.solves, true});
 }
 
 StageResult without_idle(StageRunner& run, const StageResult& from) {

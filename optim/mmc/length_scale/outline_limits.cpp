@@ -150,15 +150,23 @@ class Contacts {
 };
 
 /// The narrowest places by what is wanted of them, one for each neighbourhood.
+/// @param regions  union of the components, whose parameters move its narrow places
+/// @param part     the union with its fillets; gaps that they fill do not count
 std::vector<NarrowPlace> narrowest(const BodyProblem& problem, std::span<const Region> regions,
-                                   const Widths& wanted, size_t most) {
+                                   std::span<const Region> part, const Widths& wanted,
+                                   size_t most) {
   std::vector<NarrowPlace> all = narrow_places_of(problem, regions, kLook * wanted.largest());
-  const auto part = [&](const NarrowPlace& p) { return p.width / wanted.of(p); };
-  std::erase_if(all, [&](const NarrowPlace& p) { return !(part(p) < kLook); });
+  const auto share = [&](const NarrowPlace& p) { return p.width / wanted.of(p); };
+  std::erase_if(all, [&](const NarrowPlace& p) { return !(share(p) < kLook); });
   std::stable_sort(all.begin(), all.end(),
-                   [&](const auto& p, const auto& q) { return part(p) < part(q); });
+                   [&](const auto& p, const auto& q) { return share(p) < share(q); });
+  const auto is_filled = [&](const NarrowPlace& p) {
+    return !p.solid && std::any_of(part.begin(), part.end(),
+                                   [&](const Region& piece) { return contains(piece, p.center); });
+  };
   std::vector<NarrowPlace> out;
   for (const NarrowPlace& p : all) {
+    if (is_filled(p)) continue;
     const bool known = std::any_of(out.begin(), out.end(), [&](const NarrowPlace& q) {
       return q.solid == p.solid && (q.center - p.center).norm() < wanted.of(p);
     });
@@ -208,13 +216,15 @@ OutlineLimits::OutlineLimits(const BodyProblem& problem, const Widths& wanted)
 void OutlineLimits::evaluate(std::span<const Component> components, Values& out) {
   const std::vector<Region> regions =
       regions_of(problem_, components, kOutlineTolerance * problem_.grid.dx());
-  out.volume = area(regions) / domain_area_;
+  const std::vector<Region> part = with_fillets(regions, domain_of(problem_), problem_.fillets,
+                                                kOutlineTolerance * problem_.grid.dx());
+  out.volume = area(part) / domain_area_;
   out.g.setConstant(count(), kScale * (1 - kLook));
   out.dg.setZero(count(), Component::kParameters * static_cast<Eigen::Index>(components.size()));
   if (!wanted_.any()) return;
   const Contacts contacts(problem_, components);
   Eigen::Index k = 0;
-  for (const NarrowPlace& place : narrowest(problem_, regions, wanted_, kPlaces)) {
+  for (const NarrowPlace& place : narrowest(problem_, regions, part, wanted_, kPlaces)) {
     WidthSlope w = width_slope_at(contacts, components.size(), place);
     if (place.width < kNoWidth * wanted_.of(place)) w.slope.setZero();
     const double wanted = kAim * wanted_.of(place);

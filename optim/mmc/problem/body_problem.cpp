@@ -99,6 +99,71 @@ std::vector<Region> regions_of(const BodyProblem& p, std::span<const Component> 
 
 namespace {
 
+std::vector<Vec2> mirrored(std::vector<Vec2> ring, const Symmetry& line) {
+  for (Vec2& p : ring) {
+    if (line.x) p.x() = 2 * *line.x - p.x();
+    if (line.y) p.y() = 2 * *line.y - p.y();
+  }
+  if (line.x.has_value() != line.y.has_value()) std::reverse(ring.begin(), ring.end());
+  return ring;
+}
+
+/// The lower, left side of regions and its mirror images.
+std::vector<Region> made_symmetric(const BodyProblem& p, std::span<const Region> regions) {
+  const Symmetry& symmetry = p.design.symmetry();
+  const Grid& g = p.grid;
+  const Box all{{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}};
+  Box side = all;
+  if (symmetry.x) side.upper.x() = *symmetry.x;
+  if (symmetry.y) side.upper.y() = *symmetry.y;
+  const std::vector<std::vector<Vec2>> half = {corners_of(side)};
+  std::vector<Symmetry> images = {{}};
+  if (symmetry.x) images.push_back({symmetry.x, {}});
+  if (symmetry.y) images.push_back({{}, symmetry.y});
+  if (symmetry.x && symmetry.y) images.push_back(symmetry);
+  std::vector<Region> pieces;
+  for (const Region& region : regions)
+    for (const Region& piece : unite(half, region, {})) pieces.push_back(piece);
+  std::vector<std::vector<Vec2>> outer, holes;
+  for (const Region& piece : pieces)
+    for (const Symmetry& line : images) {
+      outer.push_back(mirrored(piece.outer, line));
+      for (const std::vector<Vec2>& hole : piece.holes) holes.push_back(mirrored(hole, line));
+    }
+  return unite(outer, {corners_of(all), {}}, holes);
+}
+
+}  // namespace
+
+std::vector<Region> part_of(const BodyProblem& p, std::span<const Component> components,
+                            double tolerance) {
+  std::vector<Region> out = regions_of(p, components, tolerance);
+  if (!(p.fillets.radius > 0)) return out;
+  out = with_fillets(out, domain_of(p), p.fillets, tolerance);
+  if (!p.empty.empty()) {  // fillets do not fill void regions
+    std::vector<Region> clipped;
+    for (const Region& piece : out) {
+      const std::vector<std::vector<Vec2>> outer = {piece.outer};
+      std::vector<std::vector<Vec2>> voids = p.empty;
+      voids.insert(voids.end(), piece.holes.begin(), piece.holes.end());
+      for (Region& left : unite(outer, domain_of(p), voids)) clipped.push_back(std::move(left));
+    }
+    out = std::move(clipped);
+  }
+  return p.design.symmetry().any() ? made_symmetric(p, out) : out;
+}
+
+VectorXd part_fractions(const BodyProblem& p, std::span<const Component> components) {
+  if (!(p.fillets.radius > 0)) return fractions_of(p, components);
+  std::vector<Region> filled = part_of(p, components, kOutlineTolerance * p.grid.dx());
+  for (const std::vector<Vec2>& bore : p.bores) filled.push_back({bore, {}});
+  VectorXd out = area_fractions(p.grid, filled);
+  leave_out(p.outside, out);
+  return out;
+}
+
+namespace {
+
 /// Is the point on the polygon?
 bool bounds(std::span<const Vec2> polygon, const Vec2& p, double small) {
   for (size_t k = 0; k < polygon.size(); ++k)
@@ -140,6 +205,16 @@ bool is_given(const BodyProblem& problem, const NarrowPlace& place) {
   const auto& regions = place.solid ? problem.solid : problem.empty;
   if (std::any_of(regions.begin(), regions.end(), within)) return true;
   if (!place.solid) return false;
+  // A fillet at the end of a narrow solid region: the region has its width there.
+  constexpr double kOwn = 0.5;
+  const auto own = [&](const std::vector<Vec2>& region) {
+    if (!contains({region, {}}, place.center)) return false;
+    double near = std::numeric_limits<double>::infinity();
+    for (size_t k = 0; k < region.size(); ++k)
+      near = std::min(near, distance({region[k], region[(k + 1) % region.size()]}, place.center));
+    return 2 * near >= kOwn * place.width && (touches(region, place.a) || touches(region, place.b));
+  };
+  if (std::any_of(problem.solid.begin(), problem.solid.end(), own)) return true;
   std::vector<std::vector<Vec2>> rings = rings_of(domain_of(problem));
   rings.insert(rings.end(), problem.empty.begin(), problem.empty.end());
   const auto ring_at = [&](const Vec2& p) {
@@ -204,7 +279,7 @@ Connectivity connectivity_of(const BodyProblem& problem, std::span<const Region>
 SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> components,
                          ComplianceEvaluator& loads) {
   SharpDesign out;
-  out.fractions = fractions_of(problem, components);
+  out.fractions = part_fractions(problem, components);
   const Ersatz ersatz = ersatz_of(problem);
   out.volume = out.fractions.sum() / ersatz.n_domain_cells();
   const CellFactors sharp = ersatz.sharp(out.fractions);
@@ -213,7 +288,7 @@ SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> 
   const double clock = thread_seconds();
   try {
     const std::vector<Region> regions =
-        regions_of(problem, components, kOutlineTolerance * problem.grid.dx());
+        part_of(problem, components, kOutlineTolerance * problem.grid.dx());
     out.volume = area(regions) / area(domain_of(problem));
     for (const ResponseRow* row : further_rows(problem.goal))
       if (row->even) out.further[key_of(*row)] = out.volume * row->full(plate_of(problem));
@@ -228,8 +303,8 @@ SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> 
 }
 
 fem::Factors dynamic_factors(const BodyProblem& problem, std::span<const Component> components) {
-  CellFactors f =
-      Ersatz::dynamic(fractions_of(problem, components), problem.stiffness_void, problem.mass_void);
+  CellFactors f = Ersatz::dynamic(part_fractions(problem, components), problem.stiffness_void,
+                                  problem.mass_void);
   return {problem.grid, std::move(f.stiffness), std::move(f.mass)};
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fem/element.h"
+#include "geometry/closing.h"
 #include "geometry/feature.h"
 #include "geometry/outline.h"
 #include "geometry/part_mesh.h"
@@ -36,6 +37,9 @@ struct BodyProblem {
   std::vector<HeldOrLoaded> places = {};  ///< empty: ends_of() the grid
   std::vector<Segment> held = {};         ///< lines of the border that hold what touches them
   Widths widths = {};                     ///< smallest widths of the result; 0: any
+  Fillets fillets = {};                   ///< at the inner corners of the part
+  /// Holes of the domain that pins fill in motions and loads.
+  std::vector<std::vector<Vec2>> bores = {};
   /// Its mass comes from one budget for all bodies that say so: what each is allowed, together.
   bool shares_mass = false;
 };
@@ -64,6 +68,16 @@ Region domain_of(const BodyProblem& problem);
 /// @throws Error (numerical) from unite().
 std::vector<Region> regions_of(const BodyProblem& problem, std::span<const Component> components,
                                double tolerance);
+
+/// Returns the part that a design stands for, which is exported and verified: the union of its
+/// components with fillets. That of a symmetric design is its own mirror image.
+/// @param tolerance  how far sides may be off the true outlines [m]
+/// @throws Error (numerical) from unite() and with_fillets()
+std::vector<Region> part_of(const BodyProblem& problem, std::span<const Component> components,
+                            double tolerance);
+/// Returns the area fractions of a part (n_cells): 0 outside of the domain, 1 in the bores. Without
+/// fillets they are fractions_of() the components.
+VectorXd part_fractions(const BodyProblem& problem, std::span<const Component> components);
 
 /// Narrow places of such a union, gaps to what holds it among them, less those that passive regions
 /// and holes of the domain make by themselves: no design can change them.

@@ -91,6 +91,11 @@ class ByPlace {
 
 }  // namespace
 
+std::string to_string(const Symmetry& symmetry) {
+  if (symmetry.x && symmetry.y) return "both";
+  return symmetry.x ? "x" : symmetry.y ? "y" : "none";
+}
+
 std::vector<Component> one_side(const std::vector<Component>& all, const Symmetry& symmetry) {
   if (!symmetry.any()) return all;
   const std::vector<Image> images = images_of(symmetry);

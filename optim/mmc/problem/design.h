@@ -2,6 +2,7 @@
 
 #include <Eigen/SparseCore>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "geometry/component.h"
@@ -21,6 +22,9 @@ struct Symmetry {
   std::optional<double> x, y;  ///< of the vertical line, of the horizontal one [m]
   bool any() const { return x || y; }
 };
+
+/// "x", "y", "both" or "none": the values of `design.symmetry`.
+std::string to_string(const Symmetry& symmetry);
 
 /// The components of the lower (left) side; what lies on the other one is taken for an image. Of
 /// two that are one another's images there is one.
