@@ -20,24 +20,30 @@ class DxfText {
  public:
   explicit DxfText(const LengthUnit& unit) : unit_(unit) {}
 
-  void polyline(const std::vector<Vec2>& ring, const std::string& layer) {
+  void ring(const CurveRing& ring, const std::string& layer) {
+    if (ring.size() == 1 && ring[0].is_circle()) return circle(ring[0], layer);
     begin("POLYLINE", layer);
     text_ += "66\n1\n10\n0\n20\n0\n30\n0\n70\n1\n";
-    for (const Vec2& p : ring) {
+    for (const OutlineCurve& c : ring) {
       begin("VERTEX", layer);
-      point(p, 0);
+      point(c.from, 0);
+      if (!c.is_line()) text_ += "42\n" + to_text(std::tan(0.25 * c.sweep)) + "\n";
     }
     begin("SEQEND", layer);
   }
-  /// A point, a line, or a polygon.
-  void shape(const std::vector<Vec2>& corners, const std::string& layer) {
-    if (corners.size() > 2) return polyline(corners, layer);
-    begin(corners.size() == 1 ? "POINT" : "LINE", layer);
-    for (size_t k = 0; k < corners.size(); ++k) point(corners[k], static_cast<int>(k));
+  /// A point or a line.
+  void shape(const std::vector<Vec2>& ends, const std::string& layer) {
+    begin(ends.size() == 1 ? "POINT" : "LINE", layer);
+    for (size_t k = 0; k < ends.size(); ++k) point(ends[k], static_cast<int>(k));
   }
   const std::string& text() const { return text_; }
 
  private:
+  void circle(const OutlineCurve& c, const std::string& layer) {
+    begin("CIRCLE", layer);
+    point(c.center, 0);
+    text_ += "40\n" + to_text(c.radius / unit_.metres) + "\n";
+  }
   void begin(const char* entity, const std::string& layer) {
     text_ += std::string("0\n") + entity + "\n8\n" + layer + "\n";
   }
@@ -89,8 +95,8 @@ void add_walls(StlText& stl, const std::vector<Vec2>& ring, double height) {
 
 }  // namespace
 
-void write_dxf(const std::string& path, std::span<const Region> regions, const LengthUnit& unit,
-               std::span<const DrawingLayer> more) {
+void write_dxf(const std::string& path, std::span<const CurvedRegion> regions,
+               const LengthUnit& unit, std::span<const DrawingLayer> more) {
   const bool metric = unit.dxf != kInch.dxf && unit.dxf != find_length_unit("ft")->dxf;
   std::vector<std::string> layers = {"OUTLINE", "HOLES"};
   for (const DrawingLayer& layer : more) layers.push_back(layer.name);
@@ -102,12 +108,14 @@ void write_dxf(const std::string& path, std::span<const Region> regions, const L
     out += "0\nLAYER\n2\n" + layer + "\n70\n0\n62\n7\n6\nCONTINUOUS\n";
   out += "0\nENDTAB\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n";
   DxfText entities(unit);
-  for (const Region& r : regions) {
-    entities.polyline(r.outer, "OUTLINE");
-    for (const auto& hole : r.holes) entities.polyline(hole, "HOLES");
+  for (const CurvedRegion& r : regions) {
+    entities.ring(r.outer, "OUTLINE");
+    for (const CurveRing& hole : r.holes) entities.ring(hole, "HOLES");
   }
-  for (const DrawingLayer& layer : more)
-    for (const auto& corners : layer.shapes) entities.shape(corners, layer.name);
+  for (const DrawingLayer& layer : more) {
+    for (const auto& ends : layer.shapes) entities.shape(ends, layer.name);
+    for (const CurveRing& ring : layer.rings) entities.ring(ring, layer.name);
+  }
   write_file(path, out + entities.text() + "0\nENDSEC\n0\nEOF\n");
 }
 

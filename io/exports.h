@@ -5,24 +5,25 @@
 #include <vector>
 
 #include "geometry/component.h"
-#include "geometry/outline.h"
+#include "geometry/outline_curves.h"
 #include "io/length_unit.h"
 
 /// Designs for other programs, and components to start from.
 namespace flexmorph::io {
 
-/// What else a drawing shows: points, lines, and polygons of three corners or more [m].
+/// What else a drawing shows.
 struct DrawingLayer {
   std::string name;
-  std::vector<std::vector<Vec2>> shapes;
+  std::vector<std::vector<Vec2>> shapes = {};  ///< points, or lines by their two ends [m]
+  std::vector<CurveRing> rings = {};
 };
 
-/// DXF (R12, ASCII): every ring a closed polyline, outer ones on layer OUTLINE, holes on layer
-/// HOLES. Coordinates in the unit, which $INSUNITS says ($MEASUREMENT whether it is metric), in
-/// full precision.
+/// Writes a drawing in DXF (R12, ASCII). A ring is a CIRCLE, or a closed POLYLINE whose sides are
+/// lines and arcs (bulges); outer ones are on layer OUTLINE, holes on layer HOLES. Coordinates are
+/// in the unit, which $INSUNITS says ($MEASUREMENT whether it is metric), in full precision.
 /// @throws Error (numerical) as write_file().
-void write_dxf(const std::string& path, std::span<const Region> regions, const LengthUnit& unit,
-               std::span<const DrawingLayer> more = {});
+void write_dxf(const std::string& path, std::span<const CurvedRegion> regions,
+               const LengthUnit& unit, std::span<const DrawingLayer> more = {});
 
 /// STL (ASCII, full precision; the binary form has 7 digits) of the regions extruded from z = 0 to
 /// `thickness` [m]: closed surfaces whose edges belong to two facets each. STL knows no units: the

@@ -1,10 +1,13 @@
 #include "io/step.h"
 
 #include <APIHeaderSection_MakeHeader.hxx>
+#include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
-#include <BRepBuilderAPI_MakePolygon.hxx>
+#include <BRepBuilderAPI_MakeWire.hxx>
+#include <BRepCheck_Analyzer.hxx>
 #include <BRepPrimAPI_MakePrism.hxx>
 #include <BRep_Builder.hxx>
+#include <Geom_Circle.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
@@ -17,8 +20,11 @@
 #include <StepData_StepWriter.hxx>
 #include <TCollection_HAsciiString.hxx>
 #include <TopoDS_Compound.hxx>
+#include <TopoDS_Edge.hxx>
+#include <TopoDS_Vertex.hxx>
 #include <TopoDS_Wire.hxx>
 #include <XSControl_WorkSession.hxx>
+#include <gp_Ax2.hxx>
 #include <gp_Pln.hxx>
 #include <sstream>
 
@@ -31,23 +37,35 @@ namespace {
 /// whole process, which the next writer sees too late.)
 constexpr double kScale = 1000;
 
-TopoDS_Wire wire_of(const std::vector<Vec2>& ring) {
-  // Points nearer than 1e-6 mm are one: to OpenCASCADE nearly all within 1e-7 is.
-  constexpr double kNear = 1e-9;
-  BRepBuilderAPI_MakePolygon polygon;
-  const Vec2* last = &ring.back();
-  for (const Vec2& p : ring) {
-    if ((p - *last).norm() < kNear) continue;
-    polygon.Add(gp_Pnt(kScale * p.x(), kScale * p.y(), 0));
-    last = &p;
-  }
-  polygon.Close();
-  return polygon.Wire();
+/// Ends of curves are on them to this [mm].
+constexpr double kNear = 1e-6;
+
+gp_Pnt point_of(const Vec2& p) { return {kScale * p.x(), kScale * p.y(), 0}; }
+
+TopoDS_Edge edge_of(const OutlineCurve& c, const TopoDS_Vertex& from, const TopoDS_Vertex& to) {
+  if (c.is_line()) return BRepBuilderAPI_MakeEdge(from, to).Edge();
+  const gp_Dir axis(0, 0, c.sweep > 0 ? 1 : -1);
+  // The circle's parameter begins at `from`.
+  const Vec2 begin = c.from - c.center;
+  const gp_Ax2 frame(point_of(c.center), axis, gp_Dir(begin.x(), begin.y(), 0));
+  const Handle(Geom_Circle) circle = new Geom_Circle(frame, kScale * c.radius);
+  return BRepBuilderAPI_MakeEdge(circle, from, to, 0, std::abs(c.sweep)).Edge();
 }
 
-TopoDS_Shape solid_of(const Region& region, double thickness) {
+TopoDS_Wire wire_of(const CurveRing& ring) {
+  const BRep_Builder builder;
+  std::vector<TopoDS_Vertex> ends(ring.size());
+  for (std::size_t k = 0; k < ring.size(); ++k)
+    builder.MakeVertex(ends[k], point_of(ring[k].from), kNear);
+  BRepBuilderAPI_MakeWire wire;
+  for (std::size_t k = 0; k < ring.size(); ++k)
+    wire.Add(edge_of(ring[k], ends[k], ends[(k + 1) % ring.size()]));
+  return wire.Wire();
+}
+
+TopoDS_Shape solid_of(const CurvedRegion& region, double thickness) {
   BRepBuilderAPI_MakeFace face(gp_Pln(gp::XOY()), wire_of(region.outer));
-  for (const auto& hole : region.holes) face.Add(wire_of(hole));
+  for (const CurveRing& hole : region.holes) face.Add(wire_of(hole));
   return BRepPrimAPI_MakePrism(face.Face(), gp_Vec(0, 0, kScale * thickness)).Shape();
 }
 
@@ -73,7 +91,7 @@ std::string step_text(const TopoDS_Shape& shape) {
   STEPControl_Writer writer;
   Interface_Static::SetCVal("write.step.schema", "AP214IS");
   Interface_Static::SetCVal("write.step.product.name", "design");
-  Interface_Static::SetIVal("write.surfacecurve.mode", 0);  // edges are straight: half the file
+  Interface_Static::SetIVal("write.surfacecurve.mode", 0);  // faces are simple: half the file
   if (writer.Transfer(shape, STEPControl_AsIs) != IFSelect_RetDone) return "";
   const Handle(StepData_StepModel) model = writer.Model();
   set_names(model);
@@ -86,13 +104,15 @@ std::string step_text(const TopoDS_Shape& shape) {
 
 }  // namespace
 
-std::string write_step(const std::string& path, std::span<const Region> regions, double thickness) {
+std::string write_step(const std::string& path, std::span<const CurvedRegion> regions,
+                       double thickness) {
   std::string text;
   try {
     TopoDS_Compound all;
     const BRep_Builder builder;
     builder.MakeCompound(all);
-    for (const Region& r : regions) builder.Add(all, solid_of(r, thickness));
+    for (const CurvedRegion& r : regions) builder.Add(all, solid_of(r, thickness));
+    if (!BRepCheck_Analyzer(all).IsValid()) return "its faces do not bound a solid";
     text = step_text(all);
   } catch (const Standard_Failure& failure) {
     return failure.GetMessageString();

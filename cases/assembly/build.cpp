@@ -182,6 +182,7 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
                    .widths = d.widths,
                    .fillets = {d.fillet_radius, kThinnestFilling * d.widths.solid},
                    .bores = bores_of(d),
+                   .export_tolerance = export_tolerance(scene, d),
                    .shares_mass = d.shares_mass});
   }
   return out;

@@ -1,49 +1,47 @@
 #include "cases/output/run_folder.h"
 #include "cases/results/schema.h"
+#include "geometry/outline_curves.h"
 #include "io/exports.h"
 #include "io/files.h"
 #include "io/plots.h"
 #include "io/step.h"
+#include "optim/mmc/cycles/design_verification.h"
 
 /// Tables and pictures of designs and their loads.
 namespace flexmorph::cases {
 namespace {
 
-/// The part that a design stands for, to a tolerance in cells.
-struct Outlines {
-  std::vector<Region> regions;
-  Box frame;
+/// Tolerance of the picture of the first design [cells].
+constexpr double kCoarse = 0.05;
 
-  explicit Outlines(const mmc::BodyProblem& problem, double tolerance = mmc::kOutlineTolerance)
-      : regions(mmc::part_of(problem, problem.design.components(), tolerance * problem.grid.dx())) {
-    const Grid& g = problem.grid;
-    frame = {{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}};
-  }
-  std::string svg() const { return io::outline_svg(regions, frame); }
-  std::string picture() const { return io::outline_svg(regions, frame, 5); }
-};
+Box frame_of(const Grid& g) { return {{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}}; }
 
-/// A place as a drawing shows it: a point, a line, a box or a circle.
-std::vector<Vec2> shape_of(const Place& place) {
-  if (place.kind == Place::Kind::disc)
-    return circle_within(place.disc.center, place.disc.radius, 0.01 * place.disc.radius);
+/// Adds a place as a drawing shows it: a point, a line, a box or a circle.
+void add_place(const Place& place, io::DrawingLayer& out) {
   const Vec2 &a = place.box.lower, &b = place.box.upper;
-  if (a == b) return {a};
-  if ((b - a).minCoeff() == 0) return {a, b};
-  return corners_of(place.box);
+  if (place.kind == Place::Kind::disc)
+    out.rings.push_back({full_circle(place.disc.center, place.disc.radius)});
+  else if (a == b)
+    out.shapes.push_back({a});
+  else if ((b - a).minCoeff() == 0)
+    out.shapes.push_back({a, b});
+  else
+    out.rings.push_back(lines_of(corners_of(place.box)));
 }
 
 /// The domain, and where a plate at rest is held and pulled.
 std::vector<io::DrawingLayer> drawn_besides(const Scene& scene, const mmc::BodyProblem& problem) {
-  std::vector<io::DrawingLayer> out = {{"DOMAIN", rings_of(mmc::domain_of(problem))}};
-  if (!scene.domain) return out;
-  io::DrawingLayer supports{"SUPPORTS", {}}, loads{"LOADS", {}};
-  for (const PlaneSupport& s : scene.domain->supports) supports.shapes.push_back(shape_of(s.place));
+  io::DrawingLayer domain{"DOMAIN"}, supports{"SUPPORTS"}, loads{"LOADS"};
+  const std::vector<Region> region = {mmc::domain_of(problem)};
+  for (CurvedRegion& r : curves_of(region, problem.export_tolerance)) {
+    domain.rings.push_back(std::move(r.outer));
+    for (CurveRing& hole : r.holes) domain.rings.push_back(std::move(hole));
+  }
+  if (!scene.domain) return {domain};
+  for (const PlaneSupport& s : scene.domain->supports) add_place(s.place, supports);
   for (const LoadCase& load : scene.domain->loads)
-    for (const PlaneForce& f : load.forces) loads.shapes.push_back(shape_of(f.place));
-  out.push_back(std::move(supports));
-  out.push_back(std::move(loads));
-  return out;
+    for (const PlaneForce& f : load.forces) add_place(f.place, loads);
+  return {domain, supports, loads};
 }
 
 }  // namespace
@@ -94,7 +92,9 @@ RunFolder::DesignPictures& RunFolder::pictures_of(const std::string& body) {
 void RunFolder::write_start(const mmc::BodyProblem& problem) {
   if (!scene_.output.plots) return;
   std::string& svg = pictures_of(problem.body).start;
-  svg = Outlines(problem, 0.05).picture();
+  svg = io::outline_svg(
+      mmc::part_of(problem, problem.design.components(), kCoarse * problem.grid.dx()),
+      frame_of(problem.grid), 5);
   io::write_file(folder_.file("plots/start_" + problem.body + ".svg"), svg);
 }
 
@@ -103,19 +103,21 @@ void RunFolder::write_design(const mmc::BodyProblem& problem, const mmc::BodyOut
   const std::string stem = scene_.designs.size() > 1 ? "_" + problem.body : "";
   const std::vector<Component> components = problem.design.components();
   io::write_components_csv(folder_.file(components_name(scene_, problem.body)), components);
-  const Outlines outlines(problem);
-  io::write_file(folder_.file("design" + stem + ".svg"), outlines.svg());
+  const std::vector<Region> regions = mmc::exported_regions(problem);
+  const Box frame = frame_of(problem.grid);
+  io::write_file(folder_.file("design" + stem + ".svg"), io::outline_svg(regions, frame));
   const io::LengthUnit& unit = scene_.output.unit;
   const double thickness = problem.section.thickness;
-  io::write_dxf(folder_.file("design" + stem + ".dxf"), outlines.regions, unit,
+  const std::vector<CurvedRegion> curves = curves_of(regions, problem.export_tolerance);
+  io::write_dxf(folder_.file("design" + stem + ".dxf"), curves, unit,
                 drawn_besides(scene_, problem));
-  io::write_stl(folder_.file("design" + stem + ".stl"), outlines.regions, thickness, unit);
+  io::write_stl(folder_.file("design" + stem + ".stl"), regions, thickness, unit);
   // An outline that touches itself is no solid: the other files have it.
   const std::string name = "design" + stem + ".step";
-  const std::string why = io::write_step(folder_.file(name), outlines.regions, thickness);
+  const std::string why = io::write_step(folder_.file(name), curves, thickness);
   if (!why.empty()) missing_ += name + " is not there: OpenCASCADE makes no solid of it: " + why;
   if (!scene_.output.plots) return;
-  pictures_of(problem.body).result = outlines.picture();
+  pictures_of(problem.body).result = io::outline_svg(regions, frame, 5);
   const auto& sharp = outcome.sharp.fractions;
   io::write_png(folder_.file("plots/design" + stem + ".png"), problem.grid,
                 {sharp.data(), static_cast<size_t>(sharp.size())});
@@ -123,7 +125,8 @@ void RunFolder::write_design(const mmc::BodyProblem& problem, const mmc::BodyOut
 
 void RunFolder::keep_outline(const mmc::BodyProblem& problem, const std::string& name) {
   const std::string stem = scene_.designs.size() > 1 ? "_" + problem.body : "";
-  io::write_file(folder_.file(name + stem + ".svg"), Outlines(problem).svg());
+  io::write_file(folder_.file(name + stem + ".svg"),
+                 io::outline_svg(mmc::exported_regions(problem), frame_of(problem.grid)));
 }
 
 void RunFolder::write_cycles(std::span<const mmc::CycleVerdict> cycles,

@@ -108,6 +108,8 @@ std::span<const Quantity<VerifiedOutline>> outline_quantities() {
        }},
       {"volume", "-", "part of the domain that the outline covers",
        [](const O& o) { return o.verification ? Value(o.volume) : Value(); }},
+      {"curve_tolerance", "m", "how far curves of .dxf and .step may be off the outline",
+       [](const O& o) -> Value { return o.curve_tolerance; }},
       {"islands", "-", "pieces of the outline less one",
        [](const O& o) {
          return where_verified(o, [](const V& v) -> Value { return v.n_pieces - 1; });

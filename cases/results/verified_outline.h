@@ -15,6 +15,7 @@ struct VerifiedOutline {
   std::optional<verification::OutlineVerification> verification;
   std::string why_not;              ///< where there is no verification
   double volume = 0;                ///< part of the domain that the outline covers [-]
+  double curve_tolerance = 0;       ///< of its curves in design.dxf and design.step [m]
   double seconds = 0;               ///< CPU seconds, files included
   double cell = 0, thickness = 0;   ///< smallest gap and width that a part should have [m]
   std::vector<NarrowPlace> narrow;  ///< places of the outline below these, narrowest first

@@ -35,6 +35,7 @@ VerifiedOutline verify_outline_of(const Scene& scene, const mmc::BodyProblem& pr
                                   RunFolder& folder) {
   VerifiedOutline out;
   out.body = problem.body;
+  out.curve_tolerance = problem.export_tolerance;
   const double clock = thread_seconds();
   try {
     const std::vector<Region> regions = mmc::exported_regions(problem);

@@ -86,6 +86,10 @@ struct Scene;
 /// density.
 mmc::Plate plate_of(const Scene& scene, const BodyDesign& design);
 
+/// How far exported curves may be off the outlines of a design [m]: `output.tolerance`; where it is
+/// not given, a 200th of `min_feature`, or of a cell a 100th where features may have any size.
+double export_tolerance(const Scene& scene, const BodyDesign& design);
+
 /// The measures of a motion that cycles are compared by.
 enum class CycleMeasure { strain_energy, rms, peak_to_peak, mean };
 

@@ -29,6 +29,7 @@ struct Output {
   int sharp_every = 25;     ///< iterations between sharp evaluations, 0: the final design only
   bool vtk = true, plots = true;
   io::LengthUnit unit = io::kMillimetre;  ///< of exported drawings and solids
+  double tolerance = 0;  ///< of exported curves [m]; 0: not given, see export_tolerance()
 };
 
 /// A number the run must reproduce: value with a tolerance, or bounds.

@@ -6,6 +6,7 @@
 #include "cases/scene/elements/row.h"
 #include "cases/scene/read.h"
 #include "cases/scene/tables.h"
+#include "io/files.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -41,6 +42,11 @@ const io::Key& kUnit =
         .word("a unit of length", io::length_unit_names())
         .otherwise("mm")
         .says("Of design.dxf and .stl, which go to a shop; .step is in mm, all else in m.");
+const io::Key& kTolerance =
+    io::key("output", "tolerance")
+        .number(io::positive("a tolerance", "m"))
+        .otherwise_as("a 200th of `min_feature`; of a cell a 100th where that is 0")
+        .says("How far curves of design.dxf and .step may be off the outlines of a design.");
 
 const io::Key& kExpected =
     io::key("expect", "*")
@@ -78,7 +84,22 @@ Output read_output(const io::Table& t) {
   output.vtk = t.boolean(kVtk);
   output.plots = t.boolean(kPlots);
   output.unit = *io::find_length_unit(t.choice(kUnit));
+  if (t.has(kTolerance)) output.tolerance = t.number(kTolerance);
   return output;
+}
+
+/// Vertices of polygons grow with the root of 1/tolerance, and curves that are off by more than a
+/// cell are another design.
+void check_tolerance(const io::Table& t, const Scene& scene) {
+  constexpr double kSmallest = 1e-4;  // cells
+  if (!t.has(kTolerance)) return;
+  for (const BodyDesign& design : scene.designs) {
+    const double cell = std::min(design.grid.dx(), design.grid.dy());
+    if (scene.output.tolerance < kSmallest * cell || scene.output.tolerance > cell)
+      t.fail(kTolerance, "a tolerance of exported curves is between " + io::to_text(kSmallest) +
+                             " cells and a cell of each design: that of '" + design.body +
+                             "' has " + io::to_text(cell) + " m");
+  }
 }
 
 Expectation read_expectation(const io::Table& t) {
@@ -103,6 +124,12 @@ Expectation read_expectation(const io::Table& t) {
 }
 
 }  // namespace
+
+double export_tolerance(const Scene& scene, const BodyDesign& design) {
+  constexpr double kOfFeature = 1.0 / 200, kOfCell = 0.01;
+  if (scene.output.tolerance > 0) return scene.output.tolerance;
+  return design.widths.solid > 0 ? kOfFeature * design.widths.solid : kOfCell * design.grid.dx();
+}
 
 TdfSettings BodyDesign::at_band(size_t index) const {
   TdfSettings settings = tdf;
@@ -224,8 +251,10 @@ Scene read_parts(const io::CaseFile& file, const Follow& follow) {
     read_static(root, scene);
   else
     read_motion(root, follow, scene);
+  const io::Table output = root.table_or_empty(tables::kOutput);
+  scene.output = read_output(output);
   read_designs(root, scene);
-  scene.output = read_output(root.table_or_empty(tables::kOutput));
+  check_tolerance(output, scene);
   if (root.has(tables::kAccuracy)) scene.accuracy = read_accuracy(root.table(tables::kAccuracy));
   if (root.has(tables::kExpect)) {
     const io::Table expect = root.table(tables::kExpect);

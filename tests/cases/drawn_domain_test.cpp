@@ -1,11 +1,13 @@
 // Domains that are drawn: a plate with two holes by DXF, by SVG, and as a rectangle with void discs
 // is one and the same plate; the run folder keeps its drawing.
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "cases/assembly/build.h"
 #include "cases/assembly/verified_loads.h"
+#include "geometry/outline_curves.h"
 #include "optim/mmc/cycles/design_verification.h"
 #include "tests/cases/program.h"
 
@@ -113,6 +115,61 @@ TEST_F(Plates, AreJudgedAlike) {
   }
   EXPECT_GT(found[0], 0);
   EXPECT_NEAR(found[0], found[1], 0.01 * found[0]);  // each within 0.5 %
+}
+
+// Bores of drawings and discs leave as circles of their own radius, sides as lines.
+TEST_F(Plates, LeaveAsCirclesAndLines) {
+  const std::vector<Component> all = {
+      {.center = {0.04, 0.025}, .half_length = 5, .c1 = 4, .c2 = 4, .c3 = 4}};
+  for (const std::string& path : {drawn("part.dxf", kDxf), pierced()}) {
+    const mmc::BodyProblem p = problem(path);
+    EXPECT_EQ(p.export_tolerance, 0.002 / 200);  // features are two cells thick
+    const CurvedRegion plate = curves_of(mmc::regions_of(p, all, 1e-5), p.export_tolerance).front();
+    EXPECT_EQ(plate.outer.size(), 4u);
+    ASSERT_EQ(plate.holes.size(), 2u);
+    EXPECT_NEAR(area(plate), 4e-3 - kHoles, 1e-14);
+    for (const CurveRing& hole : plate.holes) {
+      ASSERT_TRUE(hole.front().is_circle());
+      const double radius = hole.front().center.x() < 0.03 ? 0.005 : 0.008;
+      EXPECT_NEAR(hole.front().radius, radius, 1e-13);
+    }
+  }
+}
+
+// What is exported is what is judged: the area of the curves is that of the triangles within the
+// perimeter times the tolerance.
+TEST_F(Plates, LeaveAsCurvesOfTheJudgedArea) {
+  for (const std::string& path : {drawn("part.dxf", kDxf), pierced()}) {
+    const cases::Scene scene = cases::read_scene(io::CaseFile(path));
+    const mmc::BodyProblem p = cases::build_problems(scene).front();
+    const std::vector<Region> regions = mmc::exported_regions(p);
+    const std::vector<CurvedRegion> curves = curves_of(regions, p.export_tolerance);
+    double perimeter = 0;
+    for (const CurvedRegion& r : curves) {
+      std::vector<CurveRing> rings = r.holes;
+      rings.push_back(r.outer);
+      for (const CurveRing& ring : rings)
+        for (const OutlineCurve& c : ring)
+          perimeter += c.is_line() ? (c.to - c.from).norm() : c.radius * std::abs(c.sweep);
+    }
+    const PartMesh mesh = mmc::verify_design(p, regions, cases::loads_by_position(scene, p)).mesh;
+    EXPECT_NEAR(area(curves), mesh.area(), perimeter * p.export_tolerance);
+  }
+}
+
+TEST_F(Plates, RefuseTolerancesThatAreNone) {
+  for (const std::string bad : {"0.01", "1e-8", "0.0", "-1e-5", "'fine'"}) {
+    std::string rest = kRest + "tolerance = " + bad + "\n";
+    const std::string path = scratch.write("bad.toml", kShape + "size = [0.08, 0.05]\n" + rest);
+    const Ended ended = flexmorph(scratch, {"check", path});
+    EXPECT_EQ(ended.code, 2) << bad;
+    EXPECT_EQ(lines_of(ended.err).size(), 1u) << ended.err;
+    EXPECT_TRUE(contains(ended.err, "output.tolerance = ")) << ended.err;
+  }
+  const std::string rest = kRest + "tolerance = 2e-5\n";
+  EXPECT_EQ(
+      problem(scratch.write("good.toml", kShape + "size = [0.08, 0.05]\n" + rest)).export_tolerance,
+      2e-5);
 }
 
 TEST_F(Plates, KeepTheirDrawing) {

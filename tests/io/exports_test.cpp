@@ -1,20 +1,25 @@
-// Designs for other programs, read back by readers written here: polylines enclose the area of the
-// regions, the extruded surface is closed and encloses area times thickness; components survive the
-// way through their file bit for bit, and bad files are refused with their place.
+// Designs for other programs, read back by readers written here: polylines and circles enclose the
+// area of the curves, the extruded surface is closed and encloses area times thickness; components
+// survive the way through their file bit for bit, and bad files are refused with their place.
 #include "io/exports.h"
 
 #include <gtest/gtest.h>
 
+#include <BRepAdaptor_Surface.hxx>
 #include <BRepCheck_Analyzer.hxx>
 #include <BRepGProp.hxx>
 #include <Eigen/Geometry>
 #include <GProp_GProps.hxx>
 #include <STEPControl_Reader.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <numbers>
+#include <span>
 #include <sstream>
 #include <tuple>
 
@@ -26,40 +31,67 @@
 namespace flexmorph::io {
 namespace {
 
-/// Crossing bars in a frame, clipped: several holes, curved sides.
+constexpr double kTolerance = 2e-5;  // of curves; polygons have half of it
+constexpr double kBore = 0.004;
+
+/// Crossing bars in a frame, clipped, with an eye and two bores: several holes, curved sides.
 std::vector<Region> design() {
   std::vector<std::vector<Vec2>> outlines;
   for (const Component& c : crossing_layout(0, 0, 0.6, 0.1, 6, 1, 0.008, 0.07))
-    outlines.push_back(outline_within(c, 0.004, 1e-5));
+    outlines.push_back(outline_within(c, 0.004, 0.5 * kTolerance));
   outlines.push_back({{0, 0}, {0.6, 0}, {0.6, 0.01}, {0, 0.01}});
-  return unite(outlines, {{0, 0}, {0.6, 0.1}});
+  outlines.push_back(circle_within({0.55, 0.05}, 0.012, 0.5 * kTolerance));
+  const std::vector<std::vector<Vec2>> bores = {
+      circle_within({0.55, 0.05}, kBore, 0.5 * kTolerance),
+      circle_within({0.15, 0.05}, kBore, 0.5 * kTolerance)};
+  return unite(outlines, {corners_of({{0, 0}, {0.6, 0.1}}), {}}, bores);
+}
+std::vector<CurvedRegion> curved_design() { return curves_of(design(), kTolerance); }
+
+double perimeter(std::span<const CurvedRegion> regions) {
+  double out = 0;
+  const auto add = [&](const CurveRing& ring) {
+    for (const OutlineCurve& c : ring)
+      out += c.is_line() ? (c.to - c.from).norm() : c.radius * std::abs(c.sweep);
+  };
+  for (const CurvedRegion& r : regions) {
+    add(r.outer);
+    std::for_each(r.holes.begin(), r.holes.end(), add);
+  }
+  return out;
 }
 
-double ring_area(const std::vector<Vec2>& ring) {
+/// Area within vertices and bulges: a circular segment on every side that has one.
+double ring_area(const std::vector<Vec2>& ring, const std::vector<double>& bulges) {
   double twice = 0;
   for (std::size_t k = 0; k < ring.size(); ++k) {
     const Vec2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
+    const double sweep = 4 * std::atan(bulges[k]);
     twice += a.x() * b.y() - b.x() * a.y();
+    if (bulges[k] == 0) continue;
+    const double radius = 0.5 * (b - a).norm() / std::sin(0.5 * sweep);
+    twice += radius * radius * (sweep - std::sin(sweep));
   }
   return 0.5 * std::abs(twice);
 }
 
-TEST(Dxf, ClosedPolylinesEncloseTheArea) {
+TEST(Dxf, ClosedPolylinesAndCirclesEncloseTheArea) {
   const Scratch scratch;
-  const std::vector<Region> regions = design();
-  write_dxf(scratch / "design.dxf", regions, kMetre);
+  const std::vector<CurvedRegion> curves = curved_design();
+  write_dxf(scratch / "design.dxf", curves, kMetre);
   std::istringstream in(contents_of(scratch / "design.dxf"));
   // Pairs of lines: group code, value.
   std::map<std::string, double> area_of_layer;
   std::vector<Vec2> ring;
+  std::vector<double> bulges, radii;
   std::string code, value, entity, layer;
   int closed = 0, polylines = 0;
   while (std::getline(in, code) && std::getline(in, value)) {
     const int group = std::stoi(code);
     if (group == 0) {
-      if (value == "SEQEND") area_of_layer[layer] += ring_area(ring);
-      if (value == "POLYLINE") ++polylines, ring.clear();
-      if (value == "VERTEX") ring.emplace_back(0, 0);
+      if (value == "SEQEND") area_of_layer[layer] += ring_area(ring, bulges);
+      if (value == "POLYLINE") ++polylines, ring.clear(), bulges.clear();
+      if (value == "VERTEX") ring.emplace_back(0, 0), bulges.push_back(0);
       entity = value;
     } else if (group == 8) {
       layer = value;
@@ -69,12 +101,21 @@ TEST(Dxf, ClosedPolylinesEncloseTheArea) {
       ring.back().x() = std::stod(value);
     } else if (entity == "VERTEX" && group == 20) {
       ring.back().y() = std::stod(value);
+    } else if (entity == "VERTEX" && group == 42) {
+      bulges.back() = std::stod(value);
+    } else if (entity == "CIRCLE" && group == 40) {
+      radii.push_back(std::stod(value));
+      area_of_layer[layer] += std::numbers::pi * radii.back() * radii.back();
     }
   }
   EXPECT_EQ(value, "EOF");
   EXPECT_EQ(closed, polylines);
   EXPECT_GT(area_of_layer["HOLES"], 0);
-  EXPECT_NEAR(area_of_layer["OUTLINE"] - area_of_layer["HOLES"], area(regions), 1e-14);
+  ASSERT_EQ(radii.size(), 2u);
+  for (const double r : radii) EXPECT_NEAR(r, kBore, 1e-12);
+  const double enclosed = area_of_layer["OUTLINE"] - area_of_layer["HOLES"];
+  EXPECT_NEAR(enclosed, area(curves), 1e-12);
+  EXPECT_NEAR(enclosed, area(design()), kTolerance * perimeter(curves));
 }
 
 // Rings of the path by the even-odd rule: outer ones run against holes, so that signed areas add
@@ -142,10 +183,11 @@ TEST(Stl, IsWatertightAndHasTheVolume) {
 TEST(Units, OfDxfAndStlAreSaid) {
   const Scratch scratch;
   const std::vector<Region> plate = {{corners_of({{0, 0}, {0.254, 0.0508}}), {}}};
+  const std::vector<CurvedRegion> curves = curves_of(plate, kTolerance);
   for (const auto& [unit, code, metric, x] :
        {std::tuple(kMillimetre, "4", "1", "254"), std::tuple(kInch, "1", "0", "10"),
         std::tuple(kMetre, "6", "1", "0.254")}) {
-    write_dxf(scratch / "a.dxf", plate, unit,
+    write_dxf(scratch / "a.dxf", curves, unit,
               std::vector<DrawingLayer>{{"MARKS", {{{0.0254, 0}}}}});
     const std::string dxf = contents_of(scratch / "a.dxf");
     EXPECT_TRUE(contains(dxf, std::string("9\n$INSUNITS\n70\n") + code + "\n"));
@@ -159,23 +201,30 @@ TEST(Units, OfDxfAndStlAreSaid) {
   }
 }
 
-// Its own drawing is a domain again, to the rounding of the unit.
+// Its own drawing is a domain again, to the tolerance that drawings are read with.
 TEST(Dxf, IsADomainAgain) {
   const Scratch scratch;
-  const std::vector<Region> regions = design();
-  const auto largest =
-      std::max_element(regions.begin(), regions.end(),
-                       [](const auto& a, const auto& b) { return area(a) < area(b); });
-  const std::vector<DrawingLayer> more = {{"DOMAIN", {corners_of({{0, 0}, {0.6, 0.1}})}},
-                                          {"LOADS", {{{0.6, 0.05}}, {{0, 0}, {0, 0.1}}}}};
+  const std::vector<CurvedRegion> all = curved_design();
+  const CurvedRegion& largest = *std::max_element(
+      all.begin(), all.end(), [](const auto& a, const auto& b) { return area(a) < area(b); });
+  const std::vector<DrawingLayer> more = {
+      {"DOMAIN", {}, {lines_of(corners_of({{0, 0}, {0.6, 0.1}}))}},
+      {"LOADS", {{{0.6, 0.05}}, {{0, 0}, {0, 0.1}}}, {{full_circle({0.3, 0.05}, 0.01)}}}};
   for (const LengthUnit& unit : kLengthUnits) {
-    write_dxf(scratch / "design.dxf", {&*largest, 1}, unit, more);
+    write_dxf(scratch / "design.dxf", {&largest, 1}, unit, more);
     const Region back = region_of(read_drawing(scratch / "design.dxf", {{}, {"OUTLINE", "HOLES"}}));
-    EXPECT_EQ(back.holes.size(), largest->holes.size());
-    // Vertices nearer than a tenth of the tolerance are one.
-    const double near = 0.1 * kDrawingTolerance * 0.6;
-    EXPECT_NEAR(area(back), area(*largest), near * 10) << unit.name;
-    EXPECT_NEAR((bounds_of(back.outer).upper - bounds_of(largest->outer).upper).norm(), 0, near);
+    EXPECT_EQ(back.holes.size(), largest.holes.size());
+    // The reader's sides are off arcs by a part of the drawing's size.
+    const double near = kDrawingTolerance * 0.6;
+    EXPECT_NEAR(area(back), area(largest), near * perimeter({&largest, 1})) << unit.name;
+    const Box box = bounds_of(polygon_within(largest.outer, 0.1 * near));
+    EXPECT_NEAR((bounds_of(back.outer).upper - box.upper).norm(), 0, 1.5 * near);
+    // Its curves are those that were written: the bores are circles again.
+    const CurvedRegion again = curves_of({&back, 1}, 2 * near)[0];
+    const auto bores = std::count_if(again.holes.begin(), again.holes.end(), [](const auto& ring) {
+      return ring.size() == 1 && std::abs(ring[0].radius - kBore) < 1e-9;
+    });
+    EXPECT_EQ(bores, 2);
   }
 }
 
@@ -192,31 +241,53 @@ int count(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind) {
   return n;
 }
 
-TEST(Step, IsASolidOfTheVolumeAndHasItsFaces) {
+/// Radii of the cylindrical faces of a shape [mm].
+std::vector<double> cylinders_of(const TopoDS_Shape& shape) {
+  std::vector<double> out;
+  for (TopExp_Explorer e(shape, TopAbs_FACE); e.More(); e.Next()) {
+    const BRepAdaptor_Surface surface(TopoDS::Face(e.Current()));
+    if (surface.GetType() == GeomAbs_Cylinder) out.push_back(surface.Cylinder().Radius());
+  }
+  return out;
+}
+
+TEST(Step, IsASolidOfTheVolumeWithCylindersAtItsArcs) {
   const Scratch scratch;
-  std::vector<Region> regions = design();
-  regions.push_back({corners_of({{1, 0}, {1.1, 0.1}}), {}});
+  std::vector<Region> polygons = design();
+  polygons.push_back({corners_of({{1, 0}, {1.1, 0.1}}), {}});
+  const std::vector<CurvedRegion> regions = curves_of(polygons, kTolerance);
   const double thickness = 0.013;
-  int faces = 0;
-  for (const Region& r : regions) {
-    faces += 2;
-    for (const auto& ring : rings_of(r)) faces += static_cast<int>(ring.size());
+  int lines = 0, arcs = 0;
+  for (const CurvedRegion& r : regions) {
+    lines += 2;  // bottom and top
+    const auto add = [&](const CurveRing& ring) {
+      for (const OutlineCurve& c : ring) ++(c.is_line() ? lines : arcs);
+    };
+    add(r.outer);
+    std::for_each(r.holes.begin(), r.holes.end(), add);
   }
   EXPECT_EQ(write_step(scratch / "design.step", regions, thickness), "");
   const TopoDS_Shape shape = step_shape(scratch / "design.step");
   EXPECT_TRUE(BRepCheck_Analyzer(shape).IsValid());
   EXPECT_EQ(count(shape, TopAbs_SOLID), static_cast<int>(regions.size()));
-  EXPECT_EQ(count(shape, TopAbs_FACE), faces);
+  EXPECT_EQ(count(shape, TopAbs_FACE), lines + arcs);
+  const std::vector<double> radii = cylinders_of(shape);
+  EXPECT_EQ(static_cast<int>(radii.size()), arcs);
+  EXPECT_EQ(std::count_if(radii.begin(), radii.end(),
+                          [](double r) { return std::abs(r - 1e3 * kBore) < 1e-9; }),
+            2);
   GProp_GProps properties;
   BRepGProp::VolumeProperties(shape, properties);
-  const double volume = area(regions) * thickness;
-  EXPECT_NEAR(1e-9 * properties.Mass(), volume, 1e-9 * volume);
+  const double found = 1e-9 * properties.Mass() / thickness;
+  EXPECT_NEAR(found, area(regions), 1e-9 * area(regions));
+  EXPECT_NEAR(found, area(polygons), kTolerance * perimeter(regions));
 }
 
 // The same design is the same file; the numbers in it are millimetres.
 TEST(Step, IsRepeatableAndInMillimetres) {
   const Scratch scratch;
-  const std::vector<Region> plate = {{corners_of({{0, 0}, {0.254, 0.0508}}), {}}};
+  const Region corners{corners_of({{0, 0}, {0.254, 0.0508}}), {}};
+  const std::vector<CurvedRegion> plate = curves_of({&corners, 1}, kTolerance);
   write_step(scratch / "a.step", plate, 0.01);
   write_step(scratch / "b.step", plate, 0.01);
   const std::string text = contents_of(scratch / "a.step");

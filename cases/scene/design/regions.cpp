@@ -97,14 +97,15 @@ Ring read_box(const Table& t) {
   return corners_of({{b[0], b[1]}, {b[2], b[3]}});
 }
 
-Ring read_disc(const Table& t, const Grid& grid) {
+/// @param tolerance  of its sides, beside that of outlines [m]
+Ring read_disc(const Table& t, const Grid& grid, double tolerance) {
   const std::vector<double> d = t.numbers(kDisc);
   if (d[2] <= 0) t.fail(kDisc, "a radius is positive, in the order x, y, radius [m]");
-  return circle_within({d[0], d[1]}, d[2], mmc::kOutlineTolerance * grid.dx());
+  return circle_within({d[0], d[1]}, d[2], std::min(tolerance, mmc::kOutlineTolerance * grid.dx()));
 }
 
 /// One [[design.solid]] or [[design.void]].
-Ring read_region(const Table& t, const mmc::Plate& plate) {
+Ring read_region(const Table& t, const mmc::Plate& plate, double tolerance) {
   const Grid& grid = plate.grid;
   if (t.has(kBox) + t.has(kStrip) + t.has(kDisc) + t.has(kPolygon) != 1)
     t.fail("a region is one of `box`, `disc`, `polygon`, `strip`");
@@ -112,7 +113,7 @@ Ring read_region(const Table& t, const mmc::Plate& plate) {
   if (t.has(kStripCells)) t.fail(kStripCells, "only a strip is as wide as a number of cells");
   const io::Key& shape = t.has(kBox) ? kBox : t.has(kDisc) ? kDisc : kPolygon;
   const Ring ring = t.has(kBox)    ? read_box(t)
-                    : t.has(kDisc) ? read_disc(t, grid)
+                    : t.has(kDisc) ? read_disc(t, grid, tolerance)
                                    : read_polygon(t, kPolygon);
   if (count(cells_in(plate, {&ring, 1})) == 0)
     t.fail(shape, "a " + shape.name + " holds the centre of a cell; the domain is [" +
@@ -157,9 +158,11 @@ void check_free_end(const Table& t, const Body& body, const Scene& scene,
 
 void read_regions(const Table& t, const Body& body, const Scene& scene, BodyDesign& design) {
   const mmc::Plate plate = plate_of(scene, design);
-  for (const Table& region : t.tables(kSolid)) design.solid.push_back(read_region(region, plate));
+  const double tolerance = export_tolerance(scene, design);
+  for (const Table& region : t.tables(kSolid))
+    design.solid.push_back(read_region(region, plate, tolerance));
   for (const Table& region : t.tables(kVoid)) {
-    design.empty.push_back(read_region(region, plate));
+    design.empty.push_back(read_region(region, plate, tolerance));
     for (const Ring& solid : design.solid)
       if (overlap(solid, design.empty.back(), design.grid))
         region.fail("a region cannot be solid and void at once");

@@ -88,7 +88,9 @@ verification::Loads loads_by_position(const BodyProblem& problem, const fem::Esl
 }
 
 std::vector<Region> exported_regions(const BodyProblem& problem) {
-  return part_of(problem, problem.design.components(), kOutlineTolerance * problem.grid.dx());
+  // Curves are as near to these polygons: together they keep to the tolerance.
+  const double fine = kOutlineTolerance * problem.grid.dx(), half = 0.5 * problem.export_tolerance;
+  return part_of(problem, problem.design.components(), half > 0 ? std::min(fine, half) : fine);
 }
 
 verification::OutlineVerification verify_design(const BodyProblem& problem,

@@ -40,6 +40,7 @@ struct BodyProblem {
   Fillets fillets = {};                   ///< at the inner corners of the part
   /// Holes of the domain that pins fill in motions and loads.
   std::vector<std::vector<Vec2>> bores = {};
+  double export_tolerance = 0;  ///< of exported curves [m]; 0: kOutlineTolerance cells
   /// Its mass comes from one budget for all bodies that say so: what each is allowed, together.
   bool shares_mass = false;
 };
