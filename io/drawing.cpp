@@ -113,18 +113,46 @@ void close_chains(Drawing& d, double near) {
   }
 }
 
+/// Points nearer than this part of the tolerance are one.
+constexpr double kSame = 1e-4;
+
 Ring ring_of(const Path& path, double tolerance) {
   Ring all, ring;
   for (const Curve& c : path.curves) flatten(c, tolerance, all);
   all.push_back(path.end());
-  const double same = 0.1 * tolerance;
+  const double same = kSame * tolerance;
   for (const Vec2& p : all)
     if (ring.empty() || (p - ring.back()).norm() > same) ring.push_back(p);
-  while (ring.size() > 1 && (ring.back() - ring.front()).norm() <= tolerance) ring.pop_back();
+  // The end of the last curve meets the begin of the first one.
+  if (ring.size() > 1 && (ring.back() - ring.front()).norm() <= tolerance) ring.pop_back();
+  while (ring.size() > 1 && (ring.back() - ring.front()).norm() <= same) ring.pop_back();
   return ring;
 }
 
 }  // namespace
+
+std::vector<std::vector<Vec2>> drawing::closed_rings(Drawing d, double unit) {
+  if (d.paths.empty()) throw Error::input("no closed curve is in it");
+  const double tolerance = kDrawingTolerance * size_of(d);
+  close_chains(d, tolerance);
+  std::vector<Ring> rings;
+  for (const Path& p : d.paths) {
+    rings.push_back(ring_of(p, tolerance));
+    if (rings.back().size() < 3)
+      throw Error::input("a curve at " + words(p.begin()) + " has no area");
+    for (Vec2& v : rings.back()) v *= unit;
+  }
+  return rings;
+}
+
+std::vector<std::string> layers_of_dxf(const std::string& path) {
+  const std::string text = read_regular_file(path, "a drawing");
+  try {
+    return drawing::dxf_layers(text);
+  } catch (const Error& error) {
+    throw Error::input(path + ": " + error.what());
+  }
+}
 
 std::vector<std::vector<Vec2>> read_drawing(const std::string& path,
                                             const DrawingSettings& settings) {
@@ -139,19 +167,9 @@ std::vector<std::vector<Vec2>> read_drawing(const std::string& path,
     if (type == ".svg" && !settings.layers.empty())
       throw Error::input("only DXF files have layers");
     Drawing d = type == ".dxf" ? drawing::read_dxf(text, settings.layers) : drawing::read_svg(text);
-    if (d.paths.empty()) throw Error::input("no closed curve is in it");
     const std::optional<double> unit = settings.unit ? settings.unit : d.unit;
-    if (!unit) throw Error::input("it says no unit of length: `unit` is needed");
-    const double tolerance = kDrawingTolerance * size_of(d);
-    close_chains(d, tolerance);
-    std::vector<Ring> rings;
-    for (const Path& p : d.paths) {
-      rings.push_back(ring_of(p, tolerance));
-      if (rings.back().size() < 3)
-        throw Error::input("a curve at " + words(p.begin()) + " has no area");
-      for (Vec2& v : rings.back()) v *= *unit;
-    }
-    return rings;
+    if (!unit) throw Error::input("it says no unit of length: " + settings.needs_unit);
+    return drawing::closed_rings(std::move(d), *unit);
   } catch (const Error& error) {
     throw Error::input(path + ": " + error.what());
   }

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "io/drawing.h"
 #include "io/length_unit.h"
@@ -43,6 +44,9 @@ class Reader : public DL_CreationAdapter {
     return std::move(drawing_);
   }
 
+  /// Names of the layers that something was drawn on.
+  const std::set<std::string>& known() const { return known_; }
+
   void setVariableInt(const std::string& key, int value, int) override {
     const LengthUnit* unit = find_length_unit(value);
     if (key == "$INSUNITS" && unit != nullptr) drawing_.unit = unit->metres;
@@ -52,7 +56,23 @@ class Reader : public DL_CreationAdapter {
   void addBlock(const DL_BlockData&) override { in_block_ = true; }
   void endBlock() override { in_block_ = false; }
   void addInsert(const DL_InsertData&) override { refuse("INSERT: blocks are to be exploded"); }
-  void addSpline(const DL_SplineData&) override { refuse("SPLINE: polylines are wanted"); }
+  void addSpline(const DL_SplineData& d) override {
+    finish();
+    in_spline_ = wanted();
+    if (in_spline_ && d.nControl == 0)
+      throw Error::input("SPLINE through fit points alone: control points are wanted");
+    spline_.degree = d.degree;
+    closed_ = (d.flags & 1) != 0;
+  }
+  void addKnot(const DL_KnotData& d) override {
+    if (in_spline_) spline_.knots.push_back(d.k);
+  }
+  void addControlPoint(const DL_ControlPointData& d) override {
+    if (!in_spline_) return;
+    spline_.points.emplace_back(d.x, d.y);
+    spline_.weights.push_back(d.w);
+    count();
+  }
 
   void addLine(const DL_LineData& d) override { add({line({d.x1, d.y1}, {d.x2, d.y2})}, false); }
   void addArc(const DL_ArcData& d) override {
@@ -103,8 +123,12 @@ class Reader : public DL_CreationAdapter {
     count();
     drawing_.paths.push_back({std::move(curves), closed});
   }
-  /// The polyline whose vertices have come.
+  /// The spline or the polyline whose points have come.
   void finish() {
+    if (in_spline_) {
+      in_spline_ = false;
+      drawing_.paths.push_back({spline(std::exchange(spline_, {})), closed_});
+    }
     if (!polyline_) return;
     polyline_ = false;
     Path path;
@@ -121,20 +145,32 @@ class Reader : public DL_CreationAdapter {
   const std::vector<std::string>& layers_;
   Drawing drawing_;
   std::set<std::string> known_;
-  bool in_block_ = false, polyline_ = false, closed_ = false;
+  bool in_block_ = false, polyline_ = false, in_spline_ = false, closed_ = false;
+  Spline spline_;
   std::vector<DL_VertexData> vertices_;
   size_t n_ = 0;
 };
 
-}  // namespace
-
-Drawing read_dxf(const std::string& text, const std::vector<std::string>& layers) {
+void read(const std::string& text, Reader& reader) {
   if (text.find("ENTITIES") == std::string::npos) throw Error::input("this is no DXF file");
-  Reader reader(layers);
   std::istringstream in(text);
   DL_Dxf dxf;
   dxf.in(in, &reader);
+}
+
+}  // namespace
+
+Drawing read_dxf(const std::string& text, const std::vector<std::string>& layers) {
+  Reader reader(layers);
+  read(text, reader);
   return reader.take();
+}
+
+std::vector<std::string> dxf_layers(const std::string& text) {
+  const std::vector<std::string> none = {""};  // what cannot be read harms nobody here
+  Reader reader(none);
+  read(text, reader);
+  return {reader.known().begin(), reader.known().end()};
 }
 
 }  // namespace flexmorph::io::drawing

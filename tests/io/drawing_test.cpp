@@ -141,6 +141,47 @@ TEST_F(Drawings, EllipsesHaveTheirArea) {
   EXPECT_NEAR(area(r), 4e-3 - kPi * 50e-6, 60e-3 * 80e-3 * kDrawingTolerance);
 }
 
+// Four rational quadratic splines are a circle; the same curve in one SPLINE of nine points.
+TEST_F(Drawings, SplinesOfACircleHaveItsArea) {
+  const double r = 20, w = std::sqrt(0.5);
+  const Vec2 corners[] = {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
+  std::vector<std::pair<int, double>> codes = {{70, 4}, {71, 2}, {72, 12}, {73, 9}, {74, 0}};
+  for (const double knot : {0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4}) codes.emplace_back(40, knot);
+  for (int k = 0; k < 9; ++k) codes.emplace_back(41, k % 2 == 0 ? 1 : w);
+  for (int k = 0; k < 9; ++k) {
+    codes.emplace_back(10, 40 + r * corners[k % 8].x());
+    codes.emplace_back(20, 25 + r * corners[k % 8].y());
+    codes.emplace_back(30, 0);
+  }
+  const auto rings = read_drawing(scratch_.write("part.dxf", dxf(entity("SPLINE", codes))), {});
+  ASSERT_EQ(rings.size(), 1u);
+  for (const Vec2& p : rings[0]) EXPECT_NEAR((p - Vec2(0.04, 0.025)).norm(), 0.02, 1e-6 * 0.02);
+  EXPECT_NEAR(area(region_of(rings)), kPi * 4e-4, 2 * kPi * 20e-3 * 40e-3 * kDrawingTolerance);
+  codes.erase(codes.begin() + 5);  // a knot
+  EXPECT_TRUE(contains(complaint("part.dxf", dxf(entity("SPLINE", codes))), "knots"));
+}
+
+// A straight line as a spline of degree one joins others.
+TEST_F(Drawings, SplinesCloseChains) {
+  const std::string side = entity("SPLINE", {{70, 8},
+                                             {71, 1},
+                                             {72, 4},
+                                             {73, 2},
+                                             {74, 0},
+                                             {40, 0},
+                                             {40, 0},
+                                             {40, 1},
+                                             {40, 1},
+                                             {10, 80},
+                                             {20, 0},
+                                             {30, 0},
+                                             {10, 80},
+                                             {20, 50},
+                                             {30, 0}});
+  expect_plate(plate("part.dxf", dxf(line(0, 0, 80, 0) + side + line(0, 50, 0, 0) +
+                                     line(0, 50, 80, 50) + kHoles)));
+}
+
 TEST_F(Drawings, LayersAndBlocksThatAreNotMeantStayOut) {
   const std::string all = kFrame + circle(20, 25, 5, "HOLES") + circle(50, 25, 8, "HOLES") +
                           circle(0, 0, 30, "MARKS") + entity("TEXT", {{10, 1}, {20, 1}, {40, 2}});

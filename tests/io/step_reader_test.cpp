@@ -1,0 +1,97 @@
+// Outlines of plates in STEP files: what is written is read back, in the plane and in metres; what
+// is no plate is refused.
+#include "io/step_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakeSphere.hxx>
+#include <STEPControl_Writer.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS_Shape.hxx>
+#include <numbers>
+
+#include "geometry/outline.h"
+#include "io/drawing.h"
+#include "io/step.h"
+#include "tests/io/scratch.h"
+
+namespace flexmorph::io {
+namespace {
+
+constexpr double kThickness = 0.004;
+
+class StepOutlines : public ::testing::Test {
+ protected:
+  /// A file of a shape whose sizes are in millimetres.
+  std::string file_of(const TopoDS_Shape& shape) const {
+    STEPControl_Writer writer;
+    writer.Transfer(shape, STEPControl_AsIs);
+    writer.Write((scratch_ / "part.step").c_str());
+    return scratch_ / "part.step";
+  }
+  std::string complaint(const std::string& path) const {
+    try {
+      read_step_outline(path, kThickness);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), Error::Kind::input);
+      EXPECT_TRUE(starts(error.what(), path + ": "));
+      return error.what();
+    }
+    return "";
+  }
+
+  Scratch scratch_;
+};
+
+TEST_F(StepOutlines, AreThoseThatWereWritten) {
+  const Region plate =
+      region_of({corners_of({{0, -0.02}, {0.08, 0.03}}), corners_of({{0.01, 0}, {0.02, 0.01}}),
+                 corners_of({{0.05, 0}, {0.06, 0.02}})});
+  const std::string path = scratch_ / "part.step";
+  ASSERT_EQ(write_step(path, {&plate, 1}, kThickness), "");
+  const Region read = region_of(read_step_outline(path, kThickness));
+  EXPECT_EQ(read.outer.size(), 4u);
+  ASSERT_EQ(read.holes.size(), 2u);
+  EXPECT_NEAR(area(read), area(plate), 1e-12);
+  const Box box = bounds_of(read.outer);
+  EXPECT_NEAR((box.lower - Vec2(0, -0.02)).norm(), 0, 1e-9);
+  EXPECT_NEAR((box.upper - Vec2(0.08, 0.03)).norm(), 0, 1e-9);
+}
+
+// A disc of 20 mm radius has its circle as edge.
+TEST_F(StepOutlines, HaveArcs) {
+  const auto rings =
+      read_step_outline(file_of(BRepPrimAPI_MakeCylinder(20, 4).Shape()), kThickness);
+  ASSERT_EQ(rings.size(), 1u);
+  const double tolerance = 2 * std::numbers::pi * 0.02 * 0.04 * kDrawingTolerance;
+  EXPECT_NEAR(area(region_of(rings)), std::numbers::pi * 4e-4, tolerance);
+  for (const Vec2& p : rings[0]) EXPECT_NEAR(p.norm(), 0.02, 1e-9);
+}
+
+TEST_F(StepOutlines, OfOneFaceNeedNoThickness) {
+  const TopoDS_Shape solid = BRepPrimAPI_MakeBox(30, 20, 7).Shape();
+  TopExp_Explorer faces(solid, TopAbs_FACE);
+  std::vector<TopoDS_Shape> all;
+  for (; faces.More(); faces.Next()) all.push_back(faces.Current());
+  ASSERT_EQ(all.size(), 6u);  // the last two are across z
+  EXPECT_NEAR(area(region_of(read_step_outline(file_of(all[5]), kThickness))), 6e-4, 1e-12);
+  EXPECT_TRUE(contains(complaint(file_of(all[0])), "one face across z"));
+}
+
+TEST_F(StepOutlines, OfOtherShapesAreRefused) {
+  EXPECT_TRUE(contains(complaint(file_of(BRepPrimAPI_MakeBox(30, 20, 7).Shape())),
+                       "0.007 m thick along z, the body 0.004 m"));
+  EXPECT_TRUE(contains(complaint(file_of(BRepPrimAPI_MakeSphere(20).Shape())), "extruded along z"));
+  EXPECT_TRUE(contains(complaint(scratch_.write("none.step", "hello")), "no STEP file"));
+  EXPECT_TRUE(contains(complaint(scratch_ / "missing.step"), "cannot be read"));
+  const Region pieces[] = {{corners_of({{0, 0}, {0.01, 0.01}}), {}},
+                           {corners_of({{0.02, 0}, {0.03, 0.01}}), {}}};
+  const std::string path = scratch_ / "two.step";
+  ASSERT_EQ(write_step(path, pieces, kThickness), "");
+  EXPECT_TRUE(contains(complaint(path), "2 solids"));
+}
+
+}  // namespace
+}  // namespace flexmorph::io
