@@ -38,6 +38,24 @@ TEST(AreaFractions, AgreeWithTheExactUnion) {
   }
 }
 
+// Samples of the polygons that regions are the union of come near to the exact fractions; a piece
+// may lie in the hole of another one.
+TEST(AreaFractions, OfRegionsAreThoseOfTheirPolygons) {
+  const Grid grid{.x0 = 0, .y0 = 0, .width = 2, .height = 1, .nx = 40, .ny = 20};
+  test::RandomComponents random(5);
+  std::vector<std::vector<Vec2>> outlines;
+  for (const Component& c : random.several(12, 2, 1)) outlines.push_back(outline(c, 0.03, 64));
+  const std::vector<Region> regions = unite(outlines, {{0, 0}, {2, 1}});
+  const VectorXd of_polygons = area_fractions(grid, {}, 0.03, outlines, {}),
+                 of_regions = area_fractions(grid, regions);
+  EXPECT_LE((of_polygons - of_regions).cwiseAbs().maxCoeff(), 0.15);
+  EXPECT_NEAR(sharp_area(grid, of_regions), area(regions), 1e-12);
+  const auto box = [](double a) { return corners_of({{1 - a, 0.5 - a}, {1 + a, 0.5 + a}}); };
+  std::vector<Region> rings = {{box(0.1), {}}, {box(0.4), {box(0.2)}}};
+  std::reverse(rings[1].holes[0].begin(), rings[1].holes[0].end());
+  EXPECT_NEAR(sharp_area(grid, area_fractions(grid, rings)), 0.64 - 0.16 + 0.04, 1e-12);
+}
+
 // With 64 x 64 samples per cell of 40 x 20, random samples along a boundary of length P would leave
 // sqrt(P h) h of area, h the distance of samples: about 1e-6 of the domain.
 TEST(AreaFractions, OfFineSamplesAgreeWithTheExactUnion) {

@@ -101,6 +101,10 @@ StageResult evaluated(const std::vector<Part>& parts) {
   StageResult out = first_designs(parts);
   for (size_t k = 0; k < parts.size(); ++k)
     out.formulations[k] = last_formulation(parts[k].problem);
+  out.result.verdict.kind = optim::Verdict::Kind::evaluated;
+  // A part has no variables, and no optimality.
+  if (std::any_of(parts.begin(), parts.end(), [](const Part& p) { return p.problem.part; }))
+    return out;
   Whole whole(parts, out.designs, out.formulations);
   optim::Problem& problem = whole.problem();
   const VectorXd x = problem.start();
@@ -108,7 +112,6 @@ StageResult evaluated(const std::vector<Part>& parts) {
   constexpr double kActive = 1e-3;
   out.result.kkt = out.result.verdict.kkt =
       optim::kkt_residual(problem.evaluate(x), x, problem.lower(), problem.upper(), kActive);
-  out.result.verdict.kind = optim::Verdict::Kind::evaluated;
   return out;
 }
 
@@ -147,6 +150,12 @@ BodyOutcome outcome_of(const Part& p, const Design& design, const Formulation& f
   for (const ResponseRow* row : further_rows(p.problem.goal))
     out.further[key_of(*row)] = state.values(*row)->maxCoeff();
   out.sharp = sharp_design(p.problem, design.components(), p.loads);
+  out.of_part = p.problem.part.has_value();
+  if (out.of_part) {  // nothing of it is regularized
+    out.compliance = out.sharp.compliance;
+    out.volume = out.sharp.volume;
+    out.further = out.sharp.further;
+  }
   const CellFactors sharp = p.ersatz.sharp(out.sharp.fractions);
   const VectorXd each = p.loads.individual(sharp.stiffness, sharp.mass);
   out.load_compliances.assign(each.data(), each.data() + each.size());

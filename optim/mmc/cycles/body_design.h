@@ -38,7 +38,8 @@ struct LengthScale {
 /// What a body's design came to in one cycle.
 struct BodyOutcome {
   std::string body;
-  Symmetry symmetry;                  ///< that all stages kept
+  Symmetry symmetry;     ///< that all stages kept
+  bool of_part = false;  ///< whether it is that of BodyProblem::part: components have no numbers
   double compliance = 0, volume = 0;  ///< regularized, at the last band
   Figures further;                    ///< likewise
   SharpDesign sharp;

@@ -137,6 +137,7 @@ std::vector<Region> made_symmetric(const BodyProblem& p, std::span<const Region>
 
 std::vector<Region> part_of(const BodyProblem& p, std::span<const Component> components,
                             double tolerance) {
+  if (p.part) return *p.part;
   std::vector<Region> out = regions_of(p, components, tolerance);
   if (!(p.fillets.radius > 0)) return out;
   out = with_fillets(out, domain_of(p), p.fillets, tolerance);
@@ -154,7 +155,7 @@ std::vector<Region> part_of(const BodyProblem& p, std::span<const Component> com
 }
 
 VectorXd part_fractions(const BodyProblem& p, std::span<const Component> components) {
-  if (!(p.fillets.radius > 0)) return fractions_of(p, components);
+  if (!p.part && !(p.fillets.radius > 0)) return fractions_of(p, components);
   std::vector<Region> filled = part_of(p, components, kOutlineTolerance * p.grid.dx());
   for (const std::vector<Vec2>& bore : p.bores) filled.push_back({bore, {}});
   VectorXd out = area_fractions(p.grid, filled);

@@ -43,6 +43,9 @@ struct BodyProblem {
   double export_tolerance = 0;  ///< of exported curves [m]; 0: kOutlineTolerance cells
   /// Its mass comes from one budget for all bodies that say so: what each is allowed, together.
   bool shares_mass = false;
+  /// Outline of a part that stands in place of the components [m]: crisp numbers and motions are
+  /// those of this outline, without solid and void regions. Absent: the components are the design.
+  std::optional<std::vector<Region>> part = {};
 };
 
 /// What is designed, without its design.
@@ -70,14 +73,14 @@ Region domain_of(const BodyProblem& problem);
 std::vector<Region> regions_of(const BodyProblem& problem, std::span<const Component> components,
                                double tolerance);
 
-/// Returns the part that a design stands for, which is exported and verified: the union of its
-/// components with fillets. That of a symmetric design is its own mirror image.
+/// Returns the part that a design stands for, which is exported and verified: BodyProblem::part, or
+/// the union of its components with fillets. That of a symmetric design is its own mirror image.
 /// @param tolerance  how far sides may be off the true outlines [m]
 /// @throws Error (numerical) from unite() and with_fillets()
 std::vector<Region> part_of(const BodyProblem& problem, std::span<const Component> components,
                             double tolerance);
 /// Returns the area fractions of a part (n_cells): 0 outside of the domain, 1 in the bores. Without
-/// fillets they are fractions_of() the components.
+/// fillets, and without a drawn part, they are fractions_of() the components.
 VectorXd part_fractions(const BodyProblem& problem, std::span<const Component> components);
 
 /// Narrow places of such a union, gaps to what holds it among them, less those that passive regions
