@@ -244,7 +244,7 @@ Command verify_command(CLI::App& app, VerifyOptions& options) {
   CLI::App* verify = app.add_subcommand(
       "verify", "puts redrawn parts in place of designs: their numbers beside the design's");
   verify
-      ->add_option("case", options.case_name,
+      ->add_option("run_or_case", options.case_name,
                    "folder of a finished run, whose design is beside the part; or a case")
       ->required();
   verify
