@@ -90,33 +90,44 @@ std::optional<Variation> variation(const std::optional<MotionRecord>& motion,
   return variation_of(motion->time(), *values);
 }
 
+/// A column with the deflections of a point, and the point in words.
+struct Deflection {
+  std::string body, column, point;
+};
+
 /// Largest deflection of a column and its root mean square about the mean.
-void add_deflections(const std::string& body, const std::string& column, const RunResult& parts,
-                     const RunResult* design, std::vector<ComparedNumber>& out) {
+void add_deflections(const Deflection& of_point, const RunResult& parts, const RunResult* design,
+                     std::vector<ComparedNumber>& out) {
+  const auto& [body, column, point] = of_point;
   const auto part = variation(parts.motions.assessed(), column),
              uniform = variation(parts.motions.assessed_uniform(), column),
              other = design ? variation(design->motions.assessed(), column) : std::nullopt;
   if (!part) return;
-  const auto add = [&](const char* ending, const char* words, double Variation::*which) {
+  const auto add = [&, body = body, column = column](const char* ending, const std::string& words,
+                                                     double Variation::*which) {
     const auto of = [&](const std::optional<Variation>& v) {
       return v ? Number((*v).*which) : std::nullopt;
     };
     out.push_back({body, column.substr(body.size() + 1) + ending, "m", words, of(part), of(other),
                    of(uniform)});
   };
-  add(".largest", "largest deflection", &Variation::largest);
-  add(".rms", "root mean square of the deflection about its mean", &Variation::rms);
+  add(".largest", "largest deflection of " + point, &Variation::largest);
+  add(".rms", "deflection of " + point + ", root mean square about its mean", &Variation::rms);
 }
 
 /// Deflections of the tip and of observed points of a body.
 void add_motion(const std::string& body, const RunResult& parts, const RunResult* design,
                 std::vector<ComparedNumber>& out) {
   if (!parts.motions.assessed()) return;
-  add_deflections(body, body + kDeflectionEnding, parts, design, out);
+  add_deflections({body, body + kDeflectionEnding, "its tip"}, parts, design, out);
   const Series& table = parts.motions.assessed()->table;
-  for (const size_t c : table.of_group(ColumnGroup::across))
-    if (table.columns[c].name.starts_with(body + "."))
-      add_deflections(body, table.columns[c].name, parts, design, out);
+  for (const size_t c : table.of_group(ColumnGroup::across)) {
+    const std::string& column = table.columns[c].name;
+    if (!column.starts_with(body + ".")) continue;
+    const size_t begin = body.size() + 1;
+    const std::string name = column.substr(begin, column.size() - begin - kAcrossEnding.size());
+    add_deflections({body, column, "point '" + name + "'"}, parts, design, out);
+  }
 }
 
 Number strain_integral(const std::optional<MotionRecord>& motion) {

@@ -159,7 +159,8 @@ PartComparison begin_comparison(const Scene& scene, const GivenCase& given,
   out.notes = motion_notes(scene);
   if (given.run.empty())
     out.notes.emplace_back(
-        "no design is beside the part: a case has none, the folder of a finished run has");
+        "no design is beside the part: that of the finished run whose folder takes the place of "
+        "the case would be");
   return out;
 }
 

@@ -8,9 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "cases/results/part_checks.h"
 #include "geometry/outline.h"
 #include "io/step.h"
 #include "tests/cases/program.h"
+#include "tests/cases/scenes.h"
 
 namespace flexmorph::test {
 namespace {
@@ -132,6 +134,18 @@ TEST(VerifyPart, FullPlateIsUniformMaterial) {
   EXPECT_TRUE(ratios(run, "design").empty());
   EXPECT_NE(run["verify"]["notes"].dump().find("no design is beside"), std::string::npos);
 }
+
+#ifdef FLEXMORPH_HEAT
+// What moves without cells says so.
+TEST(VerifyPart, HeatHasNoMotionOnCells) {
+  cases::Scene hot = cases::read("heated_boom"), cold = cases::read("four_bar");
+  EXPECT_TRUE(cases::motion_notes(hot).empty());  // no part
+  hot.designs[0].part = cold.designs[0].part = {{box(0, 0, 1, 1), {}}};
+  ASSERT_EQ(cases::motion_notes(hot).size(), 1u);
+  EXPECT_TRUE(contains(cases::motion_notes(hot)[0], "heat has no motion on cells"));
+  EXPECT_TRUE(cases::motion_notes(cold).empty());
+}
+#endif
 
 // A plate at rest: 80 mm x 50 mm, held by a bolt, pulled at a pin; static numbers only.
 const std::string kBores = R"(
