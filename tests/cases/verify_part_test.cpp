@@ -243,9 +243,9 @@ TEST_F(Bores, WrongDrawingsAreRefused) {
   const std::string step = scratch / "part.step";
   const Region a{box(0, 0, 0.03, 0.05), {}}, b{box(0.05, 0, 0.08, 0.05), {}};
   const Region both[] = {a, b};
-  ASSERT_EQ(io::write_step(step, both, 0.004), "");
+  ASSERT_EQ(io::write_step(step, curves_of(both, 1e-6), 0.004), "");
   refused("plate=" + step, "2 solids");
-  ASSERT_EQ(io::write_step(step, {both, 1}, 0.005), "");
+  ASSERT_EQ(io::write_step(step, curves_of({both, 1}, 1e-6), 0.005), "");
   refused("plate=" + step, "0.005 m thick");
 }
 

@@ -50,7 +50,7 @@ TEST_F(StepOutlines, AreThoseThatWereWritten) {
       region_of({corners_of({{0, -0.02}, {0.08, 0.03}}), corners_of({{0.01, 0}, {0.02, 0.01}}),
                  corners_of({{0.05, 0}, {0.06, 0.02}})});
   const std::string path = scratch_ / "part.step";
-  ASSERT_EQ(write_step(path, {&plate, 1}, kThickness), "");
+  ASSERT_EQ(write_step(path, curves_of({&plate, 1}, 1e-6), kThickness), "");
   const Region read = region_of(read_step_outline(path, kThickness));
   EXPECT_EQ(read.outer.size(), 4u);
   ASSERT_EQ(read.holes.size(), 2u);
@@ -89,7 +89,7 @@ TEST_F(StepOutlines, OfOtherShapesAreRefused) {
   const Region pieces[] = {{corners_of({{0, 0}, {0.01, 0.01}}), {}},
                            {corners_of({{0.02, 0}, {0.03, 0.01}}), {}}};
   const std::string path = scratch_ / "two.step";
-  ASSERT_EQ(write_step(path, pieces, kThickness), "");
+  ASSERT_EQ(write_step(path, curves_of(pieces, 1e-6), kThickness), "");
   EXPECT_TRUE(contains(complaint(path), "2 solids"));
 }
 
