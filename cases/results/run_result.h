@@ -101,7 +101,7 @@ struct RunResult {
   RunInfo info;
   DesignResult design;
   MotionResults motions;
-  std::optional<PathRecord> path;  ///< of a [static] analysis
+  std::optional<PathRecord> path;            ///< of a [static] analysis
   std::optional<PartComparison> comparison;  ///< of the command `verify`
   std::optional<Failure> failure;
   std::vector<Warning> warnings;
