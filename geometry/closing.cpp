@@ -9,12 +9,16 @@
 #include <string>
 #include <utility>
 
+#include "geometry/simplified.h"
+
 namespace flexmorph {
 namespace {
 
 /// Vertices of results that are so near to one of the given regions are that one; parts of the
 /// fillets' radius. Vertices nearer to the line through their neighbours than the second are none.
 constexpr double kSame = 2e-3, kStraight = 1e-6;
+/// Half the width of what is no material [radii].
+constexpr double kWhisker = 1e-4;
 /// Width of the lattice on which coincident sides are found [radii].
 constexpr double kLattice = 1e-9;
 
@@ -62,6 +66,17 @@ class Shape {
   GEOSGeometry* release() { return std::exchange(geometry_, nullptr); }
   Shape grown(double by, int segments) const {
     return {*geos_, GEOSBuffer_r(geos_->handle(), geometry_, by, segments)};
+  }
+  /// Without what is thinner than twice the width; corners stay, unless they are very acute.
+  Shape without_whiskers(double width) const {
+    const auto grow = [&](const GEOSGeometry* of, double by) {
+      constexpr int kQuarter = 8;
+      constexpr double kMitre = 5;
+      return GEOSBufferWithStyle_r(geos_->handle(), of, by, kQuarter, GEOSBUF_CAP_ROUND,
+                                   GEOSBUF_JOIN_MITRE, kMitre);
+    };
+    const Shape thinner{*geos_, grow(geometry_, -width)};
+    return {*geos_, grow(thinner.geometry_, width)};
   }
   Shape united(const Shape& other, double lattice) const {
     return polygons_of(GEOSUnionPrec_r(geos_->handle(), geometry_, other.geometry_, lattice));
@@ -158,7 +173,10 @@ class Filling {
   Shape rounded(const Shape& given, const Shape& closed) const {
     const Shape opened =
         closed.united(around_, lattice_).grown(-thin_, sides_).grown(thin_, sides_);
-    return given.united(opened, lattice_).common(domain_, lattice_);
+    // What is outside of the domain leaves whiskers along its border.
+    return given.united(opened, lattice_)
+        .common(domain_, lattice_)
+        .without_whiskers(kWhisker * radius_);
   }
 
   /// Blades across gaps, as thick as a filling has to be. A blade that touches what is filled on
@@ -297,6 +315,17 @@ Region region_of(const Geos& geos, const GEOSGeometry* piece, const Vertices& ve
 }
 
 }  // namespace
+
+std::vector<Vec2> simplified(const std::vector<Vec2>& ring, double tolerance) {
+  const Geos geos;
+  const Region region{ring, {}};
+  const Shape shape = shape_of(geos, {&region, 1}).simplified(tolerance);
+  std::vector<Vec2> out = points_of(
+      geos,
+      GEOSGetExteriorRing_r(geos.handle(), GEOSGetGeometryN_r(geos.handle(), shape.get(), 0)));
+  orient(out, signed_area(ring) > 0);
+  return out;
+}
 
 std::vector<Region> with_fillets(std::span<const Region> regions, const Region& domain,
                                  const Fillets& fillets, double tolerance) {

@@ -8,7 +8,9 @@
 #include <numbers>
 
 #include "geometry/feature.h"
+#include "geometry/part_mesh.h"
 #include "geometry/picture.h"
+#include "geometry/simplified.h"
 
 namespace flexmorph {
 namespace {
@@ -96,6 +98,25 @@ TEST(Fillets, KeepWhatTheyDoNotFill) {
   ASSERT_EQ(found[0].holes.size(), 1u);
   EXPECT_NEAR(area(found), 20 + 4 * 0.25 * (1 - std::numbers::pi / 4), 1e-3);
   EXPECT_TRUE(with_fillets({}, kSheet, {1, 1}, 1e-3).empty());
+}
+
+// A circle keeps the sides that its tolerance needs, a box its corners.
+TEST(Simplified, RingsKeepToTheTolerance) {
+  const std::vector<Vec2> fine = circle_within({1, 2}, 6, 1e-4);
+  const std::vector<Vec2> coarse = simplified(fine, 0.02);
+  EXPECT_LT(coarse.size(), 0.2 * static_cast<double>(fine.size()));
+  for (const Vec2& p : fine) {
+    double near = 1;
+    for (size_t k = 0; k < coarse.size(); ++k)
+      near = std::min(near, distance({coarse[k], coarse[(k + 1) % coarse.size()]}, p));
+    EXPECT_LE(near, 0.02);
+  }
+  std::vector<Vec2> corners = box(0, 0, 2, 1);
+  corners.insert(corners.begin() + 1, {1, 0});
+  std::reverse(corners.begin(), corners.end());
+  const std::vector<Vec2> kept = simplified(corners, 1e-3);
+  EXPECT_EQ(kept.size(), 4u);
+  EXPECT_EQ(std::count(kept.begin(), kept.end(), Vec2(1, 0)), 0);
 }
 
 // The sum over all cells is the area, a cell that a side halves is half full, and a hole is void.

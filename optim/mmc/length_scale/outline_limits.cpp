@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "geometry/simplified.h"
+
 namespace flexmorph::mmc {
 namespace {
 
@@ -182,6 +184,19 @@ constexpr double kAllowance = 1.06;
 
 }  // namespace
 
+namespace {
+
+BodyProblem with_fewer_sides(const BodyProblem& problem) {
+  BodyProblem out = problem;
+  const double tolerance = kOutlineTolerance * problem.grid.dx();
+  if (!out.domain.outer.empty()) out.domain.outer = simplified(out.domain.outer, tolerance);
+  for (auto* rings : {&out.domain.holes, &out.solid, &out.empty})
+    for (std::vector<Vec2>& ring : *rings) ring = simplified(ring, tolerance);
+  return out;
+}
+
+}  // namespace
+
 double half_thickness_for(double min_feature) { return 0.5 * kAllowance * min_feature; }
 
 namespace {
@@ -211,7 +226,9 @@ WidthSlope width_slope(const BodyProblem& problem, std::span<const Component> co
 }
 
 OutlineLimits::OutlineLimits(const BodyProblem& problem, const Widths& wanted)
-    : problem_(problem), wanted_(wanted), domain_area_(area(domain_of(problem))) {}
+    : problem_(with_fewer_sides(problem)),
+      wanted_(wanted),
+      domain_area_(area(domain_of(problem_))) {}
 
 void OutlineLimits::evaluate(std::span<const Component> components, Values& out) {
   const std::vector<Region> regions =

@@ -27,7 +27,8 @@ namespace flexmorph::mmc {
 /// gradient. (Their neighbours widen them.)
 class OutlineLimits final : public ShapeLimits {
  public:
-  /// @param problem  lives longer; its design does not matter
+  /// @param problem  its design does not matter; rings of its domain and of its regions have only
+  /// the sides here that keep to kOutlineTolerance, because every side costs in each iteration
   /// @param wanted   widths; without any there are no constraints
   OutlineLimits(const BodyProblem& problem, const Widths& wanted);
 
@@ -37,13 +38,13 @@ class OutlineLimits final : public ShapeLimits {
  private:
   static constexpr int kPlaces = 24;
 
-  const BodyProblem& problem_;
+  BodyProblem problem_;
   Widths wanted_;
   double domain_area_;
 };
 
-/// Returns the smallest half-thickness [m] of components whose union may be as thick as wanted: half
-/// the feature and an allowance for round ends and the tolerance of outlines.
+/// Returns the smallest half-thickness [m] of components whose union may be as thick as wanted:
+/// half the feature and an allowance for round ends and the tolerance of outlines.
 double half_thickness_for(double min_feature);
 
 /// A width and how it changes with the parameters of components.
