@@ -19,8 +19,6 @@ namespace {
 constexpr double kSame = 2e-3, kStraight = 1e-6;
 /// Half the width of what is no material [radii].
 constexpr double kWhisker = 1e-4;
-/// Width of the lattice on which coincident sides are found [radii].
-constexpr double kLattice = 1e-9;
 
 /// A context of GEOS, whose last message says what went wrong.
 class Geos {
@@ -78,15 +76,14 @@ class Shape {
     const Shape thinner{*geos_, grow(geometry_, -width)};
     return {*geos_, grow(thinner.geometry_, width)};
   }
-  Shape united(const Shape& other, double lattice) const {
-    return polygons_of(GEOSUnionPrec_r(geos_->handle(), geometry_, other.geometry_, lattice));
+  Shape united(const Shape& other) const {
+    return polygons_of(GEOSUnion_r(geos_->handle(), geometry_, other.geometry_));
   }
-  Shape without(const Shape& other, double lattice) const {
-    return polygons_of(GEOSDifferencePrec_r(geos_->handle(), geometry_, other.geometry_, lattice));
+  Shape without(const Shape& other) const {
+    return polygons_of(GEOSDifference_r(geos_->handle(), geometry_, other.geometry_));
   }
-  Shape common(const Shape& other, double lattice) const {
-    return polygons_of(
-        GEOSIntersectionPrec_r(geos_->handle(), geometry_, other.geometry_, lattice));
+  Shape common(const Shape& other) const {
+    return polygons_of(GEOSIntersection_r(geos_->handle(), geometry_, other.geometry_));
   }
   Shape simplified(double tolerance) const {
     return {*geos_, GEOSTopologyPreserveSimplify_r(geos_->handle(), geometry_, tolerance)};
@@ -121,6 +118,16 @@ class Shape {
   GEOSGeometry* geometry_;
 };
 
+bool is_before(const Vec2& a, const Vec2& b) {
+  return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y());
+}
+
+/// The ring from its lowest, leftmost vertex on.
+std::vector<Vec2> from_first_vertex(std::vector<Vec2> ring) {
+  std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end(), is_before), ring.end());
+  return ring;
+}
+
 GEOSGeometry* ring_of(const Geos& geos, const std::vector<Vec2>& ring) {
   const auto n = static_cast<unsigned>(ring.size());
   GEOSCoordSequence* points = GEOSCoordSeq_create_r(geos.handle(), n + 1, 2);
@@ -129,9 +136,21 @@ GEOSGeometry* ring_of(const Geos& geos, const std::vector<Vec2>& ring) {
   return GEOSGeom_createLinearRing_r(geos.handle(), points);
 }
 
+/// The same whatever the order of regions and holes, and wherever rings begin.
 Shape shape_of(const Geos& geos, std::span<const Region> regions) {
-  std::vector<GEOSGeometry*> pieces;
+  const auto earlier = [](const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
+    return is_before(a.front(), b.front());
+  };
+  std::vector<Region> sorted;
   for (const Region& r : regions) {
+    Region& own = sorted.emplace_back(Region{from_first_vertex(r.outer), {}});
+    for (const std::vector<Vec2>& hole : r.holes) own.holes.push_back(from_first_vertex(hole));
+    std::sort(own.holes.begin(), own.holes.end(), earlier);
+  }
+  std::sort(sorted.begin(), sorted.end(),
+            [&](const Region& a, const Region& b) { return earlier(a.outer, b.outer); });
+  std::vector<GEOSGeometry*> pieces;
+  for (const Region& r : sorted) {
     std::vector<GEOSGeometry*> holes;
     for (const std::vector<Vec2>& hole : r.holes) holes.push_back(ring_of(geos, hole));
     pieces.push_back(GEOSGeom_createPolygon_r(geos.handle(), ring_of(geos, r.outer), holes.data(),
@@ -154,9 +173,8 @@ class Filling {
       : domain_(domain),
         radius_(fillets.radius),
         thin_(0.5 * fillets.thinnest),
-        lattice_(kLattice * fillets.radius),
         sides_(segments(fillets.radius, tolerance)),
-        around_(domain.grown(2 * thin_ + lattice_, 1).without(domain, lattice_)) {}
+        around_(domain.grown(3 * thin_, 1).without(domain)) {}
 
   Shape of(const Shape& given) const {
     const Shape closed = given.grown(radius_, sides_).grown(-radius_, sides_);
@@ -164,19 +182,16 @@ class Filling {
     const std::vector<Shape> bridges = bridges_of(closed, filled);
     if (bridges.empty()) return filled;
     Shape joined = std::move(filled);
-    for (const Shape& bridge : bridges) joined = joined.united(bridge, lattice_);
+    for (const Shape& bridge : bridges) joined = joined.united(bridge);
     return rounded(joined, joined.grown(radius_, sides_).grown(-radius_, sides_));
   }
 
  private:
   /// A shape and what of its closing is not thin.
   Shape rounded(const Shape& given, const Shape& closed) const {
-    const Shape opened =
-        closed.united(around_, lattice_).grown(-thin_, sides_).grown(thin_, sides_);
+    const Shape opened = closed.united(around_).grown(-thin_, sides_).grown(thin_, sides_);
     // What is outside of the domain leaves whiskers along its border.
-    return given.united(opened, lattice_)
-        .common(domain_, lattice_)
-        .without_whiskers(kWhisker * radius_);
+    return given.united(opened).common(domain_).without_whiskers(kWhisker * radius_);
   }
 
   /// Blades across gaps, as thick as a filling has to be. A blade that touches what is filled on
@@ -184,18 +199,18 @@ class Filling {
   std::vector<Shape> bridges_of(const Shape& closed, const Shape& filled) const {
     constexpr double kReach = 1e-3, kTiny = 1e-4;  // radii, of the radius squared
     std::vector<Shape> out;
-    const Shape left = closed.without(filled, lattice_).common(domain_, lattice_);
+    const Shape left = closed.without(filled).common(domain_);
     for (int k = 0; k < left.n_pieces(); ++k) {
       Shape blade = left.piece(k);
       if (blade.area() < kTiny * radius_ * radius_) continue;
-      const Shape contacts = blade.grown(kReach * radius_, 4).common(filled, lattice_);
+      const Shape contacts = blade.grown(kReach * radius_, 4).common(filled);
       if (contacts.n_pieces() > 1) out.push_back(blade.grown(thin_, sides_));
     }
     return out;
   }
 
   const Shape& domain_;
-  double radius_, thin_, lattice_;
+  double radius_, thin_;
   int sides_;
   Shape around_;
 };

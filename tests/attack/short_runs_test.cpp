@@ -31,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Processor time a run may take before it is asked to end [s].
-constexpr double kOwn = kSanitized ? 20 : 1;
+constexpr double kOwn = kSanitized ? 40 : 2.5;
 // ... and that its step or iteration may take then: a second, and what a busy machine adds.
 constexpr double kMore = kSanitized ? 100 : 2;
 // For each component that is asked for: exact unions and their narrow places are a millisecond
