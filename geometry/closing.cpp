@@ -17,6 +17,8 @@ namespace {
 /// Vertices of results that are so near to one of the given regions are that one; parts of the
 /// fillets' radius. Vertices nearer to the line through their neighbours than the second are none.
 constexpr double kSame = 2e-3, kStraight = 1e-6;
+/// Width of the lattice that vertices of results lie on [radii].
+constexpr double kLattice = 1e-9;
 /// Half the width of what is no material [radii].
 constexpr double kWhisker = 1e-4;
 
@@ -87,6 +89,10 @@ class Shape {
   }
   Shape simplified(double tolerance) const {
     return {*geos_, GEOSTopologyPreserveSimplify_r(geos_->handle(), geometry_, tolerance)};
+  }
+  /// With vertices on a lattice: nothing is left of slits and whiskers that are narrower.
+  Shape on_lattice(double width) const {
+    return polygons_of(GEOSGeom_setPrecision_r(geos_->handle(), geometry_, width, 0));
   }
   int n_pieces() const { return GEOSGetNumGeometries_r(geos_->handle(), geometry_); }
   Shape piece(int k) const {
@@ -219,7 +225,10 @@ Shape filled(const Geos& geos, std::span<const Region> regions, const Region& do
              const Fillets& fillets, double tolerance) {
   const Shape given = shape_of(geos, regions), within = shape_of(geos, {&domain, 1});
   // Sides of the opening beside those of the regions leave jags that are lower than the tolerance.
-  return Filling(within, fillets, tolerance).of(given).simplified(0.5 * tolerance);
+  return Filling(within, fillets, tolerance)
+      .of(given)
+      .simplified(0.5 * tolerance)
+      .on_lattice(kLattice * fillets.radius);
 }
 
 /// Vertices of the given regions by their x, to be found by their place.

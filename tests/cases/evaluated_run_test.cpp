@@ -177,7 +177,7 @@ TEST(PointsAcross, OfALinkAreCountedFromTheLineOfItsPins) {
   const Scratch scratch;
   const io::CsvTable motion =
       first_steps(scratch, "slider_crank_designed",
-                  {"design.band=[1.5]",
+                  {"design.band=[1.5]", "design.min_feature=0.005",
                    "observe=[{name='a', body='rod', point=[0.025, 0.0]}, {name='b', body='rod', "
                    "point=[0.575, 0.0]}, {name='middle', body='rod', point=[0.3, 0.0]}]"});
   const auto column = [&](const std::string& name) { return motion.numbers("rod." + name); };

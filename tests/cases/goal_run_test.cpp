@@ -54,7 +54,7 @@ TEST(GoalRun, TheLightestPlateThatIsStiffEnough) {
   EXPECT_NE(report.find("mass [kg]"), std::string::npos);
 }
 
-// Volume under the compliance that a design of 40 % has reached is about 40 % again.
+// Under the compliance that a design of 40 % has reached there is a design of at most about 40 %.
 TEST(GoalRun, VolumeUnderComplianceIsTheInverseOfComplianceUnderVolume) {
   const Scratch scratch;
   const Words mesh = {"design.cell=0.05", "design.min_thickness=0.05",
@@ -69,8 +69,8 @@ TEST(GoalRun, VolumeUnderComplianceIsTheInverseOfComplianceUnderVolume) {
   const nlohmann::json light =
       designed("light", {"expect=", "design.max_volume=", "design.minimize=volume",
                          "design.max_compliance=" + io::to_text(compliance)});
-  EXPECT_NEAR(light["sharp_compliance"].get<double>(), compliance, 5e-3 * compliance);
-  EXPECT_NEAR(light["sharp_volume"].get<double>(), 0.4, 0.03);
+  EXPECT_LE(light["sharp_compliance"].get<double>(), (1 + 5e-3) * compliance);
+  EXPECT_LE(light["sharp_volume"].get<double>(), 0.43);
 }
 
 // Under loads that are given, the full plate has the least compliance.

@@ -151,7 +151,15 @@ std::vector<Region> part_of(const BodyProblem& p, std::span<const Component> com
     }
     out = std::move(clipped);
   }
-  return p.design.symmetry().any() ? made_symmetric(p, out) : out;
+  if (!p.design.symmetry().any()) return out;
+  try {
+    return made_symmetric(p, out);
+  } catch (const Error& error) {
+    // Rounded vertices at the line can make a polygon that crosses itself: symmetric to the
+    // tolerance.
+    if (error.kind() == Error::Kind::input) throw;
+    return out;
+  }
 }
 
 VectorXd part_fractions(const BodyProblem& p, std::span<const Component> components) {

@@ -88,6 +88,10 @@ VectorXd CrispPicture::fractions(std::span<const Component> components) const {
   return fractions_of(*problem_, components);
 }
 
+VectorXd CrispPicture::of_part(std::span<const Component> components) const {
+  return part_fractions(*problem_, components);
+}
+
 Eigen::SparseMatrix<double> CrispPicture::slopes(std::span<const Component> components) const {
   const OutlineMotion motion(*problem_, components);
   Entries entries;

@@ -19,6 +19,9 @@ class CrispPicture {
   /// Area fractions of material (n_cells), as fractions_of() samples them.
   VectorXd fractions(std::span<const Component> components) const;
 
+  /// Area fractions of the part that the components stand for (n_cells), see part_fractions().
+  VectorXd of_part(std::span<const Component> components) const;
+
   /// Derivatives of the area fractions by the parameters of the components (n_cells x 7 N),
   ///
   ///   ∂a_c/∂p = 1/A_c ∫ (∂φ/∂p) / |∇φ| ds

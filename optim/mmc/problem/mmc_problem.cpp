@@ -253,7 +253,7 @@ optim::Response MmcProblem::evaluate(const VectorXd& x) {
 /// Values of responses of the loads of the crisp design.
 void MmcProblem::look_at_limits() {
   DesignState state(state_.loads());
-  const CellFactors factors = ersatz_.sharp(limited_->fractions(components_));
+  const CellFactors factors = ersatz_.sharp(limited_->of_part(components_));
   const Seen seen{factors, components_, state, motion_};
   for (const Limit& limit : goal_.limits) {
     if (!limit.row->needs_state() || limit.row->of_motion) continue;
