@@ -34,8 +34,8 @@ const std::vector<Vec2>* bore_of(const Scene& scene, const Disc& disc, const Gri
 /// Gravity of a plate at rest; zero where the case gives none [m/s^2].
 Vec2 weight_of(const Scene& scene);
 /// Returns the middle lines of its grid that a design is symmetric to: those that `design.symmetry`
-/// asks for, or all that domain, regions, supports, loads and start of a plate at rest are symmetric
-/// to. A load case may be the image of another one, or the image of its opposite.
+/// asks for, or all that domain, regions, supports, loads and start of a plate at rest are
+/// symmetric to. A load case may be the image of another one, or the image of its opposite.
 /// @param outside  cells outside of the domain (n_cells)
 /// @param start    components of the start
 /// @throws Error (input) that says what is not symmetric to a line that is asked for

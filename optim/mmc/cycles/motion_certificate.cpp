@@ -29,7 +29,8 @@ double sharp_objective(std::span<const BodyProblem> problems, MotionResponse& mo
   const auto goals = goals_of(
       problems, [](const BodyProblem& p) -> auto& { return p; });
   std::vector<VectorXd> fractions;
-  for (const BodyProblem& p : problems) fractions.push_back(part_fractions(p, p.design.components()));
+  for (const BodyProblem& p : problems)
+    fractions.push_back(part_fractions(p, p.design.components()));
   const std::vector<MotionRow> rows = motion_objectives(goals);
   const std::vector<double> each = motion.sharp(rows, fractions);
   double out = 0;
