@@ -183,8 +183,7 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
                    .fillets = {d.fillet_radius, kThinnestFilling * d.widths.solid},
                    .bores = bores_of(d),
                    .export_tolerance = export_tolerance(scene, d),
-                   .shares_mass = d.shares_mass,
-                   .part = d.part});
+                   .shares_mass = d.shares_mass});
   }
   return out;
 }
