@@ -63,7 +63,6 @@ class Shape {
   }
 
   const GEOSGeometry* get() const { return geometry_; }
-  GEOSGeometry* release() { return std::exchange(geometry_, nullptr); }
   Shape grown(double by, int segments) const {
     return {*geos_, GEOSBuffer_r(geos_->handle(), geometry_, by, segments)};
   }

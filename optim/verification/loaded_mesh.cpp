@@ -180,7 +180,7 @@ void LoadedMesh::find_locations() {
 }
 
 /// Balanced forces have no reactions: what is held only says which of the displacements that differ
-/// by a rigid motion is meant. The nodes farthest apart of both pins do.
+/// by a rigid motion is meant. One node of each pin is held, without a statical indeterminacy.
 void LoadedMesh::hold_at_pins() {
   if (!loads_.balance) return;
   const auto& pins = loads_.balance->pins;

@@ -111,11 +111,11 @@ void read_eyes(const Table& t, BodyDesign& design) {
                             bores = t.has(kBores) ? t.numbers(kBores) : std::vector<double>(2, 0);
   for (size_t k = 0; k < 2; ++k) {
     const Vec2& pin = design.link->pins[k];
-    const double room = std::min(
+    const double largest = std::min(
         {pin.x() - g.x0, g.x0 + g.width - pin.x(), pin.y() - g.y0, g.y0 + g.height - pin.y()});
-    if (eyes[k] > room * (1 + 1e-9))
+    if (eyes[k] > largest * (1 + 1e-9))
       t.fail(kEyes, "the eye around the pin at " + words(pin) +
-                        " lies in the plate: a radius of at most " + io::to_text(room) + " m");
+                        " lies in the plate: a radius of at most " + io::to_text(largest) + " m");
     const double wall = std::max(design.widths.solid, std::min(g.dx(), g.dy()));
     if (bores[k] > 0 && eyes[k] - bores[k] < wall * (1 - 1e-9))
       t.fail(kBores, "the wall of an eye is at least " + io::to_text(wall) +
