@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "geometry/ring_area.h"
 #include "geometry/simplified.h"
 
 namespace flexmorph {
@@ -290,15 +291,6 @@ std::vector<Vec2> points_of(const Geos& geos, const GEOSGeometry* ring) {
   for (unsigned k = 0; k + 1 < n; ++k)
     GEOSCoordSeq_getXY_r(geos.handle(), sequence, k, &out[k].x(), &out[k].y());
   return out;
-}
-
-double signed_area(const std::vector<Vec2>& ring) {
-  double twice = 0;
-  for (size_t k = 0; k < ring.size(); ++k) {
-    const Vec2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
-    twice += a.x() * b.y() - a.y() * b.x();
-  }
-  return 0.5 * twice;
 }
 
 /// Sets the sense of rotation; false where nothing is left of the ring.

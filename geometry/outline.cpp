@@ -14,6 +14,8 @@
 #include <string>
 #include <utility>
 
+#include "geometry/ring_area.h"
+
 namespace flexmorph {
 
 namespace {
@@ -53,16 +55,6 @@ std::vector<Vec2> rounded(const Polygon& polygon) {
   return vertices;
 }
 
-/// Shoelace sum about the first vertex, positive counterclockwise   [m^2].
-double signed_area(const std::vector<Vec2>& ring) {
-  double twice = 0;
-  for (std::size_t k = 1; k + 1 < ring.size(); ++k) {
-    const Vec2 a = ring[k] - ring[0], b = ring[k + 1] - ring[0];
-    twice += a.x() * b.y() - a.y() * b.x();
-  }
-  return 0.5 * twice;
-}
-
 CGAL::Bounded_side side_of(const std::vector<Vec2>& ring, const Vec2& point) {
   std::vector<Inexact::Point_2> vertices;
   vertices.reserve(ring.size());
@@ -72,6 +64,15 @@ CGAL::Bounded_side side_of(const std::vector<Vec2>& ring, const Vec2& point) {
 }
 
 }  // namespace
+
+double signed_area(const std::vector<Vec2>& ring) {
+  double twice = 0;
+  for (std::size_t k = 1; k + 1 < ring.size(); ++k) {
+    const Vec2 a = ring[k] - ring[0], b = ring[k + 1] - ring[0];
+    twice += a.x() * b.y() - a.y() * b.x();
+  }
+  return 0.5 * twice;
+}
 
 std::vector<Region> unite(std::span<const std::vector<Vec2>> polygons, const Box& clip) {
   if (!((clip.upper - clip.lower).minCoeff() > 0)) {

@@ -58,7 +58,9 @@ std::vector<CurvedRegion> curves_of(std::span<const Region> regions, double tole
 /// them [m], in the sense of the ring.
 std::vector<Vec2> polygon_within(const CurveRing& ring, double tolerance);
 
-double area(const CurvedRegion& region);             ///< exact [m^2]
-double area(std::span<const CurvedRegion> regions);  ///< exact [m^2]
+/// Returns the exact area of a region that curves bound [m^2].
+double area(const CurvedRegion& region);
+/// Returns the exact area of all of them [m^2].
+double area(std::span<const CurvedRegion> regions);
 
 }  // namespace flexmorph
