@@ -18,6 +18,7 @@
 #include "cases/results/schema.h"
 #include "cases/run/corrections.h"
 #include "cases/run/run.h"
+#include "cases/run/verify_part.h"
 #include "cases/scene/version.h"
 #include "cases/stability/stability.h"
 #include "cases/study/compare.h"
@@ -239,6 +240,32 @@ Command certify_command(CLI::App& app, CertifyOptions& options) {
   return {certify, [&] { return certify_run(options); }};
 }
 
+Command verify_command(CLI::App& app, VerifyOptions& options) {
+  CLI::App* verify = app.add_subcommand(
+      "verify", "puts redrawn parts in place of designs: their numbers beside the design's");
+  verify
+      ->add_option("run_or_case", options.case_name,
+                   "folder of a finished run, whose design is beside the part; or a case")
+      ->required();
+  verify
+      ->add_option("--part", options.parts,
+                   "BODY=FILE (.dxf, .step): outline in the coordinates of the exported design")
+      ->required()
+      ->take_all()
+      ->allow_extra_args(false);
+  verify->add_option("--set", options.overrides, "KEY=VALUE, changes the case")
+      ->take_all()
+      ->allow_extra_args(false);
+  verify->add_option("-o,--output", options.directory,
+                     "run folder (default: that of the run, or runs/<name>, with _verify)");
+  verify
+      ->add_option("--threads", options.threads,
+                   "threads for loads, cells, and motions side by side")
+      ->check(CLI::Range(1, 256));
+  verify->add_flag("--quiet", options.quiet, "no progress");
+  return {verify, [&] { return verify_parts(options); }};
+}
+
 Command cases_command(CLI::App& app) {
   return {app.add_subcommand("cases", "lists the shipped cases"), [] {
             for (const std::string& name : shipped_cases()) std::printf("%s\n", name.c_str());
@@ -266,6 +293,7 @@ struct AllOptions {
   AccuracyOptions accuracy;
   StabilityOptions stability;
   CertifyOptions certify;
+  VerifyOptions verify;
   KeysOptions keys;
   std::string shell;
 };
@@ -282,6 +310,7 @@ std::vector<Command> commands_of(CLI::App& app, AllOptions& all) {
   out.push_back(
       {add_stability(app, all.stability), [&] { return check_stability(all.stability); }});
   out.push_back(certify_command(app, all.certify));
+  out.push_back(verify_command(app, all.verify));
   out.push_back(cases_command(app));
   out.push_back({add_keys(app, all.keys), [&] {
                    print_keys(all.keys);
@@ -312,7 +341,7 @@ int parse_and_run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  flexmorph::settle_processor(*commands.front().app ? options.run.threads : 1, argv);
+  flexmorph::settle_processor(std::max(options.run.threads, options.verify.threads), argv);
   for (const Command& command : commands)
     if (*command.app) return command.run();
   return 0;

@@ -352,7 +352,10 @@ std::vector<Region> with_fillets(std::span<const Region> regions, const Region& 
   const Vertices vertices(given);
   std::vector<Region> out;
   const int n = GEOSGetNumGeometries_r(geos.handle(), shape.get());
+  const Shape material = shape_of(geos, regions);
   for (int k = 0; k < n; ++k) {
+    // Growing by polygons instead of discs leaves flecks at corners of the domain.
+    if (n > 1 && !(shape.piece(k).common(material).area() > 0)) continue;
     const GEOSGeometry* piece = GEOSGetGeometryN_r(geos.handle(), shape.get(), k);
     Region region = region_of(geos, piece, vertices, fillets.radius);
     if (!region.outer.empty()) out.push_back(std::move(region));

@@ -183,7 +183,8 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
                    .fillets = {d.fillet_radius, kThinnestFilling * d.widths.solid},
                    .bores = bores_of(d),
                    .export_tolerance = export_tolerance(scene, d),
-                   .shares_mass = d.shares_mass});
+                   .shares_mass = d.shares_mass,
+                   .part = d.part});
   }
   return out;
 }

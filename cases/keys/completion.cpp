@@ -94,6 +94,8 @@ constexpr const char* kBash = R"sh(_flexmorph() {
       found="$(_flexmorph_keys)"
       compopt -o nospace 2> /dev/null
     fi
+  elif [[ $prev == --part && $cur == *=* ]]; then
+    COMPREPLY=($(compgen -P "${cur%%=*}=" -f -- "${cur#*=}"))
   elif _flexmorph_is_valued "$prev"; then
     COMPREPLY=($(compgen -f -- "$cur"))
     return
@@ -104,6 +106,11 @@ constexpr const char* kBash = R"sh(_flexmorph() {
       case)
         found="$("${words[0]}" cases 2> /dev/null)"
         COMPREPLY=($(compgen -f -X '!*.toml' -- "$cur"))
+        ;;
+      run) COMPREPLY=($(compgen -d -- "$cur")) ;;
+      run_or_case)
+        found="$("${words[0]}" cases 2> /dev/null)"
+        COMPREPLY=($(compgen -f -X '!*.toml' -- "$cur") $(compgen -d -- "$cur"))
         ;;
       table) found="$(_flexmorph_tables)" ;;
       shell) found="bash zsh" ;;
@@ -130,6 +137,9 @@ constexpr const char* kZsh = R"sh(_flexmorph() {
     else
       compadd -S '' -- $(_flexmorph_keys)
     fi
+  elif [[ $before == --part ]]; then
+    compset -P '*='
+    _files
   elif _flexmorph_is_valued "$before"; then
     _files
   elif [[ $PREFIX == -* ]]; then
@@ -138,6 +148,12 @@ constexpr const char* kZsh = R"sh(_flexmorph() {
     case "$(_flexmorph_follows "${words[2]}")" in
       case)
         compadd -- $("${words[1]}" cases 2> /dev/null)
+        _files -g '*.toml'
+        ;;
+      run) _files -/ ;;
+      run_or_case)
+        compadd -- $("${words[1]}" cases 2> /dev/null)
+        _files -/
         _files -g '*.toml'
         ;;
       table) compadd -- $(_flexmorph_tables) ;;

@@ -9,7 +9,8 @@ namespace flexmorph::cases {
 /// What the program says of one of its commands.
 struct CommandWords {
   std::string name;
-  std::string positional;            ///< what follows: "case", "table", "shell"; empty: nothing
+  /// What follows: "case", "run", "run_or_case", "table", "shell"; empty: nothing.
+  std::string positional;
   std::vector<std::string> options;  ///< "--set", "-o"
   std::vector<std::string> valued;   ///< those of them that a value follows
 };

@@ -51,7 +51,9 @@ io::ReportSection results_section(const Scene& scene, const DesignResult& design
                         outline[0], outline[1], outline[2], io::to_text(o.uniform_compliance, 6),
                         io::to_text(o.sharp.compliance / o.uniform_compliance, 4),
                         o.sharp.connectivity.connected ? "yes" : "no", io::to_text(o.iterations),
-                        io::to_text(o.evaluations), optim::words_of(o.verdict), o.stop});
+                        io::to_text(o.evaluations),
+                        o.of_part ? optim::to_string(o.verdict.kind) : optim::words_of(o.verdict),
+                        o.stop});
   }
   for (const mmc::ResponseRow* row : further_rows(scene)) {
     const std::string name = mmc::key_of(*row);
@@ -63,6 +65,16 @@ io::ReportSection results_section(const Scene& scene, const DesignResult& design
         out.rows[i + 1].push_back(figures->contains(name) ? io::to_text(figures->at(name), 6) : "");
   }
   out.rows = turned(out.rows);
+  return out;
+}
+
+/// Parts beside the design and uniform material.
+io::ReportSection comparison_section(const PartComparison& comparison) {
+  io::ReportSection out;
+  out.heading = "Part, design, uniform material";
+  for (const std::string& each : comparison.notes)
+    out.words += (out.words.empty() ? "Note: " : " Note: ") + each + ".";
+  out.rows = comparison_rows(comparison);
   return out;
 }
 
@@ -229,6 +241,7 @@ void add_tables(const Scene& scene, const RunResult& result, const RunFolder& fo
   if (!scene.expect.empty() && result.info.status.starts_with("done"))
     out.add(expect_section(result.expectations));
   if (scene.has_heat()) out.add(heat_section(scene));
+  if (result.comparison) out.add(comparison_section(*result.comparison));
   if (!design.outcomes.empty()) out.add(results_section(scene, design));
   if (!design.static_loads.empty()) out.add(loads_section(design));
   if (!design.verdicts.empty()) out.add(cycles_section(scene, design));

@@ -101,8 +101,9 @@ void RunFolder::write_start(const mmc::BodyProblem& problem) {
 void RunFolder::write_design(const mmc::BodyProblem& problem, const mmc::BodyOutcome& outcome) {
   writer_.wait();  // one picture at a time
   const std::string stem = scene_.designs.size() > 1 ? "_" + problem.body : "";
-  const std::vector<Component> components = problem.design.components();
-  io::write_components_csv(folder_.file(components_name(scene_, problem.body)), components);
+  if (!problem.part)
+    io::write_components_csv(folder_.file(components_name(scene_, problem.body)),
+                             problem.design.components());
   const std::vector<Region> regions = mmc::exported_regions(problem);
   const Box frame = frame_of(problem.grid);
   io::write_file(folder_.file("design" + stem + ".svg"), io::outline_svg(regions, frame));

@@ -93,7 +93,7 @@ Json body_results(const RunResult& result, size_t i) {
   if (i < design.outlines.size())
     out["body_fitted"] = outline_results(design.outlines[i], o.sharp.compliance);
   if (o.length_scale) out["length_scale"] = object_of(length_scale_quantities(), o);
-  out["thinnest_component"] = thinnest(design.problems[i]);
+  if (!o.of_part) out["thinnest_component"] = thinnest(design.problems[i]);
   add_amplitudes(out, result.motions, o.body);
   if (const auto tip = tip_variation(result.motions, o.body))
     out["tip"] = object_of(point_quantities(), *tip);
@@ -103,14 +103,14 @@ Json body_results(const RunResult& result, size_t i) {
     out["load_cases"].push_back(object_of(static_load_quantities(), load));
   for (const mmc::LoadDifference& d : design.load_differences)
     if (d.body == o.body) out["load_difference"] = object_of(load_difference_quantities(), d);
-  out["scaled_objective"] = objective_words(design.problems[i]);
+  if (!o.of_part) out["scaled_objective"] = objective_words(design.problems[i]);
   out["cycles"] = design.cycles;
   Json active = Json::array();  // loads within 1 % of the worst, from 1
   for (size_t l = 0; l < o.load_compliances.size(); ++l)
     if (o.load_compliances[l] >= 0.99 * o.worst_compliance)
       active.push_back(static_cast<int>(l + 1));
   out["active_loads"] = std::move(active);
-  out["components"] = design.problems[i].design.n_components();
+  if (!o.of_part) out["components"] = design.problems[i].design.n_components();
   return out;
 }
 
@@ -316,6 +316,25 @@ void add_designs(Json& out, const Scene& scene, const RunResult& result) {
     out["certificate"] = object_of(certificate_quantities(), *design.certificate);
 }
 
+Json comparison_results(const PartComparison& comparison) {
+  Json out = Json::object();
+  for (const auto& [body, path] : comparison.files) out["parts"][body] = path;
+  if (!comparison.design.empty()) out["design"] = comparison.design;
+  out["notes"] = comparison.notes;
+  Json numbers = Json::array();
+  for (const ComparedNumber& n : comparison.numbers) {
+    Json& row = numbers.emplace_back(Json::object());
+    if (!n.body.empty()) row["body"] = n.body;
+    row["name"] = n.name;
+    row["unit"] = n.unit;
+    if (n.part) row["part"] = *n.part;
+    if (n.design) row["design"] = *n.design;
+    if (n.uniform) row["uniform"] = *n.uniform;
+  }
+  out["numbers"] = std::move(numbers);
+  return out;
+}
+
 }  // namespace
 
 std::string certificate_json(const mmc::MotionCertificate& certificate) {
@@ -330,6 +349,7 @@ std::string run_json(const Scene& scene, const RunResult& result) {
   if (scene.has_heat()) out["heat"] = heat_results(scene);
   if (motion) out["motion"] = motion_results(scene, result);
   if (result.path) out["static"] = path_results(*result.path);
+  if (result.comparison) out["verify"] = comparison_results(*result.comparison);
   if (!scene.expect.empty()) out["expect"] = expectations(result.expectations);
   return io::json_text(out);
 }

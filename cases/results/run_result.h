@@ -5,6 +5,7 @@
 
 #include "cases/results/failure.h"
 #include "cases/results/motion_record.h"
+#include "cases/results/part_comparison.h"
 #include "cases/results/static_loads.h"
 #include "cases/results/verified_outline.h"
 #include "optim/mmc/cycles/corrected_cycles.h"
@@ -100,7 +101,8 @@ struct RunResult {
   RunInfo info;
   DesignResult design;
   MotionResults motions;
-  std::optional<PathRecord> path;  ///< of a [static] analysis
+  std::optional<PathRecord> path;            ///< of a [static] analysis
+  std::optional<PartComparison> comparison;  ///< of the command `verify`
   std::optional<Failure> failure;
   std::vector<Warning> warnings;
   std::vector<Expected> expectations;

@@ -6,6 +6,7 @@
 
 #include "cases/assembly/build.h"
 #include "cases/assembly/static_conditions.h"
+#include "cases/results/part_checks.h"
 #include "io/files.h"
 #include "optim/mmc/cycles/usability.h"
 
@@ -53,7 +54,7 @@ bool misses_energy(const Scene& scene, const MotionRecord& motion) {
 /// Tells whether a design is to meet what the case asks of it: it was optimized, or the case gives
 /// it. (The layout of boxes that a design starts from where the case gives none is no design.)
 bool is_judged(const Scene& scene, const mmc::BodyOutcome& o) {
-  return o.iterations > 0 ||
+  return o.iterations > 0 || o.of_part ||
          std::any_of(scene.designs.begin(), scene.designs.end(),
                      [&](const BodyDesign& d) { return d.body == o.body && !d.start.empty(); });
 }
@@ -80,18 +81,21 @@ void add_loads_on_void(const Scene& scene, const mmc::BodyProblem& p, const mmc:
                    load.part > kLargestPartOnVoid});
 }
 
-/// Warns of what the verification found.
-/// @param sharp  compliance of the cells of the design [J]
-void add_verification(const VerifiedOutline& outline, double sharp, Warnings& out) {
+/// Warns of what the verification found. A part that does not carry its loads is of no use.
+void add_verification(const VerifiedOutline& outline, const mmc::BodyOutcome& outcome,
+                      Warnings& out) {
+  const double sharp = outcome.sharp.compliance;
   if (!outline.verification) {
     out.push_back({"body '" + outline.body + "': no body-fitted compliance: " + outline.why_not});
     return;
   }
   const verification::OutlineVerification& j = *outline.verification;
   if (!std::isfinite(j.compliance))
-    out.push_back({"body '" + outline.body + "': load '" + j.unsupported_load +
-                   "' acts on material that nothing holds, or on none: the body-fitted compliance "
-                   "is infinite"});
+    out.push_back(
+        {"body '" + outline.body + "': load '" + j.unsupported_load +
+             "' acts on material that nothing holds, or on none: the body-fitted compliance "
+             "is infinite",
+         outcome.of_part});
   else if (!j.converged)
     out.push_back({"body '" + outline.body +
                    "': the body-fitted compliance has an error of about " +
@@ -133,10 +137,14 @@ std::string length_scale_words(const mmc::BodyOutcome& o) {
   }
   if (o.sharp.connectivity.islands > 0)
     out.push_back("it has " + std::to_string(o.sharp.connectivity.islands + 1) + " pieces");
-  return "body '" + o.body + "': " + list_of(out) + "; more iterations may help";
+  return "body '" + o.body + "': " + list_of(out) +
+         (o.iterations > 0 ? "; more iterations may help" : "");
 }
 
 void add_designs(const Scene& scene, const DesignResult& design, Warnings& out) {
+  if (!design.outcomes.empty())
+    for (const mmc::BodyProblem& p : design.problems)
+      for (std::string& words : missing_material(scene, p)) out.push_back({std::move(words), true});
   for (const mmc::BodyOutcome& o : design.outcomes) {
     if (const std::string loads = list_of(o.sharp.connectivity.loose_loads); !loads.empty())
       out.push_back({"body '" + o.body + "': no material joins " + loads + " to a support", true});
@@ -165,7 +173,7 @@ void add_designs(const Scene& scene, const DesignResult& design, Warnings& out) 
       }
   for (const VerifiedOutline& outline : design.outlines) {
     for (const mmc::BodyOutcome& o : design.outcomes)
-      if (o.body == outline.body) add_verification(outline, o.sharp.compliance, out);
+      if (o.body == outline.body) add_verification(outline, o, out);
     for (std::string& words : narrow_words(outline)) out.push_back({std::move(words)});
   }
 }

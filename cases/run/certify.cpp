@@ -1,10 +1,10 @@
 #include <cstdio>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "cases/results/correction_messages.h"
 #include "cases/results/run_json.h"
 #include "cases/run/corrections.h"
+#include "cases/run/finished_run.h"
 #include "cases/run/motions.h"
 #include "io/case_file.h"
 #include "io/case_parser.h"
@@ -14,30 +14,17 @@
 namespace flexmorph::cases {
 namespace {
 
-namespace fs = std::filesystem;
-
 /// The case of a finished run with its designs in place of their starts.
 /// @throws Error (input) where there is no such run.
 Scene finished_scene(const CertifyOptions& options) {
-  const std::string directory = fs::absolute(options.directory).string();
-  const std::string kept = directory + "/case.toml", results = directory + "/run.json";
-  for (const std::string& path : {kept, results})
-    if (!fs::is_regular_file(path))
-      throw Error::input("'" + options.directory + "' is no finished run: it has no " +
-                         fs::path(path).filename().string());
-  const nlohmann::json run = nlohmann::json::parse(io::read_text(results));
-  if (const std::string status = run.value("status", ""); !status.starts_with("done"))
-    throw Error::input("'" + options.directory + "' is no finished run: its status is \"" + status +
-                       "\"");
+  const std::string kept = finished_case(options.directory);
   const Scene first = read_scene(io::CaseFile(kept, options.overrides));
   if (first.designs.empty() || first.domain)
     throw Error::input("'" + options.directory +
                        "' has no design that moves: there is nothing to certify");
   std::vector<std::string> changes = options.overrides;
-  for (size_t d = 0; d < first.designs.size(); ++d) {
-    const std::string name = components_name(first, first.designs[d].body);
-    changes.push_back("design." + std::to_string(d) + ".start='" + directory + "/" + name + "'");
-  }
+  for (std::string& each : changes_to_designs(options.directory, first))
+    changes.push_back(std::move(each));
   if (!first.certify)
     changes.push_back("certificate.checkpoints=" + std::to_string(Certify().checkpoints));
   return read_scene(io::CaseFile(kept, changes));

@@ -195,19 +195,23 @@ std::vector<fem::EslSets> assess_by_motion(const RunContext& run,
     designed.loads = true;
     all.push_back({1, designed, &motions.motion, &loads});
   }
-  MotionRequest request =
-      resumable_request(run, "motion with uniform material", "motion_uniform.csv");
-  request.factors = uniform_factors(problems);
-  all.push_back({1, request, &motions.uniform});
+  if (run.uniform) {
+    MotionRequest request =
+        resumable_request(run, "motion with uniform material", "motion_uniform.csv");
+    request.factors = uniform_factors(problems);
+    all.push_back({1, request, &motions.uniform});
+  }
   if (scene.verify) {
     run.progress.say("verification on " + scene.verify->words());
     // A finer mesh, and mostly shorter steps; cells are hundreds of times as many.
     const double finer = on_cells ? 100 : 4;
-    request =
-        resumable_request(run, "verification with uniform material", "motion_verified_uniform.csv");
-    request.factors = uniform_factors(problems);
-    set_verified(*scene.verify, request);
-    all.push_back({finer, request, &motions.verified_uniform});
+    if (run.uniform) {
+      MotionRequest request = resumable_request(run, "verification with uniform material",
+                                                "motion_verified_uniform.csv");
+      request.factors = uniform_factors(problems);
+      set_verified(*scene.verify, request);
+      all.push_back({finer, request, &motions.verified_uniform});
+    }
     if (!motions.verified) {
       MotionRequest designed = resumable_request(run, "verification with the design", kVerified);
       designed.factors = final_factors(problems);

@@ -1,16 +1,7 @@
 #include "cases/run/run.h"
 
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <cmath>
-#include <csignal>
 #include <cstdio>
-#include <cstdlib>
-#include <exception>
 #include <filesystem>
 #include <new>
 #include <nlohmann/json.hpp>
@@ -19,24 +10,14 @@
 #include "cases/check/ready.h"
 #include "cases/output/kept_case.h"
 #include "cases/output/paraview_script.h"
-#include "cases/output/report.h"
-#include "cases/results/expectations.h"
-#include "cases/results/summary.h"
-#include "cases/results/warnings.h"
 #include "cases/run/design_run.h"
 #include "cases/run/motions.h"
 #include "cases/run/path_run.h"
-#include "geometry/cpu_time.h"
-#include "io/case_document.h"
 #include "io/case_parser.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-std::atomic<bool> interrupted = false;  // set by a signal, read by every motion
 
 PathRecord run_statics(const RunContext& run) {
   const double to = run.scene().statics->to;
@@ -67,42 +48,6 @@ MotionRecord run_only_motion(const RunContext& run) {
   return out;
 }
 
-/// CPU seconds of the phases of a run with designs: iterations, outlines of final designs, their
-/// post-processing and verification, motions; empty without designs.
-Seconds phases_of(const DesignResult& design, const RunFolder& folder) {
-  Seconds out = folder.phases();
-  if (out.empty()) return out;
-  for (auto& [name, seconds] : out)
-    if (name == "outlines")
-      for (const mmc::BodyOutcome& o : design.outcomes) seconds += o.sharp.seconds_outlines;
-  double outlines = 0;
-  for (const VerifiedOutline& v : design.outlines) outlines += v.seconds;
-  out.emplace_back("idle_components", design.seconds_idle);
-  out.emplace_back("motion", design.seconds_motion);
-  out.emplace_back("judge", outlines);
-  out.emplace_back("verification", design.seconds_verification);
-  return out;
-}
-
-/// Signals that end a run: it ends its step or iteration and writes what it has; a second one stops
-/// at once. Nobody who listened to the output and left ends it.
-void end_on_signals() {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
-    std::signal(signal, [](int number) {
-      if (!interrupted.exchange(true)) return;
-      std::signal(number, SIG_DFL);
-      std::raise(number);
-    });
-  std::signal(SIGPIPE, SIG_IGN);
-}
-
-/// Do these options make another case, of which [expect] does not speak?
-bool is_another_case(std::span<const std::string> overrides) {
-  return std::any_of(overrides.begin(), overrides.end(), [](const std::string& each) {
-    return !each.starts_with("output.") && !each.starts_with("expect");
-  });
-}
-
 /// The exit code of the run in a folder that came to its end; nothing where there is something left
 /// to resume.
 /// @throws Error (input) when the run in the folder is that of another case.
@@ -124,14 +69,6 @@ std::optional<int> finished_with(const std::string& directory, const RunOptions&
   return missed ? kMissed : 0;
 }
 
-/// Removes what only resuming needs, of a run whose results are all written: until then a run that
-/// is killed can be resumed.
-void remove_progress(const FilesOf& files_of) {
-  std::error_code none;
-  for (const std::string& path : files_of(kEvaluations)) std::filesystem::remove(path, none);
-  remove_checkpoints(files_of);
-}
-
 /// Does that for a run that was killed as soon as it was done.
 void remove_progress_of_finished(const std::string& directory) {
   try {
@@ -139,95 +76,6 @@ void remove_progress_of_finished(const std::string& directory) {
     remove_progress([&](const std::string& ending) { return folder.files_of(ending); });
   } catch (const Error&) {  // taken, or not to be written: the files harm nobody
   }
-}
-
-/// Writes what is in the folder of a run: its case at the start, its results at the end.
-class RunFiles {
- public:
-  /// @param begin  time at which the program began with the run
-  RunFiles(const Scene& scene, RunFolder& folder, int threads, Clock::time_point begin)
-      : scene_(scene), folder_(folder), threads_(threads), begin_(begin) {}
-
-  /// Completes a result and writes it with its report.
-  /// @param status  "done" becomes "done, not usable" where a warning says so
-  /// @return the result as it was written
-  RunResult write(RunResult result, const std::string& status, const std::string& message) {
-    result.warnings = warnings_of(scene_, result);
-    result.expectations = compare_expectations(scene_, result);
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    RunInfo& info = result.info;
-    info.status = status == "done" ? done_words(result.warnings) : status;
-    info.message = message;
-    info.threads = threads_;
-    info.seconds_cpu = cpu_seconds();
-    info.seconds_wall = std::chrono::duration<double>(Clock::now() - begin_).count();
-    info.peak_memory_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
-    info.phases = phases_of(result.design, folder_);
-    write_report(scene_, result, folder_);
-    return result;
-  }
-
-  /// Writes the result of a run that failed. A full disk may refuse it: the first failure is the
-  /// one to tell.
-  void write_failed(RunResult result, const std::string& why) {
-    try {
-      write(std::move(result), "failed", why);
-    } catch (const std::exception&) {
-    }
-  }
-
- private:
-  const Scene& scene_;
-  RunFolder& folder_;
-  int threads_;
-  Clock::time_point begin_;
-};
-
-/// Writes the end of a run that failed or was interrupted.
-/// @return the exit code of an interrupted run. @throws the error of the run
-int end_early(EndedRun& ended, RunFiles& files, Progress& progress, const RunFolder& folder) {
-  try {
-    std::rethrow_exception(ended.error);
-  } catch (const Interrupted&) {
-    files.write(std::move(ended.result), "interrupted", "");
-    progress.say("interrupted: what was computed is in " + folder.path());
-    return 4;
-  } catch (const std::exception& error) {
-    ended.result.failure = failure_of(error, progress.where());
-    files.write_failed(std::move(ended.result), error.what());
-    throw;
-  }
-}
-
-/// Writes the result of a run that came to its end.
-/// @throws Error (numerical) when a page or a picture cannot be written: the results are whole, and
-/// the run has failed
-RunResult end_well(RunResult& result, RunFiles& files, Progress& progress) {
-  try {
-    return files.write(result, "done", "");
-  } catch (const Error& error) {
-    result.failure = failure_of(error, progress.where());
-    files.write_failed(std::move(result), error.what());
-    throw;
-  }
-}
-
-/// Says warnings, missed expectations and where the report is. @return exit code
-int say_end(const RunResult& result, bool is_case, Progress& progress, const std::string& path) {
-  for (const Warning& each : result.warnings)
-    progress.object(each.unusable ? "not usable" : "warning", each.words);
-  size_t missed = 0;
-  for (const Expected& expected : result.expectations) {
-    if (expected.holds) continue;
-    missed += is_case;
-    progress.object(is_case ? "missed" : "not as the case without --set", expected.words);
-  }
-  progress.say(result.info.status + ": " + summary_words(result) +
-               counted(result.warnings.size(), "warning", "warnings") +
-               counted(missed, "expectation missed", "expectations missed") + ": " + path +
-               "/report.html");
-  return missed > 0 || !usable(result.warnings) ? kMissed : 0;
 }
 
 }  // namespace
@@ -260,7 +108,7 @@ EndedRun run_prepared(const RunContext& run) {
 }
 
 int run_case(const RunOptions& options) {
-  const Clock::time_point begin = Clock::now();
+  const RunFiles::Clock::time_point begin = RunFiles::Clock::now();
   // What cannot be built, or is too large, is refused before a folder exists.
   const auto [file, prepared] =
       ready_case(options.case_name, options.overrides, options.directory, options.threads);
@@ -287,12 +135,9 @@ int run_case(const RunOptions& options) {
     progress.say("the run that was there is now " + folder.moved_to());
   RunFiles files(scene, folder, options.threads, begin);
   files.write({}, "running", "");
-  EndedRun ended = run_prepared({prepared, folder, progress, [] { return !interrupted; },
-                                 options.threads, options.condition, options.resume});
-  if (ended.error) return end_early(ended, files, progress, folder);
-  const RunResult result = end_well(ended.result, files, progress);
-  remove_progress([&](const std::string& ending) { return folder.files_of(ending); });
-  return say_end(result, !is_another_case(options.overrides), progress, directory);
+  EndedRun ended = run_prepared(
+      {prepared, folder, progress, goes_on, options.threads, options.condition, options.resume});
+  return end_run(std::move(ended), !is_another_case(options.overrides), files, progress);
 }
 
 }  // namespace flexmorph::cases

@@ -1,19 +1,12 @@
 #pragma once
 
-#include <exception>
 #include <string>
 #include <vector>
 
-#include "cases/results/run_result.h"
 #include "cases/run/run_context.h"
+#include "cases/run/run_end.h"
 
 namespace flexmorph::cases {
-
-/// The result of a run that may have ended early: what was computed, and why it ended.
-struct EndedRun {
-  RunResult result;
-  std::exception_ptr error;  ///< null where the run came to its end; else Error or Interrupted
-};
 
 /// Runs a prepared case into its folder, as far as it gets. Status, warnings and expectations of
 /// the result are not yet filled. Where memory runs out the error is numerical: the estimate of
@@ -31,9 +24,6 @@ struct RunOptions {
   bool explain = false;    ///< whether the folder keeps the case with all its defaults
   bool condition = false;  ///< whether conditions of matrices are estimated at the end
 };
-
-/// Exit code of a run that is whole, but misses an expectation of its case or is of no use.
-inline constexpr int kMissed = 5;
 
 /// Runs a case from file to folder. @return exit code: 0 done, 4 interrupted (what was computed is
 /// kept), kMissed. @throws Error; a numerical one after the folder says what failed.

@@ -15,6 +15,7 @@ struct RunContext {
   int threads = 1;
   bool condition = false;  ///< whether conditions of matrices are estimated at the end
   bool resume = false;     ///< whether the run resumes what is in its folder
+  bool uniform = true;     ///< whether motions with uniform material are computed
 
   const Scene& scene() const { return prepared.scene(); }
 };

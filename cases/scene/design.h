@@ -8,6 +8,7 @@
 #include "geometry/component.h"
 #include "geometry/feature.h"
 #include "geometry/grid.h"
+#include "geometry/outline.h"
 #include "geometry/tdf.h"
 #include "optim/mmc/cycles/corrected_cycles.h"
 #include "optim/mmc/cycles/load_difference.h"
@@ -72,6 +73,8 @@ struct BodyDesign {
   bool shares_mass = false;  ///< with the other designs that do: see mmc::SharedProblem
   /// Polygons; a cell belongs to a region that holds its centre [m].
   std::vector<std::vector<Vec2>> solid, empty;
+  /// Outline of a part that is verified in place of the components [m]; absent: components.
+  std::optional<std::vector<Region>> part;
 
   int n_components() const {
     return start.empty() ? 2 * components[0] * components[1] : static_cast<int>(start.size());

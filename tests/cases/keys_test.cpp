@@ -177,6 +177,10 @@ TEST_F(Completion, OffersWhatMayFollow) {
   EXPECT_EQ(offers("flexmorph run four"), Words{"four_bar"});
   EXPECT_EQ(offers("flexmorph run four_bar --exp"), Words{"--explain"});
   EXPECT_EQ(offers("flexmorph keys body.f"), Words{"body.flow"});
+  EXPECT_EQ(offers("flexmorph verify four"), Words{"four_bar"});
+  const std::string part = scratch_.write("arm.dxf", "");
+  EXPECT_EQ(offers("flexmorph verify four_bar --part arm=" + part.substr(0, part.size() - 3)),
+            Words{part});
   EXPECT_EQ(offers("flexmorph completion z"), Words{"zsh"});
 }
 

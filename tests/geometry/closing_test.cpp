@@ -101,6 +101,18 @@ TEST(Fillets, KeepWhatTheyDoNotFill) {
 }
 
 // A circle keeps the sides that its tolerance needs, a box its corners.
+// Beside the corners of the domain, which the material nearly reaches, nothing is left: every piece
+// has material of the given outline.
+TEST(Fillets, LeaveNoFlecksAtCorners) {
+  const Region domain{box(0, -5, 53, 5), {}};
+  for (int k = 0; k < 20; ++k) {
+    const double top = 4.2 + 0.03 * k;
+    const std::vector<Vec2> bar = {{0, -4}, {53, -4}, {53, 3}, {20, top + 0.2}, {0, top}};
+    const std::vector<Region> given = unite({&bar, 1}, domain, {});
+    EXPECT_EQ(with_fillets(given, domain, {1.6, 2}, 0.01).size(), 1u) << top;
+  }
+}
+
 TEST(Simplified, RingsKeepToTheTolerance) {
   const std::vector<Vec2> fine = circle_within({1, 2}, 6, 1e-4);
   const std::vector<Vec2> coarse = simplified(fine, 0.02);

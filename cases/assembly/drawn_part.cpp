@@ -1,0 +1,247 @@
+#include "cases/assembly/drawn_part.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include "geometry/part_mesh.h"
+#include "geometry/text.h"
+#include "io/drawing.h"
+#include "io/files.h"
+#include "io/step_reader.h"
+
+namespace flexmorph::cases {
+namespace {
+
+using Ring = std::vector<Vec2>;
+
+/// Parts of the domain's size: how near points are put onto borders, and those of sides that run
+/// along borders; how far an outline may reach beyond the domain, and how small it may be.
+constexpr double kRounding = 1e-9, kAlong = 1e-5, kBeyond = 2e-3, kSmallest = 0.05;
+
+Region domain_of(const Scene& scene, const BodyDesign& design) {
+  if (scene.domain && !scene.domain->shape.outer.empty()) return scene.domain->shape;
+  const Grid& g = design.grid;
+  return {corners_of({{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}}), {}};
+}
+
+/// The layers of a drawing that have outlines; none: all of them.
+std::vector<std::string> outline_layers(const std::string& path) {
+  std::vector<std::string> all = io::layers_of_dxf(path), out;
+  const auto has = [&](const char* name) {
+    return std::find(all.begin(), all.end(), name) != all.end();
+  };
+  if (has("OUTLINE")) {
+    out.emplace_back("OUTLINE");
+    if (has("HOLES")) out.emplace_back("HOLES");
+    return out;
+  }
+  for (const std::string& name : all)
+    if (name != "DOMAIN" && name != "SUPPORTS" && name != "LOADS") out.push_back(name);
+  return out;
+}
+
+double thickness_of(const Scene& scene, const BodyDesign& design) {
+  return scene.domain ? scene.domain->thickness : scene.body(design.body).thickness;
+}
+
+std::vector<Ring> read_rings(const std::string& path, double thickness) {
+  std::string type = std::filesystem::path(path).extension().string();
+  std::transform(type.begin(), type.end(), type.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  if (type == ".step" || type == ".stp") return io::read_step_outline(path, thickness);
+  if (type != ".dxf") throw Error::input(path + ": a part is a .dxf, .step or .stp file");
+  io::DrawingSettings settings;
+  settings.needs_unit = "$INSUNITS of the drawing says it";
+  settings.layers = outline_layers(path);
+  try {
+    return io::read_drawing(path, settings);
+  } catch (const Error& error) {
+    if (settings.layers.empty()) throw;
+    throw Error::input(std::string(error.what()) + " (on layers " + joined(settings.layers) + ")");
+  }
+}
+
+std::string box_words(const Box& box) {
+  const auto point = [](const Vec2& p) {
+    return "(" + io::to_text(p.x(), 6) + ", " + io::to_text(p.y(), 6) + ")";
+  };
+  return "from " + point(box.lower) + " to " + point(box.upper) + " m";
+}
+
+Box box_of(const std::vector<Ring>& rings) {
+  Ring all;
+  for (const Ring& ring : rings) all.insert(all.end(), ring.begin(), ring.end());
+  return bounds_of(all);
+}
+
+/// Refuses outlines elsewhere than the domain or of another size: mostly those in another unit.
+void check_size(const std::vector<Ring>& rings, const Region& domain, const std::string& body) {
+  const Box part = box_of(rings), box = bounds_of(domain.outer);
+  const double size = (box.upper - box.lower).maxCoeff();
+  const double beyond =
+      std::max((box.lower - part.lower).maxCoeff(), (part.upper - box.upper).maxCoeff());
+  const std::string words = "its outline reaches " + box_words(part) + ", the design domain of '" +
+                            body + "' " + box_words(box) +
+                            "; coordinates are those of the exported design, in the unit of the "
+                            "file";
+  if (beyond > kBeyond * size) throw Error::input(words + ", and a part lies within the domain");
+  if ((part.upper - part.lower).maxCoeff() < kSmallest * size)
+    throw Error::input(words + "; is its unit right?");
+}
+
+/// Puts points that are nearly on a border onto it: rounded ones, and sides that were drawn along
+/// the border.
+class Snap {
+ public:
+  Snap(const Region& domain, const BodyDesign& design) {
+    const Box box = bounds_of(domain.outer);
+    size_ = (box.upper - box.lower).maxCoeff();
+    std::vector<Ring> rings = rings_of(domain);
+    rings.insert(rings.end(), design.solid.begin(), design.solid.end());
+    rings.insert(rings.end(), design.empty.begin(), design.empty.end());
+    for (const Ring& ring : rings)
+      for (std::size_t k = 0; k < ring.size(); ++k)
+        borders_.push_back({ring[k], ring[(k + 1) % ring.size()]});
+  }
+
+  /// The ring on the borders, without points that came together.
+  Ring operator()(const Ring& ring) const {
+    const std::size_t n = ring.size();
+    std::vector<bool> along(n, false);
+    for (std::size_t k = 0; k < n; ++k)
+      if (runs_along(ring[k], ring[(k + 1) % n])) along[k] = along[(k + 1) % n] = true;
+    Ring out;
+    for (std::size_t k = 0; k < n; ++k) {
+      const Vec2 at = nearest(ring[k], size_ * (along[k] ? kAlong : kRounding));
+      if (out.empty() || at != out.back()) out.push_back(at);
+    }
+    while (out.size() > 1 && out.back() == out.front()) out.pop_back();
+    return out;
+  }
+
+ private:
+  bool runs_along(const Vec2& a, const Vec2& b) const {
+    const double near = kAlong * size_;
+    if ((b - a).norm() < 20 * near) return false;
+    return std::any_of(borders_.begin(), borders_.end(), [&](const Segment& s) {
+      return distance(s, a) < near && distance(s, b) < near;
+    });
+  }
+
+  Vec2 nearest(const Vec2& p, double near) const {
+    std::optional<Vec2> on_side;
+    double least = near;
+    for (const Segment& s : borders_) {
+      if ((s.a - p).norm() < near) return s.a;
+      const Vec2 side = s.b - s.a;
+      const double t = side.dot(p - s.a) / side.squaredNorm();
+      Vec2 at = s.a + t * side;
+      // On sides along the axes exactly.
+      if (side.x() == 0) at.x() = s.a.x();
+      if (side.y() == 0) at.y() = s.a.y();
+      if (t > 0 && t < 1 && (at - p).norm() < least) {
+        least = (at - p).norm();
+        on_side = at;
+      }
+    }
+    return on_side.value_or(p);
+  }
+
+  double size_ = 0;
+  std::vector<Segment> borders_;
+};
+
+std::string ring_words(const Ring& ring) {
+  return "the ring that begins at (" + io::to_text(ring.front().x(), 6) + ", " +
+         io::to_text(ring.front().y(), 6) + ") m";
+}
+
+bool are_apart(const Box& a, const Box& b) {
+  return (a.upper.array() < b.lower.array()).any() || (b.upper.array() < a.lower.array()).any();
+}
+
+/// A ring of a drawing, and the rings that it lies in, by their numbers.
+struct Nested {
+  Ring ring;
+  Box box;
+  double size = 0;  ///< area [m²]
+  std::vector<std::size_t> within;
+};
+
+/// @throws Error (input) for rings that cross themselves or each other
+std::vector<Nested> nested(const std::vector<Ring>& rings) {
+  std::vector<Nested> out;
+  for (const Ring& ring : rings) {
+    const Region alone = region_of({ring});
+    out.push_back({alone.outer, bounds_of(ring), area(alone), {}});
+  }
+  constexpr double kTouches = 1e-6;  // of the smaller area
+  for (std::size_t i = 0; i < out.size(); ++i)
+    for (std::size_t j = 0; j < out.size(); ++j) {
+      const bool smaller = out[i].size < out[j].size || (out[i].size == out[j].size && i > j);
+      if (i == j || !smaller || are_apart(out[i].box, out[j].box)) continue;
+      const double shared = area(unite({&out[i].ring, 1}, {out[j].ring, {}}, {}));
+      if (shared < kTouches * out[i].size) continue;
+      if (shared < (1 - kTouches) * out[i].size)
+        throw Error::input(ring_words(out[i].ring) + " crosses another one");
+      out[i].within.push_back(j);
+    }
+  return out;
+}
+
+/// Material is between outer rings, which lie in an even number of others, and their holes. A piece
+/// that the domain does not clip has its points in the order of the drawing: meshes depend on it.
+std::vector<Region> pieces_of(const std::vector<Nested>& all, const Region& domain) {
+  std::vector<Region> out;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].within.size() % 2 != 0) continue;
+    Region drawn{all[i].ring, {}};
+    for (const Nested& hole : all)
+      if (hole.within.size() == all[i].within.size() + 1 &&
+          std::find(hole.within.begin(), hole.within.end(), i) != hole.within.end())
+        drawn.holes.emplace_back(hole.ring.rbegin(), hole.ring.rend());
+    std::vector<Region> clipped = unite({&drawn.outer, 1}, domain, drawn.holes);
+    constexpr double kSame = 1e-12;
+    if (clipped.size() == 1 && clipped[0].holes.size() == drawn.holes.size() &&
+        std::abs(area(clipped) - area(drawn)) <= kSame * area(drawn))
+      clipped = {drawn};
+    for (Region& piece : clipped) out.push_back(std::move(piece));
+  }
+  return out;
+}
+
+/// The area that even-odd rings enclose.
+double area_of(const std::vector<Nested>& all) {
+  double out = 0;
+  for (const Nested& n : all) out += n.within.size() % 2 == 0 ? n.size : -n.size;
+  return out;
+}
+
+}  // namespace
+
+std::vector<Region> read_part(const std::string& path, const Scene& scene,
+                              const BodyDesign& design) {
+  std::vector<Ring> rings = read_rings(path, thickness_of(scene, design));
+  const Region domain = domain_of(scene, design);
+  try {
+    check_size(rings, domain, design.body);
+    const Snap snap(domain, design);
+    for (Ring& ring : rings) ring = snap(ring);
+    std::erase_if(rings, [](const Ring& ring) { return ring.size() < 3; });
+    const std::vector<Nested> all = nested(rings);
+    std::vector<Region> out = pieces_of(all, domain);
+    const double drawn = area_of(all), lost = drawn - area(out);
+    if (!(lost < kBeyond * drawn))
+      throw Error::input(io::to_text(100 * lost / drawn, 3) + " % of its area, " +
+                         io::to_text(drawn, 4) + " m2, lie outside of the design domain of '" +
+                         design.body + "'");
+    return out;
+  } catch (const Error& error) {
+    throw Error::input(path + ": " + error.what());
+  }
+}
+
+}  // namespace flexmorph::cases

@@ -1,0 +1,148 @@
+#include "cases/run/run_end.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <filesystem>
+
+#include "cases/output/report.h"
+#include "cases/results/expectations.h"
+#include "cases/results/summary.h"
+#include "cases/results/warnings.h"
+#include "cases/run/design_run.h"
+#include "cases/run/motions.h"
+#include "geometry/cpu_time.h"
+
+namespace flexmorph::cases {
+namespace {
+
+std::atomic<bool> interrupted = false;  // set by a signal, read by every motion
+
+/// CPU seconds of the phases of a run with designs: iterations, outlines of final designs, their
+/// post-processing and verification, motions; empty without designs.
+Seconds phases_of(const DesignResult& design, const RunFolder& folder) {
+  Seconds out = folder.phases();
+  if (out.empty()) return out;
+  for (auto& [name, seconds] : out)
+    if (name == "outlines")
+      for (const mmc::BodyOutcome& o : design.outcomes) seconds += o.sharp.seconds_outlines;
+  double outlines = 0;
+  for (const VerifiedOutline& v : design.outlines) outlines += v.seconds;
+  out.emplace_back("idle_components", design.seconds_idle);
+  out.emplace_back("motion", design.seconds_motion);
+  out.emplace_back("judge", outlines);
+  out.emplace_back("verification", design.seconds_verification);
+  return out;
+}
+
+}  // namespace
+
+void end_on_signals() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+    std::signal(signal, [](int number) {
+      if (!interrupted.exchange(true)) return;
+      std::signal(number, SIG_DFL);
+      std::raise(number);
+    });
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+bool goes_on() { return !interrupted; }
+
+bool is_another_case(std::span<const std::string> overrides) {
+  return std::any_of(overrides.begin(), overrides.end(), [](const std::string& each) {
+    return !each.starts_with("output.") && !each.starts_with("expect");
+  });
+}
+
+void remove_progress(const FilesOf& files_of) {
+  std::error_code none;
+  for (const std::string& path : files_of(kEvaluations)) std::filesystem::remove(path, none);
+  remove_checkpoints(files_of);
+}
+
+RunResult RunFiles::write(RunResult result, const std::string& status, const std::string& message) {
+  result.warnings = warnings_of(scene_, result);
+  result.expectations = compare_expectations(scene_, result);
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  RunInfo& info = result.info;
+  info.status = status == "done" ? done_words(result.warnings) : status;
+  info.message = message;
+  info.threads = threads_;
+  info.seconds_cpu = cpu_seconds();
+  info.seconds_wall = std::chrono::duration<double>(Clock::now() - begin_).count();
+  info.peak_memory_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
+  info.phases = phases_of(result.design, folder_);
+  write_report(scene_, result, folder_);
+  return result;
+}
+
+void RunFiles::write_failed(RunResult result, const std::string& why) {
+  try {
+    write(std::move(result), "failed", why);
+  } catch (const std::exception&) {
+  }
+}
+
+namespace {
+
+/// Writes the end of a run that failed or was interrupted.
+/// @return the exit code of an interrupted run. @throws the error of the run
+int end_early(EndedRun& ended, RunFiles& files, Progress& progress) {
+  try {
+    std::rethrow_exception(ended.error);
+  } catch (const Interrupted&) {
+    files.write(std::move(ended.result), "interrupted", "");
+    progress.say("interrupted: what was computed is in " + files.folder().path());
+    return 4;
+  } catch (const std::exception& error) {
+    ended.result.failure = failure_of(error, progress.where());
+    files.write_failed(std::move(ended.result), error.what());
+    throw;
+  }
+}
+
+/// Writes the result of a run that came to its end.
+/// @throws Error (numerical) when a page or a picture cannot be written: the results are whole, and
+/// the run has failed
+RunResult end_well(RunResult& result, RunFiles& files, Progress& progress) {
+  try {
+    return files.write(result, "done", "");
+  } catch (const Error& error) {
+    result.failure = failure_of(error, progress.where());
+    files.write_failed(std::move(result), error.what());
+    throw;
+  }
+}
+
+/// Says warnings, missed expectations and where the report is. @return exit code
+int say_end(const RunResult& result, bool is_case, Progress& progress, const std::string& path) {
+  for (const Warning& each : result.warnings)
+    progress.object(each.unusable ? "not usable" : "warning", each.words);
+  size_t missed = 0;
+  for (const Expected& expected : result.expectations) {
+    if (expected.holds) continue;
+    missed += is_case;
+    progress.object(is_case ? "missed" : "not as the case without --set", expected.words);
+  }
+  progress.say(result.info.status + ": " + summary_words(result) +
+               counted(result.warnings.size(), "warning", "warnings") +
+               counted(missed, "expectation missed", "expectations missed") + ": " + path +
+               "/report.html");
+  return missed > 0 || !usable(result.warnings) ? kMissed : 0;
+}
+
+}  // namespace
+
+int end_run(EndedRun ended, bool is_case, RunFiles& files, Progress& progress) {
+  if (ended.error) return end_early(ended, files, progress);
+  const RunResult result = end_well(ended.result, files, progress);
+  remove_progress([&](const std::string& ending) { return files.folder().files_of(ending); });
+  return say_end(result, is_case, progress, files.folder().path());
+}
+
+}  // namespace flexmorph::cases
