@@ -90,6 +90,10 @@ class Shape {
   Shape simplified(double tolerance) const {
     return {*geos_, GEOSTopologyPreserveSimplify_r(geos_->handle(), geometry_, tolerance)};
   }
+  /// The same of lines, which have no topology to keep.
+  Shape only_simplified(double tolerance) const {
+    return {*geos_, GEOSSimplify_r(geos_->handle(), geometry_, tolerance)};
+  }
   /// With vertices on a lattice: nothing is left of slits and whiskers that are narrower.
   Shape on_lattice(double width) const {
     return polygons_of(GEOSGeom_setPrecision_r(geos_->handle(), geometry_, width, 0));
@@ -283,13 +287,20 @@ std::vector<Vec2> cleaned(const std::vector<Vec2>& ring, const Vertices& vertice
   return out;
 }
 
-std::vector<Vec2> points_of(const Geos& geos, const GEOSGeometry* ring) {
-  const GEOSCoordSequence* sequence = GEOSGeom_getCoordSeq_r(geos.handle(), ring);
+std::vector<Vec2> points_of(const Geos& geos, const GEOSGeometry* line) {
+  const GEOSCoordSequence* sequence = GEOSGeom_getCoordSeq_r(geos.handle(), line);
   unsigned n = 0;
   if (sequence == nullptr || GEOSCoordSeq_getSize_r(geos.handle(), sequence, &n) == 0) geos.fail();
-  std::vector<Vec2> out(n > 0 ? n - 1 : 0);
-  for (unsigned k = 0; k + 1 < n; ++k)
+  std::vector<Vec2> out(n);
+  for (unsigned k = 0; k < n; ++k)
     GEOSCoordSeq_getXY_r(geos.handle(), sequence, k, &out[k].x(), &out[k].y());
+  return out;
+}
+
+/// The points of a ring, each once.
+std::vector<Vec2> ring_points(const Geos& geos, const GEOSGeometry* ring) {
+  std::vector<Vec2> out = points_of(geos, ring);
+  if (!out.empty()) out.pop_back();
   return out;
 }
 
@@ -305,9 +316,9 @@ bool orient(std::vector<Vec2>& ring, bool outer) {
 Region region_of(const Geos& geos, const GEOSGeometry* piece, const Vertices& vertices,
                  double radius) {
   std::vector<std::vector<Vec2>> rings = {
-      points_of(geos, GEOSGetExteriorRing_r(geos.handle(), piece))};
+      ring_points(geos, GEOSGetExteriorRing_r(geos.handle(), piece))};
   for (int h = 0; h < GEOSGetNumInteriorRings_r(geos.handle(), piece); ++h)
-    rings.push_back(points_of(geos, GEOSGetInteriorRingN_r(geos.handle(), piece, h)));
+    rings.push_back(ring_points(geos, GEOSGetInteriorRingN_r(geos.handle(), piece, h)));
   const auto oriented = [&](bool with_vertices) {
     Region out;
     for (const std::vector<Vec2>& ring : rings) {
@@ -335,11 +346,21 @@ std::vector<Vec2> simplified(const std::vector<Vec2>& ring, double tolerance) {
   const Geos geos;
   const Region region{ring, {}};
   const Shape shape = shape_of(geos, {&region, 1}).simplified(tolerance);
-  std::vector<Vec2> out = points_of(
+  std::vector<Vec2> out = ring_points(
       geos,
       GEOSGetExteriorRing_r(geos.handle(), GEOSGetGeometryN_r(geos.handle(), shape.get(), 0)));
   orient(out, signed_area(ring) > 0);
   return out;
+}
+
+std::vector<Vec2> simplified_line(const std::vector<Vec2>& line, double tolerance) {
+  const Geos geos;
+  const auto n = static_cast<unsigned>(line.size());
+  GEOSCoordSequence* points = GEOSCoordSeq_create_r(geos.handle(), n, 2);
+  for (unsigned k = 0; k < n; ++k)
+    GEOSCoordSeq_setXY_r(geos.handle(), points, k, line[k].x(), line[k].y());
+  const Shape whole{geos, GEOSGeom_createLineString_r(geos.handle(), points)};
+  return points_of(geos, whole.only_simplified(tolerance).get());
 }
 
 std::vector<Region> with_fillets(std::span<const Region> regions, const Region& domain,

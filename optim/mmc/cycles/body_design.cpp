@@ -30,6 +30,17 @@ class Shares {
             settings_.max_evaluations > 0 ? std::max(1, solves) : 0};
   }
 
+  /// The larger part of a share, before what carries nothing is looked for once more.
+  Share begin_of(Share share) const {
+    constexpr double kBegin = 0.6;
+    const double rest = 1 - kBegin;
+    share.iterations = static_cast<int>(kBegin * share.iterations);
+    if (share.solves > 0)
+      share.solves = std::max(
+          1, share.solves - static_cast<int>(rest * settings_.max_evaluations / n_shares_));
+    return share;
+  }
+
  private:
   const optim::Settings& settings_;
   int n_stages_, n_shares_, used_ = 0;
@@ -90,8 +101,14 @@ FromStart staged(StageRunner& run, int cycle) {
   }
   StageResult& now = best->result;
   if (wide && run.going()) {
-    now = without_idle(run, now);
-    now = last_stage(run, now, shares.of(n_stages - 1));
+    now = without_idle(run, now, false);
+    const Share share = shares.of(n_stages - 1);
+    now = last_stage(run, now, shares.begin_of(share));
+    // Widths tear bars off. What is left of them goes, and its material is spent elsewhere.
+    now = without_idle(run, now, false);
+    now =
+        last_stage(run, now, {share.iterations - shares.begin_of(share).iterations, share.solves});
+    now = without_idle(run, now, true);
   }
   return *best;
 }

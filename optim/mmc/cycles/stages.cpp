@@ -102,7 +102,7 @@ StageResult with_erosion(StageRunner& run, const StageResult& from, const Share&
   return run.optimize(from, std::move(formulations), {share.iterations, share.solves, true});
 }
 
-StageResult without_idle(StageRunner& run, const StageResult& from) {
+StageResult without_idle(StageRunner& run, const StageResult& from, bool keeps_width) {
   StageResult out = from;
   for (size_t k = 0; k < run.parts().size(); ++k) {
     const Part& p = run.parts()[k];
@@ -110,7 +110,7 @@ StageResult without_idle(StageRunner& run, const StageResult& from) {
     if (!p.problem.widths.any() || !asks_state(p.problem.goal) || !run.goes_on()) continue;
     const double begin = cpu_seconds();
     const std::vector<int> removed =
-        remove_idle(p.problem, p.loads, out.designs[k], [&] { return run.goes_on(); });
+        remove_idle(p.problem, p.loads, out.designs[k], keeps_width, [&] { return run.goes_on(); });
     out.removed[k].components += static_cast<int>(removed.size());
     out.removed[k].seconds += cpu_seconds() - begin;
   }

@@ -72,7 +72,8 @@ StageResult at_band(StageRunner& run, const StageResult& from, size_t band, cons
 StageResult with_erosion(StageRunner& run, const StageResult& from, const Share& share);
 /// Components that carry nothing are removed where widths are wanted: void has no gradient, so
 /// that no later stage would see them.
-StageResult without_idle(StageRunner& run, const StageResult& from);
+/// @param keeps_width  no stage comes that would widen what they leave narrow
+StageResult without_idle(StageRunner& run, const StageResult& from, bool keeps_width);
 /// last_formulation(): widths are limits from the first iteration, and all limits hold of the crisp
 /// design.
 StageResult last_stage(StageRunner& run, const StageResult& from, const Share& share);

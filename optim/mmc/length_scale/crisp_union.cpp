@@ -64,6 +64,10 @@ Connectivity CrispUnion::connectivity(const std::vector<Component>& of) {
   return connectivity_of(problem_, regions(of));
 }
 
+Features CrispUnion::features(const std::vector<Component>& of) {
+  return features_of(problem_, regions(of));
+}
+
 VectorXd CrispUnion::energy_density(const std::vector<Component>& of) {
   const VectorXd& all = fractions(of);
   const CellFactors sharp = ersatz_.sharp(all);

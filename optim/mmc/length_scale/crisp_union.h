@@ -22,6 +22,8 @@ class CrispUnion {
   const VectorXd& fractions(const std::vector<Component>& of);
   double compliance(const std::vector<Component>& of);
   Connectivity connectivity(const std::vector<Component>& of);
+  /// Smallest widths of the union, without fillets.
+  Features features(const std::vector<Component>& of);
   /// Energy of full material in every cell by the mean one of the design (n_cells).
   VectorXd energy_density(const std::vector<Component>& of);
 

@@ -22,7 +22,7 @@ std::vector<Component> without(const std::vector<Component>& all, const std::vec
 }  // namespace
 
 std::vector<int> remove_idle(const BodyProblem& problem, ComplianceEvaluator& loads, Design& design,
-                             const std::function<bool()>& go_on) {
+                             bool keeps_width, const std::function<bool()>& go_on) {
   CrispUnion crisp(problem, loads);
   const std::vector<Component> all = design.components();
   const size_t own = all.size() / design.n_images();
@@ -38,6 +38,8 @@ std::vector<int> remove_idle(const BodyProblem& problem, ComplianceEvaluator& lo
   std::sort(candidates.begin(), candidates.end());
   const Connectivity before = crisp.connectivity(all);
   int islands = before.islands;
+  const double narrowest =
+      keeps_width ? std::min(crisp.features(all).solid, problem.widths.solid) : 0;
   double merit = crisp.compliance(all) * fractions.sum();
   std::vector<bool> gone(own, false);
   for (const auto& [energy, k] : candidates) {
@@ -51,7 +53,8 @@ std::vector<int> remove_idle(const BodyProblem& problem, ComplianceEvaluator& lo
       if (goes) {
         const Connectivity held = crisp.connectivity(left);
         goes = (held.connected || !before.connected) && held.islands <= islands &&
-               held.unused_supports.size() <= before.unused_supports.size();
+               held.unused_supports.size() <= before.unused_supports.size() &&
+               (narrowest == 0 || crisp.features(left).solid >= narrowest);
         if (goes) islands = held.islands;
       }
       if (goes) merit = now;

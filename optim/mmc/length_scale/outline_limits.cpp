@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "geometry/simplified.h"
+#include "geometry/smoothing.h"
 
 namespace flexmorph::mmc {
 namespace {
@@ -30,11 +31,8 @@ struct Through {
 
 /// Sides that no component moves.
 std::vector<std::array<Vec2, 2>> fixed_sides(const BodyProblem& problem) {
-  std::vector<std::vector<Vec2>> rings = rings_of(domain_of(problem));
-  rings.insert(rings.end(), problem.solid.begin(), problem.solid.end());
-  rings.insert(rings.end(), problem.empty.begin(), problem.empty.end());
   std::vector<std::array<Vec2, 2>> out;
-  for (const std::vector<Vec2>& ring : rings)
+  for (const std::vector<Vec2>& ring : fixed_rings(problem))
     for (size_t k = 0; k < ring.size(); ++k) out.push_back({ring[k], ring[(k + 1) % ring.size()]});
   return out;
 }
@@ -233,8 +231,11 @@ OutlineLimits::OutlineLimits(const BodyProblem& problem, const Widths& wanted)
 void OutlineLimits::evaluate(std::span<const Component> components, Values& out) {
   const std::vector<Region> regions =
       regions_of(problem_, components, kOutlineTolerance * problem_.grid.dx());
-  const std::vector<Region> part = with_fillets(regions, domain_of(problem_), problem_.fillets,
-                                                kOutlineTolerance * problem_.grid.dx());
+  const double tolerance = kOutlineTolerance * problem_.grid.dx();
+  std::vector<Region> part =
+      with_fillets(regions, domain_of(problem_), problem_.fillets, tolerance);
+  if (problem_.fillets.radius > 0)
+    part = smoothed(part, fixed_rings(problem_), {}, {}, problem_.widths.solid, tolerance, false);
   out.volume = area(part) / domain_area_;
   out.g.setConstant(count(), kScale * (1 - kLook));
   out.dg.setZero(count(), Component::kParameters * static_cast<Eigen::Index>(components.size()));

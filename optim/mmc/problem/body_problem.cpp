@@ -7,6 +7,7 @@
 #include "geometry/cpu_time.h"
 #include "geometry/line_gaps.h"
 #include "geometry/part_mesh.h"
+#include "geometry/smoothing.h"
 
 namespace flexmorph::mmc {
 double design_compliance(const BodyProblem& problem, ComplianceEvaluator& loads,
@@ -88,6 +89,13 @@ Region domain_of(const BodyProblem& p) {
   return {corners_of({{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}}), {}};
 }
 
+std::vector<std::vector<Vec2>> fixed_rings(const BodyProblem& p) {
+  std::vector<std::vector<Vec2>> out = rings_of(domain_of(p));
+  out.insert(out.end(), p.solid.begin(), p.solid.end());
+  out.insert(out.end(), p.empty.begin(), p.empty.end());
+  return out;
+}
+
 std::vector<Region> regions_of(const BodyProblem& p, std::span<const Component> components,
                                double tolerance) {
   std::vector<std::vector<Vec2>> outlines;
@@ -108,6 +116,24 @@ std::vector<Vec2> mirrored(std::vector<Vec2> ring, const Symmetry& line) {
   return ring;
 }
 
+/// Puts vertices that are on a mirror line but for round-off onto it: nothing between them and the
+/// line is left over.
+void snap_to_mirrors(const BodyProblem& p, Region& region) {
+  constexpr double kRoundOff = 1e-9;  // cells
+  const Symmetry& symmetry = p.design.symmetry();
+  const double near = kRoundOff * p.grid.dx();
+  const auto snap = [&](std::vector<Vec2>& ring) {
+    for (Vec2& v : ring) {
+      if (symmetry.x && std::abs(v.x() - *symmetry.x) < near) v.x() = *symmetry.x;
+      if (symmetry.y && std::abs(v.y() - *symmetry.y) < near) v.y() = *symmetry.y;
+    }
+    ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+    if (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
+  };
+  snap(region.outer);
+  for (std::vector<Vec2>& hole : region.holes) snap(hole);
+}
+
 /// The lower, left side of regions and its mirror images.
 std::vector<Region> made_symmetric(const BodyProblem& p, std::span<const Region> regions) {
   const Symmetry& symmetry = p.design.symmetry();
@@ -122,8 +148,10 @@ std::vector<Region> made_symmetric(const BodyProblem& p, std::span<const Region>
   if (symmetry.y) images.push_back({{}, symmetry.y});
   if (symmetry.x && symmetry.y) images.push_back(symmetry);
   std::vector<Region> pieces;
-  for (const Region& region : regions)
+  for (Region region : regions) {
+    snap_to_mirrors(p, region);
     for (const Region& piece : unite(half, region, {})) pieces.push_back(piece);
+  }
   std::vector<std::vector<Vec2>> outer, holes;
   for (const Region& piece : pieces)
     for (const Symmetry& line : images) {
@@ -131,6 +159,39 @@ std::vector<Region> made_symmetric(const BodyProblem& p, std::span<const Region>
       for (const std::vector<Vec2>& hole : piece.holes) holes.push_back(mirrored(hole, line));
     }
   return unite(outer, {corners_of(all), {}}, holes);
+}
+
+/// The same, or the regions themselves where rounded vertices at the line make a polygon that
+/// crosses itself: these are symmetric to the tolerance.
+std::vector<Region> symmetric_where_possible(const BodyProblem& p, std::vector<Region> regions) {
+  try {
+    return made_symmetric(p, regions);
+  } catch (const Error& error) {
+    if (error.kind() == Error::Kind::input) throw;
+    return regions;
+  }
+}
+
+/// The smoothed regions. What smoothing would make narrower than asked for keeps its shape.
+std::vector<Region> smoothed_part(const BodyProblem& p, std::span<const Region> regions,
+                                  std::span<const Segment> mirrors, double tolerance) {
+  const std::vector<std::vector<Vec2>> fixed = fixed_rings(p);
+  std::vector<Region> out = smoothed(regions, fixed, mirrors, {}, p.widths.solid, tolerance);
+  std::vector<Vec2> kept;
+  for (const NarrowPlace& place : narrow_places_of(p, out, p.widths.largest()))
+    if (place.width < p.widths.of(place)) kept.insert(kept.end(), {place.a, place.b});
+  if (kept.empty()) return out;
+  return smoothed(regions, fixed, mirrors, kept, p.widths.solid, tolerance);
+}
+
+/// The lines of symmetry across the domain.
+std::vector<Segment> mirror_lines(const BodyProblem& p) {
+  const Grid& g = p.grid;
+  const Symmetry& symmetry = p.design.symmetry();
+  std::vector<Segment> out;
+  if (symmetry.x) out.push_back({{*symmetry.x, g.y0}, {*symmetry.x, g.y0 + g.height}});
+  if (symmetry.y) out.push_back({{g.x0, *symmetry.y}, {g.x0 + g.width, *symmetry.y}});
+  return out;
 }
 
 }  // namespace
@@ -151,15 +212,10 @@ std::vector<Region> part_of(const BodyProblem& p, std::span<const Component> com
     }
     out = std::move(clipped);
   }
-  if (!p.design.symmetry().any()) return out;
-  try {
-    return made_symmetric(p, out);
-  } catch (const Error& error) {
-    // Rounded vertices at the line can make a polygon that crosses itself: symmetric to the
-    // tolerance.
-    if (error.kind() == Error::Kind::input) throw;
-    return out;
-  }
+  const std::vector<Segment> mirrors = mirror_lines(p);
+  if (!mirrors.empty()) out = symmetric_where_possible(p, std::move(out));
+  out = smoothed_part(p, out, mirrors, tolerance);
+  return mirrors.empty() ? out : symmetric_where_possible(p, std::move(out));
 }
 
 VectorXd part_fractions(const BodyProblem& p, std::span<const Component> components) {

@@ -67,6 +67,8 @@ constexpr double kOutlineTolerance = 0.01;
 
 /// The domain with its holes [m].
 Region domain_of(const BodyProblem& problem);
+/// Returns the rings of the domain, of the solid regions and of the voids, which no design moves.
+std::vector<std::vector<Vec2>> fixed_rings(const BodyProblem& problem);
 /// Exact union of the components and the solid regions, less the voids, clipped to the domain.
 /// @param tolerance  how far sides may be off the true outlines [m]
 /// @throws Error (numerical) from unite().
@@ -74,7 +76,8 @@ std::vector<Region> regions_of(const BodyProblem& problem, std::span<const Compo
                                double tolerance);
 
 /// Returns the part that a design stands for, which is exported and verified: BodyProblem::part, or
-/// the union of its components with fillets. That of a symmetric design is its own mirror image.
+/// the union of its components with fillets, smoothed where it has fillets. That of a symmetric
+/// design is its own mirror image.
 /// @param tolerance  how far sides may be off the true outlines [m]
 /// @throws Error (numerical) from unite() and with_fillets()
 std::vector<Region> part_of(const BodyProblem& problem, std::span<const Component> components,

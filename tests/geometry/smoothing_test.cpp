@@ -1,0 +1,147 @@
+// The low-pass filter of outlines against its response to waves, and what it leaves alone.
+#include "geometry/smoothing.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace flexmorph {
+namespace {
+
+constexpr double kPi = std::numbers::pi, kTolerance = 1e-3;
+
+std::vector<Vec2> box(double x0, double y0, double x1, double y1) {
+  return corners_of({{x0, y0}, {x1, y1}});
+}
+
+/// A plate of the length 40 whose upper side, at 4, has waves.
+Region waved(double length, double height) {
+  std::vector<Vec2> ring = {{0, 0}, {40, 0}, {40, 4}};
+  constexpr int kSides = 1600;
+  for (int k = kSides - 1; k > 0; --k) {
+    const double x = 40.0 * k / kSides;
+    ring.emplace_back(x, 4 + height * std::sin(2 * kPi * x / length));
+  }
+  ring.emplace_back(0, 4);
+  return {ring, {}};
+}
+
+const std::vector<std::vector<Vec2>> kDomain = {box(0, 0, 40, 10)};
+
+Region smooth(const Region& region) {
+  const std::vector<Region> out = smoothed({&region, 1}, kDomain, {}, {}, 1, kTolerance);
+  EXPECT_EQ(out.size(), 1u);
+  return out.front();
+}
+
+/// Largest height of the upper side above 4 far from its ends.
+double height_of(const Region& region) {
+  double out = 0;
+  for (const Vec2& p : region.outer)
+    if (p.x() > 12 && p.x() < 28) out = std::max(out, std::abs(p.y() - 4));
+  return out;
+}
+
+// A wave of the length l keeps 1 / (1 + (5 / l)^4) of its height, with features of the width 1.
+TEST(Smoothing, HalvesWavesOfFiveFeatures) {
+  for (const double length : {2.0, 4.0, 5.0, 8.0}) {
+    const double height = 0.02 * length, response = 1 / (1 + std::pow(5 / length, 4));
+    const double found = height_of(smooth(waved(length, height)));
+    // Nothing moves by more than 0.12.
+    const double expected = std::max(response * height, height - 0.12);
+    EXPECT_NEAR(found, expected, 0.02 * height + 2 * kTolerance) << length;
+  }
+}
+
+// No point moves by more than 0.12 features.
+TEST(Smoothing, MovesNothingFar) {
+  EXPECT_GT(height_of(smooth(waved(2, 0.3))), 0.3 - 0.12 - kTolerance);
+}
+
+// Nothing moves within a feature of kept points, and all that it may beyond two.
+TEST(Smoothing, KeepsPlaces) {
+  const Region plate = waved(4, 0.06);
+  const Vec2 kept(20, 4);
+  const Region all = smooth(plate),
+               found = smoothed({&plate, 1}, kDomain, {}, {&kept, 1}, 1, kTolerance).front();
+  const auto height = [](const Region& of, double from, double to) {
+    double out = 0;
+    for (const Vec2& p : of.outer)
+      if (p.x() > from && p.x() < to && p.y() > 1) out = std::max(out, std::abs(p.y() - 4));
+    return out;
+  };
+  EXPECT_NEAR(height(found, 19, 21), height(plate, 19, 21), kTolerance);
+  EXPECT_NEAR(height(found, 23, 27), height(all, 23, 27), kTolerance);
+}
+
+// Waves of a whole number have no area, before and after.
+TEST(Smoothing, KeepsTheArea) { EXPECT_NEAR(area(smooth(waved(4, 0.06))), 160, 1e-4 * 160); }
+
+// Vertices on the domain, straight lines and regions without a feature stay bit for bit.
+TEST(Smoothing, LeavesLinesAlone) {
+  const Region plate{{{0, 0}, {40, 0}, {40, 3}, {20, 6}, {0, 3}}, {}};
+  const std::vector<Region> same = smoothed({&plate, 1}, kDomain, {}, {}, 0, kTolerance);
+  EXPECT_EQ(same.front().outer, plate.outer);
+  const Region found = smooth(plate);
+  for (const Vec2& corner : {plate.outer[0], plate.outer[1], plate.outer[2], plate.outer[4]})
+    EXPECT_EQ(std::count(found.outer.begin(), found.outer.end(), corner), 1);
+  // The ridge turns by 17 degrees: it is rounded.
+  const auto top = std::max_element(found.outer.begin(), found.outer.end(),
+                                    [](const Vec2& a, const Vec2& b) { return a.y() < b.y(); });
+  EXPECT_LT(top->y(), 6 - 0.02);
+  EXPECT_GT(top->y(), 6 - 0.12 - kTolerance);
+}
+
+// A hole of the radius of a fillet, 0.8 features, is as round and as large as it was to 2 %.
+TEST(Smoothing, KeepsFillets) {
+  const Vec2 center(20, 5);
+  std::vector<Vec2> hole = circle_within(center, 0.8, 1e-4);
+  std::reverse(hole.begin(), hole.end());
+  const Region found = smooth({kDomain[0], {hole}});
+  ASSERT_EQ(found.holes.size(), 1u);
+  for (const Vec2& p : found.holes[0]) EXPECT_NEAR((p - center).norm(), 0.8, 0.02 * 0.8);
+}
+
+// A hole that is symmetric about a line stays so to round-off.
+TEST(Smoothing, IsSymmetricAboutMirrors) {
+  std::vector<Vec2> hole;
+  for (const auto& [x, y] :
+       {std::pair(12.0, 0.0), {20.0, 2.0}, {24.0, 1.4}, {30.0, 1.5}, {33.0, 0.0}})
+    hole.emplace_back(x, 5 + y);
+  for (size_t k = hole.size() - 2; k > 0; --k) hole.emplace_back(hole[k].x(), 10 - hole[k].y());
+  const Region plate{kDomain[0], {hole}};
+  const Segment line{{0, 5}, {40, 5}};
+  const std::vector<Region> out = smoothed({&plate, 1}, kDomain, {&line, 1}, {}, 1, 1e-6);
+  for (const Vec2& p : out[0].holes[0]) {
+    double near = 1;
+    for (const Vec2& q : out[0].holes[0])
+      near = std::min(near, (Vec2(q.x(), 10 - q.y()) - p).norm());
+    EXPECT_LT(near, 1e-9);
+  }
+}
+
+// Where rings would cross, the region stays as it is: two holes with a waved wall of 0.01 between
+// them, of which one is fixed.
+TEST(Smoothing, CrossesNothing) {
+  std::vector<Vec2> left = {{5, 2}}, right = {{35, 2}};
+  for (int k = 0; k <= 400; ++k) {
+    const double y = 2 + 0.015 * k, wave = 0.1 * std::sin(2 * kPi * y / 1.5);
+    right.emplace_back(20.005 + wave, y);
+    left.emplace_back(19.995 + wave, y);
+  }
+  right.emplace_back(35, 8);
+  left.emplace_back(5, 8);
+  std::reverse(left.begin(), left.end());
+  const Region plate{kDomain[0], {right, left}};
+  const std::vector<std::vector<Vec2>> fixed = {kDomain[0], left};
+  const auto found = [&](bool check) {
+    return smoothed({&plate, 1}, fixed, {}, {}, 1, kTolerance, check).front();
+  };
+  EXPECT_THROW(region_of(rings_of(found(false))), Error);
+  EXPECT_EQ(rings_of(found(true)), rings_of(plate));
+}
+
+}  // namespace
+}  // namespace flexmorph
