@@ -7,7 +7,7 @@
 namespace flexmorph {
 
 /// Returns a simple ring without the vertices that are within a tolerance [m] of the sides of what
-/// is left (Douglas & Peucker 1973, GEOS), in its sense of rotation.
+/// is left (GEOS), in its sense of rotation.
 /// @throws Error (numerical) when GEOS finds no result.
 std::vector<Vec2> simplified(const std::vector<Vec2>& ring, double tolerance);
 /// Returns a polyline from its first point to its last one without the points between that are

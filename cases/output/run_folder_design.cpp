@@ -93,7 +93,7 @@ void RunFolder::write_start(const mmc::BodyProblem& problem) {
   if (!scene_.output.plots) return;
   std::string& svg = pictures_of(problem.body).start;
   svg = io::outline_svg(
-      mmc::part_of(problem, problem.design.components(), kCoarse * problem.grid.dx()),
+      mmc::regions_of(problem, problem.design.components(), kCoarse * problem.grid.dx()),
       frame_of(problem.grid), 5);
   io::write_file(folder_.file("plots/start_" + problem.body + ".svg"), svg);
 }

@@ -92,6 +92,8 @@ std::span<const Quantity<mmc::BodyOutcome>> length_scale_quantities() {
        [](const O& o) -> Value { return o.length_scale->wanted.gap; }},
       {"removed", "-", "components that carried nothing and were removed",
        [](const O& o) -> Value { return o.length_scale->removed; }},
+      {"widened", "-", "narrow places of the part with its fillets that a disc widened",
+       [](const O& o) -> Value { return o.sharp.widened; }},
       {"reached", "", "whether the outline is one piece with these widths, within a hundredth",
        [](const O& o) -> Value { return o.reaches_length_scale(); }}};
   return kTable;

@@ -57,8 +57,9 @@ TEST(GoalRun, TheLightestPlateThatIsStiffEnough) {
 // Under the compliance that a design of 40 % has reached there is a design of at most about 40 %.
 TEST(GoalRun, VolumeUnderComplianceIsTheInverseOfComplianceUnderVolume) {
   const Scratch scratch;
-  const Words mesh = {"design.cell=0.05", "design.min_thickness=0.05",
-                      "optimizer.max_iterations=60", "output.vtk=false", "output.plots=false"};
+  const Words mesh = {"design.cell=0.05",     "design.min_thickness=0.05",
+                      "design.min_feature=0", "optimizer.max_iterations=60",
+                      "output.vtk=false",     "output.plots=false"};
   const auto designed = [&](const std::string& folder, Words changes) {
     changes.insert(changes.end(), mesh.begin(), mesh.end());
     const Ended ended = run(scratch, "short_beam", scratch / folder, changes);

@@ -283,11 +283,12 @@ TEST_P(EveryScene, HasTaylorRemaindersOfOrderTwo) {
   expect_gradient(along_components(scene, g, random), there, "components");
 }
 
-/// Cells of 25 mm, four across, and parts that overlap.
+/// Cells of 25 mm, four across, parts that overlap, and a band in which two decades more of steps
+/// are of the second order than in the default one.
 Changes coarse(const std::string& design, int boxes, Changes more = {}) {
   for (const std::string& each :
        {".components=[" + std::to_string(boxes) + ", 2]", std::string(".half_length=0.03"),
-        std::string(".half_thickness=0.012")})
+        std::string(".half_thickness=0.012"), std::string(".band=[1.5, 1.0]")})
     more.push_back(design + each);
   return more;
 }

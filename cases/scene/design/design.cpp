@@ -63,11 +63,12 @@ const Key& kMinGap = io::key("design", "min_gap")
                          .number(not_negative("a smallest gap", "m"))
                          .otherwise_as("half of `min_feature`, two cells or more")
                          .says("Smallest gap between material of the union.");
-const Key& kFilletRadius =
-    io::key("design", "fillet_radius")
-        .number(not_negative("the radius of fillets", "m"))
-        .otherwise_as("0.8 of `min_feature`")
-        .says("Of the inner corners of the part, as far as they fit; 0: none.");
+const Key& kFilletRadius = io::key("design", "fillet_radius")
+                               .number(not_negative("the radius of fillets", "m"))
+                               .otherwise_as("0.8 of `min_feature`")
+                               .says(
+                                   "Of the inner corners of the part, as far as they fit, whose "
+                                   "outlines are smoothed then; 0: none.");
 const Key& kHalfLength = io::key("design", "half_length")
                              .number(positive("a half-length", "m"))
                              .otherwise_as("half the diagonal of a box")

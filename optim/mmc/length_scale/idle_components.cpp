@@ -38,29 +38,45 @@ std::vector<int> remove_idle(const BodyProblem& problem, ComplianceEvaluator& lo
   std::sort(candidates.begin(), candidates.end());
   const Connectivity before = crisp.connectivity(all);
   int islands = before.islands;
-  const double narrowest =
-      keeps_width ? std::min(crisp.features(all).solid, problem.widths.solid) : 0;
-  double merit = crisp.compliance(all) * fractions.sum();
+  const Features first = keeps_width ? crisp.features(all) : Features{0, 0};
+  const auto is_as_wide = [&](const std::vector<Component>& left) {
+    if (!keeps_width) return true;
+    const Features now = crisp.features(left);
+    return now.solid >= std::min(first.solid, problem.widths.solid) &&
+           now.gap >= std::min(first.gap, problem.widths.gap);
+  };
+  double compliance = crisp.compliance(all), merit = compliance * fractions.sum();
   std::vector<bool> gone(own, false);
-  for (const auto& [energy, k] : candidates) {
-    if (go_on && !go_on()) break;
-    gone[k] = true;
-    const std::vector<Component> left = without(all, gone);
-    bool goes = !left.empty();
-    if (goes) {
-      const double now = crisp.compliance(left) * crisp.fractions(left).sum();
-      goes = now <= merit;
-      if (goes) {
-        const Connectivity held = crisp.connectivity(left);
-        goes = (held.connected || !before.connected) && held.islands <= islands &&
-               held.unused_supports.size() <= before.unused_supports.size() &&
-               (narrowest == 0 || crisp.features(left).solid >= narrowest);
-        if (goes) islands = held.islands;
-      }
-      if (goes) merit = now;
-    }
-    gone[k] = goes;
-  }
+  const auto goes = [&](const std::vector<Component>& left, bool many) {
+    if (left.empty()) return false;
+    constexpr double kNothing = 1e-6;
+    const double without_them = crisp.compliance(left);
+    if (many && !(without_them <= (1 + kNothing) * compliance)) return false;
+    const double now = without_them * crisp.fractions(left).sum();
+    if (!(now <= merit)) return false;
+    const Connectivity held = crisp.connectivity(left);
+    if ((!held.connected && before.connected) || held.islands > islands ||
+        held.unused_supports.size() > before.unused_supports.size())
+      return false;
+    if (!is_as_wide(left)) return false;
+    islands = held.islands;
+    compliance = without_them;
+    merit = now;
+    return true;
+  };
+  // Many that carry nothing at all go at once, for one analysis; halves of others are tried.
+  const std::function<void(size_t, size_t)> remove = [&](size_t from, size_t to) {
+    if (from == to || (go_on && !go_on())) return;
+    const std::vector<bool> kept = gone;
+    for (size_t c = from; c < to; ++c) gone[candidates[c].second] = true;
+    if (goes(without(all, gone), to - from > 1)) return;
+    gone = kept;
+    if (to - from == 1) return;
+    const size_t middle = from + (to - from) / 2;
+    remove(from, middle);
+    remove(middle, to);
+  };
+  remove(0, candidates.size());
   std::vector<int> removed;
   for (size_t k = 0; k < all.size(); ++k)
     if (gone[k % own]) removed.push_back(static_cast<int>(k));

@@ -96,13 +96,23 @@ std::vector<std::vector<Vec2>> fixed_rings(const BodyProblem& p) {
   return out;
 }
 
-std::vector<Region> regions_of(const BodyProblem& p, std::span<const Component> components,
-                               double tolerance) {
-  std::vector<std::vector<Vec2>> outlines;
+namespace {
+
+/// The union of components and further polygons, see regions_of().
+std::vector<Region> united(const BodyProblem& p, std::span<const Component> components,
+                           std::span<const std::vector<Vec2>> further, double tolerance) {
+  std::vector<std::vector<Vec2>> outlines(further.begin(), further.end());
   for (const Component& c : components)
     outlines.push_back(outline_within(c, p.bands.back().min_half_thickness, tolerance));
   outlines.insert(outlines.end(), p.solid.begin(), p.solid.end());
   return unite(outlines, domain_of(p), p.empty);
+}
+
+}  // namespace
+
+std::vector<Region> regions_of(const BodyProblem& p, std::span<const Component> components,
+                               double tolerance) {
+  return united(p, components, {}, tolerance);
 }
 
 namespace {
@@ -196,35 +206,95 @@ std::vector<Segment> mirror_lines(const BodyProblem& p) {
 
 }  // namespace
 
-std::vector<Region> part_of(const BodyProblem& p, std::span<const Component> components,
-                            double tolerance) {
-  if (p.part) return *p.part;
-  std::vector<Region> out = regions_of(p, components, tolerance);
+namespace {
+
+/// The union of components and discs with its fillets, which do not fill void regions.
+std::vector<Region> filled(const BodyProblem& p, std::span<const Component> components,
+                           std::span<const std::vector<Vec2>> discs, double tolerance) {
+  std::vector<Region> out = united(p, components, discs, tolerance);
   if (!(p.fillets.radius > 0)) return out;
   out = with_fillets(out, domain_of(p), p.fillets, tolerance);
-  if (!p.empty.empty()) {  // fillets do not fill void regions
-    std::vector<Region> clipped;
-    for (const Region& piece : out) {
-      const std::vector<std::vector<Vec2>> outer = {piece.outer};
-      std::vector<std::vector<Vec2>> voids = p.empty;
-      voids.insert(voids.end(), piece.holes.begin(), piece.holes.end());
-      for (Region& left : unite(outer, domain_of(p), voids)) clipped.push_back(std::move(left));
-    }
-    out = std::move(clipped);
+  if (p.empty.empty()) return out;
+  std::vector<Region> clipped;
+  for (const Region& piece : out) {
+    const std::vector<std::vector<Vec2>> outer = {piece.outer};
+    std::vector<std::vector<Vec2>> voids = p.empty;
+    voids.insert(voids.end(), piece.holes.begin(), piece.holes.end());
+    for (Region& left : unite(outer, domain_of(p), voids)) clipped.push_back(std::move(left));
   }
-  const std::vector<Segment> mirrors = mirror_lines(p);
-  if (!mirrors.empty()) out = symmetric_where_possible(p, std::move(out));
-  out = smoothed_part(p, out, mirrors, tolerance);
-  return mirrors.empty() ? out : symmetric_where_possible(p, std::move(out));
+  return clipped;
 }
 
-VectorXd part_fractions(const BodyProblem& p, std::span<const Component> components) {
-  if (!p.part && !(p.fillets.radius > 0)) return fractions_of(p, components);
-  std::vector<Region> filled = part_of(p, components, kOutlineTolerance * p.grid.dx());
-  for (const std::vector<Vec2>& bore : p.bores) filled.push_back({bore, {}});
-  VectorXd out = area_fractions(p.grid, filled);
+/// Where material is narrower than asked for, one place for each neighbourhood, narrowest first.
+std::vector<NarrowPlace> too_narrow(const BodyProblem& p, std::span<const Region> regions) {
+  constexpr double kEnough = 0.99;
+  std::vector<NarrowPlace> out;
+  for (const NarrowPlace& place : narrow_places_of(p, regions, kEnough * p.widths.solid)) {
+    const bool known = std::any_of(out.begin(), out.end(), [&](const NarrowPlace& other) {
+      return (other.center - place.center).norm() < p.widths.solid;
+    });
+    if (place.solid && !known) out.push_back(place);
+  }
+  return out;
+}
+
+/// The same with discs where material is narrow, as fillings beside holes can be.
+FinishedPart widened(const BodyProblem& p, std::span<const Component> components,
+                     double tolerance) {
+  constexpr int kRounds = 3;
+  constexpr double kNarrowest = 0.5, kDisc = 1.02;  // smallest widths
+  constexpr std::size_t kMost = 6;
+  std::vector<std::vector<Vec2>> discs;
+  FinishedPart out{filled(p, components, {}, tolerance), 0};
+  for (int round = 0; round < kRounds; ++round) {
+    const std::vector<NarrowPlace> narrow = too_narrow(p, out.regions);
+    if (narrow.empty()) break;
+    out.has_widths = narrow.size() <= kMost && narrow[0].width >= kNarrowest * p.widths.solid;
+    if (!out.has_widths) break;
+    for (const NarrowPlace& place : narrow)
+      discs.push_back(circle_within(place.center, 0.5 * kDisc * p.widths.solid, tolerance));
+    out = {filled(p, components, discs, tolerance), static_cast<int>(discs.size())};
+  }
+  return out;
+}
+
+}  // namespace
+
+FinishedPart finished_part(const BodyProblem& p, std::span<const Component> components,
+                           double tolerance) {
+  if (p.part) return {*p.part, 0};
+  if (!(p.fillets.radius > 0)) return {regions_of(p, components, tolerance), 0};
+  FinishedPart out = widened(p, components, tolerance);
+  const std::vector<Segment> mirrors = mirror_lines(p);
+  if (!mirrors.empty()) out.regions = symmetric_where_possible(p, std::move(out.regions));
+  if (!out.has_widths) return out;
+  out.regions = smoothed_part(p, out.regions, mirrors, tolerance);
+  if (!mirrors.empty()) out.regions = symmetric_where_possible(p, std::move(out.regions));
+  return out;
+}
+
+std::vector<Region> part_of(const BodyProblem& p, std::span<const Component> components,
+                            double tolerance) {
+  return finished_part(p, components, tolerance).regions;
+}
+
+namespace {
+
+VectorXd cells_of(const BodyProblem& p, std::vector<Region> regions) {
+  for (const std::vector<Vec2>& bore : p.bores) regions.push_back({bore, {}});
+  VectorXd out = area_fractions(p.grid, regions);
   leave_out(p.outside, out);
   return out;
+}
+
+/// Is the part more than the union of the components?
+bool is_finished(const BodyProblem& p) { return p.part || p.fillets.radius > 0; }
+
+}  // namespace
+
+VectorXd part_fractions(const BodyProblem& p, std::span<const Component> components) {
+  if (!is_finished(p)) return fractions_of(p, components);
+  return cells_of(p, part_of(p, components, kOutlineTolerance * p.grid.dx()));
 }
 
 namespace {
@@ -344,16 +414,23 @@ Connectivity connectivity_of(const BodyProblem& problem, std::span<const Region>
 SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> components,
                          ComplianceEvaluator& loads) {
   SharpDesign out;
-  out.fractions = part_fractions(problem, components);
+  const double tolerance = kOutlineTolerance * problem.grid.dx();
+  double clock = thread_seconds();
+  FinishedPart part;
+  if (is_finished(problem)) part = finished_part(problem, components, tolerance);
+  out.seconds_outlines = thread_seconds() - clock;
+  out.fractions =
+      is_finished(problem) ? cells_of(problem, part.regions) : fractions_of(problem, components);
+  out.widened = part.widened;
   const Ersatz ersatz = ersatz_of(problem);
   out.volume = out.fractions.sum() / ersatz.n_domain_cells();
   const CellFactors sharp = ersatz.sharp(out.fractions);
   out.compliance = design_compliance(problem, loads, sharp);
   out.further = further_values(problem, components, loads, sharp);
-  const double clock = thread_seconds();
+  clock = thread_seconds();
   try {
     const std::vector<Region> regions =
-        part_of(problem, components, kOutlineTolerance * problem.grid.dx());
+        is_finished(problem) ? std::move(part.regions) : regions_of(problem, components, tolerance);
     out.volume = area(regions) / area(domain_of(problem));
     for (const ResponseRow* row : further_rows(problem.goal))
       if (row->even) out.further[key_of(*row)] = out.volume * row->full(plate_of(problem));
@@ -363,7 +440,7 @@ SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> 
     if (error.kind() == Error::Kind::input) throw;
     out.connectivity = connectivity(problem.grid, out.fractions, problem.places);
   }
-  out.seconds_outlines = thread_seconds() - clock;
+  out.seconds_outlines += thread_seconds() - clock;
   return out;
 }
 

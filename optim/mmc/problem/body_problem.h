@@ -75,11 +75,23 @@ std::vector<std::vector<Vec2>> fixed_rings(const BodyProblem& problem);
 std::vector<Region> regions_of(const BodyProblem& problem, std::span<const Component> components,
                                double tolerance);
 
+/// The part that a design stands for.
+struct FinishedPart {
+  std::vector<Region> regions;
+  int widened = 0;         ///< narrow places that were widened
+  bool has_widths = true;  ///< false: too narrow in too many places to be smoothed and widened
+};
+
 /// Returns the part that a design stands for, which is exported and verified: BodyProblem::part, or
-/// the union of its components with fillets, smoothed where it has fillets. That of a symmetric
-/// design is its own mirror image.
+/// the union of its components with fillets. Where that is narrower than asked for in six places at
+/// most, by half at most, discs of the width asked for widen it, and its outlines are smoothed;
+/// what is narrower than that has not come to its widths and stays as it is. The part of a
+/// symmetric design is its own mirror image.
 /// @param tolerance  how far sides may be off the true outlines [m]
 /// @throws Error (numerical) from unite() and with_fillets()
+FinishedPart finished_part(const BodyProblem& problem, std::span<const Component> components,
+                           double tolerance);
+/// Returns the regions of finished_part().
 std::vector<Region> part_of(const BodyProblem& problem, std::span<const Component> components,
                             double tolerance);
 /// Returns the area fractions of a part (n_cells): 0 outside of the domain, 1 in the bores. Without
@@ -119,6 +131,7 @@ struct SharpDesign {
   Connectivity connectivity;
   std::optional<Features>
       features;                 ///< see features_of(); absent when the outlines cannot be united
+  int widened = 0;              ///< narrow places that were widened, see finished_part()
   double seconds_outlines = 0;  ///< CPU seconds of the union, its pieces and widths
 };
 SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> components,
