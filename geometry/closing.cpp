@@ -183,6 +183,7 @@ class Filling {
       : domain_(domain),
         radius_(fillets.radius),
         thin_(0.5 * fillets.thinnest),
+        tolerance_(tolerance),
         sides_(segments(fillets.radius, tolerance)),
         around_(domain.grown(3 * thin_, 1).without(domain)) {}
 
@@ -200,8 +201,12 @@ class Filling {
   /// A shape and what of its closing is not thin.
   Shape rounded(const Shape& given, const Shape& closed) const {
     const Shape opened = closed.united(around_).grown(-thin_, sides_).grown(thin_, sides_);
+    // Sides of the opening beside those of the shape leave jags that are lower than the tolerance.
+    // They are taken off while what is outside of the domain is there: a round end that reaches
+    // beyond the border by less than the tolerance stays attached to it.
+    const Shape all = given.united(opened).united(around_).simplified(0.5 * tolerance_);
     // What is outside of the domain leaves whiskers along its border.
-    return given.united(opened).common(domain_).without_whiskers(kWhisker * radius_);
+    return all.common(domain_).without_whiskers(kWhisker * radius_);
   }
 
   /// Blades across gaps, as thick as a filling has to be. A blade that touches what is filled on
@@ -220,7 +225,7 @@ class Filling {
   }
 
   const Shape& domain_;
-  double radius_, thin_;
+  double radius_, thin_, tolerance_;
   int sides_;
   Shape around_;
 };
@@ -228,11 +233,7 @@ class Filling {
 Shape filled(const Geos& geos, std::span<const Region> regions, const Region& domain,
              const Fillets& fillets, double tolerance) {
   const Shape given = shape_of(geos, regions), within = shape_of(geos, {&domain, 1});
-  // Sides of the opening beside those of the regions leave jags that are lower than the tolerance.
-  return Filling(within, fillets, tolerance)
-      .of(given)
-      .simplified(0.5 * tolerance)
-      .on_lattice(kLattice * fillets.radius);
+  return Filling(within, fillets, tolerance).of(given).on_lattice(kLattice * fillets.radius);
 }
 
 /// Vertices of the given regions by their x, to be found by their place.

@@ -100,7 +100,6 @@ TEST(Fillets, KeepWhatTheyDoNotFill) {
   EXPECT_TRUE(with_fillets({}, kSheet, {1, 1}, 1e-3).empty());
 }
 
-// A circle keeps the sides that its tolerance needs, a box its corners.
 // Beside the corners of the domain, which the material nearly reaches, nothing is left: every piece
 // has material of the given outline.
 TEST(Fillets, LeaveNoFlecksAtCorners) {
@@ -113,6 +112,28 @@ TEST(Fillets, LeaveNoFlecksAtCorners) {
   }
 }
 
+// A round end that reaches beyond the border by a tenth of the tolerance stays attached to it,
+// along the chord that the border cuts off.
+TEST(Fillets, StayAttachedToTheBorder) {
+  const Region domain{box(0, -10, 20, 10), {}};
+  constexpr double kTolerance = 1e-2, kBeyond = 0.1 * kTolerance, kRadius = 2;
+  const std::vector<std::vector<Vec2>> bar = {circle_within({kRadius - kBeyond, 0}, kRadius, 1e-4),
+                                              box(2, -2, 20, 2)};
+  const std::vector<Region> given = unite(bar, domain, {});
+  const std::vector<Region> found = with_fillets(given, domain, {1.6, 1.8}, kTolerance);
+  ASSERT_EQ(found.size(), 1u);
+  double low = 0, high = 0;
+  for (const Vec2& p : found[0].outer)
+    if (p.x() == 0) {
+      low = std::min(low, p.y());
+      high = std::max(high, p.y());
+    }
+  const double half = std::sqrt(2 * kRadius * kBeyond);
+  EXPECT_NEAR(high, half, 0.1 * half);
+  EXPECT_NEAR(low, -half, 0.1 * half);
+}
+
+// A circle keeps the sides that its tolerance needs, a box its corners.
 TEST(Simplified, RingsKeepToTheTolerance) {
   const std::vector<Vec2> fine = circle_within({1, 2}, 6, 1e-4);
   const std::vector<Vec2> coarse = simplified(fine, 0.02);

@@ -39,6 +39,29 @@ TEST(IdleComponents, IslandsAndDeadEndsGoAndNothingElse) {
   EXPECT_EQ(left.islands, 0);
 }
 
+// A bar in the slot of a solid region that nothing loads: it carries nothing, but without it the
+// mouth of the slot is a gap of 2 mm where 4 mm are asked for.
+TEST(IdleComponents, StayWhereTheyKeepWidths) {
+  std::vector<Component> all = frame();
+  all.push_back(bar({0.085, 0}, {0.125, 0}, 0.004));
+  const Design design = Design(kGrid, {}, kScale).with(all);
+  BodyProblem problem = problem_of(design);
+  problem.widths.gap = 0.004;
+  problem.solid = {{{0.06, -0.02},
+                    {0.12, -0.02},
+                    {0.12, -0.001},
+                    {0.08, -0.003},
+                    {0.08, 0.003},
+                    {0.12, 0.001},
+                    {0.12, 0.02},
+                    {0.06, 0.02}}};
+  ComplianceEvaluator loads = tip_load();
+  Design any = design, kept = design;
+  EXPECT_EQ(remove_idle(problem, loads, any), std::vector<int>{2});
+  EXPECT_TRUE(remove_idle(problem, loads, kept, true).empty());
+  EXPECT_EQ(kept.n_components(), 3);
+}
+
 TEST(IdleComponents, GoWithTheirImages) {
   // One half: a chord, half of a post that crosses the axis, and a dead end.
   const std::vector<Component> half = {bar({-0.02, -0.03}, {0.61, -0.005}, 0.01),

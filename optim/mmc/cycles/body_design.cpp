@@ -102,12 +102,11 @@ FromStart staged(StageRunner& run, int cycle) {
   StageResult& now = best->result;
   if (wide && run.going()) {
     now = without_idle(run, now, false);
-    const Share share = shares.of(n_stages - 1);
-    now = last_stage(run, now, shares.begin_of(share));
+    const Share share = shares.of(n_stages - 1), begin = shares.begin_of(share);
+    now = last_stage(run, now, begin);
     // Widths tear bars off. What is left of them goes, and its material is spent elsewhere.
     now = without_idle(run, now, false);
-    now =
-        last_stage(run, now, {share.iterations - shares.begin_of(share).iterations, share.solves});
+    now = last_stage(run, now, {share.iterations - begin.iterations, share.solves});
     now = without_idle(run, now, true);
   }
   return *best;

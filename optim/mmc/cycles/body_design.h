@@ -93,7 +93,8 @@ using IterationObserver = std::function<bool(const IterationReport&)>;
 ///   1. every band of the continuation but the last: nominal stiffness, from every start;
 ///   2. the last band: stiffness of the eroded design, from every start; the best one goes on;
 ///   3. components that carry nothing are removed;
-///   4. the last band: nominal stiffness, widths as limits, limits of the crisp design.
+///   4. the last band: nominal stiffness, widths as limits, limits of the crisp design; after 60 %
+///      of its share 3 comes once more, and at the end where widths do not suffer.
 ///
 /// Later cycles begin with stage 2 and have as many iterations for each stage as the first one.
 /// Without wanted widths there are stages 1 and 2 only. Every stage has an equal share of the
