@@ -20,8 +20,10 @@ namespace {
 constexpr double kSame = 2e-3, kStraight = 1e-6;
 /// Width of the lattice that vertices of results lie on [radii].
 constexpr double kLattice = 1e-9;
-/// Half the width of what is no material [radii].
-constexpr double kWhisker = 1e-4;
+/// Vertices that are so near to the border of the domain are on it [radii].
+constexpr double kOnBorder = 1e-6;
+/// Half the width of what is no material [tolerances]: polygons instead of discs leave it.
+constexpr double kWhisker = 0.5;
 
 /// A context of GEOS, whose last message says what went wrong.
 class Geos {
@@ -184,7 +186,7 @@ class Filling {
         radius_(fillets.radius),
         thin_(0.5 * fillets.thinnest),
         tolerance_(tolerance),
-        sides_(segments(fillets.radius, tolerance)),
+        sides_(segments(std::max(fillets.radius, thin_), tolerance)),
         around_(domain.grown(3 * thin_, 1).without(domain)) {}
 
   Shape of(const Shape& given) const {
@@ -201,12 +203,8 @@ class Filling {
   /// A shape and what of its closing is not thin.
   Shape rounded(const Shape& given, const Shape& closed) const {
     const Shape opened = closed.united(around_).grown(-thin_, sides_).grown(thin_, sides_);
-    // Sides of the opening beside those of the shape leave jags that are lower than the tolerance.
-    // They are taken off while what is outside of the domain is there: a round end that reaches
-    // beyond the border by less than the tolerance stays attached to it.
-    const Shape all = given.united(opened).united(around_).simplified(0.5 * tolerance_);
     // What is outside of the domain leaves whiskers along its border.
-    return all.common(domain_).without_whiskers(kWhisker * radius_);
+    return given.united(opened).common(domain_).without_whiskers(kWhisker * tolerance_);
   }
 
   /// Blades across gaps, as thick as a filling has to be. A blade that touches what is filled on
@@ -230,11 +228,38 @@ class Filling {
   Shape around_;
 };
 
-Shape filled(const Geos& geos, std::span<const Region> regions, const Region& domain,
+Shape filled(const Geos& geos, std::span<const Region> regions, const Shape& domain,
              const Fillets& fillets, double tolerance) {
-  const Shape given = shape_of(geos, regions), within = shape_of(geos, {&domain, 1});
-  return Filling(within, fillets, tolerance).of(given).on_lattice(kLattice * fillets.radius);
+  const Shape given = shape_of(geos, regions);
+  return Filling(domain, fillets, tolerance).of(given).on_lattice(kLattice * fillets.radius);
 }
+
+/// The outline of a domain, which tells what vertices are on it.
+class Border {
+ public:
+  /// @param reach  vertices within it are on the outline [m]
+  Border(const Geos& geos, const Shape& domain, double reach)
+      : geos_(&geos),
+        outline_(geos, GEOSBoundary_r(geos.handle(), domain.get())),
+        prepared_(GEOSPrepare_r(geos.handle(), outline_.get())),
+        reach_(reach) {
+    if (prepared_ == nullptr) geos.fail();
+  }
+  ~Border() { GEOSPreparedGeom_destroy_r(geos_->handle(), prepared_); }
+  Border(const Border&) = delete;
+  Border& operator=(const Border&) = delete;
+
+  bool has(const Vec2& p) const {
+    const Shape point{*geos_, GEOSGeom_createPointFromXY_r(geos_->handle(), p.x(), p.y())};
+    return GEOSPreparedDistanceWithin_r(geos_->handle(), prepared_, point.get(), reach_) == 1;
+  }
+
+ private:
+  const Geos* geos_;
+  Shape outline_;
+  const GEOSPreparedGeometry* prepared_;
+  double reach_;
+};
 
 /// Vertices of the given regions by their x, to be found by their place.
 class Vertices {
@@ -267,6 +292,25 @@ class Vertices {
 
   std::vector<Vec2> all_;
 };
+
+/// A ring with fewer vertices, those on the border of the domain among them: a round end that
+/// reaches beyond the border by less than the tolerance stays attached to it.
+std::vector<Vec2> simplified_between(std::vector<Vec2> ring, const Border& border,
+                                     double tolerance) {
+  std::vector<std::size_t> kept;
+  for (std::size_t k = 0; k < ring.size(); ++k)
+    if (border.has(ring[k])) kept.push_back(k);
+  if (kept.empty()) return simplified(ring, tolerance);
+  std::vector<Vec2> out;
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    std::vector<Vec2> chain;
+    const std::size_t end = k + 1 < kept.size() ? kept[k + 1] : kept[0] + ring.size();
+    for (std::size_t at = kept[k]; at <= end; ++at) chain.push_back(ring[at % ring.size()]);
+    if (chain.size() > 2) chain = simplified_line(chain, tolerance);
+    out.insert(out.end(), chain.begin(), chain.end() - 1);
+  }
+  return out;
+}
 
 /// A ring of GEOS with the vertices of the given regions, without those that are none.
 std::vector<Vec2> cleaned(const std::vector<Vec2>& ring, const Vertices& vertices, double radius) {
@@ -313,31 +357,30 @@ bool orient(std::vector<Vec2>& ring, bool outer) {
   return a != 0;
 }
 
-/// A polygon of GEOS. Vertices of the given regions are in it where it stays valid with them.
+/// A polygon of its rings, whose senses are set; none where nothing is left of the outer one.
+Region oriented(std::vector<std::vector<Vec2>> rings) {
+  Region out;
+  if (!orient(rings[0], true)) return out;
+  out.outer = std::move(rings[0]);
+  for (std::size_t k = 1; k < rings.size(); ++k)
+    if (orient(rings[k], false)) out.holes.push_back(std::move(rings[k]));
+  return out;
+}
+
+/// A polygon of GEOS without the jags, lower than the tolerance, that sides of an opening leave
+/// beside those of the shape. Vertices of the given regions are in it where it stays valid with
+/// them.
 Region region_of(const Geos& geos, const GEOSGeometry* piece, const Vertices& vertices,
-                 double radius) {
+                 const Border& border, double radius, double tolerance) {
   std::vector<std::vector<Vec2>> rings = {
       ring_points(geos, GEOSGetExteriorRing_r(geos.handle(), piece))};
   for (int h = 0; h < GEOSGetNumInteriorRings_r(geos.handle(), piece); ++h)
     rings.push_back(ring_points(geos, GEOSGetInteriorRingN_r(geos.handle(), piece, h)));
-  const auto oriented = [&](bool with_vertices) {
-    Region out;
-    for (const std::vector<Vec2>& ring : rings) {
-      const bool outer = &ring == rings.data();
-      std::vector<Vec2> own = with_vertices ? cleaned(ring, vertices, radius) : ring;
-      if (!orient(own, outer)) {
-        if (outer) return Region{};
-        continue;
-      }
-      if (outer)
-        out.outer = std::move(own);
-      else
-        out.holes.push_back(std::move(own));
-    }
-    return out;
-  };
-  Region out = oriented(true);
-  if (!out.outer.empty() && !shape_of(geos, {&out, 1}).is_valid()) out = oriented(false);
+  const std::vector<std::vector<Vec2>> given = rings;
+  for (std::vector<Vec2>& ring : rings)
+    ring = cleaned(simplified_between(ring, border, 0.5 * tolerance), vertices, radius);
+  Region out = oriented(std::move(rings));
+  if (!out.outer.empty() && !shape_of(geos, {&out, 1}).is_valid()) out = oriented(given);
   return out;
 }
 
@@ -368,7 +411,9 @@ std::vector<Region> with_fillets(std::span<const Region> regions, const Region& 
                                  const Fillets& fillets, double tolerance) {
   if (!(fillets.radius > 0) || regions.empty()) return {regions.begin(), regions.end()};
   const Geos geos;
-  const Shape shape = filled(geos, regions, domain, fillets, tolerance);
+  const Shape within = shape_of(geos, {&domain, 1});
+  const Border border(geos, within, kOnBorder * fillets.radius);
+  const Shape shape = filled(geos, regions, within, fillets, tolerance);
   std::vector<Region> given(regions.begin(), regions.end());
   given.push_back(domain);
   const Vertices vertices(given);
@@ -379,7 +424,7 @@ std::vector<Region> with_fillets(std::span<const Region> regions, const Region& 
     // Growing by polygons instead of discs leaves flecks at corners of the domain.
     if (n > 1 && !(shape.piece(k).common(material).area() > 0)) continue;
     const GEOSGeometry* piece = GEOSGetGeometryN_r(geos.handle(), shape.get(), k);
-    Region region = region_of(geos, piece, vertices, fillets.radius);
+    Region region = region_of(geos, piece, vertices, border, fillets.radius, tolerance);
     if (!region.outer.empty()) out.push_back(std::move(region));
   }
   return out;

@@ -175,5 +175,24 @@ TEST(Coverage, OfPolygonsIsExact) {
   EXPECT_GE(g.minCoeff(), 0);
 }
 
+// Fillets that are small beside the width of fillings leave nothing along the border where a bar
+// crosses it at an angle: the part's corners there are the bar's.
+TEST(Fillets, LeaveNoWhiskersAlongTheBorder) {
+  const Region sheet{box(0, -5, 10, 5), {}};
+  const std::vector<std::vector<Vec2>> bars = {{{-1, -0.8}, {4, -1}, {4, 1}, {-1, 0.8}},
+                                               box(4, -5, 5, 5)};
+  const std::vector<Region> given = unite(bars, sheet, {});
+  ASSERT_EQ(given.size(), 1u);
+  const double r = 0.1, tolerance = 1e-3;
+  const std::vector<Region> found = with_fillets(given, sheet, {r, 0.9}, tolerance);
+  ASSERT_EQ(found.size(), 1u);
+  std::vector<Vec2> on_border;
+  for (const Vec2& v : found[0].outer)
+    if (std::abs(v.x()) < tolerance) on_border.push_back(v);
+  ASSERT_EQ(on_border.size(), 2u);
+  for (const Vec2& v : on_border) EXPECT_NEAR(std::abs(v.y()), 0.84, tolerance);
+  EXPECT_GT(smallest_features(found, sheet).solid, 0.99);
+}
+
 }  // namespace
 }  // namespace flexmorph
