@@ -34,6 +34,8 @@ struct PartMesh {
 
 /// Distance of a point from a segment [m].
 double distance(const Segment& s, const Vec2& point);
+/// Returns the sides of closed rings, in their order.
+std::vector<Segment> sides_of(std::span<const std::vector<Vec2>> rings);
 
 /// Delaunay refinement of a part: constrained triangulation of its outline, points put in until no
 /// triangle is larger than wanted or has an angle below 20.7 degrees, but where the outline itself

@@ -43,14 +43,6 @@ class Sides {
   std::vector<Segment> sides_;
 };
 
-std::vector<Segment> sides_of(std::span<const Ring> rings) {
-  std::vector<Segment> out;
-  for (const Ring& ring : rings)
-    for (std::size_t k = 0; k < ring.size(); ++k)
-      out.push_back({ring[k], ring[(k + 1) % ring.size()]});
-  return out;
-}
-
 /// A polyline by its length, and points at equal distances along it.
 class Chain {
  public:

@@ -7,6 +7,7 @@
 #include "geometry/part_mesh.h"
 #include "io/files.h"
 #include "optim/mmc/cycles/design_verification.h"
+#include "optim/mmc/problem/finished_part.h"
 
 namespace flexmorph::cases {
 namespace {

@@ -11,6 +11,7 @@
 #include "io/plots.h"
 #include "io/tables.h"
 #include "optim/mmc/loads/compliance_evaluator.h"
+#include "optim/mmc/problem/finished_part.h"
 
 namespace flexmorph::cases {
 namespace {

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "optim/mmc/loads/restrained_expansion.h"
+#include "optim/mmc/problem/finished_part.h"
 
 namespace flexmorph::mmc {
 

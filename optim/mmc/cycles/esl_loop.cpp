@@ -8,6 +8,7 @@
 
 #include "optim/mmc/cycles/usability.h"
 #include "optim/mmc/loads/compliance_evaluator.h"
+#include "optim/mmc/problem/finished_part.h"
 
 namespace flexmorph::mmc {
 namespace {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "optim/mmc/loads/compliance_evaluator.h"
+#include "optim/mmc/problem/finished_part.h"
 
 namespace flexmorph::mmc {
 

@@ -5,6 +5,7 @@
 
 #include "geometry/cpu_time.h"
 #include "optim/kkt.h"
+#include "optim/mmc/problem/finished_part.h"
 
 namespace flexmorph::mmc {
 

@@ -30,11 +30,8 @@ struct Through {
 };
 
 /// Sides that no component moves.
-std::vector<std::array<Vec2, 2>> fixed_sides(const BodyProblem& problem) {
-  std::vector<std::array<Vec2, 2>> out;
-  for (const std::vector<Vec2>& ring : fixed_rings(problem))
-    for (size_t k = 0; k < ring.size(); ++k) out.push_back({ring[k], ring[(k + 1) % ring.size()]});
-  return out;
+std::vector<Segment> fixed_sides(const BodyProblem& problem) {
+  return sides_of(fixed_rings(problem));
 }
 
 class Contacts {
@@ -144,7 +141,7 @@ class Contacts {
 
   std::span<const Component> components_;
   TdfSettings tdf_;
-  std::vector<std::array<Vec2, 2>> sides_;
+  std::vector<Segment> sides_;
   double near_;
   std::vector<Box> boxes_;
 };

@@ -7,7 +7,7 @@
 #include "geometry/cpu_time.h"
 #include "geometry/line_gaps.h"
 #include "geometry/part_mesh.h"
-#include "geometry/smoothing.h"
+#include "optim/mmc/problem/finished_part.h"
 
 namespace flexmorph::mmc {
 double design_compliance(const BodyProblem& problem, ComplianceEvaluator& loads,
@@ -53,14 +53,10 @@ Ersatz ersatz_of(const BodyProblem& p) {
   return {p.grid, p.bands.back().alpha, p.solid, p.empty, p.outside};
 }
 
-namespace {
-
 void leave_out(const std::vector<signed char>& outside, VectorXd& fractions) {
   for (size_t c = 0; c < outside.size(); ++c)
     if (outside[c]) fractions[static_cast<Eigen::Index>(c)] = 0;
 }
-
-}  // namespace
 
 VectorXd fractions_of(const BodyProblem& p, std::span<const Component> components) {
   VectorXd out =
@@ -96,205 +92,13 @@ std::vector<std::vector<Vec2>> fixed_rings(const BodyProblem& p) {
   return out;
 }
 
-namespace {
-
-/// The union of components and further polygons, see regions_of().
-std::vector<Region> united(const BodyProblem& p, std::span<const Component> components,
-                           std::span<const std::vector<Vec2>> further, double tolerance) {
+std::vector<Region> regions_of(const BodyProblem& p, std::span<const Component> components,
+                               double tolerance, std::span<const std::vector<Vec2>> further) {
   std::vector<std::vector<Vec2>> outlines(further.begin(), further.end());
   for (const Component& c : components)
     outlines.push_back(outline_within(c, p.bands.back().min_half_thickness, tolerance));
   outlines.insert(outlines.end(), p.solid.begin(), p.solid.end());
   return unite(outlines, domain_of(p), p.empty);
-}
-
-}  // namespace
-
-std::vector<Region> regions_of(const BodyProblem& p, std::span<const Component> components,
-                               double tolerance) {
-  return united(p, components, {}, tolerance);
-}
-
-namespace {
-
-std::vector<Vec2> mirrored(std::vector<Vec2> ring, const Symmetry& line) {
-  for (Vec2& p : ring) {
-    if (line.x) p.x() = 2 * *line.x - p.x();
-    if (line.y) p.y() = 2 * *line.y - p.y();
-  }
-  if (line.x.has_value() != line.y.has_value()) std::reverse(ring.begin(), ring.end());
-  return ring;
-}
-
-/// Puts vertices that are on a mirror line but for round-off onto it: nothing between them and the
-/// line is left over.
-void snap_to_mirrors(const BodyProblem& p, Region& region) {
-  constexpr double kRoundOff = 1e-9;  // cells
-  const Symmetry& symmetry = p.design.symmetry();
-  const double near = kRoundOff * p.grid.dx();
-  const auto snap = [&](std::vector<Vec2>& ring) {
-    for (Vec2& v : ring) {
-      if (symmetry.x && std::abs(v.x() - *symmetry.x) < near) v.x() = *symmetry.x;
-      if (symmetry.y && std::abs(v.y() - *symmetry.y) < near) v.y() = *symmetry.y;
-    }
-    ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
-    if (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
-  };
-  snap(region.outer);
-  for (std::vector<Vec2>& hole : region.holes) snap(hole);
-}
-
-/// The lower, left side of regions and its mirror images.
-std::vector<Region> made_symmetric(const BodyProblem& p, std::span<const Region> regions) {
-  const Symmetry& symmetry = p.design.symmetry();
-  const Grid& g = p.grid;
-  const Box all{{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}};
-  Box side = all;
-  if (symmetry.x) side.upper.x() = *symmetry.x;
-  if (symmetry.y) side.upper.y() = *symmetry.y;
-  const std::vector<std::vector<Vec2>> half = {corners_of(side)};
-  std::vector<Symmetry> images = {{}};
-  if (symmetry.x) images.push_back({symmetry.x, {}});
-  if (symmetry.y) images.push_back({{}, symmetry.y});
-  if (symmetry.x && symmetry.y) images.push_back(symmetry);
-  std::vector<Region> pieces;
-  for (Region region : regions) {
-    snap_to_mirrors(p, region);
-    for (const Region& piece : unite(half, region, {})) pieces.push_back(piece);
-  }
-  std::vector<std::vector<Vec2>> outer, holes;
-  for (const Region& piece : pieces)
-    for (const Symmetry& line : images) {
-      outer.push_back(mirrored(piece.outer, line));
-      for (const std::vector<Vec2>& hole : piece.holes) holes.push_back(mirrored(hole, line));
-    }
-  return unite(outer, {corners_of(all), {}}, holes);
-}
-
-/// The same, or the regions themselves where rounded vertices at the line make a polygon that
-/// crosses itself: these are symmetric to the tolerance.
-std::vector<Region> symmetric_where_possible(const BodyProblem& p, std::vector<Region> regions) {
-  try {
-    return made_symmetric(p, regions);
-  } catch (const Error& error) {
-    if (error.kind() == Error::Kind::input) throw;
-    return regions;
-  }
-}
-
-/// The smoothed regions. What smoothing would make narrower than asked for keeps its shape.
-std::vector<Region> smoothed_part(const BodyProblem& p, std::span<const Region> regions,
-                                  std::span<const Segment> mirrors, double tolerance) {
-  const std::vector<std::vector<Vec2>> fixed = fixed_rings(p);
-  std::vector<Region> out = smoothed(regions, fixed, mirrors, {}, p.widths.solid, tolerance);
-  std::vector<Vec2> kept;
-  for (const NarrowPlace& place : narrow_places_of(p, out, p.widths.largest()))
-    if (place.width < p.widths.of(place)) kept.insert(kept.end(), {place.a, place.b});
-  if (kept.empty()) return out;
-  return smoothed(regions, fixed, mirrors, kept, p.widths.solid, tolerance);
-}
-
-/// The lines of symmetry across the domain.
-std::vector<Segment> mirror_lines(const BodyProblem& p) {
-  const Grid& g = p.grid;
-  const Symmetry& symmetry = p.design.symmetry();
-  std::vector<Segment> out;
-  if (symmetry.x) out.push_back({{*symmetry.x, g.y0}, {*symmetry.x, g.y0 + g.height}});
-  if (symmetry.y) out.push_back({{g.x0, *symmetry.y}, {g.x0 + g.width, *symmetry.y}});
-  return out;
-}
-
-}  // namespace
-
-namespace {
-
-/// The union of components and discs with its fillets, which do not fill void regions.
-std::vector<Region> filled(const BodyProblem& p, std::span<const Component> components,
-                           std::span<const std::vector<Vec2>> discs, double tolerance) {
-  std::vector<Region> out = united(p, components, discs, tolerance);
-  if (!(p.fillets.radius > 0)) return out;
-  out = with_fillets(out, domain_of(p), p.fillets, tolerance);
-  if (p.empty.empty()) return out;
-  std::vector<Region> clipped;
-  for (const Region& piece : out) {
-    const std::vector<std::vector<Vec2>> outer = {piece.outer};
-    std::vector<std::vector<Vec2>> voids = p.empty;
-    voids.insert(voids.end(), piece.holes.begin(), piece.holes.end());
-    for (Region& left : unite(outer, domain_of(p), voids)) clipped.push_back(std::move(left));
-  }
-  return clipped;
-}
-
-/// Where material is narrower than asked for, one place for each neighbourhood, narrowest first.
-std::vector<NarrowPlace> too_narrow(const BodyProblem& p, std::span<const Region> regions) {
-  constexpr double kEnough = 0.99;
-  std::vector<NarrowPlace> out;
-  for (const NarrowPlace& place : narrow_places_of(p, regions, kEnough * p.widths.solid)) {
-    const bool known = std::any_of(out.begin(), out.end(), [&](const NarrowPlace& other) {
-      return (other.center - place.center).norm() < p.widths.solid;
-    });
-    if (place.solid && !known) out.push_back(place);
-  }
-  return out;
-}
-
-/// The same with discs where material is narrow, as fillings beside holes can be.
-FinishedPart widened(const BodyProblem& p, std::span<const Component> components,
-                     double tolerance) {
-  constexpr int kRounds = 3;
-  constexpr double kNarrowest = 0.5, kDisc = 1.02;  // smallest widths
-  constexpr std::size_t kMost = 6;
-  std::vector<std::vector<Vec2>> discs;
-  FinishedPart out{filled(p, components, {}, tolerance), 0};
-  for (int round = 0; round < kRounds; ++round) {
-    const std::vector<NarrowPlace> narrow = too_narrow(p, out.regions);
-    if (narrow.empty()) break;
-    out.has_widths = narrow.size() <= kMost && narrow[0].width >= kNarrowest * p.widths.solid;
-    if (!out.has_widths) break;
-    for (const NarrowPlace& place : narrow)
-      discs.push_back(circle_within(place.center, 0.5 * kDisc * p.widths.solid, tolerance));
-    out = {filled(p, components, discs, tolerance), static_cast<int>(discs.size())};
-  }
-  return out;
-}
-
-}  // namespace
-
-FinishedPart finished_part(const BodyProblem& p, std::span<const Component> components,
-                           double tolerance) {
-  if (p.part) return {*p.part, 0};
-  if (!(p.fillets.radius > 0)) return {regions_of(p, components, tolerance), 0};
-  FinishedPart out = widened(p, components, tolerance);
-  const std::vector<Segment> mirrors = mirror_lines(p);
-  if (!mirrors.empty()) out.regions = symmetric_where_possible(p, std::move(out.regions));
-  if (!out.has_widths) return out;
-  out.regions = smoothed_part(p, out.regions, mirrors, tolerance);
-  if (!mirrors.empty()) out.regions = symmetric_where_possible(p, std::move(out.regions));
-  return out;
-}
-
-std::vector<Region> part_of(const BodyProblem& p, std::span<const Component> components,
-                            double tolerance) {
-  return finished_part(p, components, tolerance).regions;
-}
-
-namespace {
-
-VectorXd cells_of(const BodyProblem& p, std::vector<Region> regions) {
-  for (const std::vector<Vec2>& bore : p.bores) regions.push_back({bore, {}});
-  VectorXd out = area_fractions(p.grid, regions);
-  leave_out(p.outside, out);
-  return out;
-}
-
-/// Is the part more than the union of the components?
-bool is_finished(const BodyProblem& p) { return p.part || p.fillets.radius > 0; }
-
-}  // namespace
-
-VectorXd part_fractions(const BodyProblem& p, std::span<const Component> components) {
-  if (!is_finished(p)) return fractions_of(p, components);
-  return cells_of(p, part_of(p, components, kOutlineTolerance * p.grid.dx()));
 }
 
 namespace {
@@ -411,35 +215,42 @@ Connectivity connectivity_of(const BodyProblem& problem, std::span<const Region>
   return flexmorph::connectivity_of(touched, places);
 }
 
+namespace {
+
+/// Adds what the outline of a part says; false where its widths cannot be computed.
+bool add_outline(const BodyProblem& problem, const FinishedPart& part, SharpDesign& out) {
+  try {
+    out.widened = part.widened;
+    out.volume = area(part.regions) / area(domain_of(problem));
+    for (const ResponseRow* row : further_rows(problem.goal))
+      if (row->even) out.further[key_of(*row)] = out.volume * row->full(plate_of(problem));
+    out.connectivity = connectivity_of(problem, part.regions);
+    out.features = features_of(problem, part.regions);
+    return true;
+  } catch (const Error& error) {
+    if (error.kind() == Error::Kind::input) throw;
+    return false;
+  }
+}
+
+}  // namespace
+
 SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> components,
                          ComplianceEvaluator& loads) {
   SharpDesign out;
-  const double tolerance = kOutlineTolerance * problem.grid.dx();
   double clock = thread_seconds();
-  FinishedPart part;
-  if (is_finished(problem)) part = finished_part(problem, components, tolerance);
+  const std::optional<FinishedPart> part = part_where_united(problem, components);
   out.seconds_outlines = thread_seconds() - clock;
   out.fractions =
-      is_finished(problem) ? cells_of(problem, part.regions) : fractions_of(problem, components);
-  out.widened = part.widened;
+      part ? part_fractions(problem, components, *part) : fractions_of(problem, components);
   const Ersatz ersatz = ersatz_of(problem);
   out.volume = out.fractions.sum() / ersatz.n_domain_cells();
   const CellFactors sharp = ersatz.sharp(out.fractions);
   out.compliance = design_compliance(problem, loads, sharp);
   out.further = further_values(problem, components, loads, sharp);
   clock = thread_seconds();
-  try {
-    const std::vector<Region> regions =
-        is_finished(problem) ? std::move(part.regions) : regions_of(problem, components, tolerance);
-    out.volume = area(regions) / area(domain_of(problem));
-    for (const ResponseRow* row : further_rows(problem.goal))
-      if (row->even) out.further[key_of(*row)] = out.volume * row->full(plate_of(problem));
-    out.connectivity = connectivity_of(problem, regions);
-    out.features = features_of(problem, regions);
-  } catch (const Error& error) {
-    if (error.kind() == Error::Kind::input) throw;
+  if (!part || !add_outline(problem, *part, out))
     out.connectivity = connectivity(problem.grid, out.fractions, problem.places);
-  }
   out.seconds_outlines += thread_seconds() - clock;
   return out;
 }

@@ -57,6 +57,9 @@ double full_mass_of(const BodyProblem& problem);
 Ersatz ersatz_of(const BodyProblem& problem);
 /// Area fractions of true material (n_cells), 0 outside of the domain.
 VectorXd fractions_of(const BodyProblem& problem, std::span<const Component> components);
+/// Sets the fractions of cells outside of the domain to 0.
+/// @param outside  BodyProblem::outside
+void leave_out(const std::vector<signed char>& outside, VectorXd& fractions);
 /// The same from those of other components, which differ by `changed` ones only: the work is
 /// proportional to their extent along x.
 void update_fractions(const BodyProblem& problem, std::span<const Component> components,
@@ -71,32 +74,10 @@ Region domain_of(const BodyProblem& problem);
 std::vector<std::vector<Vec2>> fixed_rings(const BodyProblem& problem);
 /// Exact union of the components and the solid regions, less the voids, clipped to the domain.
 /// @param tolerance  how far sides may be off the true outlines [m]
+/// @param further    polygons that are in the union as well
 /// @throws Error (numerical) from unite().
 std::vector<Region> regions_of(const BodyProblem& problem, std::span<const Component> components,
-                               double tolerance);
-
-/// The part that a design stands for.
-struct FinishedPart {
-  std::vector<Region> regions;
-  int widened = 0;         ///< narrow places that were widened
-  bool has_widths = true;  ///< false: too narrow in too many places to be smoothed and widened
-};
-
-/// Returns the part that a design stands for, which is exported and verified: BodyProblem::part, or
-/// the union of its components with fillets. Where that is narrower than asked for in six places at
-/// most, by half at most, discs of the width asked for widen it, and its outlines are smoothed;
-/// what is narrower than that has not come to its widths and stays as it is. The part of a
-/// symmetric design is its own mirror image.
-/// @param tolerance  how far sides may be off the true outlines [m]
-/// @throws Error (numerical) from unite() and with_fillets()
-FinishedPart finished_part(const BodyProblem& problem, std::span<const Component> components,
-                           double tolerance);
-/// Returns the regions of finished_part().
-std::vector<Region> part_of(const BodyProblem& problem, std::span<const Component> components,
-                            double tolerance);
-/// Returns the area fractions of a part (n_cells): 0 outside of the domain, 1 in the bores. Without
-/// fillets, and without a drawn part, they are fractions_of() the components.
-VectorXd part_fractions(const BodyProblem& problem, std::span<const Component> components);
+                               double tolerance, std::span<const std::vector<Vec2>> further = {});
 
 /// Narrow places of such a union, gaps to what holds it among them, less those that passive regions
 /// and holes of the domain make by themselves: no design can change them.
@@ -131,7 +112,7 @@ struct SharpDesign {
   Connectivity connectivity;
   std::optional<Features>
       features;                 ///< see features_of(); absent when the outlines cannot be united
-  int widened = 0;              ///< narrow places that were widened, see finished_part()
+  int widened = 0;              ///< narrow places that were widened, see FinishedPart
   double seconds_outlines = 0;  ///< CPU seconds of the union, its pieces and widths
 };
 SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> components,

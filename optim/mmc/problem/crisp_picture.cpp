@@ -7,6 +7,7 @@
 #include "geometry/outline.h"
 #include "geometry/tdf.h"
 #include "optim/mmc/problem/body_problem.h"
+#include "optim/mmc/problem/finished_part.h"
 
 namespace flexmorph::mmc {
 namespace {

@@ -1,0 +1,202 @@
+#include "optim/mmc/problem/finished_part.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "geometry/smoothing.h"
+
+namespace flexmorph::mmc {
+namespace {
+
+std::vector<Vec2> mirrored(std::vector<Vec2> ring, const Symmetry& line) {
+  for (Vec2& p : ring) {
+    if (line.x) p.x() = 2 * *line.x - p.x();
+    if (line.y) p.y() = 2 * *line.y - p.y();
+  }
+  if (line.x.has_value() != line.y.has_value()) std::reverse(ring.begin(), ring.end());
+  return ring;
+}
+
+/// Puts vertices that are on a mirror line but for round-off onto it: nothing between them and the
+/// line is left over.
+void snap_to_mirrors(const BodyProblem& p, Region& region) {
+  constexpr double kRoundOff = 1e-9;  // cells
+  const Symmetry& symmetry = p.design.symmetry();
+  const double near = kRoundOff * p.grid.dx();
+  const auto snap = [&](std::vector<Vec2>& ring) {
+    for (Vec2& v : ring) {
+      if (symmetry.x && std::abs(v.x() - *symmetry.x) < near) v.x() = *symmetry.x;
+      if (symmetry.y && std::abs(v.y() - *symmetry.y) < near) v.y() = *symmetry.y;
+    }
+    ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+    if (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
+  };
+  snap(region.outer);
+  for (std::vector<Vec2>& hole : region.holes) snap(hole);
+}
+
+/// The lower, left side of regions and its mirror images.
+std::vector<Region> made_symmetric(const BodyProblem& p, std::span<const Region> regions) {
+  const Symmetry& symmetry = p.design.symmetry();
+  const Grid& g = p.grid;
+  const Box all{{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}};
+  Box side = all;
+  if (symmetry.x) side.upper.x() = *symmetry.x;
+  if (symmetry.y) side.upper.y() = *symmetry.y;
+  const std::vector<std::vector<Vec2>> half = {corners_of(side)};
+  std::vector<Symmetry> images = {{}};
+  if (symmetry.x) images.push_back({symmetry.x, {}});
+  if (symmetry.y) images.push_back({{}, symmetry.y});
+  if (symmetry.x && symmetry.y) images.push_back(symmetry);
+  std::vector<Region> pieces;
+  for (Region region : regions) {
+    snap_to_mirrors(p, region);
+    for (const Region& piece : unite(half, region, {})) pieces.push_back(piece);
+  }
+  std::vector<std::vector<Vec2>> outer, holes;
+  for (const Region& piece : pieces)
+    for (const Symmetry& line : images) {
+      outer.push_back(mirrored(piece.outer, line));
+      for (const std::vector<Vec2>& hole : piece.holes) holes.push_back(mirrored(hole, line));
+    }
+  return unite(outer, {corners_of(all), {}}, holes);
+}
+
+/// The same, or the regions themselves where rounded vertices at the line make a polygon that
+/// crosses itself: these are symmetric to the tolerance.
+std::vector<Region> symmetric_where_possible(const BodyProblem& p, std::vector<Region> regions) {
+  try {
+    return made_symmetric(p, regions);
+  } catch (const Error& error) {
+    if (error.kind() == Error::Kind::input) throw;
+    return regions;
+  }
+}
+
+/// The smoothed regions. What smoothing would make narrower than asked for keeps its shape.
+std::vector<Region> smoothed_part(const BodyProblem& p, std::span<const Region> regions,
+                                  std::span<const Segment> mirrors, double tolerance) {
+  const std::vector<std::vector<Vec2>> fixed = fixed_rings(p);
+  std::vector<Region> out = smoothed(regions, fixed, mirrors, {}, p.widths.solid, tolerance);
+  std::vector<Vec2> kept;
+  for (const NarrowPlace& place : narrow_places_of(p, out, p.widths.largest()))
+    if (place.width < p.widths.of(place)) kept.insert(kept.end(), {place.a, place.b});
+  if (kept.empty()) return out;
+  return smoothed(regions, fixed, mirrors, kept, p.widths.solid, tolerance);
+}
+
+/// The lines of symmetry across the domain.
+std::vector<Segment> mirror_lines(const BodyProblem& p) {
+  const Grid& g = p.grid;
+  const Symmetry& symmetry = p.design.symmetry();
+  std::vector<Segment> out;
+  if (symmetry.x) out.push_back({{*symmetry.x, g.y0}, {*symmetry.x, g.y0 + g.height}});
+  if (symmetry.y) out.push_back({{g.x0, *symmetry.y}, {g.x0 + g.width, *symmetry.y}});
+  return out;
+}
+
+/// The union of components and discs with its fillets, which do not fill void regions.
+std::vector<Region> filled(const BodyProblem& p, std::span<const Component> components,
+                           std::span<const std::vector<Vec2>> discs, double tolerance) {
+  std::vector<Region> out =
+      with_fillets(regions_of(p, components, tolerance, discs), domain_of(p), p.fillets, tolerance);
+  if (p.empty.empty()) return out;
+  std::vector<Region> clipped;
+  for (const Region& piece : out) {
+    const std::vector<std::vector<Vec2>> outer = {piece.outer};
+    std::vector<std::vector<Vec2>> voids = p.empty;
+    voids.insert(voids.end(), piece.holes.begin(), piece.holes.end());
+    for (Region& left : unite(outer, domain_of(p), voids)) clipped.push_back(std::move(left));
+  }
+  return clipped;
+}
+
+/// Where material is narrower than asked for, one place for each neighbourhood, narrowest first.
+std::vector<NarrowPlace> too_narrow(const BodyProblem& p, std::span<const Region> regions) {
+  constexpr double kEnough = 0.99;
+  std::vector<NarrowPlace> out;
+  for (const NarrowPlace& place : narrow_places_of(p, regions, kEnough * p.widths.solid)) {
+    const bool known = std::any_of(out.begin(), out.end(), [&](const NarrowPlace& other) {
+      return (other.center - place.center).norm() < p.widths.solid;
+    });
+    if (place.solid && !known) out.push_back(place);
+  }
+  return out;
+}
+
+/// The same with discs where material is narrow, as fillings beside holes can be.
+FinishedPart widened(const BodyProblem& p, std::span<const Component> components,
+                     double tolerance) {
+  constexpr int kRounds = 3;
+  constexpr double kNarrowest = 0.5, kDisc = 1.02;  // smallest widths
+  constexpr std::size_t kMost = 6;
+  std::vector<std::vector<Vec2>> discs;
+  FinishedPart out{filled(p, components, {}, tolerance), 0};
+  for (int round = 0; round < kRounds; ++round) {
+    const std::vector<NarrowPlace> narrow = too_narrow(p, out.regions);
+    if (narrow.empty()) break;
+    out.has_widths = narrow.size() <= kMost && narrow[0].width >= kNarrowest * p.widths.solid;
+    if (!out.has_widths) break;
+    for (const NarrowPlace& place : narrow)
+      discs.push_back(circle_within(place.center, 0.5 * kDisc * p.widths.solid, tolerance));
+    out = {filled(p, components, discs, tolerance), static_cast<int>(discs.size())};
+  }
+  return out;
+}
+
+}  // namespace
+
+FinishedPart finished_part(const BodyProblem& p, std::span<const Component> components,
+                           double tolerance) {
+  if (p.part) return {*p.part, 0};
+  if (!(p.fillets.radius > 0)) return {regions_of(p, components, tolerance), 0};
+  FinishedPart out = widened(p, components, tolerance);
+  const std::vector<Segment> mirrors = mirror_lines(p);
+  if (!mirrors.empty()) out.regions = symmetric_where_possible(p, std::move(out.regions));
+  if (!out.has_widths) return out;
+  out.regions = smoothed_part(p, out.regions, mirrors, tolerance);
+  if (!mirrors.empty()) out.regions = symmetric_where_possible(p, std::move(out.regions));
+  return out;
+}
+
+std::vector<Region> part_of(const BodyProblem& p, std::span<const Component> components,
+                            double tolerance) {
+  return finished_part(p, components, tolerance).regions;
+}
+
+namespace {
+
+/// Is the part more than the union of the components?
+bool is_finished(const BodyProblem& p) { return p.part || p.fillets.radius > 0; }
+
+double fine(const BodyProblem& p) { return kOutlineTolerance * p.grid.dx(); }
+
+}  // namespace
+
+std::optional<FinishedPart> part_where_united(const BodyProblem& p,
+                                              std::span<const Component> components) {
+  try {
+    return finished_part(p, components, fine(p));
+  } catch (const Error& error) {
+    if (error.kind() == Error::Kind::input || is_finished(p)) throw;
+    return {};
+  }
+}
+
+VectorXd part_fractions(const BodyProblem& p, std::span<const Component> components) {
+  if (!is_finished(p)) return fractions_of(p, components);
+  return part_fractions(p, components, finished_part(p, components, fine(p)));
+}
+
+VectorXd part_fractions(const BodyProblem& p, std::span<const Component> components,
+                        const FinishedPart& part) {
+  if (!is_finished(p)) return fractions_of(p, components);
+  std::vector<Region> filled = part.regions;
+  for (const std::vector<Vec2>& bore : p.bores) filled.push_back({bore, {}});
+  VectorXd out = area_fractions(p.grid, filled);
+  leave_out(p.outside, out);
+  return out;
+}
+
+}  // namespace flexmorph::mmc

@@ -1,0 +1,86 @@
+// The part that a design stands for: narrow places are widened where they are few, and left where
+// the design has not come to its widths.
+
+#include "optim/mmc/problem/finished_part.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/optim/mmc_small.h"
+
+namespace flexmorph::mmc::test {
+namespace {
+
+constexpr double kFeature = 0.016, kTolerance = 1e-5;
+
+/// A bar of several, whose rounded ends overlap by a length.
+std::vector<Component> chain(int n, double overlap) {
+  const double length = kGrid.width / n;
+  std::vector<Component> out;
+  for (int k = 0; k < n; ++k)
+    out.push_back(
+        bar({k * length - 0.5 * overlap, 0}, {(k + 1) * length + 0.5 * overlap, 0}, 0.012));
+  return out;
+}
+
+BodyProblem problem_of(double fillets) {
+  BodyProblem out = body_of(Design(kGrid, {}, kScale), {tdf_settings(1)});
+  out.widths.solid = kFeature;
+  out.fillets = {fillets, 0.9 * kFeature};
+  return out;
+}
+
+double feature(const BodyProblem& problem, const std::vector<Region>& regions) {
+  return features_of(problem, regions).solid;
+}
+
+/// The bar whose necks are next to a width.
+std::vector<Component> with_necks(int n, double width) {
+  const BodyProblem problem = problem_of(0);
+  double low = 0, high = 0.03;
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (low + high);
+    const std::vector<Region> regions = regions_of(problem, chain(n, middle), kTolerance);
+    (regions.size() > 1 || feature(problem, regions) < width ? low : high) = middle;
+  }
+  return chain(n, high);
+}
+
+// Fillets of a tenth of the feature leave the neck about as it is. A disc makes it as wide as
+// asked.
+TEST(FinishedPart, IsAsWideAsAsked) {
+  const std::vector<Component> components = with_necks(2, 0.75 * kFeature);
+  const BodyProblem problem = problem_of(0.1 * kFeature);
+  const std::vector<Region> given = with_fillets(regions_of(problem, components, kTolerance),
+                                                 domain_of(problem), problem.fillets, kTolerance);
+  ASSERT_LT(feature(problem, given), 0.95 * kFeature);
+  const FinishedPart part = finished_part(problem, components, kTolerance);
+  EXPECT_GE(part.widened, 1);
+  EXPECT_TRUE(part.has_widths);
+  EXPECT_GE(feature(problem, part.regions), 0.99 * kFeature);
+  EXPECT_LT(area(part.regions), area(given) + kFeature * kFeature);
+}
+
+// With seven necks the design has not come to its widths: it stays as its fillets leave it.
+TEST(FinishedPart, IsLeftFarFromItsWidths) {
+  const std::vector<Component> components = with_necks(8, 0.75 * kFeature);
+  const BodyProblem problem = problem_of(0.02 * kFeature);
+  const std::vector<Region> given = with_fillets(regions_of(problem, components, kTolerance),
+                                                 domain_of(problem), problem.fillets, kTolerance);
+  ASSERT_LT(feature(problem, given), 0.95 * kFeature);
+  const FinishedPart part = finished_part(problem, components, kTolerance);
+  EXPECT_EQ(part.widened, 0);
+  EXPECT_FALSE(part.has_widths);
+  EXPECT_EQ(area(part.regions), area(given));
+}
+
+// Without fillets the part is the union of its components.
+TEST(FinishedPart, IsTheUnionWithoutFillets) {
+  const BodyProblem problem = problem_of(0);
+  const std::vector<Component> components = chain(2, 0.02);
+  EXPECT_EQ(area(part_of(problem, components, kTolerance)),
+            area(regions_of(problem, components, kTolerance)));
+  EXPECT_EQ(part_fractions(problem, components), fractions_of(problem, components));
+}
+
+}  // namespace
+}  // namespace flexmorph::mmc::test
