@@ -48,8 +48,14 @@ class Geos {
   std::string said_;
 };
 
+class Shape;
+Shape union_of(const Geos& geos, std::vector<Shape> pieces);
+
 class Shape {
  public:
+  /// The union of many shapes.
+  friend Shape union_of(const Geos& geos, std::vector<Shape> pieces);
+
   Shape(const Geos& geos, GEOSGeometry* geometry) : geos_(&geos), geometry_(geometry) {
     if (geometry == nullptr) geos.fail();
   }
@@ -67,18 +73,19 @@ class Shape {
 
   const GEOSGeometry* get() const { return geometry_; }
   Shape grown(double by, int segments) const {
-    return {*geos_, GEOSBuffer_r(geos_->handle(), geometry_, by, segments)};
+    return ring_by_ring(by, [&](const GEOSGeometry* ring, double distance) {
+      return GEOSBuffer_r(geos_->handle(), ring, distance, segments);
+    });
   }
   /// Without what is thinner than twice the width; corners stay, unless they are very acute.
   Shape without_whiskers(double width) const {
-    const auto grow = [&](const GEOSGeometry* of, double by) {
+    const auto grow = [&](const GEOSGeometry* ring, double by) {
       constexpr int kQuarter = 8;
       constexpr double kMitre = 5;
-      return GEOSBufferWithStyle_r(geos_->handle(), of, by, kQuarter, GEOSBUF_CAP_ROUND,
+      return GEOSBufferWithStyle_r(geos_->handle(), ring, by, kQuarter, GEOSBUF_CAP_ROUND,
                                    GEOSBUF_JOIN_MITRE, kMitre);
     };
-    const Shape thinner{*geos_, grow(geometry_, -width)};
-    return {*geos_, grow(thinner.geometry_, width)};
+    return ring_by_ring(-width, grow).ring_by_ring(width, grow);
   }
   Shape united(const Shape& other) const {
     return polygons_of(GEOSUnion_r(geos_->handle(), geometry_, other.geometry_));
@@ -88,6 +95,14 @@ class Shape {
   }
   Shape common(const Shape& other) const {
     return polygons_of(GEOSIntersection_r(geos_->handle(), geometry_, other.geometry_));
+  }
+  /// What is in the bounding box of another shape.
+  Shape near(const Shape& other) const {
+    double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+    const GEOSContextHandle_t h = geos_->handle();
+    const GEOSGeometry* of = other.geometry_;
+    if (GEOSGeom_getExtent_r(h, of, &x0, &y0, &x1, &y1) == 0) geos_->fail();
+    return polygons_of(GEOSClipByRect_r(h, geometry_, x0, y0, x1, y1));
   }
   Shape simplified(double tolerance) const {
     return {*geos_, GEOSTopologyPreserveSimplify_r(geos_->handle(), geometry_, tolerance)};
@@ -113,6 +128,30 @@ class Shape {
   }
 
  private:
+  /// Grows what each ring encloses, holes the other way: GEOS needs a time that is quadratic in the
+  /// number of rings that it grows at once.
+  template <typename Grow>
+  Shape ring_by_ring(double by, const Grow& grow) const {
+    std::vector<Shape> pieces;
+    for (int k = 0; k < n_pieces(); ++k) {
+      const GEOSGeometry* polygon = GEOSGetGeometryN_r(geos_->handle(), geometry_, k);
+      const Shape outer = filled_ring(GEOSGetExteriorRing_r(geos_->handle(), polygon));
+      pieces.push_back({*geos_, grow(outer.geometry_, by)});
+      std::vector<Shape> holes;
+      for (int h = 0; h < GEOSGetNumInteriorRings_r(geos_->handle(), polygon); ++h) {
+        const Shape hole = filled_ring(GEOSGetInteriorRingN_r(geos_->handle(), polygon, h));
+        holes.push_back({*geos_, grow(hole.geometry_, -by)});
+      }
+      if (!holes.empty()) pieces.back() = pieces.back().without(union_of(*geos_, std::move(holes)));
+    }
+    return union_of(*geos_, std::move(pieces));
+  }
+  Shape filled_ring(const GEOSGeometry* ring) const {
+    return {*geos_, GEOSGeom_createPolygon_r(geos_->handle(),
+                                             GEOSGeom_clone_r(geos_->handle(), ring), nullptr, 0)};
+  }
+  GEOSGeometry* release() { return std::exchange(geometry_, nullptr); }
+
   /// The polygons of a result: where shapes only touch, it has lines and points, too.
   Shape polygons_of(GEOSGeometry* result) const {
     const Shape all{*geos_, result};
@@ -129,6 +168,15 @@ class Shape {
   const Geos* geos_;
   GEOSGeometry* geometry_;
 };
+
+Shape union_of(const Geos& geos, std::vector<Shape> pieces) {
+  std::vector<GEOSGeometry*> all;
+  for (Shape& piece : pieces) all.push_back(piece.release());
+  const Shape together{
+      geos, GEOSGeom_createCollection_r(geos.handle(), GEOS_GEOMETRYCOLLECTION, all.data(),
+                                        static_cast<unsigned>(all.size()))};
+  return together.polygons_of(GEOSUnaryUnion_r(geos.handle(), together.geometry_));
+}
 
 bool is_before(const Vec2& a, const Vec2& b) {
   return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y());
@@ -181,8 +229,9 @@ int segments(double radius, double tolerance) {
 /// Fills inner corners and gaps of shapes within a domain.
 class Filling {
  public:
-  Filling(const Shape& domain, const Fillets& fillets, double tolerance)
-      : domain_(domain),
+  Filling(const Geos& geos, const Shape& domain, const Fillets& fillets, double tolerance)
+      : geos_(geos),
+        domain_(domain),
         radius_(fillets.radius),
         thin_(0.5 * fillets.thinnest),
         tolerance_(tolerance),
@@ -192,10 +241,10 @@ class Filling {
   Shape of(const Shape& given) const {
     const Shape closed = given.grown(radius_, sides_).grown(-radius_, sides_);
     Shape filled = rounded(given, closed);
-    const std::vector<Shape> bridges = bridges_of(closed, filled);
-    if (bridges.empty()) return filled;
-    Shape joined = std::move(filled);
-    for (const Shape& bridge : bridges) joined = joined.united(bridge);
+    std::vector<Shape> all = bridges_of(closed, filled);
+    if (all.empty()) return filled;
+    all.push_back(std::move(filled));
+    const Shape joined = union_of(geos_, std::move(all));
     return rounded(joined, joined.grown(radius_, sides_).grown(-radius_, sides_));
   }
 
@@ -216,12 +265,14 @@ class Filling {
     for (int k = 0; k < left.n_pieces(); ++k) {
       Shape blade = left.piece(k);
       if (blade.area() < kTiny * radius_ * radius_) continue;
-      const Shape contacts = blade.grown(kReach * radius_, 4).common(filled);
+      const Shape reached = blade.grown(kReach * radius_, 4);
+      const Shape contacts = reached.common(filled.near(reached));
       if (contacts.n_pieces() > 1) out.push_back(blade.grown(thin_, sides_));
     }
     return out;
   }
 
+  const Geos& geos_;
   const Shape& domain_;
   double radius_, thin_, tolerance_;
   int sides_;
@@ -231,7 +282,7 @@ class Filling {
 Shape filled(const Geos& geos, std::span<const Region> regions, const Shape& domain,
              const Fillets& fillets, double tolerance) {
   const Shape given = shape_of(geos, regions);
-  return Filling(domain, fillets, tolerance).of(given).on_lattice(kLattice * fillets.radius);
+  return Filling(geos, domain, fillets, tolerance).of(given).on_lattice(kLattice * fillets.radius);
 }
 
 /// The outline of a domain, which tells what vertices are on it.

@@ -88,7 +88,8 @@ struct Corner {
   Vec2 before{0, 0}, after{0, 0};  // directions of the sides that end and begin here
   int visits = 0;
   size_t number = 0;  // among the vertices in the order of their coordinates
-  bool border_before = false, border_after = false;
+  bool border_before = false, border_after = false;  // are these sides on the domain's border?
+  bool border = false;                               // is the vertex?
 };
 
 /// The outlines: vertices and sides in the order of their coordinates, wherever rings begin.
@@ -106,6 +107,8 @@ class Outlines {
 
   const std::vector<Vec2>& points() const { return points_; }
   const std::vector<std::pair<size_t, size_t>>& sides() const { return sides_; }
+  /// Is the k-th side on the border?
+  bool on_border(size_t k) const { return borders_[k]; }
 
   const Corner* corner(const Vec2& p) const {
     const auto found = corners_.find({p.x(), p.y()});
@@ -117,16 +120,6 @@ class Outlines {
     return std::any_of(regions_.begin(), regions_.end(),
                        [&](const Region& r) { return contains(r, p); });
   }
-
-  bool on_border(const Vec2& a, const Vec2& b) const {
-    for (const auto& ring : domain_)
-      for (size_t i = 0; i < ring.size(); ++i) {
-        const Vec2 &c = ring[i], &d = ring[(i + 1) % ring.size()];
-        if (near_line(a, c, d) && near_line(b, c, d)) return true;
-      }
-    return false;
-  }
-  bool on_border(const Vec2& p) const { return on_border(p, p); }
 
   /// Is the point in the domain (counted by crossings)?
   bool within(const Vec2& p) const {
@@ -153,28 +146,50 @@ class Outlines {
       at_q.before = at_p.after;
       at_q.border_before = border;
       ++at_p.visits;
-      ends_.emplace_back(&at_p, &at_q);
+      ends_.push_back({&at_p, &at_q, border});
     }
   }
   void number() {
     for (auto& [at, corner] : corners_) {
       corner.number = points_.size();
       points_.emplace_back(at.first, at.second);
+      corner.border = on_border(points_.back(), points_.back());
     }
-    for (const auto& [p, q] : ends_) sides_.emplace_back(p->number, q->number);
-    std::sort(sides_.begin(), sides_.end());
+    std::sort(ends_.begin(), ends_.end(), [](const Side& x, const Side& y) {
+      return std::pair(x.from->number, x.to->number) < std::pair(y.from->number, y.to->number);
+    });
+    for (const Side& side : ends_) {
+      sides_.emplace_back(side.from->number, side.to->number);
+      borders_.push_back(side.border);
+    }
+  }
+  bool on_border(const Vec2& a, const Vec2& b) const {
+    for (const auto& ring : domain_)
+      for (size_t i = 0; i < ring.size(); ++i) {
+        const Vec2 &c = ring[i], &d = ring[(i + 1) % ring.size()];
+        if (near_line(a, c, d) && near_line(b, c, d)) return true;
+      }
+    return false;
   }
   bool near_line(const Vec2& p, const Vec2& a, const Vec2& b) const {
-    return (p - nearest_on(a, b, p)).norm() <= 1e-12 * size_;
+    const double near = 1e-12 * size_, x = p.x();
+    if (x < std::min(a.x(), b.x()) - near || x > std::max(a.x(), b.x()) + near) return false;
+    return (p - nearest_on(a, b, p)).norm() <= near;
   }
+
+  struct Side {
+    const Corner *from, *to;
+    bool border;
+  };
 
   std::span<const Region> regions_;
   std::vector<std::vector<Vec2>> domain_;  // rings
   double size_ = 0;
   std::vector<Vec2> points_;
   std::vector<std::pair<size_t, size_t>> sides_;
+  std::vector<bool> borders_;  // of the sides
   std::map<std::pair<double, double>, Corner> corners_;
-  std::vector<std::pair<const Corner*, const Corner*>> ends_;  // of the sides, as rings have them
+  std::vector<Side> ends_;
 };
 
 Vec2 vec(const Kernel::Point_2& p) { return {p.x(), p.y()}; }
@@ -201,9 +216,10 @@ class MedialAxis {
     for (const Vec2& p : outlines.points()) points.emplace_back(p.x(), p.y());
     graph_.insert_segments(points.begin(), points.end(), outlines.sides().begin(),
                            outlines.sides().end());
-    for (const auto& [p, q] : outlines.sides()) {
+    for (size_t k = 0; k < outlines.sides().size(); ++k) {
+      const auto& [p, q] = outlines.sides()[k];
       const Vec2 &a = outlines.points()[p], &b = outlines.points()[q];
-      sides_[key(a, b)] = {a, b};
+      sides_[key(a, b)] = {true, a, b, outlines.on_border(k), true};
     }
   }
 
@@ -248,20 +264,14 @@ class MedialAxis {
     Contact c;
     if (site.is_point()) {
       c.a = c.b = vec(site.point());
-      c.border = outlines_.on_border(c.a);
-      c.known = outlines_.corner(c.a) != nullptr;
+      const Corner* corner = outlines_.corner(c.a);
+      c.known = corner != nullptr;
+      c.border = c.known && corner->border;
       return c;
     }
-    c.is_side = true;
-    c.a = vec(site.segment().source());
-    c.b = vec(site.segment().target());
-    const auto side = sides_.find(key(c.a, c.b));
-    c.known = side != sides_.end();
-    if (c.known) {
-      c.a = side->second.first;
-      c.b = side->second.second;
-      c.border = outlines_.on_border(c.a, c.b);
-    }
+    const auto side = sides_.find(key(vec(site.segment().source()), vec(site.segment().target())));
+    if (side != sides_.end()) return side->second;
+    c.known = false;
     return c;
   }
 
@@ -386,7 +396,7 @@ class MedialAxis {
   const Counts* counts_ = nullptr;
   G graph_;
   Vertex hint_;
-  std::map<Key, std::pair<Vec2, Vec2>> sides_;
+  std::map<Key, Contact> sides_;
   std::vector<NarrowPlace> found_;
 };
 
