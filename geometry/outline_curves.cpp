@@ -16,6 +16,8 @@ using Ring = std::vector<Vec2>;
 constexpr double kPi = std::numbers::pi;
 /// Points that are nearer to each other are one: CAD kernels take 1e-7 mm as no distance [m].
 constexpr double kNear = 1e-9;
+/// A circle goes through a point that is so near to it [m].
+constexpr double kThrough = 1e-10;
 /// An angle that counts as round-off [rad].
 constexpr double kRoundOff = 1e-9;
 
@@ -39,6 +41,14 @@ std::optional<Vec2> nearest(const Vec2& to, const Vec2& a, const Vec2& b, double
   const Vec2& out = (a - to).norm() <= (b - to).norm() ? a : b;
   if (!((out - to).norm() <= reach)) return {};
   return out;
+}
+
+/// An arc whose circle misses its ends by what counts as round-off of large circles, with a circle
+/// through them: CAD kernels want ends within a nanometre.
+OutlineCurve through_its_ends(const OutlineCurve& arc) {
+  const double from = (arc.from - arc.center).norm(), to = (arc.to - arc.center).norm();
+  const bool through = std::max(std::abs(from - arc.radius), std::abs(to - arc.radius)) < kThrough;
+  return through ? arc : arc_between(arc.from, arc.to, arc.sweep);
 }
 
 /// Where a line through `p` meets a circle near to it.
@@ -164,7 +174,7 @@ class RingCurves {
     OutlineCurve arc{chain[first], chain[last], 0, circle.center, circle.radius};
     for (std::size_t k = first; k < last; ++k)
       arc.sweep += angle_between(chain[k] - circle.center, chain[k + 1] - circle.center);
-    if (first < last) out.push_back(arc);
+    if (first < last) out.push_back(through_its_ends(arc));
     if (tail) out.push_back(line_between(chain[last], chain[last + 1]));
   }
 

@@ -46,8 +46,9 @@ void expect_closed(const CurvedRegion& region) {
       EXPECT_EQ(c.to.x(), next.from.x());
       EXPECT_EQ(c.to.y(), next.from.y());
       if (c.is_line()) continue;
-      EXPECT_NEAR((c.from - c.center).norm(), c.radius, 1e-9 * c.radius);
-      EXPECT_NEAR((c.to - c.center).norm(), c.radius, 1e-9 * c.radius);
+      // CAD kernels take 1e-10 m as no distance.
+      EXPECT_NEAR((c.from - c.center).norm(), c.radius, 1e-10);
+      EXPECT_NEAR((c.to - c.center).norm(), c.radius, 1e-10);
       EXPECT_NEAR((c.at(1 - 1e-9) - c.to).norm(), 0, 1e-8 * c.radius);
     }
 }
@@ -121,6 +122,22 @@ TEST(OutlineCurves, OfARoundedRectangleAreFourLinesAndFourArcs) {
 }
 
 // Six vertices on a circle are no circle when its sides are far within.
+// A vertex that is 3e-9 m off a circle of 4 m lies on it to round-off. The arc ends at the vertex.
+TEST(OutlineCurves, OfALargeCircleEndAtItsVertices) {
+  const double r = 4;
+  Ring ring = {{0.1, -0.1}};
+  for (int k = 0; k <= 20; ++k) {
+    const double angle = 0.5 * kPi + 0.002 * k, off = k == 20 ? 3e-9 : 0;
+    ring.push_back(Vec2(0.1, -r) + (r + off) * Vec2(std::cos(angle), std::sin(angle)));
+  }
+  ring.push_back({ring.back().x(), -0.1});
+  const std::vector<CurvedRegion> found = curves_of(std::vector<Region>{{ring, {}}}, kTolerance);
+  ASSERT_EQ(found.size(), 1u);
+  expect_closed(found[0]);
+  EXPECT_EQ(found[0].outer.size(), 4u);
+  EXPECT_EQ(lines_in(found[0].outer), 3);
+}
+
 TEST(OutlineCurves, OfAHexagonAreItsSides) {
   Ring ring;
   for (int k = 0; k < 6; ++k)
