@@ -1,19 +1,22 @@
 #include "geometry/closing.h"
 
-#include <geos_c.h>
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <string>
 #include <utility>
 
+#include "geometry/geos.h"
 #include "geometry/ring_area.h"
 #include "geometry/simplified.h"
 
 namespace flexmorph {
 namespace {
+
+using geos::Geos;
+using geos::ring_points;
+using geos::Shape;
+using geos::shape_of;
 
 /// Vertices of results that are so near to one of the given regions are that one; parts of the
 /// fillets' radius. Vertices nearer to the line through their neighbours than the second are none.
@@ -24,202 +27,6 @@ constexpr double kLattice = 1e-9;
 constexpr double kOnBorder = 1e-6;
 /// Half the width of what is no material [tolerances]: polygons instead of discs leave it.
 constexpr double kWhisker = 0.5;
-
-/// A context of GEOS, whose last message says what went wrong.
-class Geos {
- public:
-  Geos() : handle_(GEOS_init_r()) {
-    GEOSContext_setErrorMessageHandler_r(handle_, &Geos::note, this);
-  }
-  ~Geos() { GEOS_finish_r(handle_); }
-  Geos(const Geos&) = delete;
-  Geos& operator=(const Geos&) = delete;
-
-  GEOSContextHandle_t handle() const { return handle_; }
-  [[noreturn]] void fail() const {
-    throw Error::numerical("fillets of an outline: GEOS says: " +
-                           (said_.empty() ? "no result" : said_));
-  }
-
- private:
-  static void note(const char* message, void* self) { static_cast<Geos*>(self)->said_ = message; }
-
-  GEOSContextHandle_t handle_;
-  std::string said_;
-};
-
-class Shape;
-Shape union_of(const Geos& geos, std::vector<Shape> pieces);
-
-class Shape {
- public:
-  /// The union of many shapes.
-  friend Shape union_of(const Geos& geos, std::vector<Shape> pieces);
-
-  Shape(const Geos& geos, GEOSGeometry* geometry) : geos_(&geos), geometry_(geometry) {
-    if (geometry == nullptr) geos.fail();
-  }
-  ~Shape() {
-    if (geometry_ != nullptr) GEOSGeom_destroy_r(geos_->handle(), geometry_);
-  }
-  Shape(Shape&& other) noexcept
-      : geos_(other.geos_), geometry_(std::exchange(other.geometry_, nullptr)) {}
-  Shape(const Shape&) = delete;
-  Shape& operator=(const Shape&) = delete;
-  Shape& operator=(Shape&& other) noexcept {
-    std::swap(geometry_, other.geometry_);
-    return *this;
-  }
-
-  const GEOSGeometry* get() const { return geometry_; }
-  Shape grown(double by, int segments) const {
-    return ring_by_ring(by, [&](const GEOSGeometry* ring, double distance) {
-      return GEOSBuffer_r(geos_->handle(), ring, distance, segments);
-    });
-  }
-  /// Without what is thinner than twice the width; corners stay, unless they are very acute.
-  Shape without_whiskers(double width) const {
-    const auto grow = [&](const GEOSGeometry* ring, double by) {
-      constexpr int kQuarter = 8;
-      constexpr double kMitre = 5;
-      return GEOSBufferWithStyle_r(geos_->handle(), ring, by, kQuarter, GEOSBUF_CAP_ROUND,
-                                   GEOSBUF_JOIN_MITRE, kMitre);
-    };
-    return ring_by_ring(-width, grow).ring_by_ring(width, grow);
-  }
-  Shape united(const Shape& other) const {
-    return polygons_of(GEOSUnion_r(geos_->handle(), geometry_, other.geometry_));
-  }
-  Shape without(const Shape& other) const {
-    return polygons_of(GEOSDifference_r(geos_->handle(), geometry_, other.geometry_));
-  }
-  Shape common(const Shape& other) const {
-    return polygons_of(GEOSIntersection_r(geos_->handle(), geometry_, other.geometry_));
-  }
-  /// What is in the bounding box of another shape.
-  Shape near(const Shape& other) const {
-    double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-    const GEOSContextHandle_t h = geos_->handle();
-    const GEOSGeometry* of = other.geometry_;
-    if (GEOSGeom_getExtent_r(h, of, &x0, &y0, &x1, &y1) == 0) geos_->fail();
-    return polygons_of(GEOSClipByRect_r(h, geometry_, x0, y0, x1, y1));
-  }
-  Shape simplified(double tolerance) const {
-    return {*geos_, GEOSTopologyPreserveSimplify_r(geos_->handle(), geometry_, tolerance)};
-  }
-  /// The same of lines, which have no topology to keep.
-  Shape only_simplified(double tolerance) const {
-    return {*geos_, GEOSSimplify_r(geos_->handle(), geometry_, tolerance)};
-  }
-  /// With vertices on a lattice: nothing is left of slits and whiskers that are narrower.
-  Shape on_lattice(double width) const {
-    return polygons_of(GEOSGeom_setPrecision_r(geos_->handle(), geometry_, width, 0));
-  }
-  int n_pieces() const { return GEOSGetNumGeometries_r(geos_->handle(), geometry_); }
-  Shape piece(int k) const {
-    return {*geos_,
-            GEOSGeom_clone_r(geos_->handle(), GEOSGetGeometryN_r(geos_->handle(), geometry_, k))};
-  }
-  bool is_valid() const { return GEOSisValid_r(geos_->handle(), geometry_) == 1; }
-  double area() const {
-    double out = 0;
-    if (GEOSArea_r(geos_->handle(), geometry_, &out) == 0) geos_->fail();
-    return out;
-  }
-
- private:
-  /// Grows what each ring encloses, holes the other way: GEOS needs a time that is quadratic in the
-  /// number of rings that it grows at once.
-  template <typename Grow>
-  Shape ring_by_ring(double by, const Grow& grow) const {
-    std::vector<Shape> pieces;
-    for (int k = 0; k < n_pieces(); ++k) {
-      const GEOSGeometry* polygon = GEOSGetGeometryN_r(geos_->handle(), geometry_, k);
-      const Shape outer = filled_ring(GEOSGetExteriorRing_r(geos_->handle(), polygon));
-      pieces.push_back({*geos_, grow(outer.geometry_, by)});
-      std::vector<Shape> holes;
-      for (int h = 0; h < GEOSGetNumInteriorRings_r(geos_->handle(), polygon); ++h) {
-        const Shape hole = filled_ring(GEOSGetInteriorRingN_r(geos_->handle(), polygon, h));
-        holes.push_back({*geos_, grow(hole.geometry_, -by)});
-      }
-      if (!holes.empty()) pieces.back() = pieces.back().without(union_of(*geos_, std::move(holes)));
-    }
-    return union_of(*geos_, std::move(pieces));
-  }
-  Shape filled_ring(const GEOSGeometry* ring) const {
-    return {*geos_, GEOSGeom_createPolygon_r(geos_->handle(),
-                                             GEOSGeom_clone_r(geos_->handle(), ring), nullptr, 0)};
-  }
-  GEOSGeometry* release() { return std::exchange(geometry_, nullptr); }
-
-  /// The polygons of a result: where shapes only touch, it has lines and points, too.
-  Shape polygons_of(GEOSGeometry* result) const {
-    const Shape all{*geos_, result};
-    std::vector<GEOSGeometry*> polygons;
-    for (int k = 0; k < all.n_pieces(); ++k) {
-      const GEOSGeometry* piece = GEOSGetGeometryN_r(geos_->handle(), all.geometry_, k);
-      if (GEOSGeomTypeId_r(geos_->handle(), piece) == GEOS_POLYGON)
-        polygons.push_back(GEOSGeom_clone_r(geos_->handle(), piece));
-    }
-    return {*geos_, GEOSGeom_createCollection_r(geos_->handle(), GEOS_MULTIPOLYGON, polygons.data(),
-                                                static_cast<unsigned>(polygons.size()))};
-  }
-
-  const Geos* geos_;
-  GEOSGeometry* geometry_;
-};
-
-Shape union_of(const Geos& geos, std::vector<Shape> pieces) {
-  std::vector<GEOSGeometry*> all;
-  for (Shape& piece : pieces) all.push_back(piece.release());
-  const Shape together{
-      geos, GEOSGeom_createCollection_r(geos.handle(), GEOS_GEOMETRYCOLLECTION, all.data(),
-                                        static_cast<unsigned>(all.size()))};
-  return together.polygons_of(GEOSUnaryUnion_r(geos.handle(), together.geometry_));
-}
-
-bool is_before(const Vec2& a, const Vec2& b) {
-  return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y());
-}
-
-/// The ring from its lowest, leftmost vertex on.
-std::vector<Vec2> from_first_vertex(std::vector<Vec2> ring) {
-  std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end(), is_before), ring.end());
-  return ring;
-}
-
-GEOSGeometry* ring_of(const Geos& geos, const std::vector<Vec2>& ring) {
-  const auto n = static_cast<unsigned>(ring.size());
-  GEOSCoordSequence* points = GEOSCoordSeq_create_r(geos.handle(), n + 1, 2);
-  for (unsigned k = 0; k <= n; ++k)
-    GEOSCoordSeq_setXY_r(geos.handle(), points, k, ring[k % n].x(), ring[k % n].y());
-  return GEOSGeom_createLinearRing_r(geos.handle(), points);
-}
-
-/// The same whatever the order of regions and holes, and wherever rings begin.
-Shape shape_of(const Geos& geos, std::span<const Region> regions) {
-  const auto earlier = [](const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
-    return is_before(a.front(), b.front());
-  };
-  std::vector<Region> sorted;
-  for (const Region& r : regions) {
-    Region& own = sorted.emplace_back(Region{from_first_vertex(r.outer), {}});
-    for (const std::vector<Vec2>& hole : r.holes) own.holes.push_back(from_first_vertex(hole));
-    std::sort(own.holes.begin(), own.holes.end(), earlier);
-  }
-  std::sort(sorted.begin(), sorted.end(),
-            [&](const Region& a, const Region& b) { return earlier(a.outer, b.outer); });
-  std::vector<GEOSGeometry*> pieces;
-  for (const Region& r : sorted) {
-    std::vector<GEOSGeometry*> holes;
-    for (const std::vector<Vec2>& hole : r.holes) holes.push_back(ring_of(geos, hole));
-    pieces.push_back(GEOSGeom_createPolygon_r(geos.handle(), ring_of(geos, r.outer), holes.data(),
-                                              static_cast<unsigned>(holes.size())));
-  }
-  return {geos, GEOSGeom_createCollection_r(geos.handle(), GEOS_MULTIPOLYGON, pieces.data(),
-                                            static_cast<unsigned>(pieces.size()))};
-}
-
 /// Sides of a quarter of a circle that stay within the tolerance.
 int segments(double radius, double tolerance) {
   const double part = std::min(tolerance / radius, 0.1);
@@ -383,23 +190,6 @@ std::vector<Vec2> cleaned(const std::vector<Vec2>& ring, const Vertices& vertice
   return out;
 }
 
-std::vector<Vec2> points_of(const Geos& geos, const GEOSGeometry* line) {
-  const GEOSCoordSequence* sequence = GEOSGeom_getCoordSeq_r(geos.handle(), line);
-  unsigned n = 0;
-  if (sequence == nullptr || GEOSCoordSeq_getSize_r(geos.handle(), sequence, &n) == 0) geos.fail();
-  std::vector<Vec2> out(n);
-  for (unsigned k = 0; k < n; ++k)
-    GEOSCoordSeq_getXY_r(geos.handle(), sequence, k, &out[k].x(), &out[k].y());
-  return out;
-}
-
-/// The points of a ring, each once.
-std::vector<Vec2> ring_points(const Geos& geos, const GEOSGeometry* ring) {
-  std::vector<Vec2> out = points_of(geos, ring);
-  if (!out.empty()) out.pop_back();
-  return out;
-}
-
 /// Sets the sense of rotation; false where nothing is left of the ring.
 bool orient(std::vector<Vec2>& ring, bool outer) {
   if (ring.size() < 3) return false;
@@ -436,27 +226,6 @@ Region region_of(const Geos& geos, const GEOSGeometry* piece, const Vertices& ve
 }
 
 }  // namespace
-
-std::vector<Vec2> simplified(const std::vector<Vec2>& ring, double tolerance) {
-  const Geos geos;
-  const Region region{ring, {}};
-  const Shape shape = shape_of(geos, {&region, 1}).simplified(tolerance);
-  std::vector<Vec2> out = ring_points(
-      geos,
-      GEOSGetExteriorRing_r(geos.handle(), GEOSGetGeometryN_r(geos.handle(), shape.get(), 0)));
-  orient(out, signed_area(ring) > 0);
-  return out;
-}
-
-std::vector<Vec2> simplified_line(const std::vector<Vec2>& line, double tolerance) {
-  const Geos geos;
-  const auto n = static_cast<unsigned>(line.size());
-  GEOSCoordSequence* points = GEOSCoordSeq_create_r(geos.handle(), n, 2);
-  for (unsigned k = 0; k < n; ++k)
-    GEOSCoordSeq_setXY_r(geos.handle(), points, k, line[k].x(), line[k].y());
-  const Shape whole{geos, GEOSGeom_createLineString_r(geos.handle(), points)};
-  return points_of(geos, whole.only_simplified(tolerance).get());
-}
 
 std::vector<Region> with_fillets(std::span<const Region> regions, const Region& domain,
                                  const Fillets& fillets, double tolerance) {

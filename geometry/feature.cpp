@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "geometry/crossings.h"
+#include "geometry/outline_sides.h"
 
 namespace flexmorph {
 namespace {
@@ -76,122 +77,6 @@ constexpr double kRoundOff = 1e-9;
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-Vec2 nearest_on(const Vec2& a, const Vec2& b, const Vec2& p) {
-  const Vec2 along = b - a;
-  const double length2 = along.squaredNorm();
-  const double t = length2 > 0 ? std::clamp((p - a).dot(along) / length2, 0.0, 1.0) : 0.0;
-  return a + t * along;
-}
-
-/// What the outlines say about one of their vertices.
-struct Corner {
-  Vec2 before{0, 0}, after{0, 0};  // directions of the sides that end and begin here
-  int visits = 0;
-  size_t number = 0;  // among the vertices in the order of their coordinates
-  bool border_before = false, border_after = false;  // are these sides on the domain's border?
-  bool border = false;                               // is the vertex?
-};
-
-/// The outlines: vertices and sides in the order of their coordinates, wherever rings begin.
-class Outlines {
- public:
-  Outlines(std::span<const Region> regions, const Region& domain)
-      : regions_(regions), domain_(rings_of(domain)) {
-    for (const Vec2& p : domain.outer) size_ = std::max(size_, p.cwiseAbs().maxCoeff());
-    for (const Region& r : regions) {
-      add(r.outer);
-      for (const auto& hole : r.holes) add(hole);
-    }
-    number();
-  }
-
-  const std::vector<Vec2>& points() const { return points_; }
-  const std::vector<std::pair<size_t, size_t>>& sides() const { return sides_; }
-  /// Is the k-th side on the border?
-  bool on_border(size_t k) const { return borders_[k]; }
-
-  const Corner* corner(const Vec2& p) const {
-    const auto found = corners_.find({p.x(), p.y()});
-    return found == corners_.end() ? nullptr : &found->second;
-  }
-  const std::map<std::pair<double, double>, Corner>& corners() const { return corners_; }
-
-  bool in_material(const Vec2& p) const {
-    return std::any_of(regions_.begin(), regions_.end(),
-                       [&](const Region& r) { return contains(r, p); });
-  }
-
-  /// Is the point in the domain (counted by crossings)?
-  bool within(const Vec2& p) const {
-    bool inside = false;
-    for (const auto& ring : domain_)
-      for (size_t i = 0; i < ring.size(); ++i) {
-        const Vec2 &a = ring[i], &b = ring[(i + 1) % ring.size()];
-        if ((a.y() > p.y()) != (b.y() > p.y()) &&
-            p.x() < a.x() + (p.y() - a.y()) * (b.x() - a.x()) / (b.y() - a.y()))
-          inside = !inside;
-      }
-    return inside;
-  }
-
- private:
-  void add(const std::vector<Vec2>& ring) {
-    for (size_t k = 0; k < ring.size(); ++k) {
-      const Vec2 &p = ring[k], &q = ring[(k + 1) % ring.size()];
-      if (p == q) continue;
-      const bool border = on_border(p, q);
-      Corner &at_p = corners_[{p.x(), p.y()}], &at_q = corners_[{q.x(), q.y()}];
-      at_p.after = (q - p).normalized();
-      at_p.border_after = border;
-      at_q.before = at_p.after;
-      at_q.border_before = border;
-      ++at_p.visits;
-      ends_.push_back({&at_p, &at_q, border});
-    }
-  }
-  void number() {
-    for (auto& [at, corner] : corners_) {
-      corner.number = points_.size();
-      points_.emplace_back(at.first, at.second);
-      corner.border = on_border(points_.back(), points_.back());
-    }
-    std::sort(ends_.begin(), ends_.end(), [](const Side& x, const Side& y) {
-      return std::pair(x.from->number, x.to->number) < std::pair(y.from->number, y.to->number);
-    });
-    for (const Side& side : ends_) {
-      sides_.emplace_back(side.from->number, side.to->number);
-      borders_.push_back(side.border);
-    }
-  }
-  bool on_border(const Vec2& a, const Vec2& b) const {
-    for (const auto& ring : domain_)
-      for (size_t i = 0; i < ring.size(); ++i) {
-        const Vec2 &c = ring[i], &d = ring[(i + 1) % ring.size()];
-        if (near_line(a, c, d) && near_line(b, c, d)) return true;
-      }
-    return false;
-  }
-  bool near_line(const Vec2& p, const Vec2& a, const Vec2& b) const {
-    const double near = 1e-12 * size_, x = p.x();
-    if (x < std::min(a.x(), b.x()) - near || x > std::max(a.x(), b.x()) + near) return false;
-    return (p - nearest_on(a, b, p)).norm() <= near;
-  }
-
-  struct Side {
-    const Corner *from, *to;
-    bool border;
-  };
-
-  std::span<const Region> regions_;
-  std::vector<std::vector<Vec2>> domain_;  // rings
-  double size_ = 0;
-  std::vector<Vec2> points_;
-  std::vector<std::pair<size_t, size_t>> sides_;
-  std::vector<bool> borders_;  // of the sides
-  std::map<std::pair<double, double>, Corner> corners_;
-  std::vector<Side> ends_;
-};
-
 Vec2 vec(const Kernel::Point_2& p) { return {p.x(), p.y()}; }
 
 /// A vertex or a side of the outlines, as a disc may touch it.
@@ -210,7 +95,7 @@ using Counts = std::function<bool(const NarrowPlace&)>;
 template <class Traits>
 class MedialAxis {
  public:
-  MedialAxis(const Outlines& outlines, double limit)
+  MedialAxis(const OutlineSides& outlines, double limit)
       : outlines_(outlines), limit_(limit), bounds_{limit, limit} {
     std::vector<Kernel::Point_2> points;
     for (const Vec2& p : outlines.points()) points.emplace_back(p.x(), p.y());
@@ -264,7 +149,7 @@ class MedialAxis {
     Contact c;
     if (site.is_point()) {
       c.a = c.b = vec(site.point());
-      const Corner* corner = outlines_.corner(c.a);
+      const OutlineCorner* corner = outlines_.corner(c.a);
       c.known = corner != nullptr;
       c.border = c.known && corner->border;
       return c;
@@ -278,7 +163,7 @@ class MedialAxis {
   /// Does a disc around `center` that touches here lie in the material?
   bool in_material(const Contact& c, const Vec2& center) const {
     if (c.is_side) return cross(c.b - c.a, center - c.a) > 0;
-    const Corner& corner = *outlines_.corner(c.a);
+    const OutlineCorner& corner = *outlines_.corner(c.a);
     if (corner.visits > 1) return outlines_.in_material(center);
     return cross(corner.before, corner.after) < 0;  // only reflex vertices touch from within
   }
@@ -390,7 +275,7 @@ class MedialAxis {
     }
   }
 
-  const Outlines& outlines_;
+  const OutlineSides& outlines_;
   double limit_;
   std::array<double, 2> bounds_;  // of gaps and of solid places: those below are looked for
   const Counts* counts_ = nullptr;
@@ -404,7 +289,7 @@ class MedialAxis {
 
 std::vector<NarrowPlace> narrow_places(std::span<const Region> regions, const Region& domain,
                                        double limit) {
-  const Outlines outlines(regions, domain);
+  const OutlineSides outlines(regions, domain);
   if (outlines.sides().empty()) return {};
   if (sides_cross(outlines.points(), outlines.sides()))
     return MedialAxis<Crossing>(outlines, limit).places();
@@ -413,7 +298,7 @@ std::vector<NarrowPlace> narrow_places(std::span<const Region> regions, const Re
 
 Features smallest_features(std::span<const Region> regions, const Region& domain,
                            const std::function<bool(const NarrowPlace&)>& counts) {
-  const Outlines outlines(regions, domain);
+  const OutlineSides outlines(regions, domain);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (outlines.sides().empty()) return {kInfinity, kInfinity};
   if (sides_cross(outlines.points(), outlines.sides()))
