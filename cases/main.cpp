@@ -27,8 +27,8 @@
 #include "geometry/plain_numbers.h"
 #include "geometry/processor.h"
 #include "geometry/text.h"
-#include "io/case_document.h"
-#include "io/case_parser.h"
+#include "io/case_files/case_document.h"
+#include "io/case_files/case_parser.h"
 #include "io/files.h"
 
 namespace {

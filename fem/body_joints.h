@@ -1,7 +1,7 @@
 #pragma once
 
 #include "fem/marker.h"
-#include "fem/plane_curve.h"
+#include "fem/shapes/plane_curve.h"
 
 /// Joints between places on planar rigid bodies, on plates and on the ground (fem/marker.h).
 ///

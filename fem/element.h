@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "fem/shape.h"
+#include "fem/shapes/shape.h"
 #include "geometry/grid.h"
 
 namespace flexmorph::fem {

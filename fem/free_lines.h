@@ -3,7 +3,7 @@
 #include <array>
 
 #include "fem/element.h"
-#include "fem/shape.h"
+#include "fem/shapes/shape.h"
 
 namespace flexmorph::fem {
 

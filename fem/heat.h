@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "fem/shape.h"
+#include "fem/shapes/shape.h"
 
 namespace flexmorph::fem {
 

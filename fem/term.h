@@ -1,7 +1,7 @@
 #pragma once
 
-#include "fem/batch.h"
 #include "fem/element.h"
+#include "fem/shapes/batch.h"
 
 namespace flexmorph::fem {
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "fem/section.h"
-#include "fem/strain.h"
+#include "fem/shapes/strain.h"
 #include "fem/term.h"
 
 /// The table of terms: what a body is made of. A row says all there is to say about one; it stands

@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "geometry/part_mesh.h"
+#include "geometry/parts/part_mesh.h"
 
 /// Pictures of what a part does.
 namespace flexmorph::io {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/outline.h"
+#include "geometry/components/outline.h"
 
 /// Pictures as SVG text, for files and for the report.
 namespace flexmorph::io {

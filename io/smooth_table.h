@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "io/formula.h"
+#include "io/case_files/formula.h"
 
 namespace flexmorph::io {
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "geometry/component.h"
+#include "geometry/components/component.h"
 #include "geometry/grid.h"
-#include "geometry/part_mesh.h"
+#include "geometry/parts/part_mesh.h"
 
 /// Files for ParaView: XML with base64 data inline, zlib level 1, Float32. The same input gives the
 /// same bytes. Every file appears under its name only when it is complete.

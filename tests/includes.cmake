@@ -7,8 +7,8 @@
 cmake_minimum_required(VERSION 3.25)
 cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH root)
 
-# Room -> the rooms it may include besides itself. `fem` stands for the seams, the files directly in
-# fem/ but for the model.
+# Room -> the rooms it may include besides itself. `fem` stands for the interfaces, the files
+# directly in fem/, and for fem/shapes.
 set(fem fem fem/model fem/elements fem/terms fem/joints fem/links fem/solve fem/triangles
         fem/dynamics fem/thermal)
 set(may_geometry "")
@@ -63,8 +63,8 @@ set(folder_valijson tests)
 
 # The room a file lies in.
 function(room_of path room)
-  if(path MATCHES "^fem/(model|workspace)[^/]*$")
-    set(${room} fem/model PARENT_SCOPE)
+  if(path MATCHES "^fem/shapes/")
+    set(${room} fem PARENT_SCOPE)
   elseif(path MATCHES "^(fem/[^/]+|optim/[^/]+|cases/[^/]+)/")
     set(${room} ${CMAKE_MATCH_1} PARENT_SCOPE)
   elseif(path MATCHES "^([^/]+)/")
@@ -97,19 +97,19 @@ function(judge_library file header offence)
 endfunction()
 
 # The tables must be able to refuse: known offences first, then known good ones.
-foreach(pair geometry/grid.h>io/vtk.h io/vtk.cpp>fem/model.h fem/element.h>fem/model.h
-             fem/terms/inertia.cpp>fem/elements/ale_ancf_plate.h fem/model.cpp>fem/terms/terms.h
+foreach(pair geometry/grid.h>io/vtk.h io/vtk.cpp>fem/model/model.h fem/element.h>fem/model/model.h
+             fem/terms/inertia.cpp>fem/elements/ale_ancf_plate.h fem/model/model.cpp>fem/terms/terms.h
              fem/solve/newton.cpp>fem/dynamics/esl.h optim/mma.cpp>optim/mmc/problem/design.h
              fem/thermal/heated.cpp>fem/elements/ancf_plate.h
-             optim/mma.cpp>fem/model.h cases/run/run.h>tests/support/rate.h)
+             optim/mma.cpp>fem/model/model.h cases/run/run.h>tests/support/rate.h)
   string(REPLACE ">" ";" pair ${pair})
   judge_room(${pair} offence)
   if(NOT offence)
     message(FATAL_ERROR "the table of rooms allows: ${pair}")
   endif()
 endforeach()
-foreach(pair fem/terms/inertia.cpp>fem/element.h fem/dynamics/esl.cpp>fem/model.h
-             optim/mmc/loads/compliance_evaluator.h>fem/solve/statics.h tests/fem/model_test.cpp>fem/model.h)
+foreach(pair fem/terms/inertia.cpp>fem/element.h fem/dynamics/esl.cpp>fem/model/model.h
+             optim/mmc/loads/compliance_evaluator.h>fem/solve/statics.h tests/fem/model_test.cpp>fem/model/model.h)
   string(REPLACE ">" ";" pair ${pair})
   judge_room(${pair} offence)
   if(offence)
@@ -117,9 +117,9 @@ foreach(pair fem/terms/inertia.cpp>fem/element.h fem/dynamics/esl.cpp>fem/model.
   endif()
 endforeach()
 foreach(pair io/vtk.h>vtkNew.h fem/solve/newton.cpp>CGAL/Polygon_2.h
-             optim/nlopt.h>nlopt.hpp fem/model.h>Eigen/CholmodSupport
-             fem/model.cpp>boost/numeric/odeint.hpp
-             fem/dynamics/integrator.cpp>ida/ida.h)
+             optim/nlopt.h>nlopt.hpp fem/model/model.h>Eigen/CholmodSupport
+             fem/model/model.cpp>boost/numeric/odeint.hpp
+             fem/dynamics/integrators/integrator.cpp>ida/ida.h)
   string(REPLACE ">" ";" pair ${pair})
   judge_library(${pair} offence)
   if(NOT offence)

@@ -5,11 +5,11 @@
 #include <filesystem>
 #include <optional>
 
-#include "geometry/part_mesh.h"
+#include "geometry/parts/part_mesh.h"
 #include "geometry/text.h"
-#include "io/drawing.h"
+#include "io/drawings/drawing.h"
+#include "io/drawings/step_reader.h"
 #include "io/files.h"
-#include "io/step_reader.h"
 
 namespace flexmorph::cases {
 namespace {

@@ -9,7 +9,7 @@
 #include "cases/assembly/stored.h"
 #include "cases/scene/elements/row.h"
 #include "cases/scene/joints/row.h"
-#include "fem/dynamics/rigid_motion.h"
+#include "fem/dynamics/starts/rigid_motion.h"
 #include "fem/loads.h"
 #include "fem/terms.h"
 #include "io/files.h"

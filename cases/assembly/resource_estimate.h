@@ -29,8 +29,8 @@ struct Extent {
 };
 
 /// Memory and disk are within a factor of two of what was measured of shipped cases and of such on
-/// finer meshes (tests/cases/resource_estimate_test.cpp). Of designs the files are those of all
-/// iterations that are allowed, of paths along their arc those of all equilibria.
+/// finer meshes (tests/cases/scene/resource_estimate_test.cpp). Of designs the files are those of
+/// all iterations that are allowed, of paths along their arc those of all equilibria.
 Extent extent_of(const Scene& scene);
 
 /// Bytes that a run may take; infinite where the system does not say.

@@ -7,7 +7,7 @@
 #include "cases/assembly/joints.h"
 #include "cases/scene/elements/row.h"
 #include "cases/scene/joints/row.h"
-#include "fem/dynamics/inverse_kinematics.h"
+#include "fem/dynamics/starts/inverse_kinematics.h"
 
 namespace flexmorph::cases {
 namespace {

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "cases/scene/scene.h"
-#include "fem/dynamics/reference_pose.h"
-#include "fem/dynamics/rigid_kinematics.h"
+#include "fem/dynamics/starts/reference_pose.h"
+#include "fem/dynamics/starts/rigid_kinematics.h"
 
-/// What a scene says of its rigid kinematic model (fem/dynamics/rigid_kinematics.h).
+/// What a scene says of its rigid kinematic model (fem/dynamics/starts/rigid_kinematics.h).
 namespace flexmorph::cases {
 
 /// Returns where an undeformed plate or beam lies at the start: as its hub, its rigid body or the

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cases/assembly/prepared_case.h"
-#include "fem/dynamics/motion_gradient.h"
+#include "fem/dynamics/gradients/motion_gradient.h"
 #include "optim/mmc/problem/motion_response.h"
 
 namespace flexmorph::cases {

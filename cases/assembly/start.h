@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cases/assembly/build.h"
-#include "fem/dynamics/rigid_motion.h"
+#include "fem/dynamics/starts/rigid_motion.h"
 
 namespace flexmorph::cases {
 

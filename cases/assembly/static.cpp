@@ -4,7 +4,7 @@
 
 #include "cases/assembly/build.h"
 #include "cases/assembly/static_conditions.h"
-#include "geometry/picture.h"
+#include "geometry/parts/picture.h"
 #include "io/files.h"
 #include "optim/verification/force_spread.h"
 

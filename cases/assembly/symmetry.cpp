@@ -4,7 +4,7 @@
 
 #include "cases/assembly/static_conditions.h"
 #include "fem/dynamics/esl.h"
-#include "geometry/picture.h"
+#include "geometry/parts/picture.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {

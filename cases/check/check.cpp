@@ -11,7 +11,7 @@
 #include "cases/scene/heat/heat.h"
 #include "cases/scene/joints/row.h"
 #include "cases/scene/read.h"
-#include "fem/dynamics/rigid_motion.h"
+#include "fem/dynamics/starts/rigid_motion.h"
 #include "geometry/text.h"
 #include "io/files.h"
 

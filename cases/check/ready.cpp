@@ -6,11 +6,11 @@
 #include "cases/assembly/resource_estimate.h"
 #include "cases/results/expectations.h"
 #include "cases/scene/version.h"
-#include "fem/dynamics/rigid_motion.h"
-#include "fem/solve/blas_room.h"
+#include "fem/dynamics/starts/rigid_motion.h"
+#include "fem/solve/factorization/blas_room.h"
 #include "fem/solve/scaled_constraints.h"
 #include "geometry/text.h"
-#include "io/case_document.h"
+#include "io/case_files/case_document.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {

@@ -1,6 +1,6 @@
 # What `cmake --install --component ...` puts where.
 # program: flexmorph and, in share/flexmorph/cases, where it looks for them, shipped cases.
-# development: static libraries, headers under include/flexmorph (included as here: "fem/model.h"),
+# development: static libraries, headers under include/flexmorph (included as here: "fem/model/model.h"),
 # and what find_package(Flexmorph) reads.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)

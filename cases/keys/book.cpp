@@ -9,7 +9,7 @@
 #include "cases/scene/tables.h"
 #include "geometry/base.h"
 #include "geometry/text.h"
-#include "io/case_document.h"
+#include "io/case_files/case_document.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "io/key.h"
+#include "io/case_files/key.h"
 
 /// The keys of case files as people and programs read about them. All that is said here comes from
-/// the declarations beside the readers (io/key.h).
+/// the declarations beside the readers (io/case_files/key.h).
 namespace flexmorph::cases {
 
 /// The keys of one table, or of several that have the same ones.

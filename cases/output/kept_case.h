@@ -3,7 +3,7 @@
 #include <string>
 
 #include "cases/output/run_folder.h"
-#include "io/case_file.h"
+#include "io/case_files/case_file.h"
 
 namespace flexmorph::cases {
 

@@ -1,6 +1,6 @@
 #include "cases/output/outline_meshes.h"
 
-#include "io/mesh_exports.h"
+#include "io/drawings/mesh_exports.h"
 
 namespace flexmorph::cases {
 namespace {

@@ -8,7 +8,7 @@
 #include "cases/results/schema.h"
 #include "cases/scene/design/goal.h"
 #include "cases/scene/heat/heat.h"
-#include "io/case_parser.h"
+#include "io/case_files/case_parser.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {

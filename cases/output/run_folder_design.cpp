@@ -1,10 +1,10 @@
 #include "cases/output/run_folder.h"
 #include "cases/results/schema.h"
-#include "geometry/outline_curves.h"
-#include "io/exports.h"
+#include "geometry/parts/outline_curves.h"
+#include "io/drawings/exports.h"
+#include "io/drawings/step.h"
 #include "io/files.h"
 #include "io/plots.h"
-#include "io/step.h"
 #include "optim/mmc/cycles/design_verification.h"
 
 /// Tables and pictures of designs and their loads.

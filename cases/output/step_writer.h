@@ -4,7 +4,7 @@
 #include <string>
 
 #include "cases/results/series.h"
-#include "fem/workspace.h"
+#include "fem/model/workspace.h"
 #include "geometry/memory.h"
 #include "io/tables.h"
 

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "cases/scene/elements/row.h"
-#include "fem/dynamics/carrier.h"
+#include "fem/dynamics/starts/carrier.h"
 
 namespace flexmorph::cases {
 namespace {

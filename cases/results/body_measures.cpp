@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "fem/dynamics/growth.h"
+#include "fem/dynamics/mesh_changes/growth.h"
 
 namespace flexmorph::cases {
 namespace {

@@ -7,9 +7,9 @@
 #include "cases/assembly/build.h"
 #include "cases/assembly/joints.h"
 #include "cases/scene/joints/row.h"
-#include "fem/dynamics/carrier.h"
+#include "fem/dynamics/starts/carrier.h"
 #include "fem/dynamics/whole_momentum.h"
-#include "fem/workspace_wrench.h"
+#include "fem/model/workspace_wrench.h"
 
 namespace flexmorph::cases {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "cases/assembly/build.h"
-#include "geometry/part_mesh.h"
+#include "geometry/parts/part_mesh.h"
 #include "io/files.h"
 #include "optim/mmc/cycles/design_verification.h"
 #include "optim/mmc/problem/finished_part.h"

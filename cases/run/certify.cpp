@@ -6,8 +6,8 @@
 #include "cases/run/corrections.h"
 #include "cases/run/finished_run.h"
 #include "cases/run/motions.h"
-#include "io/case_file.h"
-#include "io/case_parser.h"
+#include "io/case_files/case_file.h"
+#include "io/case_files/case_parser.h"
 #include "io/files.h"
 #include "io/json.h"
 

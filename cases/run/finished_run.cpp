@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cases/output/run_folder.h"
-#include "io/case_parser.h"
+#include "io/case_files/case_parser.h"
 
 namespace flexmorph::cases {
 

@@ -13,7 +13,7 @@
 #include "cases/run/design_run.h"
 #include "cases/run/motions.h"
 #include "cases/run/path_run.h"
-#include "io/case_parser.h"
+#include "io/case_files/case_parser.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {

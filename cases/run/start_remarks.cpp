@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "fem/dynamics/carrier.h"
+#include "fem/dynamics/starts/carrier.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cases/scene/scene.h"
-#include "fem/model.h"
+#include "fem/model/model.h"
 
 namespace flexmorph::cases {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "io/case_file.h"
+#include "io/case_files/case_file.h"
 
 /// The table [accuracy] of a case: what `flexmorph accuracy` measures. A run does not look at it.
 namespace flexmorph::cases {

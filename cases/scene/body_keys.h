@@ -1,6 +1,6 @@
 #pragma once
 
-#include "io/case_file.h"
+#include "io/case_files/case_file.h"
 
 /// Keys of [[body]] and [body.flow] that plates, beams and drives share.
 namespace flexmorph::cases {

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "geometry/component.h"
-#include "geometry/feature.h"
+#include "geometry/components/component.h"
+#include "geometry/components/outline.h"
+#include "geometry/components/tdf.h"
 #include "geometry/grid.h"
-#include "geometry/outline.h"
-#include "geometry/tdf.h"
+#include "geometry/parts/feature.h"
 #include "optim/mmc/cycles/corrected_cycles.h"
 #include "optim/mmc/cycles/load_difference.h"
 #include "optim/mmc/loads/compliance_evaluator.h"

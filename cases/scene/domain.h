@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "geometry/components/outline.h"
 #include "geometry/disc.h"
-#include "geometry/outline.h"
 
 /// [domain], [[support]], [[load]]: a plate at rest.
 namespace flexmorph::cases {

@@ -5,8 +5,8 @@
 #include "cases/scene/read.h"
 #include "cases/scene/tables.h"
 #include "geometry/text.h"
+#include "io/case_files/formula.h"
 #include "io/files.h"
-#include "io/formula.h"
 #include "io/smooth_table.h"
 #include "io/tables.h"
 

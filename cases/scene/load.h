@@ -10,7 +10,7 @@
 #include "fem/load_law.h"
 #include "fem/term.h"
 #include "geometry/base.h"
-#include "io/case_file.h"
+#include "io/case_files/case_file.h"
 
 /// [[load]] on bodies that move.
 namespace flexmorph::cases {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cases/scene/scene.h"
-#include "io/case_file.h"
+#include "io/case_files/case_file.h"
 
 namespace flexmorph::cases {
 

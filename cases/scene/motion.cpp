@@ -7,7 +7,7 @@
 #include "cases/scene/mesh_rule.h"
 #include "cases/scene/read.h"
 #include "cases/scene/tables.h"
-#include "fem/dynamics/step_control.h"
+#include "fem/dynamics/integrators/step_control.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {

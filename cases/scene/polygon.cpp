@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "cases/scene/read.h"
-#include "geometry/outline.h"
+#include "geometry/components/outline.h"
 
 namespace flexmorph::cases {
 

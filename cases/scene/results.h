@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "geometry/base.h"
-#include "io/length_unit.h"
+#include "io/drawings/length_unit.h"
 
 /// What a run shows, and what it must reproduce.
 namespace flexmorph::cases {

@@ -20,7 +20,7 @@
 #include "cases/scene/rigid_body.h"
 #include "cases/scene/spring.h"
 #include "cases/scene/time.h"
-#include "io/case_file.h"
+#include "io/case_files/case_file.h"
 #include "optim/optimizer.h"
 
 /// What a case file says, as plain data. Nobody else reads the case file; what a case does not

@@ -7,7 +7,7 @@
 
 #include "cases/scene/rigid_body.h"
 #include "fem/link.h"
-#include "io/case_file.h"
+#include "io/case_files/case_file.h"
 
 /// [[spring]].
 namespace flexmorph::cases {

@@ -2,10 +2,10 @@
 
 #include "cases/scene/read.h"
 #include "cases/scene/tables.h"
-#include "geometry/outline.h"
-#include "io/drawing.h"
+#include "geometry/components/outline.h"
+#include "io/drawings/drawing.h"
+#include "io/drawings/length_unit.h"
 #include "io/files.h"
-#include "io/length_unit.h"
 
 namespace flexmorph::cases {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "io/key.h"
+#include "io/case_files/key.h"
 
 /// The tables at the top of a case file. Their keys are declared beside the code that reads them.
 namespace flexmorph::cases::tables {

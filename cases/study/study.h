@@ -8,7 +8,7 @@
 
 #include "cases/results/quantities.h"
 #include "cases/study/processes.h"
-#include "io/case_file.h"
+#include "io/case_files/case_file.h"
 #include "optim/mmc/problem/body_problem.h"
 
 /// Many runs of one case with changes: each a process of its own with a run folder of its own.

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "fem/line_grid.h"
-#include "fem/workspace.h"
+#include "fem/model/workspace.h"
 
 namespace flexmorph::fem {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fem/dynamics/growth.h"
+#include "fem/dynamics/mesh_changes/growth.h"
 #include "fem/esl_set.h"
 
 namespace flexmorph::fem {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "fem/dynamics/growth.h"
+#include "fem/dynamics/mesh_changes/growth.h"
 #include "fem/solve/linear_solver.h"
 #include "fem/solve/scaled_constraints.h"
 #include "geometry/text.h"

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <optional>
 
-#include "fem/dynamics/dense_output.h"
 #include "fem/dynamics/force_balance.h"
-#include "fem/dynamics/landings.h"
+#include "fem/dynamics/integrators/dense_output.h"
+#include "fem/dynamics/mesh_changes/landings.h"
 #include "fem/dynamics/motion_failures.h"
 #include "fem/dynamics/motion_memory.h"
 

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "fem/dynamics/balance.h"
-#include "fem/dynamics/energy_growth.h"
-#include "fem/dynamics/integrator.h"
-#include "fem/dynamics/start.h"
-#include "fem/dynamics/step_control.h"
-#include "fem/dynamics/step_watch.h"
+#include "fem/dynamics/integrators/energy_growth.h"
+#include "fem/dynamics/integrators/integrator.h"
+#include "fem/dynamics/integrators/step_control.h"
+#include "fem/dynamics/integrators/step_watch.h"
+#include "fem/dynamics/starts/start.h"
 #include "fem/dynamics/trajectory.h"
 #include "fem/solve/diagnosis.h"
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "fem/dofs.h"
-#include "fem/dynamics/mesh_map.h"
+#include "fem/dynamics/mesh_changes/mesh_map.h"
 
 namespace flexmorph::fem {
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <utility>
 
-#include "fem/shape.h"
+#include "fem/shapes/shape.h"
 
 /// Shape functions of a rectangular plate element as products of Hermite functions along m and n.
 namespace flexmorph::fem::plate {

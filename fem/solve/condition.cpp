@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fem/solve/klu_solver.h"
+#include "fem/solve/factorization/klu_solver.h"
 
 namespace flexmorph::fem {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
-#include "fem/solve/bordered_cholesky.h"
-#include "fem/solve/saddle_cholesky.h"
+#include "fem/solve/factorization/bordered_cholesky.h"
+#include "fem/solve/factorization/saddle_cholesky.h"
 
 extern "C" char* openblas_get_corename();  // cblas.h of other vendors has no such call
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fem/section.h"
-#include "fem/solve/supernodal_factor.h"
+#include "fem/solve/factorization/supernodal_factor.h"
 #include "geometry/grid.h"
 
 namespace flexmorph::fem {

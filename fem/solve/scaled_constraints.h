@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fem/workspace.h"
+#include "fem/model/workspace.h"
 
 namespace flexmorph::fem {
 

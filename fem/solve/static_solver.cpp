@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-#include "fem/solve/grid_order.h"
+#include "fem/solve/factorization/grid_order.h"
 #include "fem/solve/q4_matrix.h"
 
 namespace flexmorph::fem {

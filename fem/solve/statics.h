@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "fem/workspace.h"
+#include "fem/model/workspace.h"
 
 namespace flexmorph::fem {
 

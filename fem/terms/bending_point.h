@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include "fem/batch.h"
+#include "fem/shapes/batch.h"
 
 /// Bending energy of a thin plate at one point of one element (V = double) or of eight side by side
 /// (V = Lanes).

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "fem/gram_gradient.h"
-#include "fem/strain.h"
+#include "fem/shapes/gram_gradient.h"
+#include "fem/shapes/strain.h"
 #include "fem/strain_term.h"
 #include "fem/terms/free_work.h"
 

@@ -3,7 +3,7 @@
 #include <span>
 
 #include "fem/free_lines.h"
-#include "fem/strain.h"
+#include "fem/shapes/strain.h"
 #include "fem/term.h"
 
 /// Virtual work in elements whose material lines are unknowns, at quadrature points: the same for

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-#include "fem/batch.h"
+#include "fem/shapes/batch.h"
 
 /// Kernels of the Gram form of the in-plane elastic force (fem/terms/membrane.cpp), for one element
 /// (V = double) or eight of them side by side (V = Lanes).

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fem/strain.h"
+#include "fem/shapes/strain.h"
 #include "fem/terms/beam_strains.h"
 
 /// The ways in which terms sample the strains of their elements.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fem/strain.h"
+#include "fem/shapes/strain.h"
 #include "fem/term.h"
 
 namespace flexmorph::fem {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "fem/batch.h"
+#include "fem/shapes/batch.h"
 
 /// A cell whose strains are small in a frame that turns with it: what keeps nearly empty cells from
 /// turning inside out. (The energy of St. Venant and Kirchhoff is soft under pressure: an element

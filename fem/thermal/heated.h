@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "fem/heat.h"
-#include "fem/model.h"
+#include "fem/model/model.h"
 #include "fem/strain_term.h"
 
 namespace flexmorph::fem {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "fem/shape.h"
+#include "fem/shapes/shape.h"
 
 namespace flexmorph::fem {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "fem/solve/fill_order.h"
-#include "fem/solve/supernodal_factor.h"
+#include "fem/solve/factorization/fill_order.h"
+#include "fem/solve/factorization/supernodal_factor.h"
 #include "fem/triangles/t6.h"
 
 namespace flexmorph::fem {

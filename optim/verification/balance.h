@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/part_mesh.h"
+#include "geometry/parts/part_mesh.h"
 #include "optim/verification/loads.h"
 
 namespace flexmorph::verification {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "fem/esl_set.h"
-#include "geometry/part_mesh.h"
+#include "geometry/parts/part_mesh.h"
 
 /// Loads and supports of a part by position: nothing of them knows of cells or meshes.
 namespace flexmorph::verification {

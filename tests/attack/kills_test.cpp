@@ -17,7 +17,7 @@
 #include <thread>
 
 #include "tests/attack/children.h"
-#include "tests/cases/resumed.h"
+#include "tests/cases/run/resumed.h"
 
 namespace flexmorph::test {
 namespace {

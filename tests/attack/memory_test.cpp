@@ -10,7 +10,7 @@
 #include <fstream>
 #include <map>
 
-#include "fem/solve/blas_room.h"
+#include "fem/solve/factorization/blas_room.h"
 #include "geometry/sanitizers.h"
 #include "tests/attack/attacked_program.h"
 #include "tests/io/scratch.h"

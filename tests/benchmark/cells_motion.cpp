@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "cases/assembly/build.h"
-#include "io/case_file.h"
+#include "io/case_files/case_file.h"
 #include "tests/benchmark/cpu.h"
 #include "tests/support/reissner_beam.h"
 #include "tests/support/tip_history.h"

@@ -5,10 +5,10 @@
 #include <random>
 #include <vector>
 
-#include "geometry/feature.h"
-#include "geometry/picture.h"
-#include "geometry/tdf.h"
-#include "geometry/triangulate.h"
+#include "geometry/components/tdf.h"
+#include "geometry/parts/feature.h"
+#include "geometry/parts/picture.h"
+#include "geometry/parts/triangulate.h"
 #include "tests/benchmark/cpu.h"
 #include "tests/benchmark/reference.h"
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "fem/solve/static_solver.h"
-#include "geometry/part_mesh.h"
+#include "geometry/parts/part_mesh.h"
 
 namespace flexmorph::benchmark {
 namespace {

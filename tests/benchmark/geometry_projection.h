@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "geometry/component.h"
+#include "geometry/components/component.h"
+#include "geometry/components/outline.h"
 #include "geometry/grid.h"
-#include "geometry/outline.h"
 
 /// Designs as the published program of generalized geometry projection sees them: the densities it
 /// gives to elements, and the compliance that it prints.

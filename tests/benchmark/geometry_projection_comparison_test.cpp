@@ -9,7 +9,7 @@
 #include <memory>
 #include <sstream>
 
-#include "geometry/picture.h"
+#include "geometry/parts/picture.h"
 #include "tests/benchmark/compared_case.h"
 #include "tests/benchmark/geometry_projection.h"
 #include "tests/io/scratch.h"

@@ -13,7 +13,7 @@
 #include <string>
 
 #include "cases/assembly/build.h"
-#include "fem/dynamics/motion_gradient.h"
+#include "fem/dynamics/gradients/motion_gradient.h"
 #include "tests/benchmark/cpu.h"
 
 namespace {

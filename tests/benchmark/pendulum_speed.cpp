@@ -24,7 +24,7 @@
 #include <string>
 #include <vector>
 
-#include "fem/dynamics/integrator.h"
+#include "fem/dynamics/integrators/integrator.h"
 #include "fem/loads.h"
 #include "fem/solve/linear_solver.h"
 #include "tests/benchmark/cpu.h"

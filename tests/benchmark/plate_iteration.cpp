@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/component.h"
+#include "geometry/components/component.h"
 #include "optim/mmc/loads/compliance_evaluator.h"
 #include "optim/mmc/problem/mmc_problem.h"
 #include "optim/optimizer.h"

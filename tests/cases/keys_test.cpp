@@ -13,7 +13,7 @@
 #include "cases/check/ready.h"
 #include "cases/keys/book.h"
 #include "cases/results/schema.h"
-#include "io/case_parser.h"
+#include "io/case_files/case_parser.h"
 #include "tests/cases/program.h"
 
 namespace flexmorph::test {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cases/assembly/scene_motion.h"
-#include "io/case_file.h"
+#include "io/case_files/case_file.h"
 #include "io/tables.h"
 #include "optim/mmc/cycles/motion_certificate.h"
 #include "tests/cases/program.h"

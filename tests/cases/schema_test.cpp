@@ -15,7 +15,7 @@
 #include "cases/assembly/build.h"
 #include "cases/check/ready.h"
 #include "cases/keys/book.h"
-#include "io/case_parser.h"
+#include "io/case_files/case_parser.h"
 #include "tests/cases/program.h"
 
 namespace flexmorph::test {

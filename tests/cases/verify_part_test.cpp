@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "cases/results/part_checks.h"
-#include "geometry/outline.h"
-#include "io/step.h"
+#include "geometry/components/outline.h"
+#include "io/drawings/step.h"
 #include "tests/cases/program.h"
 #include "tests/cases/scenes.h"
 

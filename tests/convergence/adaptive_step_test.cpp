@@ -9,8 +9,8 @@
 #include <numbers>
 #include <random>
 
-#include "fem/dynamics/dense_output.h"
-#include "fem/dynamics/generalized_alpha.h"
+#include "fem/dynamics/integrators/dense_output.h"
+#include "fem/dynamics/integrators/generalized_alpha.h"
 #include "fem/dynamics/motion.h"
 #include "tests/support/models.h"
 #include "tests/support/particle_pendulum.h"

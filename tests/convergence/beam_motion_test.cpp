@@ -7,11 +7,11 @@
 #include <random>
 
 #include "fem/body_joints.h"
-#include "fem/dynamics/integrator.h"
+#include "fem/dynamics/integrators/integrator.h"
 #include "fem/elements/ancf_beam.h"
 #include "fem/loads.h"
+#include "fem/model/workspace.h"
 #include "fem/terms.h"
-#include "fem/workspace.h"
 #include "tests/support/rates.h"
 
 namespace flexmorph::fem {

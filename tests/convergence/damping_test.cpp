@@ -10,10 +10,10 @@
 #include <numbers>
 
 #include "fem/dynamics/balance.h"
-#include "fem/dynamics/integrator.h"
+#include "fem/dynamics/integrators/integrator.h"
 #include "fem/elements/ancf_beam.h"
+#include "fem/model/workspace.h"
 #include "fem/terms.h"
-#include "fem/workspace.h"
 #include "tests/support/models.h"
 #include "tests/support/rates.h"
 

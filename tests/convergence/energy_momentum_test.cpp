@@ -1,14 +1,14 @@
 // Shows what the energy-momentum scheme keeps over 10⁴ steps (energy, linear and angular momentum)
 // and that it converges with order 2: free, pinned, with a joint of degree 2 whose motion is known,
 // with a driven hub, with material flow; and how it fails.
-#include "fem/dynamics/energy_momentum.h"
+#include "fem/dynamics/integrators/energy_momentum.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <iostream>
 
-#include "fem/dynamics/generalized_alpha.h"
+#include "fem/dynamics/integrators/generalized_alpha.h"
 #include "fem/dynamics/motion.h"
 #include "fem/loads.h"
 #include "fem/terms.h"

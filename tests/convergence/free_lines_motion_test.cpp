@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "fem/dynamics/generalized_alpha.h"
+#include "fem/dynamics/integrators/generalized_alpha.h"
 #include "fem/dynamics/motion.h"
 #include "fem/loads.h"
 #include "fem/terms.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fem/dynamics/generalized_alpha.h"
+#include "fem/dynamics/integrators/generalized_alpha.h"
 #include "fem/dynamics/motion.h"
 #include "tests/support/models.h"
 #include "tests/support/rates.h"

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "fem/dynamics/generalized_alpha.h"
+#include "fem/dynamics/integrators/generalized_alpha.h"
 #include "tests/support/particle_pendulum.h"
 #include "tests/support/rates.h"
 

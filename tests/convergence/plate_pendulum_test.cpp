@@ -6,8 +6,8 @@
 
 #include <cmath>
 
-#include "fem/dynamics/energy_momentum.h"
-#include "fem/dynamics/generalized_alpha.h"
+#include "fem/dynamics/integrators/energy_momentum.h"
+#include "fem/dynamics/integrators/generalized_alpha.h"
 #include "fem/loads.h"
 #include "fem/terms.h"
 #include "tests/support/space_plates.h"

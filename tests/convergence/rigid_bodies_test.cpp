@@ -10,8 +10,8 @@
 #include <iostream>
 #include <numbers>
 
-#include "fem/dynamics/energy_momentum.h"
-#include "fem/dynamics/generalized_alpha.h"
+#include "fem/dynamics/integrators/energy_momentum.h"
+#include "fem/dynamics/integrators/generalized_alpha.h"
 #include "fem/dynamics/motion.h"
 #include "tests/support/differences.h"
 #include "tests/support/rates.h"

@@ -11,7 +11,7 @@
 #include <complex>
 #include <numbers>
 
-#include "fem/dynamics/motion_gradient.h"
+#include "fem/dynamics/gradients/motion_gradient.h"
 #include "tests/support/differences.h"
 #include "tests/support/rigid_models.h"
 

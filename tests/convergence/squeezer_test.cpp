@@ -13,8 +13,8 @@
 #include <iostream>
 #include <numbers>
 
-#include "fem/dynamics/generalized_alpha.h"
-#include "fem/dynamics/minimal_coordinates.h"
+#include "fem/dynamics/integrators/generalized_alpha.h"
+#include "fem/dynamics/integrators/minimal_coordinates.h"
 #include "tests/support/rates.h"
 #include "tests/support/rigid_models.h"
 

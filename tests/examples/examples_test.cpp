@@ -11,7 +11,7 @@
 #include "cases/scene/joints/row.h"
 #include "fem/elements/ancf_plate.h"
 #include "fem/terms.h"
-#include "io/case_file.h"
+#include "io/case_files/case_file.h"
 #include "optim/makers.h"
 #include "tests/support/rigid_models.h"
 

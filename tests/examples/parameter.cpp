@@ -1,5 +1,5 @@
 #include "cases/accuracy/parameters.h"
-#include "io/case_file.h"
+#include "io/case_files/case_file.h"
 #include "io/files.h"
 
 /// A parameter of `flexmorph accuracy`: how slowly hubs take up their speed.

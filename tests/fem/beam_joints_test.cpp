@@ -8,7 +8,7 @@
 #include <random>
 
 #include "fem/body_joints.h"
-#include "fem/dynamics/start.h"
+#include "fem/dynamics/starts/start.h"
 #include "fem/elements/ancf_beam.h"
 #include "fem/link.h"
 #include "fem/loads.h"

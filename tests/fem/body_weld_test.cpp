@@ -10,8 +10,8 @@
 #include <random>
 
 #include "fem/elements/ancf_beam.h"
+#include "fem/model/workspace.h"
 #include "fem/rigid.h"
-#include "fem/workspace.h"
 #include "tests/support/differences.h"
 #include "tests/support/errors.h"
 #include "tests/support/models.h"

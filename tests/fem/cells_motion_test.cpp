@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "fem/body_joints.h"
-#include "fem/dynamics/body_turns.h"
 #include "fem/dynamics/motion.h"
+#include "fem/dynamics/starts/body_turns.h"
 #include "fem/terms.h"
 #include "tests/support/models.h"
 #include "tests/support/rigid_models.h"

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "fem/batch.h"
+#include "fem/shapes/batch.h"
 #include "fem/solve/q4_cell.h"
 #include "fem/terms.h"
 #include "tests/support/differences.h"

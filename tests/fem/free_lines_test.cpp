@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "fem/loads.h"
+#include "fem/model/workspace.h"
 #include "fem/terms.h"
 #include "fem/terms/densities.h"
-#include "fem/workspace.h"
 #include "tests/support/differences.h"
 #include "tests/support/models.h"
 

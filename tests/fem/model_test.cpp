@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "fem/loads.h"
+#include "fem/model/workspace.h"
 #include "fem/terms.h"
-#include "fem/workspace.h"
 #include "tests/support/differences.h"
 #include "tests/support/models.h"
 #include "tests/support/rigid_models.h"

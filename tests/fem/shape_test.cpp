@@ -1,7 +1,7 @@
 // Shows that Hermite functions interpolate, reproduce cubics and have the rates that differences in
 // time give at a fixed material point while both ends move; that Gauss rules have their degree; and
 // that the part-wise Lagrange weights are exact for polynomials.
-#include "fem/shape.h"
+#include "fem/shapes/shape.h"
 
 #include <gtest/gtest.h>
 

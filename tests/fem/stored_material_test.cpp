@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "fem/dynamics/generalized_alpha.h"
+#include "fem/dynamics/integrators/generalized_alpha.h"
 #include "fem/dynamics/whole_momentum.h"
 #include "fem/loads.h"
 #include "fem/solve/assembly.h"

@@ -11,10 +11,10 @@
 #include <random>
 #include <vector>
 
-#include "fem/solve/grid_order.h"
+#include "fem/solve/factorization/grid_order.h"
+#include "fem/solve/factorization/supernodal_factor.h"
 #include "fem/solve/q4_cell.h"
 #include "fem/solve/static_solver.h"
-#include "fem/solve/supernodal_factor.h"
 
 namespace flexmorph::fem {
 namespace {

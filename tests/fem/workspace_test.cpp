@@ -1,7 +1,7 @@
 // A model is a value, and a work space knows what it is prepared for: copies share nothing that
 // changes, evaluations at any states in any order are those of a fresh work space, and two motions
 // of one model at the same time are those of one after the other, bit for bit.
-#include "fem/workspace.h"
+#include "fem/model/workspace.h"
 
 #include <gtest/gtest.h>
 

@@ -1,16 +1,16 @@
 // Fillets of outlines against areas and radii that are known, and area fractions of polygons
 // against the areas of shapes.
-#include "geometry/closing.h"
+#include "geometry/parts/closing.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "geometry/feature.h"
-#include "geometry/part_mesh.h"
-#include "geometry/picture.h"
-#include "geometry/simplified.h"
+#include "geometry/parts/feature.h"
+#include "geometry/parts/part_mesh.h"
+#include "geometry/parts/picture.h"
+#include "geometry/parts/simplified.h"
 
 namespace flexmorph {
 namespace {

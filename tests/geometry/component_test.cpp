@@ -1,7 +1,7 @@
 // One component: its profile is P (26) with a smooth lower bound and exact derivatives, its outline
 // lies on χ = 0 of P (24), its box holds the outline.
 
-#include "geometry/component.h"
+#include "geometry/components/component.h"
 
 #include <gtest/gtest.h>
 

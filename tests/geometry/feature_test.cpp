@@ -1,7 +1,7 @@
 // Narrow places of constructed shapes whose widths are known; every reported disc is inscribed; no
 // opposite pair of sampled points is closer than what was found; runs agree bit for bit.
 
-#include "geometry/feature.h"
+#include "geometry/parts/feature.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Gaps to a line by constructed shapes; those of random polygons by the distances of their
 // vertices.
 
-#include "geometry/line_gaps.h"
+#include "geometry/parts/line_gaps.h"
 
 #include <gtest/gtest.h>
 

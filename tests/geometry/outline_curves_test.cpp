@@ -1,5 +1,5 @@
 // Curves of polygons against exact areas, radii and distances, and against their mirror image.
-#include "geometry/outline_curves.h"
+#include "geometry/parts/outline_curves.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Polygons: the union is exact, holes and pieces are counted, the domain clips.
 
-#include "geometry/outline.h"
+#include "geometry/components/outline.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "geometry/disc.h"
-#include "geometry/triangulate.h"
+#include "geometry/parts/triangulate.h"
 #include "tests/geometry/random_components.h"
 
 namespace flexmorph {

@@ -1,6 +1,6 @@
 // Meshes of parts: areas are those of the outline, no side crosses it, angles and sizes are kept.
 
-#include "geometry/part_mesh.h"
+#include "geometry/parts/part_mesh.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <random>
 #include <vector>
 
-#include "geometry/component.h"
+#include "geometry/components/component.h"
 
 /// Random components for the tests of this folder.
 namespace flexmorph::test {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <string>
 
-#include "geometry/outline.h"
-#include "geometry/picture.h"
+#include "geometry/components/outline.h"
+#include "geometry/parts/picture.h"
 #include "tests/geometry/random_components.h"
 
 namespace flexmorph {

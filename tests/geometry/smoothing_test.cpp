@@ -1,5 +1,5 @@
 // The low-pass filter of outlines against its response to waves, and what it leaves alone.
-#include "geometry/smoothing.h"
+#include "geometry/parts/smoothing.h"
 
 #include <gtest/gtest.h>
 

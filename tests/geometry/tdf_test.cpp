@@ -1,7 +1,7 @@
 // TDF of one component and the Heaviside: values, derivatives by all seven parameters, and the
 // unit slope that makes the band a length.
 
-#include "geometry/tdf.h"
+#include "geometry/components/tdf.h"
 
 #include <gtest/gtest.h>
 

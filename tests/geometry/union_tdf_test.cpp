@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/tdf.h"
+#include "geometry/components/tdf.h"
 #include "tests/geometry/random_components.h"
 
 namespace flexmorph {

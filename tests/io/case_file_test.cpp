@@ -1,13 +1,13 @@
 // Case files: values arrive as written, and every error names file, line, key, value and what is
 // allowed, or the option of the command line that brought it.
-#include "io/case_file.h"
+#include "io/case_files/case_file.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <functional>
 
-#include "io/case_document.h"
+#include "io/case_files/case_document.h"
 #include "tests/io/scratch.h"
 
 namespace flexmorph::io {

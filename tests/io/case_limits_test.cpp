@@ -1,9 +1,9 @@
 // What a recursive parser of TOML would follow into the ground is refused with line and limit; what
 // only looks like it, in strings and comments, is not.
-#include "io/case_limits.h"
+#include "io/case_files/case_limits.h"
 
 #include "geometry/base.h"
-#include "io/case_parser.h"
+#include "io/case_files/case_parser.h"
 #include "tests/io/scratch.h"
 
 namespace flexmorph::io {

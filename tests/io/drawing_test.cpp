@@ -1,6 +1,6 @@
 // Drawings of other programs: a plate of 80 x 50 mm with two holes of 5 and 8 mm radius, said in
 // every way that is read, has its analytic area; what is no outline is refused, and named.
-#include "io/drawing.h"
+#include "io/drawings/drawing.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/outline.h"
+#include "geometry/components/outline.h"
 #include "tests/io/scratch.h"
 
 namespace flexmorph::io {

@@ -1,7 +1,7 @@
 // Designs for other programs, read back by readers written here: polylines and circles enclose the
 // area of the curves, the extruded surface is closed and encloses area times thickness; components
 // survive the way through their file bit for bit, and bad files are refused with their place.
-#include "io/exports.h"
+#include "io/drawings/exports.h"
 
 #include <gtest/gtest.h>
 
@@ -23,9 +23,9 @@
 #include <sstream>
 #include <tuple>
 
-#include "io/drawing.h"
+#include "io/drawings/drawing.h"
+#include "io/drawings/step.h"
 #include "io/plots.h"
-#include "io/step.h"
 #include "tests/io/scratch.h"
 
 namespace flexmorph::io {

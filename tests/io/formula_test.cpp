@@ -1,6 +1,6 @@
 // Formulas of time: values against functions written in C++, derivatives against differences and
 // against derivatives by hand, everything that is not a formula refused with its place.
-#include "io/formula.h"
+#include "io/case_files/formula.h"
 
 #include <gtest/gtest.h>
 

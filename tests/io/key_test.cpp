@@ -1,11 +1,11 @@
 // Keys are declared once: readers, messages and the explained case are made from the declaration.
-#include "io/key.h"
+#include "io/case_files/key.h"
 
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
-#include "io/case_file.h"
+#include "io/case_files/case_file.h"
 #include "tests/io/scratch.h"
 
 namespace flexmorph::io {

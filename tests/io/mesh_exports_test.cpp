@@ -1,5 +1,5 @@
 // Meshes for other programs, read back by readers written here.
-#include "io/mesh_exports.h"
+#include "io/drawings/mesh_exports.h"
 
 #include <gtest/gtest.h>
 

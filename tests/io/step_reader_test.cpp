@@ -1,6 +1,6 @@
 // Outlines of plates in STEP files: what is written is read back, in the plane and in metres; what
 // is no plate is refused.
-#include "io/step_reader.h"
+#include "io/drawings/step_reader.h"
 
 #include <gtest/gtest.h>
 
@@ -12,9 +12,9 @@
 #include <TopoDS_Shape.hxx>
 #include <numbers>
 
-#include "geometry/outline.h"
-#include "io/drawing.h"
-#include "io/step.h"
+#include "geometry/components/outline.h"
+#include "io/drawings/drawing.h"
+#include "io/drawings/step.h"
 #include "tests/io/scratch.h"
 
 namespace flexmorph::io {

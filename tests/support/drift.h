@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "fem/workspace.h"
+#include "fem/model/workspace.h"
 
 namespace flexmorph::testing {
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "fem/workspace.h"
+#include "fem/model/workspace.h"
 
 /// A second integrator, of another family than ours and by other hands: IDA of SUNDIALS, backward
 /// differentiation formulas of order 1 to 5 with steps and orders chosen by the local error.

@@ -5,7 +5,7 @@
 
 #include <iostream>
 
-#include "fem/dynamics/generalized_alpha.h"
+#include "fem/dynamics/integrators/generalized_alpha.h"
 #include "tests/support/errors.h"
 #include "tests/support/particle_pendulum.h"
 

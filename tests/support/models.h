@@ -3,7 +3,7 @@
 #include <numbers>
 #include <vector>
 
-#include "fem/dynamics/growth.h"
+#include "fem/dynamics/mesh_changes/growth.h"
 #include "fem/elements/ancf_plate.h"
 
 /// Small models for tests: meshes whose lines swing, smooth motions of all unknowns, and the

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <memory>
 
-#include "fem/workspace.h"
+#include "fem/model/workspace.h"
 #include "tests/support/particle_pendulum.h"
 
 /// Two oscillators side by side: no joints, and a motion that is known.

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fem/loads.h"
-#include "fem/workspace.h"
+#include "fem/model/workspace.h"
 #include "tests/support/disturbance.h"
 
 /// A pendulum in Cartesian coordinates (index 3) whose motion is known: one point on a rod.

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "fem/workspace.h"
+#include "fem/model/workspace.h"
 
 /// Mechanisms of free points in the plane, for tests of what joints do: no elements or joints of
 /// the library take part.

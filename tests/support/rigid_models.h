@@ -5,8 +5,8 @@
 
 #include "fem/body_joints.h"
 #include "fem/elements/rigid_body.h"
+#include "fem/model/workspace.h"
 #include "fem/rigid.h"
-#include "fem/workspace.h"
 #include "tests/support/disturbance.h"
 
 /// Planar rigid bodies set up and put in place by hand.

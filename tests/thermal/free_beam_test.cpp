@@ -8,7 +8,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "fem/dynamics/generalized_alpha.h"
+#include "fem/dynamics/integrators/generalized_alpha.h"
 #include "fem/terms.h"
 #include "tests/support/errors.h"
 #include "tests/support/rates.h"

@@ -8,7 +8,7 @@
 #include <iostream>
 
 #include "fem/dynamics/balance.h"
-#include "fem/dynamics/integrator.h"
+#include "fem/dynamics/integrators/integrator.h"
 #include "fem/terms.h"
 #include "tests/support/energy_rate.h"
 #include "tests/support/rates.h"

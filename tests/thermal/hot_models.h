@@ -4,12 +4,12 @@
 
 #include "fem/elements/ancf_beam.h"
 #include "fem/elements/ancf_plate.h"
+#include "fem/model/workspace.h"
 #include "fem/terms.h"
 #include "fem/thermal/heated.h"
 #include "fem/thermal/temperature.h"
 #include "fem/thermal/thermal_displacement.h"
 #include "fem/thermal/thermal_force.h"
-#include "fem/workspace.h"
 #include "tests/support/disturbance.h"
 #include "tests/support/models.h"
 

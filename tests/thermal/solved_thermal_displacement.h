@@ -4,7 +4,7 @@
 #include <Eigen/LU>
 #include <span>
 
-#include "fem/singular_values.h"
+#include "fem/shapes/singular_values.h"
 #include "fem/thermal/thermal_displacement.h"
 
 /// The thermal displacement of a free body in the two ways of T, which solve for it: an independent

@@ -5,7 +5,7 @@
 #include "cases/scene/elements/row.h"
 #include "cases/scene/read.h"
 #include "cases/scene/tables.h"
-#include "io/exports.h"
+#include "io/drawings/exports.h"
 #include "io/files.h"
 #include "optim/mmc/length_scale/outline_limits.h"
 

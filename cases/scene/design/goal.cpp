@@ -5,7 +5,7 @@
 
 #include "cases/scene/design/keys.h"
 #include "cases/scene/scene.h"
-#include "geometry/picture.h"
+#include "geometry/parts/picture.h"
 #include "io/files.h"
 #include "optim/mmc/problem/shared_problem.h"
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "io/case_file.h"
+#include "io/case_files/case_file.h"
 #include "optim/mmc/problem/goal.h"
 
 /// What a [[design]] is to be good at: `minimize`, `loads`, `max_volume`, `max_compliance`,

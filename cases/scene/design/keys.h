@@ -1,6 +1,6 @@
 #pragma once
 
-#include "io/key.h"
+#include "io/case_files/key.h"
 
 /// Keys of [[design]] that others ask for, too.
 namespace flexmorph::cases::design_keys {

@@ -2,7 +2,7 @@
 
 #include "cases/scene/design/keys.h"
 #include "cases/scene/read.h"
-#include "geometry/picture.h"
+#include "geometry/parts/picture.h"
 #include "io/files.h"
 #include "optim/mmc/problem/body_problem.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "fem/heat.h"
-#include "io/key.h"
+#include "io/case_files/key.h"
 
 /// Keys of [body.heat], also where heat was left out of the program.
 namespace flexmorph::cases::heat_keys {

@@ -9,7 +9,7 @@
 #include "cases/scene/joint.h"
 #include "cases/scene/scene.h"
 #include "fem/body_joints.h"
-#include "fem/dynamics/rigid_kinematics.h"
+#include "fem/dynamics/starts/rigid_kinematics.h"
 
 /// The shelf of joints: all that the program knows of a kind of [[joint]] stands in one file of
 /// this folder, and table.cpp lists it.

@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "geometry/simplified.h"
-#include "geometry/smoothing.h"
+#include "geometry/parts/simplified.h"
+#include "geometry/parts/smoothing.h"
 
 namespace flexmorph::mmc {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "fem/singular_values.h"
+#include "fem/shapes/singular_values.h"
 #include "fem/solve/q4_cell.h"
 
 namespace flexmorph::mmc {

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "geometry/cpu_time.h"
-#include "geometry/line_gaps.h"
-#include "geometry/part_mesh.h"
+#include "geometry/parts/line_gaps.h"
+#include "geometry/parts/part_mesh.h"
 #include "optim/mmc/problem/finished_part.h"
 
 namespace flexmorph::mmc {

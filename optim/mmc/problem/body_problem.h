@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "fem/element.h"
-#include "geometry/closing.h"
-#include "geometry/feature.h"
-#include "geometry/outline.h"
-#include "geometry/part_mesh.h"
-#include "geometry/picture.h"
+#include "geometry/components/outline.h"
+#include "geometry/parts/closing.h"
+#include "geometry/parts/feature.h"
+#include "geometry/parts/part_mesh.h"
+#include "geometry/parts/picture.h"
 #include "optim/mmc/loads/compliance_evaluator.h"
 #include "optim/mmc/problem/mmc_problem.h"
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "geometry/outline.h"
-#include "geometry/tdf.h"
+#include "geometry/components/outline.h"
+#include "geometry/components/tdf.h"
 #include "optim/mmc/problem/body_problem.h"
 #include "optim/mmc/problem/finished_part.h"
 

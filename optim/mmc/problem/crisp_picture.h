@@ -3,7 +3,7 @@
 #include <Eigen/SparseCore>
 #include <span>
 
-#include "geometry/component.h"
+#include "geometry/components/component.h"
 
 namespace flexmorph::mmc {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/component.h"
+#include "geometry/components/component.h"
 #include "geometry/grid.h"
 
 namespace flexmorph::mmc {

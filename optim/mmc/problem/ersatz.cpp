@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "geometry/picture.h"
+#include "geometry/parts/picture.h"
 
 namespace flexmorph::mmc {
 namespace {

@@ -3,8 +3,8 @@
 #include <Eigen/SparseCore>
 #include <span>
 
+#include "geometry/components/outline.h"
 #include "geometry/grid.h"
-#include "geometry/outline.h"
 
 namespace flexmorph::mmc {
 

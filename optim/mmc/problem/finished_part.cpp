@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "geometry/smoothing.h"
+#include "geometry/parts/smoothing.h"
 
 namespace flexmorph::mmc {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "geometry/cpu_time.h"
-#include "geometry/picture.h"
+#include "geometry/parts/picture.h"
 #include "optim/mmc/problem/crisp_picture.h"
 #include "optim/mmc/problem/motion_response.h"
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "geometry/picture.h"
-#include "geometry/tdf.h"
+#include "geometry/components/tdf.h"
+#include "geometry/parts/picture.h"
 #include "optim/mmc/loads/compliance_evaluator.h"
 #include "optim/mmc/problem/design.h"
 #include "optim/mmc/problem/ersatz.h"

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <type_traits>
 
-#include "geometry/component.h"
+#include "geometry/components/component.h"
 #include "optim/mmc/problem/design_state.h"
 #include "optim/mmc/problem/ersatz.h"
 #include "optim/mmc/problem/plate.h"

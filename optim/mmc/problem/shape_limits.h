@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "geometry/component.h"
+#include "geometry/components/component.h"
 
 namespace flexmorph::mmc {
 

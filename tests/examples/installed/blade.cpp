@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fem/dynamics/growth.h"
+#include "fem/dynamics/mesh_changes/growth.h"
 #include "fem/elements/ancf_plate.h"
 #include "fem/solve/statics.h"
 #include "optim/mmc/loads/compliance_evaluator.h"

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <random>
 
-#include "fem/dynamics/start.h"
+#include "fem/dynamics/starts/start.h"
 #include "fem/elements/ancf_beam.h"
 #include "fem/terms.h"
 #include "tests/support/differences.h"

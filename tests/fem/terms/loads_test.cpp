@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "fem/dynamics/growth.h"
+#include "fem/dynamics/mesh_changes/growth.h"
 #include "tests/support/differences.h"
 #include "tests/support/space_plates.h"
 

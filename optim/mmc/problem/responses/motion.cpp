@@ -1,7 +1,8 @@
 #include "optim/mmc/problem/motion_response.h"
 #include "optim/mmc/problem/responses/rows.h"
 
-/// Numbers of the motion of the mechanism, by its exact gradient (fem/dynamics/motion_gradient.h).
+/// Numbers of the motion of the mechanism, by its exact gradient
+/// (fem/dynamics/gradients/motion_gradient.h).
 namespace flexmorph::mmc {
 namespace {
 

@@ -1,0 +1,183 @@
+#include "fem/dynamics/gradients/motion_gradient.h"
+
+#include <algorithm>
+
+#include "fem/dynamics/gradients/motion_sweep.h"
+#include "fem/dynamics/gradients/watched_measures.h"
+#include "fem/dynamics/starts/start_gradient.h"
+#include "geometry/cpu_time.h"
+
+namespace flexmorph::fem {
+namespace {
+
+/// A motion with all that its gradient takes.
+class Gradient {
+ public:
+  Gradient(const Model& model, std::span<const Growth> growths, const MotionSettings& settings,
+           std::span<const MotionObjective> objectives, const GradientSettings& gradient)
+      : model_(model),
+        growths_(growths),
+        settings_(settings),
+        objectives_(objectives),
+        gradient_(gradient),
+        watched_(objectives) {
+    settings_.balance = false;
+    settings_.energy_round_off.reset();
+    settings_.condition = false;
+    settings_.memory.clear();
+    settings_.between_steps = nullptr;
+    check();
+  }
+
+  std::vector<double> values() {
+    Workspace model(model_);
+    settings_.keep = Keep::nothing;
+    integrate(model, growths_, settings_, [&](const MotionStep& step) { watched_.see(step); });
+    std::vector<double> out;
+    for (size_t k = 0; k < objectives_.size(); ++k)
+      out.push_back(watched_.mean(k, settings_.stops).value);
+    return out;
+  }
+
+  MotionGradients go() {
+    MotionGradients out;
+    const double begin = cpu_seconds();
+    auto model = std::make_unique<Workspace>(model_);
+    move(*model, out.motion);
+    const double moved = cpu_seconds();
+    Sweep sweep(objectives_, gradient_, settings_);
+    begin_at_end(*model, sweep);
+    if (memories_.empty()) {
+      sweep.back(*model, out.motion.trajectory, watched_.times().size() - 1, true);
+      start_ = out.motion.trajectory.points.front().x;
+      back_through_start(*model, sweep);
+    } else {
+      model.reset();  // every part has one of its own
+      back_by_parts(sweep);
+    }
+    for (Swept& s : sweep.all()) out.of.push_back(std::move(s.out));
+    out.motion.trajectory = {};
+    out.seconds_motion = moved - begin;
+    out.seconds_adjoint = cpu_seconds() - moved;
+    out.factorizations = sweep.factorizations();
+    out.iterations = sweep.iterations();
+    return out;
+  }
+
+ private:
+  void check() const {
+    if (const std::string why = no_gradient_because(model_, settings_); !why.empty())
+      throw Error::input("the gradient of a motion: " + why);
+    if (objectives_.empty()) throw Error::input("the gradient of a motion: of nothing");
+    for (const MotionObjective& o : objectives_)
+      if (!o.measure || !(o.exponent >= 1))
+        throw Error::input("the gradient of a motion: of a measure, with an exponent of 1 or more");
+  }
+
+  /// What a part of the motion begins with.
+  struct TakenDown {
+    std::string memory;
+    double time = 0;
+    size_t seen = 0;  // number of its first point among the times that were seen
+  };
+
+  void move(Workspace& model, MotionResult& result) {
+    MotionSettings settings = settings_;
+    settings.keep = gradient_.checkpoints > 0 ? Keep::nothing : Keep::steps;
+    const double apart = settings.end / std::max(1, gradient_.checkpoints);
+    if (gradient_.checkpoints > 0)
+      settings.between_steps = [&](const TakeDown& take_down) {
+        const double t = watched_.times().back();
+        const auto next = static_cast<double>(memories_.size() + 1) * apart;
+        if (t < next - 1e-9 * settings.end || t > settings.end - 0.5 * settings.step) return;
+        memories_.push_back({take_down(), t, watched_.times().size() - 1});
+      };
+    result =
+        integrate(model, growths_, settings, [&](const MotionStep& step) { watched_.see(step); });
+  }
+
+  void begin_at_end(const Workspace& model, Sweep& sweep) const {
+    for (size_t k = 0; k < objectives_.size(); ++k) {
+      Swept& s = sweep.all().emplace_back();
+      s.by.set_zero(model.n_dofs(), model.n_constraints());
+      s.alpha.setZero(model.n_dofs());
+      WatchedMeasures::Mean mean = watched_.mean(k, settings_.stops);
+      s.out.value = mean.value;
+      s.slopes = std::move(mean.slopes);
+      s.out.by_factors = model.no_slopes();
+      s.out.by_parameters.setZero(static_cast<Eigen::Index>(gradient_.parameters.size()));
+    }
+  }
+
+  void back_by_parts(Sweep& sweep) {
+    size_t last = watched_.times().size() - 1;
+    for (size_t k = memories_.size() + 1; k-- > 0;) {
+      MotionSettings settings = settings_;
+      settings.keep = Keep::steps;
+      if (k > 0) settings.memory = memories_[k - 1].memory;
+      if (k < memories_.size()) settings.until = memories_[k].time;
+      Workspace model(model_);
+      const MotionResult part = integrate(model, growths_, settings, [](const MotionStep&) {});
+      sweep.back(model, part.trajectory, last, k == 0);
+      if (k > 0) {
+        last = memories_[k - 1].seen;
+        memories_.resize(k);  // those behind are done with
+        continue;
+      }
+      start_ = part.trajectory.points.front().x;
+      back_through_start(model, sweep);
+    }
+  }
+
+  void back_through_start(Workspace& model, Sweep& sweep) {
+    // As Run::begin() of motion.cpp.
+    const double delta = std::min(1e-4, 0.5 * settings_.end);
+    const VectorXd given =
+        start_state(model, growths_, 0, settings_.start, settings_.placement, delta).v;
+    sweep.back_through_start(model, start_, given);
+    for (Swept& s : sweep.all())
+      derive_start(model, growths_, 0, settings_.start, settings_.placement, delta, s.by.q, s.by.v,
+                   [&](const State& x, const VectorXd& psi) { sweep.add_work(x, psi, s.out); });
+  }
+
+  const Model& model_;
+  std::span<const Growth> growths_;
+  MotionSettings settings_;
+  std::span<const MotionObjective> objectives_;
+  const GradientSettings& gradient_;
+  WatchedMeasures watched_;
+  std::vector<TakenDown> memories_;
+  State start_;
+};
+
+}  // namespace
+
+std::string no_gradient_because(const Model& model, const MotionSettings& settings) {
+  if (settings.adaptive) return "steps that adapt depend on the design: time.tolerance";
+  if (settings.integrator != "generalized_alpha")
+    return "integrator \"" + settings.integrator + "\" has none, \"generalized_alpha\" does";
+  if (!settings.kinks.empty()) return "drives have kinks, where accelerations may jump";
+  for (const Body& body : model.bodies()) {
+    if (body.element->n_scalars() > 0)
+      return "the material lines of body '" + body.name +
+             "' are free, and when its mesh changes depends on the design";
+    if (body.heat) return "body '" + body.name + "' is hot";
+    if (body.element->dim() == 3) return "body '" + body.name + "' lives in space";
+  }
+  return {};
+}
+
+MotionGradients motion_gradients(const Model& model, std::span<const Growth> growths,
+                                 const MotionSettings& settings,
+                                 std::span<const MotionObjective> objectives,
+                                 const GradientSettings& gradient) {
+  return Gradient(model, growths, settings, objectives, gradient).go();
+}
+
+std::vector<double> motion_values(const Model& model, std::span<const Growth> growths,
+                                  const MotionSettings& settings,
+                                  std::span<const MotionObjective> objectives) {
+  return Gradient(model, growths, settings, objectives, {}).values();
+}
+
+}  // namespace flexmorph::fem

@@ -1,0 +1,172 @@
+#include "fem/dynamics/gradients/motion_measures.h"
+
+#include "fem/dynamics/mesh_changes/growth.h"
+
+namespace flexmorph::fem {
+namespace {
+
+class StrainEnergy final : public MotionMeasure {
+ public:
+  double value(Workspace& model, const State& x) const override {
+    return 2 * model.strain_energy(x);
+  }
+  void add_slopes(Workspace& model, const State& x, double weight, StateSlopes& by_state,
+                  std::vector<FactorSlopes>& by_factors) const override {
+    model.add_strain_slopes(x, 2 * weight, by_state.q, by_factors);
+  }
+};
+
+/// d / |d|; zero where there is no direction.
+Vec2 direction(const Vec2& d) {
+  const double size = d.norm();
+  return size > 0 ? Vec2(d / size) : Vec2(0, 0);
+}
+
+class Deflection final : public MotionMeasure {
+ public:
+  Deflection(std::string body, const Vec2& material, Carrier carrier, int line)
+      : body_(std::move(body)), material_(material), carrier_(std::move(carrier)), line_(line) {}
+
+  double value(Workspace& model, const State& x) const override {
+    model.prepare(x);
+    return difference(model, x).norm();
+  }
+  void add_slopes(Workspace& model, const State& x, double weight, StateSlopes& by_state,
+                  std::vector<FactorSlopes>&) const override {
+    model.prepare(x);
+    const Vec2 pull = weight * direction(difference(model, x));
+    const Body& body = model.body(body_);
+    ShapeTable t;
+    const auto vectors =
+        body.element->vectors(body.element->locate(material_, Tabulate::position, t));
+    for (size_t k = 0; k < vectors.size(); ++k)
+      by_state.q.segment<2>(body.first_dof + 2 * vectors[k]) +=
+          t.N(0, static_cast<Eigen::Index>(k)) * pull;
+    if (carrier_.body().empty()) return;
+    // o + R p = r_b + u-axes times (point + turned p), linear in r_b and u.
+    const int r = model.body(carrier_.body()).first_dof;
+    const Vec2 arm = carrier_.point() + rotation(carrier_.angle()) * in_frame(model);
+    by_state.q.segment<2>(r) -= pull;
+    by_state.q.segment<2>(r + 2) -=
+        Vec2(arm.x() * pull.x() + arm.y() * pull.y(), arm.x() * pull.y() - arm.y() * pull.x());
+  }
+
+ private:
+  Vec2 in_frame(const Model& model) const {
+    return {material_.x() - grid_of(model.body(body_)).line_m(line_).value, material_.y()};
+  }
+  Vec2 difference(const Workspace& model, const State& x) const {
+    const Vec2 at = point_position(model.body(body_), x, material_).head<2>();
+    if (carrier_.body().empty()) {
+      const FrameMotion f = carrier_.drive()(x.t);
+      return at - f.origin - rotation(f.angle) * in_frame(model);
+    }
+    const int r = model.body(carrier_.body()).first_dof;
+    const Vec2 arm = carrier_.point() + rotation(carrier_.angle()) * in_frame(model),
+               u = x.q.segment<2>(r + 2);
+    return at - x.q.segment<2>(r) - arm.x() * u - arm.y() * Vec2(-u.y(), u.x());
+  }
+
+  std::string body_;
+  Vec2 material_;
+  Carrier carrier_;
+  int line_;
+};
+
+class PlaceError final : public MotionMeasure {
+ public:
+  PlaceError(std::string body, std::array<std::function<Motion(double)>, 2> path)
+      : body_(std::move(body)), path_(std::move(path)) {}
+  double value(Workspace& model, const State& x) const override {
+    return difference(model, x).norm();
+  }
+  void add_slopes(Workspace& model, const State& x, double weight, StateSlopes& by_state,
+                  std::vector<FactorSlopes>&) const override {
+    by_state.q.segment<2>(model.body(body_).first_dof) += weight * direction(difference(model, x));
+  }
+
+ private:
+  Vec2 difference(const Workspace& model, const State& x) const {
+    return x.q.segment<2>(model.body(body_).first_dof) -
+           Vec2(path_[0](x.t).value, path_[1](x.t).value);
+  }
+  std::string body_;
+  std::array<std::function<Motion(double)>, 2> path_;
+};
+
+/// f = -E Φ_qᵀ λ, with the rows E of a shift of the body along x and y.
+class JointForce final : public MotionMeasure {
+ public:
+  JointForce(std::string joint, std::string body)
+      : joint_(std::move(joint)), body_(std::move(body)) {}
+  double value(Workspace& model, const State& x) const override { return force(model, x).norm(); }
+  void add_slopes(Workspace& model, const State& x, double weight, StateSlopes& by_state,
+                  std::vector<FactorSlopes>&) const override {
+    const Vec2 pull = -weight * direction(force(model, x));
+    const VectorXd along = shift(model, pull);
+    const auto [first, last] = rows(model);
+    Constraints c;
+    model.constraints(x, c);
+    VectorXd own = VectorXd::Zero(x.lambda.size());
+    own.segment(first, last - first) = x.lambda.segment(first, last - first);
+    for (const auto& entry : c.jacobian)
+      if (entry.row() >= first && entry.row() < last)
+        by_state.lambda[entry.row()] += entry.value() * along[entry.col()];
+    by_state.q += model.constraint_curvature(x, own, along);
+  }
+
+ private:
+  std::pair<int, int> rows(const Model& model) const {
+    const auto& all = model.joints();
+    for (size_t i = 0; i < all.size(); ++i)
+      if (all[i]->name() == joint_) return {model.first_row(i), model.first_row(i + 1)};
+    throw Error::input("there is no joint '" + joint_ + "'");
+  }
+  /// A virtual displacement of the body (n_dofs).
+  VectorXd shift(const Model& model, const Vec2& by) const {
+    const Body& body = model.body(body_);
+    VectorXd out = VectorXd::Zero(model.n_dofs());
+    for (int k = 0; k < body.element->n_vectors(); ++k)
+      if (body.element->is_position(k))
+        out.segment<2>(body.first_dof + body.element->dim() * k) = by;
+    return out;
+  }
+  Vec2 force(Workspace& model, const State& x) const {
+    const auto [first, last] = rows(model);
+    Constraints c;
+    model.constraints(x, c);
+    const Body& body = model.body(body_);
+    Vec2 out(0, 0);
+    std::vector<signed char> axis(static_cast<size_t>(model.n_dofs()), -1);
+    for (int k = 0; k < body.element->n_vectors(); ++k)
+      for (int d = 0; d < 2 && body.element->is_position(k); ++d)
+        axis[static_cast<size_t>(body.first_dof + body.element->dim() * k + d)] =
+            static_cast<signed char>(d);
+    for (const auto& entry : c.jacobian)
+      if (entry.row() >= first && entry.row() < last)
+        if (const int d = axis[static_cast<size_t>(entry.col())]; d >= 0)
+          out[d] -= entry.value() * x.lambda[entry.row()];
+    return out;
+  }
+
+  std::string joint_, body_;
+};
+
+}  // namespace
+
+std::shared_ptr<const MotionMeasure> measure_strain_energy() {
+  return std::make_shared<StrainEnergy>();
+}
+std::shared_ptr<const MotionMeasure> measure_deflection(std::string body, const Vec2& material,
+                                                        Carrier carrier, int line) {
+  return std::make_shared<Deflection>(std::move(body), material, std::move(carrier), line);
+}
+std::shared_ptr<const MotionMeasure> measure_place_error(
+    std::string body, std::array<std::function<Motion(double)>, 2> path) {
+  return std::make_shared<PlaceError>(std::move(body), std::move(path));
+}
+std::shared_ptr<const MotionMeasure> measure_joint_force(std::string joint, std::string body) {
+  return std::make_shared<JointForce>(std::move(joint), std::move(body));
+}
+
+}  // namespace flexmorph::fem

@@ -1,0 +1,133 @@
+#include "fem/dynamics/integrators/coordinate_partition.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "fem/solve/diagnosis.h"
+
+namespace flexmorph::fem {
+namespace {
+
+constexpr double kDependent = 1e-9;  // what is new of a row of unit size, as in diagnose()
+
+/// J without the unknowns that no row acts on, and which unknowns are left.
+MatrixXd used_columns(const SparseMatrix& j, std::vector<int>& unknowns) {
+  unknowns.clear();
+  for (int column = 0; column < j.cols(); ++column)
+    for (SparseMatrix::InnerIterator it(j, column); it; ++it)
+      if (it.value() != 0) {
+        unknowns.push_back(column);
+        break;
+      }
+  MatrixXd out(j.rows(), static_cast<Eigen::Index>(unknowns.size()));
+  for (size_t k = 0; k < unknowns.size(); ++k)
+    out.col(static_cast<Eigen::Index>(k)) = VectorXd(j.col(unknowns[k]));
+  return out;
+}
+
+[[noreturn]] void refuse(Workspace& model, const State& x) {
+  std::string what = describe(diagnose(model, x));
+  if (what.empty()) what = describe(ConstraintWatch(model).look(x));
+  throw Error::numerical("minimal_coordinates: the constraints are dependent at t = " +
+                         std::to_string(x.t) + " s: " + what);
+}
+
+}  // namespace
+
+bool CoordinatePartition::choose(Workspace& model, const State& x) {
+  rows_.evaluate(model, x);
+  const Eigen::Index m = model.n_constraints();
+  std::vector<int> used, chosen;
+  const MatrixXd j = used_columns(rows_.jacobian(), used);
+  if (j.cols() < m) refuse(model, x);
+  if (m > 0) {
+    const Eigen::ColPivHouseholderQR<MatrixXd> qr(j);
+    const auto diagonal = qr.matrixQR().diagonal().cwiseAbs();
+    if (!(diagonal[m - 1] > kDependent * diagonal[0])) refuse(model, x);
+    for (Eigen::Index k = 0; k < m; ++k)
+      chosen.push_back(used[static_cast<size_t>(qr.colsPermutation().indices()[k])]);
+  }
+  std::sort(chosen.begin(), chosen.end());
+  const bool differs = chosen != dependent_ || independent_.size() + dependent_.size() !=
+                                                   static_cast<size_t>(model.n_dofs());
+  dependent_ = std::move(chosen);
+  number(model, rows_.unscaled());
+  return differs;
+}
+
+void CoordinatePartition::number(const Model& model, const Constraints& c) {
+  std::vector<int> column_of(static_cast<size_t>(model.n_dofs()), -1);
+  for (size_t k = 0; k < dependent_.size(); ++k)
+    column_of[static_cast<size_t>(dependent_[k])] = static_cast<int>(k);
+  independent_.clear();
+  for (int i = 0; i < model.n_dofs(); ++i)
+    if (column_of[static_cast<size_t>(i)] < 0) independent_.push_back(i);
+
+  const auto m = static_cast<Eigen::Index>(dependent_.size());
+  row_scale_ = rows_.row_scale();
+  column_scale_.resize(m);
+  for (Eigen::Index k = 0; k < m; ++k)
+    column_scale_[k] = 1 / rows_.scales()[dependent_[static_cast<size_t>(k)]];
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const auto& entry : c.jacobian)
+    if (const int column = column_of[static_cast<size_t>(entry.col())]; column >= 0)
+      entries.emplace_back(entry.row(), column, 1.0);
+  matrix_.resize(m, m);
+  matrix_.setFromTriplets(entries.begin(), entries.end());
+  matrix_.makeCompressed();
+  places_.clear();
+  weights_.clear();
+  for (const auto& entry : c.jacobian) {
+    const int column = column_of[static_cast<size_t>(entry.col())];
+    places_.push_back(-1);
+    weights_.push_back(0);
+    if (column < 0) continue;
+    const int* first = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column];
+    const int* last = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column + 1];
+    places_.back() =
+        static_cast<int>(std::lower_bound(first, last, entry.row()) - matrix_.innerIndexPtr());
+    weights_.back() = row_scale_[entry.row()] * column_scale_[column];
+  }
+  factored_.resize(matrix_.nonZeros());
+  lu_.analyze(matrix_);
+  is_factored_ = false;
+}
+
+void CoordinatePartition::factorize(const Constraints& c) {
+  double* values = matrix_.valuePtr();
+  Eigen::Map<VectorXd> all(values, matrix_.nonZeros());
+  all.setZero();
+  for (size_t k = 0; k < places_.size(); ++k)
+    if (places_[k] >= 0) values[places_[k]] += weights_[k] * c.jacobian[k].value();
+  if (is_factored_ && all == factored_) return;
+  is_factored_ = false;
+  lu_.factorize(matrix_);
+  factored_ = all;
+  is_factored_ = true;
+}
+
+void CoordinatePartition::remember(Memory& memory) {
+  memory(independent_, dependent_, places_, weights_, row_scale_, column_scale_, matrix_, factored_,
+         is_factored_);
+  lu_.remember(memory, matrix_);
+}
+
+void CoordinatePartition::solve(const VectorXd& right, VectorXd& out) const {
+  out = row_scale_.cwiseProduct(right);
+  lu_.solve(out);
+  out.array() *= column_scale_.array();
+}
+
+double CoordinatePartition::amplification() const {
+  if (matrix_.rows() == 0) return 1;
+  double norm = 0;
+  for (int column = 0; column < matrix_.cols(); ++column) {
+    double sum = 0;
+    for (SparseMatrix::InnerIterator it(matrix_, column); it; ++it) sum += std::abs(it.value());
+    norm = std::max(norm, sum);
+  }
+  return lu_.condition(matrix_) / norm;
+}
+
+}  // namespace flexmorph::fem

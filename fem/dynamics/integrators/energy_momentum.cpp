@@ -1,0 +1,77 @@
+#include "fem/dynamics/integrators/energy_momentum.h"
+
+namespace flexmorph::fem {
+
+EnergyMomentum::EnergyMomentum(Workspace& model, const EnergyMomentumSettings& settings)
+    : StepSolver(model, settings, "energy_momentum",
+                 "Nothing is damped here: a smaller time.step often helps, or integrator = "
+                 "\"generalized_alpha\".") {}
+
+void EnergyMomentum::begin(const State& x, double h) {
+  h_ = h;
+  start_ = x;
+  model().constraints(start_, at_end_);
+  start_rate_ = at_end_.rate;
+  end_ = mean_ = x;
+  end_.t = x.t + h;
+  mean_.t = x.t + 0.5 * h;
+  step_ = h * x.v + 0.5 * h * h * x.a;
+  set_mean();
+}
+
+/// The other variables from the step of q.
+void EnergyMomentum::set_mean() {
+  end_.q = start_.q + step_;
+  mean_.q = start_.q + 0.5 * step_;
+  mean_.v = step_ / h_;
+  mean_.a = (2 / h_) * (mean_.v - start_.v);
+}
+
+void EnergyMomentum::residual(VectorXd& force, VectorXd& constraint) {
+  model().constraints(end_, at_end_);
+  model().constraints(mean_, at_mean_);
+  model().mean_force(mean_, start_.q, end_.q, force);
+  model().add_constraint_force(at_mean_, mean_.lambda, force);
+  constraint = at_end_.value;
+}
+
+void EnergyMomentum::tangent(SparseMatrix& out) {
+  model().mean_kkt(mean_, start_.q, end_.q, at_mean_, at_end_, {0.5, 1 / h_, 2 / (h_ * h_)},
+                   scale(), out);
+}
+
+void EnergyMomentum::correct(const VectorXd& dq, const VectorXd& dlambda) {
+  step_ += dq;
+  mean_.lambda += dlambda;
+  set_mean();
+}
+
+void EnergyMomentum::finish(State& x) {
+  end_.v = start_.v + h_ * mean_.a;
+  follow_drives(!start_rate_.isZero(0));
+  end_.a = mean_.a;
+  end_.lambda = mean_.lambda;
+  x = end_;
+}
+
+/// Velocities of driven joints. The kept tangent is the metric: where it is dominated by 2 M / h²
+/// this is the projection in the mass norm, stiffer parts follow as in statics; either way what the
+/// force on a joint does to the momenta, and nothing else, is added.
+void EnergyMomentum::follow_drives(bool was_driven) {
+  model().constraints(end_, at_end_);
+  if (!was_driven && at_end_.rate.isZero(0)) return;
+  none_.setZero(model().n_dofs());
+  // The kept Jacobian is half a step old at least: each pass leaves O(h) of the miss.
+  constexpr int kPasses = 6;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    miss_ = -at_end_.rate;
+    for (const auto& entry : at_end_.jacobian)
+      miss_[entry.row()] -= entry.value() * end_.v[entry.col()];
+    if (h_ * miss_.lpNorm<Eigen::Infinity>() <= 1e-15 * size()) return;
+    solve_kept(none_, miss_, dv_, mu_);
+    end_.v += dv_;
+    mean_.lambda += mu_ / h_;
+  }
+}
+
+}  // namespace flexmorph::fem

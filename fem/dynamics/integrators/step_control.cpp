@@ -1,0 +1,92 @@
+#include "fem/dynamics/integrators/step_control.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/base.h"
+#include "geometry/text.h"
+
+namespace flexmorph::fem {
+namespace {
+
+constexpr double kSafety = 0.95;
+// Exponents of the error and of its change; 1/3 alone would meet the allowed error at once.
+constexpr double kIntegral = 0.28, kProportional = 0.1;
+constexpr double kGrowth = 1.5, kShrink = 0.2;     // limits of one change
+constexpr double kDeadLow = 0.9, kDeadHigh = 1.2;  // changes that are not worth a factorization
+// Newton iterations after which a step does not grow, and after which it shrinks; and for how many
+// steps a step as long as one that failed is not tried again.
+constexpr int kMany = 7, kTooMany = 10, kAvoid = 20;
+// An error that crosses zero says nothing about the next step: it falls at most to this part.
+constexpr double kMemory = 0.5;
+
+}  // namespace
+
+StepControl::StepControl(const AdaptiveStep& settings, double span)
+    : allowed_(std::pow(settings.tolerance, 1.5)),
+      largest_(settings.largest > 0 ? std::min(settings.largest, span) : span / 50),
+      smallest_(settings.smallest > 0 ? settings.smallest : 1e-10 * span) {
+  if (!(settings.tolerance > 0 && settings.tolerance < 1) || !(span > 0) ||
+      !(settings.largest >= 0 && settings.smallest >= 0 && settings.first >= 0))
+    throw Error::input(
+        "adaptive step: the tolerance lies between 0 and 1, step sizes are not negative");
+  if (smallest_ > largest_)
+    throw Error::input("adaptive step: the smallest step is longer than the largest");
+}
+
+void StepControl::begin(double h) {
+  wish_ = std::clamp(h, smallest_, largest_);
+  last_ = 0;
+}
+
+double StepControl::next(double left) const {
+  if (left <= 1.001 * wish_) return left;
+  return left < 2 * wish_ ? 0.5 * left : wish_;
+}
+
+void StepControl::accepted(double h, double error, int iterations) {
+  double ratio = std::max(error / allowed_, 1e-6);
+  if (h < (1 - 1e-9) * wish_) {
+    // Cut short to land: says only whether the wish is too long.
+    wish_ = std::min(wish_, kSafety * h * std::pow(ratio, -1.0 / 3));
+    shrunk_ = false;
+    return;
+  }
+  ratio = std::max(ratio, kMemory * last_);
+  double change = kSafety * std::pow(ratio, -kIntegral);
+  if (last_ > 0) change *= std::pow(last_ / ratio, kProportional);
+  change = std::clamp(change, kShrink, shrunk_ || iterations >= kMany ? 1 : kGrowth);
+  if (iterations >= kTooMany) change = std::min(change, 0.7);
+  if (failed_ > 0 && ++since_failed_ > kAvoid) failed_ = 0;
+  if (failed_ > 0) change = std::min(change, std::max(1.0, 0.7 * failed_ / h));
+  if (change > kDeadLow && change < kDeadHigh) change = 1;
+  // What the error of the next step will be, for its proportional part.
+  const double next = std::clamp(h * change, smallest_, largest_);
+  last_ = ratio * std::pow(next / h, 3);
+  wish_ = next;
+  shrunk_ = false;
+}
+
+void StepControl::shorten(double h, double t, const char* why) {
+  shrunk_ = true;
+  last_ = 0;
+  wish_ = h;
+  if (h >= smallest_) return;
+  throw Error::numerical(
+      formatted("adaptive step: at t = %.6g s %s: the next step would be %.2e s long", t, why, h));
+}
+
+void StepControl::rejected(double h, double error, double t) {
+  const double change = 0.9 * std::pow(error / allowed_, -1.0 / 3);
+  // Also where the error is not a number.
+  shorten(h * (change > kShrink ? std::min(change, 0.85) : kShrink), t,
+          "the local error does not get below what the tolerance allows");
+}
+
+void StepControl::failed(double h, double t) {
+  failed_ = h;
+  since_failed_ = 0;
+  shorten(0.5 * h, t, "Newton's method does not converge");
+}
+
+}  // namespace flexmorph::fem

@@ -1,0 +1,276 @@
+#include "fem/dynamics/integrators/step_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "fem/solve/condition.h"
+#include "fem/solve/scaled_constraints.h"
+#include "geometry/text.h"
+
+namespace flexmorph::fem {
+namespace {
+
+// An error this small against the allowed one lets a step grow at once.
+constexpr double kFar = 0.1;
+
+}  // namespace
+
+StepSolver::StepSolver(Workspace& model, const StepSettings& settings, std::string name,
+                       std::string advice)
+    : model_(model), settings_(settings), name_(std::move(name)), advice_(std::move(advice)) {
+  if (!(settings.tolerance > 0) || settings.max_iterations < 1 || settings.max_halvings < 0)
+    throw Error::input(name_ +
+                       ": tolerance and max_iterations are positive, max_halvings is not negative");
+}
+
+void StepSolver::set_scales() {
+  if (scaled_version_ == model_.pattern_version()) return;
+  scales_ = model_.scales();
+  size_ = undeformed_size(model_, scales_);
+  scaled_version_ = model_.pattern_version();
+}
+
+/// Unknown i is solved as the displacement scales_i Δq_i; its equation as a virtual work on it.
+void StepSolver::scale_kkt(const std::vector<char>& chosen) {
+  const auto is_chosen = [&](int k) { return chosen.empty() || chosen[static_cast<size_t>(k)]; };
+  for (int column = 0; column < kkt_.cols(); ++column) {
+    if (!is_chosen(column)) continue;
+    for (SparseMatrix::InnerIterator entry(kkt_, column); entry; ++entry) {
+      if (!is_chosen(static_cast<int>(entry.row()))) continue;
+      if (column < model_.n_dofs()) entry.valueRef() /= scales_[column];
+      if (entry.row() < model_.n_dofs()) entry.valueRef() /= scales_[entry.row()];
+    }
+  }
+}
+
+void StepSolver::factorize(double miss) {
+  set_scales();
+  scale_kkt({});
+  if (analysed_version_ != model_.pattern_version()) {
+    solver_.analyze(kkt_);
+    analysed_version_ = model_.pattern_version();
+  }
+  solver_.factorize(kkt_, miss);
+  ++counts_.factorizations;
+}
+
+std::optional<double> StepSolver::condition() const {
+  if (counts_.factorizations == 0) return {};
+  return condition_estimate(solver_.as_solved(kkt_));
+}
+
+void StepSolver::factorize_here(double h) {
+  // A tenth of the contraction that Newton's method accepts of a kept tangent.
+  constexpr double kMiss = 0.02;
+  tangent(kkt_);
+  factorize(kMiss);
+  factored_h_ = h;
+  if (!solver_.border().empty()) turns_.begin(model_, iterate());
+}
+
+void StepSolver::renew_border() {
+  const std::vector<char>& border = solver_.border();
+  if (border.empty() || !renew_tangent(border, kkt_)) return;
+  scale_kkt(border);
+  turns_.follow(model_, iterate());
+  if (!solver_.renew_border(kkt_, turns_.turns(model_))) factored_h_ = 0;
+}
+
+void StepSolver::solve_mass(const State& x, const VectorXd& force, const VectorXd& constraint) {
+  factored_h_ = 0;
+  model_.kkt(x, constraints_, {0, 0, 1}, 1, kkt_);
+  factorize(0);
+  right_.resize(kkt_.rows());
+  right_.head(model_.n_dofs()) = force.cwiseQuotient(scales_);
+  right_.tail(model_.n_constraints()) = constraint;
+  solver_.solve(kkt_, right_, solution_);
+}
+
+void StepSolver::solve_accelerations(State& x) {
+  x.a.setZero(model_.n_dofs());
+  model_.constraints(x, constraints_);
+  model_.force(x, force_);
+  solve_mass(x, -force_, constraints_.acceleration);
+  x.a = solution_.head(model_.n_dofs()).cwiseQuotient(scales_);
+  x.lambda = solution_.tail(model_.n_constraints());
+}
+
+void StepSolver::make_consistent(State& x) {
+  solve_accelerations(x);
+  restart(x);
+}
+
+void StepSolver::project_velocity(State& x) {
+  model_.constraints(x, constraints_);
+  constraint_ = -constraints_.rate;
+  for (const auto& entry : constraints_.jacobian)
+    constraint_[entry.row()] -= entry.value() * x.v[entry.col()];
+  force_.setZero(model_.n_dofs());
+  solve_mass(x, force_, constraint_);
+  x.v += solution_.head(model_.n_dofs()).cwiseQuotient(scales_);
+}
+
+VectorXd StepSolver::held_part(const State& x, const VectorXd& w) {
+  model_.constraints(x, constraints_);
+  constraint_.setZero(model_.n_constraints());
+  for (const auto& entry : constraints_.jacobian)
+    constraint_[entry.row()] += entry.value() * w[entry.col()];
+  force_.setZero(model_.n_dofs());
+  solve_mass(x, force_, constraint_);
+  return solution_.head(model_.n_dofs()).cwiseQuotient(scales_);
+}
+
+void StepSolver::solve_kept(const VectorXd& force, const VectorXd& constraint, VectorXd& dq,
+                            VectorXd& mu) {
+  right_.resize(kkt_.rows());
+  right_.head(model_.n_dofs()) = force.cwiseQuotient(scales_);
+  right_.tail(model_.n_constraints()) = constraint;
+  solver_.solve(kkt_, right_, solution_, false);
+  dq = solution_.head(model_.n_dofs()).cwiseQuotient(scales_);
+  mu = solution_.tail(model_.n_constraints());
+}
+
+TriedStep StepSolver::solve_step(State& x, double h, double allowed) {
+  history_.clear();
+  const int before = counts_.newton;
+  try {
+    begin(x, h);
+    if (newton(h)) {
+      TriedStep out{true, std::isfinite(allowed) ? local_error(x, allowed) : 0,
+                    counts_.newton - before};
+      // That a kept tangent contracts slowly is no reason to stay with steps this small.
+      if (out.error < kFar * allowed) out.iterations = fresh_iterations_;
+      // An error that is not a number is too large.
+      if (!(out.error <= allowed)) return out;
+      if (finish_sound(x)) return out;
+    }
+  } catch (const Error& error) {
+    if (error.kind() != Error::Kind::numerical) throw;
+    history_ += error.what();
+  }
+  factored_h_ = 0;
+  return {};
+}
+
+bool StepSolver::finish_sound(State& x) {
+  constexpr double kLarge = 1e-3;  // a tenth of an element, of a hundred in a row
+  const bool look = largest_correction_ > kLarge;
+  if (look) before_ = x;
+  finish(x);
+  model_.follow_turns(x);
+  if (!look || model_.smallest_area_ratio(x) > 0) {
+    keep();
+    return true;
+  }
+  history_ += "converged with material turned inside out";
+  x = before_;
+  return false;
+}
+
+double StepSolver::local_error(const State&, double) {
+  throw Error::input(name_ + " does not estimate its local error: its steps cannot adapt to it");
+}
+
+TriedStep StepSolver::try_step(State& x, double h, double allowed) {
+  const TriedStep out = solve_step(x, h, allowed);
+  if (!out.converged) {
+    ++counts_.rejected;
+    if (++failures_ > settings_.max_halvings) give_up(x, h, failures_);
+    return out;
+  }
+  failures_ = 0;
+  ++(out.error <= allowed ? counts_.steps : counts_.inaccurate);
+  return out;
+}
+
+bool StepSolver::is_kept(double h) const {
+  return std::abs(factored_h_ / h - 1) <= 1e-6 && analysed_version_ == model_.pattern_version();
+}
+
+bool StepSolver::newton(double h) {
+  // A kept tangent that contracts less, or takes longer, is replaced.
+  constexpr double kContraction = 0.2;
+  constexpr int kPatience = 6;
+  // Corrections this small against the model that no longer shrink are round-off, with any tangent
+  // or with a fresh one.
+  constexpr double kRoundOff = 1e-14, kFreshRoundOff = 1e-12;
+  double last = 0;
+  bool fresh = false;
+  largest_correction_ = 0;
+  fresh_iterations_ = 0;
+  for (int iteration = 1; iteration <= settings_.max_iterations; ++iteration) {
+    residual(force_, constraint_);
+    if (iteration == 1 && is_kept(h)) renew_border();
+    if (!is_kept(h)) {
+      factorize_here(h);
+      fresh = true;
+    }
+    force_ *= -scale();
+    constraint_ *= -1;
+    solve_kept(force_, constraint_, dq_, mu_);
+    const double r = right_.lpNorm<Eigen::Infinity>();
+    const double correction = solution_.head(model_.n_dofs()).lpNorm<Eigen::Infinity>() / size_;
+    largest_correction_ = std::max(largest_correction_, correction);
+    ++counts_.newton;
+    fresh_iterations_ += fresh;
+    history_ += formatted("%d: |r| %.1e, |dq| %.1e; ", iteration, r, correction);
+    if (!std::isfinite(r) || !std::isfinite(correction)) return false;
+    mu_ /= scale();
+    correct(dq_, mu_);
+
+    const double contraction = iteration > 1 ? correction / last : 1;
+    const double error =
+        contraction < 1 ? correction * contraction / (1 - contraction) : correction;
+    const double tolerance = settings_.tolerance * resolved() / size_;
+    if (correction <= tolerance || error <= 0.01 * tolerance) return true;
+    if (correction <= (fresh ? kFreshRoundOff : kRoundOff) && contraction > kContraction)
+      return true;
+    if (fresh && iteration > 3 && contraction > 2) return false;  // diverges with its own tangent
+    if (iteration > 1 && (contraction > kContraction || iteration >= kPatience)) factored_h_ = 0;
+    last = correction;
+  }
+  return false;
+}
+
+void StepSolver::give_up(const State& x, double h, int failures) const {
+  const std::string text = formatted(
+      ": no convergence at t = %.6g s, step %d, step size %.2e s after %d halvings, "
+      "smallest area ratio %.2e (",
+      x.t, counts_.steps + 1, h, failures - 1, model_.smallest_area_ratio(x));
+  throw Error::numerical(name_ + text + history_ + "). " + advice_ +
+                         " An area ratio near zero means that the material has collapsed.");
+}
+
+void StepSolver::remember(Memory& memory) {
+  const int now = model_.pattern_version();
+  // Scales are those of the lines where they were, and the kept tangent is that of an earlier step.
+  memory(counts_, scales_, size_, kkt_, factored_h_, failures_, turns_);
+  memory.up_to_date(scaled_version_, now);
+  if (memory.up_to_date(analysed_version_, now)) solver_.remember(memory, kkt_);
+}
+
+void StepSolver::advance(State& x, double t_end,
+                         const std::function<void(const State&)>& accepted) {
+  const double whole = t_end - x.t;
+  double h = whole;
+  int halvings = 0;
+  while (x.t < t_end) {
+    if (x.t + h > t_end - 1e-9 * whole) h = t_end - x.t;
+    if (solve_step(x, h, std::numeric_limits<double>::infinity()).converged) {
+      if (std::abs(x.t - t_end) <= 1e-9 * whole) x.t = t_end;
+      ++counts_.steps;
+      accepted(x);
+      if (halvings > 0) {
+        h *= 2;
+        --halvings;
+      }
+      continue;
+    }
+    ++counts_.rejected;
+    if (++halvings > settings_.max_halvings) give_up(x, h, halvings);
+    h *= 0.5;
+  }
+}
+
+}  // namespace flexmorph::fem

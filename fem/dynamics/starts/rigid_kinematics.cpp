@@ -1,0 +1,151 @@
+#include "fem/dynamics/starts/rigid_kinematics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "fem/body_joints.h"
+#include "fem/solve/assembly.h"
+
+namespace flexmorph::fem {
+namespace {
+
+/// First axis of a frame, with its rates.
+struct Axis {
+  explicit Axis(const FrameMotion& f)
+      : e(std::cos(f.angle), std::sin(f.angle)),
+        rate(f.angle_rate * Vec2(-e.y(), e.x())),
+        acceleration(f.angle_acceleration * Vec2(-e.y(), e.x()) - f.angle_rate * f.angle_rate * e) {
+  }
+  Vec2 e, rate, acceleration;
+};
+
+}  // namespace
+
+Motion angle_between(const FrameMotion& a, const FrameMotion& b) {
+  return {std::remainder(b.angle - a.angle, 2 * std::numbers::pi), b.angle_rate - a.angle_rate,
+          b.angle_acceleration - a.angle_acceleration};
+}
+
+Motion distance_between(const FrameMotion& a, const FrameMotion& b) {
+  const Vec2 d = b.origin - a.origin, d_t = b.origin_rate - a.origin_rate,
+             d_tt = b.origin_acceleration - a.origin_acceleration;
+  const double l = d.norm(), rate = d.dot(d_t) / l;
+  return {l, rate, (d_t.squaredNorm() + d.dot(d_tt) - rate * rate) / l};
+}
+
+Motion distance_along(const FrameMotion& a, const FrameMotion& b) {
+  const Axis u(a);
+  const Vec2 d = a.origin - b.origin, d_t = a.origin_rate - b.origin_rate,
+             d_tt = a.origin_acceleration - b.origin_acceleration;
+  return {u.e.dot(d), u.rate.dot(d) + u.e.dot(d_t),
+          u.acceleration.dot(d) + 2 * u.rate.dot(d_t) + u.e.dot(d_tt)};
+}
+
+void add_rigid_body(Model& model, const MechanismBody& body, const LoadLaw& gravity,
+                    std::span<const StoredMaterial> stored) {
+  std::vector<std::unique_ptr<Term>> terms;
+  terms.push_back(make_rigid_inertia(body.section));
+  if (gravity.size() > 0) terms.push_back(make_rigid_gravity(body.section, gravity));
+  for (const StoredMaterial& each : stored) {
+    terms.push_back(make_stored_inertia(each));
+    if (gravity.size() > 0) terms.push_back(make_stored_weight(each, gravity));
+  }
+  model.add_body(body.name, make_rigid_body(body.size, !stored.empty()), {}, std::move(terms));
+  model.add_joint(make_unit_axis("axis of " + body.name, body.name));
+}
+
+RigidKinematics::RigidKinematics(RigidMechanism mechanism) : mechanism_(std::move(mechanism)) {
+  for (const MechanismBody& body : mechanism_.bodies)
+    add_rigid_body(model_, body, mechanism_.gravity);
+  for (const auto& link : mechanism_.links) model_.add_link(link->clone());
+  for (const MechanismJoint& each : mechanism_.joints) {
+    if (!each.joint && each.is_driven)
+      throw Error::input("rigid kinematics: the drive '" + each.drive + "' has no motion");
+    if (each.joint) model_.add_joint(each.joint->clone());
+  }
+}
+
+State RigidKinematics::guess() const {
+  State x = model_.reference();
+  for (const MechanismBody& b : mechanism_.bodies)
+    x.q.segment<4>(model_.body(b.name).first_dof) << b.position, std::cos(b.angle),
+        std::sin(b.angle);
+  return x;
+}
+
+Error RigidKinematics::refusal(const Diagnosis& diagnosis) const {
+  // A line to each group; the joints of the first groups are as many as one reads.
+  constexpr size_t kManyJoints = 5;
+  constexpr int kMaxLines = 8;
+  std::string words = describe(diagnosis);
+  int said = 0;
+  for (const DependentGroup& group : diagnosis.groups) {
+    std::vector<std::string> drives;
+    for (const std::string& name : group.joints)
+      if (std::any_of(mechanism_.joints.begin(), mechanism_.joints.end(),
+                      [&](const MechanismJoint& j) {
+                        return j.prescribes && j.joint && j.joint->name() == name;
+                      }))
+        drives.push_back(name);
+    if (group.joints.size() > kManyJoints && !drives.empty() && said++ < kMaxLines)
+      words += "\nof them drives: " + list_joints(drives);
+  }
+  return Error::input(words);
+}
+
+bool RigidKinematics::assemble(State& x) {
+  const State guess = x;
+  try {
+    fem::assemble(model_, x);
+    return true;
+  } catch (const Error& error) {
+    const Diagnosis anywhere = diagnose(model_, guess);
+    if (error.kind() == Error::Kind::input || anywhere.is_independent()) throw;
+    const Diagnosis nearest = diagnose(model_, x);  // x is the best fit
+    if (!mechanism_.bends || nearest.misses_positions() || !nearest.is_contradictory())
+      throw refusal(nearest.is_contradictory() ? nearest : anywhere);
+    x.v.setZero();
+    return false;
+  }
+}
+
+FrameMotion RigidKinematics::frame(const std::string& body, const State& x) const {
+  return frame_of(model_.body(body), x);
+}
+
+FrameMotion RigidKinematics::frame_at(const MarkerPlace& place, const State& x) const {
+  if (!place.body.empty()) return Carrier(place.body, place.point, place.angle).at(model_, x);
+  FrameMotion ground;
+  ground.origin = place.point;
+  ground.angle = place.angle;
+  return ground;
+}
+
+Motion RigidKinematics::coordinate_of(const std::string& drive, const State& x) const {
+  for (const MechanismJoint& each : mechanism_.joints)
+    if (each.drive == drive && each.coordinate)
+      return each.coordinate(frame_at(each.a, x), frame_at(each.b, x));
+  throw Error::input("drive '" + drive +
+                     "' follows from the trajectory, but drives no flow, angle or distance");
+}
+
+RigidMechanism released(RigidMechanism mechanism,
+                        const std::function<bool(const MechanismJoint&)>& chosen) {
+  for (MechanismJoint& each : mechanism.joints) {
+    if (!each.is_driven || !chosen(each)) continue;
+    each.joint = each.released;
+    each.is_driven = false;
+  }
+  return mechanism;
+}
+
+int undriven_degrees_of_freedom(const RigidKinematics& kinematics) {
+  RigidKinematics free(
+      released(kinematics.mechanism(), [](const MechanismJoint&) { return true; }));
+  State x = free.guess();
+  fem::assemble(free.model(), x);
+  return degrees_of_freedom(free.model(), x);
+}
+
+}  // namespace flexmorph::fem

@@ -1,0 +1,87 @@
+#include "fem/dynamics/starts/rigid_motion.h"
+
+#include "fem/dynamics/integrators/integrator.h"
+
+namespace flexmorph::fem {
+
+RigidMotion::RigidMotion(RigidKinematics kinematics)
+    : kinematics_(std::move(kinematics)), start_(kinematics_.guess()) {
+  const bool moves = kinematics_.assemble(start_);
+  const Diagnosis diagnosis = diagnose(kinematics_.model(), start_);
+  indeterminate_ = !diagnosis.is_independent();
+  if (indeterminate_ && (!kinematics_.mechanism().bends || diagnosis.misses_positions()))
+    throw kinematics_.refusal(diagnosis);
+  if (moves) give_initial_velocities(kinematics_, start_);
+  freedoms_ = diagnosis.degrees_of_freedom();
+  if (freedoms_ > 0 || (indeterminate_ && diagnosis.is_contradictory())) return;
+  driven_ = std::make_unique<Kinematics>(kinematics_.model(), start_);
+}
+
+bool RigidMotion::reaches(double t) {
+  if (!indeterminate_) return true;
+  if (!driven_) return false;
+  try {
+    driven_->at(t);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+const State& RigidMotion::at(double t) { return driven_ ? driven_->at(t) : start_; }
+
+bool RigidMotion::follow(double t, int max_steps) {
+  return !driven_ || driven_->follow(t, max_steps);
+}
+
+double RigidMotion::start_speed() const {
+  return kinematics_.model().scales().cwiseProduct(start_.v).lpNorm<Eigen::Infinity>();
+}
+
+double RigidMotion::start_acceleration() {
+  State x = start_;
+  make_integrator(kinematics_.model(), {})->make_consistent(x);
+  return kinematics_.model().scales().cwiseProduct(x.a).lpNorm<Eigen::Infinity>();
+}
+
+void require_motion(RigidKinematics kinematics, double end) {
+  constexpr int kTimes = 200;
+  RigidMotion motion(std::move(kinematics));
+  // Plates that bend may go where the rigid model cannot.
+  if (motion.degrees_of_freedom() > 0 || motion.is_indeterminate()) return;
+  // Of drives that turn ten thousand times the first turns are enough.
+  constexpr int kMaxSteps = 4000;
+  for (int k = 1; k <= kTimes; ++k)
+    if (!motion.follow(end * k / kTimes, kMaxSteps)) return;
+}
+
+namespace {
+
+/// The configuration of a rigid motion; a copy begins anew.
+class Configuration {
+ public:
+  explicit Configuration(RigidKinematics kinematics) : kinematics_(std::move(kinematics)) {}
+  Configuration(const Configuration& other) : kinematics_(other.kinematics_) {}
+  Configuration& operator=(const Configuration&) = delete;
+
+  std::vector<Placed> operator()(double t) {
+    if (!motion_) motion_ = std::make_unique<RigidMotion>(kinematics_);
+    const State& x = motion_->at(t);
+    std::vector<Placed> out;
+    for (const MechanismBody& b : kinematics_.mechanism().bodies)
+      if (b.is_placed) out.push_back({b.name, motion_->kinematics().frame(b.name, x), b.line});
+    return out;
+  }
+
+ private:
+  RigidKinematics kinematics_;
+  std::unique_ptr<RigidMotion> motion_;
+};
+
+}  // namespace
+
+Placement rigid_configuration(RigidKinematics kinematics) {
+  return Configuration(std::move(kinematics));
+}
+
+}  // namespace flexmorph::fem

@@ -1,0 +1,136 @@
+#include "fem/dynamics/starts/start_gradient.h"
+
+#include "fem/dynamics/starts/start_parts.h"
+#include "fem/solve/statics.h"
+
+namespace flexmorph::fem {
+namespace {
+
+/// Derivatives by the positions of an equilibrium.
+class Equilibria {
+ public:
+  Equilibria(Workspace& model, const SeeWork& see) : model_(model), see_(see) {}
+
+  /// @param w  of the tangent   @param spin  as of TransposedSystem::set(), or empty
+  void derive(const State& s, const Weights& w, const VectorXd& spin, const VectorXd& by_q) {
+    TransposedSystem system(model_);
+    system.set(s, w, 1, spin);
+    system.solve(by_q, VectorXd::Zero(model_.n_constraints()), psi_, chi_);
+    see_(s, -psi_);
+  }
+
+  void derive_carried(const start::SteadyEquilibrium& s, const VectorXd& by_q) {
+    TransposedSystem system(model_);
+    system.set_carried(s.strained, s.turning);
+    system.solve(by_q, VectorXd::Zero(model_.n_constraints()), psi_, chi_);
+    see_(s.strained, -psi_);
+  }
+
+  /// Where material damps, velocities follow the shape: F(q, v(q)) with v' = T.
+  void derive_turning(const State& s, const std::vector<double>& spins, const VectorXd& by_q) {
+    constexpr int kPasses = 100;
+    TransposedSystem system(model_);
+    system.set(s, {1, 0, 0}, 1);
+    const VectorXd none = VectorXd::Zero(model_.n_constraints());
+    VectorXd last = VectorXd::Zero(by_q.size());
+    for (int pass = 0; pass < kPasses; ++pass) {
+      VectorXd seed = by_q;
+      if (pass > 0) {
+        VectorXd turned = VectorXd::Zero(by_q.size());
+        start::add_turns(model_, spins, system.by_velocity(s, last), -1, turned);
+        seed -= turned;
+      }
+      system.solve(seed, none, psi_, chi_);
+      if ((psi_ - last).norm() <= 1e-13 * psi_.norm()) break;
+      last = psi_;
+    }
+    see_(s, -psi_);
+  }
+
+ private:
+  Workspace& model_;
+  const SeeWork& see_;
+  VectorXd psi_, chi_;
+};
+
+void derive_in_hubs(Workspace& model, std::span<const Growth> growths, double t, double delta,
+                    const VectorXd& by_q, const VectorXd& by_v, Equilibria& equilibria) {
+  start::InHubs stretched(model, growths, t);
+  const auto derive = [&](double lines, const VectorXd& seed) {
+    State s = stretched.at(lines);
+    equilibria.derive(s, {1, 0, 0}, stretched.spin(), seed);
+  };
+  VectorXd now = by_q;
+  stretched.add_turn(by_v, now, true);
+  derive(t, now);
+  derive(t + delta, by_v / (2 * delta));
+  derive(t - delta, -by_v / (2 * delta));
+}
+
+void derive_mechanism(Workspace& model, std::span<const Growth> growths, const Placement& placement,
+                      double t, double delta, const VectorXd& by_q, const VectorXd& by_v,
+                      Equilibria& equilibria) {
+  for (const int k : {1, 2, 0}) {
+    const double at = t + k * delta;
+    const State s = start::carried_equilibrium(model, growths, placement, at);
+    VectorXd seed = start::kForward[k] / (2 * delta) * by_v;
+    if (k == 0) seed += by_q;
+    if (model.dissipation(s) > 0)
+      equilibria.derive_turning(
+          s, start::spins(model, start::rigid_state(model, growths, placement, at)), seed);
+    else
+      equilibria.derive(s, {1, 0, 0}, {}, seed);
+  }
+}
+
+/// As steady_state() of start.cpp, transposed.
+void derive_steady(Workspace& model, std::span<const Growth> growths, const Placement& placement,
+                   double t, double delta, const VectorXd& by_q, const VectorXd& by_v,
+                   Equilibria& equilibria) {
+  std::vector<double> now;
+  for (const int k : {0, 1, 2}) {
+    const start::SteadyEquilibrium s =
+        start::steady_equilibrium(model, growths, placement, t + k * delta);
+    if (k == 0) now = s.angle;
+    std::vector<double> on = s.angle, spins;
+    for (size_t b = 0; b < on.size(); ++b) on[b] -= now[b];
+    VectorXd seed = start::kForward[k] / (2 * delta) * by_v;
+    start::turn_by(model, on, seed);
+    if (k == 0) {
+      seed += by_q;
+      for (const Turning& turning : s.turning) spins.push_back(turning.rate);
+      start::add_turns(model, spins, by_v, -1, seed);
+    }
+    equilibria.derive_carried(s, seed);
+  }
+  model.move_lines(t);
+}
+
+}  // namespace
+
+void derive_start(Workspace& model, std::span<const Growth> growths, double t, Start kind,
+                  const Placement& placement, double delta, const VectorXd& by_q,
+                  const VectorXd& by_v, const SeeWork& see) {
+  if (kind == Start::rigid) return;
+  Equilibria equilibria(model, see);
+  if (kind == Start::settled || kind == Start::at_rest) {
+    model.move_lines(t);
+    State s = start::rigid_state(model, growths, placement, t);
+    const VectorXd rigid = s.q;
+    if (kind == Start::settled)
+      solve_resting_equilibrium(model, s);
+    else if (start::rest_in_equilibrium(model, s))
+      return equilibria.derive(s, {1, 0, 0}, {}, by_q);
+    s.a = kLastHold * (s.q - rigid);
+    equilibria.derive(s, {1, 0, kLastHold}, {}, by_q);
+    return;
+  }
+  if (kind == Start::steady)
+    return derive_steady(model, growths, placement, t, delta, by_q, by_v, equilibria);
+  if (start::rides_in_hubs(growths, placement))
+    derive_in_hubs(model, growths, t, delta, by_q, by_v, equilibria);
+  else
+    derive_mechanism(model, growths, placement, t, delta, by_q, by_v, equilibria);
+}
+
+}  // namespace flexmorph::fem

@@ -1,0 +1,154 @@
+#include "fem/model/model.h"
+
+#include <algorithm>
+
+#include "fem/strain_term.h"
+
+namespace flexmorph::fem {
+
+Model::Model(const Model& other)
+    : n_dofs_(other.n_dofs_),
+      n_constraints_(other.n_constraints_),
+      pattern_version_(other.pattern_version_),
+      content_version_(other.content_version_),
+      scales_loads_(other.scales_loads_),
+      scales_temperatures_(other.scales_temperatures_) {
+  for (const Body& b : other.bodies_) {
+    Body& body = bodies_.emplace_back(
+        Body{b.name, b.element->clone(), b.section, {}, b.factors, b.heat, b.first_dof});
+    for (const auto& term : b.terms) body.terms.push_back(term->clone());
+  }
+  for (const auto& joint : other.joints_) joints_.push_back(joint->clone());
+  for (const auto& link : other.links_) links_.push_back(link->clone());
+  number_dofs();  // binds joints and links to the bodies of the copy
+}
+
+Body& Model::add_body(std::string name, std::unique_ptr<Element> element,
+                      const PlaneSection& section, std::vector<std::unique_ptr<Term>> terms) {
+  Body body;
+  body.name = std::move(name);
+  body.element = std::move(element);
+  body.section = section;
+  body.terms = std::move(terms);
+  body.first_dof = n_dofs_;
+  const Body* before = bodies_.data();
+  bodies_.push_back(std::move(body));
+  n_dofs_ += bodies_.back().n_dofs();
+  ++pattern_version_;
+  ++content_version_;
+  // Joints and links may hold places in the list, which has moved: seldom, so that a model of n
+  // bodies is not bound n times.
+  if (bodies_.data() != before) number_dofs();
+  return bodies_.back();
+}
+
+void Model::add_joint(std::unique_ptr<Joint> joint) {
+  joints_.push_back(std::move(joint));
+  joints_.back()->bind(views());
+  n_constraints_ += joints_.back()->size();
+  first_rows_.push_back(n_constraints_);
+  ++pattern_version_;
+  ++content_version_;
+}
+
+void Model::add_link(std::unique_ptr<Link> link) {
+  const auto turned = std::count_if(links_.begin(), links_.end(),
+                                    [](const auto& each) { return each->counts_turns(); });
+  links_.push_back(std::move(link));
+  links_.back()->bind(views());
+  if (links_.back()->counts_turns()) links_.back()->set_place(static_cast<int>(turned));
+  ++pattern_version_;
+  ++content_version_;
+}
+
+const Body& Model::body(const std::string& name) const {
+  for (const Body& b : bodies_)
+    if (b.name == name) return b;
+  throw Error::input("there is no body '" + name + "'");
+}
+
+void Model::set_element(Body& body, std::unique_ptr<Element> element) {
+  body.element = std::move(element);
+  number_dofs();
+}
+
+void Model::set_factors(Body& body, Factors factors) {
+  body.factors = std::move(factors);
+  ++content_version_;
+  // The inertia of a body may be what a link acts by.
+  for (const auto& link : links_) link->bind(views());
+}
+
+std::vector<BodyView> Model::views() const {
+  std::vector<BodyView> out;
+  for (const Body& b : bodies_) out.push_back({&b.name, b.element.get(), b.first_dof, &b.factors});
+  return out;
+}
+
+void Model::number_dofs() {
+  n_dofs_ = 0;
+  for (Body& b : bodies_) {
+    b.first_dof = n_dofs_;
+    n_dofs_ += b.n_dofs();
+  }
+  const std::vector<BodyView> bodies = views();
+  n_constraints_ = 0;
+  first_rows_ = {0};
+  for (const auto& joint : joints_) {
+    joint->bind(bodies);
+    n_constraints_ += joint->size();
+    first_rows_.push_back(n_constraints_);
+  }
+  int n_turned = 0;
+  for (const auto& link : links_) {
+    link->bind(bodies);
+    if (link->counts_turns()) link->set_place(n_turned++);
+  }
+  ++pattern_version_;
+  ++content_version_;
+}
+
+bool Model::has_free_lines() const {
+  return std::any_of(bodies_.begin(), bodies_.end(),
+                     [](const Body& b) { return b.element->n_scalars() > 0; });
+}
+
+State Model::reference() const {
+  State x;
+  x.q.resize(n_dofs_);
+  for (const Body& b : bodies_) {
+    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> q =
+        b.element->reference();
+    x.q.segment(b.first_dof, q.size()) = Eigen::Map<const VectorXd>(q.data(), q.size());
+    x.q.segment(b.first_scalar(), b.element->n_scalars()) = b.element->scalars();
+  }
+  x.v = x.a = VectorXd::Zero(n_dofs_);
+  x.lambda = VectorXd::Zero(n_constraints_);
+  return x;
+}
+
+VectorXd Model::scales() const {
+  VectorXd out = VectorXd::Ones(n_dofs_);  // of scalar unknowns
+  for (const Body& b : bodies_)
+    for (int k = 0; k < b.element->n_vectors(); ++k)
+      out.segment(b.first_dof + b.element->dim() * k, b.element->dim())
+          .setConstant(b.element->scale(k));
+  return out;
+}
+
+void Model::scale_loads(double factor) {
+  for (Body& b : bodies_)
+    for (const auto& term : b.terms) {
+      const bool strained = dynamic_cast<const StrainTerm*>(term.get()) != nullptr;
+      if (strained ? scales_temperatures_ : scales_loads_) term->scale_load(factor);
+    }
+  if (!scales_loads_) return;
+  for (const auto& link : links_) link->scale_load(factor);
+}
+
+void Model::choose_scaled(bool loads, bool temperatures) {
+  scales_loads_ = loads;
+  scales_temperatures_ = temperatures;
+}
+
+}  // namespace flexmorph::fem

@@ -1,0 +1,92 @@
+// A part of the matrix of a model made anew: what a kept factor borders on.
+#include <algorithm>
+
+#include "fem/model/workspace.h"
+
+namespace flexmorph::fem {
+namespace {
+
+constexpr int kMaxLocal = kMaxShapes * kMaxDim;
+
+/// Which entries of a matrix.
+struct Chosen {
+  const std::vector<char>& unknowns;
+  bool operator()(int k) const { return k >= 0 && unknowns[static_cast<size_t>(k)] != 0; }
+  bool operator()(int row, int column) const { return (*this)(row) && (*this)(column); }
+};
+
+}  // namespace
+
+void Workspace::renew_kkt(const State& x, const Constraints& c, const Weights& w, double scale,
+                          const std::vector<char>& unknowns, SparseMatrix& out) {
+  prepare(x);
+  if (built_version_ != pattern_version()) build_pattern();  // a motion that goes on has not yet
+  const Chosen chosen{unknowns};
+  for (int column = 0; column < out.cols(); ++column) {
+    if (!chosen(column)) continue;
+    for (SparseMatrix::InnerIterator entry(out, column); entry; ++entry)
+      if (chosen(static_cast<int>(entry.row()))) entry.valueRef() = 0;
+  }
+  double* values = out.valuePtr();
+  const auto is_chosen = [&](int k) { return chosen(k); };
+  for (const BatchPlaces& batch : batches_)
+    if (std::any_of(batch.dofs.begin(), batch.dofs.end(), is_chosen))
+      renew_batch(batch, x, w, scale, unknowns, values);
+  for (const Single& single : singles_)
+    if (std::any_of(single.dofs.begin(), single.dofs.end(), is_chosen))
+      renew_single(single, x, w, scale, unknowns, values);
+  link_entries_.clear();
+  for (const auto& link : links_) link->add_tangent(x, w, link_entries_);
+  for (size_t k = 0; k < link_entries_.size(); ++k)
+    if (chosen(link_entries_[k].row(), link_entries_[k].col()))
+      values[link_places_[k]] += scale * link_entries_[k].value();
+  joint_stiffness(x, stiffness_);
+  for (size_t k = 0; k < stiffness_.size(); ++k)
+    if (chosen(stiffness_[k].row(), stiffness_[k].col()))
+      values[stiffness_places_[k]] += scale * w.q * stiffness_[k].value();
+  for (size_t k = 0; k < c.jacobian.size(); ++k)
+    if (chosen(n_dofs() + c.jacobian[k].row(), c.jacobian[k].col())) {
+      values[joint_places_[2 * k]] += c.jacobian[k].value();
+      values[joint_places_[2 * k + 1]] += c.jacobian[k].value();
+    }
+}
+
+void Workspace::renew_batch(const BatchPlaces& places, const State& x, const Weights& w,
+                            double scale, const std::vector<char>& unknowns, double* values) const {
+  const Chosen chosen{unknowns};
+  const Body& body = bodies_[places.body];
+  Lanes q[kMaxLocal], v[kMaxLocal], a[kMaxLocal], tangent[kMaxLocal * kMaxLocal];
+  for (size_t k = 0; k < places.dofs.size(); ++k) {
+    const int dof = places.dofs[k];
+    const auto lane = static_cast<int>(k % kLanes);
+    q[k / kLanes][lane] = x.q[dof];
+    v[k / kLanes][lane] = x.v[dof];
+    a[k / kLanes][lane] = x.a[dof];
+  }
+  const Batch batch{
+      places.first, places.count, body.element->n_shapes(), body.element->dim(), q, v, a};
+  const int n = batch.n_local();
+  std::fill(tangent, tangent + n * n, Lanes{});
+  for (const auto& term : body.terms) term->add_tangents(batch, w, tangent);
+  // As in kkt(): a place for every column, vector of rows and lane.
+  const int* place = places.entries.data();
+  for (int column = 0; column < n; ++column)
+    for (int row = 0; row < n; row += batch.dim, place += kLanes)
+      for (int lane = 0; lane < batch.count; ++lane)
+        for (int c = 0; c < batch.dim; ++c)
+          if (chosen(places.dofs[static_cast<size_t>((row + c) * kLanes + lane)],
+                     places.dofs[static_cast<size_t>(column * kLanes + lane)]))
+            values[place[lane] + c] += scale * tangent[column * n + row + c][lane];
+}
+
+void Workspace::renew_single(const Single& single, const State& x, const Weights& w, double scale,
+                             const std::vector<char>& unknowns, double* values) const {
+  const Chosen chosen{unknowns};
+  Single part = single;
+  const size_t n = single.dofs.size();
+  for (size_t k = 0; k < part.entries.size(); ++k)
+    if (!chosen(single.dofs[k / n], single.dofs[k % n])) part.entries[k] = -1;
+  add_single_tangent(part, x, w, scale, values);
+}
+
+}  // namespace flexmorph::fem

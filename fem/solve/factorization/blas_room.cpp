@@ -1,0 +1,63 @@
+#include "fem/solve/factorization/blas_room.h"
+
+#include <omp.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+
+#include <cmath>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "geometry/base.h"
+
+extern "C" void* blas_memory_alloc(int purpose);  // of OpenBLAS, in no header
+extern "C" void blas_memory_free(void* buffer);
+
+namespace flexmorph::fem {
+namespace {
+
+constexpr double kStack = 8'388'608;  // of a thread, where nobody says otherwise
+
+/// Would the system map so much?
+bool can_map(double bytes) {
+  const auto size = static_cast<size_t>(bytes);
+  void* trial = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (trial == MAP_FAILED) return false;
+  munmap(trial, size);
+  return true;
+}
+
+std::string megabytes(double bytes) { return std::to_string(std::lround(bytes / 1e6)) + " MB"; }
+
+std::string limit_words() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+    return "its address space is limited to " + megabytes(static_cast<double>(limit.rlim_cur)) +
+           " (ulimit -v)";
+  return "the system does not give it so much";
+}
+
+}  // namespace
+
+void reserve_blas(int threads) {
+  static std::mutex mutex;  // buffers are those of the process
+  static int reserved = 0;
+  const std::lock_guard lock(mutex);
+  if (threads <= reserved) return;
+  const double more = threads - reserved, stacks = threads > 1 ? more * kStack : 0;
+  if (!can_map(more * kBlasBuffer + stacks))
+    throw Error::input("memory: OpenBLAS maps " + megabytes(threads * kBlasBuffer) + " for " +
+                       std::to_string(threads) + (threads > 1 ? " threads" : " thread") +
+                       ", which this process cannot have: " + limit_words());
+  std::vector<void*> buffers;
+  for (int k = 0; k < threads; ++k) buffers.push_back(blas_memory_alloc(0));
+  for (void* buffer : buffers) blas_memory_free(buffer);  // they stay mapped
+  if (threads > 1) {
+#pragma omp parallel num_threads(threads)
+    {}
+  }
+  reserved = threads;
+}
+
+}  // namespace flexmorph::fem

@@ -1,0 +1,248 @@
+#include "io/case_files/case_parser.h"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <tuple>
+
+#include "geometry/base.h"
+#include "io/case_files/case_limits.h"
+#include "io/files.h"
+
+namespace flexmorph::io {
+namespace {
+
+/// ":14:13", line and column (characters, not bytes) as editors count them.
+std::string place_in(const toml::source_position& at) {
+  return std::string(":")
+      .append(std::to_string(at.line))
+      .append(":")
+      .append(std::to_string(at.column));
+}
+
+std::vector<bool> plain_lines(const std::vector<std::string>& lines) {
+  std::vector<bool> out;
+  for (const std::string& line : lines)
+    out.push_back(std::all_of(line.begin(), line.end(),
+                              [](char c) { return static_cast<unsigned char>(c) < 128; }));
+  return out;
+}
+
+/// The source behind a tree: its lines, and what it is called in messages.
+struct Source {
+  std::vector<std::string> lines;
+  std::string name;
+  bool is_option;
+  std::vector<bool> plain = plain_lines(lines);  // of ASCII only; found once, lines may be long
+
+  std::string place(const toml::source_region& region) const {
+    if (is_option || !region.begin) return name;
+    return name + place_in(region.begin);
+  }
+
+  /// The words of a value as they stand in the source; empty when they fill several lines.
+  std::string written(const toml::source_region& region) const {
+    if (!region.begin || region.begin.line != region.end.line || region.begin.line > lines.size())
+      return "";
+    const std::string& line = lines[region.begin.line - 1];
+    // Columns count characters, not bytes: only plain text can be cut by them.
+    if (!plain[region.begin.line - 1] || region.end.column <= region.begin.column) return "";
+    std::string value =
+        line.substr(region.begin.column - 1, region.end.column - region.begin.column);
+    value.erase(value.find_last_not_of(" \t\r") + 1);
+    return value;
+  }
+};
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines(1);
+  for (const char c : text) {
+    if (c == '\n') {
+      lines.emplace_back();
+    } else {
+      lines.back() += c;
+    }
+  }
+  return lines;
+}
+
+CaseNode convert(const toml::node& node, const Source& source);
+
+void convert_entries(const toml::table& table, const Source& source, CaseNode& result) {
+  std::vector<std::tuple<toml::source_position, std::string, const toml::node*>> ordered;
+  for (const auto& [key, child] : table)
+    ordered.emplace_back(child.source().begin, std::string(key.str()), &child);
+  std::stable_sort(ordered.begin(), ordered.end(),
+                   [](const auto& a, const auto& b) { return std::get<0>(a) < std::get<0>(b); });
+  for (const auto& [position, key, child] : ordered)
+    result.entries.emplace_back(convert(*child, source)).key = key;
+}
+
+/// Value and default spelling of anything but a table.
+void convert_value(const toml::node& node, const Source& source, CaseNode& result) {
+  using Kind = CaseNode::Kind;
+  if (const toml::array* list = node.as_array()) {
+    result.kind = Kind::list;
+    std::string inside;
+    for (const toml::node& child : *list) {
+      result.entries.push_back(convert(child, source));
+      inside += (inside.empty() ? "" : ", ") + result.entries.back().shown;
+    }
+    result.shown = "[" + inside + "]";
+  } else if (const auto* text = node.as_string()) {
+    result.kind = Kind::text;
+    result.text = text->get();
+    result.shown = in_quotes(result.text);
+  } else if (const auto* whole = node.as_integer()) {
+    result.kind = Kind::integer;
+    result.integer = whole->get();
+    result.number = static_cast<double>(whole->get());
+    result.shown = std::to_string(whole->get());
+  } else if (const auto* number = node.as_floating_point()) {
+    result.kind = Kind::number;
+    result.number = number->get();
+    result.shown = to_text(result.number);
+  } else if (const auto* boolean = node.as_boolean()) {
+    result.kind = Kind::boolean;
+    result.integer = boolean->get();
+    result.shown = boolean->get() ? "true" : "false";
+  } else {
+    result.kind = Kind::other;  // dates and times, which no key takes
+    result.shown = "a date or time";
+  }
+}
+
+CaseNode convert(const toml::node& node, const Source& source) {
+  CaseNode result;
+  result.place = source.place(node.source());
+  result.line = node.source().begin.line;
+  if (const toml::table* table = node.as_table()) {
+    result.is_inline = table->is_inline();
+    result.shown = "{...}";
+    convert_entries(*table, source, result);
+    return result;
+  }
+  convert_value(node, source, result);
+  const std::string written = source.written(node.source());
+  if (!written.empty()) result.shown = written;
+  return result;
+}
+
+}  // namespace
+
+std::string read_text(const std::string& path) {
+  std::error_code code;
+  const auto status = std::filesystem::status(path, code);
+  if (!std::filesystem::exists(status)) throw Error::input(path + ": no such file");
+  if (std::filesystem::is_directory(status))
+    throw Error::input(path + ": a directory; a case is one TOML file");
+  std::ifstream in(path, std::ios::binary);
+  // A case may come from a pipe, and what comes from a device has no end.
+  constexpr size_t kMostBytes = 100'000'000;
+  std::string text, block(size_t{1} << 16U, '\0');
+  while (in.read(block.data(), static_cast<std::streamsize>(block.size())) || in.gcount() > 0) {
+    text.append(block, 0, static_cast<size_t>(in.gcount()));
+    if (text.size() > kMostBytes)
+      throw Error::input(path + ": a case is one TOML file of at most 100 MB; here is more");
+  }
+  if (!in.is_open() || in.bad()) throw Error::input(path + ": cannot be read");
+  return text;
+}
+
+namespace {
+
+/// What people from other languages, countries and editors most often mean.
+std::string hint_of(const std::string& reason, const std::string& line, size_t column) {
+  constexpr std::string_view kSaw = "saw '";
+  const size_t mark = reason.find(kSaw);
+  const char saw = mark == std::string::npos ? '\0' : reason[mark + kSaw.size()];
+  const auto at = [&](size_t place) {
+    return place < line.size() ? static_cast<unsigned char>(line[place]) : '\0';
+  };
+  const bool behind_number = column >= 2 && (std::isdigit(at(column - 2)) || at(column - 2) == ' ');
+  if (reason.find("utf-8") != std::string::npos) return "a case is UTF-8 text";
+  if (reason.find("value type") != std::string::npos) return "texts stand in quotes";
+  if (reason.find("parsing string") != std::string::npos) return "a quote is open";
+  if (saw == ':') return "a value follows '='";
+  if (saw == ',') return "numbers have a decimal point";
+  if (saw == ';') return "a line ends without a mark";
+  if (behind_number && std::isalpha(at(column - 1)) &&
+      reason.find("comment or whitespace") != std::string::npos)
+    return "numbers are in SI units, which are not written";
+  return "";
+}
+
+/// Reason, the line it is about, and a hint.
+std::string syntax_text(const toml::parse_error& e, const std::string& text) {
+  constexpr size_t kLongest = 60;
+  const std::string reason(e.description());
+  const std::vector<std::string> lines = lines_of(text);
+  const size_t number = e.source().begin.line;
+  std::string line;
+  if (number >= 1 && number <= lines.size()) line = lines[number - 1];
+  if (line.ends_with('\r')) line.pop_back();
+  const std::string hint = hint_of(reason, line, e.source().begin.column);
+  // What is no text is not shown.
+  const bool plain = std::all_of(line.begin(), line.end(),
+                                 [](char c) { return c == '\t' || (c >= 32 && c < 127); });
+  std::string out = reason;
+  if (const size_t first = line.find_first_not_of(" \t"); plain && first < line.size())
+    out.append(" in `").append(line, first, kLongest).append("`");
+  if (!hint.empty()) out.append(": ").append(hint);
+  return out;
+}
+
+}  // namespace
+
+CaseNode parse_case(const std::string& text, const std::string& file) {
+  check_case_limits(text, file);
+  try {
+    const toml::table root = toml::parse(text, file);
+    CaseNode node = convert(root, {lines_of(text), file, false});
+    node.place = file + ":1:1";  // where what is missing may be written
+    return node;
+  } catch (const toml::parse_error& e) {
+    throw Error::input(file + place_in(e.source().begin) + ": not TOML: " + syntax_text(e, text));
+  }
+}
+
+CaseNode parse_option(const std::string& value, const std::string& option) {
+  // The name of a choice may stand without quotes, which shells take away.
+  const bool word = is_bare_key(value) && std::isalpha(static_cast<unsigned char>(value[0])) &&
+                    value != "true" && value != "false" && value != "inf" && value != "nan";
+  std::string text = "value = ";
+  text += word ? in_quotes(value) : value;
+  check_case_limits(text, option);
+  try {
+    const toml::table root = toml::parse(text, option);
+    if (root.size() != 1) throw Error::input(option + ": one value at a time");
+    CaseNode node = convert(*root.get("value"), {{text}, option, true});
+    node.is_option = true;
+    return node;
+  } catch (const toml::parse_error& e) {
+    throw Error::input(option + ": VALUE is not TOML: " + std::string(e.description()));
+  }
+}
+
+std::string in_quotes(const std::string& text) {
+  constexpr const char* kHex = "0123456789ABCDEF";
+  std::string result = "\"";
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      result += std::string("\\") + c;
+    } else if (c == '\n') {
+      result += "\\n";
+    } else if (code < 32 || code == 127) {
+      result += std::string("\\u00") + kHex[code / 16] + kHex[code % 16];
+    } else {
+      result += c;
+    }
+  }
+  return result + "\"";
+}
+
+}  // namespace flexmorph::io

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "io/case_files/case_document.h"
+#include "io/case_files/case_file.h"
+
+namespace flexmorph::io {
+
+/// Where a Table stands: shared by its copies, keeps the document alive.
+struct Table::Place {
+  std::shared_ptr<CaseDocument> document;
+  const CaseNode* table;
+  std::string path;
+  std::string kind;  ///< the path without names and indices, as keys are declared for it
+
+  std::string full(const std::string& key) const { return path.empty() ? key : path + "." + key; }
+
+  /// The node of a key, or nullptr; the key is known from now on.
+  const CaseNode* find(const std::string& key) const {
+    table->visited = true;
+    table->asked.insert(key);
+    return table->find(key);
+  }
+
+  /// @throws Error (input): a missing key, or the misspelt one that was probably meant.
+  [[noreturn]] void fail_missing(const std::string& key, const std::string& allowed) const;
+  [[noreturn]] void fail(const std::string& key, const std::string& allowed) const;
+
+  /// The form to read by.
+  /// @throws std::logic_error for a key of another table, or of another form.
+  const Form& form(const Key& key, Form::Kind kind, bool is_list = false) const;
+
+  /// For the explained case.
+  void note(const Key& key, const std::string& value) const {
+    table->note(key.name, key.sentence, value);
+  }
+
+  /// The value of a key: that of the file through `read`, which returns nothing for a wrong one;
+  /// without it the computed one, or the declared one.
+  template <class T, class Read>
+  T value(const Key& key, const std::optional<T>& computed, const std::string& allowed,
+          Read read) const {
+    const CaseNode* node = find(key.name);
+    const std::optional<T> missing = computed ? computed : fallback_of<T>(key);
+    if (!node && !missing) fail_missing(key.name, allowed);
+    const std::optional<T> found = node ? read(*node) : missing;
+    if (!found) fail(key.name, allowed);
+    if constexpr (std::is_constructible_v<Value, T>)
+      note(key, node ? "" : toml_text(*found));
+    else
+      note(key, "");
+    return *found;
+  }
+
+  /// All entries of a list, each through `read`.
+  template <class T, class Read>
+  std::vector<T> list(const Key& key, const Form& form, const std::string& allowed,
+                      const std::optional<std::vector<T>>& computed, Read read) const {
+    using List = std::vector<T>;
+    const size_t count = static_cast<size_t>(form.count());
+    const std::string each =
+        (count ? "a list of " + std::to_string(count) + ": " : "a list: ") + allowed;
+    return value<List>(key, computed, each, [&](const CaseNode& node) -> std::optional<List> {
+      const size_t size = node.entries.size();
+      if (node.kind != CaseNode::Kind::list || size == 0 || (count && size != count)) return {};
+      List values;
+      for (const CaseNode& entry : node.entries) {
+        const std::optional<T> one = read(entry);
+        if (!one) return {};
+        values.push_back(*one);
+      }
+      return values;
+    });
+  }
+
+ private:
+  /// The value that a key is declared with, if any.
+  template <class T>
+  static std::optional<T> fallback_of(const Key& key) {
+    if constexpr (std::is_constructible_v<Value, T>) {
+      if (!key.fallback) return {};
+      if constexpr (std::is_same_v<T, double>)
+        if (const int* whole = std::get_if<int>(&*key.fallback)) return *whole;
+      // A key that takes a number or a word has a fallback of one kind only.
+      if (const T* value = std::get_if<T>(&*key.fallback)) return *value;
+    }
+    return {};
+  }
+};
+
+}  // namespace flexmorph::io

@@ -1,0 +1,178 @@
+#include "io/drawings/drawing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "io/files.h"
+
+namespace flexmorph::io {
+namespace drawing {
+
+Curve line(const Vec2& from, const Vec2& to) {
+  // The ends are exact.
+  return {[from, to](double t) { return t == 1 ? to : Vec2(from + t * (to - from)); }, true};
+}
+
+Curve arc(const Vec2& center, const Vec2& major, const Vec2& minor, double from, double to) {
+  return {[=](double t) -> Vec2 {
+            const double angle = from + t * (to - from);
+            return center + std::cos(angle) * major + std::sin(angle) * minor;
+          },
+          false};
+}
+
+}  // namespace drawing
+
+namespace {
+
+using drawing::Curve;
+using drawing::Drawing;
+using drawing::Path;
+using Ring = std::vector<Vec2>;
+
+std::string words(const Vec2& p) {
+  return "(" + to_text(p.x(), 6) + ", " + to_text(p.y(), 6) + ")";
+}
+
+/// The larger side of the box around all of it, by points on its curves.
+double size_of(const Drawing& d) {
+  constexpr int kPoints = 16;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Vec2 lower(kInfinity, kInfinity), upper(-kInfinity, -kInfinity);
+  for (const Path& path : d.paths)
+    for (const Curve& c : path.curves)
+      for (int k = 0; k <= kPoints; ++k) {
+        const Vec2 p = c.at(k / double(kPoints));
+        if (!(p.cwiseAbs().maxCoeff() < 1e30))
+          throw Error::input("a coordinate is not a number below 1e30");
+        lower = lower.cwiseMin(p);
+        upper = upper.cwiseMax(p);
+      }
+  return (upper - lower).maxCoeff();
+}
+
+/// Appends points of a curve but its last one: sides within the tolerance, by points in between.
+void flatten(const Curve& curve, double tolerance, Ring& out) {
+  constexpr int kFewest = 8, kMost = 1 << 14;
+  int n = curve.straight ? 1 : kFewest;
+  for (bool fine = curve.straight; !fine && n < kMost;) {
+    double off = 0;
+    for (int k = 0; k < n; ++k) {
+      const Vec2 a = curve.at(k / double(n)), b = curve.at((k + 1) / double(n));
+      for (const double share : {0.25, 0.5, 0.75}) {
+        const Vec2 to = curve.at((k + share) / n) - a, side = b - a;
+        const double t =
+            side.squaredNorm() > 0 ? std::clamp(to.dot(side) / side.squaredNorm(), 0.0, 1.0) : 0.0;
+        off = std::max(off, (to - t * side).norm());
+      }
+    }
+    fine = off <= tolerance;
+    if (!fine) n *= 2;
+  }
+  for (int k = 0; k < n; ++k) out.push_back(curve.at(k / double(n)));
+}
+
+Path reversed(Path path) {
+  std::reverse(path.curves.begin(), path.curves.end());
+  for (Curve& c : path.curves) c.at = [at = std::move(c.at)](double t) { return at(1 - t); };
+  return path;
+}
+
+/// Closed paths of open ones, end to end.
+void close_chains(Drawing& d, double near) {
+  std::vector<Path> open;
+  const auto meet = [&](const Vec2& a, const Vec2& b) { return (a - b).norm() <= near; };
+  std::erase_if(d.paths, [&](Path& path) {
+    if (path.closed || meet(path.begin(), path.end())) return false;
+    open.push_back(std::move(path));
+    return true;
+  });
+  constexpr size_t kMostOpen = 10'000;  // each is compared with all others
+  if (open.size() > kMostOpen)
+    throw Error::input("more than " + to_text(static_cast<long long>(kMostOpen)) +
+                       " lines and arcs to be joined: polylines are wanted");
+  while (!open.empty()) {
+    Path chain = std::move(open.back());
+    open.pop_back();
+    while (!meet(chain.begin(), chain.end())) {
+      const Vec2 end = chain.end();
+      const auto joins = [&](const Path& p) { return meet(p.begin(), end) || meet(p.end(), end); };
+      const auto next = std::find_if(open.begin(), open.end(), joins);
+      if (next == open.end())
+        throw Error::input("a curve is open: it ends at " + words(end) +
+                           ", and no other begins there; outlines are closed");
+      if (std::find_if(next + 1, open.end(), joins) != open.end())
+        throw Error::input("more than two curves meet at " + words(end));
+      Path piece = meet(next->begin(), end) ? std::move(*next) : reversed(std::move(*next));
+      open.erase(next);
+      for (Curve& c : piece.curves) chain.curves.push_back(std::move(c));
+    }
+    d.paths.push_back(std::move(chain));
+  }
+}
+
+/// Points nearer than this part of the tolerance are one.
+constexpr double kSame = 1e-4;
+
+Ring ring_of(const Path& path, double tolerance) {
+  Ring all, ring;
+  for (const Curve& c : path.curves) flatten(c, tolerance, all);
+  all.push_back(path.end());
+  const double same = kSame * tolerance;
+  for (const Vec2& p : all)
+    if (ring.empty() || (p - ring.back()).norm() > same) ring.push_back(p);
+  // The end of the last curve meets the begin of the first one.
+  if (ring.size() > 1 && (ring.back() - ring.front()).norm() <= tolerance) ring.pop_back();
+  while (ring.size() > 1 && (ring.back() - ring.front()).norm() <= same) ring.pop_back();
+  return ring;
+}
+
+}  // namespace
+
+std::vector<std::vector<Vec2>> drawing::closed_rings(Drawing d, double unit) {
+  if (d.paths.empty()) throw Error::input("no closed curve is in it");
+  const double tolerance = kDrawingTolerance * size_of(d);
+  close_chains(d, tolerance);
+  std::vector<Ring> rings;
+  for (const Path& p : d.paths) {
+    rings.push_back(ring_of(p, tolerance));
+    if (rings.back().size() < 3)
+      throw Error::input("a curve at " + words(p.begin()) + " has no area");
+    for (Vec2& v : rings.back()) v *= unit;
+  }
+  return rings;
+}
+
+std::vector<std::string> layers_of_dxf(const std::string& path) {
+  const std::string text = read_regular_file(path, "a drawing");
+  try {
+    return drawing::dxf_layers(text);
+  } catch (const Error& error) {
+    throw Error::input(path + ": " + error.what());
+  }
+}
+
+std::vector<std::vector<Vec2>> read_drawing(const std::string& path,
+                                            const DrawingSettings& settings) {
+  std::string type = std::filesystem::path(path).extension().string();
+  std::transform(type.begin(), type.end(), type.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  if (type != ".dxf" && type != ".svg")
+    throw Error::input(path + ": a drawing is a .dxf or .svg file");
+  const std::string text = read_regular_file(path, "a drawing");
+  try {
+    if (type == ".svg" && !settings.layers.empty())
+      throw Error::input("only DXF files have layers");
+    Drawing d = type == ".dxf" ? drawing::read_dxf(text, settings.layers) : drawing::read_svg(text);
+    const std::optional<double> unit = settings.unit ? settings.unit : d.unit;
+    if (!unit) throw Error::input("it says no unit of length: " + settings.needs_unit);
+    return drawing::closed_rings(std::move(d), *unit);
+  } catch (const Error& error) {
+    throw Error::input(path + ": " + error.what());
+  }
+}
+
+}  // namespace flexmorph::io

@@ -1,0 +1,176 @@
+#include <dl_creationadapter.h>
+#include <dl_dxf.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include "io/drawings/drawing.h"
+#include "io/drawings/length_unit.h"
+
+/// DXF by dxflib, which gives entities as they are: the unit of the file, arcs as arcs.
+namespace flexmorph::io::drawing {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kDegree = kPi / 180;
+
+/// A side of a polyline: straight, or an arc of the angle 4 atan(bulge), to the left of the side
+/// where it is negative.
+Curve side(const Vec2& a, const Vec2& b, double bulge) {
+  if (bulge == 0 || a == b) return line(a, b);
+  const Vec2 half = 0.5 * (b - a), left(-half.y(), half.x());
+  const Vec2 center = a + half + left * (1 - bulge * bulge) / (2 * bulge);
+  const Vec2 radius = a - center, across(-radius.y(), radius.x());
+  Curve curve = arc(center, radius, across, 0, 4 * std::atan(bulge));
+  // Neighbours meet exactly.
+  curve.at = [a, b, round = std::move(curve.at)](double t) {
+    return t == 0 ? a : t == 1 ? b : round(t);
+  };
+  return curve;
+}
+
+class Reader : public DL_CreationAdapter {
+ public:
+  explicit Reader(const std::vector<std::string>& layers) : layers_(layers) {}
+
+  Drawing take() {
+    finish();
+    for (const std::string& layer : layers_)
+      if (!known_.contains(layer)) throw Error::input("nothing is on a layer '" + layer + "'");
+    return std::move(drawing_);
+  }
+
+  /// Names of the layers that something was drawn on.
+  const std::set<std::string>& known() const { return known_; }
+
+  void setVariableInt(const std::string& key, int value, int) override {
+    const LengthUnit* unit = find_length_unit(value);
+    if (key == "$INSUNITS" && unit != nullptr) drawing_.unit = unit->metres;
+  }
+
+  // What a block holds is drawn where it is inserted.
+  void addBlock(const DL_BlockData&) override { in_block_ = true; }
+  void endBlock() override { in_block_ = false; }
+  void addInsert(const DL_InsertData&) override { refuse("INSERT: blocks are to be exploded"); }
+  void addSpline(const DL_SplineData& d) override {
+    finish();
+    in_spline_ = wanted();
+    if (in_spline_ && d.nControl == 0)
+      throw Error::input("SPLINE through fit points alone: control points are wanted");
+    spline_.degree = d.degree;
+    closed_ = (d.flags & 1) != 0;
+  }
+  void addKnot(const DL_KnotData& d) override {
+    if (in_spline_) spline_.knots.push_back(d.k);
+  }
+  void addControlPoint(const DL_ControlPointData& d) override {
+    if (!in_spline_) return;
+    spline_.points.emplace_back(d.x, d.y);
+    spline_.weights.push_back(d.w);
+    count();
+  }
+
+  void addLine(const DL_LineData& d) override { add({line({d.x1, d.y1}, {d.x2, d.y2})}, false); }
+  void addArc(const DL_ArcData& d) override {
+    double to = d.angle2;
+    while (to <= d.angle1 && std::isfinite(d.angle1 - to)) to += 360;
+    const double r = d.radius;
+    add({arc({d.cx, d.cy}, {r, 0}, {0, r}, d.angle1 * kDegree, to * kDegree)}, false);
+  }
+  void addCircle(const DL_CircleData& d) override {
+    add({arc({d.cx, d.cy}, {d.radius, 0}, {0, d.radius}, 0, 2 * kPi)}, true);
+  }
+  void addEllipse(const DL_EllipseData& d) override {
+    double to = d.angle2;
+    while (to <= d.angle1 && std::isfinite(d.angle1 - to)) to += 2 * kPi;
+    const Vec2 major(d.mx, d.my), minor(-d.ratio * d.my, d.ratio * d.mx);
+    add({arc({d.cx, d.cy}, major, minor, d.angle1, to)}, to - d.angle1 > 2 * kPi - 1e-9);
+  }
+  void addPolyline(const DL_PolylineData& d) override {
+    finish();
+    polyline_ = wanted();
+    closed_ = (d.flags & 1) != 0;
+  }
+  void addVertex(const DL_VertexData& d) override {
+    if (!polyline_) return;
+    vertices_.push_back(d);
+    count();
+  }
+  void endEntity() override { finish(); }
+  void endSequence() override { finish(); }
+
+ private:
+  bool wanted() {
+    if (in_block_) return false;
+    const std::string layer = getAttributes().getLayer();
+    known_.insert(layer);
+    return layers_.empty() || std::find(layers_.begin(), layers_.end(), layer) != layers_.end();
+  }
+  void refuse(const std::string& what) {
+    if (wanted()) throw Error::input(what);
+  }
+  void count() {
+    if (++n_ > kMostCurves)
+      throw Error::input("more than " + std::to_string(kMostCurves) + " lines and arcs");
+  }
+  void add(std::vector<Curve> curves, bool closed) {
+    finish();
+    if (!wanted()) return;
+    count();
+    drawing_.paths.push_back({std::move(curves), closed});
+  }
+  /// The spline or the polyline whose points have come.
+  void finish() {
+    if (in_spline_) {
+      in_spline_ = false;
+      drawing_.paths.push_back({spline(std::exchange(spline_, {})), closed_});
+    }
+    if (!polyline_) return;
+    polyline_ = false;
+    Path path;
+    path.closed = closed_;
+    const size_t n = vertices_.size();
+    for (size_t k = 0; k < (closed_ ? n : n - std::min<size_t>(n, 1)); ++k) {
+      const DL_VertexData &a = vertices_[k], &b = vertices_[(k + 1) % n];
+      path.curves.push_back(side({a.x, a.y}, {b.x, b.y}, a.bulge));
+    }
+    vertices_.clear();
+    if (!path.curves.empty()) drawing_.paths.push_back(std::move(path));
+  }
+
+  const std::vector<std::string>& layers_;
+  Drawing drawing_;
+  std::set<std::string> known_;
+  bool in_block_ = false, polyline_ = false, in_spline_ = false, closed_ = false;
+  Spline spline_;
+  std::vector<DL_VertexData> vertices_;
+  size_t n_ = 0;
+};
+
+void read(const std::string& text, Reader& reader) {
+  if (text.find("ENTITIES") == std::string::npos) throw Error::input("this is no DXF file");
+  std::istringstream in(text);
+  DL_Dxf dxf;
+  dxf.in(in, &reader);
+}
+
+}  // namespace
+
+Drawing read_dxf(const std::string& text, const std::vector<std::string>& layers) {
+  Reader reader(layers);
+  read(text, reader);
+  return reader.take();
+}
+
+std::vector<std::string> dxf_layers(const std::string& text) {
+  const std::vector<std::string> none = {""};  // what cannot be read harms nobody here
+  Reader reader(none);
+  read(text, reader);
+  return {reader.known().begin(), reader.known().end()};
+}
+
+}  // namespace flexmorph::io::drawing

@@ -1,0 +1,117 @@
+// Runs whose designs are judged by motions on their cells, and what others say instead.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "io/drawings/exports.h"
+#include "io/tables.h"
+#include "tests/cases/program.h"
+
+namespace flexmorph::test {
+namespace {
+
+nlohmann::json run_json(const std::string& folder) {
+  return nlohmann::json::parse(contents_of(folder + "/run.json"));
+}
+
+double largest(const std::vector<double>& values) {
+  double out = 0;
+  for (const double v : values) out = std::max(out, std::abs(v));
+  return out;
+}
+
+/// Trapezoids, as any reader of the table would.
+double strain_integral(const io::CsvTable& motion) {
+  const auto t = motion.numbers("time"), u = motion.numbers("energy.strain");
+  double out = 0;
+  for (size_t k = 1; k < t.size(); ++k) out += 0.5 * (t[k] - t[k - 1]) * (u[k] + u[k - 1]);
+  return out;
+}
+
+// Two plates, three cycles: integral, best cycle, amplitudes and expectations are those of the
+// motion on cells, while the scene's mesh has others.
+TEST(CellsRun, CyclesAndDesignsAreJudgedOnCells) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const Ended ended = flexmorph(
+      scratch, {"run", FLEXMORPH_TWO_PLATES, "-o", folder, "--set", "verify.cells=1", "--set",
+                "expect={amplitude={at_least=0}, \"energy.strain.largest\"={at_least=0}}"});
+  ASSERT_EQ(ended.code, kTooFew) << ended.err;
+  const nlohmann::json run = run_json(folder);
+  const io::CsvTable on_cells = io::read_csv(folder + "/motion_verified.csv"),
+                     coarse = io::read_csv(folder + "/motion.csv");
+  const double integral = strain_integral(on_cells);
+  int best = 0;
+  ASSERT_GE(run["cycles"].size(), 2u);
+  for (const auto& cycle : run["cycles"]) {
+    const double found = cycle["measure"];
+    if (cycle["best"].get<bool>()) {
+      ++best;
+      EXPECT_NEAR(found, integral, 1e-12 * integral);
+    } else {
+      EXPECT_GT(found, integral);
+    }
+  }
+  EXPECT_EQ(best, 1);
+  const nlohmann::json& motion = run["motion"];
+  EXPECT_EQ(motion["judged_on"], "the cells of the designs");
+  EXPECT_NEAR(motion["strain_energy_integral"].get<double>(), integral, 1e-12 * integral);
+  EXPECT_NEAR(motion["scene_mesh_strain_energy_integral"].get<double>(), strain_integral(coarse),
+              1e-12 * integral);
+  const nlohmann::json& heavy = run["results"][0];
+  const double amplitude = largest(on_cells.numbers("heavy.tip_deflection"));
+  EXPECT_EQ(heavy["dynamic_amplitude"].get<double>(), amplitude);
+  EXPECT_EQ(heavy["scene_mesh_amplitude"].get<double>(),
+            largest(coarse.numbers("heavy.tip_deflection")));
+  EXPECT_NE(heavy["dynamic_amplitude"], heavy["scene_mesh_amplitude"]);
+  EXPECT_LT(heavy["load_difference"]["geometric"].get<double>(), 1);
+  EXPECT_EQ(run["expect"]["amplitude"]["found"].get<double>(), amplitude);
+  EXPECT_EQ(run["expect"]["energy.strain.largest"]["found"].get<double>(),
+            largest(on_cells.numbers("energy.strain")));
+  EXPECT_FALSE(std::filesystem::exists(folder + "/motion_judged.csv"));
+  EXPECT_NE(contents_of(folder + "/report.html").find("Judged by the motion on the cells"),
+            std::string::npos);
+}
+
+/// The full plate, cut through by a gap.
+nlohmann::json analysed(const Scratch& scratch, double gap, std::string& said) {
+  const double half = 0.5 * (0.56 - gap) / 2;  // of the length of a bar
+  std::vector<Component> bars;
+  for (const double centre : {half, 0.56 - half})
+    for (const double y : {-0.025, 0.025})
+      bars.push_back({{centre, y}, half + (gap > 0 ? 0 : 0.01), 0, 0.027, 0.027, 0.027});
+  io::write_components_csv(scratch / "bars.csv", bars);
+  const std::string folder = scratch / "out";
+  const Ended ended = flexmorph(scratch, {"run", FLEXMORPH_SHORT_CASE, "-o", folder, "--set",
+                                          "design.start='" + (scratch / "bars.csv") + "'", "--set",
+                                          "optimizer.max_iterations=0"});
+  said = ended.out + ended.err;
+  return run_json(folder);
+}
+
+// Where no motion on cells judges, energies tell of a cut: the 50 mm elements of the short plate
+// bridge a gap of two cells.
+TEST(CellsRun, EnergiesThatAreApartAreAWarning) {
+  for (const double gap : {0.0, 0.01}) {
+    const Scratch scratch;
+    std::string said;
+    const nlohmann::json run = analysed(scratch, gap, said);
+    const double apart = run["results"][0]["load_difference"]["geometric"];
+    const bool warned = said.find("bridge what is cut") != std::string::npos;
+    EXPECT_EQ(warned, run["warnings"].dump().find("bridge what is cut") != std::string::npos);
+    EXPECT_EQ(warned, gap > 0) << apart << said;
+    if (gap > 0) {
+      EXPECT_GT(apart, 1);
+    } else {
+      EXPECT_LT(apart, 0.2);
+    }
+    // A design that was not made for any loads has those of its own motion.
+    EXPECT_NEAR(run["results"][0]["load_difference"]["loads"].get<double>(), 0, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace flexmorph::test

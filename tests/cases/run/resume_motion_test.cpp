@@ -1,0 +1,118 @@
+// Motions that are killed or interrupted go on from their checkpoint, and the run comes to what it
+// comes to undisturbed, byte for byte: motions alone, of cycles, and those that judge a design.
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <functional>
+#include <thread>
+
+#include "tests/cases/run/resumed.h"
+
+namespace flexmorph::test {
+namespace {
+
+/// Waits until it is so; false when the run ended before.
+bool comes_to(const std::function<bool()>& so, pid_t run) {
+  for (int k = 0; k < 60000; ++k) {
+    if (so()) return true;
+    if (waitpid(run, nullptr, WNOHANG | WNOWAIT) == run) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return false;
+}
+
+/// Has the motion begun that has this checkpoint? Its name is in the list of the folder then.
+bool has_begun(const std::string& folder, const std::string& checkpoint, pid_t run) {
+  return comes_to(
+      [&] {
+        const Words names = lines_of(contents_of(folder + "/.flexmorph"));
+        return std::find(names.begin(), names.end(), checkpoint) != names.end();
+      },
+      run);
+}
+
+struct Disturbed {
+  const char* name;
+  std::string path;
+  Words changes;
+  std::string checkpoint;  ///< of the motion that is disturbed
+  int signal;              ///< killed when the checkpoint is there, interrupted before
+};
+void PrintTo(const Disturbed& d, std::ostream* out) { *out << d.name; }
+
+class ResumedMotion : public ::testing::TestWithParam<Disturbed> {};
+
+TEST_P(ResumedMotion, IsAsUndisturbed) {
+  const Disturbed& d = GetParam();
+  const Scratch scratch;
+  const std::string whole = scratch / "whole", folder = scratch / "out";
+  const int code = flexmorph(scratch, words_of(d.path, whole, d.changes)).code;
+  ASSERT_TRUE(code == 0 || code == kTooFew) << code;
+  const pid_t run = start(scratch, words_of(d.path, folder, d.changes));
+  const std::string checkpoint = folder + "/" + d.checkpoint;
+  bool caught = has_begun(folder, d.checkpoint, run);
+  ASSERT_TRUE(caught);
+  if (d.signal == SIGKILL) caught = comes_to([&] { return fs::exists(checkpoint); }, run);
+  kill(run, d.signal);
+  if (!caught) {
+    end_of(scratch, run);
+    GTEST_SKIP() << "the motion took less than the second between two checkpoints";
+  }
+  EXPECT_EQ(end_of(scratch, run).code, d.signal == SIGKILL ? -1 : 4);
+  expect_readable(folder);
+  Words words = words_of(d.path, folder, d.changes, true);
+  std::erase(words, "--quiet");
+  const Ended ended = flexmorph(scratch, words);
+  EXPECT_EQ(ended.code, code) << ended.err;
+  EXPECT_NE(ended.out.find(": goes on at t = "), std::string::npos) << ended.out;
+  expect_same(lasting(folder), lasting(whole));
+  EXPECT_FALSE(fs::exists(checkpoint));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Runs, ResumedMotion,
+    ::testing::Values(
+        Disturbed{"killed",
+                  "plate_pendulum",
+                  {"time.end=0.2", "time.step=5e-5"},
+                  "motion.checkpoint",
+                  SIGKILL},
+        Disturbed{"interrupted", "deploying_plate", {"time.end=0.6"}, "motion.checkpoint", SIGTERM},
+        Disturbed{"second_cycle",
+                  FLEXMORPH_TWO_PLATES,
+                  {"time.step=5e-5", "cycle.max_cycles=2"},
+                  "motion_2.checkpoint",
+                  SIGTERM},
+        Disturbed{"judge",
+                  FLEXMORPH_SHORT_CASE,
+                  {"time.step=2e-4", "optimizer.max_iterations=2"},
+                  "motion.checkpoint",
+                  SIGTERM}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+// What a checkpoint cannot be used for is said, and the motion begins anew.
+TEST(ResumeMotion, BeginsAnewWithADamagedCheckpoint) {
+  const Scratch scratch;
+  const std::string whole = scratch / "whole", folder = scratch / "out";
+  const Words changes = {"time.end=0.6"};
+  ASSERT_EQ(flexmorph(scratch, words_of("deploying_plate", whole, changes)).code, 0);
+  const pid_t run = start(scratch, words_of("deploying_plate", folder, changes));
+  ASSERT_TRUE(has_begun(folder, "motion.checkpoint", run));
+  kill(run, SIGTERM);
+  ASSERT_EQ(end_of(scratch, run).code, 4);
+  const std::string path = folder + "/motion.checkpoint";
+  std::string text = contents_of(path);
+  text[text.size() / 2] = static_cast<char>(text[text.size() / 2] ^ 4);
+  std::ofstream(path, std::ios::binary | std::ios::trunc) << text;
+  Words words = words_of("deploying_plate", folder, changes, true);
+  std::erase(words, "--quiet");
+  const Ended ended = flexmorph(scratch, words);
+  EXPECT_EQ(ended.code, 0);
+  EXPECT_NE(ended.out.find("motion: begins anew, motion.checkpoint cannot be used: it is damaged"),
+            std::string::npos)
+      << ended.out;
+  expect_same(lasting(folder), lasting(whole));
+}
+
+}  // namespace
+}  // namespace flexmorph::test

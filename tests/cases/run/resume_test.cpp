@@ -1,0 +1,124 @@
+// Runs that are killed and resumed come to what a run comes to that nobody disturbed, byte for
+// byte.
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include "io/files.h"
+#include "tests/cases/run/resumed.h"
+
+namespace flexmorph::test {
+namespace {
+
+/// Waits until a history has so many rows; false when the run ended before.
+bool has_rows(const std::string& folder, size_t n, pid_t run) {
+  for (int k = 0; k < 6000; ++k) {
+    if (lines_of(contents_of(folder + "/history.csv")).size() > n) return true;
+    if (waitpid(run, nullptr, WNOHANG | WNOWAIT) == run) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return false;
+}
+
+struct Design {
+  const char* name;
+  std::string path;
+  Words changes;
+  std::vector<size_t> rows;  ///< after which it is killed, in turn
+  size_t all;                ///< of its history
+};
+void PrintTo(const Design& d, std::ostream* out) { *out << d.name; }
+
+class Resumed : public ::testing::TestWithParam<Design> {};
+
+TEST_P(Resumed, IsAsUndisturbed) {
+  const Design& d = GetParam();
+  const Scratch scratch;
+  const std::string whole = scratch / "whole", folder = scratch / "out";
+  const int code = flexmorph(scratch, words_of(d.path, whole, d.changes)).code;
+  ASSERT_TRUE(code == 0 || code == kTooFew) << code;
+  EXPECT_FALSE(fs::exists(whole + "/evaluations.log"));
+  for (const size_t rows : d.rows) {
+    const pid_t run = start(scratch, words_of(d.path, folder, d.changes, true));
+    if (has_rows(folder, rows, run)) kill(run, SIGKILL);
+    end_of(scratch, run);
+  }
+  const Ended ended = flexmorph(scratch, words_of(d.path, folder, d.changes, true));
+  EXPECT_EQ(ended.code, code) << ended.err;
+  EXPECT_EQ(io::read_csv(folder + "/history.csv").n_rows(), d.all);
+  expect_same(lasting(folder), lasting(whole));
+  EXPECT_FALSE(fs::exists(folder + ".previous"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Designs, Resumed,
+    ::testing::Values(
+        Design{"mma", FLEXMORPH_SHORT_CASE, {"optimizer.max_iterations=30"}, {1, 7, 8, 29}, 30},
+        Design{"gcmma", FLEXMORPH_SHORT_CASE, {"optimizer.name=gcmma"}, {2, 5}, 6},
+        Design{"two_bodies_three_cycles", FLEXMORPH_TWO_PLATES, {}, {3, 14, 23}, 30},
+        Design{"components_that_go",
+               "short_beam",
+               {"optimizer.max_iterations=40", "design.min_feature=0.03", "output.design_every=3"},
+               {10, 26, 33},
+               40}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+// Interrupted, a run is whole as far as it went; that it goes on from there changes nothing.
+TEST(Resume, GoesOnAfterAnInterruption) {
+  const Scratch scratch;
+  const std::string whole = scratch / "whole", folder = scratch / "out";
+  const Words changes = {"optimizer.max_iterations=30"};
+  flexmorph(scratch, words_of(FLEXMORPH_SHORT_CASE, whole, changes));
+  const pid_t run = start(scratch, words_of(FLEXMORPH_SHORT_CASE, folder, changes));
+  ASSERT_TRUE(has_rows(folder, 4, run));
+  kill(run, SIGTERM);
+  ASSERT_EQ(end_of(scratch, run).code, 4);
+  EXPECT_TRUE(fs::exists(folder + "/components.csv"));
+  flexmorph(scratch, words_of(FLEXMORPH_SHORT_CASE, folder, changes, true));
+  expect_same(lasting(folder), lasting(whole));
+}
+
+TEST(Resume, RefusesAnotherCase) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const pid_t run =
+      start(scratch, words_of(FLEXMORPH_SHORT_CASE, folder, {"optimizer.max_iterations=300"}));
+  ASSERT_TRUE(has_rows(folder, 2, run));
+  kill(run, SIGKILL);
+  end_of(scratch, run);
+  const std::string before = contents_of(folder + "/history.csv");
+  const Ended ended = flexmorph(
+      scratch, words_of(FLEXMORPH_SHORT_CASE, folder, {"optimizer.max_iterations=301"}, true));
+  EXPECT_EQ(ended.code, 2);
+  EXPECT_NE(ended.err.find("a run of another case"), std::string::npos) << ended.err;
+  EXPECT_EQ(contents_of(folder + "/history.csv"), before);
+}
+
+// Without its log a run solves every iteration again, and the rows of before are written anew.
+TEST(Resume, HasEveryRowOnceWithoutItsLog) {
+  const Scratch scratch;
+  const std::string whole = scratch / "whole", folder = scratch / "out";
+  const int code = flexmorph(scratch, words_of(FLEXMORPH_SHORT_CASE, whole, {})).code;
+  fs::copy(whole, folder, fs::copy_options::recursive);
+  json run = json::parse(contents_of(folder + "/run.json"));
+  run["status"] = "running";
+  io::write_file(folder + "/run.json", run.dump());
+  EXPECT_EQ(flexmorph(scratch, words_of(FLEXMORPH_SHORT_CASE, folder, {}, true)).code, code);
+  EXPECT_EQ(io::read_csv(folder + "/history.csv").n_rows(), 6u);
+  expect_same(lasting(folder), lasting(whole));
+}
+
+TEST(Resume, LeavesWhatIsDone) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const Words words = words_of(FLEXMORPH_SHORT_CASE, folder, {}, true);
+  const int code = flexmorph(scratch, words).code;
+  const std::string before = contents_of(folder + "/run.json");
+  const Ended ended = flexmorph(scratch, words);
+  EXPECT_EQ(ended.code, code) << ended.err;
+  EXPECT_NE(ended.out.find("finished before"), std::string::npos) << ended.out;
+  EXPECT_EQ(contents_of(folder + "/run.json"), before);
+}
+
+}  // namespace
+}  // namespace flexmorph::test

@@ -1,0 +1,112 @@
+// Full precision: the numbers of a run read back from its tables and run.json are the very doubles
+// that it computed, bit for bit.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cases/check/ready.h"
+#include "cases/output/report.h"
+#include "cases/run/motion_run.h"
+#include "io/drawings/exports.h"
+#include "tests/cases/program.h"
+
+namespace flexmorph::cases {
+namespace {
+
+using nlohmann::json;
+
+/// A scene, and a folder for it.
+struct Case {
+  Case(const Scratch& scratch, const std::string& name, const test::Words& changes)
+      : file(find_case(name), changes), scene(read_scene(file)), folder(scratch / "out", scene) {}
+
+  io::CsvTable table(const std::string& name) const {
+    return io::read_csv(folder.path() + "/" + name);
+  }
+  json run_json() const { return json::parse(contents_of(folder.path() + "/run.json")); }
+
+  io::CaseFile file;
+  Scene scene;
+  RunFolder folder;
+};
+
+void expect_column(const io::CsvTable& table, const std::string& name,
+                   const std::vector<double>& computed) {
+  const std::vector<double> read = table.numbers(name);
+  ASSERT_EQ(read.size(), computed.size()) << name;
+  for (size_t i = 0; i < read.size(); ++i) EXPECT_EQ(read[i], computed[i]) << name << " " << i;
+}
+
+void expect_motion(const io::CsvTable& table, const MotionRecord& motion) {
+  ASSERT_EQ(table.columns.size(), motion.table.columns.size());
+  for (size_t c = 0; c < motion.table.columns.size(); ++c)
+    expect_column(table, motion.table.columns[c].name, motion.table.values[c]);
+}
+
+TEST(RoundTrip, Motion) {
+  for (const char* name : {FLEXMORPH_SHORT_CASE, "slider_crank_heated"}) {
+    const Scratch scratch;
+    Case c(scratch, name, {"time.end=0.02"});
+    RunResult result;
+    result.motions.motion = run_motion(PreparedCase(c.scene), {}, c.folder).record;
+    const MotionRecord& motion = *result.motions.motion;
+    ASSERT_EQ(motion.table.n_rows(), 21u);
+    expect_motion(c.table("motion.csv"), motion);
+    write_report(c.scene, result, c.folder);
+    const json run = c.run_json()["motion"];
+    EXPECT_GT(motion.result.energy_defect, 0);
+    EXPECT_EQ(run["energy_defect"].get<double>(), motion.result.energy_defect);
+    EXPECT_EQ(run["velocity_drift"].get<double>(), motion.result.velocity_drift);
+    EXPECT_EQ(run["smallest_area_ratio"].get<double>(), motion.result.smallest_area_ratio);
+    for (const size_t c : motion.table.of_group(ColumnGroup::observed))
+      EXPECT_EQ(run["observed"][motion.table.columns[c].name].get<double>(),
+                motion.table.values[c].back());
+  }
+}
+
+TEST(RoundTrip, Design) {
+  const Scratch scratch;
+  Case c(scratch, "short_beam", {"design.cell=0.1", "optimizer.max_iterations=8"});
+  RunResult run;
+  run.design.problems = build_problems(c.scene);
+  mmc::BodyProblem& problem = run.design.problems.front();
+  const auto loads = build_static_loads(c.scene, problem);
+  std::vector<double> compliance, volume, kkt, change;
+  bool going = true;
+  run.design.outcomes = {mmc::design_body(
+      problem, *loads, 1, {0, c.scene.optimizer},
+      [&](const mmc::IterationReport& r) {
+        c.folder.add_iteration(r);
+        compliance.push_back(r.state.compliance());
+        volume.push_back(r.state.volume());
+        kkt.push_back(r.iterate.kkt);
+        change.push_back(r.iterate.change);
+        return true;
+      },
+      going)};
+  ASSERT_EQ(compliance.size(), 8u);
+  const io::CsvTable history = c.table("history.csv");
+  expect_column(history, "compliance", compliance);
+  expect_column(history, "volume", volume);
+  expect_column(history, "kkt", kkt);
+  expect_column(history, "change", change);
+
+  const mmc::BodyOutcome& outcome = run.design.outcomes.front();
+  c.folder.write_design(problem, outcome);
+  const auto components = io::read_components_csv(c.folder.path() + "/components.csv");
+  ASSERT_EQ(components.size(), problem.design.components().size());
+  for (size_t i = 0; i < components.size(); ++i)
+    EXPECT_EQ(components[i].parameters(), problem.design.components()[i].parameters()) << i;
+
+  write_report(c.scene, run, c.folder);
+  const json result = c.run_json()["results"][0];
+  for (const auto& [key, value] : std::initializer_list<std::pair<const char*, double>>{
+           {"compliance", outcome.compliance},
+           {"volume", outcome.volume},
+           {"sharp_compliance", outcome.sharp.compliance},
+           {"uniform_compliance", outcome.uniform_compliance}})
+    EXPECT_EQ(result[key].get<double>(), value) << key;
+}
+
+}  // namespace
+}  // namespace flexmorph::cases

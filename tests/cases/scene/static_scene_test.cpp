@@ -1,0 +1,288 @@
+// Plates at rest: the shipped cases load and build with the data of the literature; forces spread
+// over a place add up to what the case says; every bad input is refused with one message that says
+// where and why.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cases/assembly/build.h"
+#include "io/drawings/exports.h"
+#include "optim/mmc/cycles/design_verification.h"
+#include "tests/cases/scenes.h"
+#include "tests/io/scratch.h"
+
+namespace flexmorph::cases {
+namespace {
+
+std::string complaint(const std::string& name, const Changes& changes) {
+  try {
+    const Scene scene = read(name, changes);
+    build_static_loads(scene, build_problems(scene).front());
+  } catch (const Error& e) {
+    EXPECT_EQ(e.kind(), Error::Kind::input);
+    return e.what();
+  }
+  return "";
+}
+
+TEST(StaticScene, ShortBeamIsThatOfTheLiterature) {
+  const Scene s = read("short_beam");
+  ASSERT_TRUE(s.domain.has_value());
+  EXPECT_TRUE(s.bodies.empty());
+  EXPECT_FALSE(s.esl.has_value());
+  ASSERT_EQ(s.designs.size(), 1u);
+  const BodyDesign& d = s.designs[0];
+  EXPECT_EQ(d.grid.nx, 80);
+  EXPECT_EQ(d.grid.ny, 40);
+  EXPECT_EQ(d.grid.y0, 0);
+  EXPECT_EQ(mmc::allowed_volume(d.goal), 0.4);
+  const mmc::BodyProblem problem = build_problems(s).front();
+  EXPECT_EQ(problem.design.n_components(), 16);
+  EXPECT_EQ(problem.design.n_variables(), 56);  // of its lower half
+  EXPECT_EQ(problem.places.size(), 2u);
+  // The full plate under its load: 80 x 40 bilinear cells; beam theory with shear, up to the
+  // clamped end of a beam twice as long as high.
+  const auto loads = build_static_loads(s, problem);
+  const VectorXd full = VectorXd::Ones(d.grid.n_cells());
+  const double beam = 8 / (3 * (1. / 12)) + 2 / (5. / 6 / 2.6);
+  EXPECT_NEAR(loads->individual(full, full)[0], beam, 0.1 * beam);
+}
+
+TEST(StaticScene, BridgeHasThreeLoadsOfWhichTheWorstCounts) {
+  const Scene s = read("bridge");
+  const mmc::BodyProblem problem = build_problems(s).front();
+  EXPECT_EQ(problem.goal.objective, &mmc::kComplianceWorst);
+  EXPECT_EQ(problem.places.size(), 5u);
+  const auto loads = build_static_loads(s, problem);
+  ASSERT_EQ(loads->n_loads(), 3);
+  const VectorXd full = VectorXd::Ones(problem.grid.n_cells());
+  const VectorXd C = loads->individual(full, full);
+  EXPECT_NEAR(C[0], C[2], 1e-9 * C[0]);  // symmetry
+  EXPECT_GT(C[1], C[0]);
+}
+
+// Supports, loads and domain decide; a load that points the other way is the image of its opposite.
+TEST(StaticScene, IsSymmetricWhereEverythingIs) {
+  const auto images = [](const std::string& name, const std::vector<std::string>& changes) {
+    return build_problems(read(name, changes)).front().design.n_images();
+  };
+  EXPECT_EQ(images("short_beam", {}), 2u);
+  EXPECT_EQ(images("short_beam", {"design.symmetry='none'"}), 1u);
+  EXPECT_EQ(images("short_beam", {"load.0.force.0.point=[2.0, 0.25]"}), 1u);
+  EXPECT_EQ(images("short_beam", {"design.components=[4, 3]"}), 2u);
+  EXPECT_EQ(images("mbb", {}), 1u);
+  EXPECT_EQ(images("l_bracket", {}), 1u);
+  const auto start = [](double jitter) {
+    return build_problems(read("short_beam", {"design.jitter=" + std::to_string(jitter)}))
+        .front()
+        .design;
+  };
+  EXPECT_TRUE(mmc::is_symmetric(start(0.1).components(), start(0).symmetry()));
+  EXPECT_NE(start(0.1).x(), start(0).x());
+}
+
+/// Area that one of two regions covers alone, in parts of the first one's.
+double difference(std::span<const Region> a, std::span<const Region> b) {
+  double common = 0;
+  for (const Region& piece : a)
+    for (const Region& other : b) {
+      const std::vector<std::vector<Vec2>> outer = {other.outer};
+      common += area(unite(outer, piece, other.holes));
+    }
+  return (area(a) + area(b) - 2 * common) / area(a);
+}
+
+// What is exported of a symmetric design is its own mirror image. The start is disturbed, and
+// nothing else of it is symmetric.
+TEST(StaticScene, ExportsOfSymmetricDesignsAreMirrorImages) {
+  for (const std::string wanted : {"x", "y", "both"}) {
+    const mmc::BodyProblem problem =
+        build_problems(
+            read("short_beam",
+                 {"design.symmetry='" + wanted + "'", "design.symmetry_despite_loads=true",
+                  "support.edge=", "support.box=[0.0, 0.0, 2.0, 1.0]", "design.jitter=0.2"}))
+            .front();
+    EXPECT_EQ(to_string(problem.design.symmetry()), wanted);
+    const std::vector<Region> regions = mmc::exported_regions(problem);
+    for (const bool in_x : {true, false}) {
+      std::vector<Region> mirrored = regions;
+      const auto mirror = [&](std::vector<Vec2>& ring) {
+        for (Vec2& p : ring) p[in_x ? 0 : 1] = (in_x ? 2 : 1) - p[in_x ? 0 : 1];
+        std::reverse(ring.begin(), ring.end());
+      };
+      for (Region& r : mirrored) {
+        mirror(r.outer);
+        for (std::vector<Vec2>& hole : r.holes) mirror(hole);
+      }
+      const bool kept = in_x ? wanted != "y" : wanted != "x";
+      if (kept)
+        EXPECT_LT(difference(regions, mirrored), 1e-9) << wanted << in_x;
+      else
+        EXPECT_GT(difference(regions, mirrored), 1e-3) << wanted << in_x;
+    }
+  }
+}
+
+// A symmetry that is asked for holds, or the message says what is not symmetric.
+TEST(StaticScene, SymmetryThatIsAskedForIsThereOrRefused) {
+  const auto symmetry = [](const std::string& name, const Changes& changes) {
+    return to_string(build_problems(read(name, changes)).front().design.symmetry());
+  };
+  EXPECT_EQ(symmetry("short_beam", {}), "y");
+  EXPECT_EQ(symmetry("short_beam", {"design.symmetry='y'"}), "y");
+  EXPECT_EQ(symmetry("bridge", {}), "x");
+  EXPECT_EQ(
+      symmetry("rotating_plate_v01", {"design.symmetry='y'", "design.symmetry_despite_loads=true"}),
+      "y");
+  EXPECT_EQ(symmetry("rotating_plate_v01", {}), "none");
+  const Changes low = {"load.0.force.0.point=[2.0, 0.25]", "design.symmetry='y'"};
+  EXPECT_TRUE(contains(complaint("short_beam", low),
+                       "the set of loads is not symmetric to the line y = 0.5 m"));
+  const Changes enforced = {"load.0.force.0.point=[2.0, 0.25]", "design.symmetry='y'",
+                            "design.symmetry_despite_loads=true"};
+  EXPECT_EQ(symmetry("short_beam", enforced), "y");
+  for (const auto& [changes, said] : std::vector<std::pair<Changes, std::string>>{
+           {{"design.symmetry='x'"}, "the supports are not symmetric to the line x = 1 m"},
+           {{"design.symmetry='both'"}, "the supports are"},
+           {{"design.symmetry='y'", "design.solid=[{ box = [0.5, 0.0, 0.75, 0.25] }]"},
+            "the solid regions are"},
+           {{"design.symmetry='y'", "design.void=[{ box = [0.5, 0.0, 0.75, 0.25] }]"},
+            "the void regions are"},
+           {{"design.symmetry_despite_loads=true"}, "it enforces"}}) {
+    const std::string message = complaint("short_beam", changes);
+    EXPECT_TRUE(contains(message, said)) << message;
+    EXPECT_TRUE(contains(message, "design.symmetry")) << message;
+  }
+  EXPECT_TRUE(
+      contains(complaint("l_bracket", {"design.symmetry='y'"}), "the domain is not symmetric"));
+  try {
+    symmetry("rotating_plate_v01", {"design.symmetry='y'"});
+    ADD_FAILURE();
+  } catch (const Error& e) {
+    EXPECT_TRUE(contains(e.what(), "the loads of a motion are not symmetric")) << e.what();
+  }
+}
+
+// Weight acts with every load, is a load by itself, and is symmetric across its own direction only.
+TEST(StaticScene, HasItsOwnWeight) {
+  const std::vector<std::string> weight = {"gravity=[0.0, -10.0]", "domain.density=2.0"};
+  const auto read_with = [&](std::vector<std::string> changes) {
+    changes.insert(changes.begin(), weight.begin(), weight.end());
+    return read("short_beam", changes);
+  };
+  const Scene s = read_with({});
+  const mmc::BodyProblem problem = build_problems(s).front();
+  EXPECT_EQ(problem.design.n_images(), 1u);  // the load points along the weight
+  const VectorXd full = VectorXd::Ones(problem.grid.n_cells());
+  const VectorXd with = build_static_loads(s, problem)->displacement(full, full, 0),
+                 force =
+                     build_static_loads(read("short_beam"), problem)->displacement(full, full, 0);
+  const Scene alone = read_with({"load="});
+  ASSERT_EQ(alone.domain->loads.size(), 1u);
+  const VectorXd own = build_static_loads(alone, problem)->displacement(full, full, 0);
+  EXPECT_LT((with - force - own).norm(), 1e-12 * with.norm());
+  // Beam theory: q L^4 / (8 E I) with q = rho g A, and the shear of q L^2 / (2 kappa G A).
+  const double q = 2 * 10 * 1, beam = q * 16 / (8 * (1. / 12)) + q * 4 / (2 * (5. / 6 / 2.6));
+  const int tip = problem.grid.node(problem.grid.nx, problem.grid.ny / 2);
+  EXPECT_NEAR(-own[2 * tip + 1], beam, 0.05 * beam);
+  EXPECT_EQ(build_problems(read_with({"gravity=[-10.0, 0.0]", "load="})).front().design.n_images(),
+            2u);
+  EXPECT_THROW(read("short_beam", {"gravity=[0.0, -10.0]"}), Error);  // no density
+  EXPECT_THROW(read_with({"load=", "gravity=[0.0, 0.0]"}), Error);
+}
+
+TEST(StaticScene, LBracketKeepsOutOfWhatIsNotThere) {
+  const Scene s = read("l_bracket");
+  const mmc::BodyProblem problem = build_problems(s).front();
+  ASSERT_EQ(problem.outside.size(), 6400u);
+  EXPECT_EQ(mmc::ersatz_of(problem).n_domain_cells(), 4096);  // 64 % of 80 x 80
+  const VectorXd material = mmc::fractions_of(problem, problem.design.components());
+  EXPECT_EQ(material[problem.grid.cell(60, 60)], 0);
+}
+
+TEST(StaticScene, JitterIsRepeatableAndSmall) {
+  const auto start = [](const Changes& changes) {
+    return build_problems(read("short_beam", changes)).front().design.x();
+  };
+  const VectorXd straight = start({}), one = start({"design.jitter=0.1"});
+  EXPECT_EQ(one, start({"design.jitter=0.1"}));
+  EXPECT_NE(one, start({"design.jitter=0.1", "design.seed=2"}));
+  EXPECT_GT((one - straight).lpNorm<Eigen::Infinity>(), 0.01);
+  EXPECT_LE((one - straight).lpNorm<Eigen::Infinity>(), 0.1);
+}
+
+TEST(StaticScene, StartsFromAFileOfComponents) {
+  const Scratch scratch;
+  const std::vector<Component> two = crossing_layout(0, 0, 2, 1, 1, 1, 0.1, 0.6);
+  io::write_components_csv(scratch / "two.csv", two);
+  const Scene s = read("short_beam", {"design.start=\"" + (scratch / "two.csv") + "\""});
+  const std::vector<Component> back = build_problems(s).front().design.components();
+  ASSERT_EQ(back.size(), 2u);
+  for (size_t k = 0; k < 2; ++k)
+    for (size_t p = 0; p < 7; ++p)
+      EXPECT_NEAR(back[k].parameters()[p], two[k].parameters()[p], 1e-14);
+}
+
+struct Bad {
+  const char* name;
+  Changes changes;
+  const char* said;
+};
+class StaticSceneRefuses : public ::testing::TestWithParam<Bad> {};
+TEST_P(StaticSceneRefuses, AndSaysWhy) {
+  const std::string said = complaint("short_beam", GetParam().changes);
+  EXPECT_NE(said.find(GetParam().said), std::string::npos) << "said: " << said;
+}
+INSTANTIATE_TEST_SUITE_P(
+    Table, StaticSceneRefuses,
+    ::testing::Values(
+        Bad{"motion", {"time.end=1"}, "rests"},
+        Bad{"size", {"domain.size=[2.0, -1.0]"}, "a length, a height"},
+        Bad{"both", {"domain.polygon=[0.0, 0.0, 1.0, 0.0, 1.0, 1.0]"}, "either a `size`"},
+        Bad{"edge", {"support.edge=\"rear\""}, "an edge"},
+        Bad{"axis", {"support.fix=[\"z\"]"}, "a direction"},
+        Bad{"goal", {"design.minimize=\"weight\""}, "an objective"},
+        Bad{"limit", {"design.max_compliance=10.0"}, "only minimize = \"volume\""},
+        Bad{"no_limit", {"design.minimize=\"volume\""}, "max_compliance"},
+        Bad{"start", {"design.start=\"nowhere.csv\""}, "nowhere.csv: cannot be read"},
+        Bad{"far_load",
+            {"load.force.point=[9.0, 0.5]", "load.force.edge=", "load.force.box="},
+            "load.force.point=[9.0, 0.5]: a place lies in the domain"},
+        Bad{"unknown", {"domain.depth=1.0"}, "depth"}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+// Inside of the bounding box, but not of the domain: the mesh finds out, and the file is named.
+TEST(StaticScene, LoadsOutsideOfAPolygonAreRefusedWhereTheyStand) {
+  const std::string said = complaint(
+      "l_bracket", {"load.force.point=[0.9, 0.9]", "load.force.edge=", "load.force.box="});
+  EXPECT_TRUE(contains(said, "load.force.point=[0.9, 0.9]: no material can be there")) << said;
+}
+
+TEST(StaticScene, NamesOfLoadsAreUnlike) {
+  EXPECT_TRUE(contains(complaint("bridge", {"load.1.name=left"}),
+                       "--set load.1.name=left: there is another load 'left'"));
+  // Also when one has it by its number.
+  EXPECT_TRUE(contains(complaint("bridge", {"load.0.name=load_2", "load.1.name="}),
+                       "another load 'load_2'"));
+  EXPECT_EQ(complaint("bridge", {"load.0.name=one", "load.1.name=two"}), "");
+}
+
+// What is rigid has nothing to measure, and is said to be so.
+TEST(FlexibleBodies, AreNotRigidOnes) {
+  for (const char* change : {"measure=[{body=\"crank\", quantities=[\"end_velocity\"]}]",
+                             "observe.body=crank", "design.body=crank"}) {
+    std::string said;
+    try {
+      read("four_bar", {change});
+    } catch (const Error& e) {
+      said = e.what();
+    }
+    EXPECT_TRUE(contains(said, "that is a rigid body; ")) << change;
+    EXPECT_TRUE(contains(said, " is a plate or beam, a [[body]]")) << change;
+    EXPECT_TRUE(starts(said, "--set ")) << change;
+  }
+}
+
+}  // namespace
+}  // namespace flexmorph::cases

@@ -1,0 +1,297 @@
+// The rigid kinematic model from plain data: closed forms of a four-bar, a slider-crank and a polar
+// arm for its motion, the velocities it is given, and the drives that follow from a path; what is
+// refused; that copies are independent; and where welds put undeformed bodies.
+#include "fem/dynamics/starts/rigid_motion.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "fem/body_joints.h"
+#include "fem/dynamics/starts/inverse_kinematics.h"
+#include "fem/dynamics/starts/reference_pose.h"
+#include "tests/support/differences.h"
+#include "tests/support/point_mechanisms.h"
+
+namespace flexmorph::fem {
+namespace {
+
+using testing::Course;
+using testing::first_difference;
+using testing::linear;
+
+constexpr double kPi = std::numbers::pi;
+
+/// A slender rod from its origin along its first axis.
+MechanismBody rod(const std::string& name, double length, const Vec2& at, double angle) {
+  MechanismBody out;
+  out.name = name;
+  out.section = {1, {length / 2, 0}, length * length / 12};
+  out.size = length / std::sqrt(12.0);
+  out.position = at;
+  out.angle = angle;
+  return out;
+}
+
+void hinge(RigidMechanism& out, const std::string& name, MarkerPlace a, MarkerPlace b) {
+  out.joints.push_back({.joint = make_revolute(name, std::move(a), std::move(b))});
+}
+
+/// An angle drive between two bodies; without a course it is not known yet.
+void turn(RigidMechanism& out, const std::string& drive, const MarkerPlace& a, const MarkerPlace& b,
+          const Course& course) {
+  MechanismJoint joint{.joint = {}, .is_driven = true, .drive = drive, .prescribes = true};
+  if (course) joint.joint = make_angle_drive(drive, a, b, course);
+  joint.coordinate = angle_between;
+  joint.a = a;
+  joint.b = b;
+  out.joints.push_back(std::move(joint));
+}
+
+double direction(const Vec2& from, const Vec2& to) {
+  return std::atan2(to.y() - from.y(), to.x() - from.x());
+}
+
+/// All angles of the guess are off by 0.1 rad.
+RigidMechanism four_bar(const testing::FourBar& bar, const Course& angle) {
+  const double start = angle(0).value, off = 0.1;
+  const Vec2 a = bar.crank_pin(start), b = bar.rocker_pin(start), c(bar.g, 0);
+  RigidMechanism out;
+  out.bodies = {rod("crank", bar.r, {0, 0}, start + off),
+                rod("coupler", bar.l, a, direction(a, b) - off),
+                rod("rocker", bar.s, c, direction(c, b) + off)};
+  hinge(out, "O", {}, {"crank"});
+  hinge(out, "A", {"crank", {bar.r, 0}}, {"coupler"});
+  hinge(out, "B", {"coupler", {bar.l, 0}}, {"rocker", {bar.s, 0}});
+  hinge(out, "C", {"", c}, {"rocker"});
+  turn(out, "motor", {}, {"crank"}, angle);
+  return out;
+}
+
+TEST(RigidMotion, FourBarClosesAtAllTimes) {
+  const testing::FourBar bar;
+  const Course angle = linear(0.7, 2 * kPi);
+  const RigidKinematics kinematics(four_bar(bar, angle));
+  EXPECT_EQ(undriven_degrees_of_freedom(kinematics), 1);
+  RigidMotion motion(kinematics);
+  EXPECT_EQ(motion.degrees_of_freedom(), 0);
+  EXPECT_FALSE(motion.is_indeterminate());
+  for (const double t : {0.0, 0.13, 0.5, 1.21}) {
+    const State& x = motion.at(t);
+    const auto closed = [&](double s) { return bar.rocker_pin(angle(t + s).value); };
+    const FrameMotion rocker = kinematics.frame("rocker", x);
+    const Vec2 arm = rotation(rocker.angle) * Vec2(bar.s, 0), end = rocker.origin + arm;
+    EXPECT_LT((end - closed(0)).norm(), 1e-12) << t;
+    const Vec2 rate = rocker.angle_rate * Vec2(-arm.y(), arm.x());
+    EXPECT_LT((rate - first_difference(closed, 1e-3)).norm(), 1e-7) << t;
+    EXPECT_NEAR(kinematics.coordinate_of("motor", x).rate, 2 * kPi, 1e-11);
+  }
+  EXPECT_NO_THROW(require_motion(kinematics, 1));
+}
+
+// The rods are too short for the crank to turn further than that.
+TEST(RigidMotion, IsRefusedWhereItsDrivesCannotLeadIt) {
+  const testing::FourBar bar{.r = 0.3, .l = 0.35, .s = 0.25, .g = 0.45};
+  const RigidKinematics kinematics(four_bar(bar, linear(0.5, 1.3)));
+  EXPECT_NO_THROW(require_motion(kinematics, 0.9 * (bar.limit_angle() - 0.5) / 1.3));
+  EXPECT_THROW(require_motion(kinematics, 4), Error);
+}
+
+TEST(RigidMotion, CopiesOfAModelAreIndependent) {
+  const testing::FourBar bar;
+  auto original = std::make_unique<RigidKinematics>(four_bar(bar, linear(0.7, 2 * kPi)));
+  RigidMotion alone(*original);
+  const VectorXd early = alone.at(0.2).q, late = alone.at(0.9).q;
+  RigidMotion one(*original), other(*original);
+  original.reset();
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_LT((one.at(0.2).q - early).norm(), 1e-11);
+    EXPECT_LT((other.at(0.9).q - late).norm(), 1e-11);
+  }
+}
+
+/// Crank of length r that turns about the origin, rod of length l, block on the x axis.
+RigidMechanism slider_crank(double r, double l, double angle) {
+  RigidMechanism out;
+  const double x = r * std::cos(angle) + std::sqrt(l * l - std::pow(r * std::sin(angle), 2));
+  const Vec2 pin(r * std::cos(angle), r * std::sin(angle));
+  out.bodies = {rod("crank", r, {0, 0}, angle), rod("rod", l, pin, direction(pin, {x, 0})),
+                rod("block", 0.1, {x, 0}, 0)};
+  hinge(out, "O", {}, {"crank"});
+  hinge(out, "A", {"crank", {r, 0}}, {"rod"});
+  hinge(out, "B", {"rod", {l, 0}}, {"block"});
+  out.joints.push_back({.joint = make_slider("guide", {}, {"block"})});
+  return out;
+}
+
+/// dx/dθ of the block.
+double block_rate(double r, double l, double angle) {
+  const double s = std::sin(angle), c = std::cos(angle);
+  return -r * s - r * r * s * c / std::sqrt(l * l - r * r * s * s);
+}
+
+TEST(InitialVelocities, OfASliderCrankFollowFromThatOfItsCrank) {
+  const double r = 0.2, l = 0.5, angle = 1.1, rate = 3;
+  RigidMechanism mechanism = slider_crank(r, l, angle);
+  mechanism.bodies[0].angular_velocity = rate;
+  RigidMotion motion{RigidKinematics(mechanism)};
+  EXPECT_EQ(motion.degrees_of_freedom(), 1);
+  const FrameMotion block = motion.kinematics().frame("block", motion.at(5));  // of the start
+  EXPECT_NEAR(block.origin_rate.x(), rate * block_rate(r, l, angle), 1e-11);
+  EXPECT_NEAR(block.origin_rate.y(), 0, 1e-11);
+  EXPECT_GE(motion.start_speed(), std::abs(block.origin_rate.x()) - 1e-12);
+}
+
+TEST(InitialVelocities, OfAllMotionsTheOneOfLeastKineticEnergyIsTaken) {
+  RigidMechanism mechanism = slider_crank(0.2, 0.5, 1.1);
+  RigidMotion rests{RigidKinematics(mechanism)};
+  EXPECT_LT(rests.start_speed(), 1e-12);
+  mechanism.bodies[2].velocity = Vec2(-0.4, 0);
+  RigidMotion moves{RigidKinematics(mechanism)};
+  EXPECT_NEAR(moves.kinematics().frame("crank", moves.at(0)).angle_rate,
+              -0.4 / block_rate(0.2, 0.5, 1.1), 1e-10);
+}
+
+TEST(InitialVelocities, ThatContradictJointsAreRefusedWithTheirSource) {
+  RigidMechanism mechanism = slider_crank(0.2, 0.5, 1.1);
+  mechanism.bodies[2].velocity = Vec2(0.3, 0.1);  // away from the guide
+  mechanism.bodies[2].source = "crank.toml:7: ";
+  try {
+    RigidMotion motion{RigidKinematics(mechanism)};
+    ADD_FAILURE() << "not refused";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), Error::Kind::input);
+    const std::string text = error.what();
+    EXPECT_EQ(text.find("crank.toml:7: block.velocity"), 0u) << text;
+    EXPECT_NE(text.find("'guide'"), std::string::npos) << text;
+  }
+}
+
+TEST(RigidMotion, JointsThatHoldTheSameFreedomAreRefusedUnlessBodiesBend) {
+  RigidMechanism mechanism = slider_crank(0.2, 0.5, 1.1);
+  hinge(mechanism, "again", {}, {"crank"});
+  EXPECT_THROW(RigidMotion{RigidKinematics(mechanism)}, Error);
+  mechanism.bends = true;
+  RigidMotion motion{RigidKinematics(mechanism)};
+  EXPECT_TRUE(motion.is_indeterminate());
+}
+
+TEST(RigidMotion, ListsTheBodiesThatRideInNoHub) {
+  RigidMechanism mechanism = slider_crank(0.2, 0.5, 1.1);
+  mechanism.bodies[1].line = 0.5;
+  mechanism.bodies[2].is_placed = false;
+  const Placement where = rigid_configuration(RigidKinematics(mechanism));
+  const std::vector<Placed> bodies = where(0);
+  ASSERT_EQ(bodies.size(), 2u);
+  EXPECT_EQ(bodies[1].body, "rod");
+  EXPECT_EQ(bodies[1].line, 0.5);
+  EXPECT_NEAR(bodies[0].frame.angle, 1.1, 1e-12);
+  // A copy that goes elsewhere leaves it where it is, and comes to the same positions.
+  const Placement copy = where;
+  copy(0.3);
+  const std::vector<Placed> again = where(0), later = where(0.3), other = copy(0.3);
+  EXPECT_EQ(again[1].frame.origin, bodies[1].frame.origin);
+  EXPECT_NEAR((later[1].frame.origin - other[1].frame.origin).norm(), 0, 1e-12);
+}
+
+/// A carriage on an arm that turns about the origin, and a hand that turns on the carriage: the
+/// drives "turn", "reach" and "wrist" lead it anywhere.
+RigidMechanism polar_arm(const Vec2& hand, double angle) {
+  RigidMechanism out;
+  const double theta = direction({0, 0}, hand);
+  out.bodies = {rod("arm", 1, {0, 0}, theta), rod("carriage", 0.1, hand, theta),
+                rod("hand", 0.2, hand, angle)};
+  hinge(out, "shoulder", {}, {"arm"});
+  out.joints.push_back({.joint = make_slider("rail", {"arm"}, {"carriage"})});
+  hinge(out, "pivot", {"carriage"}, {"hand"});
+  turn(out, "turn", {}, {"arm"}, {});
+  turn(out, "wrist", {"carriage"}, {"hand"}, {});
+  MechanismJoint reach{.joint = {}, .is_driven = true, .drive = "reach", .prescribes = true};
+  reach.coordinate = distance_between;
+  reach.b = {"carriage"};
+  out.joints.push_back(std::move(reach));
+  return out;
+}
+
+// The hand goes round the shoulder: the angle of the arm passes half turns. Between samples, 1e-3 s
+// apart, the quintics are off by 1e-18 of the sixth derivative; the positions to 1e-12.
+TEST(InverseKinematics, OfAPolarArmIsItsClosedForm) {
+  const double rate = 4;
+  const Course x = [=](double t) {
+    const double c = 0.5 * std::cos(rate * t), s = 0.5 * std::sin(rate * t);
+    return Motion{0.2 + c, -rate * s, -rate * rate * c};
+  };
+  const Course y = [=](double t) {
+    const double c = 0.5 * std::cos(rate * t), s = 0.5 * std::sin(rate * t);
+    return Motion{0.1 + s, rate * c, -rate * rate * s};
+  };
+  const std::vector<std::string> names = {"reach", "turn", "wrist"};
+  const auto drives =
+      inverse_kinematics(polar_arm({0.7, 0.1}, 0.3), {"hand", x, y, linear(0.3, 0.9), 2}, names);
+  ASSERT_EQ(drives.size(), 3u);
+  double turned = std::atan2(0.1, 0.7);
+  for (double t = 0; t < 2; t += 0.01234) {
+    const Vec2 r(x(t).value, y(t).value), v(x(t).rate, y(t).rate);
+    const double angle = std::atan2(r.y(), r.x());
+    turned += std::remainder(angle - turned, 2 * kPi);
+    EXPECT_NEAR(drives[0](t).value, r.norm(), 1e-11) << t;
+    EXPECT_NEAR(drives[0](t).rate, r.dot(v) / r.norm(), 1e-10) << t;
+    EXPECT_NEAR(drives[1](t).value, turned, 1e-11) << t;
+    EXPECT_NEAR(drives[1](t).rate, (r.x() * v.y() - r.y() * v.x()) / r.squaredNorm(), 1e-9) << t;
+    EXPECT_NEAR(drives[2](t).value, 0.3 + 0.9 * t - turned, 1e-11) << t;
+  }
+  for (double t = 0.1; t < 1.9; t += 0.31)
+    for (const auto& drive : drives) {
+      const auto value = [&](double s) { return drive(t + s).rate; };
+      EXPECT_NEAR(drive(t).acceleration, first_difference(value, 1e-3), 1e-6) << t;
+    }
+  EXPECT_GT(turned, 2 * kPi);
+}
+
+TEST(InverseKinematics, ADriveThatDrivesNothingIsRefused) {
+  const std::vector<std::string> names = {"reach", "turn", "wrist", "spare"};
+  const Course still = testing::constant(0.5);
+  EXPECT_THROW(
+      inverse_kinematics(polar_arm({0.5, 0.5}, 0.5), {"hand", still, still, still, 1}, names),
+      Error);
+}
+
+TEST(InverseKinematics, OnlyItKnowsWhatDrivesWithoutAMotionDo) {
+  EXPECT_THROW(RigidKinematics(polar_arm({0.5, 0.5}, 0.5)), Error);
+}
+
+// A quarter of a circle of radius R begins at the origin, turned by 0.3; a straight body goes on at
+// its end, and the root of a third one meets its free end across.
+TEST(ReferencePose, GoesOnAlongWelds) {
+  const double R = 0.8, quarter = 0.5 * kPi * R, angle = 0.3;
+  const std::vector<UndeformedBody> bodies = {
+      {"last", 0, 0, {}},
+      {"arc", 0, 1 / R, ReferencePose{{0, 0}, angle, 0, 1 / R}},
+      {"straight", 0.2, 0, {}}};
+  const std::vector<ReferenceWeld> welds = {
+      {{"straight", {1.2, 0}, 0.5 * kPi}, {"last", {0, 0}, 0}},
+      {{"arc", {quarter, 0}, 0.5 * kPi}, {"straight", {0, 0}, 0}}};
+  const Vec2 corner = rotation(angle) * Vec2(R, R);
+  const ReferencePose straight = reference_pose(bodies, welds, "straight"),
+                      last = reference_pose(bodies, welds, "last");
+  EXPECT_LT((straight.place({0, 0}).head<2>() - corner).norm(), 1e-15);
+  EXPECT_NEAR(straight.angle, angle + 0.5 * kPi, 1e-15);
+  EXPECT_EQ(straight.line, 0.2);
+  const Vec2 up = rotation(straight.angle) * Vec2(1, 0);
+  EXPECT_LT((last.origin - (corner + 1.2 * up)).norm(), 1e-15);
+  EXPECT_NEAR(last.angle, angle + kPi, 1e-15);
+}
+
+TEST(ReferencePose, IsThatOfTheWorldWhereNothingSaysMore) {
+  const std::vector<UndeformedBody> bodies = {{"a", 0.1, 2, {}}, {"b", 0, 0, {}}};
+  const std::vector<ReferenceWeld> ring = {{{"a", {1, 0}, 0}, {"b", {0, 0}, 0}},
+                                           {{"b", {1, 0}, 0}, {"a", {0, 0}, 0}}};
+  const ReferencePose pose = reference_pose(bodies, ring, "a");
+  EXPECT_EQ(pose.origin, Vec2(0, 0));
+  EXPECT_EQ(pose.curvature, 2);
+  EXPECT_THROW(reference_pose(bodies, ring, "c"), Error);
+}
+
+}  // namespace
+}  // namespace flexmorph::fem
