@@ -22,8 +22,8 @@
 #include "io/drawings/exports.h"
 #include "io/smooth_table.h"
 #include "io/tables.h"
-#include "tests/attack/attacked_program.h"
 #include "tests/attack/mutations.h"
+#include "tests/attack/run_files.h"
 #include "tests/io/scratch.h"
 
 namespace flexmorph {
@@ -96,7 +96,7 @@ class Attack : public ::testing::Test {
   void report(size_t i, const std::string& text, const std::string& what) const {
     const auto kept =
         std::filesystem::temp_directory_path() /
-        (std::string("flexmorph_attack_") +
+        ("flexmorph_attack_" + std::to_string(getpid()) + "_" +
          ::testing::UnitTest::GetInstance()->current_test_info()->name() + "_" + std::to_string(i));
     std::ofstream(kept, std::ios::binary) << text;
     ADD_FAILURE() << "input " << i << " " << what << "; kept as " << kept;

@@ -10,17 +10,18 @@
 #include <optional>
 #include <thread>
 
-#include "tests/attack/attacked_program.h"
 #include "tests/attack/children.h"
 #include "tests/attack/mutations.h"
+#include "tests/attack/run_files.h"
 #include "tests/io/scratch.h"
+#include "tests/support/child_program.h"
 
 namespace flexmorph {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::Attacked;
-using testing::End;
+using testing::ChildEnd;
+using testing::ChildProgram;
 using Words = std::vector<std::string>;
 
 constexpr double kMega = 1e6;
@@ -59,27 +60,27 @@ Words command(const Kind& kind, const std::string& folder) {
 }
 
 /// Waits until a file is longer than so many bytes, or the process is over.
-void wait_for(const std::string& path, size_t bytes, const Attacked& process) {
+void wait_for(const std::string& path, size_t bytes, const ChildProgram& process) {
   std::error_code none;
-  for (int k = 0; k < 60'000 && process.lives(); ++k) {
+  for (int k = 0; k < 60'000 && process.runs(); ++k) {
     if (fs::exists(path, none) && fs::file_size(path, none) > bytes) return;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 }
 
 /// Exit code 2 or 3 with words, no crash, no hang. @return the code.
-int refused(const End& end, const std::string& what) {
-  EXPECT_FALSE(end.hung) << what;
+int refused(const ChildEnd& end, const std::string& what) {
+  EXPECT_FALSE(end.timed_out) << what;
   EXPECT_TRUE(end.code == 2 || end.code == 3)
       << what << ": exit code " << end.code << ", signal " << end.signal << "\n"
-      << end.words;
-  EXPECT_TRUE(contains(end.words, "flexmorph: ")) << what;
-  EXPECT_FALSE(contains(end.words, "unexpected")) << what;
+      << end.err;
+  EXPECT_TRUE(contains(end.err, "flexmorph: ")) << what;
+  EXPECT_FALSE(contains(end.err, "unexpected")) << what;
   return end.code;
 }
 
 /// The same, or it fitted.
-int refused_or_whole(const End& end, const std::string& what) {
+int refused_or_whole(const ChildEnd& end, const std::string& what) {
   if (end.code == 0 || end.code == 5) return end.code;
   return refused(end, what);
 }
@@ -90,8 +91,8 @@ TEST(Disk, FillsUpAtAnyMoment) {
   testing::Mutations random(testing::number_of("FLEXMORPH_SEED", 1));
   for (const Kind& kind : kinds(pendulum)) {
     const std::string whole = scratch / "whole";
-    const End undisturbed = Attacked(command(kind, whole), scratch / "").end();
-    ASSERT_TRUE(undisturbed.code == 0 || undisturbed.code == 5) << undisturbed.words;
+    const ChildEnd undisturbed = ChildProgram(command(kind, whole), scratch / "").end();
+    ASSERT_TRUE(undisturbed.code == 0 || undisturbed.code == 5) << undisturbed.err;
     ASSERT_EQ(testing::broken_files(whole), "");
     const double size = testing::size_of(whole);
     std::map<int, int> codes;
@@ -104,8 +105,8 @@ TEST(Disk, FillsUpAtAnyMoment) {
       const std::string folder = scratch / "disk/run";
       on_disk = disk.mounted();
       // Without a disk of its own: no file may be larger.
-      Attacked process(command(kind, folder), scratch / "",
-                       {.file_size = on_disk ? 0 : bytes / 4 + 1});
+      ChildProgram process(command(kind, folder), scratch / "",
+                           {.file_size = on_disk ? 0 : bytes / 4 + 1});
       if (on_disk) {
         wait_for(folder + "/.flexmorph", 0, process);
         EXPECT_TRUE(disk.fill_up_to(bytes));
@@ -130,10 +131,12 @@ TEST(Disk, TakesNothing) {
   testing::SmallDisk disk(scratch / "disk", 300 * kMega);
   const bool read_only = disk.mounted() && disk.make_read_only();
   for (const Kind& kind : kinds(pendulum)) {
-    EXPECT_EQ(refused(Attacked(command(kind, a_file + "/run"), scratch / "").end(), kind.name), 2);
+    EXPECT_EQ(refused(ChildProgram(command(kind, a_file + "/run"), scratch / "").end(), kind.name),
+              2);
     if (read_only) {
       EXPECT_EQ(
-          refused(Attacked(command(kind, scratch / "disk/run"), scratch / "").end(), kind.name), 2);
+          refused(ChildProgram(command(kind, scratch / "disk/run"), scratch / "").end(), kind.name),
+          2);
     }
   }
   EXPECT_EQ(contents_of(a_file), "mine");
@@ -151,9 +154,9 @@ TEST(Disk, RemovedFoldersEndTheRun) {
     if (std::string(kind.name) == "study") kind.words.back() = "time.step=2e-6,3e-6";
     const std::string growing =
         std::string(kind.name) == "study" ? std::string("step=2e-6/motion.csv") : kind.growing;
-    Attacked process(command(kind, folder), scratch / "");
+    ChildProgram process(command(kind, folder), scratch / "");
     wait_for(folder + "/" + growing, 500, process);
-    ASSERT_TRUE(process.lives()) << kind.name;
+    ASSERT_TRUE(process.runs()) << kind.name;
     std::error_code none;
     for (int k = 0; k < 100 && fs::exists(folder, none); ++k) fs::remove_all(folder, none);
     kill(process.pid(), SIGTERM);  // motions and paths would go on in files without names
@@ -171,8 +174,8 @@ TEST(Disk, FoldersOfOthersStayAsTheyAre) {
       const fs::path folder = scratch / "theirs";
       fs::create_directories((folder / name).parent_path());
       scratch.write("theirs/" + std::string(name), "mine");
-      EXPECT_EQ(refused(Attacked(command(kind, folder.string()), scratch / "").end(), kind.name),
-                2);
+      EXPECT_EQ(
+          refused(ChildProgram(command(kind, folder.string()), scratch / "").end(), kind.name), 2);
       EXPECT_EQ(contents_of((folder / name).string()), "mine");
       fs::remove_all(folder);
     }
@@ -191,13 +194,13 @@ TEST(Disk, FoldersOfTheLivingAreTheirs) {
     if (study) first.words.back() = "time.step=2e-6,3e-6";
     if (!study) first = kinds(pendulum).front();
     const std::string folder = scratch / ("run of " + std::string(kind.name));
-    std::optional<Attacked> process(std::in_place, command(first, folder), scratch / "");
+    std::optional<ChildProgram> process(std::in_place, command(first, folder), scratch / "");
     wait_for(folder + (study ? "/step=2e-6/motion.csv" : "/motion.csv"), 500, *process);
     kill(process->pid(), SIGSTOP);  // it lives however fast the machine is
-    const End end = Attacked(command(kind, folder), scratch / "second").end();
+    const ChildEnd end = ChildProgram(command(kind, folder), scratch / "second").end();
     EXPECT_EQ(refused(end, kind.name), 2);
-    EXPECT_TRUE(contains(end.words, "is filling it")) << end.words;
-    EXPECT_TRUE(process->lives());
+    EXPECT_TRUE(contains(end.err, "is filling it")) << end.err;
+    EXPECT_TRUE(process->runs());
     process.reset();
     testing::wait_for_children(folder);  // before their files are removed
   }

@@ -94,10 +94,10 @@ int kill_and_resume(const Victim& v, int kills, std::mt19937& engine) {
     std::optional<Reader> reader(std::in_place, folder);
     bool killed = true;
     while (killed && n < kills) {
-      const pid_t run = start(scratch, v.words(folder, true));
+      testing::ChildProgram run = start(scratch, v.words(folder, true));
       std::this_thread::sleep_for(took * (static_cast<double>(engine()) / 4294967296.0));
-      kill(run, SIGKILL);
-      const Ended ended = end_of(scratch, run);
+      run.send(SIGKILL);
+      const Ended ended = run.end();
       killed = ended.code == -1;
       n += killed;
       if (killed && v.is_study() && fs::exists(folder)) testing::wait_for_children(folder);
@@ -170,7 +170,7 @@ Ended trace(const Scratch& scratch, const Words& options, const Words& arguments
   words.insert(words.end(), options.begin(), options.end());
   words.emplace_back(FLEXMORPH_PROGRAM);
   words.insert(words.end(), arguments.begin(), arguments.end());
-  return end_of(scratch, start_command(scratch, words));
+  return ChildProgram(words, scratch / "").end();
 }
 
 /// Calls that the run makes after its last frame of a design is in its place: each that changes
@@ -194,7 +194,7 @@ std::vector<Call> calls_of_final_writing(const std::string& log) {
 }
 
 TEST(Kills, AtCallsOfTheFinalWritingChangeNothing) {
-  if (std::system("strace -qq -o /dev/null true 2>/dev/null") != 0)
+  if (testing::run_shell("strace -qq -o /dev/null true").code != 0)
     GTEST_SKIP() << "strace cannot watch processes here";
   const Scratch scratch;
   const Victim victim{"short", FLEXMORPH_SHORT_CASE, {"optimizer.max_iterations=2"}, {}};

@@ -12,8 +12,9 @@
 
 #include "fem/solve/factorization/blas_room.h"
 #include "geometry/sanitizers.h"
-#include "tests/attack/attacked_program.h"
+#include "tests/attack/run_files.h"
 #include "tests/io/scratch.h"
+#include "tests/support/child_program.h"
 
 extern "C" void* blas_memory_alloc(int purpose);  // of OpenBLAS
 extern "C" void blas_memory_free(void* buffer);
@@ -21,8 +22,8 @@ extern "C" void blas_memory_free(void* buffer);
 namespace flexmorph {
 namespace {
 
-using testing::Attacked;
-using testing::End;
+using testing::ChildEnd;
+using testing::ChildProgram;
 using Words = std::vector<std::string>;
 
 struct Large {
@@ -55,7 +56,7 @@ std::vector<Large> large_runs() {
 /// fails.
 double least_address_space(const Scratch& scratch) {
   for (double bytes = 2.6e8; bytes < 2e9; bytes *= 1.3)
-    if (Attacked({FLEXMORPH_PROGRAM, "cases"}, scratch / "", {.address_space = bytes})
+    if (ChildProgram({FLEXMORPH_PROGRAM, "cases"}, scratch / "", {.address_space = bytes})
             .end(5)
             .code == 0)
       return bytes;
@@ -81,16 +82,16 @@ TEST(Memory, EndsWithASentence) {
       words.insert(words.end(), run.words.begin(), run.words.end());
       const std::string folder = scratch / "run";
       words.insert(words.end(), {"--set", "expect=", "-o", folder, "--quiet"});
-      const End end = Attacked(words, scratch / "", {.address_space = bytes}).end();
+      const ChildEnd end = ChildProgram(words, scratch / "", {.address_space = bytes}).end();
       ++codes[end.code];
-      EXPECT_FALSE(end.hung) << what;
+      EXPECT_FALSE(end.timed_out) << what;
       EXPECT_TRUE(end.code == 0 || end.code == 2 || end.code == 3 || end.code == 5)
           << what << ": exit code " << end.code << ", signal " << end.signal << "\n"
-          << end.words;
+          << end.err;
       if (end.code == 2 || end.code == 3) {
-        EXPECT_TRUE(contains(end.words, "flexmorph: ")) << what;
+        EXPECT_TRUE(contains(end.err, "flexmorph: ")) << what;
       }
-      EXPECT_FALSE(contains(end.words, "unexpected")) << what;
+      EXPECT_FALSE(contains(end.err, "unexpected")) << what;
       if (std::filesystem::exists(folder)) {
         EXPECT_EQ(testing::broken_files(folder), "") << what;
       }

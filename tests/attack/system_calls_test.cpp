@@ -14,15 +14,16 @@
 
 #include "cases/check/ready.h"
 #include "geometry/sanitizers.h"
-#include "tests/attack/attacked_program.h"
+#include "tests/attack/run_files.h"
 #include "tests/io/scratch.h"
+#include "tests/support/child_program.h"
 
 namespace flexmorph {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::Attacked;
-using testing::End;
+using testing::ChildEnd;
+using testing::ChildProgram;
 using Words = std::vector<std::string>;
 
 const char* const kCalls =
@@ -98,7 +99,8 @@ Watched look(const std::string& log, const Words& roots) {
 
 /// Is there a strace that may watch?
 bool can_watch(const Scratch& scratch) {
-  const End end = Attacked({"strace", "-f", "-o", scratch / "trial", "true"}, scratch / "").end();
+  const ChildEnd end =
+      ChildProgram({"strace", "-f", "-o", scratch / "trial", "true"}, scratch / "").end();
   return end.code == 0;
 }
 
@@ -111,10 +113,10 @@ Watched watch(const Scratch& scratch, const Words& words, const std::string& fol
   all.emplace_back(FLEXMORPH_PROGRAM);
   all.insert(all.end(), words.begin(), words.end());
   all.insert(all.end(), {"-o", folder, "--quiet"});
-  const End end = Attacked(all, scratch / "").end(900);
+  const ChildEnd end = ChildProgram(all, scratch / "").end();
   EXPECT_TRUE(end.code == 0 || end.code == 3 || end.code == 5)
       << words[1] << ": " << end.code << "\n"
-      << end.words;
+      << end.err;
   return look(log, {folder, folder + ".previous"});
 }
 

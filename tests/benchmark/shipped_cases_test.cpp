@@ -3,16 +3,18 @@
 // loads and in motion.
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "tests/io/scratch.h"
+#include "tests/support/child_program.h"
 
 namespace flexmorph {
 namespace {
+
+/// Time limit of a run [s], below that of a benchmark.
+constexpr double kSeconds = 590;
 
 struct Choice {
   std::string plate, optimizer;
@@ -34,8 +36,8 @@ class ShippedCase : public ::testing::TestWithParam<Choice> {
                                 " -o '" + folder +
                                 "' --quiet --set optimizer.name=" + GetParam().optimizer +
                                 " --set output.vtk=false --set " + verify + changes;
-    const int status = std::system(command.c_str());
-    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << command;
+    const int code = testing::run_shell(command, "", kSeconds).code;
+    EXPECT_TRUE(code == 0) << command;
     return nlohmann::json::parse(contents_of(folder + "/run.json"));
   }
 };
@@ -125,8 +127,8 @@ TEST(ShippedLink, EndsAsItExpects) {
   const std::string folder = scratch / "out";
   const std::string command = std::string(FLEXMORPH_PROGRAM) + " run slider_crank_designed -o '" +
                               folder + "' --quiet --set output.vtk=false";
-  const int status = std::system(command.c_str());
-  ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << command;
+  const int code = testing::run_shell(command, "", kSeconds).code;
+  ASSERT_TRUE(code == 0) << command;
   const nlohmann::json json = nlohmann::json::parse(contents_of(folder + "/run.json"));
   EXPECT_GE(json["expect"].size(), 8u);
   for (const auto& [name, expected] : json["expect"].items())

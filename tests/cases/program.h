@@ -1,16 +1,12 @@
 #pragma once
 
-#include <sys/types.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <csignal>
-#include <cstdio>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "tests/io/scratch.h"
+#include "tests/support/child_program.h"
 
 /// The program as tests start it. FLEXMORPH_PROGRAM is its path, FLEXMORPH_SHORT_CASE a case of
 /// about a second.
@@ -25,63 +21,23 @@ inline Words lines_of(const std::string& text) {
   return out;
 }
 
-/// Starts a command, its output in files of the scratch folder.
-inline pid_t start_command(const Scratch& scratch, const Words& words) {
-  const std::string out = scratch / "stdout", err = scratch / "stderr";
-  std::vector<char*> argv;
-  for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
-  argv.push_back(nullptr);
-  const pid_t child = fork();
-  if (child == 0) {
-    if (!std::freopen(out.c_str(), "w", stdout) || !std::freopen(err.c_str(), "w", stderr))
-      _exit(126);
-    execvp(argv[0], argv.data());
-    _exit(127);
-  }
-  return child;
-}
+using Ended = testing::ChildEnd;
+using testing::ChildProgram;
+using testing::eventually;
 
 /// Starts the program with these arguments, its output in files of the scratch folder.
-inline pid_t start(const Scratch& scratch, const Words& arguments) {
+inline ChildProgram start(const Scratch& scratch, const Words& arguments) {
   Words words = {FLEXMORPH_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());
-  return start_command(scratch, words);
+  return {words, scratch / ""};
 }
 
 /// Exit code of a run that is whole, but ended after so few iterations that its design is worse
 /// than uniform material: "done, not usable".
 inline constexpr int kTooFew = 5;
 
-/// Waits until a condition holds.
-/// @return false if the child ended before, or the time [s] was over; the child is killed then
-template <class Condition>
-bool eventually(double seconds, pid_t child, const Condition& condition) {
-  for (double waited = 0; waited < seconds; waited += 0.01) {
-    if (condition()) return true;
-    siginfo_t ended{};
-    if (waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOHANG | WNOWAIT) != 0 ||
-        ended.si_pid == child)
-      return condition();
-    usleep(10'000);
-  }
-  kill(child, SIGKILL);
-  return false;
-}
-
-struct Ended {
-  int code = -1;  ///< exit code, -1 when a signal ended it
-  std::string out, err;
-};
-
-inline Ended end_of(const Scratch& scratch, pid_t child) {
-  int status = 0;
-  waitpid(child, &status, 0);
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents_of(scratch / "stdout"),
-          contents_of(scratch / "stderr")};
-}
-
 inline Ended flexmorph(const Scratch& scratch, const Words& arguments) {
-  return end_of(scratch, start(scratch, arguments));
+  return start(scratch, arguments).end();
 }
 
 /// Runs a case with changes; what it expects of itself as it is does not count with them.

@@ -101,14 +101,12 @@ TEST(ConditionOfARun, OfPathsGrowsWithTheMesh) {
 TEST(Tables, AreThereBeforeTheEnd) {
   const Scratch scratch;
   const std::string folder = scratch / "out", table = folder + "/stability.csv";
-  const pid_t check =
+  testing::ChildProgram check =
       test::start(scratch, {"stability", "plate_pendulum", "-o", folder, "--suites",
                             "stiffness,step,rho_inf", "--set", "body.elements=[2, 2]"});
-  for (int k = 0; k < 12000 && !std::filesystem::exists(table); ++k)
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  kill(check, SIGKILL);
-  waitpid(check, nullptr, 0);
-  ASSERT_TRUE(std::filesystem::exists(table));
+  ASSERT_TRUE(testing::eventually(check, [&] { return std::filesystem::exists(table); }));
+  check.send(SIGKILL);
+  check.end();
   const io::CsvTable rows = io::read_csv(table);  // refuses lines that are cut
   EXPECT_GE(rows.n_rows(), 10u);
   EXPECT_EQ(rows.texts("suite")[0], "base");

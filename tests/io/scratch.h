@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -17,8 +18,9 @@ class Scratch {
  public:
   Scratch() {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    static std::atomic<int> count = 0;  // a test may have several
     std::string name = "flexmorph_" + std::to_string(getpid()) + "_" + test->test_suite_name() +
-                       "_" + test->name();
+                       "_" + test->name() + "_" + std::to_string(++count);
     std::replace(name.begin(), name.end(), '/', '_');  // of tests with parameters
     folder_ = std::filesystem::temp_directory_path() / name;
     std::filesystem::create_directories(folder_);

@@ -157,7 +157,7 @@ TEST(Pipes, AreFilesWithoutAName) {
   const Scratch scratch;
   const std::string err = scratch / "err", program = std::string("'") + FLEXMORPH_PROGRAM + "'";
   const auto ended = [&](const std::string& command) {
-    return WEXITSTATUS(std::system((command + " >/dev/null 2>'" + err + "'").c_str()));
+    return testing::run_shell(command + " >/dev/null 2>'" + err + "'").code;
   };
   EXPECT_EQ(ended("printf '[time]\\nend = -1\\n' | " + program + " check -"), 2);
   EXPECT_TRUE(starts(contents_of(err), "flexmorph: /dev/stdin:2:7: time.end = -1: "));

@@ -51,10 +51,10 @@ TEST(CommandLine, ReadsStandardInputAndMissesAFullDisk) {
   const std::string out = scratch / "checked", program = std::string("'") + FLEXMORPH_PROGRAM +
                                                          "' check - <'" + FLEXMORPH_SHORT_CASE +
                                                          "' ";
-  ASSERT_EQ(std::system((program + ">'" + out + "'").c_str()), 0);
+  ASSERT_EQ(testing::run_shell(program + ">'" + out + "'").code, 0);
   EXPECT_TRUE(contains(contents_of(out), "\nactive\n"));
   const std::string err = scratch / "err";
-  EXPECT_EQ(WEXITSTATUS(std::system((program + ">/dev/full 2>'" + err + "'").c_str())), 2);
+  EXPECT_EQ(testing::run_shell(program + ">/dev/full 2>'" + err + "'").code, 2);
   EXPECT_TRUE(contains(contents_of(err), "the output cannot be written")) << contents_of(err);
 }
 

@@ -22,7 +22,8 @@ class GermanLocale {
     // The locale is made here: few machines have it installed.
     const std::string folder = scratch / "locales";
     fs::create_directories(folder);
-    made_ = std::system(("localedef -i de_DE -f UTF-8 '" + folder + "/de_DE.UTF-8'").c_str()) == 0;
+    made_ =
+        testing::run_shell("localedef -i de_DE -f UTF-8 '" + folder + "/de_DE.UTF-8'").code == 0;
     set("LOCPATH", folder);
     set("LC_ALL", "de_DE.UTF-8");
     set("LD_PRELOAD", FLEXMORPH_COMMA_LOCALE);

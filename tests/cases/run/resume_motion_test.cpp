@@ -11,24 +11,12 @@
 namespace flexmorph::test {
 namespace {
 
-/// Waits until it is so; false when the run ended before.
-bool comes_to(const std::function<bool()>& so, pid_t run) {
-  for (int k = 0; k < 60000; ++k) {
-    if (so()) return true;
-    if (waitpid(run, nullptr, WNOHANG | WNOWAIT) == run) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  return false;
-}
-
 /// Has the motion begun that has this checkpoint? Its name is in the list of the folder then.
-bool has_begun(const std::string& folder, const std::string& checkpoint, pid_t run) {
-  return comes_to(
-      [&] {
-        const Words names = lines_of(contents_of(folder + "/.flexmorph"));
-        return std::find(names.begin(), names.end(), checkpoint) != names.end();
-      },
-      run);
+bool has_begun(const std::string& folder, const std::string& checkpoint, const ChildProgram& run) {
+  return eventually(run, [&] {
+    const Words names = lines_of(contents_of(folder + "/.flexmorph"));
+    return std::find(names.begin(), names.end(), checkpoint) != names.end();
+  });
 }
 
 struct Disturbed {
@@ -48,17 +36,17 @@ TEST_P(ResumedMotion, IsAsUndisturbed) {
   const std::string whole = scratch / "whole", folder = scratch / "out";
   const int code = flexmorph(scratch, words_of(d.path, whole, d.changes)).code;
   ASSERT_TRUE(code == 0 || code == kTooFew) << code;
-  const pid_t run = start(scratch, words_of(d.path, folder, d.changes));
+  testing::ChildProgram run = start(scratch, words_of(d.path, folder, d.changes));
   const std::string checkpoint = folder + "/" + d.checkpoint;
   bool caught = has_begun(folder, d.checkpoint, run);
   ASSERT_TRUE(caught);
-  if (d.signal == SIGKILL) caught = comes_to([&] { return fs::exists(checkpoint); }, run);
-  kill(run, d.signal);
+  if (d.signal == SIGKILL) caught = eventually(run, [&] { return fs::exists(checkpoint); });
+  run.send(d.signal);
   if (!caught) {
-    end_of(scratch, run);
+    run.end();
     GTEST_SKIP() << "the motion took less than the second between two checkpoints";
   }
-  EXPECT_EQ(end_of(scratch, run).code, d.signal == SIGKILL ? -1 : 4);
+  EXPECT_EQ(run.end().code, d.signal == SIGKILL ? -1 : 4);
   expect_readable(folder);
   Words words = words_of(d.path, folder, d.changes, true);
   std::erase(words, "--quiet");
@@ -96,10 +84,10 @@ TEST(ResumeMotion, BeginsAnewWithADamagedCheckpoint) {
   const std::string whole = scratch / "whole", folder = scratch / "out";
   const Words changes = {"time.end=0.6"};
   ASSERT_EQ(flexmorph(scratch, words_of("deploying_plate", whole, changes)).code, 0);
-  const pid_t run = start(scratch, words_of("deploying_plate", folder, changes));
+  testing::ChildProgram run = start(scratch, words_of("deploying_plate", folder, changes));
   ASSERT_TRUE(has_begun(folder, "motion.checkpoint", run));
-  kill(run, SIGTERM);
-  ASSERT_EQ(end_of(scratch, run).code, 4);
+  run.send(SIGTERM);
+  ASSERT_EQ(run.end().code, 4);
   const std::string path = folder + "/motion.checkpoint";
   std::string text = contents_of(path);
   text[text.size() / 2] = static_cast<char>(text[text.size() / 2] ^ 4);

@@ -11,13 +11,8 @@ namespace flexmorph::test {
 namespace {
 
 /// Waits until a history has so many rows; false when the run ended before.
-bool has_rows(const std::string& folder, size_t n, pid_t run) {
-  for (int k = 0; k < 6000; ++k) {
-    if (lines_of(contents_of(folder + "/history.csv")).size() > n) return true;
-    if (waitpid(run, nullptr, WNOHANG | WNOWAIT) == run) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  return false;
+bool has_rows(const std::string& folder, size_t n, const ChildProgram& run) {
+  return eventually(run, [&] { return lines_of(contents_of(folder + "/history.csv")).size() > n; });
 }
 
 struct Design {
@@ -39,9 +34,9 @@ TEST_P(Resumed, IsAsUndisturbed) {
   ASSERT_TRUE(code == 0 || code == kTooFew) << code;
   EXPECT_FALSE(fs::exists(whole + "/evaluations.log"));
   for (const size_t rows : d.rows) {
-    const pid_t run = start(scratch, words_of(d.path, folder, d.changes, true));
-    if (has_rows(folder, rows, run)) kill(run, SIGKILL);
-    end_of(scratch, run);
+    testing::ChildProgram run = start(scratch, words_of(d.path, folder, d.changes, true));
+    if (has_rows(folder, rows, run)) run.send(SIGKILL);
+    run.end();
   }
   const Ended ended = flexmorph(scratch, words_of(d.path, folder, d.changes, true));
   EXPECT_EQ(ended.code, code) << ended.err;
@@ -69,10 +64,10 @@ TEST(Resume, GoesOnAfterAnInterruption) {
   const std::string whole = scratch / "whole", folder = scratch / "out";
   const Words changes = {"optimizer.max_iterations=30"};
   flexmorph(scratch, words_of(FLEXMORPH_SHORT_CASE, whole, changes));
-  const pid_t run = start(scratch, words_of(FLEXMORPH_SHORT_CASE, folder, changes));
+  testing::ChildProgram run = start(scratch, words_of(FLEXMORPH_SHORT_CASE, folder, changes));
   ASSERT_TRUE(has_rows(folder, 4, run));
-  kill(run, SIGTERM);
-  ASSERT_EQ(end_of(scratch, run).code, 4);
+  run.send(SIGTERM);
+  ASSERT_EQ(run.end().code, 4);
   EXPECT_TRUE(fs::exists(folder + "/components.csv"));
   flexmorph(scratch, words_of(FLEXMORPH_SHORT_CASE, folder, changes, true));
   expect_same(lasting(folder), lasting(whole));
@@ -81,11 +76,11 @@ TEST(Resume, GoesOnAfterAnInterruption) {
 TEST(Resume, RefusesAnotherCase) {
   const Scratch scratch;
   const std::string folder = scratch / "out";
-  const pid_t run =
+  testing::ChildProgram run =
       start(scratch, words_of(FLEXMORPH_SHORT_CASE, folder, {"optimizer.max_iterations=300"}));
   ASSERT_TRUE(has_rows(folder, 2, run));
-  kill(run, SIGKILL);
-  end_of(scratch, run);
+  run.send(SIGKILL);
+  run.end();
   const std::string before = contents_of(folder + "/history.csv");
   const Ended ended = flexmorph(
       scratch, words_of(FLEXMORPH_SHORT_CASE, folder, {"optimizer.max_iterations=301"}, true));

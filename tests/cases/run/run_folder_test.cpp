@@ -3,7 +3,6 @@
 #include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "cases/study/study.h"
 #include "geometry/sanitizers.h"
@@ -31,13 +30,9 @@ std::string pendulum(const std::string& steps, const std::string& more = "") {
 const char* const kQuick = "1e-2";
 const char* const kLong = "1e-6";  // for who is killed
 
-/// Waits until the table of steps has begun; false after a minute.
-bool moves(const std::string& folder) {
-  for (int k = 0; k < 1200; ++k) {
-    if (lines_of(contents_of(folder + "/motion.csv")).size() > 3) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
-  return false;
+/// Waits until the table of steps has begun.
+bool moves(const ChildProgram& run, const std::string& folder) {
+  return eventually(run, [&] { return lines_of(contents_of(folder + "/motion.csv")).size() > 3; });
 }
 
 json run_of(const std::string& folder) { return json::parse(contents_of(folder + "/run.json")); }
@@ -46,21 +41,21 @@ TEST(RunFolders, BelongToTheRunThatLives) {
   const Scratch scratch;
   const std::string folder = scratch / "out", slow = scratch.write("slow.toml", pendulum(kLong)),
                     quick = scratch.write("quick.toml", pendulum(kQuick));
-  const pid_t child = start(scratch, {"run", slow, "-o", folder, "--quiet"});
-  ASSERT_TRUE(moves(folder));
+  testing::ChildProgram child = start(scratch, {"run", slow, "-o", folder, "--quiet"});
+  ASSERT_TRUE(moves(child, folder));
   const Scratch other_words;
   const std::string before = contents_of(folder + "/run.json");
   const fs::path words = fs::path(scratch / "second");
   fs::create_directories(words);
   // Another process; its output goes to other files.
-  const std::string command = std::string(FLEXMORPH_PROGRAM) + " run " + quick + " -o " + folder +
-                              " --quiet 2> " + (words / "err").string();
-  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 2);
-  const std::string why = contents_of((words / "err").string());
-  EXPECT_TRUE(contains(why, "process " + std::to_string(child) + " on ")) << why;
+  const Ended refused =
+      ChildProgram({FLEXMORPH_PROGRAM, "run", quick, "-o", folder, "--quiet"}, words.string())
+          .end();
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_TRUE(contains(refused.err, "process " + std::to_string(child.pid()) + " on "));
   EXPECT_EQ(contents_of(folder + "/run.json"), before);
-  kill(child, SIGKILL);
-  end_of(scratch, child);
+  child.send(SIGKILL);
+  child.end();
 
   // Killed, it holds nothing up: every file is whole, and makes room.
   EXPECT_EQ(run_of(folder)["status"], "running");
@@ -82,14 +77,13 @@ TEST(RunFolders, OfTheDeadAreNotThoseOfTheLiving) {
     return cases::read_result(options, {"out", {}}).status;
   };
   EXPECT_EQ(status(), "missing");
-  const pid_t child = start(scratch, {"run", "cantilever_roll_up", "-o", scratch / "out", "--set",
-                                      "static.steps=100000", "--quiet"});
+  testing::ChildProgram child = start(scratch, {"run", "cantilever_roll_up", "-o", scratch / "out",
+                                                "--set", "static.steps=100000", "--quiet"});
   const std::string path = scratch / "out/path.csv";
-  for (int k = 0; k < 1200 && lines_of(contents_of(path)).size() < 5; ++k)
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  ASSERT_TRUE(eventually(child, [&] { return lines_of(contents_of(path)).size() >= 5; }));
   EXPECT_EQ(status(), "running");
-  kill(child, SIGKILL);
-  end_of(scratch, child);
+  child.send(SIGKILL);
+  child.end();
   EXPECT_EQ(status(), "killed");
   const io::CsvTable table = io::read_csv(path);
   ASSERT_GT(table.n_rows(), 3u);
@@ -158,10 +152,10 @@ TEST(RunFolders, AreFinishedWhenTheTerminalCloses) {
   for (const int signal : {SIGHUP, SIGTERM}) {
     const Scratch scratch;
     const std::string folder = scratch / "out", slow = scratch.write("slow.toml", pendulum(kLong));
-    const pid_t child = start(scratch, {"run", slow, "-o", folder, "--quiet"});
-    ASSERT_TRUE(moves(folder));
-    kill(child, signal);
-    EXPECT_EQ(end_of(scratch, child).code, 4);
+    testing::ChildProgram child = start(scratch, {"run", slow, "-o", folder, "--quiet"});
+    ASSERT_TRUE(moves(child, folder));
+    child.send(signal);
+    EXPECT_EQ(child.end().code, 4);
     EXPECT_EQ(run_of(folder)["status"], "interrupted");
     EXPECT_TRUE(fs::exists(folder + "/report.html"));
   }
@@ -173,9 +167,8 @@ TEST(RunFolders, AreFinishedWhenNobodyListens) {
   const std::string folder = scratch / "out", path = scratch.write("case.toml", pendulum(kQuick));
   const std::string command =
       std::string(FLEXMORPH_PROGRAM) + " run " + path + " -o " + folder + " | true";
-  EXPECT_EQ(std::system(command.c_str()), 0);
-  for (int k = 0; k < 200 && !fs::exists(folder + "/report.html"); ++k)
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  // The shell waits for both.
+  EXPECT_EQ(testing::run_shell(command).code, 0);
   EXPECT_EQ(run_of(folder)["status"], "done");
 }
 
@@ -187,7 +180,7 @@ TEST(RunFolders, OnAFullDiskHoldWholeRows) {
   const std::string err = scratch / "err";
   const std::string command = "trap '' XFSZ; ulimit -f 40; exec " + std::string(FLEXMORPH_PROGRAM) +
                               " run " + path + " -o " + folder + " --quiet 2> " + err;
-  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 3);
+  EXPECT_EQ(testing::run_shell(command).code, 3);
   EXPECT_TRUE(contains(contents_of(err), "motion.csv: cannot be written: File too large"))
       << contents_of(err);
   const std::string text = contents_of(folder + "/motion.csv");
@@ -200,11 +193,11 @@ TEST(RunFolders, OnAFullDiskHoldWholeRows) {
 TEST(RunFolders, ThatAreRemovedEndTheRun) {
   const Scratch scratch;
   const std::string folder = scratch / "out", slow = scratch.write("slow.toml", pendulum("2e-6"));
-  const pid_t child = start(scratch, {"run", slow, "-o", folder, "--quiet"});
-  ASSERT_TRUE(moves(folder));
+  testing::ChildProgram child = start(scratch, {"run", slow, "-o", folder, "--quiet"});
+  ASSERT_TRUE(moves(child, folder));
   fs::remove_all(folder);
-  kill(child, SIGTERM);
-  const Ended ended = end_of(scratch, child);
+  child.send(SIGTERM);
+  const Ended ended = child.end();
   EXPECT_EQ(ended.code, 3);
   EXPECT_TRUE(contains(ended.err, "was removed while it was filled")) << ended.err;
   EXPECT_FALSE(fs::exists(folder));

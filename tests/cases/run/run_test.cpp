@@ -317,23 +317,19 @@ TEST(Run, AFailureKeepsWhatCameBefore) {
   EXPECT_TRUE(fs::exists(folder + "/case.toml"));
 }
 
-/// Waits until a file has so many lines; false after a minute.
-bool has_lines(const std::string& path, size_t n) {
-  for (int k = 0; k < 1200; ++k) {
-    if (lines_of(contents_of(path)).size() >= n) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
-  return false;
+/// Waits until a file has a number of lines.
+bool has_lines(const ChildProgram& run, const std::string& path, size_t n) {
+  return eventually(run, [&] { return lines_of(contents_of(path)).size() >= n; });
 }
 
 TEST(Run, AnInterruptionKeepsWhatWasComputed) {
   const Scratch scratch;
   const std::string folder = scratch / "out";
-  const pid_t child = start(
+  testing::ChildProgram child = start(
       scratch, short_run(folder, {"optimizer.max_iterations=100000", "optimizer.kkt_tolerance=0"}));
-  ASSERT_TRUE(has_lines(folder + "/history.csv", 4));
-  kill(child, SIGINT);
-  const Ended ended = end_of(scratch, child);
+  ASSERT_TRUE(has_lines(child, folder + "/history.csv", 4));
+  child.send(SIGINT);
+  const Ended ended = child.end();
   EXPECT_EQ(ended.code, 4) << ended.err;
   const nlohmann::json run = run_json(folder);
   EXPECT_EQ(run["status"], "interrupted");
@@ -352,11 +348,10 @@ TEST(Run, AnInterruptionKeepsWhatWasComputed) {
 TEST(Run, AnInterruptionOfTheMotionKeepsItsSteps) {
   const Scratch scratch;
   const std::string folder = scratch / "out";
-  const pid_t child = start(scratch, short_run(folder, {"time.step=1e-6"}));
-  ASSERT_TRUE(has_lines(folder + "/run.json", 3));
-  std::this_thread::sleep_for(std::chrono::milliseconds(500));
-  kill(child, SIGINT);
-  const Ended ended = end_of(scratch, child);
+  testing::ChildProgram child = start(scratch, short_run(folder, {"time.step=1e-6"}));
+  ASSERT_TRUE(has_lines(child, folder + "/motion.csv", 3));
+  child.send(SIGINT);
+  const Ended ended = child.end();
   EXPECT_EQ(ended.code, 4) << ended.err;
   EXPECT_EQ(run_json(folder)["status"], "interrupted");
   const Table motion = read_csv(folder + "/motion.csv");

@@ -320,13 +320,13 @@ TEST(Compare, StopsWhenInterruptedAndGoesOnLater) {
   const Words words = small("compare", folder,
                             {"--optimizers", "mma", "--starts", "2", "--budget", "1000000", "--set",
                              "optimizer.kkt_tolerance=0"});
-  const pid_t study = test::start(scratch, words);
+  testing::ChildProgram study = test::start(scratch, words);
   // The study runs until it is interrupted; if it ends by itself, the test goes on and fails.
-  ASSERT_TRUE(test::eventually(60, study, [&] {
+  ASSERT_TRUE(testing::eventually(study, [&] {
     return test::lines_of(contents_of(folder + "/mma_1/history.csv")).size() >= 3;
-  })) << test::end_of(scratch, study).err;
-  kill(study, SIGTERM);
-  const Ended ended = test::end_of(scratch, study);
+  })) << study.end().err;
+  study.send(SIGTERM);
+  const Ended ended = study.end();
   EXPECT_EQ(ended.code, 4) << ended.err;
   const io::CsvTable table = io::read_csv(folder + "/compare.csv");
   EXPECT_EQ(table.texts("status"), (Words{"interrupted", "missing"}));

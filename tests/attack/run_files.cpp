@@ -1,20 +1,15 @@
-#include "tests/attack/attacked_program.h"
+#include "tests/attack/run_files.h"
 
 #include <fcntl.h>
 #include <sched.h>
 #include <sys/mount.h>
-#include <sys/resource.h>
 #include <sys/statvfs.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "geometry/base.h"
 #include "io/tables.h"
@@ -24,13 +19,6 @@ namespace flexmorph::testing {
 namespace {
 
 namespace fs = std::filesystem;
-
-void limit(int what, double bytes) {
-  if (bytes <= 0) return;
-  const auto most = static_cast<rlim_t>(bytes);
-  const rlimit both{most, most};
-  setrlimit(static_cast<__rlimit_resource_t>(what), &both);
-}
 
 /// Why a file is not whole; empty: it is.
 std::string complaint(const fs::path& path) {
@@ -59,6 +47,14 @@ std::string complaint(const fs::path& path) {
   return "";
 }
 
+/// Is so much memory free, and as much again for others?
+bool has_memory(double bytes) {
+  std::ifstream in("/proc/meminfo");
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with("MemAvailable:")) return 1024 * std::stod(line.substr(13)) > 2 * bytes;
+  return false;
+}
+
 /// Mounts of this process are its own from here on.
 bool own_mounts() {
   static const bool done = [] {
@@ -69,59 +65,6 @@ bool own_mounts() {
 }
 
 }  // namespace
-
-Attacked::Attacked(const std::vector<std::string>& words, const std::string& folder,
-                   const Limits& limits)
-    : folder_(folder) {
-  const std::string out = folder + "/stdout", err = folder + "/stderr";
-  std::vector<char*> argv;
-  for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
-  argv.push_back(nullptr);
-  std::fflush(nullptr);  // what stands in buffers is not written by both
-  pid_ = fork();
-  if (pid_ != 0) return;
-  if (!std::freopen(out.c_str(), "w", stdout) || !std::freopen(err.c_str(), "w", stderr))
-    _exit(126);
-  if (limits.file_size > 0) std::signal(SIGXFSZ, SIG_IGN);
-  limit(RLIMIT_FSIZE, limits.file_size);
-  limit(RLIMIT_AS, limits.address_space);
-  const rlimit none{0, 0};
-  setrlimit(RLIMIT_CORE, &none);
-  execvp(argv[0], argv.data());
-  _exit(127);
-}
-
-Attacked::~Attacked() {
-  if (pid_ <= 0) return;
-  kill(pid_, SIGKILL);
-  waitpid(pid_, nullptr, 0);
-}
-
-bool Attacked::lives() const {
-  siginfo_t info{};
-  if (waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) != 0) return false;
-  return info.si_pid == 0;  // nobody has ended
-}
-
-End Attacked::end(double seconds) {
-  const auto begin = std::chrono::steady_clock::now();
-  End out;
-  int status = 0;
-  while (waitpid(pid_, &status, WNOHANG) == 0) {
-    const std::chrono::duration<double> now = std::chrono::steady_clock::now() - begin;
-    if (now.count() > seconds && !out.hung) {
-      out.hung = true;
-      kill(pid_, SIGKILL);
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  pid_ = -1;
-  if (WIFEXITED(status)) out.code = WEXITSTATUS(status);
-  if (WIFSIGNALED(status)) out.signal = WTERMSIG(status);
-  out.words = contents_of(folder_ + "/stderr");
-  out.all = contents_of(folder_ + "/stdout");
-  return out;
-}
 
 std::string broken_files(const std::string& folder) {
   std::string out;
@@ -144,7 +87,8 @@ double size_of(const std::string& folder) {
 SmallDisk::SmallDisk(std::string folder, double bytes) : folder_(std::move(folder)) {
   fs::create_directories(folder_);
   const std::string size = "size=" + std::to_string(static_cast<long>(bytes));
-  mounted_ = own_mounts() && mount("none", folder_.c_str(), "tmpfs", 0, size.c_str()) == 0;
+  mounted_ = has_memory(bytes) && own_mounts() &&
+             mount("none", folder_.c_str(), "tmpfs", 0, size.c_str()) == 0;
 }
 
 SmallDisk::~SmallDisk() {
