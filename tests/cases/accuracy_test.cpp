@@ -282,7 +282,9 @@ TEST(Parameters, AreThoseOfTheScene) {
 TEST(Parameters, LevelsOfOneParameterLeaveTheOthersAlone) {
   const io::CaseFile file(find_case("short_beam"));
   const Scene scene = read_scene(file);
-  for (const Level& level : parameter("design_mesh").levels(scene, file)) {
+  const std::vector<Level> levels = parameter("design_mesh").levels(scene, file);
+  ASSERT_GE(levels.size(), 3u);
+  for (const Level& level : levels) {
     const Scene finer = read_scene(io::CaseFile(find_case("short_beam"), level.overrides));
     const BodyDesign &a = scene.designs[0], &b = finer.designs[0];
     EXPECT_NEAR(b.grid.dx(), level.h * a.grid.dx(), 1e-12);
@@ -317,7 +319,9 @@ TEST(Parameters, ModelsOfBeams) {
   const std::string name = "slider_crank_heated";
   const io::CaseFile file(find_case(name));
   const Scene scene = read_scene(file);
-  for (const Level& level : parameter("model").levels(scene, file)) {
+  const std::vector<Level> levels = parameter("model").levels(scene, file);
+  ASSERT_GE(levels.size(), 1u);
+  for (const Level& level : levels) {
     const Scene other = read_scene(io::CaseFile(find_case(name), level.overrides));
     const std::set<std::string> terms(other.bodies[0].terms.begin(), other.bodies[0].terms.end());
     EXPECT_EQ(terms, (std::set<std::string>{"ecm", "inertia"}));
@@ -331,13 +335,17 @@ TEST(Parameters, StepsThatAdapt) {
   const io::CaseFile file(find_case(name));
   const Scene scene = read_scene(file);
   double last = 1;
-  for (const Level& level : parameter("adaptive").levels(scene, file)) {
+  const std::vector<Level> adaptive = parameter("adaptive").levels(scene, file);
+  ASSERT_GE(adaptive.size(), 3u);
+  for (const Level& level : adaptive) {
     const Scene other = read_scene(io::CaseFile(find_case(name), level.overrides));
     ASSERT_TRUE(other.time.tolerance.has_value());
     EXPECT_LT(*other.time.tolerance, last);
     last = *other.time.tolerance;
   }
-  for (const Level& level : parameter("minimal_coordinates").levels(scene, file))
+  const std::vector<Level> minimal = parameter("minimal_coordinates").levels(scene, file);
+  ASSERT_GE(minimal.size(), 1u);
+  for (const Level& level : minimal)
     EXPECT_EQ(read_scene(io::CaseFile(find_case(name), level.overrides)).time.integrator,
               "minimal_coordinates");
 }

@@ -63,7 +63,7 @@ TEST(Keys, EveryKeyIsDescribed) {
 TEST(Keys, EveryDeclaredTableIsInTheBook) {
   for (const io::Key& key : io::all_keys())
     for (const std::string& table : key.tables)
-      EXPECT_NO_THROW(cases::table_of_keys(table)) << key.name;
+      EXPECT_FALSE(cases::table_of_keys(table).keys.empty()) << key.name;
 }
 
 TEST(Keys, AKeyIsDeclaredOnceForEveryCondition) {
@@ -159,7 +159,7 @@ class Completion : public ::testing::Test {
                                  "_flexmorph\nprintf '%s\\n' \"${COMPREPLY[@]}\" > '" +
                                  out + "'\n");
     const std::string command = "bash '" + (scratch_ / "ask.sh") + "'";
-    EXPECT_EQ(std::system(command.c_str()), 0);
+    EXPECT_EQ(testing::run_shell(command).code, 0);
     return lines_of(contents_of(out));
   }
   Scratch scratch_;

@@ -86,6 +86,21 @@ TEST(SpaceScene, EveryLoadReachesTheModel) {
   EXPECT_LT(resultant("type='edge_moment', edge='free_end', moment=5").norm(), 1e-12);
 }
 
+// A rigid turn about the edge by a small angle: the work is that of the moment.
+TEST(SpaceScene, EdgeMomentsReachTheModel) {
+  const Scene s = read("square_plate_twist",
+                       {"load=[{body='plate', type='edge_moment', edge='free_end', moment=5}]"});
+  Mechanism m = build_mechanism(s);
+  const fem::State x = m.model.reference();
+  m.model.prepare(x);
+  VectorXd force;
+  m.model.force(x, force);
+  double work = 0;
+  for (int k = 0; k < m.model.n_dofs() / 3; ++k)
+    work -= force.segment<3>(3 * k).dot(Vec3::UnitY().cross(Vec3(x.q.segment<3>(3 * k))));
+  EXPECT_NEAR(std::abs(work), 5 * s.bodies[0].width, 1e-12);
+}
+
 TEST(SpaceScene, FreeLinesAndSleevesReachTheModel) {
   const Scene s = read("elastic_sleeve");
   ASSERT_EQ(s.bodies[0].lines.size(), 1u);

@@ -120,6 +120,7 @@ TEST(Removal, UndoesAnInsertion) {
     // Any other vector of accelerations comes back, too.
     const VectorXd alpha = x.a + 0.1 * x.v;
     const MeshMap in = change_mesh(scene.model, scene.model.bodies()[0], MeshChange::insertion, x);
+    ASSERT_GT(x.q.size(), before.q.size());
     const VectorXd carried = in.acceleration(before.q, before.v, alpha);
     const VectorXd q = x.q, v = x.v;
     const MeshMap out = change_mesh(scene.model, scene.model.bodies()[0], MeshChange::removal, x);
