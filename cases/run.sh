@@ -39,12 +39,14 @@ if [ ! -f "$scene" ] && [ ! -f "$root/cases/$scene.toml" ]; then
 fi
 
 . "$root/cases/cmake/setup.sh"
+check_build_folder
+check_disk 2
 announce 14
 step $((2 * cores)) "runs $(basename "$scene" .toml) (rotating_plate_v01, on one core)"
 install_packages
 # A build folder that tests/run.sh has configured keeps its tests.
 [ -f "$build/CMakeCache.txt" ] || set_tests=-DFLEXMORPH_TESTS=OFF
-cmake -S "$root" --preset release ${set_tests-}
-cmake --build "$build" --parallel "$cores" --target flexmorph
+cmake -S "$root" --preset release ${set_tests-} </dev/null
+cmake --build "$build" --parallel "$cores" --target flexmorph </dev/null
 [ -n "$output" ] || set -- -o "$root/runs/$(basename "$scene" .toml)" "$@"
 exec "$build/cases/flexmorph" run "$scene" "$@"

@@ -13,7 +13,7 @@
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 . "$root/cases/cmake/setup.sh"
-package_lists="$package_lists $root/tests/packages.txt"
+with_tests=1
 export FLEXMORPH_TEST_SECONDS=300  # limit of one test, not of a program
 
 builds=native,portable

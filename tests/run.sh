@@ -10,7 +10,8 @@ Installs missing packages, builds everything and runs the tests.
              skipped test that tests/skips.txt does not list is a failure
   --all      also the labels long, service (daemons, browsers, other hosts) and benchmark
   OPTION     option of ctest: -L, -LE, -R, -E, -I, --repeat (each with a value), -V,
-             --rerun-failed, --stop-on-failure, --schedule-random
+             --rerun-failed, --stop-on-failure, --schedule-random; -L and -LE given several times
+             name several labels
 The whole command has a time limit: FLEXMORPH_MINUTES, by default 60 (--gate: 45, --all: 100). After
 it the tests that have begun and not ended are named and killed, and what did not run has failed.
 The last line says "N passed, N failed, N skipped"; the exit code is 0 if at least one test passed
@@ -26,7 +27,7 @@ case "${1-}" in
 esac
 excluded='benchmark|service|long'
 [ "$mode" != all ] || excluded=
-chosen=  # the value of -L; tests that it names run whatever their labels are
+chosen=  # labels that -L names; tests that it names run whatever their labels are
 others=  # labels that -LE names
 n=$#
 while [ "$n" -gt 0 ]; do
@@ -38,8 +39,8 @@ while [ "$n" -gt 0 ]; do
     -L | -LE | -R | -E | -I | --repeat)
       [ "$n" -gt 0 ] || wrong "'$option' needs a value"
       case "$option" in
-        -L) chosen=$1 ;;
-        -LE) others=$1 ;;
+        -L) chosen="$chosen${chosen:+|}$1" ;;
+        -LE) others="$others${others:+|}$1" ;;
         *) set -- "$@" "$option" "$1" ;;
       esac
       shift
@@ -50,18 +51,20 @@ while [ "$n" -gt 0 ]; do
   esac
 done
 if [ -n "$chosen" ]; then excluded= && set -- "$@" -L "$chosen"; fi
-# ctest would leave out only what has both labels if it got -LE twice.
+# ctest would take only what has both labels if it got -L twice, and leave out only that with -LE.
 excluded="$excluded${excluded:+${others:+|}}$others"
 [ -z "$excluded" ] || set -- "$@" -LE "$excluded"
 
 . "$root/cases/cmake/setup.sh"
-package_lists="$package_lists $root/tests/packages.txt"
+with_tests=1
 targets=all
 limit=60
 case "$mode" in
   gate) limit=45 build="$root/build-gate" && rm -rf "$build" ;;
   all) limit=100 targets='all benchmarks' ;;
 esac
+check_build_folder
+check_disk 4
 mkdir -p "$build"
 end=$(($(date +%s) + 60 * ${FLEXMORPH_MINUTES:-$limit}))
 # Seconds until the time limit of the whole command, at least 5.

@@ -3,9 +3,72 @@
 
 export LC_ALL=C
 build="$root/build"
-cores=$(nproc)
-# Lists of Debian packages; tests/run.sh adds tests/packages.txt.
-package_lists="$root/cases/cmake/packages.txt"
+with_tests=  # tests/run.sh sets it: packages of tests/packages.txt are needed, too
+
+# quotas FILE : the values of a file of this process's control groups, from its own group up to the
+# root. A container sees its own group as the root. ($system_root is set by tests/scripts.cmake.)
+quotas() {
+  group=$(sed -n 's/^0:://p' "${system_root-}/proc/self/cgroup" 2>/dev/null) || group=
+  while :; do
+    group=${group%/}
+    cat "${system_root-}/sys/fs/cgroup$group/$1" 2>/dev/null || true
+    [ -n "$group" ] || break
+    group=${group%/*}
+  done
+}
+
+# parallel_jobs CORES : how many jobs run beside each other: at most one per core, as many as the
+# quota of processor time allows (cpu.max: microseconds per period), and one per 1.2 GB of available
+# memory (the largest files take about 1 GB to compile); at least one.
+parallel_jobs() {
+  memory=$(sed -n 's/^MemAvailable: *\([0-9]*\) kB/\1/p' "${system_root-}/proc/meminfo" 2>/dev/null) ||
+    memory=
+  limit=$(quotas memory.max | sort -n | sed -n '/^[0-9]/{p;q;}')
+  {
+    echo "$1"
+    [ -z "$memory" ] || echo $((memory / 1200000))
+    [ -z "$limit" ] || echo $((limit / 1200000000))
+    quotas cpu.max | while read -r quota period; do
+      [ "$quota" = max ] || echo $(((quota + period - 1) / period))
+    done
+  } | sort -n | sed -n '1{s/^0$/1/;p;}'
+}
+# nproc would obey OMP_NUM_THREADS, which says nothing of compilers and test programs.
+cores=$(parallel_jobs "$(env -u OMP_NUM_THREADS -u OMP_THREAD_LIMIT nproc)")
+
+stop() { echo "$1" >&2 && exit 1; }
+
+# check_build_folder : stops if the build folder belongs to another generator or another source tree.
+check_build_folder() {
+  cache="$build/CMakeCache.txt"
+  [ -f "$cache" ] || return 0
+  generator=$(sed -n 's/^CMAKE_GENERATOR:INTERNAL=//p' "$cache")
+  source=$(sed -n 's/^CMAKE_HOME_DIRECTORY:INTERNAL=//p' "$cache")
+  made="The build folder $build was made"
+  [ "$generator" = Ninja ] ||
+    stop "$made with the generator '$generator', and this command needs Ninja. Remove it and start again: rm -rf '$build'"
+  [ "$(cd "$source" 2>/dev/null && pwd -P)" = "$(cd "$root" && pwd -P)" ] ||
+    stop "$made for the source folder '$source', which is not this one. Remove it and start again: rm -rf '$build'"
+}
+
+# disk_of FOLDER : "<free kB> <mount point>"
+disk_of() { df -Pk "$1" | sed -n '2s/^.* \([0-9][0-9]*\)  *[0-9][0-9]*% */\1 /p'; }
+
+# check_disk GB : stops if the disks cannot hold a build folder of this size, less what it has already,
+# and 3 GB of missing packages.
+check_disk() {
+  built=$(du -sk "$build" 2>/dev/null | cut -f 1)
+  missing_gb=0
+  if [ "$(id -u)" = 0 ] && [ -n "$(missing_packages)" ]; then missing_gb=3; fi
+  here=$(disk_of "$root")
+  packages=$(disk_of /usr)
+  needed=$(($1 * 1000000 - ${built:-0}))
+  if [ "${here#* }" = "${packages#* }" ]; then needed=$((needed + missing_gb * 1000000)); fi
+  [ "${here%% *}" -ge "$needed" ] ||
+    stop "Too little disk for ${build##*/}/: $((${here%% *} / 1000)) MB are free in $root, and $((needed / 1000)) MB are needed (packages included)."
+  [ "${packages%% *}" -ge $((missing_gb * 1000000)) ] ||
+    stop "Too little disk for packages: $((${packages%% *} / 1000)) MB are free in /usr, and $((missing_gb * 1000)) MB are needed."
+}
 
 # step CPU_MINUTES TEXT : prints one step of a command and how long it takes on these cores.
 step() {
@@ -37,12 +100,17 @@ is_installed() {
   return 1
 }
 
+# Prints the lists of Debian packages that are needed, without comments.
+package_lines() {
+  sed -e 's/#.*//' -e '/^ *$/d' "$root/cases/cmake/packages.txt"
+  [ -z "$with_tests" ] || sed -e 's/#.*//' -e '/^ *$/d' "$root/tests/packages.txt"
+}
+
 # Prints the lines of the package lists that no installed package satisfies. Where dpkg is absent
 # there are none: CMake names what it does not find.
 missing_packages() {
   command -v dpkg-query >/dev/null || return 0
-  # shellcheck disable=SC2086  # a list of files
-  sed -e 's/#.*//' -e '/^ *$/d' $package_lists | while read -r line; do
+  package_lines | while read -r line; do
     satisfied=0
     for name in $(alternatives "$line"); do
       if is_installed "$name"; then satisfied=1; fi
@@ -66,7 +134,7 @@ installable() {
     done
     case "$chosen $line" in
       ' '*optional) echo "No package here for '$line': tests that need it are skipped." >&2 ;;
-      ' '*) echo "No package can be installed here for the line '$line' of a package list." >&2 && return 1 ;;
+      ' '*) echo "No package can be installed here for the line '$line' of a package list (Ubuntu: the component universe is needed)." >&2 && return 1 ;;
       *) printf '%s ' "$chosen" ;;
     esac
   done
