@@ -2,7 +2,7 @@
 // cases/README.md and never 1, nothing crashes, a run that is asked to end does so within a second
 // of processor time, and its files are whole.
 //
-//   FLEXMORPH_RUNS=10000 build/tests/attack/attack_tests --gtest_filter='ShortRuns.*'   default 40
+//   FLEXMORPH_RUNS=10000 build/tests/attack/attack_tests --gtest_filter='ShortRuns.*'   default 16
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -180,7 +180,7 @@ std::string wrong(int code, const std::string& folder) {
 TEST(ShortRuns, EndAsTheySay) {
   const Scratch scratch;
   const std::vector<std::string> cases = small_cases();
-  const size_t n = testing::number_of("FLEXMORPH_RUNS", 40),
+  const size_t n = testing::number_of("FLEXMORPH_RUNS", 16),
                seed = testing::number_of("FLEXMORPH_SEED", 1);
   std::map<int, size_t> codes;
   for (const std::string& text : cases) {
