@@ -11,7 +11,6 @@
 #include "fem/dynamics/gradients/motion_gradient.h"
 #include "optim/mmc/problem/body_problem.h"
 #include "tests/cases/scenes.h"
-#include "tests/support/differences.h"
 #include "tests/support/rates.h"
 
 namespace flexmorph::cases {
@@ -230,13 +229,17 @@ testing::Rate over_three_decades(const testing::Rate& all) {
   return best;
 }
 
-/// Difference quotients of all objectives. Of neighbouring steps, those two count whose quotients
+/// Difference quotients of fourth order of all objectives by three steps, each twice the one
+/// before, so that they share their motions. Of neighbouring steps, those two count whose quotients
 /// differ least: larger steps have higher orders in them, smaller ones the round-off of the motion,
 /// which depends on the processor.
 VectorXd difference_quotients(const Direction& d) {
-  std::vector<VectorXd> all;
-  for (const double part : {0.01, 0.015, 0.02, 0.03})
-    all.push_back(testing::first_difference(d.values, part * d.largest));
+  const double least_step = 0.0075 * d.largest;
+  std::vector<VectorXd> central, all;
+  for (const int k : {1, 2, 4, 8})
+    central.push_back(d.values(k * least_step) - d.values(-k * least_step));
+  for (size_t i = 0; i + 1 < central.size(); ++i)
+    all.push_back((8 * central[i] - central[i + 1]) / (12 * (1 << i) * least_step));
   VectorXd out = all[0];
   for (Eigen::Index k = 0; k < out.size(); ++k) {
     double least = std::numeric_limits<double>::infinity();
