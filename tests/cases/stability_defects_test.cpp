@@ -186,7 +186,7 @@ TEST(Warnings, OfEnergyThatIsMissed) {
 TEST(Warnings, OfVolumesThatAreNotReached) {
   const Scratch scratch;
   const Words lean = {"optimizer.max_iterations=5", "output.vtk=false", "output.plots=false",
-                      "design.cell=0.05"};
+                      "design.cell=0.05", "design.min_feature=0"};
   Words small = lean;
   small.emplace_back("design.max_volume=0.01");
   EXPECT_TRUE(contains(warnings_of(scratch, "short_beam", small, test::kTooFew),
