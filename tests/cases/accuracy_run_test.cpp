@@ -121,7 +121,8 @@ TEST(Accuracy, AnalysesADesignAsItStarts) {
   const Ended ended =
       accuracy(scratch, "short_beam", folder,
                {"--set", "accuracy.quantity=volume", "--ladders", "band", "--budget", "600s",
-                "--no-verify", "--set", "design.cell=0.1", "--set", "design.min_thickness=0.1"});
+                "--no-verify", "--set", "design.cell=0.1", "--set", "design.min_thickness=0.1",
+                "--set", "design.min_feature=0"});
   ASSERT_EQ(ended.code, 0) << ended.err;
   const io::CsvTable table = io::read_csv(folder + "/accuracy.csv");
   EXPECT_GE(table.n_rows(), 5U);
@@ -135,7 +136,8 @@ TEST(Accuracy, AnalysesADesignAsItStarts) {
   // A run of no iterations leaves the layout alone.
   const Ended run =
       test::flexmorph(scratch, {"run", "short_beam", "-o", scratch / "start", "--set",
-                                "optimizer.max_iterations=0", "--set", "expect=", "--quiet"});
+                                "optimizer.max_iterations=0", "--set", "design.cell=0.1", "--set",
+                                "design.min_feature=0", "--set", "expect=", "--quiet"});
   EXPECT_EQ(run.code, 0) << run.err;
   EXPECT_EQ(io::read_csv(scratch / "start/history.csv").n_rows(), 0U);
 }
