@@ -120,10 +120,11 @@ TEST(Combinations, AreOfCasesToo) {
   EXPECT_EQ(all[2].case_name, "other/my_arm.toml");
 }
 
-/// A static case of a few hundredths of a second.
+/// A static case on 40 x 20 cells. Features of any size: fillets are most of the time otherwise.
 Words small(const std::string& command, const std::string& folder, const Words& more) {
-  Words out = {command, "short_beam",       "-o",    folder,
-               "--set", "design.cell=0.05", "--set", "output.design_every=0"};
+  Words out = {command, "short_beam",          "-o",    folder,
+               "--set", "design.cell=0.05",    "--set", "output.design_every=0",
+               "--set", "design.min_feature=0"};
   out.insert(out.end(), more.begin(), more.end());
   return out;
 }
@@ -176,8 +177,10 @@ TEST(Sweep, PutsCasesAndDeflectionsOnOnePage) {
   const Words words = {"sweep",  FLEXMORPH_SHORT_CASE,
                        "-o",     folder,
                        "--set",  "optimizer.max_iterations=2",
+                       "--set",  "design.cell=0.01",
+                       "--set",  "esl.every=0.02",
                        "--vary", "case=" FLEXMORPH_SHORT_CASE "," + other,
-                       "--vary", "design.min_thickness=0.005,0.008"};
+                       "--vary", "design.min_thickness=0.01,0.015"};
   const Ended ended = test::flexmorph(scratch, words);
   ASSERT_EQ(ended.code, 0) << ended.err;
   const io::CsvTable table = io::read_csv(folder + "/sweep.csv");
