@@ -66,6 +66,7 @@ const Words kShort = {"design.cell=0.01",
                       "esl.every=0.02",
                       "output.vtk=false",
                       "output.plots=false",
+                      "output.tolerance=1e-4",
                       "optimizer.max_iterations=0",
                       "expect="};
 
