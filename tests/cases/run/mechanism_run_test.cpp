@@ -279,8 +279,11 @@ TEST(MechanismRun, PlatformShowsItsDesignsAndItsError) {
   const std::string folder = scratch / "out";
   const Ended ended =
       run(scratch, "motion_platform", folder,
-          {"time.end=0.03", "optimizer.max_iterations=2", "design.bar1.cells=[75, 20]",
-           "design.bar2.cells=[150, 20]", "output.motion_every=0.03"});
+          {"time.end=0.02", "optimizer.max_iterations=2", "design.bar1.cells=[38, 10]",
+           "design.bar2.cells=[75, 10]", "design.bar1.min_thickness=0.01",
+           "design.bar2.min_thickness=0.01", "design.bar1.components=[10, 2]",
+           "design.bar2.components=[10, 2]", "design.bar1.half_length=0.05",
+           "design.bar2.half_length=0.05", "output.motion_every=0.02", "output.tolerance=1e-3"});
   ASSERT_EQ(ended.code, kTooFew) << ended.err;
   // On the cells of the designs, which judge them.
   const io::CsvTable motion = io::read_csv(folder + "/motion_verified.csv");
@@ -338,9 +341,11 @@ TEST(MechanismRun, PlatesWithoutADesignAreThereToo) {
   ASSERT_NE(second, std::string::npos);
   text.erase(second, text.find("[optimizer]") - second);
   const std::string folder = scratch / "out";
-  const Ended ended = run(scratch, scratch.write("one.toml", text), folder,
-                          {"time.end=0.01", "optimizer.max_iterations=1", "design.cells=[75, 20]",
-                           "output.motion_every=0.01"});
+  const Ended ended =
+      run(scratch, scratch.write("one.toml", text), folder,
+          {"time.end=0.01", "optimizer.max_iterations=1", "design.cells=[38, 10]",
+           "design.min_thickness=0.01", "design.components=[10, 2]", "design.half_length=0.05",
+           "output.motion_every=0.01", "output.tolerance=1e-3"});
   ASSERT_TRUE(ended.code == 0 || ended.code == kTooFew) << ended.err;
   const std::string index = contents_of(folder + "/motion/motion.pvd");
   for (int part = 0; part < 7; ++part)
