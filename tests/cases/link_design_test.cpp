@@ -16,10 +16,10 @@ class Link : public ::testing::TestWithParam<const char*> {
   /// Runs the shipped case over half of its time. @return run.json
   nlohmann::json run_link(const Scratch& scratch, Words changes, int other_code = 0) const {
     const std::string folder = scratch / "out";
-    changes.insert(changes.end(),
-                   {std::string("design.0.support=\"") + GetParam() + "\"",
-                    "design.0.min_feature=0", "design.0.cell=0.0025", "time.end=0.15",
-                    "cycle.max_cycles=1", "output.plots=false", "output.design_every=0"});
+    changes.insert(changes.end(), {std::string("design.0.support=\"") + GetParam() + "\"",
+                                   "design.0.min_feature=0", "design.0.cell=0.0025",
+                                   "time.end=0.15", "cycle.max_cycles=1", "output.plots=false",
+                                   "output.design_every=0", "output.tolerance=2.5e-4"});
     const Ended ended = run(scratch, "slider_crank_designed", folder, changes);
     EXPECT_TRUE(ended.code == 0 || ended.code == other_code) << ended.err;
     return nlohmann::json::parse(contents_of(folder + "/run.json"));
