@@ -67,11 +67,12 @@ TEST(Damped, DesignWithFlowHasTheDissipatedWork) {
                         "body.elements=[10, 1]", "time.step=2e-3"};
   Words changes = kDamped;
   changes.insert(changes.end(), coarse.begin(), coarse.end());
+  changes.emplace_back("body.damping_time=4e-3");
   const Ended run = flexmorph(scratch, short_run(damped, changes));
   ASSERT_EQ(run.code, kTooFew) << run.err;
   ASSERT_EQ(flexmorph(scratch, short_run(free, coarse)).code, kTooFew);
   // They move with designs of their own, and miss about alike; without the work the balance would
-  // miss five times as much.
+  // miss six times as much.
   expect_dissipation(damped, 2 * std::abs(column(free, "energy.defect").back()));
   EXPECT_TRUE(column(free, "energy.dissipated").empty());
   EXPECT_FALSE(
