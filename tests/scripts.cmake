@@ -4,10 +4,10 @@
 cmake_minimum_required(VERSION 3.25)
 cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH root)
 
-# answers(<exit code> <words that the answer contains> <command>...): within twenty seconds. Where it
+# answers(<exit code> <words that the answer contains> <command>...): within a minute. Where it
 # does not, the folder ${work} of the tests below is removed.
 function(answers expected words)
-  execute_process(COMMAND ${ARGN} TIMEOUT 20 RESULT_VARIABLE code OUTPUT_VARIABLE out
+  execute_process(COMMAND ${ARGN} TIMEOUT 60 RESULT_VARIABLE code OUTPUT_VARIABLE out
                   ERROR_VARIABLE err)
   string(FIND "${out}${err}" "${words}" at)
   if(NOT code STREQUAL expected OR at EQUAL -1)
@@ -21,6 +21,8 @@ endfunction()
 answers(0 "The last line says" "${root}/tests/run.sh" --help)
 answers(2 "unknown option '--nonsense'" "${root}/tests/run.sh" --nonsense)
 answers(2 "'-R' needs a value" "${root}/tests/run.sh" -R)
+answers(2 "unknown option '--nonsense'" "${root}/tests/bare_root.sh" --nonsense)
+answers(0 "It needs root, debootstrap, git" "${root}/tests/bare_root.sh" --help)
 answers(0 "name of a shipped case" "${root}/cases/run.sh" short_beam --help)
 answers(2 "unknown option '--nonsense'" "${root}/cases/run.sh" short_beam --nonsense)
 answers(2 "no case 'no_such_case'" "${root}/cases/run.sh" no_such_case)
@@ -81,6 +83,7 @@ file(REMOVE_RECURSE "${tree}/build")  # what is built already is not needed agai
 answers(1 "3 MB are free in ${tree}, and 4000 MB are needed" ${with} INSTALLED=all FREE=3000 ${tests_run})
 answers(1 "3 MB are free in ${tree}, and 2000 MB are needed" ${with} INSTALLED=all FREE=3000
         ${cases_run} short_beam)
+answers(77 "only root can make a root folder" ${ready} "${root}/tests/bare_root.sh")
 set(cache "${tree}/build/CMakeCache.txt")
 file(WRITE "${cache}" "CMAKE_GENERATOR:INTERNAL=Unix Makefiles\nCMAKE_HOME_DIRECTORY:INTERNAL=${tree}\n")
 answers(1 "the generator 'Unix Makefiles'" ${ready} ${tests_run})
