@@ -69,7 +69,7 @@ for command in debootstrap git; do
   command -v "$command" >/dev/null || absent "$command is not installed"
 done
 git -c safe.directory='*' -C "$root" rev-parse -q --verify HEAD >/dev/null ||
-  absent "$root is not flexmorph of git"
+  absent "$root is no git repository"
 unshare --mount --pid --fork true 2>/dev/null || absent "namespaces are not permitted here"
 from=$(mirror)
 [ -n "$from" ] || stop "no mirror of Debian was found in /etc/apt"
