@@ -16,6 +16,7 @@
 
 #include "geometry/crossings.h"
 #include "geometry/parts/outline_sides.h"
+#include "geometry/parts/segment.h"
 
 namespace flexmorph {
 namespace {
@@ -86,7 +87,7 @@ struct Contact {
   bool border = false;
   bool known = true;  // false: made by CGAL where rounded sides cross
 
-  Vec2 nearest(const Vec2& p) const { return is_side ? nearest_on(a, b, p) : a; }
+  Vec2 nearest(const Vec2& p) const { return is_side ? nearest_on({a, b}, p) : a; }
 };
 
 /// Which places count.
@@ -218,9 +219,10 @@ class MedialAxis {
     if (nearest == Vertex()) return false;
     hint_ = nearest;
     const Site& site = nearest->site();
-    const Vec2 at = site.is_point() ? vec(site.point())
-                                    : nearest_on(vec(site.segment().source()),
-                                                 vec(site.segment().target()), center);
+    const Vec2 at =
+        site.is_point()
+            ? vec(site.point())
+            : nearest_on({vec(site.segment().source()), vec(site.segment().target())}, center);
     return (center - at).norm() >= radius * (1 - kRoundOff);
   }
 

@@ -36,14 +36,11 @@ class Geos {
   std::string said_;
 };
 
-class Shape;
-/// Returns the union of many shapes.
-/// @throws Error (numerical) with the message of GEOS, as all functions here
-Shape union_of(const Geos& geos, std::vector<Shape> pieces);
-
 /// A polygon or several polygons of GEOS, which a shape owns.
 class Shape {
  public:
+  /// Returns the union of many shapes.
+  /// @throws Error (numerical) with the message of GEOS, as all functions here
   friend Shape union_of(const Geos& geos, std::vector<Shape> pieces);
 
   Shape(const Geos& geos, GEOSGeometry* geometry) : geos_(&geos), geometry_(geometry) {
@@ -158,6 +155,8 @@ class Shape {
   const Geos* geos_;
   GEOSGeometry* geometry_;
 };
+
+Shape union_of(const Geos& geos, std::vector<Shape> pieces);
 
 /// Returns a multipolygon of regions, the same whatever the order of regions and holes, and
 /// wherever rings begin.

@@ -11,12 +11,6 @@ constexpr double kTouches = 1e-9;
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-Vec2 nearest_on(const Segment& s, const Vec2& p) {
-  const Vec2 along = s.b - s.a;
-  const double t = along.dot(p - s.a) / along.squaredNorm();
-  return s.a + std::clamp(t, 0.0, 1.0) * along;
-}
-
 bool cross_each_other(const Segment& s, const Segment& t) {
   const Vec2 u = s.b - s.a, v = t.b - t.a;
   return cross(u, t.a - s.a) * cross(u, t.b - s.a) < 0 &&

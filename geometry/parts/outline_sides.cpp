@@ -2,14 +2,9 @@
 
 #include <algorithm>
 
-namespace flexmorph {
+#include "geometry/parts/segment.h"
 
-Vec2 nearest_on(const Vec2& a, const Vec2& b, const Vec2& p) {
-  const Vec2 along = b - a;
-  const double length2 = along.squaredNorm();
-  const double t = length2 > 0 ? std::clamp((p - a).dot(along) / length2, 0.0, 1.0) : 0.0;
-  return a + t * along;
-}
+namespace flexmorph {
 
 OutlineSides::OutlineSides(std::span<const Region> regions, const Region& domain)
     : regions_(regions), domain_(rings_of(domain)) {
@@ -85,7 +80,7 @@ bool OutlineSides::on_border(const Vec2& a, const Vec2& b) const {
 bool OutlineSides::near_line(const Vec2& p, const Vec2& a, const Vec2& b) const {
   const double near = 1e-12 * size_, x = p.x();
   if (x < std::min(a.x(), b.x()) - near || x > std::max(a.x(), b.x()) + near) return false;
-  return (p - nearest_on(a, b, p)).norm() <= near;
+  return distance({a, b}, p) <= near;
 }
 
 }  // namespace flexmorph

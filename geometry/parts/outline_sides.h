@@ -9,9 +9,6 @@
 
 namespace flexmorph {
 
-/// Returns the point of a segment that is nearest to a point.
-Vec2 nearest_on(const Vec2& a, const Vec2& b, const Vec2& p);
-
 /// A vertex of outlines, and the sides that meet there.
 struct OutlineCorner {
   Vec2 before{0, 0}, after{0, 0};  ///< directions of the sides that end and begin here

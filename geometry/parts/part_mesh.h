@@ -6,15 +6,11 @@
 #include <vector>
 
 #include "geometry/components/outline.h"
+#include "geometry/parts/segment.h"
 #include "geometry/parts/size_field.h"
 
 /// Meshes that follow the outline of a part.
 namespace flexmorph {
-
-/// A straight line between two points [m].
-struct Segment {
-  Vec2 a, b;
-};
 
 /// Triangles with six nodes and straight sides that fill a part: no side crosses its outline.
 struct PartMesh {
@@ -31,11 +27,6 @@ struct PartMesh {
   std::array<Vec2, 3> corners(std::size_t triangle) const;
   double area() const;  ///< [m^2]
 };
-
-/// Distance of a point from a segment [m].
-double distance(const Segment& s, const Vec2& point);
-/// Returns the sides of closed rings, in their order.
-std::vector<Segment> sides_of(std::span<const std::vector<Vec2>> rings);
 
 /// Delaunay refinement of a part: constrained triangulation of its outline, points put in until no
 /// triangle is larger than wanted or has an angle below 20.7 degrees, but where the outline itself

@@ -73,6 +73,28 @@ TEST(FinishedPart, IsLeftFarFromItsWidths) {
   EXPECT_EQ(area(part.regions), area(given));
 }
 
+// Fillets close a gap between two ends, or leave it. Of some gaps the closing keeps two tips that
+// touch each other in the middle, thinner than half of the feature.
+TEST(FinishedPart, ClosesAGapToTheFullWidthOrNotAtAll) {
+  const BodyProblem problem = problem_of(0.8 * kFeature);
+  int closed = 0, thin = 0;
+  for (const double gap : {0.1, 0.2, 0.3, 0.35, 0.4, 0.45, 0.5, 0.6, 0.8, 1.4}) {
+    const std::vector<Component> components = chain(2, -gap * kFeature);
+    const std::vector<Region> apart = regions_of(problem, components, kTolerance);
+    ASSERT_EQ(apart.size(), 2u);
+    const std::vector<Region> given =
+        with_fillets(apart, domain_of(problem), problem.fillets, kTolerance);
+    if (given.size() == 2) continue;
+    ++closed;
+    thin += feature(problem, given) < 0.5 * kFeature;
+    const FinishedPart part = finished_part(problem, components, kTolerance);
+    EXPECT_GE(feature(problem, part.regions), 0.99 * kFeature) << gap << " of the feature";
+    EXPECT_TRUE(part.has_widths);
+  }
+  EXPECT_GE(closed, 3);
+  EXPECT_GE(thin, 1);
+}
+
 // Without fillets the part is the union of its components.
 TEST(FinishedPart, IsTheUnionWithoutFillets) {
   const BodyProblem problem = problem_of(0);

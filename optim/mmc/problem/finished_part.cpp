@@ -125,18 +125,37 @@ std::vector<NarrowPlace> too_narrow(const BodyProblem& p, std::span<const Region
   return out;
 }
 
-/// The same with discs where material is narrow, as fillings beside holes can be.
+/// Did the components come to their widths but for a few places that are a little too narrow?
+/// Fillings do not count, which widening is a part of.
+bool has_nearly_widths(std::span<const NarrowPlace> narrow, std::span<const Region> union_of_all,
+                       double wanted) {
+  constexpr double kNarrowest = 0.5;
+  constexpr std::ptrdiff_t kMost = 6;
+  const auto is_of_components = [&](const NarrowPlace& place) {
+    return std::any_of(union_of_all.begin(), union_of_all.end(),
+                       [&](const Region& piece) { return contains(piece, place.center); });
+  };
+  const auto is_too_narrow = [&](const NarrowPlace& place) {
+    return place.width < kNarrowest * wanted && is_of_components(place);
+  };
+  return std::count_if(narrow.begin(), narrow.end(), is_of_components) <= kMost &&
+         std::none_of(narrow.begin(), narrow.end(), is_too_narrow);
+}
+
+/// The union with its fillets, and with discs where that is narrow, as fillings beside holes and
+/// across gaps can be.
 FinishedPart widened(const BodyProblem& p, std::span<const Component> components,
                      double tolerance) {
   constexpr int kRounds = 3;
-  constexpr double kNarrowest = 0.5, kDisc = 1.02;  // smallest widths
-  constexpr std::size_t kMost = 6;
+  constexpr double kDisc = 1.02;  // smallest widths
   std::vector<std::vector<Vec2>> discs;
+  std::optional<std::vector<Region>> bare;  // the union
   FinishedPart out{filled(p, components, {}, tolerance), 0};
   for (int round = 0; round < kRounds; ++round) {
     const std::vector<NarrowPlace> narrow = too_narrow(p, out.regions);
     if (narrow.empty()) break;
-    out.has_widths = narrow.size() <= kMost && narrow[0].width >= kNarrowest * p.widths.solid;
+    if (!bare) bare = regions_of(p, components, tolerance);
+    out.has_widths = has_nearly_widths(narrow, *bare, p.widths.solid);
     if (!out.has_widths) break;
     for (const NarrowPlace& place : narrow)
       discs.push_back(circle_within(place.center, 0.5 * kDisc * p.widths.solid, tolerance));

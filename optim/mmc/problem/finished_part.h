@@ -17,10 +17,11 @@ struct FinishedPart {
 };
 
 /// Returns the part that a design stands for: BodyProblem::part, or the union of its components
-/// with fillets. Where that is narrower than asked for in six places at most, by half at most,
-/// discs of the width asked for widen it, and its outlines are smoothed; what is narrower than that
-/// has not come to its widths and stays as it is. The part of a symmetric design is its own mirror
-/// image. Without fillets the part is the union.
+/// with fillets. Where that is narrower than asked for, discs of the width asked for widen it, and
+/// its outlines are smoothed. Components that are narrower themselves in more than six places, or
+/// by more than half, have not come to their widths: the part stays as it is. Material that fills a
+/// gap between components may have any width before. The part of a symmetric design is its own
+/// mirror image. Without fillets the part is the union.
 /// @param tolerance  how far sides may be off the true outlines [m]
 /// @throws Error (numerical) from unite() and with_fillets()
 FinishedPart finished_part(const BodyProblem& problem, std::span<const Component> components,
