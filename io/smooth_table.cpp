@@ -18,6 +18,8 @@ constexpr size_t kOrder = 6;  // coefficients of a polynomial of degree 5
 // Of the length of the table: closer times fall together when they are scaled to [0, 1], or have so
 // few digits left between them that no derivative is worth its name.
 constexpr double kClosest = 1e-11;
+// Of the largest value: a spline that misses its points by more has lost its digits.
+constexpr double kMissed = 1e-6;
 
 void check(std::span<const double> times, std::span<const double> values) {
   if (times.size() != values.size())
@@ -153,6 +155,10 @@ SmoothTable::SmoothTable(std::span<const double> times, std::span<const double> 
                    [](double c) { return std::isfinite(c); }))
     throw Error::input("no smooth function goes through the table: its values are too large for " +
                        std::string("the distances of its times"));
+  double largest = 0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  for (size_t i = 0; i < times.size(); ++i)
+    if (!(std::abs((*this)(times[i]).value - values[i]) <= kMissed * largest)) refuse_times();
 }
 
 Jet SmoothTable::operator()(double t) const {

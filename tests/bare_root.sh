@@ -22,7 +22,7 @@ mirror() {
 # in_root COMMAND : runs a line of shell in the clone, with nothing of this machine's environment.
 in_root() {
   env -i HOME=/root TERM=dumb PATH=/usr/sbin:/usr/bin:/sbin:/bin chroot "$bare" \
-    sh -euc "cd /root/flexmorph && $1" </dev/null
+    sh -euc "cd ~/flexmorph && $1" </dev/null
 }
 
 # fill SUITE MIRROR LAST : makes the root folder $bare and runs the commands; called in namespaces.

@@ -1,8 +1,9 @@
 // What comes in from outside, changed at random: it is read and built, or refused with an Error;
-// nothing else may be thrown, nothing may crash, and nobody waits for more than a second, or for
-// the elements of meshes that were asked for.
+// nothing else may be thrown, nothing may crash, and nothing goes on for ever: each input has a
+// limit of processor time that is far above what any takes, and more for the elements of its
+// meshes.
 //
-//   FLEXMORPH_ATTACKS=100000 nice build/tests/attack/attack_tests   cases, default 400; of the others
+//   FLEXMORPH_ATTACKS=100000 nice build/tests/attack/attack_tests   cases, default 400; of others
 //                                                                   five times as many
 //   FLEXMORPH_SEED=2                                                others of them, default 1
 #include <gtest/gtest.h>
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
@@ -34,9 +36,9 @@ using testing::Mutations;
 using testing::number_of;
 
 constexpr double kSlow = kSanitized ? 50 : 1;
-constexpr double kLongest = 1 * kSlow;  // of processor time, for one input [s]
+constexpr double kLongest = 10 * kSlow;  // of processor time, for one input [s]
 // And for each element that it asks for: they are built   [s].
-constexpr double kPerElement = 200e-6 * kSlow;
+constexpr double kPerElement = 2e-3 * kSlow;
 // What malloc keeps of the largest inputs varies by this much; a leak of 100 bytes an input shows
 // in 1e6 of them [bytes].
 // The address sanitizer keeps 256 MB of what was freed, and looks for leaks itself.
@@ -149,8 +151,8 @@ TEST_F(Attack, CasesAsCheckBuildsThem) {
       });
 }
 
-// What mutations have found: a crash, gigabytes for a look, drives that were followed for seconds.
-TEST(Found, InputsAreReadOrRefusedInASecond) {
+// What mutations have found: a crash, gigabytes for a look, drives that were followed without end.
+TEST(Found, InputsAreReadOrRefused) {
   const std::vector<std::array<std::string, 2>> found = {
       {"l_bracket", "domain.polygon=[0.0,0.0, 1.0,0.0, 1.0,0.4, 0.4,0.4, 0.4,1.0, 0.0,1e308]"},
       {"short_beam", "domain.size=[1e3, 1.0]"},
@@ -167,7 +169,7 @@ TEST(Found, InputsAreReadOrRefusedInASecond) {
     } catch (const Error& error) {
       EXPECT_STRNE(error.what(), "");
     }
-    EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 2 * kLongest) << change;
+    EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, kLongest) << change;
   }
   EXPECT_LT(memory_in_use(), 2e9);
 }
@@ -192,7 +194,14 @@ TEST_F(Attack, Components) {
       "X0,Y0,half_length,angle,c1,c2,c3\n0.1,0.2,0.5,0,0.1,0.1,0.1\n0.3,0.2,0.5,0.3,0.1,0.2,0.1\n";
   run(
       ".csv", 5, [&](Mutations& random) { return random.changed(table, table); },
-      [](const std::string& file, const std::string&) { io::read_components_csv(file); });
+      [](const std::string& file, const std::string&) {
+        const std::vector<Component> found = io::read_components_csv(file);
+        io::write_components_csv(file + ".again", found);
+        const std::vector<Component> again = io::read_components_csv(file + ".again");
+        ASSERT_EQ(again.size(), found.size());
+        for (size_t k = 0; k < found.size(); ++k)
+          EXPECT_EQ(again[k].parameters(), found[k].parameters());
+      });
 }
 
 TEST_F(Attack, Tables) {
@@ -200,10 +209,14 @@ TEST_F(Attack, Tables) {
   run(
       ".csv", 5,
       [&](Mutations& random) { return random.changed(table, "1e-9 1e308 0.1 0.3\n0,0\n"); },
-      [](const std::string& file, const std::string&) {
+      [](const std::string& file, const std::string& text) {
         const io::CsvTable csv = io::read_csv(file);
         const auto times = csv.numbers("time"), values = csv.numbers("x");
-        io::SmoothTable(times, values)(0.25);
+        const io::SmoothTable smooth(times, values);
+        double largest = 0;
+        for (const double value : values) largest = std::max(largest, std::abs(value));
+        for (size_t k = 0; k < times.size(); ++k)
+          EXPECT_NEAR(smooth(times[k]).value, values[k], 1e-6 * largest) << text;
       });
 }
 

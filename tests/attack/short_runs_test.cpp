@@ -32,8 +32,8 @@ namespace fs = std::filesystem;
 
 // Processor time a run may take before it is asked to end [s].
 constexpr double kOwn = kSanitized ? 40 : 2.5;
-// ... and that its step or iteration may take then: a second, and what a busy machine adds.
-constexpr double kMore = kSanitized ? 100 : 2;
+// ... and that its step or iteration may take then: far above what any takes.
+constexpr double kMore = kSanitized ? 100 : 20;
 // For each component that is asked for: exact unions and their narrow places are a millisecond
 // each.
 constexpr double kPerComponent = 2e-3;

@@ -28,7 +28,7 @@ json run(const Scratch& scratch, const std::string& name, const Words& changes) 
   Words all = {"accuracy=", "output.vtk=false", "output.plots=false"};
   all.insert(all.end(), changes.begin(), changes.end());
   const Ended ended = test::run(scratch, name, folder, all);
-  EXPECT_TRUE(ended.code == 0 || ended.code == test::kTooFew) << ended.err;
+  EXPECT_TRUE(test::is_done(ended, folder));
   return json::parse(contents_of(folder + "/run.json"));
 }
 

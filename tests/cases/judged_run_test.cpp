@@ -31,7 +31,7 @@ nlohmann::json verified(const Scratch& scratch, const std::string& name, const s
                   "output.design_every=0", "output.plots=false"});
   const Ended ended = run(scratch, name, folder, changes);
   // Designs of the data may lie above the volume that the case allows.
-  EXPECT_TRUE(ended.code == 0 || ended.code == kTooFew) << ended.err;
+  EXPECT_TRUE(is_done(ended, folder));
   return nlohmann::json::parse(contents_of(folder + "/run.json"))["results"][0]["body_fitted"];
 }
 

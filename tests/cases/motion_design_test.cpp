@@ -193,7 +193,7 @@ nlohmann::json run_corrected(const Scratch& scratch, const std::string& folder,
                    "output.vtk=false",     "certificate.step=2e-3"};
   changes.insert(changes.end(), more.begin(), more.end());
   const Ended ended = run(scratch, FLEXMORPH_SHORT_CASE, folder, changes);
-  EXPECT_TRUE(ended.code == 0 || ended.code == kTooFew) << ended.err;
+  EXPECT_TRUE(is_done(ended, folder));
   return nlohmann::json::parse(contents_of(folder + "/run.json"));
 }
 

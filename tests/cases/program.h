@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <csignal>
 #include <sstream>
 #include <string>
@@ -35,6 +37,19 @@ inline ChildProgram start(const Scratch& scratch, const Words& arguments) {
 /// Exit code of a run that is whole, but ended after so few iterations that its design is worse
 /// than uniform material: "done, not usable".
 inline constexpr int kTooFew = 5;
+
+/// Returns whether a run wrote run.json, whose status is that of the exit code: whether designs of
+/// few iterations are better than uniform material depends on the path of the optimizer, and the
+/// exit code may be 0 or kTooFew.
+inline ::testing::AssertionResult is_done(const Ended& ended, const std::string& folder) {
+  const char* const status = ended.code == 0         ? "\"status\": \"done\""
+                             : ended.code == kTooFew ? "\"status\": \"done, not usable\""
+                                                     : nullptr;
+  const std::string run = contents_of(folder + "/run.json");
+  if (status != nullptr && run.find(status) != std::string::npos)
+    return ::testing::AssertionSuccess();
+  return ::testing::AssertionFailure() << "exit code " << ended.code << "\n" << ended.err << run;
+}
 
 inline Ended flexmorph(const Scratch& scratch, const Words& arguments) {
   return start(scratch, arguments).end();

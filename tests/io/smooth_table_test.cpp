@@ -162,6 +162,10 @@ TEST(SmoothTable, RefusesWhatIsNoTable) {
                        "row 2 of the table: 1 s follows 0 s; between two rows lies at least"));
   EXPECT_TRUE(contains(complaint({-1e308, 0, 1, 1e308}, {0, 1, 2, 3}), "span more than a number"));
   EXPECT_TRUE(contains(complaint({0, 1, 2, 3}, {0, 1e308, -1e308, 1e308}), "no smooth function"));
+  // A last time far away: the spline took 4e27 where the table says 2.
+  EXPECT_TRUE(
+      contains(complaint({0, 0.1, 0.2, 0.3, 0.4, 0.5, 9999999999}, {0, 0.2, 0.1, 0.7, 1, 1.5, 2}),
+               "its times are too uneven"));
   EXPECT_TRUE(
       contains(complaint({0, 1, 1, 3}, {0, 1, 2, 3}), "row 3 of the table: times increase"));
   EXPECT_TRUE(
