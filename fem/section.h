@@ -4,12 +4,19 @@
 
 namespace flexmorph::fem {
 
-/// What a plate in the plane is made of.
+/// The thickness and the material of a plate, none of which has a default value.
 struct PlaneSection {
-  double thickness = 0.01;      ///< [m]
-  double youngs_modulus = 1e8;  ///< [Pa]
-  double poisson_ratio = 0.3;   ///< [-]
-  double density = 2700;        ///< [kg/m^3]
+  double thickness;       ///< [m]
+  double youngs_modulus;  ///< [Pa]
+  double poisson_ratio;   ///< [-]
+  double density;         ///< [kg/m^3]
+
+  PlaneSection(double its_thickness, double its_youngs_modulus, double its_poisson_ratio,
+               double its_density)
+      : thickness(its_thickness),
+        youngs_modulus(its_youngs_modulus),
+        poisson_ratio(its_poisson_ratio),
+        density(its_density) {}
 
   /// Plane-stress stiffness P (8) in Voigt order 11, 22, 12 [Pa].
   Eigen::Matrix3d elasticity() const {

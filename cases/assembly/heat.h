@@ -5,8 +5,7 @@
 namespace flexmorph::cases {
 
 /// Makes the hot bodies of a model hot, with their thermal forces where they act, and lets steps
-/// land on the kinks of temperatures. Built with FLEXMORPH_HEAT=OFF heat_absent.cpp stands in its
-/// place.
+/// land on the kinks of temperatures.
 void add_heat(const Scene& scene, Mechanism& mechanism);
 
 }  // namespace flexmorph::cases

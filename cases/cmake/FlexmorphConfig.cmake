@@ -1,5 +1,5 @@
-# find_package(Flexmorph): targets flexmorph::geometry, io, fem, optim, judge, mmc and, where heat was
-# built, thermal. They are static, so that the libraries they stand on are found again here.
+# find_package(Flexmorph): targets flexmorph::geometry, io, fem, thermal, optim, verification, mmc. They
+# are static, so that the libraries they stand on are found again here.
 get_property(languages GLOBAL PROPERTY ENABLED_LANGUAGES)
 if(NOT "C" IN_LIST languages)
   set(Flexmorph_FOUND FALSE)

@@ -11,10 +11,7 @@ file(GLOB flexmorph_shipped CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cases/*.toml
                                               ${PROJECT_SOURCE_DIR}/cases/*.csv)
 install(FILES ${flexmorph_shipped} DESTINATION share/flexmorph/cases COMPONENT program)
 
-set(flexmorph_libraries options geometry io fem optim verification mmc)
-if(FLEXMORPH_HEAT)
-  list(APPEND flexmorph_libraries thermal)
-endif()
+set(flexmorph_libraries options geometry io fem thermal optim verification mmc)
 foreach(library ${flexmorph_libraries})
   set_target_properties(flexmorph_${library} PROPERTIES EXPORT_NAME ${library})
 endforeach()

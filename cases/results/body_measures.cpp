@@ -49,7 +49,7 @@ double largest_strain(const fem::Body& body, const fem::State& x, double s,
 std::pair<Vec2, double> second_moment(const fem::Body& body,
                                       const std::vector<fem::ShapeTable>& tables) {
   const MatrixXd reference = body.element->reference();
-  const double per_area = body.section.density * body.section.thickness;
+  const double per_area = body.section->density * body.section->thickness;
   double mass = 0, square = 0;
   Vec2 first(0, 0);
   for (int e = 0; e < body.element->n_elements(); ++e) {

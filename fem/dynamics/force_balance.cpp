@@ -12,7 +12,7 @@ namespace flexmorph::fem {
 double separating_frequency(const Body& body) {
   const LineGrid& grid = grid_of(body);
   const double length = grid.line_m(grid.n_m()).value - grid.line_m(0).value;
-  return std::sqrt(body.section.youngs_modulus / body.section.density) / length;
+  return std::sqrt(body.section->youngs_modulus / body.section->density) / length;
 }
 
 namespace {

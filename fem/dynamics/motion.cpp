@@ -7,8 +7,8 @@
 #include "fem/dynamics/force_balance.h"
 #include "fem/dynamics/integrators/dense_output.h"
 #include "fem/dynamics/mesh_changes/landings.h"
-#include "fem/dynamics/motion_failures.h"
 #include "fem/dynamics/motion_memory.h"
+#include "fem/dynamics/motion_watch.h"
 
 namespace flexmorph::fem {
 
@@ -29,11 +29,8 @@ class Run {
         observe_(observe),
         integrator_(
             make_integrator(model, {settings.integrator, settings.alpha, settings.energy_momentum,
-                                    settings.minimal_coordinates})) {
-    const auto is_rigid = [](const Body& b) { return b.element->is_rigid(); };
-    if (std::any_of(model.bodies().begin(), model.bodies().end(), is_rigid))
-      joint_watch_.emplace(model);
-  }
+                                    settings.minimal_coordinates})),
+        watch_(model, settings, result_) {}
 
   MotionResult go() {
     if (settings_.adaptive) prepare_to_adapt();
@@ -53,7 +50,7 @@ class Run {
     result_.final = x_;
     result_.counts = integrator_->counts();
     result_.energy_defect = balance_.relative();
-    result_.energy_gain = growth_.gain();
+    result_.energy_gain = watch_.energy_gain();
     if (settings_.condition) result_.condition = integrator_->condition();
     return std::move(result_);
   }
@@ -70,8 +67,7 @@ class Run {
     const Energies e = model_.energies(x_);
     powers_ = measure(x_);
     balance_.begin(0, e, powers_);
-    if (settings_.balance && settings_.energy_round_off)
-      growth_.begin(e, *settings_.energy_round_off);
+    watch_.begin(e);
     see(x_, e, false);
     if (!control_) {
       integrator_->begin_motion(x_, settings_.step);
@@ -96,10 +92,9 @@ class Run {
     remember_meshes(memory, model_, growths_);
     model_.prepare(x_);
     integrator_->remember(memory);
-    multipliers_.remember(memory, model_);
+    watch_.remember(memory);
     if (control_) memory(*control_);
-    memory(powers_, balance_, growth_, leg_, next_landing_, next_between_, since_watched_,
-           since_joints_, was_near_);
+    memory(powers_, balance_, leg_, next_landing_, next_between_);
     if (dense_) dense_->remember(memory);
   }
 
@@ -209,7 +204,7 @@ class Run {
       watching_joints([&] {
         integrator_->advance(x_, t, [&](const State& x) {
           const double h = x.t - last;
-          watch_steps(h, (end - begin) / n);
+          watch_.see_equal(x_, h, (end - begin) / n);
           const bool there = x.t >= end;
           last = x.t;
           accepted(h, leg_.is_stop && there, leg_.is_kink && there);
@@ -257,7 +252,7 @@ class Run {
       const Energies e = model_.energies(within_);
       balance(within_, e);
       see(within_, e, true);
-      watch(within_);
+      watch_.see_material(within_, steps());
     }
     return next_between_ < between_.size() && std::abs(between_[next_between_] - x_.t) <= tiny;
   }
@@ -276,18 +271,13 @@ class Run {
     const State& x = at_stop && control_ && !at_kink ? settled() : x_;
     Energies e = model_.energies(x);
     balance(x, e);
-    drift();
+    watch_.see_drift(x_);
     if (at_kink)
       e = cross_kink();
     else if (at_stop && integrator_->step_mean())
       integrator_->make_consistent(x_);
     see(x, e, at_stop);
-    if (growth_.is_watched()) watch_energy(e);
-    if (at_stop || ++since_watched_ == kWatchEvery) watch(x_);
-    if (joint_watch_ && ++since_joints_ == kJointsEvery) watch_joints(x_);
-    double& smallest = result_.smallest_step;
-    smallest = smallest > 0 ? std::min(smallest, h) : h;
-    result_.largest_step = std::max(result_.largest_step, h);
+    watch_.see(x_, e, powers_, balance_.defect(), h, at_stop, steps());
   }
 
   /// From just before a kink to its other side.
@@ -300,6 +290,7 @@ class Run {
     if (control_) control_->begin(first_step());
     return e;
   }
+
   /// Asked for in any case: the start of the algorithmic acceleration comes with it.
   double first_step() {
     return integrator_->first_step(x_, control_->allowed(), control_->largest());
@@ -318,62 +309,12 @@ class Run {
     try {
       step();
     } catch (const Error& error) {
-      if (!joint_watch_ || error.kind() != Error::Kind::numerical) throw;
-      const Conditioning now = joint_watch_->look(x_);
-      if (now.condition < kSingular) throw;
-      throw Error::numerical(std::string(error.what()) + " Dead centre? " + describe(now));
+      if (const auto named = watch_.with_joints(error, x_)) throw *named;
+      throw;
     }
   }
 
-  void watch_joints(const State& x) {
-    since_joints_ = 0;
-    const Conditioning now = joint_watch_->look(x);
-    std::vector<Conditioning>& all = result_.near_singular;
-    const bool near = now.condition > kNearlyDependent;
-    if (near && !was_near_)
-      all.push_back(now);
-    else if (near && now.condition > all.back().condition)
-      all.back() = now;
-    was_near_ = near;
-  }
-
-  /// After a step of equal ones. @param meant  its length, had Newton's method solved it [s]
-  void watch_steps(double h, double meant) {
-    multipliers_.see(model_, x_, h);
-    if (multipliers_.found()) result_.alternation = multipliers_.found();
-    if (h > 0.75 * meant) return;
-    CutSteps& cut = result_.cut;
-    if (cut.number++ == 0) cut = {1, x_.t - h, h};
-    cut.shortest = std::min(cut.shortest, h);
-  }
-
-  /// A St. Venant-Kirchhoff material that has collapsed or turned inside out has equilibria, but
-  /// no meaning: better stop than go on with them.
-  void watch(const State& x) {
-    since_watched_ = 0;
-    const double ratio = model_.smallest_area_ratio(x);
-    result_.smallest_area_ratio = std::min(result_.smallest_area_ratio, ratio);
-    if (!(ratio > 0)) throw collapsed(x.t, integrator_->counts().steps, ratio);
-  }
-
-  /// Better to stop than to go on until Newton's method fails: see EnergyGrowth.
-  void watch_energy(const Energies& e) {
-    growth_.see(x_.t, e, powers_, balance_.defect());
-    if (!growth_.is_too_large()) return;
-    throw gained_energy(settings_, x_.t, integrator_->counts().steps, balance_.defect(),
-                        growth_.gain(), model_.n_constraints() > 0);
-  }
-
-  void drift() {
-    Constraints c;
-    model_.constraints(x_, c);
-    if (c.value.size() == 0) return;
-    result_.constraint_drift =
-        std::max(result_.constraint_drift, c.value.lpNorm<Eigen::Infinity>());
-    VectorXd rate = c.rate;
-    for (const auto& entry : c.jacobian) rate[entry.row()] += entry.value() * x_.v[entry.col()];
-    result_.velocity_drift = std::max(result_.velocity_drift, rate.lpNorm<Eigen::Infinity>());
-  }
+  int steps() const { return integrator_->counts().steps; }
 
   void execute(const Growth& growth, MeshChange change) {
     Body* body = nullptr;
@@ -407,12 +348,7 @@ class Run {
     if (settings_.keep == Keep::steps) kept.points.push_back({x_, false});
   }
 
-  static constexpr double kTiny = 1e-6;    // of a step
-  static constexpr int kWatchEvery = 10;   // steps between looks at the area ratio
-  static constexpr int kJointsEvery = 25;  // steps between looks at the joints of rigid bodies
-  static constexpr double kNearlyDependent = 1e6, kSingular = 1e3;  // conditions
-  int since_watched_ = 0, since_joints_ = 0;
-  bool was_near_ = false;
+  static constexpr double kTiny = 1e-6;  // of a step
 
   Workspace& model_;
   std::span<const Growth> growths_;
@@ -422,9 +358,6 @@ class Run {
   State x_;
   Powers powers_;
   EnergyBalance balance_;
-  MultiplierWatch multipliers_;
-  EnergyGrowth growth_;
-  std::optional<ConstraintWatch> joint_watch_;  // only with rigid bodies
   // Only where steps adapt.
   std::optional<StepControl> control_;
   std::optional<DenseOutput> dense_;
@@ -434,6 +367,7 @@ class Run {
   Leg leg_;
   size_t next_landing_ = 0;
   MotionResult result_;
+  MotionWatch watch_;
 };
 
 }  // namespace

@@ -9,42 +9,11 @@
 namespace flexmorph::fem {
 namespace {
 
+using plate::At;
+using plate::at_point;
 using plate::function_m;
 using plate::function_n;
 using plate::kCorners;
-using plate::powers;
-using plate::Row4;
-
-/// Values of a Hermite interval at one point: a row of four functions per derivative.
-struct At {
-  Row4 f, d, dd;              // value, derivatives by X
-  Row4 f_t, f_tt, d_t, dd_t;  // rates at fixed material point
-};
-
-At at_point(const Hermite& h, double s, bool rates, bool curvature = false) {
-  const Row4 p = powers(s);
-  At out;
-  out.f = p * h.value.transpose();
-  out.d = p * derivative(h.value).transpose() / h.length;
-  if (curvature)
-    out.dd = p * derivative(derivative(h.value)).transpose() / (h.length * h.length);
-  else
-    out.dd.setZero();
-  if (rates) {
-    out.f_t = p * h.rate.transpose();
-    out.f_tt = p * h.acceleration.transpose();
-    out.d_t = p * derivative(h.rate).transpose() / h.length;
-  } else {
-    out.f_t.setZero();
-    out.f_tt.setZero();
-    out.d_t.setZero();
-  }
-  if (rates && curvature)
-    out.dd_t = p * derivative(derivative(h.rate)).transpose() / (h.length * h.length);
-  else
-    out.dd_t.setZero();
-  return out;
-}
 
 Motion motion_of(const MaterialLine& line, double t) {
   return line.drive ? line.drive(t) : Motion{line.value, 0, 0};
@@ -60,37 +29,6 @@ int vectors_per_node(AncfPlate::ShapeSet shapes) {
       return 4;
   }
   return 0;
-}
-
-/// Parts of [start, start + length] cut by the cells of one grid direction, as local intervals.
-struct Part {
-  int cell;
-  double lower, upper;  // in [0, 1]
-};
-
-/// First and last of the cells that an interval lies in.
-std::array<int, 2> cell_range(double start, double length, double grid_start, double cell,
-                              int n_cells) {
-  const auto index = [&](double x) {
-    return std::clamp(static_cast<int>(std::floor((x - grid_start) / cell)), 0, n_cells - 1);
-  };
-  // A thousandth of a billionth of a cell: cut lines that coincide up to round-off are one line.
-  const double tiny = 1e-12 * cell;
-  return {index(start + tiny), index(start + length - tiny)};
-}
-
-std::vector<Part> parts(double start, double length, double grid_start, double cell, int n_cells) {
-  const auto [first, last] = cell_range(start, length, grid_start, cell, n_cells);
-  std::vector<Part> out;
-  for (int c = first; c <= last; ++c) {
-    const double lower = c == 0 ? start : std::max(start, grid_start + c * cell);
-    const double upper =
-        c == n_cells - 1 ? start + length : std::min(start + length, grid_start + (c + 1) * cell);
-    if (upper > lower) out.push_back({c, (lower - start) / length, (upper - start) / length});
-  }
-  out.front().lower = 0;
-  out.back().upper = 1;
-  return out;
 }
 
 }  // namespace
@@ -275,114 +213,6 @@ void AncfPlate::fill(int e, std::span<const double> s, std::span<const double> u
       ++p;
     }
   }
-}
-
-namespace {
-
-/// Is there a factor to weight points with?
-bool weighted(const Factors& factors, FactorKind kind) {
-  return kind != FactorKind::none && !factors.uniform();
-}
-
-/// Integrals of Lagrange's polynomials at n Gauss points over parts of an interval (parts x n).
-MatrixXd integrals(const std::vector<Part>& parts, int n) {
-  MatrixXd out(parts.size(), n);
-  for (size_t i = 0; i < parts.size(); ++i)
-    out.row(static_cast<Eigen::Index>(i)) = lagrange_integrals(n, parts[i].lower, parts[i].upper);
-  return out;
-}
-
-/// Points per direction for integrands of a degree: with a stepwise factor the weights are
-/// interpolatory, exact up to degree n - 1 only. Sixteen are the most there are (gauss()); only
-/// what is rational, and has no degree, asks for more.
-int n_points(int degree, bool weighted) {
-  return weighted ? std::min(degree + 1, 16) : degree / 2 + 1;
-}
-
-}  // namespace
-
-/// Weights of n x n Gauss points, times the factor.
-MatrixXd AncfPlate::weights(int e, int n, const Factors& factors, FactorKind kind) const {
-  const Hermite& hm = hermite_m_[static_cast<size_t>(e / n_n())];
-  const Hermite& hn = hermite_n_[static_cast<size_t>(e % n_n())];
-  const double area = hm.length * hn.length;
-  if (!weighted(factors, kind)) {
-    const Eigen::Map<const VectorXd> line(gauss(n).weights.data(), n);
-    return area * line * line.transpose();
-  }
-  const Grid& grid = factors.grid;
-  const VectorXd& field = kind == FactorKind::stiffness ? factors.stiffness : factors.mass;
-  const std::vector<Part> pm = parts(hm.start, hm.length, grid.x0, grid.dx(), grid.nx);
-  const std::vector<Part> pn = parts(hn.start, hn.length, grid.y0, grid.dy(), grid.ny);
-  MatrixXd cells(pm.size(), pn.size());
-  for (size_t i = 0; i < pm.size(); ++i)
-    for (size_t j = 0; j < pn.size(); ++j)
-      cells(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
-          field[grid.cell(pm[i].cell, pn[j].cell)];
-  return area * integrals(pm, n).transpose() * cells * integrals(pn, n);
-}
-
-void AncfPlate::add_cell_integrals(int e, int degree, const VectorXd& values, const Grid& grid,
-                                   VectorXd& out) const {
-  const int n = n_points(degree, true);
-  const Hermite& hm = hermite_m_[static_cast<size_t>(e / n_n())];
-  const Hermite& hn = hermite_n_[static_cast<size_t>(e % n_n())];
-  const std::vector<Part> pm = parts(hm.start, hm.length, grid.x0, grid.dx(), grid.nx);
-  const std::vector<Part> pn = parts(hn.start, hn.length, grid.y0, grid.dy(), grid.ny);
-  // Points are numbered along m first.
-  const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>
-      points(values.data(), n, n);
-  const MatrixXd cells =
-      hm.length * hn.length * integrals(pm, n) * points * integrals(pn, n).transpose();
-  for (size_t i = 0; i < pm.size(); ++i)
-    for (size_t j = 0; j < pn.size(); ++j)
-      out[grid.cell(pm[i].cell, pn[j].cell)] +=
-          cells(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
-}
-
-Element::CellRange AncfPlate::cells(int e, const Grid& grid) const {
-  const Hermite& hm = hermite_m_[static_cast<size_t>(e / n_n())];
-  const Hermite& hn = hermite_n_[static_cast<size_t>(e % n_n())];
-  const auto [i0, i1] = cell_range(hm.start, hm.length, grid.x0, grid.dx(), grid.nx);
-  const auto [j0, j1] = cell_range(hn.start, hn.length, grid.y0, grid.dy(), grid.ny);
-  return {i0, i1 + 1, j0, j1 + 1, hm.length * hn.length};
-}
-
-void AncfPlate::tabulate(int e, int degree, Tabulate what, const Factors& factors, FactorKind kind,
-                         ShapeTable& out) const {
-  const int n = n_points(degree, weighted(factors, kind));
-  const GaussRule& rule = gauss(n);
-  fill(e, rule.points, rule.points, what, out);
-  const Eigen::MatrixXd w = weights(e, n, factors, kind);
-  for (int g = 0; g < n; ++g)
-    for (int h = 0; h < n; ++h) out.weight[g * n + h] = w(g, h);
-}
-
-bool AncfPlate::tabulate_products(int e, int degree, const Factors& factors, FactorKind kind,
-                                  ProductTable& out) const {
-  const int n = n_points(degree, weighted(factors, kind));
-  out.weight = weights(e, n, factors, kind);
-  const auto line = [&](const Hermite& h, MatrixXd& f, MatrixXd& d, MatrixXd& dd) {
-    f.resize(n, 4);
-    d.resize(n, 4);
-    dd.resize(out.curvature ? n : 0, 4);
-    for (int g = 0; g < n; ++g) {
-      const At point = at_point(h, gauss(n).points[static_cast<size_t>(g)], false, out.curvature);
-      f.row(g) = point.f;
-      d.row(g) = point.d;
-      if (out.curvature) dd.row(g) = point.dd;
-    }
-  };
-  line(hermite_m_[static_cast<size_t>(e / n_n())], out.f_m, out.d_m, out.dd_m);
-  line(hermite_n_[static_cast<size_t>(e % n_n())], out.f_n, out.d_n, out.dd_n);
-  out.function_m.clear();
-  out.function_n.clear();
-  for (const auto& [a, b] : kCorners)
-    for (int k = 0; k < per_node_; ++k) {
-      out.function_m.push_back(function_m(a, k));
-      out.function_n.push_back(function_n(b, k));
-    }
-  return true;
 }
 
 void AncfPlate::at(int e, double s, double u, Tabulate what, ShapeTable& out) const {

@@ -20,4 +20,36 @@ constexpr std::array<std::pair<int, int>, 4> kCorners = {{{0, 0}, {1, 0}, {1, 1}
 constexpr int function_m(int a, int k) { return 2 * a + (k == 1 || k == 3); }
 constexpr int function_n(int b, int k) { return 2 * b + (k >= 2); }
 
+/// Values of a Hermite interval at one point: a row of four functions per derivative.
+struct At {
+  Row4 f, d, dd;              // value, derivatives by X
+  Row4 f_t, f_tt, d_t, dd_t;  // rates at fixed material point
+};
+
+/// Returns the values at s in [0, 1]; rates and second derivatives where they are wanted, else 0.
+inline At at_point(const Hermite& h, double s, bool rates, bool curvature = false) {
+  const Row4 p = powers(s);
+  At out;
+  out.f = p * h.value.transpose();
+  out.d = p * derivative(h.value).transpose() / h.length;
+  if (curvature)
+    out.dd = p * derivative(derivative(h.value)).transpose() / (h.length * h.length);
+  else
+    out.dd.setZero();
+  if (rates) {
+    out.f_t = p * h.rate.transpose();
+    out.f_tt = p * h.acceleration.transpose();
+    out.d_t = p * derivative(h.rate).transpose() / h.length;
+  } else {
+    out.f_t.setZero();
+    out.f_tt.setZero();
+    out.d_t.setZero();
+  }
+  if (rates && curvature)
+    out.dd_t = p * derivative(derivative(h.rate)).transpose() / (h.length * h.length);
+  else
+    out.dd_t.setZero();
+  return out;
+}
+
 }  // namespace flexmorph::fem::plate

@@ -24,7 +24,8 @@ Model::Model(const Model& other)
 }
 
 Body& Model::add_body(std::string name, std::unique_ptr<Element> element,
-                      const PlaneSection& section, std::vector<std::unique_ptr<Term>> terms) {
+                      std::optional<PlaneSection> section,
+                      std::vector<std::unique_ptr<Term>> terms) {
   Body body;
   body.name = std::move(name);
   body.element = std::move(element);

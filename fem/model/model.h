@@ -19,7 +19,7 @@ namespace flexmorph::fem {
 struct Body {
   std::string name;
   std::unique_ptr<Element> element;
-  PlaneSection section;
+  std::optional<PlaneSection> section{};  ///< absent: a rigid body
   std::vector<std::unique_ptr<Term>> terms;
   Factors factors;
   std::optional<Heat> heat{};  ///< absent: cold
@@ -46,8 +46,8 @@ class Model {
   Model& operator=(Model&&) = default;
   ~Model() = default;
 
-  Body& add_body(std::string name, std::unique_ptr<Element> element, const PlaneSection& section,
-                 std::vector<std::unique_ptr<Term>> terms);
+  Body& add_body(std::string name, std::unique_ptr<Element> element,
+                 std::optional<PlaneSection> section, std::vector<std::unique_ptr<Term>> terms);
   void add_joint(std::unique_ptr<Joint> joint);
   void add_link(std::unique_ptr<Link> link);
 

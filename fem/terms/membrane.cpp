@@ -1,14 +1,13 @@
+#include "fem/terms/membrane.h"
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
 
-#include "fem/terms.h"
 #include "fem/terms/cell_slopes.h"
-#include "fem/terms/densities.h"
 #include "fem/terms/density_term.h"
 #include "fem/terms/element_invariants.h"
 #include "fem/terms/gram.h"
-#include "fem/terms/sampling.h"
 #include "fem/terms/strain_flow.h"
 #include "fem/terms/void_cells.h"
 
@@ -42,22 +41,14 @@ class Membrane final : public ElasticTerm {
  public:
   Membrane(const PlaneSection& s, Strains strains)
       : ElasticTerm(strains == Strains::assumed ? "membrane_assumed" : "membrane",
-                    parts_of(s, strains)),
+                    membrane_parts(s, strains)),
         section_(s),
         elasticity_(s.thickness * s.elasticity()),
         strains_(strains),
         invariants_(elasticity_, strains) {}
 
-  static std::vector<ElasticPart> parts_of(const PlaneSection& s, Strains strains) {
-    return {{std::make_shared<MembraneDensity>(s), strains == Strains::assumed
-                                                       ? sample_assumed()
-                                                       : sample_points(12, Tabulate::gradient)}};
-  }
-
   /// Made anew: what is prepared would only be prepared again.
-  std::unique_ptr<Term> clone() const override {
-    return strains_ == Strains::assumed ? make_assumed_membrane(section_) : make_membrane(section_);
-  }
+  std::unique_ptr<Term> clone() const override { return make_membrane(section_, strains_); }
   void prepare(const Element& element, const Factors& factors, bool all) override {
     prepare_parts(element, factors);
     if (all) {
@@ -379,40 +370,10 @@ class Membrane final : public ElasticTerm {
   ElementInvariants invariants_;
 };
 
-template <Strains kStrains>
-TermRow row(const char* name, const char* sentence, std::vector<TermPlace> places) {
-  return {.name = name,
-          .sentence = sentence,
-          .role = "membrane",
-          .places = std::move(places),
-          .required_in = {TermPlace::space},
-          .designable = kStrains == Strains::displacement,
-          .on_cells = kStrains == Strains::displacement,
-          .free_lines = kStrains == Strains::displacement,
-          .keys = {},
-          .columns = {},
-          .elastic = [](const TermData& d) { return Membrane::parts_of(d.section, kStrains); },
-          .make = [](const TermData& d) -> std::unique_ptr<Term> {
-            return std::make_unique<Membrane>(d.section, kStrains);
-          }};
-}
-
 }  // namespace
 
-const TermRow& membrane_row() {
-  static const TermRow kRow = row<Strains::displacement>(
-      "membrane", "Membrane forces, strains as the displacements have them.",
-      {TermPlace::plane, TermPlace::space});
-  return kRow;
-}
-
-const TermRow& membrane_assumed_row() {
-  static const TermRow kRow =
-      row<Strains::assumed>("membrane_assumed",
-                            "Membrane forces with assumed strains: thin plates, and slender ones "
-                            "in the plane, do not lock.",
-                            {TermPlace::plane, TermPlace::space});
-  return kRow;
+std::unique_ptr<Term> make_membrane(const PlaneSection& section, Strains strains) {
+  return std::make_unique<Membrane>(section, strains);
 }
 
 }  // namespace flexmorph::fem

@@ -250,7 +250,6 @@ std::vector<Scene> scenes() {
   add("rotating_plate_v01, rigid start, E x 100", slow, 1, 0.5, one, {rigid, stiff});
   add("rotating_plate_v01, spin-up", slow, 1, 0.5, one, {rest});
   add("rotating_plate_v01, spin-up, E x 100", slow, 1, 0.5, one, {rest, stiff});
-#ifdef FLEXMORPH_HEAT
   const char* const hot = "slider_crank_heated";
   const std::string rod = "body.youngs_modulus=2e10", jump = "body.heat.profile=step";
   add("slider_crank_heated", hot, 2, 0.46, two, {});
@@ -260,7 +259,6 @@ std::vector<Scene> scenes() {
       {"time.end=4", rod});
   add("slider_crank_heated, temperature step", hot, 2, 0.46, two, {jump});
   add("slider_crank_heated, temperature step, E x 100", hot, 2, 0.46, two, {jump, rod});
-#endif
   return out;
 }
 

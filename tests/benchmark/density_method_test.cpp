@@ -24,9 +24,7 @@ struct SmallPlate {
   explicit SmallPlate(bool worst) : plate(make(worst)), loads(load(plate.plate)) {}
 
   static DensityPlate make(bool worst) {
-    DensityPlate out;
-    out.plate.grid = {0, 0, 1.2, 0.6, 12, 6};
-    out.plate.section = {.thickness = 1, .youngs_modulus = 1, .poisson_ratio = 0.3, .density = 0};
+    DensityPlate out{{{0, 0, 1.2, 0.6, 12, 6}, {1, 1, 0.3, 0}, {}}, {}, 0, false};
     const Grid& g = out.plate.grid;
     out.plate.outside.assign(static_cast<std::size_t>(g.n_cells()), 0);
     out.given.assign(static_cast<std::size_t>(g.n_cells()), 0);
@@ -138,7 +136,7 @@ TEST(DensityMethod, BeatsEvenDensities) {
 mmc::BodyProblem empty_problem(const Grid& grid) {
   return {.body = "plate",
           .grid = grid,
-          .section = {},
+          .section = {1, 1, 0.3, 0},
           .design = {grid, {Component{}}, {}},
           .bands = {}};
 }

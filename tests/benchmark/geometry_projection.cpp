@@ -108,8 +108,7 @@ double short_cantilever(const Grid& grid, const VectorXd& stiffness) {
   std::vector<fem::HeldUnknown> held;
   for (int j = 0; j <= grid.ny; ++j)
     for (int c = 0; c < 2; ++c) held.push_back({grid.node(0, j), c});
-  const fem::PlaneSection section{
-      .thickness = 1, .youngs_modulus = 1, .poisson_ratio = 0.3, .density = 0};
+  const fem::PlaneSection section{1, 1, 0.3, 0};
   fem::StaticSolver solver(grid, section, held);
   solver.factorize(stiffness);
   MatrixXd load = MatrixXd::Zero(1, solver.n_unknowns());

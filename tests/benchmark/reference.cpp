@@ -28,7 +28,7 @@ double milliseconds(const std::function<void()>& call, int repeats) {
 
 struct Reference::Impl {
   Grid grid;
-  fem::PlaneSection section;
+  fem::PlaneSection section{0.01, 1e8, 0.3, 2700};
   int root = 0, n = 0;
   cholmod_common common;
   cholmod_sparse* K = nullptr;

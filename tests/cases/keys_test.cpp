@@ -23,21 +23,6 @@ namespace fs = std::filesystem;
 using cases::key_book;
 using cases::KeyTable;
 
-#ifdef FLEXMORPH_HEAT
-constexpr bool kHasHeat = true;
-#else
-constexpr bool kHasHeat = false;
-#endif
-
-/// Shipped cases that this program takes: not all of them without heat.
-std::vector<std::string> readable_cases() {
-  std::vector<std::string> out;
-  for (const std::string& name : cases::shipped_cases())
-    if (kHasHeat || !contains(io::read_text(cases::find_case(name)), "[body.heat]"))
-      out.push_back(name);
-  return out;
-}
-
 TEST(Keys, EveryKeyIsDescribed) {
   for (const KeyTable& table : key_book())
     for (const io::Key* key : table.keys) {
@@ -87,7 +72,7 @@ TEST(ExplainedCases, ReadBackAsTheSameText) {
   for (const auto& entry : fs::directory_iterator(FLEXMORPH_CASES))
     if (entry.path().extension() == ".csv")
       fs::copy_file(entry.path(), scratch / entry.path().filename().string());
-  for (const std::string& name : readable_cases()) {
+  for (const std::string& name : cases::shipped_cases()) {
     const io::CaseFile file(cases::find_case(name));
     cases::read_scene(file);
     const std::string text = file.explained();

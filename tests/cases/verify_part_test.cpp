@@ -136,7 +136,6 @@ TEST(VerifyPart, FullPlateIsUniformMaterial) {
   EXPECT_NE(run["verify"]["notes"].dump().find("no design is beside"), std::string::npos);
 }
 
-#ifdef FLEXMORPH_HEAT
 // What moves without cells says so.
 TEST(VerifyPart, HeatHasNoMotionOnCells) {
   cases::Scene hot = cases::read("heated_boom"), cold = cases::read("four_bar");
@@ -146,7 +145,6 @@ TEST(VerifyPart, HeatHasNoMotionOnCells) {
   EXPECT_TRUE(contains(cases::motion_notes(hot)[0], "heat has no motion on cells"));
   EXPECT_TRUE(cases::motion_notes(cold).empty());
 }
-#endif
 
 // A plate at rest: 80 mm x 50 mm, held by a bolt, pulled at a pin; static numbers only.
 const std::string kBores = R"(

@@ -49,7 +49,7 @@ double angular_momentum(const Model& model, const State& x) {
     }
     const MatrixXd r = t.N * q, r_t = t.N * v;
     const VectorXd moment = r.col(0).cwiseProduct(r_t.col(1)) - r.col(1).cwiseProduct(r_t.col(0));
-    sum += body.section.density * body.section.thickness * t.weight.dot(moment);
+    sum += body.section->density * body.section->thickness * t.weight.dot(moment);
   }
   return sum;
 }

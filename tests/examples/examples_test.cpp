@@ -53,7 +53,7 @@ TEST(Examples, ATermOfItsOwnHasTheEnergyOfAStretchedSheet) {
   const std::vector<fem::MaterialLine> m{{0, {}}, {0.3, {}}, {0.4, {}}}, n{{0, {}}, {0.2, {}}};
   const fem::AncfPlate sheet(2, fem::AncfPlate::ShapeSet::h16, m, n);
   const fem::TermRow& row = fem::cords_row();
-  const auto term = row.make({{}, {{"cord_stiffness", 700}}, {&row}});
+  const auto term = row.make({{0.01, 1e8, 0.3, 2700}, {{"cord_stiffness", 700}}, {&row}});
   const fem::Factors uniform;
   term->prepare(sheet, uniform, true);
   const double stretch = 1.1, strain = 0.5 * (stretch * stretch - 1);

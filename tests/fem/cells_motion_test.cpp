@@ -32,7 +32,7 @@ RotatingPlate on_cells(int nx, int ny) {
 void add_flowing_plate(Workspace& model) {
   std::vector<MaterialLine> lines;
   for (int k = 0; k <= 30; ++k) lines.push_back(testing::swinging_line(0.01 * k, 1e-3, 20 + k));
-  const PlaneSection section;
+  const PlaneSection section{0.01, 1e8, 0.3, 2700};
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(make_inertia(section));
   terms.push_back(make_membrane(section));
@@ -91,7 +91,7 @@ testing::Scene plate_and_arm(ShapeSet shapes) {
 testing::Scene free_line() {
   std::vector<MaterialLine> lines = testing::even_lines(0, 0.3, 3);
   lines[1].free = true;
-  const PlaneSection section;
+  const PlaneSection section{0.01, 1e8, 0.3, 2700};
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(make_inertia(section));
   terms.push_back(make_membrane(section));

@@ -179,7 +179,7 @@ TEST_P(ModelTangent, IsNotSymmetricWithMaterialFlow) {
 
 // A second body changes nothing for the first one.
 TEST(Model, BodiesAddUp) {
-  const PlaneSection section;
+  const PlaneSection section{0.01, 1e8, 0.3, 2700};
   Workspace one, two;
   for (Workspace* model : {&one, &two})
     model->add_body("plate", std::make_unique<AncfPlate>(testing::swinging_plate(ShapeSet::h16)),
@@ -292,7 +292,7 @@ TEST(Model, ThreadsChangeNothing) {
 
 // |r_m x r_n| of a plate stretched by (1.2, 0.5) everywhere.
 TEST(Model, SmallestAreaRatioIsThatOfTheMaterial) {
-  const PlaneSection section;
+  const PlaneSection section{0.01, 1e8, 0.3, 2700};
   Workspace model;
   model.add_body("plate", std::make_unique<AncfPlate>(testing::swinging_plate(ShapeSet::h16)),
                  section, all_terms(section));

@@ -22,7 +22,7 @@ using testing::ShapeSet;
 /// A plate welded to a rigid body that hangs on a hinge, with a tip body on a revolute and springs.
 Workspace plate_on_body(WeldMode mode, bool driven_hub = false) {
   Workspace model;
-  PlaneSection soft;
+  PlaneSection soft{0.01, 1e8, 0.3, 2700};
   soft.youngs_modulus = 1e6;
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(make_inertia(soft));
@@ -224,7 +224,7 @@ TEST(Zoo, MomentumIsThatOfItsBodies) {
   for (const Body& b : model.bodies())
     for (int k = 0; k < b.element->n_vectors(); ++k)
       if (b.element->is_position(k)) x.v.segment<2>(b.first_dof + 2 * k) = velocity;
-  const PlaneSection s;
+  const PlaneSection s{0.01, 1e8, 0.3, 2700};
   const double mass = 2 + 0.5 + 0.7 + s.density * s.thickness * 0.3 * 0.1;
   // The root line swings: material that stands in the world flows through nodes at rest.
   const Vec3 all = model.momentum(x);

@@ -33,7 +33,7 @@ struct Boom {
 /// A free body with booms whose roots swing through the material, and 0.5 m of each stored.
 Workspace satellite(const std::vector<Boom>& booms, const VectorXd& gravity = {}) {
   Workspace model;
-  PlaneSection soft;
+  PlaneSection soft{0.01, 1e8, 0.3, 2700};
   soft.youngs_modulus = 1e6;
   std::vector<StoredMaterial> all;
   for (const Boom& boom : booms)
@@ -156,7 +156,7 @@ TEST(StoredMaterial, OutletReactsWithTheMomentumThatLeaves) {
   model.links()[0]->add_force(x, force);
   // Reaction -ρA s² along the outlet (forces stand on the left), up to the stretch of the root.
   const double s = -testing::swinging_line(0, 0.05, 1.3).drive(0.3).rate;
-  const PlaneSection plate;
+  const PlaneSection plate{0.01, 1e8, 0.3, 2700};
   const Vec2 along(std::cos(0.7), std::sin(0.7));
   EXPECT_NEAR(force.segment<2>(hub.first_dof).dot(along),
               plate.density * plate.thickness * 0.1 * s * s,

@@ -60,7 +60,7 @@ struct RotatingPlate {
   int nx = 10, ny = 2;
   ShapeSet shapes = ShapeSet::h16;
   fem::WeldMode weld = fem::WeldMode::edge;
-  fem::PlaneSection section;
+  fem::PlaneSection section{0.01, 1e8, 0.3, 2700};
   fem::Factors factors;
   VectorXd gravity;
 

@@ -95,7 +95,7 @@ inline double angular_momentum(const fem::Model& model, const fem::State& x) {
     const MatrixXd r = t.N * rows_of_element(*body.element, q, e),
                    r_t = t.N * rows_of_element(*body.element, v, e);
     for (Eigen::Index p = 0; p < t.weight.size(); ++p)
-      out += body.section.density * body.section.thickness * t.weight[p] *
+      out += body.section->density * body.section->thickness * t.weight[p] *
              (r(p, 0) * r_t(p, 1) - r(p, 1) * r_t(p, 0));
   }
   return out;

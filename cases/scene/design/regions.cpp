@@ -68,11 +68,17 @@ using Ring = std::vector<Vec2>;
 
 bool holds(const Ring& ring, const Vec2& p) { return contains({ring, {}}, p); }
 
-/// Cells of the domain that belong to one of the regions: 1 (n_cells).
-std::vector<signed char> cells_in(const mmc::Plate& plate, std::span<const Ring> rings) {
-  std::vector<signed char> in(static_cast<size_t>(plate.grid.n_cells()), 0);
+/// Cells of a grid that belong to one of the regions: 1 (n_cells).
+std::vector<signed char> cells_in(const Grid& grid, std::span<const Ring> rings) {
+  std::vector<signed char> in(static_cast<size_t>(grid.n_cells()), 0);
   for (const Ring& ring : rings)
-    for (const int cell : cells_within(plate.grid, {ring, {}})) in[static_cast<size_t>(cell)] = 1;
+    for (const int cell : cells_within(grid, {ring, {}})) in[static_cast<size_t>(cell)] = 1;
+  return in;
+}
+
+/// The same of the domain of a plate.
+std::vector<signed char> cells_in(const mmc::Plate& plate, std::span<const Ring> rings) {
+  std::vector<signed char> in = cells_in(plate.grid, rings);
   for (size_t cell = 0; cell < plate.outside.size(); ++cell)
     if (plate.outside[cell]) in[cell] = 0;
   return in;
@@ -148,7 +154,7 @@ void check_free_end(const Table& t, const Body& body, const Scene& scene,
   const bool welded = std::any_of(scene.joints.begin(), scene.joints.end(), [&](const Joint& j) {
     return j.body == body.name && j.edge == "free_end";
   });
-  const auto in = cells_in({grid, {}, {}}, design.solid);
+  const auto in = cells_in(grid, design.solid);
   const auto last = std::min(in.size(), static_cast<size_t>(2 * grid.ny));  // two columns
   if (welded && std::count(in.end() - static_cast<std::ptrdiff_t>(last), in.end(), 1) < 2 * grid.ny)
     t.fail("the welded free end of '" + body.name + strip);

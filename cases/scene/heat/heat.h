@@ -4,12 +4,11 @@
 
 #include "cases/scene/scene.h"
 
-/// [body.heat] as data. Built with FLEXMORPH_HEAT=OFF there is no such thing: absent.cpp
-/// stands in place of heat.cpp then, and refuses it.
+/// [body.heat] as data.
 namespace flexmorph::cases {
 
 /// [body.heat]; the body's other keys are read.
-/// @throws Error (input) located in the file, also where heat was left out of the program.
+/// @throws Error (input) located in the file.
 BodyHeat read_heat(const io::Table& t, const Scene& scene, const Body& body);
 
 /// "grown", "grown_plane" or "reference", as in a case.

@@ -28,7 +28,7 @@ TEST(ThermalScene, BeamIsReadAndBuilt) {
   const fem::Body& built = mechanism.model.body("rod");
   const auto& beam = dynamic_cast<const fem::AncfBeam&>(*built.element);
   EXPECT_EQ(beam.height(), 5.76e-3);
-  EXPECT_EQ(built.section.thickness, 5.5e-3);
+  EXPECT_EQ(built.section->thickness, 5.5e-3);
   // At rest where the case puts it, with the velocities of the rigid mechanism: the crank pin goes
   // up at r ω, the slider rests.
   fem::Workspace& model = const_cast<fem::Workspace&>(mechanism.model);

@@ -298,14 +298,12 @@ INSTANTIATE_TEST_SUITE_P(
                       Written{"free_root", kFallingStrip, {"", "", {}, 12, 1}}),
     [](const auto& info) { return std::string(info.param.name); });
 
-#ifdef FLEXMORPH_HEAT
 INSTANTIATE_TEST_SUITE_P(
     Hot, MotionMemory,
     ::testing::Values(Case{"beam", "free_beam_heated", {"time.end=0.1"}, 6},
                       Case{"slider_crank", "slider_crank_heated", {"time.end=0.1"}, 6},
                       Case{"boom", "heated_boom", {"time.end=0.3"}, 9}),
     [](const auto& info) { return std::string(info.param.name); });
-#endif
 
 }  // namespace
 }  // namespace flexmorph::cases

@@ -12,7 +12,7 @@
 
 using namespace flexmorph;
 
-const fem::PlaneSection section{.poisson_ratio = 0};
+const fem::PlaneSection section{0.01, 1e8, 0, 2700};  // thickness, E, Poisson ratio, density
 const double length = 0.6, width = 0.1, cords = 5e5, omega = 0.1;
 
 /// At low speed u = ρ h ω² L³ / 3 (E h + k), to the first order in the strain.

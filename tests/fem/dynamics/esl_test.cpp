@@ -48,7 +48,7 @@ class Esl : public ::testing::Test {
   Esl() {
     std::vector<MaterialLine> m = testing::even_lines(kRoot, kEnd, 3);
     m[0].drive = root_line;
-    const PlaneSection section;
+    const PlaneSection section{0.01, 1e8, 0.3, 2700};
     std::vector<std::unique_ptr<Term>> terms;
     terms.push_back(make_inertia(section));
     terms.push_back(make_membrane(section));

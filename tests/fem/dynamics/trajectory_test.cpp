@@ -38,7 +38,7 @@ Workspace plates(ShapeSet shapes, int dim) {
     std::vector<MaterialLine> m = testing::even_lines(0, 0.4, 4);
     m[0] = testing::swinging_line(0.02, 0.015, 3);
     std::vector<std::unique_ptr<Term>> terms;
-    terms.push_back(make_inertia({}));
+    terms.push_back(make_inertia({0.01, 1e8, 0.3, 2700}));
     out.add_body(
         name,
         std::make_unique<AncfPlate>(dim, shapes, std::move(m), testing::even_lines(0, 0.1, 2)), {},

@@ -13,7 +13,7 @@ namespace {
 // P = m c', L = m c × c' + J ω of each; of a plate c is its middle and J = m (l² + w²)/12.
 TEST(WholeMomentum, IsThatOfRigidBodies) {
   Workspace model;
-  PlaneSection section;
+  PlaneSection section{0.01, 1e8, 0.3, 2700};
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(make_inertia(section));
   terms.push_back(make_membrane(section));
