@@ -12,10 +12,14 @@ namespace flexmorph::cases {
 
 using Changes = std::vector<std::string>;
 
+/// Returns the path of a shipped case.
+inline std::string shipped(const std::string& name) {
+  return (std::filesystem::path(FLEXMORPH_CASES) / (name + ".toml")).string();
+}
+
 /// A shipped case with overrides, "key=value" each. @throws Error (input).
 inline Scene read(const std::string& name, const Changes& changes = {}) {
-  const auto path = std::filesystem::path(FLEXMORPH_CASES) / (name + ".toml");
-  Scene scene = read_scene(io::CaseFile(path.string(), changes));
+  Scene scene = read_scene(io::CaseFile(shipped(name), changes));
   for (Body& body : scene.bodies) body.youngs_modulus = testing::disturbed(body.youngs_modulus);
   return scene;
 }

@@ -1,8 +1,6 @@
 // Heat in the statics of a design problem: elastic energies of hot plates against a dense solution
 // of the same equations, closed forms of held plates and other supports' answers; the sign that
-// heat has; loads of plates that grow freely, which are those of cold ones, bit for
-// bit.
-
+// heat has; loads of plates that grow freely, which are those of cold ones, bit for bit.
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -343,7 +341,6 @@ TEST(HotCompliance, AClampedEdgeIsThatOfAPlateAtRest) {
   EXPECT_LT(u.head(2 * 11).norm(), 1e-15);
 }
 
-// Hot plates whose edge grows with them.
 TEST(HotCompliance, FreeGrowthIsColdBitForBit) {
   const VectorXd k = random_factors(kGrid, 1e-3, 8), m = random_factors(kGrid, 1e-2, 9);
   for (const LoadDefinition definition : {LoadDefinition::inertia, LoadDefinition::frozen}) {
@@ -365,8 +362,8 @@ TEST(HotCompliance, LoadsOfOneRootColumnShareItsGrowth) {
   for (fem::EslSet& set : loads.sets) set.root_column /= 4;
   fem::EslSets cold = loads;
   for (fem::EslSet& set : cold.sets) set.thermal_stretch = set.held_stretch = 0;
-  EXPECT_EQ(ComplianceEvaluator(loads, kSection, {}, {}, {}).n_right_hand_sides(),
-            ComplianceEvaluator(cold, kSection, {}, {}, {}).n_right_hand_sides() + 3);
+  const ComplianceEvaluator hot(loads, kSection, {}, {}, {}), without(cold, kSection, {}, {}, {});
+  EXPECT_EQ(hot.n_right_hand_sides(), without.n_right_hand_sides() + 3);
 }
 
 // Static analysis at the design of the motion returns its elastic deformation.
@@ -381,11 +378,10 @@ TEST(HotCompliance, StiffnessLoadsReturnTheDeformation) {
   ComplianceEvaluator compliance(loads, kSection, {LoadDefinition::stiffness}, k, k);
   for (int l = 0; l < 3; ++l) {
     const fem::EslSet& set = loads.sets[static_cast<size_t>(l)];
+    const Vec2 root(kGrid.node_position(set.root_column, 0).x(), 0);
     VectorXd u = set.deformation;
     for (int n = kGrid.node(set.root_column, 0); n < kGrid.n_nodes(); ++n)
-      u.segment<2>(2 * n) +=
-          set.thermal_stretch * (kGrid.node_position(n / 11, n % 11) -
-                                 Vec2(kGrid.node_position(set.root_column, 0).x(), 0));
+      u.segment<2>(2 * n) += set.thermal_stretch * (kGrid.node_position(n / 11, n % 11) - root);
     EXPECT_LT((compliance.displacement(k, k, l) - u).norm(), 1e-9 * u.norm());
   }
 }
@@ -394,9 +390,8 @@ TEST(HotCompliance, RefusesStretchesThatAreNone) {
   for (const double bad : {-1.0, std::nan("")}) {
     fem::EslSets loads = hot_plate(2, kStretch);
     loads.sets[1].thermal_stretch = bad;
-    EXPECT_TRUE(says(
-        error_of(Error::Kind::input, [&] { ComplianceEvaluator(loads, kSection, {}, {}, {}); }),
-        "load 1: a thermal stretch"));
+    const auto make = [&] { ComplianceEvaluator(loads, kSection, {}, {}, {}); };
+    EXPECT_TRUE(says(error_of(Error::Kind::input, make), "load 1: a thermal stretch"));
   }
 }
 

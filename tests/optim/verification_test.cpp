@@ -1,6 +1,4 @@
-// The finite-element check of an outline against beams, a hole, a corner, a spinning rod, and
-// itself on finer meshes.
-
+// Verification of outlines against beams, a hole, a corner, a spinning rod, and finer meshes.
 #include "optim/verification/verification.h"
 
 #include <gtest/gtest.h>
@@ -17,6 +15,7 @@ std::vector<Vec2> rectangle(double x0, double y0, double x1, double y1) {
 }
 
 const fem::PlaneSection kUnit{1, 1, 0.3, 0};
+const Settings kCoarse{.size = 0.5, .reach = 0.1};
 constexpr double kLength = 8;
 
 /// A cantilever 8 x 1 of unit modulus, clamped at x = 0, pulled down at its end.
@@ -309,20 +308,17 @@ TEST(OutlineVerification, PointsAreSpreadOverACell) {
   // Wherever the unit force is spread over the end, the beam bends alike.
   Loads loads = tip_load();
   loads.locations[1] = middle;
-  const OutlineVerification found =
-      verify_outline(kBeam, kUnit, loads, {.size = 0.5, .reach = 0.1});
+  const OutlineVerification found = verify_outline(kBeam, kUnit, loads, kCoarse);
   EXPECT_NEAR(found.compliance, timoshenko(kLength), 0.01 * timoshenko(kLength));
   loads.locations[1] = point_location({kLength - 0.3, 0.5}, border, 0.1);
-  EXPECT_LT(verify_outline(kBeam, kUnit, loads, {.size = 0.5, .reach = 0.1}).compliance,
-            found.compliance);
+  EXPECT_LT(verify_outline(kBeam, kUnit, loads, kCoarse).compliance, found.compliance);
 }
 
 TEST(OutlineVerification, PiecesThatNothingHoldsAreLeftOut) {
   std::vector<Region> regions = kBeam;
   regions.push_back({rectangle(3, 2, 4, 3), {}});
-  const Settings settings{.size = 0.5, .reach = 0.1};
-  const OutlineVerification alone = verify_outline(kBeam, kUnit, tip_load(), settings);
-  const OutlineVerification found = verify_outline(regions, kUnit, tip_load(), settings);
+  const OutlineVerification alone = verify_outline(kBeam, kUnit, tip_load(), kCoarse);
+  const OutlineVerification found = verify_outline(regions, kUnit, tip_load(), kCoarse);
   EXPECT_EQ(found.n_pieces, 2);
   EXPECT_EQ(found.n_omitted_pieces, 1);
   EXPECT_NEAR(found.compliance, alone.compliance, 0.01 * alone.compliance);
@@ -361,19 +357,16 @@ TEST(OutlineVerification, HeldEdgeIsTheMirrorOfAHotClamp) {
 // A piece that could turn about its only hold is not held.
 TEST(OutlineVerification, LoadsOnLoosePiecesMakeTheComplianceInfinite) {
   const std::vector<Region> parts = {{rectangle(0, 0, 3, 1), {}}, {rectangle(4, 0, 8, 1), {}}};
-  const OutlineVerification loose =
-      verify_outline(parts, kUnit, tip_load(), {.size = 0.5, .reach = 0.1});
+  const OutlineVerification loose = verify_outline(parts, kUnit, tip_load(), kCoarse);
   EXPECT_EQ(loose.compliance, INFINITY);
   EXPECT_EQ(loose.unsupported_load, "tip");
   EXPECT_EQ(loose.n_omitted_pieces, 1);
   Loads sliding = tip_load();
   sliding.supports[0].y = false;
-  EXPECT_EQ(verify_outline(kBeam, kUnit, sliding, {.size = 0.5, .reach = 0.1}).compliance,
-            INFINITY);
+  EXPECT_EQ(verify_outline(kBeam, kUnit, sliding, kCoarse).compliance, INFINITY);
   Loads nowhere = tip_load();
   nowhere.locations[1] = box_location({{20, 0}, {20, 1}});
-  EXPECT_EQ(verify_outline(kBeam, kUnit, nowhere, {.size = 0.5, .reach = 0.1}).compliance,
-            INFINITY);
+  EXPECT_EQ(verify_outline(kBeam, kUnit, nowhere, kCoarse).compliance, INFINITY);
 }
 
 TEST(OutlineVerification, IsTheSameBitForBit) {
@@ -390,8 +383,8 @@ TEST(OutlineVerification, IsTheSameBitForBit) {
 
 TEST(OutlineVerification, EndsWhenItIsAskedTo) {
   int asked = 0;
-  const Settings settings{
-      .tolerance = 1e-5, .size = 0.2, .reach = 0.02, .keep_running = [&] { return ++asked < 3; }};
+  Settings settings{.tolerance = 1e-5, .size = 0.2, .reach = 0.02};
+  settings.keep_running = [&] { return ++asked < 3; };
   const OutlineVerification found = verify_outline(kBracket, kUnit, bracket_load(), settings);
   EXPECT_EQ(found.meshes, 3);
   EXPECT_FALSE(found.converged);

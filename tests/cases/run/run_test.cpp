@@ -363,54 +363,5 @@ TEST(Run, AnInterruptionOfTheMotionKeepsItsSteps) {
   EXPECT_LT(std::stod(motion.back()[0]), 0.12);
 }
 
-// What a case expects of itself is said where people look, and in the exit code.
-TEST(Run, SaysWhichExpectationsItMisses) {
-  const Scratch scratch;
-  const std::string text = contents_of(FLEXMORPH_SHORT_CASE);
-  const std::string file =
-      scratch.write("short.toml", text +
-                                      "\n[expect]\nvolume = { at_most = 0.1 }\n"
-                                      "\"plate.tip_deflection.largest\" = { at_most = 1 }\n");
-  const std::string folder = scratch / "out";
-  const Ended ended = flexmorph(scratch, {"run", file, "-o", folder, "--set", "output.vtk=false"});
-  EXPECT_EQ(ended.code, 5);
-  EXPECT_NE(ended.err.find("missed: volume = 0."), std::string::npos) << ended.err;
-  EXPECT_NE(ended.err.find("expected at most 0.1"), std::string::npos) << ended.err;
-  EXPECT_EQ(ended.err.find("tip_deflection"), std::string::npos) << ended.err;
-  EXPECT_NE(ended.out.find("done, not usable: mass 0.6"), std::string::npos) << ended.out;
-  EXPECT_NE(ended.out.find(" warnings, 1 expectation missed"), std::string::npos) << ended.out;
-  const std::string report = contents_of(folder + "/report.html");
-  EXPECT_LT(report.find("MISSED"), report.find("<h2>Results"));
-  const nlohmann::json run = run_json(folder);
-  EXPECT_EQ(run["status"], "done, not usable");
-  EXPECT_FALSE(run["expect"]["volume"]["holds"].get<bool>());
-  EXPECT_TRUE(run["expect"]["plate.tip_deflection.largest"]["holds"].get<bool>());
-}
-
-// With changes it is another case: said, but no failure.
-TEST(Run, SaysWhatChangesMakeOfExpectations) {
-  const Scratch scratch;
-  const std::string folder = scratch / "out";
-  const Ended ended = flexmorph(
-      scratch, {"run", "beam_heated_static", "-o", folder, "--set", "body.youngs_modulus=1e9"});
-  EXPECT_EQ(ended.code, 0) << ended.err;
-  EXPECT_NE(ended.err.find("not as the case without --set: "), std::string::npos) << ended.err;
-  EXPECT_NE(ended.out.find("done: "), std::string::npos) << ended.out;
-}
-
-TEST(Run, RefusesExpectationsOfNumbersThatNoRunHas) {
-  const Scratch scratch;
-  const std::string text = contents_of(FLEXMORPH_SHORT_CASE) + "\n[expect]\n";
-  const auto lines = static_cast<long>(std::count(text.begin(), text.end(), '\n'));
-  const std::string file = scratch.write("short.toml", text + "volumes = { at_most = 1 }\n");
-  const Ended ended = flexmorph(scratch, {"run", file, "-o", scratch / "out"});
-  EXPECT_EQ(ended.code, 2);
-  for (const std::string& word :
-       {"short.toml:" + std::to_string(lines + 1), std::string("expect.\"volumes\""),
-        std::string("compliance_ratio"), std::string("plate.tip_deflection")})
-    EXPECT_NE(ended.err.find(word), std::string::npos) << word << ": " << ended.err;
-  EXPECT_FALSE(std::filesystem::exists(scratch / "out"));
-}
-
 }  // namespace
 }  // namespace flexmorph::test

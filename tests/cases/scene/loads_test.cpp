@@ -8,36 +8,13 @@
 #include "cases/assembly/build.h"
 #include "fem/solve/statics.h"
 #include "io/files.h"
-#include "tests/cases/scenes.h"
-#include "tests/io/scratch.h"
+#include "tests/cases/scene/loaded_scenes.h"
 #include "tests/support/rates.h"
 
 namespace flexmorph::cases {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-
-Scene scene_of(const std::string& text, const Changes& changes = {}) {
-  const Scratch scratch;
-  return read_scene(io::CaseFile(scratch.write("case.toml", text), changes));
-}
-
-std::string complaint(const std::string& text, const Changes& changes = {}) {
-  try {
-    scene_of(text, changes);
-  } catch (const Error& e) {
-    EXPECT_EQ(e.kind(), Error::Kind::input);
-    return e.what();
-  }
-  return "";
-}
-
-std::string drive(const std::string& name, const std::string& formula) {
-  return "\n[[drive]]\nname = \"" + name + "\"\nformula = \"" + formula + "\"\n";
-}
-std::string load(const std::string& type, const std::string& more) {
-  return "\n[[load]]\ntype = \"" + type + "\"\n" + more + "\n";
-}
 
 /// A body of 2 kg and 0.5 kg m^2 that flies from the origin.
 const std::string kFlying = R"toml(
@@ -183,138 +160,6 @@ TEST(Loads, DrivenGravityIsHeldByThePivot) {
   });
   EXPECT_LT(found.error, 1e-9);
 }
-
-/// A slender cantilever, 1 m x 0.02 m x 0.01 m, E 2e9: E I = 13.33 N m^2.
-const std::string kCantilever = R"toml(
-[static]
-path = "load"
-steps = 4
-
-[[body]]
-name = "rod"
-element = "ancf_beam"
-terms = ["ecm"]
-length = 1.0
-height = 0.02
-width = 0.01
-youngs_modulus = 2e9
-poisson_ratio = 0.0
-elements = 16
-
-[[hub]]
-name = "wall"
-
-[[joint]]
-type = "weld"
-body = "rod"
-edge = "root"
-to = "wall"
-)toml";
-constexpr double kEI = 2e9 * 0.01 * 8e-6 / 12, kGA = 1e9 * 0.02 * 0.01;
-
-struct Bent {
-  Mechanism m;
-  fem::State x;
-  Vec2 tip() const { return fem::point_position(m.model.body("rod"), x, {1, 0}).head<2>(); }
-  /// Of the axis at the tip.
-  double angle() const {
-    const Vec2 before = fem::point_position(m.model.body("rod"), x, {1 - 1e-6, 0}).head<2>();
-    const Vec2 along = tip() - before;
-    return std::atan2(along.y(), along.x());
-  }
-};
-
-Bent bend(const std::string& text, const Changes& changes = {}) {
-  const Scene scene = scene_of(text, changes);
-  Bent out{build_mechanism(scene), {}};
-  out.x =
-      fem::start_state(out.m.model, out.m.growths, 0, fem::Start::rigid, out.m.motion.placement);
-  EXPECT_TRUE(fem::solve_static(out.m.model, out.x, {}).completed);
-  return out;
-}
-
-// Timoshenko: q L^4 / (8 E I) + q L^2 / (2 G A), shear with the whole section as these elements
-// have it; 2e-5 of the length, nonlinear terms are the square of that. The ANCF mesh: some 1e-3.
-TEST(Loads, ForcePerLengthBendsABeamAsTheTextbookSays) {
-  const double q = 2e-3, expected = q / (8 * kEI) + q / (2 * kGA);
-  for (const std::string turns : {"false", "true"}) {
-    const Bent bent =
-        bend(kCantilever + load("line", "body = \"rod\"\nforce = [0.0, 2e-3]\nturns = " + turns));
-    EXPECT_NEAR(bent.tip().y() / expected, 1, 2e-3) << turns;
-  }
-}
-
-// An end moment: every section turns evenly, M L / (E I) = 1 rad at the tip.
-TEST(Loads, TorqueAtTheTipBendsABeamToAnArc) {
-  const Bent bent =
-      bend(kCantilever +
-           load("torque", "body = \"rod\"\npoint = [1.0, 0.0]\ntorque = " + io::to_text(kEI)));
-  EXPECT_NEAR(bent.tip().x(), std::sin(1.0), 2e-3);
-  EXPECT_NEAR(bent.tip().y(), 1 - std::cos(1.0), 2e-3);
-}
-
-// A force that turns with the tip: the root holds just that force, turned as the tip is, and its
-// moment about the root; whatever the stiffness.
-TEST(Loads, TurningForceOfABeamIsTurnedAsItsTip) {
-  Bent bent = bend(kCantilever + load("point",
-                                      "body = \"rod\"\npoint = [1.0, 0.0]\nforce = [0.0, 20.0]\n"
-                                      "turns = true"));
-  EXPECT_GT(bent.angle(), 0.5);
-  const Vec2 force = fem::rotation(bent.angle()) * Vec2(0, 20), tip = bent.tip();
-  fem::Wrench root;
-  for (size_t i = 0; i < bent.m.model.joints().size(); ++i) {
-    const fem::Wrench each = bent.m.model.joint_wrench(i, "rod", Vec3::Zero(), bent.x);
-    root.force += each.force;
-    root.moment += each.moment;
-  }
-  EXPECT_LT((root.force.head<2>() + force).norm(), 20 * 1e-5);
-  EXPECT_NEAR(root.moment.z(), -(tip.x() * force.y() - tip.y() * force.x()), 20 * 1e-5);
-}
-
-// m g a^2 (3 L - a) / (6 E I) + m g a / (G A), and of the weight of the rod nothing: it has none.
-TEST(Loads, PointMassAnywhereOnABeamWeighs) {
-  const double a = 0.375, mg = 1e-3 * 10;
-  const Bent bent =
-      bend("gravity = [0.0, -10.0]\n" + kCantilever +
-               "\n[[point_mass]]\nbody = \"rod\"\npoint = [0.375, 0.0]\nmass = 1e-3\n",
-           {"body.rod.density=1e-9"});
-  EXPECT_NEAR(bent.tip().y() / -(mg * a * a * (3 - a) / (6 * kEI) + mg * a / kGA), 1, 3e-3);
-}
-
-/// A plate that leaves a turning hub, at a speed or not.
-const std::string kPlate = R"toml(
-[time]
-end = 0.2
-step = 0.001
-rho_inf = 0.9
-start = "rigid"
-
-[[hub]]
-name = "hub"
-angular_velocity = 2.0
-
-[[body]]
-name = "plate"
-element = "ale_ancf_plate"
-terms = ["inertia", "membrane"]
-length = 0.4
-width = 0.1
-thickness = 0.01
-density = 2700.0
-youngs_modulus = 1e7
-poisson_ratio = 0.3
-elements = [4, 1]
-
-[body.flow]
-speed = 0.2
-max_length = 0.15
-
-[[joint]]
-type = "weld"
-body = "plate"
-edge = "root"
-to = "hub"
-)toml";
 
 // The defect of the balance falls with the square of the step while material flows: what drives
 // loads and gravity is power on the unknowns alone.
