@@ -4,12 +4,12 @@
 #include <cmath>
 #include <memory>
 
-#include "fem/terms/cell_slopes.h"
+#include "fem/terms/cells/cell_slopes.h"
+#include "fem/terms/cells/void_cells.h"
 #include "fem/terms/density_term.h"
 #include "fem/terms/element_invariants.h"
 #include "fem/terms/gram.h"
 #include "fem/terms/strain_flow.h"
-#include "fem/terms/void_cells.h"
 
 namespace flexmorph::fem {
 namespace {

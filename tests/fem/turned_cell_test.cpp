@@ -1,7 +1,7 @@
 // Small strains in a turning frame: force and tangent by differences of the energy, no sum of
 // forces or moments, the linear limit.
 
-#include "fem/terms/turned_cell.h"
+#include "fem/terms/cells/turned_cell.h"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <vector>
 
+#include "fem/terms/cells/turned_cell.h"
 #include "fem/terms/gram.h"
-#include "fem/terms/turned_cell.h"
+#include "geometry/base.h"
 
 /// Cells of a design, eight side by side, of which some are nearly empty: their energy passes from
 /// that of St. Venant and Kirchhoff to that of small strains in a turning frame (turned_cell.h).

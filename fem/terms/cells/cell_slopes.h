@@ -1,7 +1,7 @@
 #pragma once
 
+#include "fem/terms/cells/void_cells.h"
 #include "fem/terms/element_invariants.h"
-#include "fem/terms/void_cells.h"
 
 /// Membrane forces and energies of cells of a design by the factors of its cells.
 namespace flexmorph::fem {

@@ -1,4 +1,4 @@
-#include "fem/terms/cell_slopes.h"
+#include "fem/terms/cells/cell_slopes.h"
 
 namespace flexmorph::fem {
 namespace {
