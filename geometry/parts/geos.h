@@ -39,8 +39,7 @@ class Geos {
 /// A polygon or several polygons of GEOS, which a shape owns.
 class Shape {
  public:
-  /// Returns the union of many shapes.
-  /// @throws Error (numerical) with the message of GEOS, as all functions here
+  /// Functions of this class throw Error (numerical) with the message of GEOS.
   friend Shape union_of(const Geos& geos, std::vector<Shape> pieces);
 
   Shape(const Geos& geos, GEOSGeometry* geometry) : geos_(&geos), geometry_(geometry) {
@@ -156,6 +155,8 @@ class Shape {
   GEOSGeometry* geometry_;
 };
 
+/// Returns the union of many shapes.
+/// @throws Error (numerical) with the message of GEOS
 Shape union_of(const Geos& geos, std::vector<Shape> pieces);
 
 /// Returns a multipolygon of regions, the same whatever the order of regions and holes, and

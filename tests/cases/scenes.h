@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -22,6 +24,17 @@ inline Scene read(const std::string& name, const Changes& changes = {}) {
   Scene scene = read_scene(io::CaseFile(shipped(name), changes));
   for (Body& body : scene.bodies) body.youngs_modulus = testing::disturbed(body.youngs_modulus);
   return scene;
+}
+
+/// Returns what is said about rotating_plate_v01 with these changes; empty when it is accepted.
+inline std::string complaint_of_v01(const Changes& changes) {
+  try {
+    read("rotating_plate_v01", changes);
+  } catch (const Error& e) {
+    EXPECT_EQ(e.kind(), Error::Kind::input);
+    return e.what();
+  }
+  return "";
 }
 
 }  // namespace flexmorph::cases

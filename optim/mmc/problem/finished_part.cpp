@@ -130,16 +130,17 @@ std::vector<NarrowPlace> too_narrow(const BodyProblem& p, std::span<const Region
 bool has_nearly_widths(std::span<const NarrowPlace> narrow, std::span<const Region> union_of_all,
                        double wanted) {
   constexpr double kNarrowest = 0.5;
-  constexpr std::ptrdiff_t kMost = 6;
+  constexpr int kMost = 6;
   const auto is_of_components = [&](const NarrowPlace& place) {
     return std::any_of(union_of_all.begin(), union_of_all.end(),
                        [&](const Region& piece) { return contains(piece, place.center); });
   };
-  const auto is_too_narrow = [&](const NarrowPlace& place) {
-    return place.width < kNarrowest * wanted && is_of_components(place);
-  };
-  return std::count_if(narrow.begin(), narrow.end(), is_of_components) <= kMost &&
-         std::none_of(narrow.begin(), narrow.end(), is_too_narrow);
+  int few = 0;
+  for (const NarrowPlace& place : narrow) {
+    if (!is_of_components(place)) continue;
+    if (place.width < kNarrowest * wanted || ++few > kMost) return false;
+  }
+  return true;
 }
 
 /// The union with its fillets, and with discs where that is narrow, as fillings beside holes and

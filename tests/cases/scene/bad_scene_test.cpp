@@ -1,24 +1,8 @@
 // Cases that are refused: one message each, with the place.
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
-
 #include "tests/cases/scenes.h"
 
 namespace flexmorph::cases {
 namespace {
-
-/// What is said about rotating_plate_v01 with these changes; empty when it is accepted.
-std::string complaint(const Changes& changes) {
-  try {
-    read("rotating_plate_v01", changes);
-  } catch (const Error& e) {
-    EXPECT_EQ(e.kind(), Error::Kind::input);
-    return e.what();
-  }
-  return "";
-}
 
 struct Bad {
   const char* what;
@@ -30,7 +14,7 @@ void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.what; }
 class BadInput : public ::testing::TestWithParam<Bad> {};
 
 TEST_P(BadInput, IsRefusedWithOneLocatedMessage) {
-  const std::string message = complaint(GetParam().changes);
+  const std::string message = complaint_of_v01(GetParam().changes);
   ASSERT_FALSE(message.empty()) << GetParam().changes[0];
   const std::string option = "--set " + GetParam().changes[0] + ": ";
   const std::string file = shipped("rotating_plate_v01") + ":";

@@ -4,13 +4,11 @@
 
 #include <cmath>
 
-#include "cases/scene/scene.h"
 #include "io/files.h"
+#include "tests/cases/scenes.h"
 #include "tests/io/scratch.h"
 
 namespace flexmorph::cases {
-
-using Changes = std::vector<std::string>;
 
 /// A turning plate whose length goes up and down.
 inline const std::string kBreathing = R"toml(
