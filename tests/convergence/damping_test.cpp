@@ -4,7 +4,6 @@
 // counts; and a hot body that grows and is held does so, too.
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <iostream>
 #include <numbers>
@@ -14,6 +13,7 @@
 #include "fem/elements/ancf_beam.h"
 #include "fem/model/workspace.h"
 #include "fem/terms.h"
+#include "tests/support/dense.h"
 #include "tests/support/models.h"
 #include "tests/support/rates.h"
 
@@ -53,12 +53,11 @@ Mode first_mode(Workspace& model) {
   SparseMatrix stiffness, mass;
   model.kkt(x, none, {1, 0, 0}, 1, stiffness);
   model.kkt(x, none, {0, 0, 1}, 1, mass);
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> modes{MatrixXd(stiffness),
-                                                                 MatrixXd(mass)};
+  const testing::Modes modes = testing::modes(MatrixXd(stiffness), MatrixXd(mass));
   const Eigen::Index rigid = model.bodies()[0].element->dim() == 2 ? 3 : 6;
   Mode out;
-  out.pulsation = std::sqrt(modes.eigenvalues()[rigid]);
-  out.shape = modes.eigenvectors().col(rigid);
+  out.pulsation = std::sqrt(modes.values[rigid]);
+  out.shape = modes.vectors.col(rigid);
   out.momentum = mass * out.shape;
   return out;
 }

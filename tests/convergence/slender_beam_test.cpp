@@ -3,7 +3,6 @@
 // convergence; how "ecm_full" locks there; and the frequencies of slender beams.
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <iostream>
 #include <numbers>
@@ -14,6 +13,7 @@
 #include "fem/model/workspace.h"
 #include "fem/solve/statics.h"
 #include "fem/terms.h"
+#include "tests/support/dense.h"
 #include "tests/support/elastica.h"
 #include "tests/support/models.h"
 #include "tests/support/rates.h"
@@ -167,9 +167,8 @@ VectorXd pulsations(const std::string& term, int n) {
   SparseMatrix stiffness, mass;
   model.kkt(x, none, {1, 0, 0}, 1, stiffness);
   model.kkt(x, none, {0, 0, 1}, 1, mass);
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> modes{MatrixXd(stiffness),
-                                                                 MatrixXd(mass)};
-  return modes.eigenvalues().tail(modes.eigenvalues().size() - 3).cwiseSqrt();
+  const testing::Modes modes = testing::modes(MatrixXd(stiffness), MatrixXd(mass));
+  return modes.values.tail(modes.values.size() - 3).cwiseSqrt();
 }
 
 // ω = β² √(E I/(ρ A)), cos β cosh β = 1; shear and rotary inertia take 1e-5 (1 + E/G) β²/24 of it

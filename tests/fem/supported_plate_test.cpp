@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,6 +14,7 @@
 #include "fem/solve/factorization/supernodal_factor.h"
 #include "fem/solve/q4_cell.h"
 #include "fem/solve/static_solver.h"
+#include "tests/support/dense.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -84,8 +84,7 @@ TEST(StaticSolver, AgreesWithAnotherFactorization) {
   MatrixXd u = loads;
   solver.solve(u);
   const Eigen::SparseMatrix<double> K = assembled(solver, factor, outside);
-  const MatrixXd expected =
-      Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(K).solve(loads.transpose()).transpose();
+  const MatrixXd expected = testing::solve(K, loads.transpose()).transpose();
   EXPECT_LT((u - expected).norm(), 1e-10 * expected.norm());
 
   // Energies of all cells add up to u . K u, load by load and together.

@@ -4,13 +4,13 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 #include <random>
 #include <unsupported/Eigen/Splines>
 
 #include "geometry/base.h"
 #include "tests/io/scratch.h"
+#include "tests/support/dense.h"
 #include "tests/support/rates.h"
 
 namespace flexmorph::io {
@@ -115,7 +115,7 @@ TEST(SmoothTable, AgreesWithADenseSolution) {
         Spline::BasisFunctions(u[i], 5, knots).matrix();
   matrix(n - 1, n - 1) = 1;
   const Eigen::VectorXd controls =
-      matrix.fullPivLu().solve(Eigen::Map<const Eigen::VectorXd>(p.x.data(), n));
+      testing::solve(matrix, Eigen::Map<const Eigen::VectorXd>(p.x.data(), n));
   const Spline spline(knots, controls.transpose());
   const SmoothTable table(p.t, p.x);
   for (double t = 0.001; t < 2; t += 0.0073) {

@@ -13,6 +13,7 @@
 #include <unsupported/Eigen/MatrixFunctions>
 #include <vector>
 
+#include "tests/support/dense.h"
 #include "tests/support/inertial_chain.h"
 
 namespace flexmorph::reference {
@@ -31,7 +32,7 @@ VectorXd equilibrium(const ReissnerModel& model, double t = 0, double force = 0,
       VectorXd r = model.residual(t, q, zero(model), zero(model));
       r(model.beam().modes) -= force * load / ramp;
       model.linearize(t, q, mass, damping, stiffness);
-      const VectorXd correction = stiffness.partialPivLu().solve(r);
+      const VectorXd correction = testing::solve(stiffness, r);
       q -= correction;
       if (correction.norm() < 1e-13) break;
     }
@@ -43,7 +44,7 @@ VectorXd equilibrium(const ReissnerModel& model, double t = 0, double force = 0,
 VectorXd squared_frequencies(const ReissnerModel& model, const VectorXd& q) {
   MatrixXd mass, damping, stiffness;
   model.linearize(0, q, mass, damping, stiffness);
-  return Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd>(stiffness, mass).eigenvalues();
+  return testing::modes(stiffness, mass).values;
 }
 
 double bisect(double low, double high, const std::function<double(double)>& f) {

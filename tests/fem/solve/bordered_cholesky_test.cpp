@@ -6,12 +6,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <random>
 
 #include "fem/solve/factorization/multifrontal.h"
 #include "fem/solve/linear_solver.h"
+#include "tests/support/dense.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -53,7 +52,7 @@ TEST(Multifrontal, LeavesTheSchurComplementOfTheBorder) {
   MatrixXd left(kBorder, kBorder);
   ASSERT_EQ(factor.factorize(&left), -1);
   const MatrixXd e = a.bottomLeftCorner(kBorder, kInner),
-                 expected = -e * a.topLeftCorner(kInner, kInner).llt().solve(e.transpose());
+                 expected = -e * testing::solve(a.topLeftCorner(kInner, kInner), e.transpose());
   EXPECT_LT((left - expected).triangularView<Eigen::Lower>().toDenseMatrix().norm(), 1e-13);
 }
 
@@ -122,8 +121,8 @@ VectorXd some(Eigen::Index n) { return VectorXd::LinSpaced(n, -1, 2).array().cos
 void expect_solved(BorderedCholesky& solver, const SparseMatrix& a) {
   const VectorXd b = some(a.rows());
   const MatrixXd whole(a);
-  const VectorXd expected = whole.partialPivLu().solve(b),
-                 transposed = whole.transpose().partialPivLu().solve(b);
+  const VectorXd expected = testing::solve(whole, b),
+                 transposed = testing::solve(whole.transpose(), b);
   VectorXd x;
   solver.solve(b, x);
   EXPECT_LT((x - expected).norm(), 1e-10 * expected.norm());
@@ -184,8 +183,8 @@ TEST(BorderedCholesky, TurnsAndRenewsItsBorder) {
   ASSERT_TRUE(solver.renew_border(a, {turn}));
   const MatrixXd whole = turned(MatrixXd(a), border, turn);
   EXPECT_LT((MatrixXd(solver.as_solved(a)) - whole).norm(), 1e-13 * whole.norm());
-  const VectorXd b = some(a.rows()), expected = whole.partialPivLu().solve(b),
-                 transposed = whole.transpose().partialPivLu().solve(b);
+  const VectorXd b = some(a.rows()), expected = testing::solve(whole, b),
+                 transposed = testing::solve(whole.transpose(), b);
   VectorXd x, y;
   solver.solve_transposed(a, b, x);
   EXPECT_LT((x - transposed).norm(), 1e-10 * transposed.norm());

@@ -5,14 +5,13 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <random>
 
 #include "fem/body_joints.h"
 #include "fem/solve/assembly.h"
 #include "fem/terms.h"
+#include "tests/support/dense.h"
 #include "tests/support/errors.h"
 #include "tests/support/models.h"
 #include "tests/support/point_mechanisms.h"
@@ -282,8 +281,7 @@ TEST(Diagnosis, RankOfRandomMechanismsAgainstSingularValues) {
     }
     const State x = model.reference();
     const MatrixXd j = dense_jacobian(model, x);
-    Eigen::JacobiSVD<MatrixXd> svd(j);
-    const auto values = svd.singularValues();
+    const VectorXd values = testing::singular_values(j);
     const int rank = static_cast<int>((values.array() > 1e-9 * values[0]).count());
     const Diagnosis d = diagnose(model, x);
     EXPECT_EQ(d.rank, rank) << trial;
@@ -295,13 +293,12 @@ TEST(Diagnosis, RankOfRandomMechanismsAgainstSingularValues) {
       MatrixXd part(g.rows.size(), j.cols());
       for (size_t i = 0; i < g.rows.size(); ++i)
         part.row(static_cast<Eigen::Index>(i)) = j.row(g.rows[i]);
-      EXPECT_LE(Eigen::FullPivLU<MatrixXd>(part).setThreshold(1e-9).rank(),
-                static_cast<Eigen::Index>(g.rows.size()) - 1);
+      EXPECT_LE(testing::rank(part, 1e-9), static_cast<int>(g.rows.size()) - 1);
     }
     EXPECT_EQ(surplus, model.n_constraints() - rank) << trial;
     MatrixXd basis(rank, j.cols());
     for (int i = 0; i < rank; ++i) basis.row(i) = j.row(d.independent[static_cast<size_t>(i)]);
-    EXPECT_EQ(Eigen::FullPivLU<MatrixXd>(basis).setThreshold(1e-9).rank(), rank);
+    EXPECT_EQ(testing::rank(basis, 1e-9), rank);
     dependent += rank < model.n_constraints();
   }
   EXPECT_GT(dependent, 15) << "too few of them show anything";
@@ -316,7 +313,7 @@ TEST(ConstraintWatch, ConditionOfAMechanismNearItsDeadCentre) {
   for (const double before : {0.5, 1e-2, 1e-4, 1e-6, 1e-8}) {
     State x = model.reference();
     x.q = bar.places(bar.limit_angle() - before);
-    const auto values = Eigen::JacobiSVD<MatrixXd>(dense_jacobian(model, x)).singularValues();
+    const VectorXd values = testing::singular_values(dense_jacobian(model, x));
     const double exact = values[0] / values[values.size() - 1];
     const Conditioning found = watch.look(x);
     EXPECT_LE(found.condition, 1.001 * exact) << before;

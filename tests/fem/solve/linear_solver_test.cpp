@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <limits>
 
 #include "fem/solve/factorization/substitution.h"
+#include "tests/support/dense.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -44,13 +44,13 @@ struct Saddle {
 
 void expect_solved(UnsymmetricSolver& solver, const SparseMatrix& a, bool refine) {
   const VectorXd b = VectorXd::LinSpaced(a.rows(), -1, 2).array().cos();
-  const VectorXd expected = MatrixXd(a).fullPivLu().solve(b);
+  const VectorXd expected = testing::solve(MatrixXd(a), b);
   VectorXd x;
   solver.solve(a, b, x, refine);
   // Condition below 1e3: thirteen digits.
   EXPECT_LT((x - expected).norm(), 1e-12 * expected.norm());
   EXPECT_LT((a * x - b).norm(), 1e-13 * b.norm());
-  const VectorXd transposed = MatrixXd(a).transpose().fullPivLu().solve(b);
+  const VectorXd transposed = testing::solve(MatrixXd(a).transpose(), b);
   solver.solve_transposed(a, b, x, refine);
   EXPECT_LT((x - transposed).norm(), 1e-12 * transposed.norm());
   EXPECT_LT((a.transpose() * x - b).norm(), 1e-13 * b.norm());
@@ -126,7 +126,7 @@ TEST(LinearSolver, NearlySymmetricByTheSymmetricPartWhereAskedFor) {
   solver.factorize(a, kMiss);
   ASSERT_TRUE(solver.is_cholesky());
   const VectorXd b = VectorXd::LinSpaced(n + m, -1, 2).array().cos();
-  const VectorXd expected = MatrixXd(a).fullPivLu().solve(b);
+  const VectorXd expected = testing::solve(MatrixXd(a), b);
   VectorXd x, step;
   solver.solve(a, b, x, false);
   EXPECT_LT((a * x - b).tail(m).norm(), 1e-13 * b.norm());

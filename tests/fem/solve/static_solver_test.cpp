@@ -5,9 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,6 +12,7 @@
 #include <vector>
 
 #include "fem/solve/factorization/supernodal_factor.h"
+#include "tests/support/dense.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -40,8 +38,8 @@ TEST(Q4, IsSymmetricAndRigidMotionsCostNothing) {
   EXPECT_LT((K - K.transpose()).cwiseAbs().maxCoeff(), 1e-15 * K.cwiseAbs().maxCoeff());
   const Vector8 u = linear_field(Vec3::Zero(), {0.4, -1.1, 0.7}, 0.3, 0.2);
   EXPECT_LT((K * u).cwiseAbs().maxCoeff(), 1e-14 * K.cwiseAbs().maxCoeff());
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 8, 8>> eigen(K);
-  EXPECT_GT(eigen.eigenvalues()(3), 1e-3 * eigen.eigenvalues()(7));  // exactly three zeros
+  const VectorXd values = testing::eigenvalues(K);
+  EXPECT_GT(values(3), 1e-3 * values(7));  // exactly three zeros
 }
 
 // Corner forces of a constant stress: half of the traction of each of the two edges.
@@ -131,9 +129,8 @@ VectorXd refactored(const StaticSolver& solver, const VectorXd& factor, const Ve
     for (int j = 0; j <= g.ny; ++j)
       f.segment<2>(dof(i, j)) = load.segment<2>(solver.row(g.node(i, j), 0));
   }
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> ldlt(K);
-  VectorXd u = ldlt.solve(f);
-  u += ldlt.solve(f - K * u);  // so that the reference is not what limits the comparison
+  VectorXd u = testing::solve(K, f);
+  u += testing::solve(K, f - K * u);  // so that the reference is not what limits the comparison
   for (int i = root + 1; i <= g.nx; ++i) {
     for (int j = 0; j <= g.ny; ++j)
       all.segment<2>(solver.row(g.node(i, j), 0)) = u.segment<2>(dof(i, j));
@@ -337,7 +334,7 @@ TEST(SupernodalFactor, ScatteredRowsAndLeadingBlocks) {
     VectorXd expected = VectorXd::Zero(n);
     if (a > 0) {
       const VectorXd f = loads.row(l).head(a).transpose();
-      expected.head(a) = K.topLeftCorner(a, a).llt().solve(f);
+      expected.head(a) = testing::solve(MatrixXd(K.topLeftCorner(a, a)), f);
     }
     EXPECT_LT((x.row(l).transpose() - expected).norm(), 1e-13 * (1 + expected.norm())) << l;
   }
