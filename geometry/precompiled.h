@@ -22,3 +22,7 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#define FLEXMORPH_INSTANCE extern template
+#include "geometry/eigen_instances.h"
+#undef FLEXMORPH_INSTANCE

@@ -22,7 +22,8 @@ install(EXPORT Flexmorph NAMESPACE flexmorph:: DESTINATION ${flexmorph_package}
 foreach(folder geometry io fem optim)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} COMPONENT development
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/flexmorph
-          FILES_MATCHING PATTERN "*.h" PATTERN precompiled.h EXCLUDE PATTERN geos.h EXCLUDE)
+          FILES_MATCHING PATTERN "*.h" PATTERN precompiled.h EXCLUDE
+          PATTERN eigen_instances.h EXCLUDE PATTERN geos.h EXCLUDE)
 endforeach()
 
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/FlexmorphConfigVersion.cmake
