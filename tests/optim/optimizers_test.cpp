@@ -232,6 +232,30 @@ TEST(Problems, GradientsAreRight) {
   }
 }
 
+// Approximations have the gradients of their functions: an optimum stays where it is. Both
+// gradients have entries of both signs, min (x - 2)² + (y + 1)² for x - y <= 1 at (1, 0): parts for
+// rising and for falling functions that do not belong together move it.
+TEST(Mma, StaysAtAnOptimum) {
+  for (const char* name : {"mma", "gcmma"}) {
+    Analytic problem(
+        "optimum", Vec2(-3, -3), Vec2(3, 3), Vec2(1, 0), 1,
+        [](const VectorXd& x, Response& r) {
+          r.f = (x[0] - 2) * (x[0] - 2) + (x[1] + 1) * (x[1] + 1);
+          r.df = Vec2(2 * (x[0] - 2), 2 * (x[1] + 1));
+          r.g[0] = x[0] - x[1] - 1;
+          r.dg.row(0) = Vec2(1, -1).transpose();
+        },
+        2);
+    Settings settings = for_small_problems(name);
+    settings.max_iterations = 5;
+    settings.kkt_tolerance = 0;
+    const Result result = make_optimizer(settings)->minimize(problem, {});
+    EXPECT_EQ(result.iterations, 5) << name << ": " << result.message;
+    // To the tolerance of the subproblem.
+    EXPECT_LT((result.x - problem.start()).norm(), 1e-5) << name;
+  }
+}
+
 // Iterates of gcmma from a feasible start stay feasible and never get worse: every approximation
 // lies above its function at the accepted point. (To the round-off of the subproblem.)
 TEST(Gcmma, StaysFeasibleAndFalls) {
