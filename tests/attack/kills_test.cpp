@@ -153,7 +153,7 @@ TEST(Kills, AtRandomMomentsChangeNothing) {
                    {}});
   }
   const int each =
-      kills > 0 ? (kills + static_cast<int>(all.size()) - 1) / static_cast<int>(all.size()) : 3;
+      kills > 0 ? (kills + static_cast<int>(all.size()) - 1) / static_cast<int>(all.size()) : 2;
   int n = 0;
   for (const Victim& v : all) n += kill_and_resume(v, each, engine);
   EXPECT_GE(n, kills);

@@ -14,7 +14,6 @@
 #include <ctime>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <regex>
 #include <thread>
 
@@ -23,6 +22,7 @@
 #include "io/files.h"
 #include "tests/attack/mutations.h"
 #include "tests/attack/run_files.h"
+#include "tests/cases/run_json.h"
 #include "tests/io/scratch.h"
 
 namespace flexmorph {
@@ -169,8 +169,7 @@ std::string wrong(int code, const std::string& folder) {
   if (!fs::exists(folder)) return code == 2 || code == 3 ? "" : "there is no folder";
   const std::string broken = testing::broken_files(folder);
   if (!broken.empty()) return broken;
-  const std::string status =
-      nlohmann::json::parse(contents_of(folder + "/run.json")).value("status", "");
+  const std::string status = test::run_json(folder).value("status", "");
   const bool done = code == 0 || code == 5;
   if (status.starts_with("done") != done)
     return "exit code " + std::to_string(code) + " and status " + status;

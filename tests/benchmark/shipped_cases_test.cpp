@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
 #include <string>
 
+#include "tests/cases/run_json.h"
 #include "tests/io/scratch.h"
 #include "tests/support/child_program.h"
 
@@ -38,7 +38,7 @@ class ShippedCase : public ::testing::TestWithParam<Choice> {
                                 " --set output.vtk=false --set " + verify + changes;
     const int code = testing::run_shell(command, "", kSeconds).code;
     EXPECT_TRUE(code == 0) << command;
-    return nlohmann::json::parse(contents_of(folder + "/run.json"));
+    return test::run_json(folder);
   }
 };
 
@@ -82,9 +82,9 @@ INSTANTIATE_TEST_SUITE_P(Cases, MendedCase,
                          [](const auto& test) { return test.param.plate; });
 
 TEST_P(MendedCase, EndsWithADesignThatCanBeBuilt) {
-  const nlohmann::json json = run(), result = json["results"].at(0);
+  const nlohmann::json written = run(), result = written["results"].at(0);
   const auto value = [&](const char* key) { return result.at(key).get<double>(); };
-  for (const auto& [name, expected] : json["expect"].items())
+  for (const auto& [name, expected] : written["expect"].items())
     EXPECT_TRUE(expected["holds"].get<bool>()) << name << ": " << expected;
   EXPECT_NEAR(value("sharp_volume"), 0.5, 0.0005);
   EXPECT_EQ(value("islands"), 0);
@@ -104,18 +104,18 @@ INSTANTIATE_TEST_SUITE_P(Cases, ShippedMechanism,
                          [](const auto& test) { return test.param.plate; });
 
 TEST_P(ShippedMechanism, EndsWithAGoodDesignAndWhereItIsExpected) {
-  const nlohmann::json json = run(), result = json["results"].at(0);
+  const nlohmann::json written = run(), result = written["results"].at(0);
   const auto value = [&](const char* key) { return result.at(key).get<double>(); };
   EXPECT_NEAR(value("sharp_volume") / value("volume"), 1, 0.02);
   EXPECT_LE(value("sharp_compliance") / value("compliance"), 1.15);
   EXPECT_TRUE(result.at("connected").get<bool>());
   EXPECT_GE(value("thinnest_component"), 0.005 - 1e-12);
   EXPECT_LE(value("dynamic_amplitude") / value("uniform_dynamic_amplitude"), 0.8);
-  EXPECT_GE(json["expect"].size(), 5u);
-  for (const auto& [name, expected] : json["expect"].items())
+  EXPECT_GE(written["expect"].size(), 5u);
+  for (const auto& [name, expected] : written["expect"].items())
     EXPECT_TRUE(expected["holds"].get<bool>()) << name << ": " << expected;
   // How far the judge is from the cells is said, and what coarse elements bridge; nothing else is.
-  for (const std::string warning : json["warnings"])
+  for (const std::string warning : written["warnings"])
     EXPECT_TRUE(warning.find("': the cells of the design say") != std::string::npos ||
                 warning.find("elements of the motion bridge") != std::string::npos)
         << warning;
@@ -129,11 +129,11 @@ TEST(ShippedLink, EndsAsItExpects) {
                               folder + "' --quiet --set output.vtk=false";
   const int code = testing::run_shell(command, "", kSeconds).code;
   ASSERT_TRUE(code == 0) << command;
-  const nlohmann::json json = nlohmann::json::parse(contents_of(folder + "/run.json"));
-  EXPECT_GE(json["expect"].size(), 8u);
-  for (const auto& [name, expected] : json["expect"].items())
+  const nlohmann::json written = test::run_json(folder);
+  EXPECT_GE(written["expect"].size(), 8u);
+  for (const auto& [name, expected] : written["expect"].items())
     EXPECT_TRUE(expected["holds"].get<bool>()) << name << ": " << expected;
-  for (const std::string warning : json["warnings"])
+  for (const std::string warning : written["warnings"])
     EXPECT_NE(warning.find("it is a link between two pins"), std::string::npos) << warning;
 }
 

@@ -14,17 +14,17 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "tests/cases/program.h"
+#include "tests/cases/run_json.h"
 
 namespace flexmorph::test {
 namespace {
 
 /// Runs a case with the design of tests/data/NAME.csv: its optimizer may move a variable by 1e-9 of
 /// the variable's range. @return what run.json says of the exported outline
-nlohmann::json verified(const Scratch& scratch, const std::string& name, const std::string& folder,
-                        Words changes = {}) {
+json verified(const Scratch& scratch, const std::string& name, const std::string& folder,
+              Words changes = {}) {
   changes.insert(changes.end(),
                  {"design.start='" FLEXMORPH_DATA "/" + name + ".csv'", "design.min_feature=0",
                   "optimizer.max_iterations=1", "optimizer.move_limit=1e-9",
@@ -32,7 +32,7 @@ nlohmann::json verified(const Scratch& scratch, const std::string& name, const s
   const Ended ended = run(scratch, name, folder, changes);
   // Designs of the data may lie above the volume that the case allows.
   EXPECT_TRUE(is_done(ended, folder));
-  return nlohmann::json::parse(contents_of(folder + "/run.json"))["results"][0]["body_fitted"];
+  return run_json(folder)["results"][0]["body_fitted"];
 }
 
 /// Nodes of an input file, and the forces of its steps: node, direction, size.
@@ -146,8 +146,8 @@ void expect_fields(const std::string& path, const Input& input, const Values& mo
 /// Runs CalculiX on design.inp and compares.
 /// @param thickness  of the plate  @param worst  is the compliance that of the worst load, or the
 /// sum?
-void expect_calculix_agrees(const std::string& folder, const nlohmann::json& found,
-                            double thickness, bool worst) {
+void expect_calculix_agrees(const std::string& folder, const json& found, double thickness,
+                            bool worst) {
   const std::string command =
       "cd '" + folder + "' && OMP_NUM_THREADS=1 ccx -i design > ccx.log 2>&1";
   ASSERT_EQ(testing::run_shell(command).code, 0) << contents_of(folder + "/ccx.log");
@@ -167,7 +167,7 @@ void expect_calculix_agrees(const std::string& folder, const nlohmann::json& fou
   }
   const auto expected = found["compliance"].get<double>();
   EXPECT_NEAR(worst ? largest : sum, expected, 0.005 * expected);
-  const nlohmann::json& exported = found["exported"];
+  const json& exported = found["exported"];
   const double x = exported["largest_stress_at"][0], y = exported["largest_stress_at"][1];
   const auto reported = exported["largest_stress"].get<double>();
   expect_fields(folder + "/design.vtu", input, moved[0], stress[0], reported);
@@ -191,10 +191,10 @@ void PrintTo(const Plate& plate, std::ostream* out) { *out << plate.name; }
 
 /// What lies below them is said, the narrowest place first, as the medial axis of the final design
 /// has it (`min_feature`, `min_gap`; another tolerance of outlines, within a fiftieth of a cell).
-void expect_narrow_places(const nlohmann::json& run, const Plate& plate) {
-  const nlohmann::json& result = run["results"][0];
+void expect_narrow_places(const json& run, const Plate& plate) {
+  const json& result = run["results"][0];
   for (const bool solid : {true, false}) {
-    const nlohmann::json& smallest = result[solid ? "min_feature" : "min_gap"];
+    const json& smallest = result[solid ? "min_feature" : "min_gap"];
     const double width = smallest.is_number() ? smallest.get<double>() : INFINITY;
     const std::string words =
         solid ? " narrower than twice design.min_thickness, " : " narrower than a cell, ";
@@ -217,12 +217,12 @@ TEST_P(ExportedPlates, AreWhatCalculixFinds) {
   if (!has_calculix()) GTEST_SKIP() << "the program ccx is absent";
   const Scratch scratch;
   const std::string folder = scratch / "out";
-  const nlohmann::json found = verified(scratch, GetParam().name, folder);
+  const json found = verified(scratch, GetParam().name, folder);
   ASSERT_TRUE(found["compliance"].is_number()) << found;
   EXPECT_LE(found["error"].get<double>(), 0.005);
   EXPECT_GT(found["volume"].get<double>(), 0.2);
   expect_calculix_agrees(folder, found, 1, GetParam().worst);
-  expect_narrow_places(nlohmann::json::parse(contents_of(folder + "/run.json")), GetParam());
+  expect_narrow_places(run_json(folder), GetParam());
 }
 
 INSTANTIATE_TEST_SUITE_P(Shipped, ExportedPlates,
@@ -237,7 +237,7 @@ TEST(ExportedMotion, IsWhatCalculixFinds) {
   if (!has_calculix()) GTEST_SKIP() << "the program ccx is absent";
   const Scratch scratch;
   const std::string folder = scratch / "out";
-  const nlohmann::json found =
+  const json found =
       verified(scratch, "rotating_plate_v05", folder,
                {"design.cell=0.01", "design.min_thickness=0.01", "output.tolerance=5e-4",
                 "time.step=5e-3", "verify=", "esl.every=0.1", "design.loads=\"worst\"", "cycle="});

@@ -3,10 +3,9 @@
 // wrong input is named by its key.
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "io/tables.h"
 #include "tests/cases/program.h"
+#include "tests/cases/run_json.h"
 
 namespace flexmorph::test {
 namespace {
@@ -14,7 +13,7 @@ namespace {
 class Link : public ::testing::TestWithParam<const char*> {
  protected:
   /// Runs the shipped case over half of its time. @return run.json
-  nlohmann::json run_link(const Scratch& scratch, Words changes, int other_code = 0) const {
+  json run_link(const Scratch& scratch, Words changes, int other_code = 0) const {
     const std::string folder = scratch / "out";
     changes.insert(changes.end(), {std::string("design.0.support=\"") + GetParam() + "\"",
                                    "design.0.min_feature=0", "design.0.cell=0.0025",
@@ -22,7 +21,7 @@ class Link : public ::testing::TestWithParam<const char*> {
                                    "output.design_every=0", "output.tolerance=2.5e-4"});
     const Ended ended = run(scratch, "slider_crank_designed", folder, changes);
     EXPECT_TRUE(ended.code == 0 || ended.code == other_code) << ended.err;
-    return nlohmann::json::parse(contents_of(folder + "/run.json"));
+    return run_json(folder);
   }
 };
 INSTANTIATE_TEST_SUITE_P(Supports, Link, ::testing::Values("pins", "floating"),
@@ -36,7 +35,7 @@ TEST_P(Link, IsStifferInItsMotion) {
                               {"design.0.start='" FLEXMORPH_DATA "/slider_crank_designed.csv'",
                                "optimizer.max_iterations=1", "optimizer.move_limit=1e-9"},
                               kTooFew);  // the volume of the data is 0.528
-  const nlohmann::json &result = found["results"][0], &motion = found["motion"];
+  const json &result = found["results"][0], &motion = found["motion"];
   EXPECT_TRUE(result["connected"].get<bool>());
   EXPECT_LT(motion["strain_energy_integral"].get<double>(),
             0.85 * motion["uniform_strain_energy_integral"].get<double>());

@@ -5,13 +5,13 @@
 
 #include <cmath>
 #include <functional>
-#include <nlohmann/json.hpp>
 
 #include "cases/assembly/scene_motion.h"
 #include "io/case_files/case_file.h"
 #include "io/tables.h"
 #include "optim/mmc/cycles/motion_certificate.h"
 #include "tests/cases/program.h"
+#include "tests/cases/run_json.h"
 #include "tests/support/differences.h"
 
 namespace flexmorph::test {
@@ -186,15 +186,15 @@ TEST(MotionCertificate, BoundsWhatIsLeft) {
 }
 
 /// The short plate designed for its loads, then for its motion.
-nlohmann::json run_corrected(const Scratch& scratch, const std::string& folder,
-                             const std::string& way, Words more = {}) {
-  Words changes = {"cycle.correct=" + way, "cycle.corrections=3",       "cycle.step=2e-3",
+json run_corrected(const Scratch& scratch, const std::string& folder, const std::string& way,
+                   Words more = {}) {
+  Words changes = {"cycle.correct=" + way, "cycle.corrections=2",       "cycle.step=2e-3",
                    "design.cell=0.01",     "design.min_thickness=0.01", "esl.every=0.02",
                    "output.vtk=false",     "certificate.step=2e-3"};
   changes.insert(changes.end(), more.begin(), more.end());
   const Ended ended = run(scratch, FLEXMORPH_SHORT_CASE, folder, changes);
   EXPECT_TRUE(is_done(ended, folder));
-  return nlohmann::json::parse(contents_of(folder + "/run.json"));
+  return run_json(folder);
 }
 
 class EveryCorrection : public ::testing::TestWithParam<const char*> {};
@@ -202,7 +202,7 @@ class EveryCorrection : public ::testing::TestWithParam<const char*> {};
 TEST_P(EveryCorrection, LowersWhatTheMotionSays) {
   const Scratch scratch;
   const std::string folder = scratch / "out";
-  const nlohmann::json run = run_corrected(scratch, folder, GetParam());
+  const json run = run_corrected(scratch, folder, GetParam(), {"cycle.corrections=3"});
   const auto& cycles = run["corrected_cycles"];
   ASSERT_GE(cycles.size(), 2u);
   double least = cycles[0]["objective"];
@@ -235,8 +235,7 @@ INSTANTIATE_TEST_SUITE_P(MotionDesign, EveryCorrection, ::testing::Values("first
 // Where the largest compliance is minimized, it is the largest energy of the motion.
 TEST(MotionDesign, OfTheWorstLoadLowersTheLargestEnergy) {
   const Scratch scratch;
-  const nlohmann::json run =
-      run_corrected(scratch, scratch / "out", "first_order", {"design.loads=worst"});
+  const json run = run_corrected(scratch, scratch / "out", "first_order", {"design.loads=worst"});
   EXPECT_EQ(run["certificate"]["objective"], "largest strain energy in motion");
   const auto& cycles = run["corrected_cycles"];
   double least = cycles[0]["objective"];
@@ -249,12 +248,11 @@ TEST(MotionDesign, OfTheWorstLoadLowersTheLargestEnergy) {
 TEST(Certify, SaysOfAFinishedRunWhatTheRunWouldHaveSaid) {
   const Scratch scratch;
   const std::string folder = scratch / "out";
-  const nlohmann::json first =
-      run_corrected(scratch, folder, "first_order", {"cycle.corrections=0"});
+  const json first = run_corrected(scratch, folder, "first_order", {"cycle.corrections=0"});
   const double kkt = first["certificate"]["kkt"], value = first["certificate"]["value"];
   const Ended ended = flexmorph(scratch, {"certify", folder});
   EXPECT_EQ(ended.code, 0) << ended.err;
-  const nlohmann::json again = nlohmann::json::parse(contents_of(folder + "/run.json"));
+  const json again = run_json(folder);
   EXPECT_NEAR(again["certificate"]["value"].get<double>(), value, 1e-6 * value);
   EXPECT_NEAR(again["certificate"]["kkt"].get<double>(), kkt, 1e-3 * kkt);
   EXPECT_EQ(again["corrected_cycles"], first["corrected_cycles"]);

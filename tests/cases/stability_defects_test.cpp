@@ -5,13 +5,13 @@
 
 #include <csignal>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "cases/check/ready.h"
 #include "cases/stability/stability.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"
+#include "tests/cases/run_json.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -28,9 +28,7 @@ Ended run(const Scratch& scratch, const std::string& name, const Words& changes,
   return test::flexmorph(scratch, words);
 }
 
-json run_of(const Scratch& scratch) {
-  return json::parse(contents_of(scratch / "run" + "/run.json"));
-}
+json run_of(const Scratch& scratch) { return test::run_json(scratch / "run"); }
 
 const Words kLean = {"expect=", "accuracy=", "output.vtk=false", "output.plots=false"};
 

@@ -5,19 +5,18 @@
 
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "cases/results/part_checks.h"
 #include "geometry/components/outline.h"
 #include "io/drawings/step.h"
 #include "tests/cases/program.h"
+#include "tests/cases/run_json.h"
 #include "tests/cases/scenes.h"
 
 namespace flexmorph::test {
 namespace {
 
-using nlohmann::json;
 using Ring = std::vector<Vec2>;
 
 /// A drawing of closed polylines in metres, another unit by its number.
@@ -44,9 +43,7 @@ Ended verify(const Scratch& scratch, const std::string& name, const std::string&
   return flexmorph(scratch, words);
 }
 
-json results(const Scratch& scratch) {
-  return json::parse(contents_of(scratch / "verified/run.json"));
-}
+json results(const Scratch& scratch) { return run_json(scratch / "verified"); }
 
 /// The numbers of the part over those of another column, by name.
 std::map<std::string, double> ratios(const json& run, const std::string& column) {
@@ -109,7 +106,7 @@ TEST(VerifyPart, DrawnAsTheDesignHasItsNumbers) {
     EXPECT_FALSE(run["results"][0].contains("kkt"));
   }
   // The numbers beside are those of the design's own run where that has them.
-  const json own = json::parse(contents_of(folder + "/run.json"))["results"][0];
+  const json own = run_json(folder)["results"][0];
   const json last = results(scratch);
   for (const json& row : last["verify"]["numbers"])
     for (const char* name : {"sharp_volume", "min_feature", "min_gap", "sharp_compliance"})

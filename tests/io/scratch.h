@@ -1,13 +1,8 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <algorithm>
-#include <atomic>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <locale>
 #include <string>
 
@@ -16,66 +11,36 @@ namespace flexmorph {
 /// A folder of its own for one test, removed afterwards.
 class Scratch {
  public:
-  Scratch() {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    static std::atomic<int> count = 0;  // a test may have several
-    std::string name = "flexmorph_" + std::to_string(getpid()) + "_" + test->test_suite_name() +
-                       "_" + test->name() + "_" + std::to_string(++count);
-    std::replace(name.begin(), name.end(), '/', '_');  // of tests with parameters
-    folder_ = std::filesystem::temp_directory_path() / name;
-    std::filesystem::create_directories(folder_);
-  }
-  ~Scratch() { std::filesystem::remove_all(folder_); }
+  Scratch();
+  ~Scratch();
   Scratch(const Scratch&) = delete;
   Scratch& operator=(const Scratch&) = delete;
 
-  std::string operator/(const std::string& name) const { return (folder_ / name).string(); }
-
-  std::string write(const std::string& name, const std::string& contents) const {
-    std::ofstream(*this / name, std::ios::binary) << contents;
-    return *this / name;
-  }
+  /// Returns the path of a file in the folder.
+  std::string operator/(const std::string& name) const;
+  /// Writes a file into the folder. @return its path
+  std::string write(const std::string& name, const std::string& contents) const;
 
  private:
   std::filesystem::path folder_;
 };
 
-inline std::string contents_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
+/// Returns what a file contains; empty where there is none.
+std::string contents_of(const std::string& path);
 
-inline ::testing::AssertionResult contains(const std::string& text, const std::string& part) {
-  const bool found = text.find(part) != std::string::npos;
-  return (found ? ::testing::AssertionSuccess() : ::testing::AssertionFailure())
-         << "'" << part << "' in:\n"
-         << text;
-}
-
-inline ::testing::AssertionResult starts(const std::string& text, const std::string& start) {
-  if (text.starts_with(start)) return ::testing::AssertionSuccess();
-  return ::testing::AssertionFailure() << "does not start with '" << start << "':\n" << text;
-}
-
-inline ::testing::AssertionResult ends(const std::string& text, const std::string& end) {
-  if (text.ends_with(end)) return ::testing::AssertionSuccess();
-  return ::testing::AssertionFailure() << "does not end with '" << end << "':\n" << text;
-}
+::testing::AssertionResult contains(const std::string& text, const std::string& part);
+::testing::AssertionResult starts(const std::string& text, const std::string& start);
+::testing::AssertionResult ends(const std::string& text, const std::string& end);
 
 /// While it lives, the program speaks with a decimal comma and points between thousands.
 class CommaLocale {
  public:
-  CommaLocale() : before_(std::locale::global({std::locale::classic(), new Comma})) {}
-  ~CommaLocale() { std::locale::global(before_); }
+  CommaLocale();
+  ~CommaLocale();
   CommaLocale(const CommaLocale&) = delete;
   CommaLocale& operator=(const CommaLocale&) = delete;
 
  private:
-  struct Comma : std::numpunct<char> {
-    char do_decimal_point() const override { return ','; }
-    char do_thousands_sep() const override { return '.'; }
-    std::string do_grouping() const override { return "\3"; }
-  };
   std::locale before_;
 };
 

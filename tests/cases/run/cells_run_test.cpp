@@ -4,18 +4,14 @@
 
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "io/drawings/exports.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"
+#include "tests/cases/run_json.h"
 
 namespace flexmorph::test {
 namespace {
-
-nlohmann::json run_json(const std::string& folder) {
-  return nlohmann::json::parse(contents_of(folder + "/run.json"));
-}
 
 double largest(const std::vector<double>& values) {
   double out = 0;
@@ -40,7 +36,7 @@ TEST(CellsRun, CyclesAndDesignsAreJudgedOnCells) {
       scratch, {"run", FLEXMORPH_TWO_PLATES, "-o", folder, "--set", "verify.cells=1", "--set",
                 "expect={amplitude={at_least=0}, \"energy.strain.largest\"={at_least=0}}"});
   ASSERT_EQ(ended.code, kTooFew) << ended.err;
-  const nlohmann::json run = run_json(folder);
+  const json run = run_json(folder);
   const io::CsvTable on_cells = io::read_csv(folder + "/motion_verified.csv"),
                      coarse = io::read_csv(folder + "/motion.csv");
   const double integral = strain_integral(on_cells);
@@ -56,12 +52,12 @@ TEST(CellsRun, CyclesAndDesignsAreJudgedOnCells) {
     }
   }
   EXPECT_EQ(best, 1);
-  const nlohmann::json& motion = run["motion"];
+  const json& motion = run["motion"];
   EXPECT_EQ(motion["judged_on"], "the cells of the designs");
   EXPECT_NEAR(motion["strain_energy_integral"].get<double>(), integral, 1e-12 * integral);
   EXPECT_NEAR(motion["scene_mesh_strain_energy_integral"].get<double>(), strain_integral(coarse),
               1e-12 * integral);
-  const nlohmann::json& heavy = run["results"][0];
+  const json& heavy = run["results"][0];
   const double amplitude = largest(on_cells.numbers("heavy.tip_deflection"));
   EXPECT_EQ(heavy["dynamic_amplitude"].get<double>(), amplitude);
   EXPECT_EQ(heavy["scene_mesh_amplitude"].get<double>(),
@@ -77,7 +73,7 @@ TEST(CellsRun, CyclesAndDesignsAreJudgedOnCells) {
 }
 
 /// The full plate, cut through by a gap.
-nlohmann::json analysed(const Scratch& scratch, double gap, std::string& said) {
+json analysed(const Scratch& scratch, double gap, std::string& said) {
   const double half = 0.5 * (0.56 - gap) / 2;  // of the length of a bar
   std::vector<Component> bars;
   for (const double centre : {half, 0.56 - half})
@@ -98,7 +94,7 @@ TEST(CellsRun, EnergiesThatAreApartAreAWarning) {
   for (const double gap : {0.0, 0.01}) {
     const Scratch scratch;
     std::string said;
-    const nlohmann::json run = analysed(scratch, gap, said);
+    const json run = analysed(scratch, gap, said);
     const double apart = run["results"][0]["load_difference"]["geometric"];
     const bool warned = said.find("bridge what is cut") != std::string::npos;
     EXPECT_EQ(warned, run["warnings"].dump().find("bridge what is cut") != std::string::npos);

@@ -3,9 +3,8 @@
 // and what damping cannot do is refused with one located message.
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "tests/cases/program.h"
+#include "tests/cases/run_json.h"
 
 namespace flexmorph::test {
 namespace {
@@ -54,8 +53,8 @@ void expect_dissipation(const std::string& folder, double missed) {
   for (size_t i = 1; i < lost.size(); ++i) EXPECT_GE(lost[i], lost[i - 1]);
   EXPECT_LE(std::abs(defect.back()), missed);
   EXPECT_LT(lost.back(), kinetic.front());
-  const auto json = nlohmann::json::parse(contents_of(folder + "/run.json"));
-  EXPECT_NEAR(json["motion"]["balance"]["energy.dissipated"].get<double>(), lost.back(),
+  const json written = run_json(folder);
+  EXPECT_NEAR(written["motion"]["balance"]["energy.dissipated"].get<double>(), lost.back(),
               1e-9 * lost.back());
 }
 
@@ -75,8 +74,7 @@ TEST(Damped, DesignWithFlowHasTheDissipatedWork) {
   // miss six times as much.
   expect_dissipation(damped, 2 * std::abs(column(free, "energy.defect").back()));
   EXPECT_TRUE(column(free, "energy.dissipated").empty());
-  EXPECT_FALSE(
-      nlohmann::json::parse(contents_of(free + "/run.json"))["motion"].contains("balance"));
+  EXPECT_FALSE(run_json(free)["motion"].contains("balance"));
 }
 
 TEST(Damped, EveryIntegratorCountsTheDissipatedWork) {

@@ -5,16 +5,14 @@
 
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "io/tables.h"
 #include "tests/cases/program.h"
+#include "tests/cases/run_json.h"
 
 namespace flexmorph::test {
 namespace {
-
-using nlohmann::json;
 
 struct Runs {
   json evaluated, optimized;  // run.json
@@ -36,7 +34,7 @@ Runs run_both(const Scratch& scratch, const std::string& name, const std::string
     const Ended ended = run(scratch, name, folder, all);
     EXPECT_TRUE(is_done(ended, folder));
     json& found = iterations == 0 ? out.evaluated : out.optimized;
-    found = json::parse(contents_of(folder + "/run.json"));
+    found = run_json(folder);
     EXPECT_EQ(found["status"] == "done", ended.code == 0) << found["status"];
     if (iterations == 0) out.folder = folder;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "tests/cases/program.h"
+#include "tests/cases/run_json.h"
 
 namespace flexmorph::test {
 namespace {
@@ -27,7 +27,7 @@ TEST(Expectations, ThatAreMissedAreSaid) {
   EXPECT_NE(ended.out.find(" warnings, 1 expectation missed"), std::string::npos) << ended.out;
   const std::string report = contents_of(folder + "/report.html");
   EXPECT_LT(report.find("MISSED"), report.find("<h2>Results"));
-  const nlohmann::json run = nlohmann::json::parse(contents_of(folder + "/run.json"));
+  const json run = run_json(folder);
   EXPECT_EQ(run["status"], "done, not usable");
   EXPECT_FALSE(run["expect"]["volume"]["holds"].get<bool>());
   EXPECT_TRUE(run["expect"]["plate.tip_deflection.largest"]["holds"].get<bool>());

@@ -5,35 +5,34 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "io/files.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"
+#include "tests/cases/run_json.h"
 
 namespace flexmorph::test {
 namespace {
 
 /// short_beam on 20 x 10 cells, 2000 kg when it is full.
-nlohmann::json run_beam(const Scratch& scratch, const std::string& folder, Words changes,
-                        int code = 0) {
+json run_beam(const Scratch& scratch, const std::string& folder, Words changes, int code = 0) {
   changes.insert(changes.begin(), {"design.cell=0.1", "design.min_thickness=0.1",
                                    "domain.density=1000.0", "design.max_volume="});
   const Ended ended = run(scratch, "short_beam", folder, changes);
   EXPECT_EQ(ended.code, code) << ended.err;
-  return nlohmann::json::parse(contents_of(folder + "/run.json"));
+  return run_json(folder);
 }
 
 /// Designs the lightest plate whose compliance is 80 J.
 void expect_lightest(const std::string& min_feature) {
   const Scratch scratch;
   const std::string folder = scratch / "out";
-  const nlohmann::json run =
+  const json run =
       run_beam(scratch, folder,
                {"design.minimize=mass", "design.max_compliance=80.0", "optimizer.max_iterations=60",
                 "design.cell=0.05", "design.min_thickness=0.05",
                 "design.min_feature=" + min_feature, "output.vtk=false"});
-  const nlohmann::json& body = run["results"][0];
+  const json& body = run["results"][0];
   // Of nothing but the widths of an outline on twenty cells, and what these fuse.
   for (const std::string warning : run["warnings"])
     EXPECT_TRUE(warning.find("'beam', its outline: ") != std::string::npos ||
@@ -71,12 +70,11 @@ TEST(GoalRun, VolumeUnderComplianceIsTheInverseOfComplianceUnderVolume) {
     changes.insert(changes.end(), mesh.begin(), mesh.end());
     const Ended ended = run(scratch, "short_beam", scratch / folder, changes);
     EXPECT_TRUE(is_done(ended, scratch / folder));
-    return nlohmann::json::parse(contents_of(scratch / (folder + "/run.json")))["results"][0];
+    return run_json(scratch / folder)["results"][0];
   };
   const double compliance = designed("stiff", {"expect="})["sharp_compliance"];
-  const nlohmann::json light =
-      designed("light", {"expect=", "design.max_volume=", "design.minimize=volume",
-                         "design.max_compliance=" + io::to_text(compliance)});
+  const json light = designed("light", {"expect=", "design.max_volume=", "design.minimize=volume",
+                                        "design.max_compliance=" + io::to_text(compliance)});
   EXPECT_LE(light["sharp_compliance"].get<double>(), (1 + 5e-3) * compliance);
   EXPECT_LE(light["sharp_volume"].get<double>(), 0.43);
 }
@@ -126,13 +124,12 @@ TEST(GoalRun, NamesWhatTheDesignDoesNotUse) {
 TEST(GoalRun, WithoutAStateNoneIsSolved) {
   const Scratch scratch;
   const std::string folder = scratch / "out";
-  const nlohmann::json run =
-      run_beam(scratch, folder,
-               {"design.minimize=volume", "optimizer.max_iterations=30", "output.sharp_every=0",
-                "output.vtk=false", "design.min_feature=0",
-                "design.constraint=[{response='mass', at_least=900.0}]"},
-               5);  // nothing asks it to join what is held and what is loaded
-  const nlohmann::json& body = run["results"][0];
+  const json run = run_beam(scratch, folder,
+                            {"design.minimize=volume", "optimizer.max_iterations=30",
+                             "output.sharp_every=0", "output.vtk=false", "design.min_feature=0",
+                             "design.constraint=[{response='mass', at_least=900.0}]"},
+                            5);  // nothing asks it to join what is held and what is loaded
+  const json& body = run["results"][0];
   EXPECT_NEAR(body["mass"].get<double>(), 900, 10);
   EXPECT_GT(body["compliance"].get<double>(), 0);
   // Of the design when it was done: blurred, sharp, and spread evenly.
@@ -144,7 +141,7 @@ TEST(GoalRun, WithoutAStateNoneIsSolved) {
 // Two limits that exclude each other make a design that is not usable.
 TEST(GoalRun, SaysWhatIsNotKept) {
   const Scratch scratch;
-  const nlohmann::json run =
+  const json run =
       run_beam(scratch, scratch / "out",
                {"design.minimize=volume", "optimizer.max_iterations=5",
                 "design.constraint=[{response='compliance', at_most=45.0}, {response='mass', "
@@ -165,12 +162,12 @@ TEST(GoalRun, SaysWhatNobodyCanUse) {
                          "design.start='" + start + "'", "optimizer.max_iterations=1", "expect="};
   const Ended ended = run(scratch, "short_beam", folder, changes);
   EXPECT_EQ(ended.code, 5);
-  const auto json = nlohmann::json::parse(contents_of(folder + "/run.json"));
-  EXPECT_EQ(json["status"], "done, not usable");
+  const json written = run_json(folder);
+  EXPECT_EQ(written["status"], "done, not usable");
   const std::string words = "no material joins load 'tip' to a support";
   EXPECT_NE(ended.err.find("flexmorph: not usable: body 'beam': " + words), std::string::npos)
       << ended.err;
-  const std::string counted = ", " + std::to_string(json["warnings"].size()) + " warnings: ";
+  const std::string counted = ", " + std::to_string(written["warnings"].size()) + " warnings: ";
   EXPECT_NE(ended.out.find("done, not usable: volume 0.0"), std::string::npos) << ended.out;
   EXPECT_NE(ended.out.find(counted + folder), std::string::npos) << ended.out;
   const std::string report = contents_of(folder + "/report.html");

@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "cases/assembly/build.h"
@@ -11,6 +10,7 @@
 #include "cases/run/run.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"
+#include "tests/cases/run_json.h"
 
 namespace flexmorph::test {
 namespace {
@@ -302,8 +302,8 @@ TEST(MechanismRun, PlatformShowsItsDesignsAndItsError) {
   // The platform starts with 0.5 θ'' = 3π m/s² upwards: 2 kg on the two bearings.
   EXPECT_NEAR(motion.numbers("at_C.force_y")[0] + motion.numbers("at_D.force_y")[0], -6 * kPi,
               0.02 * 6 * kPi);
-  const auto json = nlohmann::json::parse(contents_of(folder + "/run.json"));
-  const auto& error = json["motion"]["platform_error"];
+  const json written = run_json(folder);
+  const auto& error = written["motion"]["platform_error"];
   EXPECT_EQ(error["body"], "platform");
   EXPECT_EQ(error["delta_y"].get<double>(), largest);
   EXPECT_EQ(error["delta_y_time"].get<double>(), when);

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "io/tables.h"
 #include "tests/cases/program.h"
+#include "tests/cases/run_json.h"
 
 namespace flexmorph::test {
 namespace {
@@ -379,9 +379,9 @@ TEST(NearlySingular, WarnsWithTimeAndJoints) {
                         {"", kPendulum}}),
       scratch);
   ASSERT_EQ(told.code, 0) << told.err;
-  const auto json = nlohmann::json::parse(contents_of(scratch / "out/run.json"));
-  ASSERT_EQ(json["warnings"].size(), 1u);
-  const std::string warning = json["warnings"][0];
+  const json written = run_json(scratch / "out");
+  ASSERT_EQ(written["warnings"].size(), 1u);
+  const std::string warning = written["warnings"][0];
   EXPECT_NEAR(time_in(warning), 0.05, 1e-12);
   // All pins lie on a line, along which the links may be under any tension.
   for (const char* pin : {"'A'", "'B'", "'C'", "'D'"})
@@ -393,7 +393,7 @@ TEST(GoodMechanism, RunsWithoutWarnings) {
   const Scratch scratch;
   const Told told = run_text(kFourBar, scratch);
   ASSERT_EQ(told.code, 0) << told.err;
-  EXPECT_TRUE(nlohmann::json::parse(contents_of(scratch / "out/run.json"))["warnings"].empty());
+  EXPECT_TRUE(run_json(scratch / "out")["warnings"].empty());
 }
 
 }  // namespace

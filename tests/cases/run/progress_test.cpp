@@ -3,9 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "tests/cases/program.h"
+#include "tests/cases/run_json.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -49,7 +48,7 @@ TEST(ProgressLines, SayPhaseAndHowManyOfHowMany) {
   // Of two stages together.
   EXPECT_TRUE(contains(ended.out, "design of plate, cycle 1: iteration 1 of at most 6"));
   EXPECT_LT(test::lines_of(ended.out).size(), 20u);  // no terminal: a line now and then
-  const json run = json::parse(contents_of(out + "/run.json"));
+  const json run = test::run_json(out);
   EXPECT_FALSE(run.contains("failure"));
   EXPECT_EQ(run["results"][0]["scaled_objective"],
             "natural logarithm of the summed compliance [J]");
@@ -75,7 +74,7 @@ TEST(Failures, AreDataInRunJson) {
     words.insert(words.end(), row.words.begin() + 1, row.words.end());
     const Ended ended = test::flexmorph(scratch, words);
     ASSERT_EQ(ended.code, 3) << ended.out << ended.err;
-    const json run = json::parse(contents_of(out + "/run.json"));
+    const json run = test::run_json(out);
     ASSERT_TRUE(run.contains("failure"));
     const json& failure = run["failure"];
     EXPECT_EQ(failure["phase"], row.phase);

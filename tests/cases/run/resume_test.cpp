@@ -6,6 +6,7 @@
 
 #include "io/files.h"
 #include "tests/cases/run/resumed.h"
+#include "tests/cases/run_json.h"
 
 namespace flexmorph::test {
 namespace {
@@ -102,7 +103,7 @@ TEST(Resume, HasEveryRowOnceWithoutItsLog) {
   const std::string whole = scratch / "whole", folder = scratch / "out";
   const int code = flexmorph(scratch, words_of(FLEXMORPH_SHORT_CASE, whole, {})).code;
   fs::copy(whole, folder, fs::copy_options::recursive);
-  json run = json::parse(contents_of(folder + "/run.json"));
+  json run = run_json(folder);
   run["status"] = "running";
   io::write_file(folder + "/run.json", run.dump());
   EXPECT_EQ(flexmorph(scratch, words_of(FLEXMORPH_SHORT_CASE, folder, {}, true)).code, code);

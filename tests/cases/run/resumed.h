@@ -5,18 +5,17 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "geometry/base.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"
+#include "tests/cases/run_json.h"
 
 /// Runs that are disturbed and resumed, beside those that are not.
 namespace flexmorph::test {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 /// Files of a folder by their path in it: without times, and what says who wrote them.
 inline std::map<std::string, std::string> lasting(const std::string& folder) {

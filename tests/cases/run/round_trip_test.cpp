@@ -2,13 +2,12 @@
 // that it computed, bit for bit.
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "cases/check/ready.h"
 #include "cases/output/report.h"
 #include "cases/run/motion_run.h"
 #include "io/drawings/exports.h"
 #include "tests/cases/program.h"
+#include "tests/cases/run_json.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -23,7 +22,7 @@ struct Case {
   io::CsvTable table(const std::string& name) const {
     return io::read_csv(folder.path() + "/" + name);
   }
-  json run_json() const { return json::parse(contents_of(folder.path() + "/run.json")); }
+  json run_json() const { return test::run_json(folder.path()); }
 
   io::CaseFile file;
   Scene scene;

@@ -2,18 +2,17 @@
 // lead out of them. What a user has on the disk stays, and what a run wrote is whole.
 #include <csignal>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "cases/study/study.h"
 #include "geometry/sanitizers.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"
+#include "tests/cases/run_json.h"
 
 namespace flexmorph::test {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
@@ -34,8 +33,6 @@ const char* const kLong = "1e-6";  // for who is killed
 bool moves(const ChildProgram& run, const std::string& folder) {
   return eventually(run, [&] { return lines_of(contents_of(folder + "/motion.csv")).size() > 3; });
 }
-
-json run_of(const std::string& folder) { return json::parse(contents_of(folder + "/run.json")); }
 
 TEST(RunFolders, BelongToTheRunThatLives) {
   const Scratch scratch;
@@ -58,14 +55,14 @@ TEST(RunFolders, BelongToTheRunThatLives) {
   child.end();
 
   // Killed, it holds nothing up: every file is whole, and makes room.
-  EXPECT_EQ(run_of(folder)["status"], "running");
+  EXPECT_EQ(run_json(folder)["status"], "running");
   const size_t columns = io::read_csv(folder + "/motion.csv").columns.size();
   EXPECT_GT(columns, 5u);
   const Ended ended = flexmorph(scratch, {"run", quick, "-o", folder});
   EXPECT_EQ(ended.code, 0) << ended.err;
   EXPECT_TRUE(contains(ended.out, "the run that was there is now " + folder + ".previous"));
-  EXPECT_EQ(run_of(folder)["status"], "done");
-  EXPECT_EQ(run_of(folder + ".previous")["status"], "running");
+  EXPECT_EQ(run_json(folder)["status"], "done");
+  EXPECT_EQ(run_json(folder + ".previous")["status"], "running");
 }
 
 // Tables of paths grow as those of motions do, and who reads a run tells the living from the dead.
@@ -102,7 +99,7 @@ TEST(RunFolders, AreNeverDestroyed) {
     scratch.write("out/design_notes.txt", "mine, " + std::to_string(k));
   }
   for (const char* ending : {"", ".previous", ".previous.2"}) {
-    EXPECT_EQ(run_of(folder + ending)["status"], "done");
+    EXPECT_EQ(run_json(folder + ending)["status"], "done");
     EXPECT_TRUE(contents_of(folder + ending + "/design_notes.txt").starts_with("mine, "));
   }
 }
@@ -156,7 +153,7 @@ TEST(RunFolders, AreFinishedWhenTheTerminalCloses) {
     ASSERT_TRUE(moves(child, folder));
     child.send(signal);
     EXPECT_EQ(child.end().code, 4);
-    EXPECT_EQ(run_of(folder)["status"], "interrupted");
+    EXPECT_EQ(run_json(folder)["status"], "interrupted");
     EXPECT_TRUE(fs::exists(folder + "/report.html"));
   }
 }
@@ -169,7 +166,7 @@ TEST(RunFolders, AreFinishedWhenNobodyListens) {
       std::string(FLEXMORPH_PROGRAM) + " run " + path + " -o " + folder + " | true";
   // The shell waits for both.
   EXPECT_EQ(testing::run_shell(command).code, 0);
-  EXPECT_EQ(run_of(folder)["status"], "done");
+  EXPECT_EQ(run_json(folder)["status"], "done");
 }
 
 // Files of 20 kB at most, as on a disk that fills up: the table ends with a whole row.
@@ -187,7 +184,7 @@ TEST(RunFolders, OnAFullDiskHoldWholeRows) {
   EXPECT_GT(text.size(), 15000u);
   EXPECT_EQ(text.back(), '\n');
   EXPECT_GT(io::read_csv(folder + "/motion.csv").n_rows(), 50u);  // refuses ragged ones
-  EXPECT_EQ(run_of(folder)["status"], "failed");
+  EXPECT_EQ(run_json(folder)["status"], "failed");
 }
 
 TEST(RunFolders, ThatAreRemovedEndTheRun) {

@@ -9,11 +9,11 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "io/tables.h"
 #include "tests/cases/program.h"
+#include "tests/cases/run_json.h"
 
 namespace flexmorph::test {
 namespace {
@@ -31,10 +31,6 @@ Table read_csv(const std::string& path) {
     rows.push_back(row);
   }
   return rows;
-}
-
-nlohmann::json run_json(const std::string& folder) {
-  return nlohmann::json::parse(contents_of(folder + "/run.json"));
 }
 
 int count(const std::string& text, const std::string& part) {
@@ -77,7 +73,7 @@ void expect_motion(const Table& motion) {
   EXPECT_NEAR(std::stod(motion.back()[2]), 0.56, 1e-12);
 }
 
-void expect_run_json(const nlohmann::json& run) {
+void expect_run_json(const json& run) {
   for (const char* key : {"version", "libraries", "blas_kernel", "threads", "status",
                           "seconds_wall", "seconds_cpu", "peak_memory_bytes", "warnings"})
     EXPECT_TRUE(run.contains(key)) << key;
@@ -92,7 +88,7 @@ void expect_run_json(const nlohmann::json& run) {
   }
   EXPECT_LE(phases, run["seconds_cpu"].get<double>());
   ASSERT_EQ(run["results"].size(), 1u);
-  const nlohmann::json& plate = run["results"][0];
+  const json& plate = run["results"][0];
   for (const char* key : {"compliance", "volume", "sharp_compliance", "sharp_volume",
                           "uniform_compliance", "connected", "min_feature", "dynamic_amplitude",
                           "uniform_dynamic_amplitude", "cycles", "iterations", "state_solves"})
@@ -113,7 +109,7 @@ TEST(Run, WritesItsFolder) {
   ASSERT_EQ(ended.code, kTooFew) << ended.err;
   // Six iterations leave a design that is none; which warnings it gets is a matter of chance.
   EXPECT_EQ(ended.err.rfind("flexmorph: not usable: body 'plate': ", 0), 0u) << ended.err;
-  const auto told = nlohmann::json::parse(contents_of(folder + "/run.json")).at("warnings");
+  const auto told = run_json(folder).at("warnings");
   for (const auto& each : told)
     EXPECT_NE(ended.err.find(each.get<std::string>()), std::string::npos) << each;
   EXPECT_EQ(lines_of(ended.err).size(), told.size());
@@ -175,8 +171,8 @@ TEST(Run, ComparesCyclesByTheDeflectionOfATip) {
       io::read_csv(folder + "/motion.csv").numbers("heavy.tip_deflection");
   const auto [least, largest] = std::minmax_element(tip.begin(), tip.end());
   bool found = false;
-  const nlohmann::json run = run_json(folder);
-  for (const nlohmann::json& cycle : run["cycles"]) {
+  const json run = run_json(folder);
+  for (const json& cycle : run["cycles"]) {
     if (!cycle["best"].get<bool>()) continue;
     found = true;
     EXPECT_NEAR(cycle["measure"].get<double>(), *largest - *least, 1e-12 * (*largest - *least));
@@ -201,13 +197,13 @@ TEST(Run, KeepsTheBestOfItsCycles) {
   ASSERT_EQ(cycles.size(), 7u);
   EXPECT_EQ(cycles[0], (Words{"cycle", "body", "compliance", "sharp_compliance", "design_change",
                               "measure", "best"}));
-  const nlohmann::json run = run_json(folder);
+  const json run = run_json(folder);
   ASSERT_EQ(run["cycles"].size(), 3u);
   size_t best = 0;
   for (size_t r = 1; r < cycles.size(); ++r) {
     const Words& row = cycles[r];
-    const nlohmann::json& cycle = run["cycles"][(r - 1) / 2];
-    const nlohmann::json& body = cycle["bodies"][(r - 1) % 2];
+    const json& cycle = run["cycles"][(r - 1) / 2];
+    const json& body = cycle["bodies"][(r - 1) % 2];
     EXPECT_EQ(row[0], std::to_string(1 + (r - 1) / 2));
     EXPECT_EQ(row[1], r % 2 == 1 ? "heavy" : "light");
     EXPECT_EQ(row[1], body["body"].get<std::string>());
@@ -307,7 +303,7 @@ TEST(Run, AFailureKeepsWhatCameBefore) {
                                   "body.elements=[5, 1]", "body.flow.max_length=0.3"}));
   EXPECT_EQ(ended.code, 3) << ended.out;
   EXPECT_TRUE(starts(ended.err, "flexmorph: "));
-  const nlohmann::json run = run_json(folder);
+  const json run = run_json(folder);
   EXPECT_EQ(run["status"], "failed");
   const std::string message = run["message"];
   EXPECT_TRUE(contains(message, "step "));
@@ -335,7 +331,7 @@ TEST(Run, AnInterruptionKeepsWhatWasComputed) {
   child.send(SIGINT);
   const Ended ended = child.end();
   EXPECT_EQ(ended.code, 4) << ended.err;
-  const nlohmann::json run = run_json(folder);
+  const json run = run_json(folder);
   EXPECT_EQ(run["status"], "interrupted");
   const Table history = read_csv(folder + "/history.csv");
   expect_history(history);

@@ -2,19 +2,15 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "io/tables.h"
 #include "tests/cases/program.h"
+#include "tests/cases/run_json.h"
 
 namespace flexmorph::test {
 namespace {
 
 namespace fs = std::filesystem;
-
-nlohmann::json run_json(const std::string& folder) {
-  return nlohmann::json::parse(contents_of(folder + "/run.json"));
-}
 
 size_t frames(const std::string& folder) {
   const std::string index = contents_of(folder + "/motion/motion.pvd");
@@ -100,10 +96,10 @@ TEST(SpaceRun, CantileverRollsUp) {
   EXPECT_EQ(frames(folder), 21u);
   EXPECT_TRUE(fs::is_regular_file(folder + "/plots/path.svg"));
   EXPECT_TRUE(fs::is_regular_file(folder + "/plots/shapes.svg"));
-  const nlohmann::json json = run_json(folder);
-  EXPECT_TRUE(json["static"]["completed"].get<bool>());
-  EXPECT_NEAR(json["static"]["load_factor"].get<double>(), 1, 1e-12);
-  EXPECT_TRUE(json["expect"]["strip.tip_ux"]["holds"].get<bool>());
+  const json written = run_json(folder);
+  EXPECT_TRUE(written["static"]["completed"].get<bool>());
+  EXPECT_NEAR(written["static"]["load_factor"].get<double>(), 1, 1e-12);
+  EXPECT_TRUE(written["expect"]["strip.tip_ux"]["holds"].get<bool>());
 }
 
 TEST(SpaceRun, ArcLengthGoesTheSameWay) {
@@ -164,10 +160,10 @@ TEST(SpaceRun, AFreeRootGetsNewLines) {
   const io::CsvTable motion = io::read_csv(folder + "/motion.csv");
   // Free fall, but for the sag.
   EXPECT_NEAR(motion.numbers("strip.line_0").back() / (-0.5 * 4.0 * 0.2 * 0.2), 1, 0.03);
-  const nlohmann::json json = run_json(folder);
-  ASSERT_EQ(json["motion"]["events"].size(), 1u);
-  EXPECT_EQ(json["motion"]["events"][0]["change"], "insertion");
-  EXPECT_LT(json["motion"]["energy_defect"].get<double>(), 1e-3);
+  const json written = run_json(folder);
+  ASSERT_EQ(written["motion"]["events"].size(), 1u);
+  EXPECT_EQ(written["motion"]["events"][0]["change"], "insertion");
+  EXPECT_LT(written["motion"]["energy_defect"].get<double>(), 1e-3);
 }
 
 // A line that meets its neighbour ends the run with words, and what came before is kept.
@@ -211,9 +207,9 @@ TEST(SpaceRun, PlateDeploysAndGetsNewLines) {
              kinetic = motion.numbers("energy.kinetic"), strain = motion.numbers("energy.strain");
   for (size_t i = 0; i < time.size(); ++i)
     EXPECT_LT(std::abs(defect[i]), time[i] < 0.1005 ? 1e-5 * kinetic[i] : 0.01 * strain[i]);
-  const nlohmann::json json = run_json(folder);
-  EXPECT_LT(json["motion"]["energy_defect"].get<double>(), 2e-3);
-  const nlohmann::json& events = json["motion"]["events"];
+  const json written = run_json(folder);
+  EXPECT_LT(written["motion"]["energy_defect"].get<double>(), 2e-3);
+  const json& events = written["motion"]["events"];
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0]["change"], "insertion");
   EXPECT_NEAR(events[0]["time"].get<double>(), 0.1, 1e-12);

@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "io/tables.h"
 #include "tests/cases/program.h"
+#include "tests/cases/run_json.h"
 
 namespace flexmorph::test {
 namespace {
@@ -51,10 +51,6 @@ max_iterations = 0
 )";
 constexpr double kModulus = 2e11, kSection = 1e-3;  // [Pa], [m²]
 
-nlohmann::json json_in(const std::string& folder) {
-  return nlohmann::json::parse(contents_of(folder + "/run.json"));
-}
-
 // Strain energy F² L / (2 E A), displacement F L / (E A), stress F / A. The loads' edge lies beside
 // the void for one half: the whole force acts on the other one.
 TEST(StaticRun, ABarIsStretchedAsItsClosedFormSays) {
@@ -62,11 +58,11 @@ TEST(StaticRun, ABarIsStretchedAsItsClosedFormSays) {
   const std::string folder = scratch / "out";
   const Ended ended = run(scratch, scratch.write("bar.toml", kBar), folder);
   EXPECT_EQ(ended.code, 0) << ended.err;
-  const nlohmann::json result = json_in(folder)["results"][0];
+  const json result = run_json(folder)["results"][0];
   ASSERT_EQ(result["load_cases"].size(), 2u);
   const io::CsvTable table = io::read_csv(folder + "/loads/bar.csv");
   for (const size_t l : {0u, 1u}) {
-    const nlohmann::json& load = result["load_cases"][l];
+    const json& load = result["load_cases"][l];
     const double force = l == 0 ? 1000 : 2000, energy = force * force / (2 * kModulus * kSection),
                  displacement = force / (kModulus * kSection), stress = force / kSection;
     EXPECT_EQ(load["load"], l == 0 ? "pull" : "press");
@@ -98,7 +94,7 @@ TEST(StaticRun, NumbersOfCellsAreSaidToBe) {
   EXPECT_EQ(ended.code, 5) << ended.err;
   EXPECT_NE(ended.err.find("no material joins"), std::string::npos) << ended.err;
   EXPECT_NE(ended.err.find("100 % of load 'pull' acts on void"), std::string::npos) << ended.err;
-  for (const nlohmann::json& load : json_in(folder)["results"][0]["load_cases"]) {
+  for (const json& load : run_json(folder)["results"][0]["load_cases"]) {
     EXPECT_EQ(load["source"], "cells");
     EXPECT_EQ(load["strain_energy"].get<double>(), 0.5 * load["compliance"].get<double>());
     EXPECT_GT(load["largest_stress"].get<double>(), 0);

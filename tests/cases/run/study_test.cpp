@@ -6,7 +6,6 @@
 #include <cmath>
 #include <csignal>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "cases/study/statistics.h"
 #include "cases/study/sweep.h"
@@ -15,6 +14,7 @@
 #include "io/output_folder.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"
+#include "tests/cases/run_json.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -300,7 +300,7 @@ TEST(Compare, RunsTheOptimizerOfTheCaseAsARunDoes) {
   EXPECT_EQ(contents_of(compared + "/mma_1/components.csv"),
             contents_of(folder + "/components.csv"));
   const auto verdict_of = [](const std::string& run) {
-    return nlohmann::json::parse(contents_of(run + "/run.json"))["results"][0]["verdict"];
+    return test::run_json(run)["results"][0]["verdict"];
   };
   EXPECT_EQ(verdict_of(compared + "/mma_1"), verdict_of(folder));
 }
