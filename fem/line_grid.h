@@ -18,9 +18,12 @@ struct MaterialLine {
 ///
 /// Nodes are numbered column by column from the root, n fastest; the vector unknowns of a node are
 /// value, derivative by m, by n and, when per_node() is 4, the mixed one.
-class LineGrid : public Element {
+class LineGrid : public Element, public ShapeElement, public MovingElement {
  public:
   std::unique_ptr<Element> clone() const final { return copy(); }
+  // Of the interfaces directly: an element that is known to be a grid needs no question.
+  using MovingElement::move_to, MovingElement::moving;
+  using ShapeElement::edge, ShapeElement::locate, ShapeElement::nodes, ShapeElement::tabulate;
 
   virtual int per_node() const = 0;
   virtual const std::vector<MaterialLine>& lines_m() const = 0;
@@ -50,6 +53,10 @@ class LineGrid : public Element {
   virtual std::unique_ptr<LineGrid> frozen() const = 0;
   /// The same elements on other m-lines, which increase at t; free lines start at their values.
   virtual std::unique_ptr<LineGrid> with_lines_m(std::vector<MaterialLine> m, double t) const = 0;
+
+ protected:
+  template <class Grid>
+  explicit LineGrid(Kind<Grid> kind) : Element(kind) {}
 };
 
 }  // namespace flexmorph::fem

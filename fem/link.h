@@ -9,13 +9,15 @@
 
 namespace flexmorph::fem {
 
-/// The seam of forces between bodies: springs, dampers, motors, loads on markers. What acts inside
-/// one body is a Term.
+/// A force element between bodies: springs, dampers, motors, loads on markers. What acts inside one
+/// body is a Term. What a force element can do besides it says by deriving from the interfaces
+/// below, too; the model asks once, when it is added (model/model_link.h).
 class Link {
  public:
   virtual ~Link() = default;
-  /// A copy that shares nothing with this one; to be bound before it is evaluated.
+  /// Returns a copy that shares nothing with this one; it is to be bound before it is evaluated.
   virtual std::unique_ptr<Link> clone() const = 0;
+  /// Returns what messages call it.
   virtual std::string name() const = 0;
 
   /// Looks up the unknowns it acts on, by the names of bodies; called again after every change of a
@@ -26,35 +28,46 @@ class Link {
   /// @throws Error (numerical) where it is not defined.
   virtual void add_force(const State& x, VectorXd& out) const = 0;
 
-  /// Appends the places of add_tangent(), in its order; the same between two bind().
+  /// Appends the places of add_tangent(), in its order; they stay between two bind().
   virtual void add_pattern(std::vector<Eigen::Triplet<double>>& out) const = 0;
   /// Appends w.q ∂f/∂q + w.v ∂f/∂v; places are unknowns of the model.
   virtual void add_tangent(const State& x, const Weights& w,
                            std::vector<Eigen::Triplet<double>>& out) const = 0;
 
-  /// As Term::add_mean_force() and its tangent, at the places of add_tangent().
-  /// @throws Error (input) when the link has none.
-  virtual void add_mean_force(const State& mean, const VectorXd& q0, const VectorXd& q1,
-                              VectorXd& out) const;
-  virtual void add_mean_tangent(const State& mean, const VectorXd& q0, const VectorXd& q1,
-                                const Weights& w, std::vector<Eigen::Triplet<double>>& out) const;
-
-  /// Energies [J], zero where it has none: stored in it, and of loads that are conservative.
-  virtual double strain_energy(const State&) const { return 0; }
-  virtual double potential_energy(const State&) const { return 0; }
-  /// Power that enters the model through the link besides what its energies give and take [W]:
-  /// negative in a damper, that of a motor, and that of what shifts a marker along its axis.
+  /// Returns its energies [J], zero where it has none: strain energy stored in it, and the
+  /// potential of loads that are conservative.
+  virtual Energies energies(const State&) const { return {}; }
+  /// Returns the power that enters the model through it besides what its energies give and take
+  /// [W]: negative in a damper, that of a motor, and that of what shifts a marker along its axis.
   virtual double power(const State&) const { return 0; }
+};
 
-  /// Does it follow an angle over whole turns? Then State::turned has a place for it.
-  virtual bool counts_turns() const { return false; }
-  /// That angle at a state, less than half a turn from what it was after the last accepted step.
-  virtual double turned(const State&) const { return 0; }
+/// A force element with a mean force of a step that keeps the energy, see MeanForceTerm.
+class MeanForceLink {
+ public:
+  virtual ~MeanForceLink() = default;
+  /// Adds the mean force of a step from q0 to q1 (n_dofs).
+  virtual void add_mean_force(const State& mean, const VectorXd& q0, const VectorXd& q1,
+                              VectorXd& out) const = 0;
+  /// Appends its derivative, at the places of Link::add_tangent().
+  virtual void add_mean_tangent(const State& mean, const VectorXd& q0, const VectorXd& q1,
+                                const Weights& w,
+                                std::vector<Eigen::Triplet<double>>& out) const = 0;
+};
+/// Says that a force element has no mean force. @throws Error (input)
+[[noreturn]] void refuse_mean_force(const std::string& link);
+
+/// A force element that may follow an angle over whole turns.
+class TurningLink {
+ public:
+  virtual ~TurningLink() = default;
+  /// Tells whether it does; then State::turned has a place for the angle.
+  virtual bool counts_turns() const { return true; }
+  /// Returns that angle at a state, less than half a turn from what it was after the last accepted
+  /// step [rad].
+  virtual double turned(const State& x) const = 0;
   /// @param place  in State::turned; said by the model that it is part of
   void set_place(int place) { place_ = place; }
-
-  /// As Term::scale_load().
-  virtual void scale_load(double /*factor*/) {}
 
  protected:
   int place() const { return place_; }

@@ -9,7 +9,7 @@ namespace flexmorph::fem {
 ///
 /// A load that keeps its size and direction has a potential, -F · r, among its energies(). One that
 /// varies in time or turns with the body has none: what it does to the body is power that enters.
-class LoadTerm : public Term {
+class LoadTerm : public Term, public ScaledLoad {
  public:
   /// Its components at a time; said before prepare().
   void load_to(double t) { law_.to(t); }

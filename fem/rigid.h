@@ -8,9 +8,9 @@ namespace flexmorph::fem {
 
 /// What a planar rigid body is made of.
 struct RigidSection {
-  double mass = 1;     ///< [kg]
+  double mass = 0;     ///< [kg], to be positive
   Vec2 center{0, 0};   ///< (X, Y) of the centre of mass in the body's axes [m]
-  double inertia = 1;  ///< about the centre of mass [kg m²]
+  double inertia = 0;  ///< about the centre of mass [kg m²], to be positive
 };
 
 /// What terms that vary in time ask the elements of a rigid body.

@@ -16,6 +16,9 @@ struct Local {
   LocalRows q, v, a;
 };
 
+/// Returns the unknowns of one of the eight elements of a batch.
+Local local_of(const Batch& x, int lane);
+
 /// Unknowns of one element over a step of a mid-point scheme.
 struct LocalStep {
   LocalRows start, end;  ///< q at both ends
@@ -51,19 +54,25 @@ struct LineEnergy {
   }
 };
 
-/// The seam of virtual work: one physical effect of one body.
+/// A term of virtual work: one physical effect of one body.
 ///
 /// A term keeps what it needs per element (invariants, mass matrices), refreshed by prepare() for
 /// the elements that changed, so that evaluating costs the same for uniform and for designed
 /// material.
+///
+/// What a term can do besides these functions it says by deriving from the interfaces below, too
+/// (BatchTerm, MeanForceTerm, ...). A body asks once, when the term is added (model/body_term.h).
 ///
 /// Const functions are called for different elements by several threads at once: work space is on
 /// the stack or per thread.
 class Term {
  public:
   virtual ~Term() = default;
-  /// A copy that shares nothing that changes with this one; to be prepared before it is evaluated.
+  /// Returns a copy that shares nothing that changes with this term; it is to be prepared before it
+  /// is evaluated.
   virtual std::unique_ptr<Term> clone() const = 0;
+  /// Returns what messages call the term.
+  virtual std::string name() const { return "without a name"; }
 
   /// Refreshes what depends on mesh, material and time: of all elements, or only of those whose
   /// shape moves.
@@ -76,68 +85,99 @@ class Term {
   virtual void add_tangent(int e, const Local& x, const Weights& w,
                            LocalTangent& tangent) const = 0;
 
-  /// The same for eight elements side by side; by the functions above, element by element, unless
-  /// a term knows better.
-  /// @param force    (n_shapes dim), entries dim k + c
-  virtual void add_forces(const Batch& x, Lanes* force) const;
-  /// @param tangent  (n_shapes dim)², by columns
-  virtual void add_tangents(const Batch& x, const Weights& w, Lanes* tangent) const;
-
-  /// Adds the mean force of a step that keeps the energy (a discrete gradient): F̄ · (end - start)
-  /// is the difference of the term's energy over the step, translations and rotations do no work on
-  /// F̄, and F̄ is the force at the mean state but for terms of second order in the step. A term that
-  /// is linear in (q, v, a) gives its force at the mean state; GramGradient serves a term whose
-  /// energy is not quadratic.
-  /// @throws Error (input) when the term has none.
-  virtual void add_mean_force(int e, const LocalStep& x, LocalRows& force) const;
-
-  /// Adds the derivative of the mean force by an unknown that moves the mean state by w (so the end
-  /// by 2 w.q, while the start stands).
-  virtual void add_mean_tangent(int e, const LocalStep& x, const Weights& w,
-                                LocalTangent& tangent) const;
-
-  /// Said by messages.
-  virtual std::string name() const { return "without a name"; }
-
-  /// Multiplies the load of a term that is one (1 until the first call): its force is proportional
-  /// to the factor. Nothing in terms that are no loads.
-  virtual void scale_load(double /*factor*/) {}
-
-  /// The same where lines around the element are unknowns, see Element::free_sides(): forces on
-  /// them too. Lines are where the last prepare() found them.
-  /// @throws Error (input) when the term does not know free lines.
-  virtual void add_free_force(int e, const Local& x, FreeForce& force) const;
-  virtual void add_free_tangent(int e, const Local& x, const Weights& w,
-                                FreeTangent& tangent) const;
-
-  /// Adds ψ · ∂f/∂κ_c by the factors κ_c of all cells of the body, f the force of one element as
-  /// add_force() adds it. Nothing where a term does not see factors. Only called where there are
-  /// some, for elements without free lines; lines are where the last prepare() found them.
-  /// @param psi  (n_shapes x dim)
-  virtual void add_factor_slopes(int /*e*/, const Local& /*x*/, const LocalRows& /*psi*/,
-                                 FactorSlopes& /*out*/) const {}
-  /// Adds weight ∂U/∂κ_c, U the strain energy of one element.
-  virtual void add_energy_slopes(int /*e*/, const Local& /*x*/, double /*weight*/,
-                                 FactorSlopes& /*out*/) const {}
-  /// Is its force the gradient of its strain energy by the unknowns, and nothing else?
-  virtual bool is_elastic() const { return false; }
-
-  /// Energies of one element [J]; zero where a term has none.
+  /// Returns the energies of one element [J]; zero where a term has none.
   virtual Energies energies(int, const Local&) const { return {}; }
   double kinetic_energy(int e, const Local& x) const { return energies(e, x).kinetic; }
   double strain_energy(int e, const Local& x) const { return energies(e, x).strain; }
   double potential_energy(int e, const Local& x) const { return energies(e, x).potential; }
 
-  /// Power of one element that the term turns into heat, which nobody keeps [W]; not negative.
+  /// Returns the power of one element that the term turns into heat, which no energy keeps [W]; it
+  /// is not negative.
   virtual double dissipation(int, const Local&) const { return 0; }
 
-  /// Linear momentum of one element [kg m/s], of dim entries; zero where the term has none.
+  /// Returns the linear momentum of one element [kg m/s], of dim entries; zero where the term has
+  /// none.
   virtual Vec3 momentum(int, const Local&) const { return Vec3::Zero(); }
+};
 
-  /// Power of the term when material flows through a mesh whose unknowns stand still: the term's
-  /// force per area times ∂r/∂t at fixed unknowns and fixed material point, integrated [W].
-  /// Only called for elements whose lines move.
-  virtual double flow_power(int, const Local&) const { return 0; }
+/// A term that evaluates eight elements side by side. Other terms are evaluated element by element.
+class BatchTerm {
+ public:
+  virtual ~BatchTerm() = default;
+  /// Adds the forces of Term::add_force(). @param force  (n_shapes dim), entries dim k + c
+  virtual void add_forces(const Batch& x, Lanes* force) const = 0;
+  /// Adds the tangents of Term::add_tangent(). @param tangent  (n_shapes dim)², by columns
+  virtual void add_tangents(const Batch& x, const Weights& w, Lanes* tangent) const = 0;
+};
+
+/// A term with a mean force of a step that keeps the energy (a discrete gradient): F̄ · (end -
+/// start) is the difference of the term's energy over the step, translations and rotations do no
+/// work on F̄, and F̄ is the force at the mean state but for terms of second order in the step.
+/// GramGradient serves a term whose energy is not quadratic.
+class MeanForceTerm {
+ public:
+  virtual ~MeanForceTerm() = default;
+  /// Adds the mean force of one element (n_shapes x dim).
+  virtual void add_mean_force(int e, const LocalStep& x, LocalRows& force) const = 0;
+  /// Adds the derivative of the mean force by an unknown that moves the mean state by w (so the end
+  /// by 2 w.q, while the start stands).
+  virtual void add_mean_tangent(int e, const LocalStep& x, const Weights& w,
+                                LocalTangent& tangent) const = 0;
+};
+
+/// The mean force of a term T that is linear in (q, v, a): its force at the mean state.
+template <class T>
+class LinearMeanForce : public MeanForceTerm {
+ public:
+  void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override {
+    static_cast<const T&>(*this).add_force(e, x.mean, force);
+  }
+  void add_mean_tangent(int e, const LocalStep& x, const Weights& w,
+                        LocalTangent& tangent) const override {
+    static_cast<const T&>(*this).add_tangent(e, x.mean, w, tangent);
+  }
+};
+
+/// A term that also gives forces on material lines that are unknowns, see Element::free_sides().
+/// Lines are where the last Term::prepare() found them.
+class FreeLineTerm {
+ public:
+  virtual ~FreeLineTerm() = default;
+  /// Adds the forces on the shape unknowns and on the lines of one element.
+  virtual void add_free_force(int e, const Local& x, FreeForce& force) const = 0;
+  /// Adds their derivatives, weighted as in Term::add_tangent().
+  virtual void add_free_tangent(int e, const Local& x, const Weights& w,
+                                FreeTangent& tangent) const = 0;
+};
+
+/// A term whose force depends on the scale factors of a design.
+class DesignedTerm {
+ public:
+  virtual ~DesignedTerm() = default;
+  /// Adds ψ · ∂f/∂κ_c by the factors κ_c of all cells of the body, f the force of one element as
+  /// Term::add_force() adds it. It is called only where the body has factors, for elements without
+  /// free lines; lines are where the last Term::prepare() found them.
+  /// @param psi  (n_shapes x dim)
+  virtual void add_factor_slopes(int e, const Local& x, const LocalRows& psi,
+                                 FactorSlopes& out) const = 0;
+};
+
+/// A term whose force is the gradient of its strain energy U by the unknowns, and nothing else.
+class ElasticEnergy {
+ public:
+  virtual ~ElasticEnergy() = default;
+  /// Adds weight ∂U/∂κ_c by the factors κ_c of all cells of the body.
+  virtual void add_energy_slopes(int e, const Local& x, double weight, FactorSlopes& out) const = 0;
+};
+
+/// A term with power where material flows through the mesh. Terms without this interface have none.
+class FlowTerm {
+ public:
+  virtual ~FlowTerm() = default;
+  /// Returns the power of the term in one element whose unknowns stand still: the term's force per
+  /// area times ∂r/∂t at fixed unknowns and fixed material point, integrated [W]. It is called only
+  /// for elements whose lines move.
+  virtual double flow_power(int e, const Local& x) const = 0;
 
   /// Adds the energies per area that cross an m-line through which material enters or leaves. With
   /// flow_power() they are the rate of the element's energy at fixed unknowns.
@@ -147,6 +187,15 @@ class Term {
   /// @param out   (n) each
   virtual void add_line_energy(std::span<const ShapeTable> /*line*/, const Local& /*x*/,
                                LineEnergy& /*out*/) const {}
+};
+
+/// A term or a force element that can be scaled: its load is proportional to a factor, 1 until the
+/// first call.
+class ScaledLoad {
+ public:
+  virtual ~ScaledLoad() = default;
+  /// Multiplies the load, or the temperature of a term of a hot body.
+  virtual void scale_load(double factor) = 0;
 };
 
 }  // namespace flexmorph::fem

@@ -144,7 +144,7 @@ void append_spring(const Scene& scene, const Spring& spring, fem::Workspace& mod
   const Vec2 about = model.place_motion({at.body, at.point, 0, {}}, x).position;
   const std::string& body = spring.b.on_ground() ? spring.a.body : spring.b.body;
   append_wrench(fem::wrench_on(model.body(body), force, {about.x(), about.y(), 0}, x), row);
-  row.push_back((*found)->strain_energy(x));
+  row.push_back((*found)->energies(x).strain);
   if (!scene.statics) row.push_back((*found)->power(x));
 }
 

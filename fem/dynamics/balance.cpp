@@ -59,7 +59,8 @@ class LinePowers {
       if (!driven) continue;
       gather(e);
       FreeForce force = FreeForce::Zero(local_.q.size() + kSides);
-      for (const auto& term : body_.terms) term->add_free_force(e, local_, force);
+      for (const BodyTerm& term : body_.terms)
+        term.with_free_lines().add_free_force(e, local_, force);
       for (int l = 0; l < kSides; ++l)
         out += rate[static_cast<size_t>(l)] * force[local_.q.size() + l];
     }
@@ -96,7 +97,8 @@ class LinePowers {
     line_.resize(static_cast<size_t>(n_));
     for (size_t g = 0; g < line_.size(); ++g) plate_.at(e, s, gauss(n_).points[g], what_, line_[g]);
     energy_.set_zero(n_);
-    for (const auto& term : body_.terms) term->add_line_energy(line_, local_, energy_);
+    for (const BodyTerm& term : body_.terms)
+      if (term.flow) term.flow->add_line_energy(line_, local_, energy_);
     // Forces on the lines of an element with free ones are the gradient of its strain energy,
     // limits of integration included (FreeElastic).
     if (!plate_.free_sides(e).empty()) energy_.stiffness.setZero();

@@ -11,7 +11,7 @@ namespace flexmorph::fem {
 /// Power that enters a model [W].
 struct Powers {
   double drive = 0;   ///< of the drives of all joints, λ · ∂Φ/∂t
-  double feed = 0;    ///< of what pushes the material through the mesh, Term::flow_power()
+  double feed = 0;    ///< of what pushes the material through the mesh, FlowTerm::flow_power()
   double inflow = 0;  ///< kinetic, strain and potential energy that entering material brings along
   double links = 0;   ///< of dampers, shifted places of links and loads without a potential:
                       ///< Workspace::link_power(), load_power()

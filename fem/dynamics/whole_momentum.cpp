@@ -31,8 +31,8 @@ double kinetic_energy(const Model& model, const State& x, const VectorXd& v) {
         local.q.row(static_cast<Eigen::Index>(k)) = x.q.segment<2>(at);
         local.v.row(static_cast<Eigen::Index>(k)) = v.segment<2>(at);
       }
-      for (const auto& term : b.terms)
-        if (!term->is_elastic()) out += term->kinetic_energy(e, local);
+      for (const BodyTerm& term : b.terms)
+        if (!term.elastic) out += term->kinetic_energy(e, local);
     }
   return out;
 }

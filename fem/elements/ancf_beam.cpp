@@ -60,7 +60,13 @@ AncfBeam::AncfBeam(double length, double height, int n_elements)
     : AncfBeam(even_nodes(length, n_elements), height) {}
 
 AncfBeam::AncfBeam(std::vector<double> x, double height, std::vector<BeamNode> reference)
-    : x_(std::move(x)), height_(height), straight_(reference.empty()) {
+    : Element(Kind<AncfBeam>{}, {.dim = 2,
+                                 .n_shapes = 2 * kPerNode,
+                                 .n_elements = static_cast<int>(x.size()) - 1,
+                                 .n_vectors = kPerNode * static_cast<int>(x.size())}),
+      x_(std::move(x)),
+      height_(height),
+      straight_(reference.empty()) {
   if (!(height > 0) || !std::isfinite(height))
     throw Error::input("ancf_beam: its height is positive [m]");
   if (x_.size() < 2) throw Error::input("ancf_beam: at least two nodes");

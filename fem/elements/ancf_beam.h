@@ -35,7 +35,7 @@ struct BeamNode {
 /// uniform.
 ///
 /// Source: T, Shabana et al., appendix; Omar & Shabana (2001), J. Sound Vib. 243, 565-576.
-class AncfBeam final : public Element {
+class AncfBeam final : public Element, public ShapeElement {
  public:
   /// A straight beam along the first axis, root at the origin, with elements of equal length.
   /// @throws Error (input) unless length and height are positive and n_elements >= 1.
@@ -49,10 +49,6 @@ class AncfBeam final : public Element {
   AncfBeam(std::vector<double> x, double height, std::vector<BeamNode> reference = {});
 
   std::unique_ptr<Element> clone() const override { return std::make_unique<AncfBeam>(*this); }
-  int dim() const override { return 2; }
-  int n_shapes() const override { return 6; }
-  int n_elements() const override { return static_cast<int>(x_.size()) - 1; }
-  int n_vectors() const override { return 3 * static_cast<int>(x_.size()); }
   std::span<const int> vectors(int e) const override;
   double scale(int k) const override;
   bool is_position(int k) const override { return k % 3 == 0; }
@@ -60,8 +56,6 @@ class AncfBeam final : public Element {
   /// One node each: "root", "free_end", "line k" (node k).
   std::vector<NodeVectors> edge(const std::string& name) const override;
   std::vector<NodeVectors> nodes() const override;
-  void move_to(double /*t*/) override {}
-  bool moving(int /*e*/) const override { return false; }
   void tabulate(int e, int degree, Tabulate what, const Factors& factors, FactorKind kind,
                 ShapeTable& out) const override;
   int locate(const Vec2& material, Tabulate what, ShapeTable& out) const override;

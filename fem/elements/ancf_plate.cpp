@@ -35,7 +35,7 @@ int vectors_per_node(AncfPlate::ShapeSet shapes) {
 
 AncfPlate::AncfPlate(int dim, ShapeSet shapes, std::vector<MaterialLine> m,
                      std::vector<MaterialLine> n, double t)
-    : dim_(dim),
+    : LineGrid(Kind<AncfPlate>{}),
       per_node_(vectors_per_node(shapes)),
       shapes_(shapes),
       m_(std::move(m)),
@@ -47,6 +47,11 @@ AncfPlate::AncfPlate(int dim, ShapeSet shapes, std::vector<MaterialLine> m,
       for (const int corner : {node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)})
         for (int k = 0; k < per_node_; ++k) vectors_.push_back(per_node_ * corner + k);
   number_free_lines();
+  set_sizes({.dim = dim,
+             .n_shapes = 4 * per_node_,
+             .n_elements = n_m() * n_n(),
+             .n_vectors = per_node_ * n_nodes(),
+             .n_scalars = static_cast<int>(free_.size())});
   move_to(t);
 }
 
@@ -86,7 +91,7 @@ double AncfPlate::scale(int k) const {
 }
 
 MatrixXd AncfPlate::reference() const {
-  MatrixXd q = MatrixXd::Zero(n_vectors(), dim_);
+  MatrixXd q = MatrixXd::Zero(n_vectors(), dim());
   for (int i = 0; i <= n_m(); ++i)
     for (int j = 0; j <= n_n(); ++j) {
       const int first = per_node_ * node(i, j);

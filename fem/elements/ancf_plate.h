@@ -14,7 +14,10 @@ namespace flexmorph::fem {
 /// functions get rates; without them nothing of that is computed.
 ///
 /// Source: P (1)-(5); Hyldahl et al. (2013); h16: fem/README.md, Plate element.
-class AncfPlate final : public LineGrid {
+class AncfPlate final : public LineGrid,
+                        public FreeLineElement,
+                        public CellElement,
+                        public ProductElement {
  public:
   enum class ShapeSet { h12, h16, q4 };
 
@@ -23,10 +26,6 @@ class AncfPlate final : public LineGrid {
   AncfPlate(int dim, ShapeSet shapes, std::vector<MaterialLine> m, std::vector<MaterialLine> n,
             double t = 0);
 
-  int dim() const override { return dim_; }
-  int n_shapes() const override { return 4 * per_node_; }
-  int n_elements() const override { return n_m() * n_n(); }
-  int n_vectors() const override { return per_node_ * n_nodes(); }
   std::span<const int> vectors(int e) const override;
   double scale(int k) const override;
   bool is_position(int k) const override { return k % per_node_ == 0; }
@@ -35,7 +34,6 @@ class AncfPlate final : public LineGrid {
   std::vector<NodeVectors> nodes() const override;
   void move_to(double t) override;
   bool moving(int e) const override;
-  int n_scalars() const override { return static_cast<int>(free_.size()); }
   VectorXd scalars() const override;
   void move_lines(const VectorXd& p, const VectorXd& rate, const VectorXd& acceleration) override;
   std::span<const int> free_sides(int e) const override;
@@ -68,7 +66,7 @@ class AncfPlate final : public LineGrid {
             ShapeTable& out) const;
   MatrixXd weights(int e, int n, const Factors& factors, FactorKind kind) const;
 
-  int dim_, per_node_;
+  int per_node_;
   ShapeSet shapes_;
   std::vector<MaterialLine> m_, n_;
   double t_ = 0;

@@ -149,24 +149,24 @@ std::vector<MaterialLine> where(std::vector<MaterialLine> lines, const std::vect
 std::unique_ptr<LineGrid> AncfPlate::with_line(int i, double value) const {
   std::vector<MaterialLine> m = where(m_, at_m_);
   m.insert(m.begin() + i + 1, MaterialLine{value, {}, false});
-  return std::make_unique<AncfPlate>(dim_, shapes_, std::move(m), where(n_, at_n_), t_);
+  return std::make_unique<AncfPlate>(dim(), shapes_, std::move(m), where(n_, at_n_), t_);
 }
 
 std::unique_ptr<LineGrid> AncfPlate::without_line(int i) const {
   std::vector<MaterialLine> m = where(m_, at_m_);
   m.erase(m.begin() + i);
-  return std::make_unique<AncfPlate>(dim_, shapes_, std::move(m), where(n_, at_n_), t_);
+  return std::make_unique<AncfPlate>(dim(), shapes_, std::move(m), where(n_, at_n_), t_);
 }
 
 std::unique_ptr<LineGrid> AncfPlate::with_lines_m(std::vector<MaterialLine> m, double t) const {
-  return std::make_unique<AncfPlate>(dim_, shapes_, std::move(m), where(n_, at_n_), t);
+  return std::make_unique<AncfPlate>(dim(), shapes_, std::move(m), where(n_, at_n_), t);
 }
 
 std::unique_ptr<LineGrid> AncfPlate::frozen() const {
   std::vector<MaterialLine> m, n;
   for (const Motion& line : at_m_) m.push_back({line.value, {}, false});
   for (const Motion& line : at_n_) n.push_back({line.value, {}, false});
-  return std::make_unique<AncfPlate>(dim_, shapes_, std::move(m), std::move(n), t_);
+  return std::make_unique<AncfPlate>(dim(), shapes_, std::move(m), std::move(n), t_);
 }
 
 }  // namespace flexmorph::fem

@@ -107,7 +107,7 @@ void AncfPlate::add_cell_integrals(int e, int degree, const VectorXd& values, co
           cells(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
 }
 
-Element::CellRange AncfPlate::cells(int e, const Grid& grid) const {
+CellRange AncfPlate::cells(int e, const Grid& grid) const {
   const Hermite& hm = hermite_m_[static_cast<size_t>(e / n_n())];
   const Hermite& hn = hermite_n_[static_cast<size_t>(e % n_n())];
   const auto [i0, i1] = cell_range(hm.start, hm.length, grid.x0, grid.dx(), grid.nx);

@@ -5,7 +5,10 @@
 
 namespace flexmorph::fem {
 
-RigidBody::RigidBody(double length, bool moves) : length_(length), moves_(moves) {
+RigidBody::RigidBody(double length, bool moves)
+    : Element(Kind<RigidBody>{}, {.dim = 2, .n_shapes = 2, .n_elements = 1, .n_vectors = 2}),
+      length_(length),
+      moves_(moves) {
   if (!(length > 0) || !std::isfinite(length))
     throw Error::input("rigid body: its length is positive [m]");
 }
@@ -23,22 +26,6 @@ MatrixXd RigidBody::reference() const {
   MatrixXd q(2, 2);
   q << 0, 0, 1, 0;
   return q;
-}
-
-std::vector<NodeVectors> RigidBody::edge(const std::string& name) const {
-  throw Error::input("edge '" + name + "': a rigid body has no edges");
-}
-
-void RigidBody::tabulate(int, int, Tabulate, const Factors&, FactorKind, ShapeTable& out) const {
-  out.weight.resize(0);
-  out.material.clear();
-  for (MatrixXd* table : {&out.N, &out.N_t, &out.N_tt, &out.N_m, &out.N_n, &out.N_mt, &out.N_nt,
-                          &out.N_mm, &out.N_nn, &out.N_mn})
-    table->resize(0, 0);
-}
-
-int RigidBody::locate(const Vec2&, Tabulate, ShapeTable&) const {
-  throw Error::input("a rigid body has no material coordinates: its points are places of markers");
 }
 
 }  // namespace flexmorph::fem

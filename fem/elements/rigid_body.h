@@ -18,7 +18,7 @@ namespace flexmorph::fem {
 ///
 /// Source: García de Jalón & Bayo (1994), Kinematic and Dynamic Simulation of Multibody Systems,
 /// ch. 2 and 4.2; fem/README.md, Rigid bodies and joints.
-class RigidBody final : public Element, public RigidClock {
+class RigidBody final : public Element, public MovingElement, public RigidClock {
  public:
   /// @param length  makes the axis a displacement: a size of the body, such as its radius of
   ///                gyration [m]
@@ -27,26 +27,14 @@ class RigidBody final : public Element, public RigidClock {
   explicit RigidBody(double length, bool moves = false);
 
   std::unique_ptr<Element> clone() const override { return std::make_unique<RigidBody>(*this); }
-  int dim() const override { return 2; }
-  int n_shapes() const override { return 2; }
-  int n_elements() const override { return 1; }
-  int n_vectors() const override { return 2; }
   std::span<const int> vectors(int e) const override;
   double scale(int k) const override { return k == 0 ? 1 : length_; }
   bool is_position(int k) const override { return k == 0; }
-  bool is_rigid() const override { return true; }
   /// r = (0, 0), u = (1, 0).
   MatrixXd reference() const override;
-  /// @throws Error (input) always: a rigid body has no edges.
-  std::vector<NodeVectors> edge(const std::string& name) const override;
   void move_to(double t) override { time_ = t; }
   bool moving(int /*e*/) const override { return moves_; }
   double time() const override { return time_; }
-  /// An empty table: no points, no gradients.
-  void tabulate(int e, int degree, Tabulate what, const Factors& factors, FactorKind kind,
-                ShapeTable& out) const override;
-  /// @throws Error (input) always: a rigid body has no material coordinates.
-  int locate(const Vec2& material, Tabulate what, ShapeTable& out) const override;
 
  private:
   double length_, time_ = 0;

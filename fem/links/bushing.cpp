@@ -7,7 +7,7 @@
 namespace flexmorph::fem {
 namespace {
 
-class Bushing final : public PairLink {
+class Bushing final : public PairLink, public TurningLink {
  public:
   Bushing(std::string name, MarkerPlace a, MarkerPlace b, const BushingData& data)
       : PairLink(name, std::move(a), std::move(b), parts(data), true), data_(data) {
@@ -29,16 +29,17 @@ class Bushing final : public PairLink {
     pair().evaluate(x.t, x.q, x.v);
     return angle_between(pair().y(), last(x)).z;
   }
-  double strain_energy(const State& x) const override {
+  Energies energies(const State& x) const override {
     pair().evaluate(x.t, x.q, x.v);
-    double out = 0;
+    Energies out;
     for (int i = 0; i < 2; ++i) {
       const double d = coordinate_along(pair().y(), i).z;
-      out += 0.5 * data_.stiffness[i] * d * d;
+      out.strain += 0.5 * data_.stiffness[i] * d * d;
     }
     if (!turns(data_)) return out;
     const double phi = angle_between(pair().y(), last(x)).z - data_.rest_angle;
-    return out + 0.5 * data_.torsion_stiffness * phi * phi;
+    out.strain += 0.5 * data_.torsion_stiffness * phi * phi;
+    return out;
   }
 
  private:

@@ -11,7 +11,7 @@ constexpr int kPoints = 3;
 /// Unknowns q of the body, Q of the plate's elements at the root:
 ///   f = s K q̇ - s² B q + s² Σ G_k Q_k,  K = ρc ∫ (N_oᵀ N_o - N_sᵀ N_s) dy,  G_k = ρc ∫ N_oᵀ N_k,m
 ///   dy
-class Outlet final : public Link {
+class Outlet final : public Link, public MeanForceLink {
  public:
   Outlet(std::string name, std::string body, std::string plate, const StoredMaterial& stored)
       : name_(std::move(name)),

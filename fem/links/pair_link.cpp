@@ -4,15 +4,10 @@
 
 namespace flexmorph::fem {
 
-void Link::add_mean_force(const State&, const VectorXd&, const VectorXd&, VectorXd&) const {
-  throw Error::input("link '" + name() +
+void refuse_mean_force(const std::string& link) {
+  throw Error::input("link '" + link +
                      "' has no mean force: integrator \"energy_momentum\" cannot take it, "
                      "\"generalized_alpha\" can");
-}
-
-void Link::add_mean_tangent(const State&, const VectorXd&, const VectorXd&, const Weights&,
-                            std::vector<Eigen::Triplet<double>>&) const {
-  throw Error::input("link '" + name() + "' has no mean tangent");
 }
 
 PairLink::PairLink(std::string name, MarkerPlace a, MarkerPlace b, std::vector<Part> parts,

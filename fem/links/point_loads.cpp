@@ -8,7 +8,7 @@ using Values = MarkerPair::Values;
 constexpr auto kPosition = MarkerPair::kPositionA, kAxis = MarkerPair::kAxisA;
 
 /// What acts on one place, constant or not.
-class PlaceLoad : public PairLink {
+class PlaceLoad : public PairLink, public ScaledLoad {
  public:
   void scale_load(double factor) override { factor_ = factor; }
 
@@ -33,22 +33,22 @@ class PlaceLoad : public PairLink {
 };
 
 /// s = -F on the point; V = -F · p where F is constant.
-class PointForce final : public PlaceLoad {
+class PointForce final : public PlaceLoad, public MeanForceLink {
  public:
   PointForce(const std::string& name, MarkerPlace at, const LoadLaw& force)
       : PlaceLoad(name, std::move(at), force, 2, {kPosition}, false) {}
   std::unique_ptr<Link> clone() const override { return std::make_unique<PointForce>(*this); }
-  void add_mean_force(const State& mean, const VectorXd& q0, const VectorXd& q1,
+  void add_mean_force(const State& mean, const VectorXd&, const VectorXd&,
                       VectorXd& out) const override {
-    if (pair().shifts()) Link::add_mean_force(mean, q0, q1, out);  // refuses
+    if (pair().shifts()) refuse_mean_force(name());
     add_force(mean, out);
   }
   void add_mean_tangent(const State&, const VectorXd&, const VectorXd&, const Weights&,
                         std::vector<Eigen::Triplet<double>>&) const override {}
-  double potential_energy(const State& x) const override {
-    if (!is_constant()) return 0;
+  Energies energies(const State& x) const override {
+    if (!is_constant()) return {};
     pair().evaluate(x.t, x.q, x.v);
-    return -load(x.t).dot(pair().y().segment<2>(kPosition));
+    return {.potential = -load(x.t).dot(pair().y().segment<2>(kPosition))};
   }
 
  private:

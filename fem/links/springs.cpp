@@ -34,7 +34,7 @@ Vec2 difference(const Values& y) { return y.segment<2>(kPositionB) - y.segment<2
 /// Tension N = k (l - l₀) + c l̇ along the line, l̇ = e · ḋ with e = d / l:
 ///
 ///   s_d = N e = k (1 - l₀/l) d + c (e · ḋ) e,   V = ½ k (l - l₀)²
-class Spring final : public PairLink {
+class Spring final : public PairLink, public MeanForceLink {
  public:
   Spring(std::string name, MarkerPlace a, MarkerPlace b, const SpringData& spring)
       : PairLink(name, std::move(a), std::move(b), {kPositionA, kPositionB}, true),
@@ -58,16 +58,16 @@ class Spring final : public PairLink {
     append(w.q * force.s_y + w.v * force.s_rate, Square::Zero(), out);
   }
 
-  double strain_energy(const State& x) const override {
+  Energies energies(const State& x) const override {
     pair().evaluate(x.t, x.q, x.v);
     const double stretch = difference(pair().y()).norm() - spring_.free_length;
-    return 0.5 * spring_.stiffness * stretch * stretch;
+    return {.strain = 0.5 * spring_.stiffness * stretch * stretch};
   }
 
  private:
   /// s_y is by the mean state, which moves half as far as the end.
   PairForce mean_force(const State& mean, const VectorXd& q0, const VectorXd& q1) const {
-    if (pair().shifts()) Link::add_mean_force(mean, q0, q1, none_);  // refuses
+    if (pair().shifts()) refuse_mean_force(name());
     const auto& [k, c, free_length] = spring_;
     pair().evaluate(mean.t, q0, mean.v);
     const double l0 = difference(pair().y()).norm();
@@ -126,7 +126,6 @@ class Spring final : public PairLink {
   }
 
   SpringData spring_;
-  mutable VectorXd none_;
 };
 
 /// θ of an axis e, and its derivatives: θ_e = J e / |e|², θ_ee, J the quarter turn.
@@ -146,7 +145,7 @@ struct Turn {
 
 /// Moment M = k φ + c φ̇ on φ = θ_b - θ_a - φ₀; V = ½ k φ². Two axes say θ_b - θ_a but for whole
 /// turns, which are those of the last accepted step.
-class TorsionSpring final : public PairLink {
+class TorsionSpring final : public PairLink, public TurningLink {
  public:
   TorsionSpring(std::string name, MarkerPlace a, MarkerPlace b, const TorsionSpringData& spring)
       : PairLink(name, std::move(a), std::move(b), {MarkerPair::kAxisA, MarkerPair::kAxisB}, true),
@@ -157,11 +156,10 @@ class TorsionSpring final : public PairLink {
   }
 
   std::unique_ptr<Link> clone() const override { return std::make_unique<TorsionSpring>(*this); }
-  double strain_energy(const State& x) const override {
+  Energies energies(const State& x) const override {
     const double phi = turned(x) - spring_.rest_angle;
-    return 0.5 * spring_.stiffness * phi * phi;
+    return {.strain = 0.5 * spring_.stiffness * phi * phi};
   }
-  bool counts_turns() const override { return true; }
   double turned(const State& x) const override {
     pair().evaluate(x.t, x.q, x.v);
     return angle(x, Turn(pair().y().segment<2>(MarkerPair::kAxisA)),

@@ -9,7 +9,7 @@ namespace {
 
 using Coordinate = StopData::Coordinate;
 
-class UnilateralStop final : public PairLink {
+class UnilateralStop final : public PairLink, public TurningLink {
  public:
   UnilateralStop(std::string name, MarkerPlace a, MarkerPlace b, const StopData& data)
       : PairLink(name, std::move(a), std::move(b), parts(data.coordinate), true), data_(data) {
@@ -26,13 +26,13 @@ class UnilateralStop final : public PairLink {
     pair().evaluate(x.t, x.q, x.v);
     return at(x, pair().y()).z;
   }
-  double strain_energy(const State& x) const override {
+  Energies energies(const State& x) const override {
     pair().evaluate(x.t, x.q, x.v);
     const double beyond = beyond_limit(at(x, pair().y()).z).way, k = data_.stiffness,
                  w = data_.onset;
-    if (beyond <= 0) return 0;
-    if (beyond < w) return k * beyond * beyond * beyond / (6 * w);
-    return 0.5 * k * (beyond - 0.5 * w) * (beyond - 0.5 * w) + k * w * w / 24;
+    if (beyond <= 0) return {};
+    if (beyond < w) return {.strain = k * beyond * beyond * beyond / (6 * w)};
+    return {.strain = 0.5 * k * (beyond - 0.5 * w) * (beyond - 0.5 * w) + k * w * w / 24};
   }
 
  private:

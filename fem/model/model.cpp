@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "fem/strain_term.h"
-
 namespace flexmorph::fem {
 
 Model::Model(const Model& other)
@@ -16,10 +14,10 @@ Model::Model(const Model& other)
   for (const Body& b : other.bodies_) {
     Body& body = bodies_.emplace_back(
         Body{b.name, b.element->clone(), b.section, {}, b.factors, b.heat, b.first_dof});
-    for (const auto& term : b.terms) body.terms.push_back(term->clone());
+    for (const BodyTerm& term : b.terms) body.terms.push_back(term->clone());
   }
   for (const auto& joint : other.joints_) joints_.push_back(joint->clone());
-  for (const auto& link : other.links_) links_.push_back(link->clone());
+  for (const ModelLink& link : other.links_) links_.emplace_back(link->clone());
   number_dofs();  // binds joints and links to the bodies of the copy
 }
 
@@ -30,7 +28,7 @@ Body& Model::add_body(std::string name, std::unique_ptr<Element> element,
   body.name = std::move(name);
   body.element = std::move(element);
   body.section = section;
-  body.terms = std::move(terms);
+  for (std::unique_ptr<Term>& term : terms) body.terms.push_back(std::move(term));
   body.first_dof = n_dofs_;
   const Body* before = bodies_.data();
   bodies_.push_back(std::move(body));
@@ -54,10 +52,10 @@ void Model::add_joint(std::unique_ptr<Joint> joint) {
 
 void Model::add_link(std::unique_ptr<Link> link) {
   const auto turned = std::count_if(links_.begin(), links_.end(),
-                                    [](const auto& each) { return each->counts_turns(); });
-  links_.push_back(std::move(link));
+                                    [](const ModelLink& each) { return each.counts_turns(); });
+  links_.emplace_back(std::move(link));
   links_.back()->bind(views());
-  if (links_.back()->counts_turns()) links_.back()->set_place(static_cast<int>(turned));
+  if (links_.back().counts_turns()) links_.back().turning->set_place(static_cast<int>(turned));
   ++pattern_version_;
   ++content_version_;
 }
@@ -77,7 +75,7 @@ void Model::set_factors(Body& body, Factors factors) {
   body.factors = std::move(factors);
   ++content_version_;
   // The inertia of a body may be what a link acts by.
-  for (const auto& link : links_) link->bind(views());
+  for (const ModelLink& link : links_) link->bind(views());
 }
 
 std::vector<BodyView> Model::views() const {
@@ -101,9 +99,9 @@ void Model::number_dofs() {
     first_rows_.push_back(n_constraints_);
   }
   int n_turned = 0;
-  for (const auto& link : links_) {
+  for (const ModelLink& link : links_) {
     link->bind(bodies);
-    if (link->counts_turns()) link->set_place(n_turned++);
+    if (link.counts_turns()) link.turning->set_place(n_turned++);
   }
   ++pattern_version_;
   ++content_version_;
@@ -139,12 +137,12 @@ VectorXd Model::scales() const {
 
 void Model::scale_loads(double factor) {
   for (Body& b : bodies_)
-    for (const auto& term : b.terms) {
-      const bool strained = dynamic_cast<const StrainTerm*>(term.get()) != nullptr;
-      if (strained ? scales_temperatures_ : scales_loads_) term->scale_load(factor);
-    }
+    for (const BodyTerm& term : b.terms)
+      if (term.scaled && (term.strain ? scales_temperatures_ : scales_loads_))
+        term.scaled->scale_load(factor);
   if (!scales_loads_) return;
-  for (const auto& link : links_) link->scale_load(factor);
+  for (const ModelLink& link : links_)
+    if (link.scaled) link.scaled->scale_load(factor);
 }
 
 void Model::choose_scaled(bool loads, bool temperatures) {

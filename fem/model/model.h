@@ -9,9 +9,9 @@
 #include "fem/element.h"
 #include "fem/heat.h"
 #include "fem/joint.h"
-#include "fem/link.h"
+#include "fem/model/body_term.h"
+#include "fem/model/model_link.h"
 #include "fem/section.h"
-#include "fem/term.h"
 
 namespace flexmorph::fem {
 
@@ -20,7 +20,7 @@ struct Body {
   std::string name;
   std::unique_ptr<Element> element;
   std::optional<PlaneSection> section{};  ///< absent: a rigid body
-  std::vector<std::unique_ptr<Term>> terms;
+  std::vector<BodyTerm> terms;
   Factors factors;
   std::optional<Heat> heat{};  ///< absent: cold
   int first_dof = 0;
@@ -57,7 +57,7 @@ class Model {
   const std::vector<std::unique_ptr<Joint>>& joints() const { return joints_; }
   /// First row of joint i in the constraints; first_row(joints().size()) is their number.
   int first_row(size_t joint) const { return first_rows_[joint]; }
-  const std::vector<std::unique_ptr<Link>>& links() const { return links_; }
+  const std::vector<ModelLink>& links() const { return links_; }
 
   /// Gives a body another mesh; states of the old one no longer fit
   /// (dynamics/mesh_changes/mesh_map.h carries over).
@@ -67,7 +67,7 @@ class Model {
   /// Are material lines among the unknowns?
   bool has_free_lines() const;
 
-  /// Multiplies all loads (Term::scale_load) by a factor; 1 until the first call.
+  /// Multiplies all loads (ScaledLoad) by a factor; 1 until the first call.
   void scale_loads(double factor);
   /// What scale_loads() multiplies, loads and the temperature of hot bodies: both until the first
   /// call.
@@ -93,7 +93,7 @@ class Model {
   std::vector<Body> bodies_;
   std::vector<std::unique_ptr<Joint>> joints_;
   std::vector<int> first_rows_ = {0};
-  std::vector<std::unique_ptr<Link>> links_;
+  std::vector<ModelLink> links_;
 
  private:
   void number_dofs();

@@ -72,13 +72,15 @@ void Workspace::prepare_bodies(double t) {
   if (numbered_version_ != pattern_version()) number_batches();
   for (Body& b : bodies_) {
     b.element->move_to(t);
-    if (b.heat)
-      for (const auto& term : b.terms)
-        if (auto* hot = dynamic_cast<StrainTerm*>(term.get())) hot->heat_to(t);
-    for (const auto& term : b.terms)
-      if (auto* load = dynamic_cast<LoadTerm*>(term.get())) load->load_to(t);
+    for (const BodyTerm& term : b.terms) {
+      if (term.heated) term.heated->heat_to(t);
+      if (term.load) term.load->load_to(t);
+    }
     try {
-      for (const auto& term : b.terms) term->prepare(*b.element, b.factors, all);
+      for (const BodyTerm& term : b.terms) {
+        if (all && b.element->n_scalars() > 0) term.with_free_lines();
+        term->prepare(*b.element, b.factors, all);
+      }
     } catch (const Error& error) {
       throw Error(error.kind(), "body '" + b.name + "': " + error.what());
     }
@@ -183,7 +185,7 @@ void Workspace::add_energies(const State& x, const Body& body, Energies& out) {
   Local local;
   for (int e = 0; e < body.element->n_elements(); ++e) {
     gather(body, e, x, local);
-    for (const auto& term : body.terms) {
+    for (const BodyTerm& term : body.terms) {
       const Energies of_term = term->energies(e, local);
       out.kinetic += of_term.kinetic;
       out.strain += of_term.strain;
@@ -196,9 +198,10 @@ Energies Workspace::energies(const State& x) {
   prepare(x);
   Energies out;
   for (const Body& b : bodies_) add_energies(x, b, out);
-  for (const auto& link : links_) {
-    out.strain += link->strain_energy(x);
-    out.potential += link->potential_energy(x);
+  for (const ModelLink& link : links_) {
+    const Energies of_link = link->energies(x);
+    out.strain += of_link.strain;
+    out.potential += of_link.potential;
   }
   return out;
 }
@@ -217,23 +220,23 @@ Vec3 Workspace::momentum(const State& x) {
   for (const Body& b : bodies_)
     for (int e = 0; e < b.element->n_elements(); ++e) {
       gather(b, e, x, local);
-      for (const auto& term : b.terms) out += term->momentum(e, local);
+      for (const BodyTerm& term : b.terms) out += term->momentum(e, local);
     }
   return out;
 }
 
 void Workspace::follow_turns(State& x) const {
-  const auto counts = [](const auto& link) { return link->counts_turns(); };
+  const auto counts = [](const ModelLink& link) { return link.counts_turns(); };
   VectorXd turned(std::count_if(links_.begin(), links_.end(), counts));
   Eigen::Index k = 0;
-  for (const auto& link : links_)
-    if (counts(link)) turned[k++] = link->turned(x);
+  for (const ModelLink& link : links_)
+    if (counts(link)) turned[k++] = link.turning->turned(x);
   x.turned = std::move(turned);
 }
 
 double Workspace::link_power(const State& x) {
   double out = 0;
-  for (const auto& link : links_) out += link->power(x);
+  for (const ModelLink& link : links_) out += link->power(x);
   return out;
 }
 
@@ -243,11 +246,11 @@ double Workspace::summed(const State& x, Wanted wanted, Amount amount) {
   double out = 0;
   Local local;
   for (const Body& b : bodies_)
-    for (const auto& term : b.terms) {
-      if (!wanted(b, *term)) continue;
+    for (const BodyTerm& term : b.terms) {
+      if (!wanted(term)) continue;
       for (int e = 0; e < b.element->n_elements(); ++e) {
         gather(b, e, x, local);
-        out += amount(*term, e, local);
+        out += amount(term, e, local);
       }
     }
   return out;
@@ -255,37 +258,30 @@ double Workspace::summed(const State& x, Wanted wanted, Amount amount) {
 
 double Workspace::heat_power(const State& x) {
   return summed(
-      x,
-      [](const Body& b, const Term& term) {
-        return b.heat && dynamic_cast<const StrainTerm*>(&term);
-      },
-      [](const Term& term, int e, const Local& local) {
-        return static_cast<const StrainTerm&>(term).heat_power(e, local);
+      x, [](const BodyTerm& term) { return term.heated != nullptr; },
+      [](const BodyTerm& term, int e, const Local& local) {
+        return term.heated->heat_power(e, local);
       });
 }
 
 double Workspace::dissipation(const State& x) {
   return summed(
-      x, [](const Body&, const Term&) { return true; },
-      [](const Term& term, int e, const Local& local) { return term.dissipation(e, local); });
+      x, [](const BodyTerm&) { return true; },
+      [](const BodyTerm& term, int e, const Local& local) { return term->dissipation(e, local); });
 }
 
 double Workspace::load_power(const State& x) {
   return summed(
-      x,
-      [](const Body&, const Term& term) {
-        const auto* load = dynamic_cast<const LoadTerm*>(&term);
-        return load && !load->has_potential();
-      },
-      [](const Term& term, int e, const Local& local) {
-        return static_cast<const LoadTerm&>(term).power(e, local);
-      });
+      x, [](const BodyTerm& term) { return term.load && !term.load->has_potential(); },
+      [](const BodyTerm& term, int e, const Local& local) { return term.load->power(e, local); });
 }
 
 double Workspace::strain_energy(const State& x) {
   return summed(
-      x, [](const Body&, const Term& term) { return term.is_elastic(); },
-      [](const Term& term, int e, const Local& local) { return term.strain_energy(e, local); });
+      x, [](const BodyTerm& term) { return term.elastic != nullptr; },
+      [](const BodyTerm& term, int e, const Local& local) {
+        return term->strain_energy(e, local);
+      });
 }
 
 double Workspace::flow_power(const State& x) {
@@ -297,7 +293,8 @@ double Workspace::flow_power(const State& x) {
       // Free lines are unknowns: what their motion does is no power at fixed unknowns.
       if (!b.element->moving(e) || !b.element->free_sides(e).empty()) continue;
       gather(b, e, x, local);
-      for (const auto& term : b.terms) out += term->flow_power(e, local);
+      for (const BodyTerm& term : b.terms)
+        if (term.flow) out += term.flow->flow_power(e, local);
     }
   return out;
 }
@@ -318,10 +315,11 @@ double Workspace::smallest_area_ratio(const State& x) {
   Local local;
   ShapeTable table;
   for (const Body& b : bodies_) {
+    if (!b.element->has_shapes()) continue;
     for (int e = 0; e < b.element->n_elements(); ++e) {
       gather(b, e, x, local);
       b.element->tabulate(e, 4, Tabulate::gradient, {}, FactorKind::none, table);
-      if (table.N_m.size() == 0) continue;  // a rigid body has no gradients
+      if (table.N_m.size() == 0) continue;
       const MatrixXd r_m = table.N_m * local.q, r_n = table.N_n * local.q;
       for (Eigen::Index p = 0; p < r_m.rows(); ++p)
         smallest = std::min(smallest, area_ratio(r_m.row(p), r_n.row(p)));

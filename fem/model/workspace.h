@@ -99,7 +99,7 @@ class Workspace : public Model {
   /// @param psi, out  (n_dofs)
   void add_transposed_product(const State& x, const Weights& w, const VectorXd& psi, VectorXd& out);
 
-  /// Mean force of a step from q₀ to q₁ that keeps the energy, see Term::add_mean_force(); mean:
+  /// Mean force of a step from q₀ to q₁ that keeps the energy, see MeanForceTerm; mean:
   /// the mean state.
   /// @throws Error (input) when a term has none.
   void mean_force(const State& mean, const VectorXd& q0, const VectorXd& q1, VectorXd& out);
@@ -125,16 +125,16 @@ class Workspace : public Model {
   double link_power(const State& x);
   /// Power of loads that have no potential, see LoadTerm::power() [W].
   double load_power(const State& x);
-  /// Power of all terms at fixed unknowns, see Term::flow_power() [W].
+  /// Power of all terms at fixed unknowns, see FlowTerm [W].
   double flow_power(const State& x);
-  /// Power that the temperature of hot bodies gives to their energy, see StrainTerm::heat_power()
+  /// Power that the temperature of hot bodies gives to their energy, see HeatedTerm::heat_power()
   /// [W].
   double heat_power(const State& x);
   /// Power that all terms turn into heat, see Term::dissipation() [W].
   double dissipation(const State& x);
   /// What derivatives by factors are added to: zeros of every designed body, nothing of others.
   std::vector<FactorSlopes> no_slopes() const;
-  /// Adds ψ · ∂F/∂κ, F of force(), by the factors of every body, see Term::add_factor_slopes().
+  /// Adds ψ · ∂F/∂κ, F of force(), by the factors of every body, see DesignedTerm.
   /// @param psi  (n_dofs)   @param out  as no_slopes()
   void add_factor_slopes(const State& x, const VectorXd& psi, std::vector<FactorSlopes>& out);
   /// Strain energy of all bodies, without that of links [J].
@@ -185,7 +185,7 @@ class Workspace : public Model {
   void joint_stiffness(const State& x, std::vector<Eigen::Triplet<double>>& out) const;
   static void gather(const Body& body, int e, const State& x, Local& local);
   static void add_energies(const State& x, const Body& body, Energies& out);
-  /// Σ of amount(term, element, its unknowns) over the terms that wanted(body, term) names.
+  /// Σ of amount(term, element, its unknowns) over the terms that wanted(term) names.
   template <class Wanted, class Amount>
   double summed(const State& x, Wanted wanted, Amount amount);
   static void gather(const Body& body, int e, const State& mean, const VectorXd& q0,

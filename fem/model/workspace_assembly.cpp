@@ -113,13 +113,13 @@ void Workspace::force(const State& x, VectorXd& out) {
   for_batches(x, kForcesPerThread, [&](const Batch& batch, const BatchPlaces& places) {
     Lanes f[kMaxLocal];
     std::fill(f, f + batch.n_local(), Lanes{});
-    for (const auto& term : bodies_[places.body].terms) term->add_forces(batch, f);
+    for (const BodyTerm& term : bodies_[places.body].terms) term.add_forces(batch, f);
     const int* dof = places.dofs.data();
     for (int k = 0; k < batch.n_local(); ++k, dof += kLanes)
       for (int lane = 0; lane < batch.count; ++lane) out.data()[dof[lane]] += f[k][lane];
   });
   for (const Single& single : singles_) add_single_force(single, x, out);
-  for (const auto& link : links_) link->add_force(x, out);
+  for (const ModelLink& link : links_) link->add_force(x, out);
 }
 
 void Workspace::add_single_force(const Single& single, const State& x, VectorXd& out) const {
@@ -128,10 +128,10 @@ void Workspace::add_single_force(const Single& single, const State& x, VectorXd&
   gather(b, single.e, x, local);
   FreeForce f = FreeForce::Zero(static_cast<Eigen::Index>(single.dofs.size()));
   if (single.free) {
-    for (const auto& term : b.terms) term->add_free_force(single.e, local, f);
+    for (const BodyTerm& term : b.terms) term.with_free_lines().add_free_force(single.e, local, f);
   } else {
     LocalRows rows = LocalRows::Zero(local.q.rows(), local.q.cols());
-    for (const auto& term : b.terms) term->add_force(single.e, local, rows);
+    for (const BodyTerm& term : b.terms) term->add_force(single.e, local, rows);
     f = Eigen::Map<const VectorXd>(rows.data(), rows.size());
   }
   for (size_t k = 0; k < single.dofs.size(); ++k)
@@ -146,10 +146,11 @@ void Workspace::add_single_tangent(const Single& single, const State& x, const W
   const auto n = static_cast<Eigen::Index>(single.dofs.size());
   FreeTangent tangent = FreeTangent::Zero(n, n);
   if (single.free) {
-    for (const auto& term : b.terms) term->add_free_tangent(single.e, local, w, tangent);
+    for (const BodyTerm& term : b.terms)
+      term.with_free_lines().add_free_tangent(single.e, local, w, tangent);
   } else {
     LocalTangent rows = LocalTangent::Zero(n, n);
-    for (const auto& term : b.terms) term->add_tangent(single.e, local, w, rows);
+    for (const BodyTerm& term : b.terms) term->add_tangent(single.e, local, w, rows);
     tangent = rows;
   }
   const double* entry = tangent.data();
@@ -172,13 +173,13 @@ void Workspace::mean_force(const State& mean, const VectorXd& q0, const VectorXd
     for (int e = 0; e < b.element->n_elements(); ++e) {
       gather(b, e, mean, q0, q1, step);
       f.setZero(step.start.rows(), dim);
-      for (const auto& term : b.terms) term->add_mean_force(e, step, f);
+      for (const BodyTerm& term : b.terms) term.with_mean_force().add_mean_force(e, step, f);
       const auto vectors = b.element->vectors(e);
       for (Eigen::Index k = 0; k < f.rows(); ++k)
         out.segment(b.first_dof + dim * vectors[static_cast<size_t>(k)], dim) += f.row(k);
     }
   }
-  for (const auto& link : links_) link->add_mean_force(mean, q0, q1, out);
+  for (const ModelLink& link : links_) link.with_mean_force().add_mean_force(mean, q0, q1, out);
 }
 
 void Workspace::joint_stiffness(const State& x, std::vector<Eigen::Triplet<double>>& out) const {
@@ -215,7 +216,7 @@ void Workspace::build_pattern() {
   joint_stiffness(at, stiffness);
   entries.insert(entries.end(), stiffness.begin(), stiffness.end());
   link_entries_.clear();
-  for (const auto& link : links_) link->add_pattern(link_entries_);
+  for (const ModelLink& link : links_) link->add_pattern(link_entries_);
   entries.insert(entries.end(), link_entries_.begin(), link_entries_.end());
   for (const auto& entry : c.jacobian) {
     entries.emplace_back(n_dofs() + entry.row(), entry.col(), 1.0);
@@ -269,7 +270,7 @@ void Workspace::kkt(const State& x, const Constraints& c, const Weights& w, doub
     Lanes tangent[kMaxLocal * kMaxLocal];
     const int n = batch.n_local();
     std::fill(tangent, tangent + n * n, Lanes{});
-    for (const auto& term : bodies_[places.body].terms) term->add_tangents(batch, w, tangent);
+    for (const BodyTerm& term : bodies_[places.body].terms) term.add_tangents(batch, w, tangent);
     const Lanes* entry = tangent;
     const int* place = places.entries.data();
     for (int run = 0; run < n * batch.n_shapes; ++run, entry += batch.dim, place += kLanes)
@@ -278,7 +279,7 @@ void Workspace::kkt(const State& x, const Constraints& c, const Weights& w, doub
   });
   for (const Single& single : singles_) add_single_tangent(single, x, w, scale, values);
   link_entries_.clear();
-  for (const auto& link : links_) link->add_tangent(x, w, link_entries_);
+  for (const ModelLink& link : links_) link->add_tangent(x, w, link_entries_);
   add_link_entries(scale, values);
   fill_joints(x, scale * w.q, c, c, out);
 }
@@ -292,7 +293,7 @@ void Workspace::add_transposed_product(const State& x, const Weights& w, const V
     Lanes tangent[kMaxLocal * kMaxLocal], own[kMaxLocal];
     const int n = batch.n_local();
     std::fill(tangent, tangent + n * n, Lanes{});
-    for (const auto& term : bodies_[places.body].terms) term->add_tangents(batch, w, tangent);
+    for (const BodyTerm& term : bodies_[places.body].terms) term.add_tangents(batch, w, tangent);
     const int* dof = places.dofs.data();
     for (int k = 0; k < n; ++k, dof += kLanes)
       for (int lane = 0; lane < kLanes; ++lane) own[k][lane] = psi.data()[dof[lane]];
@@ -305,7 +306,7 @@ void Workspace::add_transposed_product(const State& x, const Weights& w, const V
     }
   });
   link_entries_.clear();
-  for (const auto& link : links_) link->add_tangent(x, w, link_entries_);
+  for (const ModelLink& link : links_) link->add_tangent(x, w, link_entries_);
   for (const auto& entry : link_entries_) out[entry.col()] += entry.value() * psi[entry.row()];
 }
 
@@ -323,7 +324,8 @@ void Workspace::mean_kkt(const State& mean, const VectorXd& q0, const VectorXd& 
     for (int lane = 0; lane < batch.count; ++lane) {
       gather(b, batch.first + lane, mean, q0, q1, step);
       tangent.setZero(step.start.size(), step.start.size());
-      for (const auto& term : b.terms) term->add_mean_tangent(batch.first + lane, step, w, tangent);
+      for (const BodyTerm& term : b.terms)
+        term.with_mean_force().add_mean_tangent(batch.first + lane, step, w, tangent);
       const int* place = batch.entries.data() + lane;
       for (Eigen::Index column = 0; column < tangent.cols(); ++column)
         for (Eigen::Index row = 0; row < tangent.rows(); row += dim, place += kLanes)
@@ -331,7 +333,8 @@ void Workspace::mean_kkt(const State& mean, const VectorXd& q0, const VectorXd& 
     }
   }
   link_entries_.clear();
-  for (const auto& link : links_) link->add_mean_tangent(mean, q0, q1, w, link_entries_);
+  for (const ModelLink& link : links_)
+    link.with_mean_force().add_mean_tangent(mean, q0, q1, w, link_entries_);
   add_link_entries(scale, values);
   fill_joints(mean, scale * w.q, at_end, at_mean, out);
 }

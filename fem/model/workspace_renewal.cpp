@@ -36,7 +36,7 @@ void Workspace::renew_kkt(const State& x, const Constraints& c, const Weights& w
     if (std::any_of(single.dofs.begin(), single.dofs.end(), is_chosen))
       renew_single(single, x, w, scale, unknowns, values);
   link_entries_.clear();
-  for (const auto& link : links_) link->add_tangent(x, w, link_entries_);
+  for (const ModelLink& link : links_) link->add_tangent(x, w, link_entries_);
   for (size_t k = 0; k < link_entries_.size(); ++k)
     if (chosen(link_entries_[k].row(), link_entries_[k].col()))
       values[link_places_[k]] += scale * link_entries_[k].value();
@@ -67,7 +67,7 @@ void Workspace::renew_batch(const BatchPlaces& places, const State& x, const Wei
       places.first, places.count, body.element->n_shapes(), body.element->dim(), q, v, a};
   const int n = batch.n_local();
   std::fill(tangent, tangent + n * n, Lanes{});
-  for (const auto& term : body.terms) term->add_tangents(batch, w, tangent);
+  for (const BodyTerm& term : body.terms) term.add_tangents(batch, w, tangent);
   // As in kkt(): a place for every column, vector of rows and lane.
   const int* place = places.entries.data();
   for (int column = 0; column < n; ++column)

@@ -32,7 +32,8 @@ void Workspace::add_factor_slopes(const State& x, const VectorXd& psi,
     for (int e = 0; e < b.element->n_elements(); ++e) {
       gather(b, e, x, local);
       const LocalRows own = rows_of(b, e, psi);
-      for (const auto& term : b.terms) term->add_factor_slopes(e, local, own, out[i]);
+      for (const BodyTerm& term : b.terms)
+        if (term.designed) term.designed->add_factor_slopes(e, local, own, out[i]);
     }
   }
 }
@@ -44,8 +45,8 @@ void Workspace::add_strain_slopes(const State& x, double weight, VectorXd& by_q,
   for (size_t i = 0; i < bodies_.size(); ++i) {
     const Body& b = bodies_[i];
     const int dim = b.element->dim();
-    for (const auto& term : b.terms) {
-      if (!term->is_elastic()) continue;
+    for (const BodyTerm& term : b.terms) {
+      if (!term.elastic) continue;
       for (int e = 0; e < b.element->n_elements(); ++e) {
         gather(b, e, x, local);
         LocalRows force = LocalRows::Zero(local.q.rows(), dim);
@@ -54,7 +55,7 @@ void Workspace::add_strain_slopes(const State& x, double weight, VectorXd& by_q,
         for (Eigen::Index k = 0; k < force.rows(); ++k)
           by_q.segment(b.first_dof + dim * vectors[static_cast<size_t>(k)], dim) +=
               weight * force.row(k);
-        if (!b.factors.uniform()) term->add_energy_slopes(e, local, weight, by_factors[i]);
+        if (!b.factors.uniform()) term.elastic->add_energy_slopes(e, local, weight, by_factors[i]);
       }
     }
   }

@@ -42,7 +42,7 @@ struct Kind {
 ///
 /// Source: T 9; Gerstmayr, Matikainen & Mikkola (2008), Multibody Syst. Dyn. 20, 359-384, 3.2;
 /// Nachbagauer et al. (2011), Multibody Syst. Dyn. 26, 245-263.
-class Beam final : public ElasticTerm {
+class Beam final : public ElasticTerm, public BatchTerm {
  public:
   Beam(const PlaneSection& section, const Kind& kind)
       : ElasticTerm(kind.name, parts_of(section, kind)),

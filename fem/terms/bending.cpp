@@ -58,7 +58,7 @@ class BendingDensity final : public LinearDensity {
 /// functions are shared by neighbours of equal size and material.
 ///
 /// Source: P (7); fem/README.md, Bending.
-class Bending final : public ElasticTerm {
+class Bending final : public ElasticTerm, public BatchTerm {
  public:
   Bending(const PlaneSection& s, int n_points)
       : ElasticTerm("bending", parts_of(s, n_points)),

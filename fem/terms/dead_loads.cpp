@@ -6,7 +6,7 @@ namespace flexmorph::fem {
 namespace {
 
 /// Loads of fixed direction: the same generalized force whatever the shape of the body.
-class DeadLoad : public LoadTerm {
+class DeadLoad : public LoadTerm, public LinearMeanForce<DeadLoad>, public FreeLineTerm {
  public:
   explicit DeadLoad(const LoadLaw& load) : LoadTerm(load) {}
 
@@ -22,10 +22,6 @@ class DeadLoad : public LoadTerm {
   }
   void add_free_tangent(int, const Local&, const Weights&, FreeTangent&) const override {}
 
-  void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override {
-    add_force(e, x.mean, force);
-  }
-  void add_mean_tangent(int, const LocalStep&, const Weights&, LocalTangent&) const override {}
   std::string name() const override { return "dead load"; }
   Energies energies(int e, const Local& x) const override {
     const VectorXd& share = share_[static_cast<size_t>(e)];
@@ -97,7 +93,7 @@ class EdgeLoad final : public DeadLoad {
   std::string edge_;
 };
 
-class SurfaceLoad final : public DeadLoad {
+class SurfaceLoad final : public DeadLoad, public FlowTerm {
  public:
   using DeadLoad::DeadLoad;
   std::unique_ptr<Term> clone() const override { return std::make_unique<SurfaceLoad>(*this); }

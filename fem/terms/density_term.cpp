@@ -248,7 +248,10 @@ class Elastic final : public ElasticTerm {
   StrainTables tables_;
 };
 
-class Dissipative final : public StrainTerm {
+class Dissipative final : public StrainTerm,
+                          public LinearMeanForce<Dissipative>,
+                          public DesignedTerm,
+                          public FlowTerm {
  public:
   Dissipative(std::string name, std::vector<DissipativePart> parts)
       : name_(std::move(name)), parts_(std::move(parts)) {}
@@ -290,14 +293,6 @@ class Dissipative final : public StrainTerm {
       tangent.noalias() += B.transpose() * at.change;
       if (w.q != 0) strains.add_second(at.stress, w.q, tangent);
     }
-  }
-
-  void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override {
-    add_force(e, x.mean, force);
-  }
-  void add_mean_tangent(int e, const LocalStep& x, const Weights& w,
-                        LocalTangent& tangent) const override {
-    add_tangent(e, x.mean, w, tangent);
   }
 
   void add_factor_slopes(int e, const Local& x, const LocalRows& psi,

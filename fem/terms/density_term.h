@@ -10,7 +10,12 @@ namespace flexmorph::fem {
 
 /// What every elastic term has from its densities, whatever closed forms it brings: forces on free
 /// lines, powers of material flow, and a mean force that keeps the energy (GramGradient).
-class ElasticTerm : public StrainTerm {
+class ElasticTerm : public StrainTerm,
+                    public MeanForceTerm,
+                    public FreeLineTerm,
+                    public DesignedTerm,
+                    public ElasticEnergy,
+                    public FlowTerm {
  public:
   std::string name() const override { return name_; }
 
@@ -23,7 +28,6 @@ class ElasticTerm : public StrainTerm {
   void add_factor_slopes(int e, const Local& x, const LocalRows& psi,
                          FactorSlopes& out) const override;
   void add_energy_slopes(int e, const Local& x, double weight, FactorSlopes& out) const override;
-  bool is_elastic() const final { return true; }
   /// energy_at(), or that of FreeElastic next to free lines.
   Energies energies(int e, const Local& x) const final;
   double flow_power(int e, const Local& x) const override;

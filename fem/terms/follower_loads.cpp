@@ -84,7 +84,7 @@ class Pressure final : public LoadTerm {
 /// h = σ M n̂/|s| on s has the derivative
 ///
 ///   ∂h = σ M ( (1 - n̂ n̂ᵀ) ∂n / (|n| |s|) - n̂ (s · ∂s) / |s|³ )
-class EdgeMoment final : public LoadTerm {
+class EdgeMoment final : public LoadTerm, public FreeLineTerm {
  public:
   EdgeMoment(std::string edge, const LoadLaw& moment)
       : LoadTerm(moment, true), edge_(std::move(edge)) {}

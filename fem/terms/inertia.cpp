@@ -18,8 +18,14 @@ namespace {
 /// h, ρ        thickness [m], density [kg/m³]; the mass factor of the design is in the weights
 ///
 /// C and P exist for elements whose lines move; the lines are prescribed, so the force is linear
-/// in Q, Qᵈ and Qᵈᵈ and the tangent is exact.
-class Inertia final : public Term {
+/// in Q, Qᵈ and Qᵈᵈ and the tangent is exact. The mean force is exact with a constant mass,
+/// M (v₁ - v₀)/h · (q₁ - q₀) = T₁ - T₀, and at mid-step where lines move.
+class Inertia final : public Term,
+                      public BatchTerm,
+                      public LinearMeanForce<Inertia>,
+                      public FreeLineTerm,
+                      public DesignedTerm,
+                      public FlowTerm {
  public:
   explicit Inertia(const PlaneSection& s)
       : section_(s), area_density_(s.density * s.thickness), of_free_(area_density_, {}, true) {}
@@ -91,14 +97,6 @@ class Inertia final : public Term {
     of_free_.add_tangent(free_.of(e), x, w, tangent);
   }
 
-  // With a constant mass exact: M (v₁ - v₀)/h · (q₁ - q₀) = T₁ - T₀. Moving lines: at mid-step.
-  void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override {
-    add_force(e, x.mean, force);
-  }
-  void add_mean_tangent(int e, const LocalStep& x, const Weights& w,
-                        LocalTangent& tangent) const override {
-    add_tangent(e, x.mean, w, tangent);
-  }
   std::string name() const override { return "inertia"; }
 
   /// T = ½ ∫ ρh |ṙ|² dA,  ṙ = Qᵈᵀ N + Qᵀ Ṅ.
@@ -118,7 +116,7 @@ class Inertia final : public Term {
 
   void add_factor_slopes(int e, const Local& x, const LocalRows& psi,
                          FactorSlopes& out) const override {
-    const Element::CellRange at = element_->cells(e, factors_->grid);
+    const CellRange at = element_->cells(e, factors_->grid);
     if (x.q.rows() == 4 && at.single() && !element_->moving(e)) {
       out.mass[factors_->grid.cell(at.i0, at.j0)] += bilinear_slope(at.area, x, psi);
       return;

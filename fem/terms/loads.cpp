@@ -7,7 +7,12 @@ namespace flexmorph::fem {
 namespace {
 
 /// Weight of a body: f = -∫ ρh N dA gᵀ, potential V = -∫ ρh g·r dA.
-class Gravity final : public LoadTerm {
+class Gravity final : public LoadTerm,
+                      public BatchTerm,
+                      public LinearMeanForce<Gravity>,
+                      public FreeLineTerm,
+                      public DesignedTerm,
+                      public FlowTerm {
  public:
   Gravity(const PlaneSection& s, const LoadLaw& gravity)
       : LoadTerm(gravity),
@@ -55,14 +60,10 @@ class Gravity final : public LoadTerm {
     of_free_.add_tangent(free_.of(e), x, w, tangent);
   }
 
-  void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override {
-    add_force(e, x.mean, force);
-  }
-  void add_mean_tangent(int, const LocalStep&, const Weights&, LocalTangent&) const override {}
   std::string name() const override { return "gravity"; }
   void add_factor_slopes(int e, const Local&, const LocalRows& psi,
                          FactorSlopes& out) const override {
-    const Element::CellRange at = element_->cells(e, factors_->grid);
+    const CellRange at = element_->cells(e, factors_->grid);
     if (psi.rows() == 4 && at.single()) {  // bilinear: a quarter of its weight at each corner
       out.mass[factors_->grid.cell(at.i0, at.j0)] -=
           0.25 * factor() * area_density_ * at.area * psi.colwise().sum().dot(load());
@@ -105,7 +106,11 @@ class Gravity final : public LoadTerm {
 };
 
 /// Mass at a material point: f = m N (r̈ - g)ᵀ with r̈ as in the inertia of the body.
-class PointMass final : public LoadTerm {
+class PointMass final : public LoadTerm,
+                        public BatchTerm,
+                        public LinearMeanForce<PointMass>,
+                        public FreeLineTerm,
+                        public FlowTerm {
  public:
   PointMass(double mass, const Vec2& material, const LoadLaw& gravity)
       : LoadTerm(gravity), mass_(mass), material_(material) {}
@@ -130,19 +135,21 @@ class PointMass final : public LoadTerm {
         for (Eigen::Index c = 0; c < d; ++c)
           tangent(d * k + c, d * l + c) += mass_ * table_.N(0, k) * row[l];
   }
+  // Only one element of all has the mass.
   void add_forces(const Batch& x, Lanes* force) const override {
-    if (is_in(x)) Term::add_forces(x, force);
+    if (!is_in(x)) return;
+    const int lane = element_ - x.first;
+    LocalRows f = LocalRows::Zero(x.n_shapes, x.dim);
+    add_force(element_, local_of(x, lane), f);
+    for (int k = 0; k < x.n_local(); ++k) force[k][lane] += f.data()[k];
   }
   void add_tangents(const Batch& x, const Weights& w, Lanes* tangent) const override {
-    if (is_in(x)) Term::add_tangents(x, w, tangent);
-  }
-
-  void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override {
-    add_force(e, x.mean, force);
-  }
-  void add_mean_tangent(int e, const LocalStep& x, const Weights& w,
-                        LocalTangent& tangent) const override {
-    add_tangent(e, x.mean, w, tangent);
+    if (!is_in(x)) return;
+    const int lane = element_ - x.first, n = x.n_local();
+    LocalTangent t = LocalTangent::Zero(n, n);
+    add_tangent(element_, local_of(x, lane), w, t);
+    for (int row = 0; row < n; ++row)
+      for (int column = 0; column < n; ++column) tangent[column * n + row][lane] += t(row, column);
   }
   std::string name() const override { return "point mass"; }
   void add_free_force(int e, const Local& x, FreeForce& force) const override {
@@ -178,6 +185,7 @@ class PointMass final : public LoadTerm {
     if (e == element_)
       force.noalias() -= factor() * mass_ * table_.N.transpose() * load().transpose();
   }
+
   bool is_in(const Batch& x) const { return element_ >= x.first && element_ < x.first + x.count; }
 
   Eigen::RowVectorXd acceleration(const Local& x) const {

@@ -37,7 +37,7 @@ using gram::Coupling;
 /// with them instead, see void_cells.h.
 ///
 /// Replaces P (11)-(15) and the tensors of the appendix; fem/README.md, Gram form.
-class Membrane final : public ElasticTerm {
+class Membrane final : public ElasticTerm, public BatchTerm {
  public:
   Membrane(const PlaneSection& s, Strains strains)
       : ElasticTerm(strains == Strains::assumed ? "membrane_assumed" : "membrane",

@@ -31,7 +31,7 @@ Eigen::Matrix2d arm(const Vec2& point) {
 ///       [ m Aᵀ    J 1 ]     since |X u̇ + Y v̇|² = (X² + Y²) |u̇|²
 ///
 /// Source: García de Jalón & Bayo (1994), ch. 4.2.
-class RigidInertia final : public Term {
+class RigidInertia final : public Term, public LinearMeanForce<RigidInertia> {
  public:
   explicit RigidInertia(const RigidSection& s) {
     check(s);
@@ -52,14 +52,6 @@ class RigidInertia final : public Term {
   void add_tangent(int, const Local&, const Weights& w, LocalTangent& tangent) const override {
     tangent += w.a * mass_;
   }
-  // Linear: exact, M (v₁ - v₀)/h · (q₁ - q₀) = T₁ - T₀.
-  void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override {
-    add_force(e, x.mean, force);
-  }
-  void add_mean_tangent(int e, const LocalStep& x, const Weights& w,
-                        LocalTangent& tangent) const override {
-    add_tangent(e, x.mean, w, tangent);
-  }
   Energies energies(int, const Local& x) const override {
     return {.kinetic = 0.5 * column(x.v).dot(mass_ * column(x.v))};
   }
@@ -78,7 +70,7 @@ class RigidInertia final : public Term {
 };
 
 /// V = -m g · (r + c_X u + c_Y v), linear in the unknowns; constant gravity only.
-class RigidGravity final : public LoadTerm {
+class RigidGravity final : public LoadTerm, public LinearMeanForce<RigidGravity> {
  public:
   RigidGravity(const RigidSection& s, const LoadLaw& gravity) : LoadTerm(gravity) {
     check(s);
@@ -93,10 +85,6 @@ class RigidGravity final : public LoadTerm {
     for (int i = 0; i < 4; ++i) force.data()[i] -= f[i];
   }
   void add_tangent(int, const Local&, const Weights&, LocalTangent&) const override {}
-  void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override {
-    add_force(e, x.mean, force);
-  }
-  void add_mean_tangent(int, const LocalStep&, const Weights&, LocalTangent&) const override {}
   Energies energies(int, const Local& x) const override {
     if (!has_potential()) return {};
     return {.potential = -weight().dot(Eigen::Map<const Eigen::Vector4d>(x.q.data()))};

@@ -68,7 +68,7 @@ double time_of(const Element& element, const std::string& term) {
   return body->time();
 }
 
-class StoredInertia final : public Term {
+class StoredInertia final : public Term, public LinearMeanForce<StoredInertia>, public FlowTerm {
  public:
   explicit StoredInertia(const StoredMaterial& s) : stored_(s), leaving_(mass_across(s, s.at)) {
     check(s);
@@ -92,14 +92,6 @@ class StoredInertia final : public Term {
   }
   void add_tangent(int, const Local&, const Weights& w, LocalTangent& tangent) const override {
     tangent += w.a * mass_ + (2 * w.v * speed_ + w.q * acceleration_) * slide_;
-  }
-  // At mid-step, as the inertia of plates with moving lines.
-  void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override {
-    add_force(e, x.mean, force);
-  }
-  void add_mean_tangent(int e, const LocalStep& x, const Weights& w,
-                        LocalTangent& tangent) const override {
-    add_tangent(e, x.mean, w, tangent);
   }
 
   /// T = ½ ∫ ρc |N q̇ + s D q|² dA.
@@ -142,7 +134,7 @@ class StoredInertia final : public Term {
 };
 
 /// V = -m g · (r + c_X u + c_Y v), m and c of what is stored now.
-class StoredWeight final : public LoadTerm {
+class StoredWeight final : public LoadTerm, public LinearMeanForce<StoredWeight>, public FlowTerm {
  public:
   StoredWeight(const StoredMaterial& s, const LoadLaw& gravity) : LoadTerm(gravity), stored_(s) {
     check(s);
@@ -166,10 +158,6 @@ class StoredWeight final : public LoadTerm {
     for (int i = 0; i < 4; ++i) force.data()[i] -= f[i];
   }
   void add_tangent(int, const Local&, const Weights&, LocalTangent&) const override {}
-  void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override {
-    add_force(e, x.mean, force);
-  }
-  void add_mean_tangent(int, const LocalStep&, const Weights&, LocalTangent&) const override {}
   Energies energies(int, const Local& x) const override {
     if (!has_potential()) return {};
     return {.potential = -factor() * (by_ * load().head<2>()).dot(column(x.q))};

@@ -8,15 +8,19 @@
 namespace flexmorph::fem {
 namespace {
 
-class Heated final : public StrainTerm {
+class Heated final : public StrainTerm,
+                     public BatchTerm,
+                     public MeanForceTerm,
+                     public FreeLineTerm,
+                     public FlowTerm,
+                     public ScaledLoad,
+                     public HeatedTerm {
  public:
-  Heated(std::unique_ptr<StrainTerm> cold, const Heat& heat)
+  Heated(BodyTerm cold, const Heat& heat)
       : cold_(std::move(cold)), heat_(heat), power_(heat.volume_exponent()) {}
 
   std::unique_ptr<Term> clone() const override {
-    // The copy of a term is of its kind.
-    std::unique_ptr<StrainTerm> cold(static_cast<StrainTerm*>(cold_->clone().release()));
-    auto out = std::make_unique<Heated>(std::move(cold), heat_);
+    auto out = std::make_unique<Heated>(cold_->clone(), heat_);
     out->factor_ = factor_;  // the rest is put there by heat_to()
     return out;
   }
@@ -27,14 +31,12 @@ class Heated final : public StrainTerm {
   }
 
   void heat_to(double t) override {
-    cold_->heat_to(t);
     rise_ = heat_.stretch(t);
     rise_.value -= 1;
     t_ = t;
     update();
   }
   void scale_load(double factor) override {
-    cold_->scale_load(factor);
     factor_ = factor;
     update();
   }
@@ -53,27 +55,27 @@ class Heated final : public StrainTerm {
     const int n = x.n_local();
     const Batch cold = shrunk(x, unknowns, rates);
     std::fill(f, f + n, Lanes{});
-    cold_->add_forces(cold, f);
+    cold_.add_forces(cold, f);
     for (int k = 0; k < n; ++k) force[k] += force_scale_ * f[k];
   }
   void add_tangents(const Batch& x, const Weights& w, Lanes* tangent) const override {
     Lanes unknowns[kMaxLocal], rates[kMaxLocal];
-    cold_->add_tangents(shrunk(x, unknowns, rates), scaled(w), tangent);
+    cold_.add_tangents(shrunk(x, unknowns, rates), scaled(w), tangent);
   }
 
   void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override {
     LocalRows f = LocalRows::Zero(force.rows(), force.cols());
-    cold_->add_mean_force(e, shrunk(x), f);
+    cold_.with_mean_force().add_mean_force(e, shrunk(x), f);
     force += force_scale_ * f;
   }
   void add_mean_tangent(int e, const LocalStep& x, const Weights& w,
                         LocalTangent& tangent) const override {
-    cold_->add_mean_tangent(e, shrunk(x), scaled(w), tangent);
+    cold_.with_mean_force().add_mean_tangent(e, shrunk(x), scaled(w), tangent);
   }
 
   void add_free_force(int e, const Local& x, FreeForce& force) const override {
     FreeForce f = FreeForce::Zero(force.size());
-    cold_->add_free_force(e, shrunk(x), f);
+    cold_.with_free_lines().add_free_force(e, shrunk(x), f);
     const Eigen::Index n = x.q.size();
     force.head(n) += force_scale_ * f.head(n);
     force.tail(force.size() - n) += energy_scale_ * f.tail(force.size() - n);
@@ -81,7 +83,7 @@ class Heated final : public StrainTerm {
   void add_free_tangent(int e, const Local& x, const Weights& w,
                         FreeTangent& tangent) const override {
     FreeTangent k = FreeTangent::Zero(tangent.rows(), tangent.cols());
-    cold_->add_free_tangent(e, shrunk(x), w, k);
+    cold_.with_free_lines().add_free_tangent(e, shrunk(x), w, k);
     const Eigen::Index n = x.q.size(), m = tangent.rows() - n;
     tangent.topLeftCorner(n, n) += tangent_scale_ * k.topLeftCorner(n, n);
     tangent.topRightCorner(n, m) += force_scale_ * k.topRightCorner(n, m);
@@ -96,13 +98,14 @@ class Heated final : public StrainTerm {
     return energy_scale_ * cold_->dissipation(e, shrunk(x));
   }
   double flow_power(int e, const Local& x) const override {
-    return energy_scale_ * cold_->flow_power(e, shrunk(x));
+    return cold_.flow ? energy_scale_ * cold_.flow->flow_power(e, shrunk(x)) : 0;
   }
   void add_line_energy(std::span<const ShapeTable> line, const Local& x,
                        LineEnergy& out) const override {
+    if (!cold_.flow) return;
     LineEnergy cold;
     cold.set_zero(out.stiffness.size());
-    cold_->add_line_energy(line, shrunk(x), cold);
+    cold_.flow->add_line_energy(line, shrunk(x), cold);
     out.stiffness += energy_scale_ * cold.stiffness;
     out.mass += energy_scale_ * cold.mass;
     out.none += energy_scale_ * cold.none;
@@ -181,7 +184,7 @@ class Heated final : public StrainTerm {
     return out;
   }
 
-  std::unique_ptr<StrainTerm> cold_;
+  BodyTerm cold_;
   Heat heat_;
   int power_;
   const Element* element_ = nullptr;  // of the last prepare()
@@ -193,27 +196,23 @@ class Heated final : public StrainTerm {
 
 }  // namespace
 
-std::unique_ptr<StrainTerm> make_heated(std::unique_ptr<Term> cold, const Heat& heat) {
-  auto* strained = dynamic_cast<StrainTerm*>(cold.get());
-  if (!strained)
+std::unique_ptr<Term> make_heated(BodyTerm cold, const Heat& heat) {
+  if (!cold.strain)
     throw Error::input("heat acts on elastic terms, the term '" + cold->name() + "' is none");
   if (!heat.temperature) throw Error::input("heat without a temperature");
   if (!std::isfinite(heat.expansion))
     throw Error::input("the coefficient of thermal expansion is not a finite number");
-  cold.release();
-  return std::make_unique<Heated>(std::unique_ptr<StrainTerm>(strained), heat);
+  return std::make_unique<Heated>(std::move(cold), heat);
 }
 
 void heat(Body& body, const Heat& heat) {
   const std::string who = "body '" + body.name + "': ";
   if (body.element->is_rigid()) throw Error::input(who + "a rigid body cannot be heated");
   if (body.heat) throw Error::input(who + "is heated already");
-  const auto is_strained = [](const std::unique_ptr<Term>& t) {
-    return dynamic_cast<const StrainTerm*>(t.get()) != nullptr;
-  };
+  const auto is_strained = [](const BodyTerm& t) { return t.strain != nullptr; };
   if (std::none_of(body.terms.begin(), body.terms.end(), is_strained))
     throw Error::input(who + "has no elastic term that heat could act on");
-  for (auto& term : body.terms)
+  for (BodyTerm& term : body.terms)
     if (is_strained(term)) term = make_heated(std::move(term), heat);
   body.heat = heat;
 }

@@ -4,7 +4,6 @@
 
 #include "fem/heat.h"
 #include "fem/model/model.h"
-#include "fem/strain_term.h"
 
 namespace flexmorph::fem {
 
@@ -38,7 +37,7 @@ namespace flexmorph::fem {
 ///
 /// @throws Error (input) unless the term is a StrainTerm and the heat is complete; at heat_to() and
 /// scale_load() (numerical) where s is not a positive number.
-std::unique_ptr<StrainTerm> make_heated(std::unique_ptr<Term> cold, const Heat& heat);
+std::unique_ptr<Term> make_heated(BodyTerm cold, const Heat& heat);
 
 /// Makes a body hot: wraps its terms of strains and sets Body::heat. Before the first
 /// Model::prepare(), which puts the terms to their temperature.

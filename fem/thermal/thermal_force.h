@@ -24,7 +24,7 @@ namespace flexmorph::fem {
 /// Where T̈ = 0 always (accelerates() of thermal/temperature.h) it does nothing: do not add it.
 ///
 /// Mass is that of the body as it is designed; forces scale with nothing, statics do not see it.
-class ThermalForce final : public Link {
+class ThermalForce final : public Link, public MeanForceLink {
  public:
   /// @param area_density  density times width or thickness [kg/m²]
   /// @throws Error (input) for a heat without temperature; at bind() for a body in space, a rigid

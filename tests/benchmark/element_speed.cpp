@@ -141,16 +141,16 @@ void term_rows(double rate) {
         for (const bool designed : {false, true}) {
           if (name == "bending" && dim == 2) continue;
           Plate p(shapes, dim, designed);
-          const auto term = make_term(name, kSection);
+          const BodyTerm term = make_term(name, kSection);
           term->prepare(p.element, p.factors, true);
           const auto forces = [&] {
-            for (int b = 0; b < 8; ++b) term->add_forces(p.batch(b), p.force.data());
+            for (int b = 0; b < 8; ++b) term.add_forces(p.batch(b), p.force.data());
           };
           const double force = nanoseconds(forces) / 64,
                        both = nanoseconds([&] {
                                 for (int b = 0; b < 8; ++b) {
-                                  term->add_forces(p.batch(b), p.force.data());
-                                  term->add_tangents(p.batch(b), {1, 0, 1}, p.tangent.data());
+                                  term.add_forces(p.batch(b), p.force.data());
+                                  term.add_tangents(p.batch(b), {1, 0, 1}, p.tangent.data());
                                 }
                               }) /
                               64;
@@ -280,12 +280,12 @@ class Spatial {
 /// @returns whether all ways agree with the term.
 bool ways() {
   Plate p(ShapeSet::h12, 3, false);
-  const auto term = make_term("membrane", kSection);
+  const BodyTerm term = make_term("membrane", kSection);
   term->prepare(p.element, p.factors, true);
   std::fill(p.force.begin(), p.force.end(), Lanes{});
   std::fill(p.tangent.begin(), p.tangent.end(), Lanes{});
-  term->add_forces(p.batch(0), p.force.data());
-  term->add_tangents(p.batch(0), {1, 0, 0}, p.tangent.data());
+  term.add_forces(p.batch(0), p.force.data());
+  term.add_tangents(p.batch(0), {1, 0, 0}, p.tangent.data());
   Spatial::Force q, expected, f;
   Spatial::Tangent tangent, k;
   for (int i = 0; i < 36; ++i) {

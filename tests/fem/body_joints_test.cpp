@@ -259,7 +259,7 @@ TEST(EdgeWeld, OnABodyIsAWeldInADrivenHub) {
                                testing::swinging_line(0, 0.02, 1.3), {0.1, {}}, {0.3, {}}},
                            testing::even_lines(-0.05, 0.05, 2)),
                        {}, {});
-        testing::add_rigid(model, "hub", {});
+        testing::add_rigid(model, "hub", {.mass = 1, .inertia = 1});
         const BodyView views[] = {
             {&model.bodies()[0].name, model.bodies()[0].element.get(), model.bodies()[0].first_dof},
             {&model.bodies()[1].name, model.bodies()[1].element.get(),

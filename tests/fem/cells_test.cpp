@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "fem/model/body_term.h"
 #include "fem/shapes/batch.h"
 #include "fem/solve/q4_cell.h"
 #include "fem/terms.h"
@@ -27,7 +28,7 @@ struct Cells {
   AncfPlate plate{2, ShapeSet::q4, testing::even_lines(0, 0.01, kNx),
                   testing::even_lines(-0.004, 0.005, kNy)};
   Factors factors;
-  std::unique_ptr<Term> term = make_membrane(kSection);
+  BodyTerm term = make_membrane(kSection);
 
   explicit Cells(const std::function<double(int)>& factor) {
     factors.grid = {0, -0.004, 0.01, 0.009, kNx, kNy};
@@ -128,8 +129,8 @@ TEST(Cells, AreTheSameAloneAndSideBySide) {
       const Local x = cells.local(first + std::min(lane, batch.count - 1), q);
       for (int k = 0; k < 8; ++k) all[k][lane] = x.q(k / 2, k % 2);
     }
-    cells.term->add_forces(batch, force);
-    cells.term->add_tangents(batch, {1, 0, 0}, tangent);
+    cells.term.add_forces(batch, force);
+    cells.term.add_tangents(batch, {1, 0, 0}, tangent);
     for (int lane = 0; lane < batch.count; ++lane) {
       const Local x = cells.local(first + lane, q);
       const LocalRows f = cells.force(first + lane, x);

@@ -131,7 +131,9 @@ TEST(PlateOnABody, GrowsAsOutOfADrivenHub) {
       // The same plate in front of a rigid hub that turns.
       Workspace model;
       Body& old = scene.model.bodies()[0];
-      model.add_body("plate", std::move(old.element), plate.section, std::move(old.terms));
+      std::vector<std::unique_ptr<Term>> terms;
+      for (BodyTerm& term : old.terms) terms.push_back(std::move(term.term));
+      model.add_body("plate", std::move(old.element), plate.section, std::move(terms));
       testing::add_rigid(model, "hub", {2, {0.1, 0.02}, 0.3});
       model.add_joint(make_edge_weld("root", "plate", "root", {.body = "hub"}, plate.weld));
       model.add_joint(make_revolute("axis", {}, {.body = "hub"}));

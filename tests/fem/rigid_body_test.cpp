@@ -87,7 +87,7 @@ TEST(RigidBody, IsTheSumOfItsPoints) {
 // A place that slides along a ray of a turning body: polar coordinates.
 TEST(PlaceMotion, OfAShiftedPlaceIsThatOfPolarCoordinates) {
   Workspace model;
-  testing::add_rigid(model, "body", {});
+  testing::add_rigid(model, "body", {.mass = 1, .inertia = 1});
   State x = model.reference();
   x.t = 0.7;
   testing::put(model, "body", {{0, 0}, 0.4, {0, 0}, 1.3, {0, 0}, -0.6}, x);
@@ -112,14 +112,14 @@ TEST(RigidBody, RefusesWhatItIsNot) {
   EXPECT_THROW(RigidBody(1).locate({0, 0}, Tabulate::position, table), Error);
   Workspace model;
   std::vector<std::unique_ptr<Term>> terms;
-  terms.push_back(make_rigid_inertia({}));
+  terms.push_back(make_rigid_inertia({.mass = 1, .inertia = 1}));
   model.add_body("plate",
                  std::make_unique<AncfPlate>(2, ShapeSet::h16, testing::even_lines(0, 1, 1),
                                              testing::even_lines(0, 1, 1)),
                  {}, std::move(terms));
   EXPECT_THROW(model.prepare(0.0), Error);
   Workspace bodies;
-  testing::add_rigid(bodies, "body", {});
+  testing::add_rigid(bodies, "body", {.mass = 1, .inertia = 1});
   EXPECT_EQ(bodies.smallest_area_ratio(bodies.reference()),
             std::numeric_limits<double>::infinity());  // none is sampled
 }

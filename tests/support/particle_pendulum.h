@@ -14,13 +14,11 @@ namespace flexmorph::testing {
 inline constexpr double kLength = 1, kGravity = 9.81, kMass = 2;
 
 /// A body of one point: r = q.
-class Particle final : public fem::Element {
+class Particle final : public fem::Element, public fem::ShapeElement {
  public:
+  Particle()
+      : Element(Kind<Particle>{}, {.dim = 2, .n_shapes = 1, .n_elements = 1, .n_vectors = 1}) {}
   std::unique_ptr<fem::Element> clone() const override { return std::make_unique<Particle>(*this); }
-  int dim() const override { return 2; }
-  int n_shapes() const override { return 1; }
-  int n_elements() const override { return 1; }
-  int n_vectors() const override { return 1; }
   std::span<const int> vectors(int) const override { return {&zero_, 1}; }
   double scale(int) const override { return 1; }
   bool is_position(int) const override { return true; }
@@ -28,8 +26,8 @@ class Particle final : public fem::Element {
   std::vector<fem::NodeVectors> edge(const std::string&) const override {
     return {{0, -1, -1, -1, {0, 0}}};
   }
-  void move_to(double) override {}
-  bool moving(int) const override { return false; }
+  std::vector<fem::NodeVectors> nodes() const override { return {}; }
+  std::array<std::vector<double>, 2> lines() const override { return {}; }
   void tabulate(int, int, fem::Tabulate, const fem::Factors&, fem::FactorKind,
                 fem::ShapeTable& out) const override {
     out.weight = VectorXd::Ones(1);

@@ -13,24 +13,19 @@ namespace flexmorph::testing {
 /// Points of one body, two unknowns each; "elements" of one point.
 class Points final : public fem::Element {
  public:
-  explicit Points(MatrixXd places) : places_(std::move(places)) {
+  explicit Points(MatrixXd places)
+      : Element(Kind<Points>{}, {.dim = 2,
+                                 .n_shapes = 1,
+                                 .n_elements = static_cast<int>(places.rows()),
+                                 .n_vectors = static_cast<int>(places.rows())}),
+        places_(std::move(places)) {
     for (int i = 0; i < places_.rows(); ++i) numbers_.push_back(i);
   }
   std::unique_ptr<fem::Element> clone() const override { return std::make_unique<Points>(*this); }
-  int dim() const override { return 2; }
-  int n_shapes() const override { return 1; }
-  int n_elements() const override { return static_cast<int>(numbers_.size()); }
-  int n_vectors() const override { return n_elements(); }
   std::span<const int> vectors(int e) const override { return {numbers_.data() + e, size_t{1}}; }
   double scale(int) const override { return 1; }
   bool is_position(int) const override { return true; }
   MatrixXd reference() const override { return places_; }
-  std::vector<fem::NodeVectors> edge(const std::string&) const override { return {}; }
-  void move_to(double) override {}
-  bool moving(int) const override { return false; }
-  void tabulate(int, int, fem::Tabulate, const fem::Factors&, fem::FactorKind,
-                fem::ShapeTable&) const override {}
-  int locate(const Vec2&, fem::Tabulate, fem::ShapeTable&) const override { return 0; }
 
  private:
   MatrixXd places_;

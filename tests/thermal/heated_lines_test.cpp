@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "fem/model/body_term.h"
 #include "fem/terms.h"
 #include "tests/support/differences.h"
 #include "tests/support/errors.h"
@@ -36,7 +37,7 @@ TEST_P(HeatedLines, ForcesAreTheGradientOfTheHotEnergy) {
     return std::vector<MaterialLine>{{from, {}, true}, {to, {}, true}};
   };
   AncfPlate plate(3, ShapeSet::h16, lines(0.1, 0.18), lines(-0.02, 0.05));
-  const auto term = make_heated(make_term(GetParam(), kSection), warm());
+  const BodyTerm term(make_heated(make_term(GetParam(), kSection), warm()));
   const VectorRows rest = testing::random_shape(plate, 0.2, 5);
   const Eigen::Index n = rest.size() + 4;
   VectorXd all(n);
@@ -48,7 +49,7 @@ TEST_P(HeatedLines, ForcesAreTheGradientOfTheHotEnergy) {
         plate, Eigen::Map<const VectorRows>(y.data(), rest.rows(), rest.cols()), 0);
     return Local{q, 0 * q, 0 * q};
   };
-  term->heat_to(0.4);
+  term.heated->heat_to(0.4);
   const auto energy = [&](const VectorXd& y) {
     const Local x = local(y);
     return term->strain_energy(0, x);
@@ -56,7 +57,7 @@ TEST_P(HeatedLines, ForcesAreTheGradientOfTheHotEnergy) {
   const auto force = [&](const VectorXd& y) {
     const Local x = local(y);
     FreeForce f = FreeForce::Zero(n);
-    term->add_free_force(0, x, f);
+    term.with_free_lines().add_free_force(0, x, f);
     return VectorXd(f);
   };
   // Places of the element's unknowns among all.
@@ -67,7 +68,7 @@ TEST_P(HeatedLines, ForcesAreTheGradientOfTheHotEnergy) {
     place.push_back(rest.size() + plate.free_sides(0)[static_cast<size_t>(l)]);
   FreeTangent exact = FreeTangent::Zero(n, n);
   const Local x = local(all);
-  term->add_free_tangent(0, x, {1, 0, 0}, exact);
+  term.with_free_lines().add_free_tangent(0, x, {1, 0, 0}, exact);
   const VectorXd f = force(all);
   VectorXd unit(n);  // a displacement of 1e-5 m
   for (Eigen::Index k = 0; k < n; ++k)
@@ -105,30 +106,30 @@ TEST_P(HeatedLines, ForcesAreTheGradientOfTheHotEnergy) {
   const Local again = local(all);
   const double rate = first_difference(
       [&](double dt) {
-        term->heat_to(0.4 + dt);
+        term.heated->heat_to(0.4 + dt);
         return term->strain_energy(0, again);
       },
       1e-3);
-  term->heat_to(0.4);
-  EXPECT_NEAR(term->heat_power(0, again), rate, 1e-8 * std::abs(rate));
+  term.heated->heat_to(0.4);
+  EXPECT_NEAR(term.heated->heat_power(0, again), rate, 1e-8 * std::abs(rate));
 }
 
 // A path of equilibria may have the temperature as its factor.
 TEST(Heated, ScalesItsTemperature) {
   AncfBeam beam(1, 0.1, 1);
   const auto hot = [&](double a) {
-    auto term = make_heated(make_beam_gcm(kSection), testing::constant_heat(a));
+    BodyTerm term(make_heated(make_beam_gcm(kSection), testing::constant_heat(a)));
     term->prepare(beam, {}, true);
-    term->heat_to(0);
+    term.heated->heat_to(0);
     return term;
   };
   const LocalRows q = testing::rows_of_element(beam, beam.reference(), 0);
   const Local x{q, 0 * q, 0 * q};
   const auto half = hot(0.04), all = hot(0.02);
-  half->scale_load(0.5);
+  half.scaled->scale_load(0.5);
   EXPECT_EQ(half->strain_energy(0, x), all->strain_energy(0, x));
   EXPECT_GT(all->strain_energy(0, x), 0);
-  all->scale_load(0);
+  all.scaled->scale_load(0);
   EXPECT_EQ(all->strain_energy(0, x), 0);
 }
 
@@ -147,8 +148,8 @@ TEST(Heated, RefusesWhatItCannotHeat) {
   EXPECT_TRUE(says(error_of(Kind::input, [&] { make_heated(make_beam_gcm(kSection), endless); }),
                    "finite"));
   for (const double a : {-1.0, -2.0, std::nan("")}) {
-    const auto term = make_heated(make_beam_gcm(kSection), testing::constant_heat(a));
-    EXPECT_TRUE(says(error_of(Kind::numerical, [&] { term->heat_to(0.25); }), "t = 0.25"));
+    const BodyTerm term(make_heated(make_beam_gcm(kSection), testing::constant_heat(a)));
+    EXPECT_TRUE(says(error_of(Kind::numerical, [&] { term.heated->heat_to(0.25); }), "t = 0.25"));
   }
   const auto body_of = [](std::unique_ptr<Element> element, std::unique_ptr<Term> term) {
     Body body;

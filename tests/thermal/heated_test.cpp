@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "fem/model/body_term.h"
 #include "fem/terms.h"
 #include "tests/support/differences.h"
 #include "tests/thermal/hot_models.h"
@@ -168,8 +169,7 @@ double hot_energy(const Case& c, const Element& element, int e, const LocalRows&
 class HeatedTerm : public ::testing::TestWithParam<Case> {
  protected:
   std::unique_ptr<Element> element = element_of(GetParam());
-  std::unique_ptr<StrainTerm> term =
-      make_heated(make_term(GetParam().term, kSection), heat_for(GetParam().volume));
+  BodyTerm term = make_heated(make_term(GetParam().term, kSection), heat_for(GetParam().volume));
 
   void SetUp() override { term->prepare(*element, {}, true); }
   double stretch(double t) const { return heat_for(GetParam().volume).stretch(t).value; }
@@ -223,7 +223,7 @@ TEST_P(HeatedTerm, IsTheEnergyOfTheShrunkGradients) {
   const Local x = local(e);
   const Eigen::Index n = x.q.size();
   for (const double t : {0.4, -0.3}) {
-    term->heat_to(t);
+    term.heated->heat_to(t);
     const double s = stretch(t), energy = hot_energy(GetParam(), *element, e, x.q, s);
     EXPECT_NEAR(term->strain_energy(e, x), energy, 1e-11 * energy);
     VectorXd gradient(n);
@@ -243,7 +243,7 @@ TEST_P(HeatedTerm, TangentIsTheDerivativeOfTheForce) {
   const int e = 9;
   const Local x = local(e);
   const Eigen::Index n = x.q.size();
-  term->heat_to(0.4);
+  term.heated->heat_to(0.4);
   LocalTangent exact = LocalTangent::Constant(n, n, 7.0);  // is added to
   term->add_tangent(e, x, {0.6, 3, 5}, exact);
   exact.array() -= 7.0;
@@ -262,7 +262,7 @@ TEST_P(HeatedTerm, TangentIsTheDerivativeOfTheForce) {
 }
 
 TEST_P(HeatedTerm, BatchesAreTheSame) {
-  term->heat_to(0.4);
+  term.heated->heat_to(0.4);
   for (const int first : {0, 8}) {
     Lanes q[kMaxShapes * kMaxDim], zero[kMaxShapes * kMaxDim] = {};
     Lanes f[kMaxShapes * kMaxDim];
@@ -277,8 +277,8 @@ TEST_P(HeatedTerm, BatchesAreTheSame) {
     }
     std::fill(f, f + n, Lanes{} + 2.0);
     std::fill(k.begin(), k.end(), Lanes{} + 3.0);
-    term->add_forces(x, f);
-    term->add_tangents(x, {0.7, 1, 1}, k.data());
+    term.add_forces(x, f);
+    term.add_tangents(x, {0.7, 1, 1}, k.data());
     for (int lane = 0; lane < x.count; ++lane) {
       const Local one = local(first + lane);
       const VectorXd alone = force(first + lane, one.q);
@@ -300,26 +300,26 @@ TEST_P(HeatedTerm, HeatPowerIsTheRateAtFixedUnknowns) {
   for (const double t : {0.4, 0.9}) {
     const double rate = first_difference(
         [&](double dt) {
-          term->heat_to(t + dt);
+          term.heated->heat_to(t + dt);
           return term->strain_energy(e, x);
         },
         1e-3);
-    term->heat_to(t);
-    EXPECT_NEAR(term->heat_power(e, x), rate, 1e-8 * std::abs(rate));
+    term.heated->heat_to(t);
+    EXPECT_NEAR(term.heated->heat_power(e, x), rate, 1e-8 * std::abs(rate));
     EXPECT_GT(std::abs(rate), 1e-3 * term->strain_energy(e, x));
     // Wherever the body is.
     Local far = x;
     for (Eigen::Index k = 0; k < x.q.rows(); ++k)
       if (element->is_position(element->vectors(e)[static_cast<size_t>(k)]))
         far.q.row(k).array() += 1000.0;
-    EXPECT_NEAR(term->heat_power(e, far), rate, 1e-8 * std::abs(rate));
+    EXPECT_NEAR(term.heated->heat_power(e, far), rate, 1e-8 * std::abs(rate));
   }
 }
 
 // A discrete gradient to round-off of the energies, and its derivative by the end.
 TEST_P(HeatedTerm, MeanForceKeepsTheEnergy) {
   const int e = 5;
-  term->heat_to(0.4);
+  term.heated->heat_to(0.4);
   LocalStep x{local(e, 1).q, local(e, 2).q, {}};
   const auto mean = [&](const LocalStep& y) {
     const LocalRows q = 0.5 * (y.start + y.end);
@@ -328,7 +328,7 @@ TEST_P(HeatedTerm, MeanForceKeepsTheEnergy) {
   x.mean = mean(x);
   const auto f = [&](const LocalStep& y) {
     LocalRows out = LocalRows::Zero(y.start.rows(), y.start.cols());
-    term->add_mean_force(e, y, out);
+    term.with_mean_force().add_mean_force(e, y, out);
     return out;
   };
   const double start = term->strain_energy(e, {x.start, x.mean.v, x.mean.a}),
@@ -337,7 +337,7 @@ TEST_P(HeatedTerm, MeanForceKeepsTheEnergy) {
   EXPECT_GT(std::abs(end - start), 1e-3 * (start + end));
   const Eigen::Index n = x.start.size();
   LocalTangent exact = LocalTangent::Zero(n, n);
-  term->add_mean_tangent(e, x, {0.5, 0, 0}, exact);
+  term.with_mean_force().add_mean_tangent(e, x, {0.5, 0, 0}, exact);
   MatrixXd scaled(n, n), difference(n, n);
   for (Eigen::Index k = 0; k < n; ++k) {
     const VectorXd df = first_difference(

@@ -54,8 +54,8 @@ TEST(HotDamping, TangentsAreDerivatives) {
   for (const auto& [names, place] : kDamped) {
     const auto element = element_in(place);
     auto terms = make_terms(names, kSection, {{"damping_time", 0.3}});
-    const auto term = make_heated(std::move(terms.back()), moving_heat());
-    term->heat_to(kNow);
+    const BodyTerm term = make_heated(std::move(terms.back()), moving_heat());
+    term.heated->heat_to(kNow);
     term->prepare(*element, {}, true);
     const Local x = state_of(*element, 1);
     for (const Weights w : {Weights{1, 0, 0}, {0.7, 130, 0}}) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "fem/model/body_term.h"
 #include "fem/terms/density_term.h"
 #include "tests/thermal/hot_models.h"
 
@@ -18,22 +19,23 @@ TEST(HotRows, AreTheirDensities) {
     if (!row->elastic) continue;
     for (const TermPlace place : row->places) {
       const auto element = testing::element_in(place);
-      const auto closed = make_heated(make_term(row->name, kSection), testing::moving_heat());
-      const auto generic = make_heated(
+      const BodyTerm closed = make_heated(make_term(row->name, kSection), testing::moving_heat());
+      const BodyTerm generic = make_heated(
           make_elastic_term(row->name, row->elastic({kSection, {}, {}})), testing::moving_heat());
       const Local x = testing::state_of(*element, 1);
       VectorXd force[2];
       LocalTangent tangent[2];
       double energy[2], power[2];
       int i = 0;
-      for (StrainTerm* term : {closed.get(), generic.get()}) {
-        term->heat_to(kNow);
+      for (const BodyTerm* of : {&closed, &generic}) {
+        const BodyTerm& term = *of;
+        term.heated->heat_to(kNow);
         term->prepare(*element, {}, true);
         force[i] = testing::force_of(*term, 1, x);
         tangent[i].setZero(x.q.size(), x.q.size());
         term->add_tangent(1, x, {1, 0, 0}, tangent[i]);
         energy[i] = term->strain_energy(1, x);
-        power[i++] = term->heat_power(1, x);
+        power[i++] = term.heated->heat_power(1, x);
       }
       const auto largest = [](const auto& m) { return m.template lpNorm<Eigen::Infinity>(); };
       EXPECT_LT(largest((force[1] - force[0]).eval()), 1e-12 * largest(force[0])) << row->name;

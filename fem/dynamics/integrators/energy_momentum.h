@@ -9,7 +9,7 @@ namespace flexmorph::fem {
 /// A mid-point scheme that keeps energy and momenta of what is neither driven nor fed.
 ///
 ///   q₁ - q₀ = h v̄,   v̄ = ½ (v₀ + v₁),   ā = (v₁ - v₀) / h
-///   M ā + F̄(q₀, q₁) + Φ̄_qᵀ λ̄ = 0   at (q̄, v̄, t̄) with F̄ of Term::add_mean_force()
+///   M ā + F̄(q₀, q₁) + Φ̄_qᵀ λ̄ = 0   at (q̄, v̄, t̄) with F̄ of MeanForceTerm
 ///   Φ(q₁, t₁) = 0
 ///
 /// Times q₁ - q₀ the equation of motion says T₁ - T₀ + U₁ - U₀ = -λ̄ · Φ̄_q (q₁ - q₀), and Φ̄_q, the

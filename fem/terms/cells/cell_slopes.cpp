@@ -67,7 +67,7 @@ void add_cell_slopes(const Element& element, const Factors& factors,
   const double factor = cells.factor(lane), solid = VoidCells::solid_part(factor),
                slope = VoidCells::solid_slope(factor);
   const Shares all = shares({batch.w.data(), lane}, cells, batch.reference, lane, q, psi);
-  const Element::CellRange at = element.cells(e, grid);
+  const CellRange at = element.cells(e, grid);
   if (at.single() && factor > 0) {
     out[grid.cell(at.i0, at.j0)] += weight * ((solid / factor + slope) * all.solid +
                                               ((1 - solid) / factor - slope) * all.empty);

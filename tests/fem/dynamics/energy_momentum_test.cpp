@@ -8,6 +8,7 @@
 
 #include "fem/dynamics/integrators/integrator.h"
 #include "fem/loads.h"
+#include "fem/model/body_term.h"
 #include "fem/shapes/gram_gradient.h"
 #include "fem/terms.h"
 #include "tests/support/differences.h"
@@ -25,7 +26,7 @@ constexpr double kStep = 0.02;
 
 /// Stretches instead of Green-Lagrange strains: objective, neither quadratic nor polynomial in q.
 ///   U = k/2 Σ_p w_p ((|r_m| - 1)² + (|r_n| - 1)² + (r_m·r_n)²)
-class Stretch final : public Term {
+class Stretch final : public Term, public MeanForceTerm {
  public:
   std::unique_ptr<Term> clone() const override { return std::make_unique<Stretch>(*this); }
   void prepare(const Element& element, const Factors& factors, bool) override {
@@ -124,7 +125,7 @@ class MeanForce : public ::testing::TestWithParam<Case> {
   }
   LocalRows force(int e, const LocalStep& x) const {
     LocalRows f = LocalRows::Zero(x.start.rows(), 2);
-    term->add_mean_force(e, x, f);
+    term.with_mean_force().add_mean_force(e, x, f);
     return f;
   }
   bool elastic() const { return GetParam().make == membrane || GetParam().make == stretch; }
@@ -138,7 +139,7 @@ class MeanForce : public ::testing::TestWithParam<Case> {
   AncfPlate plate{2, GetParam().shapes, testing::even_lines(0.1, 0.3, 2),
                   testing::even_lines(-0.05, 0.06, 2)};
   Factors factors;
-  std::unique_ptr<Term> term = GetParam().make();
+  BodyTerm term = GetParam().make();
 };
 INSTANTIATE_TEST_SUITE_P(Terms, MeanForce,
                          ::testing::Values(Case{"membrane_h12", ShapeSet::h12, false, membrane},
@@ -230,7 +231,7 @@ TEST_P(MeanForce, TangentIsTheDerivativeByTheEnd) {
   const int e = 2;
   const LocalStep x = step(e, 0.2);
   LocalTangent k = LocalTangent::Zero(x.start.size(), x.start.size());
-  term->add_mean_tangent(e, x, {0.5, 1 / kStep, 2 / (kStep * kStep)}, k);
+  term.with_mean_force().add_mean_tangent(e, x, {0.5, 1 / kStep, 2 / (kStep * kStep)}, k);
   const auto vectors = plate.vectors(e);
   const double largest = k.cwiseAbs().maxCoeff();
   if (elastic()) {

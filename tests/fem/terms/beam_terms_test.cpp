@@ -10,6 +10,7 @@
 #include <random>
 
 #include "fem/elements/ancf_beam.h"
+#include "fem/model/body_term.h"
 #include "fem/terms.h"
 #include "tests/support/crooked_beam.h"
 #include "tests/support/dense.h"
@@ -78,7 +79,7 @@ class BeamTerm : public ::testing::TestWithParam<Case> {
   }
 
   AncfBeam beam = beam_of(GetParam().reference);
-  std::unique_ptr<Term> term = make_term(GetParam().model, kSection);
+  BodyTerm term = make_term(GetParam().model, kSection);
 };
 INSTANTIATE_TEST_SUITE_P(Beams, BeamTerm, ::testing::ValuesIn([] {
                            std::vector<Case> out;
@@ -304,9 +305,9 @@ TEST_P(BeamTerm, BatchesAreElements) {
       for (size_t k = 0; k < 12; ++k) q[k][lane] = rows.data()[k];
     }
     const Batch batch{first, count, 6, 2, q.data(), zero.data(), zero.data()};
-    term->add_forces(batch, f.data());
+    term.add_forces(batch, f.data());
     std::vector<Lanes> tangent(144, Lanes{});
-    term->add_tangents(batch, {0.7, 3, 5}, tangent.data());
+    term.add_tangents(batch, {0.7, 3, 5}, tangent.data());
     for (int lane = 0; lane < count; ++lane) {
       const Local x = local(first + lane, all);
       const LocalRows alone = force(first + lane, x);
@@ -330,7 +331,7 @@ TEST_P(BeamTerm, MeanForceIsADiscreteGradient) {
   x.end = rows_of_element(beam, random_shape(0.2, 8), e);
   x.mean = {0.5 * (x.start + x.end), LocalRows::Zero(6, 2), LocalRows::Zero(6, 2)};
   LocalRows f = LocalRows::Zero(6, 2);
-  term->add_mean_force(e, x, f);
+  term.with_mean_force().add_mean_force(e, x, f);
   const double u0 = term->strain_energy(e, {x.start, {}, {}}),
                u1 = term->strain_energy(e, {x.end, {}, {}});
   EXPECT_NEAR(f.cwiseProduct(x.end - x.start).sum(), u1 - u0, 1e-12 * (u0 + u1));
@@ -340,7 +341,8 @@ TEST_P(BeamTerm, MeanForceIsADiscreteGradient) {
   EXPECT_LT(std::abs(moment), 1e-13 * f.norm() * x.mean.q.norm());
 
   LocalTangent k = LocalTangent::Zero(12, 12);
-  term->add_mean_tangent(e, x, {0.5, 0, 0}, k);  // the end moves by one, the mean by a half
+  term.with_mean_force().add_mean_tangent(e, x, {0.5, 0, 0},
+                                          k);  // the end moves by one, the mean by a half
   for (Eigen::Index l = 0; l < 12; ++l) {
     const double step = l / 2 % 3 == 0 ? 1e-3 * beam.scale(1) : 1e-3;
     const MatrixXd df = first_difference(
@@ -349,7 +351,7 @@ TEST_P(BeamTerm, MeanForceIsADiscreteGradient) {
           y.end(l / 2, l % 2) += by;
           y.mean.q(l / 2, l % 2) += by / 2;
           LocalRows out = LocalRows::Zero(6, 2);
-          term->add_mean_force(e, y, out);
+          term.with_mean_force().add_mean_force(e, y, out);
           return MatrixXd(out);
         },
         step);
@@ -372,7 +374,7 @@ TEST(BeamBending, PoissonLockingIsOneOverOneMinusNuSquared) {
                                      {"gcm", 1 / (1 - 0.3 * 0.3)},
                                      {"ecm_full", 1.0},
                                      {"gcm_full", 1 / (1 - 0.3 * 0.3)}}) {
-    const std::unique_ptr<Term> term = make_term(name, kSection);
+    const BodyTerm term = make_term(name, kSection);
     term->prepare(beam, {}, true);
     // Terms of fourth order in κ: (κl)²/h² of the strain on the axis is below 1e-4 of it.
     EXPECT_NEAR(term->strain_energy(0, x) / exact, factor, 1e-6) << name;

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "fem/model/body_term.h"
 #include "fem/terms.h"
 #include "tests/support/differences.h"
 #include "tests/support/space_plates.h"
@@ -45,7 +46,7 @@ class SpaceTerm : public ::testing::TestWithParam<Case> {
 
   AncfPlate plate;
   Factors factors;
-  std::unique_ptr<Term> term;
+  BodyTerm term;
 };
 INSTANTIATE_TEST_SUITE_P(
     Shapes, SpaceTerm,
@@ -134,7 +135,7 @@ double energy_of_surface(const std::function<Vec3(double, double)>& r, int eleme
     q.row(node.r_n) = by_n(m);
     q.row(node.r_mn) = first_difference([&](double d) { return by_n(m + d); }, h);
   }
-  const auto term = make_bending(kSection, n_points);
+  const BodyTerm term = make_bending(kSection, n_points);
   term->prepare(plate, {}, true);
   double out = 0;
   for (int e = 0; e < plate.n_elements(); ++e) {
@@ -187,7 +188,7 @@ TEST(Bending, EnergyIsThatOfItsPoints) {
       const AncfPlate plate(3, shapes, {{0.1, {}}, {0.21, {}}, {0.3, {}}},
                             {{-0.05, {}}, {0.01, {}}, {0.07, {}}});
       const Factors factors = designed ? testing::random_factors(5) : Factors{};
-      const auto term = make_bending(kSection);
+      const BodyTerm term = make_bending(kSection);
       term->prepare(plate, factors, true);
       const MatrixXd shape = testing::random_shape(plate, 0.2, 1);
       for (int e = 0; e < plate.n_elements(); ++e) {
@@ -220,7 +221,7 @@ TEST(Bending, BatchesAreTheirElements) {
         std::vector<MaterialLine> lines = testing::even_lines(0.1, 0.45, 5);
         if (moves) lines[0] = testing::swinging_line(0.1, 0.03, 2.1);
         AncfPlate plate(3, shapes, lines, testing::even_lines(-0.05, 0.07, 3));
-        const auto term = make_bending(kSection);
+        const BodyTerm term = make_bending(kSection);
         const Factors factors = designed ? testing::random_factors(3) : Factors{};
         term->prepare(plate, factors, true);
         plate.move_to(0.37);
@@ -238,8 +239,8 @@ TEST(Bending, BatchesAreTheirElements) {
             for (size_t k = 0; k < size; ++k) q[k][lane] = rows.data()[k];
           }
           const Batch batch{first, count, plate.n_shapes(), 3, q.data(), q.data(), q.data()};
-          term->add_forces(batch, f.data());
-          term->add_tangents(batch, w, t.data());
+          term.add_forces(batch, f.data());
+          term.add_tangents(batch, w, t.data());
           for (int lane = 0; lane < count; ++lane) {
             Local x;
             x.q = testing::rows_of_element(plate, shape, first + lane);

@@ -12,6 +12,7 @@
 
 #include "fem/dynamics/starts/start.h"
 #include "fem/elements/ancf_beam.h"
+#include "fem/model/body_term.h"
 #include "fem/terms.h"
 #include "tests/support/differences.h"
 #include "tests/support/energy_rate.h"
@@ -56,10 +57,11 @@ class Damping : public ::testing::TestWithParam<Case> {
     if (GetParam().designed) factors = testing::random_factors(11);
     std::vector<std::string> names = GetParam().elastic;
     names.emplace_back("damping");
-    all = make_terms(names, kSection, {{"damping_time", kTime}, {"bending_points", 6}});
+    for (auto& term : make_terms(names, kSection, {{"damping_time", kTime}, {"bending_points", 6}}))
+      all.emplace_back(std::move(term));
     for (const auto& term : all) term->prepare(*element, factors, true);
   }
-  const Term& damping() const { return *all.back(); }
+  const BodyTerm& damping() const { return all.back(); }
 
   MatrixXd random_rows(double size, unsigned seed) const {
     std::mt19937 random(seed);
@@ -88,7 +90,8 @@ class Damping : public ::testing::TestWithParam<Case> {
   }
   double power(const MatrixXd& q, const MatrixXd& v) const {
     double out = 0;
-    for (int e = 0; e < element->n_elements(); ++e) out += damping().dissipation(e, local(e, q, v));
+    for (int e = 0; e < element->n_elements(); ++e)
+      out += damping()->dissipation(e, local(e, q, v));
     return out;
   }
   double energy(const MatrixXd& q) const {
@@ -100,13 +103,13 @@ class Damping : public ::testing::TestWithParam<Case> {
   }
   VectorXd force(int e, const Local& x) const {
     LocalRows f = LocalRows::Zero(x.q.rows(), x.q.cols());
-    damping().add_force(e, x, f);
+    damping()->add_force(e, x, f);
     return Eigen::Map<const VectorXd>(f.data(), f.size());
   }
 
   std::unique_ptr<Element> element;
   Factors factors;
-  std::vector<std::unique_ptr<Term>> all;
+  std::vector<BodyTerm> all;
 };
 INSTANTIATE_TEST_SUITE_P(Bodies, Damping,
                          ::testing::Values(Case{{"membrane"}, TermPlace::plane},
@@ -140,12 +143,12 @@ TEST_P(Damping, ForceIsHalfTheDerivativeOfThePower) {
           [&](double h) {
             Local moved = x;
             moved.v.data()[k] += h;
-            return damping().dissipation(e, moved);
+            return damping()->dissipation(e, moved);
           },
           1);
       EXPECT_NEAR(f[k], 0.5 * by, 1e-10 * f.lpNorm<Eigen::Infinity>());
     }
-    const double p = damping().dissipation(e, x);
+    const double p = damping()->dissipation(e, x);
     EXPECT_NEAR(f.dot(Eigen::Map<const VectorXd>(x.v.data(), x.v.size())), p, 1e-13 * p);
   }
 }
@@ -191,7 +194,7 @@ TEST_P(Damping, TangentsAreDerivatives) {
   const Local x = local(e, q, v);
   for (const Weights w : {Weights{1, 0, 0}, {0, 1, 0}, {0.7, 130, 9e3}}) {
     LocalTangent exact = LocalTangent::Zero(x.q.size(), x.q.size());
-    damping().add_tangent(e, x, w, exact);
+    damping()->add_tangent(e, x, w, exact);
     MatrixXd by(x.q.size(), x.q.size());
     const double step = 1e-4 / std::max(w.q, 0.01 * w.v);
     for (Eigen::Index k = 0; k < x.q.size(); ++k)
@@ -233,8 +236,8 @@ TEST_P(Damping, MeanForceDissipatesWhatTheBalanceCounts) {
   for (int e = 0; e < element->n_elements(); ++e) {
     const LocalStep x = step(e, q0, q1);
     LocalRows f = LocalRows::Zero(x.start.rows(), x.start.cols());
-    damping().add_mean_force(e, x, f);
-    const double lost = h * damping().dissipation(e, x.mean);
+    damping().with_mean_force().add_mean_force(e, x, f);
+    const double lost = h * damping()->dissipation(e, x.mean);
     EXPECT_NEAR(f.cwiseProduct(x.end - x.start).sum(), lost, 1e-13 * lost);
     const auto vectors = element->vectors(e);
     Eigen::RowVectorXd resultant = Eigen::RowVectorXd::Zero(f.cols());
@@ -244,7 +247,7 @@ TEST_P(Damping, MeanForceDissipatesWhatTheBalanceCounts) {
     const double moment = f.cwiseProduct(LocalRows(x.mean.q * spin().transpose())).sum();
     EXPECT_LT(std::abs(moment), 1e-12 * f.norm() * x.mean.q.norm());
     LocalTangent exact = LocalTangent::Zero(f.size(), f.size());
-    damping().add_mean_tangent(e, x, {0.5, 1 / h, 0}, exact);
+    damping().with_mean_force().add_mean_tangent(e, x, {0.5, 1 / h, 0}, exact);
     for (Eigen::Index k = 0; k < f.size(); ++k) {
       const VectorXd by = first_difference(
           [&](double by_h) {
@@ -253,7 +256,7 @@ TEST_P(Damping, MeanForceDissipatesWhatTheBalanceCounts) {
             moved.mean.q.data()[k] += 0.5 * by_h;
             moved.mean.v.data()[k] += by_h / h;
             LocalRows g = LocalRows::Zero(f.rows(), f.cols());
-            damping().add_mean_force(e, moved, g);
+            damping().with_mean_force().add_mean_force(e, moved, g);
             return VectorXd(Eigen::Map<const VectorXd>(g.data(), g.size()));
           },
           1e-5);
@@ -261,7 +264,7 @@ TEST_P(Damping, MeanForceDissipatesWhatTheBalanceCounts) {
                 1e-7 * exact.lpNorm<Eigen::Infinity>());
     }
     const LocalStep rigid = step(e, q0, q0 * rotation(1.1).transpose());
-    EXPECT_LT(damping().dissipation(e, rigid.mean), 1e-14 * lost / h);
+    EXPECT_LT(damping()->dissipation(e, rigid.mean), 1e-14 * lost / h);
   }
 }
 

@@ -11,6 +11,7 @@
 #include <random>
 
 #include "fem/elements/ancf_beam.h"
+#include "fem/model/body_term.h"
 #include "fem/terms.h"
 #include "fem/terms/sampling.h"
 #include "tests/support/crooked_beam.h"
@@ -109,8 +110,7 @@ class EveryElasticRow : public ::testing::TestWithParam<Case> {
     if (GetParam().designed) factors = testing::random_factors(11);
     closed = make_term(row.name, kSection);
     generic = make_elastic_term(row.name, plain_parts(row));
-    for (Term* term : {closed.get(), static_cast<Term*>(generic.get())})
-      term->prepare(*element, factors, true);
+    for (const BodyTerm* term : {&closed, &generic}) (*term)->prepare(*element, factors, true);
     q = shape(*element, 0.1, 3);
   }
   Local local(int e, const MatrixXd& all) const {
@@ -132,8 +132,8 @@ class EveryElasticRow : public ::testing::TestWithParam<Case> {
 
   std::unique_ptr<Element> element;
   Factors factors;
-  std::unique_ptr<Term> closed;
-  std::unique_ptr<StrainTerm> generic;
+  BodyTerm closed;
+  BodyTerm generic;
   MatrixXd q;
 };
 INSTANTIATE_TEST_SUITE_P(Table, EveryElasticRow, ::testing::ValuesIn(cases()));
@@ -162,15 +162,15 @@ TEST_P(EveryElasticRow, HasThePowersOfItsDensity) {
   const Tabulate what = plate->dim() == 3 ? Tabulate::curvature_rates : Tabulate::gradient_rates;
   for (int e = 0; e < element->n_elements(); ++e) {
     const Local x = local(e, q);
-    const double power = closed->flow_power(e, x);
-    EXPECT_NEAR(generic->flow_power(e, x), power, 1e-11 * std::abs(power));
+    const double power = closed.flow->flow_power(e, x);
+    EXPECT_NEAR(generic.flow->flow_power(e, x), power, 1e-11 * std::abs(power));
     std::vector<ShapeTable> line(7);
     for (size_t g = 0; g < line.size(); ++g) plate->at(e, 0, gauss(7).points[g], what, line[g]);
     LineEnergy is, should;
     is.set_zero(7);
     should.set_zero(7);
-    generic->add_line_energy(line, x, is);
-    closed->add_line_energy(line, x, should);
+    generic.flow->add_line_energy(line, x, is);
+    closed.flow->add_line_energy(line, x, should);
     EXPECT_LT(relative(is.stiffness, should.stiffness), 1e-12);
   }
 }
@@ -184,7 +184,7 @@ TEST_P(EveryElasticRow, HasAMeanForceThatKeepsTheEnergy) {
     const double start_energy = generic->strain_energy(e, {x.start, {}, {}}),
                  end_energy = generic->strain_energy(e, {x.end, {}, {}});
     LocalRows mean = LocalRows::Zero(x.start.rows(), x.start.cols());
-    generic->add_mean_force(e, x, mean);
+    generic.with_mean_force().add_mean_force(e, x, mean);
     EXPECT_NEAR(mean.cwiseProduct(x.end - x.start).sum(), end_energy - start_energy,
                 1e-11 * (start_energy + end_energy));
   }
@@ -201,8 +201,8 @@ TEST_P(EveryElasticRow, HasTheForcesOnFreeLinesOfItsDensity) {
     return out;
   };
   AncfPlate plate(dim, GetParam().shapes, free({0.1, 0.21}), free({-0.02, 0.05}));
-  const auto closed = make_term(GetParam().row, kSection);
-  const auto generic = make_elastic_term(GetParam().row, plain_parts(term_row(GetParam().row)));
+  const BodyTerm closed = make_term(GetParam().row, kSection);
+  const BodyTerm generic(make_elastic_term(GetParam().row, plain_parts(term_row(GetParam().row))));
   Local x;
   x.q = testing::rows_of_element(plate, shape(plate, 0.1, 3), 0);
   x.v = x.a = LocalRows::Zero(x.q.rows(), x.q.cols());
@@ -210,12 +210,12 @@ TEST_P(EveryElasticRow, HasTheForcesOnFreeLinesOfItsDensity) {
   FreeForce forces[2];
   FreeTangent tangents[2];
   int i = 0;
-  for (Term* term : {closed.get(), static_cast<Term*>(generic.get())}) {
-    term->prepare(plate, {}, true);
+  for (const BodyTerm* term : {&closed, &generic}) {
+    (*term)->prepare(plate, {}, true);
     forces[i].setZero(n);
     tangents[i].setZero(n, n);
-    term->add_free_force(0, x, forces[i]);
-    term->add_free_tangent(0, x, {1, 0, 0}, tangents[i]);
+    term->with_free_lines().add_free_force(0, x, forces[i]);
+    term->with_free_lines().add_free_tangent(0, x, {1, 0, 0}, tangents[i]);
     ++i;
   }
   EXPECT_LT(relative(forces[1], forces[0]), 1e-12);
@@ -279,8 +279,8 @@ class Cosh final : public StrainDensity {
 // A density is all that a new term brings: its force and tangent are derivatives of its energy.
 TEST(ElasticTerm, IsMadeFromAnyDensity) {
   const AncfPlate plate = testing::swinging_plate(ShapeSet::h16, 0.4);
-  const auto term = make_elastic_term(
-      "cosh", {{std::make_shared<Cosh>(), sample_points(12, Tabulate::gradient)}});
+  const BodyTerm term(make_elastic_term(
+      "cosh", {{std::make_shared<Cosh>(), sample_points(12, Tabulate::gradient)}}));
   term->prepare(plate, {}, true);
   Local x;
   x.q = testing::rows_of_element(plate, testing::random_shape(plate, 0.1, 3), 1);
