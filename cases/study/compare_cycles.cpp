@@ -76,12 +76,9 @@ std::vector<std::vector<std::string>> table_of(const std::vector<Result>& result
 void write(const std::vector<Result>& results, const std::string& directory,
            const std::string& name) {
   const auto rows = table_of(results);
-  std::string csv;
-  for (const std::vector<std::string>& row : rows) {
-    for (size_t k = 0; k < row.size(); ++k) csv += (k ? "," : "") + row[k];
-    csv += "\n";
-  }
-  io::write_file(directory + "/compare.csv", csv);
+  std::vector<std::vector<io::Cell>> cells;
+  for (size_t i = 1; i < rows.size(); ++i) cells.emplace_back(rows[i].begin(), rows[i].end());
+  io::CsvWriter(directory + "/compare.csv", rows.front(), cells);
   io::write_file(directory + "/compare.md",
                  "# " + name + "\n\n" + io::markdown_table(rows) +
                      "\nJ, its KKT residual and what is left within the move limit are those of "

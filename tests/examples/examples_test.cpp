@@ -78,7 +78,8 @@ TEST(Examples, AJointOfItsOwnSeesTheAnglesOfItsBodies) {
   const cases::JointParts parts{
       .scene = scene, .a = {.body = "one"}, .b = {.body = "two", .angle = 0.3}};
   fem::Workspace model;
-  for (const char* name : {"one", "two"}) testing::add_rigid(model, name, {.mass = 1, .inertia = 1});
+  for (const char* name : {"one", "two"})
+    testing::add_rigid(model, name, {.mass = 1, .inertia = 1});
   model.add_joint(cases::kParallel.make(joint, parts));
   const double a = 0.7, b = -0.2, rate_a = 1.3, rate_b = 0.4, between = b + 0.3 - a;
   fem::State x;
