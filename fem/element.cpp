@@ -6,8 +6,7 @@ const ShapeElement& Element::with_shapes() const {
   if (const ShapeElement* out = shape_element()) return *out;
   throw Error::input(
       "a body without shape functions has no material coordinates: points of a rigid body are "
-      "places "
-      "of markers");
+      "places of markers");
 }
 
 std::vector<NodeVectors> Element::edge(const std::string& name) const {

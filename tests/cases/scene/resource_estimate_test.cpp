@@ -38,7 +38,7 @@ Changes moves_only(Changes more) {
 }
 
 // Measured with one thread, -O3 -march=native, November 2026. Twice is near enough for a warning.
-TEST(Room, IsThatOfMeasuredRuns) {
+TEST(ResourceEstimate, IsThatOfMeasuredRuns) {
   const std::vector<Measured> all = {
       {"cantilever_roll_up", {}, 39.1, 0.47},
       {"square_plate_twist", {}, 47.9, 0.81},
@@ -81,11 +81,12 @@ double seconds_of(const std::string& name, const Changes& changes) {
 // Expected times grow as the work does, whatever the processor: in proportion to steps and to
 // iterations, and with n unknowns from n (assembly) to n² (factors with a band; those of nested
 // dissection, n^1.5, lie between: George (1973), SIAM J. Numer. Anal. 10, 345-363).
-TEST(Room, TimesGrowAsTheWork) {
+TEST(ResourceEstimate, TimesGrowAsTheWork) {
   const auto motion = [](const std::string& step, const std::string& elements) {
     return seconds_of("plate_pendulum", {"output.motion_every=1e9", "time.step=" + step,
                                          "body.elements=[" + elements + ", " + elements + "]"});
   };
+  // The start of the program does not grow: 0.1 s of 5 s and more.
   EXPECT_NEAR(motion("5e-6", "20") / motion("1e-5", "20"), 2, 0.02);
   const double finer = motion("1e-5", "40") / motion("1e-5", "20");
   EXPECT_GT(finer, 4);
@@ -101,7 +102,7 @@ TEST(Room, TimesGrowAsTheWork) {
 }
 
 // 2^31 steps and more are counted, not built.
-TEST(Room, StepsAreCountedBeyondAllIntegers) {
+TEST(ResourceEstimate, StepsAreCountedBeyondAllIntegers) {
   const Machine endless{INFINITY, INFINITY};
   try {  // before drives are looked at
     read("free_beam_heated", {"time.step=1e-12"});
@@ -115,7 +116,7 @@ TEST(Room, StepsAreCountedBeyondAllIntegers) {
   EXPECT_EQ(complaint(read("free_beam_heated", {"time.step=1e-9"}), endless), "");
 }
 
-TEST(Room, WhatAMachineHasNotIsRefusedAtTheNumberToBlame) {
+TEST(ResourceEstimate, WhatAMachineHasNotIsRefusedAtTheNumberToBlame) {
   struct Row {
     const char* name;
     Changes changes;
@@ -164,7 +165,7 @@ TEST(Room, WhatAMachineHasNotIsRefusedAtTheNumberToBlame) {
   }
 }
 
-TEST(Room, ThisMachineHasSome) {
+TEST(ResourceEstimate, ThisMachineHasSome) {
   const Machine here = this_machine(), nowhere = this_machine("no/such/folder/yet");
   EXPECT_GT(here.memory, 1e8);  // less would not have built this test
   EXPECT_GT(here.disk, 0);
@@ -173,7 +174,7 @@ TEST(Room, ThisMachineHasSome) {
             std::filesystem::space(std::filesystem::current_path()).available > 1'000'000);
 }
 
-TEST(Room, SizesAreSaidInTheirUnits) {
+TEST(ResourceEstimate, SizesAreSaidInTheirUnits) {
   EXPECT_EQ(bytes_text(12'300), "12.3 kB");
   EXPECT_EQ(bytes_text(1.26e9), "1.3 GB");
   EXPECT_EQ(bytes_text(3e20), "3e+05 PB");
