@@ -107,7 +107,8 @@ TEST(GrowingPlate, IsStableWithCoarseStepsAndDamping) {
   EXPECT_EQ(b.result.counts.rejected, 0);
 }
 
-// Incomplete shapes cannot keep the field: bounded, and reported by the event.
+// Incomplete shapes cannot keep the field. The strain energy falls by less than 1 %, as that of
+// complete shapes does in expect_small_jumps(), but no balance of forces says so.
 TEST(GrowingPlate, IncompleteShapesJumpAtInsertions) {
   RotatingPlate p;
   p.speed = 0.5;
@@ -117,7 +118,7 @@ TEST(GrowingPlate, IncompleteShapesJumpAtInsertions) {
   EXPECT_EQ(o.result.events.size(), 9u);
   for (const MeshEvent& e : o.result.events) {
     EXPECT_NEAR(e.after.kinetic / e.before.kinetic, 1, 1e-4);
-    EXPECT_NEAR(e.after.strain / e.before.strain, 1, 0.05);
+    EXPECT_NEAR(e.after.strain / e.before.strain, 1, 0.01);
     EXPECT_LT(e.tip_jump, 1e-6);
   }
 }
@@ -246,7 +247,7 @@ TEST(ShrinkingPlate, LosesNodesWithoutChatter) {
   expect_times(o.result.events, {0.2, 0.7});
   for (const MeshEvent& e : o.result.events) {
     EXPECT_EQ(e.change, MeshChange::removal);
-    EXPECT_NEAR(e.after.strain / e.before.strain, 1, 0.05);
+    EXPECT_NEAR(e.after.strain / e.before.strain, 1, 0.01);
     EXPECT_NEAR(e.after.kinetic / e.before.kinetic, 1, 1e-3);
     EXPECT_LT(e.tip_jump, 1e-6);
   }

@@ -59,7 +59,8 @@ double difference(double speed, ShapeSet shapes, WeldMode weld) {
 
 // With 20 x 4 elements h16 the differences are 0.32 and 1.22 % (0.40 and 1.54 % here):
 // most of them is the models', not the mesh (the clamp of a plate suppresses lateral contraction,
-// strains of a beam are averages over the section).
+// strains of a beam are averages over the section). The incomplete shapes h12 are stiffer than the
+// plate (plate_statics_test.cpp): 1.10 and 4.38 % here. Limits are 1.15 to 1.5 times what is found.
 TEST(Reissner, PlateMovesLikeTheBeam) {
   EXPECT_LT(difference(0.5, ShapeSet::h16, WeldMode::edge), 0.6);
   EXPECT_LT(difference(0.1, ShapeSet::h16, WeldMode::edge), 2.2);

@@ -150,49 +150,63 @@ TEST(HeatedBoom, LoadsKnowTheHeldRoot) {
   }
 }
 
-// Full material: half the compliance of a load is the strain energy of the motion, as far as the
-// meshes are fine (5 x 2 elements, 1 cm) and strains small (2 %).
+/// Loads of a boom that is hot within 0.1 s, with full material: half the compliance of each load,
+/// as a part of the strain energy of the motion. The mesh is fine: elements of 2.5 cm, cells of 5
+/// mm.
+struct EnergyRatios {
+  EnergyRatios(const std::string& name)
+      : scene(read(name, quick({"time.end=0.2", "time.step=4e-3", "esl.every=0.04",
+                                "body.heat.settle=0.1", "body.elements=[20,8]",
+                                "body.flow.max_length=0.04", "design.cell=0.005"}))),
+        loads(std::move(move(scene, true).loads.front())) {}
+
+  VectorXd of(const fem::EslSets& sets) const {
+    const mmc::BodyProblem problem = std::move(build_problems(scene).front());
+    const VectorXd full = VectorXd::Ones(sets.grid.n_cells());
+    VectorXd out =
+        0.5 * mmc::ComplianceEvaluator(sets, problem.section, problem.compliance, full, full)
+                  .individual(full, full);
+    for (size_t l = 0; l < sets.sets.size(); ++l)
+      out[static_cast<Eigen::Index>(l)] /= sets.sets[l].strain_energy;
+    return out;
+  }
+
+  Scene scene;
+  fem::EslSets loads;
+};
+
+// Statics are linear, and the plate is 2 % larger than it was cold. What is left of that is the
+// error of the meshes: with elements of 5 cm ratios are 0.96 to 0.99, with 2.5 cm 1.018 to 1.024.
+constexpr double kOfSmallStrains = 0.03;
+
 TEST(HeatedBoom, ComplianceIsTheStrainEnergyOfTheMotion) {
-  const HotProblem hot;
-  const fem::EslSets& loads = hot.motion.loads.front();
-  const VectorXd full = VectorXd::Ones(loads.grid.n_cells());
-  mmc::ComplianceEvaluator compliance(loads, hot.problem.section, hot.problem.compliance, full,
-                                      full);
-  const VectorXd each = compliance.individual(full, full);
-  for (size_t l = 2; l < loads.sets.size(); ++l) {
-    EXPECT_GT(loads.sets[l].strain_energy, 0.2);
-    EXPECT_NEAR(0.5 * each[static_cast<Eigen::Index>(l)] / loads.sets[l].strain_energy, 1, 0.2)
-        << loads.sets[l].time;
+  const EnergyRatios boom("heated_boom");
+  const VectorXd ratios = boom.of(boom.loads);
+  ASSERT_EQ(ratios.size(), 5);
+  for (size_t l = 0; l < boom.loads.sets.size(); ++l) {
+    EXPECT_GT(boom.loads.sets[l].strain_energy, 0.04);
+    EXPECT_NEAR(ratios[static_cast<Eigen::Index>(l)], 1, kOfSmallStrains)
+        << boom.loads.sets[l].time;
   }
 }
 
 // A rigid, cold tip: the far edge keeps its width as well. What it holds back is in the statics:
-// half the compliance of a load is the strain energy of the motion, and was less without it.
+// half the compliance of a load is the strain energy of the motion, and is less without it.
 TEST(HeatedBoom, LoadsKnowTheHeldTip) {
-  const Scene scene =
-      read("heated_boom_held", quick({"time.end=0.2", "time.step=4e-3", "esl.every=0.04",
-                                      "body.heat.settle=0.1", "body.elements=[10,4]"}));
-  const MotionOutcome motion = move(scene, true);
-  const mmc::BodyProblem problem = std::move(build_problems(scene).front());
-  fem::EslSets loads = motion.loads.front();
-  const VectorXd full = VectorXd::Ones(loads.grid.n_cells());
-  const auto energies = [&] {
-    return VectorXd(0.5 *
-                    mmc::ComplianceEvaluator(loads, problem.section, problem.compliance, full, full)
-                        .individual(full, full));
-  };
-  const VectorXd held = energies();
-  for (fem::EslSet& set : loads.sets) {
+  const EnergyRatios boom("heated_boom_held");
+  const VectorXd held = boom.of(boom.loads);
+  fem::EslSets without = boom.loads;
+  for (fem::EslSet& set : without.sets) {
     EXPECT_NEAR(set.held_end_stretch, set.thermal_stretch, 1e-6 * set.thermal_stretch);
     EXPECT_NEAR(set.held_stretch, set.thermal_stretch, 1e-6 * set.thermal_stretch);
     set.held_end_stretch = 0;
   }
-  const VectorXd free = energies();
-  for (size_t l = 2; l < loads.sets.size(); ++l) {
-    const double moved = loads.sets[l].strain_energy;
+  const VectorXd free = boom.of(without);
+  ASSERT_EQ(held.size(), 5);
+  for (size_t l = 0; l < boom.loads.sets.size(); ++l) {
     const auto at = static_cast<Eigen::Index>(l);
-    EXPECT_NEAR(held(at) / moved, 1, 0.1) << loads.sets[l].time;
-    EXPECT_LT(free(at) / moved, 0.6) << loads.sets[l].time;
+    EXPECT_NEAR(held[at], 1, kOfSmallStrains) << boom.loads.sets[l].time;
+    EXPECT_LT(free[at], 2.0 / 3) << boom.loads.sets[l].time;  // a third is held at the tip
   }
 }
 

@@ -102,7 +102,8 @@ TEST(CellsRun, EnergiesThatAreApartAreAWarning) {
     if (gap > 0) {
       EXPECT_GT(apart, 1);
     } else {
-      EXPECT_LT(apart, 0.2);
+      // The energy of the full plate in elements of 50 mm is 5 % off that of its cells.
+      EXPECT_LT(apart, 0.1);
     }
     // A design that was not made for any loads has those of its own motion.
     EXPECT_NEAR(run["results"][0]["load_difference"]["loads"].get<double>(), 0, 1e-9);
