@@ -15,6 +15,8 @@
 #include "cases/check/ready.h"
 #include "cases/keys/book.h"
 #include "cases/keys/completion.h"
+#include "cases/process/blas_room.h"
+#include "cases/process/processor.h"
 #include "cases/results/schema.h"
 #include "cases/run/corrections.h"
 #include "cases/run/run.h"
@@ -25,7 +27,6 @@
 #include "cases/study/compare_cycles.h"
 #include "cases/study/sweep.h"
 #include "geometry/plain_numbers.h"
-#include "geometry/processor.h"
 #include "geometry/text.h"
 #include "io/case_files/case_document.h"
 #include "io/case_files/case_parser.h"
@@ -199,6 +200,7 @@ void finish_output() {
 struct Command {
   CLI::App* app;
   std::function<int()> run;
+  bool computes = true;  ///< whether it needs the buffers of OpenBLAS
 };
 
 Command run_command(CLI::App& app, RunOptions& options) {
@@ -267,10 +269,12 @@ Command verify_command(CLI::App& app, VerifyOptions& options) {
 }
 
 Command cases_command(CLI::App& app) {
-  return {app.add_subcommand("cases", "lists the shipped cases"), [] {
+  return {app.add_subcommand("cases", "lists the shipped cases"),
+          [] {
             for (const std::string& name : shipped_cases()) std::printf("%s\n", name.c_str());
             return 0;
-          }};
+          },
+          false};
 }
 
 Command completion_command(CLI::App& app, std::string& shell) {
@@ -278,10 +282,12 @@ Command completion_command(CLI::App& app, std::string& shell) {
   completion->add_option("shell", shell, "bash or zsh")
       ->required()
       ->check(CLI::IsMember({"bash", "zsh"}));
-  return {completion, [&] {
+  return {completion,
+          [&] {
             std::fputs(completion_script(shell, command_words(app)).c_str(), stdout);
             return 0;
-          }};
+          },
+          false};
 }
 
 /// Options of all commands.
@@ -312,10 +318,12 @@ std::vector<Command> commands_of(CLI::App& app, AllOptions& all) {
   out.push_back(certify_command(app, all.certify));
   out.push_back(verify_command(app, all.verify));
   out.push_back(cases_command(app));
-  out.push_back({add_keys(app, all.keys), [&] {
+  out.push_back({add_keys(app, all.keys),
+                 [&] {
                    print_keys(all.keys);
                    return 0;
-                 }});
+                 },
+                 false});
   out.push_back(completion_command(app, all.shell));
   return out;
 }
@@ -328,10 +336,12 @@ int parse_and_run(int argc, char** argv) {
   std::vector<Command> commands = commands_of(app, options);
   CLI::App* help = app.add_subcommand("help", "this list");
   const std::string all_help = app.help();  // later it would be that of one command
-  commands.push_back({help, [&] {
+  commands.push_back({help,
+                      [&] {
                         std::fputs(all_help.c_str(), stdout);
                         return 0;
-                      }});
+                      },
+                      false});
   if (argc > 1)
     refuse_unknown_command(app, argv[1]);
   else
@@ -341,9 +351,13 @@ int parse_and_run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  flexmorph::settle_processor(std::max(options.run.threads, options.verify.threads), argv);
-  for (const Command& command : commands)
-    if (*command.app) return command.run();
+  const int threads = std::max(options.run.threads, options.verify.threads);
+  flexmorph::settle_processor(threads, argv);
+  for (const Command& command : commands) {
+    if (!*command.app) continue;
+    if (command.computes) flexmorph::reserve_blas(threads);
+    return command.run();
+  }
   return 0;
 }
 

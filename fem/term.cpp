@@ -14,4 +14,21 @@ Local local_of(const Batch& x, int lane) {
   return out;
 }
 
+void add_force_of_lane(const Term& term, const Batch& x, int lane, Lanes* force) {
+  LocalRows f;
+  f.setZero(x.n_shapes, x.dim);
+  term.add_force(x.first + lane, local_of(x, lane), f);
+  for (int k = 0; k < x.n_local(); ++k) force[k][lane] += f.data()[k];
+}
+
+void add_tangent_of_lane(const Term& term, const Batch& x, int lane, const Weights& w,
+                         Lanes* tangent) {
+  const int n = x.n_local();
+  LocalTangent t;
+  t.setZero(n, n);
+  term.add_tangent(x.first + lane, local_of(x, lane), w, t);
+  for (int row = 0; row < n; ++row)
+    for (int column = 0; column < n; ++column) tangent[column * n + row][lane] += t(row, column);
+}
+
 }  // namespace flexmorph::fem

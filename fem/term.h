@@ -100,6 +100,11 @@ class Term {
   virtual Vec3 momentum(int, const Local&) const { return Vec3::Zero(); }
 };
 
+/// Adds the force of one of the eight elements of a batch, and its tangent, as BatchTerm does.
+void add_force_of_lane(const Term& term, const Batch& x, int lane, Lanes* force);
+void add_tangent_of_lane(const Term& term, const Batch& x, int lane, const Weights& w,
+                         Lanes* tangent);
+
 /// A term that evaluates eight elements side by side. Other terms are evaluated element by element.
 class BatchTerm {
  public:

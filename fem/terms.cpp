@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <ranges>
 
+#include "geometry/registry.h"
 #include "geometry/text.h"
 
 namespace flexmorph::fem {
@@ -17,20 +18,20 @@ const TermRow& inertia_row();
 const TermRow& membrane_row();
 const TermRow& membrane_assumed_row();
 
-const std::vector<const TermRow*>& term_rows() {
-  static const std::vector<const TermRow*> kRows = {
-      &inertia_row(),           //
-      &bending_row(),           //
-      &membrane_row(),          //
-      &membrane_assumed_row(),  //
-      &gcm_row(),               //
-      &ecm_row(),               //
-      &gcm_full_row(),          //
-      &ecm_full_row(),          //
-      &damping_row(),           //
-  };
-  return kRows;
+namespace {
+
+Registry<TermRow>& registry() {
+  static Registry<TermRow> all(
+      "term", [](const TermRow& row) { return row.name; },
+      {&inertia_row(), &bending_row(), &membrane_row(), &membrane_assumed_row(), &gcm_row(),
+       &ecm_row(), &gcm_full_row(), &ecm_full_row(), &damping_row()});
+  return all;
 }
+
+}  // namespace
+
+std::span<const TermRow* const> term_rows() { return registry().rows(); }
+void register_term(const TermRow& row) { registry().add(row); }
 
 namespace {
 
@@ -92,8 +93,7 @@ std::vector<std::string> term_names(TermPlace place) {
 }
 
 const TermRow& term_row(const std::string& name) {
-  for (const TermRow* row : term_rows())
-    if (row->name == name) return *row;
+  if (const TermRow* row = registry().find(name)) return *row;
   throw Error::input("term '" + name + "' is unknown; known are: " +
                      joined(std::views::transform(term_rows(), &TermRow::name)));
 }

@@ -3,6 +3,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 
 #include "fem/section.h"
 #include "fem/shapes/strain.h"
@@ -57,7 +58,10 @@ struct TermRow {
   bool reads(const std::string& key) const;
 };
 
-const std::vector<const TermRow*>& term_rows();
+/// All rows, in the order in which messages list them.
+std::span<const TermRow* const> term_rows();
+/// Adds a row, see Registry::add().
+void register_term(const TermRow& row);
 std::vector<std::string> term_names(TermPlace place);
 /// @throws Error (input) naming the known terms.
 const TermRow& term_row(const std::string& name);

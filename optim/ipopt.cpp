@@ -1,16 +1,22 @@
+#include <IpoptConfig.h>
+
 #include <IpIpoptApplication.hpp>
+#include <IpTNLP.hpp>
+// Before 3.14 the current iterate is found by what is inside of Ipopt only.
+#define FLEXMORPH_IPOPT_TELLS_ITERATE (IPOPT_VERSION_MAJOR * 100 + IPOPT_VERSION_MINOR >= 314)
+#if !FLEXMORPH_IPOPT_TELLS_ITERATE
 #include <IpIpoptCalculatedQuantities.hpp>
 #include <IpIpoptData.hpp>
 #include <IpOrigIpoptNLP.hpp>
-#include <IpTNLP.hpp>
 #include <IpTNLPAdapter.hpp>
+#endif
 #include <algorithm>
 #include <deque>
 
 #include "optim/kkt.h"
 #include "optim/makers.h"
 #include "optim/moving_box.h"
-#include "optim/mpi_when_needed.h"
+#include "optim/mpi_start.h"
 #include "optim/search.h"
 
 /// Ipopt: interior point method with a filter line search; second derivatives where the problem has
@@ -155,6 +161,9 @@ class Adapter final : public Ipopt::TNLP {
 
  private:
   const Point* look_at(Index n, const Number* x);
+  /// Reads the variables of the current iterate. @return whether Ipopt tells them
+  bool read_current(const Ipopt::IpoptData* data, Ipopt::IpoptCalculatedQuantities* quantities,
+                    VectorXd& x) const;
 
   Search& search_;
   bool curved_;
@@ -193,6 +202,21 @@ const Point* Adapter::look_at(Index n, const Number* x) {
   return &remembered_.front();
 }
 
+bool Adapter::read_current(const Ipopt::IpoptData* data,
+                           Ipopt::IpoptCalculatedQuantities* quantities, VectorXd& x) const {
+#if FLEXMORPH_IPOPT_TELLS_ITERATE
+  return get_curr_iterate(data, quantities, false, search_.n(), x.data(), nullptr, nullptr,
+                          search_.m(), nullptr, nullptr);
+#else
+  auto* nlp = dynamic_cast<Ipopt::OrigIpoptNLP*>(Ipopt::GetRawPtr(quantities->GetIpoptNLP()));
+  auto* adapter =
+      nlp == nullptr ? nullptr : dynamic_cast<Ipopt::TNLPAdapter*>(Ipopt::GetRawPtr(nlp->nlp()));
+  if (adapter == nullptr) return false;
+  adapter->ResortX(*data->curr()->x(), x.data());
+  return true;
+#endif
+}
+
 bool Adapter::intermediate_callback(Ipopt::AlgorithmMode mode, Index iteration, Number, Number,
                                     Number, Number, Number, Number, Number, Number, Index,
                                     const Ipopt::IpoptData* data,
@@ -202,12 +226,9 @@ bool Adapter::intermediate_callback(Ipopt::AlgorithmMode mode, Index iteration, 
   }
   // The first iterate of a later box is the best design, which has its row.
   if (iteration == 0 && search_.rows() > 0) return true;
-  auto* nlp = dynamic_cast<Ipopt::OrigIpoptNLP*>(Ipopt::GetRawPtr(quantities->GetIpoptNLP()));
-  auto* adapter =
-      nlp == nullptr ? nullptr : dynamic_cast<Ipopt::TNLPAdapter*>(Ipopt::GetRawPtr(nlp->nlp()));
-  if (adapter == nullptr) throw Error::numerical("ipopt: the current design cannot be read");
   VectorXd x(search_.n());
-  adapter->ResortX(*data->curr()->x(), x.data());
+  if (!read_current(data, quantities, x))
+    throw Error::numerical("ipopt: the current design cannot be read");
   const Point* point = look_at(search_.n(), x.data());
   return point == nullptr || search_.row(search_.rows() + 1, *point);
 }

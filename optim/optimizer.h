@@ -87,6 +87,15 @@ class Optimizer {
 std::unique_ptr<Optimizer> make_optimizer(const Settings& settings);
 std::vector<std::string> optimizer_names();  ///< of the table, in alphabetical order
 
+/// A row of the table of optimizers.
+struct OptimizerRow {
+  const char* name;  ///< as cases say it: name = "mma"
+  /// Makes one. @throws Error (input) for options that it does not know (with_defaults())
+  std::unique_ptr<Optimizer> (*make)(const Settings& settings);
+};
+/// Adds a row, see Registry::add().
+void register_optimizer(const OptimizerRow& row);
+
 /// KKT residual computed the same way for all optimizers.
 ///
 ///   min over λ >= 0 with λ_i = 0 where g_i is inactive of  |P(df + dgᵀ λ)|_∞

@@ -1,24 +1,25 @@
+#include <algorithm>
 #include <cmath>
-#include <functional>
 #include <locale>
 #include <ranges>
 #include <sstream>
 
+#include "geometry/registry.h"
 #include "geometry/text.h"
 #include "optim/makers.h"
 
 namespace flexmorph::optim {
 namespace {
 
-using Maker = std::function<std::unique_ptr<Optimizer>(const Settings&)>;
+constexpr OptimizerRow kMma{"mma", make_mma}, kGcmma{"gcmma", make_mma},
+    kNloptMma{"nlopt_mma", make_nlopt}, kNloptCcsaq{"nlopt_ccsaq", make_nlopt},
+    kIpopt{"ipopt", make_ipopt};
 
-const std::map<std::string, Maker>& table() {
-  static const std::map<std::string, Maker> makers = {{"mma", make_mma},
-                                                      {"gcmma", make_mma},
-                                                      {"nlopt_mma", make_nlopt},
-                                                      {"nlopt_ccsaq", make_nlopt},
-                                                      {"ipopt", make_ipopt}};
-  return makers;
+Registry<OptimizerRow>& registry() {
+  static Registry<OptimizerRow> all("optimizer",
+                                    [](const OptimizerRow& row) -> std::string { return row.name; },
+                                    {&kMma, &kGcmma, &kNloptMma, &kNloptCcsaq, &kIpopt});
+  return all;
 }
 
 std::string number(double value) {
@@ -54,15 +55,18 @@ std::string to_string(Stop stop) {
   return "unknown";
 }
 
+void register_optimizer(const OptimizerRow& row) { registry().add(row); }
+
 std::vector<std::string> optimizer_names() {
   std::vector<std::string> names;
-  for (const auto& [name, maker] : table()) names.push_back(name);
+  for (const OptimizerRow* row : registry().rows()) names.emplace_back(row->name);
+  std::ranges::sort(names);
   return names;
 }
 
 std::unique_ptr<Optimizer> make_optimizer(const Settings& settings) {
-  const auto row = table().find(settings.name);
-  if (row == table().end()) {
+  const OptimizerRow* row = registry().find(settings.name);
+  if (row == nullptr) {
     throw Error::input("optimizer '" + settings.name +
                        "' is not known; there are: " + joined(optimizer_names()));
   }
@@ -74,7 +78,7 @@ std::unique_ptr<Optimizer> make_optimizer(const Settings& settings) {
                 "rows and tolerances of a rest are not negative");
   check_setting(settings.move_limit > 0 && std::isfinite(settings.move_limit),
                 "move_limit is positive");
-  return row->second(settings);
+  return row->make(settings);
 }
 
 Options with_defaults(const Settings& settings, const Options& defaults) {

@@ -1,10 +1,10 @@
 #!/bin/sh
 # tests/every_processor.sh [--builds LIST] [--kernels LIST] [--disturbances N] [--all]
-# Runs the tests with the last digits of other processors: builds (native, portable, uncontracted)
-# times kernels of OpenBLAS, then the native build with tests that integrate or optimize from starts
-# disturbed by 1e-13 (five unless given; tests/support/disturbance.h). Without --builds and --kernels:
-# native with Haswell, Zen, SkylakeX, Sandybridge and Prescott, portable with Haswell and Prescott.
-# --all adds the benchmarks: shipped cases with [expect].
+# Runs the tests with the last digits of other processors: builds (release, uncontracted) times kernels
+# of OpenBLAS, each with the vectors of its processors (geometry/vector_level.h), then the first build
+# with tests that integrate or optimize from starts disturbed by 1e-13 (five unless given;
+# tests/support/disturbance.h). Without --builds and --kernels: release with Haswell, Zen, SkylakeX,
+# Sandybridge and Prescott. --all adds the benchmarks: shipped cases with [expect].
 #
 # A row per run goes to the screen and into every_processor.md in the folder of the builds: verdicts,
 # and which numbers that tests print moved from those of the first run. A kernel whose instructions
@@ -16,7 +16,7 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 with_tests=1
 export FLEXMORPH_TEST_SECONDS=300  # limit of one test, not of a program
 
-builds=native,portable
+builds=release
 kernels=
 disturbances=5
 all=0
@@ -50,30 +50,25 @@ runs_here() {
   grep -m 1 '^flags' /proc/cpuinfo | grep -qw "$word"
 }
 
-# kernels_of BUILD
-kernels_of() {
-  if [ -n "$kernels" ]; then echo "$kernels" | tr ',' ' '
-  elif [ "$1" = native ]; then echo Haswell Zen SkylakeX Sandybridge Prescott
-  else echo Haswell Prescott; fi
-}
-
-# The native build is that of tests/run.sh.
-folder_of() {
-  if [ "$1" = native ]; then echo "$build"; else echo "$folder/$1"; fi
-}
-options() {
+# vectors_of KERNEL : the vectors of processors that get these kernels.
+vectors_of() {
   case "$1" in
-    native) ;;
-    portable) echo -DFLEXMORPH_NATIVE=OFF ;;
-    uncontracted) echo -DFLEXMORPH_NATIVE=OFF -DCMAKE_CXX_FLAGS=-ffp-contract=off ;;
-    *) echo "every_processor.sh: builds are native, portable, uncontracted" >&2 && exit 2 ;;
+    SkylakeX | Cooperlake | SapphireRapids) echo v4 ;;
+    Haswell | Zen) echo v3 ;;
+    *) echo baseline ;;
   esac
 }
 
-# has_fused BUILD : do its programs of tests multiply and add in one instruction anywhere?
-has_fused() {
-  programs "$1" | while read -r program; do objdump -d --no-show-raw-insn "$program"; done |
-    grep -qE '[[:space:]](v?fn?m(add|sub)|fml[as])'
+# The build `release` is that of tests/run.sh.
+folder_of() {
+  if [ "$1" = release ]; then echo "$build"; else echo "$folder/$1"; fi
+}
+options() {
+  case "$1" in
+    release) ;;
+    uncontracted) echo -DCMAKE_CXX_FLAGS=-ffp-contract=off ;;
+    *) echo "every_processor.sh: builds are release, uncontracted" >&2 && exit 2 ;;
+  esac
 }
 
 # moved FIRST OTHER : numbers that two logs have at the same places of the same tests, and that differ
@@ -167,24 +162,20 @@ printf '\n| build, kernels | verdicts | moved by more than 1e-6 |\n| --- | --- |
 install_packages
 for name in $(echo "$builds" | tr "," " "); do
   at=$(folder_of "$name")
-  if [ "$name" = uncontracted ] && [ -d "$(folder_of portable)/tests" ] && ! has_fused portable; then
-    echo "| uncontracted | is the portable build: no fused product in it | |" | tee -a "$table"
-    continue
-  fi
   # shellcheck disable=SC2046  # words
   cmake -S "$root" -B "$at" -G Ninja -DCMAKE_BUILD_TYPE=Release -DFLEXMORPH_TESTS=ON \
     $(options "$name") >/dev/null
   cmake --build "$at" --parallel "$cores" >"$folder/$name.log"
-  for kernel in $(kernels_of "$name"); do
+  for kernel in $(echo "${kernels:-Haswell,Zen,SkylakeX,Sandybridge,Prescott}" | tr ',' ' '); do
     if runs_here "$kernel"; then
-      export OPENBLAS_CORETYPE="$kernel"
+      export OPENBLAS_CORETYPE="$kernel" FLEXMORPH_VECTORS="$(vectors_of "$kernel")"
       run "$name-$kernel" "$name"
     else
       echo "| $name-$kernel | skipped: this processor lacks its instructions | |" | tee -a "$table"
     fi
   done
 done
-unset OPENBLAS_CORETYPE
+unset OPENBLAS_CORETYPE FLEXMORPH_VECTORS
 k=1
 while [ "$k" -le "$disturbances" ]; do
   export FLEXMORPH_DISTURBANCE="$k"

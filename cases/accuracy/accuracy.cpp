@@ -31,8 +31,6 @@ constexpr double kPatience = 6, kMinTimeLimit = 5;
 
 const char* const kEnded = "ended after";  // the message of runs that exceeded their time limit
 
-struct Interrupted {};
-
 int unknowns_of(const PreparedCase& prepared, Part part) {
   if (part == Part::motion) return prepared.mechanism().model.n_dofs();
   const Scene& scene = prepared.scene();

@@ -194,7 +194,7 @@ void add_design(const Scene& scene, const BodyDesign& d, Extent& out) {
                       frames * (kDesignCell * cells + kDesignComponent * components)});
 }
 
-/// Bytes that are mapped and not used, of libraries and of fem::reserve_blas(): they count where
+/// Bytes that are mapped and not used, of libraries and of reserve_blas(): they count where
 /// the address space is limited.
 double unused_mapped() {
   std::ifstream status("/proc/self/statm");

@@ -12,7 +12,7 @@ struct StepOperations {
 
 /// From counts of elements, shape functions, Gauss points and unknowns, and from how often Newton's
 /// method asks on the average of the shipped cases: within a factor of 2 of instructions counted by
-/// valgrind in a portable build (README, "Measured"). Not of `minimal_coordinates`.
+/// valgrind in a build for all processors (README, "Measured"). Not of `minimal_coordinates`.
 StepOperations step_operations(const Scene& scene, const Mechanism& mechanism);
 
 /// CPU time of a run [s]: all its motions, and as many iterations as its designs may take. Within a

@@ -1,5 +1,7 @@
 #include "cases/check/ready.h"
 
+#include <dlfcn.h>
+
 #include <algorithm>
 #include <filesystem>
 
@@ -7,7 +9,6 @@
 #include "cases/results/expectations.h"
 #include "cases/scene/version.h"
 #include "fem/dynamics/starts/rigid_motion.h"
-#include "fem/solve/factorization/blas_room.h"
 #include "fem/solve/scaled_constraints.h"
 #include "geometry/text.h"
 #include "io/case_files/case_document.h"
@@ -16,13 +17,29 @@
 namespace flexmorph::cases {
 namespace {
 
-/// Where shipped cases are: of an installed program share/flexmorph/cases beside the bin/ it is in,
-/// wherever that was moved to; else in the source tree.
-std::filesystem::path cases_folder() {
+namespace fs = std::filesystem;
+
+/// The program that runs, or the shared library with this function; empty where nobody knows.
+fs::path own_file(const void* function) {
+  Dl_info found{};
+  const bool known = dladdr(function, &found) != 0 && found.dli_fname != nullptr;
   std::error_code none;  // where there is no /proc
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", none);
-  const auto installed = program.parent_path().parent_path() / "share/flexmorph/cases";
-  if (program.has_parent_path() && std::filesystem::is_directory(installed, none)) return installed;
+  const fs::path program = fs::read_symlink("/proc/self/exe", none);
+  if (!known) return program;
+  const fs::path file = fs::canonical(found.dli_fname, none);
+  return none ? program : file;
+}
+
+/// Where shipped cases are: of an installed program or shared library share/flexmorph/cases beside
+/// the bin/, lib/ or lib/ARCHITECTURE/ it is in, wherever that was moved to; else in the source
+/// tree.
+fs::path cases_folder() {
+  std::error_code none;
+  const fs::path beside = own_file(reinterpret_cast<const void*>(&cases_folder)).parent_path();
+  for (const fs::path& prefix : {beside.parent_path(), beside.parent_path().parent_path()}) {
+    const fs::path installed = prefix / "share/flexmorph/cases";
+    if (!beside.empty() && fs::is_directory(installed, none)) return installed;
+  }
   return kCasesFolder;
 }
 
@@ -120,9 +137,8 @@ std::string located_refusal(const Scene& scene, const std::string& message) {
   return scene.file->where(named.path()) + ": " + message;
 }
 
-void require_buildable(const PreparedCase& prepared, const std::string& directory, int threads) {
+void require_buildable(const PreparedCase& prepared, const std::string& directory) {
   const Scene& scene = prepared.scene();
-  fem::reserve_blas(threads);
   require_room(scene, this_machine(directory.empty() ? scene.output.directory : directory));
   try {
     require_parts(prepared);
@@ -133,10 +149,10 @@ void require_buildable(const PreparedCase& prepared, const std::string& director
 }
 
 ReadyCase ready_case(const std::string& name, std::span<const std::string> overrides,
-                     const std::string& directory, int threads) {
+                     const std::string& directory) {
   io::CaseFile file(find_case(name), overrides);
   PreparedCase prepared(read_scene(file));
-  require_buildable(prepared, directory, threads);
+  require_buildable(prepared, directory);
   return {std::move(file), std::move(prepared)};
 }
 

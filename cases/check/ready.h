@@ -19,10 +19,9 @@ struct ReadyCase {
 };
 /// @param name  path, or name of a shipped case
 /// @param directory  of the run folder, whose disk it must fit on; empty: as the case says
-/// @param threads  that will compute at the same time, see fem::reserve_blas()
 /// @throws Error naming the file, and line and column where they can be told.
 ReadyCase ready_case(const std::string& name, std::span<const std::string> overrides,
-                     const std::string& directory = "", int threads = 1);
+                     const std::string& directory = "");
 
 /// Path of a case file: the path itself, or that of a shipped case of this name.
 /// @throws Error (input) naming the shipped cases.
@@ -33,8 +32,7 @@ std::vector<std::string> shipped_cases();
 /// Builds what a run of the case builds first: what cannot be built is refused here, and before
 /// that what is too large for this machine (see require_room()).
 /// @throws Error, which names the case file where the scene comes from one
-void require_buildable(const PreparedCase& prepared, const std::string& directory = "",
-                       int threads = 1);
+void require_buildable(const PreparedCase& prepared, const std::string& directory = "");
 
 /// The message with the place in the case file in front: that of the joint, body, spring, drive or
 /// load that it names first in quotes, else the file alone. As it is where it begins with a place.

@@ -1,7 +1,8 @@
 # What `cmake --install --component ...` puts where.
 # program: flexmorph and, in share/flexmorph/cases, where it looks for them, shipped cases.
-# development: static libraries, headers under include/flexmorph (included as here: "fem/model/model.h"),
-# and what find_package(Flexmorph) reads.
+# library: the shared library, which holds all of Flexmorph.
+# development: static libraries, what links to the shared one, public headers under include/flexmorph
+# (included as here: "fem/model/model.h"), examples, and what find_package(Flexmorph) reads.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(flexmorph_package "${CMAKE_INSTALL_LIBDIR}/cmake/Flexmorph")
@@ -11,20 +12,38 @@ file(GLOB flexmorph_shipped CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cases/*.toml
                                               ${PROJECT_SOURCE_DIR}/cases/*.csv)
 install(FILES ${flexmorph_shipped} DESTINATION share/flexmorph/cases COMPONENT program)
 
-set(flexmorph_libraries options geometry io fem thermal optim verification mmc)
-foreach(library ${flexmorph_libraries})
+set(flexmorph_static geometry io fem thermal optim verification mmc cases)
+foreach(library options ${flexmorph_static})
   set_target_properties(flexmorph_${library} PROPERTIES EXPORT_NAME ${library})
 endforeach()
-list(TRANSFORM flexmorph_libraries PREPEND flexmorph_)
-install(TARGETS ${flexmorph_libraries} EXPORT Flexmorph ARCHIVE COMPONENT development)
-install(EXPORT Flexmorph NAMESPACE flexmorph:: DESTINATION ${flexmorph_package}
-        COMPONENT development)
-foreach(folder geometry io fem optim)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} COMPONENT development
-          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/flexmorph
-          FILES_MATCHING PATTERN "*.h" PATTERN precompiled.h EXCLUDE
-          PATTERN eigen_instances.h EXCLUDE PATTERN geos.h EXCLUDE)
+list(TRANSFORM flexmorph_static PREPEND flexmorph_)
+
+# The shared library is linked from the objects of the static ones. Those who use it need no library
+# but Eigen's headers.
+list(TRANSFORM flexmorph_static REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>" OUTPUT_VARIABLE objects)
+add_library(flexmorph_shared SHARED ${objects})
+target_link_libraries(flexmorph_shared PUBLIC flexmorph::options Eigen3::Eigen
+                      PRIVATE $<BUILD_INTERFACE:flexmorph_cases>)
+set_target_properties(
+  flexmorph_shared PROPERTIES OUTPUT_NAME flexmorph EXPORT_NAME flexmorph LINKER_LANGUAGE CXX
+  VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+
+install(TARGETS flexmorph_options ${flexmorph_static} EXPORT FlexmorphStatic
+        ARCHIVE COMPONENT development)
+install(TARGETS flexmorph_options flexmorph_shared EXPORT FlexmorphShared
+        LIBRARY COMPONENT library NAMELINK_COMPONENT development)
+foreach(kind Static Shared)
+  install(EXPORT Flexmorph${kind} NAMESPACE flexmorph:: DESTINATION ${flexmorph_package}
+          COMPONENT development)
 endforeach()
+file(STRINGS "${CMAKE_CURRENT_LIST_DIR}/public_headers.txt" flexmorph_headers REGEX "^[^#]")
+foreach(header ${flexmorph_headers})
+  cmake_path(GET header PARENT_PATH folder)
+  install(FILES "${PROJECT_SOURCE_DIR}/${header}" COMPONENT development
+          DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/flexmorph/${folder}")
+endforeach()
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/cases/examples" DESTINATION share/flexmorph
+        COMPONENT development)
 
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/FlexmorphConfigVersion.cmake
                                  COMPATIBILITY SameMinorVersion)

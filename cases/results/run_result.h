@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <exception>
 #include <optional>
 
 #include "cases/results/failure.h"
@@ -107,5 +108,14 @@ struct RunResult {
   std::vector<Warning> warnings;
   std::vector<Expected> expectations;
 };
+
+/// The result of a run that may have ended early: what was computed, and why it ended.
+struct EndedRun {
+  RunResult result;
+  std::exception_ptr error;  ///< null where the run came to its end; else Error or Interrupted
+};
+
+/// Thrown when the user interrupts a run.
+struct Interrupted {};
 
 }  // namespace flexmorph::cases

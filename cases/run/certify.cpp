@@ -50,7 +50,7 @@ int certify_run(const CertifyOptions& options) {
   const Scene& scene = prepared.scene();
   RunFolder folder(options.directory, scene, false, RunFolder::Begin::go_on);
   Progress progress(options.quiet);
-  const RunContext run{prepared, folder, progress, [] { return true; }};
+  const RunContext run{prepared, &folder, progress, [] { return true; }};
   const std::vector<mmc::BodyProblem>& problems = prepared.design_problems();
   const mmc::MotionCertificate certificate =
       certify_by_motion(run, *scene.certify, loads_of(run, problems), problems);

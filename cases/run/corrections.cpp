@@ -141,7 +141,9 @@ class Correcting {
 
   void go(std::vector<fem::EslSets>& loads) {
     const std::vector<mmc::BodyProblem> plain = design_.problems;
-    for (const mmc::BodyProblem& problem : plain) run_.folder.keep_outline(problem, "design_esl");
+    if (run_.folder)
+      for (const mmc::BodyProblem& problem : plain)
+        run_.folder->keep_outline(problem, "design_esl");
     correct();
     if (design_.corrections.size() < 2) {  // nothing was corrected
       design_.problems = plain;
@@ -175,7 +177,7 @@ class Correcting {
     };
     const mmc::SeeCycle see = [&](const mmc::CorrectedCycle& cycle) {
       design_.corrections.push_back(cycle);
-      run_.folder.write_cycles(design_.verdicts, design_.corrections);
+      if (run_.folder) run_.folder->write_cycles(design_.verdicts, design_.corrections);
       run_.progress.say(corrected_words(cycle));
       return run_.go_on();
     };
@@ -208,8 +210,9 @@ class Correcting {
     for (size_t l = 0; l < loads.sets.size(); ++l)
       found.energy_ratios.push_back(0.5 * found.load_compliances[l] / loads.sets[l].strain_energy);
     before = std::move(found);
-    run_.folder.write_loads(before.body, loads, &before);
-    run_.folder.write_design(design_.problems[body], before);
+    if (run_.folder == nullptr) return;
+    run_.folder->write_loads(before.body, loads, &before);
+    run_.folder->write_design(design_.problems[body], before);
   }
 
   const RunContext& run_;
@@ -245,7 +248,7 @@ mmc::MotionCertificate certify_by_motion(const RunContext& run, const Certify& s
   } catch (const StoppedMotion&) {
     throw Interrupted();
   }
-  write_certificate(run.scene(), out, problems, run.folder);
+  if (run.folder) write_certificate(run.scene(), out, problems, *run.folder);
   run.progress.say("certificate: " + certificate_words(out));
   return out;
 }

@@ -9,24 +9,27 @@
 
 namespace flexmorph::cases {
 
-/// The evaluations of designs, kept in the folder while the run is not done.
+/// The evaluations of designs, kept in the folder while the run is not done; without a folder none
+/// are kept.
 class KeptEvaluations {
  public:
-  explicit KeptEvaluations(RunFolder& folder)
-      : log_(folder.file(kEvaluations)), past_{log_, [&folder](const mmc::RowOfHistory& row) {
-                                                 return folder.has_row(row);
-                                               }} {}
+  explicit KeptEvaluations(RunFolder* folder) {
+    if (folder == nullptr) return;
+    log_.emplace(folder->file(kEvaluations));
+    past_.emplace(
+        mmc::Past{*log_, [folder](const mmc::RowOfHistory& row) { return folder->has_row(row); }});
+  }
 
-  mmc::Past* past() { return &past_; }
+  mmc::Past* past() { return past_ ? &*past_ : nullptr; }
   /// ", 35 state solves were known"; empty in a run that began anew.
   std::string words() const {
-    return counted(static_cast<size_t>(log_.n_known()), "state solve was known",
+    return counted(static_cast<size_t>(log_ ? log_->n_known() : 0), "state solve was known",
                    "state solves were known");
   }
 
  private:
-  optim::EvaluationLog log_;
-  mmc::Past past_;
+  std::optional<optim::EvaluationLog> log_;
+  std::optional<mmc::Past> past_;
 };
 
 namespace {
@@ -66,10 +69,11 @@ mmc::DesignSettings settings_of(const RunContext& run, KeptEvaluations& kept) {
   return {scene.output.sharp_every, scene.optimizer, run.condition, kept.past(), run.go_on};
 }
 
-/// Writes every iteration and shows it.
+/// Writes every iteration, hands it on and shows it.
 mmc::IterationObserver iteration_observer(const RunContext& run) {
   return [&run, most = run.prepared.extent().iterations](const mmc::IterationReport& r) {
-    run.folder.add_iteration(r);
+    if (run.folder) run.folder->add_iteration(r);
+    if (run.iteration) run.iteration(r);
     run.progress.iteration(r, most);
     return run.go_on();
   };
@@ -79,7 +83,8 @@ mmc::IterationObserver iteration_observer(const RunContext& run) {
 
 void DesignRun::run() {
   design_.problems = run_.prepared.design_problems();
-  for (const mmc::BodyProblem& problem : design_.problems) run_.folder.write_start(problem);
+  if (run_.folder)
+    for (const mmc::BodyProblem& problem : design_.problems) run_.folder->write_start(problem);
   if (run_.scene().domain)
     design_at_rest();
   else
@@ -119,8 +124,9 @@ mmc::LoopObserver DesignRun::cycle_observer(CycleMotions& motions, const KeptEva
   mmc::LoopObserver observer;
   observer.loads = [&](int, std::span<const fem::EslSets> sets) {
     loads.now.assign(sets.begin(), sets.end());
-    for (size_t i = 0; i < sets.size(); ++i)
-      run_.folder.write_loads(run_.scene().designs[i].body, sets[i], nullptr);
+    if (run_.folder)
+      for (size_t i = 0; i < sets.size(); ++i)
+        run_.folder->write_loads(run_.scene().designs[i].body, sets[i], nullptr);
   };
   observer.iteration = iteration_observer(run_);
   observer.cycle = [&](int cycle, std::span<const mmc::BodyOutcome> outcomes) {
@@ -128,14 +134,16 @@ mmc::LoopObserver DesignRun::cycle_observer(CycleMotions& motions, const KeptEva
     design_.outcomes.assign(outcomes.begin(), outcomes.end());
     for (size_t i = 0; i < outcomes.size(); ++i) {
       add_idle_seconds(outcomes[i]);
-      run_.folder.write_loads(outcomes[i].body, loads.now[i], &outcomes[i]);
-      run_.folder.write_design(design_.problems[i], outcomes[i]);
+      if (run_.folder) {
+        run_.folder->write_loads(outcomes[i].body, loads.now[i], &outcomes[i]);
+        run_.folder->write_design(design_.problems[i], outcomes[i]);
+      }
       run_.progress.say(summary(outcomes[i]) + kept.words());
     }
   };
   observer.verdict = [&](std::span<const mmc::CycleVerdict> verdicts) {
     design_.verdicts.assign(verdicts.begin(), verdicts.end());
-    run_.folder.write_cycles(verdicts, {});
+    if (run_.folder) run_.folder->write_cycles(verdicts, {});
     if (verdicts.back().best) {
       loads.best = loads.now;  // the next cycle has others
       motions.keep_assessed();
@@ -183,7 +191,9 @@ void DesignRun::run_cycles(std::vector<fem::EslSets>& loads) {
   if (design_.verdicts.empty()) return;
   design_.outcomes = best;
   loads = std::move(cycle_loads.best);
-  for (size_t i = 0; i < best.size(); ++i) run_.folder.write_design(design_.problems[i], best[i]);
+  if (run_.folder)
+    for (size_t i = 0; i < best.size(); ++i)
+      run_.folder->write_design(design_.problems[i], best[i]);
 }
 
 void DesignRun::design_at_rest() {
@@ -200,10 +210,10 @@ void DesignRun::design_at_rest() {
   add_idle_seconds(outcome);
   const auto write_loads = [&](const VerifiedOutline* outline) {
     design_.static_loads = static_loads_of(*scene.domain, problem, *loads, outcome, outline);
-    run_.folder.write_static_loads(*scene.domain, design_.static_loads);
+    if (run_.folder) run_.folder->write_static_loads(*scene.domain, design_.static_loads);
   };
   write_loads(nullptr);
-  run_.folder.write_design(problem, outcome);
+  if (run_.folder) run_.folder->write_design(problem, outcome);
   run_.progress.say(summary(outcome) + kept.words());
   if (!run_.go_on()) throw Interrupted();
   verify_outlines({});

@@ -62,7 +62,7 @@ std::vector<VectorXd> densities_of(const MotionRequest& request) {
 class StepSequence {
  public:
   StepSequence(const Scene& scene, const MotionRequest& request, Mechanism& mechanism,
-               RunFolder& folder, MotionOutcome& out)
+               RunFolder* folder, MotionOutcome& out)
       : request_(request),
         model_(mechanism.model),
         columns_(scene, mechanism.growths, request.balance),
@@ -75,10 +75,11 @@ class StepSequence {
     record.table = Series(columns_.columns());
     write<SeriesWriter>(record.table);
     if (request.snapshots > 0) write<SnapshotWriter>(shapes_, request.snapshots, record.snapshots);
-    write<TableWriter>(folder.file(request.table), record.table);
+    if (folder) write<TableWriter>(folder->file(request.table), record.table);
     if (request.loads)
       write<LoadCollector>(scene, std::span<const fem::Growth>(mechanism.growths), out.loads);
-    if (request.frames_every > 0) write<FrameWriter>(shapes_, request.frames_every, folder);
+    if (folder && request.frames_every > 0)
+      write<FrameWriter>(shapes_, request.frames_every, *folder);
   }
 
   void add(const fem::MotionStep& step) {
@@ -136,10 +137,10 @@ std::string bytes_of(const MotionRequest& request) {
 /// Resumes a motion from its checkpoint, and writes the checkpoint between steps.
 class Resuming {
  public:
-  Resuming(const MotionRequest& request, MotionOutcome& out, StepSequence& steps, RunFolder& folder)
+  Resuming(const MotionRequest& request, MotionOutcome& out, StepSequence& steps, RunFolder* folder)
       : request_(request), out_(out), steps_(steps), folder_(folder) {
-    if (!request.checkpoint.empty())
-      checkpoint_.emplace(folder, request.checkpoint, bytes_of(request), request.checkpoint_every);
+    if (folder && !request.checkpoint.empty())
+      checkpoint_.emplace(*folder, request.checkpoint, bytes_of(request), request.checkpoint_every);
   }
 
   void connect(fem::MotionSettings& motion) {
@@ -172,8 +173,8 @@ class Resuming {
       steps_.remember(memory);
       std::string motion = take_down();
       memory(motion);
-      checkpoint_->write(memory.bytes(),
-                         request_.frames_every > 0 ? folder_.frames() : std::vector<std::string>());
+      checkpoint_->write(memory.bytes(), request_.frames_every > 0 ? folder_->frames()
+                                                                   : std::vector<std::string>());
     }
     if (ends) throw Interrupted();
   }
@@ -181,7 +182,7 @@ class Resuming {
   const MotionRequest& request_;
   MotionOutcome& out_;
   StepSequence& steps_;
-  RunFolder& folder_;
+  RunFolder* folder_;
   std::optional<MotionCheckpoint> checkpoint_;
 };
 
@@ -206,7 +207,7 @@ Mechanism mechanism_of(const PreparedCase& prepared, const MotionRequest& reques
 }  // namespace
 
 MotionOutcome run_motion(const PreparedCase& prepared, const MotionRequest& request,
-                         RunFolder& folder) {
+                         RunFolder* folder) {
   Mechanism mechanism = mechanism_of(prepared, request);
   MotionOutcome out;
   StepSequence steps(prepared.scene(), request, mechanism, folder, out);
@@ -216,7 +217,12 @@ MotionOutcome run_motion(const PreparedCase& prepared, const MotionRequest& requ
     out.record.result = fem::integrate(mechanism.model, mechanism.growths, mechanism.motion,
                                        [&](const fem::MotionStep& step) { steps.add(step); });
   } catch (const Error& error) {
-    throw FailedRun(error, failure_in(request, out.record));
+    const Failure failure = failure_in(request, out.record);
+    if (request.unfinished) *request.unfinished = std::move(out.record);
+    throw FailedRun(error, failure);
+  } catch (...) {
+    if (request.unfinished) *request.unfinished = std::move(out.record);
+    throw;
   }
   return out;
 }

@@ -4,7 +4,7 @@
 
 #include "cases/assembly/prepared_case.h"
 #include "cases/output/run_folder.h"
-#include "cases/results/motion_record.h"
+#include "cases/results/run_result.h"
 
 namespace flexmorph::cases {
 
@@ -26,14 +26,14 @@ struct MotionRequest {
   double checkpoint_every = 1;  ///< least wall time between two of them [s]
   bool resume = false;          ///< whether the motion is resumed from the checkpoint, if it fits
 
+  /// Receives the rows of a motion that fails or is interrupted; null: they are lost.
+  std::optional<MotionRecord>* unfinished = nullptr;
+
   std::function<bool()> go_on;                      ///< asked at every step; false interrupts
   std::function<void(double)> reached;              ///< told the time of every step [s]
   std::function<void(const std::string&)> say;      ///< told what is unusual when it happens
   std::function<void(const std::string&)> resumed;  ///< told where or why not the motion resumes
 };
-
-/// Thrown when the user interrupts a run. What was computed is in the run folder.
-struct Interrupted {};
 
 /// The result of run_motion().
 struct MotionOutcome {
@@ -42,9 +42,10 @@ struct MotionOutcome {
 };
 
 /// Integrates the motion of a copy of the mechanism of a case.
-/// @param folder  receives the table of steps and the frames
+/// @param folder  receives the table of steps, the frames and the checkpoint; null: nothing is
+///                written, and the request asks for no frames
 /// @throws FailedRun or Interrupted; the steps before are in the table, the checkpoint is written
 MotionOutcome run_motion(const PreparedCase& prepared, const MotionRequest& request,
-                         RunFolder& folder);
+                         RunFolder* folder = nullptr);
 
 }  // namespace flexmorph::cases

@@ -151,7 +151,8 @@ void CycleMotions::keep_assessed() {
   if (!last_on_cells_) return;
   results_.verified = std::move(last_on_cells_);
   last_on_cells_.reset();
-  std::filesystem::rename(run_.folder.file(kOnCells), run_.folder.file(kVerified));
+  if (run_.folder)
+    std::filesystem::rename(run_.folder->file(kOnCells), run_.folder->file(kVerified));
 }
 
 namespace {

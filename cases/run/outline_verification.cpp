@@ -32,7 +32,7 @@ void find_narrow(const mmc::BodyProblem& problem, std::span<const Region> region
 
 VerifiedOutline verify_outline_of(const Scene& scene, const mmc::BodyProblem& problem,
                                   const fem::EslSets* loads, const std::function<bool()>& go_on,
-                                  RunFolder& folder) {
+                                  RunFolder* folder) {
   VerifiedOutline out;
   out.body = problem.body;
   out.curve_tolerance = problem.export_tolerance;
@@ -47,7 +47,7 @@ VerifiedOutline verify_outline_of(const Scene& scene, const mmc::BodyProblem& pr
                                                 : loads_by_position(scene, problem);
     out.volume = area(regions) / area(mmc::domain_of(problem));
     out.verification = mmc::verify_design(problem, regions, by_position, go_on);
-    write_outline_meshes(scene, problem, regions, *out.verification, folder);
+    if (folder) write_outline_meshes(scene, problem, regions, *out.verification, *folder);
   } catch (const Error& error) {
     out.verification.reset();
     out.why_not = error.what();

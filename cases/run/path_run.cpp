@@ -3,7 +3,6 @@
 #include "cases/output/motion_frames.h"
 #include "cases/results/failure.h"
 #include "cases/results/motion_columns.h"
-#include "cases/run/motion_run.h"
 #include "cases/scene/elements/row.h"
 
 namespace flexmorph::cases {
@@ -39,7 +38,7 @@ void put_on(const Scene& scene, fem::Workspace& model, fem::State& x) {
 /// Computes the rows of a path and hands its equilibria to the writers.
 class PathSteps {
  public:
-  PathSteps(const Scene& scene, Mechanism& mechanism, const fem::State& start, RunFolder& folder,
+  PathSteps(const Scene& scene, Mechanism& mechanism, const fem::State& start, RunFolder* folder,
             PathRecord& out)
       : scene_(scene),
         model_(mechanism.model),
@@ -57,8 +56,9 @@ class PathSteps {
     }
     out.table = Series(path_columns(scene));
     writers_.push_back(std::make_unique<SeriesWriter>(out.table));
-    writers_.push_back(std::make_unique<TableWriter>(folder.file("path.csv"), out.table));
-    if (scene.output.vtk) writers_.push_back(std::make_unique<FrameWriter>(shapes_, 1, folder));
+    if (folder == nullptr) return;
+    writers_.push_back(std::make_unique<TableWriter>(folder->file("path.csv"), out.table));
+    if (scene.output.vtk) writers_.push_back(std::make_unique<FrameWriter>(shapes_, 1, *folder));
   }
 
   void add(const fem::StaticStep& step) {
@@ -96,7 +96,7 @@ class PathSteps {
 
 }  // namespace
 
-PathRecord run_path(const PreparedCase& prepared, RunFolder& folder, const PathRequest& request) {
+PathRecord run_path(const PreparedCase& prepared, const PathRequest& request, RunFolder* folder) {
   const Scene& scene = prepared.scene();
   Mechanism mechanism = prepared.mechanism();
   fem::Workspace& model = mechanism.model;
@@ -121,7 +121,11 @@ PathRecord run_path(const PreparedCase& prepared, RunFolder& folder, const PathR
     const auto n = static_cast<int>(out.table.n_rows());
     where.load_factor = n == 0 ? 0 : out.table.at(kFactorColumn).back();
     where.step = std::max(0, n - 1);  // the start is no step
+    if (request.unfinished) *request.unfinished = std::move(out);
     throw FailedRun(error, where);
+  } catch (...) {
+    if (request.unfinished) *request.unfinished = std::move(out);
+    throw;
   }
   return out;
 }

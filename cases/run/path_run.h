@@ -4,7 +4,7 @@
 
 #include "cases/assembly/prepared_case.h"
 #include "cases/output/run_folder.h"
-#include "cases/results/motion_record.h"
+#include "cases/results/run_result.h"
 
 namespace flexmorph::cases {
 
@@ -13,11 +13,15 @@ struct PathRequest {
   bool condition = false;               ///< whether the condition of the last matrix is estimated
   std::function<bool()> go_on;          ///< asked at every equilibrium; false interrupts
   std::function<void(double)> reached;  ///< told the load factor of every equilibrium
+  /// Receives the rows of a path that fails or is interrupted; null: they are lost.
+  std::optional<PathRecord>* unfinished = nullptr;
 };
 
 /// Follows the equilibria of a [static] analysis from load factor 0.
-/// @param folder  receives path.csv, and with output.vtk a frame per equilibrium
+/// @param folder  receives path.csv, and with output.vtk a frame per equilibrium; null: nothing is
+///                written
 /// @throws FailedRun or Interrupted, with the equilibria before it in the table
-PathRecord run_path(const PreparedCase& prepared, RunFolder& folder, const PathRequest& request);
+PathRecord run_path(const PreparedCase& prepared, const PathRequest& request,
+                    RunFolder* folder = nullptr);
 
 }  // namespace flexmorph::cases

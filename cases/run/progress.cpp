@@ -32,10 +32,17 @@ std::string time_left(double seconds, double part) {
 
 Progress::Progress(bool quiet) : quiet_(quiet), terminal_(isatty(STDOUT_FILENO) != 0) {}
 
+Progress::Progress(std::function<void(const std::string&)> told)
+    : quiet_(true), terminal_(false), told_(std::move(told)) {}
+
 Progress::~Progress() { end_line(); }
 
 void Progress::say(const std::string& text) {
   const std::lock_guard guard(lock_);
+  if (told_) {
+    if (*told_) (*told_)(text);
+    return;
+  }
   end_line();
   if (!quiet_) std::printf("%s\n", text.c_str());
   std::fflush(stdout);

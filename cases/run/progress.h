@@ -1,7 +1,9 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "cases/results/failure.h"
@@ -14,6 +16,8 @@ namespace flexmorph::cases {
 class Progress {
  public:
   explicit Progress(bool quiet);
+  /// Nothing is printed: sentences go to a function, lines that rewrite themselves nowhere.
+  explicit Progress(std::function<void(const std::string&)> told);
   ~Progress();
 
   void say(const std::string& text);
@@ -38,6 +42,7 @@ class Progress {
 
   mutable std::mutex lock_;
   bool quiet_, terminal_, open_ = false;
+  std::optional<std::function<void(const std::string&)>> told_;
   Failure where_;
   double all_ = 0, iterations_ = 0;  // iterations of the run, and since the phase began
   Clock::time_point begin_ = Clock::now(), shown_ = {};

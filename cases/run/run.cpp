@@ -19,25 +19,29 @@
 namespace flexmorph::cases {
 namespace {
 
-PathRecord run_statics(const RunContext& run) {
+/// @param unfinished  receives the rows before a failure, where there is no folder with them
+PathRecord run_statics(const RunContext& run, std::optional<PathRecord>& unfinished) {
   const double to = run.scene().statics->to;
   run.progress.begin("statics");
   PathRequest request;
+  if (run.folder == nullptr) request.unfinished = &unfinished;
   request.condition = run.condition;
   request.go_on = run.go_on;
   request.reached = [&](double factor) {
     run.progress.way("statics", std::clamp(factor / to, 0.0, 1.0),
                      "load factor " + io::to_text(factor, 4) + " of " + io::to_text(to, 4));
   };
-  PathRecord out = run_path(run.prepared, run.folder, request);
+  PathRecord out = run_path(run.prepared, request, run.folder);
   run.progress.say("statics: load factor " + io::to_text(out.result.factor, 5) + " after " +
                    std::to_string(out.result.steps) + " steps, " +
                    std::to_string(out.result.iterations) + " Newton iterations");
   return out;
 }
 
-MotionRecord run_only_motion(const RunContext& run) {
+/// @param unfinished  likewise
+MotionRecord run_only_motion(const RunContext& run, std::optional<MotionRecord>& unfinished) {
   MotionRequest request = result_request(run, "motion");
+  if (run.folder == nullptr) request.unfinished = &unfinished;
   request.say = [&](const std::string& words) { run.progress.say(words); };
   run.progress.begin(request.phase);
   MotionRecord out = run_motion(run.prepared, request, run.folder).record;
@@ -88,12 +92,14 @@ EndedRun run_prepared(const RunContext& run) {
     if (!scene.designs.empty() || scene.domain)
       designs.run();
     else if (scene.statics)
-      out.result.path = run_statics(run);
+      out.result.path = run_statics(run, out.result.path);
     else
-      out.result.motions.motion = run_only_motion(run);
-    run.folder.finish();
-    out.result.info.lost_frames = run.folder.lost_frames();
-    out.result.info.missing_exports = run.folder.missing_exports();
+      out.result.motions.motion = run_only_motion(run, out.result.motions.motion);
+    if (run.folder) {
+      run.folder->finish();
+      out.result.info.lost_frames = run.folder->lost_frames();
+      out.result.info.missing_exports = run.folder->missing_exports();
+    }
   } catch (const std::bad_alloc&) {
     out.error =
         std::make_exception_ptr(Error::numerical(out_of_memory_words(run.prepared.extent())));
@@ -110,8 +116,7 @@ EndedRun run_prepared(const RunContext& run) {
 int run_case(const RunOptions& options) {
   const RunFiles::Clock::time_point begin = RunFiles::Clock::now();
   // What cannot be built, or is too large, is refused before a folder exists.
-  const auto [file, prepared] =
-      ready_case(options.case_name, options.overrides, options.directory, options.threads);
+  const auto [file, prepared] = ready_case(options.case_name, options.overrides, options.directory);
   const Scene& scene = prepared.scene();
   std::string directory = options.directory;
   if (directory.empty()) directory = scene.output.directory;
@@ -136,7 +141,7 @@ int run_case(const RunOptions& options) {
   RunFiles files(scene, folder, options.threads, begin);
   files.write({}, "running", "");
   EndedRun ended = run_prepared(
-      {prepared, folder, progress, goes_on, options.threads, options.condition, options.resume});
+      {prepared, &folder, progress, goes_on, options.threads, options.condition, options.resume});
   return end_run(std::move(ended), !is_another_case(options.overrides), files, progress);
 }
 

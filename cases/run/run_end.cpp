@@ -64,18 +64,24 @@ void remove_progress(const FilesOf& files_of) {
   remove_checkpoints(files_of);
 }
 
-RunResult RunFiles::write(RunResult result, const std::string& status, const std::string& message) {
-  result.warnings = warnings_of(scene_, result);
-  result.expectations = compare_expectations(scene_, result);
+void complete_result(const Scene& scene, const std::string& status, const std::string& message,
+                     RunResult& result) {
+  result.warnings = warnings_of(scene, result);
+  result.expectations = compare_expectations(scene, result);
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   RunInfo& info = result.info;
   info.status = status == "done" ? done_words(result.warnings) : status;
   info.message = message;
-  info.threads = threads_;
   info.seconds_cpu = cpu_seconds();
-  info.seconds_wall = std::chrono::duration<double>(Clock::now() - begin_).count();
   info.peak_memory_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
+}
+
+RunResult RunFiles::write(RunResult result, const std::string& status, const std::string& message) {
+  complete_result(scene_, status, message, result);
+  RunInfo& info = result.info;
+  info.threads = threads_;
+  info.seconds_wall = std::chrono::duration<double>(Clock::now() - begin_).count();
   info.phases = phases_of(result.design, folder_);
   write_report(scene_, result, folder_);
   return result;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <chrono>
-#include <exception>
 #include <functional>
 #include <span>
 #include <string>
@@ -13,12 +12,6 @@
 
 /// How runs end: by signals, by errors, or with their results written.
 namespace flexmorph::cases {
-
-/// The result of a run that may have ended early: what was computed, and why it ended.
-struct EndedRun {
-  RunResult result;
-  std::exception_ptr error;  ///< null where the run came to its end; else Error or Interrupted
-};
 
 /// Exit code of a run that is whole, but misses an expectation of its case or is of no use.
 inline constexpr int kMissed = 5;
@@ -37,6 +30,12 @@ bool is_another_case(std::span<const std::string> overrides);
 /// @param files_of  paths of the files of the run whose names end so
 void remove_progress(
     const std::function<std::vector<std::string>(const std::string& ending)>& files_of);
+
+/// Fills what a result says of itself: status, warnings, expectations, CPU time and memory of the
+/// process.
+/// @param status  "done" becomes "done, not usable" where a warning says so
+void complete_result(const Scene& scene, const std::string& status, const std::string& message,
+                     RunResult& result);
 
 /// Writes the files of a run in its folder that all runs have: at the start, and with the results.
 class RunFiles {

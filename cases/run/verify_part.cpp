@@ -133,7 +133,7 @@ EndedRun evaluate_design(const GivenCase& given, const std::string& directory,
   keep_case(given.file, false, folder);
   RunFiles files(prepared.scene(), folder, options.threads, RunFiles::Clock::now());
   progress.say("the design of " + given.run);
-  RunContext context{prepared, folder, progress, goes_on, options.threads};
+  RunContext context{prepared, &folder, progress, goes_on, options.threads};
   context.uniform = false;
   EndedRun out = run_prepared(context);
   if (out.error) {
@@ -197,7 +197,7 @@ int verify_parts(const VerifyOptions& options) {
   const std::string directory = directory_of(options, given);
   const PreparedCase prepared(with_parts(given, parts));
   const Scene& scene = prepared.scene();
-  require_buildable(prepared, directory, options.threads);
+  require_buildable(prepared, directory);
   RunFolder folder(directory, scene, options.threads > 1);
   keep_case(given.file, false, folder);
   if (scene.output.vtk) folder.write_text("paraview.py", kParaViewScript);
@@ -218,7 +218,7 @@ int verify_parts(const VerifyOptions& options) {
   }
   if (!ended.error) {
     progress.say("the part");
-    ended = run_prepared({prepared, folder, progress, goes_on, options.threads});
+    ended = run_prepared({prepared, &folder, progress, goes_on, options.threads});
   }
   if (!ended.error) {
     comparison.numbers = compared_numbers(scene, ended.result, design ? &*design : nullptr);

@@ -104,9 +104,7 @@ const io::Key& kStoredLength = io::key("body.flow", "stored_length")
 }  // namespace flow_keys
 
 const ElementRow* read_element(const io::Table& t) {
-  const std::string name = t.choice(body_keys::kElement);
-  return *std::find_if(element_rows().begin(), element_rows().end(),
-                       [&](const ElementRow* row) { return row->name == name; });
+  return find_element(t.choice(body_keys::kElement));
 }
 
 void refuse_flow(const io::Table& t) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "cases/scene/rigid_body.h"
 #include "fem/link.h"
@@ -43,6 +44,11 @@ struct SpringRow {
 /// All rows, in the order in which messages list them; the first one is meant where a case says
 /// none.
 std::span<const SpringRow* const> spring_rows();
+/// Returns the row of this name; null where there is none.
+const SpringRow* find_spring(std::string_view name);
+/// Adds a row, see Registry::add(): a force element between two places. Keys that it reads are
+/// declared with io::key().
+void register_spring(const SpringRow& row);
 
 /// [[spring]].
 void read_springs(const io::Table& root, Scene& scene);

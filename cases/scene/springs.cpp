@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <array>
 
 #include "cases/scene/joints/reading.h"
 #include "cases/scene/tables.h"
+#include "geometry/registry.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -115,10 +115,8 @@ void read_places(const Table& t, const Scene& scene, const SpringRow& row, Sprin
 }
 
 Spring read_spring(const Table& t, const Scene& scene) {
-  const std::string type = t.choice(kType);
   Spring spring;
-  spring.row = *std::find_if(spring_rows().begin(), spring_rows().end(),
-                             [&](const SpringRow* row) { return row->name == type; });
+  spring.row = find_spring(t.choice(kType));
   const SpringRow& row = *spring.row;
   read_places(t, scene, row, spring);
   row.read(t, spring);
@@ -138,11 +136,20 @@ Spring read_spring(const Table& t, const Scene& scene) {
 
 extern const SpringRow kBushing, kStop, kDistanceStop, kAngleStop;
 
-std::span<const SpringRow* const> spring_rows() {
-  static const std::array kRows = {&kLinear, &kTorsion,      &kBushing,
-                                   &kStop,   &kDistanceStop, &kAngleStop};
-  return kRows;
+namespace {
+
+Registry<SpringRow>& registry() {
+  static Registry<SpringRow> all(
+      "spring", [](const SpringRow& row) -> std::string { return row.name; },
+      {&kLinear, &kTorsion, &kBushing, &kStop, &kDistanceStop, &kAngleStop});
+  return all;
 }
+
+}  // namespace
+
+std::span<const SpringRow* const> spring_rows() { return registry().rows(); }
+const SpringRow* find_spring(std::string_view name) { return registry().find(name); }
+void register_spring(const SpringRow& row) { registry().add(row); }
 
 void read_springs(const Table& root, Scene& scene) {
   for (const Table& t : root.tables(tables::kSpring))

@@ -1,4 +1,5 @@
 #include <map>
+#include <mutex>
 
 #include "cases/scene/body_keys.h"
 #include "cases/scene/elements/row.h"
@@ -25,16 +26,18 @@ const Key& declared(const fem::TermKey& key, const std::string& term) {
 
 using TermKeys = std::map<std::string, std::map<std::string, const Key*>>;
 
-/// By term and name.
+/// Returns the keys of all terms, by term and name; those of terms that were registered since the
+/// last call are declared.
 const TermKeys& term_keys() {
-  static const TermKeys kKeys = [] {
-    TermKeys keys;
-    for (const fem::TermRow* row : fem::term_rows())
-      for (const fem::TermKey& key : row->keys)
-        keys[row->name][key.name] = &declared(key, row->name);
-    return keys;
-  }();
-  return kKeys;
+  static TermKeys all;
+  static std::mutex lock;
+  const std::lock_guard guard(lock);
+  for (const fem::TermRow* row : fem::term_rows()) {
+    const auto [keys, is_new] = all.try_emplace(row->name);
+    if (is_new)
+      for (const fem::TermKey& key : row->keys) keys->second[key.name] = &declared(key, row->name);
+  }
+  return all;
 }
 
 io::Glossary all_terms() {

@@ -4,6 +4,9 @@
 
 namespace flexmorph::cases {
 
+const char* const kVersion = FLEXMORPH_VERSION;
+const char* const kCasesFolder = FLEXMORPH_CASES;
+
 std::vector<std::pair<std::string, std::string>> library_versions() {
   const std::string eigen = std::to_string(EIGEN_WORLD_VERSION) + "." +
                             std::to_string(EIGEN_MAJOR_VERSION) + "." +

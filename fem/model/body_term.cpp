@@ -16,24 +16,12 @@ BodyTerm::BodyTerm(std::unique_ptr<Term> t)
 
 void BodyTerm::add_forces(const Batch& x, Lanes* force) const {
   if (batch) return batch->add_forces(x, force);
-  LocalRows f;
-  for (int lane = 0; lane < x.count; ++lane) {
-    f.setZero(x.n_shapes, x.dim);
-    term->add_force(x.first + lane, local_of(x, lane), f);
-    for (int k = 0; k < x.n_local(); ++k) force[k][lane] += f.data()[k];
-  }
+  for (int lane = 0; lane < x.count; ++lane) add_force_of_lane(*term, x, lane, force);
 }
 
 void BodyTerm::add_tangents(const Batch& x, const Weights& w, Lanes* tangent) const {
   if (batch) return batch->add_tangents(x, w, tangent);
-  LocalTangent t;
-  const int n = x.n_local();
-  for (int lane = 0; lane < x.count; ++lane) {
-    t.setZero(n, n);
-    term->add_tangent(x.first + lane, local_of(x, lane), w, t);
-    for (int row = 0; row < n; ++row)
-      for (int column = 0; column < n; ++column) tangent[column * n + row][lane] += t(row, column);
-  }
+  for (int lane = 0; lane < x.count; ++lane) add_tangent_of_lane(*term, x, lane, w, tangent);
 }
 
 const FreeLineTerm& BodyTerm::with_free_lines() const {

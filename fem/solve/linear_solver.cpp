@@ -1,5 +1,6 @@
 #include "fem/solve/linear_solver.h"
 
+#include <dlfcn.h>
 #include <umfpack.h>
 
 #include <string>
@@ -7,8 +8,6 @@
 
 #include "fem/solve/factorization/bordered_cholesky.h"
 #include "fem/solve/factorization/saddle_cholesky.h"
-
-extern "C" char* openblas_get_corename();  // cblas.h of other vendors has no such call
 
 namespace flexmorph::fem {
 
@@ -187,6 +186,9 @@ void UnsymmetricSolver::remember(Memory& memory, const SparseMatrix& a) {
 
 bool UnsymmetricSolver::is_cholesky() const { return impl_->is_cholesky; }
 
-std::string blas_kernel() { return openblas_get_corename(); }
+std::string blas_kernel() {
+  auto* name = reinterpret_cast<char* (*)()>(dlsym(RTLD_DEFAULT, "openblas_get_corename"));
+  return name ? name() : "unknown";
+}
 
 }  // namespace flexmorph::fem

@@ -65,7 +65,9 @@ class UnsymmetricSolver {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Kernels that OpenBLAS, under all direct solvers, runs on: "Haswell", "SkylakeX", ...
+/// Returns the kernels that OpenBLAS, under all direct solvers, computes with: "Haswell",
+/// "SkylakeX", ...; "unknown" of another BLAS. The environment variable OPENBLAS_CORETYPE chooses
+/// others, when the process starts.
 std::string blas_kernel();
 
 }  // namespace flexmorph::fem

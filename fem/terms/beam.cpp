@@ -91,7 +91,7 @@ class Beam final : public ElasticTerm, public BatchTerm {
   void add_force(int e, const Local& x, LocalRows& force) const override {
     const Data& d = elements_[static_cast<size_t>(e)];
     double p[kVectors * kDim], g[kPairs], s[kPairs];
-    evaluate(d, x.q.data(), p, g, s);
+    evaluate(view(d), x.q.data(), p, g, s);
     add_force_of(s, p, force.data());
   }
 
@@ -99,23 +99,25 @@ class Beam final : public ElasticTerm, public BatchTerm {
     if (w.q == 0) return;
     const Data& d = elements_[static_cast<size_t>(e)];
     double p[kVectors * kDim], g[kPairs], s[kPairs];
-    evaluate(d, x.q.data(), p, g, s);
+    evaluate(view(d), x.q.data(), p, g, s);
     add_tangent_of(d.w.data(), s, p, p, w.q, ByRows{tangent.data()});
   }
 
   void add_forces(const Batch& x, Lanes* force) const override {
-    Lanes p[kVectors * kDim], g[kPairs], s[kPairs];
-    evaluate(batches_[static_cast<size_t>(x.first / kLanes)], x.q, p, g, s);
-    add_force_of(s, p, force);
+    run_batch_kernel([&]<class V>() {
+      V p[kVectors * kDim], g[kPairs], s[kPairs];
+      evaluate(of<V>(x), lanes_as<V>(x.q), p, g, s);
+      add_force_of(s, p, lanes_as<V>(force));
+    });
   }
 
   void add_tangents(const Batch& x, const Weights& w, Lanes* tangent) const override {
     if (w.q == 0) return;
-    const Batched& d = batches_[static_cast<size_t>(x.first / kLanes)];
-    Lanes p[kVectors * kDim], g[kPairs], s[kPairs];
-    evaluate(d, x.q, p, g, s);
-    add_tangent_of(d.w.data(), s, p, p, w.q, [&](int row, int column) -> Lanes& {
-      return tangent[column * kShapes * kDim + row];
+    run_batch_kernel([&]<class V>() {
+      V p[kVectors * kDim], g[kPairs], s[kPairs], *out = lanes_as<V>(tangent);
+      evaluate(of<V>(x), lanes_as<V>(x.q), p, g, s);
+      add_tangent_of(of<V>(x).w, s, p, p, w.q,
+                     [&](int row, int column) -> V& { return out[column * kShapes * kDim + row]; });
     });
   }
 
@@ -148,7 +150,7 @@ class Beam final : public ElasticTerm, public BatchTerm {
   double energy_at(int e, const Local& x) const override {
     const Data& d = elements_[static_cast<size_t>(e)];
     double p[kVectors * kDim], g[kPairs], s[kPairs], energy = 0;
-    evaluate(d, x.q.data(), p, g, s);
+    evaluate(view(d), x.q.data(), p, g, s);
     for (size_t k = 0; k < kPairs; ++k) energy += 0.5 * s[k] * (g[k] - d.reference[k]);
     return energy;
   }
@@ -160,12 +162,23 @@ class Beam final : public ElasticTerm, public BatchTerm {
   };
   using Data = DataOf<double>;
   using Batched = DataOf<Lanes>;
+  /// The same as kernels read it.
+  template <class V>
+  struct DataView {
+    const V *w, *reference;
+  };
+  static DataView<double> view(const Data& d) { return {d.w.data(), d.reference.data()}; }
+  template <class V>
+  DataView<V> of(const Batch& x) const {
+    const Batched& d = batches_[static_cast<size_t>(x.first / kLanes)];
+    return {lanes_as<V>(d.w.data()), lanes_as<V>(d.reference.data())};
+  }
 
   template <class V>
-  static void evaluate(const DataOf<V>& d, const V* q, V* p, V* g, V* s) {
+  static void evaluate(const DataView<V>& d, const V* q, V* p, V* g, V* s) {
     vectors(q, p);
     products(p, g);
-    stress(d.w.data(), d.reference.data(), g, s);
+    stress(d.w, d.reference, g, s);
   }
 
   static void evaluate_mean(const Data& d, const LocalStep& x, double* p, double* s) {

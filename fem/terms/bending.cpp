@@ -94,29 +94,35 @@ class Bending final : public ElasticTerm, public BatchTerm {
 
   void add_force(int e, const Local& x, LocalRows& force) const override {
     dispatch([&]<bool kMixed>() {
-      bending::add_force<kMixed>(*tables_[static_cast<size_t>(e)], places_, stiffness_, x.q.data(),
-                                 force.data());
+      bending::add_force<kMixed>(view(*tables_[static_cast<size_t>(e)]), places_, stiffness_,
+                                 x.q.data(), force.data());
     });
   }
 
   void add_tangent(int e, const Local& x, const Weights& w, LocalTangent& tangent) const override {
     if (w.q == 0) return;
     dispatch([&]<bool kMixed>() {
-      bending::add_tangent<kMixed>(*tables_[static_cast<size_t>(e)], places_, w.q * stiffness_,
-                                   x.q.data(), work<double>(), tangent.data());
+      bending::add_tangent<kMixed>(view(*tables_[static_cast<size_t>(e)]), places_,
+                                   w.q * stiffness_, x.q.data(), work<double>(), tangent.data());
     });
   }
 
   void add_forces(const Batch& x, Lanes* force) const override {
-    of_batch(x, [&]<bool kMixed>(const auto& table) {
-      bending::add_force<kMixed>(table, places_, stiffness_, x.q, force);
+    run_batch_kernel([&]<class V>() {
+      of_batch<V>(x, [&]<bool kMixed>(const auto& table) {
+        bending::add_force<kMixed>(table, places_, stiffness_, lanes_as<V>(x.q),
+                                   lanes_as<V>(force));
+      });
     });
   }
 
   void add_tangents(const Batch& x, const Weights& w, Lanes* tangent) const override {
     if (w.q == 0) return;
-    of_batch(x, [&]<bool kMixed>(const auto& table) {
-      bending::add_tangent<kMixed>(table, places_, w.q * stiffness_, x.q, work<Lanes>(), tangent);
+    run_batch_kernel([&]<class V>() {
+      of_batch<V>(x, [&]<bool kMixed>(const auto& table) {
+        bending::add_tangent<kMixed>(table, places_, w.q * stiffness_, lanes_as<V>(x.q), work<V>(),
+                                     lanes_as<V>(tangent));
+      });
     });
   }
 
@@ -126,7 +132,7 @@ class Bending final : public ElasticTerm, public BatchTerm {
   double energy_at(int e, const Local& x) const override {
     double out = 0;
     dispatch([&]<bool kMixed>() {
-      out = bending::energy<kMixed>(*tables_[static_cast<size_t>(e)], places_, stiffness_,
+      out = bending::energy<kMixed>(view(*tables_[static_cast<size_t>(e)]), places_, stiffness_,
                                     x.q.data());
     });
     return out;
@@ -144,14 +150,17 @@ class Bending final : public ElasticTerm, public BatchTerm {
     mixed_ ? f.template operator()<true>() : f.template operator()<false>();
   }
 
-  template <class F>
+  template <class V, class F>
   void of_batch(const Batch& x, const F& f) const {
     const BatchTables& batch = batches_[static_cast<size_t>(x.first / kLanes)];
+    const bending::Table<Lanes>& own = batch.different;
     dispatch([&]<bool kMixed>() {
       if (batch.shared)
-        f.template operator()<kMixed>(*batch.shared);
+        f.template operator()<kMixed>(view(*batch.shared));
       else
-        f.template operator()<kMixed>(batch.different);
+        f.template operator()<kMixed>(bending::TableView<V>{own.n, lanes_as<V>(own.m.data()),
+                                                            lanes_as<V>(own.across.data()),
+                                                            lanes_as<V>(own.weight.data())});
     });
   }
 

@@ -6,7 +6,7 @@
 #include "fem/terms/bending_point.h"
 
 /// Integrals of the bending energy over an element and their derivatives by its unknowns, for one
-/// element (V = double) or eight side by side (V = Lanes).
+/// element (V = double) or eight side by side (V = LanesOf<...>).
 ///
 /// Shape functions are products of functions f_i(m) f_j(n), i, j = 0 ... 3, and points a tensor
 /// grid (g, h): every sum over functions and every sum over points is taken in one direction after
@@ -34,6 +34,17 @@ inline constexpr std::array<int, kVectors> kOrderM = {1, 0, 2, 0, 1}, kOrderN = 
 /// Which unknown belongs to the product of functions i and j: entry 4 j + i, -1: none. Without
 /// mixed derivatives (h12) there is none for two slope functions, i and j odd.
 using Places = std::array<int, kFunctions * kFunctions>;
+
+/// A table as kernels read it.
+template <class T>
+struct TableView {
+  int n;
+  const T *m, *across, *weight;
+};
+template <class T>
+TableView<T> view(const Table<T>& t) {
+  return {t.n, t.m.data(), t.across.data(), t.weight.data()};
+}
 
 /// Step between the functions along m that go with function j along n: slopes with a slope are
 /// absent without mixed derivatives.
@@ -85,23 +96,23 @@ inline void vectors_at(const T* f, const V* z, Vec<V>* y) {
 
 /// Calls f(g, h, Point) for all points, the rows g one after the other, and end(g) after each.
 template <bool kMixed, class V, class T, class F, class End>
-inline void for_points(const Table<T>& t, const Places& places, const Eigen::Matrix3d& stiffness,
-                       const V* q, const F& f, const End& end) {
+inline void for_points(const TableView<T>& t, const Places& places,
+                       const Eigen::Matrix3d& stiffness, const V* q, const F& f, const End& end) {
   V x[3 * kFunctions * kFunctions], z[3 * kLine];
   by_functions(places, q, x);
   for (int g = 0; g < t.n; ++g) {
-    along_m<kMixed>(t.m.data() + kLine * g, x, z);
+    along_m<kMixed>(t.m + kLine * g, x, z);
     for (int h = 0; h < t.n; ++h) {
       Vec<V> y[kVectors];
-      vectors_at(t.across.data() + kLine * h, z, y);
-      f(h, Point<V>(y, stiffness, V{} + t.weight[static_cast<std::size_t>(t.n * g + h)]));
+      vectors_at(t.across + kLine * h, z, y);
+      f(h, Point<V>(y, stiffness, V{} + t.weight[t.n * g + h]));
     }
     end(g);
   }
 }
 
 template <bool kMixed, class V, class T>
-inline V energy(const Table<T>& t, const Places& places, const Eigen::Matrix3d& stiffness,
+inline V energy(const TableView<T>& t, const Places& places, const Eigen::Matrix3d& stiffness,
                 const V* q) {
   V out{};
   for_points<kMixed>(
@@ -112,7 +123,7 @@ inline V energy(const Table<T>& t, const Places& places, const Eigen::Matrix3d& 
 
 /// Adds ∂U/∂q (n_shapes 3).
 template <bool kMixed, class V, class T>
-inline void add_force(const Table<T>& t, const Places& places, const Eigen::Matrix3d& stiffness,
+inline void add_force(const TableView<T>& t, const Places& places, const Eigen::Matrix3d& stiffness,
                       const V* q, V* force) {
   V sum[3 * kFunctions * kFunctions] = {};
   Vec<V> row[kMaxLine][kVectors];
@@ -120,14 +131,14 @@ inline void add_force(const Table<T>& t, const Places& places, const Eigen::Matr
     for (int c = 0; c < 3; ++c) {
       V z[kLine] = {};  // work on the derivatives along m
       for (int h = 0; h < t.n; ++h) {
-        const T* f = t.across.data() + kLine * h;
+        const T* f = t.across + kLine * h;
 #pragma GCC unroll 5
         for (std::size_t v = 0; v < kVectors; ++v)
 #pragma GCC unroll 4
           for (int j = 0; j < kFunctions; ++j)
             z[kFunctions * kOrderM[v] + j] += f[kFunctions * kOrderN[v] + j] * row[h][v][c];
       }
-      const T* f = t.m.data() + kLine * g;
+      const T* f = t.m + kLine * g;
 #pragma GCC unroll 4
       for (int j = 0; j < kFunctions; ++j)
 #pragma GCC unroll 4
@@ -155,11 +166,11 @@ struct TangentWork {
 /// Sums over h of one pair of directions at one g: for functions j, l along n and orders a, b of
 /// the derivatives along m,   out[(16 stride)(4 j + l) + 3 a + b] = Σ_h Σ_v,w f_j H_vw f_l.
 template <class V, class T>
-inline void sum_across(const Table<T>& t, const Hessian<V>* row, int entry, std::size_t stride,
+inline void sum_across(const TableView<T>& t, const Hessian<V>* row, int entry, std::size_t stride,
                        V* out) {
   V spread[kMaxLine][kVectors][kLine];  // H_vw f_l: order of w along m, l
   for (int h = 0; h < t.n; ++h) {
-    const T* f = t.across.data() + kLine * h;
+    const T* f = t.across + kLine * h;
     for (int v = 0; v < kVectors; ++v) {
       V sum[kLine] = {};
 #pragma GCC unroll 5
@@ -178,7 +189,7 @@ inline void sum_across(const Table<T>& t, const Hessian<V>* row, int entry, std:
       for (int h = 0; h < t.n; ++h) {
         const auto add = [&](int vector) {
           const T* f =
-              t.across.data() + kLine * h + kFunctions * kOrderN[static_cast<std::size_t>(vector)];
+              t.across + kLine * h + kFunctions * kOrderN[static_cast<std::size_t>(vector)];
           const V* x = spread[h][vector] + kFunctions * b;
 #pragma GCC unroll 4
           for (int j = 0; j < kFunctions; ++j)
@@ -199,10 +210,10 @@ inline void sum_across(const Table<T>& t, const Hessian<V>* row, int entry, std:
 /// Sums over g for functions i, k along m in steps of `rows` and `columns`:
 ///   out[4 i + k] = Σ_g Σ_a,b f_i^(a) blocks[9 g + 3 a + b] f_k^(b).
 template <int rows, int columns, class V, class T>
-inline void sum_along(const Table<T>& t, const V* blocks, V* out) {
+inline void sum_along(const TableView<T>& t, const V* blocks, V* out) {
   V sum[kFunctions * kFunctions] = {};
   for (int g = 0; g < t.n; ++g, blocks += kOrders * kOrders) {
-    const T* f = t.m.data() + kLine * g;
+    const T* f = t.m + kLine * g;
 #pragma GCC unroll 4
     for (int k = 0; k < kFunctions; k += columns) {
       V part[kOrders];
@@ -222,8 +233,9 @@ inline void sum_along(const Table<T>& t, const V* blocks, V* out) {
 
 /// Adds scale ∂²U/∂q² (n_local x n_local, symmetric).
 template <bool kMixed, class V, class T>
-inline void add_tangent(const Table<T>& t, const Places& places, const Eigen::Matrix3d& stiffness,
-                        const V* q, TangentWork<V>& work, V* tangent) {
+inline void add_tangent(const TableView<T>& t, const Places& places,
+                        const Eigen::Matrix3d& stiffness, const V* q, TangentWork<V>& work,
+                        V* tangent) {
   constexpr std::size_t kPairs = kFunctions * kFunctions;
   constexpr std::size_t kLocal = 3 * (kMixed ? 16 : 12);
   const std::size_t stride = static_cast<std::size_t>(kOrders * kOrders * t.n);

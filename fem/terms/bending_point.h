@@ -6,7 +6,7 @@
 #include "fem/shapes/batch.h"
 
 /// Bending energy of a thin plate at one point of one element (V = double) or of eight side by side
-/// (V = Lanes).
+/// (V = LanesOf<...>).
 namespace flexmorph::fem::bending {
 
 template <class V>
@@ -30,12 +30,10 @@ inline Vec<V> scaled(const V& s, const Vec<V>& a) {
 }
 
 inline double root(double x) { return std::sqrt(x); }
-inline Lanes root(Lanes x) {
-  using Packet = Eigen::Array<double, kLanes, 1>;
-  Lanes out;
-  Eigen::Map<Packet>(reinterpret_cast<double*>(&out)) =
-      Eigen::Map<const Packet>(reinterpret_cast<const double*>(&x)).sqrt();
-  return out;
+template <int kWidth>
+inline LanesOf<kWidth> root(LanesOf<kWidth> x) {
+  for (int k = 0; k < kLanes; ++k) x[k] = std::sqrt(x[k]);
+  return x;
 }
 
 /// Vectors at a point: r_m, r_n, r_mm, r_nn, r_mn.

@@ -6,7 +6,7 @@
 #include "fem/shapes/batch.h"
 
 /// Kernels of the Gram form of the in-plane elastic force (fem/terms/membrane.cpp), for one element
-/// (V = double) or eight of them side by side (V = Lanes).
+/// (V = double) or eight of them side by side (V = LanesOf<...>).
 ///
 /// With vectors p_i, g_ij = p_i·p_j (i < j) and g_ii = ½ p_i·p_i, U = ½ (g - g°)ᵀ W (g - g°):
 ///
@@ -83,12 +83,11 @@ constexpr int n_stored(Coupling coupling, int (*size)(int)) {
 }
 
 /// W of eight different elements.
+template <class V>
 struct Different {
-  const Lanes* w;
+  const V* w;
   static constexpr auto size = packed;
-  Lanes at(int x, int y, int) const {
-    return w[x >= y ? x * (x + 1) / 2 + y : y * (y + 1) / 2 + x];
-  }
+  V at(int x, int y, int) const { return w[x >= y ? x * (x + 1) / 2 + y : y * (y + 1) / 2 + x]; }
   Different behind(int n) const { return {w + n}; }
 };
 /// W of one of them.
@@ -96,7 +95,9 @@ struct OneOf {
   const Lanes* w;
   int lane;
   static constexpr auto size = packed;
-  double at(int x, int y, int m) const { return Different{w}.at(x, y, m)[lane]; }
+  double at(int x, int y, int) const {
+    return w[x >= y ? x * (x + 1) / 2 + y : y * (y + 1) / 2 + x][static_cast<std::size_t>(lane)];
+  }
   OneOf behind(int n) const { return {w + n, lane}; }
 };
 /// One W for all elements: small enough for the first cache as squares.
@@ -185,21 +186,24 @@ inline void multiply_block(Shared w, const V* g, V* s) {
 
 /// s = W g. One copy for all that need it.
 template <int kKinds, Coupling coupling, class V, class W>
-[[gnu::noinline]] void multiply(W w, const V* g, V* s) {
-  constexpr auto& start = Numbering<kKinds>::tables.start;
-  if constexpr (coupling == Coupling::all) {
-    multiply_block<start[4]>(w, g, s);
-  } else {
-    const auto block = [&]<std::size_t c>() {
-      constexpr int m = start[c + 1] - start[c];
-      multiply_block<m>(w, g + start[c], s + start[c]);
-      w = w.behind(W::size(m));
-    };
-    block.template operator()<0>();
-    block.template operator()<1>();
-    block.template operator()<2>();
-    block.template operator()<3>();
-  }
+inline void multiply(W all, const V* g, V* s) {
+  run_kernel_part<kBytesOf<V>>([=] {
+    constexpr auto& start = Numbering<kKinds>::tables.start;
+    if constexpr (coupling == Coupling::all) {
+      multiply_block<start[4]>(all, g, s);
+    } else {
+      W w = all;
+      const auto block = [&]<std::size_t c>() {
+        constexpr int m = start[c + 1] - start[c];
+        multiply_block<m>(w, g + start[c], s + start[c]);
+        w = w.behind(W::size(m));
+      };
+      block.template operator()<0>();
+      block.template operator()<1>();
+      block.template operator()<2>();
+      block.template operator()<3>();
+    }
+  });
 }
 
 /// Adds the force (n x dim) at the vectors to that at the nodes (4 kKinds x dim).
@@ -374,12 +378,13 @@ inline void add_to_nodes(const V* stiffness, double weight, V* tangent) {
 
 /// Adds weight (S ⊗ 1 + D(left)ᵀ W D(right)) to the nodal tangent (4 kKinds dim)², by columns.
 template <int kKinds, int kDim, Coupling coupling, bool kSymmetric = true, class V, class W>
-[[gnu::noinline]] void add_tangent(W w, const V* s, const V* left, const V* right, double weight,
-                                   V* tangent) {
-  constexpr int n = Numbering<kKinds>::n;
-  V stiffness[n * n * kDim * kDim];
-  stiffness_of<kKinds, kDim, coupling, kSymmetric>(w, s, left, right, stiffness);
-  add_to_nodes<kKinds, kDim, kSymmetric>(stiffness, weight, tangent);
+inline void add_tangent(W w, const V* s, const V* left, const V* right, double weight, V* tangent) {
+  run_kernel_part<kBytesOf<V>>([=] {
+    constexpr int n = Numbering<kKinds>::n;
+    V stiffness[n * n * kDim * kDim];
+    stiffness_of<kKinds, kDim, coupling, kSymmetric>(w, s, left, right, stiffness);
+    add_to_nodes<kKinds, kDim, kSymmetric>(stiffness, weight, tangent);
+  });
 }
 
 }  // namespace flexmorph::fem::gram

@@ -71,22 +71,29 @@ class Inertia final : public Term,
 
   void add_forces(const Batch& x, Lanes* force) const override {
     const LaneMatrices& m = batches_[static_cast<size_t>(x.first / kLanes)];
-    add_product(m.mass, x.a, x, force);
-    if (m.convection.empty()) return;
-    add_product(m.convection, x.v, x, force);
-    add_product(m.transport, x.q, x, force);
+    run_batch_kernel([&]<class V>() {
+      add_product<V>(m.mass, x.a, x, force);
+      if (m.convection.empty()) return;
+      add_product<V>(m.convection, x.v, x, force);
+      add_product<V>(m.transport, x.q, x, force);
+    });
   }
 
   void add_tangents(const Batch& x, const Weights& w, Lanes* tangent) const override {
     const LaneMatrices& m = batches_[static_cast<size_t>(x.first / kLanes)];
     const auto n = static_cast<size_t>(x.n_shapes), d = static_cast<size_t>(x.dim);
-    for (size_t l = 0; l < n; ++l)
-      for (size_t k = 0; k < n; ++k) {
-        const size_t at = l * n + k;
-        Lanes entry = w.a * m.mass[at];
-        if (!m.convection.empty()) entry += w.v * m.convection[at] + w.q * m.transport[at];
-        for (size_t c = 0; c < d; ++c) tangent[(d * l + c) * n * d + d * k + c] += entry;
-      }
+    run_batch_kernel([&]<class V>() {
+      const V *mass = lanes_as<V>(m.mass.data()), *convection = lanes_as<V>(m.convection.data()),
+              *transport = lanes_as<V>(m.transport.data());
+      V* out = lanes_as<V>(tangent);
+      for (size_t l = 0; l < n; ++l)
+        for (size_t k = 0; k < n; ++k) {
+          const size_t at = l * n + k;
+          V entry = w.a * mass[at];
+          if (!m.convection.empty()) entry += w.v * convection[at] + w.q * transport[at];
+          for (size_t c = 0; c < d; ++c) out[(d * l + c) * n * d + d * k + c] += entry;
+        }
+    });
   }
 
   void add_free_force(int e, const Local& x, FreeForce& force) const override {
@@ -192,14 +199,17 @@ class Inertia final : public Term,
   }
 
   /// force += matrix x of every lane.
+  template <class V>
   static void add_product(const std::vector<Lanes>& matrix, const Lanes* x, const Batch& batch,
                           Lanes* force) {
     const int n = batch.n_shapes, d = batch.dim;
+    const V *entries = lanes_as<V>(matrix.data()), *factors = lanes_as<V>(x);
+    V* out = lanes_as<V>(force);
     for (int c = 0; c < d; ++c)
       for (int k = 0; k < n; ++k) {
-        Lanes sum = force[d * k + c];
-        for (int l = 0; l < n; ++l) sum += matrix[static_cast<size_t>(l * n + k)] * x[d * l + c];
-        force[d * k + c] = sum;
+        V sum = out[d * k + c];
+        for (int l = 0; l < n; ++l) sum += entries[l * n + k] * factors[d * l + c];
+        out[d * k + c] = sum;
       }
   }
 

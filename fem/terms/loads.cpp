@@ -137,19 +137,10 @@ class PointMass final : public LoadTerm,
   }
   // Only one element of all has the mass.
   void add_forces(const Batch& x, Lanes* force) const override {
-    if (!is_in(x)) return;
-    const int lane = element_ - x.first;
-    LocalRows f = LocalRows::Zero(x.n_shapes, x.dim);
-    add_force(element_, local_of(x, lane), f);
-    for (int k = 0; k < x.n_local(); ++k) force[k][lane] += f.data()[k];
+    if (is_in(x)) add_force_of_lane(*this, x, element_ - x.first, force);
   }
   void add_tangents(const Batch& x, const Weights& w, Lanes* tangent) const override {
-    if (!is_in(x)) return;
-    const int lane = element_ - x.first, n = x.n_local();
-    LocalTangent t = LocalTangent::Zero(n, n);
-    add_tangent(element_, local_of(x, lane), w, t);
-    for (int row = 0; row < n; ++row)
-      for (int column = 0; column < n; ++column) tangent[column * n + row][lane] += t(row, column);
+    if (is_in(x)) add_tangent_of_lane(*this, x, element_ - x.first, w, tangent);
   }
   std::string name() const override { return "point mass"; }
   void add_free_force(int e, const Local& x, FreeForce& force) const override {

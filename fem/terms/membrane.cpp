@@ -91,24 +91,29 @@ class Membrane final : public ElasticTerm, public BatchTerm {
   }
 
   void add_forces(const Batch& x, Lanes* force) const override {
-    evaluate(x, [&]<int kKinds, int kDim, Coupling>(Lanes* s, const Lanes* p, auto) {
-      if constexpr (kKinds == 1) {
-        if (const VoidCells& cells = of(x.first).cells; cells.any())
-          cells.add_force(VoidCells::AllLanes{}, p, s, force);
-      }
-      gram::add_force<kKinds, kDim>(s, p, force);
+    run_batch_kernel([&]<class V>() {
+      evaluate<V>(x, [&]<int kKinds, int kDim, Coupling>(V* s, const V* p, auto) {
+        if constexpr (kKinds == 1) {
+          if (const VoidCells& cells = of(x.first).cells; cells.any())
+            cells.add_force(VoidCells::AllLanes<V>{}, p, s, lanes_as<V>(force));
+        }
+        gram::add_force<kKinds, kDim>(s, p, lanes_as<V>(force));
+      });
     });
   }
 
   void add_tangents(const Batch& x, const Weights& w, Lanes* tangent) const override {
     if (w.q == 0) return;
-    evaluate(x, [&]<int kKinds, int kDim, Coupling coupling>(const Lanes* s, const Lanes* p,
-                                                             auto invariant) {
-      if constexpr (kKinds == 1) {
-        if (const VoidCells& cells = of(x.first).cells; cells.any())
-          return cells.add_tangent<coupling>(VoidCells::AllLanes{}, invariant, s, p, w.q, tangent);
-      }
-      gram::add_tangent<kKinds, kDim, coupling>(invariant, s, p, p, w.q, tangent);
+    run_batch_kernel([&]<class V>() {
+      evaluate<V>(x, [&]<int kKinds, int kDim, Coupling coupling>(const V* s, const V* p,
+                                                                  auto invariant) {
+        V* out = lanes_as<V>(tangent);
+        if constexpr (kKinds == 1) {
+          if (const VoidCells& cells = of(x.first).cells; cells.any())
+            return cells.add_tangent<coupling>(VoidCells::AllLanes<V>{}, invariant, s, p, w.q, out);
+        }
+        gram::add_tangent<kKinds, kDim, coupling>(invariant, s, p, p, w.q, out);
+      });
     });
   }
 
@@ -271,20 +276,20 @@ class Membrane final : public ElasticTerm, public BatchTerm {
   }
 
   /// Calls f<kKinds, kDim, coupling>(s, p, W) of eight elements.
-  template <class F>
+  template <class V, class F>
   void evaluate(const Batch& x, const F& f) const {
     const BatchData& batch = batches_[static_cast<size_t>(x.first / kLanes)];
+    const V* reference = lanes_as<V>(batch.reference.data());
     dispatch([&]<int kKinds, int kDim>() {
-      Lanes p[kMaxVectors * kDim], g[kMaxPairs], s[kMaxPairs];
-      gram::vectors<kKinds, kDim>(x.q, p);
+      V p[kMaxVectors * kDim], g[kMaxPairs], s[kMaxPairs];
+      gram::vectors<kKinds, kDim>(lanes_as<V>(x.q), p);
       gram::products<kKinds, kDim>(p, g);
-      for (int k = 0; k < gram::Numbering<kKinds>::n_pairs; ++k)
-        g[k] -= batch.reference[static_cast<size_t>(k)];
+      for (int k = 0; k < gram::Numbering<kKinds>::n_pairs; ++k) g[k] -= reference[k];
       const auto with = [&]<Coupling coupling>(auto w) {
         gram::multiply<kKinds, coupling>(w, g, s);
         f.template operator()<kKinds, kDim, coupling>(s, p, w);
       };
-      const gram::Different different{batch.different.data()};
+      const gram::Different<V> different{lanes_as<V>(batch.different.data())};
       if (coupling_ == Coupling::all)
         with.template operator()<Coupling::all>(different);
       else if (batch.shared)

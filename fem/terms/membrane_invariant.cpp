@@ -1,5 +1,7 @@
 #include "fem/terms/membrane_invariant.h"
 
+#include <cblas.h>
+
 #include <algorithm>
 #include <array>
 
@@ -96,13 +98,16 @@ MatrixXd of_assumed_strains(const ProductTable& t, const PairNumbers& pairs,
         l12(p, point) = (m12(kl_m, g) * n12(lk_n, h) + m12(lk_m, g) * n12(kl_n, h));
       }
   }
+  // W = A Bᵀ + B Aᵀ.
   const auto weights = Eigen::Map<const VectorXd>(t.weight.data(), t.weight.size()).asDiagonal();
-  const MatrixXd w11 = l11 * weights;
-  MatrixXd out = elasticity(0, 1) * w11 * l22.transpose();
-  out += out.transpose().eval();
-  out += elasticity(0, 0) * w11 * l11.transpose();
-  out += elasticity(1, 1) * (l22 * weights) * l22.transpose();
-  out += elasticity(2, 2) * (l12 * weights) * l12.transpose();
+  MatrixXd a(n_pairs, 3 * t.weight.size()), b(a.rows(), a.cols()), out(n_pairs, n_pairs);
+  a << l11 * weights, l22 * weights, l12 * weights;
+  b << 0.5 * elasticity(0, 0) * l11 + elasticity(0, 1) * l22, 0.5 * elasticity(1, 1) * l22,
+      0.5 * elasticity(2, 2) * l12;
+  const auto n = static_cast<int>(n_pairs);
+  cblas_dsyr2k(CblasColMajor, CblasLower, CblasNoTrans, n, static_cast<int>(a.cols()), 1, a.data(),
+               n, b.data(), n, 0, out.data(), n);
+  out.triangularView<Eigen::StrictlyUpper>() = out.transpose();
   return out;
 }
 

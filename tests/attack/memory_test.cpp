@@ -10,7 +10,7 @@
 #include <fstream>
 #include <map>
 
-#include "fem/solve/factorization/blas_room.h"
+#include "cases/process/blas_room.h"
 #include "geometry/sanitizers.h"
 #include "tests/attack/run_files.h"
 #include "tests/io/scratch.h"
@@ -128,14 +128,14 @@ double mapped() {
 // calls at a time, and no more is mapped for them.
 TEST(Memory, ReservedBuffersAreThoseOfBlas) {
   const double before = mapped();
-  fem::reserve_blas(3);
+  reserve_blas(3);
   const double reserved = mapped();
-  EXPECT_LE(reserved - before, 3 * fem::kBlasBuffer + 2 * 80e6);  // stacks and arenas of threads
+  EXPECT_LE(reserved - before, 3 * kBlasBuffer + 2 * 80e6);  // stacks and arenas of threads
   void* buffers[] = {blas_memory_alloc(0), blas_memory_alloc(0), blas_memory_alloc(0)};
   EXPECT_EQ(mapped(), reserved);
   void* fourth = blas_memory_alloc(0);
   EXPECT_GT(mapped(), reserved);
-  EXPECT_LE(mapped(), reserved + fem::kBlasBuffer);
+  EXPECT_LE(mapped(), reserved + kBlasBuffer);
   blas_memory_free(fourth);
   for (void* buffer : buffers) blas_memory_free(buffer);
 }

@@ -9,8 +9,8 @@
 # 2. Pairs of scenes that differ in one feature: unknowns, instructions and CPU time per step, from
 #    runs of two lengths.
 #
-# Needs valgrind. The build is portable, because valgrind does not know AVX-512. FLEXMORPH names a
-# program for the CPU times, such as build/cases/flexmorph (default: the portable one).
+# Needs valgrind, which does not know AVX-512: kernels use the registers that all processors have.
+# FLEXMORPH names a program for the CPU times (default: the one that is built here).
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 folder=${1:-$root/build-absent}
@@ -19,7 +19,7 @@ folder=$(cd "$folder" && pwd)
 build=$folder/build
 command -v valgrind >/dev/null || { echo "absent_cost.sh: valgrind is missing (apt-get install valgrind)" >&2; exit 2; }
 
-cmake -G Ninja -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=Release -DFLEXMORPH_NATIVE=OFF \
+cmake -G Ninja -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=Release \
   -DFLEXMORPH_TESTS=OFF >"$folder/build.log"
 ninja -C "$build" flexmorph >>"$folder/build.log"
 fast=${FLEXMORPH:-$build/cases/flexmorph}
@@ -90,7 +90,7 @@ count() {
   (
     # One process, its symbols looked up before it starts.
     export FLEXMORPH_THREADS=1 OMP_NUM_THREADS=1 OMP_THREAD_LIMIT=1 OPENBLAS_NUM_THREADS=1 LD_BIND_NOW=1
-    start "$1" "$2" "$3" valgrind --tool=callgrind --callgrind-out-file="$folder/$2.callgrind"
+    start "$1" "$2" "$3" env FLEXMORPH_VECTORS=baseline valgrind --tool=callgrind --callgrind-out-file="$folder/$2.callgrind"
   )
   callgrind_annotate --inclusive=yes --threshold=100 --show-percs=no "$folder/$2.callgrind" 2>/dev/null |
     tr -d , | awk '

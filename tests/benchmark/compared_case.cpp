@@ -1,7 +1,5 @@
 #include "tests/benchmark/compared_case.h"
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <utility>
 
@@ -22,16 +20,11 @@ cases::Scene scene_of(const std::string& path, std::span<const std::string> chan
 }
 
 fem::EslSets loads_of_motion(const cases::Scene& scene, const mmc::BodyProblem& problem) {
-  const auto folder =
-      std::filesystem::temp_directory_path() / ("flexmorph_compared_" + std::to_string(getpid()));
   cases::MotionRequest request;
   request.factors = {mmc::dynamic_factors(problem, problem.design.components())};
   request.loads = true;
   request.balance = false;
-  cases::RunFolder files(folder.string(), scene, "");
-  cases::MotionOutcome motion = cases::run_motion(cases::PreparedCase(scene), request, files);
-  std::filesystem::remove_all(folder);
-  return std::move(motion.loads.at(0));
+  return std::move(cases::run_motion(cases::PreparedCase(scene), request).loads.at(0));
 }
 
 }  // namespace

@@ -4,9 +4,9 @@
 #include <fstream>
 #include <string>
 
+#include "cases/process/processor.h"
 #include "fem/solve/linear_solver.h"
 #include "geometry/cpu_time.h"
-#include "geometry/processor.h"
 
 namespace flexmorph::benchmark {
 

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <vector>
 
 #include "cases/assembly/build.h"
@@ -24,15 +23,11 @@ using namespace flexmorph::benchmark;
 /// Median CPU per iteration   [ms]
 /// Loads of the motion of the scene's first design.
 fem::EslSets loads_of(const cases::Scene& scene, const mmc::BodyProblem& problem) {
-  const auto folder = std::filesystem::temp_directory_path() / "flexmorph_design_iteration";
   cases::MotionRequest request;
   request.factors = {mmc::dynamic_factors(problem, problem.design.components())};
   request.loads = true;
   request.balance = false;
-  cases::RunFolder files(folder.string(), scene, "");
-  cases::MotionOutcome motion = cases::run_motion(cases::PreparedCase(scene), request, files);
-  std::filesystem::remove_all(folder);
-  return std::move(motion.loads.at(0));
+  return std::move(cases::run_motion(cases::PreparedCase(scene), request).loads.at(0));
 }
 
 /// Iterations of MMA on the design problem; one evaluation each unless a step is refused.

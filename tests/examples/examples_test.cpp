@@ -9,7 +9,9 @@
 #include "cases/accuracy/parameters.h"
 #include "cases/scene/elements/row.h"
 #include "cases/scene/joints/row.h"
+#include "fem/dynamics/mesh_changes/growth.h"
 #include "fem/elements/ancf_plate.h"
+#include "fem/solve/statics.h"
 #include "fem/terms.h"
 #include "io/case_files/case_file.h"
 #include "optim/makers.h"
@@ -69,6 +71,32 @@ TEST(Examples, ATermOfItsOwnHasTheEnergyOfAStretchedSheet) {
     energy += term->strain_energy(e, x);
   }
   EXPECT_NEAR(energy, 0.5 * 700 * strain * strain * 0.08, 1e-13);
+}
+
+// A sheet with cords turns slowly with a hub: u = ρ h ω² L³ / 3 (E h + k), to the first order in
+// the strain.
+TEST(Examples, ASheetWithATermOfItsOwnTurnsLikeARod) {
+  const fem::PlaneSection section{0.01, 1e8, 0, 2700};
+  const double length = 0.6, width = 0.1, cords = 5e5, omega = 0.1;
+  std::vector<std::unique_ptr<fem::Term>> terms;
+  terms.push_back(fem::make_inertia(section));
+  terms.push_back(fem::make_membrane(section));
+  terms.push_back(fem::cords_row().make({section, {{"cord_stiffness", cords}}, {}}));
+  fem::Workspace model;
+  const std::vector<fem::MaterialLine> m{{0, {}}, {0.2, {}}, {0.4, {}}, {length, {}}};
+  const std::vector<fem::MaterialLine> n{{-width / 2, {}}, {width / 2, {}}};
+  model.add_body("blade", std::make_unique<fem::AncfPlate>(2, fem::AncfPlate::ShapeSet::h16, m, n),
+                 section, std::move(terms));
+  const auto hub = [](double) { return fem::FrameMotion{}; };
+  model.add_joint(fem::make_weld("hub", "blade", "root", hub, fem::WeldMode::edge));
+  fem::State x = model.reference();
+  const VectorXd spin = VectorXd::Constant(model.n_dofs(), omega * omega);
+  fem::solve_rotating_equilibrium(model, spin, VectorXd::Zero(model.n_dofs()), x);
+  const double u = fem::point_motion(model.body("blade"), x, {length, 0}).position.x() - length;
+  const double stiffness = section.youngs_modulus * section.thickness + cords;
+  const double rod =
+      section.density * section.thickness * omega * omega * std::pow(length, 3) / 3 / stiffness;
+  EXPECT_NEAR(u / rod, 1, 1e-3);
 }
 
 TEST(Examples, AJointOfItsOwnSeesTheAnglesOfItsBodies) {

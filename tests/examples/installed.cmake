@@ -1,20 +1,50 @@
-# Installs a build and moves it. The program finds the cases it came with; the one in installed/ is
-# built on the libraries, and run:
+# Installs a build and moves it. The program finds the cases it came with; the examples, built against
+# the installed tree, static and shared, find them, too, and come to what the program comes to:
 #   cmake -DBUILD=... -DWORK=... -DARGUMENTS=... -P installed.cmake
-# BUILD: of Flexmorph. WORK: a folder for this alone. ARGUMENTS: of the program's first cmake.
+# BUILD: of Flexmorph. WORK: a folder for this alone. ARGUMENTS: of the examples' first cmake.
 file(REMOVE_RECURSE "${WORK}")
 set(stop COMMAND_ERROR_IS_FATAL ANY)
-foreach(component program development)
+foreach(component program library development)
   execute_process(COMMAND ${CMAKE_COMMAND} --install "${BUILD}" --component ${component}
                           --prefix "${WORK}/tree" OUTPUT_QUIET ${stop})
 endforeach()
 file(RENAME "${WORK}/tree" "${WORK}/moved")
 # Under a name that the source tree does not have.
-file(RENAME "${WORK}/moved/share/flexmorph/cases/short_beam.toml"
-            "${WORK}/moved/share/flexmorph/cases/a_moved_beam.toml")
-execute_process(COMMAND "${WORK}/moved/bin/flexmorph" check a_moved_beam
-                WORKING_DIRECTORY "${WORK}" ${stop})
-execute_process(COMMAND ${CMAKE_COMMAND} -S "${CMAKE_CURRENT_LIST_DIR}/installed" -B "${WORK}/build"
-                        "-DCMAKE_PREFIX_PATH=${WORK}/moved" ${ARGUMENTS} ${stop})
-execute_process(COMMAND ${CMAKE_COMMAND} --build "${WORK}/build" ${stop})
-execute_process(COMMAND "${WORK}/build/blade" ${stop})
+file(RENAME "${WORK}/moved/share/flexmorph/cases/plate_pendulum.toml"
+            "${WORK}/moved/share/flexmorph/cases/a_moved_pendulum.toml")
+set(moved "a_moved_pendulum")
+set(changes time.end=0.01)
+execute_process(COMMAND "${WORK}/moved/bin/flexmorph" run ${moved} --set ${changes} --quiet
+                        -o "${WORK}/run" WORKING_DIRECTORY "${WORK}" ${stop})
+file(STRINGS "${WORK}/run/motion.csv" rows)
+list(GET rows 0 columns)
+string(REPLACE "," ";" columns "${columns}")
+list(FIND columns energy.kinetic at)
+list(GET rows -1 last)
+string(REPLACE "," ";" last "${last}")
+list(GET last ${at} expected)
+string(SUBSTRING "${expected}" 0 8 expected)
+foreach(kind static shared)
+  set(build "${WORK}/build-${kind}")
+  set(is_shared OFF)
+  if(kind STREQUAL shared)
+    set(is_shared ON)
+  endif()
+  execute_process(COMMAND ${CMAKE_COMMAND} -S "${WORK}/moved/share/flexmorph/examples" -B "${build}"
+                          "-DCMAKE_PREFIX_PATH=${WORK}/moved" -DSHARED=${is_shared} ${ARGUMENTS}
+                  OUTPUT_QUIET ${stop})
+  execute_process(COMMAND ${CMAKE_COMMAND} --build "${build}" OUTPUT_QUIET ${stop})
+  execute_process(COMMAND "${build}/compose" "${WORK}/boom-${kind}" ${stop})
+  execute_process(COMMAND "${build}/own_parts" ${stop})
+  # The case beside a static program is said by its path; a shared library finds it.
+  set(case ${moved})
+  if(kind STREQUAL static)
+    set(case "${WORK}/moved/share/flexmorph/cases/${moved}.toml")
+  endif()
+  execute_process(COMMAND "${build}/move_case" ${case} energy.kinetic ${changes}
+                  OUTPUT_VARIABLE printed ${stop})
+  string(REGEX MATCH " ([^ ]+)\n$" found "${printed}")
+  if(NOT CMAKE_MATCH_1 MATCHES "^${expected}")
+    message(FATAL_ERROR "move_case (${kind}) ends with ${CMAKE_MATCH_1}, the program with ${expected}")
+  endif()
+endforeach()

@@ -24,7 +24,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/processor.h"
+#include "cases/process/processor.h"
 
 namespace flexmorph::testing {
 namespace {

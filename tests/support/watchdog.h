@@ -5,7 +5,8 @@
 namespace flexmorph::testing {
 
 /// Runs the tests of a program in a child process, which is this program started anew, and watches
-/// over it. Tests run with one thread and the BLAS kernels of the processor (geometry/processor.h).
+/// over it. Tests run with one thread and the BLAS kernels of the processor
+/// (cases/process/processor.h).
 ///
 /// A test that exceeds its time limit is named and killed, together with every process that it
 /// started; the limit starts anew with each test. A process that a test leaves behind is named and

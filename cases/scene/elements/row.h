@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
 
 #include "cases/scene/scene.h"
 #include "fem/element.h"
@@ -48,5 +49,9 @@ struct ElementRow {
 
 /// All rows, in the order in which messages list them.
 std::span<const ElementRow* const> element_rows();
+/// Returns the row of this name; null where there is none.
+const ElementRow* find_element(std::string_view name);
+/// Adds a row, see Registry::add(). Keys that it reads are declared with io::key().
+void register_element(const ElementRow& row);
 
 }  // namespace flexmorph::cases

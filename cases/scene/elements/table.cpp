@@ -1,14 +1,23 @@
-#include <array>
-
 #include "cases/scene/elements/row.h"
+#include "geometry/registry.h"
 
 namespace flexmorph::cases {
 
 extern const ElementRow kAncfPlate, kAleAncfPlate, kAncfBeam;
 
-std::span<const ElementRow* const> element_rows() {
-  static const std::array kRows = {&kAncfPlate, &kAleAncfPlate, &kAncfBeam};
-  return kRows;
+namespace {
+
+Registry<ElementRow>& registry() {
+  static Registry<ElementRow> all("element",
+                                  [](const ElementRow& row) -> std::string { return row.name; },
+                                  {&kAncfPlate, &kAleAncfPlate, &kAncfBeam});
+  return all;
 }
+
+}  // namespace
+
+std::span<const ElementRow* const> element_rows() { return registry().rows(); }
+const ElementRow* find_element(std::string_view name) { return registry().find(name); }
+void register_element(const ElementRow& row) { registry().add(row); }
 
 }  // namespace flexmorph::cases

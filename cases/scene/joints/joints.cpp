@@ -13,10 +13,8 @@ using io::Table;
 using io::to_text;
 
 Joint read_joint(const Table& t, const Scene& scene) {
-  const std::string type = t.choice(joint_keys::kType);
   Joint joint;
-  joint.row = *std::find_if(joint_rows().begin(), joint_rows().end(),
-                            [&](const JointRow* row) { return row->name == type; });
+  joint.row = find_joint(t.choice(joint_keys::kType));
   joint.row->read(t, scene, joint);
   return joint;
 }

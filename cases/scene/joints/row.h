@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cases/scene/joint.h"
@@ -58,5 +59,9 @@ struct JointRow {
 
 /// All rows, in the order in which messages list them.
 std::span<const JointRow* const> joint_rows();
+/// Returns the row of this name; null where there is none.
+const JointRow* find_joint(std::string_view name);
+/// Adds a row, see Registry::add(). Keys that it reads are declared with io::key().
+void register_joint(const JointRow& row);
 
 }  // namespace flexmorph::cases

@@ -1,17 +1,25 @@
-#include <array>
-
 #include "cases/scene/joints/row.h"
+#include "geometry/registry.h"
 
 namespace flexmorph::cases {
 
 extern const JointRow kWeld, kSleeve, kPin, kClamp, kSupport, kSymmetry, kLineDrive, kRevolute,
     kSlider, kAngleDrive, kDistance, kPointDrive, kGear, kPath;
 
-std::span<const JointRow* const> joint_rows() {
-  static const std::array kRows = {&kWeld,     &kSleeve,     &kPin,      &kClamp,  &kSupport,
-                                   &kSymmetry, &kLineDrive,  &kRevolute, &kSlider, &kAngleDrive,
-                                   &kDistance, &kPointDrive, &kGear,     &kPath};
-  return kRows;
+namespace {
+
+Registry<JointRow>& registry() {
+  static Registry<JointRow> all(
+      "joint", [](const JointRow& row) -> std::string { return row.name; },
+      {&kWeld, &kSleeve, &kPin, &kClamp, &kSupport, &kSymmetry, &kLineDrive, &kRevolute, &kSlider,
+       &kAngleDrive, &kDistance, &kPointDrive, &kGear, &kPath});
+  return all;
 }
+
+}  // namespace
+
+std::span<const JointRow* const> joint_rows() { return registry().rows(); }
+const JointRow* find_joint(std::string_view name) { return registry().find(name); }
+void register_joint(const JointRow& row) { registry().add(row); }
 
 }  // namespace flexmorph::cases

@@ -11,15 +11,16 @@
 namespace flexmorph::fem {
 namespace substitution {
 
-inline Lanes load(const double* x) {
-  Lanes out;
+template <class V>
+inline V load(const double* x) {
+  V out;
   std::memcpy(&out, x, sizeof out);
   return out;
 }
 
 /// kColumns columns from a diagonal entry on: y <- L⁻¹ y in their rows, and what that leaves of the
 /// `height` rows in all.
-template <int kColumns>
+template <class V, int kColumns>
 inline void forward(const double* L, std::ptrdiff_t ld, std::ptrdiff_t height, double* y) {
   double x[kColumns];
   for (int a = 0; a < kColumns; ++a) {
@@ -30,9 +31,9 @@ inline void forward(const double* L, std::ptrdiff_t ld, std::ptrdiff_t height, d
   }
   std::ptrdiff_t i = kColumns;
   for (; i + kLanes <= height; i += kLanes) {
-    Lanes sum = load(y + i);
+    V sum = load<V>(y + i);
 #pragma GCC unroll 8
-    for (int a = 0; a < kColumns; ++a) sum -= x[a] * load(L + a * ld + i);
+    for (int a = 0; a < kColumns; ++a) sum -= x[a] * load<V>(L + a * ld + i);
     std::memcpy(y + i, &sum, sizeof sum);
   }
   for (; i < height; ++i)
@@ -40,14 +41,14 @@ inline void forward(const double* L, std::ptrdiff_t ld, std::ptrdiff_t height, d
 }
 
 /// The same columns: y <- L⁻ᵀ y in their rows, from the rows behind.
-template <int kColumns>
+template <class V, int kColumns>
 inline void backward(const double* L, std::ptrdiff_t ld, std::ptrdiff_t height, double* y) {
-  Lanes sums[kColumns] = {};
+  V sums[kColumns] = {};
   std::ptrdiff_t i = kColumns;
   for (; i + kLanes <= height; i += kLanes) {
-    const Lanes yi = load(y + i);
+    const V yi = load<V>(y + i);
 #pragma GCC unroll 8
-    for (int a = 0; a < kColumns; ++a) sums[a] += yi * load(L + a * ld + i);
+    for (int a = 0; a < kColumns; ++a) sums[a] += yi * load<V>(L + a * ld + i);
   }
   double x[kColumns];
   for (int a = 0; a < kColumns; ++a) {
@@ -68,29 +69,35 @@ inline void backward(const double* L, std::ptrdiff_t ld, std::ptrdiff_t height, 
 /// y (height): its first `width` entries become L⁻¹ y, the others lose what belongs to them.
 /// @param block  (height x width) by columns, what is above the diagonal is not read
 inline void forward_block(const double* block, int width, int height, double* y) {
-  int j = 0;
-  const auto columns = [&]<int n>() {
-    for (; j + n <= width; j += n)
-      substitution::forward<n>(block + std::ptrdiff_t{j} * height + j, height, height - j, y + j);
-  };
-  columns.template operator()<8>();
-  columns.template operator()<4>();
-  columns.template operator()<1>();
+  run_batch_kernel([=]<class V>() {
+    int j = 0;
+    const auto columns = [&]<int n>() {
+      for (; j + n <= width; j += n)
+        substitution::forward<V, n>(block + std::ptrdiff_t{j} * height + j, height, height - j,
+                                    y + j);
+    };
+    columns.template operator()<8>();
+    columns.template operator()<4>();
+    columns.template operator()<1>();
+  });
 }
 
 /// y (height): its first `width` entries become L⁻ᵀ y, given the others.
 inline void backward_block(const double* block, int width, int height, double* y) {
-  int j = width;
-  const auto columns = [&]<int n>(int until) {
-    for (; j - n >= until; j -= n) {
-      const int k = j - n;
-      substitution::backward<n>(block + std::ptrdiff_t{k} * height + k, height, height - k, y + k);
-    }
-  };
-  const int eights = width / 8 * 8, fours = width / 4 * 4;
-  columns.template operator()<1>(fours);
-  columns.template operator()<4>(eights);
-  columns.template operator()<8>(0);
+  run_batch_kernel([=]<class V>() {
+    int j = width;
+    const auto columns = [&]<int n>(int until) {
+      for (; j - n >= until; j -= n) {
+        const int k = j - n;
+        substitution::backward<V, n>(block + std::ptrdiff_t{k} * height + k, height, height - k,
+                                     y + k);
+      }
+    };
+    const int eights = width / 8 * 8, fours = width / 4 * 4;
+    columns.template operator()<1>(fours);
+    columns.template operator()<4>(eights);
+    columns.template operator()<8>(0);
+  });
 }
 
 }  // namespace flexmorph::fem

@@ -24,7 +24,8 @@ namespace flexmorph::fem::turned_cell {
 inline constexpr int kVectors = 3, kSize = 2 * kVectors;
 
 inline double root_of(double x) { return std::sqrt(x); }
-inline Lanes root_of(Lanes x) {
+template <int kWidth>
+inline LanesOf<kWidth> root_of(LanesOf<kWidth> x) {
   for (int k = 0; k < kLanes; ++k) x[k] = std::sqrt(x[k]);
   return x;
 }

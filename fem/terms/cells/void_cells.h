@@ -20,9 +20,10 @@ class VoidCells {
     int lane;
     double operator()(const Lanes& x) const { return x[lane]; }
   };
+  template <class Of>
   struct AllLanes {
-    using V = Lanes;
-    const Lanes& operator()(const Lanes& x) const { return x; }
+    using V = Of;
+    const V& operator()(const Lanes& x) const { return *lanes_as<V>(&x); }
   };
 
   /// Is there any?
@@ -70,7 +71,7 @@ class VoidCells {
     Lanes blocks[n * n * 4] = {};
     const Lanes none[gram::Numbering<1>::n_pairs] = {};
     gram::stiffness_of<1, 2, gram::Coupling::all, true>(
-        gram::Different{w.data()}, none, undeformed_.data(), undeformed_.data(), blocks);
+        gram::Different<Lanes>{w.data()}, none, undeformed_.data(), undeformed_.data(), blocks);
     stiffness_.resize(size * size);
     for (int i = 0; i < size; ++i)
       for (int j = 0; j < size; ++j) {

@@ -70,6 +70,8 @@ std::unique_ptr<Response> make_response([[maybe_unused]] const Plate& plate) {
 
 /// All rows. A new one is one file in optim/mmc/problem/responses/ and its row in table.cpp there.
 std::span<const ResponseRow* const> responses();
+/// Adds a row, see Registry::add(); key_of() tells it from others.
+void register_response(const ResponseRow& row);
 
 /// The row of this name. Of rows that put loads together, the one that does it like that.
 /// @return null when there is none

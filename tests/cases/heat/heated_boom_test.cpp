@@ -8,7 +8,6 @@
 #include "cases/run/motion_run.h"
 #include "optim/mmc/problem/mmc_problem.h"
 #include "tests/cases/scenes.h"
-#include "tests/io/scratch.h"
 #include "tests/support/gradient_check.h"
 
 namespace flexmorph::cases {
@@ -24,11 +23,9 @@ Changes quick(const Changes& more = {}) {
 }
 
 MotionOutcome move(const Scene& scene, bool loads = false) {
-  const Scratch scratch;
-  RunFolder folder(scratch / "out", scene);
   MotionRequest request;
   request.loads = loads;
-  return run_motion(PreparedCase(scene), request, folder);
+  return run_motion(PreparedCase(scene), request);
 }
 
 TEST(HeatedBoom, ScenesAreBuilt) {

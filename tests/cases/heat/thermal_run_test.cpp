@@ -16,18 +16,11 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 
 MotionRecord motion_of(const std::string& name, const Changes& changes = {}) {
-  const Scratch scratch;
-  const Scene scene = read(name, changes);
-  RunFolder folder(scratch / "out", scene);
-  return run_motion(PreparedCase(scene), {}, folder).record;
+  return run_motion(PreparedCase(read(name, changes)), {}).record;
 }
 
-PathRecord path_of(const std::string& name, Changes changes = {}) {
-  const Scratch scratch;
-  changes.emplace_back("output.vtk=false");
-  const Scene scene = read(name, changes);
-  RunFolder folder(scratch / "out", scene);
-  return run_path(PreparedCase(scene), folder, {});
+PathRecord path_of(const std::string& name, const Changes& changes = {}) {
+  return run_path(PreparedCase(read(name, changes)), {});
 }
 
 double largest(const std::vector<double>& values) {
@@ -186,8 +179,7 @@ TEST(HotBeam, RidesOnARigidBodyAsInAHub) {
     const std::string time = "[time]\nend = 0.2\nstep = 1e-3\nstart = \"rigid\"\n";
     const Scene scene =
         read_scene(io::CaseFile(scratch.write("arm.toml", time + rest + kArm + weld)));
-    RunFolder folder(scratch / "out", scene);
-    const MotionRecord r = run_motion(PreparedCase(scene), {}, folder).record;
+    const MotionRecord r = run_motion(PreparedCase(scene), {}).record;
     return Vec2(r.table.at("arm.end_ux").back(), r.table.at("arm.end_uy").back());
   };
   for (const char* mode : {"partial", "edge", "full"}) {

@@ -8,7 +8,6 @@
 
 #include "cases/run/motion_run.h"
 #include "tests/cases/scenes.h"
-#include "tests/io/scratch.h"
 #include "tests/support/rates.h"
 
 namespace flexmorph::cases {
@@ -17,10 +16,7 @@ namespace {
 constexpr double kPi = std::numbers::pi, kCrank = 0.152, kRod = 0.304, kAlpha = 80e-6;
 
 MotionRecord run(const Changes& changes) {
-  const Scratch scratch;
-  const Scene scene = read("slider_crank_heated", changes);
-  RunFolder folder(scratch / "out", scene);
-  return run_motion(PreparedCase(scene), {}, folder).record;
+  return run_motion(PreparedCase(read("slider_crank_heated", changes)), {}).record;
 }
 
 double largest(const std::vector<double>& values) {

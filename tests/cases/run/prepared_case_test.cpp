@@ -2,35 +2,26 @@
 // the prepared mechanism as it is, and that a prepared case builds nothing that nobody asks for.
 #include <gtest/gtest.h>
 
+#include "cases/run/compute.h"
 #include "cases/run/motion_run.h"
-#include "cases/run/run.h"
 #include "tests/cases/scenes.h"
-#include "tests/io/scratch.h"
 
 namespace flexmorph::cases {
 namespace {
 
-EndedRun run_in(const Scratch& scratch, const PreparedCase& prepared) {
-  RunFolder folder(scratch / "run", prepared.scene());
-  Progress progress(true);
-  return run_prepared({prepared, folder, progress, [] { return true; }});
-}
-
 // Two cycles, each with a motion for its loads and one on the cells of the designs; then motions
 // with the designs and with uniform material on both meshes.
 TEST(PreparedCase, HasOneMechanismPerMeshInARunOfTwoCycles) {
-  const Scratch scratch;
   const PreparedCase prepared(read(
       "four_bar", {"design.cell=0.025", "design.min_thickness=0.025", "cycle.max_cycles=2",
                    "cycle.tolerance=0", "cycle.load_difference=0", "optimizer.max_iterations=2",
                    "time.end=0.02", "esl.every=0.01", "verify.cells=1", "design.min_feature=0",
                    "output.vtk=false", "output.plots=false", "output.tolerance=1e-3", "expect="}));
   ASSERT_TRUE(prepared.scene().judges_on_cells());
-  const EndedRun ended = run_in(scratch, prepared);
-  ASSERT_FALSE(ended.error);
-  EXPECT_EQ(ended.result.design.cycles, 2);
-  ASSERT_TRUE(ended.result.motions.verified && ended.result.motions.verified_uniform);
-  ASSERT_TRUE(ended.result.motions.motion && ended.result.motions.uniform);
+  const RunResult result = compute(prepared);
+  EXPECT_EQ(result.design.cycles, 2);
+  ASSERT_TRUE(result.motions.verified && result.motions.verified_uniform);
+  ASSERT_TRUE(result.motions.motion && result.motions.uniform);
   const PreparedCase::Counts counts = prepared.counts();
   EXPECT_EQ(counts.mechanisms, 2);  // elements of the case, cells of the designs
   EXPECT_EQ(counts.rigid, 1);
@@ -39,13 +30,10 @@ TEST(PreparedCase, HasOneMechanismPerMeshInARunOfTwoCycles) {
 
 // A motion of a copy gives what a motion of a mechanism gives that was built for it alone.
 TEST(PreparedCase, GivesEveryMotionACopy) {
-  const Scratch scratch;
   const PreparedCase prepared(read("deploying_beam", {"time.end=0.05"})),
       fresh(read("deploying_beam", {"time.end=0.05"}));
-  RunFolder folder(scratch / "run", prepared.scene());
-  const MotionRecord first = run_motion(prepared, {}, folder).record,
-                     again = run_motion(prepared, {}, folder).record,
-                     alone = run_motion(fresh, {}, folder).record;
+  const MotionRecord first = run_motion(prepared, {}).record,
+                     again = run_motion(prepared, {}).record, alone = run_motion(fresh, {}).record;
   EXPECT_EQ(first.table.values, again.table.values);
   EXPECT_EQ(first.table.values, alone.table.values);
   EXPECT_EQ(prepared.counts().mechanisms, 1);

@@ -47,7 +47,7 @@ TEST(RoundTrip, Motion) {
     const Scratch scratch;
     Case c(scratch, name, {"time.end=0.02"});
     RunResult result;
-    result.motions.motion = run_motion(PreparedCase(c.scene), {}, c.folder).record;
+    result.motions.motion = run_motion(PreparedCase(c.scene), {}, &c.folder).record;
     const MotionRecord& motion = *result.motions.motion;
     ASSERT_EQ(motion.table.n_rows(), 21u);
     expect_motion(c.table("motion.csv"), motion);

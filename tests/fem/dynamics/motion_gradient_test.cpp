@@ -196,11 +196,15 @@ TEST(MotionGradient, PassesThroughAWeldBetweenBodies) {
 TEST(MotionGradient, IsTheSameWithCheckpoints) {
   const Growing motion(ShapeSet::q4, 0.5, Start::prestretched);
   const MotionGradients kept = motion.gradients(), parts = motion.gradients(4);
+  // The adjoint of a step is solved to 2e-13 of its right side, with whatever factor is there. Of
+  // 50 steps that is 1e-11, and up to ten times as much where one error goes through the next
+  // steps.
+  constexpr double kAllowed = 1e-10;
   for (size_t k = 0; k < kept.of.size(); ++k) {
     const FactorSlopes &a = kept.of[k].by_factors[0], &b = parts.of[k].by_factors[0];
     EXPECT_EQ(kept.of[k].value, parts.of[k].value);
-    EXPECT_LT((a.stiffness - b.stiffness).norm(), 1e-11 * a.stiffness.norm());
-    EXPECT_LT((a.mass - b.mass).norm(), 1e-11 * a.mass.norm());
+    EXPECT_LT((a.stiffness - b.stiffness).norm(), kAllowed * a.stiffness.norm());
+    EXPECT_LT((a.mass - b.mass).norm(), kAllowed * a.mass.norm());
   }
 }
 

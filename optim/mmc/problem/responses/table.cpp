@@ -1,19 +1,26 @@
 #include <algorithm>
-#include <array>
 
+#include "geometry/registry.h"
 #include "optim/mmc/problem/responses/rows.h"
 
 namespace flexmorph::mmc {
 
 extern const ResponseRow kInertia, kDeflection, kTrajectoryError, kJointForce;
 
-std::span<const ResponseRow* const> responses() {
-  static const std::array kRows = {
-      &kComplianceSum,   &kComplianceWorst, &kVolume,           &kMass,
-      &kInertia,         &kStrainEnergy,    &kPeakStrainEnergy, &kDeflection,
-      &kTrajectoryError, &kJointForce};
-  return kRows;
+namespace {
+
+Registry<ResponseRow>& registry() {
+  static Registry<ResponseRow> all(
+      "response", key_of,
+      {&kComplianceSum, &kComplianceWorst, &kVolume, &kMass, &kInertia, &kStrainEnergy,
+       &kPeakStrainEnergy, &kDeflection, &kTrajectoryError, &kJointForce});
+  return all;
 }
+
+}  // namespace
+
+std::span<const ResponseRow* const> responses() { return registry().rows(); }
+void register_response(const ResponseRow& row) { registry().add(row); }
 
 const ResponseRow* find_response(std::string_view name, std::string_view loads) {
   const auto rows = responses();

@@ -1,15 +1,11 @@
-#include "optim/mpi_when_needed.h"
+#include "cases/process/mpi_at_load.h"
 
 #include <dlfcn.h>
-
-#include <string>
-
-#include "geometry/base.h"
 
 namespace {
 
 /// True until the constructors of this object file have run. Libraries are constructed before the
-/// program or the library that links to them, and destroyed after it.
+/// program that links to them, and destroyed after it.
 bool loading = true;
 bool unloading = false;
 
@@ -20,16 +16,9 @@ struct Phases {
   ~Phases() { unloading = true; }
 } phases;
 
-/// The function of MPI's profiling interface, null where no MPI is loaded: MPI 4.1, section 15.2.
-template <typename Function>
-Function* function_of_mpi(const char* name) {
-  return reinterpret_cast<Function*>(dlsym(RTLD_DEFAULT, name));
-}
-
-using Question = int(int*);
-
+/// The answer of MPI's profiling interface (MPI 4.1, section 15.2); no where no MPI is loaded.
 bool answer_of_mpi(const char* name) {
-  auto* ask = function_of_mpi<Question>(name);
+  auto* ask = reinterpret_cast<int (*)(int*)>(dlsym(RTLD_DEFAULT, name));
   int yes = 0;
   if (ask != nullptr) ask(&yes);
   return yes != 0;
@@ -55,17 +44,8 @@ __attribute__((visibility("default"))) int MPI_Finalized(int* flag) {
 
 }  // extern "C"
 
-namespace flexmorph::optim {
+namespace flexmorph {
 
-void start_mpi_for_ipopt() {
-  auto* start = function_of_mpi<int(int*, char***)>("PMPI_Init");
-  if (start == nullptr || answer_of_mpi("PMPI_Initialized") || answer_of_mpi("PMPI_Finalized"))
-    return;
-  if (const int code = start(nullptr, nullptr); code != 0)
-    throw Error::numerical(
-        "ipopt: MPI, which its linear solver needs, does not start: MPI_Init "
-        "returned " +
-        std::to_string(code));
-}
+void keep_mpi_off_at_load() {}
 
-}  // namespace flexmorph::optim
+}  // namespace flexmorph

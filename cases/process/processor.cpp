@@ -1,8 +1,10 @@
-#include "geometry/processor.h"
+#include "cases/process/processor.h"
 
 #include <unistd.h>
 
 #include <cstdlib>
+
+#include "cases/process/mpi_at_load.h"
 
 namespace flexmorph {
 
@@ -17,6 +19,7 @@ std::string kernel_for_processor() {
 }
 
 void settle_processor(int threads, char** argv) {
+  keep_mpi_off_at_load();
   const char* mark = "FLEXMORPH_THREADS";  // the second time around nothing is left to do
   const std::string n = std::to_string(threads);
   const char* seen = std::getenv(mark);

@@ -1,4 +1,4 @@
-#include "fem/solve/factorization/blas_room.h"
+#include "cases/process/blas_room.h"
 
 #include <omp.h>
 #include <sys/mman.h>
@@ -14,7 +14,7 @@
 extern "C" void* blas_memory_alloc(int purpose);  // of OpenBLAS, in no header
 extern "C" void blas_memory_free(void* buffer);
 
-namespace flexmorph::fem {
+namespace flexmorph {
 namespace {
 
 constexpr double kStack = 8'388'608;  // of a thread, where nobody says otherwise
@@ -60,4 +60,4 @@ void reserve_blas(int threads) {
   reserved = threads;
 }
 
-}  // namespace flexmorph::fem
+}  // namespace flexmorph

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace flexmorph::fem {
+namespace flexmorph {
 
 /// Address space that OpenBLAS maps for every thread that is in it at the same time, at its first
 /// call, and keeps: BUFFER_SIZE of its x86_64 builds [bytes]; other processors take less. Memory is
@@ -15,4 +15,4 @@ inline constexpr double kBlasBuffer = 134'217'728;
 /// @throws Error (input) when there is no room for them, with the numbers.
 void reserve_blas(int threads);
 
-}  // namespace flexmorph::fem
+}  // namespace flexmorph
