@@ -31,7 +31,10 @@ Registry<TermRow>& registry() {
 }  // namespace
 
 std::span<const TermRow* const> term_rows() { return registry().rows(); }
-void register_term(const TermRow& row) { registry().add(row); }
+void register_term(const TermRow& row) {
+  if (!row.make) throw Error::input("term '" + row.name + "' has no make()");
+  registry().add(row);
+}
 
 namespace {
 

@@ -55,7 +55,10 @@ std::string to_string(Stop stop) {
   return "unknown";
 }
 
-void register_optimizer(const OptimizerRow& row) { registry().add(row); }
+void register_optimizer(const OptimizerRow& row) {
+  if (!row.make) throw Error::input("optimizer '" + std::string(row.name) + "' has no make()");
+  registry().add(row);
+}
 
 std::vector<std::string> optimizer_names() {
   std::vector<std::string> names;

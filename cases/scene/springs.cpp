@@ -149,7 +149,11 @@ Registry<SpringRow>& registry() {
 
 std::span<const SpringRow* const> spring_rows() { return registry().rows(); }
 const SpringRow* find_spring(std::string_view name) { return registry().find(name); }
-void register_spring(const SpringRow& row) { registry().add(row); }
+void register_spring(const SpringRow& row) {
+  if (!row.read || !row.make)
+    throw Error::input("spring '" + std::string(row.name) + "' lacks read() or make()");
+  registry().add(row);
+}
 
 void read_springs(const Table& root, Scene& scene) {
   for (const Table& t : root.tables(tables::kSpring))

@@ -18,6 +18,11 @@ Registry<ElementRow>& registry() {
 
 std::span<const ElementRow* const> element_rows() { return registry().rows(); }
 const ElementRow* find_element(std::string_view name) { return registry().find(name); }
-void register_element(const ElementRow& row) { registry().add(row); }
+void register_element(const ElementRow& row) {
+  if (!row.read || !row.read_weld || !row.make || !row.operations)
+    throw Error::input("element '" + std::string(row.name) +
+                       "' lacks one of read(), read_weld(), make() and operations()");
+  registry().add(row);
+}
 
 }  // namespace flexmorph::cases

@@ -20,6 +20,11 @@ Registry<JointRow>& registry() {
 
 std::span<const JointRow* const> joint_rows() { return registry().rows(); }
 const JointRow* find_joint(std::string_view name) { return registry().find(name); }
-void register_joint(const JointRow& row) { registry().add(row); }
+void register_joint(const JointRow& row) {
+  if (!row.read || (!row.make && !row.held))
+    throw Error::input("joint '" + std::string(row.name) +
+                       "' lacks read(), or both of make() and held()");
+  registry().add(row);
+}
 
 }  // namespace flexmorph::cases

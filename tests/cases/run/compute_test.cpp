@@ -144,6 +144,8 @@ const SpringRow kDouble{.name = "double",
 TEST(Compute, ReadsARegisteredSpring) {
   if (find_spring("double") == nullptr) register_spring(kDouble);
   EXPECT_THROW(register_spring(kDouble), Error);
+  const SpringRow nothing{"nothing", "It has no functions.", true, false, nullptr, nullptr};
+  EXPECT_THROW(register_spring(nothing), Error);
   const Scratch scratch;
   const auto positions = [&](const std::string& spring) {
     const std::string path = scratch.write("case.toml", R"toml(

@@ -20,7 +20,10 @@ Registry<ResponseRow>& registry() {
 }  // namespace
 
 std::span<const ResponseRow* const> responses() { return registry().rows(); }
-void register_response(const ResponseRow& row) { registry().add(row); }
+void register_response(const ResponseRow& row) {
+  if (!row.make) throw Error::input("response '" + key_of(row) + "' has no make()");
+  registry().add(row);
+}
 
 const ResponseRow* find_response(std::string_view name, std::string_view loads) {
   const auto rows = responses();
