@@ -8,8 +8,8 @@ namespace flexmorph {
 /// multiply-add (x86-64-v3), and AVX-512 (x86-64-v4).
 enum class VectorLevel { baseline, v3, v4 };
 
-/// Returns the level of this processor; FLEXMORPH_VECTORS=baseline or v3 in the environment lowers
-/// it when the process starts.
+/// Returns the level that kernels use: that of the processor, unless limit_vector_level()
+/// (geometry/vector_limit.h) was called.
 VectorLevel vector_level();
 
 namespace vector_levels {

@@ -3,8 +3,11 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <string_view>
 
 #include "cases/process/mpi_at_load.h"
+#include "geometry/base.h"
+#include "geometry/vector_limit.h"
 
 namespace flexmorph {
 
@@ -18,7 +21,24 @@ std::string kernel_for_processor() {
   return "";
 }
 
+namespace {
+
+/// Leaves out the vectors that FLEXMORPH_VECTORS does not want.
+void limit_vectors() {
+  const char* said = std::getenv("FLEXMORPH_VECTORS");
+  const std::string_view most = said ? said : "v4";
+  if (most == "baseline")
+    limit_vector_level(VectorLevel::baseline);
+  else if (most == "v3")
+    limit_vector_level(VectorLevel::v3);
+  else if (most != "v4")
+    throw Error::input("FLEXMORPH_VECTORS=" + std::string(most) + ": it is baseline, v3 or v4");
+}
+
+}  // namespace
+
 void settle_processor(int threads, char** argv) {
+  limit_vectors();
   keep_mpi_off_at_load();
   const char* mark = "FLEXMORPH_THREADS";  // the second time around nothing is left to do
   const std::string n = std::to_string(threads);

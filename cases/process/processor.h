@@ -9,11 +9,15 @@ namespace flexmorph {
 /// only slow down the small blocks of a factor), and the kernels of OpenBLAS,
 /// kernel_for_processor().
 ///
+/// FLEXMORPH_VECTORS=baseline or v3 in the environment leaves wider vectors out of our own kernels
+/// (geometry/vector_level.h).
+///
 /// Open MPI, where Ipopt brings it, neither looks for a network nor shares memory.
 ///
 /// OpenMP and OpenBLAS read their wishes when they are loaded, so the process starts itself once
 /// more with them in its environment. What stands there already under OPENBLAS_CORETYPE,
 /// OMP_WAIT_POLICY and OMPI_MCA_* is left as it is.
+/// @throws Error (input) where FLEXMORPH_VECTORS is something else
 /// @param argv  as main() got it; first thing in main(), before anything that must not happen twice
 void settle_processor(int threads, char** argv);
 

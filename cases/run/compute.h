@@ -30,7 +30,8 @@ struct ComputeSettings {
 /// @throws the Error of the run; Interrupted
 RunResult compute(const PreparedCase& prepared, const ComputeSettings& settings = {});
 
-/// Computes a case likewise, and returns what was computed before an error, with the error.
+/// Computes a case as compute() does, and returns what was computed before an error together with
+/// the error.
 EndedRun compute_as_far_as_possible(const PreparedCase& prepared,
                                     const ComputeSettings& settings = {});
 

@@ -33,16 +33,13 @@ std::string time_left(double seconds, double part) {
 Progress::Progress(bool quiet) : quiet_(quiet), terminal_(isatty(STDOUT_FILENO) != 0) {}
 
 Progress::Progress(std::function<void(const std::string&)> told)
-    : quiet_(true), terminal_(false), told_(std::move(told)) {}
+    : quiet_(true), terminal_(false), told_(told ? std::move(told) : [](const std::string&) {}) {}
 
 Progress::~Progress() { end_line(); }
 
 void Progress::say(const std::string& text) {
   const std::lock_guard guard(lock_);
-  if (told_) {
-    if (*told_) (*told_)(text);
-    return;
-  }
+  if (told_) return told_(text);
   end_line();
   if (!quiet_) std::printf("%s\n", text.c_str());
   std::fflush(stdout);

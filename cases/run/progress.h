@@ -3,7 +3,6 @@
 #include <chrono>
 #include <functional>
 #include <mutex>
-#include <optional>
 #include <string>
 
 #include "cases/results/failure.h"
@@ -42,7 +41,7 @@ class Progress {
 
   mutable std::mutex lock_;
   bool quiet_, terminal_, open_ = false;
-  std::optional<std::function<void(const std::string&)>> told_;
+  std::function<void(const std::string&)> told_;  // empty: sentences are printed
   Failure where_;
   double all_ = 0, iterations_ = 0;  // iterations of the run, and since the phase began
   Clock::time_point begin_ = Clock::now(), shown_ = {};

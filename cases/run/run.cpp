@@ -38,7 +38,7 @@ PathRecord run_statics(const RunContext& run, std::optional<PathRecord>& unfinis
   return out;
 }
 
-/// @param unfinished  likewise
+/// @param unfinished  receives the rows before a failure, where there is no folder with them
 MotionRecord run_only_motion(const RunContext& run, std::optional<MotionRecord>& unfinished) {
   MotionRequest request = result_request(run, "motion");
   if (run.folder == nullptr) request.unfinished = &unfinished;
