@@ -131,12 +131,12 @@ TEST(Memory, ReservedBuffersAreThoseOfBlas) {
   reserve_blas(3);
   const double reserved = mapped();
   EXPECT_LE(reserved - before, 3 * kBlasBuffer + 2 * 80e6);  // stacks and arenas of threads
-  void* buffers[] = {blas_memory_alloc(0), blas_memory_alloc(0), blas_memory_alloc(0)};
-  EXPECT_EQ(mapped(), reserved);
-  void* fourth = blas_memory_alloc(0);
+  // OpenBLAS keeps every buffer: a repeated test finds those of the test before as well.
+  std::vector<void*> buffers;
+  while (buffers.size() < 50 && mapped() <= reserved) buffers.push_back(blas_memory_alloc(0));
+  EXPECT_GE(buffers.size(), 3u + 1);  // the last one was not reserved
   EXPECT_GT(mapped(), reserved);
   EXPECT_LE(mapped(), reserved + kBlasBuffer);
-  blas_memory_free(fourth);
   for (void* buffer : buffers) blas_memory_free(buffer);
 }
 
