@@ -7,9 +7,14 @@
 #include <utility>
 
 #include "fem/solve/factorization/bordered_cholesky.h"
-#include "fem/solve/factorization/saddle_cholesky.h"
 
 namespace flexmorph::fem {
+namespace {
+
+/// Smaller matrices are factored anew for what renewing the border costs.
+constexpr size_t kFewestRenewed = 1500;
+
+}  // namespace
 
 struct UnsymmetricSolver::Impl {
   void* symbolic = nullptr;
@@ -17,8 +22,6 @@ struct UnsymmetricSolver::Impl {
   double control[UMFPACK_CONTROL];
   VectorXd analysed;  // values of the matrix that UMFPACK analysed; empty: none
   double miss = 0;    // of the last factorization
-  SaddleCholesky cholesky;
-  bool tried_cholesky = false, may_cholesky = false, is_cholesky = false;
   BorderedCholesky bordered;
   bool may_border = false, is_bordered = false;
   std::vector<TurnedVectors> turns;  // since the last factorization
@@ -33,9 +36,6 @@ struct UnsymmetricSolver::Impl {
     if (numeric) umfpack_di_free_numeric(&numeric);
   }
   void analyze(const SparseMatrix& a, const double* values);
-  void try_cholesky(const SparseMatrix& a) {
-    if (!std::exchange(tried_cholesky, true)) may_cholesky = cholesky.analyze(a);
-  }
   void solve(const SparseMatrix& a, const VectorXd& b, VectorXd& x, bool refine, bool transposed);
 };
 
@@ -70,9 +70,7 @@ void UnsymmetricSolver::analyze(const SparseMatrix& a) {
   // UMFPACK analyses when it is needed.
   if (impl_->symbolic) umfpack_di_free_symbolic(&impl_->symbolic);
   impl_->analysed.resize(0);
-  impl_->is_cholesky = false;
   impl_->is_bordered = false;
-  impl_->tried_cholesky = impl_->may_cholesky = false;  // analysed when it is needed, too
   impl_->may_border = impl_->bordered.analyze(a);
 }
 
@@ -82,12 +80,8 @@ void UnsymmetricSolver::factorize(const SparseMatrix& a, double miss) {
   impl_->miss = miss;
   impl_->turns.clear();
   impl_->release_numeric();
-  impl_->is_cholesky = false;
-  impl_->is_bordered = impl_->may_border && impl_->bordered.factorize(a);
+  impl_->is_bordered = impl_->may_border && impl_->bordered.factorize(a, miss);
   if (impl_->is_bordered) return;
-  impl_->try_cholesky(a);
-  impl_->is_cholesky = impl_->may_cholesky && impl_->cholesky.factorize(a, miss);
-  if (impl_->is_cholesky) return;
   if (!impl_->symbolic) impl_->analyze(a, a.valuePtr());
   check(umfpack_di_numeric(a.outerIndexPtr(), a.innerIndexPtr(), a.valuePtr(), impl_->symbolic,
                            &impl_->numeric, impl_->control, nullptr),
@@ -106,21 +100,15 @@ void UnsymmetricSolver::solve_transposed(const SparseMatrix& a, const VectorXd& 
 
 void UnsymmetricSolver::Impl::solve(const SparseMatrix& a, const VectorXd& b, VectorXd& x,
                                     bool refine, bool transposed) {
-  if (is_cholesky || is_bordered) {
-    const auto once = [&](const VectorXd& right, VectorXd& out) {
-      if (is_bordered)
-        bordered.solve(right, out, transposed);
-      else
-        cholesky.solve(right, out);  // of a symmetric matrix
-    };
-    once(b, x);
+  if (is_bordered) {
+    bordered.solve(b, x, transposed);
     if (!refine || !turns.empty()) return;
     remainder = b;
     if (transposed)
       remainder.noalias() -= a.transpose() * x;
     else
       remainder.noalias() -= a * x;
-    once(remainder, correction);
+    bordered.solve(remainder, correction, transposed);
     x += correction;
     return;
   }
@@ -133,7 +121,8 @@ void UnsymmetricSolver::Impl::solve(const SparseMatrix& a, const VectorXd& b, Ve
 
 const std::vector<char>& UnsymmetricSolver::border() const {
   static const std::vector<char> kNone;
-  return impl_->is_bordered ? impl_->bordered.border() : kNone;
+  const std::vector<char>& border = impl_->bordered.border();
+  return impl_->is_bordered && border.size() >= kFewestRenewed ? border : kNone;
 }
 
 bool UnsymmetricSolver::renew_border(const SparseMatrix& a, std::vector<TurnedVectors> turns) {
@@ -168,23 +157,20 @@ SparseMatrix UnsymmetricSolver::as_solved(const SparseMatrix& a) const {
 }
 
 void UnsymmetricSolver::remember(Memory& memory, const SparseMatrix& a) {
-  bool is_factored = impl_->is_cholesky || impl_->is_bordered || impl_->numeric != nullptr;
-  bool tried = impl_->tried_cholesky, refused = impl_->cholesky.is_refused();
+  bool is_factored = impl_->is_bordered || impl_->numeric != nullptr;
   VectorXd values = impl_->analysed;
   double miss = impl_->miss;
   std::vector<TurnedVectors> turns = impl_->turns;
-  memory(is_factored, tried, refused, values, miss, turns);
+  memory(is_factored, values, miss, turns);
   if (memory.puts_back()) analyze(a);
   impl_->bordered.remember(memory);
   if (!memory.puts_back()) return;
-  if (tried) impl_->try_cholesky(a);
-  impl_->cholesky.set_refused(refused);
   if (values.size() > 0 && values.size() == a.nonZeros()) impl_->analyze(a, values.data());
   if (is_factored) factorize(a, miss);
   if (!turns.empty()) renew_border(a, std::move(turns));
 }
 
-bool UnsymmetricSolver::is_cholesky() const { return impl_->is_cholesky; }
+bool UnsymmetricSolver::is_cholesky() const { return impl_->is_bordered; }
 
 std::string blas_kernel() {
   auto* name = reinterpret_cast<char* (*)()>(dlsym(RTLD_DEFAULT, "openblas_get_corename"));

@@ -16,11 +16,9 @@ namespace flexmorph::fem {
 ///   [ A  Φ_qᵀ ]
 ///   [ Φ_q  0  ]    in any order: rows of Φ_q are those without an entry on the diagonal.
 ///
-/// Large ones that are symmetric and positive definite but for a border (constraints, material that
-/// flows near a joint) by BorderedCholesky. Smaller ones that are symmetric, A positive definite
-/// and Φ_q of few rows, by the supernodal Cholesky factor of A (CHOLMOD) and the Schur complement
-/// of the constraints. All others by UMFPACK, at three to five times the cost. The pattern is
-/// analysed once; which of them it is shows at every factorization anew.
+/// Those that are symmetric and positive definite but for a border (constraints, material that
+/// flows near a joint) by BorderedCholesky, all others by UMFPACK, at three to five times the cost.
+/// The pattern is analysed once; which of them it is shows at every factorization anew.
 class UnsymmetricSolver {
  public:
   UnsymmetricSolver();
@@ -57,7 +55,7 @@ class UnsymmetricSolver {
   /// @param a  the matrix of the last factorize(), or analyze() after it
   void remember(Memory& memory, const SparseMatrix& a);
 
-  /// Was the last factor that of Cholesky without a border?
+  /// Was the last factor that of Cholesky?
   bool is_cholesky() const;
 
  private:

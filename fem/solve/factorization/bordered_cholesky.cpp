@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -15,8 +16,6 @@ namespace flexmorph::fem {
 
 namespace {
 
-/// Below, UMFPACK is as fast.
-constexpr int kFewest = 1500;
 /// The largest border against the square root of all unknowns, which is about what one edge of a
 /// square plate has. Two plates of 348 x 40 cells between welded edges have 4.4, and take a third
 /// of the time that UMFPACK does.
@@ -50,10 +49,14 @@ struct BorderedCholesky::Impl {
   int n = 0;                       // of all unknowns
   int rings = 1;                   // of unknowns around the constraints
   std::vector<char> in_border;     // (n)
+  std::vector<int> constraints;    // unknowns without an entry on the diagonal
   std::vector<Pair> pairs;         // below the diagonal
+  std::vector<int> mirrors;        // of every place the one of the other triangle
   std::vector<int> order, number;  // unknown of each place, A first, and place of each unknown
   int n_inner = 0;
   std::vector<int> places;  // in the matrix, of the values of the factor
+  bool refused = false;     // the symmetric part of a matrix with this pattern
+  VectorXd tried, image, back;
   std::vector<BorderEntry> border_entries;
   std::optional<Multifrontal> factor;  // none: to be analysed
   MatrixXd updates, schur;             // -X Xᵀ, S of a, S as it is solved, rows scaled
@@ -69,8 +72,12 @@ struct BorderedCholesky::Impl {
   int n_border() const { return n - n_inner; }
   bool pair_up(const SparseMatrix& a);
   bool is_small_enough() const;
-  bool factorize_inner(const SparseMatrix& a);
+  enum class Outcome { factored, too_unsymmetric, not_definite };
+  Outcome factorize_inner(const SparseMatrix& a);
+  bool factorize_values(const SparseMatrix& a, bool mean);
   void hold(const SparseMatrix& a);
+  template <class F>
+  void for_unequal(const SparseMatrix& a, const F& f) const;
   bool widen(const SparseMatrix& a);
   std::vector<int> groups(const SparseMatrix& a) const;
   void number_unknowns(const SparseMatrix& a);
@@ -96,21 +103,24 @@ bool BorderedCholesky::analyze(const SparseMatrix& a) {
   Impl& s = *impl_;
   s.factor.reset();
   s.rings = 1;
+  s.refused = false;
   s.n = static_cast<int>(a.rows());
-  if (s.n < kFewest || !s.pair_up(a)) return false;
+  if (!s.pair_up(a)) return false;
   s.hold(a);
   return s.is_small_enough();
 }
 
 bool BorderedCholesky::Impl::is_small_enough() const {
   const auto size = std::count(in_border.begin(), in_border.end(), 1);
-  return static_cast<double>(size) <= kMostBorder * std::sqrt(n);
+  return size < n && static_cast<double>(size) <= kMostBorder * std::sqrt(n);
 }
 
 /// Both places of what is below the diagonal; false for a pattern without symmetry.
 bool BorderedCholesky::Impl::pair_up(const SparseMatrix& a) {
   const int *starts = a.outerIndexPtr(), *rows = a.innerIndexPtr();
   pairs.clear();
+  mirrors.resize(static_cast<size_t>(starts[n]));
+  std::iota(mirrors.begin(), mirrors.end(), 0);
   // Columns ascend, so that a row above the diagonal is read from left to right.
   std::vector<int> next(starts, starts + n);
   for (int column = 0; column < n; ++column)
@@ -120,6 +130,7 @@ bool BorderedCholesky::Impl::pair_up(const SparseMatrix& a) {
       const int upper = next[at(row)]++;
       if (upper == starts[row + 1] || rows[upper] != column) return false;
       pairs.push_back({row, column, p, upper});
+      std::swap(mirrors[at(p)], mirrors[at(upper)]);
     }
   for (int column = 0; column < n; ++column) {
     const int p = next[at(column)];
@@ -132,9 +143,10 @@ bool BorderedCholesky::Impl::pair_up(const SparseMatrix& a) {
 void BorderedCholesky::Impl::hold(const SparseMatrix& a) {
   const int *starts = a.outerIndexPtr(), *rows = a.innerIndexPtr();
   in_border.assign(at(n), 0);
-  std::vector<int> from;
+  constraints.clear();
   for (int k = 0; k < n; ++k)
-    if (!std::binary_search(rows + starts[k], rows + starts[k + 1], k)) from.push_back(k);
+    if (!std::binary_search(rows + starts[k], rows + starts[k + 1], k)) constraints.push_back(k);
+  std::vector<int> from = constraints;
   for (const int k : from) in_border[at(k)] = 1;
   for (int ring = 0; ring < rings; ++ring) {
     std::vector<int> around;
@@ -145,19 +157,26 @@ void BorderedCholesky::Impl::hold(const SparseMatrix& a) {
   }
 }
 
-/// Takes unknowns into the border that are not symmetric.
-/// @returns whether there were any
-bool BorderedCholesky::Impl::widen(const SparseMatrix& a) {
+/// Calls f(pair) of entries outside of the border that are not symmetric, until it returns false.
+template <class F>
+void BorderedCholesky::Impl::for_unequal(const SparseMatrix& a, const F& f) const {
   const double* x = a.valuePtr();
   const double allowed =
       kSymmetry * Eigen::Map<const VectorXd>(x, a.nonZeros()).lpNorm<Eigen::Infinity>();
-  bool any = false;
   for (const Pair& p : pairs)
     if (std::abs(x[p.lower] - x[p.upper]) > allowed &&
-        !(in_border[at(p.row)] && in_border[at(p.column)])) {
-      in_border[at(p.row)] = in_border[at(p.column)] = 1;
-      any = true;
-    }
+        !(in_border[at(p.row)] && in_border[at(p.column)]) && !f(p))
+      return;
+}
+
+/// Takes unknowns into the border that are not symmetric.
+/// @returns whether there were any
+bool BorderedCholesky::Impl::widen(const SparseMatrix& a) {
+  bool any = false;
+  for_unequal(a, [&](const Pair& p) {
+    in_border[at(p.row)] = in_border[at(p.column)] = 1;
+    return any = true;
+  });
   return any;
 }
 
@@ -236,27 +255,72 @@ void BorderedCholesky::Impl::analyze_inner(const SparseMatrix& a) {
   updates.resize(n_border(), n_border());
 }
 
-bool BorderedCholesky::Impl::factorize_inner(const SparseMatrix& a) {
-  if (widen(a)) factor.reset();
-  if (!is_small_enough()) return false;
+BorderedCholesky::Impl::Outcome BorderedCholesky::Impl::factorize_inner(const SparseMatrix& a) {
+  const std::vector<char> before = in_border;
+  if (widen(a)) {
+    if (!is_small_enough()) {  // the next matrix may be symmetric
+      in_border = before;
+      return Outcome::too_unsymmetric;
+    }
+    factor.reset();
+  }
+  return factorize_values(a, false) ? Outcome::factored : Outcome::not_definite;
+}
+
+/// @param mean  of both triangles, which is the symmetric part
+bool BorderedCholesky::Impl::factorize_values(const SparseMatrix& a, bool mean) {
   if (!factor) analyze_inner(a);
   const double* entries = a.valuePtr();
   const auto values = factor->values();
-  for (size_t k = 0; k < values.size(); ++k) values[k] = entries[places[k]];
+  for (size_t k = 0; k < values.size(); ++k)
+    values[k] =
+        mean ? 0.5 * (entries[places[k]] + entries[mirrors[at(places[k])]]) : entries[places[k]];
   return factor->factorize(&updates) < 0;
 }
 
-bool BorderedCholesky::factorize(const SparseMatrix& a) {
+bool BorderedCholesky::factorize(const SparseMatrix& a, double miss) {
+  using Outcome = Impl::Outcome;
   Impl& s = *impl_;
-  if (!s.factorize_inner(a)) {
-    // Without inertia a plate on one pin turns about it: its neighbours hold it.
-    if (!s.is_small_enough() || s.rings == 2) return false;
+  Outcome outcome = s.factorize_inner(a);
+  if (outcome == Outcome::not_definite && s.rings == 1) {
+    // Without inertia a plate on one pin turns about it: the neighbours of the pin hold it.
+    const std::vector<char> before = s.in_border;
     s.rings = 2;
     s.hold(a);
-    s.factor.reset();
-    if (!s.factorize_inner(a)) return false;
+    if (s.is_small_enough()) {
+      s.factor.reset();
+      outcome = s.factorize_inner(a);
+    } else {
+      s.rings = 1;
+      s.in_border = before;
+    }
   }
-  return renew_border(a, {});
+  if (outcome == Outcome::factored) return renew_border(a, {});
+  if (outcome == Outcome::not_definite || !(miss > 0) || s.refused) return false;
+  s.refused = !s.factorize_values(a, true) || !renew_border(a, {}) || misses(a) > miss;
+  return !s.refused;
+}
+
+/// An estimate of the spectral radius of 1 - P⁻¹ a, P the matrix that is solved, by two steps of
+/// the power method.
+double BorderedCholesky::misses(const SparseMatrix& a) {
+  constexpr int kPasses = 2;
+  Impl& s = *impl_;
+  s.tried.resize(s.n);
+  for (int k = 0; k < s.n; ++k)  // any vector that is no eigenvector
+    s.tried[k] = std::cos(static_cast<double>(k) * k);
+  for (const int row : s.constraints) s.tried[row] = 0;
+  double out = 0;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    s.tried /= s.tried.lpNorm<Eigen::Infinity>();
+    s.image.noalias() = a * s.tried;
+    solve(s.image, s.back);
+    s.tried -= s.back;
+    for (const int row : s.constraints) s.tried[row] = 0;
+    out = s.tried.lpNorm<Eigen::Infinity>();
+    if (out == 0) break;
+  }
+  return out;
 }
 
 const std::vector<char>& BorderedCholesky::border() const { return impl_->in_border; }
@@ -351,7 +415,7 @@ void BorderedCholesky::solve(const VectorXd& b, VectorXd& x, bool transposed) {
 void BorderedCholesky::remember(Memory& memory) {
   Impl& s = *impl_;
   std::vector<char> border = s.in_border;
-  memory(border, s.rings);
+  memory(border, s.rings, s.refused);
   if (memory.puts_back() && border.size() == s.in_border.size()) s.in_border = std::move(border);
 }
 

@@ -10,7 +10,7 @@
 
 namespace flexmorph::fem {
 
-/// Large matrices that are symmetric and positive definite but for a few of their unknowns,
+/// Matrices that are symmetric and positive definite but for a few of their unknowns,
 ///
 ///   [ A  Eᵀ ]   A (n x n) symmetric, positive definite, E (m x n), D (m x m) any, n >> m:
 ///   [ E  D  ]   Multifrontal factor A = L Lᵀ, dense LU factor of S = D - E A⁻¹ Eᵀ.
@@ -24,12 +24,15 @@ class BorderedCholesky {
   BorderedCholesky();
   ~BorderedCholesky();
 
-  /// @returns whether the pattern is symmetric, large, and of few constraints; if not, factorize()
+  /// @returns whether the pattern is symmetric and of few constraints; if not, factorize()
   ///          must not be called.
   bool analyze(const SparseMatrix& a);
   /// @returns false, and nothing can be solved, when the border is too large, the rest not positive
   ///          definite, or S too near to singular to be trusted.
-  bool factorize(const SparseMatrix& a);
+  /// @param miss  where too many unknowns are not symmetric for a border, the symmetric part of A
+  ///              stands for A if solutions then miss by no more than this part of themselves (an
+  ///              estimate). Refused once, it is not tried again before the next analyze()
+  bool factorize(const SparseMatrix& a, double miss = 0);
   /// Which unknowns belong to the border (n + m).
   const std::vector<char>& border() const;
   /// L stays that of the last factorize(), which succeeded, but turns: from here on solved is
@@ -47,6 +50,8 @@ class BorderedCholesky {
   void remember(Memory& memory);
 
  private:
+  double misses(const SparseMatrix& a);
+
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

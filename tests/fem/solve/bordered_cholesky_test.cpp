@@ -217,9 +217,8 @@ TEST(BorderedCholesky, DoesNotTurnWhatTheBorderParts) {
   EXPECT_FALSE(solver.border().empty());
 }
 
-TEST(BorderedCholesky, RefusesWhatIsTooSmallUnsymmetricOrNotDefinite) {
+TEST(BorderedCholesky, RefusesWhatIsUnsymmetricOrNotDefinite) {
   BorderedCholesky solver;
-  EXPECT_FALSE(solver.analyze(Strip{.nx = 35, .ny = 4}.matrix()));
   SparseMatrix a = Strip{}.matrix();
   ASSERT_TRUE(solver.analyze(a));
   EXPECT_FALSE(solver.factorize(Strip{.strength = -1}.matrix()));
@@ -251,7 +250,7 @@ TEST(BorderedCholesky, RemembersItsBorder) {
   solver.solve(other, b, x, false);
   again.solve(other, b, y, false);
   EXPECT_EQ(x, y);
-  EXPECT_FALSE(solver.is_cholesky());
+  EXPECT_TRUE(solver.is_cholesky());
   // That of the whole matrix is another one.
   solver.solve(other, b, x);
   EXPECT_LT((other * x - b).norm(), 1e-12 * b.norm());
