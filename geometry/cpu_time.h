@@ -4,14 +4,14 @@
 
 namespace flexmorph {
 
-/// CPU time of the process, all its threads together [s].
+/// Returns the CPU time of the process, the sum over all its threads [s].
 inline double cpu_seconds() {
   timespec t{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-/// CPU time of the calling thread [s].
+/// Returns the CPU time of the calling thread [s].
 inline double thread_seconds() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);

@@ -16,7 +16,7 @@ bool cross(const Segment& s, const Segment& t) {
   for (int i = 0; i < 2; ++i)
     for (int j = 0; j < 2; ++j) {
       if (s.vertex(i) != t.vertex(j)) continue;
-      // They go on from their common end to different directions, unless one lies on the other.
+      // Sides with a common end have different directions there, unless one lies on the other.
       const Point &common = s.vertex(i), &a = s.vertex(1 - i), &b = t.vertex(1 - j);
       return CGAL::collinear(a, common, b) &&
              !CGAL::collinear_are_strictly_ordered_along_line(a, common, b);

@@ -1,7 +1,8 @@
-// Templates of Eigen 3.4 that dozens of files need, compiled once for all of them: the precompiled
-// header (precompiled.h) declares them `extern`, eigen_instances.cpp defines them. No #pragma once:
-// each of the two says with FLEXMORPH_INSTANCE which it is. Other versions of Eigen name their
-// internal templates differently; every file compiles its own copies there.
+// Templates of Eigen 3.4 that dozens of files need and that are compiled once for all of them. The
+// precompiled header (precompiled.h) declares them `extern`, and eigen_instances.cpp defines them.
+// Each of the two defines FLEXMORPH_INSTANCE accordingly, therefore there is no #pragma once. Other
+// versions of Eigen name their internal templates differently; there every file compiles its own
+// copies.
 #if EIGEN_WORLD_VERSION == 3 && EIGEN_MAJOR_VERSION == 4
 namespace Eigen {
 

@@ -26,7 +26,7 @@ void Memory::raw(void* data, size_t bytes) {
 size_t Memory::size(size_t now, size_t least) {
   std::uint64_t out = now;
   raw(&out, sizeof out);
-  // Nothing is resized to what cannot be there.
+  // A damaged archive must not cause a huge allocation.
   const size_t left = bytes_.size() - at_;
   if (puts_back_ && (out > bytes_.size() || (least > 0 && out > left / least))) refuse();
   return static_cast<size_t>(out);

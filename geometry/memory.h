@@ -13,31 +13,38 @@
 
 namespace flexmorph {
 
-/// Takes down what a computation needs to go on bit for bit, or puts it back. A class names its
-/// variables once, and the same function serves both ways:
+/// An archive (checkpoint) that saves or restores the variables with which a computation continues
+/// bit for bit. A class lists its variables once, and one function both saves and restores them:
 ///
 ///   void remember(Memory& m, Path& p) { m(p.start, p.points); }
 ///
-/// Numbers, enumerations and plain structs of them are kept as their bytes, in the byte order of
-/// the machine; texts, vectors, optional values and matrices as their size and contents; all else
-/// by its member remember(Memory&), or a function remember(Memory&, T&) beside it.
+/// Numbers, enumerations and plain structs are saved as their bytes, in the byte order of the
+/// machine; strings, vectors, optional values and matrices as their size and contents; all other
+/// types by their member function remember(Memory&), or by a function remember(Memory&, T&) in
+/// their namespace.
 class Memory {
  public:
-  Memory() = default;                 ///< takes down
-  explicit Memory(std::string bytes)  ///< puts back
-      : bytes_(std::move(bytes)), puts_back_(true) {}
+  /// Creates an empty archive that saves.
+  Memory() = default;
+  /// Creates an archive that restores what bytes() of another one contains.
+  explicit Memory(std::string bytes) : bytes_(std::move(bytes)), puts_back_(true) {}
 
+  /// Returns true if the archive restores, false if it saves.
   bool puts_back() const { return puts_back_; }
+  /// Returns the bytes of the archive.
   const std::string& bytes() const { return bytes_; }
 
-  /// @throws Error (input) when less was taken down than is to be put back.
+  /// Saves or restores variables, in the order of the arguments.
+  /// @throws Error (input) when the archive holds less data than is to be restored.
   template <class... T>
   void operator()(T&... values) {
     (one(values), ...);
   }
 
-  /// A version number of something the computation depends on: kept is whether it was up to date.
-  /// @returns whether it was
+  /// Saves or restores whether a version number `version`, on which the computation depends, is
+  /// equal to the current one, `now`. After restoring, `version` is `now` if it was up to date,
+  /// else -1.
+  /// @returns true if the version was up to date
   bool up_to_date(int& version, int now) {
     bool is = version == now;
     one(is);
@@ -49,9 +56,10 @@ class Memory {
   template <class T>
   static constexpr bool kPlain = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>;
 
-  /// Takes down bytes, or puts them back.
+  /// Saves or restores bytes.
   void raw(void* data, size_t bytes);
-  /// The same for a size; of what follows `least` bytes an item are there.
+  /// Saves or restores a size. When it restores, it throws if the archive does not hold at least
+  /// `least` bytes for each item.
   size_t size(size_t now, size_t least);
 
   template <class T>
@@ -61,7 +69,7 @@ class Memory {
     else if constexpr (kPlain<T>)
       raw(&x, sizeof x);
     else
-      remember(*this, x);  // found beside T
+      remember(*this, x);  // found by its argument type
   }
   void one(std::string& text) {
     text.resize(size(text.size(), 1));
@@ -94,15 +102,16 @@ class Memory {
     x.resize(static_cast<Eigen::Index>(m), static_cast<Eigen::Index>(n));
     raw(x.data(), m * n * sizeof(T));
   }
-  /// Compressed.
+  /// Saves or restores a sparse matrix in compressed form.
   void one(Eigen::SparseMatrix<double>& a);
 
   std::string bytes_;
   bool puts_back_ = false;
-  size_t at_ = 0;  // what was put back
+  size_t at_ = 0;  // position of the next byte to be restored
 };
 
-/// CRC-64 (ECMA-182) of bytes: tells damaged files and changed inputs, not forged ones.
+/// Returns the CRC-64 (ECMA-182) of bytes. It detects damaged files and changed inputs, but no
+/// forgery.
 std::uint64_t checksum(std::string_view bytes);
 
 }  // namespace flexmorph

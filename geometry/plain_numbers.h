@@ -6,12 +6,14 @@
 
 namespace flexmorph {
 
-/// While it lives, printf, strtod and new C++ streams of the whole process write and read numbers
-/// as the C locale does, with a decimal point, whatever language a host has asked for: for
-/// libraries that leave no choice. Where that is how it is already, as everywhere in `flexmorph`,
-/// it touches nothing: there several threads may use it, while others print. Else not.
+/// A guard for calls of libraries that write and read numbers in the locale of the process. While
+/// it exists, printf, strtod and new C++ streams of the whole process use the C locale, with a
+/// decimal point. If the process already uses the C locale, as the program `flexmorph` does, the
+/// guard changes nothing, and several threads may use it while others print. Otherwise only one
+/// thread may use it.
 class PlainNumbers {
  public:
+  /// Sets the C locale if the process uses another one.
   PlainNumbers() : c_(std::setlocale(LC_ALL, nullptr)) {
     changes_ = c_ != "C" || std::locale() != std::locale::classic();
     if (changes_) std::locale::global(std::locale::classic());
@@ -26,7 +28,7 @@ class PlainNumbers {
 
  private:
   std::string c_;
-  std::locale cpp_;  // what it was: the default constructor's
+  std::locale cpp_;  // the previous locale (set by the default constructor)
   bool changes_ = false;
 };
 

@@ -1,7 +1,8 @@
 #pragma once
 
-// What nearly every file includes, parsed once for all of them (the top CMakeLists.txt gives it to
-// the compiler). Files still name what they use: without this header everything compiles as well.
+// Headers that nearly every file includes, parsed once for all of them (the top CMakeLists.txt
+// passes this header to the compiler). Every file still includes the headers that it uses,
+// therefore everything compiles without this one, too.
 
 #include <Eigen/Core>
 #include <Eigen/Dense>

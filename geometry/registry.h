@@ -10,13 +10,14 @@
 
 namespace flexmorph {
 
-/// A table of rows with names, such as all kinds of joints: those of Flexmorph, and those that a
-/// program adds. Rows are added before cases are read, by one thread.
+/// A table of named rows, such as all kinds of joints: the rows of Flexmorph, and the rows that a
+/// program adds. One thread adds rows before cases are read.
 template <class Row>
 class Registry {
  public:
-  /// @param noun  what messages call a row: "joint"
-  /// @param name  returns the name of a row, by which it is told from all others
+  /// Creates a table with its first rows.
+  /// @param noun  the name of a row in messages, for example "joint"
+  /// @param name  returns the unique name of a row
   Registry(std::string noun, std::string (*name)(const Row&),
            std::initializer_list<const Row*> rows)
       : noun_(std::move(noun)), name_(name), rows_(rows) {}
@@ -24,15 +25,15 @@ class Registry {
   /// Returns all rows, in the order in which messages list them.
   std::span<const Row* const> rows() const { return rows_; }
 
-  /// Returns the row of this name; null where there is none.
+  /// Returns the row of a name, or null if there is none.
   const Row* find(std::string_view name) const {
     const auto found =
         std::ranges::find_if(rows_, [&](const Row* row) { return name_(*row) == name; });
     return found == rows_.end() ? nullptr : *found;
   }
 
-  /// Adds a row, which is not copied and lives as long as the program.
-  /// @throws Error (input) where the name is empty or another row has it
+  /// Adds a row. It is not copied, therefore it must exist as long as the program.
+  /// @throws Error (input) when the name is empty or another row has it
   void add(const Row& row) {
     const std::string name = name_(row);
     if (name.empty()) throw Error::input("a " + noun_ + " has a name");

@@ -6,8 +6,8 @@
 
 namespace flexmorph {
 
-/// Returns the area that a ring encloses, positive counterclockwise [m^2]: the shoelace sum about
-/// its first vertex.
+/// Returns the area that a ring encloses, positive if the ring is counterclockwise [m^2]. It is the
+/// shoelace sum about the first vertex.
 double signed_area(const std::vector<Vec2>& ring);
 
 }  // namespace flexmorph

@@ -17,16 +17,16 @@ namespace flexmorph {
 #endif
 #endif
 
-/// Is this a build with the thread sanitizer? Its shadow memory are files, which a limit on the
-/// size of files cuts short.
+/// True if this is a build with the thread sanitizer. The sanitizer keeps its shadow memory in
+/// files, therefore a limit on the size of files must not be set.
 #if defined(FLEXMORPH_SANITIZES_THREADS)
 constexpr bool kThreadSanitized = true;
 #else
 constexpr bool kThreadSanitized = false;
 #endif
 
-/// Is this a build with a sanitizer? It maps terabytes of shadow memory, so that no address space
-/// can be limited, and takes many times as long.
+/// True if this is a build with a sanitizer. A sanitizer maps terabytes of shadow memory, therefore
+/// the address space must not be limited; and the program runs many times slower.
 #if defined(FLEXMORPH_SANITIZES_ADDRESSES)
 constexpr bool kSanitized = true;
 #else

@@ -4,8 +4,8 @@
 
 namespace flexmorph {
 
-/// Makes kernels use the vectors of this level at most, whatever the processor has. A program calls
-/// it before the first kernel runs.
+/// Limits the instruction set of kernels to a level, even if the processor has a higher one. A
+/// program calls it before the first kernel runs.
 void limit_vector_level(VectorLevel most);
 
 }  // namespace flexmorph

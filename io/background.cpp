@@ -8,7 +8,7 @@ Background::Background(bool own_thread) {
   if (!own_thread) return;
   try {
     thread_ = std::thread([this] { work(); });
-  } catch (const std::system_error&) {  // no room for a thread: all is done at once
+  } catch (const std::system_error&) {  // no thread is available: tasks are executed at once
   }
 }
 
@@ -46,7 +46,8 @@ void Background::work() {
   for (;;) {
     changed_.wait(lock, [this] { return !tasks_.empty() || ends_; });
     if (tasks_.empty()) return;
-    const std::function<void()>& task = tasks_.front();  // stays where it is while others come
+    // references into a deque stay valid when tasks are added
+    const std::function<void()>& task = tasks_.front();
     if (!failure_) {
       lock.unlock();
       std::exception_ptr failure;

@@ -9,24 +9,28 @@
 
 namespace flexmorph::io {
 
-/// Does tasks in the order in which they come: at once, or in a thread of its own while the caller
-/// goes on. For files, which nobody waits for.
+/// A queue that executes tasks in their order, either immediately or in a separate thread while the
+/// caller continues. It is meant for writing files, for which no computation has to wait.
 class Background {
  public:
-  /// @param own_thread  false: all is done at once, as where the system has no thread to give
+  /// Starts the thread.
+  /// @param own_thread  false: tasks are executed immediately in the thread of the caller, as they
+  ///         also are when the system cannot create a thread
   explicit Background(bool own_thread);
-  /// When all is done. Errors that nobody asked for are lost.
+  /// Waits until all tasks are done. Errors that were not reported before are lost.
   ~Background();
   Background(const Background&) = delete;
   Background& operator=(const Background&) = delete;
 
-  /// The task must own what it uses. Waits where kMost tasks wait already. After a task that threw
-  /// none is done any more. @throws what the first one threw.
+  /// Adds a task. The task must own the data that it uses. The call waits while kMost tasks are in
+  /// the queue. After a task has thrown, the thread executes no further tasks.
+  /// @throws the exception of the first task that threw
   void then(std::function<void()> task);
-  /// Until all is done. @throws what the first task threw that did.
+  /// Waits until all tasks are done.
+  /// @throws the exception of the first task that threw
   void wait();
 
-  static constexpr size_t kMost = 16;
+  static constexpr size_t kMost = 16;  ///< Largest number of tasks in the queue.
 
  private:
   void work();
@@ -34,10 +38,10 @@ class Background {
 
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<std::function<void()>> tasks_;  // the first one is being done
+  std::deque<std::function<void()>> tasks_;  // the first one is being executed
   std::exception_ptr failure_;
   bool ends_ = false;
-  std::thread thread_;  // last: it uses the others
+  std::thread thread_;  // last member, because the thread uses the others
 };
 
 }  // namespace flexmorph::io

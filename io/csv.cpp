@@ -11,7 +11,8 @@
 namespace flexmorph::io {
 namespace {
 
-/// What separates the cells: of comma, semicolon and tabulator the one that the header has most of.
+/// Returns the separator of cells: comma, semicolon or tabulator, whichever is most frequent in the
+/// header.
 char separator_of(std::string_view header) {
   const std::array<char, 3> known = {',', ';', '\t'};
   const auto count = [&](char c) { return std::count(header.begin(), header.end(), c); };
@@ -19,15 +20,15 @@ char separator_of(std::string_view header) {
                            [&](char a, char b) { return count(a) < count(b); });
 }
 
-/// Without the spaces around it.
+/// Returns a cell without the spaces around it.
 std::string_view trimmed(std::string_view cell) {
   const size_t first = cell.find_first_not_of(' ');
   if (first == std::string_view::npos) return {};
   return cell.substr(first, cell.find_last_not_of(' ') + 1 - first);
 }
 
-/// Takes the quotes from a cell, where it stands; "" within them is a quote.
-/// @returns the end of what is left
+/// Removes the quotes of a cell in place; "" inside quotes becomes a quote.
+/// @returns the end of the remaining text
 char* unquote(char* begin, const char* end) {
   char* out = begin;
   bool quoted = false;
@@ -43,7 +44,7 @@ char* unquote(char* begin, const char* end) {
   return out;
 }
 
-/// Where a cell ends: at the next separator that is not in quotes.
+/// Returns the end of a cell: the next separator outside quotes.
 char* end_of_cell(char* cell, char* line_end, char separator) {
   bool quoted = false;
   for (; cell < line_end; ++cell) {
@@ -53,7 +54,8 @@ char* end_of_cell(char* cell, char* line_end, char separator) {
   return cell;
 }
 
-/// Appends the cells of one line. @returns how many
+/// Appends the cells of one line.
+/// @returns the number of cells
 size_t add_cells(char* begin, char* line_end, char separator, std::vector<std::string_view>& out) {
   const size_t before = out.size();
   const bool quotes = std::find(begin, line_end, '"') != line_end;
@@ -115,14 +117,15 @@ CsvTable read_csv(const std::string& path) {
   CsvTable out;
   out.text_ = std::make_shared<std::string>(read_regular_file(path, "a table"));
   char *line = out.text_->data(), *const end = line + out.text_->size();
-  if (out.text_->starts_with("\xEF\xBB\xBF")) line += 3;  // a byte-order mark
+  if (out.text_->starts_with("\xEF\xBB\xBF")) line += 3;  // skips a byte-order mark
   char separator = ',';
   for (int number = 1; line < end; ++number) {
     char *const next = std::find(line, end, '\n'), *line_end = next;
     if (line_end > line && line_end[-1] == '\r') --line_end;
     if (number == 1) {
       separator = separator_of({line, line_end});
-      // Spreadsheets separate by semicolons where the comma is the decimal point.
+      // Spreadsheets use semicolons as separators in languages in which the comma is the decimal
+      // point.
       out.decimal_comma = separator != ',';
       std::vector<std::string_view> header;
       add_cells(line, line_end, separator, header);

@@ -22,7 +22,7 @@ namespace {
 
 std::string reason_of(int code) { return std::generic_category().message(code); }
 
-/// Is an open file or folder on the disk? Also true where the file system knows no such wish.
+/// Returns true if an open file or folder is on the disk, or if its file system cannot synchronize.
 bool synced(int file) {
   return fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP || errno == ENOSYS;
 }
@@ -86,7 +86,7 @@ std::string to_text(double value, int digits) {
 }
 
 std::string read_regular_file(const std::string& path, const std::string& what) {
-  // A pipe or a device may never end, or never begin.
+  // A pipe or a device may never end, or never deliver data.
   std::error_code code;
   const auto status = std::filesystem::status(path, code);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))

@@ -5,8 +5,8 @@
 
 namespace flexmorph::io {
 
-/// JSON as files have it: indented, keys in their order, a line end. Numbers that are not finite
-/// are null, bytes that are not UTF-8 the replacement character.
+/// Returns JSON text for files: indented, with the keys in their order and a line end. Numbers that
+/// are not finite become null; bytes that are not UTF-8 become the replacement character.
 std::string json_text(const nlohmann::ordered_json& value);
 
 }  // namespace flexmorph::io

@@ -22,7 +22,8 @@ namespace fs = std::filesystem;
 
 const char* const kList = ".flexmorph";
 const std::string kOwner = "flexmorph, ";  // begins the line of a process that fills the folder
-constexpr size_t kLongestPart = 200;       // of 255 bytes that file systems take: endings are added
+// less than the 255 bytes that file systems allow, because endings are added
+constexpr size_t kLongestPart = 200;
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
   throw Error::input("output folder '" + path + "': " + why);
@@ -32,7 +33,7 @@ std::string reason_of(int code) { return std::generic_category().message(code); 
 
 std::string list_of(const std::string& folder) { return (fs::path(folder) / kList).string(); }
 
-/// "process 1234 on 'machine'", as the first line of a list says it.
+/// Returns the process that fills a folder, such as "process 1234 on 'machine'", from its list.
 std::string owner_of(const std::string& folder) {
   std::ifstream list(list_of(folder));
   std::string out = "another process";
@@ -47,7 +48,7 @@ std::string own_words() {
   return "process " + std::to_string(getpid()) + " on '" + machine.data() + "'";
 }
 
-/// Is it no name of a file below the folder, or that of the list?
+/// Returns true if a name is not a file below the folder, or is that of the list.
 bool leaves_folder(const std::string& name) {
   const fs::path relative(name);
   bool leaves = name.empty() || relative.is_absolute() || name == kList || name.back() == '/' ||
@@ -57,8 +58,8 @@ bool leaves_folder(const std::string& name) {
   return leaves;
 }
 
-/// The lock of a list, or -1 with errno. Who asks is_being_filled() has it for a moment, which is
-/// waited for.
+/// Locks a list and returns its file descriptor, or -1 with errno. A process that calls
+/// is_being_filled() holds the lock for a moment, therefore several attempts are made.
 int lock_of(const std::string& list, int flags) {
   const int file = open(list.c_str(), flags | O_CLOEXEC, 0666);
   if (file < 0) return -1;
@@ -78,8 +79,8 @@ int lock_of(const std::string& list, int flags) {
   refuse(folder, owner_of(folder) + " is filling it; wait for its end, or choose another with -o");
 }
 
-/// Opens and locks the list of a folder, and writes into it whose the folder is.
-/// @param empties  what stands in the list is removed
+/// Opens and locks the list of a folder, and adds the process to it.
+/// @param empties  true if the previous contents of the list are removed
 int take_list(const std::string& folder, int flags, bool empties) {
   const int list = lock_of(list_of(folder), O_RDWR | O_APPEND | O_NOFOLLOW | flags);
   if (list < 0 && (errno == EEXIST || errno == EWOULDBLOCK)) refuse_as_taken(folder);
@@ -91,7 +92,8 @@ int take_list(const std::string& folder, int flags, bool empties) {
   return list;
 }
 
-/// NAME.previous, or the first of NAME.previous.2, NAME.previous.3, ... that is free.
+/// Returns NAME.previous, or the first of NAME.previous.2, NAME.previous.3, ... that does not
+/// exist.
 std::string free_name(const std::string& path) {
   std::string out = path + ".previous";
   for (int k = 2; fs::symlink_status(out).type() != fs::file_type::not_found; ++k)
@@ -126,7 +128,7 @@ OutputFolder::~OutputFolder() {
 
 void OutputFolder::make() { fs::create_directories(path_); }
 
-/// An earlier run makes room; what no list speaks of stays where it is.
+/// Moves an earlier run away. A folder without a list is not moved, because it belongs to the user.
 void OutputFolder::move_away() {
   const std::string list = list_of(path_);
   if (!fs::is_regular_file(fs::symlink_status(list)))
@@ -141,7 +143,7 @@ void OutputFolder::move_away() {
     refuse(path_, "the run in it cannot be moved to '" + moved_to_ + "': " + code.message());
 }
 
-/// Goes on with the list that is there.
+/// Reads the names of an existing list.
 void OutputFolder::read_list() {
   std::ifstream list(list_of(path_));
   for (std::string name; std::getline(list, name);)
@@ -215,7 +217,8 @@ FolderLock::~FolderLock() {
 bool is_being_filled(const std::string& folder) {
   const int list = open(list_of(folder).c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
   if (list < 0) return false;
-  // Shared: others may look at the same time, and it is granted to who may not write.
+  // A shared lock allows several processes to test at the same time, and it needs no write
+  // permission.
   const bool held = flock(list, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   close(list);
   return held;

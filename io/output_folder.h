@@ -7,40 +7,44 @@
 
 namespace flexmorph::io {
 
-/// A folder that one process fills, and nobody else meanwhile.
+/// A folder for output files that one process fills at a time.
 ///
-/// It keeps a list of its files, `.flexmorph`, each written down before it is made: what stands
-/// there is ours, all else in the folder belongs to the user and is never touched. The list is
-/// locked (flock) while its process lives, on the disks of other machines as well where they know
-/// locks; a lock dies with its process, so that none is ever stale.
+/// The folder contains a list of its files, `.flexmorph`. Each name is added to the list before the
+/// file is created. Files in the list belong to Flexmorph; all other files in the folder belong to
+/// the user and are never changed. The list is locked (flock) while its process runs, also on
+/// network disks that support locks. The operating system removes the lock when the process ends,
+/// therefore no stale lock can remain.
 ///
-/// A folder that holds an earlier one is moved, whole, to NAME.previous (NAME.previous.2, ... where
-/// there is one already): nothing that was computed is removed.
+/// A folder that contains an earlier run is moved as a whole to NAME.previous (NAME.previous.2, ...
+/// if that name exists). No results are removed.
 class OutputFolder {
  public:
-  /// Takes the folder, which is made where it is missing.
-  /// @throws Error (input) when a living process has it (with its number and machine), when it
-  ///         holds files but no list, or cannot be made or moved.
-  ///         With Begin::go_on what is in it stays, listed files are those of this one, too.
+  /// Treatment of a folder with an earlier run: `anew` moves it away, `go_on` continues in it, and
+  /// the files in its list belong to this run, too.
   enum class Begin { anew, go_on };
+  /// Takes the folder, which is created if it is missing.
+  /// @throws Error (input) when a running process fills it (with its number and machine), when it
+  ///         contains files but no list, or when it cannot be created or moved.
   explicit OutputFolder(std::string path, Begin begin = Begin::anew);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
+  /// Returns the path of the folder.
   const std::string& path() const { return path_; }
-  /// Where what was in the folder before is now; empty when it was empty.
+  /// Returns the path to which the previous contents of the folder were moved; empty if there were
+  /// none.
   const std::string& moved_to() const { return moved_to_; }
 
-  /// Path of a file of the folder, now in its list; folders on the way are made. The only way to a
-  /// path in the folder. Several threads may ask.
-  /// @throws Error (input) for a name that leaves the folder ("../a", "/a"), that is its list, or
-  ///         with a part of more than 200 bytes; Error (numerical) when the list cannot be written,
-  ///         or the folder was removed meanwhile.
+  /// Returns the path of a file in the folder after adding it to the list; subfolders are created.
+  /// All paths in the folder must be obtained here. Several threads may call the function.
+  /// @throws Error (input) for a name that leaves the folder ("../a", "/a"), that is the list, or
+  ///         that has a component of more than 200 bytes; Error (numerical) when the list cannot be
+  ///         written or the folder was removed meanwhile.
   std::string file(const std::string& name);
-  /// Names in the list whose files are there.
+  /// Returns the names in the list whose files exist.
   std::vector<std::string> files();
-  /// Paths of the files in its list with this ending; they need not be there.
+  /// Returns the paths of the files in the list with an ending; the files need not exist.
   std::vector<std::string> files_of(const std::string& ending);
 
  private:
@@ -54,18 +58,20 @@ class OutputFolder {
   std::set<std::string> names_;
 };
 
-/// Makes an empty folder, which exists, one of studies: several may work in it at the same time,
-/// each at runs of its own.
-/// @throws Error (input) when it holds files and no study has filled it, or its list cannot be
-///         written: tables of a study must not take the place of a user's.
+/// Turns an empty, existing folder into a folder of studies. Several studies may work in it at the
+/// same time, each in folders of its own runs.
+/// @throws Error (input) when the folder contains files and no study has filled it, when it is the
+///         folder of a run, or when its list cannot be written. Thus tables of a study cannot
+///         overwrite files of a user.
 void require_study_folder(const std::string& folder);
 
-/// Keeps a folder for one process that goes on with what is in it, as a study does, where an
-/// OutputFolder begins anew.
+/// A lock on a folder for one process that continues with the contents of the folder, as a study
+/// does. An OutputFolder, in contrast, starts with an empty folder.
 class FolderLock {
  public:
-  /// @param folder  which exists
-  /// @throws Error (input) as require_study_folder(), or when a living process has it.
+  /// Locks a folder.
+  /// @param folder  folder; it must exist
+  /// @throws Error (input) as require_study_folder(), or when a running process fills the folder.
   explicit FolderLock(const std::string& folder);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
@@ -75,7 +81,7 @@ class FolderLock {
   int list_ = -1;
 };
 
-/// Does a living process fill this folder?
+/// Returns true if a running process fills a folder.
 bool is_being_filled(const std::string& folder);
 
 }  // namespace flexmorph::io

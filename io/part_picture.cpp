@@ -15,11 +15,11 @@ namespace flexmorph::io {
 namespace {
 
 constexpr int kWidth = 960, kMostHigh = 720;       // pixels
-constexpr int kTitle = 34, kBar = 46, kSide = 20;  // room above, below and beside
-constexpr double kLargest = 0.125;                 // displacement, of the part
+constexpr int kTitle = 34, kBar = 46, kSide = 20;  // margins above, below and beside
+constexpr double kLargest = 0.125;  // largest displacement, as a fraction of the size of the part
 constexpr std::array<unsigned char, 3> kInPlace = {225, 225, 225};
 
-/// The four triangles of corners and middles of sides.
+/// Splits a six-node triangle into four triangles of corners and middles of sides.
 constexpr std::array<std::array<std::size_t, 3>, 4> kParts = {
     {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}};
 
@@ -32,7 +32,7 @@ Vec2 size_of(const PartMesh& mesh) {
   return high - low;
 }
 
-/// Part and displaced part on pixels.
+/// Draws the part and the displaced part on pixels.
 class Painter {
  public:
   Painter(const PartMesh& mesh, const PartPicture& picture) : mesh_(mesh), picture_(picture) {
@@ -99,7 +99,7 @@ class Painter {
   const PartMesh& mesh_;
   const PartPicture& picture_;
   double scale_ = 1;
-  Vec2 corner_{0, 0};  // upper left [m]
+  Vec2 corner_{0, 0};  // upper left corner [m]
   Pixels out_;
 };
 
@@ -118,7 +118,7 @@ std::string words(double x, double y, const std::string& anchor, const std::stri
          "\" fill=\"#222\">" + xml_escaped(text) + "</text>\n";
 }
 
-/// The colours from 0 to the largest value, and their ends.
+/// Returns a bar with the colours from 0 to the largest value and labels at its ends.
 std::string bar(const PartPicture& picture, double x, double y, double width) {
   constexpr int kSteps = 64;
   std::string out;

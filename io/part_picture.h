@@ -5,28 +5,34 @@
 
 #include "geometry/parts/part_mesh.h"
 
-/// Pictures of what a part does.
+/// Pictures of results on the mesh of a part.
 namespace flexmorph::io {
 
-/// A field on a part that is displaced: values from zero on in colours, as of Picture::Colors::map.
+/// A picture of a field on a displaced part. Values from zero up to `upper` are shown with the
+/// colours of map_color().
 struct PartPicture {
-  std::string title = {};  ///< a line above
-  std::string unit = {};   ///< of the values
-  /// At the nodes (n), linear between corners and middles of sides.
+  std::string title = {};  ///< Title above the picture.
+  std::string unit = {};   ///< Unit of the values.
+
+  /// Values at the nodes (n), linear between corners and middles of sides.
   std::span<const double> values = {};
-  std::span<const double> displacement = {};   ///< (2 n) [m]; empty: none
-  double upper = 0;                            ///< the lightest colour, also of what is above; > 0
-  double magnification = 1;                    ///< of the displacement
-  std::span<const signed char> left_out = {};  ///< triangles that are not shown displaced (1)
+  std::span<const double> displacement = {};  ///< Displacements (2 n) [m]; empty: none.
+  double upper = 0;  ///< Value with the lightest colour, which larger values have, too; > 0.
+  double magnification = 1;  ///< Factor by which displacements are magnified.
+
+  /// Value 1 for triangles that are not shown displaced.
+  std::span<const signed char> left_out = {};
 };
 
-/// An SVG with the picture in it, pixel by pixel: the part in its place in grey, and displaced in
-/// colours above it; a bar says which.
-/// @throws Error (numerical) for values that are too few, or not finite.
+/// Returns an SVG page with the picture as an image: the undisplaced part in grey, the displaced
+/// part in colours above it, and a bar that explains the colours.
+/// @throws Error (numerical) when the number of values is wrong, a value is not finite, or `upper`
+///         is not positive.
 std::string part_svg(const PartMesh& mesh, const PartPicture& picture);
 
-/// Times as large as the displacement of a part (2 n) can be shown: 1, 2 or 5 times a power of
-/// ten, so that the largest is at most an eighth of the part; 1 without displacement.
+/// Returns a factor to magnify the displacements of a part (2 n) [m]: 1, 2 or 5 times a power of
+/// ten, such that the largest displacement is at most an eighth of the size of the part; 1 if there
+/// is none.
 double clear_magnification(const PartMesh& mesh, std::span<const double> displacement);
 
 }  // namespace flexmorph::io

@@ -10,14 +10,14 @@
 namespace flexmorph::io {
 namespace {
 
-constexpr double kWidth = 1000, kMargin = 30, kFoot = 60;  // of a picture, in its own units
-constexpr double kFinest = 2.5;                            // a cell that is worth drawing
+constexpr double kWidth = 1000, kMargin = 30, kFoot = 60;  // in units of the view box
+constexpr double kFinest = 2.5;  // smallest width of a drawn cell, in units of the view box
 constexpr int kLevels = 8;
 
-/// Of a picture's unit: less is not seen.
+/// Returns a length in units of the view box, rounded to tenths, because less is not visible.
 std::string tenths(double value) { return to_text(std::round(10 * value) / 10); }
 
-/// Of the whole series, so that frames can be compared.
+/// The view of all snapshots, so that they can be compared.
 struct View {
   Vec2 low{INFINITY, INFINITY}, high{-INFINITY, -INFINITY};
 
@@ -34,7 +34,7 @@ struct View {
       for (const Vec2& p : outline) take(p);
   }
   double scale() const {
-    // A tall mechanism is no taller than it may be wide.
+    // The height is limited to the largest width.
     return (kWidth - 2 * kMargin) / std::max({high.x() - low.x(), high.y() - low.y(), 1e-12});
   }
   double height() const { return scale() * (high.y() - low.y()) + 2 * kMargin + kFoot; }
@@ -46,13 +46,13 @@ struct View {
   }
 };
 
-/// White to dark grey.
+/// Returns the grey of a level between white and dark grey.
 std::string grey(int level) {
   const std::string value = to_text(255 - (255 - 45) * level / kLevels);
   return "rgb(" + value + "," + value + "," + value + ")";
 }
 
-/// A plate with its cells merged to what can be seen.
+/// A plate whose cells are merged to a visible size.
 class CoarsePlate {
  public:
   CoarsePlate(const PlanePlate& plate, double scale) : plate_(plate) {
@@ -65,7 +65,8 @@ class CoarsePlate {
     stride_j_ = stride(scale * (point(0, 1) - point(0, 0)).norm());
   }
 
-  /// Fills the cells of one level: runs of them along the plate, a closed line each.
+  /// Returns the path that fills the cells of one level; each run of cells along the plate is a
+  /// closed line.
   std::string runs(int level, const View& view) const {
     std::string path;
     for (int j = 0; j < plate_.n_across; j += stride_j_) {
@@ -109,7 +110,7 @@ class CoarsePlate {
       view.add(point(i, j), path);
       next = "L";
     };
-    // Enough points to look curved.
+    // As many points as are needed for a smooth curve.
     const int stride = std::max(stride_i_, along_ / 40);
     for (int i = from; i < to; i += stride) add(i, low);
     for (int j = low; j < high; j += stride_j_) add(to, j);
@@ -122,7 +123,7 @@ class CoarsePlate {
   int along_ = 0, stride_i_ = 1, stride_j_ = 1;
 };
 
-/// A length of 1, 2 or 5 times a power of ten metres in the lower left corner.
+/// Returns a scale bar of 1, 2 or 5 times a power of ten metres in the lower left corner.
 std::string scale_bar(const View& view) {
   const double length = nice_ticks(0, kWidth / view.scale(), 6).at(1);
   const double y = view.height() - 0.5 * kFoot, right = kMargin + view.scale() * length;
@@ -139,7 +140,7 @@ std::string picture(const PlaneFrame& frame, const View& view) {
     const CoarsePlate plate(each, view.scale());
     for (int level = 1; level <= kLevels; ++level)
       if (const std::string path = plate.runs(level, view); !path.empty())
-        // The line closes the seams between neighbours.
+        // The stroke closes the seams between neighbouring cells.
         out += "<path d=\"" + path + "\" fill=\"" + grey(level) + "\" stroke=\"" + grey(level) +
                "\" stroke-width=\"0.4\"/>\n";
     out += "<path d=\"" + plate.border(view) + "\" fill=\"none\" stroke=\"#888\"/>\n";

@@ -11,7 +11,8 @@
 namespace flexmorph::io {
 namespace {
 
-// Okabe and Ito's colours: told apart by colour-blind eyes, and dark enough for thin lines.
+// Colours of Okabe and Ito: colour-blind people can distinguish them, and they are dark enough for
+// thin lines.
 constexpr std::array<const char*, 7> kColors = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                 "#b8860b", "#56b4e9", "#444444"};
 constexpr double kLeft = 88, kRight = 22, kTop = 34, kBottom = 52, kLegendRow = 20;
@@ -19,7 +20,7 @@ constexpr double kLetter = 6.6;  // mean width of a letter at 12 px
 
 std::string px(double value) { return to_text(std::round(value * 100) / 100); }
 
-/// Position on a page, tenths of pixels are enough.
+/// Returns the attributes of a position on a page, rounded to hundredths of a pixel.
 std::string at(const char* x_name, double x, const char* y_name, double y) {
   return std::string(" ") + x_name + "=\"" + px(x) + "\" " + y_name + "=\"" + px(y) + "\"";
 }
@@ -28,10 +29,10 @@ std::string text(double x, double y, const std::string& content, const std::stri
   return "<text" + at("x", x, "y", y) + " " + style + ">" + content + "</text>\n";
 }
 
-/// Data range and ticks of one axis, and the way from data to pixels.
+/// The range and the ticks of one axis, and the transformation from data to pixels.
 struct Scale {
   bool logarithmic = false;
-  double lower = 0, upper = 1;  // of the data, or of its decimal logarithm
+  double lower = 0, upper = 1;  // limits of the data, or of their decimal logarithm
   double from = 0, to = 1;      // [px]
   std::vector<double> ticks, fine;
 
@@ -52,7 +53,7 @@ void widen(double value, const Scale& scale, double& lower, double& upper) {
   upper = std::max(upper, scale.inner(value));
 }
 
-/// Ticks of a logarithmic axis: decades, or 1, 2, 5 of them when there are few.
+/// Sets the ticks of a logarithmic axis: at decades, or at 1, 2, 5 times decades if there are few.
 void set_log_ticks(Scale& s) {
   const int first = static_cast<int>(std::floor(s.lower)),
             last = static_cast<int>(std::ceil(s.upper));
@@ -85,10 +86,10 @@ Scale make_scale(const Axis& axis, const std::vector<Curve>& curves, bool is_x, 
   double lower = std::numeric_limits<double>::infinity(), upper = -lower;
   for (const Curve& c : curves)
     for (const double value : is_x ? c.x : c.y) widen(value, s, lower, upper);
-  if (!(lower <= upper)) lower = 0, upper = 1;  // nothing to show: an empty frame
+  if (!(lower <= upper)) lower = 0, upper = 1;  // no data: the frame is empty
   if (axis.lower && s.shows(*axis.lower)) lower = s.inner(*axis.lower);
   if (axis.upper && s.shows(*axis.upper)) upper = s.inner(*axis.upper);
-  // A constant still gets a range, above the rounding of its own size.
+  // A constant also gets a range, which is larger than the round-off of its value.
   const double size = std::max(std::abs(lower), std::abs(upper));
   if (upper - lower <= 1e-12 * size || upper <= lower) {
     const double half = s.logarithmic ? 0.5 : (size > 0 ? 0.05 * size : 1);
@@ -109,7 +110,8 @@ Scale make_scale(const Axis& axis, const std::vector<Curve>& curves, bool is_x, 
   return s;
 }
 
-/// "0.05", "1.2·10⁶": plain where that is short, a power of ten elsewhere.
+/// Returns the label of a tick, "0.05" or "1.2·10⁶": a decimal number if it is short, else with a
+/// power of ten.
 std::string tick_label(double value, const Scale& s) {
   const double largest =
       s.logarithmic ? std::abs(value) : std::max(std::abs(s.lower), std::abs(s.upper));
@@ -172,7 +174,7 @@ std::string line_svg(const Curve& curve, size_t index, const Scale& x, const Sca
   return path.empty() ? "" : "<path d=\"" + path + "\"" + style_of(curve, index) + "/>\n";
 }
 
-/// Markers inside the frame, whole even on its border.
+/// Returns the markers inside the frame; markers on its border are not cut.
 std::string markers_svg(const Curve& curve, size_t index, const Scale& x, const Scale& y) {
   std::string out;
   for (size_t i = 0; curve.markers && i < std::min(curve.x.size(), curve.y.size()); ++i)
@@ -181,7 +183,8 @@ std::string markers_svg(const Curve& curve, size_t index, const Scale& x, const 
   return out;
 }
 
-/// Names of the curves in rows above the frame; returns where each one stands, and the rows.
+/// The names of the curves in rows above the frame: the position of each name, and the number of
+/// rows.
 struct Legend {
   struct Entry {
     size_t curve;
@@ -238,8 +241,8 @@ std::string panel_svg(const Panel& panel, double top, double width, double heigh
   out += grid_lines(x, y);
   const std::string place =
       at("x", left, "y", frame_top) + at("width", right - left, "height", frame_bottom - frame_top);
-  // An inner page cuts what leaves the frame; a clip path would need a name, and names collide
-  // when several figures share one report.
+  // A nested SVG element clips lines at the frame. A clip path would need a name, and names would
+  // collide if several figures are in one report.
   out += "<svg" + place + " viewBox=\"" + px(left) + " " + px(frame_top) + " " + px(right - left) +
          " " + px(frame_bottom - frame_top) + "\">\n";
   for (size_t i = 0; i < panel.curves.size(); ++i) out += line_svg(panel.curves[i], i, x, y);
@@ -261,10 +264,10 @@ std::vector<double> nice_ticks(double lower, double upper, int wanted) {
   const double share = rough / power;
   const double step = power * (share < 1.5 ? 1 : share < 3.5 ? 2 : share < 7.5 ? 5 : 10);
   std::vector<double> ticks;
-  // Counted in steps, so that the ticks carry no summed rounding.
+  // Ticks are multiples of the step, so that no round-off accumulates.
   const double first = std::ceil(lower / step - 1e-9), last = std::floor(upper / step + 1e-9);
   for (int i = 0; i <= static_cast<int>(last - first); ++i)
-    ticks.push_back((first + i) * step + 0.0);  // + 0.0: no "-0"
+    ticks.push_back((first + i) * step + 0.0);  // + 0.0 turns -0 into 0
   return ticks;
 }
 
@@ -302,7 +305,7 @@ std::string outline_svg(std::span<const Region> regions, const Box& frame, int d
     for (const std::vector<Vec2>& hole : region.holes) path += ring(hole);
   }
   const double line = 0.002 * size.maxCoeff();
-  // y points down in SVG: the group mirrors it about the middle of the frame.
+  // In SVG y points downwards, therefore the group is mirrored about the middle of the frame.
   return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"" + to_text(frame.lower.x()) + " " +
          to_text(frame.lower.y()) + " " + to_text(size.x()) + " " + to_text(size.y()) +
          "\" width=\"" + to_text(1000 * size.x(), 9) + "mm\" height=\"" +

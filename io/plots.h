@@ -7,47 +7,54 @@
 
 #include "geometry/components/outline.h"
 
-/// Pictures as SVG text, for files and for the report.
+/// Plots as SVG text, for files and for the report.
 namespace flexmorph::io {
 
-/// One line of a plot. A point that is not finite (or not positive on a logarithmic axis) leaves
-/// a gap.
+/// One line of a plot. It is interrupted at points that are not finite (or not positive on a
+/// logarithmic axis).
 struct Curve {
-  std::string name = {};  ///< in the legend; empty: not there
-  std::vector<double> x = {}, y = {};
+  std::string name = {};               ///< Name in the legend; empty: not in the legend.
+  std::vector<double> x = {}, y = {};  ///< Coordinates of the points.
+
+  /// True for a line, for markers at points, for a dashed line.
   bool line = true, markers = false, dashed = false;
-  std::optional<size_t> color = {};  ///< place in the list of colours; absent: that of the curve
-  bool thin = false;
+  /// Index in the list of colours; absent: the index of the curve.
+  std::optional<size_t> color = {};
+  bool thin = false;  ///< True for a thin line.
 };
 
+/// One axis of a plot.
 struct Axis {
-  std::string label = {};  ///< with its unit: "time [s]"
-  bool logarithmic = false;
-  std::optional<double> lower = {}, upper = {};  ///< from the data where absent
+  std::string label = {};                        ///< Label with its unit, such as "time [s]".
+  bool logarithmic = false;                      ///< True for a logarithmic axis.
+  std::optional<double> lower = {}, upper = {};  ///< Limits; taken from the data if absent.
 };
 
+/// One diagram with its axes and curves.
 struct Panel {
-  std::string title = {};
-  Axis x = {}, y = {};
-  std::vector<Curve> curves = {};
+  std::string title = {};          ///< Title above the diagram.
+  Axis x = {}, y = {};             ///< Horizontal and vertical axis.
+  std::vector<Curve> curves = {};  ///< Curves of the diagram.
 };
 
-/// Panels below each other.
+/// A page with one or more diagrams below each other.
 struct Figure {
-  std::string title = {};
-  std::vector<Panel> panels = {};
-  int width = 760, panel_height = 300;  ///< [px]
+  std::string title = {};               ///< Title of the page.
+  std::vector<Panel> panels = {};       ///< Diagrams from top to bottom.
+  int width = 760, panel_height = 300;  ///< Width of the page and height of a diagram [px].
 };
 
-/// The figure as SVG.
+/// Returns a page of diagrams as SVG text.
 std::string plot_svg(const Figure& figure);
 
-/// Positions of ticks at 1, 2 or 5 times a power of ten, about `wanted` of them in [lower, upper].
+/// Returns positions of about `wanted` ticks in [lower, upper], at multiples of 1, 2 or 5 times a
+/// power of ten.
 std::vector<double> nice_ticks(double lower, double upper, int wanted);
 
-/// Regions with holes as one filled path, in metres, y up, inside `frame`, true to scale: one unit
-/// of the view box is one metre, the page is as large as the design. Coordinates with so many
-/// digits, all where 0: five are enough to look at, and half as long.
+/// Returns an SVG page with regions as one filled path. The page shows `frame` in full size: one
+/// unit of the view box is one metre, and y points upwards.
+/// @param digits  significant digits of coordinates; 0: all. Five suffice for viewing and halve the
+///         size of the text.
 std::string outline_svg(std::span<const Region> regions, const Box& frame, int digits = 0);
 
 }  // namespace flexmorph::io

@@ -18,7 +18,7 @@ std::string png(const Pixels& pixels) {
   image->AllocateScalars(VTK_UNSIGNED_CHAR, pixels.channels);
   auto* to = static_cast<unsigned char*>(image->GetScalarPointer());
   const auto row = static_cast<size_t>(pixels.width) * static_cast<size_t>(pixels.channels);
-  for (int y = pixels.height - 1; y >= 0; --y)  // VTK's first row is the lowest
+  for (int y = pixels.height - 1; y >= 0; --y)  // the first row of VTK is the lowest one
     to = std::copy_n(pixels.values.data() + static_cast<size_t>(y) * row, row, to);
   vtkNew<vtkPNGWriter> writer;
   writer->SetInputData(image);

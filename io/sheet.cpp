@@ -13,10 +13,10 @@ namespace {
 
 constexpr double kColumn = 420, kGap = 24, kTitle = 26, kHead = 48;
 
-/// An SVG page, taken apart: its view box and what is in it.
+/// An SVG page, separated into its view box, attributes and contents.
 struct Page {
   std::array<double, 4> box{};  // x, y, width, height
-  std::string attributes;       // of the root, less its place and size
+  std::string attributes;       // attributes of the root without position and size
   std::string contents;
 
   explicit Page(const std::string& svg) {
@@ -58,8 +58,8 @@ struct Page {
   }
 };
 
-/// The size of letters [px] in which a title is at most as wide as a column: bold ones of the
-/// common fonts are 0.65 of their size, on average.
+/// Returns the font size [px] at which a title is at most as wide as a column. Bold letters of
+/// common fonts have a mean width of 0.65 times the font size.
 int fitting(const std::string& title) {
   constexpr double kMost = 14, kLeast = 7, kLetter = 0.65;
   const double size = kColumn / (kLetter * static_cast<double>(std::max<size_t>(1, title.size())));

@@ -4,16 +4,17 @@
 #include <string>
 #include <vector>
 
-/// Many pictures on one page.
+/// Pages with many pictures.
 namespace flexmorph::io {
 
-/// A column of SVG pages below a title.
+/// A column of SVG pictures below a title.
 struct SheetEntry {
-  std::string title;
-  std::vector<std::string> pictures;  ///< SVG with a viewBox
+  std::string title;                  ///< Title above the pictures.
+  std::vector<std::string> pictures;  ///< SVG pages with a viewBox, from top to bottom.
 };
 
-/// A page with the entries side by side, `columns` in a row, every picture as wide as its column.
+/// Returns an SVG page with the entries side by side, `columns` in a row. Every picture has the
+/// width of its column.
 /// @throws Error (input) for a picture without a viewBox.
 std::string contact_sheet(const std::string& title, std::span<const SheetEntry> entries,
                           int columns);

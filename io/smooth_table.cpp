@@ -15,10 +15,11 @@ using Spline = Eigen::Spline<double, 1, Eigen::Dynamic>;
 
 constexpr size_t kOrder = 6;  // coefficients of a polynomial of degree 5
 
-// Of the length of the table: closer times fall together when they are scaled to [0, 1], or have so
-// few digits left between them that no derivative is worth its name.
+// Smallest distance of times as a fraction of the length of the table. Closer times coincide when
+// they are scaled to [0, 1], or have so few different digits that derivatives are inaccurate.
 constexpr double kClosest = 1e-11;
-// Of the largest value: a spline that misses its points by more has lost its digits.
+// Largest error at the points as a fraction of the largest value. A larger error means that the
+// spline lost its accuracy by round-off.
 constexpr double kMissed = 1e-6;
 
 void check(std::span<const double> times, std::span<const double> values) {
@@ -45,11 +46,11 @@ void check(std::span<const double> times, std::span<const double> values) {
                          to_text(kClosest * length, 3) + " s");
 }
 
-/// B-splines that are not zero between knots k and k + 1: entry [p][r] is that of degree p and
-/// number k - p + r.
+/// The B-splines that are not zero between the knots k and k + 1. Entry [p][r] is the B-spline of
+/// degree p and index k - p + r.
 using Basis = std::array<std::array<double, kOrder>, kOrder>;
 
-/// Their values at u (de Boor 1978, chapter X).
+/// Returns the values of the B-splines at u (de Boor 1978, chapter X).
 Basis basis_at(double u, const double* knot, int degree) {
   Basis out{};
   out[0][0] = 1;
@@ -68,10 +69,11 @@ Basis basis_at(double u, const double* knot, int degree) {
   throw Error::input("no smooth function goes through the table: its times are too uneven");
 }
 
-/// Coefficients of the spline with these knots that takes the values at u.
+/// Returns the coefficients of the spline with given knots that has the given values at u.
 ///
-/// Row i of the banded equations has the B-splines at u_i in columns i - degree .. i + degree.
-/// Elimination needs no pivots: the matrix is totally positive (de Boor 1978, chapter XIII).
+/// Row i of the banded equations contains the B-splines at u_i in the columns from i - degree to
+/// i + degree. The elimination needs no pivoting, because the matrix is totally positive (de Boor
+/// 1978, chapter XIII).
 std::vector<double> interpolate(const Spline::KnotVectorType& u, std::span<const double> values,
                                 int degree, const Spline::KnotVectorType& knots) {
   const Eigen::Index n = u.size();
@@ -81,7 +83,8 @@ std::vector<double> interpolate(const Spline::KnotVectorType& u, std::span<const
   for (Eigen::Index i = 0; i < n; ++i) {
     while (span + 1 < n && u[i] >= knots[span + 1]) ++span;
     const Basis basis = basis_at(u[i], knots.data() + span, degree);
-    const Eigen::Index first = span - i;  // its column is span - degree
+    // position in row i of the band; the column of the matrix is span - degree
+    const Eigen::Index first = span - i;
     if (first < 0 || first > degree) refuse_times();
     for (int r = 0; r <= degree; ++r)
       band(first + r, i) = basis[static_cast<size_t>(degree)][static_cast<size_t>(r)];
@@ -104,14 +107,15 @@ std::vector<double> interpolate(const Spline::KnotVectorType& u, std::span<const
   return out;
 }
 
-/// The j-th derivatives of the spline at its knot k, j = 0 .. degree: coefficients of a derivative
-/// are differences of those before (de Boor 1978, chapter X).
+/// Returns the j-th derivatives of the spline at its knot k, j = 0 .. degree. The coefficients of a
+/// derivative are differences of the coefficients of the next lower derivative (de Boor 1978,
+/// chapter X).
 std::array<double, kOrder> derivatives_at(const double* knot, const double* control, int degree) {
   const Basis basis = basis_at(*knot, knot, degree);
   std::array<double, kOrder> c{}, out{};
   for (int r = 0; r <= degree; ++r) c[static_cast<size_t>(r)] = control[r - degree];
   for (int j = 0; j <= degree; ++j) {
-    const int p = degree - j;  // of the derivative; its coefficients are c[j] .. c[degree]
+    const int p = degree - j;  // degree of the derivative; its coefficients are c[j] .. c[degree]
     for (int r = 0; r <= p; ++r)
       out[static_cast<size_t>(j)] +=
           c[static_cast<size_t>(j + r)] * basis[static_cast<size_t>(p)][static_cast<size_t>(r)];
@@ -137,7 +141,7 @@ SmoothTable::SmoothTable(std::span<const double> times, std::span<const double> 
   Eigen::KnotAveraging(u, degree, knots);
   const std::vector<double> controls = interpolate(u, values, degree, knots);
 
-  // Between two knots the spline is a polynomial, here in powers of t - t_k.
+  // Between two knots the spline is stored as a polynomial in powers of t - t_k.
   breaks_.reserve(times.size() + 1);
   coefficients_.reserve(kOrder * times.size());
   for (Eigen::Index k = degree; k + degree + 1 < knots.size(); ++k) {

@@ -13,11 +13,11 @@ namespace flexmorph::io {
 namespace {
 
 constexpr double kAzimuth = -55 * std::numbers::pi / 180, kElevation = 25 * std::numbers::pi / 180;
-constexpr double kWidth = 1000;  // of a picture, in its own units
+constexpr double kWidth = 1000;  // width of a picture in units of its view box
 
 std::string tenths(double value) { return to_text(std::round(10 * value) / 10); }
 
-/// Where a point is seen: to the right, up, and towards the viewer.
+/// Returns the position of a point in the view: to the right, up, and towards the viewer.
 Vec3 seen(const double* p) {
   const double along = std::cos(kAzimuth) * p[0] + std::sin(kAzimuth) * p[1];
   return {-std::sin(kAzimuth) * p[0] + std::cos(kAzimuth) * p[1],
@@ -25,7 +25,7 @@ Vec3 seen(const double* p) {
           std::cos(kElevation) * along + std::sin(kElevation) * p[2]};
 }
 
-/// Of the whole series, so that frames can be compared.
+/// The view of all snapshots, so that they can be compared.
 struct View {
   double left = INFINITY, right = -INFINITY, low = INFINITY, high = -INFINITY, largest = 0;
 
@@ -42,7 +42,7 @@ struct View {
   double size() const { return std::max({right - left, high - low, 1e-12}); }
 };
 
-/// From dark blue over orange to light yellow.
+/// Returns a colour from dark blue over orange to light yellow.
 std::string colour(double share) {
   const double s = std::clamp(share, 0.0, 1.0);
   const double stops[3][3] = {{38, 70, 150}, {225, 120, 60}, {255, 240, 170}};
@@ -67,7 +67,7 @@ std::string picture(const SurfaceFrame& frame, const View& view) {
     for (const int corner : frame.mesh.quads[q]) depth += seen(&frame.mesh.points[3 * corner])[2];
     order.push_back({depth, q});
   }
-  // What is far away first: what is nearer covers it.
+  // Far quadrilaterals are drawn first, so that near ones cover them.
   std::stable_sort(order.begin(), order.end(),
                    [](const Quad& a, const Quad& b) { return a.depth < b.depth; });
   const double scale = 0.96 * kWidth / view.size();

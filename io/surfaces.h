@@ -8,16 +8,17 @@
 /// Pictures of deformed plates in space.
 namespace flexmorph::io {
 
-/// A plate at one moment.
+/// A snapshot of a plate.
 struct SurfaceFrame {
-  std::string title;
-  QuadMesh mesh;               ///< dimension 3
-  std::vector<double> values;  ///< per quad, >= 0: its colour
+  std::string title;           ///< Title above the snapshot.
+  QuadMesh mesh;               ///< Deformed mesh of dimension 3.
+  std::vector<double> values;  ///< Value of each quadrilateral, >= 0, shown as its colour.
 };
 
-/// The frames side by side, `columns` in a row, in the same view from above and to the same scale;
-/// colours from the smallest value (dark) to the largest of all frames (light).
-/// @throws Error (input) when there is no frame, or one that is not in space.
+/// Returns an SVG page with the snapshots side by side, `columns` in a row, in the same view from
+/// above and with the same scale. Colours go from zero (dark) to the largest value of all snapshots
+/// (light).
+/// @throws Error (input) when there is no snapshot, or when one is not in space.
 std::string surfaces_svg(const std::string& title, const std::vector<SurfaceFrame>& frames,
                          int columns = 4);
 

@@ -60,7 +60,7 @@ CsvWriter CsvWriter::go_on(std::string path, size_t n_columns) {
   out.open();
   std::ifstream file(out.path_, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
-  out.size_ = static_cast<off_t>(text.rfind('\n') + 1);  // 0 without any
+  out.size_ = static_cast<off_t>(text.rfind('\n') + 1);  // 0 if there is no line end
   if (::ftruncate(out.file_, out.size_) != 0)
     throw Error::numerical(out.path_ +
                            ": cannot be written: " + std::generic_category().message(errno));
@@ -93,7 +93,8 @@ void CsvWriter::write(const std::string& line) {
     const ssize_t n = ::write(file_, line.data() + done, line.size() - done);
     if (n < 0 && errno != EINTR) {
       const int why = errno;
-      // A full disk takes a part of a row: what is read later ends with a whole one.
+      // If the disk is full, only a part of the row was written. It is removed, so that the file
+      // ends with a whole row.
       if (::ftruncate(file_, size_) != 0) ::close(std::exchange(file_, -1));
       throw Error::numerical(path_ +
                              ": cannot be written: " + std::generic_category().message(why));

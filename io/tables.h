@@ -17,36 +17,45 @@ namespace flexmorph::io {
 /// One entry of a table: a number, a text, or nothing.
 class Cell {
  public:
-  Cell() = default;  ///< empty
+  Cell() = default;  ///< Creates an empty entry.
+
+  /// Creates the entry of a number.
   Cell(double value) : text_(to_text(value)) {}
   Cell(int value) : text_(to_text(value)) {}
+  /// Creates the entry 1 (true) or 0 (false).
   Cell(bool value) : text_(value ? "1" : "0") {}
-  Cell(std::string text);  ///< in quotes when it holds a comma, a quote or a line end
+  /// Creates the entry of a text, in quotes if it contains a comma, a quote or a line end.
+  Cell(std::string text);
   Cell(const char* text) : Cell(std::string(text)) {}
 
+  /// Returns the entry as it is written to the file.
   const std::string& text() const { return text_; }
 
  private:
   std::string text_;
 };
 
-/// A table of comma-separated values that can be read while it grows: a row appears as a whole, but
-/// for the instant in which the system takes one that crosses two pages of memory.
-/// Numbers are written in full precision, whatever the locale.
+/// A writer for a table of comma-separated values that can be read while it grows. A reader sees
+/// whole rows only, except in the short time in which the system writes a row that crosses a memory
+/// page. Numbers are written in full precision, in every locale.
 class CsvWriter {
  public:
-  /// Begins a new file with its header, and rows as long as it, in a folder that is there; an old
-  /// one is replaced as a whole: who reads it meanwhile sees the one or the other.
-  /// @throws Error (numerical) when it cannot be written; row() likewise, whole rows stay.
+  /// Creates a file with a header and rows of its length, in an existing folder. An old file is
+  /// replaced as a whole, therefore readers see either the old or the new file.
+  /// @throws Error (numerical) when the file cannot be written; row() throws it, too, and whole
+  ///         rows are kept.
   CsvWriter(std::string path, std::span<const std::string> columns,
             std::span<const std::vector<Cell>> rows = {});
-  /// Goes on with a file that is there, behind its last whole row.
+  /// Continues an existing file after its last whole row.
   static CsvWriter go_on(std::string path, size_t n_columns);
   ~CsvWriter();
+  /// Takes the file of another writer.
   CsvWriter(CsvWriter&& other) noexcept;
   CsvWriter& operator=(CsvWriter&& other) = delete;
 
-  /// @throws Error (numerical) when the row has another length than the header.
+  /// Appends a row to the file.
+  /// @throws Error (numerical) when the row has another length than the header, or cannot be
+  ///         written.
   void row(std::span<const Cell> cells);
   void row(std::initializer_list<Cell> cells) { row(std::span(cells.begin(), cells.size())); }
 
@@ -58,52 +67,57 @@ class CsvWriter {
   std::string path_;
   size_t n_columns_;
   int file_ = -1;
-  off_t size_ = 0;  // of whole rows
+  off_t size_ = 0;  // size of all whole rows [bytes]
 };
 
-/// A table of comma-separated values as read from a file. Copies share its text.
+/// A table of comma-separated values that was read from a file. Copies share its text.
 class CsvTable {
  public:
-  std::vector<std::string> columns;
-  bool decimal_comma = false;  ///< a comma may stand for the point of a number
+  std::vector<std::string> columns;  ///< Names of the columns.
+  bool decimal_comma = false;        ///< True if numbers may have a decimal comma.
 
+  /// Returns the number of rows below the header.
   size_t n_rows() const { return columns.empty() ? 0 : cells_.size() / columns.size(); }
-  /// One row, as long as the header.
+  /// Returns the cells of one row, as many as the header has.
   std::vector<std::string> row(size_t r) const;
-  /// @throws Error (input) for a column that is not there, naming those that are.
+  /// Returns the cells of a column.
+  /// @throws Error (input) for an unknown column, with the names of all columns.
   std::vector<std::string> texts(const std::string& column) const;
-  /// Numbers of a column; NaN where a cell is empty or no number.
+  /// Returns the numbers of a column; NaN where a cell is empty or not a number.
   /// @throws Error (input) as texts().
   std::vector<double> numbers(const std::string& column) const;
 
  private:
   friend CsvTable read_csv(const std::string& path);
-  std::shared_ptr<std::string> text_;    // what cells point into: no string of their own
+  std::shared_ptr<std::string> text_;    // text of the file, into which the cells point
   std::vector<std::string_view> cells_;  // row by row
 };
-/// Cells are separated by commas, or as the header has it by semicolons or tabulators, where
-/// numbers may have decimal commas; a byte-order mark and spaces around cells do not count.
-/// @throws Error (input) when the file cannot be read; file and line where a row has another length
-///         than the header.
+/// Returns a table from a file. Cells are separated by commas, or, if the header has more of them,
+/// by semicolons or tabulators; then numbers may have decimal commas. A byte-order mark and spaces
+/// around cells are ignored.
+/// @throws Error (input) when the file cannot be read, or with file and line when a row has another
+///         length than the header.
 CsvTable read_csv(const std::string& path);
 
-/// Rows of texts for a terminal: columns padded, the first row is the header.
+/// Returns rows as text with padded columns for a terminal; the first row is the header.
 std::string aligned_table(std::span<const std::vector<std::string>> rows);
-/// The same as Markdown.
+/// Returns rows as a Markdown table; the first row is the header.
 std::string markdown_table(std::span<const std::vector<std::string>> rows);
 
-/// One part of a report: a heading, words, a table, pictures; whatever is empty is left out.
+/// One section of a report. Members that are empty are omitted.
 struct ReportSection {
-  std::string heading = {}, words = {};
-  std::vector<std::string> warnings = {};           ///< stand out
-  std::vector<std::vector<std::string>> rows = {};  ///< the first one is the header
-  std::vector<std::string> pictures = {};           ///< SVG, see plots.h
+  std::string heading = {}, words = {};    ///< Heading, and text below it.
+  std::vector<std::string> warnings = {};  ///< Warnings, which are highlighted.
+
+  /// Rows of a table; the first one is the header.
+  std::vector<std::vector<std::string>> rows = {};
+  std::vector<std::string> pictures = {};  ///< Pictures as SVG text, see plots.h.
 };
 
-/// A page that needs no other file (.html).
+/// Returns a report as a page that needs no other file (.html).
 std::string report_html(const std::string& title, std::span<const ReportSection> sections);
 
-/// Text for XML and HTML, in contents and attributes.
+/// Returns a text with escaped characters for the contents and attributes of XML and HTML.
 std::string xml_escaped(const std::string& text);
 
 }  // namespace flexmorph::io

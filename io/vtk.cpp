@@ -24,7 +24,8 @@
 namespace flexmorph::io {
 namespace {
 
-/// Adds fields to point or cell data; place(k) is where VTK wants value k of the field.
+/// Adds fields to point or cell data; place(k) is the index at which VTK stores value k of the
+/// field.
 template <class Place>
 void add_fields(vtkFieldData* data, std::span<const Field> fields, int n, const std::string& path,
                 Place place) {
@@ -56,18 +57,18 @@ void add_fields(vtkFieldData* data, std::span<const Field> fields, int n, const 
 
 int same_place(int k) { return k; }
 
-/// The writer writes into memory, so that all files appear in the same way.
+/// Writes data to a file. VTK writes into memory, so that all files appear in the same way.
 template <class Writer, class Data>
 void write_xml(const std::string& path, Data* data) {
   vtkNew<Writer> writer;
   writer->SetInputData(data);
-  // Base64: Debian's ParaView 5.11 cannot read raw appended data.
+  // Base64 is used because ParaView 5.11 of Debian cannot read raw appended data.
   writer->SetDataModeToBinary();
   writer->SetHeaderTypeToUInt32();
   writer->SetCompressorTypeToZLib();
   writer->SetCompressionLevel(1);
   writer->WriteToOutputStringOn();
-  const PlainNumbers plain;  // VTK prints ranges in the language of the process
+  const PlainNumbers plain;  // VTK prints ranges in the locale of the process
   if (writer->Write() != 1) throw Error::numerical(path + ": VTK could not encode the data");
   write_file(path, writer->GetOutputString());
 }
@@ -79,7 +80,7 @@ vtkNew<vtkPoints> float_points(int n) {
   return points;
 }
 
-/// Cells of one type, by their nodes.
+/// Writes cells of one type, given by their nodes.
 template <std::size_t n>
 void write_cells(const std::string& path, vtkPoints* points, int type,
                  const std::vector<std::array<int, n>>& nodes, std::span<const Field> cell_fields,
@@ -107,9 +108,9 @@ void write_image_data(const std::string& path, const Grid& grid, std::span<const
   vtkNew<vtkImageData> image;
   image->SetDimensions(grid.nx + 1, grid.ny + 1, 1);
   image->SetOrigin(grid.x0, grid.y0, 0);
-  // The third spacing is that of nothing; ParaView wants it positive.
+  // The third spacing has no meaning, but ParaView needs a positive value.
   image->SetSpacing(grid.dx(), grid.dy(), std::min(grid.dx(), grid.dy()));
-  // VTK counts x fastest, the grid y fastest.
+  // In VTK x is the fastest index, in the grid y.
   add_fields(image->GetCellData(), cell_fields, grid.n_cells(), path,
              [&](int k) { return (k % grid.ny) * grid.nx + k / grid.ny; });
   add_fields(image->GetPointData(), point_fields, grid.n_nodes(), path,

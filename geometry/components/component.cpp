@@ -18,17 +18,18 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Placement = CGAL::Aff_transformation_2<Kernel>;
 
-/// From the component's frame to the plane: turned by θ, then moved to (X0, Y0).
+/// Returns the transformation from the component's frame to the plane: a rotation by θ, then a
+/// translation by (X0, Y0).
 Placement placement(const Component& c) {
   const Placement turn(CGAL::ROTATION, std::sin(c.angle), std::cos(c.angle));
   const Placement move(CGAL::TRANSLATION, Kernel::Vector_2(c.center.x(), c.center.y()));
   return move * turn;
 }
 
-/// Point of u⁶ + v⁶ = 1 at parameter t in [0, 2π).
+/// Returns the point of u⁶ + v⁶ = 1 at the parameter t in [0, 2π).
 ///
-/// The polar angle t + sin(4t)/8 halves the spacing in the corners, where the curvature is
-/// largest, and stretches it by half on the flanks.
+/// The polar angle t + sin(4t)/8 halves the spacing at the corners, where the curvature is largest,
+/// and increases it by half on the flanks.
 Vec2 unit_superellipse(double t) {
   const double angle = t + 0.125 * std::sin(4 * t);
   const double u = std::cos(angle), v = std::sin(angle);

@@ -12,15 +12,17 @@ namespace flexmorph {
 ///
 ///   g = r(a ξ² + b ξ + c3),   ξ = clamp(x / L),   a = (c1 + c2)/2 - c3,   b = (c2 - c1)/2
 ///
-/// P (26), its coefficients scaled with L. clamp() is the identity on [-1, 1] and comes to rest at
-/// ±(1 + kBeyond) over twice that distance; r is the lower bound (see profile()). T is a number, or
-/// one that carries derivatives. Free of branches, because loops over nodes are made of it.
+/// The formula is P (26) with coefficients that are scaled with L. clamp() is the identity on [-1,
+/// 1]; between |x / L| = 1 and 1 + 2 kBeyond it changes smoothly to the constant ±(1 + kBeyond). r
+/// is the lower bound (see profile()). T is double or a number type that carries derivatives. The
+/// functions have no branches, so that loops over nodes can use SIMD instructions.
 template <class T>
 class HalfThickness {
  public:
-  /// ξ is constant from 1 + 2 kBeyond on, and 1 + kBeyond there.
+  /// Excess of the largest |ξ| over 1: |ξ| is 1 + kBeyond for |x / L| >= 1 + 2 kBeyond.
   static constexpr double kBeyond = 0.1;
 
+  /// Stores the parameters; `minimum` is the lower bound of g [m].
   HalfThickness(T half_length, T c1, T c2, T c3, double minimum)
       : half_length_(half_length),
         per_length_(1 / half_length),
@@ -30,16 +32,18 @@ class HalfThickness {
         minimum_(minimum),
         rounding_(0.1 * minimum) {}
 
+  /// Returns the half-length L [m].
   const T& half_length() const { return half_length_; }
-  const T& per_length() const { return per_length_; }  ///< 1 / L
+  /// Returns 1 / L [1/m].
+  const T& per_length() const { return per_length_; }
 
-  /// g(x)   [m]
+  /// Returns the half-thickness g(x) [m].
   T operator()(const T& x) const {
     const T xi = clamped(T(x * per_length_)).value;
     return bounded(T((a_ * xi + b_) * xi + c3_)).value;
   }
 
-  /// g(x) and its derivatives.
+  /// Returns g(x) and its derivatives.
   BasicProfile<T> profile(const T& x) const {
     const T raw = x * per_length_;
     const Smooth xi = clamped(raw);
@@ -51,7 +55,7 @@ class HalfThickness {
              0.5 * g.slope * (xi.value + 1) * xi.value, g.slope * (1 - xi.value * xi.value)}};
   }
 
-  /// Smallest and largest g for ξ in [lower, upper]   [m].
+  /// Returns the smallest and the largest g for ξ in [lower, upper] [m].
   std::pair<T, T> range(double lower, double upper) const {
     const auto at = [&](const T& xi) { return T((a_ * xi + b_) * xi + c3_); };
     const T ends[2] = {at(T(lower)), at(T(upper))};
@@ -71,7 +75,8 @@ class HalfThickness {
     T value, slope;
   };
 
-  /// The slope beyond 1 is 1 - t² (3 - 2 t), t from 0 to 1 over 2 kBeyond.
+  /// Clamps x / L. Beyond 1 the derivative is 1 - t² (3 - 2 t), where t grows from 0 to 1 over 2
+  /// kBeyond.
   static Smooth clamped(const T& raw) {
     const T size = raw < 0 ? T(-raw) : raw;
     const T t = between(T((size - 1) * (0.5 / kBeyond)));
@@ -79,7 +84,8 @@ class HalfThickness {
     return {raw < 0 ? T(-value) : value, 1 - t * t * (3 - 2 * t)};
   }
 
-  /// m below m - d, g above m + d; the slope between is t² (3 - 2 t).
+  /// Applies the lower bound: m below m - d, g above m + d; between them the derivative is t² (3 -
+  /// 2 t).
   Smooth bounded(const T& g) const {
     const T t = between(T((g - minimum_ + rounding_) * (0.5 / rounding_)));
     const T above = g - minimum_ - rounding_;
@@ -94,11 +100,12 @@ class HalfThickness {
   double minimum_, rounding_;
 };
 
-/// A component prepared for many points: everything that does not depend on the point.
+/// The frame of a component: everything that does not depend on the point at which it is evaluated.
 ///
 ///   x =  cos θ (X - X0) + sin θ (Y - Y0),    y = -sin θ (X - X0) + cos θ (Y - Y0)     P (25)
 class ComponentFrame {
  public:
+  /// Prepares a component; `min_half_thickness` is the lower bound of its profile [m].
   ComponentFrame(const Component& c, double min_half_thickness)
       : center_x_(c.center.x()),
         center_y_(c.center.y()),
@@ -106,26 +113,34 @@ class ComponentFrame {
         sin_(std::sin(c.angle)),
         shape_(c.half_length, c.c1, c.c2, c.c3, min_half_thickness) {}
 
+  /// Returns the local coordinate x along the axis of a point (X, Y) of the plane [m].
   double x(double X, double Y) const { return cos_ * (X - center_x_) + sin_ * (Y - center_y_); }
+  /// Returns the local coordinate y across the axis of a point (X, Y) of the plane [m].
   double y(double X, double Y) const { return cos_ * (Y - center_y_) - sin_ * (X - center_x_); }
+  /// Returns cos θ of the component's angle.
   double cosine() const { return cos_; }
+  /// Returns sin θ of the component's angle.
   double sine() const { return sin_; }
+  /// Returns the half-length L [m].
   double half_length() const { return shape_.half_length(); }
-  double per_length() const { return shape_.per_length(); }  ///< 1 / L
+  /// Returns 1 / L [1/m].
+  double per_length() const { return shape_.per_length(); }
+  /// Returns the half-thickness as a function of the local x.
   const HalfThickness<double>& shape() const { return shape_; }
 
-  /// g(x)   [m]
+  /// Returns the half-thickness g(x) [m].
   double half_thickness(double x) const { return shape_(x); }
-  /// g(x) and its derivatives.
+  /// Returns g(x) and its derivatives.
   Profile profile(double x) const { return shape_.profile(x); }
-  /// max g over [-L, L]   [m]
+  /// Returns the largest g over [-L, L] [m].
   double largest_half_thickness() const { return shape_.range(-1, 1).second; }
 
-  /// The part of the vertical line at X inside a rectangle of the component's frame: Y from
-  /// lower to upper, empty when lower > upper   [m].
+  /// An interval of Y on a vertical line; it is empty when lower > upper [m].
   struct Interval {
-    double lower, upper;
+    double lower, upper;  ///< Lower and upper end [m].
   };
+  /// Returns the interval of the vertical line at X that lies in a rectangle of the component's
+  /// frame.
   Interval column(double X, const Box& local) const {
     const double dX = X - center_x_;
     const Interval along = strip(cos_ * dX, sin_, local.lower.x(), local.upper.x());
@@ -134,7 +149,7 @@ class ComponentFrame {
             center_y_ + std::min(along.upper, across.upper)};
   }
 
-  /// Smallest axis-aligned box around a rectangle of the component's frame   [m].
+  /// Returns the smallest axis-aligned box around a rectangle of the component's frame [m].
   Box enclosing(const Box& local) const {
     const Vec2 middle = 0.5 * (local.lower + local.upper), half = 0.5 * (local.upper - local.lower);
     const Vec2 center(center_x_ + cos_ * middle.x() - sin_ * middle.y(),
@@ -145,7 +160,7 @@ class ComponentFrame {
   }
 
  private:
-  // All t with lower <= offset + slope t <= upper.
+  // Returns all t with lower <= offset + slope t <= upper.
   static Interval strip(double offset, double slope, double lower, double upper) {
     constexpr double kEverywhere = 1e300;
     if (slope == 0) {
@@ -160,10 +175,11 @@ class ComponentFrame {
   HalfThickness<double> shape_;
 };
 
-/// Indices first <= k < end of the points origin + k step, 0 <= k < count, in an interval.
+/// The indices first <= k < end of a range.
 struct IndexRange {
-  int first, end;
+  int first, end;  ///< First index, and the index after the last one.
 };
+/// Returns the indices 0 <= k < count of the points origin + k step that lie in an interval.
 inline IndexRange indices_in(const ComponentFrame::Interval& range, double origin, double step,
                              int count) {
   const double top = count;

@@ -9,16 +9,20 @@
 #include "geometry/components/component_frame.h"
 #include "geometry/components/tdf.h"
 
-/// The TDF of one component at many points: the loops that UnionTdf is made of. Internal to
-/// geometry/components/tdf.cpp, which is compiled for vector registers.
+/// The topology description function (TDF) of one component at many points: the inner loops of
+/// UnionTdf. The header is internal to geometry/components/tdf.cpp and tdf_curvature.cpp, whose
+/// loops use SIMD instructions.
 namespace flexmorph::component_tdf_kernels {
 
-/// s = (u⁶ + v⁶)^(1/6), at least 1e-50: the center needs no case of its own.
+/// Returns s = (u⁶ + v⁶)^(1/6), at least 1e-50, so that the center needs no special case.
 ///
-/// With the larger square taken out, w = 1 + r³ lies in [1, 2], and s² = larger w (w^(-1/6))⁴.
-/// The inverse root starts from a parabola (right to 1.1e-3) and takes three Newton steps
-/// t <- t (7 - w t⁶) / 6 to full precision. Unlike pow and cbrt it has no branches, so that loops
-/// over it run in vector registers.
+/// The larger square is factored out: w = 1 + r³ lies in [1, 2], and s² = larger w (w^(-1/6))⁴. The
+/// inverse root starts from a parabola (error 1.1e-3). Three Newton steps give full precision:
+///
+///   t <- t (7 - w t⁶) / 6
+///
+/// Unlike pow and cbrt the function has no branches, therefore loops over it can use SIMD
+/// instructions.
 template <class T>
 T superellipse_radius(const T& u, const T& v) {
   using std::sqrt;
@@ -35,27 +39,34 @@ T superellipse_radius(const T& u, const T& v) {
   return sqrt(T(larger * w)) * t2;
 }
 
+/// Returns the fifth power of a number.
 template <class T>
 T fifth_power(const T& t) {
   return t * t * t * t * t;
 }
 
+/// Returns the sixth power of a number.
 template <class T>
 T sixth_power(const T& t) {
   const T t3 = t * t * t;
   return t3 * t3;
 }
 
-/// P = (1 - s) R of a superellipse of constant g, from u = x/L, v = y/g, and what its derivatives
-/// need:   R = w/|∇s| + (1 - w)(1 + k) g,   ∇s = (A/L, B/g),   A = (u/s)⁵,   B = (v/s)⁵,
-/// w = s² (3 - 2 s), k = s (1 - s)⁴ inside; 1 and 0 outside. On the outline and outside this is the
-/// first-order distance; |∇s| depends on the direction from the center only, so that w keeps the
-/// slope bounded there, and k takes the tip off the cone. P is twice continuously differentiable
-/// but for the center, where its gradient is 0.
+/// The first-order distance P = (1 - s) R of a superellipse of constant g, with the intermediate
+/// values that its derivatives need, as a function of u = x/L and v = y/g:
+///
+///   R = w/|∇s| + (1 - w)(1 + k) g,   ∇s = (A/L, B/g),   A = (u/s)⁵,   B = (v/s)⁵,
+///   w = s² (3 - 2 s), k = s (1 - s)⁴ inside; w = 1, k = 0 on the outline and outside.
+///
+/// On the outline and outside P is the first-order distance. |∇s| depends only on the direction
+/// from the center; the weight w keeps the gradient bounded there, and k rounds off the cone at the
+/// center. P is twice continuously differentiable except at the center, where its gradient is 0.
 template <class T>
 struct FirstOrderDistance {
+  /// Intermediate values of the formula: a = u/s, b = v/s, per_slope = 1/|∇s|, dw = w', dk = k'.
   T s, a, b, A, B, per_slope, w, dw, k, dk, R, P;
 
+  /// Evaluates the formula at (u, v) for given 1/L, 1/g [1/m] and g [m].
   FirstOrderDistance(const T& u, const T& v, const T& per_L, const T& per_g, const T& g)
       : s(superellipse_radius(u, v)) {
     using std::sqrt;
@@ -65,7 +76,7 @@ struct FirstOrderDistance {
     A = fifth_power(a);
     B = fifth_power(b);
     const T along = A * per_L, across = B * per_g;
-    // The floor acts at the very center only, where a = b = 0.
+    // The lower bound acts only at the center, where a = b = 0.
     const T squared = along * along + across * across, floor = 1e-6 * per_L * per_L;
     per_slope = 1 / sqrt(std::max(squared, floor));
     const T inside = std::min(s, T(1));
@@ -79,12 +90,14 @@ struct FirstOrderDistance {
   }
 };
 
-/// Inside, P/(1 + (P/g)⁸)^(1/8): no point is further from the outline than the half-thickness.
+/// Returns P/(1 + (P/g)⁸)^(1/8) inside, so that no point is farther from the outline than the
+/// half-thickness g; returns P outside.
 inline double capped(double P, double g) {
   const double r = std::max(P, 0.0) / g, r2 = r * r, r4 = r2 * r2;
   return P / std::sqrt(std::sqrt(std::sqrt(1 + r4 * r4)));
 }
 
+/// Returns φ of the kind `distance` at a point (x, y) of the component's frame [m].
 inline double distance_tdf(const ComponentFrame& frame, double x, double y) {
   const double g = frame.half_thickness(x), per_g = 1 / g;
   const FirstOrderDistance<double> f(x * frame.per_length(), y * per_g, frame.per_length(), per_g,
@@ -92,24 +105,28 @@ inline double distance_tdf(const ComponentFrame& frame, double x, double y) {
   return capped(f.P, g);
 }
 
+/// Returns φ = 1 - (x/L)⁶ - (y/g)⁶ of the kind `paper` at a point (x, y) of the component's frame.
 inline double paper_tdf(const ComponentFrame& frame, double x, double y) {
   return 1 - sixth_power(x * frame.per_length()) - sixth_power(y / frame.half_thickness(x));
 }
 
-/// φ of one component and its partial derivatives; those by g are already times dg.
+/// φ of one component and its partial derivatives. Derivatives by L, c1, c2, c3 include the change
+/// of g with them.
 template <class T>
 struct Partials {
-  T phi;
-  T x, y;           // by the local coordinates
-  T L, c1, c2, c3;  // at fixed local coordinates
+  T phi;            ///< Value of φ.
+  T x, y;           ///< Derivatives by the local coordinates.
+  T L, c1, c2, c3;  ///< Derivatives by L, c1, c2, c3 at fixed local coordinates.
 };
 
-/// φ(u, v, g, L) with u = x/L, v = y/g(x):  dφ = φ_u du + φ_v dv + φ_g dg + φ_L dL,
-/// du = dx/L - u dL/L,  dv = (dy - v dg)/g.
+/// Partial derivatives of φ(u, v, g, L) with u = x/L and v = y/g(x):
+///
+///   dφ = φ_u du + φ_v dv + φ_g dg + φ_L dL,   du = dx/L - u dL/L,   dv = (dy - v dg)/g.
 template <class T>
 struct ByShape {
-  T u, v, g, L;
+  T u, v, g, L;  ///< Derivatives by u, v, g and L.
 };
+/// Returns φ with its derivatives by the local coordinates and the parameters, by the chain rule.
 template <class T>
 Partials<T> chain(const T& per_L, const BasicProfile<T>& profile, const T& u, const T& v,
                   const T& phi, const ByShape<T>& d) {
@@ -123,11 +140,15 @@ Partials<T> chain(const T& per_L, const BasicProfile<T>& profile, const T& u, co
           by_g * profile.dg_dp[3]};
 }
 
-/// φ = P q^(-1/8), q = 1 + (P/g)⁸ inside and 1 outside:  φ_P = q^(-9/8),  φ_g = (P/g)⁹ φ_P.
-/// With D = |∇s|, s_u = A, s_v = B and
-/// A_u = 5 a⁴ b⁶/s,  B_v = 5 b⁴ a⁶/s,  A_v = B_u = -5 a⁵ b⁵/s:
-/// P_u = A P_s - (1 - s) w D_u/D²,  P_v likewise,
-/// P_s = -R + (1 - s) (w' (1/D - (1 + k) g) + (1 - w) k' g).
+/// Returns φ of the kind `distance` and its derivatives: φ = P q^(-1/8), q = 1 + (P/g)⁸ inside and
+/// 1 outside.
+///
+///   φ_P = q^(-9/8),  φ_g = (P/g)⁹ φ_P.
+///
+/// With D = |∇s|, s_u = A, s_v = B and A_u = 5 a⁴ b⁶/s,  B_v = 5 b⁴ a⁶/s,  A_v = B_u = -5 a⁵ b⁵/s:
+///
+///   P_u = A P_s - (1 - s) w D_u/D²,   P_v = B P_s - (1 - s) w D_v/D²,
+///   P_s = -R + (1 - s) (w' (1/D - (1 + k) g) + (1 - w) k' g).
 template <class T>
 Partials<T> distance_partials(const HalfThickness<T>& shape, const T& x, const T& y) {
   using std::sqrt;
@@ -153,7 +174,7 @@ Partials<T> distance_partials(const HalfThickness<T>& shape, const T& x, const T
                   {P_u * by_P, P_v * by_P, P_g * by_P + r4 * r4 * r * by_P, P_L * by_P});
 }
 
-/// φ = 1 - u⁶ - v⁶.
+/// Returns φ = 1 - u⁶ - v⁶ of the kind `paper` and its derivatives.
 template <class T>
 Partials<T> paper_partials(const HalfThickness<T>& shape, const T& x, const T& y) {
   const BasicProfile<T> profile = shape.profile(x);
@@ -162,12 +183,14 @@ Partials<T> paper_partials(const HalfThickness<T>& shape, const T& x, const T& y
                   {-6 * fifth_power(u), -6 * fifth_power(v), T(0), T(0)});
 }
 
+/// Returns φ of a kind and its derivatives at a point (x, y) of the component's frame.
 template <TdfSettings::Kind kind, class T>
 Partials<T> partials(const HalfThickness<T>& shape, const T& x, const T& y) {
   return kind == TdfSettings::Kind::paper ? paper_partials<T>(shape, x, y)
                                           : distance_partials<T>(shape, x, y);
 }
 
+/// Fills `phi` with φ at `count` points (x, y) of the component's frame.
 inline void tdf_at_points(const ComponentFrame& frame, TdfSettings::Kind kind, int count,
                           const double* x, const double* y, double* phi) {
   if (kind == TdfSettings::Kind::paper) {
@@ -179,7 +202,7 @@ inline void tdf_at_points(const ComponentFrame& frame, TdfSettings::Kind kind, i
   }
 }
 
-/// Σ_k seed_k dφ(x_k, y_k)/dp for the seven parameters p.
+/// Adds up Σ_k seed_k dφ(x_k, y_k)/dp for the seven parameters p and writes the sums to `out` (7).
 template <TdfSettings::Kind kind>
 void sum_chain(const ComponentFrame& frame, int count, const double* px, const double* py,
                const double* seed, double* out) {
@@ -205,7 +228,8 @@ void sum_chain(const ComponentFrame& frame, int count, const double* px, const d
   out[6] = by_c3;
 }
 
-/// weight_k dφ(x_k, y_k)/dp for the seven parameters p, one column of `out` each (count x 7).
+/// Computes weight_k dφ(x_k, y_k)/dp for the seven parameters p, one column of `out` each (count x
+/// 7).
 template <TdfSettings::Kind kind>
 void fill_chain(const ComponentFrame& frame, int count, const double* px, const double* py,
                 const double* weight, double* out) {
@@ -225,19 +249,23 @@ void fill_chain(const ComponentFrame& frame, int count, const double* px, const 
   }
 }
 
+/// Derivatives by the seven parameters of a component.
 using Gradient7 = Eigen::Matrix<double, 7, 1>;
+/// Second derivatives by the seven parameters of a component.
 using Hessian7 = Eigen::Matrix<double, 7, 7>;
 
 /// φ, its gradient and its Hessian by the seven parameters at a point (x, y) of the component's
-/// frame. The first derivatives above, carried by numbers that know their own, make the Hessian by
-/// q = (x, y, L, c1, c2, c3); x and y turn with the component:
+/// frame.
+struct Expansion {
+  double value;        ///< Value of φ.
+  Gradient7 gradient;  ///< First derivatives by the parameters.
+  Hessian7 hessian;    ///< Second derivatives by the parameters.
+};
+/// Returns the expansion of φ at a point (x, y) of the component's frame. Automatic differentiation
+/// of the first derivatives gives the Hessian by q = (x, y, L, c1, c2, c3). The chain rule then
+/// adds the dependence of x and y on the position (X, Y) and the angle of the component:
 ///
 ///   x_X = -cos, x_Y = -sin, x_θ = y,   y_X = sin, y_Y = -cos, y_θ = -x   (X, Y its center)
-struct Expansion {
-  double value;
-  Gradient7 gradient;
-  Hessian7 hessian;
-};
 template <TdfSettings::Kind kind>
 Expansion expansion(const Component& c, double minimum, double sine, double cosine, double x,
                     double y) {
@@ -270,10 +298,11 @@ Expansion expansion(const Component& c, double minimum, double sine, double cosi
   return out;
 }
 
-/// S(z) exp(λ (φ - highest)) of UnionTdf, z = λ (φ - cut), and its derivatives by z.
+/// The term S(z) exp(λ (φ - highest)) of UnionTdf, z = λ (φ - cut), and its derivatives by z.
 struct Term {
-  double value, slope, curvature;
+  double value, slope, curvature;  ///< Value, first and second derivative by z.
 };
+/// Returns the term of a component at a node where its TDF is φ and the highest one is `highest`.
 inline Term smooth_term(double lambda, double phi, double cut, double highest) {
   constexpr double kWidth = 2;
   const double z = lambda * (phi - cut);
@@ -286,12 +315,13 @@ inline Term smooth_term(double lambda, double phi, double cut, double highest) {
   return {S * e, (S + by_z) * e, (S + 2 * by_z + twice) * e};
 }
 
-/// Rectangle of the component's frame that holds every point with φ > cut (cut < 0).
+/// Returns a rectangle of the component's frame that contains every point with φ > cut (cut < 0).
 ///
-/// distance: s < 1 + |cut| |∇s| there. In the direction with u/s = a, v/s = b the point is at
-/// x = a s L, y = b s g, so that |x| < a L + |cut| a √(A² + (B L/g)²) and
-/// |y| < b g + |cut| b √((A g/L)² + B²): largest over all directions, x with the thinner tip's g
-/// of what g is there and beyond, y with the largest g.
+/// distance: such a point has s < 1 + |cut| |∇s|. In the direction with u/s = a, v/s = b the point
+/// is at x = a s L, y = b s g, therefore |x| < a L + |cut| a √(A² + (B L/g)²) and
+/// y| < b g + |cut| b √((A g/L)² + B²). The rectangle takes the largest values over all directions;
+/// the bound of x uses the smallest g at and beyond the thinner tip, the bound of y the largest g.
+///
 /// paper: (x/L)⁶ and (y/g)⁶ are below 1 + |cut|.
 inline Box reach(const ComponentFrame& frame, TdfSettings::Kind kind, double cut) {
   const double L = frame.half_length(), beyond = 1 + HalfThickness<double>::kBeyond;
@@ -312,7 +342,7 @@ inline Box reach(const ComponentFrame& frame, TdfSettings::Kind kind, double cut
     along = std::max(along, a * (L - cut * std::hypot(A, B * L / thin)));
     across = std::max(across, b * (top - cut * std::hypot(A * top / L, B)));
   }
-  constexpr double kBetween = 1.01;  // between two sampled directions
+  constexpr double kBetween = 1.01;  // margin for directions between two samples
   return {{-along * kBetween, -across * kBetween}, {along * kBetween, across * kBetween}};
 }
 

@@ -25,10 +25,11 @@ using Inexact = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Polygon = CGAL::Polygon_2<Exact>;
 using PolygonWithHoles = CGAL::Polygon_with_holes_2<Exact>;
 
-// CGAL's intervals overflow where products of four coordinates do, and its sweep then crashes.
+// The interval arithmetic of CGAL overflows if a product of four coordinates does, and then its
+// sweep crashes.
 constexpr double kFarthest = 1e60;
 
-/// Counterclockwise polygon; `number` is its place in the list, for the message.
+/// Returns a counterclockwise polygon; `number` is its index in the list, for the message.
 Polygon exact_polygon(const std::vector<Vec2>& vertices, std::size_t number) {
   const auto refuse = [&](const char* why) {
     throw Error::numerical("unite: polygon " + std::to_string(number) + " of " +
@@ -141,7 +142,7 @@ Region region_of(std::vector<std::vector<Vec2>> rings) {
       out.holes.push_back(std::move(ring));
     }
   }
-  // Holes that are not within, or in each other, would take another area away.
+  // Holes that are not inside, or that overlap, would remove another area than their sum.
   const std::vector<Region> united = unite({&out.outer, 1}, {out.outer, {}}, out.holes);
   const bool apart = united.size() == 1 && united[0].holes.size() == out.holes.size() &&
                      std::abs(area(united) - left) <= 1e-9 * area({out.outer, {}});
@@ -170,7 +171,7 @@ std::vector<Vec2> circle_within(const Vec2& center, double radius, double tolera
   if (!(radius > 0 && tolerance > 0))
     throw Error::input("circle: radius and tolerance are positive");
   constexpr double kFewest = 8, kMost = 1 << 16;
-  // The middle of a side lies r (1 - cos(π/n)) = 2 r sin²(π/2n) within.
+  // The middle of a side lies r (1 - cos(π/n)) = 2 r sin²(π/2n) inside the circle.
   const double half = std::asin(std::min(1.0, std::sqrt(0.5 * tolerance / radius)));
   const int n =
       static_cast<int>(std::clamp(std::ceil(0.5 * std::numbers::pi / half), kFewest, kMost));
@@ -188,7 +189,8 @@ std::vector<Vec2> outline_within(const Component& c, double min_half_thickness, 
   std::vector<Vec2> coarse = outline(c, min_half_thickness, kFewest);
   for (int n = kFewest; n < kMost; n *= 2) {
     std::vector<Vec2> fine = outline(c, min_half_thickness, 2 * n);
-    // The vertices in between tell how far the sides are off: a little more than the fine ones.
+    // The distance of the vertices of the finer polygon from the sides estimates the error of the
+    // coarse one.
     double off = 0;
     for (std::size_t k = 0; k < coarse.size(); ++k) {
       const Vec2 a = coarse[k], side = coarse[(k + 1) % coarse.size()] - a;

@@ -104,7 +104,7 @@ void UnionTdf::Scratch::make_room(std::size_t n) {
   node.resize(2 * n);
 }
 
-/// φ_i of every component at the nodes it may reach, and the highest of each node.
+/// Computes φ_i of every component at the nodes in its range, and the highest φ_i of each node.
 void UnionTdf::find_reach(std::span<const Component> components) {
   runs_.clear();
   ends_.clear();
@@ -125,8 +125,9 @@ void UnionTdf::find_reach(std::span<const Component> components) {
   }
 }
 
-/// The nodes one component may reach: their runs, room for their visits, and their local
-/// coordinates in the scratch. All together make one loop long enough for vector registers.
+/// Adds the nodes in the range of one component: their runs, the storage of their values, and their
+/// local coordinates in the scratch buffers. All nodes of a component form one loop, which is long
+/// enough for SIMD instructions.
 void UnionTdf::add_runs(const ComponentFrame& frame) {
   const Box local = reach(frame, settings_.kind, cut_), box = frame.enclosing(local);
   const IndexRange columns =
@@ -152,7 +153,7 @@ void UnionTdf::add_runs(const ComponentFrame& frame) {
   visits_.resize(visits_.size() + visits);
 }
 
-/// Sums of terms relative to exp(λ highest).
+/// Computes φ as a smooth maximum from sums of terms relative to exp(λ highest).
 void UnionTdf::join_smoothly() {
   const double lambda = settings_.sharpness;
   sum_.setZero();
@@ -174,7 +175,7 @@ void UnionTdf::join_smoothly() {
   }
 }
 
-/// The first highest component of a node has weight 1, the others 0.
+/// Computes φ as a maximum. The first highest component of a node has the weight 1, all others 0.
 void UnionTdf::join_by_maximum() {
   sum_.setZero();
   double* visit = visits_.data();
@@ -211,7 +212,7 @@ void UnionTdf::pull_back(const VectorXd& df_dh, const VectorXd& df_deroded, Vect
   std::size_t r = 0;
   for (std::size_t c = 0; c < components_.size(); ++c) {
     const ComponentFrame frame(components_[c], settings_.min_half_thickness);
-    int count = 0;  // nodes of this component with H' != 0
+    int count = 0;  // nodes of this component with H' != 0 or E' != 0
     for (; r < ends_[c]; visit += runs_[r].count, ++r) {
       count = add_seeds(frame, runs_[r], visit, df_dh, df_deroded, count);
     }
@@ -252,8 +253,8 @@ void UnionTdf::pull_back(const MatrixXd& df_dh, const MatrixXd& df_deroded, Matr
   if (!df_dp.allFinite()) throw Error::numerical("tdf: a derivative by H is not finite");
 }
 
-/// Appends local coordinates, weight dφ/dφ_i and number of those nodes of a run that need the chain
-/// rule.
+/// Appends the local coordinates, weights dφ/dφ_i and indices of the nodes of a run at which
+/// density() or eroded() changes with φ.
 int UnionTdf::add_points(const ComponentFrame& frame, const Run& run, const double* visit,
                          int count) const {
   scratch_.make_room(static_cast<std::size_t>(count + run.count));
@@ -272,13 +273,15 @@ int UnionTdf::add_points(const ComponentFrame& frame, const Run& run, const doub
   return count;
 }
 
-/// φ of the union at a node of a run without the component the run belongs to.
+/// Returns φ of the union at a node of a run without the component of the run.
 double UnionTdf::taken_out(const Run& run, int k, std::size_t visit) const {
   const int n = grid_.node(run.column, run.row) + k;
   if (visits_[visit] == 0) return phi_[n];
-  if (settings_.kind == TdfSettings::Kind::paper) return cut_;  // the next one below is unknown
+  // the second highest value is not stored
+  if (settings_.kind == TdfSettings::Kind::paper) return cut_;
   const double rest = sum_[n] - terms_[visit];
-  // What is left of a sum after its largest term went is round-off below this.
+  // Below this bound the difference is only round-off of the sum, whose largest term was
+  // subtracted.
   if (!(rest > 1e-12 * sum_[n])) return cut_;
   return std::max(cut_, highest_[n] + std::log(rest) / settings_.sharpness);
 }
@@ -304,7 +307,8 @@ std::vector<double> UnionTdf::influence(std::span<const signed char> counts) con
   return out;
 }
 
-/// Appends local coordinates and df/dφ_i of those nodes of a run that need the chain rule.
+/// Appends the local coordinates and df/dφ_i of the nodes of a run at which density() or eroded()
+/// changes with φ.
 int UnionTdf::add_seeds(const ComponentFrame& frame, const Run& run, const double* visit,
                         const VectorXd& df_dh, const VectorXd& df_deroded, int count) const {
   scratch_.make_room(static_cast<std::size_t>(count + run.count));

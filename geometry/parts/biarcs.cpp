@@ -12,7 +12,7 @@ using Points = std::span<const Vec2>;
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// The angle from one direction to another [rad].
+/// Returns the angle from one direction to another [rad].
 double angle_between(const Vec2& a, const Vec2& b) { return std::atan2(cross(a, b), a.dot(b)); }
 
 Vec2 turned(const Vec2& v, double angle) {
@@ -20,12 +20,13 @@ Vec2 turned(const Vec2& v, double angle) {
   return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
 }
 
-/// Directions of length 1 at the points of a polyline, of the circle through a point and its
-/// neighbours; at the ends through the end and the two points after or before it.
+/// Returns unit tangents at the points of a polyline. An inner point has the tangent of the circle
+/// through it and its two neighbours; an end has that of the circle through it and the next two
+/// points.
 ///
 /// On the circle through a, b, c a tangent and a chord that meet in a point differ by the inscribed
-/// angle over the chord: those at b and at c from c - b by the angle at a, that at a from b - a by
-/// the angle at c.
+/// angle over the chord. Therefore the tangents at b and c differ from c - b by the angle at a, and
+/// the tangent at a differs from b - a by the angle at c.
 std::vector<Vec2> tangents_of(Points points, bool closed) {
   const std::size_t last = points.size() - 1;
   if (last == 1) return std::vector<Vec2>(2, (points[1] - points[0]).normalized());
@@ -71,9 +72,10 @@ class Fitter {
   }
 
  private:
-  /// The farthest point that a pair reaches, by doubling and halving of the step.
+  /// Returns the farthest point to which a pair of arcs fits, by doubling and bisecting the step.
   std::size_t farthest(std::size_t from) const {
-    constexpr std::size_t kLongest = 256;  // points: distances are compared with all of them
+    // largest number of points, because distances to all of them are computed
+    constexpr std::size_t kLongest = 256;
     const std::size_t end = std::min(points_.size() - 1, from + kLongest);
     std::size_t good = from + 1, bad = end + 1;
     for (std::size_t step = 2; from + step < bad; step *= 2) {
@@ -89,13 +91,13 @@ class Fitter {
     return good;
   }
 
-  /// The pair of arcs from one point of the polyline to another. Directions at ends of an open
-  /// polyline are free: one arc is tried first there.
+  /// Returns the pair of arcs from one point of the polyline to another. At an end of an open
+  /// polyline the direction is free; there a single arc is tried first.
   std::optional<Pair> fit(std::size_t from, std::size_t to) const {
     const Vec2 v = points_[to] - points_[from], &s = tangents_[from], &t = tangents_[to];
     const bool begins = !closed_ && from == 0, ends = !closed_ && to + 1 == points_.size();
     if (begins || ends) {
-      // The direction at the other end of an arc is the mirror image about its chord.
+      // The direction at the second end of an arc is the first one mirrored about the chord.
       const auto mirrored = [&](const Vec2& d) -> Vec2 {
         return 2 * d.dot(v) / v.squaredNorm() * v - d;
       };
@@ -105,11 +107,12 @@ class Fitter {
     return pair_of(from, to, s, t);
   }
 
-  /// The pair of arcs with given directions at its ends; none where it is not near enough.
+  /// Returns the pair of arcs with given directions at its ends; nothing if it is not within the
+  /// tolerance.
   ///
   ///   p, q    ends, v = q - p;   s, t  directions there
-  ///   m = (p + q + d (s - t)) / 2    where they meet: halfway between p + d s and q - d t, which
-  ///                                  are 2 d apart
+  ///   m = (p + q + d (s - t)) / 2    common point of the arcs: the middle between p + d s and
+  ///                                  q - d t, whose distance is 2 d
   ///   2 d² (1 - s·t) + 2 d v·(s + t) = v·v
   ///
   /// Source: Bolton (1975), Biarc curves, Computer-Aided Design 7, 89-92.
@@ -129,8 +132,9 @@ class Fitter {
     return pair;
   }
 
-  /// The arc whose chord differs from its directions at both ends by an angle; a line where it is
-  /// nearly one; none where it turns by more than a quarter.
+  /// Returns the arc whose chord differs from the directions at both ends by an angle. The result
+  /// is a line if the arc is nearly straight, and nothing if it turns by more than 1.6 rad (about
+  /// 90 degrees).
   std::optional<OutlineCurve> arc(const Vec2& from, const Vec2& to, double half_sweep) const {
     constexpr double kLargest = 0.8, kStraight = 0.01;
     if (!(std::abs(half_sweep) < kLargest)) return {};
@@ -139,7 +143,7 @@ class Fitter {
     return arc_between(from, to, 2 * half_sweep);
   }
 
-  /// Appends a pair of arcs, or one curve where both are one.
+  /// Appends a pair of arcs, or a single curve if both arcs coincide with it.
   void add(const Pair& pair, CurveRing& out) const {
     constexpr double kOne = 0.01;
     const OutlineCurve &first = pair[0], &second = pair[1];
@@ -158,10 +162,11 @@ class Fitter {
     out.insert(out.end(), pair.begin(), pair.end());
   }
 
-  /// Are the points and sides of a polyline near to the arcs, and these near to it?
+  /// Returns true if the polyline is near the arcs and the arcs are near the polyline.
   bool is_near(const Pair& pair, Points points) const {
     constexpr int kParts = 4;
-    const double limit = 0.95 * tolerance_;  // the rest is for arcs that become lines, or one
+    // the remainder is for arcs that are replaced by lines or merged
+    const double limit = 0.95 * tolerance_;
     for (std::size_t k = 0; k + 1 < points.size(); ++k)
       for (int part = k == 0 ? 1 : 0; part < kParts; ++part) {
         const Vec2 at = points[k] + part / double(kParts) * (points[k + 1] - points[k]);

@@ -7,14 +7,15 @@
 
 namespace flexmorph {
 
-/// Returns a chain of arcs and lines from the first to the last point of a polyline of two points
-/// or more. The chain and the polyline are within `tolerance` of each other [m].
+/// Returns a chain of arcs and lines from the first to the last point of a polyline of two or more
+/// points. The chain and the polyline are within `tolerance` of each other [m].
 ///
-/// Pairs of arcs (biarcs) join points of the polyline, the farthest ones for which the tolerance
-/// holds. Both arcs meet in a common direction, and so do pairs, in that of the circle through a
-/// point and its neighbours. Where no pair joins two neighbours, their side does.
+/// Pairs of arcs (biarcs) connect points of the polyline; each pair extends as far as the tolerance
+/// allows. The two arcs of a pair are tangent to each other. Neighbouring pairs are tangent, too:
+/// their common direction is the tangent of the circle through the point and its two neighbours.
+/// Where no pair of arcs fits between two neighbouring points, a line connects them.
 ///
-/// @param closed  the polyline ends where it begins, and goes on smoothly there
+/// @param closed  true if the polyline ends where it begins and is smooth there
 CurveRing biarcs_along(std::span<const Vec2> points, bool closed, double tolerance);
 
 }  // namespace flexmorph

@@ -18,22 +18,25 @@ using geos::ring_points;
 using geos::Shape;
 using geos::shape_of;
 
-/// Vertices of results that are so near to one of the given regions are that one; parts of the
-/// fillets' radius. Vertices nearer to the line through their neighbours than the second are none.
+/// Tolerances as fractions of the radius of the fillets: a vertex of the result within kSame of a
+/// given vertex is replaced by it, and a vertex within kStraight of the line through its neighbours
+/// is removed.
 constexpr double kSame = 2e-3, kStraight = 1e-6;
-/// Width of the lattice that vertices of results lie on [radii].
+/// Width of the lattice on which vertices of results lie, as a fraction of the radius.
 constexpr double kLattice = 1e-9;
-/// Vertices that are so near to the border of the domain are on it [radii].
+/// Vertices within this distance of the border of the domain are on it, as a fraction of the
+/// radius.
 constexpr double kOnBorder = 1e-6;
-/// Half the width of what is no material [tolerances]: polygons instead of discs leave it.
+/// Half the width below which material is an artefact, as a fraction of the tolerance. Such
+/// artefacts arise because discs are replaced by polygons.
 constexpr double kWhisker = 0.5;
-/// Sides of a quarter of a circle that stay within the tolerance.
+/// Returns the number of sides per 90 degrees of a circle that are within the tolerance.
 int segments(double radius, double tolerance) {
   const double part = std::min(tolerance / radius, 0.1);
   return std::max(16, static_cast<int>(std::ceil(0.25 * std::numbers::pi / std::acos(1 - part))));
 }
 
-/// Fills inner corners and gaps of shapes within a domain.
+/// Fills reentrant corners and gaps of shapes within a domain.
 class Filling {
  public:
   Filling(const Geos& geos, const Shape& domain, const Fillets& fillets, double tolerance)
@@ -56,17 +59,17 @@ class Filling {
   }
 
  private:
-  /// A shape and what of its closing is not thin.
+  /// Returns the union of a shape with the parts of its closing that are not thin.
   Shape rounded(const Shape& given, const Shape& closed) const {
     const Shape opened = closed.united(around_).grown(-thin_, sides_).grown(thin_, sides_);
-    // What is outside of the domain leaves whiskers along its border.
+    // Material outside the domain leaves whiskers along the border.
     return given.united(opened).common(domain_).without_whiskers(kWhisker * tolerance_);
   }
 
-  /// Blades across gaps, as thick as a filling has to be. A blade that touches what is filled on
-  /// one side only is the tip of a filling, and stays away.
+  /// Returns thin walls that bridge gaps, thickened to the smallest width of a filling. A thin wall
+  /// that touches the filled shape on one side only is the tip of a filling and is omitted.
   std::vector<Shape> bridges_of(const Shape& closed, const Shape& filled) const {
-    constexpr double kReach = 1e-3, kTiny = 1e-4;  // radii, of the radius squared
+    constexpr double kReach = 1e-3, kTiny = 1e-4;  // fractions of the radius, and of its square
     std::vector<Shape> out;
     const Shape left = closed.without(filled).common(domain_);
     for (int k = 0; k < left.n_pieces(); ++k) {
@@ -92,10 +95,11 @@ Shape filled(const Geos& geos, std::span<const Region> regions, const Shape& dom
   return Filling(geos, domain, fillets, tolerance).of(given).on_lattice(kLattice * fillets.radius);
 }
 
-/// The outline of a domain, which tells what vertices are on it.
+/// The outline of a domain, with a test for vertices that lie on it.
 class Border {
  public:
-  /// @param reach  vertices within it are on the outline [m]
+  /// Prepares the outline.
+  /// @param reach  distance within which a vertex is on the outline [m]
   Border(const Geos& geos, const Shape& domain, double reach)
       : geos_(&geos),
         outline_(geos, GEOSBoundary_r(geos.handle(), domain.get())),
@@ -119,7 +123,7 @@ class Border {
   double reach_;
 };
 
-/// Vertices of the given regions by their x, to be found by their place.
+/// Vertices of the given regions, sorted by x, for the search by position.
 class Vertices {
  public:
   explicit Vertices(std::span<const Region> regions) {
@@ -132,7 +136,7 @@ class Vertices {
     });
   }
 
-  /// The nearest one within a distance, else the point itself.
+  /// Returns the nearest vertex within a distance, or the point itself if there is none.
   Vec2 near(const Vec2& p, double distance) const {
     Vec2 out = p;
     auto at = std::lower_bound(all_.begin(), all_.end(), p.x() - distance,
@@ -151,8 +155,8 @@ class Vertices {
   std::vector<Vec2> all_;
 };
 
-/// A ring with fewer vertices, those on the border of the domain among them: a round end that
-/// reaches beyond the border by less than the tolerance stays attached to it.
+/// Returns a ring with fewer vertices that keeps all vertices on the border of the domain. Thus a
+/// round end that reaches beyond the border by less than the tolerance remains connected to it.
 std::vector<Vec2> simplified_between(std::vector<Vec2> ring, const Border& border,
                                      double tolerance) {
   std::vector<std::size_t> kept;
@@ -170,7 +174,8 @@ std::vector<Vec2> simplified_between(std::vector<Vec2> ring, const Border& borde
   return out;
 }
 
-/// A ring of GEOS with the vertices of the given regions, without those that are none.
+/// Returns a ring of GEOS in which vertices near those of the given regions are replaced by them,
+/// and vertices on straight lines are removed.
 std::vector<Vec2> cleaned(const std::vector<Vec2>& ring, const Vertices& vertices, double radius) {
   std::vector<Vec2> snapped;
   for (const Vec2& p : ring) {
@@ -190,7 +195,7 @@ std::vector<Vec2> cleaned(const std::vector<Vec2>& ring, const Vertices& vertice
   return out;
 }
 
-/// Sets the sense of rotation; false where nothing is left of the ring.
+/// Sets the sense of rotation. Returns false if the ring has no area.
 bool orient(std::vector<Vec2>& ring, bool outer) {
   if (ring.size() < 3) return false;
   const double a = signed_area(ring);
@@ -198,7 +203,8 @@ bool orient(std::vector<Vec2>& ring, bool outer) {
   return a != 0;
 }
 
-/// A polygon of its rings, whose senses are set; none where nothing is left of the outer one.
+/// Returns the region of rings after setting their senses of rotation; an empty region if the outer
+/// ring has no area.
 Region oriented(std::vector<std::vector<Vec2>> rings) {
   Region out;
   if (!orient(rings[0], true)) return out;
@@ -208,9 +214,9 @@ Region oriented(std::vector<std::vector<Vec2>> rings) {
   return out;
 }
 
-/// A polygon of GEOS without the jags, lower than the tolerance, that sides of an opening leave
-/// beside those of the shape. Vertices of the given regions are in it where it stays valid with
-/// them.
+/// Returns the region of a polygon of GEOS without the steps, lower than the tolerance, that the
+/// sides of an opening cause beside the sides of the shape. Vertices are replaced by those of the
+/// given regions if the polygon remains valid.
 Region region_of(const Geos& geos, const GEOSGeometry* piece, const Vertices& vertices,
                  const Border& border, double radius, double tolerance) {
   std::vector<std::vector<Vec2>> rings = {
@@ -241,7 +247,7 @@ std::vector<Region> with_fillets(std::span<const Region> regions, const Region& 
   const int n = GEOSGetNumGeometries_r(geos.handle(), shape.get());
   const Shape material = shape_of(geos, regions);
   for (int k = 0; k < n; ++k) {
-    // Growing by polygons instead of discs leaves flecks at corners of the domain.
+    // Offsets with polygons instead of discs leave tiny regions at corners of the domain.
     if (n > 1 && !(shape.piece(k).common(material).area() > 0)) continue;
     const GEOSGeometry* piece = GEOSGetGeometryN_r(geos.handle(), shape.get(), k);
     Region region = region_of(geos, piece, vertices, border, fillets.radius, tolerance);

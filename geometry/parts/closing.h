@@ -5,29 +5,29 @@
 
 #include "geometry/components/outline.h"
 
-/// Fillets at the inner corners of outlines.
+/// Fillets at the reentrant corners of outlines.
 namespace flexmorph {
 
 /// Sizes of fillets [m].
 struct Fillets {
-  double radius = 0;    ///< 0: none
-  double thinnest = 0;  ///< smallest width of what fills corners and gaps
+  double radius = 0;    ///< Radius of the fillets [m]; 0 means no fillets.
+  double thinnest = 0;  ///< Smallest width of the material that fills corners and gaps [m].
 };
 
-/// Returns the regions with fillets: the union of the regions R with what is left of their closing
-/// after an opening,
+/// Returns the regions with fillets: the union of the regions R with the opening of their closing,
 ///
 ///   R ∪ ((R ⊕ D_r ⊖ D_r) ⊖ D_t ⊕ D_t),
 ///
-/// within the domain; what is outside of it counts as material of the opening, so that nothing is
-/// thin because the border cuts it.
+/// within the domain. Outside the domain everything counts as material in the opening, so that no
+/// material is removed only because the border of the domain cuts it.
 ///
-/// D_r  disc of the fillets' radius: inner corners get this radius, and gaps below twice of it
-/// close D_t  disc of half the smallest width of fillings: blades across gaps do not stay
+///   D_r  disc of the radius of the fillets; it rounds reentrant corners and closes gaps that are
+///        narrower than two radii
+///   D_t  disc of half the smallest width of fillings; it removes thin walls across gaps
 ///
-/// (Minkowski sums and differences of GEOS.) Vertices of R stay as they are. The sides of fillets
-/// stay within `tolerance` of their circles.
-/// @throws Error (numerical) when GEOS finds no result.
+/// Minkowski sums and differences are computed by GEOS. Vertices of R are kept. The sides of
+/// fillets are within `tolerance` of their circles [m].
+/// @throws Error (numerical) when GEOS returns no result.
 std::vector<Region> with_fillets(std::span<const Region> regions, const Region& domain,
                                  const Fillets& fillets, double tolerance);
 

@@ -8,7 +8,7 @@
 namespace flexmorph {
 namespace {
 
-/// Puts a vertex that is all but on a line, or on one of its ends, there.
+/// Moves a vertex that is nearly on a line, or on one of its ends, onto it.
 Vec2 snapped(Vec2 p, std::span<const Segment> lines, double small) {
   for (const Segment& s : lines) {
     if (distance(s, p) > small) continue;
@@ -20,8 +20,8 @@ Vec2 snapped(Vec2 p, std::span<const Segment> lines, double small) {
   return p;
 }
 
-/// Where a straight line meets the side a b strictly between its ends, and not at once with one of
-/// them; with the exact coordinate of a line along an axis.
+/// Adds the points in which a line meets the side a b strictly between the ends of the side. For a
+/// line along an axis the constant coordinate is exact.
 void add_crossing(const Segment& s, const Vec2& a, const Vec2& b, double small,
                   std::vector<std::pair<double, Vec2>>& out) {
   const Vec2 side = b - a;
@@ -65,7 +65,8 @@ std::vector<Vec2> ring_with_points(const std::vector<Vec2>& ring, std::span<cons
   return out;
 }
 
-/// One number for all that are less than `small` apart, one after the other.
+/// Replaces all numbers of a sequence in which neighbours differ by less than `small` by one
+/// number.
 class Unifier {
  public:
   Unifier(std::vector<double> values, double small) : values_(std::move(values)) {
@@ -92,7 +93,7 @@ std::vector<Segment> conforming_lines(std::span<const Segment> lines, double sma
     for (std::size_t axis = 0; axis < 2; ++axis)
       for (const Vec2& p : {s.a, s.b}) ends[axis].push_back(p[static_cast<Eigen::Index>(axis)]);
   const Unifier x(std::move(ends[0]), small), y(std::move(ends[1]), small);
-  // Horizontal and vertical ones: where they are, and from where to where.
+  // Horizontal and vertical lines: constant coordinate, start and end.
   struct Line {
     double at, from, to;
   };

@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kRoundOff = 1e-12;  // of an area fraction
 
-/// Adds what sides of counterclockwise rings enclose: ∮ x dy, cell by cell. A side that goes up
-/// adds all that lies at its left in its row of cells, one that goes down takes it off.
+/// Sums the areas inside counterclockwise rings, cell by cell, as ∮ x dy. A side that goes upwards
+/// adds the area on its left in its row of cells, a side that goes downwards subtracts it.
 class Coverage {
  public:
   explicit Coverage(const Grid& grid)
@@ -35,7 +35,7 @@ class Coverage {
   }
 
  private:
-  /// In cells.
+  /// Returns a position in units of cells.
   Vec2 scaled(const Vec2& p) const {
     return {(p.x() - grid_.x0) / grid_.dx(), (p.y() - grid_.y0) / grid_.dy()};
   }

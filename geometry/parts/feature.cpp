@@ -21,11 +21,12 @@
 namespace flexmorph {
 namespace {
 
-/// Vertices and faces of the graph, numbered as they are made, which orders their handles (CGAL,
-/// Time_stamper.h). Otherwise handles are ordered by address, and the graph walks sets and maps of
-/// them when it makes and recycles faces (CGAL 5.5, add_bogus_vertices(),
-/// retriangulate_conflict_region()): where faces go, which vertex of theirs is the first, and with
-/// it the round-off of their centers would hang on the heap.
+/// Vertices and faces of the graph, numbered in the order of their creation. CGAL then orders their
+/// handles by this number (Time_stamper.h) instead of by address. This is needed because the graph
+/// iterates over sets and maps of handles when it creates and recycles faces (CGAL 5.5,
+/// add_bogus_vertices(), retriangulate_conflict_region()). With an order by address, the location
+/// of faces, the first vertex of a face, and thus the round-off of its center would depend on the
+/// heap.
 template <class Base>
 class Numbered : public Base {
  public:
@@ -37,7 +38,7 @@ class Numbered : public Base {
 
   using Base::Base;
   Numbered() = default;
-  // Copies are numbered anew: no two of a graph have the same number.
+  // A copy gets its own number, because no two elements of a graph may have equal numbers.
   Numbered(const Numbered& other) : Base(other) {}
   Numbered& operator=(const Numbered& other) {
     Base::operator=(other);
@@ -48,13 +49,14 @@ class Numbered : public Base {
   void set_time_stamp(std::size_t number) { number_ = number; }
 
  private:
-  std::size_t number_ = std::numeric_limits<std::size_t>::max();  // none yet
+  std::size_t number_ = std::numeric_limits<std::size_t>::max();  // no number yet
 };
 
 using Kernel = CGAL::Simple_cartesian<double>;
-/// Sides may cross: what filters leave open is decided in rational numbers.
+/// Traits for sides that may cross: rational numbers decide where floating-point filters cannot.
 using Crossing = CGAL::Segment_Delaunay_graph_filtered_traits_2<Kernel>;
-/// They do not: sums and products of doubles decide, several times as fast, the same way.
+/// Traits for sides that do not cross: exact sums and products of doubles decide; the results are
+/// equal, and the graph is several times faster.
 using Apart = CGAL::Segment_Delaunay_graph_filtered_traits_without_intersections_2<
     Kernel, CGAL::Field_with_sqrt_tag, CGAL::Simple_cartesian<CGAL::Mpzf>,
     CGAL::Integral_domain_without_division_tag>;
@@ -67,11 +69,12 @@ using Graph = CGAL::Segment_Delaunay_graph_2<
         Numbered<CGAL::Segment_Delaunay_graph_vertex_base_2<Storage<Traits>>>,
         Numbered<CGAL::Segment_Delaunay_graph_face_base_2<Traits>>>>;
 
-/// Flanks within this of opposite make a bar   [rad].
+/// Flanks whose contacts are within this angle of opposite form a bar [rad].
 constexpr double kNearlyOpposite = std::numbers::pi / 6;
-/// The same for a flank and the border: a bar that the border cuts at a larger angle is no wedge.
+/// Corresponding angle for a flank and the border [rad]: a bar that the border cuts at a larger
+/// angle is not a wedge.
 constexpr double kWedge = std::numbers::pi / 12;
-/// Sides within this are parallel   [rad].
+/// Sides within this angle of each other are parallel [rad].
 constexpr double kParallel = 1e-6;
 /// Relative round-off of distances between contacts.
 constexpr double kRoundOff = 1e-9;
@@ -80,17 +83,17 @@ double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(
 
 Vec2 vec(const Kernel::Point_2& p) { return {p.x(), p.y()}; }
 
-/// A vertex or a side of the outlines, as a disc may touch it.
+/// A vertex or a side of the outlines that a disc touches.
 struct Contact {
   bool is_side = false;
   Vec2 a{0, 0}, b{0, 0};  // a side keeps the material on its left
   bool border = false;
-  bool known = true;  // false: made by CGAL where rounded sides cross
+  bool known = true;  // false for vertices that CGAL created where rounded sides cross
 
   Vec2 nearest(const Vec2& p) const { return is_side ? nearest_on({a, b}, p) : a; }
 };
 
-/// Which places count.
+/// Tells which locations count.
 using Counts = std::function<bool(const NarrowPlace&)>;
 
 template <class Traits>
@@ -116,8 +119,8 @@ class MedialAxis {
     return std::move(found_);
   }
 
-  /// The smallest of places(), of those that count. Of a disc that is larger than one that was
-  /// found nobody asks whether it is empty.
+  /// Returns the smallest widths of places() that count. A disc that is larger than one found
+  /// before is not tested for being empty.
   Features smallest(const Counts& counts) {
     counts_ = &counts;
     find();
@@ -161,15 +164,17 @@ class MedialAxis {
     return c;
   }
 
-  /// Does a disc around `center` that touches here lie in the material?
+  /// Returns true if a disc around `center` that touches the contact lies in the material.
   bool in_material(const Contact& c, const Vec2& center) const {
     if (c.is_side) return cross(c.b - c.a, center - c.a) > 0;
     const OutlineCorner& corner = *outlines_.corner(c.a);
     if (corner.visits > 1) return outlines_.in_material(center);
-    return cross(corner.before, corner.after) < 0;  // only reflex vertices touch from within
+    // in the material a disc touches reflex vertices only
+    return cross(corner.before, corner.after) < 0;
   }
 
-  /// Vertices that are narrow by themselves: pinches, and corners as sharp as a blade.
+  /// Adds vertices at which the width is 0: vertices that two outlines share, and very sharp
+  /// corners.
   void corners() {
     for (const auto& [at, corner] : outlines_.corners()) {
       const Vec2 p(at.first, at.second);
@@ -181,7 +186,7 @@ class MedialAxis {
     }
   }
 
-  /// Opposite contacts of an edge of the medial axis: the disc between them, when it is empty.
+  /// Adds the disc between the opposite contacts of an edge of the medial axis if it is empty.
   void neck(const Contact& p, const Contact& q, const typename G::Edge& edge) {
     Vec2 a = p.a, b = q.a;
     if (p.is_side && q.is_side) {
@@ -203,7 +208,7 @@ class MedialAxis {
     report(NarrowPlace::Kind::neck, p, {NarrowPlace::Kind::neck, true, width, center, a, b});
   }
 
-  /// Two parallel sides: the contacts in the middle of their edge of the medial axis.
+  /// Returns the contacts on two parallel sides in the middle of their edge of the medial axis.
   std::optional<std::pair<Vec2, Vec2>> parallel_contacts(const Contact& p, const Contact& q,
                                                          const typename G::Edge& edge) const {
     const Vec2 d = (p.b - p.a).normalized(), e = (q.b - q.a).normalized();
@@ -226,7 +231,7 @@ class MedialAxis {
     return (center - at).norm() >= radius * (1 - kRoundOff);
   }
 
-  /// A vertex of the medial axis: a disc with three contacts.
+  /// Evaluates a vertex of the medial axis, which is the center of a disc with three contacts.
   void vertex(const typename G::Finite_faces_iterator& face) {
     const Vec2 center = vec(graph_.primal(face));
     std::array<Contact, 3> contacts;
@@ -247,7 +252,7 @@ class MedialAxis {
     const auto widest = static_cast<size_t>(std::max_element(angle, angle + 3) - angle);
     const size_t i = (widest + 1) % 3, j = (widest + 2) % 3;
     NarrowPlace place{NarrowPlace::Kind::blob, true, 2 * low, center, at[i], at[j]};
-    // Contacts all around: the angles between them fill the circle.
+    // The contacts surround the center if the angles between them add up to the full circle.
     if (angle[0] + angle[1] + angle[2] > 2 * std::numbers::pi - kParallel &&
         angle[widest] < std::numbers::pi - kParallel)
       report(place.kind, contacts[i], place);
@@ -279,7 +284,7 @@ class MedialAxis {
 
   const OutlineSides& outlines_;
   double limit_;
-  std::array<double, 2> bounds_;  // of gaps and of solid places: those below are looked for
+  std::array<double, 2> bounds_;  // of void and of material: only smaller widths are searched
   const Counts* counts_ = nullptr;
   G graph_;
   Vertex hint_;

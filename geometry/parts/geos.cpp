@@ -19,7 +19,7 @@ bool is_before(const Vec2& a, const Vec2& b) {
   return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y());
 }
 
-/// The ring from its lowest, leftmost vertex on.
+/// Returns the ring rotated so that it begins with its leftmost vertex (the lowest of several).
 std::vector<Vec2> from_first_vertex(std::vector<Vec2> ring) {
   std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end(), is_before), ring.end());
   return ring;

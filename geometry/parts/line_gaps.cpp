@@ -32,7 +32,7 @@ class LineGaps {
   std::vector<NarrowPlace> take() { return std::move(found_); }
 
  private:
-  /// Runs of vertices that are equally far from the line, and nearer than those around.
+  /// Finds runs of vertices that are equally far from the line and nearer than their neighbours.
   void find(const Segment& line, const std::vector<Vec2>& ring) {
     const size_t n = ring.size();
     const double small = kTouches * (line.b - line.a).norm();
@@ -60,7 +60,7 @@ class LineGaps {
     if (!beside && !blocked({gap.a, gap.b})) found_.push_back(gap);
   }
 
-  /// Is there other material on the way, or all of it, as in a hole?
+  /// Returns true if the gap is blocked by other material or lies inside material.
   bool blocked(const Segment& way) const {
     const Vec2 middle = 0.5 * (way.a + way.b);
     if (std::any_of(regions_.begin(), regions_.end(),

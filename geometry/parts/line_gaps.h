@@ -8,16 +8,18 @@
 
 namespace flexmorph {
 
-/// Where material ends just short of a line that should hold it: places of void, narrowest first,
-/// with one contact `a` on the line and the other one, `b`, the point of the outline that is
-/// nearest to the line among its neighbours.
+/// Returns the unresolved gaps between material and lines on which it should end, the narrowest
+/// first. Each gap is a location of void with the contact `a` on the line and the contact `b` on
+/// the outline. `b` is the vertex (or the middle between equally far vertices) whose distance to
+/// the line is a local minimum along the outline. Gaps with other material in between are omitted.
 ///
-/// What is nearer to a line than 1e-9 of its length touches it; what is beside its ends has no gap
-/// to it. Exact for the polygons it is given.
+/// A vertex that is closer to a line than 1e-9 of the length of the line touches it. A vertex whose
+/// nearest point is an end of the line, beside the line, has no gap. The result is exact for the
+/// given polygons.
 ///
-/// @param regions  as unite() returns them
-/// @param lines    no material lies on both sides of one
-/// @param limit    only gaps narrower than that [m]
+/// @param regions  regions as unite() returns them
+/// @param lines    lines of which each has material on one side only
+/// @param limit    width below which a gap is returned [m]
 std::vector<NarrowPlace> line_gaps(std::span<const Region> regions, std::span<const Segment> lines,
                                    double limit);
 

@@ -14,19 +14,19 @@ namespace {
 using Ring = std::vector<Vec2>;
 
 constexpr double kPi = std::numbers::pi;
-/// Points that are nearer to each other are one: CAD kernels take 1e-7 mm as no distance [m].
+/// Distance below which points are merged: CAD kernels treat 1e-7 mm as zero [m].
 constexpr double kNear = 1e-9;
-/// A circle goes through a point that is so near to it [m].
+/// Distance below which a circle passes through a point [m].
 constexpr double kThrough = 1e-10;
-/// An angle that counts as round-off [rad].
+/// Angles below this value are round-off [rad].
 constexpr double kRoundOff = 1e-9;
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// The angle from one direction to another [rad].
+/// Returns the angle from one direction to another [rad].
 double angle_between(const Vec2& a, const Vec2& b) { return std::atan2(cross(a, b), a.dot(b)); }
 
-/// Twice the area between a curve and the origin, positive counterclockwise.
+/// Returns twice the area between a curve and the origin, positive counterclockwise.
 double twice_area(const OutlineCurve& c) {
   return cross(c.from, c.to) + c.radius * c.radius * (c.sweep - std::sin(c.sweep));
 }
@@ -43,15 +43,15 @@ std::optional<Vec2> nearest(const Vec2& to, const Vec2& a, const Vec2& b, double
   return out;
 }
 
-/// An arc whose circle misses its ends by what counts as round-off of large circles, with a circle
-/// through them: CAD kernels want ends within a nanometre.
+/// Returns an arc whose circle passes through its ends within a nanometre, as CAD kernels require.
+/// The round-off of large circles can be larger.
 OutlineCurve through_its_ends(const OutlineCurve& arc) {
   const double from = (arc.from - arc.center).norm(), to = (arc.to - arc.center).norm();
   const bool through = std::max(std::abs(from - arc.radius), std::abs(to - arc.radius)) < kThrough;
   return through ? arc : arc_between(arc.from, arc.to, arc.sweep);
 }
 
-/// Where a line through `p` meets a circle near to it.
+/// Returns the intersection of a line through `p` with a circle near `p`.
 std::optional<Vec2> met_by_line(const Disc& circle, const Vec2& p, const Vec2& along,
                                 double reach) {
   const Vec2 unit = along.normalized(), to = circle.center - p;
@@ -62,7 +62,7 @@ std::optional<Vec2> met_by_line(const Disc& circle, const Vec2& p, const Vec2& a
   return nearest(p, p + (middle - half) * unit, p + (middle + half) * unit, reach);
 }
 
-/// Where two circles meet near to a point.
+/// Returns the intersection of two circles near a point.
 std::optional<Vec2> met_by_circle(const Disc& a, const Disc& b, const Vec2& p, double reach) {
   const Vec2 to = b.center - a.center;
   const double d = to.norm();
@@ -75,7 +75,7 @@ std::optional<Vec2> met_by_circle(const Disc& a, const Disc& b, const Vec2& p, d
   return nearest(p, foot - std::sqrt(square) * across, foot + std::sqrt(square) * across, reach);
 }
 
-/// Makes curves of one ring of a polygon.
+/// Computes the curves of one ring of a polygon.
 class RingCurves {
  public:
   RingCurves(Ring ring, std::span<const Disc> circles, double tolerance)
@@ -111,7 +111,8 @@ class RingCurves {
   const Vec2& vertex(std::size_t k) const { return ring_[k % n()]; }
   Vec2 side(std::size_t k) const { return vertex(k + 1) - vertex(k); }
 
-  /// Does something else begin at a vertex: another circle, another sense, or a corner?
+  /// Returns true if a new curve begins at a vertex: on another circle, in another sense of
+  /// rotation, or after a corner.
   bool is_break(std::size_t k) const {
     const std::size_t before = (k + n() - 1) % n();
     if (circle_[before] != circle_[k]) return true;
@@ -119,15 +120,15 @@ class RingCurves {
       const Vec2 out = vertex(k) - circles_[static_cast<std::size_t>(circle_[k])].center;
       return cross(out, side(before)) * cross(out, side(k)) <= 0;
     }
-    // Sides l long that are within t of a curve turn by 8 t / l from one to the next at most, were
-    // its curvature constant.
+    // If sides of the length l are within t of a curve of constant curvature, the direction changes
+    // by at most 8 t / l from one side to the next.
     constexpr double kSurely = 0.8, kVaries = 1.5;
     const double turn = std::abs(angle_between(side(before), side(k)));
     const double longer = std::max(side(before).norm(), side(k).norm());
     return turn > std::min(kSurely, kVaries * 8 * (0.5 * tolerance_) / longer);
   }
 
-  /// Curves of a ring without any break.
+  /// Returns the curves of a ring without breaks.
   CurveRing closed() const {
     if (circle_[0] >= 0) {
       const Disc& c = circles_[static_cast<std::size_t>(circle_[0])];
@@ -142,7 +143,8 @@ class RingCurves {
     return out;
   }
 
-  /// Where a vertex moves that two curves have in common: circles go through their chords' ends.
+  /// Returns the position to which a vertex between two curves is moved, such that circles pass
+  /// through the ends of their arcs.
   Vec2 junction(std::size_t k) const {
     const std::size_t before = (k + n() - 1) % n();
     const int a = circle_[before], b = circle_[k];
@@ -162,7 +164,7 @@ class RingCurves {
         .value_or(circle.center + circle.radius * out.normalized());
   }
 
-  /// Appends an arc along its chords. Ends that are not on the circle are joined by lines.
+  /// Appends the arc through its chords. Ends that are not on the circle are connected by lines.
   static void add_arc(const Disc& circle, const Ring& chain, CurveRing& out) {
     std::size_t first = 0, last = chain.size() - 1;
     if (!lies_on(circle, chain[first])) {
@@ -178,7 +180,7 @@ class RingCurves {
     if (tail) out.push_back(line_between(chain[last], chain[last + 1]));
   }
 
-  /// Appends what is no arc of a known circle: a line, or a fit.
+  /// Appends the curves of a chain that is no arc of a known circle: a line, or biarcs.
   void add_chain(const Ring& chain, bool is_closed, CurveRing& out) const {
     if (chain.size() == 2) {
       out.push_back(line_between(chain.front(), chain.back()));
@@ -193,7 +195,8 @@ class RingCurves {
   std::vector<int> circle_;
 };
 
-/// Vertices of a ring that are apart from each other and on no line with their neighbours.
+/// Returns the vertices of a ring that are apart from each other and not on a line with their
+/// neighbours.
 Ring essential(const Ring& ring) {
   Ring apart;
   for (const Vec2& p : ring)
@@ -217,7 +220,7 @@ CurvedRegion curved(const Region& region, const Make& curves) {
   return out;
 }
 
-/// Do the curves of a region neither cross nor touch each other, and bound an area?
+/// Returns true if the curves of a region neither cross nor touch and bound an area.
 bool is_simple(const CurvedRegion& region, double tolerance) {
   std::vector<Ring> rings = {polygon_within(region.outer, tolerance)};
   for (const CurveRing& hole : region.holes) rings.push_back(polygon_within(hole, tolerance));
@@ -229,10 +232,12 @@ bool is_simple(const CurvedRegion& region, double tolerance) {
   }
 }
 
-/// Curves of a region: finer ones where they would cross, and its sides where these would.
+/// Returns the curves of a region. If they would cross, finer curves are used, and lines if these
+/// would cross, too.
 CurvedRegion uncrossed(const Region& region, std::span<const Disc> circles, double tolerance) {
   constexpr double kFiner = 0.1;
-  const double sides = kFiner * tolerance;  // of the polygons that are looked at
+  // tolerance of the polygons with which crossings are tested
+  const double sides = kFiner * tolerance;
   const auto fit = [&](double within) {
     return curved(region,
                   [&](const Ring& ring) { return RingCurves(ring, circles, within).curves(); });
@@ -242,7 +247,7 @@ CurvedRegion uncrossed(const Region& region, std::span<const Disc> circles, doub
   CurvedRegion finer = fit(kFiner * tolerance);
   if (is_simple(finer, sides)) return finer;
   CurvedRegion lines = curved(region, [](const Ring& ring) { return lines_of(ring); });
-  // Where the region touches itself, its curves do so, too.
+  // If the region touches itself, its curves touch as well.
   return is_simple(lines, sides) ? lines : first;
 }
 
@@ -299,7 +304,8 @@ std::vector<CurvedRegion> curves_of(std::span<const Region> regions, double tole
 std::vector<Vec2> polygon_within(const CurveRing& ring, double tolerance) {
   std::vector<Vec2> out;
   for (const OutlineCurve& c : ring) {
-    // The middle of a chord of the angle w is r (1 - cos(w/2)) = 2 r sin²(w/4) off.
+    // The middle of a chord of the angle w is r (1 - cos(w/2)) = 2 r sin²(w/4) away from the
+    // circle.
     int parts = 1;
     if (!c.is_line()) {
       const double quarter = std::asin(std::min(1.0, std::sqrt(0.5 * tolerance / c.radius)));

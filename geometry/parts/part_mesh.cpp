@@ -34,9 +34,9 @@ using Cdt = CGAL::Constrained_Delaunay_triangulation_2<Kernel, Data, CGAL::Exact
 
 Vec2 place_of(const Cdt::Vertex_handle& v) { return {v->point().x(), v->point().y()}; }
 
-/// Which triangles are refined: too large ones first, then those with a small angle.
+/// The order in which triangles are refined: too large ones first, then those with a small angle.
 struct Criteria {
-  /// Square of the sine of the smallest angle (20.7 degrees): refinement ends for certain.
+  /// Square of the sine of the smallest angle (20.7 degrees), for which the refinement terminates.
   static constexpr double kSine = 0.125;
 
   struct Quality {
@@ -75,15 +75,16 @@ struct Criteria {
   Is_bad is_bad_object() const { return {sizes}; }
 };
 
-/// Far above what any part of sizes that a computer can hold needs.
+/// Limit on the number of steps, far above the number that any mesh that fits into memory needs.
 constexpr long kMostSteps = 1'000'000;
 
 using Mesher = CGAL::Delaunay_mesher_2<Cdt, Criteria>;
 
-/// One region: its triangulation, refined as far as it is.
+/// The triangulation of one region in its current state of refinement.
 struct Piece {
   Cdt cdt;
-  std::vector<Kernel::Point_2> seeds;  // one in every face of the arrangement that is inside
+  // one point in every inner face of the arrangement of constraints
+  std::vector<Kernel::Point_2> seeds;
   std::optional<Mesher> mesher;
 
   /// @param lines  as conforming_lines() returns them
@@ -124,8 +125,8 @@ struct Piece {
     }
   }
 
-  /// Patches between constraints: whether they are inside shows at the middle of their largest
-  /// face.
+  /// Finds a point in every patch between constraints that is inside the region. The test uses the
+  /// middle of the largest face of the patch.
   void find_seeds(const Region& region) {
     for (const Cdt::Face_handle face : cdt.finite_face_handles()) face->info() = 0;
     for (const Cdt::Face_handle start : cdt.finite_face_handles()) {
@@ -160,7 +161,7 @@ struct Piece {
   }
 };
 
-/// Adds the triangles of regions to a mesh: nodes are numbered as they are met.
+/// Adds the triangles of regions to a mesh. Nodes are numbered in the order in which they occur.
 class Collector {
  public:
   void add(Piece& piece) {
@@ -170,7 +171,7 @@ class Collector {
     for (const Cdt::Face_handle f : cdt.finite_face_handles())
       if (f->is_in_domain() && f->info() < 0) add_patch(cdt, f);
   }
-  /// Middles of sides come behind all corners.
+  /// Appends the middles of sides after all corners and returns the mesh.
   PartMesh finish() && {
     mesh_.n_corners = static_cast<int>(mesh_.points.size());
     std::map<std::pair<int, int>, int> middles;
@@ -268,7 +269,8 @@ std::vector<Vec2> reentrant_corners(std::span<const Region> regions, double angl
       const Vec2 &before = ring[(k + ring.size() - 1) % ring.size()], &at = ring[k],
                  &after = ring[(k + 1) % ring.size()];
       const Vec2 u = at - before, v = after - at;
-      // Material lies to the left: a turn to the right opens the angle beyond a straight one.
+      // Material lies on the left, therefore the inner angle at a turn to the right is larger than
+      // 180 degrees.
       const double turn = std::atan2(u.x() * v.y() - u.y() * v.x(), u.dot(v));
       if (std::numbers::pi - turn > angle) out.push_back(at);
     }

@@ -12,11 +12,11 @@ namespace flexmorph {
 
 namespace {
 
-/// One component as the sampling sees it.
+/// The data of one component for sampling.
 struct Stencil {
   ComponentFrame frame;
-  Box local;           ///< rectangle of the component's frame around the outline
-  double left, right;  ///< its extent along X
+  Box local;           ///< Rectangle of the component's frame that contains the outline.
+  double left, right;  ///< Range of the outline along X.
 };
 
 std::vector<Stencil> stencils(std::span<const Component> components, double min_half_thickness) {
@@ -31,7 +31,7 @@ std::vector<Stencil> stencils(std::span<const Component> components, double min_
   return all;
 }
 
-/// The samples of one column, from below: 1 where there is material.
+/// The samples of one column from bottom to top: 1 where there is material.
 class SampleColumn {
  public:
   SampleColumn(double y0, double step, int count)
@@ -41,7 +41,8 @@ class SampleColumn {
 
   void cover(const Stencil& stencil, double X) {
     const IndexRange rows = indices_in(stencil.frame.column(X, stencil.local), y0_, step_, count_);
-    const ComponentFrame frame = stencil.frame;  // a copy: bytes written may alias anything else
+    // a copy, because writing bytes may alias any other data
+    const ComponentFrame frame = stencil.frame;
     const double y0 = y0_, step = step_;
     std::uint8_t* covered = covered_.data();
     for (int k = rows.first; k < rows.end; ++k) {
@@ -69,7 +70,7 @@ class SampleColumn {
     }
   }
 
-  /// Adds the samples of every cell to counts; `samples` of them to a cell.
+  /// Adds the number of covered samples of every cell to `counts`; a cell has `samples` of them.
   void add_to(double* counts, int samples) const {
     const std::uint8_t* covered = covered_.data();
     for (int k = 0; k < count_; k += samples, ++counts) {
@@ -86,7 +87,7 @@ class SampleColumn {
   std::vector<double> crossings_;
 };
 
-/// Pieces of material joined over edges, found one by one.
+/// Connected regions of material (cells that share edges), found one by one.
 class Pieces {
  public:
   Pieces(const Grid& grid, const VectorXd& fractions, std::span<const HeldOrLoaded> places)
@@ -102,8 +103,8 @@ class Pieces {
 
   bool is_open(int i, int j) const { return open_[grid_.cell(i, j)]; }
 
-  /// Removes the piece that holds a cell.
-  /// @returns which places it touches.
+  /// Removes the connected region that contains a cell.
+  /// @returns true for the supports and loads that the region touches
   const std::vector<bool>& take(int i, int j) {
     std::fill(touched_.begin(), touched_.end(), false);
     enter(i, j);
@@ -220,8 +221,8 @@ Connectivity connectivity_of(const std::vector<std::vector<bool>>& touched,
       (places[p].is_support ? out.unused_supports : out.loose_loads).push_back(places[p].name);
   }
   out.connected = out.loose_loads.empty();
-  // Loads of all material, as weight, have no place: every support that material reaches serves
-  // them.
+  // Loads on all material, such as weight, act on no cells: every support that material touches
+  // carries them.
   if (std::all_of(places.begin(), places.end(), [](const auto& p) { return p.is_support; })) {
     out.unused_supports.clear();
     out.connected = std::any_of(touched.begin(), touched.end(), [](const auto& piece) {

@@ -8,22 +8,23 @@
 namespace flexmorph {
 namespace {
 
-/// What counts as round-off, as a part of a radius or of the length of a run.
+/// Round-off limit, as a fraction of a radius or of the length of a run.
 constexpr double kRoundOff = 1e-9;
-/// Vertices in a row that make a circle: four are on one in every symmetric place of a curve.
+/// Smallest number of consecutive vertices that define a circle. Four are not enough, because four
+/// vertices lie on one circle wherever a curve is symmetric.
 constexpr std::size_t kFewest = 5;
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// Is the side from a to b, whose ends lie on the circle, near enough to it?
+/// Returns true if the side from a to b, whose ends lie on the circle, is near enough to it.
 bool is_chord(const Disc& circle, const Vec2& a, const Vec2& b, double sagitta) {
   const double half = 0.5 * (b - a).norm(), r = circle.radius;
   return half < r && half * half <= sagitta * (r + std::sqrt(r * r - half * half));
 }
 
-/// The circle through three points; none where they are nearly on a line.
+/// Returns the circle through three points; nothing if they are nearly on a line.
 std::optional<Disc> circle_through(const Vec2& a, const Vec2& b, const Vec2& c) {
-  constexpr double kStraight = 1e-4;  // rad from side to side
+  constexpr double kStraight = 1e-4;  // angle between the sides [rad]
   const Vec2 u = b - a, w = c - a;
   const double twice = 2 * cross(u, w);
   if (!(std::abs(twice) > 2 * kStraight * u.norm() * (c - b).norm())) return {};
@@ -32,7 +33,8 @@ std::optional<Disc> circle_through(const Vec2& a, const Vec2& b, const Vec2& c) 
   return Disc{a + to, to.norm()};
 }
 
-/// Least squares of |x - c|² = r², linear in c and r² - |c|², about a circle that is nearly right.
+/// Returns the least-squares circle of points: |x - c|² = r² is linear in c and r² - |c|². `near`
+/// is an approximation of the circle, by which the points are scaled.
 Disc fitted(const Disc& near, std::span<const Vec2> points) {
   MatrixXd rows(static_cast<Eigen::Index>(points.size()), 3);
   VectorXd squares(rows.rows());
@@ -46,13 +48,13 @@ Disc fitted(const Disc& near, std::span<const Vec2> points) {
   return {near.center + near.radius * center, near.radius * std::sqrt(x[2] + center.squaredNorm())};
 }
 
-/// Vertices of a ring in a row, from `first` on, cyclic.
+/// Consecutive vertices of a ring on one circle, beginning with `first` (cyclic).
 struct Run {
   Disc circle;
   std::size_t first = 0, count = 0;
 };
 
-/// Finds the longest run on a circle that begins with three vertices, both ways.
+/// Finds the longest run on a circle that contains three given vertices, in both directions.
 class RunFinder {
  public:
   RunFinder(const std::vector<Vec2>& ring, double sagitta) : ring_(ring), sagitta_(sagitta) {}
@@ -89,7 +91,7 @@ class RunFinder {
   bool chord(const Disc& circle, std::size_t k) const {
     return is_chord(circle, vertex(k), vertex(k + 1), sagitta_);
   }
-  /// Is the vertex `next`, at the end of `side` that a run has not yet, on its circle?
+  /// Returns true if the vertex `next`, at the free end of `side`, lies on the circle of a run.
   bool grows(const Run& run, std::size_t side, std::size_t next) const {
     if (run.count >= ring_.size() || !chord(run.circle, side)) return false;
     const double along =
@@ -107,7 +109,7 @@ struct Found {
   std::vector<Vec2> points;
 };
 
-/// Circles that differ by less than short arcs of them can tell are one.
+/// Returns true if two circles differ by less than short arcs of them can resolve.
 bool are_one(const Disc& a, const Disc& b) {
   constexpr double kNear = 1e-6;
   const double near = kNear * std::min(a.radius, b.radius);
@@ -150,11 +152,12 @@ std::vector<Disc> circles_of(std::span<const std::vector<Vec2>> rings, double sa
 std::vector<int> circles_of_sides(std::span<const Vec2> ring, std::span<const Disc> circles,
                                   double sagitta) {
   std::vector<int> out(ring.size(), -1);
-  // Is `inner` within the circle on a chord that begins at `end`?
+  // True if `inner` lies inside the circle on a chord that begins at `end`.
   const auto is_part = [&](const Disc& circle, const Vec2& end, const Vec2& inner) {
     const Vec2 radius = end - circle.center, side = inner - end;
     const double depth = circle.radius - (inner - circle.center).norm();
-    // Half the angle of the longest chord lies between it and the tangent at its end.
+    // The angle between a chord and the tangent at its end is half the central angle of the chord.
+    // For the longest chord its cosine is 1 - sagitta / radius.
     const double cosine = std::max(0.0, 1 - sagitta / circle.radius);
     return depth > 0 && depth <= sagitta &&
            std::abs(side.dot(radius)) <=

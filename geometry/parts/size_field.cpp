@@ -6,7 +6,8 @@
 namespace flexmorph {
 namespace {
 
-/// Goes into the quarter that holds the point; changes its corner and width. @return its number
+/// Selects the quarter of a square that contains a point and updates the corner and the width.
+/// @returns the index of the quarter
 int enter_quarter(const Vec2& point, Vec2& corner, double& width) {
   width *= 0.5;
   const bool right = point.x() >= corner.x() + width, upper = point.y() >= corner.y() + width;
@@ -33,7 +34,7 @@ double SizeField::at(const Vec2& point) const {
 
 void SizeField::refine(const Vec2& point, double reach, double size) {
   const Vec2 inside = point.cwiseMax(box_.lower).cwiseMin(box_.upper);
-  // Smaller squares than the sizes in them would say nothing, and never end for a reach of 0.
+  // Squares smaller than the sizes in them would have no effect, and a reach of 0 would never end.
   const double smallest = std::max(reach, 0.5 * size);
   Vec2 corner = box_.lower;
   double width = width_;

@@ -15,17 +15,17 @@ namespace {
 using Ring = std::vector<Vec2>;
 
 constexpr double kPi = std::numbers::pi;
-/// Samples per feature, the wave length that is halved, the largest shift [features].
+/// Samples per feature, length of the wave that is halved, and largest shift, both in features.
 constexpr double kSamples = 12, kWave = 5, kShift = 0.12;
-/// Angles within which the weight falls from 1 [rad]; its least value: waves as long as 1.5
-/// features are halved everywhere.
+/// Angles between which the weight falls from 1 [rad], and its smallest value: with it, waves of
+/// 1.5 features are halved everywhere.
 constexpr double kStraight = kPi / 9, kCorner = kPi / 4, kEverywhere = 0.0081;
-/// Points nearer to fixed rings than this part of a feature are on them.
+/// Points that are closer to fixed rings than this fraction of a feature are on them.
 constexpr double kOn = 1e-6;
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// Straight sides, and which points are on them.
+/// Straight sides, with a test for points on them.
 class Sides {
  public:
   Sides(std::vector<Segment> sides, double near) : near_(near), sides_(std::move(sides)) {}
@@ -43,10 +43,11 @@ class Sides {
   std::vector<Segment> sides_;
 };
 
-/// A polyline by its length, and points at equal distances along it.
+/// A polyline parametrized by its length, with samples at equal distances.
 class Chain {
  public:
-  /// @param closed  it ends where it begins
+  /// Samples a polyline.
+  /// @param closed  true if it ends where it begins
   Chain(Ring points, bool closed, double spacing) : points_(std::move(points)), closed_(closed) {
     for (std::size_t k = 0; k < points_.size(); ++k)
       at_.push_back(k == 0 ? 0.0 : at_[k - 1] + (points_[k] - points_[k - 1]).norm());
@@ -68,7 +69,7 @@ class Chain {
     return samples_[index(closed_ ? ((i % n) + n) % n : std::clamp(i, 0, n - 1))];
   }
 
-  /// Shifts of the samples by the filter, none longer than `most`.
+  /// Returns the shifts of the samples by the filter, limited to the length `most` [m].
   std::vector<Vec2> shifts(int per_feature, double wave, double most) const {
     const int n = n_samples();
     const double stiffness = std::pow(wave / (2 * kPi * step_), 4);
@@ -102,7 +103,7 @@ class Chain {
     return out;
   }
 
-  /// The samples where they move, and the points where these do not.
+  /// Returns the polyline with the moved samples; where samples do not move, it keeps its points.
   Ring moved(const std::vector<Vec2>& shifts, double small) const {
     Ring out;
     int next = 0;
@@ -122,10 +123,10 @@ class Chain {
 
  private:
   static std::size_t index(int i) { return static_cast<std::size_t>(i); }
-  /// Is the sample none of the two that end an open chain, which stay?
+  /// Returns true unless the sample is one of the two ends of an open chain, which do not move.
   bool bends(int i) const { return closed_ || (i > 0 && i + 1 < n_samples()); }
-  /// The direction of the outline around sample i - m or i + m, over m samples outwards; at ends
-  /// that of the first or last side.
+  /// Returns the direction of the outline before (after) sample i, between the samples at distances
+  /// of m and 2 m; at the ends of an open chain the direction of the first or last samples.
   Vec2 before(int i, int m) const {
     if (closed_) return sample(i - m) - sample(i - 2 * m);
     const int to = std::max(i - m, 1);
@@ -141,12 +142,13 @@ class Chain {
     const double turn = std::abs(std::atan2(cross(a, b), a.dot(b)));
     return std::clamp((kCorner - turn) / (kCorner - kStraight), kEverywhere, 1.0);
   }
-  /// Minus the gradient of half of the weighted bends by the place of a sample.
+  /// Returns minus the gradient of half the weighted bending sum by the position of a sample.
   Vec2 pull(int i, const std::vector<double>& weights) const {
     Vec2 out(0, 0);
     if (!bends(i)) return out;
     const int n = n_samples();
-    constexpr double kBend[3] = {1, -2, 1};  // in the bends of the sample after, this one, before
+    // in the bending terms of the next sample, this one, and the previous one
+    constexpr double kBend[3] = {1, -2, 1};
     for (int k = 0; k < 3; ++k) {
       const int at = (i + 1 - k + n) % n;
       out -= weights[index(at)] * kBend[k] * (sample(at - 1) - 2 * sample(at) + sample(at + 1));
@@ -155,7 +157,7 @@ class Chain {
   }
   Ring points_;
   bool closed_;
-  std::vector<double> at_;  ///< length up to a point [m]
+  std::vector<double> at_;  ///< Length from the first point to a point [m].
   int n_ = 0;
   double step_ = 0;
   std::vector<Vec2> samples_;
@@ -203,7 +205,7 @@ class Smoothing {
  private:
   Ring chain(Ring points, bool closed) const {
     constexpr int kFewest = 5;
-    constexpr double kSmall = 0.01, kSides = 0.2;  // tolerances
+    constexpr double kSmall = 0.01, kSides = 0.2;  // fractions of the tolerance
     if (!closed && points.size() == 2) return points;
     const Chain chain(points, closed, feature_ / kSamples);
     if (chain.n_samples() < kFewest) return points;
@@ -214,7 +216,7 @@ class Smoothing {
     return simplified_line(chain.moved(shifts, kSmall * tolerance_), kSides * tolerance_);
   }
 
-  /// The part of its shift that a point keeps.
+  /// Returns the factor by which the shift of a point is reduced near points that must not move.
   double freedom(const Vec2& p) const {
     double out = 1;
     for (const Vec2& k : kept_)

@@ -11,17 +11,17 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 struct Point {
-  int index = -1;  // in the triangulation that is returned
+  int index = -1;  // index in the triangulation that is returned
 };
 using Vertices = CGAL::Triangulation_vertex_base_with_info_2<Point, Kernel>;
 struct Patch {
-  int index = -1;  // of the faces that no edge of a ring separates
+  int index = -1;  // index of the set of faces that no edge of a ring separates
 };
 using Faces = CGAL::Constrained_triangulation_face_base_2<
     Kernel, CGAL::Triangulation_face_base_with_info_2<Patch, Kernel>>;
 using Data = CGAL::Triangulation_data_structure_2<Vertices, Faces>;
-// Outlines are exact before they are rounded to doubles: after that, points may coincide and edges
-// cross by round-off, which this tag allows.
+// Outlines are computed exactly and then rounded to double. Rounding may make points coincide and
+// edges cross, which this tag allows.
 using Cdt = CGAL::Constrained_Delaunay_triangulation_2<Kernel, Data, CGAL::Exact_predicates_tag>;
 
 void insert_ring(Cdt& cdt, const std::vector<Vec2>& ring, std::vector<Vec2>& points) {
@@ -38,7 +38,7 @@ void insert_ring(Cdt& cdt, const std::vector<Vec2>& ring, std::vector<Vec2>& poi
   }
 }
 
-/// Even-odd rule over all rings.
+/// Returns true if a point is inside, by the even-odd rule over all rings.
 bool is_inside(const Region& region, const Vec2& p) {
   bool inside = false;
   const auto count = [&](const std::vector<Vec2>& ring) {
@@ -66,8 +66,9 @@ double area_of(const Cdt::Face_handle& face) {
   return 0.5 * ((b.x() - a.x()) * (c.y() - a.y()) - (c.x() - a.x()) * (b.y() - a.y()));
 }
 
-/// Gives all faces that can be reached from `start` without crossing an edge of a ring the number
-/// `patch`. @returns the largest of them
+/// Assigns the number `patch` to all faces that can be reached from `start` without crossing an
+/// edge of a ring.
+/// @returns the largest of these faces
 Cdt::Face_handle mark_patch(const Cdt& cdt, const Cdt::Face_handle& start, int patch) {
   Cdt::Face_handle largest = start;
   std::vector<Cdt::Face_handle> waiting = {start};
@@ -86,8 +87,9 @@ Cdt::Face_handle mark_patch(const Cdt& cdt, const Cdt::Face_handle& start, int p
   return largest;
 }
 
-/// Is a patch inside? One look at all rings for each patch, at the middle of its largest face, not
-/// for each face. Not by counting constraints on the way from outside: rings that touch share some.
+/// Returns for each patch if it is inside the region. The middle of its largest face is compared
+/// with all rings; testing every face would take longer. Counting constraints from the outside
+/// would fail, because rings that touch share constraints.
 std::vector<bool> inside_patches(const Cdt& cdt, const Region& region) {
   std::vector<bool> inside;
   for (const Cdt::Face_handle face : cdt.finite_face_handles())
@@ -105,7 +107,7 @@ Triangulation triangulate(const Region& region) {
   insert_ring(cdt, region.outer, out.points);
   for (const auto& hole : region.holes) insert_ring(cdt, hole, out.points);
   for (const Cdt::Vertex_handle v : cdt.finite_vertex_handles()) {
-    if (v->info().index >= 0) continue;  // else where edges cross
+    if (v->info().index >= 0) continue;  // new points are intersections of edges
     v->info().index = static_cast<int>(out.points.size());
     out.points.emplace_back(v->point().x(), v->point().y());
   }

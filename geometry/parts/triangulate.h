@@ -7,13 +7,15 @@
 
 namespace flexmorph {
 
+/// Triangles that fill a region.
 struct Triangulation {
-  std::vector<Vec2> points;  ///< vertices of the region, outer ring first [m]; then crossings
-  std::vector<std::array<int, 3>> triangles;  ///< counterclockwise
+  /// Vertices of the region, outer ring first, then points where sides cross [m].
+  std::vector<Vec2> points;
+  std::vector<std::array<int, 3>> triangles;  ///< Indices of the corners, counterclockwise.
 };
 
-/// Constrained Delaunay triangulation (CGAL) of a polygon with holes, without new points but where
-/// edges cross, as they may by round-off.
+/// Returns the constrained Delaunay triangulation (CGAL) of a polygon with holes. It adds points
+/// only where edges cross, which may happen by round-off.
 /// @throws Error (numerical) when there is no triangle.
 Triangulation triangulate(const Region& region);
 

@@ -16,7 +16,8 @@ namespace {
 
 constexpr const char* kOption = "--set ";
 
-/// Edits (insertion, deletion, exchange, swap of neighbours) that turn a into b.
+/// Returns the number of edits (insertion, deletion, exchange, swap of neighbours) that turn a into
+/// b.
 size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::vector<size_t>> d(a.size() + 1, std::vector<size_t>(b.size() + 1));
   for (size_t i = 0; i <= a.size(); ++i) {
@@ -48,7 +49,7 @@ std::string trimmed(const std::string& s) {
   return first == std::string::npos ? "" : s.substr(first, last - first + 1);
 }
 
-/// The entry of a list that KEY means; steps over its label when there is one.
+/// Returns the entry of a list that KEY means; if KEY names the entry, `next` skips the name.
 CaseNode& entry_of(CaseNode& list, const std::string& so_far, const std::vector<std::string>& keys,
                    size_t& next, const std::string& option) {
   const std::vector<std::string> labels = entry_labels(list);
@@ -106,12 +107,12 @@ bool is_list_of_tables(const CaseNode& node) {
          });
 }
 
-/// Writes a document, with what readers noted or without.
+/// Writes a document as TOML text, with or without the notes of readers.
 struct Writer {
   bool explains;
   std::string out = {};
 
-  /// A value in one line.
+  /// Returns a value in one line.
   std::string written(const CaseNode& node) const {
     if (node.kind != CaseNode::Kind::table && node.kind != CaseNode::Kind::list) return node.shown;
     const bool is_table = node.kind == CaseNode::Kind::table;
@@ -124,7 +125,7 @@ struct Writer {
     return is_table ? "{ " + text + " }" : "[" + text + "]";
   }
 
-  /// Values that readers took for keys which are not in the file.
+  /// Returns the notes about values that readers used for keys which are not in the file.
   std::vector<CaseNote> taken(const CaseNode& table) const {
     std::vector<CaseNote> notes;
     for (const CaseNote& note : table.notes)
@@ -133,7 +134,7 @@ struct Writer {
   }
 
   void write_line(const std::string& text, const CaseNode& table, const std::string& key) {
-    constexpr size_t kComments = 32;  // the column where they begin
+    constexpr size_t kComments = 32;  // column in which comments begin
     out += text;
     for (const CaseNote& note : table.notes)
       if (explains && note.key == key && !note.sentence.empty())
@@ -157,7 +158,7 @@ struct Writer {
     }
   }
 
-  /// A table: its values first, then the tables in it.
+  /// Writes a table: first its values, then the tables in it.
   void write_table(const CaseNode& table, const std::string& path) {
     const auto is_section = [](const CaseNode& node) {
       return is_list_of_tables(node) || (node.kind == CaseNode::Kind::table && !node.is_inline);
@@ -238,7 +239,7 @@ std::string nearest(const std::string& word, std::span<const std::string> known)
 
 std::string located(const CaseNode& node, const std::string& key_path) {
   constexpr size_t kLongest = 60;
-  if (node.is_option) return node.place;  // it says key and value already
+  if (node.is_option) return node.place;  // it contains key and value already
   if (node.kind == CaseNode::Kind::table) return node.place + ": [" + key_path + "]";
   if (is_list_of_tables(node)) return node.place + ": [[" + key_path + "]]";
   const bool fits = node.shown.size() <= kLongest;

@@ -10,80 +10,98 @@
 
 namespace flexmorph::io {
 
-/// What a reader found out about a key of a table.
+/// The information that a reader attaches to a key of a table, for the explained case.
 struct CaseNote {
-  std::string key, sentence;
-  std::string value;  ///< as TOML, of a key that is not in the file; empty: it is, or has none
+  std::string key, sentence;  ///< Name of the key, and the sentence that explains it.
+
+  /// Value in TOML that was used because the file has no such key; empty if the file has it.
+  std::string value;
 };
 
-/// One value of a case file, with the place it came from.
+/// One value of a case file, with its location in the file.
 struct CaseNode {
+  /// Type of the value; `other` means dates and times.
   enum class Kind { table, list, text, integer, number, boolean, other };
 
-  std::string key;  ///< in its table; empty in lists
-  Kind kind = Kind::table;
-  std::string text;               ///< kind text: its contents
-  double number = 0;              ///< kinds integer and number
-  int64_t integer = 0;            ///< kinds integer and boolean (0, 1)
-  bool is_inline = false;         ///< a table in braces
-  std::vector<CaseNode> entries;  ///< of tables and lists
+  std::string key;                ///< Name of the key in its table; empty for entries of lists.
+  Kind kind = Kind::table;        ///< Type of the value.
+  std::string text;               ///< Contents of a text.
+  double number = 0;              ///< Value of an integer or a number.
+  int64_t integer = 0;            ///< Value of an integer or a boolean (0, 1).
+  bool is_inline = false;         ///< True for a table in braces.
+  std::vector<CaseNode> entries;  ///< Entries of a table or a list.
 
-  std::string place;                    ///< "cases/four_bar.toml:14:13", or "--set KEY=VALUE"
-  std::string shown;                    ///< as it was written: "-0.002", "[10, 2]"
-  unsigned line = 0;                    ///< to sort messages
-  bool is_option = false;               ///< the very value of a --set option
-  mutable std::set<std::string> asked;  ///< keys of a table that somebody asked for
-  mutable bool visited = false;         ///< did anybody look into this table?
-  mutable std::vector<CaseNote> notes;  ///< in the order in which keys were read
-  mutable std::list<CaseNode> assumed;  ///< tables that are not in the file, but were read as empty
+  std::string place;       ///< Location, such as "cases/four_bar.toml:14:13", or "--set KEY=VALUE".
+  std::string shown;       ///< Value as it is written in the file: "-0.002", "[10, 2]".
+  unsigned line = 0;       ///< Line in the file, by which messages are sorted.
+  bool is_option = false;  ///< True if the value was set by a --set option.
+  mutable std::set<std::string> asked;  ///< Keys of a table that readers have read or looked for.
+  mutable bool visited = false;         ///< True if a reader has accessed this table.
+  mutable std::vector<CaseNote> notes;  ///< Notes of readers, in the order in which keys were read.
 
+  /// Tables that are missing in the file and were read as empty ones.
+  mutable std::list<CaseNode> assumed;
+
+  /// Returns the entry of a key, or null if there is none.
   const CaseNode* find(const std::string& wanted) const;
   CaseNode* find(const std::string& wanted);
-  /// Keeps a note, in place of an older one of the same key.
+  /// Stores a note about a key. It replaces an older note about the key.
   void note(const std::string& about, const std::string& sentence, const std::string& value) const;
 };
 
-/// A case file as a tree.
+/// A case file as a tree of values.
 struct CaseDocument {
-  explicit CaseDocument(const std::string& file);  ///< @throws Error (input)
+  /// Reads and parses a file.
+  /// @throws Error (input) for a file that cannot be read or parsed
+  explicit CaseDocument(const std::string& file);
 
-  /// Carries out one "KEY=VALUE" of the command line; "KEY=" takes KEY away. @throws Error (input)
+  /// Applies one override "KEY=VALUE" of the command line; "KEY=" removes KEY.
+  /// @throws Error (input) when the override is not valid
   void apply(const std::string& change);
 
-  void refuse_unknown_keys() const;  ///< @throws Error (input)
-  /// How far a dotted path leads: one entry goes by its label, its number, or nothing where it is
-  /// the only one.
+  /// Checks that readers have accessed every key in the tables that they have read.
+  /// @throws Error (input) with a message for each unknown key
+  void refuse_unknown_keys() const;
+  /// The result of following a dotted path of keys as far as possible. An entry of a list is named
+  /// by its label or its index; the only entry of a list needs no name.
   struct Looked {
-    const CaseNode* node;    ///< the last one on the way
-    std::string path, next;  ///< its path; the key that it does not have
-    bool whole = false;      ///< did it lead to the end?
+    const CaseNode* node;    ///< Last node that was found.
+    std::string path, next;  ///< Path of this node, and the first key that was not found in it.
+    bool whole = false;      ///< True if the whole path was found.
   };
+  /// Returns how far a dotted path of keys can be followed.
   Looked look(const std::string& key_path) const;
-  /// See CaseFile::where().
+  /// Returns the location of a key for messages, see CaseFile::where().
   std::string where(const std::string& key_path) const;
+  /// Returns the text of the file, or the rewritten document if overrides have changed it.
   std::string effective_text() const;
-  /// The effective case with the values that readers took for missing keys, a sentence to each.
+  /// Returns the effective case, including the values that readers used for missing keys, with the
+  /// sentence of each key as a comment.
   std::string explained_text() const;
 
-  std::string path, text;
-  std::vector<std::string> changes;
-  CaseNode root;
+  std::string path, text;            ///< Path of the file, and its text.
+  std::vector<std::string> changes;  ///< Overrides in the order in which they were applied.
+  CaseNode root;                     ///< Root table.
 };
 
-/// "cases/four_bar.toml:14:13: body.thickness = -0.002"; of a table its path only.
+/// Returns a value with its location, "cases/four_bar.toml:14:13: body.thickness = -0.002". For a
+/// table the text contains only its path.
 std::string located(const CaseNode& node, const std::string& key_path);
 
-/// How the entries of a list of tables are called: by their name, else the body they are about,
-/// else their index, which stands for what is no word or is said twice as well.
+/// Returns the labels of the entries in a list of tables. The label is the `name` of the entry, or
+/// else the `body` that it refers to. The index replaces a label that is not a bare key or occurs
+/// more than once.
 std::vector<std::string> entry_labels(const CaseNode& list);
 
-/// Paths of the entries of the list at `list_path`: a lone entry needs no label.
+/// Returns the paths of the entries of the list at `list_path`. A single entry has the path of the
+/// list.
 std::vector<std::string> entry_paths(const CaseNode& list, const std::string& list_path);
 
-/// The known word a misspelt one probably meant; empty when none is near.
+/// Returns the known word that is most similar to a misspelt one, or an empty text if none is
+/// similar.
 std::string nearest(const std::string& word, std::span<const std::string> known);
 
-/// May it be a key without quotes?
+/// Returns true if a word may be a TOML key without quotes.
 bool is_bare_key(const std::string& word);
 
 }  // namespace flexmorph::io

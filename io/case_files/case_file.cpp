@@ -280,7 +280,8 @@ std::string CaseFile::with_others(const std::string& complaint) const {
   std::vector<Complaint> all = {{0, complaint, ""}};
   all.insert(all.end(), found.values.begin(), found.values.end());
   all.insert(all.end(), found.unknown.begin(), found.unknown.end());
-  // Parts that do not fit together may be there by mistake: nobody misses what they lack.
+  // Sections that do not fit together may be there by mistake; then messages about their missing
+  // keys would not help.
   if (known) all.insert(all.end(), found.missing.begin(), found.missing.end());
   return complaints_text(std::move(all), path());
 }

@@ -14,41 +14,55 @@ namespace flexmorph::io {
 
 struct CaseNode;
 
+/// One entry of a list that contains numbers and names.
 struct NumberOrName {
-  std::string name;  ///< empty: a number
-  double number = 0;
+  std::string name;   ///< Name; empty if the entry is a number.
+  double number = 0;  ///< Value of the number.
 };
 
-/// One table of a case file, and what was asked of it.
+/// One table of a case file, with functions that read its keys.
 ///
-/// Every reader throws Error (input) with file, line, column, key, value and what is allowed:
+/// All reading functions throw Error (input) with file, line, column, key, value and allowed
+/// values:
 ///
 ///   cases/four_bar.toml:14:13: body.thickness = -0.002: a thickness is positive [m]
 ///
-/// A missing key has the value that its declaration or the reader (`computed`) says; without either
-/// it is an error. Asking for a key makes it known: CaseFile::finish() refuses all others. Reading
-/// a key that is declared for another table, or as something else, is a std::logic_error. Copies
-/// are cheap and keep the file alive.
+/// A missing key has the value `computed` of the call, or else the fallback of its declaration. If
+/// there is neither, a missing key is an error. Reading a key marks it as known, and
+/// CaseFile::finish() rejects all keys that are not known. Reading a key that is declared for
+/// another table or with another form throws std::logic_error. Copies of a table are cheap and keep
+/// the document in memory.
 class Table {
  public:
-  const std::string& path() const;        ///< "body.flow"; empty for the file itself
-  std::string place() const;              ///< "cases/four_bar.toml:14:1"
-  std::vector<std::string> keys() const;  ///< in the order of the file (makes none known)
-  bool has(const Key& key) const;         ///< is it in the file? (makes it known)
-  bool is_string(const Key& key) const;   ///< is its value a string?
+  /// Returns the path of the table, such as "body.flow"; empty for the root table.
+  const std::string& path() const;
+  /// Returns the location of the table, such as "cases/four_bar.toml:14:1".
+  std::string place() const;
+  /// Returns the keys of the table in the order of the file, without marking them as known.
+  std::vector<std::string> keys() const;
+  /// Returns true if the file has the key, and marks it as known.
+  bool has(const Key& key) const;
+  /// Returns true if the value of the key is a string.
+  bool is_string(const Key& key) const;
+  /// Returns true if the value of the key is a list of one or more strings.
   bool is_list_of_strings(const Key& key) const;
-  bool says_one_of(const Key& key, std::span<const std::string> words) const;  ///< as its string
+  /// Returns true if the value of the key is a string out of `words`.
+  bool says_one_of(const Key& key, std::span<const std::string> words) const;
 
-  /// Whole numbers are numbers; inf and nan are refused.
+  /// Returns a number; an integer in the file is a number, too. inf and nan are rejected.
   double number(const Key& key, std::optional<double> computed = {}) const;
+  /// Returns an integer within the declared limits.
   int integer(const Key& key, std::optional<int> computed = {}) const;
+  /// Returns a boolean value.
   bool boolean(const Key& key, std::optional<bool> computed = {}) const;
+  /// Returns a string of any content.
   std::string string(const Key& key, std::optional<std::string> computed = {}) const;
-  /// One of the words it is declared with.
+  /// Returns one of the words with which the key is declared.
   std::string choice(const Key& key, std::optional<std::string> computed = {}) const;
-  /// One of the names in `allowed`, which the case gives.
+  /// Returns one of the names in `allowed`, which depend on the case.
   std::string choice(const Key& key, std::span<const std::string> allowed,
                      std::optional<std::string> computed = {}) const;
+  /// Returns the value that the word of a key stands for.
   template <class T>
   T choice(const Choice<T>& choice, std::optional<T> computed = {}) const {
     std::optional<std::string> word;
@@ -57,39 +71,47 @@ class Table {
     return choice.value_of(this->choice(key, key.form(Form::Kind::word).words(), word));
   }
 
-  /// Lists of as many entries as the key is declared with.
+  /// Returns a list of numbers of the declared length.
   std::vector<double> numbers(const Key& key,
                               const std::optional<std::vector<double>>& computed = {}) const;
-  /// Of a key with numbers_or_names(): numbers, and names out of `allowed`.
+  /// Returns a list of numbers and of names out of `allowed`, for a key with numbers_or_names().
   std::vector<NumberOrName> numbers_or_names(const Key& key,
                                              std::span<const std::string> allowed) const;
+  /// Returns a list of integers of the declared length.
   std::vector<int> integers(const Key& key,
                             const std::optional<std::vector<int>>& computed = {}) const;
+  /// Returns a list of rows with the declared number of columns (n_rows x n_columns).
   std::vector<std::vector<double>> rows(const Key& key) const;
-  /// One or more of the words it is declared with, or of the names in `allowed`, none twice.
+  /// Returns one or more different words, out of the declared ones or out of the names in
+  /// `allowed`.
   std::vector<std::string> choices(const Key& key) const;
   std::vector<std::string> choices(const Key& key, std::span<const std::string> allowed) const;
+  /// Returns a list of strings of any content.
   std::vector<std::string> strings(const Key& key) const;
 
+  /// Returns the table of a key.
   /// @throws Error (input) when it is missing or not a table.
   Table table(const Key& key) const;
-  /// An empty one when it is missing.
+  /// Returns the table of a key, or an empty table if the key is missing.
   Table table_or_empty(const Key& key) const;
-  /// Entries of [[key]]; none when it is missing.
+  /// Returns the entries of the list of tables [[key]]; none if the key is missing.
   std::vector<Table> tables(const Key& key) const;
 
-  /// What a missing key came to in the end, where that is known only later: for the explained case.
+  /// Records the value of a missing key that is computed only later, for the text of explained().
   void settle(const Key& key, const Value& value) const;
 
-  /// @throws Error (input): "<file:line:column>: <path.key> = <value>: <allowed>".
+  /// Throws an error about the value of a key.
+  /// @throws Error (input) "<file:line:column>: <path.key> = <value>: <allowed>".
   [[noreturn]] void fail(const Key& key, const std::string& allowed) const;
-  /// The same about the table as a whole: "<file:line:column>: <path>: <allowed>".
+  /// Throws an error about the table.
+  /// @throws Error (input) "<file:line:column>: <path>: <allowed>".
   [[noreturn]] void fail(const std::string& allowed) const;
 
-  /// Path of the file that a key names: relative names start at the folder of the case file, those
-  /// of a --set option at the working directory, as others on the command line.
+  /// Returns the path of the file that a key names. Relative names in the case file start at its
+  /// folder; relative names in a --set option start at the working directory, as other paths on the
+  /// command line.
   std::string path_of(const Key& key) const;
-  /// The same from the root of the file system.
+  /// Returns the absolute path of the file that a key names, see path_of().
   std::string absolute(const Key& key) const;
 
  private:
@@ -100,39 +122,44 @@ class Table {
   std::shared_ptr<const Place> place_;
 };
 
-/// A case file (TOML) with the changes of the command line.
+/// A case file (TOML) with the overrides of the command line.
 class CaseFile {
  public:
-  /// Reads the file and applies `overrides`, each "KEY=VALUE": KEY a dotted path (an entry of a
-  /// list of tables goes by its name, its index, or nothing when it is the only one:
-  /// body.plate.thickness, body.0.thickness, body.thickness), VALUE as in TOML; a bare word is
-  /// taken as a string; without VALUE the key is taken away, where it is there.
+  /// Reads a file and applies the overrides, each of the form "KEY=VALUE". KEY is a dotted path. An
+  /// entry of a list of tables is named by its label or its index, and a single entry needs no
+  /// name: body.plate.thickness, body.0.thickness, body.thickness. VALUE is written in TOML; a bare
+  /// word is a string. Without VALUE the key is removed if it exists.
   /// @throws Error (input) for a missing or unreadable file, a syntax error (file:line), or an
-  ///         override that names no place.
+  ///         override that names no location in the case.
   explicit CaseFile(const std::string& path, std::span<const std::string> overrides = {});
 
+  /// Returns the path of the file.
   const std::string& path() const;
+  /// Returns the root table.
   Table root() const;
 
-  /// What a reader complained of first, and what else is wrong in the file whatever it means, so
-  /// that all is said at once: values out of their ranges, unknown keys, and, if the first
-  /// complaint is of that kind, keys that every such table must have (check_by_book). A line to
-  /// each, twenty at most.
+  /// Returns the first complaint of a reader together with all other errors that can be found
+  /// without interpreting the case: values out of their limits and unknown keys. If the first
+  /// complaint is one of these errors, missing keys that every table of their kind must have are
+  /// added (check_by_book()). Each error has one line; there are at most twenty lines.
   std::string with_others(const std::string& complaint) const;
 
-  /// Where a dotted path of keys leads (entries of lists as in overrides), as messages begin:
-  /// "cases/four_bar.toml:14:8: time.step = 0.001". Of a key that is not in the file, its table and
-  /// the value that was taken for it.
+  /// Returns the location to which a dotted path of keys leads (entries of lists as in overrides),
+  /// in the form in which messages begin: "cases/four_bar.toml:14:8: time.step = 0.001". For a key
+  /// that is not in the file it returns the location of its table and the value that was used.
   std::string where(const std::string& key_path) const;
-  bool gives(const std::string& key_path) const;  ///< is the key in the file, or set?
+  /// Returns true if the file or an override gives the key.
+  bool gives(const std::string& key_path) const;
 
-  /// @throws Error (input) naming every key nobody asked for, with the nearest known one.
+  /// Checks that readers have accessed every key.
+  /// @throws Error (input) with every unknown key and the most similar known one.
   void finish() const;
 
-  /// The effective case: the file's own text, or the rewritten document when overrides changed it,
-  /// those from before and these.
+  /// Returns the effective case: the text of the file, or the rewritten document if earlier
+  /// overrides or `overrides` have changed it.
   std::string text(std::span<const std::string> overrides = {}) const;
-  /// The case as it was read: with the values taken for missing keys, and a sentence to each key.
+  /// Returns the case as it was read: with the values used for missing keys, and a sentence to each
+  /// key.
   std::string explained(std::span<const std::string> overrides = {}) const;
 
  private:

@@ -17,7 +17,7 @@ bool is_number(const CaseNode& node) {
   return node.kind == Kind::number || node.kind == Kind::integer;
 }
 
-/// One value that is no list.
+/// Returns true if a single value (an entry of a list, or no list) has a form.
 bool fits_one(const CaseNode& node, const Form& form) {
   switch (form.kind) {
     case Form::Kind::number:
@@ -39,7 +39,7 @@ bool fits_one(const CaseNode& node, const Form& form) {
       break;
   }
   if (node.kind != Kind::text) return false;
-  const Words words = form.words();  // none: names that the case gives
+  const Words words = form.words();  // none if the case gives the allowed names
   return !form.allowed || std::find(words.begin(), words.end(), node.text) != words.end();
 }
 
@@ -60,7 +60,7 @@ bool fits(const CaseNode& node, const Form& form) {
   });
 }
 
-/// Is the node of the kind that the form takes, if not of its values?
+/// Returns true if the node has the type of the form, even if the value is not allowed.
 bool is_alike(const CaseNode& node, const Form& form) {
   if (node.kind == Kind::list) {
     if (form.kind == Form::Kind::tables) return true;
@@ -127,7 +127,8 @@ std::string allowed(const CaseNode& node, const Form& form, const std::string& f
 using Declared = std::vector<const Key*>;
 using KeysOfTable = std::map<std::string, Declared>;
 
-/// By kind of table ("body.flow") and name: a key may be declared several times, for several cases.
+/// Returns the keys by kind of table ("body.flow") and name. A key may be declared several times,
+/// for different cases.
 std::map<std::string, KeysOfTable> keys_by_table() {
   std::map<std::string, KeysOfTable> out;
   for (const Key& key : all_keys())
@@ -174,13 +175,14 @@ class BookReader {
 
   void value(const CaseNode& node, const Declared& declared, const std::string& kind,
              const std::string& full) {
-    std::string words;  // what is allowed
+    std::string words;  // allowed values for the message
     bool alike = false;
     for (const Key* key : declared)
       for (const Form& form : key->forms) {
         if (fits(node, form)) return inside(node, form, kind, full);
-        // Of several declarations, each for other cases, that of the same kind of value speaks, and
-        // of those the shortest: the book has no order.
+        // A key may have several declarations for different cases. The message uses one for the
+        // same type of value if there is any, and of several ones the shortest, because the
+        // declarations have no order.
         const std::string own = allowed(node, form, full);
         const bool like = is_alike(node, form);
         if (words.empty() || (like && !alike) ||
@@ -201,7 +203,7 @@ class BookReader {
     for (size_t i = 0; i < node.entries.size(); ++i) table(node.entries[i], kind, paths[i]);
   }
 
-  /// A key that every table of the kind must have, unless it is there misspelt.
+  /// Reports a key that every table of the kind must have, unless the table has it misspelt.
   void missing(const CaseNode& node, const std::string& name, const Declared& declared,
                const std::vector<std::string>& strange, const std::string& path) {
     const Key& key = *declared.front();
@@ -259,7 +261,7 @@ std::string one_of(const std::string& noun, std::span<const std::string> allowed
 std::string complaints_text(std::vector<Complaint> complaints, const std::string& file) {
   std::stable_sort(complaints.begin(), complaints.end(),
                    [](const Complaint& a, const Complaint& b) { return a.line < b.line; });
-  // As many as fit on a screen: who has more has mistaken something else.
+  // Twenty lines fit on a screen. A longer list usually has one common cause.
   constexpr size_t kMost = 20;
   const size_t n = complaints.size(), shown = n > kMost ? kMost - 1 : n;
   std::string all;

@@ -8,40 +8,47 @@
 #include "io/case_files/case_document.h"
 #include "io/case_files/key.h"
 
-/// Values of a case file against the forms that their keys are declared with.
+/// Checks of the values in a case file against the declared forms of their keys.
 namespace flexmorph::io {
 
-/// The value, where the node is one of this form.
+/// Returns the number of a node, or nothing if it is not a number that the quantity allows.
 std::optional<double> read_number(const CaseNode& node, const Quantity& quantity);
+/// Returns the integer of a node, or nothing if it is not an integer within the limits of the form.
 std::optional<int> read_integer(const CaseNode& node, const Form& form);
+/// Returns the text of a node, or nothing if it is not a text.
 std::optional<std::string> read_text(const CaseNode& node);
 
-/// What is allowed, as messages end: "a count is a whole number between 1 and 9".
+/// Returns the allowed values at the end of a message: "a length is positive [m], or the name of
+/// ...".
 std::string number_or_name(const Form& form);
+/// Returns the allowed values of an integer: "a count is a whole number between 1 and 9".
 std::string whole_number(const Form& form);
-/// "a term is one of 'inertia', 'membrane'".
+/// Returns the allowed words: "a term is one of 'inertia', 'membrane'".
 std::string one_of(const std::string& noun, std::span<const std::string> allowed);
-/// The same, with the word that was probably meant.
+/// Returns the allowed words, and the one that is most similar to `found`.
 std::string one_of(const std::string& noun, std::span<const std::string> allowed,
                    const std::string& found);
-/// Behind what a number may be, where a text stands in its place.
+/// Text that follows the allowed numbers in a message if the file has a text instead of a number.
 inline constexpr const char* kNoQuotes = "; a number stands without quotes";
 
-/// A complaint about a case file: its line, how it begins, and how it goes on.
+/// A complaint about a case file.
 struct Complaint {
-  unsigned line;
-  std::string subject;  ///< "cases/four_bar.toml:14:13: body.thickness = -0.002"
-  std::string words;    ///< ": a thickness is positive [m]"
+  unsigned line;  ///< Line in the file.
+
+  /// Location and value, such as "cases/four_bar.toml:14:13: body.thickness = -0.002".
+  std::string subject;
+  std::string words;  ///< Reason, such as ": a thickness is positive [m]".
 };
-/// One text of all of them in the order of the file, at most twenty lines.
+/// Returns the text of complaints in the order of the file, at most twenty lines.
 std::string complaints_text(std::vector<Complaint> complaints, const std::string& file);
 
-/// Everything in a case that cannot be, whatever the rest of it says: values that fit no form of
-/// their keys in the book, keys that are not in the book, and keys that are missing although every
-/// such table has them. Tables of which the book has no key are not looked into.
+/// Errors in a case that can be found without interpreting it. Tables for which the program
+/// declares no keys are not checked.
 struct BookCheck {
+  /// Values that fit no declared form, keys that are not declared, and missing required keys.
   std::vector<Complaint> values, unknown, missing;
 };
+/// Returns the errors in a case with respect to the declarations of all keys (all_keys()).
 BookCheck check_by_book(const CaseNode& root);
 
 }  // namespace flexmorph::io

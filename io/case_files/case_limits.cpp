@@ -8,11 +8,12 @@
 namespace flexmorph::io {
 namespace {
 
-constexpr int kMostParts = 100;       // of a dotted key
-constexpr size_t kLongestKey = 2000;  // characters
-constexpr int kDeepest = 100;         // lists and tables in braces
+constexpr int kMostParts = 100;       // largest number of parts in a dotted key
+constexpr size_t kLongestKey = 2000;  // largest number of characters in a key
+constexpr int kDeepest = 100;         // largest depth of nested lists and tables in braces
 
-/// The end of the string that begins at `start`; of several lines where three quotes open it.
+/// Returns the end of the string that begins at `start`. Three quotes open a string of several
+/// lines.
 size_t end_of_string(std::string_view text, size_t start) {
   const char quote = text[start];
   const std::string three(3, quote);
@@ -24,7 +25,7 @@ size_t end_of_string(std::string_view text, size_t start) {
     } else if (is_long ? text.substr(i).starts_with(three) : text[i] == quote) {
       return i + (is_long ? 3 : 1);
     } else if (!is_long && text[i] == '\n') {
-      return i;  // toml++ says what is wrong
+      return i;  // toml++ reports this error
     } else {
       ++i;
     }

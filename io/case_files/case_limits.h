@@ -4,9 +4,9 @@
 
 namespace flexmorph::io {
 
-/// Refuses what toml++ would follow call by call into the ground, before it sees it: keys of more
-/// than 100 parts, or of more than 2000 characters, and lists and tables in each other more than
-/// 100 deep. Strings and comments may hold what they like. Linear in the text, whatever it is.
+/// Rejects a text on which the recursion of the parser toml++ would become too deep: keys of more
+/// than 100 parts or more than 2000 characters, and lists and tables that are nested more than 100
+/// deep. Strings and comments may have any contents. The time is linear in the length of the text.
 ///
 /// @param name  file, or option of the command line
 /// @throws Error (input) "<name>:<line>: ..." with the limit.

@@ -15,7 +15,7 @@
 namespace flexmorph::io {
 namespace {
 
-/// ":14:13", line and column (characters, not bytes) as editors count them.
+/// Returns ":14:13", line and column (characters, not bytes) as editors count them.
 std::string place_in(const toml::source_position& at) {
   return std::string(":")
       .append(std::to_string(at.line))
@@ -31,24 +31,25 @@ std::vector<bool> plain_lines(const std::vector<std::string>& lines) {
   return out;
 }
 
-/// The source behind a tree: its lines, and what it is called in messages.
+/// The source text of a tree: its lines, and its name in messages.
 struct Source {
   std::vector<std::string> lines;
   std::string name;
   bool is_option;
-  std::vector<bool> plain = plain_lines(lines);  // of ASCII only; found once, lines may be long
+  // true for lines of ASCII only; computed once, because lines may be long
+  std::vector<bool> plain = plain_lines(lines);
 
   std::string place(const toml::source_region& region) const {
     if (is_option || !region.begin) return name;
     return name + place_in(region.begin);
   }
 
-  /// The words of a value as they stand in the source; empty when they fill several lines.
+  /// Returns a value as it is written in the source; empty if it fills several lines.
   std::string written(const toml::source_region& region) const {
     if (!region.begin || region.begin.line != region.end.line || region.begin.line > lines.size())
       return "";
     const std::string& line = lines[region.begin.line - 1];
-    // Columns count characters, not bytes: only plain text can be cut by them.
+    // Columns count characters, not bytes, therefore only ASCII lines can be cut by columns.
     if (!plain[region.begin.line - 1] || region.end.column <= region.begin.column) return "";
     std::string value =
         line.substr(region.begin.column - 1, region.end.column - region.begin.column);
@@ -81,7 +82,7 @@ void convert_entries(const toml::table& table, const Source& source, CaseNode& r
     result.entries.emplace_back(convert(*child, source)).key = key;
 }
 
-/// Value and default spelling of anything but a table.
+/// Sets the value and its default text for every node except a table.
 void convert_value(const toml::node& node, const Source& source, CaseNode& result) {
   using Kind = CaseNode::Kind;
   if (const toml::array* list = node.as_array()) {
@@ -110,7 +111,7 @@ void convert_value(const toml::node& node, const Source& source, CaseNode& resul
     result.integer = boolean->get();
     result.shown = boolean->get() ? "true" : "false";
   } else {
-    result.kind = Kind::other;  // dates and times, which no key takes
+    result.kind = Kind::other;  // dates and times, which no key accepts
     result.shown = "a date or time";
   }
 }
@@ -140,7 +141,7 @@ std::string read_text(const std::string& path) {
   if (std::filesystem::is_directory(status))
     throw Error::input(path + ": a directory; a case is one TOML file");
   std::ifstream in(path, std::ios::binary);
-  // A case may come from a pipe, and what comes from a device has no end.
+  // A case may come from a pipe. The limit is needed because input from a device may never end.
   constexpr size_t kMostBytes = 100'000'000;
   std::string text, block(size_t{1} << 16U, '\0');
   while (in.read(block.data(), static_cast<std::streamsize>(block.size())) || in.gcount() > 0) {
@@ -154,7 +155,8 @@ std::string read_text(const std::string& path) {
 
 namespace {
 
-/// What people from other languages, countries and editors most often mean.
+/// Returns a hint about the most frequent causes of an error: habits from other languages and
+/// formats.
 std::string hint_of(const std::string& reason, const std::string& line, size_t column) {
   constexpr std::string_view kSaw = "saw '";
   const size_t mark = reason.find(kSaw);
@@ -175,7 +177,7 @@ std::string hint_of(const std::string& reason, const std::string& line, size_t c
   return "";
 }
 
-/// Reason, the line it is about, and a hint.
+/// Returns the reason of an error, the line in which it is, and a hint.
 std::string syntax_text(const toml::parse_error& e, const std::string& text) {
   constexpr size_t kLongest = 60;
   const std::string reason(e.description());
@@ -185,7 +187,7 @@ std::string syntax_text(const toml::parse_error& e, const std::string& text) {
   if (number >= 1 && number <= lines.size()) line = lines[number - 1];
   if (line.ends_with('\r')) line.pop_back();
   const std::string hint = hint_of(reason, line, e.source().begin.column);
-  // What is no text is not shown.
+  // Lines that contain other than printable characters are not shown.
   const bool plain = std::all_of(line.begin(), line.end(),
                                  [](char c) { return c == '\t' || (c >= 32 && c < 127); });
   std::string out = reason;
@@ -202,7 +204,7 @@ CaseNode parse_case(const std::string& text, const std::string& file) {
   try {
     const toml::table root = toml::parse(text, file);
     CaseNode node = convert(root, {lines_of(text), file, false});
-    node.place = file + ":1:1";  // where what is missing may be written
+    node.place = file + ":1:1";  // location that messages name for missing keys
     return node;
   } catch (const toml::parse_error& e) {
     throw Error::input(file + place_in(e.source().begin) + ": not TOML: " + syntax_text(e, text));
@@ -210,7 +212,7 @@ CaseNode parse_case(const std::string& text, const std::string& file) {
 }
 
 CaseNode parse_option(const std::string& value, const std::string& option) {
-  // The name of a choice may stand without quotes, which shells take away.
+  // A word may be given without quotes, because shells remove them.
   const bool word = is_bare_key(value) && std::isalpha(static_cast<unsigned char>(value[0])) &&
                     value != "true" && value != "false" && value != "inf" && value != "nan";
   std::string text = "value = ";

@@ -11,37 +11,43 @@
 
 namespace flexmorph::io {
 
-/// Where a Table stands: shared by its copies, keeps the document alive.
+/// The location of a Table in its document. Copies of the Table share it; it keeps the document in
+/// memory.
 struct Table::Place {
-  std::shared_ptr<CaseDocument> document;
-  const CaseNode* table;
-  std::string path;
-  std::string kind;  ///< the path without names and indices, as keys are declared for it
+  std::shared_ptr<CaseDocument> document;  ///< Document that contains the table.
+  const CaseNode* table;                   ///< Node of the table.
+  std::string path;                        ///< Path of the table.
+  std::string kind;  ///< Path without names and indices of entries, as in the declarations of keys.
 
+  /// Returns the path of a key of the table.
   std::string full(const std::string& key) const { return path.empty() ? key : path + "." + key; }
 
-  /// The node of a key, or nullptr; the key is known from now on.
+  /// Returns the node of a key, or nullptr, and marks the key as known.
   const CaseNode* find(const std::string& key) const {
     table->visited = true;
     table->asked.insert(key);
     return table->find(key);
   }
 
-  /// @throws Error (input): a missing key, or the misspelt one that was probably meant.
+  /// Throws an error about a missing key.
+  /// @throws Error (input) that names the missing key, or the misspelt key that was probably meant.
   [[noreturn]] void fail_missing(const std::string& key, const std::string& allowed) const;
+  /// Throws an error about the value of a key.
+  /// @throws Error (input) with the location, the value and the allowed values.
   [[noreturn]] void fail(const std::string& key, const std::string& allowed) const;
 
-  /// The form to read by.
+  /// Returns the form with which a key is to be read.
   /// @throws std::logic_error for a key of another table, or of another form.
   const Form& form(const Key& key, Form::Kind kind, bool is_list = false) const;
 
-  /// For the explained case.
+  /// Stores a note about a key for the explained case.
   void note(const Key& key, const std::string& value) const {
     table->note(key.name, key.sentence, value);
   }
 
-  /// The value of a key: that of the file through `read`, which returns nothing for a wrong one;
-  /// without it the computed one, or the declared one.
+  /// Returns the value of a key. If the file has the key, `read` converts its node and returns
+  /// nothing for a value that is not allowed. If the file lacks it, the value is `computed` or else
+  /// the declared fallback.
   template <class T, class Read>
   T value(const Key& key, const std::optional<T>& computed, const std::string& allowed,
           Read read) const {
@@ -57,7 +63,7 @@ struct Table::Place {
     return *found;
   }
 
-  /// All entries of a list, each through `read`.
+  /// Returns the entries of a list, each converted by `read`.
   template <class T, class Read>
   std::vector<T> list(const Key& key, const Form& form, const std::string& allowed,
                       const std::optional<std::vector<T>>& computed, Read read) const {
@@ -79,7 +85,7 @@ struct Table::Place {
   }
 
  private:
-  /// The value that a key is declared with, if any.
+  /// Returns the fallback with which a key is declared, if there is one.
   template <class T>
   static std::optional<T> fallback_of(const Key& key) {
     if constexpr (std::is_constructible_v<Value, T>) {

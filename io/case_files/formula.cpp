@@ -14,7 +14,7 @@ namespace flexmorph::io {
 namespace {
 
 constexpr size_t kMaxCharacters = 10'000;
-constexpr int kMaxParentheses = 100;  // open ones
+constexpr int kMaxParentheses = 100;  // open at the same time
 constexpr int kMaxSigns = 10;         // in a row
 constexpr double kLargestExponent = 1e6;
 
@@ -26,7 +26,7 @@ Node smooth_step(const Nodes& x) {
   return choose(x[0], choose(-1 + x[0], graph.number(1), rising), graph.number(0));
 }
 
-/// piecewise(x0, t1, x1, t2, x2): x0 until t1, x1 from there, x2 from t2.
+/// Returns piecewise(x0, t1, x1, t2, x2): x0 until t1, x1 from there, x2 from t2.
 Node piecewise(const Nodes& x) {
   Graph& graph = *x[0].graph;
   Node out = x[0];
@@ -42,10 +42,10 @@ Node piecewise(const Nodes& x) {
   return out;
 }
 
-/// A function that is made of other operations than a call.
+/// A function that consists of operations other than a call.
 struct BuiltFunction {
   const char* name;
-  size_t n_arguments;  // 0: 3, 5, 7, ...
+  size_t n_arguments;  // 0 means 3, 5, 7, ...
   Node (*build)(const Nodes& arguments);
 };
 
@@ -91,7 +91,7 @@ class Parser {
       const Node out = sum();
       if (peek() != '\0') refuse("expected EOF, got: " + token());
       return out;
-    } catch (const std::domain_error& e) {  // of the operation that is written
+    } catch (const std::domain_error& e) {  // from the operation that is being created
       refuse(written_, e.what());
     }
   }
@@ -102,7 +102,7 @@ class Parser {
   }
   [[noreturn]] void refuse(const std::string& why) const { refuse(at_, why); }
 
-  /// The next character that is no blank; 0 at the end.
+  /// Returns the next character that is not blank; 0 at the end.
   char peek() {
     while (at_ < text_.size() && std::string_view(" \t\n").find(text_[at_]) != std::string::npos)
       ++at_;
@@ -115,7 +115,7 @@ class Parser {
     return c;
   }
 
-  /// The name or character that comes next, in quotes.
+  /// Returns the next name or character in quotes.
   std::string token() {
     if (peek() == '\0') return "EOF";
     size_t end = at_;
@@ -145,7 +145,7 @@ class Parser {
     return out;
   }
 
-  /// Reads signs, and by `read` what they belong to.
+  /// Reads signs, and their operand with `read`.
   Node after_signs(Node (Parser::*read)()) {
     bool negative = false;
     for (int n = 1; peek() == '+' || peek() == '-'; ++n, ++at_) {
@@ -176,7 +176,7 @@ class Parser {
     refuse("unexpected token, got: " + token());
   }
 
-  /// Reads what is in parentheses, between commas: so many sums at most.
+  /// Reads at most `most` sums between parentheses, separated by commas.
   Nodes in_parentheses(size_t most) {
     if (++depth_ > kMaxParentheses)
       refuse("more than " + std::to_string(kMaxParentheses) + " parentheses are open");
@@ -195,7 +195,7 @@ class Parser {
     const char *begin = text_.data() + at_, *text_end = text_.data() + text_.size();
     auto [end, error] = std::from_chars(begin, text_end, value);
     for (; end != text_end && (is_digit(*end) || *end == '.'); ++end)
-      error = std::errc::invalid_argument;  // a second point
+      error = std::errc::invalid_argument;  // a second decimal point
     if (error != std::errc()) refuse("'" + std::string(begin, end) + "' is no number");
     at_ += static_cast<size_t>(end - begin);
     return graph_.number(value);
@@ -229,8 +229,9 @@ class Parser {
   const std::string& text_;
   const std::map<std::string, double>& constants_;
   Graph& graph_;
-  size_t at_ = 0, written_ = 0;  // places of the next character and of the operation being written
-  int depth_ = 0;                // open parentheses
+  // positions of the next character and of the operation being created
+  size_t at_ = 0, written_ = 0;
+  int depth_ = 0;  // number of open parentheses
 };
 
 }  // namespace
@@ -268,7 +269,7 @@ Formula::Formula(std::string text, const std::map<std::string, double>& constant
 }
 
 Jet Formula::operator()(double t) const {
-  double x[kMaxOperations];  // NOLINT: no more is touched than the formula has operations
+  double x[kMaxOperations];  // NOLINT: only as many entries are used as the formula has operations
   program_->run(t, x);
   const auto& [value, rate, acceleration] = program_->results;
   return {x[value], x[rate], x[acceleration]};

@@ -6,7 +6,7 @@
 
 namespace flexmorph::io {
 
-/// A function of one argument and its derivative at x, where its value is f.
+/// A function of one argument, and its derivative at x as a node, where f is the node of its value.
 struct ElementaryFunction {
   const char* name;
   double (*value)(double);
@@ -17,10 +17,10 @@ namespace {
 
 constexpr const char* kNoQuotient =
     "division by zero, or a power of 0 whose exponent is not positive at all times";
-constexpr double kLargestWhole = 64;  // exponent that multiplications compute
-constexpr double kLargestLog = 200;   // of a factor that leaves a power: no double overflows
+constexpr double kLargestWhole = 64;  // largest exponent that is computed by multiplications
+constexpr double kLargestLog = 200;  // limit for the factor of a power, so that no double overflows
 
-// sqrt is differentiated as a power.
+// sqrt has no derivative here, because it is differentiated as a power.
 const ElementaryFunction kFunctions[] = {
     {"sin", std::sin, [](Node x, Node) { return call("cos", x); }},
     {"cos", std::cos, [](Node x, Node) { return -call("sin", x); }},
@@ -78,7 +78,7 @@ double evaluate(const Operation& o, double t, const double* x) {
 
 bool is_whole(double x) { return x == std::round(x); }
 
-/// A node as a power of another one.
+/// Returns the base and the exponent of a node that is a power of another one.
 std::pair<Node, double> as_power(Node x) {
   static const ElementaryFunction* const kRoot = find_function("sqrt");
   double exponent = 1;
@@ -94,14 +94,15 @@ std::pair<Node, double> as_power(Node x) {
   }
 }
 
-/// A node as a number times another node.
+/// Returns the number and the other node of a node that is a multiple of another one.
 std::pair<double, Node> as_multiple(Node x) {
   if (x.is_number() && !x.is(0)) return {x->number, x.graph->number(1)};
   if (x->op == Op::scale) return {x->number, x.at(x->a)};
   return {1, x};
 }
 
-/// Multiplies that factor of a product with a power that has its base; false when none has.
+/// Multiplies `factor` into the factor of the product x that is a power of the same base. Returns
+/// false if there is no such factor.
 bool take_in(Node& x, Node factor) {
   const auto [base, exponent] = as_power(x);
   const auto [other_base, other_exponent] = as_power(factor);
@@ -220,7 +221,7 @@ Node Graph::push(const Operation& operation) {
 
 namespace {
 
-/// Which operations take part in some results.
+/// Returns 1 for operations that contribute to the results, 0 for all others.
 std::vector<char> needed_for(const std::vector<Node>& results) {
   const std::deque<Operation>& operations = results[0].graph->operations;
   std::vector<char> out(operations.size(), 0);
@@ -231,7 +232,8 @@ std::vector<char> needed_for(const std::vector<Node>& results) {
   return out;
 }
 
-/// The time derivative of a node, from those of earlier nodes by their place.
+/// Returns the time derivative of a node from the derivatives of earlier nodes, given by their
+/// index.
 Node chain_rule(Node f, const std::map<int, Node>& derivatives) {
   const Node a = f.at(f->a), b = f.at(f->b), c = f.at(f->c);
   const auto rate = [&](Node x) { return derivatives.at(x.index); };
@@ -244,7 +246,7 @@ Node chain_rule(Node f, const std::map<int, Node>& derivatives) {
   if (f->op == Op::scale) return f->number * rate(a);
   if (f->op == Op::choose) return choose(a, rate(b), rate(c));
   if (f->op == Op::atan2) return (b * rate(a) - a * rate(b)) * power(b * b + a * a, -1);
-  if (f->op == Op::power)  // exp(b log a)
+  if (f->op == Op::power)  // f = exp(b log a)
     return f * (rate(b) * call("log", a) + b * (rate(a) * power(a, -1)));
   return f->function->derivative(a, f) * rate(a);
 }

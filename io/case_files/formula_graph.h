@@ -14,7 +14,7 @@ namespace flexmorph::io {
 
 struct ElementaryFunction;
 
-/// What one operation computes from the results a, b, c of earlier ones.
+/// Kinds of operations, which combine the results a, b, c of earlier operations.
 enum class Op {
   constant,
   time,
@@ -28,21 +28,22 @@ enum class Op {
   choose        ///< b where a >= 0, else c
 };
 
-/// One operation; its operands are places of earlier operations in the list.
+/// One operation; its operands are indices of earlier operations in the list.
 struct Operation {
-  Op op;
-  int a = -1, b = -1, c = -1;  // -1: none
-  int exponent = 0;
-  double number = 0;  // of constant and scale
-  const ElementaryFunction* function = nullptr;
+  Op op;                                         ///< Kind of the operation.
+  int a = -1, b = -1, c = -1;                    ///< Indices of the operands; -1: none.
+  int exponent = 0;                              ///< Exponent of whole_power.
+  double number = 0;                             ///< Number of constant and scale.
+  const ElementaryFunction* function = nullptr;  ///< Function of call.
 
+  /// Compares all members, for the search of equal operations.
   auto operator<=>(const Operation&) const = default;
 };
 
 /// The operations that compute value, rate and acceleration, in the order of evaluation.
 struct Formula::Program {
-  std::vector<Operation> operations;
-  std::array<int, 3> results{};  // places of value, rate and acceleration
+  std::vector<Operation> operations;  ///< All operations.
+  std::array<int, 3> results{};       ///< Indices of value, rate and acceleration.
 
   /// Evaluates all operations at the time t [s].
   /// @param x  results of the operations (n_operations)
@@ -51,64 +52,82 @@ struct Formula::Program {
 
 class Graph;
 
-/// A node of an expression graph. The functions of nodes write nodes: they fold numbers, write
-/// equal operations once, and neither sums with 0 nor products with 0 or 1. All of them throw
-/// std::domain_error where a number has no value or is not finite.
+/// A node of an expression graph. Functions of nodes create new nodes. They evaluate operations on
+/// constants, create equal operations only once, and create neither sums with 0 nor products with 0
+/// or 1. All of them throw std::domain_error if a constant has no real value or is not finite.
 struct Node {
-  Graph* graph;
-  int index;
+  Graph* graph;  ///< Graph that contains the node.
+  int index;     ///< Index of its operation in the graph.
 
+  /// Returns another node of the graph.
   Node at(int other) const { return {graph, other}; }
+  /// Returns the operation of the node.
   const Operation* operator->() const;
+  /// Returns true if the node is a constant.
   bool is_number() const { return (*this)->op == Op::constant; }
+  /// Returns true if the node is the constant `number`.
   bool is(double number) const { return is_number() && (*this)->number == number; }
+  /// Compares graph and index of two nodes.
   bool operator==(const Node&) const = default;
 };
 
+/// Returns the sum of two nodes.
 Node operator+(Node a, Node b);
+/// Returns the product of two nodes.
 Node operator*(Node a, Node b);
+/// Returns the sum of a number and a node.
 Node operator+(double a, Node b);
+/// Returns the product of a number and a node.
 Node operator*(double a, Node b);
+/// Returns the negative of a node.
 Node operator-(Node a);
+/// Returns the difference of two nodes.
 Node operator-(Node a, Node b);
-/// x^exponent. A power of a power becomes one power: (√x)² is x.
+/// Returns x^exponent. A power of a power becomes one power: (√x)² is x.
 Node power(Node x, double exponent);
 Node power(Node x, Node exponent);
-/// a b or a/b, where `exponent` is 1 or -1. Powers of one base become one power: √x x² is x^2.5,
-/// whose acceleration at 0 is finite.
+/// Returns a b or a/b, where `exponent` is 1 or -1. Powers of one base become one power: √x x² is
+/// x^2.5, whose acceleration at 0 is finite.
 Node product(Node a, Node b, int exponent);
+/// Returns the angle of the point (x, y) [rad].
 Node atan2(Node y, Node x);
-/// a where x >= 0, else b.
+/// Returns a where x >= 0, else b.
 Node choose(Node x, Node a, Node b);
-/// An elementary function of one argument: sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp,
-/// log. No other name is allowed.
+/// Returns an elementary function of one argument: sin, cos, tan, asin, acos, atan, sinh, cosh,
+/// tanh, exp, log or sqrt. No other name is allowed.
 Node call(const std::string& name, Node x);
+/// Returns true if call() has a function of this name.
 bool is_elementary_function(const std::string& name);
 
-/// The operations that nodes stand for.
+/// The operations that nodes refer to.
 struct Graph {
-  std::deque<Operation> operations;  // references to them stay valid
-  std::map<Operation, int> places;
+  /// All operations; a deque, because references to them must stay valid.
+  std::deque<Operation> operations;
+  std::map<Operation, int> places;  ///< Index of each operation.
 
+  /// Returns the node of a constant.
   Node number(double value);
+  /// Returns the node of the time t.
   Node time() { return push({.op = Op::time}); }
-  /// Returns the node of an operation: a number where its operands are numbers.
+  /// Returns the node of an operation; it is a constant if all operands are constants.
   Node push(const Operation& operation);
 };
 
+/// Returns the operation of the node.
 inline const Operation* Node::operator->() const {
   return &graph->operations[static_cast<size_t>(index)];
 }
 
-constexpr size_t kMaxOperations = 8192;  // of value, rate and acceleration together
+constexpr size_t kMaxOperations = 8192;  ///< Largest number of operations of a program.
 
-/// Returns the program of a node and its first two time derivatives. The chain rule goes from one
-/// operation to the next (automatic differentiation, forward), so each of them adds a bounded
-/// number of operations.
+/// Returns the program of a node and its first two time derivatives. The chain rule is applied
+/// operation by operation (forward automatic differentiation), therefore each operation adds a
+/// bounded number of operations.
 /// @throws std::length_error when there are more than kMaxOperations.
 Formula::Program differentiated(Node value);
 
-/// @throws Error (input): "formula '<text>': <why>".
+/// Throws an error about a formula.
+/// @throws Error (input) "formula '<text>': <why>".
 [[noreturn]] void refuse_formula(const std::string& text, const std::string& why);
 
 }  // namespace flexmorph::io

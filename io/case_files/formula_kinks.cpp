@@ -1,4 +1,4 @@
-// Where formulas of time jump, have corners or no values.
+// Times at which formulas jump, have discontinuous derivatives, or have no values.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -10,11 +10,12 @@
 namespace flexmorph::io {
 namespace {
 
-/// The last time before t.
+/// Returns the last double before t.
 double before(double t) { return std::nextafter(t, 0.0); }
 
-/// The time of the largest change of an entry between a and b, and what is left of that change
-/// between two neighbouring times: nothing where the function is continuous.
+/// Returns the time of the largest change of an entry between a and b, and the part of the change
+/// that remains between two neighbouring times. The latter is nearly zero if the function is
+/// continuous.
 std::pair<double, double> jump_between(const Formula& f, double Jet::*entry, double a, double b) {
   double at_a = f(a).*entry, at_b = f(b).*entry;
   for (int k = 0; k < 60 && b - a > 1e-12 * std::max(1.0, b); ++k) {
@@ -26,16 +27,16 @@ std::pair<double, double> jump_between(const Formula& f, double Jet::*entry, dou
   return {0.5 * (a + b), std::abs(at_b - at_a)};
 }
 
-/// What counts as a jump of value and rate between 0 and `end`.
+/// Returns the smallest changes of value and rate between 0 and `end` that count as jumps.
 Jet least_jump(const Formula& f, double end, int samples) {
-  constexpr double kJump = 1e-6;  // of the largest value; smooth functions leave 1e-9
+  constexpr double kJump = 1e-6;  // of the largest value; smooth functions change by 1e-9
   Jet largest;
   for (int i = 0; i <= samples; ++i) {
     const Jet x = f(end * i / samples);
     largest.value = std::max(largest.value, std::abs(x.value));
     largest.rate = std::max(largest.rate, std::abs(x.rate));
   }
-  // What moves by the last digit of its value until the end has a rate that is round-off.
+  // If a value changes only by its last digit until the end, its rate is round-off.
   return {kJump * largest.value, std::max(kJump * largest.rate, 1e-15 * largest.value / end)};
 }
 
@@ -49,7 +50,8 @@ void check_finite(const Formula& f, double t) {
                                    (std::isnan(number) ? " is no real number" : " is infinite"));
 }
 
-/// The first time at which an argument has the sign that it has at b; at a it has the other one.
+/// Returns the first time at which an argument has the sign that it has at b; at a the sign is
+/// opposite.
 template <class Argument>
 double change(const Argument& argument, double a, double b) {
   const bool at_b = argument(b) >= 0;
@@ -58,7 +60,7 @@ double change(const Argument& argument, double a, double b) {
   return b;
 }
 
-/// Where an argument with one extreme between a and b is nearest to zero there.
+/// Returns the time at which an argument with one extremum between a and b is nearest to zero.
 template <class Argument>
 double nearest(const Argument& argument, double a, double b) {
   constexpr double kGolden = 0.3819660112501051;
@@ -96,8 +98,8 @@ void Formula::check(double end, int samples) const {
 
 std::vector<double> Formula::kinks(double end) const {
   constexpr int kSteps = 2000;
-  constexpr double kMaxWork = 1e8;  // operations: a tenth of a second or two
-  std::set<size_t> arguments;       // that decide which branch the formula takes, among its results
+  constexpr double kMaxWork = 1e8;  // operations: 0.1 to 0.2 seconds
+  std::set<size_t> arguments;       // indices of results that decide which branch the formula takes
   for (const Operation& o : program_->operations)
     if (o.op == Op::choose) arguments.insert(static_cast<size_t>(o.a));
   std::vector<double> out;
@@ -105,7 +107,7 @@ std::vector<double> Formula::kinks(double end) const {
   double work = 0;
   const auto results = [&](double t) {
     std::vector<double> x(program_->operations.size());
-    work += static_cast<double>(x.size());  // some 60 times for every kink
+    work += static_cast<double>(x.size());  // about 60 times for every discontinuity
     if (work > kMaxWork) refuse_formula(text_, "it has too many kinks for how long it is");
     program_->run(t, x.data());
     return x;

@@ -11,7 +11,7 @@ namespace flexmorph::io {
 namespace drawing {
 
 Curve line(const Vec2& from, const Vec2& to) {
-  // The ends are exact.
+  // At t = 1 the sum would have round-off; the ends must be exact.
   return {[from, to](double t) { return t == 1 ? to : Vec2(from + t * (to - from)); }, true};
 }
 
@@ -36,7 +36,7 @@ std::string words(const Vec2& p) {
   return "(" + to_text(p.x(), 6) + ", " + to_text(p.y(), 6) + ")";
 }
 
-/// The larger side of the box around all of it, by points on its curves.
+/// Returns the larger side of the bounding box of points on all curves.
 double size_of(const Drawing& d) {
   constexpr int kPoints = 16;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -53,7 +53,8 @@ double size_of(const Drawing& d) {
   return (upper - lower).maxCoeff();
 }
 
-/// Appends points of a curve but its last one: sides within the tolerance, by points in between.
+/// Appends points of a curve except its last one, so many that the sides are within the tolerance.
+/// The test uses three points between the ends of each side.
 void flatten(const Curve& curve, double tolerance, Ring& out) {
   constexpr int kFewest = 8, kMost = 1 << 14;
   int n = curve.straight ? 1 : kFewest;
@@ -80,7 +81,7 @@ Path reversed(Path path) {
   return path;
 }
 
-/// Closed paths of open ones, end to end.
+/// Joins open paths end to end to closed paths.
 void close_chains(Drawing& d, double near) {
   std::vector<Path> open;
   const auto meet = [&](const Vec2& a, const Vec2& b) { return (a - b).norm() <= near; };
@@ -113,7 +114,7 @@ void close_chains(Drawing& d, double near) {
   }
 }
 
-/// Points nearer than this part of the tolerance are one.
+/// Points that are closer than this fraction of the tolerance are merged.
 constexpr double kSame = 1e-4;
 
 Ring ring_of(const Path& path, double tolerance) {
@@ -123,7 +124,7 @@ Ring ring_of(const Path& path, double tolerance) {
   const double same = kSame * tolerance;
   for (const Vec2& p : all)
     if (ring.empty() || (p - ring.back()).norm() > same) ring.push_back(p);
-  // The end of the last curve meets the begin of the first one.
+  // The end of the last curve coincides with the start of the first one.
   if (ring.size() > 1 && (ring.back() - ring.front()).norm() <= tolerance) ring.pop_back();
   while (ring.size() > 1 && (ring.back() - ring.front()).norm() <= same) ring.pop_back();
   return ring;

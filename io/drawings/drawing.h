@@ -7,85 +7,101 @@
 
 #include "geometry/base.h"
 
-/// Closed outlines from the drawings of other programs.
+/// Closed outlines from drawings of other programs.
 namespace flexmorph::io {
 
-/// How a drawing is read.
+/// Settings for reading a drawing.
 struct DrawingSettings {
-  std::optional<double> unit = {};              ///< metres in one unit; absent: as the file says
-  std::vector<std::string> layers = {};         ///< of a DXF file; empty: all
-  std::string needs_unit = "`unit` is needed";  ///< what helps where the file says no unit
+  /// Length of one unit [m]; absent: the unit that the file gives.
+  std::optional<double> unit = {};
+  std::vector<std::string> layers = {};  ///< Layers of a DXF file that are read; empty: all.
+
+  /// Advice in the message for a file without a unit.
+  std::string needs_unit = "`unit` is needed";
 };
 
-/// Sides of curves stay within this part of the drawing's size of them; ends that are as near to
-/// each other meet.
+/// Relative tolerance of drawings. Sides of polygons are within this fraction of the size of the
+/// drawing of their curves, and ends of curves that are closer to each other meet.
 constexpr double kDrawingTolerance = 1e-5;
 
-/// Closed curves of a drawing as polygons: vertices lie on the curves [m]. By the end of its name
-/// the file is DXF or SVG.
+/// Returns the closed curves of a drawing as polygons whose vertices lie on the curves [m]. The
+/// file name extension decides between DXF and SVG.
 ///
-/// DXF: LWPOLYLINE and POLYLINE with their arcs, CIRCLE, ELLIPSE, SPLINE with control points, and
-/// chains of LINE, ARC, open splines and open polylines; texts, dimensions, hatches and points are
-/// passed over. The unit is that of $INSUNITS. SVG: path, polygon, polyline, rect, circle, ellipse
-/// with the transformations above them. The unit is that of width and height; lengths in px have
-/// none. The origin is the lower left corner of the page, y goes up.
+/// DXF: read are LWPOLYLINE and POLYLINE with their arcs, CIRCLE, ELLIPSE, SPLINE with control
+/// points, and chains of LINE, ARC, open splines and open polylines. Texts, dimensions, hatches and
+/// points are ignored. The unit is that of $INSUNITS.
 ///
-/// @throws Error (input) "<path>: ..." for a file that cannot be read, that says no unit where none
-/// is given, that is empty, has open curves or what is not known here.
+/// SVG: read are path, polygon, polyline, line, rect, circle and ellipse with the transformations
+/// of the elements that contain them. The unit is that of the attribute width; a width in px gives
+/// no unit. The origin is the lower left corner of the page, and y points upwards.
+///
+/// @throws Error (input) "<path>: ..." for a file that cannot be read, that gives no unit while
+///         `settings` has none, that is empty, or that has open curves or elements that are not
+///         supported.
 std::vector<std::vector<Vec2>> read_drawing(const std::string& path,
                                             const DrawingSettings& settings);
 
-/// Names of the layers of a DXF file that something is drawn on, in alphabetical order.
+/// Returns the names of the layers of a DXF file on which something is drawn, in alphabetical
+/// order.
 /// @throws Error (input) "<path>: ..." for a file that cannot be read.
 std::vector<std::string> layers_of_dxf(const std::string& path);
 
-/// What the readers of all formats share.
+/// Types and functions that the readers of all formats share.
 namespace drawing {
 
-/// A curve from at(0) to at(1) [of the drawing].
+/// A curve from at(0) to at(1), in units of the drawing.
 struct Curve {
-  std::function<Vec2(double)> at;
-  bool straight = false;
+  std::function<Vec2(double)> at;  ///< Returns the point at a parameter between 0 and 1.
+  bool straight = false;           ///< True if the curve is a straight line.
 };
 
-/// A closed ring, or a part of a chain that others close.
+/// A closed ring, or an open chain of curves that other paths continue.
 struct Path {
-  std::vector<Curve> curves;
-  bool closed = false;
+  std::vector<Curve> curves;  ///< Curves, each of which begins where the previous one ends.
+  bool closed = false;        ///< True if the path is closed.
 
+  /// Returns the first point of the path.
   Vec2 begin() const { return curves.front().at(0); }
+  /// Returns the last point of the path.
   Vec2 end() const { return curves.back().at(1); }
 };
 
+/// The contents of a drawing.
 struct Drawing {
-  std::vector<Path> paths;
-  std::optional<double> unit = {};  ///< metres in one unit, where the file says it
+  std::vector<Path> paths;          ///< Closed and open paths.
+  std::optional<double> unit = {};  ///< Length of one unit [m], if the file gives it.
 };
 
+/// Returns the straight line between two points.
 Curve line(const Vec2& from, const Vec2& to);
-/// From one angle to another on an ellipse with the half-axes `major` and `minor` [rad].
+/// Returns the arc of an ellipse with the half-axes `major` and `minor` between two angles [rad].
 Curve arc(const Vec2& center, const Vec2& major, const Vec2& minor, double from, double to);
 
-/// A rational B-spline as drawings have it.
+/// A rational B-spline in the form of drawing files.
 struct Spline {
-  unsigned degree = 3;
-  std::vector<double> knots;    ///< ascending (n_points + degree + 1)
-  std::vector<Vec2> points;     ///< control points
-  std::vector<double> weights;  ///< positive (n_points)
+  unsigned degree = 3;          ///< Degree of the polynomials.
+  std::vector<double> knots;    ///< Knots, ascending (n_points + degree + 1).
+  std::vector<Vec2> points;     ///< Control points (n_points).
+  std::vector<double> weights;  ///< Weights, positive (n_points).
 };
-/// The pieces of a spline between its knots, one after the other.
-/// @throws Error (input) for numbers of knots and points that do not fit, knots that fall, or
-///         weights that are not positive.
+/// Returns the segments of a spline between its knots, in their order.
+/// @throws Error (input) when the numbers of knots and points do not fit, when knots are not
+///         ascending, or when weights are not positive.
 std::vector<Curve> spline(Spline s);
 
-/// The closed curves of a drawing as polygons, open ones joined end to end [m].
-/// @param unit  metres in one unit of the drawing
+/// Returns the closed curves of a drawing as polygons [m]; open curves are joined end to end.
+/// @param unit  length of one unit of the drawing [m]
 /// @throws Error (input) as read_drawing(), without the path.
 std::vector<std::vector<Vec2>> closed_rings(Drawing drawing, double unit);
 
+/// Largest number of curves that a drawing may have.
 constexpr std::size_t kMostCurves = 100'000;
+/// Returns the contents of a DXF file.
+/// @param layers  layers that are read; empty: all
 Drawing read_dxf(const std::string& text, const std::vector<std::string>& layers);
+/// Returns the names of the layers of a DXF file on which something is drawn.
 std::vector<std::string> dxf_layers(const std::string& text);
+/// Returns the contents of an SVG file.
 Drawing read_svg(const std::string& text);
 
 }  // namespace drawing

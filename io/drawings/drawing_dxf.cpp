@@ -11,22 +11,23 @@
 #include "io/drawings/drawing.h"
 #include "io/drawings/length_unit.h"
 
-/// DXF by dxflib, which gives entities as they are: the unit of the file, arcs as arcs.
+/// Reader for DXF files. It uses dxflib, which returns entities unchanged, with the unit of the
+/// file.
 namespace flexmorph::io::drawing {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kDegree = kPi / 180;
 
-/// A side of a polyline: straight, or an arc of the angle 4 atan(bulge), to the left of the side
-/// where it is negative.
+/// Returns a side of a polyline: a line, or an arc of the angle 4 atan(bulge), which lies to the
+/// left of the side if the bulge is negative.
 Curve side(const Vec2& a, const Vec2& b, double bulge) {
   if (bulge == 0 || a == b) return line(a, b);
   const Vec2 half = 0.5 * (b - a), left(-half.y(), half.x());
   const Vec2 center = a + half + left * (1 - bulge * bulge) / (2 * bulge);
   const Vec2 radius = a - center, across(-radius.y(), radius.x());
   Curve curve = arc(center, radius, across, 0, 4 * std::atan(bulge));
-  // Neighbours meet exactly.
+  // Neighbouring sides must meet exactly.
   curve.at = [a, b, round = std::move(curve.at)](double t) {
     return t == 0 ? a : t == 1 ? b : round(t);
   };
@@ -44,7 +45,7 @@ class Reader : public DL_CreationAdapter {
     return std::move(drawing_);
   }
 
-  /// Names of the layers that something was drawn on.
+  /// Returns the names of the layers on which something is drawn.
   const std::set<std::string>& known() const { return known_; }
 
   void setVariableInt(const std::string& key, int value, int) override {
@@ -52,7 +53,7 @@ class Reader : public DL_CreationAdapter {
     if (key == "$INSUNITS" && unit != nullptr) drawing_.unit = unit->metres;
   }
 
-  // What a block holds is drawn where it is inserted.
+  // The contents of a block are drawn where the block is inserted.
   void addBlock(const DL_BlockData&) override { in_block_ = true; }
   void endBlock() override { in_block_ = false; }
   void addInsert(const DL_InsertData&) override { refuse("INSERT: blocks are to be exploded"); }
@@ -123,7 +124,7 @@ class Reader : public DL_CreationAdapter {
     count();
     drawing_.paths.push_back({std::move(curves), closed});
   }
-  /// The spline or the polyline whose points have come.
+  /// Adds the spline or polyline whose points have been read.
   void finish() {
     if (in_spline_) {
       in_spline_ = false;
@@ -167,7 +168,8 @@ Drawing read_dxf(const std::string& text, const std::vector<std::string>& layers
 }
 
 std::vector<std::string> dxf_layers(const std::string& text) {
-  const std::vector<std::string> none = {""};  // what cannot be read harms nobody here
+  // no layer has this name, therefore unsupported entities cause no error
+  const std::vector<std::string> none = {""};
   Reader reader(none);
   read(text, reader);
   return {reader.known().begin(), reader.known().end()};

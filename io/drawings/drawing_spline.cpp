@@ -4,7 +4,7 @@
 
 #include "io/drawings/drawing.h"
 
-/// Splines of drawings, by the algorithm of de Boor and Cox in homogeneous coordinates.
+/// Splines of drawings, evaluated by the algorithm of de Boor and Cox in homogeneous coordinates.
 namespace flexmorph::io::drawing {
 namespace {
 
@@ -23,7 +23,7 @@ void check(const Spline& s) {
     throw Error::input("SPLINE: weights are positive");
 }
 
-/// The point at a parameter between the knots `span` and `span` + 1.
+/// Returns the point at a parameter between the knots `span` and `span` + 1.
 Vec2 point_at(const Spline& s, std::size_t span, double t) {
   std::vector<Vec3> d;
   for (std::size_t k = span - s.degree; k <= span; ++k) {

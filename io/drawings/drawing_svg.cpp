@@ -15,7 +15,7 @@
 #include "io/drawings/length_unit.h"
 #include "io/files.h"
 
-/// SVG: libxml2 reads the tree, lib2geom (of Inkscape) the paths in it.
+/// Reader for SVG files: libxml2 parses the tree, lib2geom (of Inkscape) the paths in it.
 namespace flexmorph::io::drawing {
 namespace {
 
@@ -28,7 +28,8 @@ std::optional<std::string> attribute(xmlNode* node, const char* name) {
   return reinterpret_cast<const char*>(value.get());
 }
 
-/// Numbers with spaces or commas between them; the end of the text, or what is none, ends them.
+/// Returns numbers that are separated by spaces or commas, up to the end of the text or to a
+/// character that belongs to no number, which is an error.
 std::vector<double> numbers(std::string_view text) {
   std::vector<double> out;
   while (true) {
@@ -43,7 +44,7 @@ std::vector<double> numbers(std::string_view text) {
   return out;
 }
 
-/// A length: its number, and what stands behind it.
+/// A length: its number, and the unit that follows it.
 struct Length {
   double value = 0;
   std::string unit;
@@ -84,7 +85,8 @@ Geom::Affine one_transform(const std::string& name, const std::vector<double>& v
                      " numbers is not known");
 }
 
-/// The attribute `transform`: the last one acts first.
+/// Returns the transformation of the attribute `transform`; the last one in the list is applied
+/// first.
 Geom::Affine transform(const std::string& text) {
   Geom::Affine out;
   for (size_t at = 0; at < text.size();) {
@@ -103,7 +105,8 @@ Geom::Affine transform(const std::string& text) {
 
 class Reader {
  public:
-  /// @param page  what becomes of points of the page
+  /// Creates a reader.
+  /// @param page  transformation from the page to the drawing
   explicit Reader(const Geom::Affine& page) : page_(page) {}
 
   void read(xmlNode* element, const Geom::Affine& above) {
@@ -206,7 +209,7 @@ class Reader {
   int depth_ = 0;
 };
 
-/// The page in its own units, and how long one of them is where `width` says it.
+/// The page in its own units, and the length of one unit [m] if the attribute `width` gives it.
 struct Page {
   double x = 0, y = 0, width = 0, height = 0;
   std::optional<double> unit = {};
@@ -232,7 +235,7 @@ Page page_of(xmlNode* svg) {
                         : w.unit == "pc" ? 12 * kPoint
                         : known          ? known->metres
                                          : 0;
-  // Without a view box units of the page are px.
+  // Without a view box the units of the page are px.
   if (metres > 0) page.unit = box ? w.value * metres / page.width : kPixel;
   if (metres > 0 && !box) page.height *= metres / kPixel;
   return page;
@@ -255,7 +258,7 @@ Drawing read_svg(const std::string& text) {
   xmlNode* svg = xmlDocGetRootElement(document.get());
   if (svg == nullptr || name_of(svg) != "svg") throw Error::input("this is no SVG file");
   const Page page = page_of(svg);
-  // y points down on the page.
+  // On the page y points downwards.
   Reader reader(Geom::Affine(1, 0, 0, -1, -page.x, page.y + page.height));
   reader.read(svg, Geom::Affine());
   Drawing out = reader.take();

@@ -15,7 +15,7 @@ namespace {
 
 const std::vector<std::string> kColumns = {"X0", "Y0", "half_length", "angle", "c1", "c2", "c3"};
 
-/// Entities of a DXF file.
+/// The text of the entities of a DXF file.
 class DxfText {
  public:
   explicit DxfText(const LengthUnit& unit) : unit_(unit) {}
@@ -31,7 +31,7 @@ class DxfText {
     }
     begin("SEQEND", layer);
   }
-  /// A point or a line.
+  /// Adds a point or a line, given by one or two points.
   void shape(const std::vector<Vec2>& ends, const std::string& layer) {
     begin(ends.size() == 1 ? "POINT" : "LINE", layer);
     for (size_t k = 0; k < ends.size(); ++k) point(ends[k], static_cast<int>(k));
@@ -82,7 +82,7 @@ class StlText {
   std::string text_;
 };
 
-/// Side walls above a ring; material lies to its left.
+/// Adds the side walls on a ring; the material is on the left of the ring.
 void add_walls(StlText& stl, const std::vector<Vec2>& ring, double height) {
   for (std::size_t k = 0; k < ring.size(); ++k) {
     const Vec2 &a = ring[k], &b = ring[(k + 1) % ring.size()];

@@ -8,13 +8,13 @@
 namespace flexmorph::io {
 namespace {
 
-/// CalculiX reads 20 characters of a number.
+/// Returns a number as text of at most 20 characters, because CalculiX reads no more.
 std::string short_text(double value) { return to_text(value, 13); }
 
 std::string number(std::size_t k) { return to_text(static_cast<long long>(k)); }
 std::string number(int k) { return to_text(k + 1); }  // other programs count from 1
 
-/// Nodes that are held in both directions, by all loads.
+/// Returns true for nodes that all loads hold in both directions.
 std::vector<char> always_held(const PlateModel& model) {
   std::vector<int> count(model.mesh.points.size(), 0);
   for (const MeshLoad& l : model.loads)
@@ -25,7 +25,8 @@ std::vector<char> always_held(const PlateModel& model) {
   return out;
 }
 
-/// Which triangles are written: those with a node that moves.
+/// Returns the triangles that are written: triangles with a node that moves, except those in
+/// left_out.
 std::vector<std::size_t> moving_triangles(const PlateModel& model) {
   const std::vector<char> held = always_held(model);
   std::vector<std::size_t> out;
@@ -39,7 +40,7 @@ std::vector<std::size_t> moving_triangles(const PlateModel& model) {
   return out;
 }
 
-/// A name as input files take it: no spaces or commas.
+/// Returns a name for input files, without spaces and commas.
 std::string name_of(const std::string& words) {
   std::string out = words;
   for (char& c : out)
@@ -47,11 +48,12 @@ std::string name_of(const std::string& words) {
   return out;
 }
 
-/// How thick the elements are. CalculiX makes solids of plane elements: their displacements across
-/// the thickness are continuous, which stiffens a plate that is thicker than its triangles are wide
-/// (by 2 to 3 % on designs of unit thickness), and stresses where triangles are smallest. Thinner
-/// than a hundredth of most triangles costs it its digits: 0.6 % of the compliance at a ten
-/// thousandth, 2e-5 at a hundredth (rotating plate, smallest side a thousandth of most).
+/// Returns the thickness of the elements [m]. CalculiX converts plane elements to solids whose
+/// displacements are continuous across the thickness. This makes a plate that is thicker than its
+/// triangles are wide too stiff (by 2 to 3 % for designs of unit thickness), and it changes the
+/// stresses where triangles are smallest. A slice thinner than a hundredth of the median side loses
+/// accuracy: the compliance has an error of 0.6 % at a ten thousandth and 2e-5 at a hundredth
+/// (rotating plate, whose smallest side is a thousandth of the median).
 double slice_of(const PlateModel& model) {
   constexpr double kPart = 0.2, kLeast = 0.01;
   std::vector<double> sides;
@@ -65,10 +67,11 @@ double slice_of(const PlateModel& model) {
   return std::min(model.thickness, std::max(kPart * smallest, kLeast * *middle));
 }
 
-/// @param part  of the forces: that of the slice
+/// Appends one step with a load.
+/// @param part  fraction of the forces that the slice carries
 void add_step(const MeshLoad& load, double part, const std::vector<char>& used, std::string& out) {
   out += "*STEP\n** load: " + name_of(load.name) + "\n*STATIC\n";
-  // What an earlier step held or pulled is over.
+  // Supports and loads of earlier steps are removed.
   out += "*BOUNDARY, OP=NEW\n";
   for (const HeldNode& h : load.held)
     if (used[static_cast<std::size_t>(h.node)])
@@ -132,7 +135,7 @@ void write_msh(const std::string& path, const PartMesh& mesh) {
   out += "$EndNodes\n$Elements\n" + number(mesh.triangles.size()) + "\n";
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const std::string piece = number(mesh.piece[t]);
-    out += number(t + 1) + " 9 2 " + piece + " " + piece;  // 9: triangle of second order
+    out += number(t + 1) + " 9 2 " + piece + " " + piece;  // 9: six-node triangle
     for (const int node : mesh.triangles[t]) out.append(" ").append(number(node));
     out += "\n";
   }

@@ -33,11 +33,11 @@
 namespace flexmorph::io {
 namespace {
 
-/// OpenCASCADE takes coordinates as millimetres. (Other units for its files are a state of the
-/// whole process, which the next writer sees too late.)
+/// OpenCASCADE expects coordinates in millimetres. A different unit for its files is a setting of
+/// the whole process, which takes effect too late for the next writer.
 constexpr double kScale = 1000;
 
-/// Ends of curves are on them to this [mm].
+/// Tolerance for ends of curves on their vertices [mm].
 constexpr double kNear = 1e-6;
 
 gp_Pnt point_of(const Vec2& p) { return {kScale * p.x(), kScale * p.y(), 0}; }
@@ -45,7 +45,7 @@ gp_Pnt point_of(const Vec2& p) { return {kScale * p.x(), kScale * p.y(), 0}; }
 TopoDS_Edge edge_of(const OutlineCurve& c, const TopoDS_Vertex& from, const TopoDS_Vertex& to) {
   if (c.is_line()) return BRepBuilderAPI_MakeEdge(from, to).Edge();
   const gp_Dir axis(0, 0, c.sweep > 0 ? 1 : -1);
-  // The circle's parameter begins at `from`.
+  // The parameter of the circle begins at `from`.
   const Vec2 begin = c.from - c.center;
   const gp_Ax2 frame(point_of(c.center), axis, gp_Dir(begin.x(), begin.y(), 0));
   const Handle(Geom_Circle) circle = new Geom_Circle(frame, kScale * c.radius);
@@ -69,7 +69,7 @@ TopoDS_Shape solid_of(const CurvedRegion& region, double thickness) {
   return BRepPrimAPI_MakePrism(face.Face(), gp_Vec(0, 0, kScale * thickness)).Shape();
 }
 
-/// Names without what changes from run to run: the time, and a number that counts products.
+/// Replaces names that change from run to run: the time, and a number that counts products.
 void set_names(const Handle(StepData_StepModel) & model) {
   const auto text = [](const char* words) { return new TCollection_HAsciiString(words); };
   for (int k = 1; k <= model->NbEntities(); ++k) {
@@ -84,14 +84,15 @@ void set_names(const Handle(StepData_StepModel) & model) {
   header.SetOriginatingSystem(text("flexmorph"));
 }
 
-/// Empty where no solid could be made of it.
+/// Returns the shape as STEP text; empty if it could not be converted.
 std::string step_text(const TopoDS_Shape& shape) {
-  // It would tell of its progress on standard output.
+  // Without this line the library prints its progress to standard output.
   Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
   STEPControl_Writer writer;
   Interface_Static::SetCVal("write.step.schema", "AP214IS");
   Interface_Static::SetCVal("write.step.product.name", "design");
-  Interface_Static::SetIVal("write.surfacecurve.mode", 0);  // faces are simple: half the file
+  // Curves on surfaces are omitted: these surfaces are simple, and the file has half the size.
+  Interface_Static::SetIVal("write.surfacecurve.mode", 0);
   if (writer.Transfer(shape, STEPControl_AsIs) != IFSelect_RetDone) return "";
   const Handle(StepData_StepModel) model = writer.Model();
   set_names(model);

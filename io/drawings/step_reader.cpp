@@ -24,13 +24,13 @@
 namespace flexmorph::io {
 namespace {
 
-/// OpenCASCADE converts what it reads to millimetres.
+/// OpenCASCADE converts lengths to millimetres when it reads a file.
 constexpr double kUnit = 1e-3;
-constexpr double kStraight = 1e-6;  ///< of directions [rad]
+constexpr double kStraight = 1e-6;  ///< Tolerance of directions [rad].
 
-/// A planar face across z, at its height.
+/// A plane face that is normal to z, with its height.
 struct Level {
-  double z = 0;  ///< [mm]
+  double z = 0;  ///< Height of the face [mm].
   TopoDS_Face face;
 };
 
@@ -38,7 +38,7 @@ bool is_along_z(const gp_Dir& direction) {
   return std::hypot(direction.X(), direction.Y()) < kStraight;
 }
 
-/// Tells whether the face is a wall along z: its normals lie in the plane.
+/// Returns true if a face is a wall along z, whose normals lie in the x-y plane.
 bool is_wall(const BRepAdaptor_Surface& surface) {
   switch (surface.GetType()) {
     case GeomAbs_Plane:
@@ -50,7 +50,7 @@ bool is_wall(const BRepAdaptor_Surface& surface) {
     default:
       break;
   }
-  // A spline surface: look at normals on a few of its points.
+  // The surface is a spline surface: the normals at a few points are tested.
   constexpr int kPoints = 5;
   for (int i = 0; i < kPoints; ++i)
     for (int j = 0; j < kPoints; ++j) {
@@ -67,7 +67,8 @@ bool is_wall(const BRepAdaptor_Surface& surface) {
   return true;
 }
 
-/// The faces across z of a solid or a sheet, the lowest first. @throws Error (input)
+/// Returns the faces normal to z of a solid or a sheet, the lowest first.
+/// @throws Error (input) when another face is not a wall along z
 std::vector<Level> levels_of(const TopoDS_Shape& shape) {
   std::vector<Level> out;
   for (TopExp_Explorer faces(shape, TopAbs_FACE); faces.More(); faces.Next()) {
@@ -91,7 +92,8 @@ int count(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind) {
   return n;
 }
 
-/// The face whose edges are the outline. @throws Error (input)
+/// Returns the face whose edges are the outline.
+/// @throws Error (input) when the shape is not a plate
 TopoDS_Face outline_face(const TopoDS_Shape& shape, double thickness) {
   const int n_solids = count(shape, TopAbs_SOLID);
   const std::vector<Level> levels = levels_of(shape);
@@ -116,7 +118,7 @@ TopoDS_Face outline_face(const TopoDS_Shape& shape, double thickness) {
   return levels.front().face;
 }
 
-/// One edge of a wire, along the wire [mm].
+/// Returns one edge of a wire as a curve in the direction of the wire [mm].
 drawing::Curve curve_of(const TopoDS_Edge& edge) {
   const auto curve = std::make_shared<const BRepAdaptor_Curve>(edge);
   const bool backwards = edge.Orientation() == TopAbs_REVERSED;
@@ -143,7 +145,7 @@ drawing::Drawing drawing_of(const TopoDS_Face& face) {
 }
 
 TopoDS_Shape shape_of(const std::string& path) {
-  // It would tell of its progress on standard output.
+  // Without this line the library prints its progress to standard output.
   Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
   STEPControl_Reader reader;
   if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) throw Error::input("this is no STEP file");
@@ -156,7 +158,7 @@ TopoDS_Shape shape_of(const std::string& path) {
 }  // namespace
 
 std::vector<std::vector<Vec2>> read_step_outline(const std::string& path, double thickness) {
-  read_regular_file(path, "a STEP file");  // says why it cannot be read
+  read_regular_file(path, "a STEP file");  // throws with the reason if the file cannot be read
   try {
     return drawing::closed_rings(drawing_of(outline_face(shape_of(path), thickness)), kUnit);
   } catch (const Standard_Failure& failure) {
