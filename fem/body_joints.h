@@ -3,84 +3,93 @@
 #include "fem/marker.h"
 #include "fem/shapes/plane_curve.h"
 
-/// Joints between places on planar rigid bodies, on plates and on the ground (fem/marker.h).
+/// Joints between locations on planar rigid bodies, on plates and on the ground (fem/marker.h).
 ///
-/// Every Φ but those of gears and paths is of degree 2 at most in the unknowns. Rows are lengths
-/// [m] with multipliers in N, or numbers of the size of an angle with multipliers in N m.
+/// Every Φ except those of gears and paths is a polynomial of degree 2 at most in the unknowns.
+/// Rows are lengths [m] with multipliers in N, or dimensionless numbers of the size of an angle
+/// with multipliers in N m.
 ///
-/// Rows that say "axes are parallel" (n_a · e_b = 0 with n_a = e_a turned by +90 degrees) are also
-/// fulfilled by axes that point against each other. The motion cannot reach that root, for the two
-/// are half a turn apart; which one is meant is decided by the state it starts from, so whoever
-/// assembles the start has to begin near the right one.
+/// Rows that state "axes are parallel" (n_a · e_b = 0 with n_a = e_a turned by +90 degrees) are
+/// also fulfilled by axes that point in opposite directions. A motion cannot change between the two
+/// solutions because they differ by 180 degrees; the initial state decides which one holds.
+/// Therefore the caller that assembles the initial state has to start near the intended solution.
 ///
-/// All makers: @throws Error (input) at Joint::bind() for bodies, points and axes that do not
-/// exist, see Marker::bind(); for a motion that is missing, at once.
+/// All functions of this header:
+/// @throws Error (input) at Joint::bind() for bodies, points and axes that do not exist, see
+/// Marker::bind(); Error (input) at once for a missing motion function.
 namespace flexmorph::fem {
 
-/// |u|² = 1 of a rigid body: Φ = (u·u - 1)/2, 1 row. Every rigid body needs it once.
+/// Creates the joint |u|² = 1 of a rigid body: Φ = (u·u - 1)/2, 1 row. Every rigid body needs it
+/// exactly once.
 std::unique_ptr<Joint> make_unit_axis(std::string name, std::string body);
 
-/// The two points are one: Φ = p_b - p_a, 2 rows. Its multiplier is the force [N] that a exerts on
-/// b, with the sign turned.
+/// Creates a revolute joint, in which the two points coincide: Φ = p_b - p_a, 2 rows. The
+/// multiplier is the negative of the force [N] that a exerts on b.
 std::unique_ptr<Joint> make_revolute(std::string name, MarkerPlace a, MarkerPlace b);
 
-/// Points and axes agree: Φ = (p_b - p_a, n_a · e_b), 3 rows.
+/// Creates a rigid connection, in which points and axes coincide: Φ = (p_b - p_a, n_a · e_b), 3
+/// rows.
 std::unique_ptr<Joint> make_rigid_weld(std::string name, MarkerPlace a, MarkerPlace b);
 
-/// The point of b lies on axis 1 of a, axes are parallel: Φ = (n_a · (p_b - p_a), n_a · e_b), 2
-/// rows. Free to slide.
+/// Creates a prismatic joint: the point of b slides freely along axis 1 of a, and the axes are
+/// parallel: Φ = (n_a · (p_b - p_a), n_a · e_b), 2 rows.
 std::unique_ptr<Joint> make_slider(std::string name, MarkerPlace a, MarkerPlace b);
 
-/// Axis 1 of b stands at the angle motion(t) [rad] to axis 1 of a, counter-clockwise: with α the
-/// angle, Φ = n_b · R(α) e_a = -sin(θ_b - θ_a - α), 1 row. Its multiplier is the moment [N m] that
-/// the drive exerts on b.
+/// Creates a rotational drive: the angle from axis 1 of a to axis 1 of b is motion(t) [rad],
+/// counter-clockwise. With α that angle, Φ = n_b · R(α) e_a = -sin(θ_b - θ_a - α), 1 row. The
+/// multiplier is the moment [N m] that the drive exerts on b.
 std::unique_ptr<Joint> make_angle_drive(std::string name, MarkerPlace a, MarkerPlace b,
                                         std::function<Motion(double t)> motion);
 
-/// The points are motion(t) [m] apart: Φ = (|p_b - p_a|² - L(t)²) / (2 L(0)), 1 row; a massless rod
-/// where L is constant, and its multiplier is then the tension in it [N].
+/// Creates a joint that keeps the two points at the distance L(t) = motion(t) [m]: Φ = (|p_b -
+/// p_a|² - L(t)²) / (2 L(0)), 1 row. Where L is constant the joint is a massless rod, and the
+/// multiplier is the tension in it [N].
 /// @throws Error (input) unless L(0) > 0; at evaluation unless L(t) > 0.
 std::unique_ptr<Joint> make_distance(std::string name, MarkerPlace a, MarkerPlace b,
                                      std::function<Motion(double t)> motion);
 
-/// Two wheels that roll on each other without slip.
+/// Data of two gear wheels that roll on each other without slip.
 struct GearData {
+  /// Numbers of teeth of the wheels on a and on b, both positive.
   int teeth_a = 1, teeth_b = 1;
-  bool inner = false;  ///< does one of them have its teeth inside, so that both turn one way?
-  double angle_a = 0, angle_b = 0;  ///< of axes 1 where these teeth are in mesh [rad]
+  /// True if one wheel has internal teeth, so that both wheels turn in the same direction.
+  bool inner = false;
+  /// Angles of axis 1 of a and of b in a position in which the teeth mesh [rad].
+  double angle_a = 0, angle_b = 0;
 };
-/// The wheels of a and b turn as their numbers of teeth n_a, n_b say: with p/q = n_a/n_b in lowest
-/// terms and s = 1 for outer, -1 for inner gearing,
+/// Creates a gear pair: the wheels of a and b turn as their numbers of teeth n_a, n_b prescribe.
+/// With p/q = n_a/n_b in lowest terms and s = 1 for outer, -1 for inner gearing,
 ///
 ///   Φ = [s p (θ_a - θ_a0) + q (θ_b - θ_b0)] / q, 1 row [rad]
 ///
-/// Its multiplier is the moment [N m] on b, with the sign turned. Other roots, 2 π/q away, are
-/// other teeth in mesh: a motion cannot reach them.
+/// The multiplier is the negative of the moment [N m] on b. Further solutions at distances of 2 π/q
+/// correspond to other pairs of teeth in mesh; a motion cannot reach them.
 /// @throws Error (input) for a number of teeth that is not positive.
 std::unique_ptr<Joint> make_gear(std::string name, MarkerPlace a, MarkerPlace b,
                                  const GearData& wheels);
 
-/// The point of b runs along a curve in the axes of a: Φ is its signed distance from the curve, 1
-/// row [m]. The multiplier is the force [N] across the curve on b, with the sign turned: there is
-/// no friction.
+/// Creates a joint in which the point of b moves along a curve given in the axes of a: Φ is the
+/// signed distance of the point from the curve, 1 row [m]. The multiplier is the negative of the
+/// force [N] on b normal to the curve; there is no friction.
 /// @throws Error (numerical) at evaluation where the point leaves an open curve at one of its ends.
 std::unique_ptr<Joint> make_path(std::string name, MarkerPlace a, MarkerPlace b, PlaneCurve curve);
 
-/// Those components (0, 1; both when empty) of the point follow a path in the world: a row each.
+/// Creates a joint in which the given components (0, 1; both if empty) of the point of a follow a
+/// path in the world frame, with one row per component.
 std::unique_ptr<Joint> make_point_drive(std::string name, MarkerPlace a, PointDrive point,
                                         std::vector<int> components);
 
-/// Plate edge welded to a frame on a rigid body or on the ground: make_weld() with a hub that is a
-/// body. For every node of the edge, y its coordinate across, P and e₁, e₂ point and axes of the
-/// frame,
+/// Creates a joint that welds a plate edge to a frame on a rigid body or on the ground, as
+/// make_weld() does to a frame with prescribed motion. For every node of the edge, with y its
+/// coordinate across the plate and P, e₁, e₂ the point and the axes of the frame,
 ///
 ///   r = P + y e₂,   r_n = e₂                                                (edge)
 ///   and r_m · e₂ = 0, r_mn · e₂ = 0                                         (direction)
 ///   or r_m = e₁, r_mn = 0                                                   (full)
 ///
-/// with the rates along lines that move or are free, as there; z entries of a plate in space are
-/// zero.
-/// @throws Error (input) at bind() for an edge that is no m-line ("side_low", "side_high"), too.
+/// On material lines that are driven or free the rates are total rates along the line, as in
+/// make_weld(). The z entries of a plate in space are zero.
+/// @throws Error (input) at bind() also for an edge that is no m-line ("side_low", "side_high").
 std::unique_ptr<Joint> make_edge_weld(std::string name, std::string plate, std::string edge,
                                       MarkerPlace frame, WeldMode mode);
 

@@ -15,57 +15,65 @@ namespace flexmorph::fem {
 struct FreeTable;  // fem/free_lines.h
 class RigidClock;  // fem/rigid.h
 
-inline constexpr int kMaxShapes = 16;  ///< shape functions of one element
-inline constexpr int kMaxDim = 3;
+inline constexpr int kMaxShapes = 16;  ///< Largest number of shape functions of one element.
+inline constexpr int kMaxDim = 3;      ///< Largest number of directions in space.
 
 /// Values of the unknowns of one element: one row per shape function, one column per direction.
 using LocalRows =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMaxShapes, kMaxDim>;
 
-/// Stiffness and mass factors of the design, cell by cell over material coordinates; an element is
-/// cut by its cells and integrated exactly. Empty vectors: uniform full material.
+/// Scale factors of stiffness and mass of a design, one per cell of a grid over the material
+/// coordinates. The quadrature splits an element at the cell borders and is exact for these
+/// piecewise constant factors. Empty vectors mean uniform full material.
 struct Factors {
-  Grid grid;
-  VectorXd stiffness, mass;  ///< (n_cells), or empty
+  Grid grid;                 ///< Grid of the cells over the material coordinates [m].
+  VectorXd stiffness, mass;  ///< Scale factors of stiffness and of mass (n_cells), or empty.
 
+  /// Returns true if there are no factors, that is for uniform full material.
   bool uniform() const { return stiffness.size() == 0; }
 };
 
-/// Derivatives of a number by the factors of a body's cells (n_cells each).
+/// Gradient of a number with respect to the scale factors of the cells of a body.
 struct FactorSlopes {
+  /// Derivatives by the stiffness factors and by the mass factors (n_cells each).
   VectorXd stiffness, mass;
 
+  /// Sets both gradients to zeros for n_cells cells.
   void set_zero(Eigen::Index n_cells) {
     stiffness.setZero(n_cells);
     mass.setZero(n_cells);
   }
 };
 
-/// Shape functions at quadrature points, a row per point and a column per function. Filled as far
-/// as asked for: N always, the others on demand (their size is zero otherwise).
+/// Shape functions at quadrature points, one row per point and one column per function. N is always
+/// filled; the other tables are filled on request and have size zero otherwise.
 struct ShapeTable {
-  VectorXd weight;             ///< reference area of the point times the factor [m^2]
-  std::vector<Vec2> material;  ///< material coordinates (m, n) [m]
-  MatrixXd N;                  ///< r = Qᵀ N
-  MatrixXd N_t, N_tt;  ///< ∂N/∂t, ∂²N/∂t² at fixed material point: zero unless lines move
-  MatrixXd N_m, N_n;   ///< derivatives by the material coordinates
-  MatrixXd N_mt, N_nt;           ///< their rates at fixed material point
-  MatrixXd N_mm, N_nn, N_mn;     ///< second derivatives by the material coordinates
-  MatrixXd N_mmt, N_nnt, N_mnt;  ///< their rates at fixed material point
+  VectorXd weight;  ///< Reference area of the point times the scale factor (n_points) [m²].
+  std::vector<Vec2> material;  ///< Material coordinates (m, n) of the points [m].
+  MatrixXd N;                  ///< Values of the shape functions, r = Qᵀ N.
+
+  /// Rates ∂N/∂t and ∂²N/∂t² at a fixed material point; zero unless material lines move.
+  MatrixXd N_t, N_tt;
+  MatrixXd N_m, N_n;             ///< First derivatives by the material coordinates.
+  MatrixXd N_mt, N_nt;           ///< Rates of the first derivatives at a fixed material point.
+  MatrixXd N_mm, N_nn, N_mn;     ///< Second derivatives by the material coordinates.
+  MatrixXd N_mmt, N_nnt, N_mnt;  ///< Rates of the second derivatives at a fixed material point.
 };
 
-/// Shape functions that are products of functions of one coordinate each, at a tensor grid of
+/// Shape functions that are products of functions of one coordinate each, on a tensor grid of
 /// points (g, h): N_k = f_m(g, function_m[k]) f_n(h, function_n[k]).
 struct ProductTable {
-  MatrixXd weight;              ///< reference area of the point times the factor [m^2]
-  MatrixXd f_m, d_m, f_n, d_n;  ///< functions and their material derivatives (points x functions)
-  std::vector<int> function_m, function_n;  ///< (n_shapes)
-  bool curvature = false;   ///< said by the caller: are the second derivatives wanted, too?
-  MatrixXd dd_m{}, dd_n{};  ///< they, where wanted
+  MatrixXd weight;  ///< Reference area of the point (g, h) times the scale factor [m²].
+
+  /// Functions and their material derivatives (n_points x n_functions).
+  MatrixXd f_m, d_m, f_n, d_n;
+  std::vector<int> function_m, function_n;  ///< Numbers of the functions along m and n (n_shapes).
+  bool curvature = false;   ///< True if the caller wants the second derivatives, too.
+  MatrixXd dd_m{}, dd_n{};  ///< Second derivatives (n_points x n_functions), if wanted.
 };
 
-/// What to fill besides N; `curvature` is the first and second derivatives without rates,
-/// `curvature_rates` everything.
+/// Tables that are filled in addition to N: `curvature` adds the first and second derivatives
+/// without rates, `curvature_rates` adds all tables.
 enum class Tabulate {
   position,
   position_rates,
@@ -75,187 +83,223 @@ enum class Tabulate {
   curvature_rates
 };
 
-/// Which factor multiplies the quadrature weight.
+/// Selects the scale factor that multiplies the quadrature weight.
 enum class FactorKind { none, stiffness, mass };
 
-/// The vector unknowns of one node (-1: the element has none of that kind).
+/// Numbers of the vector unknowns of one node (-1: the element has no unknown of that kind).
 struct NodeVectors {
-  int r = -1, r_m = -1, r_n = -1, r_mn = -1;
-  Vec2 material{0, 0};
-  bool moving = false;  ///< lies on a material line that is driven
+  int r = -1, r_m = -1, r_n = -1, r_mn = -1;  ///< Numbers of r, r_m, r_n and r_mn.
+  Vec2 material{0, 0};                        ///< Material coordinates (m, n) of the node [m].
+  bool moving = false;                        ///< True if the node lies on a driven material line.
 };
 
-/// Cells of a design that an element lies in: columns [i0, i1) and rows [j0, j1).
+/// Range of the design cells that an element overlaps: columns [i0, i1) and rows [j0, j1).
 struct CellRange {
+  /// First column, end of the columns, first row, end of the rows.
   int i0 = 0, i1 = 0, j0 = 0, j1 = 0;
-  double area = 0;  ///< of the element [m²]
-  /// Tells whether it is one cell.
+  double area = 0;  ///< Reference area of the element [m²].
+
+  /// Returns true if the element lies in one cell.
   bool single() const { return i1 - i0 == 1 && j1 - j0 == 1; }
 };
 
-/// Shape functions over material coordinates, r = Qᵀ N(X, t): elements of plates and beams have
-/// them, rigid bodies have none.
+/// Interface of elements with shape functions over material coordinates, r = Qᵀ N(X, t): plates and
+/// beams have them, rigid bodies do not.
 class ShapeElement {
  public:
   virtual ~ShapeElement() = default;
-  /// Fills points for integrands of the given degree per direction in element e, exact for a factor
-  /// that is constant in every design cell.
+  /// Fills the tables at quadrature points that integrate polynomials of the given degree per
+  /// direction exactly over element e, also with a scale factor that is constant in every design
+  /// cell.
   virtual void tabulate(int e, int degree, Tabulate what, const Factors& factors, FactorKind kind,
                         ShapeTable& out) const = 0;
-  /// Fills the shape functions at one material point (weight 1). @return the element it lies in
+  /// Fills the shape functions at one material point (weight 1).
+  /// @returns the element that contains the point
   /// @throws Error (input) when the point is outside the body.
   virtual int locate(const Vec2& material, Tabulate what, ShapeTable& out) const = 0;
-  /// Returns the nodes of a named edge ("root", "free_end": first and last m-line; "side_low",
-  /// "side_high": first and last n-line; "line 3": an m-line by its number), in the order of the
-  /// coordinate along it.
+  /// Returns the nodes of a named edge, ordered by the coordinate along the edge. Names are "root"
+  /// and "free_end" (first and last m-line), "side_low" and "side_high" (first and last n-line),
+  /// and "line 3" (an m-line by its number).
   /// @throws Error (input) naming the known edges.
   virtual std::vector<NodeVectors> edge(const std::string& name) const = 0;
-  /// Returns all nodes.
+  /// Returns all nodes of the body.
   virtual std::vector<NodeVectors> nodes() const = 0;
-  /// Returns the material coordinates at which elements meet, along m and along n: elements are
+  /// Returns the material coordinates of the element borders along m and along n [m]; elements are
   /// numbered along n first.
   virtual std::array<std::vector<double>, 2> lines() const = 0;
 };
 
-/// Elements whose shape changes in time.
+/// Interface of elements whose shape changes in time.
 class MovingElement {
  public:
   virtual ~MovingElement() = default;
-  /// Puts driven material lines, or what else moves, where they are at time t.
+  /// Updates everything that is prescribed in time, such as driven material lines, to time t [s].
   virtual void move_to(double t) = 0;
-  /// Tells whether the shape of element e changes in time.
+  /// Returns true if the shape of element e changes in time.
   virtual bool moving(int e) const = 0;
 };
 
-/// Elements between material lines that are unknowns: scalar unknowns of the body, which follow its
-/// vector unknowns, coordinates of the free lines [m].
+/// Interface of elements between free lines, that is mesh lines whose material coordinate [m] is an
+/// unknown (Eulerian coordinate). These coordinates are the scalar unknowns of the body, which
+/// follow its vector unknowns.
 class FreeLineElement {
  public:
   virtual ~FreeLineElement() = default;
-  /// Returns where the free lines are.
+  /// Returns the current material coordinates of the free lines (n_scalars) [m].
   virtual VectorXd scalars() const = 0;
-  /// Puts them there (n_scalars), with their rates and accelerations.
+  /// Sets the material coordinates of the free lines with their rates and accelerations (n_scalars
+  /// each) [m], [m/s], [m/s²].
   virtual void move_lines(const VectorXd& p, const VectorXd& rate,
                           const VectorXd& acceleration) = 0;
-  /// Returns the scalar unknowns of the lines around element e (see Side), -1 for those that are
-  /// none; empty when no line is free.
+  /// Returns the numbers of the scalar unknowns of the lines around element e (see Side), -1 for a
+  /// line that is no unknown; empty when none of the lines is free.
   virtual std::span<const int> free_sides(int e) const = 0;
-  /// Does what tabulate() does for an element with free lines, of uniform material.
+  /// Fills the tables of an element with free lines and uniform material, see
+  /// ShapeElement::tabulate().
   virtual void tabulate_free(int e, int degree, Tabulate what, FreeTable& out) const = 0;
 };
 
-/// Elements that cells of a design cut.
+/// Interface of elements that are split at the borders of design cells.
 class CellElement {
  public:
   virtual ~CellElement() = default;
-  /// Adds, for every cell of a grid, the integral over its part of element e of a function that is
-  /// given at the points of tabulate() with factors: the derivative of Σ weight · value by the
-  /// factor of that cell.
-  /// @param values  (n_points)   @param out  (n_cells)
+  /// Adds, for every cell of a grid, the integral of a function over the common area of the cell
+  /// and element e. The function is given at the points that tabulate() uses with scale factors.
+  /// The result is the derivative of Σ weight · value by the scale factor of each cell.
+  /// @param values  function at the points (n_points)
+  /// @param out     integrals (n_cells)
   virtual void add_cell_integrals(int e, int degree, const VectorXd& values, const Grid& grid,
                                   VectorXd& out) const = 0;
-  /// Returns the cells that element e lies in.
+  /// Returns the range of cells that element e overlaps.
   virtual CellRange cells(int e, const Grid& grid) const = 0;
 };
 
-/// Elements whose shape functions are products of functions of one coordinate: integrals of their
-/// products are sums over one direction after the other.
+/// Interface of elements whose shape functions are products of functions of one coordinate.
+/// Integrals of products of shape functions are then summed along one direction after the other.
 class ProductElement {
  public:
   virtual ~ProductElement() = default;
-  /// Fills the points of tabulate(). @return false, with nothing done, where they are no products
+  /// Fills the one-dimensional functions at the points of ShapeElement::tabulate().
+  /// @returns false, with nothing filled, where the shape functions are no products
   virtual bool tabulate_products(int e, int degree, const Factors& factors, FactorKind kind,
                                  ProductTable& out) const = 0;
 };
 
-/// Numbers of a body's elements and unknowns.
+/// Numbers of elements and unknowns of a body.
 struct ElementSizes {
-  int dim = 2;
-  int n_shapes = 0;  ///< shape functions of one element, <= kMaxShapes
-  int n_elements = 0;
-  int n_vectors = 0;  ///< vector unknowns of the body
-  int n_scalars = 0;  ///< scalar unknowns of the body, see FreeLineElement
+  int dim = 2;         ///< Number of directions in space.
+  int n_shapes = 0;    ///< Number of shape functions of one element, <= kMaxShapes.
+  int n_elements = 0;  ///< Number of elements of the body.
+  int n_vectors = 0;   ///< Number of vector unknowns of the body.
+  int n_scalars = 0;   ///< Number of scalar unknowns of the body, see FreeLineElement.
 };
 
 /// The elements of one body.
 ///
-/// An element knows its unknowns; what it knows besides it says by deriving from the interfaces
-/// above, too: shape functions, material flow through the mesh, cells of a design. Its constructor
-/// names its class, Element(Kind<MyElement>{}), and with it what it derives from. An element knows
-/// no physics. Unknowns come as vectors of dim() entries; vector unknown k of the body has the
-/// entries dim() k + c of its q.
+/// An element defines its unknowns. Further abilities are the interfaces above, from which its
+/// class also derives: shape functions, material flow through the mesh, cells of a design. The
+/// constructor of a derived class passes the class, Element(Kind<MyElement>{}), and thereby the
+/// list of its interfaces. An element contains kinematics only, no physics. Unknowns are grouped in
+/// vectors of dim() entries; vector unknown k of the body has the entries dim() k + c of its q.
 class Element {
  public:
   virtual ~Element() = default;
 
-  /// Returns a copy that shares nothing with this one.
+  /// Returns a copy that shares no data with this element.
   virtual std::unique_ptr<Element> clone() const = 0;
   /// Returns the numbers of the vector unknowns of element e, in the order of its shape functions.
   virtual std::span<const int> vectors(int e) const = 0;
-  /// Returns a length that makes vector unknown k a displacement when multiplied: 1 for positions,
-  /// the element size for slopes, its square for mixed derivatives [m^order].
+  /// Returns the length that turns vector unknown k into a displacement when multiplied: 1 for
+  /// positions, the element size for position gradients, the square of the element size for mixed
+  /// derivatives [m^order].
   virtual double scale(int k) const = 0;
-  /// Tells whether vector unknown k is a position (and not a derivative of it).
+  /// Returns true if vector unknown k is a position (and not a derivative of it).
   virtual bool is_position(int k) const = 0;
-  /// Returns the values of the undeformed body at rest in its own frame, all unknowns
-  /// (n_vectors x dim).
+  /// Returns the values of all vector unknowns of the undeformed body in its own frame (n_vectors x
+  /// dim).
   virtual MatrixXd reference() const = 0;
 
+  /// Returns the number of directions in space.
   int dim() const { return sizes_.dim; }
+  /// Returns the number of shape functions of one element.
   int n_shapes() const { return sizes_.n_shapes; }
+  /// Returns the number of elements of the body.
   int n_elements() const { return sizes_.n_elements; }
+  /// Returns the number of vector unknowns of the body.
   int n_vectors() const { return sizes_.n_vectors; }
+  /// Returns the number of scalar unknowns of the body, see FreeLineElement.
   int n_scalars() const { return sizes_.n_scalars; }
-  /// Tells whether it has shape functions over material coordinates.
+  /// Returns true if the element has shape functions over material coordinates.
   bool has_shapes() const { return shape_element() != nullptr; }
-  /// Tells whether this is a rigid body: vector unknowns r and u (elements/rigid_body.h).
+  /// Returns true for a rigid body, whose vector unknowns are r and u (elements/rigid_body.h).
   bool is_rigid() const { return abilities_->rigid; }
 
-  // What the interfaces above say, and what holds for an element that is none of them.
+  // Functions of the interfaces above, with defaults for elements that lack the interface.
 
+  /// Fills the tables of element e, see ShapeElement::tabulate().
   /// @throws Error (input) for an element without shape functions.
   void tabulate(int e, int degree, Tabulate what, const Factors& factors, FactorKind kind,
                 ShapeTable& out) const {
     with_shapes().tabulate(e, degree, what, factors, kind, out);
   }
+  /// Fills the shape functions at a material point, see ShapeElement::locate().
+  /// @throws Error (input) also for an element without shape functions.
   int locate(const Vec2& material, Tabulate what, ShapeTable& out) const {
     return with_shapes().locate(material, what, out);
   }
+  /// Returns the nodes of an edge, see ShapeElement::edge().
+  /// @throws Error (input) also for an element without shape functions.
   std::vector<NodeVectors> edge(const std::string& name) const;
+  /// Returns all nodes; none for an element without shape functions.
   std::vector<NodeVectors> nodes() const {
     return shape_element() ? shape_element()->nodes() : std::vector<NodeVectors>{};
   }
+  /// Returns the element borders, see ShapeElement::lines(); none for an element without shape
+  /// functions.
   std::array<std::vector<double>, 2> lines() const {
     return shape_element() ? shape_element()->lines() : std::array<std::vector<double>, 2>{};
   }
 
+  /// Calls MovingElement::move_to(); has no effect on elements without that interface.
   void move_to(double t) {
     if (MovingElement* moves = abilities_->moving(*this)) moves->move_to(t);
   }
+  /// Returns true if the shape of element e changes in time.
   bool moving(int e) const {
     const MovingElement* moves = abilities_->moving(const_cast<Element&>(*this));
     return moves != nullptr && moves->moving(e);
   }
 
+  /// Returns the material coordinates of the free lines (n_scalars) [m].
   VectorXd scalars() const { return n_scalars() > 0 ? free_lines()->scalars() : VectorXd(); }
+  /// Sets the free lines, see FreeLineElement::move_lines(); has no effect without free lines.
   void move_lines(const VectorXd& p, const VectorXd& rate, const VectorXd& acceleration) {
     if (n_scalars() > 0) abilities_->free_lines(*this)->move_lines(p, rate, acceleration);
   }
+  /// Returns the scalar unknowns around element e, see FreeLineElement::free_sides(); empty without
+  /// free lines.
   std::span<const int> free_sides(int e) const {
     return n_scalars() > 0 ? free_lines()->free_sides(e) : std::span<const int>{};
   }
-  /// @throws Error (input) for an element that knows no free lines.
+  /// Fills the tables of an element with free lines, see FreeLineElement::tabulate_free().
+  /// @throws Error (input) for an element without support of free lines.
   void tabulate_free(int e, int degree, Tabulate what, FreeTable& out) const;
 
+  /// Adds integrals over cells, see CellElement::add_cell_integrals(); has no effect on elements
+  /// that are no CellElement.
   void add_cell_integrals(int e, int degree, const VectorXd& values, const Grid& grid,
                           VectorXd& out) const {
     if (const CellElement* cut = abilities_->cells(*this))
       cut->add_cell_integrals(e, degree, values, grid, out);
   }
+  /// Returns the range of cells that element e overlaps; an empty range for elements that are no
+  /// CellElement.
   CellRange cells(int e, const Grid& grid) const {
     const CellElement* cut = abilities_->cells(*this);
     return cut != nullptr ? cut->cells(e, grid) : CellRange{};
   }
+  /// Fills the one-dimensional functions, see ProductElement::tabulate_products().
+  /// @returns false for elements that are no ProductElement
   bool tabulate_products(int e, int degree, const Factors& factors, FactorKind kind,
                          ProductTable& out) const {
     const ProductElement* product = abilities_->products(*this);
@@ -263,7 +307,7 @@ class Element {
   }
 
  protected:
-  /// Names the class of an element.
+  /// Tag type that passes the class of an element to the constructor of Element.
   template <class E>
   struct Kind {};
   template <class E>
@@ -277,8 +321,8 @@ class Element {
   void set_sizes(const ElementSizes& sizes) { sizes_ = sizes; }
 
  private:
-  /// An element as what it is besides, null where it is not: functions, not pointers, which copies
-  /// of an element may share.
+  /// Conversions of an element to the interfaces that its class has, null for an interface that it
+  /// lacks. They are functions and not pointers, because copies of an element then share one table.
   struct Abilities {
     const ShapeElement* (*shapes)(const Element&);
     MovingElement* (*moving)(Element&);
@@ -304,7 +348,8 @@ class Element {
       as<E, CellElement>,  as<E, ProductElement>,         std::is_base_of_v<RigidClock, E>};
 
   const ShapeElement* shape_element() const { return abilities_->shapes(*this); }
-  /// @throws Error (input) where there are none.
+  /// Returns the element as a ShapeElement.
+  /// @throws Error (input) if it is none.
   const ShapeElement& with_shapes() const;
   const FreeLineElement* free_lines() const {
     return abilities_->free_lines(const_cast<Element&>(*this));

@@ -6,26 +6,29 @@
 
 namespace flexmorph::fem {
 
-/// What the energy density of a hot body is integrated over, as parts of the reference volume;
-/// s = 1 + α ΔT.
+/// Volume over which the energy density of a body with a temperature change is integrated, relative
+/// to the reference volume; s = 1 + α ΔT.
 enum class ThermalVolume {
-  reference,    ///< 1, as the paper prints it
-  grown_plane,  ///< s²: lengths in the plane grow, the third dimension does not
-  grown         ///< s³
+  reference,    ///< Factor 1, as printed in T.
+  grown_plane,  ///< Factor s²: lengths in the plane grow, the thickness does not.
+  grown         ///< Factor s³: all lengths grow.
 };
 
-/// Uniform heat of one body: free, it is s = 1 + α ΔT(t) times as large in all directions.
+/// Uniform temperature of one body. Without constraints the body is s = 1 + α ΔT(t) times as large
+/// in all directions.
 struct Heat {
-  double expansion = 0;                         ///< α [1/K]
-  std::function<Motion(double t)> temperature;  ///< ΔT above the unstrained state [K]
-  ThermalVolume volume = ThermalVolume::grown;
+  double expansion = 0;  ///< Coefficient of thermal expansion α [1/K].
 
-  /// s and its derivatives by time [-], [1/s], [1/s²].
+  /// Temperature ΔT(t) above the unstrained state [K].
+  std::function<Motion(double t)> temperature;
+  ThermalVolume volume = ThermalVolume::grown;  ///< Volume over which the energy is integrated.
+
+  /// Returns the thermal stretch s with its first and second time derivative [-], [1/s], [1/s²].
   Motion stretch(double t) const {
     const Motion rise = temperature(t);
     return {1 + expansion * rise.value, expansion * rise.rate, expansion * rise.acceleration};
   }
-  /// Exponent p of the volume sᵖ.
+  /// Returns the exponent p of the volume ratio sᵖ.
   int volume_exponent() const {
     return volume == ThermalVolume::grown ? 3 : volume == ThermalVolume::grown_plane ? 2 : 0;
   }

@@ -10,142 +10,169 @@
 
 namespace flexmorph::fem {
 
-/// Motion of a planar frame: origin [m] and angle [rad] with their rates.
+/// Motion of a planar frame: origin and angle with their rates and accelerations.
 struct FrameMotion {
+  /// Position [m], velocity [m/s] and acceleration [m/s²] of the origin.
   Vec2 origin{0, 0}, origin_rate{0, 0}, origin_acceleration{0, 0};
+  /// Angle [rad], angular velocity [rad/s] and angular acceleration [rad/s²].
   double angle = 0, angle_rate = 0, angle_acceleration = 0;
 };
+/// Prescribed motion of a planar frame as a function of time [s].
 using FrameDrive = std::function<FrameMotion(double t)>;
 
-/// Rows of one joint at one state.
+/// The constraint rows of one joint at one state.
 struct ConstraintRows {
-  VectorXd value;         ///< Φ(q, t)
-  VectorXd rate;          ///< ∂Φ/∂t
-  VectorXd acceleration;  ///< right side of Φ_q q̈ = ..., = -(Φ_q q̇)_q q̇ - 2 Φ_qt q̇ - Φ_tt
-  std::vector<Eigen::Triplet<double>> jacobian;  ///< Φ_q: row of the joint, unknown of the model
+  VectorXd value;  ///< Constraint values Φ(q, t) (size()).
+  VectorXd rate;   ///< Partial derivatives ∂Φ/∂t (size()).
+
+  /// Right side c of Φ_q q̈ = c, that is c = -(Φ_q q̇)_q q̇ - 2 Φ_qt q̇ - Φ_tt (size()).
+  VectorXd acceleration;
+  /// Entries of Φ_q: row of the joint, unknown of the model, value.
+  std::vector<Eigen::Triplet<double>> jacobian;
 };
 
-/// What a joint sees of a body.
+/// The data of a body that joints and force elements use.
 struct BodyView {
-  const std::string* name;
-  const Element* element;
-  int first_dof;                     ///< number of the body's first unknown in the model
-  const Factors* factors = nullptr;  ///< of its design
+  const std::string* name;           ///< Name of the body.
+  const Element* element;            ///< Elements of the body.
+  int first_dof;                     ///< Number of the first unknown of the body in the model.
+  const Factors* factors = nullptr;  ///< Scale factors of the design of the body.
 };
 
-/// The seam of constraints Φ(q, t) = 0.
+/// Interface of a joint: constraint rows Φ(q, t) = 0.
 class Joint {
  public:
   virtual ~Joint() = default;
-  /// A copy that shares nothing with this one; to be bound before it is evaluated.
+  /// Returns a copy that shares no data with this joint; call bind() before it is evaluated.
   virtual std::unique_ptr<Joint> clone() const = 0;
+  /// Returns the name of the joint, which messages use.
   virtual std::string name() const = 0;
-  virtual int size() const = 0;  ///< rows
-  /// Is it part of a body (its unit axis) rather than of the mechanism? Messages about joints that
-  /// hold each other leave it out.
+  /// Returns the number of constraint rows.
+  virtual int size() const = 0;
+  /// Returns true if the joint belongs to a body (the unit axis of a rigid body) and not to the
+  /// mechanism. Messages about redundant joints do not mention it.
   virtual bool belongs_to_body() const { return false; }
 
-  /// Looks up the unknowns it acts on, by the names of bodies and edges; called again after every
-  /// change of a mesh. @throws Error (input) for a body that does not exist.
+  /// Finds the unknowns of the joint by the names of bodies and edges; it is called again after
+  /// every change of a mesh.
+  /// @throws Error (input) for a body that does not exist.
   virtual void bind(std::span<const BodyView> bodies) = 0;
 
-  /// Fills rows; the places in the jacobian are the same at every call between two bind().
+  /// Fills the rows; the entries of the jacobian have the same positions at every call between two
+  /// calls of bind().
   virtual void evaluate(double t, const VectorXd& q, const VectorXd& v,
                         ConstraintRows& rows) const = 0;
 
-  /// Appends (Φ_qᵀ λ)_q, the part of the tangent that a Φ_q depending on q contributes: places are
-  /// unknowns of the model, the same at every call between two bind(). None where Φ is linear in q.
-  /// @param lambda  multipliers of this joint's rows (size())
+  /// Appends (Φ_qᵀ λ)_q, the contribution to the tangent of a Φ_q that depends on q. Positions are
+  /// unknowns of the model and stay the same at every call between two calls of bind(). There are
+  /// no entries where Φ is linear in q.
+  /// @param lambda  multipliers of the rows of this joint (size())
   virtual void add_stiffness(double /*t*/, const VectorXd& /*q*/, const VectorXd& /*lambda*/,
                              std::vector<Eigen::Triplet<double>>& /*out*/) const {}
 };
 
-/// The body of that name. @throws Error (input) naming joint and body.
+/// Returns the body of that name.
+/// @throws Error (input) naming joint and body.
 const BodyView& find_body(std::span<const BodyView> bodies, const std::string& joint,
                           const std::string& body);
 
-/// How the root edge sits in its hub (fem/README.md, The weld of an edge).
+/// Boundary condition of a root edge at its hub, the rigid frame with prescribed motion that
+/// carries the body (fem/README.md, The weld of an edge).
 enum class WeldMode {
-  edge,       ///< the edge is straight and across the hub's axis; r_m is free: the material that
-              ///< leaves the hub may stretch and shear, as at a clamped edge of the continuum
-  direction,  ///< r_m stays parallel to the axis: no shear at the root (first order in mesh size)
-  full,       ///< r_m is the unit axis: no root strain at all
-  partial     ///< of beams: position and direction of the section only, it may grow and the axis
-              ///< stretch: T section 3.3, Fig. 1
+  /// The edge stays straight and normal to the axis of the hub; r_m is free. The material at the
+  /// edge may stretch and shear, as at a clamped edge of the continuum.
+  edge,
+  /// The vector r_m stays parallel to the axis: no shear at the root (converges with first order in
+  /// the mesh size).
+  direction,
+  /// The vector r_m is the unit axis: no strain at the root at all.
+  full,
+  /// For beams: only the position and the direction of the section are prescribed; the section may
+  /// change its height and the axis may stretch. T section 3.3, Fig. 1.
+  partial
 };
 
-/// Plate edge welded to a driven frame: for every node, with the axes e₁(t), e₂(t) of the frame,
+/// Creates a joint that welds a plate edge to a frame with prescribed motion. For every node of the
+/// edge, with the axes e₁(t), e₂(t) of the frame,
 ///
 ///   r = origin + y e₂,   r_n = e₂                                           (edge)
 ///   and r_m · e₂ = 0, r_mn · e₂ = 0                                         (direction)
 ///   or r_m = e₁, r_mn = 0                                                   (full)
 ///
-/// The end of a beam is one node; e₁ is along its r_m in the undeformed beam, and e₂ stands for its
-/// r_n there, e₁ in `full` for its r_m (a tapered or sheared reference keeps its own). Besides:
+/// The end of a beam is one node; e₁ is along its r_m in the undeformed beam, and the reference
+/// vectors replace e₂ for its r_n and, in `full`, e₁ for its r_m (a tapered or sheared reference
+/// keeps its own vectors). For beams there is also the mode
 ///
-///   r = origin, and r_n keeps its direction only                            (partial)
+///   r = origin, and only the direction of r_n is prescribed                 (partial)
 ///
-/// y is the node's coordinate across. In space the frame turns about z, and the z entries of all
-/// these vectors are zero too: the edge is clamped against bending. With the edge "line 3" and a
-/// free line the weld is a sleeve: material slides through it. With material flow these rows hold
-/// on the moving line, so the rates are total ones along the line: exactly those of the nodal
-/// unknowns.
+/// y is the coordinate of the node across the plate. In space the frame turns about z, and the z
+/// entries of all these vectors are zero, too, so that the edge is clamped against bending. With
+/// the edge "line 3" and a free line the weld is a sleeve, through which material slides. With
+/// material flow these rows hold on the moving line; therefore the rates are total rates along the
+/// line, which are exactly the rates of the nodal unknowns.
 std::unique_ptr<Joint> make_weld(std::string name, std::string body, std::string edge,
                                  FrameDrive frame, WeldMode mode);
 
-/// A free material line of a body (by the number of its scalar unknown) held where the motion says
-/// [m]: Φ = p - p(t). Its multiplier is minus the force that the line feels.
+/// Creates a joint that prescribes the material coordinate of a free line of a body (given by the
+/// number of its scalar unknown) as motion(t) [m]: Φ = p - p(t), 1 row. The multiplier is the
+/// negative of the force on the line.
 std::unique_ptr<Joint> make_line_drive(std::string name, std::string body, int scalar,
                                        std::function<Motion(double)> motion);
 
-/// A material point's position held at a place of the world frame (pin), or driven along a path.
+/// Creates a joint that prescribes the position of a material point in the plane as the origin of a
+/// moving frame: a fixed pin, or a drive along a path.
 std::unique_ptr<Joint> make_pin(std::string name, std::string body, const Vec2& material,
                                 FrameDrive point);
 
-/// Motion of a point, each entry with its rates [m].
+/// Motion of a point as a function of time, each component with its rates [m].
 using PointDrive = std::function<std::vector<Motion>(double t)>;
 
-/// The same in the plane or in space: those components of the position (all when empty) follow the
-/// drive, which returns one Motion per component in their order.
+/// Creates a joint that prescribes components of the position of a material point in the plane or
+/// in space (all if `components` is empty); the drive returns one Motion per component in the order
+/// of `components`.
 /// @throws Error (input) at bind() for components the body does not have.
 std::unique_ptr<Joint> make_pin(std::string name, std::string body, const Vec2& material,
                                 PointDrive point, std::vector<int> components);
 
+/// Kinds of vector unknowns of a node.
 enum class NodeVector { r, r_m, r_n, r_mn };
 
-/// Nodes of a named edge or, when it has no name, all nodes within a box of material coordinates
-/// (low = high: one node, which must be there).
+/// Nodes that a hold acts on: the nodes of a named edge or, without a name, all nodes within a box
+/// of material coordinates (low = high: exactly one node, which must exist).
 struct HoldPlace {
-  std::string edge{};
-  Vec2 low{0, 0}, high{0, 0};
+  std::string edge{};          ///< Name of the edge, or empty.
+  Vec2 low{0, 0}, high{0, 0};  ///< Corners of the box of material coordinates [m].
 
+  /// Returns the location of the node at the given material coordinates [m].
   static HoldPlace at(const Vec2& material) { return {{}, material, material}; }
 };
 
-/// Components of one kind of vector unknown, held where they are in the undeformed body or at given
-/// values.
+/// Components of one kind of vector unknown that are held at given values, or at their values in
+/// the undeformed body.
 struct Held {
-  HoldPlace at;
-  NodeVector vector = NodeVector::r;
-  std::vector<int> components{};  ///< 0, 1, 2
-  VectorXd value{};               ///< (dim), or empty: reference values
+  HoldPlace at;                       ///< Nodes whose unknowns are held.
+  NodeVector vector = NodeVector::r;  ///< Kind of vector unknown.
+  std::vector<int> components{};      ///< Held components (0, 1, 2).
+  VectorXd value{};  ///< Prescribed values (dim), or empty for the reference values.
 };
 
-/// Holds entries of vector unknowns in the world frame, in the plane and in space: one linear row
-/// q_i = value each. An entry that is listed twice (corners of two edges) gets one row.
+/// Creates a joint that holds entries of vector unknowns in the world frame, in the plane and in
+/// space, with one linear row q_i = value for each entry. An entry that is listed twice (corners of
+/// two edges) gets one row.
 /// @throws Error (input) at bind() where there is no node, a component is out of range, an entry is
 /// held at two values or its material line moves.
 std::unique_ptr<Joint> make_hold(std::string name, std::string body, std::vector<Held> held);
 
-/// What a hold takes at an edge of a plate in space that lies in the plane z = 0; lists of several
-/// edges are joined for one make_hold().
-///
-/// clamped    r and the slope along the edge; of the slope across: its z (edge), all but its length
-///            (direction), everything (full), see WeldMode
-/// supported  z of r and of the slope along the edge: free to turn and to slide in the plane
-/// symmetry   the plane through the edge across the plate is a plane of symmetry
+/// Returns the entries that clamp an edge of a plate in space that lies in the plane z = 0: the
+/// position r and the position gradient along the edge, and of the position gradient across the
+/// edge its z entry (mode edge), all but the entry across the edge (direction), or everything
+/// (full), see WeldMode. Lists of several edges are joined for one make_hold().
 std::vector<Held> clamped_edge(const std::string& edge, WeldMode mode = WeldMode::edge);
+/// Returns the entries that simply support an edge of a plate in space: the z entries of r and of
+/// the position gradient along the edge, so that the edge may turn, and slide in the plane.
 std::vector<Held> supported_edge(const std::string& edge);
+/// Returns the entries that make the plane through the edge, normal to the plate, a plane of
+/// symmetry.
 std::vector<Held> symmetry_edge(const std::string& edge);
 
 }  // namespace flexmorph::fem

@@ -6,31 +6,43 @@
 
 namespace flexmorph::fem {
 
-/// A line of the tensor grid in material coordinates: fixed, prescribed in time, or an unknown.
+/// A mesh line of constant material coordinate in the tensor grid: fixed, prescribed in time, or
+/// with an unknown material coordinate (free).
 struct MaterialLine {
-  double value = 0;                     ///< [m]; ignored when driven; where a free line starts
-  std::function<Motion(double)> drive;  ///< empty: fixed or free
-  bool free = false;
+  /// Material coordinate [m]; the initial one of a free line; ignored for a driven line.
+  double value = 0;
+  /// Prescribed coordinate as a function of time; empty for other lines.
+  std::function<Motion(double)> drive;
+  bool free = false;  ///< True if the material coordinate is an unknown.
 };
 
-/// Elements on a tensor grid of material lines m_i(t) x n_j(t): what growing and shrinking bodies
-/// need to know of their mesh. The first m-line is the "root" edge, the last the "free_end".
+/// Elements on a tensor grid of material lines m_i(t) x n_j(t): the mesh data that bodies of
+/// changing length need. The first m-line is the "root" edge, the last one the "free_end".
 ///
-/// Nodes are numbered column by column from the root, n fastest; the vector unknowns of a node are
-/// value, derivative by m, by n and, when per_node() is 4, the mixed one.
+/// Nodes are numbered column by column from the root, n fastest. The vector unknowns of a node are
+/// the value, the derivative by m, the derivative by n and, when per_node() is 4, the mixed
+/// derivative.
 class LineGrid : public Element, public ShapeElement, public MovingElement {
  public:
   std::unique_ptr<Element> clone() const final { return copy(); }
-  // Of the interfaces directly: an element that is known to be a grid needs no question.
+  // Taken from the interfaces directly: a LineGrid always has them, so that no lookup is needed.
   using MovingElement::move_to, MovingElement::moving;
   using ShapeElement::edge, ShapeElement::locate, ShapeElement::nodes, ShapeElement::tabulate;
 
+  /// Returns the number of vector unknowns of one node.
   virtual int per_node() const = 0;
+  /// Returns the definitions of the m-lines.
   virtual const std::vector<MaterialLine>& lines_m() const = 0;
-  virtual const Motion& line_m(int i) const = 0;  ///< at the time of the last move_to()
+  /// Returns the material coordinate of m-line i with its rates at the time of the last move_to()
+  /// [m].
+  virtual const Motion& line_m(int i) const = 0;
+  /// Returns the material coordinate of n-line j with its rates at the time of the last move_to()
+  /// [m].
   virtual const Motion& line_n(int j) const = 0;
-  virtual int n_n() const = 0;  ///< elements along n
+  /// Returns the number of elements along n.
+  virtual int n_n() const = 0;
 
+  /// Returns the number of elements along m.
   int n_m() const { return static_cast<int>(lines_m().size()) - 1; }
   std::array<std::vector<double>, 2> lines() const final {
     std::array<std::vector<double>, 2> out;
@@ -38,20 +50,28 @@ class LineGrid : public Element, public ShapeElement, public MovingElement {
     for (int j = 0; j <= n_n(); ++j) out[1].push_back(line_n(j).value);
     return out;
   }
+  /// Returns the number of nodes of the mesh.
   int n_nodes() const { return (n_m() + 1) * (n_n() + 1); }
+  /// Returns the number of the node on m-line i and n-line j.
   int node(int i, int j) const { return i * (n_n() + 1) + j; }
+  /// Returns the number of the element in column i along m and row j along n.
   int element(int i, int j) const { return i * n_n() + j; }
 
-  /// Shape functions of element e at local coordinates s, u in [0, 1] (one point, weight 1).
+  /// Fills the shape functions of element e at the local coordinates s, u in [0, 1] (one point,
+  /// weight 1).
   virtual void at(int e, double s, double u, Tabulate what, ShapeTable& out) const = 0;
 
-  /// Copies of this mesh at its time: as it is, with an m-line inserted behind line i, without
-  /// line i, with all lines fixed where they are.
+  /// Returns a copy of this mesh at its current time.
   virtual std::unique_ptr<LineGrid> copy() const = 0;
+  /// Returns a copy of this mesh with a fixed m-line inserted behind line i at the material
+  /// coordinate `value` [m].
   virtual std::unique_ptr<LineGrid> with_line(int i, double value) const = 0;
+  /// Returns a copy of this mesh without m-line i.
   virtual std::unique_ptr<LineGrid> without_line(int i) const = 0;
+  /// Returns a copy of this mesh with all lines fixed at their current coordinates.
   virtual std::unique_ptr<LineGrid> frozen() const = 0;
-  /// The same elements on other m-lines, which increase at t; free lines start at their values.
+  /// Returns the same kind of elements on other m-lines, whose coordinates must increase at time t
+  /// [s]; free lines start at their values.
   virtual std::unique_ptr<LineGrid> with_lines_m(std::vector<MaterialLine> m, double t) const = 0;
 
  protected:

@@ -6,32 +6,47 @@
 
 namespace flexmorph::fem {
 
-/// Weight of the body's own mass; gravity (dim) [m/s^2].
+/// Creates the weight of the mass of a body under gravity (dim) [m/s²].
 /// @throws Error (input) at prepare() for gravity that varies on a body with free lines.
 std::unique_ptr<Term> make_gravity(const PlaneSection& section, const LoadLaw& gravity);
-/// A mass [kg] at a material point, with its weight when gravity is not empty.
+/// Creates a point mass [kg] at a material point, with its weight when gravity is not empty.
 std::unique_ptr<Term> make_point_mass(double mass, const Vec2& material, const LoadLaw& gravity);
 
-/// Loads that keep their direction, per reference length and area; components as the body has
-/// dimensions. All loads are scaled by Model::scale_loads().
-/// @throws Error (input) at prepare() for other components, a point outside the body, an unknown
-/// edge; point and edge loads also in elements whose lines move.
-std::unique_ptr<Term> make_point_force(const Vec2& material, const LoadLaw& force);  // [N]
-std::unique_ptr<Term> make_edge_load(const std::string& edge, const LoadLaw& load);  // [N/m]
-std::unique_ptr<Term> make_surface_load(const LoadLaw& load);                        // [N/m²]
-/// The same along axes that turn with the body at every point: r_m / |r_m|, in the plane its
-/// quarter turn, in space the normal of the surface and what is left (terms/turning_loads.cpp).
-/// @throws Error (input) likewise, and on bodies with free lines.
+/// Creates a force of fixed direction at a material point (dim) [N]. Model::scale_loads() scales
+/// all loads of this header.
+/// @throws Error (input) at prepare() for another number of components, a point outside the body,
+/// and a point in an element whose lines move.
+std::unique_ptr<Term> make_point_force(const Vec2& material, const LoadLaw& force);
+/// Creates a load of fixed direction per reference length of an edge (dim) [N/m].
+/// @throws Error (input) at prepare() for another number of components, an unknown edge, the end of
+/// a beam, and an edge of elements whose lines move.
+std::unique_ptr<Term> make_edge_load(const std::string& edge, const LoadLaw& load);
+/// Creates a load of fixed direction per reference area (dim) [N/m²].
+/// @throws Error (input) at prepare() for another number of components, and for a body with free
+/// lines.
+std::unique_ptr<Term> make_surface_load(const LoadLaw& load);
+/// Creates a point force (dim) [N] along axes that turn with the body at the point: e₁ = r_m /
+/// |r_m|, e₃ = r_m × r_n / |r_m × r_n| (z in the plane), e₂ = e₃ × e₁ (terms/turning_loads.cpp).
+/// @throws Error (input) as make_point_force(), and for a body with free lines.
 std::unique_ptr<Term> make_turning_point_force(const Vec2& material, const LoadLaw& force);
+/// Creates a load per reference length of an edge (dim) [N/m] along axes that turn with the body at
+/// every point, see make_turning_point_force().
+/// @throws Error (input) as make_edge_load(), and for a body with free lines.
 std::unique_ptr<Term> make_turning_edge_load(const std::string& edge, const LoadLaw& load);
+/// Creates a load per reference area (dim) [N/m²] along axes that turn with the body at every
+/// point, see make_turning_point_force().
+/// @throws Error (input) as make_surface_load().
 std::unique_ptr<Term> make_turning_surface_load(const LoadLaw& load);
-/// Moment [N m] in the plane on the line across a body (r_n) at a material point,
-/// counter-clockwise. @throws Error (input) likewise.
+/// Creates a counter-clockwise moment [N m] about a material point of a body in the plane, which
+/// acts on the line across the body (r_n).
+/// @throws Error (input) as make_turning_point_force(), and for a body in space.
 std::unique_ptr<Term> make_moment(const Vec2& material, const LoadLaw& moment);
-/// Loads that follow the surface of a plate in space: a pressure [N/m²] along r_m × r_n, and a
-/// moment per length [N] of an edge about the edge, positive where it bends with κ > 0.
+/// Creates a pressure [N/m²] along r_m × r_n that follows the surface of a plate in space.
 /// @throws Error (input) at prepare() for a body in the plane or with material lines that move.
 std::unique_ptr<Term> make_pressure(const LoadLaw& pressure);
+/// Creates a moment per length [N] about an edge of a plate in space, which follows the rotation of
+/// the edge and is positive where it bends with κ > 0.
+/// @throws Error (input) as make_pressure().
 std::unique_ptr<Term> make_edge_moment(const std::string& edge, const LoadLaw& moment);
 
 }  // namespace flexmorph::fem

@@ -59,7 +59,7 @@ void Marker::bind_plate(const BodyView& body, const std::string& user, bool with
   std::vector<std::pair<int, double>> weights;
   for (int k = 0; k < element.n_shapes(); ++k) {
     const int vector = vectors[static_cast<size_t>(k)];
-    // At a node only its own position counts, up to round-off: the others need no entries.
+    // At a node all other shape functions vanish up to round-off and need no entries.
     if (const double weight = table.N(0, k); std::abs(weight) > 1e-14 * element.scale(vector))
       weights.emplace_back(body.first_dof + 2 * vector, weight);
   }
@@ -76,7 +76,8 @@ void Marker::bind_plate(const BodyView& body, const std::string& user, bool with
   offset_acceleration_.setZero();
 }
 
-/// Entries of a point (X, Y) of the body, or (position = 0) of a vector in it.
+/// Sets the coefficients of a point (X, Y) of the body (position = 1) or of a vector in it
+/// (position = 0).
 void Marker::place_at(const Vec2& point, double position, Block& block,
                       Eigen::Vector4d& offset) const {
   if (!rigid_) {

@@ -9,25 +9,30 @@
 
 namespace flexmorph::fem {
 
-/// A place on a body, or on the ground, with axes: said by names, found in a model by a Marker.
+/// A location on a body, or on the ground, with axes; it is given by names and looked up in a model
+/// by a Marker.
 struct MarkerPlace {
-  std::string body{};  ///< empty: the ground
-  Vec2 point{0, 0};    ///< rigid body, ground: in its axes; plate: material coordinates (m, n) [m]
-  double angle = 0;    ///< of axis 1 in the axes of the body, counter-clockwise; no plates [rad]
-  /// Shifts the point along axis 1 by this [m]; its rates are those of the value. Rigid bodies and
-  /// ground only; empty: not at all.
+  std::string body{};  ///< Name of the body; empty for the ground.
+
+  /// Coordinates in the axes of a rigid body or of the ground, or material coordinates (m, n) of a
+  /// plate [m].
+  Vec2 point{0, 0};
+  /// Angle of axis 1 in the axes of the body, counter-clockwise [rad]; zero for plates.
+  double angle = 0;
+  /// Displacement of the point along axis 1 as a function of time, with its rates [m]; only for
+  /// rigid bodies and the ground. Empty for a fixed point.
   std::function<Motion(double t)> along{};
 };
 
-/// A marker at one state: p [m], then e [-].
+/// Motion of a marker at one state: position p [m], then axis 1 e [-].
 struct MarkerMotion {
-  Eigen::Vector4d y;           ///< (p, e)
-  Eigen::Vector4d y_t;         ///< ∂y/∂t at fixed q
-  Eigen::Vector4d rate;        ///< ẏ
-  Eigen::Vector4d convective;  ///< ÿ at q̈ = 0
+  Eigen::Vector4d y;           ///< Values (p, e).
+  Eigen::Vector4d y_t;         ///< Partial derivatives ∂y/∂t at fixed q.
+  Eigen::Vector4d rate;        ///< Total rates ẏ.
+  Eigen::Vector4d convective;  ///< Accelerations ÿ for q̈ = 0.
 };
 
-/// A place that was found in a model: position p and axis 1 e, both linear in the unknowns,
+/// A location that was looked up in a model: position p and axis 1 e, both linear in the unknowns,
 ///
 ///   p = P(t) q + p₀(t),   e = E q + e₀            (the second axis is e turned by +90 degrees)
 ///
@@ -35,34 +40,39 @@ struct MarkerMotion {
 /// ground      p = p₀(t), e = e₀: no unknowns
 /// plate       p = Σ N_k q_k at a fixed material point; it has no axes
 ///
-/// P has a time derivative where the point moves in its body (`along`), and only there.
+/// P depends on time only where the point moves in its body (`along`).
 class Marker {
  public:
-  /// Entries of p, then of e, by the unknowns of dofs().
+  /// Matrix of the coefficients of (p, e), one column per unknown of dofs().
   using Block = Eigen::Matrix<double, 4, Eigen::Dynamic, 0, 4, 2 * kMaxShapes>;
 
+  /// Creates a marker for a location; call bind() before it is evaluated.
   explicit Marker(MarkerPlace place) : place_(std::move(place)) {}
 
-  /// Looks up the body; called again after every change of a mesh.
-  /// @param user       begins messages: "joint 'hinge'", "link 'damper'"
-  /// @param with_axis  will its axis be asked for?
-  /// @throws Error (input) for a body that does not exist, that lives in space, for the axis or the
-  ///         shift of a plate's point, for a point outside the plate or in an element whose
-  ///         material lines move, and for numbers that are not finite.
+  /// Looks up the body; it is called again after every change of a mesh.
+  /// @param user       first words of messages: "joint 'hinge'", "link 'damper'"
+  /// @param with_axis  true if the axis is needed
+  /// @throws Error (input) for a body that does not exist or is in space, for the axis or the shift
+  /// of a point of a plate, for a point outside the plate or in an element whose material lines
+  /// move, and for numbers that are not finite.
   void bind(std::span<const BodyView> bodies, const std::string& user, bool with_axis);
 
+  /// Returns the location as it was given.
   const MarkerPlace& place() const { return place_; }
-  std::span<const int> dofs() const { return dofs_; }  ///< unknowns of the model, each once
-  bool is_rigid() const { return rigid_; }  ///< is it on a rigid body (and not on the ground)?
+  /// Returns the unknowns of the model that the marker depends on, each once.
+  std::span<const int> dofs() const { return dofs_; }
+  /// Returns true if the marker is on a rigid body (and not on the ground).
+  bool is_rigid() const { return rigid_; }
+  /// Returns true if the point moves in its body.
   bool shifts() const { return static_cast<bool>(place_.along); }
-  /// Can entry i (0, 1: of p; 2, 3: of e) depend on the unknown dofs()[k]?
+  /// Returns true if entry i (0, 1: of p; 2, 3: of e) can depend on the unknown dofs()[k].
   bool depends(int i, size_t k) const { return (depends_[k] >> i & 1U) != 0; }
 
-  /// Where it is; puts the blocks at that time.
+  /// Returns the motion of the marker at a state, and updates block() and block_rate() to time t.
   MarkerMotion evaluate(double t, const VectorXd& q, const VectorXd& v) const;
-  /// At the time of the last evaluate(): the blocks [P; E] and [Ṗ; 0], which is zero
-  /// unless shifts().
+  /// Returns the coefficients [P; E] at the time of the last evaluate().
   const Block& block() const { return block_; }
+  /// Returns the rates [Ṗ; 0] at the time of the last evaluate(); zero unless shifts().
   const Block& block_rate() const { return block_rate_; }
 
  private:
@@ -73,42 +83,55 @@ class Marker {
   MarkerPlace place_;
   bool rigid_ = false;
   std::vector<int> dofs_;
-  std::vector<unsigned> depends_;  // bits by entries
+  std::vector<unsigned> depends_;  // one bit per entry of (p, e), for each unknown
   mutable Block block_, block_rate_, block_acceleration_;
   mutable Eigen::Vector4d offset_, offset_rate_, offset_acceleration_;  // (p₀, e₀)
 };
 
-/// Two markers a and b side by side: y = (p_a, e_a, p_b, e_b) = Y(t) q + y₀(t).
+/// Two markers a and b with their common value vector y = (p_a, e_a, p_b, e_b) = Y(t) q + y₀(t).
 class MarkerPair {
  public:
+  /// Vector of the entries of y.
   using Values = Eigen::Matrix<double, 8, 1>;
+  /// Matrix of second derivatives by y.
   using Square = Eigen::Matrix<double, 8, 8>;
   /// First entries of the four vectors in y.
   enum Part { kPositionA = 0, kAxisA = 2, kPositionB = 4, kAxisB = 6 };
 
+  /// Creates the pair of two locations; call bind() before it is evaluated.
   MarkerPair(MarkerPlace a, MarkerPlace b) : a_(std::move(a)), b_(std::move(b)) {}
 
-  /// @throws Error (input) as Marker::bind(), and for two places on the ground or on the same rigid
-  ///         body.
+  /// Looks up both bodies, see Marker::bind().
+  /// @throws Error (input) as Marker::bind(), and for two locations on the ground or on the same
+  /// rigid body.
   void bind(std::span<const BodyView> bodies, const std::string& user, bool axis_a, bool axis_b);
+  /// Returns the first marker.
   const Marker& a() const { return a_; }
+  /// Returns the second marker.
   const Marker& b() const { return b_; }
 
-  /// Unknowns of a, then of b; one may be listed twice where both are on one body.
+  /// Returns the unknowns of a, then the unknowns of b; an unknown is listed twice where both
+  /// markers are on one body.
   std::span<const int> dofs() const { return dofs_; }
-  /// Can y_i depend on the unknown dofs()[k]?
+  /// Returns true if y_i can depend on the unknown dofs()[k].
   bool depends(int i, size_t k) const;
 
-  /// Evaluates what follows.
+  /// Evaluates the values that the functions below return.
   void evaluate(double t, const VectorXd& q, const VectorXd& v) const;
+  /// Returns the values y at the last evaluate().
   const Values& y() const { return y_; }
-  const Values& y_t() const { return y_t_; }                ///< ∂y/∂t at fixed q
-  const Values& rate() const { return rate_; }              ///< ẏ
-  const Values& convective() const { return convective_; }  ///< ÿ at q̈ = 0
+  /// Returns the partial derivatives ∂y/∂t at fixed q.
+  const Values& y_t() const { return y_t_; }
+  /// Returns the total rates ẏ.
+  const Values& rate() const { return rate_; }
+  /// Returns the accelerations ÿ for q̈ = 0.
+  const Values& convective() const { return convective_; }
 
-  /// Column k of Y and of its time derivative.
+  /// Returns column k of Y.
   Values column(size_t k) const;
+  /// Returns column k of the time derivative of Y.
   Values column_rate(size_t k) const;
+  /// Returns true if at least one of the points moves in its body.
   bool shifts() const { return a_.shifts() || b_.shifts(); }
 
  private:

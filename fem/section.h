@@ -4,13 +4,14 @@
 
 namespace flexmorph::fem {
 
-/// The thickness and the material of a plate, none of which has a default value.
+/// The thickness and the material of a plate; none of them has a default value.
 struct PlaneSection {
-  double thickness;       ///< [m]
-  double youngs_modulus;  ///< [Pa]
-  double poisson_ratio;   ///< [-]
-  double density;         ///< [kg/m^3]
+  double thickness;       ///< Thickness of the plate [m].
+  double youngs_modulus;  ///< Young's modulus E [Pa].
+  double poisson_ratio;   ///< Poisson's ratio ν [-].
+  double density;         ///< Mass density [kg/m³].
 
+  /// Creates a section of the given thickness and material, in the units of the members.
   PlaneSection(double its_thickness, double its_youngs_modulus, double its_poisson_ratio,
                double its_density)
       : thickness(its_thickness),
@@ -18,7 +19,7 @@ struct PlaneSection {
         poisson_ratio(its_poisson_ratio),
         density(its_density) {}
 
-  /// Plane-stress stiffness P (8) in Voigt order 11, 22, 12 [Pa].
+  /// Returns the plane-stress stiffness P (8) in Voigt order 11, 22, 12 [Pa].
   Eigen::Matrix3d elasticity() const {
     const double nu = poisson_ratio;
     Eigen::Matrix3d c;

@@ -6,31 +6,37 @@
 
 namespace flexmorph::fem {
 
-/// A coordinate z of two places that may move freely between two limits, and is pushed back beyond
-/// them. With δ the way beyond a limit and w the width of the onset,
+/// Data of a stop: a coordinate z of two markers is free between two limits, and beyond them a
+/// force pushes it back. With δ the displacement beyond a limit and w the width of the transition,
 ///
 ///   N = max(0, k δ²/(2w) + c (δ/w) δ̇)     for 0 < δ < w
-///   N = max(0, k (δ - w/2) + c δ̇)         for δ >= w,   nothing for δ <= 0
+///   N = max(0, k (δ - w/2) + c δ̇)         for δ >= w,   no force for δ <= 0
 ///
-/// so it never pulls, and w > 0 makes N continuously differentiable where it begins. The energy is
-/// that of the elastic part. A damped stop (w = 0) jumps to c δ̇ where it is hit.
+/// Therefore the stop never pulls, and w > 0 makes N continuously differentiable at the start of
+/// the contact. The energy is the energy of the elastic term. In a damped stop with w = 0 the force
+/// jumps to c δ̇ when the contact begins.
 struct StopData {
+  /// Coordinate that the stop limits.
   enum class Coordinate {
-    along,     ///< e_a · (p_b - p_a), along axis 1 of a [m]
-    distance,  ///< |p_b - p_a|: a rope, a bumper [m]
-    angle      ///< θ_b - θ_a, whole turns counted [rad]
+    along,     ///< Position e_a · (p_b - p_a) along axis 1 of a [m].
+    distance,  ///< Distance |p_b - p_a| [m], for a rope or a bumper.
+    angle      ///< Angle θ_b - θ_a with counted whole turns [rad].
   } coordinate = Coordinate::along;
+  /// Lower limit of the coordinate [m] or [rad].
   double least = -std::numeric_limits<double>::infinity();
+  /// Upper limit of the coordinate [m] or [rad].
   double most = std::numeric_limits<double>::infinity();
-  double stiffness = 0;                 ///< k [N/m] or [N m/rad]
-  double damping = 0;                   ///< c [N s/m] or [N m s/rad]
-  double onset = 0;                     ///< w [m] or [rad]
-  std::optional<double> start_angle{};  ///< as TorsionSpringData's, next to which else 0 is taken
+  double stiffness = 0;  ///< Stiffness k [N/m] or [N m/rad].
+  double damping = 0;    ///< Damping coefficient c [N s/m] or [N m s/rad].
+  double onset = 0;      ///< Width w of the transition [m] or [rad].
+
+  /// Angle near which θ_b - θ_a lies before the first step [rad]; 0 if absent.
+  std::optional<double> start_angle{};
 };
 
-/// No mean force.
+/// Creates a stop between two markers; it has no mean force.
 /// @throws Error (input) unless k > 0, c, w >= 0 and finite, least < most of which one is finite;
-///         at bind() see Marker::bind(); (numerical) where points meet that are to be kept apart.
+/// at bind() see Marker::bind(); (numerical) where points coincide that have a distance limit.
 std::unique_ptr<Link> make_stop(std::string name, MarkerPlace a, MarkerPlace b,
                                 const StopData& stop);
 

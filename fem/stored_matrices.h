@@ -4,20 +4,21 @@
 
 namespace flexmorph::fem {
 
+/// Checks the data of a material reservoir.
 /// @throws Error (input) see make_stored_inertia()
 void check(const StoredMaterial& stored);
 
-/// X 1 + Y J, J the quarter turn: takes u to X u + Y v.
+/// Returns X 1 + Y J with J the rotation by 90 degrees, which maps u to X u + Y v (2 x 2).
 Eigen::Matrix2d arm_of(const Vec2& point);
-/// The outlet's axis in the axes of the body.
+/// Returns the axis of the outlet in the axes of the body.
 Vec2 axis_of(const StoredMaterial& stored);
 
-/// ∫ρ Nᵀ N of a rigid body in natural coordinates.
-/// @param square  ∫ρ |X|², inertia about the point r [kg m²]
+/// Returns ∫ρ Nᵀ N of a rigid body in natural coordinates (4 x 4).
+/// @param square  ∫ρ |X|², moment of inertia about the point r [kg m²]
 Eigen::Matrix4d mass_matrix(double mass, const Vec2& center, double square);
-/// ∫ρ Nᵀ D of material that slides along the outlet's axis; zero of a coil.
+/// Returns ∫ρ Nᵀ D of material that slides along the axis of the outlet (4 x 4); zero for a coil.
 Eigen::Matrix4d sliding_matrix(double mass, const Vec2& center, const StoredMaterial& stored);
-/// ∫ρc Nᵀ N dy over the width, at a place of the body.
+/// Returns ∫ρc Nᵀ N dy over the width at a point of the body (4 x 4).
 Eigen::Matrix4d mass_across(const StoredMaterial& stored, const Vec2& middle);
 
 }  // namespace flexmorph::fem

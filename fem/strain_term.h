@@ -4,19 +4,19 @@
 
 namespace flexmorph::fem {
 
-/// A term whose forces come from strains, and from their rates: it does not see rigid motions. Heat
-/// acts on such terms (thermal/heated.h).
+/// A term whose forces follow from strains and their rates, so that rigid motions cause no force.
+/// Temperature acts on such terms (thermal/heated.h).
 class StrainTerm : public Term {};
 
-/// A term of a hot body (Body::heat).
+/// Interface of a term of a body with a temperature (Body::heat).
 class HeatedTerm {
  public:
   virtual ~HeatedTerm() = default;
-  /// Puts the term where its temperature is at time t.
+  /// Sets the temperature of the term to its value at time t [s].
   virtual void heat_to(double t) = 0;
-  /// Returns the power that the temperature gives to one element [W]: the rate of the term's energy
-  /// at fixed unknowns and fixed lines, and for a force without energy what its work on them is
-  /// short of.
+  /// Returns the power that the change of temperature supplies to one element [W]. For an elastic
+  /// term it is the rate of the energy at fixed unknowns and fixed lines; for a force without
+  /// energy (damping) it is the dissipated power minus the power of the force on the unknowns.
   virtual double heat_power(int e, const Local& x) const = 0;
 };
 

@@ -40,7 +40,7 @@ namespace {
 
 std::string quoted(const std::string& name) { return '"' + name + '"'; }
 
-/// "a", "a or b", "a, b or c".
+/// Returns a list of quoted names: "a", "a or b", "a, b or c" for last = "or".
 std::string listed(const std::vector<std::string>& names, const std::string& last) {
   std::string out;
   for (size_t i = 0; i < names.size(); ++i)
@@ -48,6 +48,7 @@ std::string listed(const std::vector<std::string>& names, const std::string& las
   return out;
 }
 
+/// Returns the names of the terms of a role for a kind of body.
 std::vector<std::string> of_role(const std::string& role, TermPlace place) {
   std::vector<std::string> out;
   for (const TermRow* row : term_rows())
@@ -55,7 +56,7 @@ std::vector<std::string> of_role(const std::string& role, TermPlace place) {
   return out;
 }
 
-/// Roles that a body in this place has, in the order of the table.
+/// Returns the roles that this kind of body requires, in the order of the table.
 std::vector<std::string> required_roles(TermPlace place) {
   std::vector<std::string> out;
   for (const TermRow* row : term_rows())

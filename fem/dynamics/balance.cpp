@@ -8,8 +8,9 @@
 namespace flexmorph::fem {
 namespace {
 
-/// Gauss points on a line across one element, exact for the strain energy (degree 12); with a
-/// stepwise factor the weights are interpolatory, exact up to n - 1.
+/// Numbers of Gauss points on a line across one element. 7 points are exact for the strain energy
+/// (degree 12). With scale factors that are constant by cells, the weights are interpolatory, which
+/// is exact up to the degree n - 1 for n points.
 constexpr int kUniform = 7, kDesigned = 13;
 
 /// The power of moving material lines in the elements of one body.
@@ -22,9 +23,10 @@ class LinePowers {
         n_(body.factors.uniform() ? kUniform : kDesigned),
         what_(plate.dim() == 3 ? Tabulate::curvature_rates : Tabulate::gradient_rates) {}
 
-  /// Energy that crosses the lines along n: into the body at its ends and, where a driven line
-  /// inside is a place where bending jumps, from one density to the other. Across a free line
-  /// inside none: motion and weight are continuous, and forces on free lines contain the rest.
+  /// Returns the power of the energy that crosses the lines along n [W]: the energy that enters the
+  /// body at its ends, and the difference of the densities on both sides of a driven line inside,
+  /// where bending jumps. A free line inside contributes nothing, because motion and weight are
+  /// continuous there and the forces on free lines contain the strain energy.
   double inflow() {
     for (int j = 0; j <= plate_.n_n(); ++j) check_still(j);
     double out = 0;
@@ -41,8 +43,8 @@ class LinePowers {
     return out;
   }
 
-  /// Power of driven lines of elements that have free ones, too: their forces are known like those
-  /// on free lines.
+  /// Returns the power of driven lines of elements that also have free lines [W]. The forces on
+  /// these driven lines are computed like the forces on free lines.
   double beside_free_lines() {
     double out = 0;
     for (int e = 0; e < plate_.n_elements(); ++e) {
@@ -68,6 +70,7 @@ class LinePowers {
   }
 
  private:
+  /// @throws Error (input) if the n-line j moves and is driven or an edge of the body.
   void check_still(int j) const {
     const bool outer = j == 0 || j == plate_.n_n();
     const auto sides = plate_.free_sides(plate_.element(0, std::min(j, plate_.n_n() - 1)));
@@ -90,7 +93,7 @@ class LinePowers {
     rows(x_.a, local_.a);
   }
 
-  /// Energy per length along m [J/m] at the side s = 0 or 1 of element (i, j).
+  /// Returns the energy per length along m [J/m] at the side s = 0 or 1 of element (i, j).
   double on_line(int i, int j, double s) {
     const int e = plate_.element(i, j);
     gather(e);
@@ -99,8 +102,9 @@ class LinePowers {
     energy_.set_zero(n_);
     for (const BodyTerm& term : body_.terms)
       if (term.flow) term.flow->add_line_energy(line_, local_, energy_);
-    // Forces on the lines of an element with free ones are the gradient of its strain energy,
-    // limits of integration included (FreeElastic).
+    // The forces on the lines of an element with free lines are the gradient of its strain energy
+    // including the limits of integration (FreeElastic). Therefore its strain energy does not flow
+    // in.
     if (!plate_.free_sides(e).empty()) energy_.stiffness.setZero();
     const double width = plate_.line_n(j + 1).value - plate_.line_n(j).value;
     const Eigen::Map<const VectorXd> weights(gauss(n_).weights.data(), n_);
@@ -112,9 +116,10 @@ class LinePowers {
     return width * out;
   }
 
-  /// Energies times the factors of the cells along the line, each integrated exactly. A line that
-  /// passes from one column of cells to the next has the mean of both: there the power jumps, and
-  /// steps that land on it, each with half the jump too much and too little, keep their order.
+  /// Returns the energies times the scale factors of the cells along the line, each integrated
+  /// exactly. The power jumps when the line passes from one column of cells to the next; there the
+  /// mean of both columns is taken. Then two steps that meet at this time have errors of half the
+  /// jump with opposite signs, so that the order of the integration is preserved.
   double designed(int j) const {
     const Grid& grid = body_.factors.grid;
     const auto index = [](double at, double start, double cell, int n) {

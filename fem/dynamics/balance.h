@@ -8,37 +8,47 @@
 
 namespace flexmorph::fem {
 
-/// Power that enters a model [W].
+/// Powers that change the energy of a model [W].
 struct Powers {
-  double drive = 0;   ///< of the drives of all joints, λ · ∂Φ/∂t
-  double feed = 0;    ///< of what pushes the material through the mesh, FlowTerm::flow_power()
-  double inflow = 0;  ///< kinetic, strain and potential energy that entering material brings along
-  double links = 0;   ///< of dampers, shifted places of links and loads without a potential:
-                      ///< Workspace::link_power(), load_power()
-  double heat = 0;    ///< of the temperature of hot bodies, Model::heat_power()
-  double loss = 0;    ///< of terms that dissipate, Model::dissipation(): it leaves the model
+  /// Power of the prescribed motions of all joints, λ · ∂Φ/∂t [W].
+  double drive = 0;
+  /// Power that moves the material through the mesh [W]: FlowTerm::flow_power(), and driven
+  /// material lines of elements that also have free lines.
+  double feed = 0;
+  /// Kinetic, strain and potential energy that entering material carries, per time [W].
+  double inflow = 0;
+  /// Power of force elements with damping or with shifted points of action, and of loads without a
+  /// potential [W]: Workspace::link_power() and Workspace::load_power().
+  double links = 0;
+  /// Power of the prescribed temperature of hot bodies, Workspace::heat_power() [W].
+  double heat = 0;
+  /// Power that dissipative terms take out of the model, Workspace::dissipation() [W].
+  double loss = 0;
+  /// Returns the net power that enters the model [W].
   double total() const { return drive + feed + inflow + links + heat - loss; }
 };
 
-/// The energy balance of a model with material flow,
+/// Returns the powers in the energy balance of a model with material flow,
 ///
-///   d(T + U + V)/dt = λ·Φ_t + ∫ (Q̇-free rate of r)·(forces) + (energy density) × (inflow),
+///   d(T + U + V)/dt = λ·Φ_t + ∫ (Q̇-free rate of r)·(forces) + (energy density) × (inflow).
 ///
-/// which follows from the virtual work equation with δq = q̇ and the moving limit of the integrals
-/// (root line at m₀(t): each density e contributes -ṁ₀ ∫ e dn).
+/// The balance follows from the virtual work equation with δq = q̇ and from the moving limit of the
+/// integrals: with the root line at m₀(t), each density e contributes -ṁ₀ ∫ e dn.
 ///
-/// Where the root line is free, ṁ₀ is among q̇: no power at fixed unknowns. Its equation holds the
-/// virtual work of inertia and weight at fixed material points, so that their densities flow in as
-/// above; but of the strain energy the gradient, limits included (FreeElastic): dU/dt is ∂U/∂q · q̇
-/// and the strain density does not appear.
+/// If the root line is free, its rate ṁ₀ is one of the velocities q̇, and there is no power at fixed
+/// unknowns. The equation of the free line contains the virtual work of inertia and weight at fixed
+/// material points; therefore the kinetic and the potential energy density still flow in as above.
+/// For the strain energy it contains the gradient of U including the moving limits of integration
+/// (FreeElastic); therefore dU/dt = ∂U/∂q · q̇, and the strain energy density does not appear.
 ///
-/// @param x  consistent (λ belongs to q̈)
-/// @throws Error (input) where an n-line moves that is driven or an edge of its body
+/// @param x  State with consistent q̈ and λ.
+/// @throws Error (input) if an n-line moves that is driven or is an edge of its body.
 Powers powers(Workspace& model, const State& x);
 
-/// Integrates the powers along a run and compares with the energies.
+/// Energy balance of a motion: integrates the powers and compares their work with the energies.
 class EnergyBalance {
  public:
+  /// Starts the balance at time t [s] with the energies e and the powers p.
   void begin(double t, const Energies& e, const Powers& p) {
     start_ = e.total();
     work_ = dissipated_ = 0;
@@ -48,13 +58,13 @@ class EnergyBalance {
     loss_ = p.loss;
     known_ = true;
   }
-  /// Goes on with the power p after a change of the mesh. What the change did to the energy is a
-  /// part of the defect.
+  /// Continues with the powers p after a change of the mesh. The energy that the change itself adds
+  /// or removes becomes a part of the residual defect().
   void go_on(const Powers& p) {
     power_ = p.total();
     loss_ = p.loss;
   }
-  /// After a step: trapezoidal rule.
+  /// Adds a step that ends at time t [s], by the trapezoidal rule.
   void add(double t, const Energies& e, const Powers& p) {
     work_ += 0.5 * (t - t_) * ((known_ ? power_ : p.total()) + p.total());
     dissipated_ += 0.5 * (t - t_) * ((known_ ? loss_ : p.loss) + p.loss);
@@ -66,18 +76,23 @@ class EnergyBalance {
     largest_ = std::max({largest_, std::abs(e.total()), e.kinetic, e.strain});
     worst_ = std::max(worst_, std::abs(defect_));
   }
-  /// After a step whose powers are those of its middle: mid-point rule.
+  /// Adds a step that ends at time t [s] and whose powers p belong to its middle, by the mid-point
+  /// rule.
   void add_mean(double t, const Energies& e, const Powers& p) {
     known_ = false;
     add(t, e, p);
   }
-  double work() const { return work_; }              ///< of all powers [J]
-  double dissipated() const { return dissipated_; }  ///< of the loss [J]
-  double defect() const { return defect_; }          ///< energy - start - work [J]
-  double relative() const { return worst_ / std::max(largest_, 1e-300); }  ///< largest so far
+  /// Returns the work of all powers since the start [J].
+  double work() const { return work_; }
+  /// Returns the energy that was dissipated since the start [J].
+  double dissipated() const { return dissipated_; }
+  /// Returns the residual of the balance: energy - energy at the start - work [J].
+  double defect() const { return defect_; }
+  /// Returns the largest residual so far, relative to the largest energy so far.
+  double relative() const { return worst_ / std::max(largest_, 1e-300); }
 
  private:
-  bool known_ = false;  // is the power at t_?
+  bool known_ = false;  // true if power_ and loss_ belong to the time t_
   double t_ = 0, power_ = 0, loss_ = 0, start_ = 0, work_ = 0, dissipated_ = 0;
   double defect_ = 0, largest_ = 0, worst_ = 0;
 };

@@ -7,7 +7,8 @@
 namespace flexmorph::fem {
 namespace {
 
-/// Acceleration, in the hub's axes, of the rigid body that moves out of it along x.
+/// Returns the acceleration, in the axes of the hub, of a point `at` of the rigid body that moves
+/// out of the hub along x.
 Vec2 rigid_acceleration(const FrameMotion& hub, const Eigen::Matrix2d& to_hub, const Vec2& at,
                         const Motion& root) {
   const double w = hub.angle_rate, x_dot = -root.rate, x_ddot = -root.acceleration;
@@ -15,18 +16,18 @@ Vec2 rigid_acceleration(const FrameMotion& hub, const Eigen::Matrix2d& to_hub, c
          hub.angle_acceleration * Vec2(-at.y(), at.x()) + Vec2(x_ddot, 2 * w * x_dot);
 }
 
-/// Growth of a hot body along and across its axis, as factors of lengths, and how much of it the
-/// root line does not take part in.
+/// Thermal growth of a hot body along and across its axis, as factors of lengths.
 struct HotBody {
   Motion along, across;
-  double stretch = 0, held = 0;  ///< a, g
+  double stretch = 0, held = 0;  ///< Free growth a, and its part g that the root line prevents.
 };
 
-/// Less than a millionth of the growth is rounding and what a Newton iteration leaves: its energy
-/// is 1e-12 of that of a held edge.
+/// Relative difference of growth that is treated as zero. It is caused by round-off and by the
+/// tolerance of Newton's method, and its energy is 1e-12 of that of an edge whose growth is
+/// prevented.
 constexpr double kSameGrowth = 1e-6;
 
-/// How a root line that is straight takes part in the growth: γ of u_y = γ (Y - Ȳ), least squares.
+/// Returns the growth γ of a straight root line: least squares fit of u_y = γ (Y - Ȳ).
 double growth_of_root(const Body& body, const State& x, const FrameMotion& hub,
                       const Eigen::Matrix2d& to_hub, const Grid& grid, double root) {
   const double middle = grid.y0 + 0.5 * grid.height;
@@ -41,7 +42,8 @@ double growth_of_root(const Body& body, const State& x, const FrameMotion& hub,
   return moment / second;
 }
 
-/// The same for an edge that is turned as well: |e| - 1 of r = e (Y - Ȳ) + const.
+/// Returns the growth |e| - 1 of an edge that may be rotated: least squares fit of
+/// r = e (Y - Ȳ) + const.
 double growth_of_edge(const Body& body, const State& x, const Grid& grid, int column) {
   const double middle = grid.y0 + 0.5 * grid.height;
   Vec2 moment(0, 0);
@@ -55,7 +57,7 @@ double growth_of_edge(const Body& body, const State& x, const Grid& grid, int co
   return moment.norm() / second - 1;
 }
 
-/// How much of the growth a line takes part in that grows by so much.
+/// Returns the fraction of the free growth `stretch` that a line with the given growth has.
 double part_of_growth(double growth, double stretch) {
   const double small = kSameGrowth * std::abs(stretch);
   if (stretch == 0 || std::abs(growth) <= small) return 0;
@@ -63,6 +65,8 @@ double part_of_growth(double growth, double stretch) {
   return growth / stretch;
 }
 
+/// Returns the growth of a hot body from that of its root line.
+/// @throws Error (numerical) if the thermal stretch is not positive.
 HotBody hot_body(const Body& body, const State& x, double growth_of_root) {
   HotBody out;
   out.along = body.heat->stretch(x.t);
@@ -76,7 +80,8 @@ HotBody hot_body(const Body& body, const State& x, double growth_of_root) {
   return out;
 }
 
-/// The same for a hot body: p = (s (X - m₀), s_y Y) in the hub's axes.
+/// Returns rigid_acceleration() for a hot body, whose points are at p = (s (X - m₀), s_y Y) in the
+/// axes of the hub.
 Vec2 grown_acceleration(const FrameMotion& hub, const Eigen::Matrix2d& to_hub, const Vec2& at,
                         const Motion& root, const HotBody& hot) {
   const Motion &s = hot.along, &s_y = hot.across;
@@ -89,7 +94,8 @@ Vec2 grown_acceleration(const FrameMotion& hub, const Eigen::Matrix2d& to_hub, c
          hub.angle_acceleration * Vec2(-p.y(), p.x()) + 2 * w * Vec2(-p_t.y(), p_t.x()) + p_tt;
 }
 
-/// u -> w = u - e_Θ outside of the root line, and what the root line holds back on it.
+/// Subtracts the free growth, w = u - e_Θ, outside the root line. On the root line it sets the
+/// growth that is prevented there.
 void take_off_growth(const Grid& grid, double root, const HotBody& hot, EslSet& set) {
   set.thermal_stretch = hot.stretch;
   set.held_stretch = hot.held;
@@ -104,7 +110,7 @@ void take_off_growth(const Grid& grid, double root, const HotBody& hot, EslSet& 
     }
 }
 
-/// A force and its moment, linear across the column of the grid at that X.
+/// Distributes a force and a moment linearly over the nodes of a column of the grid.
 void spread(const Grid& grid, int column, const Vec2& force, double moment,
             std::vector<NodalForce>& out) {
   const double middle = grid.y0 + 0.5 * grid.height;
@@ -119,7 +125,7 @@ void spread(const Grid& grid, int column, const Vec2& force, double moment,
   }
 }
 
-/// Forces of point masses, whose accelerations are known.
+/// Adds the d'Alembert forces of point masses; out.acceleration must be set.
 void add_masses(const Grid& grid, std::span<const AttachedMass> masses, EslSet& out) {
   for (const AttachedMass& m : masses) {
     const int node = node_at(grid, m.material);
@@ -179,7 +185,7 @@ EslSet equivalent_static_load(Workspace& model, const State& x, const Growth& gr
       const Vec2 material = grid.node_position(i, j);
       const Vec2 at(material.x() - root.value, material.y());
       const int entry = 2 * grid.node(i, j);
-      // Less than a millionth of a cell inside is rounding.
+      // A distance below a millionth of a cell is round-off.
       const bool inside = material.x() < root.value - 1e-6 * grid.dx();
       if (i < out.root_column || inside) {
         out.acceleration.segment<2>(entry) = continued(at) - g;

@@ -17,7 +17,7 @@ double separating_frequency(const Body& body) {
 
 namespace {
 
-/// The equations of balance_forces(). Unknowns are displacements, as those of a step (StepSolver).
+/// The equations of balance_forces(). Unknowns are scaled to displacements, as in StepSolver.
 class Balance {
  public:
   Balance(Workspace& model, State& x, double frequency)
@@ -25,8 +25,8 @@ class Balance {
 
   void solve() {
     constexpr int kMaxIterations = 20;
-    constexpr double kContraction = 0.1;  // of a kept factor; one that contracts less is replaced
-    // Corrections against the size of the model: converged; round-off that no longer falls.
+    constexpr double kContraction = 0.1;  // limit above which a kept factorization is replaced
+    // Corrections relative to the size of the model: converged, and round-off that no longer falls.
     constexpr double kTolerance = 1e-14, kRoundOff = 1e-11;
     const double size = undeformed_size(model_, scales_);
     double last = 0;
@@ -65,7 +65,7 @@ class Balance {
         if (entry.row() < n) entry.valueRef() /= scales_[entry.row()];
       }
     if (analyze) solver_.analyze(kkt_);
-    constexpr double kMiss = 0.02;  // Newton's method makes up for it
+    constexpr double kMiss = 0.02;  // Newton's method removes this error of the factorization
     solver_.factorize(kkt_, kMiss);
   }
 

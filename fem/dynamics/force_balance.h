@@ -4,27 +4,27 @@
 
 namespace flexmorph::fem {
 
-/// The frequency that balance_forces() separates at, ω = c / L: a wave of pressure, of speed
-/// c = sqrt(E / density), passes the length L of the mesh of a body in the time 1 / ω. Bending
-/// along the whole body is slower, and all that a change of the mesh sets off inside elements is
-/// faster [rad/s].
-/// @param body  with material lines, where they are now
+/// Returns the frequency ω = c / L at which balance_forces() separates slow from fast motion
+/// [rad/s]. A pressure wave of speed c = sqrt(E / density) passes the length L of the mesh of the
+/// body in the time 1 / ω. Bending along the whole body is slower, and every vibration that a
+/// change of the mesh excites inside elements is faster.
+/// @param body  Body with material lines at their present positions.
 double separating_frequency(const Body& body);
 
-/// Puts a state whose mesh has changed into balance, without time passing: solves
+/// Restores the balance of forces of a state whose mesh has changed, at constant time: solves
 ///
 ///   M (q̈ + ω² δ) + F(q + δ, q̇) + Φ_qᵀ λ = 0,   Φ(q + δ, t) = 0
 ///
-/// for the displacement δ and the multipliers λ, by Newton's method. What is faster than ω comes to
-/// equilibrium under the inertia forces that act, and does not ring; what is slower stays where it
-/// is, and the change of its forces accelerates it. So strain energy jumps by what one mesh is
-/// stiffer than the other and no more, and forces of joints go on smoothly.
+/// for the displacement δ and the multipliers λ, by Newton's method. Motion that is faster than ω
+/// comes to equilibrium under the present inertia forces and does not ring. Slower motion keeps its
+/// position and is accelerated by the change of its forces. Therefore the strain energy jumps only
+/// by the difference in stiffness between the two meshes, and forces of joints continue smoothly.
 ///
-/// q, q̈ and λ of the state change; q̇ does not.
+/// The function changes q, q̈ and λ of the state, but not q̇.
 ///
-/// @param frequency  ω, see separating_frequency() [rad/s]
+/// @param frequency  Frequency ω, see separating_frequency() [rad/s].
 /// @returns ω² δ, the change of the accelerations (n_dofs).
-/// @throws Error (numerical) naming the time where Newton's method does not converge.
+/// @throws Error (numerical) naming the time if Newton's method does not converge.
 ///
 /// Source: fem/README.md, Insertion and removal.
 VectorXd balance_forces(Workspace& model, State& x, double frequency);

@@ -18,7 +18,7 @@ Vec2 momentum(Workspace& model, const State& x) { return momentum_in_space(model
 
 namespace {
 
-/// The run of one motion: what integrate() carries along.
+/// One call of integrate(), with all variables of the motion.
 class Run {
  public:
   Run(Workspace& model, std::span<const Growth> growths, const MotionSettings& settings,
@@ -57,7 +57,7 @@ class Run {
 
  private:
   void begin() {
-    // What drives a motion need not be defined behind its end.
+    // Drives need not be defined after the end of the motion.
     x_ = start_state(model_, growths_, 0, settings_.start, settings_.placement,
                      std::min(1e-4, 0.5 * settings_.end));
     const VectorXd given = x_.v;
@@ -85,7 +85,7 @@ class Run {
 
   bool is_enough() const { return x_.t >= settings_.until - kTiny * settings_.step; }
 
-  /// All that the next steps depend on, or that is told of the motion at its end.
+  /// Saves or restores all variables on which the next steps or the result of the motion depend.
   void remember(Memory& memory) {
     memory(x_, result_);
     if (!memory.puts_back()) model_.prepare(x_);
@@ -109,7 +109,7 @@ class Run {
 
   Powers measure(const State& x) { return settings_.balance ? powers(model_, x) : Powers{}; }
 
-  /// Work of a step to x, at the time its multipliers belong to.
+  /// Adds the work of a step to x to the balance, with the powers at the time of its multipliers.
   void balance(const State& x, const Energies& e) {
     const State* mean = integrator_->step_mean();
     if (!settings_.balance || !mean) {
@@ -134,7 +134,7 @@ class Run {
       result_.trajectory.points.push_back({x, stop});
   }
 
-  /// Prepares steps that adapt.
+  /// Prepares adaptive steps.
   void prepare_to_adapt() {
     if (integrator_->step_mean())
       throw Error::input("adaptive steps need \"generalized_alpha\": \"" + settings_.integrator +
@@ -145,13 +145,13 @@ class Run {
     std::sort(between_.begin(), between_.end());
   }
 
-  /// The way to a stop, or to the first change of a mesh before it.
+  /// Integration segment up to an event time, or up to the first change of a mesh before it.
   struct Leg {
     bool open = false;
     double begin = 0, end = 0;
-    int steps = 0, done = 0;  // of equal ones
+    int steps = 0, done = 0;  // numbers of all equal steps and of those done
     bool is_stop = false, is_kink = false;
-    int changing = -1;  // of the growths
+    int changing = -1;  // index of the growth that changes its mesh at the end; -1: none
     MeshChange change = MeshChange::insertion;
   };
 
@@ -167,17 +167,17 @@ class Run {
         changing = static_cast<int>(i);
       }
     }
-    // A change this near to a stop is meant to fall on it; a step this short would be noise.
+    // A change this close to a stop is moved onto it: so short a step would give only round-off.
     if (std::abs(next.t - stop) < kTiny * settings_.step) next.t = stop;
     const bool there = next.t == stop;
     leg_ = {true,     x_.t,       next.t, 0, 0, landing.stop && there, landing.kink && there,
             changing, next.change};
-    // A limit that is passed already (a boundary element too long from the start) takes no step.
+    // No step is made if a limit is exceeded already (a boundary element too long at the start).
     if (const double way = next.t - x_.t; way > kTiny * settings_.step)
       leg_.steps = std::max(1, static_cast<int>(std::ceil(way / settings_.step - 1e-6)));
   }
 
-  /// Where the steps of a leg end.
+  /// Returns the time at which the steps of the segment end.
   double end_of_steps() const { return leg_.is_kink ? just_before(leg_.end) : leg_.end; }
 
   void to_next_event(const Landing& landing) {
@@ -193,7 +193,7 @@ class Run {
       execute(growths_[static_cast<size_t>(leg_.changing)], leg_.change);
   }
 
-  /// Those of the leg that are left, none longer than the settings' step.
+  /// Makes the remaining equal steps of the segment, none longer than the step of the settings.
   void equal_steps() {
     const double begin = leg_.begin, end = end_of_steps();
     const int n = leg_.steps;
@@ -216,7 +216,7 @@ class Run {
     }
   }
 
-  /// Steps as the local error lets them be.
+  /// Makes the steps of the segment with sizes that adapt to the local error.
   void adaptive_steps() {
     const double tiny = kTiny * settings_.step, end = end_of_steps();
     while (x_.t < end - tiny) {
@@ -242,7 +242,8 @@ class Run {
     }
   }
 
-  /// Stops within the step from before_ to x_; true where its end is one.
+  /// Interpolates the stops within the step from before_ to x_ for the observer. @returns true if
+  /// the end of the step is a stop.
   bool see_between(double tiny) {
     while (next_between_ < between_.size() && between_[next_between_] < x_.t - tiny) {
       const double t = between_[next_between_++];
@@ -257,16 +258,16 @@ class Run {
     return next_between_ < between_.size() && std::abs(between_[next_between_] - x_.t) <= tiny;
   }
 
-  /// The end of the step as stops within one are shown. Multipliers of steps that adapt carry what
-  /// changes of the step left in them (loosely: as much as the force itself); these belong to the
-  /// position.
+  /// Returns the end of the step with multipliers computed from the position, as for stops within a
+  /// step. The multipliers of adaptive steps contain errors from changes of the step size, which
+  /// can be as large as the force itself if the tolerance is loose.
   const State& settled() {
     dense_->set_step(before_, x_);
     dense_->at(x_.t, within_);
     return within_;
   }
 
-  /// After every accepted step.
+  /// Records an accepted step of length h and calls the observer.
   void accepted(double h, bool at_stop, bool at_kink) {
     const State& x = at_stop && control_ && !at_kink ? settled() : x_;
     Energies e = model_.energies(x);
@@ -280,7 +281,8 @@ class Run {
     watch_.see(x_, e, powers_, balance_.defect(), h, at_stop, steps());
   }
 
-  /// From just before a kink to its other side.
+  /// Continues from just before a discontinuity to the values after it. @returns the energies
+  /// there.
   Energies cross_kink() {
     x_.t = leg_.end;
     integrator_->cross_kink(x_);
@@ -291,19 +293,21 @@ class Run {
     return e;
   }
 
-  /// Asked for in any case: the start of the algorithmic acceleration comes with it.
+  /// Returns the estimated first step. It is also called if the first step is given, because the
+  /// integrator then prepares the algorithmic acceleration.
   double first_step() {
     return integrator_->first_step(x_, control_->allowed(), control_->largest());
   }
 
-  /// Changes at free root lines.
+  /// Executes the changes of meshes that are due at free root lines.
   void changes_due() {
     model_.prepare(x_);
     for (const Growth& g : growths_)
       if (const auto change = change_due(model_.body(g.body), g)) execute(g, *change);
   }
 
-  /// A step that fails near a singular position of rigid bodies fails because of it.
+  /// Makes a step. If it fails near a singular position of rigid bodies, the error names the
+  /// joints, because this position is the cause.
   template <class Step>
   void watching_joints(const Step& step) {
     try {
@@ -348,7 +352,7 @@ class Run {
     if (settings_.keep == Keep::steps) kept.points.push_back({x_, false});
   }
 
-  static constexpr double kTiny = 1e-6;  // of a step
+  static constexpr double kTiny = 1e-6;  // tolerance of times, as a fraction of a step
 
   Workspace& model_;
   std::span<const Growth> growths_;
@@ -358,10 +362,10 @@ class Run {
   State x_;
   Powers powers_;
   EnergyBalance balance_;
-  // Only where steps adapt.
+  // Only for adaptive steps.
   std::optional<StepControl> control_;
   std::optional<DenseOutput> dense_;
-  State before_, within_;  // the start of the step, a state within it
+  State before_, within_;  // start of the step, and a state within it
   std::vector<double> between_;
   size_t next_between_ = 0;
   Leg leg_;

@@ -17,112 +17,167 @@
 
 namespace flexmorph::fem {
 
-/// Takes down what the motion needs to go on from where it is. Changes nothing.
+/// A function that returns an archive (checkpoint) from which the running motion can be continued.
+/// It does not change the motion.
 using TakeDown = std::function<std::string()>;
 
+/// Settings of the time integration of one motion.
 struct MotionSettings {
-  double end = 1;      ///< [s]
-  double step = 1e-3;  ///< [s]; where steps adapt only the spacing of looks for mesh changes
-  /// Steps that adapt to their local error, where the integrator knows it (generalized_alpha);
-  /// absent: equal steps.
+  /// Time at which the motion ends [s].
+  double end = 1;
+  /// Length of equal time steps [s]. With adaptive steps it is only the spacing of the search for
+  /// the next change of the mesh.
+  double step = 1e-3;
+  /// Settings of adaptive time steps, for integrators that estimate their local error
+  /// (generalized_alpha); absent: equal steps.
   std::optional<AdaptiveStep> adaptive;
+  /// Kind of the initial state.
   Start start = Start::prestretched;
-  Placement placement;  ///< of bodies that ride in no hub; empty where there are none
-  std::string integrator = "generalized_alpha";  ///< see make_integrator()
+  /// Motion of the bodies that no hub carries (hub: the rigid frame that carries a body; its motion
+  /// is prescribed, or it is fixed to a rigid body); empty if there are no such bodies.
+  Placement placement;
+  /// Name of the integrator, see make_integrator().
+  std::string integrator = "generalized_alpha";
+  /// Settings of the integrator generalized_alpha.
   AlphaSettings alpha;
+  /// Settings of the integrator energy_momentum.
   EnergyMomentumSettings energy_momentum;
+  /// Settings of the integrator minimal_coordinates.
   MinimalCoordinatesSettings minimal_coordinates;
-  VectorXd gravity;           ///< (dim) or empty
-  std::vector<double> stops;  ///< times to be seen (loads, output), any order: equal steps land on
-                              ///< them, adaptive ones are interpolated (DenseOutput)
-  /// Kinks of drives and loads, any order: first times of what is behind them. Steps land on them,
-  /// the last one with what is before, and the motion goes on with what is behind.
+  /// Acceleration of gravity (dim) [m/s²], or empty.
+  VectorXd gravity;
+  /// Times at which the state is needed for loads or output [s], in any order. Equal steps end at
+  /// these times; adaptive steps are interpolated there (DenseOutput).
+  std::vector<double> stops;
+  /// Discontinuities of drives and loads [s], in any order: each is the first time at which the
+  /// function after the discontinuity holds. Steps end at these times. The last step uses the
+  /// function before the discontinuity, and the motion continues with the function after it.
   std::vector<double> kinks;
-  bool balance = true;  ///< keep the energy balance (costs a few percent)
-  /// Energies that are round-off [J]. Given, a balanced motion that nothing drives is stopped when
-  /// it gains energy (EnergyGrowth); absent where it may: loads without an energy, sudden drives.
+  /// True if the energy balance is computed (this costs a few percent of the time).
+  bool balance = true;
+  /// Energy below which differences are round-off [J]. If it is given, a motion with energy balance
+  /// and without drives is stopped when it gains energy (EnergyGrowth). It is absent if the motion
+  /// may gain energy: loads without a potential, sudden drives.
   std::optional<double> energy_round_off;
-  bool condition = false;     ///< estimate the condition at the end (costs a factorization)
-  Keep keep = Keep::nothing;  ///< of the trajectory, for those who look at it afterwards
-  /// Where the motion goes on: what a TakeDown gave in the same motion of the same model; empty: it
-  /// begins. All that follows is the same bit for bit, whenever and however often it was taken.
+  /// True if the condition number is estimated at the end (this costs a factorization).
+  bool condition = false;
+  /// States that are stored in the trajectory of the result.
+  Keep keep = Keep::nothing;
+  /// Archive from which the motion continues: the result of a TakeDown in the same motion of the
+  /// same model; empty: the motion starts at t = 0. The continued motion is bit for bit the same as
+  /// without interruption, whenever and however often archives were made.
   std::string memory;
-  /// The motion stops at the end of the first step at or behind this time, before what follows
-  /// there (a change of a mesh): a part of a motion. Not with adaptive steps [s].
+  /// End of a part of the motion [s]: integration stops after the first step that ends at or after
+  /// this time, before a change of the mesh that follows there. Not for adaptive steps.
   double until = std::numeric_limits<double>::infinity();
-  /// Called at the end of every step (not of the parts that Newton's method cut it into) and of the
-  /// motion; may throw. Not with a trajectory that is kept.
+  /// Callback at the end of every step, but not after the substeps into which a failure of Newton's
+  /// method divides it, and at the end of the motion. It may throw. It is called only if no
+  /// trajectory is stored.
   std::function<void(const TakeDown&)> between_steps;
 };
 
-/// A change of the mesh, and what it did to the state.
+/// A change of the mesh, and the jumps of the state that it caused.
 struct MeshEvent {
+  /// Time of the change [s].
   double time = 0;
+  /// Name of the body whose mesh has changed.
   std::string body;
+  /// Kind of the change.
   MeshChange change = MeshChange::insertion;
+  /// Energies of the model before and after the change [J].
   Energies before, after;
+  /// Linear momentum of the model before and after the change [kg m/s].
   Vec3 momentum_before = Vec3::Zero(), momentum_after = Vec3::Zero();
-  double tip_jump = 0;  ///< of the free end's mid-point [m]
+  /// Jump of the mid-point of the free end [m].
+  double tip_jump = 0;
 };
 
 struct MotionResult;
 
-/// What an observer of a motion sees at every accepted step (and at the start). With an integrator
-/// that has a step_mean(), accelerations, multipliers and powers are means over the step before,
+/// The data that the observer of a motion receives at the start and after every accepted step. If
+/// the integrator has a step_mean(), accelerations, multipliers and powers are means over the step,
 /// but at stops x is consistent.
 struct MotionStep {
-  Workspace& model;  ///< prepared for x
+  /// Work space of the motion, prepared for x.
+  Workspace& model;
+  /// State at the end of the step.
   const State& x;
+  /// Energies of the model at x [J].
   Energies energies;
-  Powers powers;               ///< zero when no balance is kept
-  double work = 0;             ///< of all powers since the start [J]
-  double dissipated = 0;       ///< of terms that dissipate, a part of it [J]
-  double defect = 0;           ///< energy - energy at the start - work [J]
-  bool stop = false;           ///< is x.t one of the settings' stops (or the end)?
-  const MotionResult& so_far;  ///< what was changed at the start, went wrong since
+  /// Powers that enter the model [W]; zero if no energy balance is computed.
+  Powers powers;
+  /// Work of all powers since the start [J].
+  double work = 0;
+  /// Energy that dissipative terms have taken out of the model since the start [J].
+  double dissipated = 0;
+  /// Residual of the energy balance: energy - energy at the start - work [J].
+  double defect = 0;
+  /// True if x.t is one of MotionSettings::stops, or the end.
+  bool stop = false;
+  /// Result so far: the change of the velocities at the start, and all warnings since.
+  const MotionResult& so_far;
 };
+
+/// A function that is called at the start and after every accepted step of a motion.
 using MotionObserver = std::function<void(const MotionStep&)>;
 
+/// Result of a motion: its final state, its statistics, and the findings of its checks.
 struct MotionResult {
+  /// State at the end of the motion.
   State final;
-  Trajectory trajectory;  ///< as far as MotionSettings::keep asks for it
+  /// Stored states, according to MotionSettings::keep.
+  Trajectory trajectory;
+  /// Statistics of the time integration.
   StepCounts counts;
-  double smallest_step = 0, largest_step = 0;  ///< of the accepted ones [s]
+  /// Lengths of the shortest and of the longest accepted step [s].
+  double smallest_step = 0, largest_step = 0;
+  /// All changes of the mesh in the order of time.
   std::vector<MeshEvent> events;
-  double energy_defect = 0;  ///< largest relative defect of the balance
-  EnergyGain energy_gain;    ///< out of nothing, where nothing drives
-  /// Largest change of a velocity at the start, so that joints allow it, as a displacement [m/s].
+  /// Largest residual of the energy balance, relative to the largest energy.
+  double energy_defect = 0;
+  /// Largest energy that a motion without drives has gained; zero if the motion was not checked.
+  EnergyGain energy_gain;
+  /// Largest change of a velocity at the start that the joints required, as a displacement [m/s].
   double start_change = 0;
-  std::optional<Alternation> alternation;  ///< of multipliers
-  CutSteps cut;                            ///< of equal steps
-  double constraint_drift = 0;             ///< largest |Φ| met [m]
-  double velocity_drift = 0;               ///< largest |Φ_q q̇ + Φ_t| met [m/s]
-  /// Of the matrix that was factored last, where it was asked for: Integrator::condition().
+  /// Alternating multipliers, if any were found.
+  std::optional<Alternation> alternation;
+  /// Equal steps that were shortened because Newton's method failed.
+  CutSteps cut;
+  /// Largest |Φ| of all accepted steps [m].
+  double constraint_drift = 0;
+  /// Largest |Φ_q q̇ + Φ_t| of all accepted steps [m/s].
+  double velocity_drift = 0;
+  /// Condition number of the last factored matrix if MotionSettings::condition is true, see
+  /// Integrator::condition().
   std::optional<double> condition;
-  double smallest_area_ratio = 1;  ///< |r_m × r_n|, every tenth step and at the stops
-  /// With rigid bodies: times at which the joints were nearly dependent (condition above 1e6), seen
-  /// at every 25th step; of looks in a row the worst.
+  /// Smallest area ratio |r_m × r_n|, evaluated at every tenth step and at the stops.
+  double smallest_area_ratio = 1;
+  /// Times at which the joints of a model with rigid bodies were nearly dependent (condition above
+  /// 1e6), evaluated at every 25th step. Of consecutive findings only the worst one is stored.
   std::vector<Conditioning> near_singular;
 };
 
-/// Advances a model from t = 0 to the end. Its work space is left with the mesh of the end. Motions
-/// that have a work space each do not know of each other: they may run at the same time, and every
-/// one is the same bit for bit as if it were alone.
+/// Integrates the motion of a model from t = 0 (or from MotionSettings::memory) to its end. The
+/// work space is left with the mesh of the end. Motions with separate work spaces are independent
+/// of each other: they may run at the same time, and each is bit for bit the same as if it ran
+/// alone.
 ///
-/// Steps land on stops (see MotionSettings), kinks and
-/// changes of the mesh; a change that falls on the end itself is not executed.
+/// Steps end at stops (see MotionSettings), at discontinuities and at changes of the mesh. A change
+/// of the mesh at the end of the motion is not executed.
 ///
-/// @throws Error (input) for an integrator whose steps cannot adapt, where they should.
-/// @throws Error (numerical) when a step fails, the material collapses, or a motion that nothing
-///         drives has gained more than EnergyGrowth::kLargest; the observer has seen every step
-///         before it. Where rigid bodies are near a singular position, the message of a
+/// @param growths  Moving-root mesh control of the plates: when elements at a moving root are split
+///                 or merged.
+/// @throws Error (input) if adaptive steps are requested from an integrator without error estimate.
+/// @throws Error (numerical) if a step fails, if the material collapses, or if a motion without
+///         drives has gained more than EnergyGrowth::kLargest. The observer has received every step
+///         before the failure. If rigid bodies are near a singular position, the message of a
 ///         failed step names the joints.
 MotionResult integrate(Workspace& model, std::span<const Growth> growths,
                        const MotionSettings& settings, const MotionObserver& observe);
 
-/// Linear momentum of all bodies' own mass [kg m/s]; z = 0 in the plane.
+/// Returns the linear momentum of the bodies' own mass [kg m/s]; z = 0 in the plane.
 Vec3 momentum_in_space(Workspace& model, const State& x);
-/// Its first two entries.
+/// Returns the x and y components of momentum_in_space() [kg m/s].
 Vec2 momentum(Workspace& model, const State& x);
 
 }  // namespace flexmorph::fem

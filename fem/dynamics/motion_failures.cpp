@@ -14,7 +14,7 @@ Error collapsed(double t, int step, double ratio) {
 
 Error gained_energy(const MotionSettings& settings, double t, int step, double defect,
                     const EnergyGain& gain, bool has_joints) {
-  constexpr double kWeaklyDamped = 0.98;  // rho_inf: multipliers may gain more
+  constexpr double kWeaklyDamped = 0.98;  // rho_inf; above, multipliers may alternate
   std::string remedy = "A smaller time.step";
   if (settings.integrator == "generalized_alpha") {
     if (settings.alpha.rho_inf > kWeaklyDamped && has_joints)

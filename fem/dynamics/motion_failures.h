@@ -2,15 +2,19 @@
 
 #include "fem/dynamics/motion.h"
 
-/// Why a motion is stopped, in words.
+/// Errors that stop a motion, with their messages.
 namespace flexmorph::fem {
 
-/// The material has turned inside out.
-/// @param ratio  smallest |r_m x r_n|
+/// Returns the error that the material has turned inside out at time t [s].
+/// @param step   Number of accepted steps.
+/// @param ratio  Smallest area ratio |r_m x r_n|.
 Error collapsed(double t, int step, double ratio);
 
-/// A motion that nothing drives has gained energy, see EnergyGrowth.
-/// @param defect  of the balance [J]
+/// Returns the error that a motion without drives has gained energy, see EnergyGrowth.
+/// @param t           Time [s].
+/// @param step        Number of accepted steps.
+/// @param defect      Residual of the energy balance [J].
+/// @param has_joints  True if the model has constraints.
 Error gained_energy(const MotionSettings& settings, double t, int step, double defect,
                     const EnergyGain& gain, bool has_joints);
 

@@ -9,8 +9,10 @@ LineKind kind_of(const MaterialLine& line) {
   return line.drive ? LineKind::driven : line.free ? LineKind::free : LineKind::fixed;
 }
 
-/// Lines of the given kinds and places. Those that come and go are fixed ones next to the root:
-/// driven and free lines are the root or counted from the other end.
+/// Returns lines of the given kinds and material coordinates. Only fixed lines next to the root are
+/// inserted or removed; therefore driven and free lines are taken from the present grid, as the
+/// root or by their index from the free end.
+/// @throws Error (input) if the present grid has no such line.
 std::vector<MaterialLine> lines_from(const LineGrid& grid, const std::vector<LineKind>& kinds,
                                      const std::vector<double>& places) {
   const std::vector<MaterialLine>& old = grid.lines_m();

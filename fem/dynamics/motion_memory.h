@@ -2,14 +2,17 @@
 
 #include "fem/dynamics/motion.h"
 
-/// What a motion that goes on remembers of its parts (geometry/memory.h).
+/// Archive (checkpoint) of a motion from which it can be continued (geometry/memory.h).
 namespace flexmorph::fem {
 
-/// All but what belongs to the end (MotionResult::final, condition) and the trajectory.
+/// Saves or restores the result of a motion, without the trajectory and without the members that
+/// are set only at the end (MotionResult::final, counts and condition).
 void remember(Memory& memory, MotionResult& result);
 
-/// Meshes of growing bodies, and where the model was prepared as a whole with them: put back, it
-/// is.
+/// Saves or restores the meshes of the bodies with moving-root mesh control, and the time and the
+/// free lines for which all parts of the model were last prepared together. After restoring, the
+/// model is prepared for them.
+/// @throws Error (input) if the archive does not fit the mesh of a body.
 void remember_meshes(Memory& memory, Workspace& model, std::span<const Growth> growths);
 
 }  // namespace flexmorph::fem

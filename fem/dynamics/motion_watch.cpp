@@ -7,9 +7,9 @@
 namespace flexmorph::fem {
 namespace {
 
-constexpr int kMaterialEvery = 10;  // steps between looks at the ratio of areas
-constexpr int kJointsEvery = 25;    // steps between looks at the joints of rigid bodies
-constexpr double kNearlyDependent = 1e6, kSingular = 1e3;  // conditions
+constexpr int kMaterialEvery = 10;  // number of steps between checks of the area ratio
+constexpr int kJointsEvery = 25;    // number of steps between checks of the joints of rigid bodies
+constexpr double kNearlyDependent = 1e6, kSingular = 1e3;  // condition numbers
 
 }  // namespace
 
@@ -31,7 +31,7 @@ void MotionWatch::remember(Memory& memory) {
 
 void MotionWatch::see(const State& x, const Energies& e, const Powers& p, double defect, double h,
                       bool at_stop, int steps) {
-  // Better to stop than to go on until Newton's method fails: see EnergyGrowth.
+  // Otherwise Newton's method would fail later without a reason in its message, see EnergyGrowth.
   if (growth_.is_watched()) {
     growth_.see(x.t, e, p, defect);
     if (growth_.is_too_large())
@@ -64,8 +64,8 @@ void MotionWatch::see_drift(const State& x) {
   result_.velocity_drift = std::max(result_.velocity_drift, rate.lpNorm<Eigen::Infinity>());
 }
 
-// A St. Venant-Kirchhoff material that has collapsed or turned inside out has equilibria, but no
-// meaning: better stop than go on with them.
+// A St. Venant-Kirchhoff material that has collapsed or turned inside out has equilibria, but they
+// are physically meaningless. Therefore the motion is stopped.
 void MotionWatch::see_material(const State& x, int steps) {
   since_material_ = 0;
   const double ratio = model_.smallest_area_ratio(x);

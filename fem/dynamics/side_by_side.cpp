@@ -15,6 +15,7 @@
 namespace flexmorph::fem {
 namespace {
 
+/// The threads that run a list of jobs.
 class Crew {
  public:
   explicit Crew(const std::vector<Job>& jobs)
@@ -33,11 +34,11 @@ class Crew {
       try {
         for (size_t k = 0; k < n; ++k)
           others.emplace_back([this] {
-            omp_set_num_threads(1);  // of this thread
+            omp_set_num_threads(1);  // for this thread only
             work_off();
           });
       } catch (const std::system_error&) {
-        // No room for another thread: those that there are do it all, or this one does.
+        // No further thread can be started: the started threads run all jobs, or this thread does.
         if (others.empty()) work_off();
       }
       for (std::thread& other : others) other.join();
@@ -70,10 +71,10 @@ class Crew {
   }
 
   const std::vector<Job>& jobs_;
-  std::vector<size_t> order_;  // in which they are begun
+  std::vector<size_t> order_;  // order in which the jobs are started
   std::vector<std::exception_ptr> failures_;
   std::atomic<size_t> taken_ = 0;
-  std::atomic<size_t> failed_;  // the first in the list that did; as many as there are: none
+  std::atomic<size_t> failed_;  // index of the first job that failed; number of jobs: none
   std::mutex mutex_;
 };
 

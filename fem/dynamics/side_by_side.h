@@ -6,22 +6,26 @@
 
 namespace flexmorph::fem {
 
-/// Something that takes a while and needs nothing of what runs beside it: a motion with a model, a
-/// work space and files of its own.
+/// A long computation that is independent of all others: for example a motion with a model, a work
+/// space and files of its own.
 struct Job {
-  std::string name;  ///< begins the message of its errors: "the motion of uniform material"
-  double cost = 1;   ///< about, against the others
-  /// @param go_on  false: somebody else failed, end early
+  /// Name with which the messages of its errors begin, e.g. "the motion of uniform material".
+  std::string name;
+  /// Approximate cost of the job, in the same arbitrary unit for all jobs of a list.
+  double cost = 1;
+  /// Function that does the computation. Its argument go_on is a cancellation callback: it returns
+  /// false if a job before this one in the list has failed, and the function should then end early.
   std::function<void(const std::function<bool()>& go_on)> run;
 };
 
-/// Runs jobs: one after the other by a single thread, else by `threads` at a time, dear ones first.
-/// Those at a time have one thread of OpenMP each.
+/// Runs jobs. A single thread runs them in the order of the list; several threads run up to
+/// `threads` jobs at a time, the most expensive first, each with one OpenMP thread.
 ///
-/// A job that throws lets those before it in the list run to their end and stops those behind it
-/// (they are asked by `go_on`, or never begun): so all jobs up to the first one that fails have
-/// done what they would have done one after the other.
-/// @throws what the first one in the list threw that did; an Error says its name.
+/// If a job throws, the jobs before it in the list run to their end, and the jobs after it are
+/// cancelled (by go_on(), or they are never started). Therefore all jobs up to the first one that
+/// fails have done exactly what they would have done one after the other.
+/// @throws the exception of the first job in the list that failed; the message of an Error begins
+///         with the name of the job.
 void side_by_side(int threads, const std::vector<Job>& jobs);
 
 }  // namespace flexmorph::fem

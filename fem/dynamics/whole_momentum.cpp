@@ -3,7 +3,7 @@
 namespace flexmorph::fem {
 namespace {
 
-/// All vector unknowns, a quarter turn ahead; nothing on scalar ones.
+/// Returns all vector unknowns rotated by 90 degrees; entries of scalar unknowns are zero.
 VectorXd turning(const Model& model, const VectorXd& q) {
   VectorXd out = VectorXd::Zero(q.size());
   for (const Body& b : model.bodies()) {
@@ -17,7 +17,8 @@ VectorXd turning(const Model& model, const VectorXd& q) {
   return out;
 }
 
-/// Of inertia alone: what is elastic has none.
+/// Returns the kinetic energy at the velocities v. Elastic terms are skipped because they have
+/// none.
 double kinetic_energy(const Model& model, const State& x, const VectorXd& v) {
   double out = 0;
   Local local;

@@ -10,7 +10,7 @@ namespace {
 constexpr int kPerNode = 3;
 using Row6 = std::array<double, 6>;
 
-/// T (A.2) and (A.11) for ξ = x/l and y = l η.
+/// Returns the shape functions T (A.2) and (A.11) for ξ = x/l and y = l η.
 Row6 shapes(double xi, double y, double l) {
   return {1 + xi * xi * (2 * xi - 3), l * xi * (1 + xi * (xi - 2)), y * (1 - xi),
           xi * xi * (3 - 2 * xi),     l * xi * xi * (xi - 1),       y * xi};
@@ -48,7 +48,8 @@ std::vector<BeamNode> arc_reference(double length, double angle, int n_elements)
   return curve_reference(
       [&](double x) {
         const double turn = angle * x / length;
-        // sin(a)/a and (1 - cos a)/a, a = turn: also where the arc is straight.
+        // With a = turn, (sin a, 1 - cos a)/a = chord (cos a/2, sin a/2), which is valid for a
+        // straight beam (a = 0), too.
         const double chord = turn == 0 ? 1 : std::sin(turn / 2) / (turn / 2);
         const Vec2 middle(std::cos(turn / 2), std::sin(turn / 2));
         return CentreLine{x * chord * middle, Vec2(std::cos(turn), std::sin(turn)), 1};
@@ -93,7 +94,7 @@ AncfBeam::AncfBeam(std::vector<double> x, double height, std::vector<BeamNode> r
   if (!straight_) check_reference();
 }
 
-/// det J_o is linear in y: where it is positive at both faces, it is between them.
+/// It suffices to check both faces, because det J_o is linear in y.
 void AncfBeam::check_reference() const {
   std::vector<double> along = {0, 1};
   for (const int n : {2, 3, 4, 5, 6, 7})
@@ -198,7 +199,7 @@ void AncfBeam::tabulate(int e, int degree, Tabulate what, const Factors& factors
                         ShapeTable& out) const {
   if (kind != FactorKind::none && !factors.uniform())
     throw Error::input("a beam takes no factors of a design: its material is uniform");
-  // det J_o has degree 3 along and 1 across.
+  // det J_o has degree 3 along the beam and degree 1 across it.
   const int n_along = degree / 2 + (straight_ ? 1 : 3),
             n_across = std::min(degree / 2 + 1, 3) + (straight_ ? 0 : 1);
   const GaussRule &along = gauss(n_along), &across = gauss(n_across);
@@ -212,7 +213,7 @@ void AncfBeam::tabulate(int e, int degree, Tabulate what, const Factors& factors
 }
 
 int AncfBeam::locate(const Vec2& material, Tabulate what, ShapeTable& out) const {
-  constexpr double kSlack = 1e-9;  // of an element: coordinates are rounded
+  constexpr double kSlack = 1e-9;  // relative to the element; material coordinates are rounded
   const auto end = std::lower_bound(x_.begin() + 1, x_.end() - 1, material.x());
   const auto e = static_cast<int>(end - x_.begin()) - 1;
   const double xi = (material.x() - x_[static_cast<size_t>(e)]) / length(e),

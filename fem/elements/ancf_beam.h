@@ -8,8 +8,8 @@ namespace flexmorph::fem {
 
 /// Reference values of one node of a beam.
 struct BeamNode {
-  Vec2 r{0, 0};               ///< position X [m]
-  Vec2 r_x{1, 0}, r_y{0, 1};  ///< ∂X/∂x, ∂X/∂y [-]
+  Vec2 r{0, 0};               ///< Position X [m].
+  Vec2 r_x{1, 0}, r_y{0, 1};  ///< Position gradients ∂X/∂x and ∂X/∂y [-].
 };
 
 /// Planar, shear-deformable, fully parameterized ANCF beam elements: two nodes with r, r_x, r_y.
@@ -18,34 +18,38 @@ struct BeamNode {
 ///   s₁ = 1 - 3ξ² + 2ξ³,   s₂ = l (ξ - 2ξ² + ξ³),   s₃ = l η (1 - ξ)
 ///   s₄ = 3ξ² - 2ξ³,       s₅ = l (ξ³ - ξ²),        s₆ = l ξ η
 ///
-/// x from the root [m], y in [-h/2, h/2] across the axis: the material coordinates (m, n) of the
-/// seam, those of the straight beam. The reference configuration X(x, y) has nodal values of its
-/// own: it may be curved, tapered or sheared. Its position gradients are J_o = ∂X/∂x. Tables give
+/// x is the coordinate from the root [m] and y in [-h/2, h/2] the coordinate across the axis. They
+/// are the material coordinates (m, n) of ShapeElement, and those of the straight beam. The
+/// reference configuration X(x, y) has nodal values of its own; therefore it may be curved, tapered
+/// or sheared. Its position gradients are J_o = ∂X/∂x. Tables contain
 ///
 ///   weight      dx dy det J_o              reference area [m²]
 ///   N_m, N_n    J_o⁻ᵀ (∂N/∂x, ∂N/∂y)       derivatives by the Cartesian reference coordinates X
 ///
-/// so that (r_m r_n) is F = J J_o⁻¹, the identity in the reference, and terms need not know J_o.
-/// But for these, gradients are by x and y: the unknowns themselves, NodeVectors::r_m, r_n.
+/// Therefore (r_m r_n) is F = J J_o⁻¹, the identity in the reference configuration, and terms do
+/// not need J_o. Only these tables use X; all other gradients, the unknowns NodeVectors::r_m, r_n,
+/// are derivatives by x and y.
 ///
-/// The number of points across the height is three at most (an elastic energy has degree 4 in y),
-/// one more where the reference is not straight: there J_o⁻¹ is rational.
+/// There are at most three quadrature points across the height (an elastic energy has degree 4 in
+/// y), and one more where the reference is not straight, because J_o⁻¹ is rational there.
 ///
-/// Beams take no factors of a design: tabulate() throws Error (input) for factors that are not
-/// uniform.
+/// Beams have no scale factors of a design: tabulate() throws Error (input) for factors that are
+/// not uniform.
 ///
 /// Source: T, Shabana et al., appendix; Omar & Shabana (2001), J. Sound Vib. 243, 565-576.
 class AncfBeam final : public Element, public ShapeElement {
  public:
-  /// A straight beam along the first axis, root at the origin, with elements of equal length.
+  /// Creates a straight beam along the first axis, with the root at the origin and elements of
+  /// equal length.
   /// @throws Error (input) unless length and height are positive and n_elements >= 1.
   AncfBeam(double length, double height, int n_elements);
 
-  /// @param x          of the nodes, increasing from x[0] [m]
-  /// @param height     h [m], to be multiplied by |r_y| of the reference
-  /// @param reference  a node each; empty: straight, r = (x, 0)
-  /// @throws Error (input) unless two nodes at least, x increasing, all numbers finite and
-  /// det J_o > 0 between y = -h/2 and h/2.
+  /// Creates a beam with given nodes and reference configuration.
+  /// @param x          material coordinates of the nodes, increasing from x[0] [m]
+  /// @param height     height h [m], which is multiplied by |r_y| of the reference
+  /// @param reference  reference values, one per node; empty for a straight beam, r = (x, 0)
+  /// @throws Error (input) unless there are at least two nodes, x increases, all numbers are finite
+  /// and det J_o > 0 between y = -h/2 and h/2.
   AncfBeam(std::vector<double> x, double height, std::vector<BeamNode> reference = {});
 
   std::unique_ptr<Element> clone() const override { return std::make_unique<AncfBeam>(*this); }
@@ -53,7 +57,7 @@ class AncfBeam final : public Element, public ShapeElement {
   double scale(int k) const override;
   bool is_position(int k) const override { return k % 3 == 0; }
   MatrixXd reference() const override { return reference_; }
-  /// One node each: "root", "free_end", "line k" (node k).
+  /// Returns one node: of "root", of "free_end", or of "line k" (node k).
   std::vector<NodeVectors> edge(const std::string& name) const override;
   std::vector<NodeVectors> nodes() const override;
   void tabulate(int e, int degree, Tabulate what, const Factors& factors, FactorKind kind,
@@ -64,13 +68,15 @@ class AncfBeam final : public Element, public ShapeElement {
     return {x_, {-0.5 * height_, 0.5 * height_}};
   }
 
+  /// Returns the height h [m].
   double height() const { return height_; }
+  /// Returns true if the reference configuration is straight.
   bool straight() const { return straight_; }
 
  private:
   double length(int e) const;
   void resize(Eigen::Index n_points, Tabulate what, ShapeTable& out) const;
-  /// Row p at (ξ, y); weight 1 · det J_o.
+  /// Fills row p of the tables at (ξ, y), with the weight 1 · det J_o.
   void fill(int e, double xi, double y, Eigen::Index p, ShapeTable& out) const;
   void check_reference() const;
 
@@ -81,24 +87,24 @@ class AncfBeam final : public Element, public ShapeElement {
   std::vector<int> vectors_;  // six numbers per element
 };
 
-/// Point of a centre line with its derivative by x there, and |r_y|: part of the beam's height.
+/// A point of the centre line of a beam with the geometry of the section there.
 struct CentreLine {
-  Vec2 point{0, 0}, tangent{1, 0};
-  double height_ratio = 1;
+  Vec2 point{0, 0}, tangent{1, 0};  ///< Position [m], and its derivative by x [-].
+  double height_ratio = 1;  ///< Length |r_y|: local height divided by the height h of the beam.
 };
 
-/// Reference values at nodes x: r and r_x as the centre line says, r_y at right angles to r_x.
-/// @throws Error (input) for a tangent of no length.
+/// Returns the reference values at nodes x: r and r_x from the centre line, r_y normal to r_x.
+/// @throws Error (input) for a tangent of length zero.
 std::vector<BeamNode> curve_reference(const std::function<CentreLine(double x)>& curve,
                                       const std::vector<double>& x);
 
-/// Reference values of a circular arc of the given length of axis [m] through an angle [rad]: from
-/// the origin along the first axis, to the left where the angle is positive; unit gradients at the
-/// nodes, which are x = length k / n_elements.
+/// Returns the reference values of a circular arc with the given length of the axis [m] and angle
+/// [rad]. It starts at the origin along the first axis and turns to the left for a positive angle.
+/// The position gradients at the nodes x = length k / n_elements are unit vectors.
 /// @throws Error (input) unless length is positive and n_elements >= 1.
 std::vector<BeamNode> arc_reference(double length, double angle, int n_elements);
 
-/// n_elements + 1 nodes evenly spaced on [0, length].
+/// Returns the coordinates of n_elements + 1 nodes evenly spaced on [0, length] [m].
 std::vector<double> even_nodes(double length, int n_elements);
 
 }  // namespace flexmorph::fem

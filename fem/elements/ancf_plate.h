@@ -8,10 +8,10 @@ namespace flexmorph::fem {
 ///
 ///   r(X, t) = Σ_k N_k(ξ, η) q_k,   node unknowns r, r_m, r_n and, for h16, r_mn
 ///
-/// h16 = all 16 products of cubic Hermite functions (Bogner-Fox-Schmit); h12 = P (3), without the
-/// mixed derivative; q4 = the products of linear functions, node unknown r alone: one element a
-/// cell of a design. With driven lines (ALE-ANCF) material flows through the mesh and the shape
-/// functions get rates; without them nothing of that is computed.
+/// h16 has all 16 products of cubic Hermite functions (Bogner-Fox-Schmit); h12 is P (3), without
+/// the mixed derivative; q4 has the products of linear functions and only the node unknown r, so
+/// that one element is one cell of a design. With driven lines (ALE-ANCF) material flows through
+/// the mesh and the shape functions have rates; without driven lines the rates are not computed.
 ///
 /// Source: P (1)-(5); Hyldahl et al. (2013); h16: fem/README.md, Plate element.
 class AncfPlate final : public LineGrid,
@@ -19,10 +19,11 @@ class AncfPlate final : public LineGrid,
                         public CellElement,
                         public ProductElement {
  public:
+  /// Sets of shape functions.
   enum class ShapeSet { h12, h16, q4 };
 
-  /// The plate at time t.
-  /// @throws Error unless there are two lines each way, increasing at that time.
+  /// Creates the plate at time t [s] in `dim` dimensions, with the given m-lines and n-lines.
+  /// @throws Error unless there are at least two lines in each direction, increasing at that time.
   AncfPlate(int dim, ShapeSet shapes, std::vector<MaterialLine> m, std::vector<MaterialLine> n,
             double t = 0);
 
@@ -73,7 +74,7 @@ class AncfPlate final : public LineGrid,
   std::vector<Motion> at_m_, at_n_;
   std::vector<Hermite> hermite_m_, hermite_n_;
   std::vector<int> vectors_;  // n_shapes numbers per element
-  std::vector<Motion> free_;  // of the free lines: those along m first
+  std::vector<Motion> free_;  // of the free lines, m-lines first
   std::vector<int> sides_;    // kSides numbers per element, or none
 };
 

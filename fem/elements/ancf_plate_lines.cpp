@@ -1,4 +1,4 @@
-// Material lines of the plate: free ones, and meshes with other lines.
+// Material lines of the plate: free lines, and copies of the mesh with other lines.
 #include <algorithm>
 #include <array>
 
@@ -56,8 +56,8 @@ void AncfPlate::move_lines(const VectorXd& p, const VectorXd& rate, const Vector
 
 namespace {
 
-/// Derivatives of the Hermite functions of [x1, x2] by x1 and x2 at a fixed material point: their
-/// rates when one end, or both, move by one.
+/// Derivatives of the Hermite functions of [x1, x2] by x1 and x2 at a fixed material point. They
+/// are the rates of the functions when one end, or both ends, move with unit velocity.
 struct EndDerivatives {
   std::array<Eigen::Matrix4d, 2> first;
   Eigen::Matrix4d second_11, second_22, second_12;
@@ -137,7 +137,7 @@ std::unique_ptr<LineGrid> AncfPlate::copy() const { return std::make_unique<Ancf
 
 namespace {
 
-/// The same lines, free ones starting where they are.
+/// Returns the same lines, with the current coordinates of free lines as their initial ones.
 std::vector<MaterialLine> where(std::vector<MaterialLine> lines, const std::vector<Motion>& at) {
   for (size_t i = 0; i < lines.size(); ++i)
     if (lines[i].free) lines[i].value = at[i].value;

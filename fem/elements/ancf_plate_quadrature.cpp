@@ -1,4 +1,4 @@
-// Gauss points of plate elements, whose weights may have the factors of cells in them.
+// Gauss points of plate elements, whose weights may contain the scale factors of cells.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,23 +15,25 @@ using plate::function_m;
 using plate::function_n;
 using plate::kCorners;
 
-/// Parts of [start, start + length] cut by the cells of one grid direction, as local intervals.
+/// Common interval of an element and one column (or row) of cells, in local coordinates of the
+/// element.
 struct Part {
   int cell;
   double lower, upper;  // in [0, 1]
 };
 
-/// First and last of the cells that an interval lies in.
+/// Returns the first and the last cell that an interval overlaps.
 std::array<int, 2> cell_range(double start, double length, double grid_start, double cell,
                               int n_cells) {
   const auto index = [&](double x) {
     return std::clamp(static_cast<int>(std::floor((x - grid_start) / cell)), 0, n_cells - 1);
   };
-  // A thousandth of a billionth of a cell: cut lines that coincide up to round-off are one line.
+  // Interval ends and cell borders that differ by round-off only count as equal.
   const double tiny = 1e-12 * cell;
   return {index(start + tiny), index(start + length - tiny)};
 }
 
+/// Returns the common intervals of [start, start + length] with the cells of one grid direction.
 std::vector<Part> parts(double start, double length, double grid_start, double cell, int n_cells) {
   const auto [first, last] = cell_range(start, length, grid_start, cell, n_cells);
   std::vector<Part> out;
@@ -46,12 +48,13 @@ std::vector<Part> parts(double start, double length, double grid_start, double c
   return out;
 }
 
-/// Is there a factor to weight points with?
+/// Returns true if a scale factor multiplies the weights.
 bool weighted(const Factors& factors, FactorKind kind) {
   return kind != FactorKind::none && !factors.uniform();
 }
 
-/// Integrals of Lagrange's polynomials at n Gauss points over parts of an interval (parts x n).
+/// Returns the integrals of the Lagrange polynomials of n Gauss points over subintervals (n_parts x
+/// n).
 MatrixXd integrals(const std::vector<Part>& parts, int n) {
   MatrixXd out(parts.size(), n);
   for (size_t i = 0; i < parts.size(); ++i)
@@ -59,16 +62,16 @@ MatrixXd integrals(const std::vector<Part>& parts, int n) {
   return out;
 }
 
-/// Points per direction for integrands of a degree: with a stepwise factor the weights are
-/// interpolatory, exact up to degree n - 1 only. Sixteen are the most there are (gauss()); only
-/// what is rational, and has no degree, asks for more.
+/// Returns the number of points per direction for integrands of a degree. With a piecewise constant
+/// factor the weights are interpolatory and exact up to degree n - 1 only. gauss() provides at most
+/// 16 points; only rational integrands, which have no degree, would need more.
 int n_points(int degree, bool weighted) {
   return weighted ? std::min(degree + 1, 16) : degree / 2 + 1;
 }
 
 }  // namespace
 
-/// Weights of n x n Gauss points, times the factor.
+/// Returns the weights of n x n Gauss points times the scale factor.
 MatrixXd AncfPlate::weights(int e, int n, const Factors& factors, FactorKind kind) const {
   const Hermite& hm = hermite_m_[static_cast<size_t>(e / n_n())];
   const Hermite& hn = hermite_n_[static_cast<size_t>(e % n_n())];

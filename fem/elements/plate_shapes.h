@@ -8,25 +8,31 @@
 /// Shape functions of a rectangular plate element as products of Hermite functions along m and n.
 namespace flexmorph::fem::plate {
 
+/// Row of four polynomial coefficients, powers or function values.
 using Row4 = Eigen::RowVector4d;
 
+/// Returns the powers (1, s, s², s³).
 inline Row4 powers(double s) { return {1, s, s * s, s * s * s}; }
 
-/// Corners of an element in the order of its shape functions, as in vectors_.
+/// Corners of an element as (end along m, end along n), in the order of its shape functions.
 constexpr std::array<std::pair<int, int>, 4> kCorners = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
 
-/// Which of the four Hermite functions along m (n) belongs to unknown k (r, r_m, r_n, r_mn) of a
-/// corner at end a (b).
+/// Returns the number of the Hermite function along m of unknown k (r, r_m, r_n, r_mn) of a corner
+/// at end a of the interval.
 constexpr int function_m(int a, int k) { return 2 * a + (k == 1 || k == 3); }
+/// Returns the number of the Hermite function along n of unknown k (r, r_m, r_n, r_mn) of a corner
+/// at end b of the interval.
 constexpr int function_n(int b, int k) { return 2 * b + (k >= 2); }
 
 /// Values of a Hermite interval at one point: a row of four functions per derivative.
 struct At {
-  Row4 f, d, dd;              // value, derivatives by X
-  Row4 f_t, f_tt, d_t, dd_t;  // rates at fixed material point
+  /// Values, and first and second derivatives by the material coordinate.
+  Row4 f, d, dd;
+  /// Rates of f (first and second), of d and of dd at a fixed material point.
+  Row4 f_t, f_tt, d_t, dd_t;
 };
 
-/// Returns the values at s in [0, 1]; rates and second derivatives where they are wanted, else 0.
+/// Returns the values at s in [0, 1]; rates and second derivatives are zero unless wanted.
 inline At at_point(const Hermite& h, double s, bool rates, bool curvature = false) {
   const Row4 p = powers(s);
   At out;

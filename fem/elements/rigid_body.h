@@ -9,20 +9,21 @@ namespace flexmorph::fem {
 ///
 ///   x(X, Y) = r + X u + Y v,   v = u turned by +90 degrees,   |u|² = 1
 ///
-/// u is an unknown with two entries, so that the mass matrix is constant and joints are of degree 2
-/// at most; its length is kept by make_unit_axis() (fem/body_joints.h), which every rigid body
-/// needs. The vector unknowns are r (number 0) and u (number 1).
+/// u is an unknown with two entries; therefore the mass matrix is constant and joints are of degree
+/// 2 at most. The joint make_unit_axis() (fem/body_joints.h), which every rigid body needs, keeps
+/// the length of u. The vector unknowns are r (number 0) and u (number 1).
 ///
-/// v is no multiple of u, so that there are no shape functions r = Qᵀ N: points are found through a
-/// Marker (fem/marker.h), mass and weight are terms of their own (fem/rigid.h).
+/// v is no multiple of u; therefore there are no shape functions r = Qᵀ N. Points of the body are
+/// evaluated by a Marker (fem/marker.h), and mass and weight are separate terms (fem/rigid.h).
 ///
 /// Source: García de Jalón & Bayo (1994), Kinematic and Dynamic Simulation of Multibody Systems,
 /// ch. 2 and 4.2; fem/README.md, Rigid bodies and joints.
 class RigidBody final : public Element, public MovingElement, public RigidClock {
  public:
-  /// @param length  makes the axis a displacement: a size of the body, such as its radius of
-  ///                gyration [m]
-  /// @param moves   does its mass change in time, with material that it stores (fem/stored.h)?
+  /// Creates the element of a rigid body.
+  /// @param length  length that turns the axis into a displacement: a size of the body, such as its
+  /// radius of gyration [m]
+  /// @param moves   true if the mass changes in time because of a material reservoir (fem/stored.h)
   /// @throws Error (input) unless the length is positive.
   explicit RigidBody(double length, bool moves = false);
 
@@ -30,7 +31,7 @@ class RigidBody final : public Element, public MovingElement, public RigidClock 
   std::span<const int> vectors(int e) const override;
   double scale(int k) const override { return k == 0 ? 1 : length_; }
   bool is_position(int k) const override { return k == 0; }
-  /// r = (0, 0), u = (1, 0).
+  /// Returns r = (0, 0), u = (1, 0).
   MatrixXd reference() const override;
   void move_to(double t) override { time_ = t; }
   bool moving(int /*e*/) const override { return moves_; }

@@ -12,8 +12,8 @@ using Part = MarkerPair::Part;
 constexpr Part kPositionA = MarkerPair::kPositionA, kAxisA = MarkerPair::kAxisA,
                kPositionB = MarkerPair::kPositionB, kAxisB = MarkerPair::kAxisB;
 
-/// c (x × z) + s (x · z) of two parts of y: with (c, s) = (cos, sin) of an angle, x × z after z was
-/// turned by it.
+/// The number c (x × z) + s (x · z) of two vectors x, z in y. With (c, s) = (cos, sin) of an angle,
+/// it is x × z after z was turned by that angle.
 struct Turned {
   double value;
   Values gradient = Values::Zero();
@@ -27,7 +27,7 @@ struct Turned {
   }
 };
 
-/// Puts factor times the second derivative of that.
+/// Sets the second derivatives of a Turned number.
 void put_turned(Part i, Part j, double c, double s, MarkerPair::Square& f_yy) {
   Eigen::Matrix2d block;
   block << s, c, -c, s;
@@ -35,7 +35,7 @@ void put_turned(Part i, Part j, double c, double s, MarkerPair::Square& f_yy) {
   f_yy.block<2, 2>(j, i) = block.transpose();
 }
 
-/// p_b - p_a.
+/// Fills the two rows p_b - p_a.
 void fill_difference(const Values& y, PairRow* rows) {
   for (int c = 0; c < 2; ++c) {
     rows[c].f = y[kPositionB + c] - y[kPositionA + c];
@@ -44,7 +44,7 @@ void fill_difference(const Values& y, PairRow* rows) {
   }
 }
 
-/// n_a · e_b = e_a × e_b.
+/// Fills the row n_a · e_b = e_a × e_b.
 void fill_parallel(const Values& y, PairRow& row) {
   const Turned cross(y, kAxisA, kAxisB, 1, 0);
   row.f = cross.value;
@@ -134,7 +134,7 @@ class AngleDrive final : public PairJoint {
 
  private:
   std::unique_ptr<Joint> clone() const override { return std::make_unique<AngleDrive>(*this); }
-  /// n_b · R(α) e_a = e_b × R(α) e_a.
+  /// Fills the row n_b · R(α) e_a = e_b × R(α) e_a.
   void fill(double t, const Values& y, std::vector<PairRow>& rows) const override {
     const Motion alpha = motion_(t);
     const double c = std::cos(alpha.value), s = std::sin(alpha.value);

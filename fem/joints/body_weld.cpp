@@ -8,12 +8,14 @@
 namespace flexmorph::fem {
 namespace {
 
-/// Complex numbers that turn and scale vectors; what is round-off of a right angle is zero, so that
-/// it needs no place in the matrix.
+/// Returns the product of complex numbers, which turns and scales the vector x by c.
 Vec2 product(const Vec2& c, const Vec2& x) {
   return {c.x() * x.x() - c.y() * x.y(), c.x() * x.y() + c.y() * x.x()};
 }
 
+/// Returns the complex number that turns and scales the vector a of one body into the vector b of
+/// the other, whose axis has the given angle. Components that are round-off of a right angle are
+/// set to zero, so that the matrix needs no entries for them.
 Vec2 turn_from(const Vec2& a, const Vec2& b, double angle) {
   const Vec2 back(a.x(), -a.y());
   Vec2 c = product({std::cos(angle), std::sin(angle)}, product(b, back)) / a.squaredNorm();
@@ -22,7 +24,7 @@ Vec2 turn_from(const Vec2& a, const Vec2& b, double angle) {
   return c;
 }
 
-/// Rows of two kinds, vectors by their first unknowns:
+/// Rows of two kinds; x and z are vector unknowns:
 ///
 ///   Φ = x - Σ c ⊗ z                two rows, linear
 ///   Φ = (c ⊗ z) × x                one row, bilinear
@@ -87,7 +89,7 @@ class BodyWeld final : public Joint {
                      std::vector<Eigen::Triplet<double>>& out) const override {
     auto i = static_cast<Eigen::Index>(2 * equal_.size());
     for (const Parallel& p : parallel_) {
-      Eigen::Matrix2d by;  // by z, then by x
+      Eigen::Matrix2d by;  // derivative of the row by z (rows) and by x (columns)
       by << -p.z.c.y(), p.z.c.x(), -p.z.c.x(), -p.z.c.y();
       by *= lambda[i++];
       for (int k = 0; k < 2; ++k)
@@ -99,7 +101,8 @@ class BodyWeld final : public Joint {
   }
 
  private:
-  struct Turned {  ///< c ⊗ the vector at dof
+  /// The product c ⊗ z with the vector z whose first unknown is dof.
+  struct Turned {
     int dof;
     Vec2 c;
   };
@@ -112,7 +115,7 @@ class BodyWeld final : public Joint {
     Turned z;
   };
 
-  /// One of the two edges as it is in the model.
+  /// One of the two edges in the model.
   struct Edge {
     std::vector<NodeVectors> nodes;
     EdgeVectors reference;
@@ -145,7 +148,7 @@ class BodyWeld final : public Joint {
     return {nodes, edge_vectors(element, nodes), body.first_dof};
   }
 
-  /// Is the m-line there an unknown?
+  /// Returns true if the m-line at that material coordinate is an unknown.
   static bool is_free(const Element& element, double material) {
     const auto* grid = dynamic_cast<const LineGrid*>(&element);
     for (int i = 0; grid && i <= grid->n_m(); ++i)
@@ -197,7 +200,7 @@ class BodyWeld final : public Joint {
     }
   }
 
-  /// @param angle  of the plate's axis to that of the beam
+  /// @param angle  angle of the axis of the plate relative to the axis of the beam
   void put_on_beam(const Edge& beam, const Edge& plate, double angle) {
     if (mode_ != WeldMode::edge) refuse("a plate and a beam are welded by \"edge\"");
     const NodeVectors& end = beam.nodes[0];

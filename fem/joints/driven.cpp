@@ -51,7 +51,7 @@ class Weld final : public Joint {
     rows.jacobian.clear();
     int i = 0;
     for (const Fixed& x : fixed_) {
-      if (x.direction == 2) {  // out of the plane in which the frame turns
+      if (x.direction == 2) {  // normal to the plane in which the frame turns
         rows.value[i] = q[x.dof];
         rows.rate[i] = rows.acceleration[i] = 0;
         rows.jacobian.emplace_back(i++, x.dof, 1.0);
@@ -77,13 +77,15 @@ class Weld final : public Joint {
   }
 
  private:
-  struct Fixed {  // one entry equals one coordinate of a vector given in the frame
+  /// One entry of a vector equals a coordinate of a vector given in the frame.
+  struct Fixed {
     int dof, direction;
-    double moves;  // 1: the vector starts at the frame's origin
+    double moves;  // 1 if the vector starts at the origin of the frame, else 0
     Vec2 local;
   };
-  struct Along {  // a vector has no part along a direction given in the frame
-    int dof;      // its first unknown
+  /// A vector has no component along a direction given in the frame.
+  struct Along {
+    int dof;  // first unknown of the vector
     Vec2 normal;
   };
 
@@ -159,7 +161,7 @@ class Pin final : public Joint {
   Vec2 material_;
   PointDrive point_;
   std::vector<int> components_;
-  bool all_;  // components_ are those of the body
+  bool all_;  // true if all components of the body are prescribed
   std::vector<std::pair<int, double>> terms_;
 };
 

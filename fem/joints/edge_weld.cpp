@@ -6,11 +6,12 @@
 namespace flexmorph::fem {
 namespace {
 
-/// Rows of two kinds. An entry of the plate equals one coordinate of the frame,
+/// Rows of two kinds. An entry of the plate equals a coordinate of the frame,
 ///
 ///   Φ = q_i - g · (p, e),   g (4) constant
 ///
-/// or a vector x of the plate keeps to one axis: Φ = n · x, bilinear, n = e₂ or e₁ the other axis.
+/// or a vector x of the plate has no component along a direction n of the frame: Φ = n · x,
+/// bilinear.
 class EdgeWeld final : public Joint {
  public:
   EdgeWeld(std::string name, std::string plate, std::string edge, MarkerPlace frame, WeldMode mode)
@@ -103,15 +104,16 @@ class EdgeWeld final : public Joint {
 
   struct Along {
     int dof;     // first unknown of the vector
-    Vec2 local;  // direction along which it has no part, in the frame
+    Vec2 local;  // direction without a component of the vector, in the frame
 
-    /// The same in the world, of a frame with axis 1 = e; linear in e.
+    /// Returns this direction in the world for a frame with axis 1 = e; linear in e.
     Vec2 normal(const Vec2& e) const {
       return {local.x() * e.x() - local.y() * e.y(), local.x() * e.y() + local.y() * e.x()};
     }
   };
 
-  /// Vector at `dof` equals moves p + local.x e₁ + local.y e₂, e₁ = e, e₂ = (-e_y, e_x).
+  /// Adds the rows by which the vector at `dof` equals moves p + local.x e₁ + local.y e₂, with e₁ =
+  /// e, e₂ = (-e_y, e_x).
   void fix(int dof, double moves, const Vec2& local) {
     fixed_.push_back({dof, {moves, 0, local.x(), -local.y()}});
     fixed_.push_back({dof + 1, {0, moves, local.y(), local.x()}});

@@ -23,8 +23,9 @@ struct AngleOf {
   }
 };
 
-/// See make_gear(). θ are the angles of vectors in the plane, known but for whole turns; p and q
-/// being whole numbers, turns change q Φ by multiples of 2 π, which are taken off.
+/// See make_gear(). The angles θ of vectors in the plane are determined up to whole turns. Because
+/// p and q are integers, whole turns change q Φ by multiples of 2 π, which std::remainder()
+/// removes.
 class Gear final : public PairJoint {
  public:
   Gear(std::string name, MarkerPlace a, MarkerPlace b, const GearData& wheels)

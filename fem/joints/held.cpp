@@ -81,7 +81,8 @@ class Hold final : public Joint {
   std::vector<NodeVectors> nodes(const HoldPlace& at, const Element& element) const {
     if (!at.edge.empty()) return element.edge(at.edge);
     std::vector<NodeVectors> out;
-    // A millionth of the element: the same node up to how a case file rounds its coordinates.
+    // The tolerance is a millionth of the element size, because case files contain rounded
+    // coordinates.
     for (const NodeVectors& node : element.nodes()) {
       const Vec2 slack(1e-6 * element.scale(node.r_m), 1e-6 * element.scale(node.r_n));
       const Vec2 below = at.low - slack, above = at.high + slack;
@@ -96,8 +97,8 @@ class Hold final : public Joint {
     return out;
   }
 
-  /// Each entry once: edges share their corners. Sorted, so that the order of the list is no part
-  /// of the result.
+  /// Keeps each entry once, because edges share their corners. The rows are sorted, so that the
+  /// result does not depend on the order of the list.
   void merge() {
     std::stable_sort(rows_.begin(), rows_.end(),
                      [](const Row& x, const Row& y) { return x.dof < y.dof; });
@@ -115,7 +116,7 @@ class Hold final : public Joint {
   std::vector<Row> rows_;
 };
 
-/// Slopes of an edge: along it and across it, and the direction across.
+/// Position gradients along and across an edge, and the direction across it.
 struct EdgeSlopes {
   NodeVector along, across;
   int direction;
@@ -130,7 +131,7 @@ EdgeSlopes slopes(const std::string& edge) {
 
 std::vector<Held> clamped_edge(const std::string& edge, WeldMode mode) {
   const EdgeSlopes s = slopes(edge);
-  std::vector<int> across;  // held components of the slope across
+  std::vector<int> across;  // held components of the position gradient across the edge
   for (const int c : {0, 1, 2})
     if (mode == WeldMode::full || c == 2 || (mode == WeldMode::direction && c != s.direction))
       across.push_back(c);
@@ -146,7 +147,7 @@ std::vector<Held> supported_edge(const std::string& edge) {
 
 std::vector<Held> symmetry_edge(const std::string& edge) {
   const EdgeSlopes s = slopes(edge);
-  const std::vector<int> even = {1 - s.direction, 2};  // components even in the direction across
+  const std::vector<int> even = {1 - s.direction, 2};  // components that are even across the edge
   return {{{.edge = edge}, NodeVector::r, {s.direction}, {}},
           {{.edge = edge}, s.along, {s.direction}, {}},
           {{.edge = edge}, s.across, even, {}},

@@ -69,7 +69,7 @@ void PairJoint::evaluate(double t, const VectorXd& q, const VectorXd& v,
 void PairJoint::add_stiffness(double t, const VectorXd& q, const VectorXd& lambda,
                               std::vector<Eigen::Triplet<double>>& out) const {
   if (coupled_.empty()) return;
-  pair_.evaluate(t, q, q);  // rates are not asked for
+  pair_.evaluate(t, q, q);  // the rates are not used
   fill(t, pair_.y(), rows_);
   MarkerPair::Square hessian = MarkerPair::Square::Zero();
   for (int i = 0; i < size(); ++i) hessian += lambda[i] * rows_[static_cast<size_t>(i)].f_yy;

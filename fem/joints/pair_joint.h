@@ -8,10 +8,13 @@ namespace flexmorph::fem {
 
 /// One constraint row f(y, t) of y = (p_a, e_a, p_b, e_b), with its derivatives.
 struct PairRow {
+  /// Vector of the entries of y.
   using Values = MarkerPair::Values;
-  double f = 0, f_t = 0, f_tt = 0;
+  double f = 0, f_t = 0, f_tt = 0;  ///< Value f, and partial derivatives ∂f/∂t and ∂²f/∂t².
+
+  /// Gradient ∂f/∂y, and its partial derivative by t.
   Values f_y = Values::Zero(), f_yt = Values::Zero();
-  MarkerPair::Square f_yy = MarkerPair::Square::Zero();
+  MarkerPair::Square f_yy = MarkerPair::Square::Zero();  ///< Second derivatives ∂²f/∂y².
 };
 
 /// A joint whose rows are functions of two markers, y = Y(t) q + y₀(t):
@@ -30,21 +33,25 @@ class PairJoint : public Joint {
                      std::vector<Eigen::Triplet<double>>& out) const override;
 
  protected:
+  /// Vector of the entries of y.
   using Values = MarkerPair::Values;
+  /// First entry of one of the four vectors in y.
   using Part = MarkerPair::Part;
 
-  /// Which entries of y a row reads (bits), for every row; and between which parts of y rows have
-  /// second derivatives.
+  /// Structure of the rows.
   struct Shape {
-    std::vector<unsigned> reads;
+    std::vector<unsigned> reads;  ///< Entries of y that each row depends on, as bits (size()).
+
+    /// Pairs of vectors in y between which the rows have second derivatives.
     std::vector<std::pair<Part, Part>> couples{};
   };
-  /// Bits of the entries of parts.
+  /// Returns the bits of the entries of the given vectors in y.
   static unsigned bits(std::initializer_list<Part> parts);
 
+  /// Creates a joint with the given structure of its rows.
   PairJoint(std::string name, MarkerPlace a, MarkerPlace b, Shape shape);
 
-  /// Fills the rows at (y, t). Entries it never touches are zero.
+  /// Fills the rows at (y, t). Entries that the function never sets are zero.
   virtual void fill(double t, const Values& y, std::vector<PairRow>& rows) const = 0;
 
  private:

@@ -9,7 +9,7 @@ namespace flexmorph::fem {
 namespace {
 
 /// See make_path(). The foot c(s) of the point p = (e_a · d, n_a · d), d = p_b - p_a, is no
-/// unknown: with the unit tangent τ = c'/|c'|, n = τ turned by +90 degrees and the curvature κ = n
+/// unknown. With the unit tangent τ = c'/|c'|, n = τ turned by +90 degrees and the curvature κ = n
 /// · c''/|c'|²,
 ///
 ///   Φ = n · (p - c),   Φ_p = n,   Φ_pp = -κ/(1 - κ Φ) τ τᵀ
@@ -38,7 +38,7 @@ class Path final : public PairJoint {
     const Vec2 tau = c.c_s.normalized(), n(-tau.y(), tau.x());
     const double kappa = n.dot(c.c_ss) / c.c_s.squaredNorm();
 
-    // p_y: rows of e, d.
+    // Jacobian p_y, with blocks for e_a and d.
     Eigen::Matrix<double, 2, 8> p_y = Eigen::Matrix<double, 2, 8>::Zero();
     Eigen::Matrix2d by_d, by_e;
     by_d << e.x(), e.y(), -e.y(), e.x();
@@ -46,7 +46,7 @@ class Path final : public PairJoint {
     p_y.block<2, 2>(0, Part::kAxisA) = by_e;
     p_y.block<2, 2>(0, Part::kPositionB) = by_d;
     p_y.block<2, 2>(0, Part::kPositionA) = -by_d;
-    // n · p is e · (N d), N = n₁ + n₂ (e × d).
+    // n · p = e · (N d) with N = n₁ 1 + n₂ J, where e · (J d) = e × d; N is the mixed derivative.
     Eigen::Matrix2d mixed;
     mixed << n.x(), n.y(), -n.y(), n.x();
 
@@ -61,10 +61,12 @@ class Path final : public PairJoint {
     row.f_yy.block<2, 2>(Part::kPositionA, Part::kAxisA) -= mixed.transpose();
   }
 
-  /// Zero at the centre of curvature, which no motion is near to; a guess may be.
+  /// Returns x with |x| >= 0.1. The factor 1 - κ Φ vanishes at the centre of curvature, which no
+  /// motion comes near, but an iterate of Newton's method may.
   static double bounded(double x) { return std::copysign(std::max(std::abs(x), 0.1), x); }
 
-  /// Newton's method may go a little farther than the motion.
+  /// The limits have a tolerance of 5 %, because an iterate of Newton's method may lie beyond the
+  /// end.
   void check_end(double t, double s) const {
     const double until = curve_.until();
     if (curve_.is_closed() || (s > -0.05 * until && s < 1.05 * until)) return;

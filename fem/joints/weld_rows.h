@@ -7,29 +7,32 @@
 
 namespace flexmorph::fem {
 
-/// What the weld of an edge asks of its nodes, in the axes e₁, e₂ of the frame: the rows of
-/// make_weld() and make_edge_weld(), whatever moves the frame.
+/// The constraint rows of the nodes of a welded edge, in the axes e₁, e₂ of the frame. make_weld()
+/// and make_edge_weld() share them, independent of what moves the frame.
 struct WeldRows {
-  struct Fixed {  ///< the vector is  moves · origin + local.x e₁ + local.y e₂
-    int vector;
-    double moves;
-    Vec2 local;
+  /// Prescribes a vector as  moves · origin + local.x e₁ + local.y e₂.
+  struct Fixed {
+    int vector;    ///< Number of the vector unknown.
+    double moves;  ///< Factor of the origin of the frame: 1 for positions, 0 for gradients.
+    Vec2 local;    ///< Coordinates in the axes of the frame.
   };
-  struct Along {  ///< the vector has no part along  normal.x e₁ + normal.y e₂
-    int vector;
-    Vec2 normal;
+  /// Prescribes that a vector has no component along  normal.x e₁ + normal.y e₂.
+  struct Along {
+    int vector;   ///< Number of the vector unknown.
+    Vec2 normal;  ///< Direction in the axes of the frame.
   };
-  std::vector<Fixed> fixed;
-  std::vector<Along> along;
-  std::vector<int> flat;  ///< vectors in space whose z entry is zero
+  std::vector<Fixed> fixed;  ///< Prescribed vectors.
+  std::vector<Along> along;  ///< Vectors without a component along a direction.
+  std::vector<int> flat;     ///< Numbers of the vectors in space whose z entry is zero.
 };
 
 /// The vectors of an edge in the undeformed body, in its axes e₁ along m and e₂.
 struct EdgeVectors {
-  Vec2 r_m{1, 0}, r_n{0, 1};
+  Vec2 r_m{1, 0}, r_n{0, 1};  ///< Position gradients r_m and r_n in the axes e₁, e₂.
 };
 
-/// A tapered or sheared end of a beam keeps its own.
+/// Returns the reference vectors of an edge: the unit axes for a plate, and the nodal reference
+/// vectors for the end of a beam, which may be tapered or sheared.
 inline EdgeVectors edge_vectors(const Element& element, const std::vector<NodeVectors>& nodes) {
   if (nodes.size() > 1) return {};
   const MatrixXd reference = element.reference();
@@ -38,6 +41,7 @@ inline EdgeVectors edge_vectors(const Element& element, const std::vector<NodeVe
   return {{axis.norm(), 0}, {e1.dot(section), e1.x() * section.y() - e1.y() * section.x()}};
 }
 
+/// Returns the constraint rows of a welded edge.
 /// @throws Error (input) for `partial` at the edge of a plate.
 inline WeldRows weld_rows(const Element& element, const std::vector<NodeVectors>& nodes,
                           WeldMode mode, const std::string& joint) {
@@ -49,7 +53,8 @@ inline WeldRows weld_rows(const Element& element, const std::vector<NodeVectors>
   WeldRows out;
   for (const NodeVectors& node : nodes) {
     out.fixed.push_back({node.r, 1, {0, beam ? 0 : node.material.y()}});
-    if (node.r_n < 0) continue;  // a plate of cells: straight as its nodes are
+    // A plate of cells has no gradients; its nodes keep the edge straight.
+    if (node.r_n < 0) continue;
     if (mode == WeldMode::partial)
       out.along.push_back({node.r_n, across(r_n)});
     else

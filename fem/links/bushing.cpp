@@ -56,7 +56,7 @@ class Bushing final : public PairLink, public TurningLink {
                                      : data_.start_angle.value_or(data_.rest_angle);
   }
 
-  /// N = k (z - z₀) + c ż.
+  /// Adds the force N = k (z - z₀) + c ż along a coordinate.
   static void add_linear(const PairCoordinate& along, double rest, double k, double c,
                          const Values& rate, PairForce& out) {
     const double pull = k * (along.z - rest);

@@ -5,12 +5,14 @@
 namespace flexmorph::fem {
 namespace {
 
-/// On a line across one element: N_oᵀ r_m is of degree 4.
+/// Number of Gauss points on the line across one element; N_oᵀ r_m has degree 4.
 constexpr int kPoints = 3;
 
-/// Unknowns q of the body, Q of the plate's elements at the root:
-///   f = s K q̇ - s² B q + s² Σ G_k Q_k,  K = ρc ∫ (N_oᵀ N_o - N_sᵀ N_s) dy,  G_k = ρc ∫ N_oᵀ N_k,m
-///   dy
+/// See make_outlet(). With the unknowns q of the body and Q_k of the elements of the plate at the
+/// root
+///
+///   f = s K q̇ - s² B q + s² Σ G_k Q_k
+///   K = ρc ∫ (N_oᵀ N_o - N_sᵀ N_s) dy,   G_k = ρc ∫ N_oᵀ N_k,m dy
 class Outlet final : public Link, public MeanForceLink {
  public:
   Outlet(std::string name, std::string body, std::string plate, const StoredMaterial& stored)
@@ -62,7 +64,7 @@ class Outlet final : public Link, public MeanForceLink {
         for (int c = 0; c < 2; ++c)
           out.emplace_back(first_ + i, places_[k] + c, w.q * s * s * slopes_[k](i, c));
   }
-  // At mid-step, as the inertia of the plate.
+  // The mean force is the force at the mean state, as for the inertia of the plate.
   void add_mean_force(const State& mean, const VectorXd&, const VectorXd&,
                       VectorXd& out) const override {
     add_force(mean, out);
@@ -86,7 +88,7 @@ class Outlet final : public Link, public MeanForceLink {
     return s * s * out + s * (moved_ * x.v.segment<4>(first_));
   }
 
-  /// G_k where the lines of the mesh are now.
+  /// Computes G_k for the current positions of the lines of the mesh.
   void find_slopes() const {
     static thread_local ShapeTable table;
     const Vec2 axis = axis_of(stored_), across(-axis.y(), axis.x());
@@ -114,9 +116,10 @@ class Outlet final : public Link, public MeanForceLink {
   StoredMaterial stored_;
   Eigen::Matrix4d moved_, slide_;  // K and B
   const LineGrid* grid_ = nullptr;
-  int first_ = 0;            // unknown of the body
-  std::vector<int> places_;  // of the vectors of the plate's elements at the root, one by one
-  mutable std::vector<Block> slopes_;
+  int first_ = 0;  // first unknown of the body
+  // First unknowns of the vectors of the elements at the root, element by element.
+  std::vector<int> places_;
+  mutable std::vector<Block> slopes_;  // G_k
 };
 
 }  // namespace

@@ -12,7 +12,8 @@ constexpr auto kPositionA = MarkerPair::kPositionA, kAxisA = MarkerPair::kAxisA,
 
 Vec2 difference(const Values& y) { return y.segment<2>(kPositionB) - y.segment<2>(kPositionA); }
 
-/// Adds sign times the angle of the axis e there, θ_e = J e / |e|², J the quarter turn.
+/// Adds sign times the angle of the axis e at index `part` of y. The gradient is θ_e = J e / |e|²,
+/// with J the rotation by 90 degrees.
 void add_angle(const Values& y, MarkerPair::Part part, double sign, PairCoordinate& out) {
   const double x = y[part], z = y[part + 1], square = x * x + z * z;
   out.z += sign * std::atan2(z, x);
@@ -25,7 +26,7 @@ void add_angle(const Values& y, MarkerPair::Part part, double sign, PairCoordina
 }  // namespace
 
 PairCoordinate coordinate_along(const Values& y, int axis) {
-  // z = e · (M d), M the identity, or the quarter turn backwards.
+  // z = e · (M d), with M the identity for axis 0 and the rotation by -90 degrees for axis 1.
   Eigen::Matrix2d m = Eigen::Matrix2d::Identity();
   if (axis == 1) m << 0, 1, -1, 0;
   const Vec2 e = y.segment<2>(kAxisA), d = difference(y);

@@ -4,18 +4,22 @@
 
 namespace flexmorph::fem {
 
-/// A force on y = (p_a, e_a, p_b, e_b) of two markers, and its derivatives.
+/// A generalized force on y = (p_a, e_a, p_b, e_b) of two markers, and its derivatives.
 struct PairForce {
+  /// Vector of the entries of y.
   using Values = MarkerPair::Values;
-  Values s = Values::Zero();       ///< work on δy, on the left side
-  Values stored = Values::Zero();  ///< its part that is the derivative of an energy
+  /// Force s with the virtual work s · δy, on the left side of M q̈ + F = 0.
+  Values s = Values::Zero();
+  Values stored = Values::Zero();  ///< Component of s that is the derivative of an energy.
+
+  /// Derivatives ∂s/∂y and ∂s/∂ẏ.
   MarkerPair::Square s_y = MarkerPair::Square::Zero(), s_rate = MarkerPair::Square::Zero();
 };
 
-/// A link whose force depends on two markers, y = Y(t) q + y₀(t):
+/// A force element whose force depends on two markers, y = Y(t) q + y₀(t):
 ///
 ///   f = Yᵀ s(y, ẏ),   f_q = Yᵀ (s_y Y + s_ẏ Ẏ),   f_v = Yᵀ s_ẏ Y
-///   power that enters: s · y_t - (s - stored) · ẏ
+///   power that enters the model: s · y_t - (s - stored) · ẏ
 class PairLink : public Link {
  public:
   std::string name() const override { return name_; }
@@ -27,20 +31,26 @@ class PairLink : public Link {
   double power(const State& x) const override;
 
  protected:
+  /// Vector of the entries of y.
   using Values = MarkerPair::Values;
+  /// First entry of one of the four vectors in y.
   using Part = MarkerPair::Part;
 
-  /// @param parts   of y that the force works on
-  /// @param varies  does the force depend on the state?
+  /// Creates a force element between two markers.
+  /// @param parts   vectors of y on which the force does work
+  /// @param varies  true if the force depends on the state
   PairLink(std::string name, MarkerPlace a, MarkerPlace b, std::vector<Part> parts, bool varies);
 
-  /// The force at a state, where the markers are at (y, ẏ), into a PairForce that is zero.
+  /// Fills the force at a state in which the markers are at (y, ẏ); all entries of `out` are zero
+  /// before.
   virtual void fill(const State& x, const Values& y, const Values& rate, PairForce& out) const = 0;
 
+  /// Returns the two markers.
   const MarkerPair& pair() const { return pair_; }
-  /// Adds Yᵀ s as the last pair().evaluate() found Y.
+  /// Adds Yᵀ s with the Y of the last pair().evaluate().
   void add_to(const Values& s, VectorXd& out) const;
-  /// Appends Yᵀ (by_y Y + by_rate Ẏ) likewise, at the places of add_pattern().
+  /// Appends Yᵀ (by_y Y + by_rate Ẏ) with the Y of the last pair().evaluate(), at the positions of
+  /// add_pattern().
   void append(const MarkerPair::Square& by_y, const MarkerPair::Square& by_rate,
               std::vector<Eigen::Triplet<double>>& out) const;
 

@@ -7,7 +7,7 @@ namespace {
 using Values = MarkerPair::Values;
 constexpr auto kPosition = MarkerPair::kPositionA, kAxis = MarkerPair::kAxisA;
 
-/// What acts on one place, constant or not.
+/// Base class of loads on one marker, constant or variable in time.
 class PlaceLoad : public PairLink, public ScaledLoad {
  public:
   void scale_load(double factor) override { factor_ = factor; }
@@ -19,7 +19,7 @@ class PlaceLoad : public PairLink, public ScaledLoad {
     if (law_.size() != size || !law_.now().allFinite())
       throw Error::input("link '" + name + "': its load is not finite, or of another size");
   }
-  /// At a time, scaled; a torque has one entry.
+  /// Returns the scaled load at time t; a torque has one entry.
   Vec2 load(double t) const {
     law_.to(t);
     const VectorXd& now = law_.now();
@@ -32,7 +32,7 @@ class PlaceLoad : public PairLink, public ScaledLoad {
   double factor_ = 1;
 };
 
-/// s = -F on the point; V = -F · p where F is constant.
+/// Force s = -F on the point; the potential is V = -F · p where F is constant.
 class PointForce final : public PlaceLoad, public MeanForceLink {
  public:
   PointForce(const std::string& name, MarkerPlace at, const LoadLaw& force)
@@ -58,8 +58,9 @@ class PointForce final : public PlaceLoad, public MeanForceLink {
   }
 };
 
-/// s = -(f₁ e + f₂ J e) on the point, e the axis of the place and J the quarter turn. The force has
-/// no potential; e has length one but for what constraints miss.
+/// Force s = -(f₁ e + f₂ J e) on the point, with e the axis of the marker and J the rotation by 90
+/// degrees. The force has no potential. The length of e is one up to the residual of the
+/// constraints.
 class TurningForce final : public PlaceLoad {
  public:
   TurningForce(const std::string& name, MarkerPlace at, const LoadLaw& force)
@@ -76,8 +77,8 @@ class TurningForce final : public PlaceLoad {
   }
 };
 
-/// s = -T θ_e on the axis, θ_e = J e / |e|²; no energy: how often the body turned is no part of the
-/// state.
+/// Generalized force s = -T θ_e on the axis, θ_e = J e / |e|². There is no energy, because the
+/// state does not contain the number of whole turns of the body.
 class Torque final : public PlaceLoad {
  public:
   Torque(const std::string& name, MarkerPlace at, const LoadLaw& torque)

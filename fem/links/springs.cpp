@@ -16,7 +16,7 @@ double checked(const std::string& link, const std::string& what, double value, d
   return value;
 }
 
-/// Derivatives by y of a function of d = p_b - p_a.
+/// Returns the derivatives by y of a function of d = p_b - p_a from its derivatives by d.
 Values of_difference(const Vec2& by_d) {
   Values out = Values::Zero();
   out.segment<2>(kPositionA) = -by_d;
@@ -45,9 +45,9 @@ class Spring final : public PairLink, public MeanForceLink {
   }
 
   std::unique_ptr<Link> clone() const override { return std::make_unique<Spring>(*this); }
-  /// V is a function of |d|², and d̄ · (d₁ - d₀) half of its difference: with
-  /// s_d = k (1 - 2 l₀/(l₀' + l₁')) d̄, l₀', l₁' the lengths at both ends, s_d · (d₁ - d₀) = V₁ -
-  /// V₀. The damper acts as at the mean state.
+  /// V is a function of |d|², and d̄ · (d₁ - d₀) is half the difference of |d|². Therefore, with
+  /// the lengths l_a, l_b at the start and at the end of the step, s_d = k (1 - 2 l₀/(l_a + l_b))
+  /// d̄ gives s_d · (d₁ - d₀) = V₁ - V₀. The damping force is taken at the mean state.
   void add_mean_force(const State& mean, const VectorXd& q0, const VectorXd& q1,
                       VectorXd& out) const override {
     add_to(mean_force(mean, q0, q1).s, out);
@@ -65,7 +65,8 @@ class Spring final : public PairLink, public MeanForceLink {
   }
 
  private:
-  /// s_y is by the mean state, which moves half as far as the end.
+  /// Returns the mean force; s_y is its derivative by the mean state, which moves half as far as
+  /// the end of the step.
   PairForce mean_force(const State& mean, const VectorXd& q0, const VectorXd& q1) const {
     if (pair().shifts()) refuse_mean_force(name());
     const auto& [k, c, free_length] = spring_;
@@ -77,7 +78,7 @@ class Spring final : public PairLink, public MeanForceLink {
     pair().evaluate(mean.t, mean.q, mean.v);
     const Vec2 d = difference(pair().y());
     PairForce out;
-    if (c > 0) {  // without its spring
+    if (c > 0) {  // the damping force alone
       const SpringData damper{0, c, 0};
       fill_spring(damper, pair().y(), pair().rate(), out);
     }
@@ -108,7 +109,7 @@ class Spring final : public PairLink, public MeanForceLink {
     const auto& [k, c, free_length] = spring;
     const Vec2 d = difference(y), d_t = difference(rate);
     const Eigen::Matrix2d one = Eigen::Matrix2d::Identity();
-    if (free_length == 0 && c == 0) {  // no direction is needed
+    if (free_length == 0 && c == 0) {  // the direction of the line is not needed
       out.s = out.stored = of_difference(Vec2(k * d));
       out.s_y = of_difference(Eigen::Matrix2d(k * one));
       return;
@@ -128,7 +129,8 @@ class Spring final : public PairLink, public MeanForceLink {
   SpringData spring_;
 };
 
-/// θ of an axis e, and its derivatives: θ_e = J e / |e|², θ_ee, J the quarter turn.
+/// The angle θ of an axis e and its derivatives θ_e = J e / |e|² and θ_ee, with J the rotation by
+/// 90 degrees.
 struct Turn {
   double angle;
   Vec2 by_e;
@@ -143,8 +145,8 @@ struct Turn {
   }
 };
 
-/// Moment M = k φ + c φ̇ on φ = θ_b - θ_a - φ₀; V = ½ k φ². Two axes say θ_b - θ_a but for whole
-/// turns, which are those of the last accepted step.
+/// Moment M = k φ + c φ̇ on φ = θ_b - θ_a - φ₀; V = ½ k φ². The two axes determine θ_b - θ_a up to
+/// whole turns; their number is continued from the last accepted step.
 class TorsionSpring final : public PairLink, public TurningLink {
  public:
   TorsionSpring(std::string name, MarkerPlace a, MarkerPlace b, const TorsionSpringData& spring)

@@ -55,7 +55,7 @@ class UnilateralStop final : public PairLink, public TurningLink {
         y, place() < x.turned.size() ? x.turned[place()] : data_.start_angle.value_or(0));
   }
 
-  /// δ, and ∂δ/∂z = 1 or -1.
+  /// The displacement δ beyond a limit, and ∂δ/∂z = 1 or -1.
   struct Beyond {
     double way, sign;
   };
@@ -71,7 +71,7 @@ class UnilateralStop final : public PairLink, public TurningLink {
       throw Error::numerical("stop '" + name() + "': its points meet, it has no direction");
     const double k = data_.stiffness, w = data_.onset;
     const bool full = way >= w;
-    // The onset: share of k and c that acts.
+    // Fraction of k and c that acts within the transition.
     const double share = full ? 1 : way / w, way_t = sign * c.z_y.dot(rate);
     const double push = full ? k * (way - 0.5 * w) : 0.5 * k * way * share;
     const double total = push + data_.damping * share * way_t;

@@ -18,7 +18,7 @@ Model::Model(const Model& other)
   }
   for (const auto& joint : other.joints_) joints_.push_back(joint->clone());
   for (const ModelLink& link : other.links_) links_.emplace_back(link->clone());
-  number_dofs();  // binds joints and links to the bodies of the copy
+  number_dofs();  // binds joints and force elements to the bodies of the copy
 }
 
 Body& Model::add_body(std::string name, std::unique_ptr<Element> element,
@@ -35,8 +35,8 @@ Body& Model::add_body(std::string name, std::unique_ptr<Element> element,
   n_dofs_ += bodies_.back().n_dofs();
   ++pattern_version_;
   ++content_version_;
-  // Joints and links may hold places in the list, which has moved: seldom, so that a model of n
-  // bodies is not bound n times.
+  // Joints and force elements may hold pointers into the list of bodies, which the insertion has
+  // moved. A renumbering only after a reallocation avoids n of them for a model of n bodies.
   if (bodies_.data() != before) number_dofs();
   return bodies_.back();
 }
@@ -74,7 +74,7 @@ void Model::set_element(Body& body, std::unique_ptr<Element> element) {
 void Model::set_factors(Body& body, Factors factors) {
   body.factors = std::move(factors);
   ++content_version_;
-  // The inertia of a body may be what a link acts by.
+  // The force of a force element may depend on the inertia of a body, and thereby on its factors.
   for (const ModelLink& link : links_) link->bind(views());
 }
 
@@ -127,7 +127,7 @@ State Model::reference() const {
 }
 
 VectorXd Model::scales() const {
-  VectorXd out = VectorXd::Ones(n_dofs_);  // of scalar unknowns
+  VectorXd out = VectorXd::Ones(n_dofs_);  // scalar unknowns keep 1
   for (const Body& b : bodies_)
     for (int k = 0; k < b.element->n_vectors(); ++k)
       out.segment(b.first_dof + b.element->dim() * k, b.element->dim())

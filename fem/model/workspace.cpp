@@ -45,7 +45,7 @@ void Workspace::prepare_whole(const Whole& whole) {
   for (Body& b : bodies_) {
     const int n = b.element->n_scalars();
     if (n == 0 || whole.lines.empty()) continue;
-    // A row per line: q, v, a.
+    // One column per line, with the rows q, v, a.
     const Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic>> line(whole.lines.data() + at,
                                                                           3, n);
     b.element->move_lines(line.row(0), line.row(1), line.row(2));
@@ -66,7 +66,8 @@ void Workspace::move_lines(double t) {
 }
 
 void Workspace::prepare_bodies(double t) {
-  prepared_t_ = std::numeric_limits<double>::quiet_NaN();  // where it fails, nothing is prepared
+  // The time stays invalid if an exception is thrown.
+  prepared_t_ = std::numeric_limits<double>::quiet_NaN();
   const bool all = prepared_version_ != content_version();
   if (all) whole_ = {t, lines_};
   if (numbered_version_ != pattern_version()) number_batches();
@@ -290,7 +291,7 @@ double Workspace::flow_power(const State& x) {
   Local local;
   for (const Body& b : bodies_)
     for (int e = 0; e < b.element->n_elements(); ++e) {
-      // Free lines are unknowns: what their motion does is no power at fixed unknowns.
+      // Free lines are unknowns; therefore their motion causes no power at fixed unknowns.
       if (!b.element->moving(e) || !b.element->free_sides(e).empty()) continue;
       gather(b, e, x, local);
       for (const BodyTerm& term : b.terms)
@@ -301,7 +302,7 @@ double Workspace::flow_power(const State& x) {
 
 namespace {
 
-/// r_m × r_n in the plane (negative where turned inside out), |r_m × r_n| in space.
+/// Returns r_m × r_n in the plane (negative for an inverted element), |r_m × r_n| in space.
 double area_ratio(const VectorXd& r_m, const VectorXd& r_n) {
   if (r_m.size() == 2) return r_m[0] * r_n[1] - r_m[1] * r_n[0];
   return r_m.head<3>().cross(r_n.head<3>()).norm();

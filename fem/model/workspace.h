@@ -6,164 +6,191 @@
 
 namespace flexmorph::fem {
 
-/// Force [N] and moment about a point [N m]; in the plane only the z entry of the moment and no z
-/// entry of the force.
+/// A force with a moment about a point; in the plane the force has no z entry and the moment only a
+/// z entry.
 struct Wrench {
-  Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
+  Vec3 force = Vec3::Zero(), moment = Vec3::Zero();  ///< Force [N] and moment [N m].
 };
 
-/// Motion of a place of a model (fem/marker.h).
+/// Motion of a marker location of a model (fem/marker.h).
 struct PlaceMotion {
+  /// Position [m], velocity [m/s] and acceleration [m/s²].
   Vec2 position{0, 0}, velocity{0, 0}, acceleration{0, 0};
-  Vec2 axis{0, 0};  ///< axis 1; zero for a point of a plate
+  Vec2 axis{0, 0};  ///< Axis 1 [-]; zero for a point of a plate.
 };
 
 /// All constraint rows of a model at one state.
 struct Constraints {
-  VectorXd value, rate, acceleration;            ///< (m); see ConstraintRows
-  std::vector<Eigen::Triplet<double>> jacobian;  ///< Φ_q
+  VectorXd value, rate, acceleration;            ///< See ConstraintRows (n_constraints each).
+  std::vector<Eigen::Triplet<double>> jacobian;  ///< Entries of Φ_q.
 };
 
-/// A model of its own together with the room its evaluation takes: what terms keep per element,
-/// where the material lines are, the pattern of the matrix. Whoever evaluates a model owns one;
-/// several threads, or several motions at the same time, have one each, of copies of one model.
+/// A copy of a model together with the data that its evaluation needs: data of terms per element,
+/// positions of the material lines, the pattern of the matrix. Every evaluation of a model uses its
+/// own workspace; several threads, or several motions at the same time, have one workspace each,
+/// with copies of one model.
 ///
-/// It is a copy of the whole model and no table of caches beside it, because what is prepared for a
-/// state is spread over its parts (lines in elements, invariants and mass matrices in terms, places
-/// of markers in joints and links): a part and its caches belong together, and a copy is made once
-/// per motion, for less than a step of it costs.
+/// A workspace is a copy of the whole model and not a table of caches, because the data that are
+/// prepared for a state are distributed over the objects of the model (lines in elements,
+/// invariants and mass matrices in terms, positions of markers in joints and force elements). The
+/// copy is made once per motion and costs less than one time step.
 ///
-/// It knows what it is prepared for: every function first refreshes what the state asks for (time,
-/// free material lines) and what was changed in the model (meshes, factors), and nothing else; the
-/// pattern of the matrix stays until a mesh changes.
+/// A workspace stores the state for which it is prepared. Every function first updates what depends
+/// on the state (time, free lines) and what was changed in the model (meshes, scale factors), and
+/// nothing else; the pattern of the matrix stays until a mesh changes.
 ///
-/// Elements are evaluated eight at a time. Batches of one colour share no unknown, so that threads
-/// (OpenMP's) can take them in any order: sums are made colour by colour, and every result is the
-/// same bit for bit with any number of threads.
+/// Elements are evaluated in batches of eight. Batches of one colour share no unknown, so that
+/// OpenMP threads can evaluate them in any order. Sums are formed colour by colour; therefore every
+/// result is bitwise identical for any number of threads.
 class Workspace : public Model {
  public:
   Workspace() = default;
+  /// Creates a workspace of a model.
   explicit Workspace(Model model) : Model(std::move(model)) {}
-  /// The model alone is copied.
+  /// Creates a workspace of a copy of the model; the prepared data are not copied.
   Workspace(const Workspace& other) : Model(other) {}
   Workspace(Workspace&&) = default;
   Workspace& operator=(const Workspace& other) { return *this = Workspace(other); }
   Workspace& operator=(Workspace&&) = default;
   ~Workspace() = default;
 
-  /// Puts material lines, temperatures and all that depends on them where they are at x. Functions
-  /// below do it by themselves; it is there for those who read lines from the elements.
+  /// Prepares material lines, temperatures and all data that depend on them for state x. The
+  /// functions below call it; a direct call is needed only to read lines from the elements.
   /// @throws Error naming the body where a term cannot be evaluated.
   void prepare(const State& x);
-  /// The same at a time, free lines left where they are.
+  /// Prepares the model for time t [s] and leaves the free lines unchanged.
   void prepare(double t);
-  /// Puts driven lines where they are at t and leaves the rest to the next evaluation: enough for
-  /// rigid bodies and plates to be placed, before terms can be evaluated.
+  /// Moves driven lines to time t [s] and leaves all other preparation to the next evaluation. This
+  /// suffices to place rigid bodies and plates before terms can be evaluated.
   void move_lines(double t);
 
-  /// Where all parts were prepared last, after the last change of the model: there elements of
-  /// equal size (up to round-off) share what is prepared, and go on doing so while only lines move.
-  /// Who goes on with a motion, the same bit for bit, begins with it.
+  /// Time and free lines of the last preparation of all elements, which follows every change of the
+  /// model. In that preparation elements of equal size (up to round-off) share their data, and they
+  /// continue to share them while only lines move. A motion that is continued bit for bit must
+  /// start from this preparation.
   struct Whole {
-    double t = 0;               ///< [s]
-    std::vector<double> lines;  ///< free ones: q, v, a in turn; empty: where they start
+    double t = 0;  ///< Time [s].
+
+    /// Free lines (q, v, a of each in turn); empty for their initial coordinates.
+    std::vector<double> lines;
   };
+  /// Returns the last preparation of all elements.
   const Whole& prepared_whole() const { return whole_; }
+  /// Repeats a preparation of all elements.
   void prepare_whole(const Whole& whole);
 
-  /// M q̈ + F(q, q̇) without constraint forces (n_dofs).
+  /// Evaluates M q̈ + F(q, q̇) without constraint forces (n_dofs).
   void force(const State& x, VectorXd& out);
+  /// Evaluates all constraint rows.
   void constraints(const State& x, Constraints& out);
-  /// out += Φ_qᵀ λ.
+  /// Adds the constraint force: out += Φ_qᵀ λ.
   static void add_constraint_force(const Constraints& c, const VectorXd& lambda, VectorXd& out);
 
-  /// Generalized force of joint i alone on all unknowns, -Φ_qᵀ λ (n_dofs).
+  /// Returns the generalized force of one joint alone on all unknowns, -Φ_qᵀ λ (n_dofs).
   VectorXd joint_force(size_t joint, const State& x);
-  /// What joint i does to a body: resultant force, and moment about a point of the world, by the
-  /// virtual work of its force under δr = δ and under δr = θ × (r - about), δr_m = θ × r_m, ...
-  /// (plates), δu = θ × u (rigid bodies). Forces on free material lines are no part of it.
+  /// Returns the resultant force of a joint on a body, and its moment about a point `about` of the
+  /// world [m]. They follow from the virtual work of the joint force under δr = δ and under δr = θ
+  /// × (r - about), δr_m = θ × r_m, ... (plates), δu = θ × u (rigid bodies). Forces on free lines
+  /// are not included.
   /// @throws Error (input) for a body that does not exist.
   Wrench joint_wrench(size_t joint, const std::string& body, const Vec3& about, const State& x);
 
+  /// Assembles the iteration matrix in a fixed pattern, which changes with pattern_version() only:
+  ///
   /// [ scale · (w.q (F + Φ_qᵀ λ)_q + w.v F_v + w.a M)   Φ_qᵀ ]
-  /// [ Φ_q                                              0    ]   in a fixed pattern, which changes
-  /// with pattern_version() only.
+  /// [ Φ_q                                              0    ]
   void kkt(const State& x, const Constraints& c, const Weights& w, double scale, SparseMatrix& out);
 
-  /// The same of the entries whose row and column are chosen (n_dofs + n_constraints); all others
-  /// stay what they are.
-  /// @param out  what kkt() made of this pattern_version()
+  /// Recomputes the entries of the iteration matrix whose row and column are both chosen; all other
+  /// entries keep their values.
+  /// @param chosen  nonzero for a chosen row or column (n_dofs + n_constraints)
+  /// @param out     a matrix of kkt() for this pattern_version()
   void renew_kkt(const State& x, const Constraints& c, const Weights& w, double scale,
                  const std::vector<char>& chosen, SparseMatrix& out);
-  /// out += (w.q F_q + w.v F_v + w.a M)ᵀ ψ, F of force(), without a matrix.
+  /// Adds (w.q F_q + w.v F_v + w.a M)ᵀ ψ to `out` without assembling a matrix, with F of force().
   /// @param psi, out  (n_dofs)
   void add_transposed_product(const State& x, const Weights& w, const VectorXd& psi, VectorXd& out);
 
-  /// Mean force of a step from q₀ to q₁ that keeps the energy, see MeanForceTerm; mean:
-  /// the mean state.
-  /// @throws Error (input) when a term has none.
+  /// Evaluates the energy-conserving mean force of a step from q₀ to q₁, see MeanForceTerm.
+  /// @param mean  the mean state
+  /// @throws Error (input) when a term has no mean force.
   void mean_force(const State& mean, const VectorXd& q0, const VectorXd& q1, VectorXd& out);
 
-  /// [ scale · (F̄ + Φ̄_qᵀ λ)_x   Φ̄_qᵀ ]   the same for the mean force: w are the derivatives of the
-  /// [ Φ_q                      0    ]   mean state by x, Φ̄_q is taken there and Φ_q at the end.
+  /// Assembles the iteration matrix of the mean force. The weights w are the derivatives of the
+  /// mean state by x; Φ̄_q is taken at the mean state and Φ_q at the end of the step:
+  ///
+  /// [ scale · (F̄ + Φ̄_qᵀ λ)_x   Φ̄_qᵀ ]
+  /// [ Φ_q                      0    ]
   void mean_kkt(const State& mean, const VectorXd& q0, const VectorXd& q1,
                 const Constraints& at_mean, const Constraints& at_end, const Weights& w,
                 double scale, SparseMatrix& out);
 
-  /// Where a place is, and how it moves. For output: looks the place up at every call.
+  /// Returns the motion of a marker location. It is meant for output, because it looks up the
+  /// location at every call.
   /// @throws Error (input) as Marker::bind().
   PlaceMotion place_motion(const MarkerPlace& place, const State& x) const;
 
+  /// Returns the energies of all bodies and force elements [J].
   Energies energies(const State& x);
-  /// Of one of its bodies.
+  /// Returns the energies of one body [J].
   Energies energies(const State& x, const Body& body);
-  /// Linear momentum of the bodies' own mass [kg m/s], see Term::momentum(); z = 0 in the plane.
+  /// Returns the linear momentum of the masses of the bodies [kg m/s], see Term::momentum(); z = 0
+  /// in the plane.
   Vec3 momentum(const State& x);
-  /// Lets links that count turns go on from this state: to be called after every accepted step.
+  /// Stores the counted angles of the force elements in x.turned; call it after every accepted
+  /// step.
   void follow_turns(State& x) const;
-  /// Power of all links, see Link::power() [W].
+  /// Returns the power of all force elements, see Link::power() [W].
   double link_power(const State& x);
-  /// Power of loads that have no potential, see LoadTerm::power() [W].
+  /// Returns the power of loads without a potential, see LoadTerm::power() [W].
   double load_power(const State& x);
-  /// Power of all terms at fixed unknowns, see FlowTerm [W].
+  /// Returns the power of material flow of all terms at fixed unknowns, see FlowTerm [W].
   double flow_power(const State& x);
-  /// Power that the temperature of hot bodies gives to their energy, see HeatedTerm::heat_power()
-  /// [W].
+  /// Returns the power that changes of temperature supply to the bodies, see
+  /// HeatedTerm::heat_power() [W].
   double heat_power(const State& x);
-  /// Power that all terms turn into heat, see Term::dissipation() [W].
+  /// Returns the dissipated power of all terms, see Term::dissipation() [W].
   double dissipation(const State& x);
-  /// What derivatives by factors are added to: zeros of every designed body, nothing of others.
+  /// Returns initial gradients by the scale factors, one per body: zeros for a designed body, empty
+  /// vectors for other bodies.
   std::vector<FactorSlopes> no_slopes() const;
-  /// Adds ψ · ∂F/∂κ, F of force(), by the factors of every body, see DesignedTerm.
-  /// @param psi  (n_dofs)   @param out  as no_slopes()
+  /// Adds the gradient of ψ · F with respect to the scale factors of every body, with F of force(),
+  /// see DesignedTerm.
+  /// @param psi  (n_dofs)
+  /// @param out  gradients in the form of no_slopes()
   void add_factor_slopes(const State& x, const VectorXd& psi, std::vector<FactorSlopes>& out);
-  /// Strain energy of all bodies, without that of links [J].
+  /// Returns the strain energy of all bodies, without force elements [J].
   double strain_energy(const State& x);
-  /// Adds its derivatives, times weight. @param by_q  (n_dofs)   @param by_factors  as no_slopes()
+  /// Adds the derivatives of strain_energy() times weight.
+  /// @param by_q        derivatives by the unknowns (n_dofs)
+  /// @param by_factors  gradients in the form of no_slopes()
   void add_strain_slopes(const State& x, double weight, VectorXd& by_q,
                          std::vector<FactorSlopes>& by_factors);
-  /// (Φ_qᵀ λ)_q times a vector (n_dofs).
+  /// Returns (Φ_qᵀ λ)_q times a vector (n_dofs).
   VectorXd constraint_curvature(const State& x, const VectorXd& lambda, const VectorXd& along);
-  /// Smallest area ratio |r_m x r_n| over all elements (sampled at 3 x 3 points): a collapse of the
-  /// St. Venant-Kirchhoff material shows here before Newton fails.
+  /// Returns the smallest area ratio over all elements (r_m × r_n in the plane, |r_m × r_n| in
+  /// space, sampled at 3 x 3 points). A small ratio indicates a collapse of the St.
+  /// Venant-Kirchhoff material before Newton's method fails.
   double smallest_area_ratio(const State& x);
 
  private:
-  /// Where eight consecutive elements of a body stand in the vectors and the matrix.
+  /// Positions of eight consecutive elements of a body in the vectors and in the value array of the
+  /// matrix.
   struct BatchPlaces {
     size_t body = 0;
     int first = 0, count = 0;
-    std::vector<int> dofs;     // (n_local, kLanes)
-    std::vector<int> entries;  // of the matrix, the first of dim rows: (n_local, n_shapes, kLanes)
+    std::vector<int> dofs;  // unknowns of the model (n_local, kLanes)
+    /// Positions of the first of dim rows in the value array (n_local, n_shapes, kLanes).
+    std::vector<int> entries;
   };
 
-  /// An element that is evaluated alone: of a body with free lines.
+  /// An element that is evaluated alone because its body has free lines.
   struct Single {
     size_t body = 0;
     int e = 0;
-    bool free = false;         // are lines around this one free?
-    std::vector<int> dofs;     // of the shape unknowns, then of its lines (-1: no unknown)
-    std::vector<int> entries;  // of the matrix, by rows (-1: none)
+    bool free = false;         // true if lines around this element are free
+    std::vector<int> dofs;     // shape unknowns, then lines (-1: no unknown)
+    std::vector<int> entries;  // positions in the value array, by rows (-1: none)
   };
 
   bool are_lines_at(const State& x) const;
@@ -174,23 +201,25 @@ class Workspace : public Model {
   void add_single_force(const Single& single, const State& x, VectorXd& out) const;
   void add_single_tangent(const Single& single, const State& x, const Weights& w, double scale,
                           double* values) const;
-  /// Entries of the tangent of a batch, or a single, among the chosen unknowns.
+  /// Recomputes the entries of the tangent of a batch among the chosen unknowns.
   void renew_batch(const BatchPlaces& places, const State& x, const Weights& w, double scale,
                    const std::vector<char>& chosen, double* values) const;
+  /// Recomputes the entries of the tangent of a single element among the chosen unknowns.
   void renew_single(const Single& single, const State& x, const Weights& w, double scale,
                     const std::vector<char>& chosen, double* values) const;
-  /// Of the tangents of all elements; values do not count.
+  /// Returns the positions of the tangents of all elements; the values have no meaning.
   std::vector<Eigen::Triplet<double>> element_entries() const;
   void build_pattern();
   void joint_stiffness(const State& x, std::vector<Eigen::Triplet<double>>& out) const;
   static void gather(const Body& body, int e, const State& x, Local& local);
   static void add_energies(const State& x, const Body& body, Energies& out);
-  /// Σ of amount(term, element, its unknowns) over the terms that wanted(term) names.
+  /// Returns the sum of amount(term, element, its unknowns) over the terms for which wanted(term)
+  /// is true.
   template <class Wanted, class Amount>
   double summed(const State& x, Wanted wanted, Amount amount);
   static void gather(const Body& body, int e, const State& mean, const VectorXd& q0,
                      const VectorXd& q1, LocalStep& step);
-  /// Calls f(batch, its places) for all batches, one colour after the other, by one thread for
+  /// Calls f(batch, its positions) for all batches, one colour after the other, with one thread for
   /// every `per_thread` batches.
   template <class F>
   void for_batches(const State& x, int per_thread, const F& f) const;
@@ -199,24 +228,26 @@ class Workspace : public Model {
   void fill_joints(const State& x, double stiffness_scale, const Constraints& rows,
                    const Constraints& columns, SparseMatrix& out);
 
-  // What the parts are prepared for: content of the model, time, free lines (q, v, a in turn).
+  // The state of the last preparation: content of the model, time, free lines (q, v, a in turn).
   int prepared_version_ = -1;
   double prepared_t_ = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> lines_;
   Whole whole_;
-  // Batches and singles of the elements, of this pattern_version(); those of one colour follow each
-  // other, colours_ has the first batch of every colour, and their number.
+  // Batches and single elements, numbered for the pattern_version() numbered_version_. Batches of
+  // one colour follow each other; colours_ has the index of the first batch of every colour, and at
+  // its end the number of batches.
   int numbered_version_ = -1;
-  std::vector<BatchPlaces> batches_;  // entries as of the pattern
+  std::vector<BatchPlaces> batches_;  // with the positions of the current pattern
   std::vector<Single> singles_;
   std::vector<int> colours_;
-  // Pattern of the KKT matrix and where entries go, of this pattern_version().
+  // Pattern of the iteration matrix and positions in its value array, for the pattern_version()
+  // built_version_.
   int built_version_ = -1;
   SparseMatrix pattern_;
   std::vector<int> joint_places_;      // two per jacobian entry: (row, dof), (dof, row)
   std::vector<int> stiffness_places_;  // of the joints' (Φ_qᵀ λ)_q
-  std::vector<int> link_places_;       // of the links' tangents
-  // Room.
+  std::vector<int> link_places_;       // of the tangents of the force elements
+  // Work arrays.
   std::vector<Eigen::Triplet<double>> stiffness_, link_entries_;
   ConstraintRows rows_;
 };

@@ -14,13 +14,14 @@ namespace flexmorph::fem {
 namespace {
 
 constexpr int kMaxLocal = kMaxShapes * kMaxDim;
-/// Fewer batches are not worth a thread: where processors are shared, a thread that sleeps keeps
-/// the others waiting for milliseconds at the end of every colour.
+/// Smallest numbers of batches per thread. With fewer batches an additional thread slows the
+/// evaluation down, because on shared processors a suspended thread delays the other threads by
+/// milliseconds at the end of every colour.
 constexpr int kForcesPerThread = 512, kTangentsPerThread = 128;
 
 }  // namespace
 
-/// Every batch gets the first colour that no batch before it with a common unknown has.
+/// Every batch gets the first colour that no earlier batch with a common unknown has.
 void Workspace::number_batches() {
   std::vector<std::vector<BatchPlaces>> by_colour;
   singles_.clear();
@@ -31,7 +32,8 @@ void Workspace::number_batches() {
       continue;
     }
     const int dim = b.element->dim(), n = b.element->n_elements();
-    std::vector<std::uint64_t> colours(static_cast<size_t>(b.element->n_vectors()));  // bits
+    /// one bit per colour, for each vector unknown
+    std::vector<std::uint64_t> colours(static_cast<size_t>(b.element->n_vectors()));
     for (int first = 0; first < n; first += kLanes) {
       BatchPlaces batch{index, first, std::min(kLanes, n - first), {}, {}};
       std::uint64_t taken = 0;
@@ -96,7 +98,8 @@ void Workspace::for_batches(const State& x, int per_thread, const F& f) const {
             a[k][lane] = x.a.data()[dof[lane]];
           }
         f(Batch{places.first, places.count, element.n_shapes(), element.dim(), q, v, a}, places);
-      } catch (...) {  // the same one with any number of threads
+        /// rethrows the failure of the lowest batch number, independent of the number of threads
+      } catch (...) {
 #pragma omp critical
         if (index < failed) {
           failed = index;
@@ -271,7 +274,7 @@ void Workspace::kkt(const State& x, const Constraints& c, const Weights& w, doub
     const int n = batch.n_local();
     std::fill(tangent, tangent + n * n, Lanes{});
     for (const BodyTerm& term : bodies_[places.body].terms) term.add_tangents(batch, w, tangent);
-    const Lanes* entry = tangent;
+    const Lanes* entry = tangent;  // by columns
     const int* place = places.entries.data();
     for (int run = 0; run < n * batch.n_shapes; ++run, entry += batch.dim, place += kLanes)
       for (int lane = 0; lane < batch.count; ++lane)

@@ -1,4 +1,5 @@
-// A part of the matrix of a model made anew: what a kept factor borders on.
+// Recomputation of some entries of the iteration matrix, for the border of a factorization whose
+// other entries are kept.
 #include <algorithm>
 
 #include "fem/model/workspace.h"
@@ -8,7 +9,7 @@ namespace {
 
 constexpr int kMaxLocal = kMaxShapes * kMaxDim;
 
-/// Which entries of a matrix.
+/// Selects the entries of a matrix whose row and column are both chosen.
 struct Chosen {
   const std::vector<char>& unknowns;
   bool operator()(int k) const { return k >= 0 && unknowns[static_cast<size_t>(k)] != 0; }
@@ -20,7 +21,8 @@ struct Chosen {
 void Workspace::renew_kkt(const State& x, const Constraints& c, const Weights& w, double scale,
                           const std::vector<char>& unknowns, SparseMatrix& out) {
   prepare(x);
-  if (built_version_ != pattern_version()) build_pattern();  // a motion that goes on has not yet
+  /// not yet built when a motion is continued
+  if (built_version_ != pattern_version()) build_pattern();
   const Chosen chosen{unknowns};
   for (int column = 0; column < out.cols(); ++column) {
     if (!chosen(column)) continue;
@@ -68,7 +70,7 @@ void Workspace::renew_batch(const BatchPlaces& places, const State& x, const Wei
   const int n = batch.n_local();
   std::fill(tangent, tangent + n * n, Lanes{});
   for (const BodyTerm& term : body.terms) term.add_tangents(batch, w, tangent);
-  // As in kkt(): a place for every column, vector of rows and lane.
+  // The order is that of kkt(): one position for every column, vector of rows and SIMD lane.
   const int* place = places.entries.data();
   for (int column = 0; column < n; ++column)
     for (int row = 0; row < n; row += batch.dim, place += kLanes)

@@ -1,6 +1,6 @@
 #include "fem/model/workspace.h"
 
-/// Derivatives by the factors of designs, and of the strain energy.
+/// Derivatives of forces and of the strain energy by the scale factors of designs.
 namespace flexmorph::fem {
 namespace {
 

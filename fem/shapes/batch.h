@@ -6,41 +6,56 @@
 
 namespace flexmorph::fem {
 
+/// Number of SIMD lanes of a pack, which is the number of elements that are evaluated at once.
 inline constexpr int kLanes = 8;
 
-/// Vectors of the compiler. (GCC ignores the attribute where its size depends on the template.)
+/// Vector type of the compiler with kWidth numbers. The specializations spell out the sizes,
+/// because GCC ignores the attribute where its size depends on a template parameter.
 template <int kWidth>
 struct VectorOf;
+/// Vector type of 2 numbers (16 bytes).
 template <>
 struct VectorOf<2> {
+  /// Vector of 2 numbers.
   using Type = double __attribute__((vector_size(16)));
 };
+/// Vector type of 4 numbers (32 bytes).
 template <>
 struct VectorOf<4> {
+  /// Vector of 4 numbers.
   using Type = double __attribute__((vector_size(32)));
 };
+/// Vector type of 8 numbers (64 bytes).
 template <>
 struct VectorOf<8> {
+  /// Vector of 8 numbers.
   using Type = double __attribute__((vector_size(64)));
 };
 
-/// One number of each of eight elements: arithmetic works on all of them at once, in vectors of
-/// `kWidth` numbers (the vector extension of GCC and Clang). Values are the same for every width,
-/// and so is the memory, whose alignment is that of the widest registers: kernels for all
-/// processors share it (geometry/vector_level.h).
+/// A pack with one number of each of eight elements. Arithmetic works on all of them at once, in
+/// vectors of `kWidth` numbers (the vector extension of GCC and Clang). Values and memory layout
+/// are independent of the width, and the alignment fits the widest registers; therefore kernels for
+/// all processors share the memory (geometry/vector_level.h).
 template <int kWidth>
 struct alignas(kLanes * sizeof(double)) [[gnu::may_alias]] LanesOf {
+  /// Vector type of the compiler.
   using Vector = typename VectorOf<kWidth>::Type;
-  static constexpr int kParts = kLanes / kWidth;
-  Vector part[kParts];
+  static constexpr int kParts = kLanes / kWidth;  ///< Number of vectors in a pack.
+  Vector part[kParts];                            ///< The vectors of the pack.
 
+  /// Returns the number in one SIMD lane.
   double& operator[](std::size_t lane) { return reinterpret_cast<double*>(part)[lane]; }
   double operator[](std::size_t lane) const { return reinterpret_cast<const double*>(part)[lane]; }
 
+  /// Adds a pack lane by lane.
   LanesOf& operator+=(const LanesOf& x) { return *this = *this + x; }
+  /// Subtracts a pack lane by lane.
   LanesOf& operator-=(const LanesOf& x) { return *this = *this - x; }
+  /// Multiplies by a pack lane by lane.
   LanesOf& operator*=(const LanesOf& x) { return *this = *this * x; }
+  /// Multiplies all lanes by a number.
   LanesOf& operator*=(double x) { return *this = *this * x; }
+  /// Divides by a pack lane by lane.
   LanesOf& operator/=(double x) { return *this = *this / x; }
 
   friend LanesOf operator-(const LanesOf& x) {
@@ -90,10 +105,10 @@ struct alignas(kLanes * sizeof(double)) [[gnu::may_alias]] LanesOf {
 
 static_assert(sizeof(LanesOf<2>) == 64 && sizeof(LanesOf<4>) == 64 && sizeof(LanesOf<8>) == 64);
 
-/// As all code has them that is no kernel.
+/// Pack in the width that all code except kernels uses.
 using Lanes = LanesOf<2>;
 
-/// The same numbers in vectors of another width.
+/// Returns the same packs as packs of another vector width.
 template <class V>
 inline const V* lanes_as(const Lanes* x) {
   return reinterpret_cast<const V*>(x);
@@ -103,7 +118,8 @@ inline V* lanes_as(Lanes* x) {
   return reinterpret_cast<V*>(x);
 }
 
-/// Runs a kernel, which is told its type of lanes: `kernel.template operator()<V>()`.
+/// Runs a kernel for the vector width of the processor; the kernel receives the type of its packs:
+/// `kernel.template operator()<V>()`.
 template <class Kernel>
 inline void run_batch_kernel(const Kernel& kernel) {
   run_kernel([&]<int kBytes> {
@@ -111,21 +127,25 @@ inline void run_batch_kernel(const Kernel& kernel) {
   });
 }
 
-/// Eight consecutive elements of a body, side by side.
+/// The unknowns of eight consecutive elements of a body, one element per SIMD lane.
 ///
-/// Unknown dim k + c of an element belongs to its shape function k, direction c. Lanes behind
-/// `count` repeat the last element: what is computed for them is not used.
+/// Unknown dim k + c of an element belongs to its shape function k, direction c. SIMD lanes from
+/// `count` on repeat the last element; their results are not used.
 struct Batch {
-  int first = 0, count = kLanes;  ///< elements [first, first + count)
-  int n_shapes = 0, dim = 0;
-  const Lanes *q = nullptr, *v = nullptr, *a = nullptr;  ///< (n_shapes dim) each
+  int first = 0, count = kLanes;  ///< Elements [first, first + count).
+  int n_shapes = 0, dim = 0;      ///< Number of shape functions, and number of directions in space.
 
+  /// Unknowns, rates and accelerations (n_shapes dim each).
+  const Lanes *q = nullptr, *v = nullptr, *a = nullptr;
+
+  /// Returns the number of unknowns of one element.
   int n_local() const { return n_shapes * dim; }
 };
 
-/// Bytes of the registers that numbers of a kernel are in.
+/// Size of the vector registers that a pack type uses [bytes].
 template <class V>
 inline constexpr int kBytesOf = 16;
+/// Size of the vector registers of LanesOf<kWidth> [bytes].
 template <int kWidth>
 inline constexpr int kBytesOf<LanesOf<kWidth>> = kWidth* static_cast<int>(sizeof(double));
 

@@ -40,7 +40,7 @@ void GramGradient::add_force(const Term& term, int e, const LocalStep& x, LocalR
   force.noalias() += c.factor() * c.relative.transpose() * direction;
 }
 
-/// With α = 2R/|A|² and the end moving by 2 w.q, the mean by w.q:
+/// With α = 2R/|A|², the end of the step moving by 2 w.q and the mean state by w.q:
 ///   d(α Lᵀ A L q̄) = w.q α Lᵀ A L dq + 2 w.q α Lᵀ (L dq Q₁ᵀ + Q₁ (L dq)ᵀ) Q̄ + Lᵀ A Q̄ dα
 ///   dα = 2 dR/|A|² - 2 α A:dA/|A|²,  A:dA = 4 w.q (Lᵀ A Q₁)·dq
 ///   dR = (2 w.q (f(q₁) - f(q̄)) - w.q K(q̄)ᵀ d)·dq

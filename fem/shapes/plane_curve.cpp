@@ -7,7 +7,7 @@
 namespace flexmorph::fem {
 namespace {
 
-constexpr int kParts = 512;  // between kept points
+constexpr int kParts = 512;  // intervals between sample points
 
 }  // namespace
 
@@ -42,7 +42,8 @@ double PlaneCurve::corner() const {
 }
 
 bool PlaneCurve::crosses_itself() const {
-  // Do x and y lie on one side of the line through a and b? Round-off is no side.
+  // Returns true if x and y lie on one side of the line through a and b, with a tolerance for
+  // round-off.
   const auto aside = [](const Vec2& a, const Vec2& b, const Vec2& x, const Vec2& y) {
     const Vec2 n(a.y() - b.y(), b.x() - a.x());
     const double slack = 1e-9 * n.squaredNorm(), u = n.dot(x - a), v = n.dot(y - a);
@@ -50,10 +51,12 @@ bool PlaneCurve::crosses_itself() const {
   };
   for (size_t i = 0; i < kParts; ++i)
     for (size_t j = i + 2; j < kParts; ++j) {
-      if (closed_ && i == 0 && j == kParts - 1) continue;  // neighbours
+      if (closed_ && i == 0 && j == kParts - 1) continue;  // neighbouring chords
       const Vec2 &a = samples_[i], &b = samples_[i + 1], &c = samples_[j], &d = samples_[j + 1];
       const double near = 0.5 * ((b - a).norm() + (d - c).norm());
-      if ((0.5 * (a + b - c - d)).norm() > near) continue;  // also along a straight line
+      // These chords are too far apart to cross. The test also excludes collinear chords, for which
+      // aside() is false.
+      if ((0.5 * (a + b - c - d)).norm() > near) continue;
       if (!aside(a, b, c, d) && !aside(c, d, a, b)) return true;
     }
   return false;
@@ -69,7 +72,8 @@ double PlaneCurve::nearest(const Vec2& p) const {
   for (int k = 0; k < 50; ++k) {
     const At c = at(inside(s));
     const double square = c.c_s.squaredNorm();
-    // Where p is beyond the centre of curvature the slope of Gauss and Newton goes downhill.
+    // Beyond the centre of curvature the second derivative of the distance is not positive. The
+    // lower bound, a tenth of the Gauss-Newton term, keeps a descent direction there.
     const double slope = std::max(square - (p - c.c).dot(c.c_ss), 0.1 * square);
     const double step = std::clamp((p - c.c).dot(c.c_s) / slope, -2 * part, 2 * part);
     s += step;

@@ -7,42 +7,45 @@
 
 namespace flexmorph::fem {
 
-/// A curve c(s) in the plane, 0 <= s <= until [m], with its derivatives c' and c''. It is closed
-/// where both ends agree in place and direction. 513 points at equal distances of the parameter are
-/// kept: searches begin at them, and the checks look at them.
+/// A curve c(s) in the plane, 0 <= s <= until, in metres, with its derivatives c' and c''. It is
+/// closed if both ends have the same position and direction. 513 sample points at equal distances
+/// of the parameter are stored: searches start at them, and the checks use them.
 class PlaneCurve {
  public:
   /// One coordinate as a function of the parameter s, with its derivatives by s [m].
   using Coordinate = std::function<Motion(double s)>;
-  /// The curve and its derivatives at one parameter [m].
+  /// The curve and its derivatives at one parameter value.
   struct At {
-    Vec2 c, c_s, c_ss;
+    Vec2 c, c_s, c_ss;  ///< Position c and derivatives c', c'' by the parameter [m].
   };
 
-  /// Evaluates the coordinates at all kept points.
+  /// Creates the curve and evaluates the coordinates at all sample points.
   PlaneCurve(Coordinate x, Coordinate y, double until);
 
-  /// Returns the curve at a parameter; beyond its ends as the coordinates go on there.
+  /// Returns the curve at a parameter value; beyond the ends the coordinate functions are evaluated
+  /// there.
   At at(double s) const;
-  /// Returns the parameter at which the curve ends.
+  /// Returns the parameter value at which the curve ends.
   double until() const { return until_; }
-  /// Says whether both ends are one point with one direction.
+  /// Returns true if both ends are one point with one direction.
   bool is_closed() const { return closed_; }
-  /// Returns the length of the polygon through the kept points [m].
+  /// Returns the length of the polygon through the sample points [m].
   double length() const;
 
-  /// Returns the first kept parameter at which the curve has no direction, or has turned by more
-  /// than a quarter since the kept point before (a corner); -1 where there is none.
+  /// Returns the first sample parameter at which the curve has no direction, or differs by 90
+  /// degrees or more from the direction at the previous sample point (a corner); -1 where there is
+  /// none.
   double corner() const;
-  /// Says whether two chords between neighbouring kept points cross or meet.
+  /// Returns true if two chords between neighbouring sample points cross or touch.
   bool crosses_itself() const;
 
   /// Returns the parameter of the point of the curve that is nearest to p, by Newton's method for
-  /// (p - c) · c' = 0 from the nearest kept point: it depends on p alone, not on earlier calls.
+  /// (p - c) · c' = 0 from the nearest sample point. The result depends on p alone, not on earlier
+  /// calls.
   double nearest(const Vec2& p) const;
 
  private:
-  /// Takes a parameter back into [0, until] along a closed curve.
+  /// Returns the parameter mapped into [0, until] along a closed curve.
   double inside(double s) const;
 
   Coordinate x_, y_;

@@ -7,7 +7,7 @@
 namespace flexmorph::fem {
 namespace {
 
-/// Coefficients of H1..H4 on the unit interval.
+/// Returns the coefficients of H1..H4 on the unit interval.
 Eigen::Matrix4d unit_functions(Hermite::Degree degree) {
   Eigen::Matrix4d h;
   if (degree == Hermite::Degree::linear) {
@@ -24,7 +24,7 @@ Eigen::Matrix4d unit_functions(Hermite::Degree degree) {
   return h;
 }
 
-/// (c0 + c1 s) p(s), the product cut at degree 3 (callers never exceed it).
+/// Returns (c0 + c1 s) p(s) up to degree 3, which the products of the callers never exceed.
 Eigen::Matrix4d times_linear(const Eigen::Matrix4d& p, double c0, double c1) {
   Eigen::Matrix4d out = c0 * p;
   out.rightCols<3>() += c1 * p.leftCols<3>();
@@ -47,7 +47,7 @@ Hermite::Hermite(const Motion& x1, const Motion& x2, Degree degree)
   const double a = length;
   const double a_dot = x2.rate - x1.rate;
   const double a_ddot = x2.acceleration - x1.acceleration;
-  // ṡ = u0 + u1 s;  s̈ at a fixed material point = w0 + w1 s.
+  // At a fixed material point ṡ = u0 + u1 s and s̈ = w0 + w1 s.
   const double u0 = -x1.rate / a, u1 = -a_dot / a;
   const double w0 = -x1.acceleration / a - 2 * u0 * a_dot / a;
   const double w1 = -a_ddot / a - 2 * u1 * a_dot / a;
@@ -115,11 +115,11 @@ const GaussRule& gauss(int n) {
 
 VectorXd lagrange_integrals(int n, double lower, double upper) {
   const GaussRule& nodes = gauss(n);
-  const GaussRule& inner = gauss((n + 1) / 2);  // exact for the degree n - 1 of ℓ
+  const GaussRule& inner = gauss((n + 1) / 2);  // exact for the degree n - 1 of ℓ_g
   VectorXd out = VectorXd::Zero(n);
   for (size_t k = 0; k < inner.points.size(); ++k) {
     const double s = lower + (upper - lower) * inner.points[k];
-    // Π_{i<g} (s - x_i) times Π_{i>g} (s - x_i), without dividing by s - x_g.
+    // The product of Π_{i<g} (s - x_i) and Π_{i>g} (s - x_i) avoids the division by s - x_g.
     std::array<double, kMaxGauss> below;
     double product = (upper - lower) * inner.weights[k];
     for (size_t g = 0; g < nodes.points.size(); ++g) {

@@ -4,13 +4,14 @@
 
 namespace flexmorph::fem {
 
-/// Singular values of a square matrix, the largest first, and the left singular vectors as columns
-/// (one-sided Jacobi rotations: small values keep their digits). In a file of its own, because
-/// compiling it takes as long as ten others.
+/// Singular values and left singular vectors of a square matrix.
 struct SingularValues {
-  VectorXd values;
-  MatrixXd left;
+  VectorXd values;  ///< Singular values, the largest first.
+  MatrixXd left;    ///< Left singular vectors as columns.
 };
+/// Computes the decomposition by Jacobi rotations, which keep the relative accuracy of small
+/// values. The function has its own source file, because its compilation takes as long as that of
+/// ten others.
 SingularValues singular_values(const MatrixXd& a);
 
 }  // namespace flexmorph::fem

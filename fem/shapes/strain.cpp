@@ -38,7 +38,7 @@ class GreenLagrange final : public StrainMeasure {
   }
 };
 
-/// [x]: [x] y = x × y.
+/// Returns [x]× with [x]× y = x × y.
 Mat3 crossing(const Vec3& x) {
   Mat3 out;
   out << 0, -x[2], x[1], x[2], 0, -x[0], -x[1], x[0], 0;
@@ -76,7 +76,7 @@ class PlateCurvature final : public StrainMeasure {
                    std::pow(length, 5);
     out.setZero(15, 15);
     out.block<6, 6>(0, 0) = at.G.transpose() * Q * at.G;
-    // along · (δr_m × Δr_n + Δr_m × δr_n)
+    // Second derivative of the cross product: along · (δr_m × Δr_n + Δr_m × δr_n).
     out.block<3, 3>(0, 3) -= crossing(along);
     out.block<3, 3>(3, 0) += crossing(along);
     out.block<6, 3>(0, 6 + 3 * i) = kFactor[i] * at.G.transpose() * at.J;
@@ -84,7 +84,7 @@ class PlateCurvature final : public StrainMeasure {
   }
 
  private:
-  static constexpr double kFactor[] = {1, 1, 2};  // of a_i
+  static constexpr double kFactor[] = {1, 1, 2};  // factors of a_i
   struct Point {
     explicit Point(const Measures& measures) : z(measures) {
       const Vec3 r_m = z.row(0).transpose(), r_n = z.row(1).transpose();

@@ -6,78 +6,91 @@
 
 #include "fem/element.h"
 
-/// Densities: what a term made of strains brings. Everything else that the seam of virtual work
-/// asks for follows in one place (terms/density_term.h).
+/// Densities: functions of the strains at a point, from which a term is built. The forces and
+/// matrices that the interface Term needs follow from them in one file (terms/density_term.h).
 namespace flexmorph::fem {
 
 /// A derivative ∂^(m + n) r / ∂m^m ∂n^n of the position.
 struct Measure {
-  int m_order, n_order;
+  int m_order, n_order;  ///< Orders of the derivatives by m and by n.
 };
-/// Six strains are the most there are; room for a vector register, or GCC 12 warns of loads that
-/// never happen.
+/// Largest numbers of measures and of strains at a point. There are at most six strains; eight fill
+/// a vector register, and with six GCC 12 warns of loads that never happen.
 inline constexpr int kMaxMeasures = 5, kMaxStrains = 8;
-using Measures = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor,
-                               kMaxMeasures, kMaxDim>;  ///< a row per measure
-using MeasureHessian =
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxMeasures * kMaxDim,
-                  kMaxMeasures * kMaxDim>;  ///< entry dim i + c of measure i, direction c
+/// Values of the measures at a point, one row per measure.
+using Measures =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMaxMeasures, kMaxDim>;
+/// Second derivatives by the measures; entry dim i + c belongs to measure i, direction c.
+using MeasureHessian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
+                                     kMaxMeasures * kMaxDim, kMaxMeasures * kMaxDim>;
+/// Vector of the strains at a point.
 using StrainVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxStrains, 1>;
+/// Matrix of derivatives of stresses by strains.
 using StrainSquare =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxStrains, kMaxStrains>;
-using StrainVariation = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxStrains,
-                                      kMaxMeasures * kMaxDim>;  ///< columns as of MeasureHessian
+/// Derivatives of the strains by the measures; the columns are ordered as in MeasureHessian.
+using StrainVariation =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxStrains, kMaxMeasures * kMaxDim>;
 
-/// Elastic energy per reference area as a function of derivatives of the position.
+/// Interface of an elastic energy per reference area as a function of derivatives of the position.
 class EnergyDensity {
  public:
   virtual ~EnergyDensity() = default;
+  /// Returns the derivatives of the position that the density depends on.
   virtual std::span<const Measure> measures() const = 0;
-  /// W(z) [J/m²]; gradient and hessian by z where asked for.
+  /// Returns W(z) [J/m²]; fills the gradient and the hessian by z unless they are null.
   virtual double energy(const Measures& z, Measures* gradient, MeasureHessian* hessian) const = 0;
 };
 
-/// Strains of a point by derivatives of the position, e = e(z). They do not change when the body
-/// moves as a rigid one.
+/// Interface of strains at a point as functions of derivatives of the position, e = e(z). They do
+/// not change in a rigid motion of the body.
 class StrainMeasure {
  public:
   virtual ~StrainMeasure() = default;
-  virtual int size() const = 0;  ///< strains of a point, <= kMaxStrains
+  /// Returns the number of strains at a point, <= kMaxStrains.
+  virtual int size() const = 0;
+  /// Returns the derivatives of the position that the strains depend on.
   virtual std::span<const Measure> measures() const = 0;
-  /// @param variation  ∂e/∂z where asked for (size x n_z)
+  /// Evaluates the strains e(z).
+  /// @param variation  ∂e/∂z (size x n_z), or null
   virtual void strain(const Measures& z, StrainVector& e, StrainVariation* variation) const = 0;
-  /// out = ∂²e_i/∂z² (n_z x n_z).
+  /// Evaluates the second derivatives ∂²e_i/∂z² (n_z x n_z).
   virtual void second_variation(int i, const Measures& z, MeasureHessian& out) const = 0;
 };
-/// (½(r_m·r_m - 1), ½(r_n·r_n - 1), r_m·r_n), the strain of Green and Lagrange [-], P (6).
+/// Returns the Green-Lagrange strain (½(r_m·r_m - 1), ½(r_n·r_n - 1), r_m·r_n) [-], P (6).
 const StrainMeasure& green_lagrange();
-/// (r_mm·n, r_nn·n, 2 r_mn·n)/|n|³, n = r_m × r_n: the curvature of a plate in space [1/m], P (7).
+/// Returns the curvature of a plate in space (r_mm·n, r_nn·n, 2 r_mn·n)/|n|³ with n = r_m × r_n
+/// [1/m], P (7).
 const StrainMeasure& plate_curvature();
 
-/// Elastic energy per reference area as a function of strains.
+/// Interface of an elastic energy per reference area as a function of strains.
 class StrainDensity : public EnergyDensity {
  public:
-  /// @param strain  outlives the density
+  /// Creates a density of the given strains.
+  /// @param strain  must exist as long as the density
   explicit StrainDensity(const StrainMeasure& strain) : strain_(&strain) {}
+  /// Returns the strains that the density depends on.
   const StrainMeasure& strain() const { return *strain_; }
-  /// W(e) [J/m²]; stress ∂W/∂e and its derivative by e where asked for.
+  /// Returns W(e) [J/m²]; fills the stress ∂W/∂e and its derivative by e unless they are null.
   virtual double of_strain(const StrainVector& e, StrainVector* stress,
                            StrainSquare* stiffness) const = 0;
 
   std::span<const Measure> measures() const override { return strain_->measures(); }
-  /// By the chain rule.
+  /// Evaluates W(e(z)) by the chain rule.
   double energy(const Measures& z, Measures* gradient, MeasureHessian* hessian) const override;
 
  private:
   const StrainMeasure* strain_;
 };
 
-/// W = ½ eᵀ D e.
+/// The quadratic energy density W = ½ eᵀ D e.
 class LinearDensity : public StrainDensity {
  public:
+  /// Creates the density with the stiffness D.
   /// @param stiffness  D, symmetric [J/m² per strain²]
   LinearDensity(const StrainMeasure& strain, const StrainSquare& stiffness)
       : StrainDensity(strain), stiffness_(stiffness) {}
+  /// Returns the stiffness D [J/m² per strain²].
   const StrainSquare& stiffness() const { return stiffness_; }
   double of_strain(const StrainVector& e, StrainVector* stress,
                    StrainSquare* stiffness) const override;
@@ -86,55 +99,66 @@ class LinearDensity : public StrainDensity {
   StrainSquare stiffness_;
 };
 
-/// Power per reference area that strains dissipate while they change.
+/// Interface of the power per reference area that is dissipated by strain rates.
 class DissipationDensity {
  public:
   virtual ~DissipationDensity() = default;
+  /// Returns the strains that the density depends on.
   virtual const StrainMeasure& strain() const = 0;
-  /// The stress s(e, ė), of which s · ė >= 0 is the power [W/m²]; ∂s/∂e and ∂s/∂ė where asked for.
+  /// Evaluates the stress s(e, ė), with the power s · ė >= 0 [W/m²], and its derivatives ∂s/∂e and
+  /// ∂s/∂ė unless they are null.
   virtual void stress(const StrainVector& e, const StrainVector& rate, StrainVector& stress,
                       StrainSquare* by_strain, StrainSquare* by_rate) const = 0;
 };
 
-/// Points of an element at which its density is taken, and the strains there: with e the strains
-/// of the measures at all points, strain i of n of the density is mix[i] e_i; or, with n² matrices,
-/// Σ_j mix[n i + j] e_j, empty ones being zero.
+/// Points of an element at which the density is evaluated, and the strains there. With e_i the i-th
+/// strain of the measures at all points and n the number of strains, strain i of the density is
+/// mix[i] e_i with n matrices or, with n² matrices, Σ_j mix[n i + j] e_j, in which empty matrices
+/// are zero.
 struct StrainTable {
-  VectorXd weight;                      ///< reference area times the factor (n_points) [m²]
-  std::vector<MatrixXd> measure;        ///< z_i = measure[i] q (n_points x n_shapes)
-  std::vector<MatrixXd> rate;           ///< ∂measure/∂t at fixed material point; none: still
-  std::vector<MatrixXd> mix, mix_rate;  ///< (n_points x n_points) and ∂mix/∂t; none: 1, still
+  VectorXd weight;                ///< Reference area times the scale factor (n_points) [m²].
+  std::vector<MatrixXd> measure;  ///< Matrices of z_i = measure[i] q (n_points x n_shapes).
+
+  /// Rates ∂measure/∂t at a fixed material point; empty if no line moves.
+  std::vector<MatrixXd> rate;
+  /// Matrices (n_points x n_points) and their rates ∂mix/∂t. Empty: identity, and zero rates.
+  std::vector<MatrixXd> mix, mix_rate;
 };
 
-/// What a table is made from.
+/// The data from which a strain table is filled.
 struct StrainSource {
-  const Element& element;
-  const Factors& factors;
-  MatrixXd reference;  ///< Element::reference()
+  const Element& element;  ///< Elements of the body.
+  const Factors& factors;  ///< Scale factors of the design.
+  MatrixXd reference;      ///< Reference values, see Element::reference().
 };
 
-/// How the strains of an element are sampled.
+/// Interface of the sampling of the strains of an element: the points, and the interpolation
+/// between them.
 class StrainSampling {
  public:
   virtual ~StrainSampling() = default;
-  /// Fills the table of an element, with rates where its lines move.
+  /// Fills the table of element e, with rates where its lines move.
   virtual void tabulate(const StrainSource& from, int e, StrainTable& out) const = 0;
-  /// Are strains those of the measures at points of degree() with the tables of what()? Free lines
-  /// ask for that.
+  /// Returns true if the strains are the strains of the measures at points of degree() with the
+  /// tables of what(); free lines require it.
   virtual bool is_pointwise() const { return false; }
+  /// Returns the polynomial degree of the quadrature of a pointwise sampling.
   virtual int degree() const { return 0; }
+  /// Returns the tables that a pointwise sampling needs.
   virtual Tabulate what() const { return Tabulate::gradient; }
-  /// Strains on an m-line out of those of its points (n x size of the strain).
+  /// Replaces the strains at points of an m-line by the sampled strains (n x size of the strain).
   virtual void along_line(MatrixXd& /*strains*/) const {}
 };
 
-/// A density over the elements of a body. A term is made of one or more of them.
+/// A density with its sampling over the elements of a body; a term consists of one or more of them.
 template <class Density>
 struct Sampled {
-  std::shared_ptr<const Density> density;
-  std::shared_ptr<const StrainSampling> sampling;
+  std::shared_ptr<const Density> density;          ///< Density at a point.
+  std::shared_ptr<const StrainSampling> sampling;  ///< Sampling of the strains in an element.
 };
+/// Elastic density with its sampling.
 using ElasticPart = Sampled<StrainDensity>;
+/// Dissipation density with its sampling.
 using DissipativePart = Sampled<DissipationDensity>;
 
 }  // namespace flexmorph::fem

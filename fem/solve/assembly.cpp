@@ -10,20 +10,20 @@ namespace flexmorph::fem {
 namespace {
 
 constexpr int kMostIterations = 60;
-constexpr double kTolerance = 1e-12;        // what joints may miss by, in parts of the model's size
-constexpr double kCompliance = 1e-9;        // δ of the first Newton step
-constexpr double kLeastCompliance = 1e-14;  // after steps that went well, and for velocities
-constexpr double kMostCompliance = 1e6;     // of the most careful step
-constexpr double kPartOfIdentity = 1e-8;    // added to the masses
+constexpr double kTolerance = 1e-12;  // allowed violation of joints relative to the model's size
+constexpr double kCompliance = 1e-9;  // δ of the first Newton step
+constexpr double kLeastCompliance = 1e-14;  // after full steps, and for velocities
+constexpr double kMostCompliance = 1e6;     // largest δ; the assembly fails above it
+constexpr double kPartOfIdentity = 1e-8;  // fraction of the mean mass that is added to the diagonal
 
 std::string number(double value) { return formatted("%.3g", value); }
 
-/// Smallest corrections in the mass norm, in displacements S q and scaled rows.
+/// Computes the smallest corrections in the mass norm, in displacements S q and scaled rows.
 class Correction {
  public:
   explicit Correction(Workspace& model) : model_(model) {}
 
-  /// Factor at a state and the rows there.
+  /// Factors the matrix at a state; `rows` are the constraints at this state.
   void factorize(const State& x, const ScaledConstraints& rows, double delta) {
     const int n = model_.n_dofs(), m = model_.n_constraints();
     model_.kkt(x, rows.unscaled(), {0, 0, 1}, 1, kkt_);
@@ -43,7 +43,7 @@ class Correction {
     solver_.factorize(sum_);
   }
 
-  /// Δ (n), no displacement but a change of unknowns: J S Δ = -miss.
+  /// Returns the change of the unknowns Δ (n), not scaled to displacements, with J S Δ = -miss.
   const VectorXd& solve(const VectorXd& miss) {
     const int n = model_.n_dofs();
     right_.setZero(n + miss.size());
@@ -54,7 +54,7 @@ class Correction {
   }
 
  private:
-  /// A typical mass, and what is added to the diagonal so that no unknown is without one.
+  /// Computes a typical mass, and the addition to the diagonal that gives every unknown some mass.
   void find_masses() {
     const int n = model_.n_dofs(), m = model_.n_constraints();
     VectorXd mass = VectorXd::Zero(n);
@@ -98,7 +98,7 @@ class Assembler {
 
   Assembly run() {
     const State start = x_;
-    model_.prepare(x_);  // for the scales
+    model_.prepare(x_);  // so that the scales are defined
     rows_.evaluate(model_, x_);
     if (model_.n_constraints() > 0) {
       find_position();
@@ -113,7 +113,7 @@ class Assembler {
  private:
   void find_position() {
     double delta = kCompliance;
-    int idle = 0;  // steps that hardly brought anything
+    int idle = 0;  // consecutive steps that hardly reduced the violation
     for (report_.iterations = 0;; ++report_.iterations) {
       const VectorXd miss = rows_.misses();
       report_.miss = miss.lpNorm<Eigen::Infinity>();
@@ -131,8 +131,8 @@ class Assembler {
     }
   }
 
-  /// Moves by the largest of the parts 1, 1/2, ... that makes |R Φ|² (R as it was) decrease as it
-  /// should; 0, and nothing moved, where none down to 1/128 does.
+  /// Moves by the largest of the fractions 1, 1/2, ... that decreases |R Φ|² (with the previous R)
+  /// sufficiently. Returns 0, with nothing moved, if no fraction down to 1/128 does.
   double search(const VectorXd& change, const VectorXd& miss) {
     const VectorXd start = x_.q, scale = rows_.row_scale();
     const double before = miss.squaredNorm();
@@ -143,7 +143,7 @@ class Assembler {
       if (!x_.q.allFinite()) continue;
       model_.constraints(x_, trial_);
       const double after = scale.cwiseProduct(trial_.value).squaredNorm();
-      if (!(after <= before + 1e-4 * part * slope)) continue;  // also where it is not a number
+      if (!(after <= before + 1e-4 * part * slope)) continue;  // true also for NaN
       rows_.evaluate(model_, x_);
       return part;
     }
@@ -151,11 +151,11 @@ class Assembler {
     return 0;
   }
 
-  /// Smallest change of v; repeated, because δ leaves a part of it.
+  /// Applies the smallest change of v. It is repeated because δ leaves a fraction of the error.
   void find_velocity() {
     correction_.factorize(x_, rows_, kLeastCompliance);
     double size =
-        0;  // of the fastest pass: where all comes to rest, nothing is left to compare with
+        0;  // largest speed of all passes, because a model that stops has no scale of its own
     for (int pass = 0;; ++pass) {
       const VectorXd speed = rows_.scales().cwiseProduct(x_.v);
       const VectorXd rate = rows_.row_scale().cwiseProduct(rows_.unscaled().rate);

@@ -8,8 +8,8 @@
 namespace flexmorph::fem {
 namespace {
 
-/// The diagonal of D. Rows without an entry on the diagonal take the length that the others leave
-/// them.
+/// Returns the diagonal of D. Rows without an entry on the diagonal are scaled to length 1 after
+/// the columns have been scaled.
 VectorXd unit_scales(const SparseMatrix& a) {
   VectorXd out = a.diagonal().cwiseAbs(), squares = VectorXd::Zero(a.rows());
   for (Eigen::Index i = 0; i < out.size(); ++i) out[i] = out[i] > 0 ? 1 / std::sqrt(out[i]) : 0;
@@ -36,7 +36,7 @@ double condition_estimate(SparseMatrix a) {
     solver.analyze(a);
     solver.factorize(a);
     const double out = solver.condition(a);
-    return out >= 1 ? out : kNone;  // not a number is no condition
+    return out >= 1 ? out : kNone;  // NaN counts as singular
   } catch (const Error&) {
     return kNone;
   }

@@ -10,15 +10,16 @@
 namespace flexmorph::fem {
 namespace {
 
-constexpr double kNewPart = 1e-9;     // of a row of unit size, below which it is dependent
-constexpr double kZeroEntry = 1e-7;   // of a null vector with largest entry 1
-constexpr double kConsistent = 1e-8;  // of what is added up to zero
-// Of the size of the model, per second and per second squared: rates and accelerations that are
-// zero but for round-off have no scale of their own, a model at rest least of all.
+constexpr double kNewPart = 1e-9;  // independent fraction of a unit row below which it is dependent
+constexpr double kZeroEntry = 1e-7;   // relative to the largest entry, 1, of a null vector
+constexpr double kConsistent = 1e-8;  // relative to the terms that add up to zero
+// Relative to the size of the model, per second and per second squared: rates and accelerations
+// that are zero except for round-off have no scale of their own, in particular those of a static
+// model.
 constexpr double kRoundOff = 1e-10;
-constexpr double kShift = 1e-14;     // of the Gram matrix of the watch
-constexpr double kSurelyNew = 1e-4;  // of a row, above which the Gram matrix tells it as well
-constexpr double kOwn = 0.1;         // entry of a row in a column of its own that sets it apart
+constexpr double kShift = 1e-14;     // shift of the Gram matrix of ConstraintWatch
+constexpr double kSurelyNew = 1e-4;  // above it the Gram matrix is accurate enough
+constexpr double kOwn = 0.1;  // smallest entry alone in its column that proves a row independent
 
 std::string number(double value) { return formatted("%.3g", value); }
 
@@ -26,7 +27,7 @@ using Entry = std::pair<int, double>;
 /// A null vector of the rows: (row, entry), rows ascending, largest entry 1.
 using NullVector = std::vector<Entry>;
 
-/// Jᵀ without the unknowns that no row acts on, with at least as many rows as columns.
+/// Returns Jᵀ without the unknowns that no row acts on, with at least as many rows as columns.
 SparseMatrix compressed_transpose(const SparseMatrix& j) {
   std::vector<Eigen::Triplet<double>> entries;
   int used = 0;
@@ -55,25 +56,29 @@ NullVector normalized(const VectorXd& z) {
   return out;
 }
 
-/// Are all rows independent beyond doubt? Pivots of the Gram matrix J Jᵀ of rows of unit size are
-/// squares of what each row adds to those before it; its round-off, 1e-16 times what grows with the
-/// length of a chain, is far below the bound. Near linear for chains, where QR needs seconds.
+/// Returns true if all rows are certainly independent. Pivots of the Gram matrix J Jᵀ of unit rows
+/// are squares of the fraction that each row adds to the rows before it. Their round-off, 1e-16
+/// times a number that grows with the length of a chain, is far below the bound. The cost is nearly
+/// linear for chains, where QR needs seconds.
 bool surely_independent(const SparseMatrix& j) {
   const SparseMatrix gram = j * j.transpose();
   const Eigen::SimplicialLDLT<SparseMatrix> factor(gram);
   return factor.info() == Eigen::Success && factor.vectorD().minCoeff() > kSurelyNew * kSurelyNew;
 }
 
-/// Rows that no others can span: those with an entry in a column that no other row has, then those
-/// of which that is true without them, and so on. A null vector is zero there. Welded edges and
-/// open chains are made of such rows, so that factors of what is left are small.
-/// @return the other rows (ascending)
+/// Removes rows that no others can span: rows with an entry in a column that no other row has, then
+/// rows for which this holds without the removed ones, and so on. A null vector is zero in the
+/// removed rows. Welded edges and open chains consist of such rows, so that the factors of the
+/// remaining rows are small.
+/// @returns the remaining rows (ascending)
 std::vector<int> entangled_rows(const SparseMatrix& j) {
   using RowMajor = Eigen::SparseMatrix<double, Eigen::RowMajor>;
   const RowMajor by_row = j;
   const auto counts = [](double entry) { return entry != 0; };
-  std::vector<int> left(static_cast<size_t>(j.cols()), 0);       // rows that a column is in
-  std::vector<long long> sum(static_cast<size_t>(j.cols()), 0);  // of their numbers
+  // Number of rows with an entry in each column.
+  std::vector<int> left(static_cast<size_t>(j.cols()), 0);
+  // Sum of the numbers of the rows with an entry in each column.
+  std::vector<long long> sum(static_cast<size_t>(j.cols()), 0);
   for (int row = 0; row < by_row.outerSize(); ++row)
     for (RowMajor::InnerIterator e(by_row, row); e; ++e)
       if (counts(e.value())) {
@@ -104,17 +109,17 @@ std::vector<int> entangled_rows(const SparseMatrix& j) {
   return out;
 }
 
-/// The given rows of a matrix.
+/// Returns the given rows of a matrix.
 SparseMatrix rows_of(const SparseMatrix& j, const std::vector<int>& rows) {
   SparseMatrix pick(static_cast<Eigen::Index>(rows.size()), j.rows());
   for (size_t k = 0; k < rows.size(); ++k) pick.insert(static_cast<Eigen::Index>(k), rows[k]) = 1;
   return pick * j;
 }
 
-/// Independent rows (ascending) and a null vector for every other row.
+/// Finds independent rows (ascending) and a null vector for every other row.
 ///
-/// With Jᵀ P = Q [R₁₁ R₁₂; 0 0]: null vectors are the columns of P [-R₁₁⁻¹ R₁₂; I]. Each of them
-/// says how a dependent row is spanned by the independent ones, in the one way there is.
+/// With Jᵀ P = Q [R₁₁ R₁₂; 0 0], the null vectors are the columns of P [-R₁₁⁻¹ R₁₂; I]. Each of
+/// them is the unique representation of a dependent row by the independent ones.
 void factor_rows(const SparseMatrix& all, std::vector<int>& independent,
                  std::vector<NullVector>& null_vectors) {
   const std::vector<int> rows = entangled_rows(all);
@@ -160,7 +165,7 @@ std::vector<int> joints_of(const NullVector& z, const std::vector<int>& joint_of
   return out;
 }
 
-/// a - c b with the c that removes an entry of `row`; both have one.
+/// Returns a - c b with the c that cancels the entry of `row`; both vectors have this entry.
 NullVector without(const NullVector& a, const NullVector& b, int row, int m) {
   const auto entry = [row](const NullVector& z) {
     return std::find_if(z.begin(), z.end(), [row](const Entry& e) { return e.first == row; })
@@ -171,14 +176,14 @@ NullVector without(const NullVector& a, const NullVector& b, int row, int m) {
   for (const auto& [i, value] : a) sum[i] += value;
   for (const auto& [i, value] : b) sum[i] -= c * value;
   sum[row] = 0;
-  // What cancels leaves round-off.
+  // Entries that cancel leave round-off.
   const double largest = std::max(1.0, std::abs(c));
   return normalized((sum.array().abs() > kZeroEntry * largest).select(sum, 0.0));
 }
 
-/// Takes null vectors from each other while one of them then names fewer joints.
+/// Subtracts null vectors from each other as long as one of them then involves fewer joints.
 void shorten(std::vector<NullVector>& all, const std::vector<int>& joint_of) {
-  constexpr size_t kMost = 60;  // of this many nobody reads the text
+  constexpr size_t kMost = 60;  // longer lists are of no use to a reader
   if (all.size() > kMost) return;
   const int m = static_cast<int>(joint_of.size());
   for (bool shorter = true; shorter;) {
@@ -202,7 +207,7 @@ void shorten(std::vector<NullVector>& all, const std::vector<int>& joint_of) {
   }
 }
 
-/// |Σ z f| where it is more than round-off and the allowance, else 0.
+/// Returns |Σ z f| where it exceeds round-off and the allowance, otherwise 0.
 double miss_of(const NullVector& z, const VectorXd& row_scale, const VectorXd& f,
                double allowance) {
   double sum = 0, size = 0;
@@ -295,7 +300,8 @@ int degrees_of_freedom(Workspace& model, const State& x) {
 std::string describe(const Diagnosis& diagnosis) {
   constexpr size_t kMost = 10;
   std::vector<const DependentGroup*> groups;
-  for (const bool contradictory : {true, false})  // what has to be changed first
+  // contradictions first, because they must be changed first
+  for (const bool contradictory : {true, false})
     for (const DependentGroup& g : diagnosis.groups)
       if (g.contradictory == contradictory) groups.push_back(&g);
   std::string out;
@@ -327,7 +333,7 @@ Conditioning ConstraintWatch::look(const State& x) {
   if (factor_.info() != Eigen::Success)
     throw Error::numerical("watch of constraints: the factorization failed at t = " + number(x.t) +
                            " s");
-  // A start with parts of all rows, the same every time: multiples of the golden section.
+  // A deterministic start vector with components in all rows: multiples of the golden section.
   z_.resize(m);
   for (int i = 0; i < m; ++i) z_[i] = std::fmod(0.6180339887498949 * (i + 1), 1.0) - 0.37;
   z_.normalize();

@@ -6,91 +6,109 @@
 
 namespace flexmorph::fem {
 
-/// Joints whose rows hold the same freedom: a smallest dependent set, without any one of them the
-/// others are independent.
+/// A smallest set of joints whose constraint rows depend on each other: without any one of the
+/// joints, the rows of the remaining ones are independent.
 struct DependentGroup {
-  /// Those that take part, in the order of the model; without those that belong to a body.
+  /// Names of the joints in the group, in the order of the model. Joints that belong to a body are
+  /// left out.
   std::vector<std::string> joints;
-  std::vector<int> rows;  ///< all their rows that do
-  int surplus = 0;        ///< rows of the group that say nothing new
+  std::vector<int> rows;  ///< Numbers of all constraint rows of the group, ascending.
+  int surplus = 0;        ///< Number of redundant rows in the group.
 
-  /// What the rows miss each other by, as Σ z Φ with the null vector z (largest entry 1) of the
-  /// scaled rows: positions [m], rates [m/s], accelerations [m/s²]; the largest of the group. 0
-  /// where it is round-off: of what is added up, or 1e-10 of the model's size (per s, per s²).
+  /// Inconsistency of the rows, |Σ z Φ| with the null vector z (largest entry 1) of the scaled
+  /// rows, for positions [m], rates [m/s] and accelerations [m/s²]; the largest of the group. It is
+  /// 0 where it is round-off, relative to the sum of the absolute terms or to 1e-10 of the model's
+  /// size (per s, per s²).
   double miss = 0, rate_miss = 0, acceleration_miss = 0;
-  /// redundant (false): all three combine to zero, one joint may go; or contradictory.
+  /// True if the rows contradict each other; false if they are redundant: the positions, rates and
+  /// accelerations all combine to zero, so that one joint can be removed.
   bool contradictory = false;
 };
 
+/// Rank of the constraint Jacobian and the groups of joints that depend on each other.
 struct Diagnosis {
+  /// Numbers of unknowns and of constraint rows.
   int unknowns = 0, constraints = 0;
-  int rank = 0;                  ///< of Φ_q
-  std::vector<int> independent;  ///< rows that span all others (rank), ascending
+  int rank = 0;                  ///< Rank of Φ_q.
+  std::vector<int> independent;  ///< Rows that span all rows (rank), ascending.
+  /// Groups of dependent joints; empty if all rows are independent.
   std::vector<DependentGroup> groups;
 
-  /// Freedoms left: unknowns minus rank. Slopes of plates count like positions.
+  /// Returns the number of remaining degrees of freedom, unknowns minus rank. Position gradients
+  /// (slopes) of plates count like positions.
   int degrees_of_freedom() const { return unknowns - rank; }
+  /// Returns true if no row depends on other rows.
   bool is_independent() const { return rank == constraints; }
+  /// Returns true if the rows of a group contradict each other.
   bool is_contradictory() const;
-  /// Says whether rows of a group miss each other in position.
+  /// Returns true if the rows of a group are inconsistent in position.
   bool misses_positions() const;
 };
 
-/// Rank of Φ_q at a state, and which joints depend on each other. Columns are scaled to
-/// displacements, rows to unit size (ScaledConstraints); a row is dependent when less than 1e-9 of
-/// it is new. Sparse QR factor of Φ_qᵀ; the null vectors follow from its triangle: one for every
-/// dependent row, with no more rows than needed to span it, then shortened against each other.
+/// Determines the rank of Φ_q at a state, and which joints depend on each other.
 ///
-/// A dependence that exists at this one position only (a dead centre) cannot be told from one that
-/// stays; neither can rows be called contradictory by their values where the mechanism is not
-/// assembled and Φ not linear: assemble() first.
+/// Columns are scaled to displacements, rows to unit size (ScaledConstraints). A row is dependent
+/// if less than 1e-9 of it is linearly independent of the other rows. The rank follows from a
+/// sparse QR factorization of Φ_qᵀ, and the null vectors from its triangle: one for every dependent
+/// row, with only the rows that span it. Then null vectors are combined so that they involve fewer
+/// joints.
 ///
-/// @throws Error (numerical) when Φ or Φ_q hold numbers that are not finite.
+/// A dependence that exists at this position only (a dead centre) cannot be distinguished from a
+/// permanent one. Where the mechanism is not assembled and Φ is not linear, the values of the rows
+/// do not show whether they are contradictory; call assemble() first.
+///
+/// @throws Error (numerical) when Φ or Φ_q contain numbers that are not finite.
 Diagnosis diagnose(Workspace& model, const State& x);
 
-/// Unknowns minus the rank of Φ_q.
+/// Returns the number of unknowns minus the rank of Φ_q.
 int degrees_of_freedom(Workspace& model, const State& x);
 
-/// One line per group: "joints 'pin', 'drive' hold the same freedom"; or "joints ... contradict
-/// each other: they miss by 0.012 m"; contradictions first, ten lines at most. Empty where all rows
-/// are independent.
+/// Returns a text with one line per group: "joints 'pin', 'drive' hold the same freedom" or "joints
+/// ... contradict each other: they miss by 0.012 m". Contradictions come first, and the text has at
+/// most ten groups. It is empty if all rows are independent.
 std::string describe(const Diagnosis& diagnosis);
 
-/// @throws Error (input) with that text when rows are dependent.
+/// Throws an error if rows are dependent.
+/// @throws Error (input) with the text of describe().
 void require_independent(const Diagnosis& diagnosis);
 
-/// How near the rows of Φ_q are to dependence.
+/// Measure of how close the rows of Φ_q are to linear dependence.
 struct Conditioning {
-  double t = 0;
-  double condition = 1;             ///< σ_max / σ_min of the scaled Φ_q; without joints 1
-  std::vector<std::string> joints;  ///< of the nearly dependent rows, those that weigh most first
+  double t = 0;          ///< Time of the state [s].
+  double condition = 1;  ///< Ratio σ_max / σ_min of the scaled Φ_q; 1 without joints.
+  /// Names of the joints whose rows are nearly dependent, the largest weight first.
+  std::vector<std::string> joints;
 };
 
-/// Watches the constraints of a model in motion. Cheap: one factor of Φ_q Φ_qᵀ (constraints only,
-/// sparse) and a few solves; pattern and work space are kept.
+/// Monitors the conditioning of a model's constraints during a motion. An evaluation is cheap: one
+/// factorization of Φ_q Φ_qᵀ (constraints only, sparse) and a few solutions; pattern and work space
+/// are kept.
 ///
-/// σ_min by inverse iteration, σ_max by power iteration on Φ_q Φ_qᵀ: both are approached from
-/// inside, so the condition is never overestimated. It saturates at about 1e7, because the squared
-/// matrix is shifted by 1e-14 to keep its factor.
+/// σ_min follows from inverse iteration, σ_max from power iteration on Φ_q Φ_qᵀ. Both are
+/// approached from inside the spectrum, so that the condition is never overestimated. It saturates
+/// at about 1e7, because the matrix Φ_q Φ_qᵀ is shifted by 1e-14 to keep it factorizable.
 class ConstraintWatch {
  public:
+  /// Creates the monitor of a model, which must outlive it.
   explicit ConstraintWatch(Workspace& model) : model_(model) {}
-  /// @throws Error (numerical) when Φ_q holds numbers that are not finite.
+  /// Computes the conditioning of the constraints at a state.
+  /// @throws Error (numerical) when Φ_q contains numbers that are not finite.
   Conditioning look(const State& x);
 
  private:
   Workspace& model_;
   ScaledConstraints rows_;
-  int version_ = -1;  // of the model's pattern
+  int version_ = -1;  // pattern version of the model at the last analysis
   SparseMatrix gram_;
   Eigen::SimplicialLDLT<SparseMatrix> factor_;
   VectorXd z_, previous_;
 };
 
-/// The condition alone.
+/// Returns the condition number of the constraints, see ConstraintWatch.
 double constraint_condition(Workspace& model, const State& x);
 
-/// "constraints are nearly dependent at t = 0.35 s: condition 2.1e+07, joints 'a', 'b'".
+/// Returns the message "constraints are nearly dependent at t = 0.35 s: condition 2.1e+07, joints
+/// 'a', 'b'".
 std::string describe(const Conditioning& conditioning);
 
 }  // namespace flexmorph::fem

@@ -9,7 +9,8 @@
 namespace flexmorph::fem {
 namespace {
 
-constexpr double kSingular = 300;  // condition from which a failure is put down to it
+// condition above which a failure is attributed to a singular position
+constexpr double kSingular = 300;
 
 std::string time_text(double t) { return formatted("%.7g", t); }
 
@@ -56,7 +57,7 @@ bool Kinematics::factorize(const State& x) {
   return lu_.info() == Eigen::Success;
 }
 
-/// out = S⁻¹ (J⁻¹ R right)
+/// Computes out = S⁻¹ (J⁻¹ R right).
 void Kinematics::solve(const VectorXd& right, VectorXd& out) const {
   right_.resize(model_.n_dofs());
   for (size_t i = 0; i < place_of_row_.size(); ++i)
@@ -72,7 +73,8 @@ bool Kinematics::newton(State& x, double& sign) {
   double last = 0;
   for (int iteration = 0; iteration < 12; ++iteration) {
     if (!factorize(x)) return false;
-    if (iteration > 0 && last <= 1e-11 * size_) {  // of second order: the next one is round-off
+    // quadratic convergence: the next correction is round-off
+    if (iteration > 0 && last <= 1e-11 * size_) {
       sign = lu_.signDeterminant();
       return true;
     }
@@ -124,7 +126,8 @@ void Kinematics::give_up(double refused) {
     throw Error::numerical(where + list_joints(now.joints) +
                            ": singular position (dead centre, or too short to reach)");
   }
-  // Not singular: what jumps misses most when nothing moves but time.
+  // The position is not singular. If only the time is advanced, the joint that jumps has the
+  // largest violation.
   trial_ = x_;
   trial_.t = refused;
   rows_.evaluate(model_, trial_);

@@ -6,63 +6,72 @@
 
 namespace flexmorph::fem {
 
+/// Step sizes and limits of Kinematics.
 struct KinematicsSettings {
-  double largest_step = 0.1;    ///< of a substep [s]
-  double smallest_step = 1e-7;  ///< below it the path ends; its time is known as well as this [s]
-  /// The correction of a predicted position may have this part of the predicted motion or, where
-  /// that is larger, a fifth of this part of the model's size.
+  double largest_step = 0.1;  ///< Largest substep [s].
+  /// Smallest substep [s]; where it is not small enough the path ends, and this is the accuracy of
+  /// the reported time.
+  double smallest_step = 1e-7;
+  /// Largest allowed ratio of the correction of a predicted position to the predicted motion or,
+  /// where that is larger, to a fifth of the model's size.
   double correction = 0.1;
-  int most_steps = 1'000'000'000;  ///< until at() gives up, also those that are refused
+  /// Number of substeps, rejected ones included, after which at() throws.
+  int most_steps = 1'000'000'000;
 };
 
-/// Motion of a mechanism that its joints and drives determine: with as many independent rows as
-/// unknowns,
+/// Motion of a mechanism that is determined by its joints and drives. With as many independent rows
+/// as unknowns it solves
 ///
 ///   Φ(q, t) = 0,   Φ_q v = -Φ_t,   Φ_q a = right side of the accelerations,
 ///
-/// positions by Newton's method from q + h v + ½ h² a, to round-off (1e-12 of the model's size),
-/// rates from the factor at the same q. A substep is halved where Newton does not converge, where
-/// it corrects the prediction by much, and where the sign of det Φ_q changes: so the path keeps to
-/// its branch, and ends at a singular position (dead centre, change point). What is not seen: a
-/// determinant that touches zero between two substeps without a change of sign.
+/// the positions by Newton's method from q + h v + ½ h² a, up to round-off (1e-12 of the model's
+/// size), the rates with the factors at the same q. A substep is halved where Newton's method does
+/// not converge, where it corrects the prediction too much, and where the sign of det Φ_q changes.
+/// Therefore the path stays on its branch, and it ends at a singular position (dead centre, change
+/// point). A determinant that touches zero between two substeps without a change of sign is not
+/// detected.
 ///
 /// Redundant rows are left out of the equations and checked at every time.
 class Kinematics {
  public:
-  /// Assembles the start (fem/solve/assembly.h); the model must outlive this.
-  /// @throws Error (input) when freedoms are left or rows contradict each other, with the joints;
-  /// Error (numerical) when the start cannot be assembled.
+  /// Assembles the start (fem/solve/assembly.h); the model must outlive this object.
+  /// @throws Error (input) naming the joints, when degrees of freedom remain or rows contradict
+  ///     each other; Error (numerical) when the start cannot be assembled.
   Kinematics(Workspace& model, State start, const KinematicsSettings& settings = {});
 
-  /// q, v, a at time t, later or earlier than the last one asked for; λ is zero.
-  /// @throws Error (numerical) "path cannot be reached at t = ..." with the joints that hold it up;
-  /// the time is right to smallest_step, and the last state before it is kept.
+  /// Returns q, v and a at time t, which may be later or earlier than the time of the last call; λ
+  /// is zero.
+  /// @throws Error (numerical) "path cannot be reached at t = ..." naming the joints that block the
+  ///     motion; the time is accurate to smallest_step, and the last state before it is kept.
   const State& at(double t);
-  /// As at(), but goes no further once so many steps were tried in all. @return is it there?
+  /// Follows the path to time t like at(), but stops when the total number of substeps reaches
+  /// most_steps.
+  /// @returns true if time t was reached.
   bool follow(double t, int most_steps);
 
-  /// The last state found.
+  /// Returns the last state that was found.
   const State& state() const { return x_; }
-  /// Steps that were tried so far, also those that were refused.
+  /// Returns the number of substeps tried so far, rejected ones included.
   int n_steps() const { return n_steps_; }
 
  private:
-  /// A step to time t; false, and x_ as before, when it is refused.
+  /// Makes a step to time t; returns false, with x_ unchanged, when the step is rejected.
   bool step_to(double t);
   bool newton(State& x, double& sign);
   bool factorize(const State& x);
   void solve(const VectorXd& right, VectorXd& out) const;
   void find_rates(State& x);
-  /// The path ends between the last state and this time.
+  /// Throws the error of a path that ends between the last state and the given time.
   [[noreturn]] void give_up(double refused);
 
   Workspace& model_;
   KinematicsSettings settings_;
   State x_, trial_;
   int n_steps_ = 0;
-  double sign_ = 0;                // of det Φ_q on this branch
-  double size_ = 1;                // of the model
-  std::vector<int> place_of_row_;  // in the square matrix, -1: left out
+  double sign_ = 0;  // sign of det Φ_q on this branch
+  double size_ = 1;  // size of the model [m]
+  // row in the square matrix of every constraint row; -1: left out
+  std::vector<int> place_of_row_;
   ScaledConstraints rows_;
   SparseMatrix square_;
   Eigen::SparseLU<SparseMatrix> lu_;

@@ -11,7 +11,7 @@
 namespace flexmorph::fem {
 namespace {
 
-/// Smaller matrices are factored anew for what renewing the border costs.
+/// Size below which factoring the whole matrix costs no more than updating the border.
 constexpr size_t kFewestRenewed = 1500;
 
 }  // namespace
@@ -21,10 +21,10 @@ struct UnsymmetricSolver::Impl {
   void* numeric = nullptr;
   double control[UMFPACK_CONTROL];
   VectorXd analysed;  // values of the matrix that UMFPACK analysed; empty: none
-  double miss = 0;    // of the last factorization
+  double miss = 0;    // allowed error of the last factorization
   BorderedCholesky bordered;
   bool may_border = false, is_bordered = false;
-  std::vector<TurnedVectors> turns;  // since the last factorization
+  std::vector<TurnedVectors> turns;  // rotations since the last factorization
   VectorXd remainder, correction;
 
   Impl() { umfpack_di_defaults(control); }
@@ -67,7 +67,7 @@ void UnsymmetricSolver::Impl::analyze(const SparseMatrix& a, const double* value
 
 void UnsymmetricSolver::analyze(const SparseMatrix& a) {
   impl_->release_numeric();
-  // UMFPACK analyses when it is needed.
+  // UMFPACK analyses the pattern only when it is used.
   if (impl_->symbolic) umfpack_di_free_symbolic(&impl_->symbolic);
   impl_->analysed.resize(0);
   impl_->is_bordered = false;

@@ -16,46 +16,54 @@ namespace flexmorph::fem {
 ///   [ A  Φ_qᵀ ]
 ///   [ Φ_q  0  ]    in any order: rows of Φ_q are those without an entry on the diagonal.
 ///
-/// Those that are symmetric and positive definite but for a border (constraints, material that
-/// flows near a joint) by BorderedCholesky, all others by UMFPACK, at three to five times the cost.
-/// The pattern is analysed once; which of them it is shows at every factorization anew.
+/// Matrices that are symmetric and positive definite except for a border (constraints, material
+/// that flows near a joint) are factored by BorderedCholesky, all others by UMFPACK, which costs
+/// three to five times as much. The pattern is analysed once; every factorization chooses the
+/// method again.
 class UnsymmetricSolver {
  public:
   UnsymmetricSolver();
   ~UnsymmetricSolver();
+  /// Takes over the analysis and the factors of another solver.
   UnsymmetricSolver(UnsymmetricSolver&&) noexcept;
+  /// Replaces the analysis and the factors by those of another solver.
   UnsymmetricSolver& operator=(UnsymmetricSolver&&) noexcept;
 
   /// Analyses the pattern of a compressed matrix; values may change afterwards.
   void analyze(const SparseMatrix& a);
+  /// Factors a matrix with the analysed pattern.
   /// @throws Error (numerical) when the matrix is singular or not finite.
-  /// @param miss  for the tangents of an outer iteration: solutions may miss by this part of
-  ///              themselves, so that a matrix that is nearly symmetric (material flow adds a part
-  ///              of order h |rate| / length) is factored by Cholesky, too
+  /// @param miss  allowed relative error of solutions, for the tangents of an outer iteration; with
+  ///     it a nearly symmetric matrix (material flow adds a contribution of order h |rate| /
+  ///     length) is factored by Cholesky as well
   void factorize(const SparseMatrix& a, double miss = 0);
-  /// x = A⁻¹ b with the matrix of the last factorize(), which must still exist.
-  /// @param refine  one step of iterative refinement; an outer iteration does not need it.
+  /// Computes x = A⁻¹ b with the matrix of the last factorize(), which must still exist.
+  /// @param refine  true for one step of iterative refinement; an outer iteration does not need it.
   void solve(const SparseMatrix& a, const VectorXd& b, VectorXd& x, bool refine = true) const;
-  /// x = A⁻ᵀ b with the same factors.
+  /// Computes x = A⁻ᵀ b with the factors of the last factorize().
   void solve_transposed(const SparseMatrix& a, const VectorXd& b, VectorXd& x,
                         bool refine = true) const;
 
-  /// Which unknowns belong to the border of the last factor; none where it has no border.
+  /// Returns a flag for every unknown, 1 if it belongs to the border of the last factor; an empty
+  /// list if that factor has no border or the matrix is small.
   const std::vector<char>& border() const;
-  /// The factor of what does not belong to the border is kept but turns with the vectors, entries
-  /// among the border are those of a now. From here on there is no refinement.
-  /// @param a      elsewhere that of the last factorize()
-  /// @param turns  since then; vectors that are not named stay
-  /// @returns false, and the next call must be factorize(), where that cannot be solved.
+  /// Updates the border of the last factor. The factor of the remaining unknowns is kept but
+  /// rotates with the vectors, and the entries between unknowns of the border are taken from the
+  /// given matrix. Afterwards solutions are not refined.
+  /// @param a  the new entries in the border, elsewhere the matrix of the last factorize()
+  /// @param turns  rotations since the last factorize(); vectors that are not listed do not rotate
+  /// @returns false where this is not solvable; the next call must then be factorize().
   bool renew_border(const SparseMatrix& a, std::vector<TurnedVectors> turns);
-  /// The matrix that solve() solves: that of the last factorize(), or renew_border().
+  /// Returns the matrix that solve() solves: the matrix of the last factorize(), or its
+  /// modification by renew_border().
   SparseMatrix as_solved(const SparseMatrix& a) const;
 
-  /// What analysis and factors came from: put back, they are made anew, the same bit for bit.
-  /// @param a  the matrix of the last factorize(), or analyze() after it
+  /// Saves or restores the matrix values from which analysis and factors were made. On restoring,
+  /// both are recomputed, identical bit for bit.
+  /// @param a  the matrix of the last factorize(), or of analyze() if no factorize() followed
   void remember(Memory& memory, const SparseMatrix& a);
 
-  /// Was the last factor that of Cholesky?
+  /// Returns true if the last factorization was made by BorderedCholesky.
   bool is_cholesky() const;
 
  private:
@@ -63,9 +71,9 @@ class UnsymmetricSolver {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Returns the kernels that OpenBLAS, under all direct solvers, computes with: "Haswell",
-/// "SkylakeX", ...; "unknown" of another BLAS. The environment variable OPENBLAS_CORETYPE chooses
-/// others, when the process starts.
+/// Returns the name of the kernels of OpenBLAS, which all direct solvers use: "Haswell",
+/// "SkylakeX", ...; "unknown" for another BLAS. The environment variable OPENBLAS_CORETYPE selects
+/// other kernels when the process starts.
 std::string blas_kernel();
 
 }  // namespace flexmorph::fem

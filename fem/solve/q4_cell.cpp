@@ -73,7 +73,7 @@ void Q4MassProduct::multiply(const Corners& z, const Corners& a, Eigen::Index n,
     const double a_left = a0[l] + a3[l], a_right = a1[l] + a2[l];
     const double dz_left = z3[l] - z0[l], dz_right = z2[l] - z1[l];
     const double da_left = a3[l] - a0[l], da_right = a2[l] - a1[l];
-    // Eigenvalues of M: 9 for the mean, 3 for the two slopes, 1 for the hourglass.
+    // Eigenvalues of M: 9 for the mean, 3 for the two gradients, 1 for the hourglass shape.
     product[l] = mass * (9 * (z_left + z_right) * (a_left + a_right) +
                          3 * (z_right - z_left) * (a_right - a_left) +
                          3 * (dz_left + dz_right) * (da_left + da_right) +

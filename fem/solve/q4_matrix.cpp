@@ -8,7 +8,7 @@
 namespace flexmorph::fem {
 namespace {
 
-/// Where rows point to, the other way round.
+/// Returns the displacement of every unknown, the inverse of `rows`.
 std::vector<int> inverse(std::span<const int> rows) {
   std::vector<int> out(rows.size(), -1);
   int n = 0;
@@ -32,7 +32,7 @@ Q4Matrix::Q4Matrix(const Grid& grid, const PlaneSection& section, std::vector<in
       displacement_of_(inverse(rows_)),
       factor_(pattern(further)) {}
 
-/// Unknowns of the cells around a node, from `first` on, ascending.
+/// Finds the unknowns of the cells around a node that are not below `first`, ascending.
 void Q4Matrix::unknowns_around(int node, int first, std::span<const char> inside,
                                std::vector<int>& out) const {
   const int i = node / (grid_.ny + 1), j = node % (grid_.ny + 1);
@@ -46,13 +46,13 @@ void Q4Matrix::unknowns_around(int node, int first, std::span<const char> inside
   out.erase(std::unique(out.begin(), out.end()), out.end());
 }
 
-/// Lower triangle by columns; where the cells add to it.
+/// Builds the lower triangle by columns, and finds the entries to which the cells contribute.
 SupernodalFactor Q4Matrix::pattern(std::optional<std::pair<int, int>> further) {
   std::vector<char> inside(static_cast<std::size_t>(grid_.n_cells()), 0);
   for (const int cell : cells_) inside[static_cast<std::size_t>(cell)] = 1;
   std::vector<int> starts = {0}, pattern, column;
   starts.reserve(static_cast<std::size_t>(size()) + 1);
-  pattern.reserve(static_cast<std::size_t>(size()) * 10);  // 9 nodes, half of them behind
+  pattern.reserve(static_cast<std::size_t>(size()) * 10);  // 9 nodes, half of them numbered later
   for (int c = 0; c < size(); ++c) {
     unknowns_around(displacement_of(c) / 2, c, inside, column);
     if (further && further->second == c &&

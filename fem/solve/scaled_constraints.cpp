@@ -28,7 +28,7 @@ void ScaledConstraints::evaluate(Workspace& model, const State& x) {
   VectorXd& largest = row_scale_;
   largest.setZero(m);
   of_body_.setZero(m);
-  // Only the rows that a body has a part in are looked at: chains have thousands of bodies.
+  // Only rows with entries of the body are visited, because chains have thousands of bodies.
   for (const Body& b : model.bodies()) {
     const auto over_entries = [&](const auto& act) {
       for (int column = b.first_dof; column < b.first_dof + b.n_dofs(); ++column)
@@ -99,7 +99,7 @@ double undeformed_size(const Model& model, const VectorXd& scales) {
   double size = 0;
   for (Eigen::Index i = 0; i < q.size(); ++i)
     if (scales[i] == 1) size = std::max(size, std::abs(q[i]));
-  // Rigid bodies alone: all start at the origin, but they have lengths.
+  // Rigid bodies alone all start at the origin, but their scales are lengths.
   return size > 0 ? size : model_size(scales, q);
 }
 

@@ -4,24 +4,29 @@
 
 namespace flexmorph::fem {
 
-/// Rows of all joints with columns scaled to displacements and rows to unit size:
+/// Constraint rows of all joints with columns scaled to displacements and rows to unit size:
 ///
 ///   J = R Φ_q S⁻¹,   S = diag(Model::scales()),   R_i = 1 / max over bodies |(Φ_q S⁻¹)_i of the
 ///   body|,
 ///
-/// so that R Φ is what a joint misses by, as a displacement [m], whatever the unit of its row.
-/// A row of zeros keeps R_i = 1.
+/// so that R Φ is the violation of a constraint as a displacement [m], in whatever unit its row is
+/// written. A row of zeros keeps R_i = 1.
 class ScaledConstraints {
  public:
-  /// @throws Error (numerical) naming the joint when Φ or Φ_q hold numbers that are not finite.
+  /// Evaluates the constraints at a state and scales them.
+  /// @throws Error (numerical) naming the joint when Φ or Φ_q contain numbers that are not finite.
   void evaluate(Workspace& model, const State& x);
 
+  /// Returns the constraint rows before scaling.
   const Constraints& unscaled() const { return c_; }
-  const VectorXd& row_scale() const { return row_scale_; }  ///< R (m)
-  const VectorXd& scales() const { return scales_; }        ///< S (n)
-  /// J (m x n), in a pattern that stays until the model's does.
+  /// Returns the scale R of the rows (m).
+  const VectorXd& row_scale() const { return row_scale_; }
+  /// Returns the scale S of the unknowns (n).
+  const VectorXd& scales() const { return scales_; }
+  /// Returns J (m x n); its pattern changes only when that of the model does.
   const SparseMatrix& jacobian() const { return jacobian_; }
-  VectorXd misses() const { return row_scale_.cwiseProduct(c_.value); }  ///< R Φ (m) [m]
+  /// Returns the violation R Φ of every row (m) [m].
+  VectorXd misses() const { return row_scale_.cwiseProduct(c_.value); }
 
  private:
   Constraints c_;
@@ -32,26 +37,26 @@ class ScaledConstraints {
   int version_ = -1;
 };
 
-/// Number of the joint that row i of Φ belongs to.
+/// Returns the number of the joint that row i of Φ belongs to.
 int joint_of_row(const Model& model, int row);
 
-/// "joint 'a'" or "joints 'a', 'b'"; the first five of many.
+/// Returns a text such as "joint 'a'" or "joints 'a', 'b'", with at most five names.
 std::string list_joints(const std::vector<std::string>& names);
 
-/// The weights (m) of rows, those of joints that belong to a body set to zero (unless then all
-/// are).
+/// Returns the weights of the rows (m) with zeros for joints that belong to a body, or unchanged if
+/// all others are zero.
 VectorXd weights_of_joints(const Model& model, VectorXd weights);
 
-/// Joints by the weight of their rows (m), heaviest first, as far as the weight of a joint's
-/// heaviest row is above the part `least` of the heaviest of all; of weights_of_joints().
+/// Returns the names of joints by the weight of their rows (m), see weights_of_joints(), the
+/// heaviest first. The list contains joints whose heaviest row has at least the fraction `least` of
+/// the weight of the heaviest row of all.
 std::vector<std::string> heaviest_joints(const Model& model, const VectorXd& weights, double least);
 
-/// A length of the model: its largest position or displacement-scaled unknown, 1 when all are 0
-/// [m].
+/// Returns a length of the model, the largest of its scaled unknowns S q [m]; 1 if all are 0.
 double model_size(const VectorXd& scales, const VectorXd& q);
 
-/// Largest coordinate of the undeformed model in its own frames; of rigid bodies alone their
-/// largest length; 1 where there is neither [m].
+/// Returns the largest coordinate of the undeformed model in the frames of its bodies [m]; for a
+/// model of rigid bodies alone model_size() of its reference.
 double undeformed_size(const Model& model, const VectorXd& scales);
 
 }  // namespace flexmorph::fem

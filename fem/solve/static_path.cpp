@@ -49,8 +49,9 @@ class Path {
     double factor;
   };
 
-  /// Equilibrium at the first factor by steps that take a part of the forces which do not act yet,
-  /// each from the equilibrium before it: springs that are far from their free lengths.
+  /// Finds the equilibrium at the first factor in steps. Each step applies a fraction of the forces
+  /// that do not act yet and starts from the previous equilibrium. This serves springs that are far
+  /// from their free lengths.
   bool bring_on() {
     constexpr double kFirst = 0.1, kGrowth = 1.5;
     Point last = start_;
@@ -84,8 +85,8 @@ class Path {
           "statics: steps, limits and tolerance are positive, largest_step not below first_step");
   }
 
-  /// Largest half-width of the positions of a body over the directions [m]; rigid bodies have their
-  /// length.
+  /// Returns the largest half-width of the positions of a body over the coordinate directions [m];
+  /// rigid bodies contribute their length.
   double extent() const {
     double out = 0;
     for (const Body& b : model_.bodies()) {
@@ -117,7 +118,7 @@ class Path {
     return !observe_ || observe_({result_.steps, factor_, last_iterations_, x_});
   }
 
-  /// Root mean square of scaled displacements, and the product that belongs to it.
+  /// Returns the scalar product whose norm is the root mean square of scaled displacements.
   double product(const VectorXd& a, const VectorXd& b) const {
     return a.head(n_).cwiseProduct(scales_).dot(b.head(n_).cwiseProduct(scales_)) / n_;
   }
@@ -125,7 +126,7 @@ class Path {
     return step.head(n_).cwiseProduct(scales_).lpNorm<Eigen::Infinity>() / size_;
   }
 
-  /// Right side -(F + Φ_qᵀ λ, Φ) at x_ and factor_; false where it is not finite.
+  /// Computes the right side -(F + Φ_qᵀ λ, Φ) at x_ and factor_; false where it is not finite.
   bool evaluate() {
     model_.scale_loads(factor_);
     model_.constraints(x_, c_);
@@ -145,9 +146,9 @@ class Path {
     solver_.factorize(kkt_);
   }
 
-  /// Is the right side what rounding of the unknowns makes of an equilibrium? Then a smaller
-  /// correction cannot be had, which happens for very thin plates: stiffness in their plane times
-  /// the last digit of the positions.
+  /// Returns true if the right side is no larger than the rounding of the unknowns causes at an
+  /// equilibrium. Then the corrections do not become smaller. This happens for very thin plates:
+  /// their in-plane stiffness multiplies the last digit of the positions.
   bool at_round_off() const {
     VectorXd noise = VectorXd::Zero(n_);
     for (int column = 0; column < n_; ++column) {
@@ -156,14 +157,14 @@ class Path {
         if (kkt_.innerIndexPtr()[p] < n_)
           noise[kkt_.innerIndexPtr()[p]] += std::abs(kkt_.valuePtr()[p]) * q;
     }
-    // A few roundings per product, of the Gram entries and of their sums.
+    // Allows a few roundings per product, of the Gram entries and of their sums.
     const double rounding = 16 * std::numeric_limits<double>::epsilon();
     return (right_.head(n_).cwiseAbs().array() <= rounding * noise.array()).all();
   }
 
-  /// dq/dμ (and dλ/dμ) at the matrix of the last factorize(). The central difference is exact for
-  /// loads, which are linear in the factor, and good to 1e-6 (α ΔT)² for temperatures, which are
-  /// not.
+  /// Computes dq/dμ (and dλ/dμ) with the matrix of the last factorize(). The central difference is
+  /// exact for loads, which are linear in the factor. For temperatures, which are not, its error is
+  /// of the order 1e-6 (α ΔT)².
   void load_response(VectorXd& out) {
     const double by = 1e-3 * range_;
     VectorXd more, less;
@@ -177,7 +178,7 @@ class Path {
     solver_.solve(kkt_, load, out);
   }
 
-  /// Newton at a fixed factor from x_; on failure x_ is anywhere.
+  /// Runs Newton's method at a fixed factor from x_; on failure x_ is undefined.
   bool newton(double factor) {
     factor_ = factor;
     history_.clear();
@@ -187,8 +188,8 @@ class Path {
     });
   }
 
-  /// The iteration both paths share; correct() turns the right side into a step (and may change the
-  /// factor), false: it cannot.
+  /// Runs the iteration that both paths share. correct() turns the right side into a step (and may
+  /// change the factor); it returns false on failure.
   template <class Correct>
   bool iterate(const Correct& correct) {
     VectorXd step;
@@ -205,13 +206,13 @@ class Path {
         const double size = largest(step);
         if (!std::isfinite(size) || size > 10) return false;
         if (size < settings_.tolerance || (rounded && size < 1e-4)) return true;
-        // Corrections of the size of the body that do not shrink lead nowhere.
+        // Corrections of the size of the body that grow do not converge.
         if (last_iterations_ > 4 && size > 0.1 && size > 2 * previous) return false;
         previous = size;
       }
     } catch (const Error& error) {
       if (error.kind() != Error::Kind::numerical) throw;
-      return false;  // a singular matrix on the way
+      return false;  // a singular matrix
     }
     return false;
   }
@@ -224,14 +225,14 @@ class Path {
       const double left = std::abs(settings_.to - last.factor);
       const bool ends = step * range_ >= left * (1 - 1e-9);
       const double next = ends ? settings_.to : last.factor + direction_ * step * range_;
-      // Extrapolated along the chord of the last step.
+      // Extrapolates along the chord of the last step.
       if (last.factor != before.factor) {
         const double ratio = (next - last.factor) / (last.factor - before.factor);
         x_.q = last.q + ratio * (last.q - before.q);
         x_.lambda = last.lambda + ratio * (last.lambda - before.lambda);
       }
       bool found = newton(next);
-      if (!found && last.factor != before.factor) {  // once more from the last equilibrium
+      if (!found && last.factor != before.factor) {  // second attempt without extrapolation
         go(last);
         found = newton(next);
       }
@@ -302,7 +303,7 @@ class Path {
     }
   }
 
-  /// Newton on the equilibrium and the sphere of that radius around `last`.
+  /// Runs Newton's method on the equilibrium and the sphere of radius `length` around `last`.
   bool correct_on_sphere(const Point& last, double length, double psi) {
     history_.clear();
     VectorXd response;
@@ -334,7 +335,7 @@ class Path {
     });
   }
 
-  /// Equilibrium exactly at the end, from where the path passed it.
+  /// Finds the equilibrium exactly at the end, from the step in which the path passed it.
   void arrive(const Point& last) {
     const Point beyond = here();
     const double part = (settings_.to - last.factor) / (beyond.factor - last.factor);
@@ -376,7 +377,7 @@ class Path {
   SparseMatrix kkt_;
   UnsymmetricSolver solver_;
   VectorXd force_, right_;
-  VectorXd held_;  // forces that do not act yet, while the start is sought; else empty
+  VectorXd held_;  // forces that do not act yet, during bring_on(); otherwise empty
   Point start_;
   std::vector<double> history_;  // |residual| of the iterations of a step
 };

@@ -18,7 +18,8 @@ namespace flexmorph::fem {
 
 namespace {
 
-/// The loads that move cells of column i: a range that holds all with root_columns[l] <= i.
+/// Returns the loads that deform cells of column i: a range that contains all with root_columns[l]
+/// <= i.
 std::pair<Eigen::Index, Eigen::Index> moving_loads(std::span<const int> root_columns, int i,
                                                    Eigen::Index n_loads) {
   if (root_columns.empty()) return {0, n_loads};
@@ -60,8 +61,8 @@ struct StaticSolver::Impl {
   void each_cell(Use use) const;
 };
 
-/// Unknowns of the cells' nodes, but the held ones, in this order of all nodes: both of a node stay
-/// together.
+/// Numbers the unknowns of the cells' nodes, except held ones, in the given order of all nodes;
+/// both unknowns of a node are consecutive.
 void StaticSolver::Impl::number(std::span<const int> nodes, std::span<const HeldUnknown> held) {
   std::vector<char> exists(2 * static_cast<std::size_t>(grid.n_nodes()), 0);
   std::vector<int> rows(exists.size(), -1), cells;
@@ -84,7 +85,7 @@ void StaticSolver::Impl::number(std::span<const int> nodes, std::span<const Held
     for (std::size_t k = 2 * static_cast<std::size_t>(node), end = k + 2; k < end; ++k)
       if (exists[k]) rows[k] = n++;
   if (n == 0) throw Error::input("static solver: every displacement is held");
-  std::optional<std::pair<int, int>> ends;  // of the edge, in x
+  std::optional<std::pair<int, int>> ends;  // unknowns in x at both ends of the edge
   const auto x_of = [&](int j) {
     return rows[2 * static_cast<std::size_t>(grid.node(grid.nx, j))];
   };
@@ -99,8 +100,9 @@ void StaticSolver::Impl::each_cell(Use use) const {
       use(cell, matrix->rows_of_cell(cell / grid.ny, cell % grid.ny));
 }
 
-/// Neighbours on the edge are corners 1 and 2 of a cell: unknowns 2 and 4 (x), 3 and 5 (y) of it.
-/// Σ (δ_j - Σ δ / ny)² = Σ δ_j² - (u_ny - u_0)² / ny couples its ends.
+/// Adds the penalty on the edge. Neighbours on the edge are corners 1 and 2 of a cell, its unknowns
+/// 2 and 4 (x), 3 and 5 (y). Σ (δ_j - Σ δ / ny)² = Σ δ_j² - (u_ny - u_0)² / ny couples the ends of
+/// the edge.
 void StaticSolver::Impl::add_edge(std::span<double> values) const {
   const auto value = [&](int j, std::size_t a, std::size_t b) -> double& {
     const int place = grid.cell(grid.nx - 1, j) - grid.cell(first_root, 0);
@@ -118,8 +120,9 @@ void StaticSolver::Impl::add_edge(std::span<double> values) const {
   values[static_cast<std::size_t>(matrix->further_entry())] += mean;
 }
 
-/// Sets `active` (unknowns in front of each load's clamp), sorted when the loads are not.
-/// @returns whether `order` (sorted load -> load) must be applied.
+/// Sets `active` (the number of unknowns in front of each load's clamp), sorted when the loads are
+/// not.
+/// @returns true if `order` (sorted load -> load) must be applied.
 bool StaticSolver::Impl::arrange(std::span<const int> root_columns, Eigen::Index n_loads) const {
   if (root_columns.empty()) {
     active.assign(static_cast<std::size_t>(n_loads), matrix->size());
@@ -171,8 +174,8 @@ void StaticSolver::Impl::from_order(MatrixXd& x) const {
   }
 }
 
-/// Forward substitution of loads that are zero but for the last `tail` of their active entries, and
-/// the backward one.
+/// Makes the forward substitution of loads that are zero except for the last `tail` of their active
+/// entries, and with `back` the backward substitution.
 void StaticSolver::Impl::substitute(MatrixXd& x, std::span<const int> root_columns, int tail,
                                     bool back) const {
   const bool reorder = arrange(root_columns, x.rows());
@@ -282,7 +285,7 @@ void StaticSolver::solve_mixed(const MatrixXd& mix, MatrixXd& basis,
   if (reorder) m.from_order(displacements);
 }
 
-/// Displacements of the corners of a cell, from one load on.
+/// Returns the displacements of the corners of a cell, beginning with one load.
 Q4Energy::Corners StaticSolver::Impl::corner_values(const MatrixXd& u, int i, int j,
                                                     Eigen::Index first_load) const {
   const auto cell = matrix->rows_of_cell(i, j);
@@ -305,7 +308,7 @@ void StaticSolver::cell_energies(const MatrixXd& displacements, const VectorXd& 
   const Eigen::Index n_loads = displacements.rows();
   energies.setZero(g.n_cells());
   m.held_values.setZero(n_loads);
-  // Columns begin alike in memory: Eigen adds in an order that depends on it.
+  // All columns have the same alignment in memory, because the order of Eigen's sums depends on it.
   m.energy_of_load.resize((n_loads + 7) / 8 * 8, omp_get_max_threads());
 
 #pragma omp parallel for schedule(static)

@@ -9,17 +9,18 @@ namespace flexmorph::fem {
 
 namespace {
 
-/// Newton's method for q and λ.
-/// @param accelerate  sets x.a from x.q before a residual; false: this iteration is not the last
-/// @param soften      adds to the tangent what that depends on q by
-/// @param size        of the model [m]
-/// @param tolerance   of a correction that does not get smaller any more, in parts of the size
-/// @param more        forces beside those of the model (n_dofs), or empty
+/// Finds q and λ by Newton's method.
+/// @param accelerate  sets x.a from x.q before a residual; returns false if the present iteration
+///     must not be the last
+/// @param soften  adds to the tangent the dependence of these accelerations on q
+/// @param size  size of the model [m]
+/// @param tolerance  accepted correction that no longer decreases, relative to the size
+/// @param more  additional forces (n_dofs), or empty
 template <class Accelerate, class Soften>
 void find_equilibrium(Workspace& model, State& x, double size, const Accelerate& accelerate,
                       const Soften& soften, const char* failure, double tolerance = 0,
                       const VectorXd& more = {}) {
-  model.prepare(x);  // for the scales
+  model.prepare(x);  // so that the scales are defined
   const int n = model.n_dofs(), m = model.n_constraints();
   const VectorXd scales = model.scales();
   Constraints c;
@@ -45,15 +46,15 @@ void find_equilibrium(Workspace& model, State& x, double size, const Accelerate&
     if (!std::isfinite(correction)) break;
     if (may_end && correction < 1e-13 * size) return;
   }
-  if (correction < tolerance * size) return;  // NaN is not
+  if (correction < tolerance * size) return;  // false for NaN
   throw Error::numerical(failure);
 }
 
-/// Calls solve(part, x), which lets that part of the forces at x act: at once where it can, else in
-/// steps that take a part of what is left, each from the equilibrium before it. Forces that do not
-/// act yet so turn with the bodies.
-/// @param solve  throws Error (numerical) where it finds none; x is anywhere then
-/// @return were there steps?
+/// Calls solve(part, x), which applies a fraction of the forces at x. If the full forces fail, they
+/// are applied in steps, each a fraction of the remaining forces and each from the previous
+/// equilibrium. Therefore forces that do not act yet rotate with the bodies.
+/// @param solve  throws Error (numerical) where it finds no equilibrium; x is then undefined
+/// @returns true if steps were needed
 template <class Solve>
 bool bring_on(State& x, const Solve& solve) {
   constexpr double kFirst = 0.1, kSmallest = 1e-4, kGrowth = 1.5;
@@ -78,8 +79,8 @@ bool bring_on(State& x, const Solve& solve) {
   }
 }
 
-/// Adds factor × (column `from` of a) to the column `to` of b, rows below n; where b has no entry a
-/// has none that is not 0.
+/// Adds factor × (column `from` of a) to the column `to` of b, rows below n. Entries of a that b
+/// lacks must be 0.
 void add_column(const SparseMatrix& a, int from, double factor, int to, int n, SparseMatrix& b) {
   if (factor == 0) return;
   int p = b.outerIndexPtr()[to];
@@ -185,14 +186,14 @@ void solve_steady_equilibrium(Workspace& model, std::span<const Turning> turning
 
 void solve_resting_equilibrium(Workspace& model, State& x) {
   constexpr double kFirst = 1e4;  // κ [1/s²]
-  constexpr double kFar = 100;    // sizes of the model: nothing brings it back
+  constexpr double kFar = 100;  // sizes of the model; a larger displacement has no restoring force
   x.v.setZero();
   const State start = x;
   const double size = std::max(1e-300, x.q.lpNorm<Eigen::Infinity>());
   const auto rest = [&](double part, State& s) {
     const VectorXd center = s.q;
     double hold = 10 * kFirst;
-    // a = κ (q - q₀): its inertia force is that of the hold.
+    // The inertia force of a = κ (q - q₀) equals the holding force.
     const auto accelerate = [&](State& at) {
       hold = std::max(0.1 * hold, kLastHold);
       at.a = hold * (at.q - center);
@@ -208,13 +209,14 @@ void solve_resting_equilibrium(Workspace& model, State& x) {
       idle *= part - 1;
       s.lambda.setZero();
     }
-    // Along a freedom that only the hold keeps, forces are zero up to the round-off of stiff ones.
+    // Along a degree of freedom that only the holding force restrains, forces are zero up to the
+    // round-off of stiff ones.
     find_equilibrium(model, s, size, accelerate, soften,
                      "statics: no equilibrium at rest after 40 iterations", 1e-7, idle);
     s.a.setZero();
     model.follow_turns(s);
   };
-  if (bring_on(x, rest)) rest(1, x);  // what the last step was held by is gone
+  if (bring_on(x, rest)) rest(1, x);  // without the holding forces of the last step
   if (model.scales().cwiseProduct(x.q - start.q).lpNorm<Eigen::Infinity>() > kFar * size)
     throw Error::numerical(
         "statics: no equilibrium at rest: nothing brings a body back that its forces move");

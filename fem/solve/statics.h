@@ -8,126 +8,142 @@
 
 namespace flexmorph::fem {
 
-/// Equilibrium of a model in a steadily rotating frame by Newton's method with exact tangent:
+/// Finds the equilibrium of a model in a steadily rotating frame by Newton's method with exact
+/// tangent:
 ///
 ///   F(q) - M ω² (q - center) + Φ_qᵀ λ = 0,   Φ(q, x.t) = 0
 ///
-/// @param spin    ω² of every unknown (n_dofs) [1/s²]: zero gives plain statics
-/// @param center  what the centrifugal acceleration is taken from (n_dofs) [m]
-/// @param x       in: start of the iteration; out: q and λ of the equilibrium
-/// @throws Error (numerical) when Newton does not converge in 40 iterations.
+/// @param spin  ω² of every unknown (n_dofs) [1/s²]: zero gives plain statics
+/// @param center  centre from which the centrifugal acceleration is computed (n_dofs) [m]
+/// @param x  in: start of the iteration; out: q and λ of the equilibrium
+/// @throws Error (numerical) when Newton's method does not converge in 40 iterations.
 void solve_rotating_equilibrium(Workspace& model, const VectorXd& spin, const VectorXd& center,
                                 State& x);
 
-/// Equilibrium under the inertia forces of a motion that is known: F(q, v, a) + Φ_qᵀ λ = 0,
-/// Φ(q, x.t) = 0 for q and λ with v and a as they are (d'Alembert). Rates of material lines count.
-/// @throws Error (numerical) likewise.
+/// Finds the equilibrium under the inertia forces of a given motion (d'Alembert): F(q, v, a) + Φ_qᵀ
+/// λ = 0, Φ(q, x.t) = 0 for q and λ with v and a unchanged. Rates of material lines contribute.
+/// @throws Error (numerical) when Newton's method does not converge in 40 iterations.
 void solve_carried_equilibrium(Workspace& model, State& x);
 
-/// How a body turns: angular velocity [rad/s] and angular acceleration [rad/s²].
+/// Rotation of a body about the out-of-plane axis.
 struct Turning {
+  /// Angular velocity [rad/s] and angular acceleration [rad/s²].
   double rate = 0, acceleration = 0;
 };
 
-/// Equilibrium of bodies that are carried along, inertia taken where the strained bodies are: with
-/// u = q - q_R, the unknowns less those of the rigid motion,
+/// Finds the equilibrium of bodies that move with their frames, with inertia forces evaluated at
+/// the deformed positions. With u = q - q_R, the unknowns minus those of the rigid motion,
 ///
 ///   F(q, q̇, q̈) + Φ_qᵀ λ = 0,   Φ(q, x.t) = 0
-///   q̇ = q̇_R + ω J u,   q̈ = q̈_R + (ω' J - ω² I) u,   J a quarter turn
+///   q̇ = q̇_R + ω J u,   q̈ = q̈_R + (ω' J - ω² I) u,   J a rotation by 90 degrees
 ///
-/// for every vector of a body that turns with ω and ω': the displacements turn with the body. Where
-/// Newton's method does not find it at once, the forces at x are brought on in steps.
+/// for every vector of a body that rotates with ω and ω': the displacements rotate with the body.
+/// Where Newton's method does not converge at once, the forces at x are applied in steps.
 ///
-/// @param turning  of every body of the model
+/// @param turning  rotation of every body of the model
 /// @param x  in: the rigid motion q_R, q̇_R, q̈_R; out: the equilibrium, with its q̇ and q̈
 /// @throws Error (numerical) when no equilibrium is found.
 void solve_steady_equilibrium(Workspace& model, std::span<const Turning> turning, State& x);
 
-/// Adds C ∂q̇/∂u + M ∂q̈/∂u of solve_steady_equilibrium() to a tangent with F_q alone.
-/// @param kkt  of Workspace::kkt() with the weights {1, 0, 0} and scale 1
+/// Adds C ∂q̇/∂u + M ∂q̈/∂u of solve_steady_equilibrium() to a tangent that contains F_q only.
+/// @param kkt  result of Workspace::kkt() with the weights {1, 0, 0} and scale 1
 void add_turning_tangent(Workspace& model, const State& x, const Constraints& c,
                          std::span<const Turning> turning, SparseMatrix& kkt);
 
-/// Static equilibrium of a model that joints leave free to move (a load that hangs): F(q, 0, 0) +
-/// Φ_qᵀ λ = 0, Φ(q, x.t) = 0, by Newton's method near x.
+/// Finds the static equilibrium of a model with remaining degrees of freedom (a hanging load): F(q,
+/// 0, 0) + Φ_qᵀ λ = 0, Φ(q, x.t) = 0, by Newton's method near x.
 ///
-/// Where nothing but weight brings a body back, the tangent is singular until λ is known; so the
-/// model is held where it is by a force -κ M (q - q₀) that fades: κ falls from 10⁴ by a factor of
-/// ten per iteration to 0.01 s⁻² and stays there. A freedom with frequency ω misses its
-/// equilibrium by 0.01/ω² of what it moved; one that nothing brings back stays where it is.
+/// Where only the weight restores the position of a body, the tangent is singular until λ is known.
+/// Therefore the model is held by a fading force -κ M (q - q₀): κ decreases from 10⁴ by a factor of
+/// ten per iteration to 0.01 s⁻² and then stays constant. The remaining error of a degree of
+/// freedom with angular frequency ω is 0.01/ω² of its displacement; a degree of freedom without a
+/// restoring force stays where it is.
 ///
-/// Where it does not converge, the forces at x are brought on in steps, each held by the
-/// equilibrium before it: a spring that is far from its free length, or wound up by turns.
+/// Where the iteration does not converge, the forces at x are applied in steps, each started from
+/// the previous equilibrium. This serves a spring that is far from its free length, or wound up by
+/// several turns.
 ///
-/// @param x  in: near the equilibrium; out: q and λ of it, v = a = 0.
-/// @throws Error (numerical) when no equilibrium is found, or a body leaves by 100 sizes of the
-///         model.
+/// @param x  in: near the equilibrium; out: q and λ of the equilibrium, v = a = 0.
+/// @throws Error (numerical) when no equilibrium is found, or the unknowns move by more than 100
+///     times the size of the model.
 void solve_resting_equilibrium(Workspace& model, State& x);
-/// κ of its last iterations [1/s²].
+/// Holding coefficient κ of the last iterations of solve_resting_equilibrium() [1/s²].
 inline constexpr double kLastHold = 1e-2;
 
-/// Small displacements of a linear analysis: one Newton step from x under the loads as they are
-/// (n_dofs). x is an equilibrium without loads, for instance the reference.
+/// Returns the small displacements of a linear analysis (n_dofs): one Newton step from x under the
+/// present loads. x is an equilibrium without loads, for instance the reference.
 /// @throws Error (numerical) when the tangent is singular.
 VectorXd linear_displacement(Workspace& model, const State& x);
 
+/// Path, step sizes and tolerances of solve_static().
 struct StaticSettings {
+  /// Kind of path along which equilibria are followed.
   enum class Path {
-    load,       ///< the load factor grows step by step
-    arc_length  ///< displacements and load factor together: passes limit points, snaps through
+    /// The load factor grows step by step.
+    load,
+    /// Displacements and load factor are followed together, which passes limit points and
+    /// snap-through.
+    arc_length
   };
-  Path path = Path::load;
-  double from = 0, to = 1;      ///< load factor at the start and at the end
-  double first_step = 0.1;      ///< part of |to - from|
-  double largest_step = 0.25;   ///< likewise; along the arc: growth over its first step, times 10
-  double smallest_step = 1e-6;  ///< likewise; below it the analysis gives up
-  int max_iterations = 15;      ///< Newton, per step
-  int easy_iterations = 5;      ///< steps that needed fewer let the next one grow
-  int max_steps = 1000;
-  /// Largest correction of the last iteration, in parts of the model's size, as a displacement.
+  Path path = Path::load;   ///< Kind of path.
+  double from = 0, to = 1;  ///< Load factors at the start and at the end.
+  double first_step = 0.1;  ///< Size of the first step, as a fraction of |to - from|.
+  /// Largest step as a fraction of |to - from|; along the arc the length may grow to 10 times the
+  /// first length times largest_step / 0.25.
+  double largest_step = 0.25;
+  /// Step, as a fraction of |to - from|, below which the analysis ends with an error.
+  double smallest_step = 1e-6;
+  int max_iterations = 15;  ///< Largest number of Newton iterations per step.
+  int easy_iterations = 5;  ///< Number of iterations up to which the next step grows.
+  int max_steps = 1000;     ///< Largest number of steps, rejected ones included.
+  /// Largest correction of the last iteration as a displacement, relative to the model's size.
   double tolerance = 1e-10;
-  bool condition = false;  ///< estimate the condition at the end (costs a factorization)
+  bool condition = false;  ///< True to estimate the condition at the end (one factorization).
 };
 
 /// An equilibrium on the path.
 struct StaticStep {
-  int number;
-  double factor;
-  int iterations;
-  const State& x;
+  int number;      ///< Number of the step; 0 is the start.
+  double factor;   ///< Load factor.
+  int iterations;  ///< Number of Newton iterations of the step.
+  const State& x;  ///< State at the equilibrium.
 };
-/// Sees every equilibrium; false ends the analysis there.
+/// Function that is called at every equilibrium; the analysis stops when it returns false.
 using StaticObserver = std::function<bool(const StaticStep&)>;
 
+/// Outcome of a path of equilibria, see solve_static().
 struct StaticResult {
-  double factor = 0;  ///< of the last equilibrium
+  double factor = 0;  ///< Load factor of the last equilibrium.
+  /// Numbers of accepted steps, of Newton iterations and of rejected steps.
   int steps = 0, iterations = 0, rejected = 0;
-  /// condition_estimate() of the tangent at the end, where it was asked for.
+  /// Estimate of the condition of the tangent at the end, condition_estimate(), if requested.
   std::optional<double> condition;
-  bool completed = false;  ///< reached settings.to (and was not stopped by the observer)
+  /// True if the load factor settings.to was reached and the observer did not stop the analysis.
+  bool completed = false;
 };
 
-/// Nonlinear statics along a path of equilibria,
+/// Follows a path of equilibria of nonlinear statics,
 ///
 ///   F(q, μ) + Φ_qᵀ λ = 0,   Φ(q, x.t) = 0,   loads times the load factor μ  (Model::scale_loads;
-///                                            in hot bodies the temperature is one of them),
+///                                            in heated bodies μ scales the temperature as well),
 ///
-/// by Newton's method with exact tangent. Steps are halved when it fails and grown when it is easy.
+/// by Newton's method with exact tangent. Steps are halved when it fails and enlarged when it
+/// converges quickly.
 ///
-/// arc_length: Crisfield's spherical constraint on scaled displacements S Δq,
+/// The path arc_length uses Crisfield's spherical constraint on scaled displacements S Δq,
 ///
-///   |S Δq|² / n + ψ² Δμ² = Δs²,   ψ = |S dq/dμ| / √n at the start,
+///   |S Δq|² / n + ψ² Δμ² = Δs²,   ψ = |S dq/dμ| / √n at the start.
 ///
-/// the predictor goes on in the direction of the last step, and of the two roots the one is taken
-/// whose step turns least. Ends where the factor first passes `to`.
+/// The predictor continues in the direction of the last step, and of the two roots the one is taken
+/// whose step changes the direction least. The path ends where the factor first passes `to`.
 ///
 /// Source: Crisfield (1981), Comput. Struct. 13, 55-62; Riks (1979), Int. J. Solids Struct. 15,
 /// 529-551.
 ///
 /// @param x  in: near the equilibrium at factor `from`; out: the last equilibrium; rates are zero.
-///           The model's loads are left at its factor.
-/// @throws Error (input) for settings that make no sense; Error (numerical) naming load factor and
-/// residuals when steps became too small or too many: x is then the last equilibrium.
+///     The model's loads keep its factor.
+/// @throws Error (input) for inconsistent settings; Error (numerical) naming load factor and
+///     residuals when steps became too small or too many: x is then the last equilibrium.
 StaticResult solve_static(Workspace& model, State& x, const StaticSettings& settings = {},
                           const StaticObserver& observe = {});
 

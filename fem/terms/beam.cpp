@@ -11,7 +11,7 @@ using namespace beam_gram;
 
 enum class Mechanics { general, enhanced };
 
-/// A row of the table.
+/// Name, mechanics and strains of one kind of beam.
 struct Kind {
   const char* name;
   Mechanics mechanics;
@@ -26,19 +26,21 @@ struct Kind {
 ///   ecm   U = b/2 ∫ εᵀ D⁰ ε dA + b/2 ∫ h εᵀ D^ν ε dX on the axis y = 0
 ///         D⁰ = diag(E, E, G),   D^ν = E/(1 - ν²) [ν² ν; ν ν²],   D⁰ + D^ν = D
 ///
-/// 1 and 2: Cartesian axes of the reference; in ecm, where D⁰ is not isotropic, 2 is along the
-/// section and 1 at right angles to it. b is the width across the plane.
+/// Directions 1 and 2 are Cartesian axes of the reference; in ecm, where D⁰ is not isotropic, 2 is
+/// along the section and 1 perpendicular to it. b is the width across the plane.
 ///
-/// Strains are those of the displacements or assumed on the axis (terms/beam_strains.h), without
-/// which slender beams lock in large bending. Seen from a straight beam both are the same to first
-/// order: its linear stiffness and its frequencies do not change.
+/// Strains are those of the displacement field, or assumed on the axis (terms/beam_strains.h).
+/// Without assumed strains slender beams lock in large bending. For small displacements of a
+/// straight beam both are equal to first order, so that the linear stiffness and the frequencies do
+/// not depend on this choice.
 ///
-/// gcm bends 1/(1 - ν²) too stiffly on every mesh: r_y is constant over the height, so that ε₂₂
-/// cannot follow -ν ε₁₁, which is linear in y. With ecm the coupling sees the mean strain only.
+/// gcm is too stiff in bending by 1/(1 - ν²) on every mesh: r_y is constant over the height, so
+/// that ε₂₂ cannot follow -ν ε₁₁, which is linear in y. In ecm only the mean strain enters the
+/// coupling.
 ///
-/// Gram form, as the membrane's (terms/membrane.cpp): the strain is linear in the products of the
-/// element's unknowns, ε = Λ (g - g°), so U = ½ (g - g°)ᵀ W (g - g°) with W = b ∫ Λᵀ D Λ dA, built
-/// once: for a straight reference exactly by 5 x 3 points.
+/// Gram form, as in the membrane (terms/membrane.cpp): the strain is linear in the products of the
+/// element's unknowns, ε = Λ (g - g°). Therefore U = ½ (g - g°)ᵀ W (g - g°) with W = b ∫ Λᵀ D Λ dA.
+/// W is computed once; for a straight reference 5 x 3 points are exact.
 ///
 /// Source: T 9; Gerstmayr, Matikainen & Mikkola (2008), Multibody Syst. Dyn. 20, 359-384, 3.2;
 /// Nachbagauer et al. (2011), Multibody Syst. Dyn. 26, 245-263.
@@ -64,7 +66,7 @@ class Beam final : public ElasticTerm, public BatchTerm {
             {density(s.elasticity() - uncoupled(s)), sections(true)}};
   }
 
-  /// Made anew: what is prepared would only be prepared again.
+  /// Creates an unprepared term, because prepared data would be recomputed anyway.
   std::unique_ptr<Term> clone() const override { return std::make_unique<Beam>(section_, kind_); }
   void prepare(const Element& element, const Factors& factors, bool all) override {
     if (element.dim() != kDim || element.n_shapes() != kShapes)
@@ -77,7 +79,7 @@ class Beam final : public ElasticTerm, public BatchTerm {
     const MatrixXd reference = element.reference();
     Data data;
     for (int e = 0; e < kLanes * static_cast<int>(batches_.size()); ++e) {
-      // Lanes behind the last element repeat it.
+      // SIMD lanes behind the last element repeat it.
       if (e < n) data = integrate(element, e, factors, reference);
       Batched& batch = batches_[static_cast<size_t>(e / kLanes)];
       for (size_t k = 0; k < data.w.size(); ++k) batch.w[k][e % kLanes] = data.w[k];
@@ -121,15 +123,16 @@ class Beam final : public ElasticTerm, public BatchTerm {
     });
   }
 
-  /// F̄ = S(ḡ) q̄, ḡ = ½ (g₀ + g₁) = g(q̄) + ¼ g(q₁ - q₀): an exact discrete gradient, because U is
-  /// quadratic in g and g in q. Simo & Tarnow (1992), Z. angew. Math. Phys. 43, 757-792.
+  /// Adds F̄ = S(ḡ) q̄, ḡ = ½ (g₀ + g₁) = g(q̄) + ¼ g(q₁ - q₀). It is an exact discrete gradient,
+  /// because U is quadratic in g and g in q. Simo & Tarnow (1992), Z. angew. Math. Phys. 43,
+  /// 757-792.
   void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override {
     double p[kVectors * kDim], s[kPairs];
     evaluate_mean(elements_[static_cast<size_t>(e)], x, p, s);
     add_force_of(s, p, force.data());
   }
 
-  /// ∂F̄/∂q₁ = ½ (S(ḡ) ⊗ 1 + D(q̄)ᵀ W D(q₁)): as the tangent, from two states.
+  /// Adds ∂F̄/∂q₁ = ½ (S(ḡ) ⊗ 1 + D(q̄)ᵀ W D(q₁)), a tangent from two states.
   void add_mean_tangent(int e, const LocalStep& x, const Weights& w,
                         LocalTangent& tangent) const override {
     if (w.q == 0) return;
@@ -141,7 +144,7 @@ class Beam final : public ElasticTerm, public BatchTerm {
   }
 
  private:
-  /// D⁰.
+  /// Returns D⁰.
   static Eigen::Matrix3d uncoupled(const PlaneSection& s) {
     const double E = s.youngs_modulus, nu = s.poisson_ratio;
     return Vec3(E, E, E / (2 * (1 + nu))).asDiagonal();
@@ -162,7 +165,7 @@ class Beam final : public ElasticTerm, public BatchTerm {
   };
   using Data = DataOf<double>;
   using Batched = DataOf<Lanes>;
-  /// The same as kernels read it.
+  /// View of DataOf as the kernels read it.
   template <class V>
   struct DataView {
     const V *w, *reference;
@@ -203,7 +206,7 @@ class Beam final : public ElasticTerm, public BatchTerm {
 
   using Strains = Eigen::Matrix<double, 3, kPairs>;
 
-  /// Λ of one row: r_1 = Σ a_i p_i, r_2 = Σ b_i p_i.
+  /// Returns Λ of one row: r_1 = Σ a_i p_i, r_2 = Σ b_i p_i.
   static Strains strains(const BeamStrainPoints& points, Eigen::Index row) {
     double a[kVectors], b[kVectors];
     for (size_t k = 0; k < kVectors; ++k) {
@@ -217,7 +220,7 @@ class Beam final : public ElasticTerm, public BatchTerm {
     return out;
   }
 
-  /// Λ of the points, then of the sections on the axis.
+  /// Returns Λ of the points, then of the sections on the axis.
   std::vector<Strains> strains(const BeamStrainPoints& points) const {
     std::vector<Strains> out;
     const Eigen::Index n = points.n_points(), n_sections = points.sample(0) - n;

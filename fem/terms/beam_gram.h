@@ -4,20 +4,22 @@
 
 #include "fem/element.h"
 
-/// The Gram form of a planar beam (beam.cpp): U = ½ (g - g°)ᵀ W (g - g°), g the products of five
-/// vectors of an element.
+/// The Gram form of a planar beam (beam.cpp): U = ½ (g - g°)ᵀ W (g - g°), where g contains the
+/// products of five vectors of an element.
 ///
-/// p (5 x 2)     vectors; W by [J per product²], packed as a lower triangle; s = W (g - g°)
-/// V             double, or Lanes for elements side by side
+///   p (5 x 2)     vectors; W by [J per product²], packed as a lower triangle; s = W (g - g°)
+///   V             double, or Lanes for elements side by side
 namespace flexmorph::fem::beam_gram {
 
+/// Number of vectors of an element, dimension of the plane and number of shape functions.
 inline constexpr int kVectors = 5, kDim = 2, kShapes = 6;
+/// Number of products of two vectors.
 inline constexpr int kPairs = kVectors * (kVectors + 1) / 2;
 
-/// Number of the pair i, j in the order 00, 10, 11, 20, ...
+/// Returns the number of the pair i, j in the order 00, 10, 11, 20, ...
 constexpr int pair(int i, int j) { return i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i; }
 
-/// Where W stands for the pairs x and (l, j) in its packed lower triangle: kPlace[x][l][j].
+/// Index of W for the pairs x and (l, j) in its packed lower triangle: kPlace[x][l][j].
 inline constexpr auto kPlace = [] {
   std::array<std::array<std::array<int, kVectors>, kVectors>, kPairs> out{};
   for (int x = 0; x < kPairs; ++x)
@@ -28,8 +30,8 @@ inline constexpr auto kPlace = [] {
   return out;
 }();
 
-/// Vectors p of nodal ones (r¹ r_x¹ r_y¹ r² r_x² r_y²): r² - r¹, r_x¹, r_y¹, r_x², r_y². Rigid
-/// translations strain nothing, and no digits are lost far from the origin.
+/// Computes the vectors p from the nodal ones (r¹ r_x¹ r_y¹ r² r_x² r_y²): r² - r¹, r_x¹, r_y¹,
+/// r_x², r_y². Rigid translations cause no strain, and no digits are lost far from the origin.
 template <class V>
 void vectors(const V* q, V* p) {
   for (int c = 0; c < kDim; ++c) {
@@ -40,10 +42,11 @@ void vectors(const V* q, V* p) {
     p[4 * kDim + c] = q[5 * kDim + c];
   }
 }
-/// Shape functions that vector k goes to with +1; vector 0 also to shape function 0, with -1.
+/// Shape function to which vector k contributes with +1; vector 0 also contributes to shape
+/// function 0, with -1.
 inline constexpr std::array<int, kVectors> kShapeOf = {3, 1, 2, 4, 5};
 
-/// g_ij = p_i · p_j (i ≠ j), g_ii = ½ p_i · p_i.
+/// Computes the products g_ij = p_i · p_j (i ≠ j), g_ii = ½ p_i · p_i.
 template <class V>
 void products(const V* p, V* g) {
   for (int i = 0; i < kVectors; ++i)
@@ -53,7 +56,7 @@ void products(const V* p, V* g) {
     }
 }
 
-/// s = W (g - g°); W packed as a lower triangle.
+/// Computes s = W (g - g°), with W packed as a lower triangle.
 template <class V>
 void stress(const V* w, const V* reference, const V* g, V* s) {
   V change[kPairs];
@@ -69,7 +72,7 @@ void stress(const V* w, const V* reference, const V* g, V* s) {
   }
 }
 
-/// Adds F_k = Σ_l s_kl p_l.
+/// Adds the force F_k = Σ_l s_kl p_l.
 template <class V>
 void add_force_of(const V* s, const V* p, V* force) {
   for (int k = 0; k < kVectors; ++k)
@@ -81,9 +84,10 @@ void add_force_of(const V* s, const V* p, V* force) {
     }
 }
 
-/// Entries of a tangent (kShapes kDim)², by rows.
+/// Access to the entries of a tangent (kShapes kDim)² that is stored by rows.
 struct ByRows {
-  double* data;
+  double* data;  ///< First entry of the tangent.
+  /// Returns the entry of a row and a column.
   double& operator()(int row, int column) const { return data[row * kShapes * kDim + column]; }
 };
 

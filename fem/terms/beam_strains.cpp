@@ -9,13 +9,14 @@ constexpr Eigen::Index kShapes = 6;
 using Vectors = Eigen::Matrix<double, kShapes, 2, Eigen::RowMajor>;
 using Row = Eigen::Matrix<double, 1, kShapes>;
 
-/// Axes of a section: e₂ across, e₁ at right angles.
+/// Axes of a section: e₂ along the section, e₁ perpendicular to it.
 struct Axes {
   Vec2 e1, e2;
   explicit Axes(const Vec2& across) : e1(0, 0), e2(across.normalized()) { e1 = {e2.y(), -e2.x()}; }
 };
 
-/// Components along the axes of a tensor with the components (c₁₁, c₂₂, 2c₁₂) in space.
+/// Returns the matrix that gives the components along the axes of a tensor with the components
+/// (c₁₁, c₂₂, 2c₁₂) in space.
 Eigen::Matrix3d turned(const Axes& a) {
   const Vec2 &u = a.e1, &v = a.e2;
   Eigen::Matrix3d out;
@@ -28,7 +29,7 @@ Eigen::Matrix3d turned(const Axes& a) {
 using OfSamples = BeamStrainPoints::OfSamples;
 constexpr Eigen::Index kSamples = BeamStrainPoints::kSamples;
 
-/// Interpolation of the strains by components.
+/// Returns the interpolation of the strains, component by component.
 OfSamples interpolation(double xi) {
   const std::array<double, 3> parabola = {(1 - xi) * (1 - 2 * xi), 4 * xi * (1 - xi),
                                           xi * (2 * xi - 1)},
@@ -49,23 +50,24 @@ struct Uniform {
   explicit Uniform(const std::array<Axes, 3>& samples) {
     for (Eigen::Index k = 0; k < kSamples; ++k)
       at_samples.middleRows<3>(3 * k) = turned(samples[static_cast<size_t>(k)]);
-    at_samples.row(3 + 1).setZero();  // ε₂₂ in the middle is no sample
+    at_samples.row(3 + 1).setZero();  // ε₂₂ is not sampled in the middle
     const Eigen::Matrix3d normal = at_samples.transpose() * at_samples;
     fit = normal.inverse() * at_samples.transpose();
   }
 };
 
-/// ε̄(x) from the samples.
+/// Returns the matrix that gives ε̄(x) from the samples.
 OfSamples assumed(double xi, const Axes& axes, const Uniform& uniform) {
   constexpr double kRoundOff = 1e-14;
   const OfSamples by_components = interpolation(xi);
   const Eigen::Matrix3d missed = turned(axes) - by_components * uniform.at_samples;
-  if (missed.lpNorm<Eigen::Infinity>() < kRoundOff) return by_components;  // nothing turns
+  // The sections do not rotate.
+  if (missed.lpNorm<Eigen::Infinity>() < kRoundOff) return by_components;
   return by_components + missed * uniform.fit;
 }
 
-/// Derivatives along the axes at a node, whose gradients X_x, X_y are vectors of its own.
-/// @param first  number of the node's position among the vectors
+/// Returns the derivatives along the axes at a node; the gradients X_x, X_y there are vectors of
+/// the node.
 std::array<Row, 2> at_node(const Vectors& X, Eigen::Index first, const Axes& axes) {
   Eigen::Matrix2d J;  // (X_x X_y)
   J << X.row(first + 1).transpose(), X.row(first + 2).transpose();
@@ -82,7 +84,7 @@ void set_row(const ShapeTable& from, Eigen::Index p, const Axes& axes, Eigen::In
   out.d_2.row(to) = axes.e2.x() * from.N_m.row(p) + axes.e2.y() * from.N_n.row(p);
 }
 
-/// Points with the same x follow each other; they are a section.
+/// Returns the section of every point; consecutive points with equal x form a section.
 std::vector<Eigen::Index> sections_of(const ShapeTable& t) {
   std::vector<Eigen::Index> out;
   for (size_t p = 0; p < t.material.size(); ++p)

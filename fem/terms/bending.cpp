@@ -12,12 +12,12 @@ namespace {
 
 using Mat3 = Eigen::Matrix3d;
 
-/// D = c³/12 C [N m].
+/// Returns D = c³/12 C [N m].
 Mat3 stiffness_of(const PlaneSection& s) {
   return s.thickness * s.thickness * s.thickness / 12 * s.elasticity();
 }
 
-/// W = ½ κᵀ D κ in closed form.
+/// Energy density W = ½ κᵀ D κ in closed form.
 class BendingDensity final : public LinearDensity {
  public:
   explicit BendingDensity(const Mat3& stiffness)
@@ -54,8 +54,8 @@ class BendingDensity final : public LinearDensity {
 ///   U = ½ ∫ κᵀ D κ dA,   κ = (r_mm·n, r_nn·n, 2 r_mn·n)/|n|³,   n = r_m × r_n       P (7)
 ///   D = c³/12 C [N m],   C plane stress in Voigt order 11, 22, 12
 ///
-/// κ is a rational function of the unknowns, so it is integrated at Gauss points; tables of shape
-/// functions are shared by neighbours of equal size and material.
+/// κ is a rational function of the unknowns and is therefore integrated at Gauss points. Neighbours
+/// of equal size and material share tables of shape functions.
 ///
 /// Source: P (7); fem/README.md, Bending.
 class Bending final : public ElasticTerm, public BatchTerm {
@@ -72,7 +72,7 @@ class Bending final : public ElasticTerm, public BatchTerm {
              sample_points(degree_of(n_points), Tabulate::curvature)}};
   }
 
-  /// Made anew: what is prepared would only be prepared again.
+  /// Creates an unprepared term, because prepared data would be recomputed anyway.
   std::unique_ptr<Term> clone() const override { return make_bending(section_, degree_ / 2 + 1); }
   void prepare(const Element& element, const Factors& factors, bool all) override {
     if (element.dim() != 3) throw Error::input("term 'bending' needs a body in space");
@@ -87,7 +87,7 @@ class Bending final : public ElasticTerm, public BatchTerm {
       tables_[static_cast<size_t>(e)] = same ? tables_[static_cast<size_t>(e - 1)] : table;
       tabulated = e;
     }
-    if (element.n_scalars() > 0) return;  // evaluated one by one
+    if (element.n_scalars() > 0) return;  // evaluated one by one, without batches
     batches_.resize((tables_.size() + kLanes - 1) / kLanes);
     for (size_t b = 0; b < batches_.size(); ++b) side_by_side(element, b, all);
   }
@@ -138,7 +138,7 @@ class Bending final : public ElasticTerm, public BatchTerm {
     return out;
   }
 
-  /// Tables of eight elements: one for all, or their own side by side.
+  /// Tables of eight elements: one for all, or a separate one for each, side by side.
   struct BatchTables {
     std::shared_ptr<const Table> shared;
     bending::Table<Lanes> different;
@@ -164,7 +164,7 @@ class Bending final : public ElasticTerm, public BatchTerm {
     });
   }
 
-  /// Too large for the stack of a thread.
+  /// Returns the work space of the thread, which is too large for its stack.
   template <class V>
   static bending::TangentWork<V>& work() {
     static thread_local bending::TangentWork<V> room;
@@ -195,7 +195,8 @@ class Bending final : public ElasticTerm, public BatchTerm {
     return out;
   }
 
-  /// Notes which unknown belongs to which product; false where that is not h12 or h16.
+  /// Finds the unknown that belongs to each product; false where the shape functions are not those
+  /// of h12 or h16.
   bool number() {
     places_.fill(-1);
     const size_t n_shapes = products_.function_m.size();

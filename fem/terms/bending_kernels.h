@@ -5,55 +5,59 @@
 
 #include "fem/terms/bending_point.h"
 
-/// Integrals of the bending energy over an element and their derivatives by its unknowns, for one
-/// element (V = double) or eight side by side (V = LanesOf<...>).
+/// Integrals of the bending energy over an element and their derivatives with respect to its
+/// unknowns, for one element (V = double) or eight side by side (V = LanesOf<...>).
 ///
-/// Shape functions are products of functions f_i(m) f_j(n), i, j = 0 ... 3, and points a tensor
-/// grid (g, h): every sum over functions and every sum over points is taken in one direction after
-/// the other. For the tangent of 16 functions at 5 x 5 points that is 80 000 multiplications in
-/// place of 240 000 by Bᵀ H B point by point.
+/// Shape functions are products of functions f_i(m) f_j(n), i, j = 0 ... 3, and the points form a
+/// tensor grid (g, h). Therefore every sum over functions and every sum over points is computed in
+/// one direction after the other. For the tangent of 16 functions at 5 x 5 points this takes 80 000
+/// multiplications instead of 240 000 for Bᵀ H B point by point.
 namespace flexmorph::fem::bending {
 
+/// Number of functions of one coordinate, and number of their derivatives from order 0 on.
 inline constexpr int kFunctions = 4, kOrders = 3;
-inline constexpr int kLine = kOrders * kFunctions;  ///< numbers of one point on one line
-inline constexpr int kMaxLine = 16;                 ///< points per direction
+/// Number of table entries per point and direction.
+inline constexpr int kLine = kOrders * kFunctions;
+inline constexpr int kMaxLine = 16;  ///< Largest number of points per direction.
 
-/// Functions of one coordinate at the points of one direction, entry (point, order of the
-/// derivative, function); weights, entry (g, h). T = double: those of one element or of eight equal
-/// ones; T = Lanes: of eight.
+/// Table of the functions of one coordinate at the points of one direction, entry (point, order of
+/// the derivative, function), and of the weights, entry (g, h). T = double: values of one element
+/// or of eight equal ones; T = Lanes: values of eight elements.
 template <class T>
 struct Table {
-  int n = 0;                 ///< points per direction, at most kMaxLine
-  std::vector<T> m, across;  ///< (n kOrders kFunctions)
-  std::vector<T> weight;     ///< (n²)
+  int n = 0;                 ///< Number of points per direction, at most kMaxLine.
+  std::vector<T> m, across;  ///< Functions along m and along n (n kOrders kFunctions).
+  std::vector<T> weight;     ///< Weights of the points (n²).
 };
 
-/// Order of the derivative of each vector along m and n; r_m, r_n, r_mm, r_nn, r_mn.
+/// Order of the derivative along m and along n of each vector r_m, r_n, r_mm, r_nn, r_mn.
 inline constexpr std::array<int, kVectors> kOrderM = {1, 0, 2, 0, 1}, kOrderN = {0, 1, 0, 2, 1};
 
-/// Which unknown belongs to the product of functions i and j: entry 4 j + i, -1: none. Without
-/// mixed derivatives (h12) there is none for two slope functions, i and j odd.
+/// Unknown that belongs to the product of functions i and j: entry 4 j + i; -1: none. Without mixed
+/// derivatives (h12) the products of two derivative functions, i and j odd, have none.
 using Places = std::array<int, kFunctions * kFunctions>;
 
-/// A table as kernels read it.
+/// View of a table as the kernels read it.
 template <class T>
 struct TableView {
-  int n;
+  int n;  ///< Number of points per direction.
+  /// Functions along m, functions along n and weights.
   const T *m, *across, *weight;
 };
+/// Returns the view of a table.
 template <class T>
 TableView<T> view(const Table<T>& t) {
   return {t.n, t.m.data(), t.across.data(), t.weight.data()};
 }
 
-/// Step between the functions along m that go with function j along n: slopes with a slope are
-/// absent without mixed derivatives.
+/// Returns the step between the functions along m that are combined with function j along n:
+/// without mixed derivatives the products of two derivative functions do not exist.
 template <bool kMixed>
 constexpr int step(int j) {
   return kMixed || j % 2 == 0 ? 1 : 2;
 }
 
-/// Unknowns (n_shapes 3) by products of functions: entry 3 (4 j + i) + c.
+/// Sorts the unknowns (n_shapes 3) by products of functions: entry 3 (4 j + i) + c.
 template <class V>
 inline void by_functions(const Places& places, const V* q, V* x) {
   for (std::size_t k = 0; k < places.size(); ++k)
@@ -61,7 +65,8 @@ inline void by_functions(const Places& places, const V* q, V* x) {
       x[3 * k + c] = places[k] < 0 ? V{} : q[3 * static_cast<std::size_t>(places[k]) + c];
 }
 
-/// Derivatives along m at one of its points for every function along n: entry 3 (4 order + j) + c.
+/// Computes the derivatives along m at one point of the direction m for every function along n:
+/// entry 3 (4 order + j) + c.
 template <bool kMixed, class V, class T>
 inline void along_m(const T* f, const V* x, V* z) {
 #pragma GCC unroll 4
@@ -79,7 +84,7 @@ inline void along_m(const T* f, const V* x, V* z) {
   }
 }
 
-/// Vectors at a point.
+/// Computes the vectors at a point.
 template <class V, class T>
 inline void vectors_at(const T* f, const V* z, Vec<V>* y) {
 #pragma GCC unroll 5
@@ -94,7 +99,7 @@ inline void vectors_at(const T* f, const V* z, Vec<V>* y) {
     }
 }
 
-/// Calls f(g, h, Point) for all points, the rows g one after the other, and end(g) after each.
+/// Calls f(h, Point) for all points, one row g after the other, and end(g) after each row.
 template <bool kMixed, class V, class T, class F, class End>
 inline void for_points(const TableView<T>& t, const Places& places,
                        const Eigen::Matrix3d& stiffness, const V* q, const F& f, const End& end) {
@@ -111,6 +116,7 @@ inline void for_points(const TableView<T>& t, const Places& places,
   }
 }
 
+/// Returns the bending energy of the element.
 template <bool kMixed, class V, class T>
 inline V energy(const TableView<T>& t, const Places& places, const Eigen::Matrix3d& stiffness,
                 const V* q) {
@@ -159,12 +165,13 @@ inline void add_force(const TableView<T>& t, const Places& places, const Eigen::
 /// Work space of add_tangent().
 template <class V>
 struct TangentWork {
-  std::vector<Hessian<V>> row;
-  std::vector<V> blocks;
+  std::vector<Hessian<V>> row;  ///< Second derivatives at the points of one row.
+  std::vector<V> blocks;        ///< Sums over the points of every row.
 };
 
-/// Sums over h of one pair of directions at one g: for functions j, l along n and orders a, b of
-/// the derivatives along m,   out[(16 stride)(4 j + l) + 3 a + b] = Σ_h Σ_v,w f_j H_vw f_l.
+/// Sums over h for one pair of coordinate directions at one g: for functions j, l along n and
+/// orders a, b of the derivatives along m,
+///   out[(16 stride)(4 j + l) + 3 a + b] = Σ_h Σ_v,w f_j H_vw f_l.
 template <class V, class T>
 inline void sum_across(const TableView<T>& t, const Hessian<V>* row, int entry, std::size_t stride,
                        V* out) {
@@ -241,7 +248,7 @@ inline void add_tangent(const TableView<T>& t, const Places& places,
   const std::size_t stride = static_cast<std::size_t>(kOrders * kOrders * t.n);
   work.row.resize(static_cast<std::size_t>(t.n));
   work.blocks.resize(6 * kPairs * stride);
-  // Pairs of directions b <= c; the others follow by symmetry.
+  // Pairs of coordinate directions with row <= column; the other pairs follow by symmetry.
   constexpr std::array<std::size_t, 6> kRow = {0, 0, 0, 1, 1, 2}, kColumn = {0, 1, 2, 1, 2, 2};
   for_points<kMixed>(
       t, places, stiffness, q,

@@ -5,44 +5,52 @@
 
 #include "fem/shapes/batch.h"
 
-/// Bending energy of a thin plate at one point of one element (V = double) or of eight side by side
-/// (V = LanesOf<...>).
+/// Bending energy of a thin plate at one point of one element (V = double) or of eight elements
+/// side by side (V = LanesOf<...>).
 namespace flexmorph::fem::bending {
 
+/// A vector in space.
 template <class V>
 struct Vec {
-  V x[3];
+  V x[3];  ///< Cartesian components.
+  /// Returns a component of the vector.
   V& operator[](int c) { return x[c]; }
+  /// Returns a component of the vector.
   const V& operator[](int c) const { return x[c]; }
 };
 
+/// Returns the scalar product of two vectors.
 template <class V>
 inline V dot(const Vec<V>& a, const Vec<V>& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
+/// Returns the vector product of two vectors.
 template <class V>
 inline Vec<V> cross(const Vec<V>& a, const Vec<V>& b) {
   return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}};
 }
+/// Returns a vector multiplied by a number.
 template <class V>
 inline Vec<V> scaled(const V& s, const Vec<V>& a) {
   return {{s * a[0], s * a[1], s * a[2]}};
 }
 
+/// Returns the square root of a number.
 inline double root(double x) { return std::sqrt(x); }
+/// Returns the square roots of a pack of SIMD lanes.
 template <int kWidth>
 inline LanesOf<kWidth> root(LanesOf<kWidth> x) {
   for (int k = 0; k < kLanes; ++k) x[k] = std::sqrt(x[k]);
   return x;
 }
 
-/// Vectors at a point: r_m, r_n, r_mm, r_nn, r_mn.
+/// Number of vectors at a point: r_m, r_n, r_mm, r_nn, r_mn.
 inline constexpr int kVectors = 5;
 
 /// Second derivatives of the energy: block (v, w) of the vectors, 3 x 3 by rows.
 template <class V>
 struct Hessian {
-  V at[kVectors][kVectors][9];
+  V at[kVectors][kVectors][9];  ///< Entries of all blocks.
 };
 
 /// Energy density u = ½ κᵀ D κ at one point and its derivatives by y = (r_m, r_n, r_mm, r_nn,
@@ -59,7 +67,9 @@ struct Hessian {
 template <class V>
 class Point {
  public:
-  // Inlined wherever it is called, as other code comes and goes around it: it rounds as it is.
+  /// Evaluates the energy density at the vectors y for a bending stiffness D, multiplied by a
+  /// weight. It is always inlined, so that changes of the surrounding code do not change its
+  /// rounding.
   [[gnu::always_inline]] Point(const Vec<V>* y, const Eigen::Matrix3d& stiffness, const V& weight)
       : r_m_(y[0]), r_n_(y[1]) {
     n_ = cross(r_m_, r_n_);
@@ -82,16 +92,17 @@ class Point {
     p_ = times_J(A_);
   }
 
+  /// Returns the energy density times the weight.
   V energy() const { return 0.5 * dot(kappa_, moment_); }
 
-  /// ∂u/∂y (5).
+  /// Computes the first derivatives ∂u/∂y (5).
   void force(Vec<V>* out) const {
     out[0] = cross(r_n_, p_);
     out[1] = cross(p_, r_m_);
     for (int i = 0; i < 3; ++i) out[2 + i] = scaled(factor(i) * moment_[i], nu_);
   }
 
-  /// ∂²u/∂y²; symmetric.
+  /// Computes the second derivatives ∂²u/∂y², which are symmetric.
   void tangent(Hessian<V>& out) const {
     // ∂κ_i/∂r_m and ∂κ_i/∂r_n, and D times them.
     Vec<V> by_m[3], by_n[3], D_by_m[3], D_by_n[3];
@@ -112,14 +123,14 @@ class Point {
  private:
   static constexpr double factor(int i) { return i == 2 ? 2.0 : 1.0; }  // a_i by y_(2+i)
 
-  /// J x = |n|⁻³ (x - 3 n (n·x)/|n|²).
+  /// Returns J x = |n|⁻³ (x - 3 n (n·x)/|n|²).
   Vec<V> times_J(const Vec<V>& x) const {
     const V along = 3.0 * square_inverse_ * dot(n_, x);
     return scaled(cube_inverse_,
                   Vec<V>{{x[0] - along * n_[0], x[1] - along * n_[1], x[2] - along * n_[2]}});
   }
 
-  /// Blocks of r_m and r_n: δκᵀ D Δκ + δnᵀ Q Δn + p · δ²n.
+  /// Computes the blocks of r_m and r_n: δκᵀ D Δκ + δnᵀ Q Δn + p · δ²n.
   void of_slopes(const Vec<V>* by_m, const Vec<V>* by_n, const Vec<V>* D_by_m, const Vec<V>* D_by_n,
                  Hessian<V>& out) const {
     Vec<V> Q[3], m_Q[3], n_Q[3];  // Q, and [r_n] Q and [r_m] Q, by rows
@@ -130,7 +141,7 @@ class Point {
         Q[b][c] = l5 * (normal * n_[b] * n_[c] - 3.0 * (A_[b] * n_[c] + n_[b] * A_[c]));
       Q[b][b] -= 3.0 * l5 * along;
     }
-    for (int c = 0; c < 3; ++c) {  // Q is symmetric: rows are columns
+    for (int c = 0; c < 3; ++c) {  // Q is symmetric: its rows are its columns
       const Vec<V> m = cross(r_n_, Q[c]), n = cross(r_m_, Q[c]);
       for (int b = 0; b < 3; ++b) {
         m_Q[b][c] = m[b];
@@ -161,7 +172,7 @@ class Point {
     transpose(out.at[0][1], out.at[1][0]);
   }
 
-  /// Blocks of the second derivatives.
+  /// Computes the blocks that involve the second derivatives r_mm, r_nn and r_mn.
   void of_curvatures(const Vec<V>* D_by_m, const Vec<V>* D_by_n, Hessian<V>& out) const {
     V m_J[9], n_J[9];  // (∂n/∂r_m)ᵀ J = [r_n] J, (∂n/∂r_n)ᵀ J = -[r_m] J
     for (int c = 0; c < 3; ++c) {

@@ -8,15 +8,16 @@ namespace {
 ///
 ///   s_v = τ D ė,   P = τ ∫ ė·D ė dA
 ///
-/// e, D  strains and stiffness of an elastic term of the body, W = ½ e·D e: ε and h C of the
-///       membrane, κ and D of bending, ... so that the whole stress is D (e + τ ė)
-/// τ     damping time [s]: a mode of pulsation ω has the damping ratio ζ = τ ω/2
+///   e, D  strains and stiffness of an elastic term of the body, W = ½ e·D e: ε and h C of the
+///         membrane, κ and D of bending, ... so that the whole stress is D (e + τ ė)
+///   τ     damping time [s]: a mode of angular frequency ω has the damping ratio ζ = τ ω/2
 ///
-/// ė are rates of strains that do not change in rigid motions: these are not damped. (Rates of the
-/// unknowns by the stiffness matrix would be: K q̇ of a body that turns is not zero.)
+/// ė are rates of strains, which do not change in rigid motions. Therefore rigid motions are not
+/// damped. (With rates of the unknowns times the stiffness matrix they would be damped, because K
+/// q̇ of a rotating body is not zero.)
 ///
-/// Source: García-Vallejo, Valverde & Domínguez (2005), Nonlinear Dynamics 42, 347-369, who have
-/// the same damping of the strains in beams.
+/// Source: García-Vallejo, Valverde & Domínguez (2005), Nonlinear Dynamics 42, 347-369, who apply
+/// this damping of the strains to beams.
 class KelvinVoigt final : public DissipationDensity {
  public:
   KelvinVoigt(const LinearDensity& elastic, double time)

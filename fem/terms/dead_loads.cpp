@@ -5,7 +5,7 @@
 namespace flexmorph::fem {
 namespace {
 
-/// Loads of fixed direction: the same generalized force whatever the shape of the body.
+/// Loads of fixed direction; their generalized force does not depend on the shape of the body.
 class DeadLoad : public LoadTerm, public LinearMeanForce<DeadLoad>, public FreeLineTerm {
  public:
   explicit DeadLoad(const LoadLaw& load) : LoadTerm(load) {}
@@ -39,7 +39,7 @@ class DeadLoad : public LoadTerm, public LinearMeanForce<DeadLoad>, public FreeL
   /// Adds weight · N at a material point.
   void add_point(const Element& element, const Vec2& material, double weight) {
     const int e = element.locate(material, Tabulate::position_rates, table_);
-    // The flow of material through the point would do work that no balance counts.
+    // Material flow through the point would do work that no energy balance contains.
     if (!element.free_sides(e).empty())
       check_fixed(element, e, material);
     else if (table_.N_t.size() > 0)
@@ -58,7 +58,7 @@ class PointForce final : public DeadLoad {
   PointForce(const Vec2& material, const LoadLaw& force) : DeadLoad(force), material_(material) {}
   std::unique_ptr<Term> clone() const override { return std::make_unique<PointForce>(*this); }
   void prepare(const Element& element, const Factors&, bool all) override {
-    if (!all) return;  // only elements whose lines stand still are loaded
+    if (!all) return;  // only elements whose lines do not move are loaded
     check(element, "point force");
     share_.assign(static_cast<size_t>(element.n_elements()), {});
     add_point(element, material_, 1);
@@ -73,7 +73,7 @@ class EdgeLoad final : public DeadLoad {
   EdgeLoad(std::string edge, const LoadLaw& load) : DeadLoad(load), edge_(std::move(edge)) {}
   std::unique_ptr<Term> clone() const override { return std::make_unique<EdgeLoad>(*this); }
   void prepare(const Element& element, const Factors&, bool all) override {
-    if (!all) return;  // only elements whose lines stand still are loaded
+    if (!all) return;  // only elements whose lines do not move are loaded
     check(element, "load of edge '" + edge_ + "'");
     share_.assign(static_cast<size_t>(element.n_elements()), {});
     const std::vector<NodeVectors> nodes = element.edge(edge_);

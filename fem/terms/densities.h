@@ -5,9 +5,10 @@
 
 namespace flexmorph::fem {
 
-/// W = h/2 εᵀ C ε of a St. Venant-Kirchhoff membrane, P (6)-(8); measures r_m, r_n.
+/// Energy density W = h/2 εᵀ C ε of a St. Venant-Kirchhoff membrane, P (6)-(8); measures r_m, r_n.
 class MembraneDensity final : public LinearDensity {
  public:
+  /// Creates the density of a section.
   explicit MembraneDensity(const PlaneSection& s)
       : LinearDensity(green_lagrange(), s.thickness * s.elasticity()),
         elasticity_(s.thickness * s.elasticity()) {}

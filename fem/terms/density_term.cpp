@@ -6,13 +6,13 @@
 namespace flexmorph::fem {
 namespace {
 
-/// Too large for the stack of a thread.
+/// Returns the work space of the thread, which is too large for its stack.
 StrainField& field() {
   static thread_local StrainField room;
   return room;
 }
 
-/// ∫ s · ∂e/∂t dA at fixed unknowns, stresses times the weights of their points.
+/// Returns ∫ s · ∂e/∂t dA at fixed unknowns, with stresses times the weights of their points.
 double power_of_flow(StrainField& at, const MatrixXd& stress, const LocalRows& q) {
   at.set_rate(q, LocalRows::Zero(q.rows(), q.cols()));
   return stress.cwiseProduct(at.rate()).sum();
@@ -96,14 +96,14 @@ double ElasticTerm::flow_power(int e, const Local& x) const {
 
 namespace {
 
-/// The strains of an element at the points that cells are integrated at, in field().
+/// Computes in field() the strains of an element at the points at which cells are integrated.
 StrainTable& strains_at_points(const StrainSampling& sampling, const StrainMeasure& measure,
                                const StrainSource& from, int e, const LocalRows& q) {
   static thread_local StrainTable table;
   if (!sampling.is_pointwise())
     throw Error::input("assumed strains have no derivatives by the factors of cells");
   sampling.tabulate(from, e, table);
-  table.rate.clear();  // at fixed points
+  table.rate.clear();  // rates at fixed points contain no flow
   field().set(measure, table, q);
   return table;
 }
@@ -215,11 +215,12 @@ class Elastic final : public ElasticTerm {
   /// Stresses at all points, times weights.
   struct Stressed {
     double energy = 0;
-    MatrixXd stress, change;  // what the tangent makes of it
+    MatrixXd stress, change;  // stresses, and their change in the tangent
     std::vector<StrainSquare> stiffness;
   };
 
-  /// Of an element and a part; the strains are left in field(). One per thread.
+  /// Evaluates the stresses of an element and a density; the strains remain in field(). The result
+  /// belongs to the thread.
   Stressed& stressed(size_t part, int e, const LocalRows& q, bool derive) const {
     static thread_local Stressed out;
     const StrainDensity& density = *parts()[part].density;
@@ -339,11 +340,12 @@ class Dissipative final : public StrainTerm,
   /// Stresses at all points, times weights.
   struct Stressed {
     double power = 0;
-    MatrixXd stress, change;  // what the tangent makes of it
+    MatrixXd stress, change;  // stresses, and their change in the tangent
     std::vector<StrainSquare> by_strain, by_rate;
   };
 
-  /// Of an element and a part; strains and rates are left in field(). One per thread.
+  /// Evaluates the stresses of an element and a density; strains and rates remain in field(). The
+  /// result belongs to the thread.
   Stressed& stressed(size_t part, int e, const Local& x, bool derive) const {
     static thread_local Stressed out;
     const DissipationDensity& density = *parts_[part].density;

@@ -5,11 +5,12 @@
 #include "fem/strain_term.h"
 #include "fem/terms/free_work.h"
 
-/// Terms made of densities.
+/// Terms that are defined by energy densities or dissipation densities.
 namespace flexmorph::fem {
 
-/// What every elastic term has from its densities, whatever closed forms it brings: forces on free
-/// lines, powers of material flow, and a mean force that keeps the energy (GramGradient).
+/// Base class of all elastic terms. From the densities it computes the forces on free lines, the
+/// powers of material flow, and a mean force that conserves the energy (GramGradient); derived
+/// classes add closed forms.
 class ElasticTerm : public StrainTerm,
                     public MeanForceTerm,
                     public FreeLineTerm,
@@ -28,7 +29,7 @@ class ElasticTerm : public StrainTerm,
   void add_factor_slopes(int e, const Local& x, const LocalRows& psi,
                          FactorSlopes& out) const override;
   void add_energy_slopes(int e, const Local& x, double weight, FactorSlopes& out) const override;
-  /// energy_at(), or that of FreeElastic next to free lines.
+  /// Returns the energy by energy_at(), or by FreeElastic in elements with free lines.
   Energies energies(int e, const Local& x) const final;
   double flow_power(int e, const Local& x) const override;
   void add_line_energy(std::span<const ShapeTable> line, const Local& x,
@@ -38,54 +39,60 @@ class ElasticTerm : public StrainTerm,
   ElasticTerm(std::string name, std::vector<ElasticPart> parts)
       : name_(std::move(name)), parts_(std::move(parts)) {}
 
-  /// To be called by prepare(): what the functions above need.
-  /// @throws Error (input) for free lines and a density that does not know them.
+  /// Prepares the data of the functions above; prepare() of a derived class must call it.
+  /// @throws Error (input) for free lines if a density does not support them.
   void prepare_parts(const Element& element, const Factors& factors);
-  /// Strain energy of an element without free lines [J].
+  /// Returns the strain energy of an element without free lines [J].
   virtual double energy_at(int e, const Local& x) const = 0;
 
+  /// Returns the densities and their sampling.
   const std::vector<ElasticPart>& parts() const { return parts_; }
-  const Element& element() const { return *element_; }  ///< of the last prepare_parts()
+  /// Returns the elements of the last prepare_parts().
+  const Element& element() const { return *element_; }
+  /// Returns the scale factors of the last prepare_parts().
   const Factors& factors() const { return *factors_; }
+  /// Returns true if an element has free lines.
   bool is_free(int e) const { return !free_.empty() && free_.front().has(e); }
 
  private:
   std::string name_;
   std::vector<ElasticPart> parts_;
-  std::vector<FreeTables> free_;  // of every part
+  std::vector<FreeTables> free_;  // one per density
   GramGradient gradient_;
   const Element* element_ = nullptr;
   const Factors* factors_ = nullptr;
 };
 
-/// Tables of the strains of all elements, for the parts of a term.
+/// Tables of the strains of all elements, for the densities of a term.
 class StrainTables {
  public:
+  /// Tabulates the strains of all elements, or only of elements whose lines move if `all` is false.
   void prepare(const Element& element, const Factors& factors, bool all,
                std::span<const std::shared_ptr<const StrainSampling>> samplings);
+  /// Returns the table of one density and element.
   const StrainTable& of(size_t part, int e) const { return tables_[part][static_cast<size_t>(e)]; }
 
  private:
-  std::vector<std::vector<StrainTable>> tables_;  // of part, element
+  std::vector<std::vector<StrainTable>> tables_;  // by density and element
 };
 
-/// A term that is the sum of elastic energies, U = Σ ∫ W(e) dA:
+/// Returns a term that is the sum of elastic energies, U = Σ ∫ W(e) dA:
 ///
 ///   f = ∫ Bᵀ s dA,   s = ∂W/∂e,   K = ∫ Bᵀ ∂²W/∂e² B + Σ s_i ∂²e_i/∂q² dA,   B = ∂e/∂q
 ///
-/// Everything that the seam asks of it follows from the densities. Closed forms of the other
-/// elastic terms are tested against it.
+/// All functions of the interface follow from the densities. The closed forms of the other elastic
+/// terms are tested against this term.
 ///
-/// @throws Error (input) at prepare() for free lines and a density that does not know them.
+/// @throws Error (input) at prepare() for free lines if a density does not support them.
 std::unique_ptr<StrainTerm> make_elastic_term(std::string name, std::vector<ElasticPart> parts);
 
-/// A term that dissipates,
+/// Returns a term that dissipates energy,
 ///
 ///   f = ∫ Bᵀ s(e, ė) dA,   ė = B q̇ + ∂e/∂t,   power P = ∫ s · ė dA >= 0
 ///
-/// rates of strains being those of the material: ∂e/∂t is what material flow makes of them where
-/// the unknowns stand still. Its mean force is that of the mean state: it takes h P there out of
-/// the energy, and leaves momenta as they are, because strains do not see rigid motions.
+/// The rates of the strains are those of the material: ∂e/∂t is their rate due to material flow at
+/// constant unknowns. The mean force is the force of the mean state: it removes the energy h P of
+/// this state, and it conserves momenta, because strains do not depend on rigid motions.
 ///
 /// @throws Error (input) at prepare() for free material lines.
 std::unique_ptr<StrainTerm> make_dissipative_term(std::string name,

@@ -55,7 +55,8 @@ void ElementInvariants::begin(const Element& element, const Factors& factors, bo
 ElementInvariants::Packed ElementInvariants::of(const Element& element, int e,
                                                 const Factors& factors) {
   std::swap(previous_, table_);
-  // As many points as with factors in the weights, which need twice as many as without.
+  // The number of points is that of an integration with scale factors in the weights, twice the
+  // usual degree.
   const bool weighed = weigh(e, weights_);
   const int degree = weighed ? 2 * kDegree : kinds_ == 1 ? kCellDegree : kDegree;
   const FactorKind kind = weighed ? FactorKind::none : FactorKind::stiffness;
@@ -70,7 +71,8 @@ ElementInvariants::Packed ElementInvariants::of(const Element& element, int e,
   return last_;
 }
 
-/// W of table_. Cells of one shape, each of one material, differ by a factor: it is made once.
+/// Returns W of table_. Cells of one shape, each of one material, differ by a factor, so that W is
+/// computed only once for them.
 ElementInvariants::Packed ElementInvariants::scaled() {
   const bool cell = kinds_ == 1 && coupled_;
   if (cell && scaled_from_) {

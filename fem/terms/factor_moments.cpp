@@ -7,8 +7,8 @@
 namespace flexmorph::fem {
 namespace {
 
-/// First and last of the cells that an interval lies in; those behind the last line of the grid
-/// belong to its last cell. Lines that coincide up to round-off are one.
+/// Returns the first and the last cell that an interval covers; positions behind the last line of
+/// the grid belong to its last cell. Lines that coincide up to round-off are one line.
 std::pair<int, int> cells_of(double start, double end, double grid_start, double cell, int n) {
   const auto index = [&](double x) {
     return std::clamp(static_cast<int>(std::floor((x - grid_start) / cell)), 0, n - 1);
@@ -17,8 +17,8 @@ std::pair<int, int> cells_of(double start, double end, double grid_start, double
   return {index(start + tiny), index(end - tiny)};
 }
 
-/// Integrals of Lagrange's polynomials over the part of cell k, one of [first, last], in an
-/// interval.
+/// Returns the integrals of the Lagrange polynomials over the part of cell k, one of [first, last],
+/// that lies in an interval.
 VectorXd integrals(int n, int k, std::pair<int, int> cells, double start, double end,
                    double grid_start, double cell) {
   const double length = end - start;

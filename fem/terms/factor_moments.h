@@ -6,32 +6,38 @@
 
 namespace flexmorph::fem {
 
-/// Moments of the factors of a design across a plate, made once per design:
+/// Moments of the scale factors of a design across a plate, computed once per design:
 ///
 ///   M_c(h) = Σ_r κ_cr ∫_r ℓ_h(u) du
 ///
-/// κ_cr  factor of the cell in column c and row r of the grid
-/// ℓ_h   Lagrange's polynomials at n Gauss points of a row of elements, u in [0, 1] across it; the
-///       integral is over the part of cell row r that lies in it, cut ones included
+///   κ_cr  scale factor of the cell in column c and row r of the grid
+///   ℓ_h   Lagrange polynomials at n Gauss points of a row of elements, u in [0, 1] across it; the
+///         integral is over the part of cell row r that lies in the row of elements, cells that are
+///         cut included
 ///
-/// With them the weights of an element's n x n points, exact up to degree n - 1 each way, cost the
-/// columns of cells that it lies in, and not its cells: its m-lines may move in every step.
+/// With the moments, the weights of an element's n x n points, exact up to degree n - 1 in each
+/// direction, have a cost proportional to the columns of cells in the element, not to all its
+/// cells. Therefore its m-lines may move in every step.
 class FactorMoments {
  public:
-  /// Those of a mesh whose elements lie in many cells of a design: made anew where `all` says that
-  /// the design is another one, or its n-lines are. No others have any: cells, uniform material,
-  /// elements that take no factors (and say so where they are tabulated).
-  /// @param factor  of all cells, one of the two of `factors`
+  /// Computes the moments of a mesh whose elements cover many cells of a design. They are
+  /// recomputed if `all` is true (the design has changed) or if the n-lines have changed. Meshes of
+  /// cells, uniform material and elements that take no scale factors (and throw when they are
+  /// tabulated) have no moments.
+  /// @param factor  scale factors of all cells, one of the two kinds in `factors`
   void follow(const Element& element, const Factors& factors, const VectorXd& factor, int n,
               bool all);
-  /// Weights of the points (g, h) of element e where follow() left it [m²]; false, and nothing
-  /// done, without moments.
+  /// Computes the weights of the points (g, h) of element e, with the lines of the last follow()
+  /// [m²].
+  /// @returns false, with `out` unchanged, if there are no moments
   /// @param out  (n x n)
   bool weigh(int e, MatrixXd& out) const;
 
-  /// @param across  n-lines of the mesh, which stay [m]
+  /// Computes the moments of all rows of elements.
+  /// @param across  n-lines of the mesh, which do not move [m]
   void prepare(const std::vector<double>& across, const Grid& grid, const VectorXd& factor, int n);
-  /// Weights of the points of the element between two m-lines in row j of the elements [m²].
+  /// Computes the weights of the points of the element between two m-lines in row j of the elements
+  /// [m²].
   /// @param out  (n x n)
   void weights(double start, double end, int j, MatrixXd& out) const;
 

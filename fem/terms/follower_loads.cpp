@@ -9,7 +9,7 @@ namespace {
 
 using Mat3 = Eigen::Matrix3d;
 
-/// Σ_k row_k q_k.
+/// Returns Σ_k row_k q_k.
 template <class Row>
 Vec3 at(const Row& row, const LocalRows& q) {
   Vec3 out = Vec3::Zero();
@@ -26,12 +26,13 @@ void check_still(const Element& element, int e, const std::string& what) {
   if (element.moving(e)) throw Error::input(what + ": in an element whose material lines move");
 }
 
-/// Pressure that follows the surface:  δW = ∫ p (r_m × r_n) · δr dA  over the reference area,
-/// which is the pressure on the deformed area; the tangent
+/// Pressure that follows the surface:  δW = ∫ p (r_m × r_n) · δr dA  over the reference area. It is
+/// the pressure on the deformed area. The tangent
 ///
 ///   K_kl = -∫ p N_k (N_l,n [r_m]× - N_l,m [r_n]×) dA
 ///
-/// is unsymmetric but for closed or suitably held surfaces. Integrands are polynomials of degree 8.
+/// is unsymmetric except for closed or suitably held surfaces. Integrands are polynomials of degree
+/// 8.
 class Pressure final : public LoadTerm {
  public:
   explicit Pressure(const LoadLaw& pressure) : LoadTerm(pressure, true) {}
@@ -74,14 +75,14 @@ class Pressure final : public LoadTerm {
   std::vector<ShapeTable> tables_;
 };
 
-/// Moment per length of an edge, about the edge, that follows its turning:
+/// Moment per length of an edge, about the edge, that rotates with it:
 ///
 ///   δW = ∫ M δθ ds,   δθ = σ n̂ · δs / |s|,   n̂ = r_m × r_n / |r_m × r_n|
 ///
-/// s is the slope across the edge (r_m at root and free end, r_n at the sides) and σ = 1 where it
-/// points out of the body (free_end, side_high), -1 where it points into it: a positive moment
-/// turns the outward slope towards n̂, so that on opposite edges it bends with κ > 0. The force
-/// h = σ M n̂/|s| on s has the derivative
+/// s is the position gradient across the edge (r_m at root and free end, r_n at the sides). σ = 1
+/// where it points out of the body (free_end, side_high), -1 where it points into it. A positive
+/// moment rotates the outward gradient towards n̂, so that on opposite edges it bends with κ > 0.
+/// The force h = σ M n̂/|s| on s has the derivative
 ///
 ///   ∂h = σ M ( (1 - n̂ n̂ᵀ) ∂n / (|n| |s|) - n̂ (s · ∂s) / |s|³ )
 class EdgeMoment final : public LoadTerm, public FreeLineTerm {
@@ -97,7 +98,7 @@ class EdgeMoment final : public LoadTerm, public FreeLineTerm {
     along_m_ = edge_ == "root" || edge_ == "free_end";
     outward_ = edge_ == "free_end" || edge_ == "side_high" ? 1 : -1;
     points_.assign(static_cast<size_t>(element.n_elements()), {});
-    const GaussRule& rule = gauss(5);  // rational where |s| varies along the edge
+    const GaussRule& rule = gauss(5);  // the integrand is rational where |s| varies along the edge
     ShapeTable table;
     for (size_t i = 0; i + 1 < nodes.size(); ++i) {
       const Vec2 from = nodes[i].material, along = nodes[i + 1].material - from;
@@ -134,7 +135,7 @@ class EdgeMoment final : public LoadTerm, public FreeLineTerm {
       }
     }
   }
-  // Edges of elements that move are refused.
+  // Edges of elements whose lines move are not accepted, so that free elements have no load.
   void add_free_force(int, const Local&, FreeForce&) const override {}
   void add_free_tangent(int, const Local&, const Weights&, FreeTangent&) const override {}
   std::string name() const override { return "edge moment"; }

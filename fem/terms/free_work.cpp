@@ -6,9 +6,9 @@ namespace flexmorph::fem {
 
 namespace {
 
-constexpr int kLengths = 2;  // a, b: all that the energy of uniform material depends on
+constexpr int kLengths = 2;  // a, b; the energy of uniform material depends only on them
 
-/// ∂a/∂p_l or ∂b/∂p_l, and which of the two.
+/// Return ∂a/∂p_l or ∂b/∂p_l, and the number of the length, a or b, that depends on p_l.
 constexpr double sign(int l) { return l == kM1 || l == kN1 ? -1 : 1; }
 constexpr int length_of(int l) { return l / 2; }
 
@@ -17,7 +17,7 @@ constexpr int length_of(int l) { return l / 2; }
 void check_fixed(const Element& element, int e, const Vec2& material) {
   FreeTable t;
   element.tabulate_free(e, 0, Tabulate::position, t);
-  // A point between lines moves through the element with any of them.
+  // A point between two lines moves through the element if one of them moves.
   const auto on = [](double x, double line, double size) {
     return std::abs(x - line) < 1e-9 * size;
   };
@@ -53,13 +53,13 @@ void FreeTables::prepare(const Element& element, int degree, Tabulate what,
                             tables_[static_cast<size_t>(index_[static_cast<size_t>(e)])]);
 }
 
-/// Measures at one point and their derivatives by the lengths of the element.
+/// Measures at one point and their derivatives with respect to the lengths of the element.
 struct FreeElastic::Point {
   double weight = 0;
   Measures z;
   Measures by[kLengths];                // ∂z/∂a, ∂z/∂b at fixed local coordinates
-  Measures by_two[kLengths][kLengths];  // second ones
-  // The coefficients of the unknowns in z, and those of ∂z/∂a, ∂z/∂b.
+  Measures by_two[kLengths][kLengths];  // second derivatives
+  // Coefficients of the unknowns in z, and in ∂z/∂a, ∂z/∂b.
   Eigen::Matrix<double, kMaxMeasures, kMaxShapes> rows, rows_by[kLengths];
 };
 
@@ -132,7 +132,7 @@ void FreeElastic::add_tangent(const LocalRows& q, double scale, FreeTangent& tan
   MeasureHessian hessian;
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMaxMeasures * kMaxDim,
                 kMaxFree>
-      variation;  // of z by the shape unknowns, then by the four lines
+      variation;  // derivatives of z by the shape unknowns, then by the four lines
   FreeTangent product;
   for (Eigen::Index g = 0; g < table_.at.weight.size(); ++g) {
     measure(g, q, point);
@@ -147,7 +147,7 @@ void FreeElastic::add_tangent(const LocalRows& q, double scale, FreeTangent& tan
           variation(d * i + c, n * d + l) = sign(l) * point.by[length_of(l)](i, c);
       }
     tangent.noalias() += w * (variation.transpose() * (hessian * variation));
-    // What the stress does on the second variations, and the change of the area.
+    // Work of the stress on the second variations, and the change of the area.
     for (int l = 0; l < kSides; ++l) {
       const int A = length_of(l);
       for (Eigen::Index k = 0; k < n; ++k)
@@ -173,12 +173,12 @@ void FreeElastic::add_tangent(const LocalRows& q, double scale, FreeTangent& tan
 
 namespace {
 
-// Entries behind the dimension are zero; room for a vector register, or GCC 12 warns of loads that
-// never happen.
+// Entries behind the dimension are zero. The size is that of a vector register, because GCC 12
+// otherwise warns of loads that never happen.
 using Row = Eigen::Matrix<double, 1, 8>;
 using Shapes = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxShapes>;
 
-/// Σ_k table_gk q_k.
+/// Returns Σ_k table_gk q_k.
 Row at_point(const MatrixXd& table, Eigen::Index g, const LocalRows& q) {
   Row out = Row::Zero();
   for (Eigen::Index k = 0; k < q.rows(); ++k)
@@ -186,7 +186,8 @@ Row at_point(const MatrixXd& table, Eigen::Index g, const LocalRows& q) {
   return out;
 }
 
-/// Position, its derivatives by the lines and the material acceleration less the weight at a point.
+/// Position, velocity, derivatives of the position by the lines, and the material acceleration
+/// minus gravity, at a point.
 struct Moving {
   Row r, velocity, load;
   std::array<Row, kSides> by_line;
@@ -214,7 +215,7 @@ Moving moving(const FreeTable& t, Eigen::Index g, const Local& x, const VectorXd
   return out;
 }
 
-/// Numbers of m- and of n-derivatives that lines l and k stand for.
+/// Return the numbers of m- and of n-derivatives that a derivative by line l adds.
 constexpr int m_orders(int l) { return l <= kM2; }
 constexpr int n_orders(int l) { return l >= kN1; }
 
@@ -293,7 +294,7 @@ void FreeInertia::add_tangent(const FreeTable& t, const Local& x, const Weights&
               weight *
               (w.q * N_p(l)(g, k) * at.load[c] + by_q[k] * at.by_line[static_cast<size_t>(l)][c]);
     }
-    // Columns of the lines, at fixed local coordinates: every table is a power of the sides.
+    // Columns of the lines, at fixed local coordinates; every table is a power of the side lengths.
     for (int j = 0; j < kSides; ++j) {
       const auto grow = [&](const MatrixXd& table, int m_order, int n_order) {
         for (Eigen::Index k = 0; k < n; ++k)

@@ -6,40 +6,45 @@
 #include "fem/shapes/batch.h"
 
 /// Kernels of the Gram form of the in-plane elastic force (fem/terms/membrane.cpp), for one element
-/// (V = double) or eight of them side by side (V = LanesOf<...>).
+/// (V = double) or eight elements side by side (V = LanesOf<...>).
 ///
 /// With vectors p_i, g_ij = p_i·p_j (i < j) and g_ii = ½ p_i·p_i, U = ½ (g - g°)ᵀ W (g - g°):
 ///
 ///   s = W (g - g°),   force F_k = Σ_l s_kl p_l
 ///   tangent K_(kb),(lc) = s_kl δ_bc + Σ_ij p_ib W_(ki),(lj) p_jc
 ///
-/// The vectors are not the nodal ones but sums and differences of them that are even or odd in each
-/// of the two directions of the element: of four classes. A pair of vectors is of a class in turn,
-/// and W couples pairs of different classes only where material varies inside the element. In all
-/// others it falls into four blocks, a quarter of the operations.
+/// The vectors are not the nodal ones but their sums and differences, which are even or odd in each
+/// of the two directions of the element. They form four classes. A pair of vectors belongs to a
+/// class, too, and W couples pairs of different classes only where material varies inside the
+/// element. Otherwise W consists of four blocks, which takes a quarter of the operations.
 namespace flexmorph::fem::gram {
 
-/// Numbering for elements with kKinds vectors at each of four nodes: 1 (r), 3 (r, r_m, r_n) or 4
-/// (r_mn).
+/// Numbering of vectors and pairs for elements with kKinds vectors at each of four nodes: 1 (r), 3
+/// (r, r_m, r_n) or 4 (with r_mn).
 ///
-/// Class of a vector: 1 if odd along m, plus 2 if odd along n; of a pair: that of its product. The
-/// even-even vector of the positions is a translation, which strains nothing: it is left out.
+/// A vector has class 1 if it is odd along m, plus 2 if it is odd along n; a pair has the class of
+/// its product. The even-even vector of the positions is a translation without strain and is left
+/// out.
 template <int kKinds>
 struct Numbering {
+  /// Number of vectors and number of pairs.
   static constexpr int n = 4 * kKinds - 1, n_pairs = n * (n + 1) / 2;
+  /// First vector of each class; the last entry is the number of vectors.
   static constexpr std::array<int, 5> first = {0, kKinds - 1, 2 * kKinds - 1, 3 * kKinds - 1, n};
 
-  /// Vector of a kind and class, -1: the translation.
+  /// Returns the number of the vector of a kind and class; -1 for the translation.
   static constexpr int vector(int kind, int c) {
     return c == 0 ? kind - 1 : first[static_cast<std::size_t>(c)] + kind;
   }
 
+  /// Tables of the pairs of vectors.
   struct Tables {
-    std::array<int, n_pairs> i{}, j{};         ///< i <= j of every pair
-    std::array<int, 5> start{};                ///< pairs by classes
-    std::array<std::array<int, n>, n> pair{};  ///< number of {i, j}
-    std::array<int, n> vector_class{};
+    std::array<int, n_pairs> i{}, j{};         ///< Vectors i <= j of every pair.
+    std::array<int, 5> start{};                ///< First pair of each class.
+    std::array<std::array<int, n>, n> pair{};  ///< Number of the pair {i, j}.
+    std::array<int, n> vector_class{};         ///< Class of every vector.
   };
+  /// Returns the tables of this numbering.
   static constexpr Tables make() {
     Tables t;
     int at = 0;
@@ -62,17 +67,18 @@ struct Numbering {
     t.start[4] = at;
     return t;
   }
-  static constexpr Tables tables = make();
+  static constexpr Tables tables = make();  ///< Tables of this numbering.
 };
 
-/// Which pairs W couples: all, or only those of one class.
+/// Pairs that W couples: all, or only those of one class.
 enum class Coupling { all, classes };
 
-/// Numbers that store a block of m pairs: its lower triangle by rows, or a full square.
+/// Returns the number of entries of the lower triangle of a block of m pairs, stored by rows.
 constexpr int packed(int m) { return m * (m + 1) / 2; }
+/// Returns the number of entries of the full square of a block of m pairs.
 constexpr int square(int m) { return m * m; }
 
-/// Numbers that store W: of all pairs, or of its four blocks.
+/// Returns the number of entries that store W: of all pairs, or of its four blocks.
 template <int kKinds>
 constexpr int n_stored(Coupling coupling, int (*size)(int)) {
   using N = Numbering<kKinds>;
@@ -85,45 +91,48 @@ constexpr int n_stored(Coupling coupling, int (*size)(int)) {
 /// W of eight different elements.
 template <class V>
 struct Different {
-  const V* w;
-  static constexpr auto size = packed;
+  const V* w;                           ///< Packed entries.
+  static constexpr auto size = packed;  ///< Number of entries of a block of m pairs.
+  /// Returns the entry of two pairs of the block.
   V at(int x, int y, int) const { return w[x >= y ? x * (x + 1) / 2 + y : y * (y + 1) / 2 + x]; }
-  Different behind(int n) const { return {w + n}; }
+  Different behind(int n) const { return {w + n}; }  ///< Returns the view n entries later.
 };
-/// W of one of them.
+/// W of one of eight elements.
 struct OneOf {
-  const Lanes* w;
-  int lane;
-  static constexpr auto size = packed;
+  const Lanes* w;                       ///< Packed entries of eight elements.
+  int lane;                             ///< SIMD lane of the element.
+  static constexpr auto size = packed;  ///< Number of entries of a block of m pairs.
+  /// Returns the entry of two pairs of the block.
   double at(int x, int y, int) const {
     return w[x >= y ? x * (x + 1) / 2 + y : y * (y + 1) / 2 + x][static_cast<std::size_t>(lane)];
   }
-  OneOf behind(int n) const { return {w + n, lane}; }
+  OneOf behind(int n) const { return {w + n, lane}; }  ///< Returns the view n entries later.
 };
-/// One W for all elements: small enough for the first cache as squares.
+/// One W for all elements, stored as squares; it is small enough for the first-level cache.
 struct Shared {
-  const double* w;
-  static constexpr auto size = square;
-  double at(int x, int y, int m) const { return w[x * m + y]; }
-  Shared behind(int n) const { return {w + n}; }
+  const double* w;                      ///< Entries by rows.
+  static constexpr auto size = square;  ///< Number of entries of a block of m pairs.
+  double at(int x, int y, int m) const { return w[x * m + y]; }  ///< Returns an entry of W.
+  Shared behind(int n) const { return {w + n}; }  ///< Returns the view n entries later.
 };
 
-/// Sums and differences of the ends of an interval: even and odd parts of a value, or of a slope.
+/// Splits a function into its even and odd part, given its end values or end derivatives (slope).
 template <class V>
 inline void split(bool slope, const V& x0, const V& x1, V& even, V& odd) {
   even = slope ? x0 - x1 : x0 + x1;
   odd = slope ? x0 + x1 : x1 - x0;
 }
-/// Transposed.
+/// Applies the transposed operation of split().
 template <class V>
 inline void join(bool slope, const V& even, const V& odd, V& x0, V& x1) {
   x0 = slope ? even + odd : even - odd;
   x1 = slope ? odd - even : even + odd;
 }
+/// Returns true if the vectors of a kind are derivatives along m.
 constexpr bool slope_m(int kind) { return kind == 1 || kind == 3; }
-constexpr bool slope_n(int kind) { return kind >= 2; }
+constexpr bool slope_n(int kind) { return kind >= 2; }  ///< Returns true for derivatives along n.
 
-/// The vectors p (n x dim) of nodal ones q (4 kKinds x dim), corners (0,0), (1,0), (1,1), (0,1).
+/// Computes p (n x dim) from nodal vectors q (4 kKinds x dim), corners (0,0), (1,0), (1,1), (0,1).
 template <int kKinds, int kDim, class V>
 inline void vectors(const V* q, V* p) {
   using N = Numbering<kKinds>;
@@ -131,7 +140,7 @@ inline void vectors(const V* q, V* p) {
   for (int kind = 0; kind < kKinds; ++kind)
     for (int c = 0; c < kDim; ++c) {
       const V* x = q + kind * kDim + c;
-      // Positions relative to one of them: no digits are lost far from the origin.
+      // Positions relative to the first one, so that no digits are lost far from the origin.
       const V origin = kind == 0 ? x[0] : x[0] - x[0];
       V e0, o0, e1, o1, part[4];
       split<V>(slope_m(kind), x[0] - origin, x[kNode] - origin, e0, o0);
@@ -142,7 +151,7 @@ inline void vectors(const V* q, V* p) {
     }
 }
 
-/// g_ij = p_i·p_j, g_ii = ½ p_i·p_i.
+/// Computes the products g_ij = p_i·p_j, g_ii = ½ p_i·p_i.
 template <int kKinds, int kDim, class V>
 inline void products(const V* p, V* g) {
   using N = Numbering<kKinds>;
@@ -155,7 +164,7 @@ inline void products(const V* p, V* g) {
   }
 }
 
-/// s = W g of one block of m pairs.
+/// Computes s = W g of one block of m pairs.
 template <int m, class V, class W>
 inline void multiply_block(W w, const V* g, V* s) {
   for (int r = 0; r < m; ++r) {
@@ -169,6 +178,7 @@ inline void multiply_block(W w, const V* g, V* s) {
     s[r] = sum + w.at(r, r, m) * gr;
   }
 }
+/// Computes s = W g of one block of m pairs that is stored as a full square.
 template <int m, class V>
 inline void multiply_block(Shared w, const V* g, V* s) {
   constexpr int kRows = m % 7 == 0 ? 7 : m % 6 == 0 ? 6 : m % 5 == 0 ? 5 : m;
@@ -184,7 +194,7 @@ inline void multiply_block(Shared w, const V* g, V* s) {
   }
 }
 
-/// s = W g. One copy for all that need it.
+/// Computes s = W g. All callers share one compiled copy.
 template <int kKinds, Coupling coupling, class V, class W>
 inline void multiply(W all, const V* g, V* s) {
   run_kernel_part<kBytesOf<V>>([=] {
@@ -206,7 +216,7 @@ inline void multiply(W all, const V* g, V* s) {
   });
 }
 
-/// Adds the force (n x dim) at the vectors to that at the nodes (4 kKinds x dim).
+/// Adds the force (n x dim) on the vectors to the force on the nodes (4 kKinds x dim).
 template <int kKinds, int kDim, class V>
 inline void add_to_nodes(const V* f, V* force) {
   using N = Numbering<kKinds>;
@@ -225,7 +235,7 @@ inline void add_to_nodes(const V* f, V* force) {
     }
 }
 
-/// Adds F (4 kKinds x dim) of the stress s to the nodal force.
+/// Adds the force F (4 kKinds x dim) of the stress s to the nodal force.
 template <int kKinds, int kDim, class V>
 inline void add_force(const V* s, const V* p, V* force) {
   using N = Numbering<kKinds>;
@@ -241,8 +251,8 @@ inline void add_force(const V* s, const V* p, V* force) {
   add_to_nodes<kKinds, kDim>(f, force);
 }
 
-/// Pairs (k, j), k of class a and j of class b >= a: T = rows of W D(right), then D(left)ᵀ T into
-/// `stiffness`: blocks k <= l where left and right are the same (kSymmetric), else all.
+/// Adds D(left)ᵀ T, T = W D(right), for the pairs (k, j), k of class a and j of class b >= a, to
+/// `stiffness`: blocks k <= l if left and right are equal (kSymmetric), otherwise all blocks.
 template <int kKinds, int kDim, Coupling coupling, int a, int b, bool kSymmetric, class V, class W>
 inline void add_pairs(W w, const V* left, const V* right, V* stiffness) {
   using N = Numbering<kKinds>;
@@ -253,7 +263,7 @@ inline void add_pairs(W w, const V* left, const V* right, V* stiffness) {
   constexpr int kStart = t.pair[kFirst][jFirst];
   constexpr int kRows =
       a == b ? (kEnd - kFirst) * (kEnd - kFirst + 1) / 2 : (kEnd - kFirst) * (jEnd - jFirst);
-  // The block of W: its first pair, its size.
+  // First pair and size of the block of W.
   constexpr int kBase = coupling == Coupling::all ? 0 : t.start[kClass];
   constexpr int m = coupling == Coupling::all ? N::n_pairs : t.start[kClass + 1] - kBase;
   V rows[kRows * n * kDim];
@@ -281,7 +291,7 @@ inline void add_pairs(W w, const V* left, const V* right, V* stiffness) {
       for (int c = 0; c < kDim; ++c) rows[(r * n + l) * kDim + c] = sum[c];
     }
 
-  // K_(kb),(lc) += Σ_j p_jb T_(kj),(lc), and the same with k and j swapped.
+  // K_(kb),(lc) += Σ_j p_jb T_(kj),(lc), and again with k and j swapped.
   const auto gather = [&](int k, int from, int to) {
     for (int l = kSymmetric ? k : 0; l < n; ++l) {
       V* out = stiffness + (k * n + l) * kDim * kDim;
@@ -301,7 +311,7 @@ inline void add_pairs(W w, const V* left, const V* right, V* stiffness) {
     for (int j = jFirst; j < jEnd; ++j) gather(j, kFirst, kEnd);
 }
 
-/// S ⊗ 1 + D(left)ᵀ W D(right) at the vectors: dim x dim blocks k <= l of them, or all.
+/// Computes S ⊗ 1 + D(left)ᵀ W D(right) of the vectors: dim x dim blocks k <= l, or all blocks.
 template <int kKinds, int kDim, Coupling coupling, bool kSymmetric, class V, class W>
 inline void stiffness_of(W w, const V* s, const V* left, const V* right, V* stiffness) {
   using N = Numbering<kKinds>;
@@ -316,7 +326,7 @@ inline void stiffness_of(W w, const V* s, const V* left, const V* right, V* stif
 
   const auto block = [&]<int c>() {
     const auto part = [&]<int a>() {
-      // Positions alone have no vector of the class that is even both ways.
+      // With positions only there is no vector of the class that is even in both directions.
       if constexpr ((a ^ c) >= a && N::first[a] < N::first[a + 1])
         add_pairs<kKinds, kDim, coupling, a, (a ^ c), kSymmetric>(w, left, right, stiffness);
     };
@@ -332,8 +342,8 @@ inline void stiffness_of(W w, const V* s, const V* left, const V* right, V* stif
   block.template operator()<3>();
 }
 
-/// Adds weight times the stiffness at the vectors to the nodal tangent (4 kKinds dim)², by columns:
-/// of two kinds, four classes by four classes become four corners by four corners.
+/// Adds weight times the stiffness of the vectors to the nodal tangent (4 kKinds dim)², by columns:
+/// for two kinds, four classes by four classes are mapped to four corners by four corners.
 template <int kKinds, int kDim, bool kSymmetric, class V>
 inline void add_to_nodes(const V* stiffness, double weight, V* tangent) {
   using N = Numbering<kKinds>;

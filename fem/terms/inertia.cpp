@@ -9,17 +9,17 @@
 namespace flexmorph::fem {
 namespace {
 
-/// Inertia of a body through whose mesh material may flow, P (16), (23).
+/// Inertia of a body, with material flow through its mesh, P (16), (23).
 ///
 ///   f = ∫ ρ h N r̈ dA,   r̈ = Qᵈᵈᵀ N + 2 Qᵈᵀ Ṅ + Qᵀ N̈      (P (5), material acceleration)
 ///     = M Qᵈᵈ + C Qᵈ + P Q,   M = ∫ρh N Nᵀ,  C = 2 ∫ρh N Ṅᵀ,  P = ∫ρh N N̈ᵀ
 ///
-/// N (n_k)     shape functions; Ṅ, N̈ their rates at a fixed material point
-/// h, ρ        thickness [m], density [kg/m³]; the mass factor of the design is in the weights
+///   N (n_k)     shape functions; Ṅ, N̈ their rates at a fixed material point
+///   h, ρ        thickness [m], density [kg/m³]; the weights contain the mass factor of the design
 ///
-/// C and P exist for elements whose lines move; the lines are prescribed, so the force is linear
-/// in Q, Qᵈ and Qᵈᵈ and the tangent is exact. The mean force is exact with a constant mass,
-/// M (v₁ - v₀)/h · (q₁ - q₀) = T₁ - T₀, and at mid-step where lines move.
+/// C and P exist for elements whose lines move. The lines are prescribed, so that the force is
+/// linear in Q, Qᵈ and Qᵈᵈ and the tangent is exact. The mean force is exact with a constant mass,
+/// M (v₁ - v₀)/h · (q₁ - q₀) = T₁ - T₀; where lines move it is taken at mid-step.
 class Inertia final : public Term,
                       public BatchTerm,
                       public LinearMeanForce<Inertia>,
@@ -30,7 +30,7 @@ class Inertia final : public Term,
   explicit Inertia(const PlaneSection& s)
       : section_(s), area_density_(s.density * s.thickness), of_free_(area_density_, {}, true) {}
 
-  /// Made anew: what is prepared would only be prepared again.
+  /// Creates an unprepared term, because prepared data would be recomputed anyway.
   std::unique_ptr<Term> clone() const override { return make_inertia(section_); }
   void prepare(const Element& element, const Factors& factors, bool all) override {
     element_ = &element;
@@ -40,7 +40,7 @@ class Inertia final : public Term,
     moments_.follow(element, factors, factors.mass, kDegree + 1, all);
     for (int e = 0; e < element.n_elements(); ++e)
       if ((all || element.moving(e)) && !free_.has(e)) integrate(element, e, factors);
-    if (element.n_scalars() > 0) return;  // evaluated one by one
+    if (element.n_scalars() > 0) return;  // evaluated one by one, without batches
     batches_.resize((matrices_.size() + kLanes - 1) / kLanes);
     for (size_t b = 0; b < batches_.size(); ++b) {
       const auto first = static_cast<int>(b) * kLanes,
@@ -106,7 +106,7 @@ class Inertia final : public Term,
 
   std::string name() const override { return "inertia"; }
 
-  /// T = ½ ∫ ρh |ṙ|² dA,  ṙ = Qᵈᵀ N + Qᵀ Ṅ.
+  /// Returns T = ½ ∫ ρh |ṙ|² dA, ṙ = Qᵈᵀ N + Qᵀ Ṅ.
   Energies energies(int e, const Local& x) const override {
     if (free_.has(e)) return {.kinetic = of_free_.kinetic_energy(free_.of(e), x)};
     const Matrices& m = matrices_[static_cast<size_t>(e)];
@@ -136,7 +136,7 @@ class Inertia final : public Term,
     element_->add_cell_integrals(e, kDegree, values, factors_->grid, out.mass);
   }
 
-  /// ∫ ρh ṙ dA.
+  /// Returns ∫ ρh ṙ dA.
   Vec3 momentum(int e, const Local& x) const override {
     if (free_.has(e)) return of_free_.momentum(free_.of(e), x);
     const Matrices& m = matrices_[static_cast<size_t>(e)];
@@ -148,7 +148,7 @@ class Inertia final : public Term,
     return out;
   }
 
-  /// ∫ ρh (Qᵀ Ṅ) · r̈ dA.
+  /// Returns ∫ ρh (Qᵀ Ṅ) · r̈ dA.
   double flow_power(int e, const Local& x) const override {
     const Matrices& m = matrices_[static_cast<size_t>(e)];
     return 0.5 * x.a.cwiseProduct(m.convection * x.q).sum() +
@@ -175,7 +175,8 @@ class Inertia final : public Term,
     Square rate_product, rate_transport;  // ∫ρh Ṅ Ṅᵀ, ∫ρh Ṅ N̈ᵀ
   };
 
-  /// The matrices of eight elements, by columns; the last two only where one of them moves.
+  /// Matrices of eight elements, by columns; convection and transport only where lines of one of
+  /// them move.
   struct LaneMatrices {
     std::vector<Lanes> mass, convection, transport;  // (n_shapes²)
   };
@@ -198,7 +199,7 @@ class Inertia final : public Term,
     }
   }
 
-  /// force += matrix x of every lane.
+  /// Adds matrix times x to the force, for every SIMD lane.
   template <class V>
   static void add_product(const std::vector<Lanes>& matrix, const Lanes* x, const Batch& batch,
                           Lanes* force) {
@@ -217,7 +218,8 @@ class Inertia final : public Term,
     if (!moments_.weigh(e, weights_))
       return element.tabulate(e, kDegree, Tabulate::position_rates, factors, FactorKind::mass,
                               table_);
-    // As many points as with factors in the weights, which need twice as many as without.
+    // The number of points is that of an integration with scale factors in the weights, twice the
+    // usual degree.
     element.tabulate(e, 2 * kDegree, Tabulate::position_rates, {}, FactorKind::none, table_);
     for (Eigen::Index g = 0; g < weights_.rows(); ++g)
       for (Eigen::Index h = 0; h < weights_.cols(); ++h)
@@ -240,7 +242,8 @@ class Inertia final : public Term,
     m.rate_transport.noalias() = weighted_.transpose() * table_.N_tt;
   }
 
-  /// ψ · M a of a full bilinear cell, M = ρh A/36 [4 2 1 2; ...] with corners in turn around it.
+  /// Returns ψ · M a of a full bilinear cell, M = ρh A/36 [4 2 1 2; ...] with corners in turn
+  /// around it.
   double bilinear_slope(double area, const Local& x, const LocalRows& psi) const {
     double sum = 0;
     for (Eigen::Index k = 0; k < 4; ++k)
@@ -252,7 +255,7 @@ class Inertia final : public Term,
     return area_density_ * area / 36 * sum;
   }
 
-  static constexpr int kDegree = 6;  // of N Nᵀ
+  static constexpr int kDegree = 6;  // polynomial degree of N Nᵀ
   const Element* element_ = nullptr;
   const Factors* factors_ = nullptr;
   PlaneSection section_;

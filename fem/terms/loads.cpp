@@ -64,7 +64,7 @@ class Gravity final : public LoadTerm,
   void add_factor_slopes(int e, const Local&, const LocalRows& psi,
                          FactorSlopes& out) const override {
     const CellRange at = element_->cells(e, factors_->grid);
-    if (psi.rows() == 4 && at.single()) {  // bilinear: a quarter of its weight at each corner
+    if (psi.rows() == 4 && at.single()) {  // bilinear: a quarter of the weight at each corner
       out.mass[factors_->grid.cell(at.i0, at.j0)] -=
           0.25 * factor() * area_density_ * at.area * psi.colwise().sum().dot(load());
       return;
@@ -96,7 +96,7 @@ class Gravity final : public LoadTerm,
   }
 
  private:
-  static constexpr int kDegree = 3;  // of N
+  static constexpr int kDegree = 3;  // polynomial degree of N
   const Element* element_ = nullptr;
   const Factors* factors_ = nullptr;
   double area_density_;
@@ -105,7 +105,7 @@ class Gravity final : public LoadTerm,
   std::vector<VectorXd> mass_, rate_;  // ∫ρh N, ∫ρh Ṅ per element (n_shapes)
 };
 
-/// Mass at a material point: f = m N (r̈ - g)ᵀ with r̈ as in the inertia of the body.
+/// Mass at a material point: f = m N (r̈ - g)ᵀ with the material acceleration r̈ of the body.
 class PointMass final : public LoadTerm,
                         public BatchTerm,
                         public LinearMeanForce<PointMass>,
@@ -135,7 +135,7 @@ class PointMass final : public LoadTerm,
         for (Eigen::Index c = 0; c < d; ++c)
           tangent(d * k + c, d * l + c) += mass_ * table_.N(0, k) * row[l];
   }
-  // Only one element of all has the mass.
+  // Only one element carries the mass.
   void add_forces(const Batch& x, Lanes* force) const override {
     if (is_in(x)) add_force_of_lane(*this, x, element_ - x.first, force);
   }
@@ -166,7 +166,7 @@ class PointMass final : public LoadTerm,
   }
   double flow_power(int e, const Local& x) const override {
     if (e != element_ || !flows_) return 0;
-    // Weight that varies has no potential that moves with the material.
+    // A varying weight has no potential that moves with the material.
     const Eigen::RowVectorXd a = has_potential() ? felt_acceleration(x) : acceleration(x);
     return mass_ * (table_.N_t * x.q * a.transpose())(0);
   }

@@ -20,21 +20,21 @@ using gram::Coupling;
 ///
 ///   U = h/2 ∫ εᵀ C ε dA,   ε = (½(r_m·r_m - 1), ½(r_n·r_n - 1), r_m·r_n)      P (6)-(8)
 ///
-/// N_k multiplies the identity, so ε depends on the unknowns only through the Gram matrix
-/// G_kl = q_k · q_l, and linearly: ε = Λ(X) (g - g°), g = the distinct entries of G, g° those of
-/// the undeformed element. Hence U is exactly quadratic,
+/// N_k multiplies the identity, so ε depends on the unknowns only through the Gram matrix G_kl =
+/// q_k · q_l, and linearly: ε = Λ(X) (g - g°), g the distinct entries of G, g° their values in the
+/// undeformed element. Hence U is exactly quadratic,
 ///
-///   U = ½ (g - g°)ᵀ W (g - g°),   W = h ∫ Λᵀ C Λ dA,
+///   U = ½ (g - g°)ᵀ W (g - g°),   W = h ∫ Λᵀ C Λ dA.
 ///
-/// and W is built once per design (per time for an element whose lines move), at the same cost of
-/// evaluation whatever the cells. Force and tangent: gram.h, with sums and differences of the q_k
-/// instead of the q_k. Positions enter relative to the first one: the force is the same (rigid
-/// translations strain nothing) and loses no digits far from the origin.
+/// W is computed once per design (once per time for an element whose lines move), and the cost of
+/// an evaluation does not depend on the cells. Force and tangent: gram.h, with sums and differences
+/// of the q_k instead of the q_k. Positions are relative to the first one: this does not change the
+/// force (rigid translations cause no strain) and loses no digits far from the origin.
 ///
 /// Elements of a mesh are evaluated eight at a time, see Batch.
 ///
-/// Cells of a design (shape set q4) that are nearly empty have small strains in a frame that turns
-/// with them instead, see void_cells.h.
+/// Cells of a design (shape set q4) that are nearly empty have small strains in a corotational
+/// frame instead, see void_cells.h.
 ///
 /// Replaces P (11)-(15) and the tensors of the appendix; fem/README.md, Gram form.
 class Membrane final : public ElasticTerm, public BatchTerm {
@@ -47,7 +47,7 @@ class Membrane final : public ElasticTerm, public BatchTerm {
         strains_(strains),
         invariants_(elasticity_, strains) {}
 
-  /// Made anew: what is prepared would only be prepared again.
+  /// Creates an unprepared term, because prepared data would be recomputed anyway.
   std::unique_ptr<Term> clone() const override { return make_membrane(section_, strains_); }
   void prepare(const Element& element, const Factors& factors, bool all) override {
     prepare_parts(element, factors);
@@ -76,8 +76,9 @@ class Membrane final : public ElasticTerm, public BatchTerm {
 
   void add_tangent(int e, const Local& x, const Weights& w, LocalTangent& tangent) const override {
     if (w.q == 0) return;
-    // By columns or by rows: K is symmetric. Single elements are rare, and compiling kernels takes
-    // minutes: they share those of add_mean_tangent(), which compute both halves.
+    // K is symmetric, so that the order by columns or by rows does not matter. Single elements are
+    // rare, and compiling kernels takes minutes. Therefore they share the kernels of
+    // add_mean_tangent(), which compute both halves.
     evaluate(
         e, x,
         [&]<int kKinds, int kDim, Coupling coupling>(const double* s, const double* p, auto w_e) {
@@ -117,13 +118,13 @@ class Membrane final : public ElasticTerm, public BatchTerm {
     });
   }
 
-  /// F̄ = S(ḡ) q̄ with the mean of the Gram entries at both ends,
+  /// Adds F̄ = S(ḡ) q̄ with the mean of the Gram entries at both ends,
   ///
   ///   ḡ = ½ (g₀ + g₁) = g(q̄) + ¼ g(d),   q̄ = ½ (q₀ + q₁),   d = q₁ - q₀
   ///
-  /// an exact discrete gradient, because U is quadratic in g and g in q:
-  /// U₁ - U₀ = (g₁ - g₀)ᵀ W (ḡ - g°) = F̄ · d. S is symmetric, so F̄ has no moment about q̄.
-  /// Simo, Tarnow (1992), Z. angew. Math. Phys. 43, 757-792, have the same mean of the stress.
+  /// an exact discrete gradient, because U is quadratic in g and g in q: U₁ - U₀ = (g₁ - g₀)ᵀ W (ḡ
+  /// - g°) = F̄ · d. S is symmetric, so that F̄ has no moment about q̄. Simo, Tarnow (1992), Z.
+  /// angew. Math. Phys. 43, 757-792, use this mean of the stress.
   void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override {
     evaluate_mean(e, x,
                   [&]<int kKinds, int kDim, Coupling>(const double* s, const double* p, auto) {
@@ -131,7 +132,7 @@ class Membrane final : public ElasticTerm, public BatchTerm {
                   });
   }
 
-  /// ∂F̄/∂q₁ = ½ (S(ḡ) ⊗ 1 + D(q̄)ᵀ W D(q₁)): as the tangent, from two states.
+  /// Adds ∂F̄/∂q₁ = ½ (S(ḡ) ⊗ 1 + D(q̄)ᵀ W D(q₁)), a tangent from two states.
   void add_mean_tangent(int e, const LocalStep& x, const Weights& w,
                         LocalTangent& tangent) const override {
     if (w.q == 0) return;
@@ -187,10 +188,10 @@ class Membrane final : public ElasticTerm, public BatchTerm {
   using Packed = ElementInvariants::Packed;
 
   struct BatchData {
-    Packed shared;                 // squares; where all elements have the same W
-    std::vector<Lanes> different;  // packed; where they do not
+    Packed shared;                 // W as squares, if equal for all elements
+    std::vector<Lanes> different;  // W packed, if not equal
     std::vector<Lanes> reference;  // g°
-    VoidCells cells;               // of the shape set q4
+    VoidCells cells;               // only with the shape set q4
   };
 
   void add_slopes_of_cell(int e, const double* q, const double* psi, double weight,
@@ -302,7 +303,7 @@ class Membrane final : public ElasticTerm, public BatchTerm {
   void prepare_batch(const Element& element, int first, const Factors& factors,
                      const MatrixXd& reference, bool all, BatchData& out) {
     const int count = std::min(kLanes, element.n_elements() - first);
-    int n_moving = 0, n_free = 0;  // elements with free lines are left to FreeElastic
+    int n_moving = 0, n_free = 0;  // elements with free lines are evaluated by FreeElastic
     for (int lane = 0; lane < count; ++lane) {
       const bool free = is_free(first + lane);
       n_free += free;
@@ -317,7 +318,7 @@ class Membrane final : public ElasticTerm, public BatchTerm {
         set_reference(element, first + lane, reference, out);
         if (kinds_ == 1 && !factors.uniform()) set_cell(element, first + lane, reference, out);
       }
-    // A W that some elements share today and not tomorrow is not shared.
+    // W is not shared if the lines of only some of the elements move.
     const bool alike =
         coupling_ == Coupling::classes && n_free == 0 && (n_moving == 0 || n_moving == count) &&
         std::all_of(w.begin(), w.begin() + count, [&](const Packed& x) { return x == w[0]; });
@@ -340,7 +341,7 @@ class Membrane final : public ElasticTerm, public BatchTerm {
     out.cells.set_stiffness(out.different);
   }
 
-  /// Of the element whose W was made last: its mean factor says how solid it is.
+  /// Sets the cell of the element whose W was computed last, with its mean scale factor.
   void set_cell(const Element& element, int e, const MatrixXd& reference, BatchData& out) {
     const auto numbers = element.vectors(e);
     const Vec2 size = (reference.row(numbers[2]) - reference.row(numbers[0])).head<2>();

@@ -7,7 +7,7 @@
 #include "fem/terms/density_term.h"
 #include "fem/terms/membrane_invariant.h"
 
-/// Membrane forces of thin plates, with strains of two kinds.
+/// Membrane forces of thin plates, with strains of the displacement field or assumed strains.
 namespace flexmorph::fem {
 
 /// Returns the densities of the term and the points where they are sampled.

@@ -8,7 +8,7 @@
 namespace flexmorph::fem {
 namespace {
 
-/// Products of two functions at all points: a row per pair i <= j.
+/// Returns the products of two functions at all points: a row per pair i <= j.
 MatrixXd products_of_two(const MatrixXd& f) {
   MatrixXd out(f.cols() * (f.cols() + 1) / 2, f.rows());
   for (Eigen::Index i = 0, p = 0; i < f.cols(); ++i)
@@ -16,7 +16,7 @@ MatrixXd products_of_two(const MatrixXd& f) {
       out.row(p) = f.col(i).cwiseProduct(f.col(j)).transpose();
   return out;
 }
-/// Products of rows of x and rows of y at all points: row p y.rows() + q.
+/// Returns the products of rows of x and rows of y at all points: row p y.rows() + q.
 MatrixXd products(const MatrixXd& x, const MatrixXd& y) {
   MatrixXd out(x.rows() * y.rows(), x.cols());
   for (Eigen::Index p = 0; p < x.rows(); ++p)
@@ -27,16 +27,16 @@ MatrixXd products(const MatrixXd& x, const MatrixXd& y) {
 constexpr int kFunctions = 4, kPairs1d = kFunctions * (kFunctions + 1) / 2,
               kRows = kPairs1d * kPairs1d;
 
-/// As the displacements have them: W = Σ_points Λᵀ C Λ. With N_k = f_i(m) g_a(n) every entry of Λᵀ
-/// C Λ is a sum of products of four functions of m and four of n, so all of W is made of three
-/// matrices, each summed over m first and over n then,
+/// Sums over the points for strains of the displacement field, W = Σ_points Λᵀ C Λ. With N_k =
+/// f_i(m) g_a(n) every entry of Λᵀ C Λ is a sum of products of four functions of m and four of n.
+/// Therefore W consists of entries of three matrices, each summed first over m and then over n,
 ///
 ///   X (p q, r s) = Σ_gh w_gh (x_p y_q)(m_g) (y_r x_s)(n_h)     p, q, r, s: pairs of functions
 ///
 /// with f' f' f' f' (11), f f f f (22) or f' f' f f (all others) along m.
 struct PointSums {
-  MatrixXd normal;  ///< what ε₁₁ and ε₂₂ make of the three, with C
-  MatrixXd shear;   ///< X12
+  MatrixXd normal;  ///< Contributions of ε₁₁ and ε₂₂ to the three matrices, times C.
+  MatrixXd shear;   ///< Matrix X12.
 
   PointSums(const ProductTable& t, const Eigen::Matrix3d& elasticity) {
     const MatrixXd dd_m = products_of_two(t.d_m), ff_m = products_of_two(t.f_m),
@@ -58,7 +58,7 @@ struct PointSums {
   }
 };
 
-/// Products x_i y_j at all points: row i x.cols() + j, a column per point.
+/// Returns the products x_i y_j at all points: row i x.cols() + j, a column per point.
 MatrixXd all_products(const MatrixXd& x, const MatrixXd& y) {
   MatrixXd out(x.cols() * y.cols(), x.rows());
   for (Eigen::Index i = 0; i < x.cols(); ++i)
@@ -67,7 +67,7 @@ MatrixXd all_products(const MatrixXd& x, const MatrixXd& y) {
   return out;
 }
 
-/// W of assumed strains, all pairs by all pairs.
+/// Returns W of assumed strains, all pairs by all pairs.
 MatrixXd of_assumed_strains(const ProductTable& t, const PairNumbers& pairs,
                             const Eigen::Matrix3d& elasticity) {
   const MatrixXd assume = parabola_through_samples(static_cast<int>(t.f_m.rows())).transpose();
@@ -133,7 +133,8 @@ MatrixXd parabola_through_samples(int n) {
 
 ProductTable even_and_odd(const ProductTable& table, const std::vector<int>& function_m,
                           const std::vector<int>& function_n) {
-  const auto both = [](const MatrixXd& f) {  // of the values, of the slopes
+  // Sums and differences of the values, then of the derivatives.
+  const auto both = [](const MatrixXd& f) {
     MatrixXd out(f.rows(), 4);
     out << f.col(0) + f.col(2), f.col(2) - f.col(0), f.col(1) - f.col(3), f.col(1) + f.col(3);
     return out;
@@ -144,12 +145,12 @@ ProductTable even_and_odd(const ProductTable& table, const std::vector<int>& fun
 
 InvariantPlaces invariant_places(const PairNumbers& pairs, const std::vector<int>& function_m,
                                  const std::vector<int>& function_n) {
-  // Number of {i, j} among the pairs of functions of one coordinate.
+  // Returns the number of {i, j} among the pairs of functions of one coordinate.
   const auto number = [](const std::vector<int>& function, int k, int l) {
     auto [i, j] = std::minmax(function[static_cast<size_t>(k)], function[static_cast<size_t>(l)]);
     return i * (2 * kFunctions - i + 1) / 2 + j - i;
   };
-  // Of the pairs (a, b) and (c, d) of vectors, in a matrix by columns.
+  // Returns the index of the pairs (a, b) and (c, d) of vectors in a matrix stored by columns.
   const auto place = [&](int a, int b, int c, int d) {
     return number(function_m, a, b) * kPairs1d + number(function_m, c, d) +
            kRows * (number(function_n, a, b) * kPairs1d + number(function_n, c, d));

@@ -18,16 +18,17 @@ void check(const Element& element, const std::string& term) {
     throw Error::input("term '" + term + "' is one of rigid bodies, and this is none");
 }
 
-/// X 1 + Y J, J the quarter turn: takes u to X u + Y v.
+/// Returns X 1 + Y J, J a rotation by 90 degrees; it maps u to X u + Y v.
 Eigen::Matrix2d arm(const Vec2& point) {
   Eigen::Matrix2d out;
   out << point.x(), -point.y(), point.y(), point.x();
   return out;
 }
 
-/// T = ½ ∫ |ṙ + X u̇ + Y v̇|² dm: with c the centre of mass and J = I + m |c|² about the point r,
+/// Inertia of a rigid body, T = ½ ∫ |ṙ + X u̇ + Y v̇|² dm: with c the centre of mass and J = I + m
+/// |c|² about the point r,
 ///
-///   M = [ m 1     m A ]     A = c_X 1 + c_Y (quarter turn)
+///   M = [ m 1     m A ]     A = c_X 1 + c_Y (rotation by 90 degrees)
 ///       [ m Aᵀ    J 1 ]     since |X u̇ + Y v̇|² = (X² + Y²) |u̇|²
 ///
 /// Source: García de Jalón & Bayo (1994), ch. 4.2.
@@ -69,7 +70,8 @@ class RigidInertia final : public Term, public LinearMeanForce<RigidInertia> {
   Eigen::Matrix4d mass_;
 };
 
-/// V = -m g · (r + c_X u + c_Y v), linear in the unknowns; constant gravity only.
+/// Weight of a rigid body, V = -m g · (r + c_X u + c_Y v), linear in the unknowns; constant gravity
+/// only.
 class RigidGravity final : public LoadTerm, public LinearMeanForce<RigidGravity> {
  public:
   RigidGravity(const RigidSection& s, const LoadLaw& gravity) : LoadTerm(gravity) {
@@ -92,7 +94,7 @@ class RigidGravity final : public LoadTerm, public LinearMeanForce<RigidGravity>
   std::string name() const override { return "rigid gravity"; }
 
  private:
-  /// Generalized force.
+  /// Returns the generalized force of the weight.
   Eigen::Vector4d weight() const { return factor() * (mass_ * load().head<2>()); }
 
   Eigen::Matrix<double, 4, 2> mass_;

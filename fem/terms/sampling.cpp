@@ -37,7 +37,7 @@ class Points final : public StrainSampling {
   Tabulate what_;
 };
 
-/// x ⊗ y: points are numbered along m first.
+/// Returns x ⊗ y; consecutive points are along n.
 MatrixXd both_ways(const MatrixXd& x, const MatrixXd& y) {
   MatrixXd out(x.rows() * y.rows(), x.cols() * y.cols());
   for (Eigen::Index i = 0; i < x.rows(); ++i)
@@ -54,14 +54,14 @@ class Assumed final : public StrainSampling {
     const MatrixXd one = MatrixXd::Identity(n, n), A = parabola_through_samples(n);
     out.mix = {both_ways(A, one), both_ways(one, A), both_ways(A, A)};
     if (out.rate.empty()) return;
-    FreeTable sides;  // only for where the lines are
+    FreeTable sides;  // only used for the positions of the lines
     from.element.tabulate_free(e, 0, Tabulate::gradient, sides);
     const MatrixXd K_m = ParabolaFlow(n, sides.side[kM1], sides.side[kM2]).K,
                    K_n = ParabolaFlow(n, sides.side[kN1], sides.side[kN2]).K;
     out.mix_rate = {both_ways(K_m, one), both_ways(one, K_n),
                     both_ways(K_m, A) + both_ways(A, K_n)};
   }
-  // An m-line holds samples along m: only what is interpolated along n differs.
+  // The samples along m are on m-lines, so that only strains that are interpolated along n differ.
   void along_line(MatrixXd& strains) const override {
     strains.rightCols(2) =
         (parabola_through_samples(static_cast<int>(strains.rows())) * strains.rightCols(2)).eval();
@@ -87,14 +87,15 @@ class Sections final : public StrainSampling {
       mix(at, n_sections, out);
       return;
     }
-    // The points that count.
+    // Only points with weight are kept.
     const Eigen::Index first = on_axis_ ? n : 0, count = on_axis_ ? n_sections : n;
     out.weight = out.weight.segment(first, count).eval();
     for (MatrixXd& measure : out.measure) measure = measure.middleRows(first, count).eval();
   }
 
  private:
-  /// ε̄(x, y) = ε(x, y) - ε(x, 0) + ε̄(x), ε̄(x) made of the samples.
+  /// Sets the mixing matrices of ε̄(x, y) = ε(x, y) - ε(x, 0) + ε̄(x), with ε̄(x) computed from the
+  /// samples.
   void mix(const BeamStrainPoints& at, Eigen::Index n_sections, StrainTable& out) const {
     const Eigen::Index n = at.n_points(), n_rows = out.weight.size();
     out.mix.assign(9, MatrixXd());

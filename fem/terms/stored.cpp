@@ -94,7 +94,7 @@ class StoredInertia final : public Term, public LinearMeanForce<StoredInertia>, 
     tangent += w.a * mass_ + (2 * w.v * speed_ + w.q * acceleration_) * slide_;
   }
 
-  /// T = ½ ∫ ρc |N q̇ + s D q|² dA.
+  /// Returns T = ½ ∫ ρc |N q̇ + s D q|² dA.
   Energies energies(int, const Local& x) const override {
     return {.kinetic = energy(x, mass_, slide_, line_)};
   }
@@ -103,7 +103,8 @@ class StoredInertia final : public Term, public LinearMeanForce<StoredInertia>, 
     out.head<2>() = (mass_ * column(x.v) + speed_ * slide_ * column(x.q)).head<2>();
     return out;
   }
-  /// ∫ ρc s D q · r̈ dA - ½ ρc s ∫ |ṙ|² dy where it leaves.
+  /// Returns ∫ ρc s D q · r̈ dA - ½ ρc s ∫ |ṙ|² dy, the last integral over the line where material
+  /// leaves the reservoir.
   double flow_power(int, const Local& x) const override {
     double out = -speed_ * energy(x, leaving_, across_, stored_.area_density * stored_.width);
     if (stored_.kind == StoredMaterial::Kind::rod) {
@@ -128,12 +129,13 @@ class StoredInertia final : public Term, public LinearMeanForce<StoredInertia>, 
   }
 
   StoredMaterial stored_;
-  Eigen::Matrix4d leaving_, across_;  // of a unit of length that leaves: M and B
+  Eigen::Matrix4d leaving_, across_;  // M and B per unit length of the leaving material
   double speed_ = 0, acceleration_ = 0, line_ = 0;
   Eigen::Matrix4d mass_, slide_;
 };
 
-/// V = -m g · (r + c_X u + c_Y v), m and c of what is stored now.
+/// Weight of the material reservoir, V = -m g · (r + c_X u + c_Y v), m and c the present mass and
+/// centre of the stored material.
 class StoredWeight final : public LoadTerm, public LinearMeanForce<StoredWeight>, public FlowTerm {
  public:
   StoredWeight(const StoredMaterial& s, const LoadLaw& gravity) : LoadTerm(gravity), stored_(s) {
@@ -147,7 +149,7 @@ class StoredWeight final : public LoadTerm, public LinearMeanForce<StoredWeight>
     const StoredNow now = stored_at(stored_, t);
     const Motion length = stored_.length(t);
     const double line = stored_.area_density * stored_.width;
-    Vec2 leaves = stored_.at;  // d(ℓ c)/dℓ: where the store gets shorter
+    Vec2 leaves = stored_.at;  // d(ℓ c)/dℓ: position of the end at which the reservoir shortens
     if (stored_.kind == StoredMaterial::Kind::rod) leaves -= length.value * axis_of(stored_);
     by_ << now.mass * Eigen::Matrix2d::Identity(), now.mass * arm_of(now.center).transpose();
     rate_ << Eigen::Matrix2d::Identity(), arm_of(leaves).transpose();
@@ -162,7 +164,7 @@ class StoredWeight final : public LoadTerm, public LinearMeanForce<StoredWeight>
     if (!has_potential()) return {};
     return {.potential = -factor() * (by_ * load().head<2>()).dot(column(x.q))};
   }
-  /// ∂V/∂t.
+  /// Returns ∂V/∂t at constant unknowns.
   double flow_power(int, const Local& x) const override {
     if (!has_potential()) return 0;
     return -factor() * (rate_ * load().head<2>()).dot(column(x.q));

@@ -3,7 +3,7 @@
 namespace flexmorph::fem {
 namespace {
 
-/// f(i, j, m): m of strain j is a part of strain i.
+/// Calls f(i, j, m) for every mixing matrix m, through which strain j contributes to strain i.
 template <class F>
 void for_parts(const std::vector<MatrixXd>& mix, Eigen::Index n_strains, const F& f) {
   const bool own = static_cast<Eigen::Index>(mix.size()) == n_strains;

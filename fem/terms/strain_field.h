@@ -6,37 +6,45 @@
 namespace flexmorph::fem {
 
 /// Strains of one element at all points of its table, their rates and variations, and the virtual
-/// work of stresses on them. Room for all of it is kept: one per thread serves any element.
+/// work of stresses on them. The work space is kept, so that one object per thread serves any
+/// element.
 class StrainField {
  public:
-  /// The strains at q (n_strains x n_points).
+  /// Computes the strains at q (n_strains x n_points).
   void set(const StrainMeasure& measure, const StrainTable& table, const LocalRows& q);
+  /// Returns the strains of the last set() (n_strains x n_points).
   const MatrixXd& strain() const { return strain_; }
 
-  /// Their rates ė where the unknowns move at v; those of material flow alone: v = 0.
+  /// Computes the rates ė of the strains for the rates v of the unknowns; v = 0 gives the rates due
+  /// to material flow alone.
   void set_rate(const LocalRows& q, const LocalRows& v);
+  /// Returns the rates of the last set_rate() (n_strains x n_points).
   const MatrixXd& rate() const { return rate_; }
 
-  /// force += Σ ∂e/∂q · stress, stresses times the weights of their points (n_strains x n_points).
+  /// Adds Σ ∂e/∂q · stress to the force, with stresses times the weights of their points (n_strains
+  /// x n_points).
   void add_force(const MatrixXd& stress, LocalRows& force);
 
-  /// ∂e/∂q, row n_points i + p of strain i at point p (after set()).
+  /// Computes and returns ∂e/∂q, row n_points i + p for strain i at point p; call it after set().
   const MatrixXd& variation();
-  /// w.q ∂ė/∂q + w.v ∂ė/∂v likewise (after set_rate() and variation()).
+  /// Computes and returns w.q ∂ė/∂q + w.v ∂ė/∂v, rows as in variation(); call it after set_rate()
+  /// and variation().
   const MatrixXd& rate_variation(const Weights& w);
-  /// tangent += scale Σ stress · ∂²e/∂q².
+  /// Adds scale Σ stress · ∂²e/∂q² to the tangent.
   void add_second(const MatrixXd& stress, double scale, LocalTangent& tangent);
 
  private:
   Eigen::Index n_points() const { return table_->weight.size(); }
-  /// What mixing makes of strains of the measures (rows: strains), and the transposed.
+  /// Applies the mixing matrices to the strains of the measures (rows: strains).
   void mix(const std::vector<MatrixXd>& by, const MatrixXd& from, MatrixXd& to) const;
+  /// Applies the transposed mixing matrices to stresses.
   const MatrixXd& unmixed(const MatrixXd& stress);
+  /// Applies the mixing matrices to variations (rows: strains and points).
   void mix_rows(const std::vector<MatrixXd>& by, const MatrixXd& from, MatrixXd& to) const;
-  /// z(p) from a table of the measures, or of their rates.
+  /// Adds the measures z(p) from a table of the measures, or of their rates.
   void add_measures(const std::vector<MatrixXd>& of, Eigen::Index p, const LocalRows& q,
                     Measures& out) const;
-  /// Row of ∂z·row/∂q: out = row Σ_i of_i(p, k).
+  /// Adds a row of ∂z·row/∂q: out += scale row Σ_i of_i(p, k).
   template <class Row, class Out>
   void add_row(const std::vector<MatrixXd>& of, Eigen::Index p, double scale, const Row& row,
                Out out) const;

@@ -16,7 +16,7 @@ const MatrixXd& rates_of(const ShapeTable& t, const Measure& m) {
   throw Error::numerical("strain_flow: no table of the rate of this measure");
 }
 
-/// Measures at point g, or their rates.
+/// Computes the measures at point g, or their rates.
 template <class TableOf>
 void measure_at(std::span<const Measure> list, const TableOf& table_of_measure, Eigen::Index g,
                 const LocalRows& q, Measures& out) {
@@ -33,7 +33,7 @@ void measure_at(std::span<const Measure> list, const TableOf& table_of_measure, 
 double flow_power(const EnergyDensity& density, const ShapeTable& t, const LocalRows& q) {
   const auto list = density.measures();
   const auto d = q.cols();
-  // Measures at all points, one beside the other, and their rates.
+  // Measures at all points, side by side, and their rates.
   const auto measures = static_cast<Eigen::Index>(list.size());
   MatrixXd all(t.weight.size(), measures * d), rates(t.weight.size(), measures * d);
   for (Eigen::Index i = 0; i < measures; ++i) {
@@ -92,7 +92,7 @@ ParabolaFlow::ParabolaFlow(int n, const Motion& start, const Motion& end)
       D(i, i) -= D(i, j);
     }
   }
-  // ṡ of a material point.
+  // Local velocity ṡ of a material point.
   const Eigen::Map<const VectorXd> s(rule.points.data(), n);
   const VectorXd flow =
       -(start.rate + (end.rate - start.rate) * s.array()).matrix() / (end.value - start.value);
@@ -102,7 +102,7 @@ ParabolaFlow::ParabolaFlow(int n, const Motion& start, const Motion& end)
 double assumed_flow_power(const Element& element, int e, const Factors& factors,
                           const Eigen::Matrix3d& elasticity, const LocalRows& q) {
   ShapeTable t;
-  FreeTable sides;  // only for where the lines are
+  FreeTable sides;  // only used for the positions of the lines
   element.tabulate(e, 12, Tabulate::gradient_rates, factors, FactorKind::stiffness, t);
   element.tabulate_free(e, 0, Tabulate::gradient, sides);
   const auto n = static_cast<int>(std::lround(std::sqrt(static_cast<double>(t.weight.size()))));
@@ -148,7 +148,7 @@ void add_assumed_line_energy(std::span<const ShapeTable> line, const Eigen::Matr
     const Eigen::RowVectorXd r_m = t.N_m * q, r_n = t.N_n * q;
     strain.row(g) << 0.5 * (r_m.squaredNorm() - 1), 0.5 * (r_n.squaredNorm() - 1), r_m.dot(r_n);
   }
-  // An m-line holds samples along m: only what is interpolated along n differs.
+  // The samples along m are on m-lines, so that only strains that are interpolated along n differ.
   strain.rightCols(2) =
       (parabola_through_samples(static_cast<int>(n)) * strain.rightCols(2)).eval();
   for (Eigen::Index g = 0; g < n; ++g)

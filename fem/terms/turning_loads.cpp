@@ -9,7 +9,7 @@ namespace {
 
 using Mat3 = Eigen::Matrix3d;
 
-/// Points of one element: weights, and rows of tables.
+/// Points of one element: their weights, and the rows of their shape function tables.
 struct Points {
   VectorXd weight;
   MatrixXd N, N_m, N_n;
@@ -26,7 +26,7 @@ struct Points {
   }
 };
 
-/// Σ_k row_k q_k; no third entry in the plane.
+/// Returns Σ_k row_k q_k; the third entry is 0 in the plane.
 Vec3 at(const MatrixXd& rows, Eigen::Index p, const LocalRows& q) {
   Vec3 out = Vec3::Zero();
   for (Eigen::Index k = 0; k < q.rows(); ++k)
@@ -34,7 +34,8 @@ Vec3 at(const MatrixXd& rows, Eigen::Index p, const LocalRows& q) {
   return out;
 }
 
-/// Axes that turn with the body at a point, and the derivatives of f = Σ f_i e_i by r_m and r_n:
+/// Axes that rotate with the body at a point, and the derivatives of f = Σ f_i e_i with respect to
+/// r_m and r_n:
 ///
 ///   e₁ = r_m / |r_m|,   e₃ = r_m × r_n / |r_m × r_n| (plane: z),   e₂ = e₃ × e₁
 ///   ∂e₁ = (1 - e₁ e₁ᵀ) ∂r_m / |r_m|,   ∂e₃ = (1 - e₃ e₃ᵀ) ∂(r_m × r_n) / |r_m × r_n|
@@ -63,7 +64,7 @@ struct Axes {
   bool plane;
 };
 
-/// Forces whose entries are along axes that turn with the body:  δW = Σ_p w_p (Σ_i f_i e_i) · δr.
+/// Forces with components along axes that rotate with the body:  δW = Σ_p w_p (Σ_i f_i e_i) · δr.
 class TurningForce : public LoadTerm {
  public:
   void prepare(const Element& element, const Factors&, bool all) override {
@@ -102,7 +103,7 @@ class TurningForce : public LoadTerm {
 
  protected:
   explicit TurningForce(LoadLaw law) : LoadTerm(std::move(law), true) {}
-  /// Puts the points of all elements, or of those whose lines move, into points_.
+  /// Writes the points of all elements, or only of elements whose lines move, to points_.
   virtual void find(const Element& element, bool all) = 0;
 
   void add_still(const Element& element, const Vec2& material, double weight) {
@@ -146,7 +147,7 @@ class TurningEdgeLoad final : public TurningForce {
   void find(const Element& element, bool all) override {
     if (!all) return;
     const std::vector<NodeVectors> nodes = element.edge(edge_);
-    const GaussRule& rule = gauss(5);  // not polynomial where the edge is bent
+    const GaussRule& rule = gauss(5);  // the integrand is no polynomial where the edge is bent
     for (size_t i = 0; i + 1 < nodes.size(); ++i) {
       const Vec2 from = nodes[i].material, along = nodes[i + 1].material - from;
       for (size_t g = 0; g < rule.points.size(); ++g)
@@ -171,14 +172,15 @@ class TurningSurfaceLoad final : public TurningForce {
       points_[static_cast<size_t>(e)] = {table_.weight, table_.N, table_.N_m, table_.N_n};
     }
   }
-  static constexpr int kDegree = 8;  // as of a pressure
+  static constexpr int kDegree = 8;  // as for a pressure
 };
 
-/// Moment in the plane about a point, on the line across the body there:
+/// Moment in the plane at a point, acting on the line across the body there:
 ///
-///   δW = M δθ,   θ the angle of s = r_n,   δθ = J s · δs / |s|²,   J the quarter turn
+///   δW = M δθ,   θ the angle of s = r_n,   δθ = J s · δs / |s|²,   J a rotation by 90 degrees
 ///
-/// Its potential -M θ is not used: how often the line turned is no part of the state.
+/// Its potential -M θ is not used, because the state does not contain the number of turns of the
+/// line.
 class Moment final : public LoadTerm {
  public:
   Moment(const Vec2& material, const LoadLaw& moment)

@@ -21,7 +21,7 @@ class Heated final : public StrainTerm,
 
   std::unique_ptr<Term> clone() const override {
     auto out = std::make_unique<Heated>(cold_->clone(), heat_);
-    out->factor_ = factor_;  // the rest is put there by heat_to()
+    out->factor_ = factor_;  // heat_to() sets the remaining members
     return out;
   }
 
@@ -132,7 +132,8 @@ class Heated final : public StrainTerm,
     tangent_scale_ = force_scale_ / s_;
   }
 
-  /// Derivatives of (x, ẋ) by the unknown, times those of the force by its arguments.
+  /// Returns the weights of the cold term: derivatives of (x, ẋ) by the unknown, times the scale of
+  /// the force derivatives.
   Weights scaled(const Weights& w) const {
     return {tangent_scale_ * w.q, tangent_scale_ * (w.v - rate_ / s_ * w.q), 0};
   }
@@ -146,7 +147,8 @@ class Heated final : public StrainTerm,
   LocalStep shrunk(const LocalStep& x) const {
     return {shrunk(x.start), shrunk(x.end), shrunk(x.mean)};
   }
-  /// The same of a batch, kept in `unknowns` and `rates` (kMaxLocal each).
+  /// Returns the batch of the cold body; its values are stored in `unknowns` and `rates` (kMaxLocal
+  /// each).
   Batch shrunk(const Batch& x, Lanes* unknowns, Lanes* rates) const {
     const double scale = 1 / s_, growth = rate_ / s_;
     for (int k = 0; k < x.n_local(); ++k) {
@@ -159,8 +161,8 @@ class Heated final : public StrainTerm,
     return out;
   }
 
-  /// F · q. Positions count from the first one, which changes nothing (translations strain nothing)
-  /// and loses no digits far from the origin.
+  /// Returns F · q. Positions are relative to the first one, which does not change the work
+  /// (translations cause no strain) and loses no digits far from the origin.
   double work_of_growth(int e, const Local& x) const {
     LocalRows force;
     if (element_->free_sides(e).empty()) {
@@ -187,7 +189,7 @@ class Heated final : public StrainTerm,
   BodyTerm cold_;
   Heat heat_;
   int power_;
-  const Element* element_ = nullptr;  // of the last prepare()
+  const Element* element_ = nullptr;  // from the last prepare()
   Motion rise_;                       // α ΔT at t_
   double t_ = 0, factor_ = 1;
   double s_ = 1, rate_ = 0;                                        // s, ṡ

@@ -27,10 +27,10 @@ void check(const TemperatureRise& r) {
     throw Error::input("temperature: the time of settling is positive");
 }
 
-/// One and the same double for all who ask.
+/// Returns the end of the rise; all callers get the identical double.
 double end_of(const TemperatureRise& r) { return r.start + r.settle; }
 
-/// s(u) and its derivatives by u in [0, 1].
+/// Returns s(u) and its derivatives with respect to u in [0, 1].
 Motion shape(Profile profile, double u) {
   constexpr double pi = std::numbers::pi;
   switch (profile) {

@@ -33,7 +33,8 @@ void ThermalForce::bind(std::span<const BodyView> bodies) {
 }
 
 Vec2 ThermalForce::fit(const VectorXd& q) const {
-  // Positions count from the first one: Σ B_k = 0 over them, and no digits are lost far away.
+  // Positions are relative to the first one, because Σ B_k = 0 over them and no digits are lost far
+  // from the origin.
   const double* r = q.data() + first_dof_;
   const double x0 = r[0], y0 = r[1];
   Vec2 out(0, 0);

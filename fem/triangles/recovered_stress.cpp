@@ -10,9 +10,10 @@
 namespace flexmorph::fem {
 namespace {
 
-constexpr std::size_t kFewest = 3;  // triangles of a patch: nine points for six coefficients
+// Smallest number of triangles in a patch: nine points for six coefficients.
+constexpr std::size_t kFewest = 3;
 
-/// Monomials of a quadratic polynomial about a corner.
+/// Returns the monomials of a quadratic polynomial about a corner.
 Eigen::Matrix<double, 6, 1> monomials(const Vec2& p) {
   Eigen::Matrix<double, 6, 1> out;
   out << 1, p.x(), p.y(), p.x() * p.x(), p.x() * p.y(), p.y() * p.y();
@@ -51,7 +52,8 @@ std::vector<int> RecoveredStress::patch(int corner, int clamp) const {
       if (plate_.first_clamp(static_cast<std::size_t>(t)) <= clamp) out.push_back(t);
   };
   add_around(corner);
-  // Further out; never across a piece, because only corners of its triangles are looked at.
+  // Adds neighbours. The patch never reaches another connected region, because only corners of its
+  // triangles are visited.
   for (int ring = 0; ring < 2 && !out.empty() && out.size() < kFewest; ++ring) {
     const std::vector<int> inner = out;
     for (const int t : inner)
@@ -62,7 +64,7 @@ std::vector<int> RecoveredStress::patch(int corner, int clamp) const {
   return out;
 }
 
-/// σ at the three points of each triangle (3 n_loads x 3 n_triangles).
+/// Returns σ at the three points of each triangle (3 n_loads x 3 n_triangles).
 MatrixXd RecoveredStress::stresses(const MatrixXd& u, const MatrixXd& prescribed) const {
   const PartMesh& mesh = plate_.mesh();
   const Eigen::Index n = u.rows();
@@ -90,7 +92,8 @@ MatrixXd RecoveredStress::stresses(const MatrixXd& u, const MatrixXd& prescribed
   return out;
 }
 
-/// Adds the polynomial around a corner, for loads [first, first + count), to its nodes.
+/// Adds the values of the polynomial around a corner to its nodes, for loads [first, first +
+/// count).
 void RecoveredStress::recover_at(int corner, std::span<const int> triangles, Eigen::Index first,
                                  Eigen::Index count, const MatrixXd& stresses,
                                  MatrixXd& nodal) const {
@@ -113,7 +116,7 @@ void RecoveredStress::recover_at(int corner, std::span<const int> triangles, Eig
           3 * first, 3 * static_cast<Eigen::Index>(t) + static_cast<Eigen::Index>(p), 3 * count, 1);
     }
   }
-  // Where the points do not tell a quadratic polynomial, the least that fits.
+  // Where the points do not determine a quadratic polynomial, the smallest one that fits is used.
   const Eigen::CompleteOrthogonalDecomposition<MatrixXd> fit(basis);
   const MatrixXd inverse = fit.pseudoInverse();  // (6 x m)
   const auto add = [&](int node, double share) {
@@ -127,17 +130,18 @@ void RecoveredStress::recover_at(int corner, std::span<const int> triangles, Eig
 
 void RecoveredStress::recover(const MatrixXd& stresses, std::span<const int> clamps,
                               MatrixXd& nodal) const {
-  const auto first_load = [&](int clamp) {  // the first of those whose clamp it is, or behind
+  // Index of the first load with this clamp or a later one.
+  const auto first_load = [&](int clamp) {
     return std::lower_bound(clamps.begin(), clamps.end(), clamp) - clamps.begin();
   };
   const auto n_loads = static_cast<Eigen::Index>(clamps.size());
   for (int c = 0; c < plate_.mesh().n_corners; ++c) {
     const std::vector<int> all = patch(c, plate_.n_clamps() - 1);
-    int most = 0;  // clamp from which on the whole patch takes part
+    int most = 0;  // first clamp with which the whole patch is included
     for (const int t : all) most = std::max(most, plate_.first_clamp(static_cast<std::size_t>(t)));
     const Eigen::Index whole = all.empty() ? n_loads : first_load(most);
     recover_at(c, all, whole, n_loads - whole, stresses, nodal);
-    // Those whose clamp runs through the patch: loads with one clamp have one.
+    // Loads whose clamp crosses the patch; all loads with one clamp share one patch.
     for (Eigen::Index l = 0, end = 0; l < whole; l = end) {
       const int clamp = clamps[static_cast<std::size_t>(l)];
       end = std::min<Eigen::Index>(whole, first_load(clamp + 1));
@@ -161,7 +165,7 @@ RecoveredStress::Outcome RecoveredStress::evaluate(const MatrixXd& displacements
 
   const Eigen::Matrix3d inverse = plate_.section().elasticity().inverse();
   const double thickness = plate_.section().thickness;
-  // From the values at three points to those at others, linearly.
+  // Weights that extrapolate linearly from the three points to any point.
   const auto from_points = [](const AreaPoint& at) {
     Vec3 weights;
     for (int k = 0; k < 3; ++k) weights[k] = 2 * at[static_cast<std::size_t>(k)] - 1. / 3;

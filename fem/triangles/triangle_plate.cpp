@@ -13,7 +13,7 @@
 namespace flexmorph::fem {
 namespace {
 
-/// Lists of numbers, one for every node: those of list k are from starts[k] to starts[k + 1].
+/// Lists of numbers, one list for every node; list k extends from starts[k] to starts[k + 1].
 struct Lists {
   std::vector<int> starts, numbers;
   std::span<const int> of(int k) const {
@@ -24,7 +24,8 @@ struct Lists {
   }
 };
 
-/// Which nodes share a triangle or a spring with each of the nodes, itself included, ascending.
+/// Returns for every node the nodes that share a triangle or a spring with it, itself included,
+/// ascending.
 Lists neighbours(const PartMesh& mesh, const std::vector<char>& used,
                  const TrianglePlateSupports& supports) {
   const std::vector<signed char>& left_out = supports.left_out;
@@ -57,9 +58,9 @@ struct TrianglePlate::Impl {
   const PartMesh& mesh;
   PlaneSection section;
   TrianglePlateSupports supports;
-  std::vector<int> first_clamps;  // of nodes
-  std::vector<int> rows;          // of displacements, 2 node + c
-  std::vector<int> active;        // unknowns in front of each clamp
+  std::vector<int> first_clamps;  // first clamp that each node is in front of
+  std::vector<int> rows;          // unknown of each displacement, 2 node + c
+  std::vector<int> active;        // number of unknowns in front of each clamp
   std::vector<int> starts, entries;
   std::optional<SupernodalFactor> factor;
 
@@ -74,13 +75,14 @@ struct TrianglePlate::Impl {
   void number();
   void find_pattern(const Lists& graph, const std::vector<int>& order);
   void assemble();
-  /// Of the entry of K that belongs to two unknowns; nothing of those above the diagonal, or held.
+  /// Adds a value to the entry of K of two unknowns; does nothing above the diagonal or if one is
+  /// held.
   void add(std::span<double> values, int row, int column, double value) const;
 };
 
 void TrianglePlate::Impl::find_clamps() {
   for (const Vec2& p : mesh.points) {
-    // Lines from the largest x: the node is in front of those that are smaller.
+    // The lines are in descending order of x; a node is in front of lines with a smaller x.
     const auto in_front = std::find_if(supports.clamps.begin(), supports.clamps.end(),
                                        [&](double x) { return p.x() > x + supports.small; });
     first_clamps.push_back(static_cast<int>(in_front - supports.clamps.begin()));
@@ -101,7 +103,7 @@ void TrianglePlate::Impl::number() {
   const Lists graph = neighbours(mesh, used, supports);
   std::vector<int> groups = first_clamps;
   for (std::size_t k = 0; k < n; ++k) groups[k] = std::min(groups[k], n_clamps());
-  // Numbers of groups that have no nodes would cost CAMD's checks nothing, but need no gaps.
+  // Group numbers without nodes are allowed in CAMD.
   const std::vector<int> order = fill_order(graph.starts, graph.numbers, groups);
   rows.assign(2 * n, -1);
   active.assign(static_cast<std::size_t>(n_clamps()), 0);
@@ -116,7 +118,7 @@ void TrianglePlate::Impl::number() {
   find_pattern(graph, order);
 }
 
-/// Lower triangle by columns, in the order of the unknowns.
+/// Finds the lower triangle by columns, in the order of the unknowns.
 void TrianglePlate::Impl::find_pattern(const Lists& graph, const std::vector<int>& order) {
   starts = {0};
   for (const int node : order)
@@ -184,7 +186,8 @@ bool TrianglePlate::takes_part(std::size_t triangle) const { return impl_->takes
 int TrianglePlate::first_clamp(int node) const {
   return impl_->first_clamps[static_cast<std::size_t>(node)];
 }
-/// Of a triangle in front of a clamp one node is, at least: those it crosses are none.
+/// At least one node of a triangle in front of a clamp is in front of it; no clamp crosses a
+/// triangle.
 int TrianglePlate::first_clamp(std::size_t triangle) const {
   int out = n_clamps();
   for (const int node : impl_->mesh.triangles[triangle]) out = std::min(out, first_clamp(node));

@@ -10,7 +10,7 @@
 namespace flexmorph::fem {
 namespace {
 
-/// A motion with all that its gradient takes.
+/// One motion with the data of its gradient.
 class Gradient {
  public:
   Gradient(const Model& model, std::span<const Growth> growths, const MotionSettings& settings,
@@ -52,7 +52,7 @@ class Gradient {
       start_ = out.motion.trajectory.points.front().x;
       back_through_start(*model, sweep);
     } else {
-      model.reset();  // every part has one of its own
+      model.reset();  // every part has its own work space
       back_by_parts(sweep);
     }
     for (Swept& s : sweep.all()) out.of.push_back(std::move(s.out));
@@ -74,13 +74,14 @@ class Gradient {
         throw Error::input("the gradient of a motion: of a measure, with an exponent of 1 or more");
   }
 
-  /// What a part of the motion begins with.
+  /// Start of a part of the motion, as an archive.
   struct TakenDown {
     std::string memory;
     double time = 0;
-    size_t seen = 0;  // number of its first point among the times that were seen
+    size_t seen = 0;  // index of its first point among all observed times
   };
 
+  /// Integrates the motion, and stores its trajectory or the archives of its parts.
   void move(Workspace& model, MotionResult& result) {
     MotionSettings settings = settings_;
     settings.keep = gradient_.checkpoints > 0 ? Keep::nothing : Keep::steps;
@@ -96,6 +97,7 @@ class Gradient {
         integrate(model, growths_, settings, [&](const MotionStep& step) { watched_.see(step); });
   }
 
+  /// Sets the data of the sweep at the end of the motion.
   void begin_at_end(const Workspace& model, Sweep& sweep) const {
     for (size_t k = 0; k < objectives_.size(); ++k) {
       Swept& s = sweep.all().emplace_back();
@@ -109,6 +111,7 @@ class Gradient {
     }
   }
 
+  /// Integrates the parts a second time, from the last to the first, and sweeps back through each.
   void back_by_parts(Sweep& sweep) {
     size_t last = watched_.times().size() - 1;
     for (size_t k = memories_.size() + 1; k-- > 0;) {
@@ -121,7 +124,7 @@ class Gradient {
       sweep.back(model, part.trajectory, last, k == 0);
       if (k > 0) {
         last = memories_[k - 1].seen;
-        memories_.resize(k);  // those behind are done with
+        memories_.resize(k);  // later archives are no longer needed
         continue;
       }
       start_ = part.trajectory.points.front().x;
@@ -130,7 +133,7 @@ class Gradient {
   }
 
   void back_through_start(Workspace& model, Sweep& sweep) {
-    // As Run::begin() of motion.cpp.
+    // Same value as in Run::begin() of motion.cpp.
     const double delta = std::min(1e-4, 0.5 * settings_.end);
     const VectorXd given =
         start_state(model, growths_, 0, settings_.start, settings_.placement, delta).v;

@@ -10,64 +10,82 @@
 
 namespace flexmorph::fem {
 
-/// The objective of a motion: the power mean of a measure over times t_i,
+/// Objective of a motion: the power mean of a measure m over times t_i,
 ///
-///   J = (Σ w_i m(t_i)^p)^(1/p),   Σ w_i = 1
+///   J = (Σ w_i m(t_i)^p)^(1/p),   Σ w_i = 1.
 struct MotionObjective {
+  /// Choice of the times t_i and of their weights w_i.
   enum class Times {
-    stops,  ///< those of the motion, all alike (without its end, where that is none of them)
-    steps   ///< all steps, by the trapezoidal rule
+    stops,  ///< The stops of the motion with equal weights; its end only if it is one of the stops.
+    steps   ///< All steps, with the weights of the trapezoidal rule.
   };
+  /// Measure whose mean is the objective.
   std::shared_ptr<const MotionMeasure> measure;
+  /// Times at which the measure is evaluated.
   Times times = Times::steps;
-  double exponent = 1;  ///< p; the larger, the nearer J is to the largest value
+  /// Exponent p, at least 1; the larger it is, the closer J is to the largest value.
+  double exponent = 1;
 };
 
-/// ψ · ∂F/∂p of M q̈ + F + Φ_qᵀ λ = 0 by a number p that forces depend on: a stiffness, a damping.
+/// A function that returns ψ · ∂F/∂p for a number p on which the forces F in M q̈ + F + Φ_qᵀ λ = 0
+/// depend, for example a stiffness or a damping coefficient.
 using ForceSlope = std::function<double(const State& x, const VectorXd& psi)>;
 
+/// Settings of the gradient of a motion.
 struct GradientSettings {
-  /// Parts of the motion that are kept one at a time: each is gone through once more from what was
-  /// taken down at its start. 0: all states are kept, which takes four vectors of unknowns a step.
+  /// Number of parts of the motion of which only one is stored at a time: each part is integrated a
+  /// second time from the archive made at its start. 0: all states are stored, which takes four
+  /// vectors of unknowns per step.
   int checkpoints = 0;
+  /// Derivatives of the forces with respect to additional parameters.
   std::vector<ForceSlope> parameters;
 };
 
-/// J and its derivatives.
+/// Value of an objective J and its derivatives.
 struct MotionGradient {
+  /// Value of J.
   double value = 0;
-  std::vector<FactorSlopes> by_factors;  ///< of every body of the model; empty: it has no design
-  VectorXd by_parameters;                ///< of GradientSettings::parameters
+  /// Derivatives with respect to the scale factors of the cells of every body; empty for a body
+  /// without design.
+  std::vector<FactorSlopes> by_factors;
+  /// Derivatives with respect to GradientSettings::parameters.
+  VectorXd by_parameters;
 };
 
+/// Gradients of all objectives of one motion, and the cost of their computation.
 struct MotionGradients {
-  std::vector<MotionGradient> of;                  ///< every objective
-  MotionResult motion;                             ///< without its trajectory
-  double seconds_motion = 0, seconds_adjoint = 0;  ///< CPU, of the motion and of all after it
-  int factorizations = 0, iterations = 0;          ///< of the adjoint
+  /// Values and gradients of all objectives.
+  std::vector<MotionGradient> of;
+  /// Result of the motion, without its trajectory.
+  MotionResult motion;
+  /// CPU times of the motion and of the adjoint [s].
+  double seconds_motion = 0, seconds_adjoint = 0;
+  /// Numbers of factorizations and of iterations of the linear solver in the adjoint.
+  int factorizations = 0, iterations = 0;
 };
 
-/// Moves a model and derives what its motion comes to: the discrete adjoint of the steps as they
-/// are made. With z = (q, q̇, α, q̈, λ), step n is
+/// Integrates the motion of a model and returns the gradients of its objectives by the discrete
+/// adjoint of the time steps. With z = (q, q̇, α, q̈, λ), step n is
 ///
 ///   R1 = q_n - q_{n-1} - h q̇_{n-1} - h² ((½ - β) α_{n-1} + β α_n)
 ///   R2 = q̇_n - q̇_{n-1} - h ((1 - γ) α_{n-1} + γ α_n)
 ///   R3 = (1 - α_m) α_n + α_m α_{n-1} - (1 - α_f) q̈_n - α_f q̈_{n-1}
 ///   R4 = M q̈_n + F(q_n, q̇_n, t_n) + Φ_qᵀ λ_n,   R5 = Φ(q_n, t_n)
 ///
-/// and eliminating all multipliers but those of R4 and R5 leaves, backwards in time, one solve with
-/// the transposed iteration matrix of the step. Everything that happens to a state is derived with
-/// it: the equilibria of the start, its consistent accelerations, changes of meshes (linear maps
-/// whose times do not depend on the design, as lines are prescribed), projections of velocities,
-/// steps that were cut. Constraints of the start and of projections are derived along the motion by
-/// differences of Φ_q, of fourth order.
+/// All adjoint variables but those of R4 and R5 are eliminated. Then each step requires one solve
+/// with the transposed iteration matrix of the step, backwards in time. The gradient includes all
+/// operations on the states: the equilibria of the start, its consistent accelerations, changes of
+/// the mesh (linear maps at times that do not depend on the design because the lines are
+/// prescribed), projections of velocities, and steps that were cut. At the start and in
+/// projections, derivatives of the constraints along the motion are differences of Φ_q of fourth
+/// order.
 ///
-/// The balance of the motion is not kept.
+/// The energy balance of the motion is not computed.
 ///
-/// @throws Error (input) for what has no derivative here: steps that adapt, other integrators,
-///         free material lines, hot bodies, plates in space, kinks, no measure, an exponent
-///         below 1.
-/// @throws Error (numerical) from the motion, or where its equations are singular.
+/// @throws Error (input) if the motion has no gradient (adaptive steps, integrators other than
+///         generalized_alpha, free material lines, hot bodies, bodies in space, discontinuities),
+///         if there is no objective or no measure, or if an exponent is below 1.
+/// @throws Error (numerical) from the motion, or if the adjoint equations are singular.
 ///
 /// Source: Callejo; Sonneville; Bauchau (2019), for a fixed mesh; fem/README.md, Gradients of a
 /// motion.
@@ -76,12 +94,13 @@ MotionGradients motion_gradients(const Model& model, std::span<const Growth> gro
                                  std::span<const MotionObjective> objectives,
                                  const GradientSettings& gradient = {});
 
-/// J alone, of a motion that is made.
+/// Integrates the motion of a model and returns the values J of its objectives, without gradients.
+/// @throws Error as motion_gradients().
 std::vector<double> motion_values(const Model& model, std::span<const Growth> growths,
                                   const MotionSettings& settings,
                                   std::span<const MotionObjective> objectives);
 
-/// Why a motion has no gradient; empty: it has one.
+/// Returns the reason why a motion has no gradient, as text; empty if it has a gradient.
 std::string no_gradient_because(const Model& model, const MotionSettings& settings);
 
 }  // namespace flexmorph::fem

@@ -16,7 +16,7 @@ class StrainEnergy final : public MotionMeasure {
   }
 };
 
-/// d / |d|; zero where there is no direction.
+/// Returns d / |d|, or zero for d = 0.
 Vec2 direction(const Vec2& d) {
   const double size = d.norm();
   return size > 0 ? Vec2(d / size) : Vec2(0, 0);
@@ -43,7 +43,8 @@ class Deflection final : public MotionMeasure {
       by_state.q.segment<2>(body.first_dof + 2 * vectors[k]) +=
           t.N(0, static_cast<Eigen::Index>(k)) * pull;
     if (carrier_.body().empty()) return;
-    // o + R p = r_b + u-axes times (point + turned p), linear in r_b and u.
+    // The point o + R p of the carrier is r_b + arm.x u + arm.y v, v = u rotated by 90 degrees,
+    // which is linear in r_b and u.
     const int r = model.body(carrier_.body()).first_dof;
     const Vec2 arm = carrier_.point() + rotation(carrier_.angle()) * in_frame(model);
     by_state.q.segment<2>(r) -= pull;
@@ -94,7 +95,8 @@ class PlaceError final : public MotionMeasure {
   std::array<std::function<Motion(double)>, 2> path_;
 };
 
-/// f = -E Φ_qᵀ λ, with the rows E of a shift of the body along x and y.
+/// The force f = -E Φ_qᵀ λ of a joint; the two rows of E are translations of the body along x and
+/// y.
 class JointForce final : public MotionMeasure {
  public:
   JointForce(std::string joint, std::string body)
@@ -122,7 +124,7 @@ class JointForce final : public MotionMeasure {
       if (all[i]->name() == joint_) return {model.first_row(i), model.first_row(i + 1)};
     throw Error::input("there is no joint '" + joint_ + "'");
   }
-  /// A virtual displacement of the body (n_dofs).
+  /// Returns the virtual displacement of a translation of the body (n_dofs).
   VectorXd shift(const Model& model, const Vec2& by) const {
     const Body& body = model.body(body_);
     VectorXd out = VectorXd::Zero(model.n_dofs());

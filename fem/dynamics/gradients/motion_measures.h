@@ -10,40 +10,52 @@
 
 namespace flexmorph::fem {
 
-/// Derivatives of a number by a state.
+/// Derivatives of a scalar with respect to the vectors of a state.
 struct StateSlopes {
+  /// Derivatives with respect to q, q̇, q̈ (n_dofs each) and λ (n_constraints).
   VectorXd q, v, a, lambda;
 
+  /// Sets all derivatives to zero, with the given sizes.
   void set_zero(Eigen::Index n_dofs, Eigen::Index n_constraints) {
     for (VectorXd* x : {&q, &v, &a}) x->setZero(n_dofs);
     lambda.setZero(n_constraints);
   }
 };
 
-/// A number that a state of a motion has, not negative where a mean of higher powers is asked for.
+/// A scalar function of the state of a motion. Its values must not be negative if an objective with
+/// an exponent above 1 is formed from them.
 class MotionMeasure {
  public:
   virtual ~MotionMeasure() = default;
+  /// Returns the value of the measure at state x.
   virtual double value(Workspace& model, const State& x) const = 0;
-  /// Adds its derivatives, times weight.
-  /// @param by_factors  as Workspace::no_slopes()
+  /// Adds `weight` times the derivatives of the measure at state x.
+  /// @param by_state    Derivatives with respect to the state.
+  /// @param by_factors  Derivatives with respect to the scale factors of the cells, of the sizes of
+  ///                    Workspace::no_slopes().
   virtual void add_slopes(Workspace& model, const State& x, double weight, StateSlopes& by_state,
                           std::vector<FactorSlopes>& by_factors) const = 0;
 };
 
-/// 2 U, U the strain energy of all bodies [J]: what the compliance of static loads stands for.
+/// Returns the measure 2 U, where U is the strain energy of all bodies [J]. It corresponds to the
+/// compliance under static loads.
 std::shared_ptr<const MotionMeasure> measure_strain_energy();
 
-/// |r - r°| of a material point of a plate, r° where its rigid, extending body would have it [m].
-/// @param line  the m-line of the plate that lies at the carrier's origin
+/// Returns the measure |r - r°| of a material point of a plate, where r° is the position that the
+/// point would have on the rigid, extending body [m].
+/// @param carrier  Driven frame (hub) that carries the plate: the rigid frame whose motion is
+///                 prescribed, or which is fixed to a rigid body.
+/// @param line     Index of the m-line of the plate that lies at the origin of the carrier.
 std::shared_ptr<const MotionMeasure> measure_deflection(std::string body, const Vec2& material,
                                                         Carrier carrier, int line = 0);
 
-/// |r - r°(t)| of the reference point of a rigid body, r° where it should be [m].
+/// Returns the measure |r - r°(t)| of the reference point of a rigid body, where r° is its desired
+/// position [m].
+/// @param path  Coordinates x and y of r° as functions of time [m].
 std::shared_ptr<const MotionMeasure> measure_place_error(
     std::string body, std::array<std::function<Motion(double)>, 2> path);
 
-/// |f| of the force of a joint on a body [N].
+/// Returns the measure |f|, where f is the force that a joint exerts on a body [N].
 std::shared_ptr<const MotionMeasure> measure_joint_force(std::string joint, std::string body);
 
 }  // namespace flexmorph::fem

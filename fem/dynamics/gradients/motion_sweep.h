@@ -7,20 +7,22 @@
 #include "fem/dynamics/gradients/transposed_system.h"
 #include "fem/dynamics/integrators/generalized_alpha.h"
 
-/// The way back through a motion that motion_gradients() goes; nobody else includes this.
+/// Backward sweep through a motion. This header belongs to the implementation of
+/// motion_gradients().
 namespace flexmorph::fem {
 
-/// Derivatives of one objective by the state that the sweep has come to, and what it has gathered.
+/// Data of one objective during the backward sweep.
 struct Swept {
-  StateSlopes by;
-  VectorXd alpha;
-  MotionGradient out;
-  std::vector<double> slopes;  // ∂J/∂m of every time
+  StateSlopes by;              ///< Derivatives of J with respect to the present state of the sweep.
+  VectorXd alpha;              ///< Derivatives of J by the algorithmic acceleration α (n_dofs).
+  MotionGradient out;          ///< Value and gradient of J, as far as they are summed up.
+  std::vector<double> slopes;  ///< Derivatives ∂J/∂m(t_i) for all observed times.
 };
 
-/// Goes back through a motion, a part of it at a time.
+/// Backward sweep through a motion, one part of the motion at a time.
 class Sweep {
  public:
+  /// Creates the sweep of one motion. The arguments must outlive it.
   Sweep(std::span<const MotionObjective> objectives, const GradientSettings& settings,
         const MotionSettings& motion)
       : objectives_(objectives),
@@ -28,13 +30,17 @@ class Sweep {
         motion_(motion),
         scheme_(motion.alpha.rho_inf) {}
 
+  /// Returns the data of all objectives.
   std::vector<Swept>& all() { return all_; }
+  /// Returns the number of factorizations so far.
   int factorizations() const { return factorizations_; }
+  /// Returns the number of iterations of the linear solver so far.
   int iterations() const { return iterations_; }
 
-  /// @param model  with the mesh of the end of the part, which becomes that of its start
-  /// @param last   number of its last point among all times that were seen
-  /// @param is_first  does it begin with the start of the motion?
+  /// Propagates the derivatives backwards through one part of the motion.
+  /// @param model     in: with the mesh of the end of the part; out: with the mesh of its start.
+  /// @param last      Index of the last point of the part among all observed times.
+  /// @param is_first  True if the part begins with the start of the motion.
   void back(Workspace& model, const Trajectory& part, size_t last, bool is_first) {
     model_ = &model;
     TransposedSystem system(model);
@@ -55,8 +61,9 @@ class Sweep {
     iterations_ += system.iterations();
   }
 
-  /// Accelerations, multipliers and velocities that the start was given (Integrator).
-  /// @param given  velocities before they were projected
+  /// Propagates the derivatives through the operations of Integrator on the initial state x: the
+  /// consistent accelerations and multipliers, and the projection of the velocities.
+  /// @param given  Velocities before their projection (n_dofs).
   void back_through_start(Workspace& model, const State& x, const VectorXd& given) {
     model_ = &model;
     TransposedSystem system(model);
@@ -74,7 +81,7 @@ class Sweep {
     back_through_projection(x, given, system);
   }
 
-  /// Adds ψ · ∂F/∂p.
+  /// Adds ψ · ∂F/∂p to `out` for the scale factors of all cells and for all parameters p.
   void add_work(const State& x, const VectorXd& psi, MotionGradient& out) {
     model_->add_factor_slopes(x, psi, out.by_factors);
     for (size_t k = 0; k < settings_.parameters.size(); ++k)
@@ -82,14 +89,16 @@ class Sweep {
   }
 
  private:
+  /// Adds the derivatives of all measures at the observed time with index `at`.
   void add_measures(const State& x, size_t at) {
     for (size_t k = 0; k < all_.size(); ++k)
       if (const double w = all_[k].slopes[at]; w != 0)
         objectives_[k].measure->add_slopes(*model_, x, w, all_[k].by, all_[k].out.by_factors);
   }
 
-  /// With q_n = q* + δ, q̇_n = q̇* + w.v δ, q̈_n = w.a δ, α_n = α* + κ q̈_n, where the starred ones
-  /// follow from the step before and κ = (1 - α_f) / (1 - α_m).
+  /// Propagates the derivatives through a step of size h that ends at x. The step is written as
+  /// q_n = q* + δ, q̇_n = q̇* + w.v δ, q̈_n = w.a δ, α_n = α* + κ q̈_n, where the starred vectors
+  /// follow from the previous step and κ = (1 - α_f) / (1 - α_m).
   void back_through_step(const State& x, double h, TransposedSystem& system) {
     const auto& [alpha_m, alpha_f, beta, gamma] = scheme_;
     const Weights w = scheme_.weights(h);
@@ -101,7 +110,7 @@ class Sweep {
       psi_ *= scale;
       add_work(x, -psi_, s.out);
       const VectorXd of_v = system.by_velocity(x, psi_);
-      // What the equations say of the rest of them.
+      // The remaining derivatives follow from the equations R1 to R3 of the step.
       const VectorXd q = s.by.q - seed + w.v * of_v + w.a * system.by_acceleration(x, psi_);
       const VectorXd v = s.by.v - of_v;
       const VectorXd alpha = s.alpha + scale * q + h * gamma * v;
@@ -113,8 +122,8 @@ class Sweep {
     }
   }
 
-  /// Of GeneralizedAlpha::begin_motion(): the first step, of size h, started from
-  /// q̇_0 + C h² P q⃛ and q̈_0 + δ h q⃛.
+  /// Propagates the derivatives through GeneralizedAlpha::begin_motion(): the first step, of size
+  /// h, started from q̇_0 + C h² P q⃛ and q̈_0 + δ h q⃛.
   void back_through_start_jerk(const State& x, double h) {
     GeneralizedAlpha integrator(*model_, motion_.alpha);
     integrator.begin_motion(x, motion_.step);
@@ -154,7 +163,7 @@ class Sweep {
     iterations_ += system.iterations();
   }
 
-  /// Adds ψ · ∂(M a)/∂p.
+  /// Adds ψ · ∂(M a)/∂p to `out`, as the difference of the forces with and without acceleration a.
   void add_mass_work(State x, const VectorXd& a, const VectorXd& psi, MotionGradient& out) {
     x.a = a;
     add_work(x, psi, out);
@@ -162,6 +171,8 @@ class Sweep {
     add_work(x, -psi, out);
   }
 
+  /// Propagates the derivatives through a change of the mesh, from the state after it to that
+  /// before.
   void back_through(const Trajectory::Change& change, const State& before, const State& after,
                     TransposedSystem& system) {
     const VectorXd given = change.map.apply({before.q, before.v, before.a}).v;
@@ -182,9 +193,9 @@ class Sweep {
     undo(change);
   }
 
-  /// Of balance_forces(): with q = q* + δ, q̈ = q̈* + ω² δ, α = α* + ω² δ it is a step whose
-  /// velocities stay.
-  /// @param x  the state in balance
+  /// Propagates the derivatives through balance_forces(), which is a step with constant velocities:
+  /// q = q* + δ, q̈ = q̈* + ω² δ, α = α* + ω² δ.
+  /// @param x  State in balance.
   void back_through_balance(const State& x, double frequency, TransposedSystem& system) {
     const double stiffness = frequency * frequency, scale = 1 / stiffness;
     system.set(x, {1, 0, stiffness}, scale);
@@ -201,7 +212,8 @@ class Sweep {
     }
   }
 
-  /// Of velocities moved onto the constraints, [M Φ_qᵀ; Φ_q 0] (q̇ - given, μ) = (0, ...).
+  /// Propagates the derivatives through the projection of velocities onto the constraints,
+  /// [M Φ_qᵀ; Φ_q 0] (q̇ - given, μ) = (0, ...).
   void back_through_projection(const State& x, const VectorXd& given, TransposedSystem& system) {
     const VectorXd none = VectorXd::Zero(model_->n_dofs());
     const VectorXd moved = x.v - given;
@@ -218,8 +230,9 @@ class Sweep {
     }
   }
 
-  /// First and second derivative of Φ_q(q + s q̇ + ½ s² q̈, t + s)ᵀ χ by s at 0, forward: what drives
-  /// a motion need not be defined before it.
+  /// First and second derivative of Φ_q(q + s q̇ + ½ s² q̈, t + s)ᵀ χ with respect to s at s = 0.
+  /// They are forward differences because drives need not be defined before the start of the
+  /// motion.
   struct Along {
     VectorXd first, second;
   };
@@ -246,7 +259,7 @@ class Sweep {
     return out;
   }
 
-  /// Gives the body the mesh that it had before.
+  /// Restores the mesh that the body had before the change.
   void undo(const Trajectory::Change& change) {
     for (Body& body : model_->bodies()) {
       if (body.name != change.body) continue;

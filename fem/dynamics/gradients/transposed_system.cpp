@@ -9,7 +9,7 @@ namespace flexmorph::fem {
 
 namespace {
 
-/// Have stiffness and mass about the same parts in both?
+/// Returns true if the ratio of the weights of stiffness and mass is about the same in both.
 bool alike(const Weights& a, const Weights& b) {
   constexpr double kFar = 0.3;
   const double x = a.q * b.a, y = b.q * a.a;
@@ -39,7 +39,7 @@ void TransposedSystem::set_carried(const State& x, std::span<const Turning> turn
   take(x, w);
 }
 
-/// Scales the matrix, which belongs to x, and makes use of the factor that is kept.
+/// Scales the matrix, which belongs to x, and adapts the kept factorization to it.
 void TransposedSystem::take(const State& x, const Weights& w) {
   q_ = x.q;
   weights_ = w;
@@ -54,7 +54,7 @@ void TransposedSystem::take(const State& x, const Weights& w) {
   if (is_factored_) renew();
 }
 
-/// For a mesh that was not seen before.
+/// Allocates the vectors and analyses the matrix of a new mesh.
 void TransposedSystem::make_room() {
   version_ = model_.pattern_version();
   is_factored_ = false;
@@ -65,7 +65,7 @@ void TransposedSystem::make_room() {
 }
 
 void TransposedSystem::factorize() {
-  constexpr double kMiss = 0.02;  // as of the steps themselves
+  constexpr double kMiss = 0.02;  // same value as in the time steps
   factored_ = matrix_;
   factored_weights_ = weights_;
   solver_.factorize(factored_, kMiss);
@@ -75,7 +75,8 @@ void TransposedSystem::factorize() {
   ++factorizations_;
 }
 
-/// A factor with a border has that made anew, and turns by itself.
+/// Rotates the kept factorization with the bodies. If it has a border, the border is factored
+/// again, and the solver applies the rotation.
 void TransposedSystem::renew() {
   turns_.follow(model_, q_);
   turned_ = turns_.turns(model_);
@@ -91,7 +92,7 @@ void TransposedSystem::renew() {
   turned_.clear();
 }
 
-/// Turns the vector unknowns of all bodies.
+/// Rotates the vector unknowns of all bodies, forwards or back.
 void TransposedSystem::turn(VectorXd& x, bool back) const {
   for (const TurnedVectors& t : turned_) {
     if (t.sine == 0) continue;
@@ -103,7 +104,7 @@ void TransposedSystem::turn(VectorXd& x, bool back) const {
   }
 }
 
-/// R J⁻ᵀ Rᵀ of the kept factor.
+/// Computes R J⁻ᵀ Rᵀ times `right` with the kept factorization.
 void TransposedSystem::solve_kept(const VectorXd& right, VectorXd& out) {
   turning_ = right;
   turn(turning_, true);
@@ -112,11 +113,13 @@ void TransposedSystem::solve_kept(const VectorXd& right, VectorXd& out) {
   ++iterations_;
 }
 
-/// Adds to found_ what makes the residual smallest over a number of solutions with the kept factor.
-/// @returns whether it fell as fast as it should.
+/// Adds to found_ the combination of a number of solutions with the kept factorization that
+/// minimizes the residual (one cycle of GMRES).
+/// @param left  Norm of the residual rest_.   @param aim  Norm at which the cycle ends.
+/// @returns false if the residual decreased too slowly.
 bool TransposedSystem::improve(double left, double aim, bool fresh) {
-  // By which, after so many, a factor that is worth keeping has lowered the residual: a new one
-  // costs as much as a dozen solutions.
+  // A kept factorization is replaced if after kLook solutions it has not reduced the residual by
+  // the factor kSlow. A new factorization costs as much as a dozen solutions.
   constexpr int kLook = 4;
   constexpr double kSlow = 1e-4;
   Eigen::Matrix<double, kMostDirections + 1, kMostDirections> h;
@@ -157,8 +160,8 @@ bool TransposedSystem::improve(double left, double aim, bool fresh) {
 
 void TransposedSystem::solve(const VectorXd& seed, const VectorXd& rows, VectorXd& psi,
                              VectorXd& chi) {
-  // A fresh factor with which the residual no longer falls is at round-off, or the matrix is
-  // singular.
+  // If the residual no longer decreases with a new factorization, it is at round-off or the matrix
+  // is singular.
   constexpr double kEnough = 2e-13, kStuck = 0.5, kRoundOff = 1e-7;
   constexpr int kMost = 8;
   const int n = model_.n_dofs(), m = model_.n_constraints();

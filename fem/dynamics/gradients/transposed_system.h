@@ -9,41 +9,47 @@
 
 namespace flexmorph::fem {
 
-/// The iteration matrices of a motion, transposed, at one state after the other:
+/// Solver for the transposed iteration matrices of a motion, at one state after the other:
 ///
 ///   J = [ scale (w.q (F + Φ_qᵀ λ)_q + w.v F_v + w.a M)   Φ_qᵀ ]
 ///       [ Φ_q                                            0    ]
 ///
-/// A factor is kept for later matrices, and turned with the bodies: rotated bodies have the same
-/// matrix in axes that rotate with them, J' = R J Rᵀ but for strains, constraints and moving lines.
-/// What it leaves is found by the residual's smallest combination over all solutions with it
-/// (GMRES; Saad, Schultz 1986), which meets the matrix that was set last.
+/// A factorization is reused for later matrices and is rotated with the bodies: in axes that rotate
+/// with a body its matrix does not change, J' = R J Rᵀ except for strains, constraints and moving
+/// lines. GMRES (Saad, Schultz 1986) with the rotated factorization removes the remaining error, so
+/// that the solution belongs to the matrix that was set last.
 class TransposedSystem {
  public:
-  /// @param model  lives longer
+  /// Creates a solver for the matrices of a model, which must outlive it.
   explicit TransposedSystem(Workspace& model) : model_(model) {}
 
-  /// Puts J at x together. Accelerations are not looked at: forces are linear in them.
-  /// @param spin  ω² of every unknown, whose M ω² is taken off (n_dofs), or empty
+  /// Assembles J at state x. The accelerations of x are not used because the forces are linear in
+  /// them.
+  /// @param spin  ω² of every unknown, whose M ω² is subtracted (n_dofs), or empty.
   void set(const State& x, const Weights& w, double scale, const VectorXd& spin = {});
-  /// Puts the matrix of solve_steady_equilibrium() at its x together.
+  /// Assembles the matrix of solve_steady_equilibrium() at its solution x.
   void set_carried(const State& x, std::span<const Turning> turning);
 
-  /// Jᵀ (ψ, χ) = (seed, rows).
-  /// @param seed  (n_dofs)   @param rows  (n_constraints)
-  /// @throws Error (numerical) where J is singular.
+  /// Solves Jᵀ (ψ, χ) = (seed, rows).
+  /// @param seed  Right side of the unknowns (n_dofs).
+  /// @param rows  Right side of the constraints (n_constraints).
+  /// @throws Error (numerical) if J is singular.
   void solve(const VectorXd& seed, const VectorXd& rows, VectorXd& psi, VectorXd& chi);
 
-  /// F_vᵀ ψ and Mᵀ ψ at the last set().
+  /// Returns F_vᵀ ψ at state x (n_dofs).
   VectorXd by_velocity(const State& x, const VectorXd& psi);
+  /// Returns Mᵀ ψ at state x (n_dofs).
   VectorXd by_acceleration(const State& x, const VectorXd& psi);
-  /// (F + Φ_qᵀ λ)_qᵀ ψ there.
+  /// Returns (F + Φ_qᵀ λ)_qᵀ ψ at state x (n_dofs).
   VectorXd by_position(const State& x, const VectorXd& psi);
+  /// Returns the constraints at the state of the last set().
   const Constraints& constraints() const { return constraints_; }
-  /// Φ_qᵀ χ there.
+  /// Returns Φ_qᵀ χ at the state of the last set() (n_dofs).
   VectorXd by_rows(const VectorXd& chi) const;
 
+  /// Returns the number of factorizations so far.
   int factorizations() const { return factorizations_; }
+  /// Returns the number of GMRES iterations so far.
   int iterations() const { return iterations_; }
 
  private:
@@ -63,11 +69,11 @@ class TransposedSystem {
   Constraints constraints_;
   SparseMatrix matrix_, factored_, mass_;
   VectorXd scales_, right_, rest_, found_, last_;
-  VectorXd q_;                          // where it was set
-  Weights weights_, factored_weights_;  // as of what
-  BodyTurns turns_;                     // since the last factorization,
-  std::vector<TurnedVectors> turned_;   // as vectors turn that the solver does not turn itself
-  // GMRES: an orthonormal basis of residuals, directions whose images they are.
+  VectorXd q_;                          // positions at the last set()
+  Weights weights_, factored_weights_;  // of the matrix and of the factorization
+  BodyTurns turns_;                     // rotations since the last factorization
+  std::vector<TurnedVectors> turned_;   // rotations that the solver does not apply itself
+  // GMRES: an orthonormal basis of residuals, and the directions whose images span it.
   MatrixXd basis_, directions_;
   VectorXd image_, turning_, solution_;
   int version_ = -1;

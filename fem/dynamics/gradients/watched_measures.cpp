@@ -23,7 +23,7 @@ WatchedMeasures::Mean WatchedMeasures::mean(size_t objective, std::span<const do
   Mean out;
   out.slopes.assign(w.size(), 0);
   const std::vector<double>& m = values_[objective];
-  // Values against the largest: powers neither vanish nor overflow.
+  // Values are divided by the largest one, so that powers neither underflow nor overflow.
   double largest = 0, sum = 0;
   for (size_t i = 0; i < m.size(); ++i) largest = std::max(largest, w[i] > 0 ? std::abs(m[i]) : 0);
   if (o.exponent == 1 || largest == 0) {
@@ -38,7 +38,7 @@ WatchedMeasures::Mean WatchedMeasures::mean(size_t objective, std::span<const do
   return out;
 }
 
-/// The end of the motion is a stop of its own accord.
+/// The motion marks its end as a stop in any case; here it counts only if it is one of `stops`.
 std::vector<double> WatchedMeasures::weights_of_stops(std::span<const double> stops) const {
   std::vector<double> out(time_.size(), 0);
   double n = 0;

@@ -8,18 +8,21 @@
 namespace flexmorph::fem {
 namespace {
 
-/// Up to this many unknowns KLU, which keeps its pivots, is faster than what UnsymmetricSolver has.
+/// Number of unknowns up to which KLU, which keeps its pivots, is faster than UnsymmetricSolver.
 constexpr int kSmall = 400;
-/// Smallest mass that the constraints leave to a motion, of masses scaled to 1: no element or body
-/// comes near to it, round-off of what has none stays below.
+/// Scaled mass (largest 1) below which a motion that the constraints allow counts as a motion
+/// without mass. Masses of elements and bodies are far above this limit; round-off of zero masses
+/// is below it.
 constexpr double kNoMass = 1e-12;
 
+/// Returns the index of an entry in the values of a compressed matrix.
 int place(const SparseMatrix& a, int row, int column) {
   const int* first = a.innerIndexPtr() + a.outerIndexPtr()[column];
   const int* last = a.innerIndexPtr() + a.outerIndexPtr()[column + 1];
   return static_cast<int>(std::lower_bound(first, last, row) - a.innerIndexPtr());
 }
 
+/// Returns true if material lines of any element move.
 bool any_moves(const Model& model) {
   for (const Body& b : model.bodies())
     for (int e = 0; e < b.element->n_elements(); ++e)
@@ -32,7 +35,7 @@ bool any_moves(const Model& model) {
 void AccelerationSolver::number(const State& x, const Constraints& c) {
   const int n = model_.n_dofs(), m = model_.n_constraints();
   model_.kkt(x, c, {0, 0, 1}, 1, kkt_);
-  // Unknowns without mass take part as displacements of the largest mass.
+  // Unknowns without mass are scaled like displacements of the largest mass.
   const VectorXd mass = VectorXd(kkt_.diagonal()).head(n), sizes = model_.scales();
   const double largest = n > 0 ? mass.cwiseQuotient(sizes.cwiseAbs2()).maxCoeff() : 0.0;
   scale_.setOnes(n + m);
@@ -67,8 +70,9 @@ void AccelerationSolver::number(const State& x, const Constraints& c) {
   version_ = model_.pattern_version();
 }
 
-/// Inverse iteration for the smallest mass on the null space of Φ_q: M is shifted by less than any
-/// mass there is, so that a direction without mass stands out by that much.
+/// Inverse iteration for the smallest mass on the null space of Φ_q. M is shifted by less than any
+/// mass of the model, so that directions without mass dominate the iteration.
+/// @throws Error (input) naming the bodies if a motion without mass exists.
 void AccelerationSolver::require_mass() const {
   const int n = model_.n_dofs();
   if (n == model_.n_constraints()) return;
@@ -150,7 +154,7 @@ void AccelerationSolver::solve(const VectorXd& force, const VectorXd& constraint
   if (is_small_) {
     solution_ = right_;
     small_.solve(solution_);
-    right_.noalias() -= kkt_ * solution_;  // kept pivots are not the best
+    right_.noalias() -= kkt_ * solution_;  // one refinement, because kept pivots are not optimal
     small_.solve(right_);
     solution_ += right_;
   } else {

@@ -8,29 +8,38 @@
 
 namespace flexmorph::fem {
 
-/// Accelerations and multipliers from the equations of motion and the constraints,
+/// Solver for the accelerations and multipliers that satisfy the equations of motion and the
+/// constraints,
 ///
 ///   [ M    Φ_qᵀ ] [ q̈ ]   [ f ]
-///   [ Φ_q  0    ] [ λ ] = [ γ ]
+///   [ Φ_q  0    ] [ λ ] = [ γ ].
 ///
-/// with unknowns scaled by the roots of the diagonal of M and rows of Φ_q to unit size. M may be
-/// singular where the constraints hold what has no mass. It is assembled once where no material
-/// flows, and the factor is kept while M and Φ_q are what they were.
+/// The unknowns are scaled by the roots of the diagonal of M, and the rows of Φ_q to unit size. M
+/// may be singular if the constraints hold all unknowns without mass. M is assembled only once if
+/// no material flows, and the factorization is reused as long as M and Φ_q do not change.
 class AccelerationSolver {
  public:
+  /// Creates a solver for a model, which must outlive it.
   explicit AccelerationSolver(Workspace& model) : model_(model) {}
 
-  /// Takes the mass anew at the next factorize(): after a change of factors of the design.
+  /// Discards the stored mass matrix, so that the next factorize() assembles it: to be called after
+  /// a change of the scale factors of the design.
   void forget() { version_ = -1; }
-  /// Factors at x, with its constraints.
-  /// @throws Error (input) naming bodies whose unknowns have no mass where nothing holds them;
-  /// Error (numerical) when the matrix is singular for another reason, or not finite.
+  /// Factors the matrix at state x with its constraints c.
+  /// @throws Error (input) naming the bodies whose unknowns have no mass and are not constrained;
+  /// Error (numerical) if the matrix is singular for another reason, or not finite.
   void factorize(const State& x, const Constraints& c);
-  /// @param force, constraint  f (n) and γ (m)
+  /// Solves for the accelerations a (n) and the multipliers lambda (m) with the last factorization.
+  /// @param force       Right side f of the equations of motion (n).
+  /// @param constraint  Right side γ of the constraints (m).
+  /// @throws Error (numerical) if the solution is not finite.
   void solve(const VectorXd& force, const VectorXd& constraint, VectorXd& a, VectorXd& lambda);
+  /// Returns the number of factorizations so far.
   int factorizations() const { return factorizations_; }
+  /// Saves or restores the state of the solver (geometry/memory.h).
   void remember(Memory& memory);
-  /// condition_estimate() of the matrix of the last factorize(); none before.
+  /// Returns condition_estimate() of the matrix of the last factorize(); nothing before the first
+  /// one.
   std::optional<double> condition() const;
 
  private:
@@ -38,13 +47,13 @@ class AccelerationSolver {
   void require_mass() const;
 
   Workspace& model_;
-  int version_ = -1;  // of the model's pattern
+  int version_ = -1;  // pattern version of the model
   bool mass_moves_ = false, is_factored_ = false, is_small_ = true;
-  SparseMatrix kkt_;         // scaled
-  VectorXd scale_;           // of rows and columns (n + m)
-  VectorXd weights_;         // product of both for every entry of the matrix
-  std::vector<int> places_;  // of the triplets of Φ_q, below and above the diagonal
-  VectorXd factored_;        // values of the triplets that the factor belongs to
+  SparseMatrix kkt_;         // scaled matrix
+  VectorXd scale_;           // scales of rows and columns (n + m)
+  VectorXd weights_;         // scale of row times scale of column, for every entry
+  std::vector<int> places_;  // indices of the triplets of Φ_q, below and above the diagonal
+  VectorXd factored_;        // values of the triplets at the last factorization
   KluSolver small_;
   UnsymmetricSolver large_;
   VectorXd right_, solution_;

@@ -9,9 +9,9 @@
 namespace flexmorph::fem {
 namespace {
 
-constexpr double kDependent = 1e-9;  // what is new of a row of unit size, as in diagnose()
+constexpr double kDependent = 1e-9;  // independent part of a row of unit size, as in diagnose()
 
-/// J without the unknowns that no row acts on, and which unknowns are left.
+/// Returns J without its zero columns, and in `unknowns` the indices of the other columns.
 MatrixXd used_columns(const SparseMatrix& j, std::vector<int>& unknowns) {
   unknowns.clear();
   for (int column = 0; column < j.cols(); ++column)
@@ -26,6 +26,7 @@ MatrixXd used_columns(const SparseMatrix& j, std::vector<int>& unknowns) {
   return out;
 }
 
+/// Throws the error that the constraints are dependent at x.
 [[noreturn]] void refuse(Workspace& model, const State& x) {
   std::string what = describe(diagnose(model, x));
   if (what.empty()) what = describe(ConstraintWatch(model).look(x));

@@ -7,12 +7,13 @@
 
 namespace flexmorph::fem {
 
-/// Quintic Hermite in s = (t - t₀)/h: for values, rates h v and second derivatives h² a of the
-/// ends.
+/// Quintic Hermite interpolation in s = (t - t₀)/h of the values, the rates h v and the second
+/// derivatives h² a of both ends.
 void DenseOutput::interpolate(double t, State& out) const {
   const State &a = *start_, &b = *end_;
   const double h = b.t - a.t, s = (t - a.t) / h, r = 1 - s;
-  // Each end's three functions and their rates; the end's are mirrored, odd ones with a sign.
+  // Three functions and their rates for each end. Those of the second end are mirrored, so that the
+  // odd ones change their sign.
   struct Functions {
     double value[3], rate[3];
   };
@@ -32,7 +33,7 @@ void DenseOutput::interpolate(double t, State& out) const {
   out.lambda = r * a.lambda + s * b.lambda;
 }
 
-/// Factors of [M Φ_qᵀ; Φ_q 0] at x, unknowns scaled to displacements.
+/// Factors [M Φ_qᵀ; Φ_q 0] at x, with unknowns scaled to displacements.
 void DenseOutput::factorize(const State& x) {
   const int n = model_.n_dofs();
   model_.kkt(x, constraints_, {0, 0, 1}, 1, kkt_);
@@ -57,7 +58,7 @@ void DenseOutput::solve(const VectorXd& constraint) {
   solution_.head(n) = solution_.head(n).cwiseQuotient(scales_).eval();
 }
 
-/// Chord iteration: what the quintic misses is so small that one factor serves.
+/// Chord iteration with one factorization, because the error of the quintic is small.
 void DenseOutput::project_position(State& x) {
   const double size = model_size(scales_, x.q);
   constexpr int kMost = 12;

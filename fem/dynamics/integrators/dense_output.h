@@ -5,34 +5,38 @@
 
 namespace flexmorph::fem {
 
-/// The motion within a step of an integrator, at times that no step landed on.
+/// Interpolation of the motion within a step of an integrator, at times at which no step ends.
 ///
-///   q(t)   the quintic that takes q, q̇, q̈ of both ends: misses by O(h⁶) more than they do
-///   then   q moved onto Φ(q, t) = 0 and q̇ onto Φ_q q̇ + Φ_t = 0, by the nearest way in the mass
-///          norm; q̈ and λ from the equations of motion with Φ̈ = 0
+///   - q(t) is the quintic polynomial through q, q̇, q̈ at both ends. It adds an error of O(h⁶) to
+///     the errors of the ends.
+///   - Then q is projected onto Φ(q, t) = 0 and q̇ onto Φ_q q̇ + Φ_t = 0, with the smallest change
+///     in the mass norm. q̈ and λ follow from the equations of motion with Φ̈ = 0.
 ///
-/// so that the state is consistent and its loads are in balance. Unknowns of nodes on moving
-/// material lines are interpolated as any others: the mesh must not change within the step. What
-/// the step does not resolve (frequencies above 1/h) is not resolved here either, and shows in q̈.
+/// Therefore the state is consistent and its loads are in balance. Unknowns of nodes on moving
+/// material lines are interpolated like all others; therefore the mesh must not change within the
+/// step. Frequencies that the step does not resolve (above 1/h) are not resolved by the
+/// interpolation either, and appear in q̈.
 ///
-/// Has its own matrix and factors: those that an integrator keeps stay what they are.
+/// The class has its own matrix and factorization and does not affect those of an integrator.
 class DenseOutput {
  public:
+  /// Creates an interpolation for a model, which must outlive it.
   explicit DenseOutput(Workspace& model) : model_(model) {}
 
-  /// The ends of the step; both must outlive the calls of at().
+  /// Sets the states at the two ends of the step; both must outlive the calls of at().
   void set_step(const State& start, const State& end) { start_ = &start, end_ = &end; }
 
-  /// The state at a time within the step.
-  /// @throws Error (numerical) when the projection does not converge.
+  /// Computes the state at a time within the step.
+  /// @throws Error (numerical) if the projection does not converge.
   void at(double t, State& out);
+  /// Saves or restores the matrix and its factorization (geometry/memory.h).
   void remember(Memory& memory);
 
  private:
   void interpolate(double t, State& out) const;
   void project_position(State& x);
   void factorize(const State& x);
-  /// solution_ from force_ and constraint.
+  /// Solves for solution_ with the right side (force_, constraint).
   void solve(const VectorXd& constraint);
 
   Workspace& model_;
@@ -40,7 +44,7 @@ class DenseOutput {
   const State* end_ = nullptr;
   UnsymmetricSolver solver_;
   SparseMatrix kkt_;
-  int version_ = -1;  // of the model's pattern
+  int version_ = -1;  // pattern version of the model
   VectorXd scales_;
   Constraints constraints_;
   VectorXd force_, miss_, right_, solution_;

@@ -3,7 +3,7 @@
 namespace flexmorph::fem {
 namespace {
 
-/// Round-off of energies, of what they are sums of, with room for 1e5 steps.
+/// Round-off of energies relative to their summands, sufficient for 1e5 steps.
 constexpr double kRoundOff = 1e-9;
 
 }  // namespace

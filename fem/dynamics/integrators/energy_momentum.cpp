@@ -19,7 +19,7 @@ void EnergyMomentum::begin(const State& x, double h) {
   set_mean();
 }
 
-/// The other variables from the step of q.
+/// Computes the other variables from the displacement of the step.
 void EnergyMomentum::set_mean() {
   end_.q = start_.q + step_;
   mean_.q = start_.q + 0.5 * step_;
@@ -54,14 +54,14 @@ void EnergyMomentum::finish(State& x) {
   x = end_;
 }
 
-/// Velocities of driven joints. The kept tangent is the metric: where it is dominated by 2 M / h²
-/// this is the projection in the mass norm, stiffer parts follow as in statics; either way what the
-/// force on a joint does to the momenta, and nothing else, is added.
+/// Corrects the velocities of driven joints, with the kept tangent as metric. Where 2 M / h²
+/// dominates the tangent this is the projection in the mass norm; stiffer regions follow as in
+/// statics. In both cases the momenta change only by the impulse of the joint forces.
 void EnergyMomentum::follow_drives(bool was_driven) {
   model().constraints(end_, at_end_);
   if (!was_driven && at_end_.rate.isZero(0)) return;
   none_.setZero(model().n_dofs());
-  // The kept Jacobian is half a step old at least: each pass leaves O(h) of the miss.
+  // The kept Jacobian is at least half a step old; therefore each pass leaves O(h) of the residual.
   constexpr int kPasses = 6;
   for (int pass = 0; pass < kPasses; ++pass) {
     miss_ = -at_end_.rate;

@@ -5,10 +5,11 @@
 namespace flexmorph::fem {
 namespace {
 
-constexpr int kFilters = 3;      // of an error that is too large
-constexpr int kMoreFilters = 8;  // where, filtered once, it is below this part of the tolerance
+constexpr int kFilters = 3;      // number of filterings of an error that is too large
+constexpr int kMoreFilters = 8;  // if it is below kFaint of the tolerance after one filtering
 constexpr double kFaint = 0.3;
-// Change of q⃛ from step to step, against the larger of both, up to which it is not ringing.
+// Limit of the change of q⃛ from step to step, relative to the larger of both; above it q⃛ is
+// ringing.
 constexpr double kSmooth = 1.2;
 
 }  // namespace
@@ -31,7 +32,7 @@ void GeneralizedAlpha::begin(const State& x, double h) {
   set_start(x);
   next_ = x;
   next_.t = x.t + h;
-  // Start of the iteration: the true acceleration stays what it was.
+  // The iteration starts with the true acceleration of the previous step.
   next_alpha_ =
       ((1 - scheme_.alpha_f) * x.a + scheme_.alpha_f * x.a - scheme_.alpha_m * start_alpha_) /
       (1 - scheme_.alpha_m);
@@ -41,9 +42,9 @@ void GeneralizedAlpha::begin(const State& x, double h) {
 }
 
 void GeneralizedAlpha::begin_motion(const State& x, double h) {
-  // Parts of a step: short against the motion, long enough for round-off of stiff bodies.
+  // Fractions of a step: short relative to the motion, long enough for round-off of stiff bodies.
   constexpr double kParts[] = {1e-3, 1e-2, 1e-1};
-  constexpr double kChange = 0.25;  // of a smooth q⃛
+  constexpr double kChange = 0.25;  // limit of the relative change of a smooth q⃛
   set_scales();
   start_ = {};
   const auto ahead = [&](double s, const VectorXd* jerk = nullptr) {
@@ -69,7 +70,7 @@ void GeneralizedAlpha::begin_motion(const State& x, double h) {
     found.jerk = (found.later.a - x.a) / found.after;
     const VectorXd next = (twice.a - found.later.a) / found.after;
     if (!is_near(next, found.jerk)) continue;
-    // What decays within a part of the step is smooth over a shorter time only.
+    // A motion that decays within a fraction of the step is smooth only over a shorter time.
     const double longest = kParts[std::size(kParts) - 1] * h;
     if (found.after < longest &&
         !is_near((ahead(longest, &found.jerk).a - x.a) / longest, found.jerk))
@@ -117,7 +118,7 @@ void GeneralizedAlpha::set_start(const State& x) {
   if (!smooth_) return;
   start_alpha_ += shift() * (h_ - last_h_) * jerk_;
 
-  // Of the velocity, what is not free.
+  // Correction of the velocity in the directions that constraints hold.
   const bool projected = !same_mesh || last_h_ == 0;
   const double last = projected ? 0 : last_h_;
   change_ = error_constant() * (h_ * h_ - last * last) * jerk_;
@@ -161,7 +162,8 @@ void GeneralizedAlpha::set_end_alpha(const State& x) {
 
 double GeneralizedAlpha::first_step(const State& x, double allowed, double longest) {
   set_scales();
-  // Short against the motion, long against round-off: displacements of 1e-4 of the model.
+  // Time difference with displacements of 1e-4 of the model: short relative to the motion, and long
+  // enough for round-off.
   const double speed = displacement(x.v), pull = displacement(x.a);
   double s = 1e-3 * longest;
   if (speed > 0) s = std::min(s, 1e-4 * size() / speed);
@@ -184,25 +186,25 @@ double GeneralizedAlpha::local_error(const State& x, double allowed) {
   error_ = error_constant() * h_ * h_ * (next_alpha_ - start_alpha_);
   double out = 0;
   const double tolerance = std::pow(allowed, 2.0 / 3);
-  // What is resolved passes the filter unchanged, any number of times.
+  // The filter does not change frequencies that the step resolves, however often it is applied.
   for (int pass = 0, passes = kFilters; pass < passes; ++pass) {
-    // Forces at q̈ balance the multipliers, but for the next correction of Newton's method, far
-    // below any error of interest.
+    // The forces at q̈ and the multipliers are in balance up to the next correction of Newton's
+    // method, which is far below any error of interest.
     filter(error_, {});
     out = displacement(error_) / size();
     if (out <= allowed) break;
-    // Filtered once, a vibration that the step leaves unresolved counts with about half of its
-    // amplitude: that far below the tolerance, it need not be resolved.
+    // After one filtering, an unresolved vibration contributes about half of its amplitude. If this
+    // is far enough below the tolerance, the vibration need not be resolved.
     if (pass == 0 && out <= kFaint * tolerance) passes = kMoreFilters;
   }
   return out;
 }
 
 void GeneralizedAlpha::filter(VectorXd& e, const VectorXd& balance) {
-  // A_M e as a difference of forces, which are linear in the acceleration.
+  // A_M e is computed as a difference of forces, which are linear in the acceleration.
   kept_a_ = next_.a;
   next_.a += weights().a * e;
-  // Free lines stay as they are: they carry no inertia of their own.
+  // Free lines are excluded because they have no inertia of their own.
   for (const Body& b : model().bodies())
     if (const int n = b.element->n_scalars(); n > 0)
       next_.a.segment(b.first_scalar(), n) = kept_a_.segment(b.first_scalar(), n);

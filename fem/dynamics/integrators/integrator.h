@@ -11,115 +11,141 @@
 
 namespace flexmorph::fem {
 
-/// Newton's method in a time step, and what follows when it fails.
+/// Settings of Newton's method in a time step, and of the halving of steps that fail.
 struct StepSettings {
-  double tolerance = 1e-11;  ///< of the last correction, relative to the size of the model or (for
-                             ///< energy_momentum) to the displacement of the step if less
-  int max_iterations = 12;   ///< Newton iterations before the step is halved
+  /// Tolerance of the last correction, relative to the size of the model or, for energy_momentum,
+  /// to the displacement of the step if this is smaller.
+  double tolerance = 1e-11;
+  /// Largest number of Newton iterations before the step is halved.
+  int max_iterations = 12;
+  /// Largest number of halvings of a step before the integration fails.
   int max_halvings = 10;
 };
 
+/// Settings of the integrator generalized_alpha.
 struct AlphaSettings : StepSettings {
-  double rho_inf = 0.8;  ///< spectral radius at infinite frequency, 0..1
+  double rho_inf = 0.8;  ///< Spectral radius at infinite frequency, 0 to 1.
 };
 
-/// Energy and momenta are kept as well as the equations are solved: to round-off by default.
+/// Settings of the integrator energy_momentum. It conserves energy and momenta as accurately as its
+/// equations are solved; therefore the default tolerance is at round-off.
 struct EnergyMomentumSettings : StepSettings {
   EnergyMomentumSettings() { tolerance = 1e-14; }
 };
 
+/// Settings of the integrator minimal_coordinates.
 struct MinimalCoordinatesSettings {
-  /// Of a step: positions against the size of the model, velocities against the fastest; 1e-13..1.
+  /// Error tolerance of a step, in [1e-13, 1): for positions relative to the size of the model, for
+  /// velocities relative to the largest speed.
   double tolerance = 1e-8;
-  int max_steps = 100'000;  ///< accepted and rejected in one advance(): of more the scene is stiff
+  /// Largest number of accepted and rejected steps in one advance(); a model that needs more is
+  /// stiff.
+  int max_steps = 100'000;
 };
 
+/// Name of an integrator and the settings of all integrators.
 struct IntegratorSettings {
-  std::string name = "generalized_alpha";  ///< a row of the table of make_integrator()
-  AlphaSettings alpha;
-  EnergyMomentumSettings energy_momentum;
-  MinimalCoordinatesSettings minimal_coordinates;
+  std::string name = "generalized_alpha";  ///< Name of the integrator, see make_integrator().
+  AlphaSettings alpha;                     ///< Settings of generalized_alpha.
+  EnergyMomentumSettings energy_momentum;  ///< Settings of energy_momentum.
+  MinimalCoordinatesSettings minimal_coordinates;  ///< Settings of minimal_coordinates.
 };
 
-/// What a time integration spent so far.
+/// Statistics of a time integration since its start.
 struct StepCounts {
+  /// Numbers of accepted steps, of Newton iterations and of factorizations.
   int steps = 0, newton = 0, factorizations = 0;
-  int rejected = 0;     ///< steps that Newton's method did not solve
-  int inaccurate = 0;   ///< steps of Integrator::try_step() whose local error was too large
-  int evaluations = 0;  ///< of accelerations, by explicit integrators
-  int partitions = 0;   ///< choices of independent coordinates
+  /// Number of rejected steps: Newton's method failed, or the error of an explicit step was too
+  /// large.
+  int rejected = 0;
+  /// Number of steps of Integrator::try_step() whose local error was too large.
+  int inaccurate = 0;
+  /// Number of evaluations of the accelerations by explicit integrators.
+  int evaluations = 0;
+  /// Number of choices of independent coordinates.
+  int partitions = 0;
 };
 
+/// Saves or restores the state of a model (geometry/memory.h).
 void remember(Memory& memory, State& x);
 
-/// What became of a step of Integrator::try_step().
+/// Outcome of a step of Integrator::try_step().
 struct TriedStep {
+  /// True if Newton's method converged.
   bool converged = false;
-  double error = 0;    ///< estimate of the local error, relative to the size of the model
-  int iterations = 0;  ///< of Newton's method; where the error is far below the allowed one
-                       ///< only those since the first new tangent of the step
+  /// Estimate of the local error, relative to the size of the model.
+  double error = 0;
+  /// Number of Newton iterations. If the error is far below the allowed one, only the iterations
+  /// since the first new tangent of the step are counted.
+  int iterations = 0;
 };
 
-/// The seam of time integration: advances the equations that a model states.
+/// Interface of the time integrators, which advance the equations of motion of a model.
 class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  /// Consistent q̈, λ from the twice differentiated constraints. What the scheme carries besides the
-  /// state (the algorithmic acceleration of generalized-alpha) starts from there.
-  /// @throws Error (numerical) when the constraints are redundant.
+  /// Computes consistent q̈ and λ from the twice differentiated constraints. Variables of the scheme
+  /// besides the state (the algorithmic acceleration of generalized-alpha) are set accordingly.
+  /// @throws Error (numerical) if the constraints are redundant.
   virtual void make_consistent(State& x) = 0;
-  /// The motion begins at x, which make_consistent() has seen, with steps of about h that do not
-  /// adapt: the first step starts so that multipliers are those of a smooth solution from then on.
+  /// Prepares the first step of a motion with steps of about h that are not adaptive, such that the
+  /// multipliers follow a smooth solution from this step on.
+  /// @param x  State after make_consistent().
   virtual void begin_motion(const State& /*x*/, double /*h*/) {}
-  /// Moves velocities that miss Φ_q q̇ + Φ_t = 0 a little to the nearest in the mass norm.
+  /// Projects velocities that violate Φ_q q̇ + Φ_t = 0 slightly onto the constraints, with the
+  /// smallest change in the mass norm.
   virtual void project_velocity(State& x) = 0;
 
-  /// The last step ended just before a kink of drives or loads, x.t is its time now: accelerations
-  /// and multipliers jump to those behind it, and what the scheme carries besides with them.
+  /// Continues after a discontinuity of drives or loads: the last step ended just before it, and
+  /// x.t is now its time. Accelerations and multipliers jump to the values after the discontinuity,
+  /// and the variables of the scheme besides the state jump with them.
   virtual void cross_kink(State& x) { make_consistent(x); }
 
-  /// Carries over what the scheme carries besides the state, which `map` and balance_forces() have
-  /// taken across a change of the mesh.
-  /// @param before  the state before the change
-  /// @param change  of the accelerations by balance_forces() (n_dofs)
+  /// Transfers the variables of the scheme besides the state across a change of the mesh, after
+  /// `map` and balance_forces() have transferred the state.
+  /// @param before  State before the change.
+  /// @param change  Change of the accelerations by balance_forces() (n_dofs).
   virtual void change_mesh(const MeshMap& /*map*/, const State& /*before*/,
                            const VectorXd& /*change*/) {}
 
-  /// Advances x to t_end: in one step, halved and retried where Newton fails, growing back later;
-  /// or in as many as the tolerance of the integrator asks for.
-  /// `accepted` sees every accepted step.
-  /// @throws Error (numerical) naming time, step and the residual history; x is the last good
-  /// state.
+  /// Advances x to t_end: in one step, which is halved and repeated if Newton's method fails and
+  /// grows again later, or in as many steps as the tolerance of the integrator requires.
+  /// @param accepted  Function that is called after every accepted step.
+  /// @throws Error (numerical) naming time, step and the history of the residuals; x is then the
+  /// last valid state.
   virtual void advance(State& x, double t_end,
                        const std::function<void(const State&)>& accepted) = 0;
 
-  /// Tries one step from x to x.t + h: x becomes its end where Newton's method converges and the
-  /// estimated local error is not above `allowed`, else x stays what it is.
-  /// @throws Error (numerical) when Newton's method failed in StepSettings::max_halvings tries in a
-  ///         row; Error (input) from an integrator that knows no local error.
+  /// Tries one step from x to x.t + h. x becomes the end of the step if Newton's method converges
+  /// and the estimated local error is not above `allowed`; otherwise x does not change.
+  /// @throws Error (numerical) if Newton's method has failed in more consecutive tries than
+  ///         StepSettings::max_halvings; Error (input) from an integrator without error estimate.
   virtual TriedStep try_step(State& x, double h, double allowed);
-  /// Length of a first step from a consistent state whose local error is about `allowed`, at most
-  /// `longest`; to be called before the first try_step().
+  /// Returns the length of a first step from the consistent state x with a local error of about
+  /// `allowed`, at most `longest`; to be called before the first try_step().
   virtual double first_step(const State& x, double allowed, double longest);
 
-  /// The state in the middle of the last accepted step, of an integrator whose multipliers and
-  /// accelerations belong there (and are those of the accepted state as well, which has none of its
-  /// own until make_consistent()); null where they belong to the end.
+  /// Returns the state in the middle of the last accepted step if the multipliers and accelerations
+  /// of the integrator belong to this state; null if they belong to the end of the step. In the
+  /// first case the accepted state has the mean multipliers and accelerations, too, until
+  /// make_consistent().
   virtual const State* step_mean() const { return nullptr; }
 
+  /// Returns the statistics of the integration.
   virtual const StepCounts& counts() const = 0;
-  /// What the next steps depend on besides the state, between two steps: put back into an
-  /// integrator of the same settings and model, its mesh included, they are the same bit for bit.
+  /// Saves or restores, between two steps, the data besides the state on which the next steps
+  /// depend. If they are restored into an integrator with the same settings and model (and mesh),
+  /// the next steps are bit for bit the same.
   virtual void remember(Memory& memory) = 0;
-  /// condition_estimate() of the matrix that was factored last; none before there is one. Costs a
-  /// factorization.
+  /// Returns condition_estimate() of the matrix that was factored last; nothing if there is none.
+  /// Costs a factorization.
   virtual std::optional<double> condition() const = 0;
 };
 
-/// "generalized_alpha", "energy_momentum" or "minimal_coordinates". The work space must outlive the
-/// integrator.
-/// @throws Error (input) naming the known integrators, or for settings that make no sense.
+/// Creates the integrator "generalized_alpha", "energy_momentum" or "minimal_coordinates". The work
+/// space must outlive the integrator.
+/// @throws Error (input) naming the known integrators, or if the settings are invalid.
 std::unique_ptr<Integrator> make_integrator(Workspace& model, const IntegratorSettings& settings);
 
 }  // namespace flexmorph::fem

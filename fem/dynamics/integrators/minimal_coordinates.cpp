@@ -18,33 +18,36 @@ namespace odeint = boost::numeric::odeint;
 using Numbers = std::vector<double>;
 using DormandPrince = odeint::runge_kutta_dopri5<Numbers>;
 
-/// Corrections of dependent positions below this part of the size leave round-off only: Newton's
-/// method is of second order.
+/// Relative correction of dependent positions after which only round-off remains, because Newton's
+/// method converges quadratically.
 constexpr double kConverged = 1e-10;
 constexpr int kMostIterations = 10;
-/// A prediction that is corrected by more than this part of what moved, or of half the size where
-/// that is more, may end on another branch.
+/// Largest allowed correction of a prediction, relative to the predicted motion or to half the size
+/// of the model if that is larger. A larger correction may lead to another branch of the
+/// constraints.
 constexpr double kCorrection = 0.1;
-/// Amplification of the partition, against the best since it was chosen, from which on the choice
-/// is made anew; and from which on the step that led there is not trusted: independent coordinates
-/// are at their limits where it is infinite, and cannot tell two branches from each other.
+/// Limits of the amplification of the partition, relative to its best value since the choice. Above
+/// kDeteriorated the partition is chosen again. Above kAmbiguous the step is rejected: where the
+/// amplification is infinite, independent coordinates are at a limit of their motion and do not
+/// distinguish between two branches.
 constexpr double kDeteriorated = 2, kAmbiguous = 50;
-/// Steps shorter than this part of an advance() are not stiffness but a singularity or a jump.
+/// Shortest step, as a fraction of an advance(). Shorter steps are not due to stiffness but to a
+/// singularity or a discontinuity.
 constexpr double kShortest = 1e-12;
-/// A velocity error counts as the displacement it makes in 1000 steps, where that is less than its
-/// part of the speed: a model at rest has no speed.
+/// Lower limit of the speed to which velocity errors are related: a displacement of this fraction
+/// of the model's size in one step. Without it a model at zero velocity would have no reference.
 constexpr double kLongRun = 1e-3;
 
-/// What the local error may be, for Boost.Odeint.
+/// Measure of the local error for Boost.Odeint.
 class ErrorInScaledUnits {
  public:
   using algebra_type = DormandPrince::algebra_type;
 
-  /// @param scales  of the independent coordinates: displacement per unit
+  /// @param scales  Displacement per unit of each independent coordinate.
   ErrorInScaledUnits(const Numbers& scales, double size, double tolerance)
       : scales_(&scales), size_(size), tolerance_(tolerance) {}
 
-  /// Largest error, 1 where it is what the tolerance allows.
+  /// Returns the largest error relative to the error that the tolerance allows.
   template <class Y, class Rate, class Miss, class Time>
   double error(algebra_type&, const Y& y, const Rate& rate, const Miss& miss, Time h) const {
     const size_t n = scales_->size();
@@ -78,17 +81,17 @@ struct MinimalCoordinates::Impl {
   StepCounts counts;
   AccelerationSolver accelerations;
   CoordinatePartition partition;
-  int version = -1;  // of the model's pattern, that the partition belongs to
+  int version = -1;  // pattern version of the model at the last choice of the partition
   VectorXd scales;
   double size = 1;
-  double amplification = 1, best_amplification = 1;  // after the last step, since the choice
+  double amplification = 1, best_amplification = 1;  // at the last step; best since the choice
   Numbers y, independent_scales;
   Stepper stepper;
-  double step = 0;        // the next one, 0: none known
-  State last;             // accepted last: what goes on from there keeps the stepper's derivative
-  Numbers rate;           // of y, from the last stage of the step before,
-  bool is_begun = false;  // where there is one
-  State at;               // of the last evaluation
+  double step = 0;        // size of the next step; 0: unknown
+  State last;             // last accepted state; steps from it reuse the stepper's derivative
+  Numbers rate;           // derivative of y, from the last stage of the previous step
+  bool is_begun = false;  // true if `rate` is valid
+  State at;               // state of the last evaluation
   Constraints constraints;
   VectorXd right, correction, force, none;
 
@@ -106,8 +109,8 @@ struct MinimalCoordinates::Impl {
     counts.factorizations = accelerations.factorizations();
   }
 
-  /// Parts the coordinates at x and starts the integration there.
-  /// @returns whether it is another partition.
+  /// Chooses the partition of the coordinates at x and starts the integration there.
+  /// @returns true if the partition has changed.
   bool choose(const State& x) {
     model.prepare(x);  // for the scales
     const bool differs = partition.choose(model, x);
@@ -154,8 +157,9 @@ struct MinimalCoordinates::Impl {
   [[noreturn]] void give_up(const State& x, double h, const std::string& reason);
 };
 
-/// Φ(q, t) = 0 for the dependent positions of `at`; Φ and the factor of Φ_qd are left at the
-/// result.
+/// Solves Φ(q, t) = 0 for the dependent positions of `at`. Φ and the factorization of Φ_qd are left
+/// at the solution.
+/// @param motion  Largest predicted displacement of a dependent position [m].
 void MinimalCoordinates::Impl::find_positions(double motion) {
   const std::vector<int>& dependent = partition.dependent();
   const double most = kCorrection * std::max(motion, 0.5 * size);
@@ -169,7 +173,7 @@ void MinimalCoordinates::Impl::find_positions(double motion) {
     ++counts.newton;
     const double now = displacement(correction);
     const bool shrinks = iteration == 0 || now <= 0.5 * before || now <= kConverged * size;
-    if (!(now <= most) || !shrinks) break;  // also where it is no number
+    if (!(now <= most) || !shrinks) break;  // also if it is not a number
     for (size_t k = 0; k < dependent.size(); ++k)
       at.q[dependent[k]] += correction[static_cast<Eigen::Index>(k)];
     before = now;
@@ -177,7 +181,7 @@ void MinimalCoordinates::Impl::find_positions(double motion) {
   throw Error::numerical(formatted("the dependent positions were not found at t = %.9g s", at.t));
 }
 
-/// Φ_q q̇ = -Φ_t for the dependent velocities of `at`.
+/// Solves Φ_q q̇ = -Φ_t for the dependent velocities of `at`.
 void MinimalCoordinates::Impl::find_velocities() {
   const std::vector<int>& dependent = partition.dependent();
   for (const int i : dependent) at.v[i] = 0;
@@ -189,7 +193,7 @@ void MinimalCoordinates::Impl::find_velocities() {
     at.v[dependent[k]] = correction[static_cast<Eigen::Index>(k)];
 }
 
-/// ẏ at (y, t); `at` becomes the whole state there.
+/// Computes ẏ at (y, t); `at` becomes the complete state there.
 void MinimalCoordinates::Impl::evaluate(const Numbers& from, Numbers& rate, double t) {
   ++counts.evaluations;
   const std::vector<int>& independent = partition.independent();
@@ -217,8 +221,10 @@ void MinimalCoordinates::Impl::evaluate(const Numbers& from, Numbers& rate, doub
   }
 }
 
-/// One step of h from x, of which `last` is a copy; `at` becomes its end, h the next step.
-/// @returns whether it was accepted; if not, why, where it is not the error.
+/// Tries one step of size h from x, of which `last` is a copy. `at` becomes its end, and h the size
+/// of the next step.
+/// @returns true if the step was accepted; otherwise `reason` is the message of a failure, or empty
+/// if the local error was too large.
 bool MinimalCoordinates::Impl::try_step(const State& x, double& h, std::string& reason) {
   at = last;
   const double tried = h;
@@ -244,7 +250,8 @@ bool MinimalCoordinates::Impl::try_step(const State& x, double& h, std::string& 
   return false;
 }
 
-/// Largest |q̈(q + ε z) - q̈(q)| / ε by power iteration, as a frequency [rad/s].
+/// Returns the frequency [rad/s] of the fastest vibration: the root of the largest
+/// |q̈(q + ε z) - q̈(q)| / ε, found by power iteration; 0 if it cannot be computed.
 double MinimalCoordinates::Impl::fastest_vibration(const State& x) {
   const size_t n = independent_scales.size();
   if (n == 0) return 0;
@@ -269,7 +276,7 @@ double MinimalCoordinates::Impl::fastest_vibration(const State& x) {
       if (!(square > 0)) return 0;
     }
   } catch (const Error&) {
-    return 0;  // it only explains another failure
+    return 0;  // the value is only used in the message of another failure
   }
   return std::sqrt(square);
 }
@@ -355,7 +362,7 @@ void MinimalCoordinates::advance(State& x, double t_end,
   if (!(s.step > 0)) s.step = 0.01 * whole;
   std::string reason;
   for (int tried = 0; x.t < t_end; ++tried) {
-    // The end is met without a short last step.
+    // The last two steps are adjusted, so that no short step remains before the end.
     const double left = t_end - x.t;
     double h = s.step;
     if (h > 0.5 * left) h = h > (1 - 1e-9) * left ? left : 0.5 * left;

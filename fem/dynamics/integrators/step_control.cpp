@@ -10,14 +10,17 @@ namespace flexmorph::fem {
 namespace {
 
 constexpr double kSafety = 0.95;
-// Exponents of the error and of its change; 1/3 alone would meet the allowed error at once.
+// Exponents of the error and of its change; an exponent 1/3 of the error alone would give the
+// allowed error in the next step.
 constexpr double kIntegral = 0.28, kProportional = 0.1;
-constexpr double kGrowth = 1.5, kShrink = 0.2;     // limits of one change
-constexpr double kDeadLow = 0.9, kDeadHigh = 1.2;  // changes that are not worth a factorization
-// Newton iterations after which a step does not grow, and after which it shrinks; and for how many
-// steps a step as long as one that failed is not tried again.
+constexpr double kGrowth = 1.5, kShrink = 0.2;  // limits of one change of the step size
+constexpr double kDeadLow = 0.9,
+                 kDeadHigh = 1.2;  // small changes, which do not justify a factorization
+// Number of Newton iterations from which a step does not grow, and from which it shrinks; number of
+// steps during which a step as long as a failed one is not tried again.
 constexpr int kMany = 7, kTooMany = 10, kAvoid = 20;
-// An error that crosses zero says nothing about the next step: it falls at most to this part.
+// Lower limit of the error relative to that of the previous step, because an error estimate that
+// crosses zero does not predict the error of the next step.
 constexpr double kMemory = 0.5;
 
 }  // namespace
@@ -47,7 +50,7 @@ double StepControl::next(double left) const {
 void StepControl::accepted(double h, double error, int iterations) {
   double ratio = std::max(error / allowed_, 1e-6);
   if (h < (1 - 1e-9) * wish_) {
-    // Cut short to land: says only whether the wish is too long.
+    // The step was shortened to end at an event time: it only shows whether wish_ is too long.
     wish_ = std::min(wish_, kSafety * h * std::pow(ratio, -1.0 / 3));
     shrunk_ = false;
     return;
@@ -60,7 +63,7 @@ void StepControl::accepted(double h, double error, int iterations) {
   if (failed_ > 0 && ++since_failed_ > kAvoid) failed_ = 0;
   if (failed_ > 0) change = std::min(change, std::max(1.0, 0.7 * failed_ / h));
   if (change > kDeadLow && change < kDeadHigh) change = 1;
-  // What the error of the next step will be, for its proportional part.
+  // Predicted error of the next step, for the proportional term.
   const double next = std::clamp(h * change, smallest_, largest_);
   last_ = ratio * std::pow(next / h, 3);
   wish_ = next;
@@ -78,7 +81,7 @@ void StepControl::shorten(double h, double t, const char* why) {
 
 void StepControl::rejected(double h, double error, double t) {
   const double change = 0.9 * std::pow(error / allowed_, -1.0 / 3);
-  // Also where the error is not a number.
+  // The step also shrinks if the error is not a number.
   shorten(h * (change > kShrink ? std::min(change, 0.85) : kShrink), t,
           "the local error does not get below what the tolerance allows");
 }

@@ -2,54 +2,65 @@
 
 namespace flexmorph::fem {
 
-/// Steps that adapt to what they miss.
+/// Settings of time steps that adapt to their local error.
 ///
-/// Every step may miss by ε = size · tolerance^{3/2}, size: of the model. Methods of order 2 have
-/// local errors ∝ h³ and global ones ∝ h², so that the global error is proportional to the
-/// tolerance; and the same ε for all steps is what reaches a given sum of errors in the fewest of
-/// them. For a motion of the model's own size the sum is about tolerance · size per radian.
+/// Every step may have the error ε = size · tolerance^{3/2}, where size is that of the model.
+/// Methods of order 2 have local errors ∝ h³ and global errors ∝ h²; therefore the global error is
+/// proportional to the tolerance. The same ε in all steps leads to a given sum of errors with the
+/// smallest number of steps. For a motion of the size of the model the sum is about tolerance ·
+/// size per radian.
 struct AdaptiveStep {
+  /// Tolerance, between 0 and 1.
   double tolerance = 1e-4;
-  double largest = 0;   ///< no step is longer [s]; 0: a fiftieth of the run
-  double smallest = 0;  ///< a step that would have to be shorter fails [s]; 0: 1e-10 of the run
-  double first = 0;     ///< length of the first step [s]; 0: estimated
+  /// Length of the longest allowed step [s]; 0: a fiftieth of the run.
+  double largest = 0;
+  /// Length of the shortest allowed step [s]; the run fails if it needs a shorter one; 0: 1e-10 of
+  /// the run.
+  double smallest = 0;
+  /// Length of the first step [s]; 0: it is estimated.
+  double first = 0;
 };
 
-/// Chooses step sizes from the local errors of the steps before: a proportional-integral controller
-/// (Gustafsson 1991, ACM Trans. Math. Softw. 17, 533-554) for local errors ∝ h³, with limits on
-/// growth, and a dead band, in which the step stays what it is and so does its factorization.
+/// Controller that chooses the sizes of steps from the local errors of previous steps: a
+/// proportional-integral controller (Gustafsson 1991, ACM Trans. Math. Softw. 17, 533-554) for
+/// local errors ∝ h³, with limits on the growth. Within a dead band the step size does not change,
+/// so that the factorization can be reused.
 class StepControl {
  public:
-  /// @param span  length of the run [s]
-  /// @throws Error (input) for settings that make no sense.
+  /// Creates the controller of a run.
+  /// @param span  Length of the run [s].
+  /// @throws Error (input) if the settings are invalid.
   StepControl(const AdaptiveStep& settings, double span);
 
-  /// Local error that a step may have, relative to the size of the model.
+  /// Returns the local error that a step may have, relative to the size of the model.
   double allowed() const { return allowed_; }
+  /// Returns the largest allowed length of a step [s].
   double largest() const { return largest_; }
-  /// The first step [s], within the limits.
+  /// Sets the first step to h [s], within the limits.
   void begin(double h);
 
-  /// The next step when there are `left` seconds to a time it must land on, at most that; the last
-  /// two steps before it are equal.
+  /// Returns the next step [s] if `left` seconds remain to an event time, at which a step must end;
+  /// the step is at most `left`, and the last two steps before the event time are equal.
   double next(double left) const;
-  /// After an accepted step h with its local error and the Newton iterations that it took: one that
-  /// took many is near to what Newton's method manages, whatever the error.
+  /// Records an accepted step h [s] with its local error and the number of its Newton iterations.
+  /// Many iterations prevent a growth of the step even if the error is small, because Newton's
+  /// method is then close to failure.
   void accepted(double h, double error, int iterations);
-  /// After one whose error is above allowed().
-  /// @throws Error (numerical) when the next one would have to be shorter than `smallest`, at t.
+  /// Records a step h [s] whose local error was above allowed(), and shortens the next one.
+  /// @throws Error (numerical) if the next step, at time t [s], would be shorter than `smallest`.
   void rejected(double h, double error, double t);
-  /// After one that Newton's method did not solve. @throws Error likewise.
+  /// Records a step h [s] in which Newton's method failed, and shortens the next one.
+  /// @throws Error (numerical) if the next step, at time t [s], would be shorter than `smallest`.
   void failed(double h, double t);
 
  private:
   void shorten(double h, double t, const char* why);
 
   double allowed_, largest_, smallest_;
-  double wish_ = 0;      // the next step, where nothing is in the way
-  double last_ = 0;      // local error of the last step, relative to the allowed one; 0: unknown
-  bool shrunk_ = false;  // was the last try rejected?
-  double failed_ = 0;    // the last step that Newton's method did not solve
+  double wish_ = 0;      // next step if no event time is near
+  double last_ = 0;      // local error of the last step, relative to allowed_; 0: unknown
+  bool shrunk_ = false;  // true if the last try was rejected
+  double failed_ = 0;    // size of the last step in which Newton's method failed; 0: none
   int since_failed_ = 0;
 };
 

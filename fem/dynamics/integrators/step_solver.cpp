@@ -11,7 +11,8 @@
 namespace flexmorph::fem {
 namespace {
 
-// An error this small against the allowed one lets a step grow at once.
+// Ratio of error and allowed error below which slow contraction does not prevent a growth of the
+// step.
 constexpr double kFar = 0.1;
 
 }  // namespace
@@ -31,7 +32,8 @@ void StepSolver::set_scales() {
   scaled_version_ = model_.pattern_version();
 }
 
-/// Unknown i is solved as the displacement scales_i Δq_i; its equation as a virtual work on it.
+/// Unknown i is scaled to the displacement scales_i Δq_i, and its equation to the virtual work on
+/// it.
 void StepSolver::scale_kkt(const std::vector<char>& chosen) {
   const auto is_chosen = [&](int k) { return chosen.empty() || chosen[static_cast<size_t>(k)]; };
   for (int column = 0; column < kkt_.cols(); ++column) {
@@ -61,7 +63,7 @@ std::optional<double> StepSolver::condition() const {
 }
 
 void StepSolver::factorize_here(double h) {
-  // A tenth of the contraction that Newton's method accepts of a kept tangent.
+  // A tenth of the contraction that Newton's method accepts for a kept tangent.
   constexpr double kMiss = 0.02;
   tangent(kkt_);
   factorize(kMiss);
@@ -139,9 +141,10 @@ TriedStep StepSolver::solve_step(State& x, double h, double allowed) {
     if (newton(h)) {
       TriedStep out{true, std::isfinite(allowed) ? local_error(x, allowed) : 0,
                     counts_.newton - before};
-      // That a kept tangent contracts slowly is no reason to stay with steps this small.
+      // If the error is this small, slow contraction of a kept tangent must not keep the step
+      // small.
       if (out.error < kFar * allowed) out.iterations = fresh_iterations_;
-      // An error that is not a number is too large.
+      // Written so that an error that is not a number counts as too large.
       if (!(out.error <= allowed)) return out;
       if (finish_sound(x)) return out;
     }
@@ -154,7 +157,7 @@ TriedStep StepSolver::solve_step(State& x, double h, double allowed) {
 }
 
 bool StepSolver::finish_sound(State& x) {
-  constexpr double kLarge = 1e-3;  // a tenth of an element, of a hundred in a row
+  constexpr double kLarge = 1e-3;  // a tenth of an element length, with 100 elements along a body
   const bool look = largest_correction_ > kLarge;
   if (look) before_ = x;
   finish(x);
@@ -189,11 +192,11 @@ bool StepSolver::is_kept(double h) const {
 }
 
 bool StepSolver::newton(double h) {
-  // A kept tangent that contracts less, or takes longer, is replaced.
+  // A kept tangent is replaced if it contracts less than this or needs more iterations.
   constexpr double kContraction = 0.2;
   constexpr int kPatience = 6;
-  // Corrections this small against the model that no longer shrink are round-off, with any tangent
-  // or with a fresh one.
+  // Corrections below these limits, relative to the size of the model, are round-off if they no
+  // longer decrease: with any tangent, or with a new one.
   constexpr double kRoundOff = 1e-14, kFreshRoundOff = 1e-12;
   double last = 0;
   bool fresh = false;
@@ -226,7 +229,7 @@ bool StepSolver::newton(double h) {
     if (correction <= tolerance || error <= 0.01 * tolerance) return true;
     if (correction <= (fresh ? kFreshRoundOff : kRoundOff) && contraction > kContraction)
       return true;
-    if (fresh && iteration > 3 && contraction > 2) return false;  // diverges with its own tangent
+    if (fresh && iteration > 3 && contraction > 2) return false;  // diverges with a new tangent
     if (iteration > 1 && (contraction > kContraction || iteration >= kPatience)) factored_h_ = 0;
     last = correction;
   }
@@ -244,7 +247,8 @@ void StepSolver::give_up(const State& x, double h, int failures) const {
 
 void StepSolver::remember(Memory& memory) {
   const int now = model_.pattern_version();
-  // Scales are those of the lines where they were, and the kept tangent is that of an earlier step.
+  // The scales belong to earlier positions of the material lines, and the kept tangent to an
+  // earlier step. Therefore they cannot be computed again and are saved.
   memory(counts_, scales_, size_, kkt_, factored_h_, failures_, turns_);
   memory.up_to_date(scaled_version_, now);
   if (memory.up_to_date(analysed_version_, now)) solver_.remember(memory, kkt_);

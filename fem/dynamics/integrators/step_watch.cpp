@@ -38,7 +38,7 @@ void MultiplierWatch::see(const Model& model, const State& x, double h) {
     return;
   }
   largest_ = largest_.cwiseMax(x.lambda.cwiseAbs());
-  const double least = 1e-6 * largest_.maxCoeff();  // a row without force is none
+  const double least = 1e-6 * largest_.maxCoeff();  // for rows with hardly any force
   for (Eigen::Index i = 0; i < x.lambda.size(); ++i) {
     const double second = x.lambda[i] - 2 * last_[i] + before_[i];
     const double part = 0.25 * std::abs(second) / std::max(largest_[i], least);

@@ -9,34 +9,37 @@
 
 namespace flexmorph::fem {
 
-/// A constraint whose multiplier changes to and fro from step to step.
+/// Record of a constraint whose multiplier alternates from step to step.
 struct Alternation {
-  double time = 0;    ///< since when [s]
-  std::string joint;  ///< whose row alternates most
-  double part = 0;    ///< largest amplitude met, of the row's largest multiplier
+  double time = 0;    ///< Time at which the alternation began [s].
+  std::string joint;  ///< Name of the joint whose row alternates most.
+  double part = 0;    ///< Largest amplitude, relative to the largest multiplier of the row.
 };
 
+/// Saves or restores the record of an alternation (geometry/memory.h).
 void remember(Memory& memory, Alternation& alternation);
 
-/// Watches for multipliers that alternate. In index-3 equations the algorithmic part of λ obeys
-/// λ_{n+1} = -ρ_∞ λ_n + ...: what a step or a drive sets off is never damped for ρ_∞ = 1, and
-/// grows where constraints are not linear, until Newton's method fails and steps are halved.
+/// Check for alternating multipliers. In index-3 equations the algorithmic component of λ obeys
+/// λ_{n+1} = -ρ_∞ λ_n + ...: for ρ_∞ = 1 a disturbance by a step or a drive is never damped. It
+/// grows if constraints are not linear, until Newton's method fails and steps are halved.
 ///
-/// A row alternates while its second differences λ_{n+1} - 2 λ_n + λ_{n-1} change sign from step to
-/// step and are not small against its largest multiplier, kSteps steps in a row: with ρ_∞ = 0.95
-/// less than a hundredth is left of anything after that many. Axial waves that a step does not
-/// resolve alternate for some tens of steps at a start, and are damped.
+/// A row alternates if its second differences λ_{n+1} - 2 λ_n + λ_{n-1} change sign from step to
+/// step and are not small relative to its largest multiplier, in kSteps consecutive steps. With ρ_∞
+/// = 0.95 less than a hundredth of any disturbance remains after kSteps steps. Axial waves that a
+/// step does not resolve alternate for some tens of steps at a start and are then damped.
 ///
 /// Source: Cardona & Géradin (1989), Comput. Struct. 33, 801-820; Arnold & Brüls (2007), Multibody
 /// Syst. Dyn. 18, 185-202.
 class MultiplierWatch {
  public:
-  static constexpr int kSteps = 100;         ///< of equal length
-  static constexpr double kNoticed = 0.005;  ///< amplitude, of the row's largest multiplier
+  static constexpr int kSteps = 100;         ///< Number of consecutive steps of equal length.
+  static constexpr double kNoticed = 0.005;  ///< Limit of Alternation::part.
 
-  /// After an accepted step of length h.
+  /// Checks the multipliers after an accepted step of length h that ended at x.
   void see(const Model& model, const State& x, double h);
+  /// Returns the strongest alternation so far, if any.
   const std::optional<Alternation>& found() const { return found_; }
+  /// Saves or restores the state of the check (geometry/memory.h).
   void remember(Memory& memory, const Model& model);
 
  private:
@@ -49,11 +52,11 @@ class MultiplierWatch {
   std::optional<Alternation> found_;
 };
 
-/// Equal steps that Newton's method did not solve and that were cut.
+/// Record of equal steps that were shortened because Newton's method failed.
 struct CutSteps {
-  int number = 0;       ///< accepted steps shorter than they were meant to be
-  double since = 0;     ///< time of the first [s]
-  double shortest = 0;  ///< [s]
+  int number = 0;       ///< Number of accepted steps that are shorter than intended.
+  double since = 0;     ///< Time at which the first shortened step began [s].
+  double shortest = 0;  ///< Length of the shortest step [s].
 };
 
 }  // namespace flexmorph::fem

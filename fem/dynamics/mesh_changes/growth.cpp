@@ -18,7 +18,7 @@ VectorRows rows_of(const Body& body, const VectorXd& all) {
 
 namespace {
 
-/// Rows of the unknowns of one element.
+/// Returns the entries of the unknowns of element e, one vector unknown per row.
 MatrixXd local_rows(const Body& body, const VectorXd& all, int e) {
   const auto vectors = body.element->vectors(e);
   const int dim = body.element->dim();
@@ -66,12 +66,12 @@ NextChange next_change(const Body& body, const Growth& growth, double t, double 
   const bool may_merge =
       plate.n_m() > 1 && !first.drive &&
       growth.min_length + plate.lines_m()[2].value - first.value < growth.merged_below();
-  // Positive once the limit is passed.
+  // Positive after the limit was passed.
   const auto passed = [&](double at) {
     const double above = length(at) - growth.max_length;
     return may_merge ? std::max(above, growth.min_length - length(at)) : above;
   };
-  // A millionth of a millionth of the limit: an event that falls on t itself has been executed.
+  // A limit that is reached to within this length counts as reached.
   const double tiny = 1e-12 * growth.max_length;
   double low = t;
   while (low < end) {

@@ -6,18 +6,20 @@ namespace flexmorph::fem {
 
 struct MotionSettings;
 
-/// A time that steps of a motion must land on.
+/// An event time of a motion: a time at which a step must end.
 struct Landing {
-  double t = 0;
-  bool stop = false;  ///< is it to be seen?
-  bool kink = false;  ///< may accelerations and forces jump there?
+  double t = 0;       ///< Time [s].
+  bool stop = false;  ///< True if the observer of the motion needs the state at this time.
+  bool kink = false;  ///< True if accelerations and forces may jump at this time.
 };
 
-/// All of a motion, in order: stops (where steps are equal), kinks between start and end, the end.
-/// A kink and what is next to it by less than `near` [s] are one, at the time of the last kink.
+/// Returns all event times of a motion in ascending order: the stops (for equal steps), the
+/// discontinuities between start and end, and the end. A discontinuity and any event that is closer
+/// to it than `near` [s] become one event, at the time of the last discontinuity.
 std::vector<Landing> landings(const MotionSettings& settings, double near);
 
-/// Where the last step before a kink ends: further from it than times are rounded.
+/// Returns the time at which the last step before a discontinuity ends: earlier than the
+/// discontinuity by more than the round-off of times.
 double just_before(double kink);
 
 }  // namespace flexmorph::fem

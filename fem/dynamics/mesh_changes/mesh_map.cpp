@@ -40,15 +40,15 @@ MeshMap::MeshMap(const Body& body, MeshChange change, int n_dofs, double cell) :
 
 MeshMap::Node MeshMap::make_node(const Body& body, const LineGrid& plate, int e, double s,
                                  double u) const {
-  // Derivatives along m by fitting: the field along m is a cubic in s, along n likewise; sampled at
-  // four points it is known, and so are its derivatives.
+  // The field is a cubic along m and along n. Therefore its values at four points in each direction
+  // determine it and its derivatives.
   static const Eigen::Vector4d points(0.0, 0.3, 0.7, 1.0);
   Eigen::Matrix4d vandermonde;
   for (int i = 0; i < 4; ++i)
     vandermonde.row(i) << 1, points[i], points[i] * points[i], std::pow(points[i], 3);
   const Eigen::Matrix4d inverse = vandermonde.inverse();
   const auto basis = [&](double at, double length) {
-    Eigen::Matrix<double, 2, 4> out;  // value and derivative weights on the four samples
+    Eigen::Matrix<double, 2, 4> out;  // weights of value and derivative at the four points
     out.row(0) = Eigen::RowVector4d(1, at, at * at, at * at * at) * inverse;
     out.row(1) = Eigen::RowVector4d(0, 1, 2 * at, 3 * at * at) * inverse / length;
     return out;

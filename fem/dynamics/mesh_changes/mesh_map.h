@@ -8,63 +8,73 @@
 
 namespace flexmorph::fem {
 
-/// A line of nodes next to the root comes or goes.
-enum class MeshChange { insertion, removal };
+/// Kind of a change of the mesh: a line of nodes next to the root is inserted or removed.
+enum class MeshChange {
+  insertion,  ///< A line is inserted.
+  removal     ///< The line is removed.
+};
 
-/// Where an insertion puts the new line: a cell behind the first one, or in the middle of the
-/// element at the root where there are no cells (0).
+/// Returns the material coordinate of a line to be inserted [m]: the length `cell` before the first
+/// line behind the root, or the middle of the element at the root if `cell` is 0.
 double inserted_line(const LineGrid& lines, double cell);
 
-/// What a change of a body's mesh does to the vectors of the model, between the n unknowns before
-/// and the n' after it:
+/// Linear map of the vectors of the model across a change of the mesh of one body, from the n
+/// unknowns before to the n' unknowns after the change:
 ///
 ///   q' = A q,   q̇' = A q̇ + B q,   q̈' = A q̈ + 2 B q̇ + C q,   λ' = λ
 ///
-/// Unknowns that stay keep their values; those of a line that goes are left out. Those of a new
-/// line are the field at its material points: A has values and derivatives by m, n, mn of the shape
-/// functions there, for cubics in the middle of an element of length l along m
+/// Unknowns of remaining lines keep their values; unknowns of a removed line are dropped. Unknowns
+/// of an inserted line are the values of the field at its material points. There A contains the
+/// values and the derivatives by m, n, mn of the shape functions; for cubics in the middle of an
+/// element of length l along m
 ///
-///   f = (f₁ + f₂)/2 + l (f₁' - f₂')/8,   f' = 3 (f₂ - f₁)/(2 l) - (f₁' + f₂')/4,
+///   f = (f₁ + f₂)/2 + l (f₁' - f₂')/8,   f' = 3 (f₂ - f₁)/(2 l) - (f₁' + f₂')/4.
 ///
-/// B and C their first and second rates at fixed material point, which are zero unless the lines of
-/// the element move. With h16 the field does not change at all.
+/// B and C contain their first and second rates at a fixed material point, which are zero unless
+/// the lines of the element move. With h16 the field does not change at all.
 ///
-/// What follows a change in a motion is no part of it: forces are balanced (balance_forces()), and
-/// velocities moved onto the constraints (Integrator::project_velocity()).
+/// The map does not contain the operations that follow a change in a motion: the balance of the
+/// forces (balance_forces()), and the projection of velocities onto the constraints
+/// (Integrator::project_velocity()).
 ///
 /// Source: P Fig. 3, 4; fem/README.md, Insertion and removal.
 class MeshMap {
  public:
-  /// Vectors of a state, or of derivatives by a state.
+  /// Vectors of a state, or derivatives with respect to the vectors of a state.
   struct Vectors {
-    VectorXd q, v, a;
+    VectorXd q, v, a;  ///< Positions, velocities and accelerations (n or n' each).
   };
 
   MeshMap() = default;
-  /// Of the change next to the root of a body, its lines where they are now.
-  /// @param n_dofs  of the model
-  /// @param cell    see inserted_line()
-  /// @throws Error (input) when the body has other elements.
+  /// Computes the map of a change next to the root of a body, with its lines at their present
+  /// positions.
+  /// @param n_dofs  Number of unknowns of the model before the change.
+  /// @param cell    See inserted_line().
+  /// @throws Error (input) if the elements of the body are no LineGrid.
   MeshMap(const Body& body, MeshChange change, int n_dofs, double cell = 0);
 
+  /// Returns the number n of unknowns before the change.
   int n_before() const { return n_before_; }
+  /// Returns the number n' of unknowns after the change.
   int n_after() const { return n_before_ + added_ - removed_; }
 
-  /// (n each) -> (n' each).
+  /// Maps the vectors of a state before the change (n each) to those after it (n' each).
   Vectors apply(const Vectors& before) const;
-  /// Transposed, (n' each) -> (n each): y · apply(x) = apply_transposed(y) · x, all three vectors
-  /// of both together.
+  /// Applies the transposed map, (n' each) -> (n each): y · apply(x) = apply_transposed(y) · x,
+  /// where the product is summed over the three vectors.
   Vectors apply_transposed(const Vectors& after) const;
-  /// The acceleration alone, A a + 2 B q̇ + C q.
+  /// Returns the acceleration after the change, A a + 2 B v + C q (n').
   VectorXd acceleration(const VectorXd& q, const VectorXd& v, const VectorXd& a) const;
-  /// q, q̇, q̈ of a state.
+  /// Maps q, v and a of a state in place.
   void carry(State& x) const;
 
  private:
-  /// How a new node takes its values, derivatives and rates from the element it lies in.
+  /// Data with which a new node takes values, derivatives and rates from the element that contains
+  /// it.
   struct Node {
-    std::vector<int> dofs;  // first of each vector unknown of the element
-    // Value and derivative at the node, by the values at the four points along m, or n.
+    std::vector<int> dofs;  // first entry of each vector unknown of the element
+    // Value and derivative at the node from the values at four points along m (along) or n
+    // (across).
     Eigen::Matrix<double, 2, 4> along, across;
     // Shape functions and their rates at the 4 x 4 points: N, Ṅ, N̈ (1 x n_shapes, or empty).
     std::array<std::array<MatrixXd, 3>, 16> tables;
@@ -72,22 +82,25 @@ class MeshMap {
 
   Node make_node(const Body& body, const LineGrid& plate, int e, double s, double u) const;
   MatrixXd rows_of(const Node& node, const VectorXd& all) const;
-  /// Value and derivatives by m, n, mn (4 x dim) of N (rates 0), Ṅ (1) or N̈ (2) times rows.
+  /// Returns value and derivatives by m, n, mn (4 x dim) of N (rates 0), Ṅ (1) or N̈ (2) times rows.
   static MatrixXd sample(const Node& node, const MatrixXd& rows, size_t rates);
+  /// Adds `factor` times the transposed sample() of `fresh` to the unknowns of the element in
+  /// `out`.
   void add_transposed(const Node& node, const MatrixXd& fresh, size_t rates, double factor,
                       VectorXd& out) const;
-  /// `all` with what stays in its places; new nodes as `fresh`.
+  /// Returns the vector after the change: remaining entries of `all`, and `fresh` for new nodes.
   VectorXd place(const VectorXd& all, const std::vector<MatrixXd>& fresh) const;
-  /// What `after` says of new nodes (4 x dim each, rows that a node does not have zero); and of
-  /// what stays, in its places before.
+  /// Returns the entries of `after` for the new nodes (4 x dim each; rows beyond per_node_ are
+  /// zero).
   std::vector<MatrixXd> taken(const VectorXd& after) const;
+  /// Returns the entries of `after` for the remaining unknowns, at their indices before the change.
   VectorXd kept(const VectorXd& after) const;
 
   int n_before_ = 0;
   int dim_ = 0, per_node_ = 0;
-  int at_ = 0;                   // entries before it stay where they are
-  int added_ = 0, removed_ = 0;  // entries there
-  std::vector<Node> nodes_;      // new ones
+  int at_ = 0;                   // first entry that is inserted or removed
+  int added_ = 0, removed_ = 0;  // numbers of entries inserted or removed at at_
+  std::vector<Node> nodes_;      // new nodes
 };
 
 }  // namespace flexmorph::fem

@@ -6,9 +6,11 @@ namespace flexmorph::fem {
 
 namespace {
 
-/// Smaller turns than this leave a kept tangent what it is: a thousandth of a contraction [rad].
+/// Rotation below which a kept tangent is not updated: it changes the contraction by a thousandth
+/// [rad].
 constexpr double kNoticed = 1e-4;
 
+/// Returns the angle of the best rotation from the undeformed body to the positions q [rad].
 double angle_of(const Body& body, const VectorXd& q) {
   const Element& element = *body.element;
   if (element.dim() != 2) return 0;

@@ -8,26 +8,28 @@
 
 namespace flexmorph::fem {
 
-/// How far the bodies in the plane have turned since the tangent was factored. Elastic forces and
-/// inertia turn with a body, so that a factor that turns with it is still that of a tangent nearby,
-/// however far a body has swung round; what is left is that it deforms.
+/// Rotation angles of the planar bodies since the tangent was factored. Elastic forces and inertia
+/// rotate with a body; therefore a factorization that is rotated with the body still approximates
+/// its tangent, however far the body has rotated. Only the deformation of the body adds an error.
 ///
-/// The angle of a body is that of the best rotation from its undeformed vectors X_k to q_k,
+/// The angle of a body is the angle of the best rotation from its undeformed vectors X_k to q_k,
 ///
-///   tan θ = Σ X_k × q_k / Σ X_k · q_k,   positions from their means.
+///   tan θ = Σ X_k × q_k / Σ X_k · q_k,   positions relative to their means.
 class BodyTurns {
  public:
-  /// They are counted from here.
+  /// Sets the reference angles to those of the bodies at the positions q.
   void begin(const Model& model, const VectorXd& q);
-  /// Looks where they are.
-  /// @returns whether one has turned noticeably since the last look, or begin()
+  /// Updates the angles to the positions q if a body has rotated noticeably since the last update
+  /// or begin().
+  /// @returns true if the angles were updated.
   bool follow(const Model& model, const VectorXd& q);
-  /// Since begin(), as of the last follow() that said so.
+  /// Returns the rotations of all planar bodies from begin() to the last update by follow().
   std::vector<TurnedVectors> turns(const Model& model) const;
+  /// Saves or restores the angles (geometry/memory.h).
   void remember(Memory& memory);
 
  private:
-  std::vector<double> start_, now_;  // angles of the bodies [rad]
+  std::vector<double> start_, now_;  // angles of the bodies at begin() and at the last update [rad]
 };
 
 }  // namespace flexmorph::fem

@@ -6,27 +6,35 @@
 
 namespace flexmorph::fem {
 
-/// Columns are the axes of a frame turned by an angle [rad].
+/// Returns the rotation matrix of an angle [rad]; its columns are the axes of the rotated frame.
 Eigen::Matrix2d rotation(double angle);
 
-/// Where a rigid body is, and how it moves: its unknowns are a point and a unit vector (natural
-/// coordinates, fem/elements/rigid_body.h).
+/// Returns the motion of the axes of a rigid body at state x. The unknowns of the body are a point
+/// and a unit vector (natural coordinates, fem/elements/rigid_body.h).
 FrameMotion frame_of(const Body& rigid, const State& x);
 
-/// The planar frame that an edge of a plate is welded to: driven, or fixed to a rigid body.
+/// The driven frame (hub) of a plate: the planar rigid frame to which an edge of the plate is
+/// welded. Its motion is prescribed, or it is fixed to a rigid body.
 class Carrier {
  public:
   Carrier() = default;
+  /// Creates a frame with prescribed motion.
   template <std::convertible_to<FrameDrive> Drive>
   Carrier(Drive drive) : drive_(std::move(drive)) {}
-  /// @param point, angle  of the frame in the axes of the body [m], [rad]
+  /// Creates a frame that is fixed to a rigid body.
+  /// @param point, angle  Origin and angle of the frame in the axes of the body [m], [rad].
   Carrier(std::string body, const Vec2& point, double angle)
       : body_(std::move(body)), point_(point), angle_(angle) {}
 
-  const std::string& body() const { return body_; }  ///< empty where driven
+  /// Returns the name of the rigid body; empty for a frame with prescribed motion.
+  const std::string& body() const { return body_; }
+  /// Returns the prescribed motion; empty for a frame that is fixed to a rigid body.
   const FrameDrive& drive() const { return drive_; }
-  const Vec2& point() const { return point_; }  ///< in the axes of the body
+  /// Returns the origin of the frame in the axes of the rigid body [m].
+  const Vec2& point() const { return point_; }
+  /// Returns the angle of the frame in the axes of the rigid body [rad].
   double angle() const { return angle_; }
+  /// Returns the motion of the frame at state x.
   FrameMotion at(const Model& model, const State& x) const;
 
  private:

@@ -10,7 +10,7 @@
 namespace flexmorph::fem {
 namespace {
 
-/// A given velocity, and the name of the joint that drives the body with it.
+/// A given velocity: the name of the joint that drives the body with it, and its text in messages.
 struct Given {
   std::string joint;
   const MechanismBody* body;
@@ -19,7 +19,7 @@ struct Given {
 
 std::string text_of(double value, int digits = 6) { return formatted("%.*g", digits, value); }
 
-/// Adds joints that drive all bodies with their given velocities.
+/// Adds joints that drive all bodies with their given velocities, and returns these velocities.
 std::vector<Given> drive_as_given(const RigidMechanism& mechanism, const State& x,
                                   Workspace& model) {
   std::vector<Given> out;
@@ -51,9 +51,9 @@ std::vector<Given> drive_as_given(const RigidMechanism& mechanism, const State& 
   return out;
 }
 
-/// Returns by how much the nearest velocity that joints and drives allow (in the mass norm) differs
-/// from the given one, at most over the bodies with a given one [m/s]; turning counts times the
-/// size of the body. Nothing where joints depend on each other.
+/// Returns the largest difference between the given velocities and the nearest velocities (in the
+/// mass norm) that joints and drives allow [m/s]; an angular velocity counts times the size of the
+/// body. Returns nothing if joints depend on each other.
 std::optional<double> largest_difference(const RigidKinematics& kinematics, State x) {
   Workspace model(kinematics.model());
   VectorXd given = VectorXd::Zero(model.n_dofs());
@@ -78,9 +78,10 @@ std::optional<double> largest_difference(const RigidKinematics& kinematics, Stat
   return std::isfinite(out) && out > 0 ? std::optional(out) : std::nullopt;
 }
 
-/// Returns the error about the first group of rows that miss each other in velocity and have a
-/// given one among them; nothing where there is none.
-/// @param difference  of a given velocity to one that joints allow [m/s]; nothing: what rows miss
+/// Returns the error about the first group of constraint rows that contradict each other in
+/// velocity and include a given velocity; nothing if there is no such group.
+/// @param difference  Difference between given and allowed velocities [m/s]; if it is absent, the
+///                    residual of the rows is reported.
 std::optional<Error> contradiction(const std::vector<Given>& given, const Diagnosis& diagnosis,
                                    std::optional<double> difference) {
   for (const DependentGroup& group : diagnosis.groups) {

@@ -10,10 +10,10 @@
 namespace flexmorph::fem {
 namespace {
 
-constexpr int kIntervals = 2000;  // between samples
+constexpr int kIntervals = 2000;  // number of intervals between samples
 
 /// Returns the quintic between two samples that has value, rate and acceleration of both (Hermite).
-/// @param h  between the samples [s]   @param s  from 0 at a to 1 at b
+/// @param h  Time between the samples [s].   @param s  Local coordinate, 0 at a and 1 at b.
 Motion quintic(const Motion& a, const Motion& b, double h, double s) {
   const double d = b.value - a.value - h * a.rate - 0.5 * h * h * a.acceleration,
                d1 = h * (b.rate - a.rate - h * a.acceleration),
@@ -26,7 +26,7 @@ Motion quintic(const Motion& a, const Motion& b, double h, double s) {
           a.acceleration + s * (6 * c3 + s * (12 * c4 + s * 20 * c5)) / (h * h)};
 }
 
-/// Returns the mechanism with the drives released and the body led along its path.
+/// Returns the mechanism with the drives released and the body driven along its path.
 RigidMechanism led_along(RigidMechanism mechanism, const RigidTrajectory& path,
                          std::span<const std::string> drives) {
   RigidMechanism out = released(std::move(mechanism), [&](const MechanismJoint& joint) {
@@ -61,7 +61,8 @@ std::vector<std::function<Motion(double)>> inverse_kinematics(RigidMechanism mec
     const State& x = motion.at(k * h);
     for (size_t i = 0; i < drives.size(); ++i) {
       Motion m = model.coordinate_of(drives[i], x);
-      // Angles go on through half turns; lengths never jump by as much as half a turn's 3.14 m.
+      // Multiples of 360 degrees are removed from jumps of angles. Lengths are not affected,
+      // because they never jump by 3.14 m.
       if (k > 0) {
         const double turn = 2 * std::numbers::pi;
         const double jump = m.value - samples[i].back().value;

@@ -30,8 +30,8 @@ const UndeformedBody& find_body(std::span<const UndeformedBody> bodies, const st
   return *found;
 }
 
-/// Returns the pose of a body, or nothing where no chain of welds ends at a body with a known one.
-/// @param from  bodies that ask for it themselves
+/// Returns the pose of a body, or nothing if no chain of welds ends at a body with a known pose.
+/// @param from  Bodies of the chain so far, which the search does not visit again.
 std::optional<ReferencePose> known_pose(std::span<const UndeformedBody> bodies,
                                         std::span<const ReferenceWeld> welds,
                                         const UndeformedBody& body,

@@ -8,42 +8,54 @@
 
 namespace flexmorph::fem {
 
-/// Place of an undeformed plate or beam at the start: its m-line at the material coordinate `line`
-/// goes through `origin`, where its axis along m is turned by `angle` about z.
+/// Position and angle of an undeformed plate or beam at the start.
 struct ReferencePose {
-  Vec2 origin{0, 0};     ///< [m]
-  double angle = 0;      ///< [rad]
-  double line = 0;       ///< material coordinate of the m-line at the origin [m]
-  double curvature = 0;  ///< of the axis of a beam that is an arc of a circle [1/m]
+  /// Position in the world of the material point (line, 0) [m].
+  Vec2 origin{0, 0};
+  /// Angle about z of the axis along m, at the origin [rad].
+  double angle = 0;
+  /// Material coordinate of the m-line through the origin [m].
+  double line = 0;
+  /// Curvature of the axis of a beam that is an arc of a circle [1/m].
+  double curvature = 0;
 
   /// Returns the position of a material point in the world, z = 0 [m].
   Vec3 place(const Vec2& material) const;
 };
 
-/// Returns a material point of a strip in the axes of its root, where the strip begins along the
-/// first axis and bends with a constant curvature [1/m].
+/// Returns the position of a material point of a strip in the axes of its root [m]. The strip
+/// begins along the first axis and has a constant curvature [1/m].
 Vec2 place_on_arc(double curvature, const Vec2& material);
 
-/// A plate or beam whose reference pose is asked for.
+/// A plate or beam as input of reference_pose().
 struct UndeformedBody {
+  /// Name of the body.
   std::string name;
-  double line = 0;                      ///< see ReferencePose; of a pose that follows from welds
-  double curvature = 0;                 ///< likewise [1/m]
-  std::optional<ReferencePose> pose{};  ///< where it is known; absent: it follows from welds
+  /// ReferencePose::line of a pose that follows from welds [m].
+  double line = 0;
+  /// ReferencePose::curvature of a pose that follows from welds [1/m].
+  double curvature = 0;
+  /// Known pose of the body; absent: the pose follows from welds.
+  std::optional<ReferencePose> pose{};
 };
 
-/// A weld between points of two plates or beams: there body b continues body a.
+/// A weld between points of two plates or beams, at which body b continues body a.
 struct ReferenceWeld {
+  /// One side of the weld.
   struct End {
+    /// Name of the body.
     std::string body;
-    Vec2 point{0, 0};  ///< material [m]
-    double angle = 0;  ///< of an axis in those of the undeformed body; both axes are one [rad]
-  } a, b;
+    /// Material point of the weld [m].
+    Vec2 point{0, 0};
+    /// Angle of the axis of the weld in the axes of the undeformed body [rad]. The axes of both
+    /// sides coincide.
+    double angle = 0;
+  } a, b;  ///< The two sides of the weld.
 };
 
-/// Returns the reference pose of a body: its own where it is known, else the one that the first
-/// chain of welds to a body with a known pose gives it, else that of the world's axes.
-/// @throws Error (input) for a body that is not listed.
+/// Returns the reference pose of a body: its known pose; otherwise the pose that follows from the
+/// first chain of welds to a body with a known pose; otherwise a pose with the axes of the world.
+/// @throws Error (input) if a body is not listed.
 ReferencePose reference_pose(std::span<const UndeformedBody> bodies,
                              std::span<const ReferenceWeld> welds, const std::string& body);
 

@@ -10,7 +10,7 @@
 namespace flexmorph::fem {
 namespace {
 
-/// First axis of a frame, with its rates.
+/// The first axis of a frame, with its first and second time derivative.
 struct Axis {
   explicit Axis(const FrameMotion& f)
       : e(std::cos(f.angle), std::sin(f.angle)),
@@ -75,7 +75,7 @@ State RigidKinematics::guess() const {
 }
 
 Error RigidKinematics::refusal(const Diagnosis& diagnosis) const {
-  // A line to each group; the joints of the first groups are as many as one reads.
+  // Only large groups get a line with their drives, and only a limited number of lines is useful.
   constexpr size_t kManyJoints = 5;
   constexpr int kMaxLines = 8;
   std::string words = describe(diagnosis);

@@ -14,93 +14,125 @@
 
 namespace flexmorph::fem {
 
-/// A rigid body of a mechanism, or a plate or beam of it that is taken as rigid.
+/// A rigid body of a mechanism, or a plate or beam that is treated as rigid.
 struct MechanismBody {
+  /// Name of the body.
   std::string name;
-  RigidSection section;  ///< of all that is fixed to it
-  double size = 1;       ///< makes its axis a displacement, such as its radius of gyration [m]
-  Vec2 position{0, 0};   ///< of its axes at the start; a guess where joints say more [m]
-  double angle = 0;      ///< of its axes at the start; likewise a guess [rad]
-  std::optional<Vec2> velocity{};            ///< of its axes at the start, where given [m/s]
-  std::optional<double> angular_velocity{};  ///< at the start, where given [rad/s]
-  std::string source{};   ///< begins messages about it, such as "mill.toml:12: "; may be empty
-  double line = 0;        ///< of a plate or beam: material coordinate X at its axes [m]
-  bool is_placed = true;  ///< does rigid_configuration() list it? Not where it rides in a hub.
+  /// Mass, centre of mass and inertia of the body with everything that is fixed to it.
+  RigidSection section;
+  /// Length that converts a change of the body's axis into a displacement, such as its radius of
+  /// gyration [m].
+  double size = 1;
+  /// Position of the body's axes at the start [m]; only a guess if joints determine it.
+  Vec2 position{0, 0};
+  /// Angle of the body's axes at the start [rad]; only a guess if joints determine it.
+  double angle = 0;
+  /// Velocity of the origin of the body's axes at the start, if it is given [m/s].
+  std::optional<Vec2> velocity{};
+  /// Angular velocity at the start, if it is given [rad/s].
+  std::optional<double> angular_velocity{};
+  /// Text with which messages about the body begin, such as "mill.toml:12: "; may be empty.
+  std::string source{};
+  /// Material coordinate X of a plate or beam at the origin of its axes [m].
+  double line = 0;
+  /// True if rigid_configuration() returns the body; false for a body that a hub carries (hub: the
+  /// rigid frame with prescribed motion that carries a body).
+  bool is_placed = true;
 };
 
-/// The coordinate that a driven joint prescribes, as a function of the frames of its two places.
+/// A function that returns the coordinate that a driven joint prescribes, from the motions of the
+/// two frames a and b of the joint.
 using JointCoordinate = Motion (*)(const FrameMotion& a, const FrameMotion& b);
-/// Returns the angle from the first axis of a to that of b, within half a turn [rad].
+/// Returns the angle from the first axis of a to that of b, within 180 degrees [rad].
 Motion angle_between(const FrameMotion& a, const FrameMotion& b);
-/// Returns the distance of the origins [m].
+/// Returns the distance between the origins of a and b [m].
 Motion distance_between(const FrameMotion& a, const FrameMotion& b);
-/// Returns the coordinate of the origin of a along its own first axis, as seen from the origin of b
+/// Returns the coordinate of the origin of a along the first axis of a, relative to the origin of b
 /// [m].
 Motion distance_along(const FrameMotion& a, const FrameMotion& b);
 
-/// A joint of a mechanism, and what is left of it without its drive.
+/// A joint of a mechanism, with and without its drive.
 struct MechanismJoint {
-  std::shared_ptr<const Joint> joint;       ///< empty while the motion of its drive is not known
-  bool is_driven = false;                   ///< does a drive or a constant speed move it?
-  std::shared_ptr<const Joint> released{};  ///< of a driven one: without the drive; empty: nothing
-  std::string drive{};                      ///< name of its drive; empty where it has none
-  /// Does it prescribe a coordinate, constant or in time? Messages about many joints name these.
+  /// The joint; empty as long as the motion of its drive is unknown.
+  std::shared_ptr<const Joint> joint;
+  /// True if a drive or a constant speed moves the joint.
+  bool is_driven = false;
+  /// A driven joint without its drive; empty if no constraint remains.
+  std::shared_ptr<const Joint> released{};
+  /// Name of the drive; empty if there is none.
+  std::string drive{};
+  /// True if the joint prescribes a coordinate, constant or in time; messages about many joints
+  /// list these joints.
   bool prescribes = false;
-  JointCoordinate coordinate = nullptr;  ///< that its drive prescribes; null: none that is known
-  MarkerPlace a{}, b{};                  ///< between which the coordinate is measured
+  /// Coordinate that the drive prescribes; null if none is known.
+  JointCoordinate coordinate = nullptr;
+  /// Markers between which the coordinate is measured.
+  MarkerPlace a{}, b{};
 };
 
-/// A mechanism of rigid bodies, as plain data. A copy shares parts that never change.
+/// A mechanism of rigid bodies, as plain data. Copies share the joints and force elements, which
+/// never change.
 struct RigidMechanism {
+  /// All bodies of the mechanism.
   std::vector<MechanismBody> bodies;
+  /// All joints of the mechanism.
   std::vector<MechanismJoint> joints;
-  std::vector<std::shared_ptr<const Link>> links{};  ///< springs, and loads on bodies
-  LoadLaw gravity = LoadLaw(VectorXd());             ///< (2) [m/s²]; of size 0: nothing weighs
-  /// Does it stand for a mechanism of which some bodies bend? Their joints may hold more than rigid
-  /// bodies have freedoms.
+  /// Force elements: springs, and loads on bodies.
+  std::vector<std::shared_ptr<const Link>> links{};
+  /// Acceleration of gravity (2) [m/s²]; of size 0: there is no weight.
+  LoadLaw gravity = LoadLaw(VectorXd());
+  /// True if some bodies of the mechanism are flexible. Joints may then constrain more than the
+  /// degrees of freedom of the rigid bodies.
   bool bends = false;
 };
 
-/// Adds a rigid body with its inertia, that of what it stores, its weight (gravity (2) [m/s²] or of
-/// size 0) and its unit axis.
-/// @throws Error (input) as make_rigid_inertia() and its like.
+/// Adds a rigid body to a model, with its inertia, the inertia of its material reservoirs, its
+/// weight and the unit length of its axis as a joint.
+/// @param gravity  Acceleration of gravity (2) [m/s²], or of size 0.
+/// @param stored   Material reservoirs of the body.
+/// @throws Error (input) as make_rigid_inertia() and the other functions that make its terms.
 void add_rigid_body(Model& model, const MechanismBody& body, const LoadLaw& gravity,
                     std::span<const StoredMaterial> stored = {});
 
-/// The rigid kinematic model of a planar mechanism. It says how the mechanism starts, how many
-/// degrees of freedom it has, which loads its motion alone would bring (the rigid motion q_R of
-/// P (29)), and what drives must do for a body to follow a path. It is a value: a copy shares
-/// nothing that changes.
+/// The rigid kinematic model of a planar mechanism. It determines the initial state of the
+/// mechanism, its number of degrees of freedom, the loads of its rigid motion (q_R of P (29)), and
+/// the motions of the drives for which a body follows a path. Copies are independent of each other.
 ///
 /// A plate or beam becomes a rigid body whose origin is the middle of its free end and whose first
-/// axis is the material axis: a root that material flows through moves along that axis.
+/// axis is the material axis. Therefore a root through which material flows moves along that axis.
 class RigidKinematics {
  public:
-  /// @throws Error (input) for joints that do not fit the bodies, and for a joint whose drive has
-  /// no motion.
+  /// Creates the model of a mechanism.
+  /// @throws Error (input) for joints that do not fit the bodies, and for a driven joint whose
+  /// drive has no motion.
   explicit RigidKinematics(RigidMechanism mechanism);
 
+  /// Returns the mechanism from which the model was created.
   const RigidMechanism& mechanism() const { return mechanism_; }
+  /// Returns the work space of the rigid model.
   Workspace& model() { return model_; }
+  /// Returns the work space of the rigid model.
   const Workspace& model() const { return model_; }
 
-  /// Returns the state with all bodies where the data say they are, at rest; joints are perhaps not
-  /// met yet.
+  /// Returns the state at zero velocity with all bodies at the positions of their data, which may
+  /// violate the joints.
   State guess() const;
   /// Assembles a state (fem/solve/assembly.h).
-  /// @return false where there are positions, but only bodies that bend have velocities: all
-  /// velocities are 0 then
-  /// @throws Error as assemble(); Error (input) as refusal() where joints contradict each other
-  /// wherever the bodies are.
+  /// @returns false if assembled positions exist, but only flexible bodies can have velocities; all
+  /// velocities are 0 then.
+  /// @throws Error as assemble(); Error (input) as refusal() if joints contradict each other for
+  /// all positions of the bodies.
   bool assemble(State& x);
-  /// Returns the error that says which joints contradict each other or hold the same freedom, and
-  /// of many joints which of them prescribe a coordinate: those are the ones to look at.
+  /// Returns the error that names the joints that contradict each other or constrain a degree of
+  /// freedom repeatedly. For many joints it also lists those that prescribe a coordinate, because
+  /// they are the most likely cause.
   Error refusal(const Diagnosis& diagnosis) const;
 
-  /// Returns the frame of a body at a state: of a plate or beam at its material point (line, 0).
+  /// Returns the motion of the frame of a body at state x; for a plate or beam that of the frame at
+  /// its material point (line, 0).
   FrameMotion frame(const std::string& body, const State& x) const;
-  /// Returns the coordinate that a drive prescribes, as it is at a state.
-  /// @throws Error (input) when no joint knows the coordinate of this drive.
+  /// Returns the coordinate that a drive prescribes, with its rates, at state x.
+  /// @throws Error (input) if no joint has a coordinate for this drive.
   Motion coordinate_of(const std::string& drive, const State& x) const;
 
  private:
@@ -110,20 +142,20 @@ class RigidKinematics {
   Workspace model_;
 };
 
-/// Returns the mechanism with all joints released that are driven and for which `chosen` holds.
+/// Returns the mechanism with all driven joints released for which `chosen` returns true.
 RigidMechanism released(RigidMechanism mechanism,
                         const std::function<bool(const MechanismJoint&)>& chosen);
 
-/// Returns the degrees of freedom of the mechanism with all its driven joints released.
-/// @throws Error (numerical) when it cannot be assembled.
+/// Returns the number of degrees of freedom of the mechanism with all its driven joints released.
+/// @throws Error (numerical) if this mechanism cannot be assembled.
 int undriven_degrees_of_freedom(const RigidKinematics& kinematics);
 
-/// Puts an assembled state into the motion that the given velocities of the bodies ask for: they
-/// are kept, joints and drives are kept, and of all motions that do both it is the one of least
-/// kinetic energy. A velocity that is absent differs from one that is 0.
-/// @param x  in: positions that joints have; out: v as well
-/// @throws Error (input) with the source of the body, the velocities and the joints that contradict
-/// them; Error (numerical) where joints alone allow no velocity.
+/// Sets the velocities of an assembled state to the motion that has the given velocities of the
+/// bodies and satisfies joints and drives. Among all such motions it is the one with the least
+/// kinetic energy. A velocity that is absent differs from a velocity that is 0.
+/// @param x  in: assembled positions; out: with velocities v.
+/// @throws Error (input) naming the source of the body, the velocities, and the joints that
+/// contradict them; Error (numerical) if the joints alone allow no velocity.
 void give_initial_velocities(const RigidKinematics& kinematics, State& x);
 
 }  // namespace flexmorph::fem

@@ -47,9 +47,9 @@ double RigidMotion::start_acceleration() {
 void require_motion(RigidKinematics kinematics, double end) {
   constexpr int kTimes = 200;
   RigidMotion motion(std::move(kinematics));
-  // Plates that bend may go where the rigid model cannot.
+  // Flexible plates may reach positions that the rigid model cannot reach.
   if (motion.degrees_of_freedom() > 0 || motion.is_indeterminate()) return;
-  // Of drives that turn ten thousand times the first turns are enough.
+  // For drives with thousands of revolutions it is sufficient to check the first ones.
   constexpr int kMaxSteps = 4000;
   for (int k = 1; k <= kTimes; ++k)
     if (!motion.follow(end * k / kTimes, kMaxSteps)) return;
@@ -57,7 +57,8 @@ void require_motion(RigidKinematics kinematics, double end) {
 
 namespace {
 
-/// The configuration of a rigid motion; a copy begins anew.
+/// The function that rigid_configuration() returns; the motion of a copy begins with its first
+/// call.
 class Configuration {
  public:
   explicit Configuration(RigidKinematics kinematics) : kinematics_(std::move(kinematics)) {}

@@ -6,38 +6,47 @@
 
 namespace flexmorph::fem {
 
-/// The motion of a rigid kinematic model in time. It starts with the velocities that are given.
+/// The motion of a rigid kinematic model in time. It starts with the given velocities of the
+/// bodies.
 ///
-/// Where bodies bend, joints may hold more than rigid ones have freedoms: the rigid model is then
-/// indeterminate, and whether joints are independent is asked of the flexible model.
+/// If the mechanism has flexible bodies, its joints may constrain more than the degrees of freedom
+/// of the rigid model. The rigid model is then indeterminate, and the independence of the joints
+/// must be checked with the flexible model.
 class RigidMotion {
  public:
-  /// @throws Error (input) naming joints that contradict each other or, where nothing bends, hold
-  /// the same freedom, and given velocities that contradict joints; Error (numerical) when the
-  /// start cannot be assembled for another reason.
+  /// Creates the motion and assembles its initial state.
+  /// @throws Error (input) naming joints that contradict each other or, without flexible bodies,
+  /// constrain a degree of freedom repeatedly, and for given velocities that contradict joints;
+  /// Error (numerical) if the initial state cannot be assembled for another reason.
   explicit RigidMotion(RigidKinematics kinematics);
   RigidMotion(const RigidMotion&) = delete;
   RigidMotion& operator=(const RigidMotion&) = delete;
 
+  /// Returns the number of degrees of freedom of the rigid model at the start.
   int degrees_of_freedom() const { return freedoms_; }
-  /// Says whether joints hold more than the rigid model has freedoms.
+  /// Returns true if joints constrain more than the degrees of freedom of the rigid model.
   bool is_indeterminate() const { return indeterminate_; }
-  /// Says whether drives can lead the rigid model to time t: always, unless it is indeterminate.
+  /// Returns true if drives can move the rigid model to time t; always true unless it is
+  /// indeterminate.
   bool reaches(double t);
-  /// Returns the state at time t where drives determine it all; else that of the start, whatever t.
-  /// @throws Error (numerical) where that cannot be reached, with the time and the joints.
+  /// Returns the state at time t if drives determine the motion completely; otherwise the initial
+  /// state, for any t.
+  /// @throws Error (numerical) naming the time and the joints if the state cannot be reached.
   const State& at(double t);
-  /// Goes to time t as at() does, but no further once so many steps were taken in all.
-  /// @return is it there?
+  /// Follows the motion to time t like at(), but stops when the total number of steps reaches
+  /// max_steps.
+  /// @returns true if time t was reached.
   bool follow(double t, int max_steps);
 
-  /// Returns the largest speed of the bodies at the start [m/s]; turning counts times the size of
-  /// the body.
+  /// Returns the largest speed of the bodies at the start [m/s]; an angular velocity counts times
+  /// the size of the body.
   double start_speed() const;
-  /// Returns the largest acceleration of the bodies at the start [m/s²] from the joints' equations
-  /// of motion, under weight and all links; turning counts times the size of the body.
+  /// Returns the largest acceleration of the bodies at the start [m/s²] from the equations of
+  /// motion with joints, under weight and all force elements; an angular acceleration counts times
+  /// the size of the body.
   double start_acceleration();
 
+  /// Returns the rigid kinematic model.
   const RigidKinematics& kinematics() const { return kinematics_; }
 
  private:
@@ -45,18 +54,19 @@ class RigidMotion {
   int freedoms_ = 0;
   bool indeterminate_ = false;
   State start_;
-  std::unique_ptr<Kinematics> driven_;  // where drives determine it all; looks at kinematics_
+  std::unique_ptr<Kinematics>
+      driven_;  // only if drives determine the motion; refers to kinematics_
 };
 
-/// Refuses a mechanism that cannot go where its drives lead it: joints that depend on each other at
-/// the start, and positions on the way to the time `end` [s] that cannot be reached.
-/// @throws Error as RigidMotion
+/// Checks that a mechanism can follow its drives: throws an error if joints depend on each other at
+/// the start, or if a position before the time `end` [s] cannot be reached.
+/// @throws Error as RigidMotion.
 void require_motion(RigidKinematics kinematics, double end);
 
-/// Returns where the bodies of a mechanism are at a time that ride in no hub: those with
-/// MechanismBody::is_placed. Every copy of it has a motion of its own, which begins when it is
-/// asked for the first time: motions at the same time do not know of each other.
-/// @throws Error as RigidMotion, when it is asked
+/// Returns a function that gives the motion of all bodies with MechanismBody::is_placed, which no
+/// hub carries (hub: the rigid frame with prescribed motion that carries a body). Each copy of the
+/// function has its own motion, which begins with its first call; therefore copies may be used at
+/// the same time. The function throws the errors of RigidMotion.
 Placement rigid_configuration(RigidKinematics kinematics);
 
 }  // namespace flexmorph::fem

@@ -15,12 +15,12 @@ Body& body_named(Workspace& model, const std::string& name) {
   throw Error::input("there is no body '" + name + "'");
 }
 
-/// A vector in the axes of a frame, with its rates as seen from there.
+/// A vector in the axes of a frame, with its time derivatives relative to the frame.
 struct Local2 {
   Vec2 value{0, 0}, rate{0, 0}, acceleration{0, 0};
 };
 
-/// Puts the unknowns [at, at + 2) where the frame carries them.
+/// Sets the unknowns [at, at + 2) and their rates to a vector that the frame carries.
 void carry(const FrameMotion& f, const Local2& local, bool position, int at, State& x) {
   const Eigen::Matrix2d turn = rotation(f.angle);
   const Vec2 r = turn * local.value, rate = turn * local.rate;
@@ -34,10 +34,10 @@ void carry(const FrameMotion& f, const Local2& local, bool position, int at, Sta
   x.a.segment<2>(at) += f.origin_acceleration;
 }
 
-/// Undeformed plate in a frame, as a rigid, extending body. In space all of it lies in the plane
-/// z = 0.
-/// @param held  motion of the material coordinate that lies at the frame's origin [m]
-/// @param slides  the line of that coordinate where it is free, else -1
+/// Sets an undeformed plate in a frame as a rigid, extending body. A plate in space lies in the
+/// plane z = 0.
+/// @param held    Motion of the material coordinate at the origin of the frame [m].
+/// @param slides  Index of the m-line at the origin of the frame if it is free, else -1.
 void carry_plate(const Body& body, const FrameMotion& frame, const Motion& held, int slides,
                  State& x) {
   const LineGrid& plate = grid_of(body);
@@ -46,7 +46,7 @@ void carry_plate(const Body& body, const FrameMotion& frame, const Motion& held,
     Local2 local;
     local.value = reference.row(k).head<2>().transpose();
     if (plate.is_position(k)) {
-      // A node on a moving line goes along with the line, not with the material.
+      // A node on a moving line moves with the line and not with the material.
       const int line = k / plate.per_node() / (plate.n_n() + 1);
       const Motion m = line == slides ? held : plate.line_m(line);
       local.value.x() -= held.value;
@@ -57,7 +57,8 @@ void carry_plate(const Body& body, const FrameMotion& frame, const Motion& held,
   }
 }
 
-/// Undeformed beam in a frame, as a rigid body; the frame's origin is at the coordinate `held`.
+/// Sets an undeformed beam in a frame as a rigid body. The material coordinate `held` lies at the
+/// origin of the frame.
 void carry_beam(const Body& body, const FrameMotion& frame, double held, State& x) {
   const MatrixXd reference = body.element->reference();
   for (int k = 0; k < body.element->n_vectors(); ++k) {
@@ -69,7 +70,7 @@ void carry_beam(const Body& body, const FrameMotion& frame, double held, State& 
   }
 }
 
-/// Undeformed body in its hub, and the motion of the rigid, extending body.
+/// Sets an undeformed body in its hub as a rigid, extending body.
 void carry_in_hub(const Model& model, const Growth& growth, State& x) {
   const Body& body = model.body(growth.body);
   const LineGrid& plate = grid_of(body);
@@ -166,9 +167,9 @@ std::vector<double> spins(const Model& model, const State& rigid) {
   std::vector<double> out;
   for (const Body& body : model.bodies()) {
     const int dim = body.element->dim(), n = body.element->n_vectors();
-    int axis = 0;  // a vector that turns with the body
+    int axis = 0;  // index of a vector that rotates with the body
     while (axis + 1 < n && body.element->is_position(axis)) ++axis;
-    if (body.element->is_position(axis)) {  // there is none: from a place to another one
+    if (body.element->is_position(axis)) {  // none: a line between nodes is used
       const int at = body.first_dof, to = at + dim * axis;
       const Vec2 u = (rigid.q.segment<2>(to) - rigid.q.segment<2>(at)),
                  rate = rigid.v.segment<2>(to) - rigid.v.segment<2>(at);
@@ -233,7 +234,7 @@ SteadyEquilibrium steady_equilibrium(Workspace& model, std::span<const Growth> g
 }
 
 bool rest_in_equilibrium(Workspace& model, State& x) {
-  constexpr double kNear = 0.02;  // of the model's size; what the hold keeps of the way is less
+  constexpr double kNear = 0.02;  // in sizes of the model; the error of the hold is smaller
   solve_resting_equilibrium(model, x);
   State exact = x;
   try {
@@ -261,8 +262,9 @@ void turn_by(const Model& model, const std::vector<double>& angles, VectorXd& ve
 
 namespace {
 
-/// The rate of the shape is taken in the axes of the bodies, from equilibria a little later: what
-/// drives a motion need not be defined before its start.
+/// Returns the state of Start::steady. The rate of the shape, in the axes of the bodies, is a
+/// forward difference of equilibria because drives need not be defined before the start of the
+/// motion.
 State steady_state(Workspace& model, std::span<const Growth> growths, const Placement& placement,
                    double t, double delta) {
   VectorXd rate = VectorXd::Zero(model.n_dofs());
@@ -278,13 +280,14 @@ State steady_state(Workspace& model, std::span<const Growth> growths, const Plac
     rate += kForward[k] / (2 * delta) * u;
   }
   model.move_lines(t);
-  State x = at[0].strained;  // its velocities turn with the bodies
+  State x = at[0].strained;  // its velocities contain the rotation of the bodies
   x.v += rate;
   x.a.setZero();
   return x;
 }
 
-/// Its rate as the body grows comes from equilibria a little earlier and later.
+/// Computes Start::prestretched for bodies in hubs. The rate of the strained shape due to the
+/// growth of the body is a central difference of equilibria.
 void stretch_in_hubs(Workspace& model, std::span<const Growth> growths, double delta, State& x) {
   const double t = x.t;
   VectorXd q, later, earlier;
@@ -310,8 +313,8 @@ void stretch_in_hubs(Workspace& model, std::span<const Growth> growths, double d
   }
 }
 
-/// The rate comes from equilibria a little later (what drives a mechanism need not be defined
-/// before its start).
+/// Computes Start::prestretched for a mechanism. The rate of the strained shape is a forward
+/// difference of equilibria because drives need not be defined before the start of the motion.
 void stretch_mechanism(Workspace& model, std::span<const Growth> growths,
                        const Placement& placement, double delta, State& x) {
   const double t = x.t;

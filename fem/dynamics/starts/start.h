@@ -4,38 +4,46 @@
 
 namespace flexmorph::fem {
 
-/// Starts of driven scenes (fem/README.md, Starts).
+/// Kind of the initial state of a motion (fem/README.md, Starts). A hub is the rigid frame that
+/// carries a body; its motion is prescribed, or it is fixed to a rigid body.
 enum class Start {
-  rigid,  ///< undeformed, every material point with the velocity of the rigid, extending body
-  prestretched,  ///< the same plus static equilibrium under the inertia forces of the rigid motion
-                 ///< (in a hub under -ω² x alone: the hub turned, nothing flowed, before t = 0)
-  steady,        ///< in equilibrium under all inertia forces of the rigid motion, flow, Euler and
-           ///< Coriolis included, taken where the strained bodies are; velocities are those of that
-           ///< shape, carried by the rigid motion and changing as it does
-  at_rest,  ///< at rest, in static equilibrium, as exactly as forces bring bodies back
-  settled   ///< at rest, near static equilibrium (see solve_resting_equilibrium()): for mechanisms
-            ///< with freedoms that nothing drives
+  /// Undeformed; every material point has the velocity of the rigid, extending body.
+  rigid,
+  /// Motion of the rigid, extending body, and static equilibrium under the inertia forces of this
+  /// motion. In a hub only -ω² x acts: before t = 0 the hub rotated, but no material flowed.
+  prestretched,
+  /// Equilibrium under all inertia forces of the rigid motion, including flow, Euler and Coriolis
+  /// forces, evaluated at the strained bodies. The velocities are those of the strained shape,
+  /// which moves and changes with the rigid motion.
+  steady,
+  /// Zero velocities and static equilibrium, as exact as the restoring forces allow.
+  at_rest,
+  /// Zero velocities, near static equilibrium (see solve_resting_equilibrium()): for mechanisms
+  /// with degrees of freedom that nothing drives.
+  settled
 };
 
-/// A body that rides in no hub, as a rigid one: rigid bodies, beams, and plates that other joints
-/// hold.
+/// Motion of a body that no hub carries, as a rigid body: a rigid body, a beam, or a plate that is
+/// held by other joints.
 struct Placed {
-  std::string body;
-  FrameMotion frame;
-  double line = 0;  ///< of a plate or beam the coordinate X that lies at the frame's origin [m]
+  std::string body;   ///< Name of the body.
+  FrameMotion frame;  ///< Motion of the axes of the body.
+  double line = 0;    ///< Coordinate X of a plate or beam at the origin of the axes [m].
 };
 
-/// Where all such bodies of a mechanism are at a time, with rates and accelerations.
+/// A function that returns the motions of all bodies without hub at time t [s].
 using Placement = std::function<std::vector<Placed>(double t)>;
 
-/// Positions and velocities at time t of a model whose bodies ride in hubs or are placed.
-/// Integrator
-/// ::make_consistent() finds accelerations and multipliers.
+/// Returns positions and velocities at time t of a model whose bodies are carried by hubs or are
+/// placed. Integrator::make_consistent() computes accelerations and multipliers afterwards.
 ///
-/// @param placement  prestretched and steady: asked for a few times in [t, t + 2 δ]
-/// @param delta  δ [s] of the difference that gives the rate of the strained shape; lines move
-///        to t ± 2 δ for it, so that motions shorter than that need a smaller one
-/// @throws Error (numerical) when the static equilibrium is not found.
+/// @param growths    Moving-root mesh control of the plates, with their hubs.
+/// @param placement  Motion of the bodies without hub; evaluated at a few times in [t, t + 2 δ] for
+///                   the kinds prestretched and steady.
+/// @param delta      Time difference δ [s] for the rate of the strained shape. Material lines are
+/// moved
+///                   to times up to t ± 2 δ; therefore shorter motions need a smaller δ.
+/// @throws Error (numerical) if no static equilibrium is found.
 State start_state(Workspace& model, std::span<const Growth> growths, double t, Start kind,
                   const Placement& placement = {}, double delta = 1e-4);
 

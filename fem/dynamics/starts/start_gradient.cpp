@@ -6,12 +6,14 @@
 namespace flexmorph::fem {
 namespace {
 
-/// Derivatives by the positions of an equilibrium.
+/// Adjoint solutions of the equilibria of a start, for derivatives by their positions.
 class Equilibria {
  public:
   Equilibria(Workspace& model, const SeeWork& see) : model_(model), see_(see) {}
 
-  /// @param w  of the tangent   @param spin  as of TransposedSystem::set(), or empty
+  /// Solves the adjoint of the equilibrium s and passes it to SeeWork.
+  /// @param w     Weights of the tangent.
+  /// @param spin  See TransposedSystem::set(); may be empty.
   void derive(const State& s, const Weights& w, const VectorXd& spin, const VectorXd& by_q) {
     TransposedSystem system(model_);
     system.set(s, w, 1, spin);
@@ -19,6 +21,7 @@ class Equilibria {
     see_(s, -psi_);
   }
 
+  /// Solves the adjoint of a steady equilibrium and passes it to SeeWork.
   void derive_carried(const start::SteadyEquilibrium& s, const VectorXd& by_q) {
     TransposedSystem system(model_);
     system.set_carried(s.strained, s.turning);
@@ -26,7 +29,8 @@ class Equilibria {
     see_(s.strained, -psi_);
   }
 
-  /// Where material damps, velocities follow the shape: F(q, v(q)) with v' = T.
+  /// Solves the adjoint of an equilibrium with material damping by iteration, and passes it to
+  /// SeeWork. The velocities then depend on the shape: F(q, v(q)) with the derivative v' = T.
   void derive_turning(const State& s, const std::vector<double>& spins, const VectorXd& by_q) {
     constexpr int kPasses = 100;
     TransposedSystem system(model_);
@@ -83,7 +87,7 @@ void derive_mechanism(Workspace& model, std::span<const Growth> growths, const P
   }
 }
 
-/// As steady_state() of start.cpp, transposed.
+/// Computes the transposed operations of steady_state() of start.cpp.
 void derive_steady(Workspace& model, std::span<const Growth> growths, const Placement& placement,
                    double t, double delta, const VectorXd& by_q, const VectorXd& by_v,
                    Equilibria& equilibria) {

@@ -5,13 +5,15 @@
 
 namespace flexmorph::fem {
 
-/// Sees an equilibrium that the start hangs on, with -ψ: adds ψ · ∂F/∂p.
+/// A function that receives an equilibrium x on which the start depends, with a vector ψ (n_dofs),
+/// and adds ψ · ∂F/∂p to a gradient.
 using SeeWork = std::function<void(const State& x, const VectorXd& psi)>;
 
-/// Derivatives of start_state() at the same arguments: what a number that depends on its positions
-/// and velocities owes to the forces in its equilibria.
-/// @param by_q, by_v  derivatives by x.q and x.v (n_dofs)
-/// @throws Error (numerical) as start_state(), or where an equilibrium is singular.
+/// Computes the derivative of a scalar through start_state(), called with equal arguments: its
+/// dependence on the forces in the equilibria of the start.
+/// @param by_q, by_v  Derivatives of the scalar with respect to x.q and x.v of the start (n_dofs).
+/// @param see         Called for every equilibrium with the negative adjoint solution.
+/// @throws Error (numerical) as start_state(), or if an equilibrium is singular.
 void derive_start(Workspace& model, std::span<const Growth> growths, double t, Start kind,
                   const Placement& placement, double delta, const VectorXd& by_q,
                   const VectorXd& by_v, const SeeWork& see);

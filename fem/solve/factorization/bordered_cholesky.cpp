@@ -16,18 +16,18 @@ namespace flexmorph::fem {
 
 namespace {
 
-/// The largest border against the square root of all unknowns, which is about what one edge of a
-/// square plate has. Two plates of 348 x 40 cells between welded edges have 4.4, and take a third
-/// of the time that UMFPACK does.
+/// Largest size of the border relative to the square root of the number of unknowns, which is about
+/// the number on one edge of a square plate. Two plates of 348 x 40 cells between welded edges have
+/// 4.4 and take a third of the time of UMFPACK.
 constexpr double kMostBorder = 6;
-/// Entries that differ by less, relative to the largest, are equal: round-off of the elements.
+/// Relative difference up to which entries are equal; it is round-off of the elements.
 constexpr double kSymmetry = 1e-13;
-/// Reciprocal condition of S, rows scaled, below which UMFPACK is asked.
+/// Reciprocal condition of S, rows scaled, below which UMFPACK is used.
 constexpr double kTrusted = 1e-13;
 
 size_t at(int k) { return static_cast<size_t>(k); }
 
-/// (x, y) becomes (c x - s y, s x + c y), entry by entry.
+/// Replaces (x, y) by (c x - s y, s x + c y), entry by entry.
 template <class X, class Y>
 void turn_pair(X&& x, Y&& y, double cosine, double sine) {
   for (Eigen::Index k = 0; k < x.size(); ++k) {
@@ -41,28 +41,28 @@ void turn_pair(X&& x, Y&& y, double cosine, double sine) {
 
 struct BorderedCholesky::Impl {
   struct Pair {
-    int row, column, lower, upper;  // places of (row, column) and (column, row)
+    int row, column, lower, upper;  // indices of the entries (row, column) and (column, row)
   };
   struct BorderEntry {
-    int row, column, place;  // of D
+    int row, column, place;  // position in D and index in the matrix
   };
-  int n = 0;                       // of all unknowns
-  int rings = 1;                   // of unknowns around the constraints
+  int n = 0;      // number of all unknowns
+  int rings = 1;  // layers of unknowns around the constraints that belong to the border
   std::vector<char> in_border;     // (n)
   std::vector<int> constraints;    // unknowns without an entry on the diagonal
   std::vector<Pair> pairs;         // below the diagonal
-  std::vector<int> mirrors;        // of every place the one of the other triangle
-  std::vector<int> order, number;  // unknown of each place, A first, and place of each unknown
+  std::vector<int> mirrors;        // index of the transposed entry of every entry
+  std::vector<int> order, number;  // unknown of each position, A first; position of each unknown
   int n_inner = 0;
-  std::vector<int> places;  // in the matrix, of the values of the factor
-  bool refused = false;     // the symmetric part of a matrix with this pattern
+  std::vector<int> places;  // index in the matrix of every value of the factor
+  bool refused = false;     // true if the symmetric part was not accurate enough with this pattern
   VectorXd tried, image, back;
   std::vector<BorderEntry> border_entries;
-  std::optional<Multifrontal> factor;  // none: to be analysed
-  MatrixXd updates, schur;             // -X Xᵀ, S of a, S as it is solved, rows scaled
+  std::optional<Multifrontal> factor;  // empty: to be analysed
+  MatrixXd updates, schur;             // -X Xᵀ of A; S as it is solved, rows scaled
   VectorXd row_scales;
   struct Turn {
-    int x, y;  // places of the entries of a vector
+    int x, y;  // positions of the entries of a vector
     double cosine, sine;
   };
   std::vector<Turn> turns;
@@ -85,7 +85,7 @@ struct BorderedCholesky::Impl {
   void forward();
   void backward();
   void solve_border(bool transposed);
-  /// Vectors from a place on become Q x (1), or Qᵀ x (-1).
+  /// Replaces vectors from a position on by Q x (way = 1) or Qᵀ x (way = -1).
   void turn_places(int from, double way) {
     for (const Turn& t : turns) {
       if (t.x < from) continue;
@@ -115,7 +115,7 @@ bool BorderedCholesky::Impl::is_small_enough() const {
   return size < n && static_cast<double>(size) <= kMostBorder * std::sqrt(n);
 }
 
-/// Both places of what is below the diagonal; false for a pattern without symmetry.
+/// Finds the transposed entry of every entry below the diagonal; false for an unsymmetric pattern.
 bool BorderedCholesky::Impl::pair_up(const SparseMatrix& a) {
   const int *starts = a.outerIndexPtr(), *rows = a.innerIndexPtr();
   pairs.clear();
@@ -139,7 +139,8 @@ bool BorderedCholesky::Impl::pair_up(const SparseMatrix& a) {
   return true;
 }
 
-/// Constraints, what they act on, and with a second ring the neighbours of that.
+/// Puts into the border the constraints, the unknowns they act on, and with a second ring the
+/// neighbours of these unknowns.
 void BorderedCholesky::Impl::hold(const SparseMatrix& a) {
   const int *starts = a.outerIndexPtr(), *rows = a.innerIndexPtr();
   in_border.assign(at(n), 0);
@@ -157,7 +158,7 @@ void BorderedCholesky::Impl::hold(const SparseMatrix& a) {
   }
 }
 
-/// Calls f(pair) of entries outside of the border that are not symmetric, until it returns false.
+/// Calls f(pair) for entries outside of the border that are not symmetric, until it returns false.
 template <class F>
 void BorderedCholesky::Impl::for_unequal(const SparseMatrix& a, const F& f) const {
   const double* x = a.valuePtr();
@@ -169,8 +170,8 @@ void BorderedCholesky::Impl::for_unequal(const SparseMatrix& a, const F& f) cons
       return;
 }
 
-/// Takes unknowns into the border that are not symmetric.
-/// @returns whether there were any
+/// Adds unknowns with unsymmetric entries to the border.
+/// @returns true if there were any
 bool BorderedCholesky::Impl::widen(const SparseMatrix& a) {
   bool any = false;
   for_unequal(a, [&](const Pair& p) {
@@ -180,8 +181,8 @@ bool BorderedCholesky::Impl::widen(const SparseMatrix& a) {
   return any;
 }
 
-/// Unknowns whose columns have the same rows, as those of one node have, are ordered as one: the
-/// first of every such group, and n.
+/// Groups unknowns whose columns have the same rows, as the unknowns of one node have; they are
+/// ordered as one. Returns the first unknown of every group, and n.
 std::vector<int> BorderedCholesky::Impl::groups(const SparseMatrix& a) const {
   const int *starts = a.outerIndexPtr(), *rows = a.innerIndexPtr();
   std::vector<int> out = {0};
@@ -209,7 +210,7 @@ void BorderedCholesky::Impl::number_unknowns(const SparseMatrix& a) {
       if (!known) graph.push_back(other);
       itself |= other == static_cast<int>(g);
     }
-    if (!itself)  // a constraint
+    if (!itself)  // a constraint has no entry on the diagonal
       graph.insert(
           std::upper_bound(graph.begin() + graph_starts.back(), graph.end(), static_cast<int>(g)),
           static_cast<int>(g));
@@ -223,11 +224,11 @@ void BorderedCholesky::Impl::number_unknowns(const SparseMatrix& a) {
   n_inner = static_cast<int>(std::count(in_border.begin(), in_border.end(), 0));
 }
 
-/// Lower triangle of A and E in the order of elimination, and the entries of D.
+/// Builds the lower triangle of A and E in the order of elimination, and the list of entries of D.
 void BorderedCholesky::Impl::analyze_inner(const SparseMatrix& a) {
   number_unknowns(a);
   std::vector<int> starts = {0}, rows;
-  std::vector<std::pair<int, int>> column;  // rows and places
+  std::vector<std::pair<int, int>> column;  // rows and indices of entries
   places.clear();
   border_entries.clear();
   for (int j = 0; j < n; ++j) {
@@ -267,7 +268,7 @@ BorderedCholesky::Impl::Outcome BorderedCholesky::Impl::factorize_inner(const Sp
   return factorize_values(a, false) ? Outcome::factored : Outcome::not_definite;
 }
 
-/// @param mean  of both triangles, which is the symmetric part
+/// @param mean  true for the mean of both triangles, the symmetric part of the matrix
 bool BorderedCholesky::Impl::factorize_values(const SparseMatrix& a, bool mean) {
   if (!factor) analyze_inner(a);
   const double* entries = a.valuePtr();
@@ -283,7 +284,7 @@ bool BorderedCholesky::factorize(const SparseMatrix& a, double miss) {
   Impl& s = *impl_;
   Outcome outcome = s.factorize_inner(a);
   if (outcome == Outcome::not_definite && s.rings == 1) {
-    // Without inertia a plate on one pin turns about it: the neighbours of the pin hold it.
+    // Without inertia a plate on one pin is singular unless the border contains the neighbours.
     const std::vector<char> before = s.in_border;
     s.rings = 2;
     s.hold(a);
@@ -301,13 +302,12 @@ bool BorderedCholesky::factorize(const SparseMatrix& a, double miss) {
   return !s.refused;
 }
 
-/// An estimate of the spectral radius of 1 - P⁻¹ a, P the matrix that is solved, by two steps of
-/// the power method.
+/// Estimates the spectral radius of 1 - P⁻¹ a, P the solved matrix, by two power iterations.
 double BorderedCholesky::misses(const SparseMatrix& a) {
   constexpr int kPasses = 2;
   Impl& s = *impl_;
   s.tried.resize(s.n);
-  for (int k = 0; k < s.n; ++k)  // any vector that is no eigenvector
+  for (int k = 0; k < s.n; ++k)  // any vector that is not an eigenvector
     s.tried[k] = std::cos(static_cast<double>(k) * k);
   for (const int row : s.constraints) s.tried[row] = 0;
   double out = 0;
@@ -373,7 +373,7 @@ void BorderedCholesky::Impl::backward() {
   }
 }
 
-/// tail = S⁻¹ tail, or S⁻ᵀ: of the factors P W S = L U, W the scales of the rows.
+/// Computes tail = S⁻¹ tail, or S⁻ᵀ tail, from the factors P W S = L U, W the scales of the rows.
 void BorderedCholesky::Impl::solve_border(bool transposed) {
   const auto& lu = schur_factor.matrixLU();
   const auto lower = lu.triangularView<Eigen::UnitLower>();
@@ -393,7 +393,7 @@ void BorderedCholesky::Impl::solve_border(bool transposed) {
 }
 
 void BorderedCholesky::solve(const VectorXd& b, VectorXd& x, bool transposed) {
-  //   L y = b_A,   S x_D = b_D - X y,   Lᵀ x_A = y - Xᵀ x_D, y and x_A before they turn
+  //   L y = b_A,   S x_D = b_D - X y,   Lᵀ x_A = y - Xᵀ x_D, y and x_A before their rotation
   Impl& s = *impl_;
   const int n = s.n, m = s.n_border();
   for (int k = 0; k < n; ++k) s.permuted[k] = b[s.order[at(k)]];

@@ -4,15 +4,17 @@
 
 #include "geometry/base.h"
 
-/// What a supernodal factor does with one of its dense blocks (supernodal_factor.cpp).
+/// Operations of a supernodal factor on one of its dense blocks (supernodal_factor.cpp).
 namespace flexmorph::fem::dense {
 
+/// View of a column-major matrix with a given distance of its columns.
 using Dense = Eigen::Map<MatrixXd, 0, Eigen::OuterStride<>>;
-inline constexpr Eigen::Index kUndivided = 16;  // larger triangles are factored in halves
+/// Size up to which a triangle is factored without being halved.
+inline constexpr Eigen::Index kUndivided = 16;
 
-/// Dense Cholesky factor of the lower triangle, in place. LAPACK's is slower on the many small
-/// ones.
-/// @return the first column whose pivot is not positive, or -1.
+/// Computes the dense Cholesky factor of the lower triangle in place. For many small triangles it
+/// is faster than LAPACK.
+/// @returns the first column whose pivot is not positive, or -1.
 inline Eigen::Index cholesky(Dense a) {
   const Eigen::Index n = a.rows();
   if (n > kUndivided) {
@@ -35,9 +37,9 @@ inline Eigen::Index cholesky(Dense a) {
 }
 
 // Products with one block for `count` loads at y, `ld` apart from unknown to unknown. A single load
-// has vector products of its own: it streams L through the processor, nothing else.
+// uses matrix-vector products, because its cost is dominated by reading L from memory.
 
-/// y <- y L⁻ᵀ of the triangle (forward), or y L⁻¹.
+/// Computes y <- y L⁻ᵀ of the triangle (forward), or y L⁻¹.
 inline void solve_triangle(const double* block, int width, int height, bool forward, double* y,
                            int ld, int count) {
   if (count == 1) {
@@ -49,7 +51,7 @@ inline void solve_triangle(const double* block, int width, int height, bool forw
   }
 }
 
-/// below <- factor * below - y L_belowᵀ
+/// Computes below <- factor * below - y L_belowᵀ.
 inline void push_below(const double* rectangle, int n_below, int width, int height, const double* y,
                        int ld, int count, double factor, double* below, int below_ld) {
   if (count == 1) {
@@ -61,7 +63,7 @@ inline void push_below(const double* rectangle, int n_below, int width, int heig
   }
 }
 
-/// y <- y - below L_below
+/// Computes y <- y - below L_below.
 inline void pull_below(const double* rectangle, int n_below, int width, int height,
                        const double* below, int below_ld, int count, double* y, int ld) {
   if (count == 1) {

@@ -15,7 +15,8 @@ std::vector<int> fill_order(std::span<const int> starts, std::span<const int> ne
   cholmod_sparse pattern{};
   pattern.nrow = pattern.ncol = n;
   pattern.nzmax = neighbours.size();
-  pattern.p = const_cast<int*>(starts.data());  // read only: CHOLMOD is not declared so
+  // read only, although CHOLMOD's interface is not const
+  pattern.p = const_cast<int*>(starts.data());
   pattern.i = const_cast<int*>(neighbours.data());
   pattern.stype = 1;
   pattern.itype = CHOLMOD_INT;

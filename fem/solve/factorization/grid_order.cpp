@@ -6,14 +6,14 @@ namespace flexmorph::fem {
 
 namespace {
 
-// Nodes of a rectangle that is not halved any more. The blocks of the factor join more than that.
+// Number of nodes of a rectangle that is not halved any more. Blocks of the factor join more nodes.
 constexpr int kSmallest = 4;
 
 struct Dissection {
   const Grid& grid;
   std::vector<int> order;
 
-  /// Nodes [i, i_end) x [j, j_end).
+  /// Orders the nodes [i, i_end) x [j, j_end).
   void order_rectangle(int i, int i_end, int j, int j_end) {
     const int wide = i_end - i, high = j_end - j;
     if (wide * high <= kSmallest || (wide < 3 && high < 3)) {

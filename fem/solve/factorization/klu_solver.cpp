@@ -7,7 +7,7 @@
 namespace flexmorph::fem {
 namespace {
 
-/// Reciprocal pivot growth from which on kept pivots lose three digits: pivot anew.
+/// Reciprocal pivot growth below which reused pivots lose three digits and new ones are selected.
 constexpr double kPivotGrowth = 1e-3;
 
 }  // namespace
@@ -16,12 +16,12 @@ struct KluSolver::Impl {
   mutable klu_common common;
   klu_symbolic* symbolic = nullptr;
   klu_numeric* numeric = nullptr;
-  VectorXd pivoted;           // values of the matrix whose pivots are kept
-  bool keeps_pivots = false;  // did the last factorization?
+  VectorXd pivoted;           // values of the matrix for which the pivots were selected
+  bool keeps_pivots = false;  // true if the last factorization reused the pivots
 
   Impl() {
     klu_defaults(&common);
-    common.scale = 0;  // callers scale: the condition shall be that of their matrix
+    common.scale = 0;  // callers scale the matrix, and the condition refers to their scaling
   }
   ~Impl() { release(); }
   void release() {

@@ -7,28 +7,32 @@
 
 namespace flexmorph::fem {
 
-/// Direct solver for small sparse square matrices that are factored again and again (KLU).
+/// Direct solver for small sparse square matrices that are factored repeatedly (KLU).
 ///
-/// The pattern is analysed once. A factorization keeps the pivots of the one before and allocates
-/// nothing, until they are no longer good enough: then it pivots anew.
+/// The pattern is analysed once. A factorization reuses the pivots of the previous one and
+/// allocates no memory as long as they are good enough; otherwise it selects new pivots.
 class KluSolver {
  public:
   KluSolver();
   ~KluSolver();
+  /// Takes over the analysis and the factors of another solver.
   KluSolver(KluSolver&&) noexcept;
+  /// Replaces the analysis and the factors by those of another solver.
   KluSolver& operator=(KluSolver&&) noexcept;
 
   /// Analyses the pattern of a compressed matrix; values may change afterwards.
-  /// @throws Error (numerical) when the pattern alone makes it singular.
+  /// @throws Error (numerical) when the matrix is singular by its pattern.
   void analyze(const SparseMatrix& a);
+  /// Factors a matrix with the analysed pattern.
   /// @throws Error (numerical) when the matrix is singular or not finite.
   void factorize(const SparseMatrix& a);
-  /// b becomes A⁻¹ b, with the matrix of the last factorize().
+  /// Replaces b by A⁻¹ b, with the matrix of the last factorize().
   void solve(VectorXd& b) const;
-  /// What analysis and factors came from: put back, they are made anew, the same bit for bit.
-  /// @param a  the matrix of the last factorize(), or analyze() after it
+  /// Saves or restores the matrix values from which analysis and factors were made. On restoring,
+  /// both are recomputed, identical bit for bit.
+  /// @param a  the matrix of the last factorize(), or of analyze() if no factorize() followed
   void remember(Memory& memory, const SparseMatrix& a);
-  /// Estimate of ‖A‖₁ ‖A⁻¹‖₁ of the matrix of the last factorize().
+  /// Returns an estimate of ‖A‖₁ ‖A⁻¹‖₁ of the matrix of the last factorize().
   double condition(const SparseMatrix& a) const;
 
  private:

@@ -15,9 +15,9 @@ namespace {
 using dense::cholesky;
 using dense::Dense;
 
-// Part of its diagonal entry that a pivot keeps at least: less is cancellation of all digits, as of
-// a plate that is cut off from its root and floats. (A plate that hangs on a void of factor 1e-9
-// keeps about 1e-9.)
+// Smallest ratio of a pivot to its diagonal entry. A smaller one is cancellation of all digits, as
+// for a plate that is disconnected from its root. (A plate that is connected by void of factor 1e-9
+// has about 1e-9.)
 constexpr double kSmallestPivot = 1e-12;
 
 }  // namespace
@@ -30,7 +30,7 @@ Multifrontal::Multifrontal(std::vector<int> starts, std::vector<int> rows) {
   stack_.assign(blocks_.deepest_stack, 0.0);
 }
 
-/// Entries of K in the columns of a block.
+/// Writes the entries of K in the columns of a block.
 void Multifrontal::fill_block(int s, double* block) {
   const auto at = static_cast<std::size_t>(s);
   std::fill(block, factor_.data() + blocks_.offset[at + 1], 0.0);
@@ -61,9 +61,9 @@ void Multifrontal::add_update(int child, const double* update, int parent, doubl
   }
 }
 
-/// L of a block whose updates are all in, and what it takes from the rows below:
+/// Computes L of a block to which all updates have been added, and its update of the rows below:
 /// own <- keep * own - L_below L_belowᵀ (lower triangle).
-/// @return the column of the block that fails, or -1.
+/// @returns the column of the block that fails, or -1.
 int Multifrontal::factorize_block(int s, double* block, double keep, double* own) const {
   const int width = blocks_.width(s), height = blocks_.height(s), n_below = height - width;
   const Eigen::Index failed = cholesky(Dense(block, width, width, Eigen::OuterStride<>(height)));
@@ -76,7 +76,7 @@ int Multifrontal::factorize_block(int s, double* block, double keep, double* own
   return -1;
 }
 
-/// The column of a factored block whose pivot is too small or not finite, or -1.
+/// Returns the column of a factored block whose pivot is too small or not finite, or -1.
 int Multifrontal::smallest_pivot(int s) const {
   const auto first = static_cast<std::size_t>(blocks_.first[static_cast<std::size_t>(s)]);
   for (int k = 0; k < blocks_.width(s); ++k) {
@@ -88,7 +88,7 @@ int Multifrontal::smallest_pivot(int s) const {
   return -1;
 }
 
-/// What the last block of a tree takes from the border.
+/// Adds the update of a root of the elimination tree to the border.
 void Multifrontal::add_to_border(int s, const double* update, MatrixXd& border) const {
   const int n = blocks_.n_below(s);
   const int* below = blocks_.below(s);
@@ -102,7 +102,7 @@ int Multifrontal::factorize(MatrixXd* border) {
   const Supernodes& b = blocks_;
   waiting_.clear();
   if (border) border->setZero();
-  std::size_t top = 0;  // of the stack
+  std::size_t top = 0;  // of the stack of updates
   for (const int s : b.order) {
     double* block = factor_.data() + b.offset[static_cast<std::size_t>(s)];
     const auto n_below = static_cast<std::size_t>(b.n_below(s)), size = n_below * n_below;

@@ -5,12 +5,14 @@
 #include "fem/shapes/batch.h"
 
 /// Substitution of one right-hand side through a block of neighbouring columns of a Cholesky
-/// factor: a lower triangle over a rectangle, dense, by columns. It is bound by the rate at which
-/// the factor comes from memory: eight columns are taken at a time, and every number is read once.
-/// (With trsv and gemv of BLAS, as CHOLMOD does it, a solution takes 1.3 to 1.5 times as long.)
+/// factor: a dense lower triangle above a rectangle, stored by columns. Its speed is limited by the
+/// rate at which the factor is read from memory; therefore eight columns are processed at a time,
+/// and every number is read once. (With trsv and gemv of BLAS, as in CHOLMOD, a solution takes 1.3
+/// to 1.5 times as long.)
 namespace flexmorph::fem {
 namespace substitution {
 
+/// Loads a pack of SIMD lanes from consecutive numbers.
 template <class V>
 inline V load(const double* x) {
   V out;
@@ -18,8 +20,8 @@ inline V load(const double* x) {
   return out;
 }
 
-/// kColumns columns from a diagonal entry on: y <- L⁻¹ y in their rows, and what that leaves of the
-/// `height` rows in all.
+/// Eliminates kColumns columns from a diagonal entry on: y <- L⁻¹ y in their rows, and subtracts
+/// their contribution from the rows below, up to `height` rows in all.
 template <class V, int kColumns>
 inline void forward(const double* L, std::ptrdiff_t ld, std::ptrdiff_t height, double* y) {
   double x[kColumns];
@@ -40,7 +42,8 @@ inline void forward(const double* L, std::ptrdiff_t ld, std::ptrdiff_t height, d
     for (int a = 0; a < kColumns; ++a) y[i] -= x[a] * L[a * ld + i];
 }
 
-/// The same columns: y <- L⁻ᵀ y in their rows, from the rows behind.
+/// Computes y <- L⁻ᵀ y in the rows of kColumns columns from a diagonal entry on, given the values
+/// in the rows below, `height` rows in all.
 template <class V, int kColumns>
 inline void backward(const double* L, std::ptrdiff_t ld, std::ptrdiff_t height, double* y) {
   V sums[kColumns] = {};
@@ -66,8 +69,9 @@ inline void backward(const double* L, std::ptrdiff_t ld, std::ptrdiff_t height, 
 
 }  // namespace substitution
 
-/// y (height): its first `width` entries become L⁻¹ y, the others lose what belongs to them.
-/// @param block  (height x width) by columns, what is above the diagonal is not read
+/// Replaces the first `width` entries of y (height) by L⁻¹ y and subtracts their contribution from
+/// the others.
+/// @param block  (height x width) by columns; entries above the diagonal are not read
 inline void forward_block(const double* block, int width, int height, double* y) {
   run_batch_kernel([=]<class V>() {
     int j = 0;
@@ -82,7 +86,7 @@ inline void forward_block(const double* block, int width, int height, double* y)
   });
 }
 
-/// y (height): its first `width` entries become L⁻ᵀ y, given the others.
+/// Replaces the first `width` entries of y (height) by L⁻ᵀ y, given the others.
 inline void backward_block(const double* block, int width, int height, double* y) {
   run_batch_kernel([=]<class V>() {
     int j = width;

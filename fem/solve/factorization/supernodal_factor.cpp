@@ -17,11 +17,12 @@ using dense::pull_below;
 using dense::push_below;
 using dense::solve_triangle;
 
-/// Loads [first, first + count) whose active block reaches beyond `column`.
+/// A range of loads, [first, first + count).
 struct LoadRange {
   int first, count;
 };
 
+/// Returns the loads whose active block reaches beyond `column`.
 LoadRange reaching(std::span<const int> active, int column) {
   const int n = static_cast<int>(active.size());
   if (n == 0) return {0, 0};
@@ -36,7 +37,7 @@ LoadRange reaching(std::span<const int> active, int column) {
   return {first, n - first};
 }
 
-/// The same among the loads of one thread.
+/// Returns the loads of `mine`, those of one thread, whose active block reaches beyond `column`.
 LoadRange reaching(std::span<const int> active, int column, const LoadRange& mine) {
   const LoadRange all = reaching(active, column);
   const int first = std::max(all.first, mine.first);
@@ -44,15 +45,16 @@ LoadRange reaching(std::span<const int> active, int column, const LoadRange& min
   return {std::min(first, mine.first + mine.count), std::max(0, end - first)};
 }
 
-/// Loads go through a supernode in blocks that do not depend on the threads, or last bits would:
-/// BLAS adds in another order where there are more or fewer columns. A supernode stays in the cache
-/// from block to block.
+/// Blocks of loads that are processed together. They do not depend on the number of threads,
+/// because BLAS sums in an order that depends on the number of columns, and the last bits of
+/// results would differ. A supernode stays in the cache from block to block.
 struct LoadBlocks {
-  static constexpr int kSmallest = 16;  ///< fewer loads stream L for little work
+  /// Fewer loads do too little work per entry of L that is read.
+  static constexpr int kSmallest = 16;
   static constexpr int kMost = 4;
 
   int n_loads, n;
-  int first = 0, last = 0;  ///< blocks of one thread
+  int first = 0, last = 0;  ///< Blocks of one thread.
 
   explicit LoadBlocks(int loads)
       : n_loads(loads), n(std::clamp(loads / kSmallest, 1, kMost)), last(n) {}
@@ -62,7 +64,7 @@ struct LoadBlocks {
   }
 };
 
-/// Calls use(blocks) for the share of every thread, at the same time.
+/// Calls use(blocks) for the blocks of every thread, in parallel.
 template <class Use>
 void each_share(Eigen::Index n_loads, const Use& use) {
   const LoadBlocks all(static_cast<int>(n_loads));
@@ -80,8 +82,9 @@ void each_share(Eigen::Index n_loads, const Use& use) {
 
 struct SupernodalFactor::Impl {
   Multifrontal front;
-  std::vector<char> contiguous;  // by supernode: its rows below the diagonal block are a range
-  mutable MatrixXd gathered;     // (rows below x n_loads), room for supernodes that are not
+  std::vector<char> contiguous;  // by supernode: 1 if its rows below the triangle are a range
+  // (rows below x n_loads), work space for supernodes that are not contiguous
+  mutable MatrixXd gathered;
   int most_below = 0;
 
   struct Supernode {
@@ -116,7 +119,7 @@ struct SupernodalFactor::Impl {
     if (gathered.cols() < n_loads || gathered.rows() < most_below)
       gathered.resize(most_below, n_loads);
   }
-  /// Room for the rows below a block of these loads, and nobody else's.
+  /// Returns work space for the rows below a block that only these loads use.
   double* gather_buffer(const LoadRange& mine) const { return gathered.col(mine.first).data(); }
 };
 
@@ -200,7 +203,7 @@ void SupernodalFactor::Impl::backward(int s, MatrixXd& x, std::span<const int> a
   x.block(load + count, node.first, end - load - count, node.width()).setZero();
   if (count == 0) return;
   if (fill) fill(node.first, node.last, load, count);
-  // Lᵀ is upper triangular: held entries that start as zero stay zero, and so does the cut.
+  // Lᵀ is upper triangular: entries behind the active block that start as zero stay zero.
   for (int l = load; l < load + count; ++l) {
     const int kept = active[static_cast<std::size_t>(l)];
     for (int k = kept; k < node.last; ++k) x(l, k) = 0;

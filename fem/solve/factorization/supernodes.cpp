@@ -13,11 +13,12 @@ namespace flexmorph::fem {
 
 namespace {
 
-// Neighbouring blocks are joined while the zeros this stores cost less than wider products bring.
+// Neighbouring blocks are joined as long as the additional zeros cost less than wider products
+// gain.
 constexpr std::size_t kNarrow = 8, kMiddle = 16, kWide = 32;
 constexpr double kZerosMiddle = 0.3, kZerosWide = 0.12, kZerosAny = 0.02;
 
-/// CHOLMOD's objects of one analysis, freed together.
+/// The CHOLMOD objects of one analysis, released together.
 struct Analysis {
   cholmod_common common;
   cholmod_factor* factor = nullptr;
@@ -48,7 +49,8 @@ void Analysis::run(std::span<const int> starts, std::span<const int> rows) {
   cholmod_sparse pattern{};
   pattern.nrow = pattern.ncol = starts.size() - 1;
   pattern.nzmax = rows.size();
-  pattern.p = const_cast<int*>(starts.data());  // read only: CHOLMOD is not declared so
+  // read only, although CHOLMOD's interface is not const
+  pattern.p = const_cast<int*>(starts.data());
   pattern.i = const_cast<int*>(rows.data());
   pattern.stype = -1;
   pattern.itype = CHOLMOD_INT;
@@ -73,7 +75,7 @@ void Analysis::run(std::span<const int> starts, std::span<const int> rows) {
                            std::to_string(common.status) + "; -2 is out of memory)");
 }
 
-/// Place of `row` among the rows of a block.
+/// Returns the index of `row` among the rows of a block.
 int place_in(const Supernodes& b, int s, int row) {
   const int first = b.first[static_cast<std::size_t>(s)], width = b.width(s);
   if (row < first + width) return row - first;
@@ -81,7 +83,8 @@ int place_in(const Supernodes& b, int s, int row) {
   return width + static_cast<int>(std::lower_bound(begin, begin + b.n_below(s), row) - begin);
 }
 
-/// Rows of the border: those of its own columns, and of the blocks that come before it in its tree.
+/// Returns the rows that each block has in the border: the rows of its own columns, and those of
+/// its descendants in the elimination tree.
 std::vector<std::vector<int>> border_rows(const Supernodes& b, std::span<const int> starts,
                                           std::span<const int> rows,
                                           std::span<const int> block_of_column) {
@@ -94,7 +97,7 @@ std::vector<std::vector<int>> border_rows(const Supernodes& b, std::span<const i
       if (rows[k] >= n) own.push_back(rows[k]);
     std::sort(own.begin(), own.end());
     own.erase(std::unique(own.begin(), own.end()), own.end());
-    // Blocks follow their children in the numbers, too.
+    // The parent of a block always has a higher number.
     const auto below = static_cast<std::size_t>(b.row_starts[s]);
     if (own.empty() || below == static_cast<std::size_t>(b.row_starts[s + 1])) continue;
     const int parent = block_of_column[static_cast<std::size_t>(b.rows[below])];
@@ -104,7 +107,7 @@ std::vector<std::vector<int>> border_rows(const Supernodes& b, std::span<const i
   return out;
 }
 
-/// Gives the blocks the rows that they have in the border.
+/// Appends to the rows of the blocks the rows that they have in the border.
 void append_border(Supernodes& b, const std::vector<std::vector<int>>& border) {
   std::vector<int> rows, row_starts = {0};
   b.offset = {0};
@@ -138,7 +141,7 @@ void link_to_parents(Supernodes& b, std::span<const int> block_of_column) {
   }
 }
 
-/// Depth first, so that the updates a block needs lie on top of a stack.
+/// Orders the blocks depth first, so that the updates a block needs are on top of a stack.
 void order_families(Supernodes& b) {
   const auto n = static_cast<std::size_t>(b.n_blocks());
   std::vector<int> child(n, -1), sibling(n, -1), path;
@@ -163,7 +166,8 @@ void order_families(Supernodes& b) {
   }
 }
 
-/// Sizes of the stack of updates, each the square of its rows below.
+/// Computes the largest size of the stack of updates; each has the square of its number of rows
+/// below.
 void measure_stack(Supernodes& b) {
   std::vector<std::size_t> of_children(static_cast<std::size_t>(b.n_blocks()), 0);
   std::size_t stack = 0;
@@ -172,7 +176,7 @@ void measure_stack(Supernodes& b) {
     b.deepest_stack = std::max(b.deepest_stack, stack + update);
     stack -= of_children[static_cast<std::size_t>(s)];
     const int parent = b.parent[static_cast<std::size_t>(s)];
-    if (parent < 0) continue;  // an update of the border does not wait
+    if (parent < 0) continue;  // an update of the border is not stored
     stack += update;
     of_children[static_cast<std::size_t>(parent)] += update;
   }

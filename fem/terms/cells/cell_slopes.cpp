@@ -3,12 +3,15 @@
 namespace flexmorph::fem {
 namespace {
 
-/// Work of a cell's force on ψ, or its energy, with all of it solid and with all of it void.
+/// Work of a cell's force on ψ, or its energy, with the whole cell solid and with the whole cell
+/// void.
 struct Shares {
   double solid = 0, empty = 0;
 };
 
-/// @param w  W of lane w.lane   @param reference  of that cell, in `lane`
+/// Returns the work or the energy of a cell.
+/// @param w  W of SIMD lane w.lane
+/// @param reference  products g° of that cell, in `lane`
 Shares shares(const gram::OneOf& w, const VoidCells& cells, const std::vector<Lanes>& reference,
               int lane, const double* q, const double* psi) {
   using N = gram::Numbering<1>;
@@ -32,7 +35,7 @@ Shares shares(const gram::OneOf& w, const VoidCells& cells, const std::vector<La
   return out;
 }
 
-/// What full material of one design cell is in an element: its W, and its part of the area.
+/// Full material of one design cell in an element: its W, and its fraction of the area.
 struct CellPart {
   std::vector<Lanes> w;
   VoidCells cells;

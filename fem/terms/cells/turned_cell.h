@@ -4,33 +4,37 @@
 
 #include "fem/shapes/batch.h"
 
-/// A cell whose strains are small in a frame that turns with it: what keeps nearly empty cells from
-/// turning inside out. (The energy of St. Venant and Kirchhoff is soft under pressure: an element
-/// passes through itself at a pressure that void reaches at once.)
+/// A cell with small strains in a corotational frame. This energy prevents nearly empty cells from
+/// turning inside out. (The energy of St. Venant and Kirchhoff is soft in compression: an element
+/// passes through itself at a small pressure, which occurs in void cells early.)
 ///
 ///   U = ½ dᵀ K d,   d = Rᵀ p - P,   R(θ) of the polar decomposition of the mean gradient F:
 ///   θ = atan2(F₂₁ - F₁₂, F₁₁ + F₂₂)
 ///
-/// p, P: the three vectors of a plane bilinear cell (fem/terms/gram.h), now and undeformed; K: the
-/// stiffness of small strains at them. U does not change under translations and turns, so neither
-/// sum of forces nor moment is ever other than zero, whatever carries the body. K times an
-/// infinitesimal turn of P is zero, so the linear limit is that of K.
+/// p, P: the three vectors of a plane bilinear cell (fem/terms/gram.h), deformed and undeformed; K:
+/// the stiffness of small strains for these vectors. U does not change under translations and
+/// rotations. Therefore the sum of the forces and their moment are always zero, whatever rigid
+/// motion the body performs. K times an infinitesimal rotation of P is zero, so that the linear
+/// limit is K.
 ///
 /// Source: polar decomposition in the plane, e.g. Moita, Crisfield (1996), Int. J. Numer. Meth.
 /// Engng 39, 3775-3792; energy interpolation between void and material: Wang et al. (2014), Comput.
 /// Methods Appl. Mech. Engng 276, 453-472.
 namespace flexmorph::fem::turned_cell {
 
+/// Number of vectors of a cell and number of their components.
 inline constexpr int kVectors = 3, kSize = 2 * kVectors;
 
+/// Returns the square root of a number.
 inline double root_of(double x) { return std::sqrt(x); }
+/// Returns the square roots of a pack of SIMD lanes.
 template <int kWidth>
 inline LanesOf<kWidth> root_of(LanesOf<kWidth> x) {
   for (int k = 0; k < kLanes; ++k) x[k] = std::sqrt(x[k]);
   return x;
 }
 
-/// x turned by the angle of (c, s).
+/// Rotates the vectors x by the angle with cosine c and sine s.
 template <class V>
 inline void turn(const V& c, const V& s, const V* x, V* out) {
   for (int k = 0; k < kSize; k += 2) {
@@ -39,19 +43,22 @@ inline void turn(const V& c, const V& s, const V* x, V* out) {
   }
 }
 
-/// All that force and tangent need.
+/// Quantities that the force and the tangent of a cell share.
 template <class V>
 struct State {
-  V c, s;                  // cosine and sine of θ
-  V y[kSize], f[kSize];    // Rᵀ p, K d
-  V moment;                // ∂U/∂θ at fixed p
-  V slope[kSize];          // ∂θ/∂p
-  V dc[kSize], ds[kSize];  // of C = F₁₁ + F₂₂, S = F₂₁ - F₁₂, which are linear in p
-  V C, S, square;          // square = C² + S²
-  V energy;
+  V c, s;                ///< Cosine and sine of θ.
+  V y[kSize], f[kSize];  ///< Rᵀ p and K d.
+  V moment;              ///< ∂U/∂θ at fixed p.
+  V slope[kSize];        ///< Gradient ∂θ/∂p.
+  /// Gradients of C = F₁₁ + F₂₂ and of S = F₂₁ - F₁₂, which are linear in p.
+  V dc[kSize], ds[kSize];
+  V C, S, square;  ///< C, S and C² + S².
+  V energy;        ///< Energy U.
 };
 
-/// @param stiffness  K (kSize x kSize)   @param reference  P (kSize): (½ a, 0), (0, ½ b), (0, 0)
+/// Returns the state of a cell with the vectors p.
+/// @param stiffness  K (kSize x kSize)
+/// @param reference  P (kSize): (½ a, 0), (0, ½ b), (0, 0)
 template <class V>
 inline State<V> state_of(const V* stiffness, const V* p, const V* reference) {
   State<V> t;
@@ -90,7 +97,7 @@ inline void add_force(const State<V>& t, const V& weight, V* force) {
   for (int k = 0; k < kSize; ++k) force[k] += weight * (turned[k] + t.moment * t.slope[k]);
 }
 
-/// Adds weight ∂²U/∂p² (2 x 2 blocks k <= l, as gram::stiffness_of() has them).
+/// Adds weight ∂²U/∂p² (2 x 2 blocks k <= l, in the order of gram::stiffness_of()).
 ///
 ///   R K Rᵀ + h ⊗ τ + τ ⊗ h + m' τ ⊗ τ + m ∂²θ,   τ = ∂θ,  h = R (J f - K J y),
 ///   m = -f · J y,   m' = Jy · K Jy - f · y
@@ -112,14 +119,14 @@ inline void add_stiffness(const V* stiffness, const State<V>& t, const V& weight
     bent[k + 1] = t.f[k] - kjy[k + 1];
   }
   turn<V>(t.c, t.s, bent, h);
-  // Second derivatives of the angle of (C, S) by C and S.
+  // Second derivatives of the angle of (C, S) with respect to C and S.
   const V fourth = t.square * t.square, both = 2.0 * t.C * t.S / fourth,
           mixed = (t.S * t.S - t.C * t.C) / fourth;
   for (int k = 0; k < kVectors; ++k)
     for (int l = k; l < kVectors; ++l) {
       const V* block = stiffness + 2 * k * kSize + 2 * l;
       const V xx = block[0], xy = block[1], yx = block[kSize], yy = block[kSize + 1];
-      // R K Rᵀ of one block.
+      // One block of R K Rᵀ.
       const V left[4] = {t.c * xx - t.s * yx, t.c * xy - t.s * yy, t.s * xx + t.c * yx,
                          t.s * xy + t.c * yy};
       const V turned[4] = {left[0] * t.c - left[1] * t.s, left[0] * t.s + left[1] * t.c,

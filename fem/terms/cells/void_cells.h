@@ -8,43 +8,50 @@
 #include "fem/terms/gram.h"
 #include "geometry/base.h"
 
-/// Cells of a design, eight side by side, of which some are nearly empty: their energy passes from
-/// that of St. Venant and Kirchhoff to that of small strains in a turning frame (turned_cell.h).
+/// Cells of a design, eight side by side, of which some are nearly empty. The energy of a cell
+/// changes gradually from that of St. Venant and Kirchhoff to a small-strain energy in a
+/// corotational frame (turned_cell.h) as its stiffness factor decreases.
 namespace flexmorph::fem {
 
+/// Small-strain energies of eight cells and the fraction of St. Venant-Kirchhoff energy of each.
 class VoidCells {
  public:
-  /// One of eight cells, or all of them.
+  /// Selection of one of the eight cells.
   struct Lane {
-    using V = double;
-    int lane;
+    using V = double;  ///< Number type of one cell.
+    int lane;          ///< SIMD lane of the cell.
+    /// Returns the value of the cell.
     double operator()(const Lanes& x) const { return x[lane]; }
   };
+  /// Selection of all eight cells.
   template <class Of>
   struct AllLanes {
-    using V = Of;
+    using V = Of;  ///< Pack of SIMD lanes.
+    /// Returns the values of all cells.
     const V& operator()(const Lanes& x) const { return *lanes_as<V>(&x); }
   };
 
-  /// Is there any?
+  /// Returns true if any of the cells is nearly empty.
   bool any() const { return !stiffness_.empty(); }
 
-  /// The part of a cell's energy that is St. Venant-Kirchhoff: from 0 to 1 around a stiffness
-  /// factor of 0.01, with two continuous derivatives.
+  /// Returns the fraction of a cell's energy that is St. Venant-Kirchhoff: it changes from 0 to 1
+  /// around a stiffness factor of 0.01, with two continuous derivatives.
   static double solid_part(double factor) {
     if (!(factor > 0)) return 0;
     const double x = std::clamp(std::log(factor / kVoid) / std::log(kMaterial / kVoid), 0.0, 1.0);
     return x * x * x * (10 + x * (6 * x - 15));
   }
 
-  /// Its derivative by the factor.
+  /// Returns the derivative of solid_part() with respect to the factor.
   static double solid_slope(double factor) {
     if (!(factor > 0)) return 0;
     const double decades = std::log(kMaterial / kVoid), x = std::log(factor / kVoid) / decades;
     return x <= 0 || x >= 1 ? 0 : 30 * x * x * (1 - x) * (1 - x) / (factor * decades);
   }
 
-  /// @param size  of the undeformed cell [m]   @param factor  its mean stiffness factor
+  /// Sets the size and the stiffness factor of the cell in a SIMD lane.
+  /// @param size  size of the undeformed cell [m]
+  /// @param factor  its mean stiffness factor
   void set(int lane, const Vec2& size, double factor) {
     undeformed_.resize(turned_cell::kSize);
     undeformed_[0][lane] = 0.5 * size.x();
@@ -52,16 +59,19 @@ class VoidCells {
     factor_[lane] = factor;
     solid_[lane] = solid_part(factor);
   }
+  /// Returns the stiffness factor of a cell.
   double factor(int lane) const { return factor_[lane]; }
+  /// Returns the size of the undeformed cell [m].
   Vec2 size(int lane) const { return {2 * undeformed_[0][lane], 2 * undeformed_[3][lane]}; }
-  /// Lanes from `count` on become that before.
+  /// Fills the SIMD lanes from `count` on with copies of the lane before.
   void fill(int count) {
     for (int lane = count; lane < kLanes; ++lane) {
       for (Lanes& x : undeformed_) x[lane] = x[count - 1];
       solid_[lane] = solid_[count - 1];
     }
   }
-  /// K = Dᵀ W D at the undeformed cells, where W is that of all pairs: their tangent at rest.
+  /// Computes K = Dᵀ W D at the undeformed cells, with W for all pairs: the tangent stiffness of
+  /// the undeformed cells. Nothing is stored if all cells are solid.
   void set_stiffness(const std::vector<Lanes>& w) {
     stiffness_.clear();
     bool all_solid = true;
@@ -81,8 +91,8 @@ class VoidCells {
       }
   }
 
-  /// Adds the force of the part that is void to the nodes, and leaves in the stress s what the
-  /// other part has.
+  /// Adds the force of the void fraction to the nodes, and multiplies the stress s by the solid
+  /// fraction.
   template <class Pick, class V = typename Pick::V>
   void add_force(const Pick& pick, const V* p, V* s, V* force) const {
     V stiffness[turned_cell::kSize * turned_cell::kSize], f[turned_cell::kSize] = {};
@@ -92,7 +102,7 @@ class VoidCells {
     for (int k = 0; k < gram::Numbering<1>::n_pairs; ++k) s[k] *= solid;
   }
 
-  /// Adds the tangent of both parts to the nodes.
+  /// Adds the tangent of the solid and of the void fraction to the nodes.
   template <gram::Coupling coupling, class Pick, class W, class V = typename Pick::V>
   void add_tangent(const Pick& pick, W w, const V* s, const V* p, double weight, V* tangent) const {
     V stiffness[turned_cell::kSize * turned_cell::kSize], sum[turned_cell::kVectors * 12] = {};
@@ -104,8 +114,8 @@ class VoidCells {
     gram::add_to_nodes<1, 2, true>(sum, weight, tangent);
   }
 
-  /// What small strains alone make of a cell, whatever part of it is void: work of their force on
-  /// ψ, by vectors (kSize) as p is; its energy where there is no ψ.
+  /// Returns the contribution of the small-strain energy alone, for the whole cell: the work of its
+  /// force on ψ (vectors (kSize) like p), or its energy if ψ is null.
   double small_strains(int lane, const double* p, const double* psi) const {
     double stiffness[turned_cell::kSize * turned_cell::kSize];
     const auto at = state(Lane{lane}, p, stiffness);
@@ -116,7 +126,8 @@ class VoidCells {
     return work;
   }
 
-  /// @param energy  of St. Venant and Kirchhoff
+  /// Returns the energy of a cell.
+  /// @param energy  energy of St. Venant and Kirchhoff
   double energy(int lane, const double* p, double energy) const {
     double stiffness[turned_cell::kSize * turned_cell::kSize];
     const Lane pick{lane};
@@ -133,11 +144,13 @@ class VoidCells {
     return turned_cell::state_of<V>(stiffness, p, undeformed);
   }
 
-  static constexpr double kVoid = 1e-3, kMaterial = 1e-1;  // factors
+  // Stiffness factors below and above which a cell is void and solid.
+  static constexpr double kVoid = 1e-3, kMaterial = 1e-1;
 
-  std::vector<Lanes> stiffness_;   // K of turned_cell.h; nothing where all are solid
+  // K of turned_cell.h; empty where all cells are solid
+  std::vector<Lanes> stiffness_;
   std::vector<Lanes> undeformed_;  // P
-  Lanes solid_{}, factor_{};       // solid_part() of it
+  Lanes solid_{}, factor_{};       // solid_part() of each factor, and the factors
 };
 
 }  // namespace flexmorph::fem
