@@ -14,7 +14,7 @@ namespace flexmorph::optim {
 namespace {
 
 const std::string kHead = "flexmorph evaluations 3\n";
-constexpr std::uint64_t kLargest = 1ULL << 32;  // bytes of a record: more is damage
+constexpr std::uint64_t kLargest = 1ULL << 32;  // largest plausible record [bytes]
 constexpr auto kSyncEvery = std::chrono::seconds(5);
 
 struct RecordHead {
@@ -40,7 +40,7 @@ void put(std::vector<char>& out, const Eigen::PlainObjectBase<Derived>& v) {
   put(out, v.data(), sizeof(double) * static_cast<size_t>(v.size()));
 }
 
-/// Reads what put() wrote; false behind the end.
+/// Reads data that put() has written; take() returns false beyond the end of the data.
 class Reader {
  public:
   explicit Reader(const std::vector<char>& data) : data_(data) {}
@@ -104,7 +104,7 @@ bool read_whole(int file, void* out, size_t bytes, std::int64_t at) {
   return pread(file, out, bytes, at) == static_cast<ssize_t>(bytes);
 }
 
-/// Bit for bit: also where it is no number.
+/// Tells whether two vectors agree bit for bit; equal NaN entries agree as well.
 bool same(const VectorXd& a, const VectorXd& b) {
   return a.size() == b.size() &&
          (a.size() == 0 ||
@@ -175,7 +175,7 @@ void EvaluationLog::append(const Evaluation& evaluation) {
   end_ += static_cast<std::int64_t>(record.size());
   const auto now = std::chrono::steady_clock::now();
   if (now - synced_ < kSyncEvery) return;
-  fdatasync(file_);  // a machine that is switched off costs some seconds, a killed process nothing
+  fdatasync(file_);  // a power failure loses the last seconds, a killed process loses nothing
   synced_ = now;
 }
 

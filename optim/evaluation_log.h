@@ -10,54 +10,65 @@
 
 namespace flexmorph::optim {
 
-/// What a problem answered at a design.
+/// The result of one evaluation of a problem at one design.
 struct Evaluation {
-  VectorXd x;           ///< (n)
-  std::string failure;  ///< why the state could not be solved; empty: it was, and
-  Response response;    ///< is what it came to
-  bool acceptable = true;
+  VectorXd x;              ///< Design (n).
+  std::string failure;     ///< Reason why the state could not be solved; empty if it was solved.
+  Response response;       ///< Values and gradients at x; valid only if `failure` is empty.
+  bool acceptable = true;  ///< True if Problem::acceptable() accepts the design.
 };
 
-/// Evaluations in the order in which an optimizer asked for them, in a file that outlives the
-/// process. Optimizers are deterministic: started again from the same design they ask the same
-/// questions, and where the answers are known no state is solved. So a run goes on bit for bit
-/// where it was killed, whatever the optimizer keeps in mind.
+/// A file of evaluations in the order in which an optimizer requests them; it is kept after the
+/// process ends. Optimizers are deterministic: an optimizer that starts again from the same design
+/// requests the same evaluations, and no state is solved for an evaluation that is in the file.
+/// Therefore a killed run continues exactly (bit for bit) where it was killed, whatever internal
+/// state the optimizer has.
 ///
-/// It is a memory, no authority: an answer counts for the very x it was given at. Where another x
-/// is asked for, what follows in the file belongs to another run and is dropped.
+/// A stored evaluation is used only if its x agrees bit for bit with the requested x. If another x
+/// is requested, the remaining records belong to a different run and are deleted.
 ///
-/// File: a line that says what it is, then records [bytes, CRC-32, data] in the byte order of the
-/// machine. A record that is torn or damaged ends it.
+/// File format: a header line with the name and the version of the format, then records
+/// [bytes, CRC-32, data] in the byte order of the machine. The first incomplete or damaged record
+/// ends the file.
 class EvaluationLog {
  public:
-  /// Opens the file, or makes it.
-  /// @throws Error (numerical) when it cannot be written; append() likewise.
+  /// Opens the file, or creates it; a file with another header line is cleared.
+  /// @throws Error (numerical) if the file cannot be written.
   explicit EvaluationLog(std::string path);
   ~EvaluationLog();
   EvaluationLog(const EvaluationLog&) = delete;
   EvaluationLog& operator=(const EvaluationLog&) = delete;
 
-  /// The next answer where it was given at this x; else none, and no more to come.
+  /// Returns the next stored evaluation if its design is x. Otherwise it deletes the remaining
+  /// records and returns nothing; from then on every call returns nothing.
+  /// @throws Error (numerical) if the file cannot be written.
   std::optional<Evaluation> next(const VectorXd& x);
+
+  /// Writes an evaluation to the end of the file.
+  /// @throws Error (numerical) if the file cannot be written.
   void append(const Evaluation& evaluation);
 
-  bool knew_last() const { return knew_last_; }  ///< did the last next() find an answer?
-  int n_known() const { return n_known_; }       ///< answers that were found so far
+  /// Returns true if the last call of next() found a stored evaluation.
+  bool knew_last() const { return knew_last_; }
+  /// Returns the number of stored evaluations that next() has found so far.
+  int n_known() const { return n_known_; }
 
  private:
   void drop_rest();
 
   std::string path_;
   int file_ = -1;
-  std::int64_t end_ = 0;  // of what was read or written
+  std::int64_t end_ = 0;  // end of the records that were read or written [bytes]
   bool reading_ = true, knew_last_ = false;
   int n_known_ = 0;
   std::chrono::steady_clock::time_point synced_ = std::chrono::steady_clock::now();
 };
 
-/// A problem whose answers are taken from a log as far as it knows them, and written there.
+/// A problem that takes evaluations from a log as long as the log has them; it evaluates the other
+/// designs itself and appends them to the log.
 class RecordedProblem final : public Problem {
  public:
+  /// Wraps a problem; `problem` and `log` must outlive the new object.
   RecordedProblem(Problem& problem, EvaluationLog& log) : problem_(problem), log_(log) {}
 
   int n_variables() const override { return problem_.n_variables(); }
@@ -75,7 +86,7 @@ class RecordedProblem final : public Problem {
  private:
   Problem& problem_;
   EvaluationLog& log_;
-  bool acceptable_ = true;  // the last design
+  bool acceptable_ = true;  // result for the design that was evaluated last
 };
 
 }  // namespace flexmorph::optim

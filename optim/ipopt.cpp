@@ -2,7 +2,7 @@
 
 #include <IpIpoptApplication.hpp>
 #include <IpTNLP.hpp>
-// Before 3.14 the current iterate is found by what is inside of Ipopt only.
+// Before version 3.14 only internal classes of Ipopt give access to the current iterate.
 #define FLEXMORPH_IPOPT_TELLS_ITERATE (IPOPT_VERSION_MAJOR * 100 + IPOPT_VERSION_MINOR >= 314)
 #if !FLEXMORPH_IPOPT_TELLS_ITERATE
 #include <IpIpoptCalculatedQuantities.hpp>
@@ -19,25 +19,27 @@
 #include "optim/mpi_start.h"
 #include "optim/search.h"
 
-/// Ipopt: interior point method with a filter line search; second derivatives where the problem has
-/// them, limited-memory BFGS elsewhere.
+/// Ipopt: interior point method with a filter line search. It uses second derivatives if the
+/// problem has them, limited-memory BFGS otherwise.
 ///
 /// Options:
-///   exact       1: the second derivatives of problems that have them; 0: limited-memory BFGS
+///   exact       1: second derivatives of problems that have them; 0: limited-memory BFGS
 ///   mu_init     first barrier parameter; 0 (default): 1e-5 with second derivatives, 1e-3 without
-///   bound_push  how far the start is moved inside its bounds
-///   history     vectors of the limited-memory Hessian
-///   box         half width of a moving box, absolute in x; 0 (default): none
-///   restart     iterations inside one box
+///   bound_push  distance by which the start is moved inside its bounds
+///   history     number of vectors of the limited-memory Hessian
+///   box         half width of a moving box, absolute in x; 0 (default): no box
+///   restart     number of iterations inside one box
 ///
-/// Designs are far from convex: Hessians are indefinite until the last few iterations, and Ipopt
-/// makes them definite by multiples of the unit matrix. With them it keeps to designs that violate
-/// constraints by less than a tenth (steps through a thousandth stick in curved valleys), raises
-/// those multiples by 4, not 8, and keeps its watchdog off (optim/README.md, Second derivatives).
-/// Absolute values of their eigenvalues instead led nowhere sooner.
+/// The problems are far from convex: the Hessians are indefinite until the last few iterations, and
+/// Ipopt adds multiples of the unit matrix to make them definite. Therefore three options differ
+/// from their defaults when second derivatives are used. The filter accepts only designs that
+/// violate constraints by less than a tenth (with a thousandth the steps stagnate in curved
+/// valleys). The multiples grow by a factor of 4, not 8. The watchdog is off (optim/README.md,
+/// Second derivatives). Replacing the eigenvalues by their absolute values did not converge faster.
 ///
-/// The barrier parameter falls monotonically: the adaptive rule and SR1 ended infeasible on the
-/// published short beam. Two solves in two threads of one process crash in Ipopt 3.11.
+/// The barrier parameter decreases monotonically, because the adaptive rule and SR1 ended at
+/// infeasible designs on the published short beam. Two solves in two threads of one process crash
+/// in Ipopt 3.11.
 ///
 /// Source: Wächter & Biegler (2006), Math. Program. 106, 25-57; Ipopt 3.11.9.
 namespace flexmorph::optim {
@@ -46,12 +48,12 @@ namespace {
 using Ipopt::Index;
 using Ipopt::Number;
 
-constexpr double kInfinity = 2e19;  // what Ipopt takes for infinite
-constexpr size_t kRemembered = 8;   // evaluations: the current iterate is among the last few
+constexpr double kInfinity = 2e19;  // Ipopt treats it as infinite
+constexpr size_t kRemembered = 8;   // evaluations; they contain the current iterate
 constexpr int kEvaluationsPerIteration = 2;
-constexpr int kMostRefusals = 20;  // in a row: a step halved so often goes nowhere
+constexpr int kMostRefusals = 20;  // in sequence; the step is then too small for progress
 
-/// Leaves Ipopt in the midst of an evaluation once the search has stopped.
+/// Exception that leaves Ipopt during an evaluation after the search has stopped.
 struct Halt {};
 
 struct Constants {
@@ -60,7 +62,7 @@ struct Constants {
   bool exact;
 };
 
-/// The problem as Ipopt wants to see it, inside one box.
+/// Adapter of the problem to the interface of Ipopt, within one box.
 class Adapter final : public Ipopt::TNLP {
  public:
   Adapter(Search& search, const Point& start, const VectorXd& lower, const VectorXd& upper,
@@ -161,7 +163,7 @@ class Adapter final : public Ipopt::TNLP {
 
  private:
   const Point* look_at(Index n, const Number* x);
-  /// Reads the variables of the current iterate. @return whether Ipopt tells them
+  /// Reads the variables of the current iterate. @return true if Ipopt provides them
   bool read_current(const Ipopt::IpoptData* data, Ipopt::IpoptCalculatedQuantities* quantities,
                     VectorXd& x) const;
 
@@ -170,10 +172,10 @@ class Adapter final : public Ipopt::TNLP {
   VectorXd start_, lower_, upper_;
   int most_evaluations_;
   std::deque<Point> remembered_;  // newest first
-  VectorXd refused_;              // the last design that was: asked for again by eval_g
+  VectorXd refused_;              // last refused design; eval_g requests it again
 };
 
-/// The design at x, evaluated unless remembered; null when it was refused.
+/// Returns the design at x; evaluates it unless it is stored. Null if the design was refused.
 const Point* Adapter::look_at(Index n, const Number* x) {
   const Eigen::Map<const VectorXd> at(x, n);
   for (const Point& point : remembered_) {
@@ -222,9 +224,9 @@ bool Adapter::intermediate_callback(Ipopt::AlgorithmMode mode, Index iteration, 
                                     const Ipopt::IpoptData* data,
                                     Ipopt::IpoptCalculatedQuantities* quantities) {
   if (mode != Ipopt::RegularMode || data == nullptr || quantities == nullptr) {
-    return !search_.stopped();  // the restoration phase has variables of its own
+    return !search_.stopped();  // the restoration phase uses different variables
   }
-  // The first iterate of a later box is the best design, which has its row.
+  // The first iterate of a later box is the best design, which already has a row of the history.
   if (iteration == 0 && search_.rows() > 0) return true;
   VectorXd x(search_.n());
   if (!read_current(data, quantities, x))
@@ -271,7 +273,7 @@ class IpoptOptimizer final : public Optimizer {
  private:
   std::string run(Search& search, const Point& start, const VectorXd& lower,
                   const VectorXd& upper) const;
-  /// @param curved  with second derivatives
+  /// Sets the options of Ipopt. @param curved  true if second derivatives are used
   void set(Ipopt::OptionsList& options, bool curved) const;
 
   Settings settings_;
@@ -307,9 +309,10 @@ void IpoptOptimizer::set(Ipopt::OptionsList& options, bool curved) const {
   number("bound_frac", std::min(0.5, c_.bound_push));
   number("slack_bound_push", c_.bound_push);
   number("slack_bound_frac", std::min(0.5, c_.bound_push));
-  number("bound_relax_factor", 0);  // designs outside their bounds may not exist
-  // Ours comes first. A multiplier below our tolerance may belong to a bound that is not active
-  // for us: its product with the distance must fall below both.
+  number("bound_relax_factor", 0);  // designs outside their bounds may be invalid
+  // The tolerances of Search are to be met before the one of Ipopt. A bound farther away than
+  // kActiveTolerance is not active in kkt_point(): its multiplier is below kkt_tolerance if the
+  // product of multiplier and distance is below the product of both tolerances.
   number("tol", std::max(1e-12, kActiveTolerance * settings_.kkt_tolerance));
   count("acceptable_iter", 0);
   count("max_iter", c_.box > 0 ? c_.restart : settings_.max_iterations);
@@ -321,7 +324,7 @@ std::string IpoptOptimizer::run(Search& search, const Point& start, const Vector
   application->RethrowNonIpoptException(true);
   const bool curved = c_.exact && search.has_curvature();
   set(*application->Options(), curved);
-  if (application->Initialize("") != Ipopt::Solve_Succeeded) {  // "": no ipopt.opt is read
+  if (application->Initialize("") != Ipopt::Solve_Succeeded) {  // "": no file ipopt.opt is read
     throw Error::numerical("ipopt: it could not be initialized");
   }
   const Ipopt::SmartPtr<Ipopt::TNLP> adapter =

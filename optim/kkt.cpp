@@ -11,14 +11,15 @@ namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
-/// λ_P of G_PP λ_P = h_P; a ridge of the size of round-off serves dependent constraints.
+/// Solves G_PP λ_P = h_P for the passive set P. A diagonal term of the size of round-off keeps the
+/// matrix regular if constraints are linearly dependent.
 VectorXd solve_passive(const MatrixXd& G, const VectorXd& h, const std::vector<int>& passive) {
   MatrixXd G_pp = G(passive, passive);
   G_pp.diagonal().array() += kEps * (G_pp.trace() + std::numeric_limits<double>::min());
   return G_pp.ldlt().solve(h(passive));
 }
 
-/// ½ |P(df + dgᵀ λ)|² and its entries: convex and once differentiable in λ.
+/// The vector P(df + dgᵀ λ). Half its squared norm is convex and once differentiable in λ.
 class ProjectedGradient {
  public:
   ProjectedGradient(const Response& r, const VectorXd& x, const VectorXd& lower,
@@ -41,13 +42,14 @@ class ProjectedGradient {
   const VectorXd& df_;
 };
 
-/// Multipliers of the rows of A that make |P(df + Aᵀ λ)| least: Newton's method on a piecewise
-/// quadratic; each step is a non-negative least-squares problem over the entries that count now.
+/// Returns the multipliers of the rows of A that minimize |P(df + Aᵀ λ)|, by Newton's method on a
+/// piecewise quadratic function. Each step solves a non-negative least-squares problem over the
+/// entries that P keeps at the present λ.
 VectorXd multipliers(const MatrixXd& A, const VectorXd& df, const ProjectedGradient& projected) {
   VectorXd lambda = VectorXd::Zero(A.rows());
   VectorXd r = projected(A, lambda);
   for (int step = 0; step < 30; ++step) {
-    // Entries of value zero without being dropped count too, but take part next time.
+    // An entry that is zero although P keeps it is left out here; it takes part in the next step.
     const VectorXd counted = (r.array() != 0).cast<double>();
     const MatrixXd weighted = A * counted.asDiagonal();
     const VectorXd target = nonnegative_minimum(weighted * A.transpose(), -(weighted * df));

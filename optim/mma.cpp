@@ -7,51 +7,53 @@
 #include "optim/restoration.h"
 #include "optim/search.h"
 
-/// The method of moving asymptotes in its classic form (`mma`) and the globally convergent one
-/// (`gcmma`): its inner iterations make the approximation of every function more convex until it
-/// lies above the function at the trial, so that iterates from a feasible one stay feasible and the
-/// objective falls. It pays with evaluations.
+/// The method of moving asymptotes in its classic form (`mma`) and in its globally convergent form
+/// (`gcmma`). The inner iterations of `gcmma` make the approximation of every function more convex
+/// until it lies above the function at the trial. Therefore iterates that follow a feasible one
+/// stay feasible and the objective decreases, at the cost of more evaluations.
 ///
 /// Source: Svanberg (1987), IJNME 24; (2002), SIAM J. Optim. 12, 555-573.
 ///
 /// Options, with the defaults that worked on the published short beam:
 ///   asyinit, asyincr, asydecr  first distance of the asymptotes, its factors per iteration
-///   asymin, asymax             range of that distance; f * fscale may curve by 8 raa0 / asymin
-///                              before x starts to swing about a minimum inside its bounds: with
-///                              0.01 by 8, which for log C is 0.8 and less than it does (4), so
-///                              that KKT residuals rose again once the asymptotes had come near
-///   albefa                     part of the way to an asymptote that stays forbidden
-///   raa0                       convexity given to every variable; with 1e-5 (Svanberg's) large
-///                              subproblems with many near-zero gradients stay unsolved; gcmma
-///                              starts an iteration with it or a tenth of what the last one needed
-///   c                          price of violating a constraint, against f * fscale
+///   asymin, asymax             range of that distance. The second derivative of f * fscale may be
+///                              as large as 8 raa0 / asymin before x oscillates about a minimum
+///                              inside its bounds. With asymin = 0.01 this is 8, or 0.8 for log C,
+///                              which has a second derivative of 4; the KKT residuals then rose
+///                              again as soon as the asymptotes had come close
+///   albefa                     fraction of the distance to an asymptote that a step may not enter
+///   raa0                       convexity added to every variable. With 1e-5 (Svanberg) large
+///                              subproblems with many near-zero gradients are not solved. gcmma
+///                              starts an iteration with raa0 or with a tenth of the convexity that
+///                              the last iteration needed, whichever is larger
+///   c                          penalty on violating a constraint, relative to f * fscale
 ///   fscale, gscale             factors of f and g
 ///
-/// Svanberg measures move limit, asymptotes and raa0 in parts of upper - lower. Here they are
-/// absolute in x: a position may range over the whole domain, many units, but a step must stay
-/// about a cell, whatever the size of the domain.
+/// Svanberg measures the move limit, the asymptotes and raa0 relative to upper - lower. Here they
+/// are absolute in x, because a position may range over the whole domain, which is many units,
+/// while a step must stay about one cell whatever the size of the domain is.
 namespace flexmorph::optim {
 namespace {
 
 const Options kDefaults = {{"asyinit", 0.1}, {"asyincr", 1.05}, {"asydecr", 0.65}, {"asymin", 2e-4},
                            {"asymax", 10},   {"albefa", 0.1},   {"raa0", 0.01},    {"c", 1000},
                            {"fscale", 10},   {"gscale", 1}};
-constexpr int kMostRefusals = 10;     // in a row
-constexpr double kStepBack = 0.5;     // of the trust, after a refused trial
-constexpr double kStepForward = 1.5;  // after a taken one: two of them make up for one back
+constexpr int kMostRefusals = 10;     // in sequence
+constexpr double kStepBack = 0.5;     // factor of the trust after a refused trial
+constexpr double kStepForward = 1.5;  // after an accepted trial; two compensate one refusal
 constexpr double kLeastTrust = 1e-4;
-constexpr double kConservative = 1e-10;          // relative: round-off in the values
+constexpr double kConservative = 1e-10;          // relative tolerance for round-off
 constexpr int kMostInner = 15;                   // inner iterations of gcmma
-constexpr double kSafety = 1.1, kSteepest = 10;  // Svanberg (2002), (4.5): growth of the convexity
-constexpr double kForgotten = 0.1;  // part of the last convexity that an iteration starts with
-constexpr int kRestorations = 3;    // last iterations that, if infeasible, only restore g <= 0
+constexpr double kSafety = 1.1, kSteepest = 10;  // Svanberg (2002), (4.5): factors of convexity
+constexpr double kForgotten = 0.1;  // factor of the last convexity at the start of an iteration
+constexpr int kRestorations = 3;    // number of last iterations that restore g <= 0 if infeasible
 
 struct Constants {
   double asyinit, asyincr, asydecr, asymin, asymax, albefa, raa0, c, fscale, gscale;
 };
 
-/// Distances of the asymptotes from x, and the move limit of the moment. Both shrink by one
-/// factor, the trust, when a trial is refused, and regain it over the next iterations.
+/// Distances of the asymptotes from x, and the present move limit. Both contain a factor, the
+/// trust, which decreases when a trial is refused and increases again over the next iterations.
 class Asymptotes {
  public:
   Asymptotes(const Constants& constants, double move_limit, const VectorXd& x)
@@ -59,7 +61,8 @@ class Asymptotes {
     distance_ = VectorXd::Constant(x.size(), std::clamp(c_.asyinit, c_.asymin, c_.asymax));
   }
 
-  /// Narrower where a variable turned round, wider where it went on.
+  /// Moves the asymptotes to x: closer for variables whose change has reversed its sign, farther
+  /// for variables that continue in one direction.
   void advance(const VectorXd& x) {
     const VectorXd change = x - x_;
     for (Eigen::Index j = 0; last_change_.size() > 0 && j < x.size(); ++j) {
@@ -83,7 +86,8 @@ class Asymptotes {
   VectorXd x_, last_change_, distance_;
 };
 
-/// p (U - x)^-1 + q (x - L)^-1 with the given slope at x, and slightly more convex than needed.
+/// Sets p and q of p (U - x)^-1 + q (x - L)^-1 such that this function has the given derivative at
+/// x and is slightly more convex than necessary.
 template <typename Slope, typename Out>
 void approximate(const Slope& slope, double scale, double raa0, const VectorXd& distance, Out&& p,
                  Out&& q) {
@@ -109,8 +113,8 @@ class Mma final : public Optimizer {
 
   Settings settings_;
   Constants c_;
-  bool conservative_;      // gcmma
-  bool restored_ = false;  // the last proposal came from no subproblem
+  bool conservative_;      // true for gcmma
+  bool restored_ = false;  // the last proposal came from restored()
   MmaSubproblem sub_;
   VectorXd convexity_;  // of f * fscale and every g * gscale (1 + m)
   int subproblems_ = 0, unsolved_ = 0;
@@ -135,7 +139,7 @@ void Mma::build(const Point& at, const Search& search, const Asymptotes& asympto
   }
   for (Eigen::Index j = 0; j < at.x.size(); ++j) {
     if (sub_.beta[j] > sub_.alpha[j]) continue;
-    // A variable without room takes part without influence: its barrier keeps it where it is.
+    // A variable whose bounds coincide gets no influence; its barrier keeps its value.
     sub_.alpha[j] = at.x[j] - 0.5 * distance[j];
     sub_.beta[j] = at.x[j] + 0.5 * distance[j];
     sub_.p0[j] = sub_.q0[j] = 0;
@@ -164,13 +168,13 @@ VectorXd Mma::propose(const Point& at, const Search& search, const Asymptotes& a
   return solution.x.cwiseMax(search.lower()).cwiseMin(search.upper());
 }
 
-/// Where the approximation of a function lies below it at the trial, makes it as convex as it takes
-/// to lie above. @return whether one did
+/// Increases the convexity of all approximations that lie below their function at the trial, so
+/// that they lie above it. @return true if there was such an approximation
 bool Mma::raise_convexity(const Point& at, const Point& trial) {
   const Eigen::ArrayXd to_upp = (sub_.upp - trial.x).array().inverse();
   const Eigen::ArrayXd to_low = (trial.x - sub_.low).array().inverse();
   const Eigen::ArrayXd distance = at.x - sub_.low;
-  // What one unit of convexity adds at the trial.
+  // Increase of an approximation at the trial per unit of convexity.
   const double unit = (distance.square() * (to_upp + to_low - 2 / distance)).sum();
   bool raised = false;
   const auto check = [&](Eigen::Index k, double approximation, double value) {
@@ -189,7 +193,8 @@ bool Mma::raise_convexity(const Point& at, const Point& trial) {
   return raised;
 }
 
-/// To the next iterate; false (and the search stopped) when every trial was refused.
+/// Moves to the next iterate. Returns false if the search has stopped, for example because every
+/// trial was refused.
 bool Mma::advance(Point& at, Search& search, Asymptotes& asymptotes, MmaSolver& solver) {
   Point trial;
   convexity_ = (kForgotten * convexity_).cwiseMax(c_.raa0);

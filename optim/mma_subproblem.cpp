@@ -11,12 +11,12 @@ namespace {
 
 constexpr double kLastEpsilon = 1e-9;
 constexpr double kSolved = 1e-6;  // largest KKT residual of a solved subproblem
-constexpr int kNewtonSteps = 60;  // per barrier stage; about 5 are usual
+constexpr int kNewtonSteps = 60;  // per value of ε; about 5 are typical
 constexpr int kHalvings = 50;
-constexpr int kManyConstraints = 8;         // from here on the barrier's steps take milliseconds
-constexpr double kTowardsBound = 1 / 1.01;  // part of the way to the nearest bound a step may go
+constexpr int kManyConstraints = 8;         // from here on Newton steps take milliseconds
+constexpr double kTowardsBound = 1 / 1.01;  // fraction of the distance to the nearest bound
 
-/// Largest -Δ/v over positive variables v.
+/// Returns the largest -Δ/v over all positive variables v with steps Δ.
 double fastest_decrease(const VectorXd& step, const VectorXd& v) {
   return v.size() == 0 ? 0 : (-step.array() / v.array()).maxCoeff();
 }
@@ -65,7 +65,7 @@ void MmaSolver::begin(const MmaSubproblem& p) {
   at_.z = at_.zeta = 1;
 }
 
-/// What depends on x and λ alone.
+/// Updates all quantities that depend on x and λ alone.
 void MmaSolver::refresh(const MmaSubproblem& p) {
   to_upp_ = (p.upp - at_.x).array().inverse();
   to_low_ = (at_.x - p.low).array().inverse();
@@ -82,7 +82,7 @@ void MmaSolver::refresh(const MmaSubproblem& p) {
   slope_ = plam_ * to_upp_.square() - qlam_ * to_low_.square();
 }
 
-/// Residual of the relaxed KKT conditions at `at_`.
+/// Returns the residual of the relaxed KKT conditions at `at_`.
 MmaSolver::Residual MmaSolver::residual(const MmaSubproblem& p, double epsilon) {
   Residual r;
   double sum = 0;
@@ -114,12 +114,13 @@ MmaSolver::Residual MmaSolver::residual(const MmaSubproblem& p, double epsilon) 
   return r;
 }
 
-/// Newton's direction: `step_`, by elimination of everything but λ.
+/// Computes Newton's direction `step_` by elimination of all variables except λ:
 ///
 ///   (S/Λ + (d + μ/y)^-1 + Gᵀ D^-1 G + a aᵀ z/ζ) Δλ = r
 ///
-/// G (n x m) slopes of the constraints, D (n) second derivatives in x with the barrier of its
-/// bounds. All terms of the matrix are positive semidefinite, the first one definite.
+/// G (n x m) holds the gradients of the constraints, D (n) the second derivatives in x including
+/// the barrier of the bounds. All terms of the matrix are positive semidefinite; the first one is
+/// definite.
 void MmaSolver::newton_direction(const MmaSubproblem& p, double epsilon) {
   dx_ = slope_ - epsilon * to_alpha_ + epsilon * to_beta_;
   diagonal_ = 2 * (plam_ * to_upp_.cube() + qlam_ * to_low_.cube()) + at_.xi.array() * to_alpha_ +
@@ -135,7 +136,7 @@ void MmaSolver::newton_direction(const MmaSubproblem& p, double epsilon) {
       weighted_.col(i).array() = G_.col(i).array() * diagonal_;
     }
     inverse_y_ = (p.d.array() + at_.mu.array() / at_.y.array()).inverse();
-    // dy and dλ of the eliminated system
+    // Right-hand sides for y and λ of the reduced system.
     step_.y = p.c + p.d.cwiseProduct(at_.y) - at_.lambda - epsilon * at_.y.cwiseInverse();
     r_m_ = values_ - p.a * at_.z - at_.y - p.b + epsilon * at_.lambda.cwiseInverse();
     r_m_ += step_.y.cwiseProduct(inverse_y_) + p.a * (dz * z_over_zeta);
@@ -162,7 +163,7 @@ void MmaSolver::newton_direction(const MmaSubproblem& p, double epsilon) {
   step_.eta.array() = (epsilon + at_.eta.array() * step_.x.array()) * to_beta_ - at_.eta.array();
 }
 
-/// Everything that is positive stays positive.
+/// Returns the longest step, at most 1, after which all positive variables are still positive.
 double MmaSolver::longest_step() const {
   double fastest = kTowardsBound;
   for (const auto& [step, v] : {std::pair{&step_.xi, &at_.xi},
@@ -179,7 +180,7 @@ double MmaSolver::longest_step() const {
   return kTowardsBound / fastest;
 }
 
-/// Newton's method at one ε, until the largest residual falls below 0.9 ε.
+/// Runs Newton's method at one ε until the largest residual falls below 0.9 ε.
 void MmaSolver::stage(const MmaSubproblem& p, double epsilon) {
   Residual r = residual(p, epsilon);
   for (int step = 0; step < kNewtonSteps; ++step) {
@@ -209,7 +210,7 @@ void MmaSolver::follow_barrier(const MmaSubproblem& p) {
   begin(p);
   refresh(p);
   for (double epsilon = 1; epsilon > 0.5 * kLastEpsilon; epsilon *= 0.1) {
-    stage(p, epsilon);  // one that fails leaves a start for the next
+    stage(p, epsilon);  // a stage that fails still provides a start for the next one
   }
   measure_kkt(p);
 }

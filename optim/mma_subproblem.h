@@ -13,51 +13,58 @@ namespace flexmorph::optim {
 ///   s.t.  Σ_j P_ji / (U_j - x_j) + Q_ji / (x_j - L_j) - a_i z - y_i <= b_i
 ///         alpha_j <= x_j <= beta_j,   y_i >= 0,   z >= 0
 ///
-/// n variables x, m constraints; y and z are artificial (they keep it feasible). Needs
-/// low < alpha < beta < upp entry by entry, p0, q0, P, Q >= 0, a0 > 0, c > 0, d >= 0.
+/// It has n variables x and m constraints; the artificial variables y and z keep it feasible. It
+/// requires low < alpha < beta < upp entry by entry, p0, q0, P, Q >= 0, a0 > 0, c > 0, d >= 0.
 ///
 /// Source: Svanberg (1987), IJNME 24, 359-373; (2007), "MMA and GCMMA, versions September 2007".
 struct MmaSubproblem {
-  VectorXd low, upp, alpha, beta;  ///< (n) asymptotes L, U and bounds
-  VectorXd p0, q0;                 ///< (n)
-  MatrixXd P, Q;                   ///< (n x m): one column per constraint
-  double a0 = 1;
-  VectorXd a, b, c, d;  ///< (m)
+  VectorXd low, upp, alpha, beta;  ///< Asymptotes L and U, lower and upper bounds of x (n).
+  VectorXd p0, q0;                 ///< Coefficients of the objective (n).
+  MatrixXd P, Q;                   ///< Coefficients of the constraints (n x m), one column each.
+  double a0 = 1;                   ///< Weight of z in the objective.
+  VectorXd a, b, c, d;             ///< Coefficients of z, bounds, weights of y and of y²/2 (m).
 };
 
+/// The solution of a subproblem of the method of moving asymptotes.
 struct MmaSolution {
-  VectorXd x, y;  ///< (n), (m)
-  double z = 0;
-  VectorXd lambda;  ///< multipliers (m)
-  double kkt = 0;   ///< largest KKT residual of the subproblem
-  int newton_steps = 0;
-  bool solved = false;  ///< the residual is below 1e-6
+  VectorXd x, y;         ///< Primal variables (n) and artificial variables (m).
+  double z = 0;          ///< Artificial variable common to all constraints.
+  VectorXd lambda;       ///< Multipliers of the constraints (m).
+  double kkt = 0;        ///< Largest KKT residual of the subproblem.
+  int newton_steps = 0;  ///< Number of steps of the interior point methods.
+  bool solved = false;   ///< True if the largest KKT residual is at most 1e-6.
 };
 
-/// Primal and dual variables; ξ, η, μ, ζ belong to alpha, beta, y >= 0, z >= 0, s is the slack.
+/// Primal and dual variables of the subproblem, or a step of them.
 struct MmaVariables {
-  VectorXd x, xi, eta;        // (n)
-  VectorXd y, mu, lambda, s;  // (m)
-  double z = 1, zeta = 1;
+  VectorXd x, xi, eta;        ///< Variables x, multipliers ξ of alpha and η of beta (n).
+  VectorXd y, mu, lambda, s;  ///< Variables y, multipliers μ of y >= 0 and λ, slacks s (m).
+  double z = 1, zeta = 1;     ///< Variable z and the multiplier ζ of z >= 0.
 
+  /// Sets the sizes for n variables and m constraints, and all vectors to zero.
   void resize(int n, int m);
-  void set(const MmaVariables& from, double t, const MmaVariables& step);  ///< from + t step
+  /// Sets the variables to from + t step.
+  void set(const MmaVariables& from, double t, const MmaVariables& step);
 };
 
 class PredictorCorrector;
 
-/// Primal-dual interior point methods. Holds all work arrays: one solver serves all iterations.
+/// A primal-dual interior point solver of MMA subproblems. It owns all work arrays, so that one
+/// solver serves all iterations of an optimizer.
 ///
-/// Many constraints: Mehrotra's predictor-corrector method. Few of them, or when that one comes to
-/// a halt: Newton's method on the KKT conditions with complementarity products relaxed to ε, for
-/// ε = 1, 0.1, ... 1e-9; x, the bound multipliers, y and z are eliminated, which leaves one
-/// symmetric positive definite system of m equations per step.
+/// With many constraints it uses Mehrotra's predictor-corrector method. With few constraints, or if
+/// the predictor-corrector method stops before it has converged, it uses Newton's method on the KKT
+/// conditions with the complementarity products relaxed to ε, for ε = 1, 0.1, ... 1e-9. The
+/// variables x, the bound multipliers, y and z are eliminated; each step then solves one symmetric
+/// positive definite system of m equations.
 class MmaSolver {
  public:
+  /// Creates a solver for subproblems with n variables and m constraints.
   MmaSolver(int n, int m);
   ~MmaSolver();
 
-  /// A subproblem that stays unsolved still returns its last point, strictly within its bounds.
+  /// Solves a subproblem and returns the solution, which stays valid until the next call. If the
+  /// solver does not converge, it returns its last point, which lies strictly within the bounds.
   const MmaSolution& solve(const MmaSubproblem& subproblem);
 
  private:
@@ -79,10 +86,10 @@ class MmaSolver {
   Eigen::ArrayXd to_upp_, to_low_, to_beta_, to_alpha_;  // 1/(U-x), 1/(x-L), 1/(β-x), 1/(x-α)
   Eigen::ArrayXd plam_, qlam_, slope_;                   // p0 + P λ, q0 + Q λ, dψ/dx
   Eigen::ArrayXd dx_, diagonal_, work_;
-  VectorXd values_, r_m_, inverse_y_;  // constraint values; (m) work
-  MatrixXd G_, weighted_, normal_;     // dg/dx (n x m), D^-1 G, the system of Newton's method
+  VectorXd values_, r_m_, inverse_y_;  // constraint values (m), work arrays (m)
+  MatrixXd G_, weighted_, normal_;     // dg/dx (n x m), D^-1 G (n x m), system (m x m)
   Eigen::LLT<MatrixXd> factor_;
-  std::unique_ptr<PredictorCorrector> predictor_corrector_;  // of many constraints
+  std::unique_ptr<PredictorCorrector> predictor_corrector_;  // null if m is small
   MmaSolution solution_;
 };
 

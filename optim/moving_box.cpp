@@ -5,13 +5,13 @@
 namespace flexmorph::optim {
 namespace {
 
-constexpr int kMostIdleRuns = 14;  // in a row: a box 1e-4 of the first one
+constexpr int kMostIdleRuns = 14;  // in sequence; the box is then about 1e-4 of the first one
 
 }  // namespace
 
 void search_in_boxes(Search& search, double box, const BoxRun& run) {
   if (box == 0) {
-    // A library that ends without need (its curvature estimates ran away) may go on afresh.
+    // A library may end too early because its curvature estimates have diverged; a new run helps.
     while (!search.stopped()) {
       const Point start = search.best();
       const std::string why = run(start, search.lower(), search.upper());

@@ -9,7 +9,8 @@
 namespace flexmorph::optim {
 namespace {
 
-/// The function of MPI's profiling interface, null where no MPI is loaded: MPI 4.1, section 15.2.
+/// Returns a function of MPI's profiling interface (MPI 4.1, section 15.2), null if no MPI library
+/// is loaded.
 template <typename Function>
 Function* function_of_mpi(const char* name) {
   return reinterpret_cast<Function*>(dlsym(RTLD_DEFAULT, name));

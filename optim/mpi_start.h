@@ -2,8 +2,8 @@
 
 namespace flexmorph::optim {
 
-/// Starts MPI for Ipopt, if this Ipopt solves its linear systems with a MUMPS that was built for
-/// MPI (Debian 13) and nobody has started MPI. Every later call does nothing.
+/// Starts MPI for Ipopt if Ipopt solves its linear systems with a MUMPS that was built for MPI
+/// (Debian 13) and MPI has not been started yet. All later calls do nothing.
 /// @throws Error (numerical) if MPI does not start.
 void start_mpi_for_ipopt();
 

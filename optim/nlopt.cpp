@@ -12,21 +12,22 @@
 ///
 /// Options:
 ///   box      half width of the moving box, absolute in x (default: move_limit for ccsaq, 1.5 times
-///            as much for mma); 0: no box
-///   restart  evaluations inside one box
-///   scale    factor of f and g (default: 30 for mma, 10 for ccsaq): NLopt 2.7.1 offers no other
-///   say
-///            in its first curvature
+///            move_limit for mma); 0: no box
+///   restart  number of evaluations inside one box
+///   scale    factor of f and g (default: 30 for mma, 10 for ccsaq), because NLopt 2.7.1 has
+///            no other setting for its first curvature
 ///
-/// The box of mma is a compromise: with move_limit it ended 6 % above our mma on the plate growing
-/// at 0.5 m/s (1.5 times as much: 4.5 %), with twice as much 1.4 % higher on the short beam (median
-/// of five starts; 1.5 times: 0.5 %). Single designs scatter by a few per cent. ccsaq with
-/// move_limit and 10 stays within 1 % on both plates and 3 % on the short beam (with 30: 4 %).
+/// The box of mma is a compromise. On the plate that grows at 0.5 m/s, a box of move_limit ended
+/// 6 % above the `mma` of this program, a box of 1.5 move_limit 4.5 % above it. On the short beam
+/// (median of five starts) a box of 2 move_limit ended 1.4 % higher, a box of 1.5 move_limit 0.5 %
+/// higher. Single designs scatter by a few per cent. ccsaq with a box of move_limit and a scale of
+/// 10 stays within 1 % on both plates and 3 % on the short beam (with a scale of 30: 4 %).
 ///
-/// What the library does not do by itself: an exception or a NaN of the objective ends in a
-/// message-less failure or a NaN result, so the callbacks keep exceptions and end the run; f and
-/// g are asked for one after the other at the same x, so the last response is kept; it reports
-/// neither iterations nor a KKT residual, so rows are evaluations and the stop is the search's.
+/// This file adds three things that the library does not provide. An exception or a NaN of the
+/// objective would end in a failure without a message or in a NaN result; therefore the callbacks
+/// store exceptions and end the run. NLopt requests f and g one after the other at one x; therefore
+/// the last response is stored. NLopt reports neither iterations nor a KKT residual; therefore the
+/// rows of the history are evaluations, and the search decides when to stop.
 ///
 /// Source: Svanberg (2002), SIAM J. Optim. 12, 555-573 (the algorithm); NLopt 2.7.1.
 namespace flexmorph::optim {
@@ -51,11 +52,11 @@ std::string name_of(nlopt_result result) {
 }
 
 constexpr double kWall = 1e6;      // f of a refused design, in units of 1 + |f|
-constexpr double kBoxOfMma = 1.5;  // default, in move limits
+constexpr double kBoxOfMma = 1.5;  // default box, in move limits
 constexpr double kScaleOfMma = 30, kScaleOfCcsaq = 10;
-constexpr int kMostRefusals = 10;  // in a row: each one divides NLopt's step by ten or so
+constexpr int kMostRefusals = 10;  // in sequence; each divides NLopt's step by about ten
 
-/// One run of NLopt. Its addresses go through C, so it stays where it is.
+/// One run of NLopt. The C library holds the address of this object, therefore it cannot be moved.
 class Run {
  public:
   Run(Search& search, const Settings& settings, const Point& start, double scale)
@@ -76,14 +77,15 @@ class Run {
   Search& search_;
   const Settings& settings_;
   const Point& start_;
-  Point last_;  // what NLopt is told about the last x it asked for
+  Point last_;  // last x that NLopt requested, with the response passed to NLopt
   double scale_;
   nlopt_opt opt_ = nullptr;
   std::exception_ptr exception_;
 };
 
-/// The response at x into last_. A refused design looks like a wall: no better in its constraints
-/// and far higher than the start, so NLopt makes its approximations steeper and its step shorter.
+/// Stores the response at x in last_. A refused design gets the constraints of the start and an
+/// objective far above that of the start, so that NLopt increases the curvature of its
+/// approximations and shortens its step.
 void Run::look_at(const Eigen::Map<const VectorXd>& x) {
   if (exception_ || search_.stopped() || x == last_.x) return;
   last_.x = x;
@@ -102,7 +104,8 @@ void Run::look_at(const Eigen::Map<const VectorXd>& x) {
   search_.stop_when_spent();
 }
 
-/// Calls use(response at x). Exceptions must not pass through C: they wait for the end of the run.
+/// Calls use(response at x). Exceptions must not pass through C code; they are stored and thrown at
+/// the end of the run.
 template <typename Use>
 void Run::guarded(unsigned n, const double* x, const Use& use) {
   try {
@@ -148,12 +151,12 @@ std::string Run::go(nlopt_algorithm algorithm, const VectorXd& lower, const Vect
   check(nlopt_set_lower_bounds(opt_, lower.data()));
   check(nlopt_set_upper_bounds(opt_, upper.data()));
   if (search_.m() > 0) {
-    // No tolerance (nullptr): at a design that is feasible only within one, its approximations of
-    // g <= 0 have no lower f to offer, and it stalls.
+    // No tolerance (nullptr), because NLopt stalls at a design that is feasible only within a
+    // tolerance: its approximations of g <= 0 then contain no lower f.
     check(nlopt_add_inequality_mconstraint(opt_, static_cast<unsigned>(search_.m()),
                                            &Run::constraints, this, nullptr));
   }
-  check(nlopt_set_maxeval(opt_, evaluations + 1));  // the first one is at the known start
+  check(nlopt_set_maxeval(opt_, evaluations + 1));  // the first evaluation is at the known start
   check(nlopt_set_xtol_rel(opt_, 1e-12));
   VectorXd x = last_.x;
   double value = 0;

@@ -10,21 +10,22 @@
 namespace flexmorph::optim {
 namespace {
 
-constexpr int kSteps = 40;      // about 14 are usual
-constexpr double kGoal = 1e-9;  // largest residual that ends the search
-// Complementarity products at the start. Small ones save steps as f and g are scaled; constraints
-// that cannot be met, whose multipliers are c, need larger ones.
+constexpr int kSteps = 40;      // about 14 are typical
+constexpr double kGoal = 1e-9;  // largest residual at convergence
+// Complementarity products at the start, tried one after the other. Small products save steps with
+// the usual scaling of f and g. Constraints that cannot be met have multipliers c and need larger
+// products.
 constexpr double kStarts[] = {0.01, 1, 100};
 constexpr double kShortStep = 0.1;
-constexpr int kMostShort = 3;        // in a row: a further attempt starts with larger products
-constexpr double kStartSlack = 0.1;  // at least
-constexpr double kToBound = 0.9;     // least part of the way to the nearest bound a step may go
-constexpr double kGrowth = 10;       // of the infeasibility that one step may bring
+constexpr int kMostShort = 3;        // in sequence; then the next attempt begins
+constexpr double kStartSlack = 0.1;  // lower bound of slacks at the start
+constexpr double kToBound = 0.9;  // smallest limit of a step, as a fraction of the way to the bound
+constexpr double kGrowth = 10;    // largest factor of the infeasibility in one step
 constexpr int kHalvings = 10;
 
-constexpr double kClose = 10;             // diagonal over coupling below which a row is close
-constexpr double kPredictorError = 1e-2;  // of conjugate gradients, relative
-constexpr double kCorrectorError = 1e-5;  // a looser one costs steps
+constexpr double kClose = 10;             // ratio of E to the coupling below which a row is close
+constexpr double kPredictorError = 1e-2;  // relative tolerance of conjugate gradients
+constexpr double kCorrectorError = 1e-5;  // a larger tolerance costs steps
 constexpr int kMostIterations = 20;
 
 double fastest_decrease(const VectorXd& step, const VectorXd& v) {
@@ -53,7 +54,7 @@ PredictorCorrector::PredictorCorrector(int n, int m) : n_(n), m_(m) {
   close_.reserve(m);
 }
 
-/// The middle of the bounds; slacks fit the constraints as far as these are met.
+/// Sets the start: x in the middle of the bounds, slacks that satisfy the constraints if possible.
 void PredictorCorrector::begin(const MmaSubproblem& p, double product, MmaVariables& at) {
   at.x = 0.5 * (p.alpha + p.beta);
   at.xi = at.eta = product * (at.x - p.alpha).cwiseInverse().cwiseMax(1);
@@ -66,7 +67,7 @@ void PredictorCorrector::begin(const MmaSubproblem& p, double product, MmaVariab
   at.s = (p.b - values_).cwiseMax(kStartSlack);
 }
 
-/// What depends on x and λ alone.
+/// Updates all quantities that depend on x and λ alone.
 void PredictorCorrector::functions(const MmaSubproblem& p, const MmaVariables& at) {
   room_alpha_ = (at.x - p.alpha).array();
   room_beta_ = (p.beta - at.x).array();
@@ -92,7 +93,7 @@ double PredictorCorrector::infeasibility() const {
       {in_x_.abs().maxCoeff(), in_y_.abs().maxCoeff(), in_g_.abs().maxCoeff(), std::abs(in_z_)});
 }
 
-/// The predictor aims at products of zero.
+/// Sets the residuals of the products for the predictor, whose target is zero.
 void PredictorCorrector::predict(const MmaVariables& at) {
   lacking_.xi = -at.xi.array() * room_alpha_;
   lacking_.eta = -at.eta.array() * room_beta_;
@@ -101,7 +102,8 @@ void PredictorCorrector::predict(const MmaVariables& at) {
   lacking_.zeta = -at.zeta * at.z;
 }
 
-/// The corrector aims at `target` and knows the second-order terms of the predictor, `step_`.
+/// Sets the residuals of the products for the corrector, whose target is `target`, including the
+/// second-order terms of the predictor `step_`.
 void PredictorCorrector::correct(double target) {
   lacking_.xi += target - step_.xi.array() * step_.x.array();
   lacking_.eta += target + step_.eta.array() * step_.x.array();
@@ -110,13 +112,13 @@ void PredictorCorrector::correct(double target) {
   lacking_.zeta += target - step_.zeta * step_.z;
 }
 
-/// After predict().
+/// Returns the largest product; valid after predict().
 double PredictorCorrector::largest_product() const {
   return -std::min({lacking_.xi.minCoeff(), lacking_.eta.minCoeff(), lacking_.mu.minCoeff(),
                     lacking_.s.minCoeff(), lacking_.zeta});
 }
 
-/// Mean of the products after t of `step_`.
+/// Returns the mean of the products after a step of t times `step_`.
 double PredictorCorrector::mean_product(const MmaVariables& at, double t) const {
   const auto sum = [&](const auto& v, const auto& dv, const auto& w, const auto& dw, double sign) {
     return ((v.array() + t * dv.array()) * (w.array() + sign * t * dw.array())).sum();
@@ -129,7 +131,7 @@ double PredictorCorrector::mean_product(const MmaVariables& at, double t) const 
   return total / (2 * n_ + 2 * m_ + 1);
 }
 
-/// D^-½, W and the diagonal of the normal matrix.
+/// Computes D^-½, W and the diagonal of the normal matrix.
 void PredictorCorrector::normal_matrix(const MmaSubproblem& p, const MmaVariables& at) {
   up_ = to_upp_.square();
   down_ = to_low_.square();
@@ -167,7 +169,7 @@ void PredictorCorrector::factor_close(const MmaSubproblem& p, double closeness) 
   Eigen::LLT<Eigen::Ref<MatrixXd>> factored_in_place(block);
 }
 
-/// residual_ -> preconditioned_
+/// Applies the preconditioner to residual_; the result is preconditioned_.
 void PredictorCorrector::precondition() {
   const int k = static_cast<int>(close_.size());
   preconditioned_ = residual_.cwiseQuotient(own_ + coupling_);
@@ -179,9 +181,9 @@ void PredictorCorrector::precondition() {
   for (int i = 0; i < k; ++i) preconditioned_[close_[i]] = part[i];
 }
 
-/// step_.lambda = N^-1 rhs_ by conjugate gradients.
-/// @param tolerance  of the residual in the norm of the preconditioner, against that of rhs_
-/// @return whether it was reached
+/// Computes step_.lambda = N^-1 rhs_ by conjugate gradients.
+/// @param tolerance  of the residual relative to rhs_, both in the norm of the preconditioner
+/// @return true if the tolerance was reached
 bool PredictorCorrector::solve_normal(const MmaSubproblem& p, double tolerance) {
   step_.lambda.setZero();
   residual_ = rhs_;
@@ -204,7 +206,8 @@ bool PredictorCorrector::solve_normal(const MmaSubproblem& p, double tolerance) 
   return norm <= goal;
 }
 
-/// `step_`, from the residuals and what the products lack: everything but λ is eliminated.
+/// Computes `step_` from the residuals of the conditions and of the products, by elimination of all
+/// variables except λ.
 void PredictorCorrector::direction(const MmaSubproblem& p, const MmaVariables& at,
                                    double tolerance) {
   h_ = (lacking_.xi / room_alpha_ - lacking_.eta / room_beta_ - in_x_) * root_;
@@ -229,7 +232,7 @@ void PredictorCorrector::direction(const MmaSubproblem& p, const MmaVariables& a
   step_.zeta = (lacking_.zeta - at.zeta * step_.z) / at.z;
 }
 
-/// The part of `step_` after which something positive becomes zero.
+/// Returns the factor of `step_` at which the first positive variable becomes zero.
 double PredictorCorrector::longest_step(const MmaVariables& at) const {
   double fastest = std::numeric_limits<double>::min();
   for (const auto& [step, v] : {std::pair{&step_.xi, &at.xi},
@@ -255,7 +258,7 @@ int PredictorCorrector::solve(const MmaSubproblem& p, MmaVariables& at) {
   return steps;
 }
 
-/// Mehrotra's method from `at` on. @return whether it reached the goal
+/// Runs Mehrotra's method from `at` on. @return true if it has converged
 bool PredictorCorrector::attempt(const MmaSubproblem& p, MmaVariables& at, int& steps) {
   residuals(p, at);
   int short_ones = 0;

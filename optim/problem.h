@@ -4,52 +4,61 @@
 
 namespace flexmorph::optim {
 
-/// Values and gradients at one design.
+/// Values and gradients of the functions of a problem at one design.
 struct Response {
-  double f = 0;  ///< objective
-  VectorXd df;   ///< its gradient (n)
-  VectorXd g;    ///< constraints g <= 0 (m)
-  MatrixXd dg;   ///< their gradients, one row each (m x n)
-  /// Rows of g that bound the objective by an auxiliary variable, as f_l - z <= 0 does of
-  /// f = max f_l: they limit no design. The objective that a design has is f plus the largest of
-  /// them (a constraint of the same scale).
+  double f = 0;  ///< Objective.
+  VectorXd df;   ///< Gradient of the objective (n).
+  VectorXd g;    ///< Constraints g <= 0 (m).
+  MatrixXd dg;   ///< Gradients of the constraints, one row each (m x n).
+
+  /// First row and number of the constraints that bound the objective by an auxiliary variable,
+  /// as f_l - z <= 0 does for f = max f_l. They do not limit the design. The objective that a
+  /// design attains is f plus the largest of them (they have the scale of f).
   Eigen::Index first_bound = 0, n_bounds = 0;
 };
 
-/// Returns the objective that a design has, whatever its auxiliary variable is.
+/// Returns the objective that a design attains, whatever value its auxiliary variable has.
 double attained_objective(const Response& response);
-/// Returns the largest violation of a constraint that limits the design, at least 0.
+/// Returns the largest violation of a constraint that limits the design, at least 0. Constraints
+/// that bound an auxiliary variable do not count.
 double design_violation(const Response& response);
 
-/// minimize f(x) subject to g(x) <= 0, lower <= x <= upper.
+/// The problem: minimize f(x) subject to g(x) <= 0 and lower <= x <= upper.
 ///
-/// Variables and functions are expected scaled by their author: x of the order of 1 for a change
-/// that matters, f and g likewise.
+/// The derived class scales variables and functions: a significant change of x, f or g is of the
+/// order of 1.
 class Problem {
  public:
   virtual ~Problem() = default;
 
+  /// Returns the number of variables n.
   virtual int n_variables() const = 0;
+  /// Returns the number of constraints m.
   virtual int n_constraints() const = 0;
-  virtual VectorXd lower() const = 0;  ///< (n), finite
-  virtual VectorXd upper() const = 0;  ///< (n), finite
-  virtual VectorXd start() const = 0;  ///< (n), within the bounds
+  /// Returns the lower bounds of the variables (n), which are finite.
+  virtual VectorXd lower() const = 0;
+  /// Returns the upper bounds of the variables (n), which are finite.
+  virtual VectorXd upper() const = 0;
+  /// Returns the start design (n), which lies within the bounds.
+  virtual VectorXd start() const = 0;
 
-  /// f, g and both gradients together: one state solve serves all of them.
+  /// Computes f, g and their gradients together, because one state solve serves all of them.
   /// @param x  design (n)
-  /// @throws Error (numerical) when the state at x cannot be solved.
+  /// @throws Error (numerical) if the state at x cannot be solved.
   virtual Response evaluate(const VectorXd& x) = 0;
 
-  /// Does it have curvature()?
+  /// Returns true if the problem has curvature().
   virtual bool has_curvature() const { return false; }
-  /// σ ∇²f + Σ λ_i ∇²g_i at x (n x n, symmetric).
-  /// @throws Error (numerical) as evaluate(); Error (input) where there is none.
+  /// Returns σ ∇²f + Σ λ_i ∇²g_i at x (n x n, symmetric).
+  /// @throws Error (numerical) if the state at x cannot be solved; Error (input) if the problem has
+  ///         no second derivatives.
   virtual MatrixXd curvature(const VectorXd& /*x*/, double /*sigma*/, const VectorXd& /*lambda*/) {
     throw Error::input("optimizer: the problem has no second derivatives");
   }
 
-  /// May this design be an iterate? (A structure that has come apart may not.) Asked after
-  /// evaluate() at the same x; an optimizer that can step back does so when the answer is no.
+  /// Returns true if this design may become an iterate (a disconnected structure may not). It is
+  /// called after evaluate() at the same x. If it returns false, an optimizer that can step back
+  /// does so.
   virtual bool acceptable(const VectorXd&) { return true; }
 };
 

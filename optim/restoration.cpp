@@ -11,7 +11,7 @@ VectorXd restored(const Point& point, const VectorXd& lower, const VectorXd& upp
   VectorXd d = VectorXd::Zero(point.x.size());
   VectorXd free = VectorXd::Ones(point.x.size());
   constexpr int kPasses =
-      20;  // each pass holds at least one more entry at its bound, or is the last
+      20;  // each pass fixes at least one more entry at its bound, or is the last
   for (int pass = 0; pass < kPasses; ++pass) {
     const VectorXd held = d.cwiseProduct(VectorXd::Ones(d.size()) - free);
     const MatrixXd A = r.dg * free.asDiagonal();

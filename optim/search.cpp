@@ -181,8 +181,8 @@ bool Search::row(int iteration, const Point& point) {
   return !stopped_;
 }
 
-/// Stops at a row that is the last one.
-/// @param price  sum of the multipliers there
+/// Stops the search if the present row meets one of the criteria to stop.
+/// @param price  sum of the multipliers at this row
 void Search::end_or_go_on(const Iterate& it, const Point& point, double price) {
   const Rest& rest = settings_.rest;
   const bool met = it.violation <= settings_.feasibility;
@@ -191,8 +191,9 @@ void Search::end_or_go_on(const Iterate& it, const Point& point, double price) {
   if (it.kkt <= settings_.kkt_tolerance && met) {
     stop(Stop::converged, "KKT residual " + scientific(it.kkt) + " and violation " +
                               scientific(it.violation) + " are below their tolerances");
-    // An earlier design may be lower by what the tolerances give away, and by as little as counts
-    // for rest: it is no minimum.
+    // An earlier design may have a lower objective, because it uses the tolerances or differs by
+    // less than the criterion of stagnation. It is not a minimum; therefore the last design is
+    // preferred.
     keep_last(point, std::max(rest.objective,
                               settings_.kkt_tolerance + settings_.feasibility * (1 + 2 * price)));
   } else if (change <= rest.objective && it.kkt <= rest.kkt && met) {
@@ -214,7 +215,8 @@ void Search::end_or_go_on(const Iterate& it, const Point& point, double price) {
   }
 }
 
-/// How far apart the objectives of the last rows are; infinite while these are too few.
+/// Returns the difference of the largest and the smallest objective of the last rows; infinite if
+/// there are too few rows.
 double Search::recent_change() const {
   const auto rows = static_cast<size_t>(settings_.rest.rows);
   if (rows == 0 || objectives_.size() <= rows) return std::numeric_limits<double>::infinity();
@@ -222,7 +224,7 @@ double Search::recent_change() const {
   return *largest - *least;
 }
 
-/// Takes the last row for the best where that is better by no more than `slack`.
+/// Makes the last row the best design if the best one is better by no more than `slack`.
 void Search::keep_last(const Point& point, double slack) {
   if (attained_objective(point.response) <= attained_objective(best_.point.response) + slack)
     best_.point = point;
@@ -245,14 +247,14 @@ bool Search::rests(double change, double violation) {
 }
 
 void Search::stop(Stop stop, const std::string& message) {
-  if (stopped_) return;  // the first reason is the one
+  if (stopped_) return;  // the first reason counts
   stopped_ = true;
   stop_ = stop;
   message_ = message;
 }
 
-/// By how much the objective of the best usable design fell over the last rows; NaN where there
-/// were fewer, or no usable design before them.
+/// Returns the decrease of the objective of the best usable design over the last rows; NaN if there
+/// were fewer rows, or no usable design before them.
 double Search::improvement_over(int rows) const {
   const auto n = static_cast<size_t>(rows);
   if (best_objectives_.size() <= n) return std::numeric_limits<double>::quiet_NaN();
@@ -262,7 +264,7 @@ double Search::improvement_over(int rows) const {
 }
 
 bool Search::at_plateau() const {
-  constexpr int kLate = 10;  // where all late iterates are infeasible, nothing has ended
+  constexpr int kLate = 10;  // no plateau if the last 10 iterates are infeasible
   return rows_ - last_usable_row_ < kLate &&
          improvement_over(Verdict::kPlateauRows) < Verdict::kPlateau;  // false for NaN
 }
@@ -283,7 +285,7 @@ Result Search::result() {
   if (last_x_ != best_.point.x) {
     const Point kept = best_.point;
     Response again;
-    // A problem that fails now did not fail then: what it said then stays.
+    // If the evaluation fails now although it succeeded before, the earlier response stays.
     if (evaluate(kept.x, again) == Trial::taken) best_.point = {kept.x, again};
   }
   Result result;

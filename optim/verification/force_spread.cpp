@@ -5,10 +5,11 @@
 namespace flexmorph::verification {
 namespace {
 
-/// Forces of a pin on the rim before it. @return whether the rim can hold the pin
+/// Adds the forces of a pin on the half of the rim that its force points to.
+/// @return true if this half can carry the force
 bool add_bearing(const ForceSpread& load, std::span<const Vec2> points,
                  std::span<const double> shares, std::vector<Vec2>& out) {
-  constexpr double kLeast = 1e-6;  // of the rim that carries, across to along
+  constexpr double kLeast = 1e-6;  // smallest det / trace² of the loaded half of the rim
   const auto normal = [&](size_t k) -> Vec2 { return (points[k] - load.center).normalized(); };
   Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
   for (size_t k = 0; k < points.size(); ++k)
@@ -20,7 +21,7 @@ bool add_bearing(const ForceSpread& load, std::span<const Vec2> points,
   return true;
 }
 
-/// Forces of a moment. @return whether the points have a lever
+/// Adds the forces of a moment. @return true if the points have a lever
 bool add_moment(const ForceSpread& load, std::span<const Vec2> points,
                 std::span<const double> shares, std::vector<Vec2>& out) {
   Vec2 middle = Vec2::Zero();

@@ -7,22 +7,24 @@
 
 namespace flexmorph::verification {
 
-/// A force and a moment that are spread over points.
+/// A force and a moment that are distributed over points.
 struct ForceSpread {
-  Vec2 force{0, 0};      ///< in all [N]
-  double moment = 0;     ///< in all, counterclockwise, of forces that have no resultant [N m]
-  bool bearing = false;  ///< whether the force is that of a pin in a bore
-  Vec2 center{0, 0};     ///< of the bore [m]
+  Vec2 force{0, 0};      ///< Resultant force [N].
+  double moment = 0;     ///< Additional moment, counterclockwise, without a resultant force [N m].
+  bool bearing = false;  ///< True if a pin in a bore exerts the force.
+  Vec2 center{0, 0};     ///< Centre of the bore [m].
 };
 
-/// Returns the forces at the points [N], one for each.
+/// Returns the forces at the points [N], one for each point.
 ///
-/// Force: even by the shares; of a pin radial, on the half of the rim before it, proportional to
-/// the cosine of the angle from the force (n nᵀ a with the normal n, a such that the sum is the
-/// force). Moment: as those of a disc that is turned around the weighted middle of the points.
-/// @param shares  of the points in an even force (sum 1)
-/// @return nothing where points cannot carry it: there is none, a pin has no rim before it that
-///         holds it in both directions, a moment has no lever
+/// A force without a pin is distributed uniformly, in proportion to the shares. The force of a pin
+/// acts radially on that half of the rim that it points to, and is proportional to the cosine of
+/// the angle from the force (n nᵀ a with the normal n; a is such that the sum is the force). A
+/// moment gives forces perpendicular to the distance from the weighted centre of the points and
+/// proportional to that distance, like a rotating disc.
+/// @param shares  weights of the points in a uniformly distributed force (sum 1)
+/// @return an empty vector if the points cannot carry the load: there are no points, the rim in
+///         front of a pin does not hold it in both directions, or a moment has no lever
 std::vector<Vec2> spread(const ForceSpread& load, std::span<const Vec2> points,
                          std::span<const double> shares);
 

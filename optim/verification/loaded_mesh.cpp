@@ -11,7 +11,7 @@
 namespace flexmorph::verification {
 namespace {
 
-/// Does a side of the outline run along the line?
+/// Tells whether a side of the outline runs along the line.
 bool runs_along(const Segment& line, std::span<const Region> regions, double small) {
   const double length = (line.b - line.a).norm();
   const Vec2 along = (line.b - line.a) / length;
@@ -33,7 +33,7 @@ bool runs_along(const Segment& line, std::span<const Region> regions, double sma
   });
 }
 
-/// Collects what of a mesh lies at a location.
+/// Collects the nodes of a mesh at a location.
 class Collector {
  public:
   explicit Collector(const PartMesh& mesh) : share_(mesh.points.size(), 0.0) {}
@@ -42,7 +42,7 @@ class Collector {
     if (share_[static_cast<std::size_t>(node)] == 0) nodes_.push_back(node);
     share_[static_cast<std::size_t>(node)] += share;
   }
-  /// Material that takes part, before unsupported pieces are known: all of it.
+  /// Returns the collected nodes with shares of sum 1, and clears the collection.
   LocationNodes take() {
     LocationNodes out;
     double sum = 0;
@@ -119,7 +119,7 @@ LoadedMesh::LoadedMesh(const PartMesh& mesh, const fem::PlaneSection& section, c
         fem::TrianglePlateSupports{held_, clamp_lines_, small_, omitted_, springs_});
 }
 
-/// Clamps from the largest x on.
+/// Sorts the loads by their clamps, from the largest x to the smallest.
 void LoadedMesh::sort_loads() {
   const auto n = loads_.loads.size();
   order_.resize(n);
@@ -142,13 +142,13 @@ void LoadedMesh::find_locations() {
   Collector all(mesh_);
   std::vector<char> seen(mesh_.points.size());
   for (const Location& location : locations_) {
-    std::fill(seen.begin(), seen.end(), 0);  // sides between two triangles count once
+    std::fill(seen.begin(), seen.end(), 0);  // a side between two triangles counts once
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
       const auto& n = mesh_.triangles[t];
       if (!location.area.empty()) {
         const auto [a, b, c] = mesh_.corners(t);
         if (!contains({location.area, {}}, (a + b + c) / 3)) continue;
-        // Corners have no share of a force over an area, but they are there.
+        // Corners have no share of a uniform force on an area, but they belong to the location.
         for (std::size_t k = 0; k < 6; ++k)
           all.add(n[k], k < 3 ? 0 : fem::T6(mesh_.corners(t)).area() / 3);
         continue;
@@ -178,8 +178,8 @@ void LoadedMesh::find_locations() {
     }
 }
 
-/// Balanced forces have no reactions: what is held only says which of the displacements that differ
-/// by a rigid motion is meant. One node of each pin is held, without a statical indeterminacy.
+/// Holds one node of each pin, in a statically determinate way. Balanced forces cause no reactions;
+/// the held nodes only select one of the displacements that differ by a rigid motion.
 void LoadedMesh::hold_at_pins() {
   if (!loads_.balance) return;
   const auto& pins = loads_.balance->pins;
@@ -223,7 +223,7 @@ void LoadedMesh::find_balance() {
   balance_.emplace(mesh_, inertia);
 }
 
-/// Do supports, or clamps, keep the piece from moving as a whole?
+/// Tells whether supports or clamps prevent all rigid motions of a connected region.
 bool LoadedMesh::is_held(int piece) const {
   std::vector<char> own(mesh_.points.size(), 0);
   double first = INFINITY, last = -INFINITY;  // x
@@ -242,7 +242,7 @@ bool LoadedMesh::is_held(int piece) const {
     }
   }
   middle /= n;
-  for (const double x : clamp_lines_)  // it sticks out of it, and does not reach back to it
+  for (const double x : clamp_lines_)  // the region lies entirely in front of this clamp
     if (last > x + small_ && first > x + small_) return false;
   if (!clamp_lines_.empty()) return true;
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
@@ -269,7 +269,7 @@ void LoadedMesh::omit_unsupported_pieces() {
     if (omitted_[t] != 0) continue;
     for (const int node : mesh_.triangles[t]) carries[static_cast<std::size_t>(node)] = 1;
   }
-  // Forces go to what carries them.
+  // Forces are distributed over the supported material only.
   for (LocationNodes& location : at_locations_) {
     std::erase_if(location.shares,
                   [&](const auto& each) { return !carries[static_cast<std::size_t>(each.first)]; });

@@ -9,7 +9,8 @@
 
 namespace flexmorph::verification {
 
-/// Nodes and their forces [N]; nothing where the material there cannot carry the force.
+/// Returns nodes and their forces [N]; empty if the material at the location cannot carry the
+/// force.
 std::vector<std::pair<int, Vec2>> LoadedMesh::forces_at_nodes(const Force& force) const {
   const auto& at = at_locations_[static_cast<std::size_t>(force.location)].shares;
   std::vector<Vec2> points;
@@ -25,9 +26,11 @@ std::vector<std::pair<int, Vec2>> LoadedMesh::forces_at_nodes(const Force& force
   return out;
 }
 
-/// Springs k Δy between neighbours on the edge. Straight in x, however it is turned: of elongations
-/// Δx - s Δy, s the slope from the first node to the last one, the part with s is a spring of
-/// negative stiffness between these two.
+/// Finds the nodes of the held edge and sets springs between neighbours, where k Δy is a constant.
+/// The edge shall stay straight but may rotate. Therefore the springs in x have the elongation
+/// Δu - s Δy, where Δu is the difference of displacements of two neighbours and s the rotation from
+/// the first node to the last one. The term with s acts like a spring of negative stiffness between
+/// these two nodes.
 void LoadedMesh::find_edge() {
   if (!loads_.held_edge) return;
   std::vector<char> carries(mesh_.points.size(), 0);
@@ -53,7 +56,8 @@ double LoadedMesh::held_end_stretch(std::size_t row) const {
   return edge_.empty() ? 0 : loads_.loads[static_cast<std::size_t>(order_[row])].held_end_stretch;
 }
 
-/// Elongations across are Δw + g_e Δy.
+/// The springs in y have the elongation Δw + g_e Δy, with Δw the difference of displacements and
+/// g_e the suppressed stretch of the edge.
 VectorXd LoadedMesh::edge_energies(const MatrixXd& u) const {
   VectorXd out = VectorXd::Zero(u.rows());
   const auto difference = [&](int a, int b, int c) -> VectorXd {
@@ -75,7 +79,7 @@ VectorXd LoadedMesh::edge_energies(const MatrixXd& u) const {
   return out;
 }
 
-/// -ρ a of all material that takes part, for these rows: (n x 2 n_nodes).
+/// Adds the forces -ρ a of all material that takes part, for the given rows (n x 2 n_nodes).
 void LoadedMesh::add_inertia(std::span<const int> rows, MatrixXd& at_nodes) const {
   const Grid& g = loads_.grid;
   const auto n = static_cast<Eigen::Index>(rows.size());
@@ -143,7 +147,7 @@ MatrixXd LoadedMesh::prescribed() const {
 }
 
 MatrixXd LoadedMesh::forces() const {
-  constexpr std::size_t kBlock = 16;  // forces at all nodes are there for so many loads at a time
+  constexpr std::size_t kBlock = 16;  // number of loads whose nodal forces are stored at a time
   const auto n = order_.size();
   MatrixXd out = MatrixXd::Zero(static_cast<Eigen::Index>(n), plate_->n_unknowns());
   if (balance_) {
@@ -188,7 +192,7 @@ MatrixXd LoadedMesh::forces() const {
     for (int a = 0; a < 12; ++a)
       local.col(a) = given.col(2 * mesh_.triangles[t][static_cast<std::size_t>(a / 2)] + a % 2);
     if (local.isZero(0)) continue;
-    // Behind its clamp a load has no unknowns: what is added there is ignored.
+    // A load has no unknowns behind its clamp; contributions there are ignored.
     const MatrixXd back = local * fem::T6(mesh_.corners(t)).stiffness(section_);
     for (int a = 0; a < 12; ++a)
       if (const int row = plate_->row(mesh_.triangles[t][static_cast<std::size_t>(a / 2)], a % 2);

@@ -7,7 +7,7 @@
 namespace flexmorph::verification {
 namespace {
 
-/// The part of a segment in a box; nothing where that is a point or less.
+/// Returns the portion of a segment inside a box; nothing if it is a point or empty.
 std::optional<Segment> clipped(const Segment& s, const Box& box) {
   const Vec2 along = s.b - s.a;
   double from = 0, to = 1;
@@ -40,7 +40,8 @@ Location point_location(const Vec2& point, const Region& border, double reach) {
       near = std::min(near, distance(side, point));
       if (const auto part = clipped(side, box)) out.lines.push_back(*part);
     }
-  // Points are said to a fraction of a cell.
+  // A point counts as a point of the border within half of the reach, because its position is only
+  // given to a fraction of a cell.
   if (near > 0.5 * reach) out.lines.clear();
   return out;
 }

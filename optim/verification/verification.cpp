@@ -15,12 +15,12 @@
 namespace flexmorph::verification {
 namespace {
 
-// Corners that reach around by more have stresses without a limit: triangles are small there from
-// the start.
+// Stresses are singular at corners whose material angle exceeds kReentrant [rad]. There the first
+// triangles are smaller by the factor kAtCorners.
 constexpr double kReentrant = 200 * std::numbers::pi / 180, kAtCorners = 0.25;
-constexpr Eigen::Index kBlock = 16;  // loads whose stresses are there at a time
-// Errors in the energy of a triangle fall like h^6, the fourth power of strains times its area; no
-// side is cut to less than a quarter at once.
+constexpr Eigen::Index kBlock = 16;  // number of loads whose stresses are stored at a time
+// The energy error of a triangle decreases like h^6: the squared strain error like h^4, the area
+// like h^2. One refinement reduces a side to no less than a quarter.
 constexpr double kPower = 1. / 6, kLeastCut = 0.25;
 
 Box bounds_of(std::span<const Region> regions) {
@@ -33,19 +33,19 @@ Box bounds_of(std::span<const Region> regions) {
   return out;
 }
 
-/// What one mesh says.
+/// Results on one mesh.
 struct MeshResult {
-  VectorXd compliances, errors;         // by rows of LoadedMesh [J]
-  VectorXd by_triangle;                 // what counts of the errors [J]
-  double compliance = 0, error = 0;     // what counts of all loads [J]
-  std::vector<LargestStress> stresses;  // by rows of LoadedMesh
-  std::vector<double> displacements;    // likewise, of any node [m]
+  VectorXd compliances, errors;         // for each row of LoadedMesh [J]
+  VectorXd by_triangle;                 // weighted error of each triangle [J]
+  double compliance = 0, error = 0;     // weighted sum or largest of all loads [J]
+  std::vector<LargestStress> stresses;  // for each row of LoadedMesh
+  std::vector<double> displacements;    // largest of all nodes, for each row [m]
   LargestStress largest;
   int largest_row = -1;
   int worst_row = 0;
-  MatrixXd stress;             // of the worst row (3 x n_nodes)
-  VectorXd displacement;       // likewise (2 n_nodes)
-  LargestStress worst_stress;  // likewise
+  MatrixXd stress;             // for the worst row (3 x n_nodes)
+  VectorXd displacement;       // for the worst row (2 n_nodes)
+  LargestStress worst_stress;  // for the worst row
 };
 
 class OutlineVerifier {
@@ -71,7 +71,7 @@ class OutlineVerifier {
       mesher_.refine(sizes_);
       out_.mesh = mesher_.mesh();
       const std::size_t n = out_.mesh.triangles.size();
-      if (n == before) break;  // nothing is left to refine
+      if (n == before) break;  // no triangle was refined
       LoadedMesh mesh(out_.mesh, section_, loads_, locations_, small_);
       if (mesh.unsupported_load() >= 0) return unsupported(mesh);
       MeshResult now = analyse(mesh);
@@ -122,7 +122,8 @@ bool is_near(const std::vector<Vec2>& area, const Vec2& at, double reach) {
   return false;
 }
 
-/// Nodes whose stress is no matter of how a force is put on, or a support.
+/// Returns 1 for nodes away from all locations, 0 for nodes whose stress depends on how a force or
+/// a support is applied (n_nodes).
 std::vector<char> OutlineVerifier::away_from_locations(const LoadedMesh& mesh) const {
   const PartMesh& m = mesh.plate().mesh();
   std::vector<char> out(m.points.size(), 1);
@@ -168,7 +169,7 @@ LargestStress OutlineVerifier::largest_of(const LoadedMesh& mesh, int row, const
   return out;
 }
 
-/// Of all nodes, from the unknowns.
+/// Returns the displacements of all nodes (2 n_nodes) from the unknowns; held ones are zero.
 VectorXd displacement_of(LoadedMesh& mesh, const VectorXd& unknowns) {
   VectorXd out = VectorXd::Zero(2 * static_cast<Eigen::Index>(mesh.plate().mesh().points.size()));
   for (int k = 0; k < out.size(); ++k)
@@ -276,13 +277,14 @@ void OutlineVerifier::keep(const LoadedMesh& mesh, MeshResult& now, double error
       if (forces[k] != 0 || forces[k + 1] != 0)
         each.forces.push_back({static_cast<int>(k / 2), forces.segment<2>(k)});
   }
-  // The stress that is kept belongs to the worst one.
+  // The worst load comes first, because out_.stress belongs to it.
   std::stable_sort(
       out_.mesh_loads.begin(), out_.mesh_loads.end(),
       [&](const MeshLoad& a, const MeshLoad& b) { return (a.load == worst) > (b.load == worst); });
 }
 
-/// Smaller triangles where the error is, so that all have an equal part of what is allowed.
+/// Requests smaller triangles where the error is large, so that all triangles get an equal fraction
+/// of the allowed error.
 void OutlineVerifier::refine(const MeshResult& now, double error) {
   const double wanted =
       std::min(0.5 * settings_.tolerance * now.compliance, 0.25 * std::max(now.error, 0.1 * error));
@@ -292,7 +294,8 @@ void OutlineVerifier::refine(const MeshResult& now, double error) {
     if (!(own > part)) continue;
     const auto [a, b, c] = out_.mesh.corners(t);
     const double side = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-    // A longest side just as long as allowed is not cut: a little less.
+    // The requested size is at most 0.9 of the side, because a side of the allowed size is not
+    // split.
     const double size = side * std::clamp(std::pow(part / own, kPower), kLeastCut, 0.9);
     sizes_.refine((a + b + c) / 3, 0.5 * side, size);
   }

@@ -11,16 +11,17 @@
 namespace flexmorph::mmc {
 namespace {
 
-/// Outlines and round-off take as much from a width that is wanted.
+/// Fraction of a required width that counts as reached, because outlines have a tolerance.
 constexpr double kWithin = 0.99;
 
-/// What the stages of a cycle may spend, in equal shares.
+/// The limits on the cost of the stages of a cycle, in equal shares.
 class Shares {
  public:
   Shares(const optim::Settings& settings, int n_stages, int n_shares)
       : settings_(settings), n_stages_(n_stages), n_shares_(n_shares) {}
 
-  /// @param stage  of those from one start, from 0
+  /// Returns the share of the next stage.
+  /// @param stage  index among the stages from one start, from 0
   Share of(int stage) {
     ++used_;
     const auto until = [&](int k) { return settings_.max_iterations * k / n_stages_; };
@@ -30,7 +31,7 @@ class Shares {
             settings_.max_evaluations > 0 ? std::max(1, solves) : 0};
   }
 
-  /// The larger part of a share, before what carries nothing is looked for once more.
+  /// Returns the first 60 % of a share, after which unloaded components are removed again.
   Share begin_of(Share share) const {
     constexpr double kBegin = 0.6;
     const double rest = 1 - kBegin;
@@ -52,7 +53,7 @@ size_t most_bands(std::span<const Part> parts) {
   return out;
 }
 
-/// The layouts of all starts of a body, the case's own first.
+/// Returns the start designs (n_starts x n_bodies); the present designs come first.
 std::vector<std::vector<Design>> starts_of(std::span<const Part> parts, int cycle) {
   size_t n = 1;
   for (const Part& p : parts)
@@ -67,13 +68,13 @@ std::vector<std::vector<Design>> starts_of(std::span<const Part> parts, int cycl
   return out;
 }
 
-/// A result and the number of its start, from 1.
+/// A result and the number of the start that led to it, from 1.
 struct FromStart {
   StageResult result;
   int start = 1;
 };
 
-/// Stages 1 to 4.
+/// Runs the stages 1 to 4 of design_bodies().
 FromStart staged(StageRunner& run, int cycle) {
   const std::vector<Part>& parts = run.parts();
   const bool wide =
@@ -94,7 +95,7 @@ FromStart staged(StageRunner& run, int cycle) {
     }
     const Share share = shares.of(coarse);
     now = wide ? with_erosion(run, now, share) : last_stage(run, now, share);
-    // One that was stopped on its way compares with none.
+    // A stopped run is incomplete; its result must not replace a complete one.
     if (!best || (run.going() &&
                   is_better(now.result, best->result.result, run.settings().optimizer.feasibility)))
       best = {std::move(now), static_cast<int>(s) + 1};
@@ -104,7 +105,8 @@ FromStart staged(StageRunner& run, int cycle) {
     now = without_idle(run, now, false);
     const Share share = shares.of(n_stages - 1), begin = shares.begin_of(share);
     now = last_stage(run, now, begin);
-    // Widths tear bars off. What is left of them goes, and its material is spent elsewhere.
+    // The constraints on widths cut some bars off. Their dangling ends are removed, and the
+    // optimizer uses the material elsewhere.
     now = without_idle(run, now, false);
     now = last_stage(run, now, {share.iterations - begin.iterations, share.solves});
     now = without_idle(run, now, true);
@@ -112,19 +114,19 @@ FromStart staged(StageRunner& run, int cycle) {
   return *best;
 }
 
-/// The designs as they are: nothing is optimized.
+/// Returns the designs as they are, without optimization.
 StageResult evaluated(const std::vector<Part>& parts) {
   StageResult out = first_designs(parts);
   for (size_t k = 0; k < parts.size(); ++k)
     out.formulations[k] = last_formulation(parts[k].problem);
   out.result.verdict.kind = optim::Verdict::Kind::evaluated;
-  // A part has no variables, and no optimality.
+  // An outline in place of components has no variables, therefore no KKT residual.
   if (std::any_of(parts.begin(), parts.end(), [](const Part& p) { return p.problem.part; }))
     return out;
   Whole whole(parts, out.designs, out.formulations);
   optim::Problem& problem = whole.problem();
   const VectorXd x = problem.start();
-  // A crisp volume meets its limit to a thousandth only, and counts as an active limit.
+  // A crisp volume meets its limit only to a thousandth; with this tolerance the limit is active.
   constexpr double kActive = 1e-3;
   out.result.kkt = out.result.verdict.kkt =
       optim::kkt_residual(problem.evaluate(x), x, problem.lower(), problem.upper(), kActive);
@@ -158,7 +160,7 @@ BodyOutcome outcome_of(const Part& p, const Design& design, const Formulation& f
   out.symmetry = design.symmetry();
   MmcProblem state({p.plate, design, p.ersatz, p.loads}, formulation.tdf, p.problem.goal);
   state.evaluate(state.start());
-  // A goal without a compliance has never asked for one.
+  // If no row of the goal needs the compliance, it has not been computed yet.
   out.compliance = std::isfinite(state.compliance())
                        ? state.compliance()
                        : design_compliance(p.problem, p.loads, state.factors());
@@ -167,7 +169,7 @@ BodyOutcome outcome_of(const Part& p, const Design& design, const Formulation& f
     out.further[key_of(*row)] = state.values(*row)->maxCoeff();
   out.sharp = sharp_design(p.problem, design.components(), p.loads);
   out.of_part = p.problem.part.has_value();
-  if (out.of_part) {  // nothing of it is regularized
+  if (out.of_part) {  // an outline has no regularized values
     out.compliance = out.sharp.compliance;
     out.volume = out.sharp.volume;
     out.further = out.sharp.further;
@@ -177,7 +179,8 @@ BodyOutcome outcome_of(const Part& p, const Design& design, const Formulation& f
   out.load_compliances.assign(each.data(), each.data() + each.size());
   out.worst_compliance = each.maxCoeff();
   if (condition) out.condition = p.loads.condition();
-  // The paper's comparison: the volume that was allowed (or came out), spread evenly.
+  // The comparison of the paper: uniform material with the allowed volume (or the crisp volume if
+  // none is prescribed).
   const double volume = allowed_volume(p.problem.goal).value_or(out.sharp.volume);
   const VectorXd even = VectorXd::Constant(p.problem.grid.n_cells(), volume);
   out.uniform_compliance = design_compliance(p.problem, p.loads, {even, even});

@@ -15,15 +15,16 @@
 namespace flexmorph::mmc {
 namespace {
 
-/// The static problem with the gradient of the motion at one design, in a trust region around it.
+/// The static problem with the gradient of the motion at one design, in a trust region around this
+/// design.
 class Corrected final : public optim::Problem {
  public:
-  /// What the motion says at that design.
+  /// Properties of the motion at the centre of the trust region.
   struct Seen {
-    VectorXd correction;  ///< ∇log J - ∇log C
-    MatrixXd root;        ///< R of the curvature R Rᵀ that C lacks (n x rank)
-    VectorXd limits;      ///< its limits, <= 0 (m)
-    MatrixXd slopes;      ///< their gradients (m x n)
+    VectorXd correction;  ///< Correction of the gradient, ∇log J - ∇log C (n).
+    MatrixXd root;        ///< Matrix R of the curvature R Rᵀ that C lacks (n x rank).
+    VectorXd limits;      ///< Limits of the motion, <= 0 (m).
+    MatrixXd slopes;      ///< Gradients of the limits (m x n).
   };
   Corrected(optim::Problem& loaded, const VectorXd& x, double log_compliance, Seen seen,
             double radius)
@@ -34,7 +35,8 @@ class Corrected final : public optim::Problem {
         radius_(radius) {}
 
   int n_variables() const override { return loaded_.n_variables(); }
-  /// Those of the static problem, then the limits of the motion, which are linear here.
+  /// Returns the number of constraints: those of the static problem, then the limits of the motion,
+  /// which are linearised here.
   int n_constraints() const override {
     return loaded_.n_constraints() + static_cast<int>(seen_.limits.size());
   }
@@ -68,8 +70,8 @@ class Corrected final : public optim::Problem {
   double radius_;
 };
 
-/// The positive part of a symmetric rank-one matrix, from the last differences of designs and of
-/// gradients.
+/// The positive semidefinite part of a symmetric rank-one (SR1) matrix, from the last differences
+/// of designs and of gradients.
 class Secants {
  public:
   explicit Secants(int most) : most_(static_cast<size_t>(most)) {}
@@ -79,7 +81,7 @@ class Secants {
     pairs_.emplace_back(step, change);
     if (pairs_.size() > most_) pairs_.pop_front();
   }
-  /// R of R Rᵀ (n x rank).
+  /// Returns the factor R of the matrix R Rᵀ (n x rank).
   MatrixXd root(Eigen::Index n) const {
     const auto m = static_cast<Eigen::Index>(pairs_.size());
     if (m == 0) return MatrixXd(n, 0);
@@ -92,7 +94,7 @@ class Secants {
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(0.5 * (product + product.transpose()));
     MatrixXd out(n, 0);
     for (Eigen::Index k = 0; k < m; ++k) {
-      constexpr double kNone = 1e-8;  // of the largest: no curvature is known there
+      constexpr double kNone = 1e-8;  // relative to the largest; below, the curvature is unknown
       const double value = eigen.eigenvalues()[k];
       if (!(value > kNone * eigen.eigenvalues().cwiseAbs().maxCoeff())) continue;
       out.conservativeResize(n, out.cols() + 1);
@@ -106,7 +108,7 @@ class Secants {
   std::deque<std::pair<VectorXd, VectorXd>> pairs_;
 };
 
-/// Designs on their way to an optimum of their motion.
+/// The cycles of correct_designs().
 class Corrector {
  public:
   Corrector(std::vector<BodyProblem>& problems, const LoadsAt& loads, MotionResponse& motion,
@@ -128,7 +130,7 @@ class Corrector {
     }
   }
 
-  /// The optimizer on J: every iteration a motion and its adjoint.
+  /// Minimizes J directly; every iteration takes a motion and its adjoint.
   void go_directly() {
     renew_loads();
     look();
@@ -158,7 +160,7 @@ class Corrector {
   }
 
  private:
-  /// Static problems at the designs as they are.
+  /// Computes the loads of the present designs and creates the parts from them.
   void renew_loads() {
     responses_ = loads_at_();
     std::vector<LoadedBody> bodies;
@@ -171,7 +173,7 @@ class Corrector {
     }
   }
 
-  /// J and its gradient where the designs are.
+  /// Computes J and its gradient at the present designs.
   const CorrectedCycle& look() {
     MotionState state = motion_state_of(parts_, motion_);
     const std::vector<Design> designs = designs_of(parts_);
@@ -192,7 +194,7 @@ class Corrector {
     now_.angle = angle_between(r.df, loaded.problem().evaluate(x).df);
   }
 
-  /// The limits of the motion.
+  /// Returns the constraint rows of the limits of the motion.
   std::vector<int> limit_rows(const Whole& moved) const {
     std::vector<int> out;
     for (size_t b = 0; b < parts_.size(); ++b) {
@@ -215,21 +217,23 @@ class Corrector {
     for (size_t k = 0; k < parts_.size(); ++k) parts_[k].problem.design = designs[k];
   }
 
-  /// After a design was taken its sharp volume is looked up anew: it may ask for a little more.
+  /// Returns the largest violation at the present design. It may be positive although the design
+  /// was accepted, because the crisp volume is recomputed afterwards.
   static double missed_at(const optim::Response& here) { return std::max(0.0, here.g.maxCoeff()); }
 
-  /// What the static problem with the gradient of the motion comes to within the radius, which
-  /// shrinks where its optimizer finds nothing better: that costs no motion. Narrow places come and
-  /// go at once; a design next to where one comes has no better neighbour that keeps all limits.
-  /// Then the best one that misses them by little is the step: the next cycles restore it.
+  /// Solves the static problem with the gradient of the motion within the radius. If the optimizer
+  /// finds no better design, the radius is reduced; this takes no motion. Violations of the minimum
+  /// length scale appear and disappear discontinuously: a design close to such a discontinuity has
+  /// no better neighbour that satisfies all limits. In this case the best design with a small
+  /// violation is the step, and the following cycles restore its feasibility.
   optim::Result best_within(optim::Problem& loaded, const VectorXd& x, const optim::Response& here,
                             const Whole& moved) {
-    constexpr double kLittle = 3e-3;  // a place by 30 % (OutlineLimits), a volume by 0.3 %
+    constexpr double kLittle = 3e-3;  // largest violation g; 0.3 % of a volume
     const std::vector<int> limits = limit_rows(moved);
     const Corrected::Seen seen{here_.df - here.df, secants_.root(x.size()), here_.g(limits),
                                here_.dg(limits, Eigen::all)};
     const double first = radius_;
-    std::optional<optim::Result> forgiven;  // within the first radius
+    std::optional<optim::Result> forgiven;  // best one with a small violation, first radius
     for (;; radius_ *= 0.5) {
       Corrected problem(loaded, x, here.f, seen, radius_);
       optim::Settings inner = settings_.optimizer;
@@ -257,7 +261,7 @@ class Corrector {
     }
   }
 
-  /// One cycle of first order. @return was its design taken?
+  /// Runs one cycle of first order. @return true if its design was accepted
   bool step(int cycle) {
     constexpr double kTaken = 0.1, kGood = 0.75, kPoor = 0.25, kMissed = 1e-5;
     MotionState state = motion_state_of(parts_, motion_);
@@ -310,7 +314,7 @@ class Corrector {
   std::vector<Formulation> formulations_;
   CorrectedCycle now_;
   Secants secants_;
-  optim::Response here_;  // of the motion, at the design
+  optim::Response here_;  // response of the motion at the present design
   double radius_ = 0, begin_ = cpu_seconds();
   bool going_ = true;
 };

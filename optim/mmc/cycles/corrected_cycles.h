@@ -9,65 +9,71 @@
 
 namespace flexmorph::mmc {
 
-/// How designs of equivalent static loads go on.
+/// Method that continues designs of equivalent static loads with the gradient of the motion.
 enum class Correction {
-  none,
-  first_order,  ///< cycles whose static problem has the gradient of the motion
-  direct        ///< the optimizer on the motion itself
+  none,         ///< The designs stay as they are.
+  first_order,  ///< Cycles with static problems that are corrected by the gradient of the motion.
+  direct        ///< The optimizer minimizes the number of the motion itself.
 };
 
+/// Settings of the correction of designs.
 struct CorrectionSettings {
-  Correction kind = Correction::none;
-  int max_cycles = 20;        ///< of first_order; iterations of direct
-  int inner_iterations = 40;  ///< of a cycle's static problem
-  double radius = 0.05;       ///< of the first cycle's trust region, of scaled variables
-  double smallest_radius = 1e-4;
-  int secants = 10;           ///< pairs of designs that curvature is learned from; 0: none
-  double kkt_part = 1e-2;     ///< it has converged at this part of the first KKT residual
-  optim::Settings optimizer;  ///< of the static problems, or of the motion
+  Correction kind = Correction::none;  ///< Method.
+  int max_cycles = 20;                 ///< Largest number of cycles, or of iterations if direct.
+  int inner_iterations = 40;           ///< Largest number of iterations in the problem of a cycle.
+  double radius = 0.05;                ///< First radius of the trust region, scaled variables [-].
+  double smallest_radius = 1e-4;       ///< Radius below which the cycles end [-].
+  int secants = 10;           ///< Number of pairs of designs that give the curvature; 0: none.
+  double kkt_part = 1e-2;     ///< Fraction of the first KKT residual at which it has converged.
+  optim::Settings optimizer;  ///< Optimizer of the static problems, or of the motion if direct.
 };
 
-/// A cycle of either kind.
+/// A row of the history of corrected cycles: a cycle, or an iteration of a direct run.
 struct CorrectedCycle {
-  int cycle = 0;         ///< 0: the design they begin with
-  double value = 0;      ///< J
-  double kkt = 0;        ///< of log J
-  double angle = 0;      ///< between the gradients of J and C, uncorrected [rad]
-  double radius = 0;     ///< of the trust region it was looked for in
-  double predicted = 0;  ///< part that J was to fall by
-  double actual = 0;     ///< and fell by
-  bool accepted = true;
-  int motions = 0;     ///< so far, each with its adjoint
-  double seconds = 0;  ///< CPU, so far
+  int cycle = 0;         ///< Number of the cycle; 0: the initial design.
+  double value = 0;      ///< Objective J of the motion.
+  double kkt = 0;        ///< KKT residual of log J.
+  double angle = 0;      ///< Angle between the gradients of J and of the uncorrected C [rad].
+  double radius = 0;     ///< Radius of the trust region in which the step was computed [-].
+  double predicted = 0;  ///< Predicted relative decrease of J [-].
+  double actual = 0;     ///< Actual relative decrease of J [-].
+  bool accepted = true;  ///< True if the design was accepted.
+  int motions = 0;       ///< Number of motions so far, each with its adjoint.
+  double seconds = 0;    ///< CPU time so far [s].
 };
 
-/// The loads of all bodies at their designs as they are.
+/// A function that returns the loads of all bodies at their present designs.
 using LoadsAt = std::function<std::vector<std::unique_ptr<ComplianceEvaluator>>()>;
-/// Sees every cycle; false ends them after it.
+/// A function that is called with every cycle; it returns false to end the cycles.
 using SeeCycle = std::function<bool(const CorrectedCycle&)>;
 
-/// Brings designs nearer to an optimum of their motion. In cycle k of first_order
+/// Improves designs towards an optimum of a number J of their motion. Cycle k of the method
+/// first_order solves the problem
 ///
 ///   min  C(x)/C_k + (∇log J_k - ∇log C_k)ᵀ (x - x_k),   |x - x_k|_∞ <= Δ_k
 ///
-/// under the limits of the design, C the objective of the static problem: s C(x) plus what is wrong
-/// with its gradient, s = J_k / C_k, by s C_k. x is taken when J falls by a tenth of what was
-/// predicted; Δ grows or is halved by the ratio. A fixed point at which Δ is not active is a KKT
-/// point of J. Components neither come nor go, bands are those of the last stage.
+/// under the limits of the design, where C is the objective of the static problem. This is s C(x)
+/// plus the error of its gradient, with s = J_k / C_k, divided by s C_k. The new design is accepted
+/// if J decreases by at least a tenth of the predicted decrease; Δ is enlarged or halved depending
+/// on this ratio. A fixed point at which Δ is not active is a KKT point of J. The number of
+/// components does not change, and the bands are those of the last stage.
 ///
-/// What the loads do not see of the curvature of J (vibrations whose phase the design shifts) is
-/// learned: ½ |Rᵀ(x - x_k)|² is added, R Rᵀ the positive part of the symmetric rank-one matrix
-/// Y (SᵀY)⁻¹ Yᵀ of the differences S of designs tried and Y of the gradients' error there.
+/// The static loads lack a part of the curvature of J (vibrations whose phase the design shifts).
+/// It is estimated from earlier designs: the term ½ |Rᵀ(x - x_k)|² is added, where R Rᵀ is the
+/// positive semidefinite part of the symmetric rank-one (SR1) matrix Y (SᵀY)⁻¹ Yᵀ. S holds the
+/// differences of tried designs, Y the differences of the gradient errors between them.
 ///
-/// The designs of the problems are left at the best J.
-/// @throws Error (numerical) where the first motion fails; later ones are refused as designs.
+/// On return the problems hold the last accepted design (first_order), or the feasible design with
+/// the smallest J (direct).
+/// @throws Error (numerical) if the first motion fails; a later design whose motion fails is
+///         rejected.
 ///
 /// Source: Alexandrov et al. (1998); Stolpe et al. (2018); optim/README.md, Corrected cycles.
 void correct_designs(std::vector<BodyProblem>& problems, const LoadsAt& loads,
                      MotionResponse& motion, const CorrectionSettings& settings,
                      const SeeCycle& see);
 
-/// The outcomes of designs that were corrected, under loads of their own motion.
+/// Returns the outcomes of corrected designs under the loads of their own motion.
 std::vector<BodyOutcome> outcomes_of_corrected(std::span<const LoadedBody> bodies);
 
 }  // namespace flexmorph::mmc

@@ -21,7 +21,7 @@ std::string reason_not_verifiable(const BodyProblem& problem) {
 
 namespace {
 
-/// The pins of a link as locations, by their nodes.
+/// Adds the pins of a link as locations and returns the balance of the link.
 verification::Balance balance_of(const BodyProblem& problem, const fem::EslSets& loads,
                                  verification::Loads& out, std::map<int, int>& location_of_node) {
   verification::Balance balance;
@@ -76,7 +76,8 @@ verification::Loads loads_by_position(const BodyProblem& problem, const fem::Esl
     load.held_end_stretch = set.held_end_stretch;
     for (const fem::NodalForce& f : set.forces) {
       const int i = f.node / (g.ny + 1), j = f.node % (g.ny + 1);
-      if (!link && i <= set.root_column) continue;  // it goes straight into the hub
+      if (!link && i <= set.root_column)
+        continue;  // forces at or behind the root act on the hub directly
       const auto [at, fresh] =
           location_of_node.try_emplace(f.node, static_cast<int>(out.locations.size()));
       if (fresh)
@@ -89,7 +90,8 @@ verification::Loads loads_by_position(const BodyProblem& problem, const fem::Esl
 }
 
 std::vector<Region> exported_regions(const BodyProblem& problem) {
-  // Curves are as near to these polygons: together they keep to the tolerance.
+  // The exported curves deviate from these polygons by the same amount; both together meet the
+  // tolerance.
   const double fine = kOutlineTolerance * problem.grid.dx(), half = 0.5 * problem.export_tolerance;
   return part_of(problem, problem.design.components(), half > 0 ? std::min(fine, half) : fine);
 }
@@ -98,7 +100,7 @@ verification::OutlineVerification verify_design(const BodyProblem& problem,
                                                 std::span<const Region> regions,
                                                 const verification::Loads& loads,
                                                 const std::function<bool()>& keep_running) {
-  constexpr double kFirst = 2;  // cells: as wide as the thinnest bars
+  constexpr double kFirst = 2;  // cells; this is the width of the thinnest bars
   verification::Settings settings;
   settings.size = kFirst * point_reach(problem);
   settings.reach = point_reach(problem);

@@ -7,23 +7,30 @@
 
 namespace flexmorph::mmc {
 
-/// How far a point of a body reaches in its verification: one cell to each side [m].
+/// Returns half the side of the square that stands for a point of a body in its verification: the
+/// larger side of a cell [m].
 double point_reach(const BodyProblem& problem);
 
-/// Why the loads of a motion cannot be carried over to the outline of a design; empty: they can.
-/// Loads of the definitions `frozen` and `stiffness` are forces at the corners of cells.
+/// Returns the reason why the loads of a motion cannot be applied to the outline of a design; empty
+/// if they can. Loads of the definitions `frozen` and `stiffness` cannot, because they are forces
+/// at the corners of cells.
 std::string reason_not_verifiable(const BodyProblem& problem);
 
-/// Equivalent static loads by position: the line of the root as the clamp of each load, the
-/// acceleration field on all material in front of it, concentrated forces as points.
-/// @param loads  lives longer
+/// Returns equivalent static loads by position: the root line is the clamp of each load, the
+/// acceleration field acts on all material in front of it, and concentrated forces act on points.
+/// A link (a body between two pins) has no clamp; its loads are balanced, see
+/// verification::Balance.
+/// @param loads  must outlive the result
 verification::Loads loads_by_position(const BodyProblem& problem, const fem::EslSets& loads);
 
-/// The outline as it is exported, see part_of().
+/// Returns the outline of a design as it is exported, see part_of().
 std::vector<Region> exported_regions(const BodyProblem& problem);
 
-/// The design of a problem, as it is exported, under its loads. First triangles are two cells
-/// large.
+/// Verifies the design of a problem under its loads by finite elements on the exported outline. The
+/// first triangles have a size of two cells.
+/// @param regions       outline from exported_regions()
+/// @param loads         loads from loads_by_position()
+/// @param keep_running  cancellation callback, called after each mesh; false stops
 verification::OutlineVerification verify_design(const BodyProblem& problem,
                                                 std::span<const Region> regions,
                                                 const verification::Loads& loads,

@@ -12,19 +12,20 @@
 
 namespace flexmorph::mmc {
 
-/// A body and the loads it is designed under. Both live longer than what is made of them.
+/// A body and the loads that it is designed under. Both must outlive the objects made from them.
 struct LoadedBody {
-  BodyProblem& problem;
-  ComplianceEvaluator& loads;
+  BodyProblem& problem;        ///< Design problem of the body.
+  ComplianceEvaluator& loads;  ///< Loads of the body.
 };
 
-/// One of the bodies that are designed together, with what every design of it needs.
+/// One of the bodies that are designed together, with the data that all its designs use.
 struct Part {
-  BodyProblem& problem;
-  ComplianceEvaluator& loads;
-  Plate plate;
-  Ersatz ersatz;
+  BodyProblem& problem;        ///< Design problem of the body.
+  ComplianceEvaluator& loads;  ///< Loads of the body.
+  Plate plate;                 ///< Plate of the body, independent of the design.
+  Ersatz ersatz;               ///< Map from the TDF to the scale factors of the cells.
 
+  /// Creates a part from a body and its loads.
   explicit Part(const LoadedBody& body)
       : problem(body.problem),
         loads(body.loads),
@@ -32,59 +33,68 @@ struct Part {
         ersatz(ersatz_of(problem)) {}
 };
 
-/// How a design problem sees the design of a body.
+/// Specifies how a design problem evaluates the design of a body.
 struct Formulation {
-  TdfSettings tdf;
-  /// Widths of the crisp outline are limited, and the limit on the volume is on what it encloses;
-  /// absent: that limit is on the volume of the regularized design. (Limits on responses of the
-  /// loads are on those of the crisp design always, but with the TDF of the paper.)
+  TdfSettings tdf;  ///< Settings of the TDF: band and erosion.
+
+  /// Required widths of the crisp outline. If present, they are constraints, and the limit on the
+  /// volume applies to the volume that the outline encloses. If absent, that limit applies to the
+  /// volume of the regularized design. Limits on responses of the loads apply to the crisp design
+  /// in both cases, except with the TDF of the paper.
   std::optional<Widths> outline = {};
-  bool crisp = false;  ///< the design is seen as its outlines enclose it, see CrispPicture
+  bool crisp = false;  ///< True if the outlines define the cells exactly, see CrispPicture.
 };
 
-/// The TDF at a band of the continuation: without erosion.
+/// Returns the formulation with nominal stiffness, without erosion, at a band of the continuation.
 Formulation nominal(const BodyProblem& problem, size_t band);
-/// The last band, with the stiffness of the eroded design.
+/// Returns the formulation with the stiffness of the eroded design at the last band.
 Formulation eroded(const BodyProblem& problem);
-/// The last stage's, which delivered designs are measured by: nominal stiffness at the last band
-/// and limits of the outline; eroded() where no widths are wanted.
+/// Returns the formulation of the last stage, which also gives the reported numbers of a design:
+/// nominal stiffness at the last band with limits of the outline; eroded() if no widths are
+/// required.
 Formulation last_formulation(const BodyProblem& problem);
 
-/// Returns the designs of the bodies as they are now, in the order of the parts.
+/// Returns the present designs of the bodies, in the order of the parts.
 std::vector<Design> designs_of(std::span<const Part> parts);
 
-/// Tells whether a limit speaks of a response of the loads, whose regularized and crisp values
+/// Tells whether the goal limits a response of the loads, whose regularized and crisp values
 /// differ.
 bool limits_state(const BodyProblem& problem);
 
-/// The problem of all parts at given designs: that of the only one, or the shared one.
+/// The combined problem of all parts at given designs: the problem of the part if there is only
+/// one, otherwise a SharedProblem.
 class Whole {
  public:
+  /// Creates the combined problem under the loads of the parts.
   Whole(std::span<const Part> parts, std::vector<Design> designs,
         std::span<const Formulation> formulations)
       : Whole(parts, std::move(designs), formulations, goals_of_loads(parts), nullptr) {}
-  /// For the motion of the mechanism that they are parts of.
-  /// @param motion  lives longer
+  /// Creates the combined problem for the motion of the mechanism that contains the parts.
+  /// @param motion  must outlive the new object
   Whole(std::span<const Part> parts, std::vector<Design> designs,
         std::span<const Formulation> formulations, MotionState& motion);
-  /// For loads, with goals that have derivatives: smooth().
+  /// Returns the combined problem under the loads of the parts with goals that mmc::smooth() has
+  /// made differentiable.
   static Whole smooth(std::span<const Part> parts, std::vector<Design> designs,
                       std::span<const Formulation> formulations);
 
   Whole(const Whole&) = delete;
 
+  /// Returns the combined problem.
   optim::Problem& problem() {
     if (shared_) return *shared_;
     return states.front();
   }
+  /// Returns the variables of body k, taken from the variables x of the combined problem.
   VectorXd part_of(const VectorXd& x, size_t k) const {
     return shared_ ? shared_->part_of(x, k) : x;
   }
-  /// The designs of a vector of variables.
+  /// Returns the designs of all bodies for the variables x of the combined problem.
   std::vector<Design> designs_at(const VectorXd& x) const;
+  /// Returns the designs of all bodies that the combined problem was created with.
   const std::vector<Design>& designs() const { return designs_; }
 
-  /// The constraint that a limit of a body has become.
+  /// Returns the row of the combined constraints that a limit of a body has.
   int row_of(size_t body, size_t limit) const {
     const int own = states[body].row_of(limit);
     return shared_ ? shared_->row_of(body, own) : own;
@@ -103,7 +113,7 @@ class Whole {
   std::optional<SharedProblem> shared_;
 
  public:
-  std::vector<MmcProblem> states;
+  std::vector<MmcProblem> states;  ///< Subproblems of the bodies, in the order of the parts.
 };
 
 }  // namespace flexmorph::mmc

@@ -13,8 +13,8 @@
 namespace flexmorph::mmc {
 namespace {
 
-/// Problems by their place that are solved together: those that share mass, in the place of the
-/// first of them, and each of the others by itself.
+/// Returns groups of indices of problems that are solved together. The problems that share mass
+/// form one group at the position of the first one; each other problem forms a group of its own.
 std::vector<std::vector<size_t>> groups_of(const std::vector<BodyProblem>& problems) {
   std::vector<std::vector<size_t>> out;
   std::optional<size_t> sharing;
@@ -29,7 +29,7 @@ std::vector<std::vector<size_t>> groups_of(const std::vector<BodyProblem>& probl
   return out;
 }
 
-/// A body under the loads of a motion, and its design before the cycle.
+/// The design of a body before the cycle, with its static energies under the loads of the cycle.
 struct Start {
   VectorXd fractions;
   CellFactors factors;
@@ -44,13 +44,13 @@ struct Start {
         energies(compliance->individual(factors.stiffness, factors.mass)) {}
 };
 
-/// The designs of all bodies in one cycle, up to the group that was stopped.
+/// Designs all bodies in one cycle, up to the group that the observer stops.
 class CycleDesigner {
  public:
   CycleDesigner(std::vector<BodyProblem>& problems, const std::vector<fem::EslSets>& loads)
       : problems_(problems), loads_(loads), outcomes_(problems.size()) {}
 
-  /// @return false when the observer stopped it
+  /// Designs all bodies. @return false if the observer stopped the run
   bool go(int cycle, const LoopSettings& settings, const LoopObserver& observer) {
     bool going = true;
     for (const std::vector<size_t>& group : groups_of(problems_)) {
@@ -60,7 +60,7 @@ class CycleDesigner {
     return going;
   }
 
-  /// Of the bodies up to the first one without.
+  /// Returns the outcomes of the bodies up to the first one that has none.
   std::vector<BodyOutcome> outcomes() {
     std::vector<BodyOutcome> out;
     for (std::optional<BodyOutcome>& o : outcomes_) {
@@ -103,7 +103,7 @@ std::vector<fem::Factors> factors_of(const std::vector<BodyProblem>& problems) {
   return out;
 }
 
-/// Designs and outcomes of the cycles so far, and which one is best.
+/// Designs and outcomes of the cycles so far, and the index of the best one.
 class Verdicts {
  public:
   void add(int cycle, const std::vector<BodyProblem>& problems,
@@ -120,7 +120,8 @@ class Verdicts {
     auto& designs = designs_.emplace_back();
     for (const BodyProblem& p : problems) designs.push_back(p.design);
   }
-  /// @param measure  of a motion with the designs of the last cycle added
+  /// Records the measure of the last cycle added.
+  /// @param measure  measure of a motion with the designs of this cycle
   void record(double measure) {
     CycleVerdict& last = verdicts_.back();
     last.measure = measure;
@@ -130,8 +131,8 @@ class Verdicts {
     best_ = now;
     last.best = true;
   }
-  /// Tells whether the last cycle recorded improves on the ones before, by more than a part of
-  /// their least measure or by less violated limits.
+  /// Tells whether the last recorded cycle is better than all earlier ones: it has a smaller
+  /// violation, or its measure is smaller by more than the fraction `part`.
   bool improved(double part) const {
     if (verdicts_.size() < 2) return true;
     const CycleVerdict& last = verdicts_.back();
@@ -185,7 +186,7 @@ class Loop {
   }
 
  private:
-  /// @return false when the observer stopped it
+  /// Runs the design of a cycle. @return false if the observer stopped the run
   bool design(int cycle, const std::vector<fem::EslSets>& loads) {
     CycleDesigner designer(problems_, loads);
     const bool going = designer.go(cycle, settings_, observer_);
@@ -200,7 +201,7 @@ class Loop {
     if (observer_.verdict) observer_.verdict(verdicts_.all());
   }
 
-  /// Tells whether the loads of the cycle are those of the motion with its designs.
+  /// Tells whether the loads of the cycle agree with those of the motion with its designs.
   bool loads_fit(int cycle, const std::vector<fem::EslSets>& own) const {
     std::vector<LoadDifference> all;
     for (size_t k = 0; k < problems_.size(); ++k)
@@ -211,8 +212,8 @@ class Loop {
     });
   }
 
-  /// Tells whether the designs of the last cycle are stiffer than uniform material: if not, another
-  /// cycle continues them, whatever their loads.
+  /// Tells whether the designs of the last cycle are at least as stiff as uniform material. If not,
+  /// another cycle follows even if the loads agree.
   bool of_use() const {
     for (size_t k = 0; k < problems_.size(); ++k)
       if (worse_than_uniform(problems_[k], outcome_[k])) return false;

@@ -11,73 +11,86 @@
 
 namespace flexmorph::mmc {
 
-/// What a motion of the whole scene leaves to a cycle.
+/// The result of a motion of the mechanism that a cycle uses.
 struct CycleMotion {
-  std::vector<fem::EslSets> loads;  ///< one per problem
-  double measure = 0;               ///< what cycles are compared by; smaller is better
+  std::vector<fem::EslSets> loads;  ///< Equivalent static loads, one entry per problem.
+  double measure = 0;               ///< Number that cycles are compared by; smaller is better.
 };
 
-/// Computes a motion of the whole scene with these factors (one per problem).
+/// A function that computes a motion of the mechanism with given scale factors (one entry per
+/// problem).
 using Simulate = std::function<CycleMotion(std::span<const fem::Factors>)>;
 
-/// Returns the measure of a motion with these factors on a finer model than the one that makes the
-/// loads (fem/README.md, Cells).
+/// A function that returns the measure of a motion with given scale factors on a finer model than
+/// the one that gives the loads (fem/README.md, Cells).
 using VerificationMotion = std::function<double(std::span<const fem::Factors>)>;
 
-/// What a cycle made of one body.
+/// The result of a cycle for one body.
 struct BodyVerdict {
-  std::string body;
-  double compliance = 0, sharp_compliance = 0;  ///< under the loads of the cycle [J]
-  /// Part of the domain whose material changed: mean |Δ| of the sharp area fractions between the
-  /// designs before and after the cycle. (The largest change of a cell would be 1 as soon as an
-  /// outline moves by one; variables come and go with components.)
+  std::string body;                             ///< Name of the body.
+  double compliance = 0, sharp_compliance = 0;  ///< Regularized and crisp compliance [J].
+
+  /// Fraction of the domain whose material changed: mean |Δ| of the crisp area fractions between
+  /// the designs before and after the cycle. (The largest change of a cell would be 1 as soon as an
+  /// outline moves by one cell, and the number of variables changes with the components.)
   double design_change = 0;
 };
 
-/// A cycle as a whole, measured by a motion with its designs: LoopSettings::verification_motion, or
-/// else the one that makes loads.
+/// The result of a cycle for the mechanism. The measure comes from a motion with the designs of the
+/// cycle: from LoopSettings::verification_motion if it is set, otherwise from the motion that gives
+/// the loads.
 struct CycleVerdict {
-  int cycle = 1;
-  double objective = 0;             ///< Σ compliance of the bodies [J]
-  std::vector<BodyVerdict> bodies;  ///< one per problem
-  double measure = 0;               ///< of that motion; smaller is better
-  /// Largest crisp_violation() of the bodies; 0: the designs are usable.
-  double violation = 0;
-  bool best = false;  ///< of all cycles so far: its designs are the result
+  int cycle = 1;                    ///< Number of the cycle, from 1.
+  double objective = 0;             ///< Sum of the regularized compliances of the bodies [J].
+  std::vector<BodyVerdict> bodies;  ///< Results of the bodies, one entry per problem.
+  double measure = 0;               ///< Measure of the motion; smaller is better.
+  double violation = 0;  ///< Largest crisp_violation() of the bodies; 0: the designs are usable.
+  bool best = false;     ///< True if this cycle is the best one so far; then it is the result.
 };
 
+/// Settings of the cycles of motion, loads and design.
 struct LoopSettings {
-  int max_cycles = 1;
-  double tolerance = 0.01;  ///< cycles end when one improves the measure by less than this part
-  /// They end when the loads of all bodies differ by less than this part from their motion's.
+  int max_cycles = 1;       ///< Largest number of cycles.
+  double tolerance = 0.01;  ///< Relative improvement of the measure below which the cycles end [-].
+
+  /// Load difference below which the cycles end, if all bodies are below it, see LoadDifference
+  /// [-].
   double load_difference = LoadDifference::kLargest;
-  DesignSettings design;
-  /// Compares cycles where there are several; empty: the motion that makes loads does.
+  DesignSettings design;  ///< Settings of the design of each cycle.
+
+  /// Motion that compares the cycles if there are several; empty: the motion that gives the loads.
   VerificationMotion verification_motion = {};
 };
 
-/// Looks on; false stops the run after the current iteration: the outcomes of that cycle are then
-/// those of the bodies up to the one that was stopped.
+/// Callbacks of the cycles. If `iteration` returns false, the run stops after the current
+/// iteration; the outcomes of that cycle are then those of the bodies up to the stopped one.
 struct LoopObserver {
-  IterationObserver iteration;
-  /// After the motion of a cycle: its loads, one entry per problem.
+  IterationObserver iteration;  ///< Called with every row of the history.
+
+  /// Called after the motion of a cycle with its loads, one entry per problem.
   std::function<void(int cycle, std::span<const fem::EslSets>)> loads;
+  /// Called after the design of a cycle with its outcomes.
   std::function<void(int cycle, std::span<const BodyOutcome>)> cycle;
-  /// In a run of several cycles whenever one more is measured, which is after the motion with its
-  /// designs: all cycles so far.
+  /// Called in a run of several cycles after each motion that measures the designs of a cycle, with
+  /// the results of all cycles so far.
   std::function<void(std::span<const CycleVerdict>)> verdict;
-  /// After the motion with the designs of a cycle, where another cycle may follow: one entry per
-  /// problem.
+  /// Called after the loads of a cycle have been compared with the loads of the motion with its
+  /// designs, one entry per problem.
   std::function<void(int cycle, std::span<const LoadDifference>)> difference;
 };
 
-/// Repeats motion, equivalent static loads and design until the loads are those of the motion with
-/// the designs (LoopSettings::load_difference) and the designs are of use (worse_than_uniform()), a
-/// cycle improves the measure by less than the tolerance, or the number of cycles is reached
-/// (optim/README.md, Cycles). Bodies that share mass are one design problem, the others have one
-/// each. The designs of `problems` are left at the result, that of the best usable cycle (of the
-/// least violation, where none is usable), and the outcomes belong to it.
-/// @throws Error (numerical) from dynamics or statics; rows reported before it stand.
+/// Repeats motion, equivalent static loads and design (optim/README.md, Cycles) and returns the
+/// outcomes of the best usable cycle. If no cycle is usable, it returns the cycle with the smallest
+/// violation. The cycles end at the first of these events:
+///
+/// - The loads agree with those of the motion with the new designs (LoopSettings::load_difference),
+///   and no design is worse_than_uniform().
+/// - A cycle improves the measure by less than the tolerance.
+/// - The largest number of cycles is reached.
+///
+/// Bodies with a common budget of mass form one design problem, the remaining bodies one each. On
+/// return `problems` hold the designs that belong to the outcomes.
+/// @throws Error (numerical) from dynamics or statics; rows reported before remain valid.
 std::vector<BodyOutcome> esl_loop(std::vector<BodyProblem>& problems, const Simulate& simulate,
                                   const LoopSettings& settings, const LoopObserver& observer);
 

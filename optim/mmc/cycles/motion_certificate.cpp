@@ -11,7 +11,7 @@ namespace flexmorph::mmc {
 
 namespace {
 
-/// What the designs ask of their motion.
+/// Returns the goals that the bodies have for their motion.
 template <class Bodies, class Problem>
 std::vector<const Goal*> goals_of(const Bodies& bodies, Problem problem_of) {
   std::vector<const Goal*> out;
@@ -62,7 +62,7 @@ double angle_between(const VectorXd& a, const VectorXd& b) {
 
 namespace {
 
-/// What the motion says of the designs as formulations see them.
+/// Computes the optimality of the designs in the representation that the formulations define.
 CertifiedDesign certified(Whole& moved, std::span<const Part> parts,
                           std::span<const Formulation> formulations, double move_limit) {
   optim::Problem& problem = moved.problem();

@@ -10,8 +10,9 @@
 namespace flexmorph::mmc {
 namespace {
 
-/// Limits that were not there before are met at any price: with full steps a design tears at its
-/// narrow places before these are wide.
+/// Reduces the first steps. The optimizer satisfies new constraints first, whatever happens to the
+/// objective: with full steps a design breaks where it violates the minimum length scale before the
+/// widths have grown.
 void begin_gently(optim::Settings& settings) {
   constexpr double kMove = 0.4, kAsymptotes = 0.01;
   settings.move_limit *= kMove;
@@ -55,7 +56,7 @@ bool StageRunner::see(Whole& whole, const optim::Iterate& iterate) {
   for (size_t k = 0; k < parts_.size(); ++k) {
     MmcProblem& state = whole.states[k];
     const VectorXd x = whole.part_of(*iterate.x, k);
-    // A trial came after it, or its answer was known.
+    // The state belongs to a later trial, or the evaluation came from the log.
     if (state.x().size() != x.size() || state.x() != x) state.recall(x);
     see(parts_[k], state, iterate, k == 0);
   }
@@ -106,7 +107,7 @@ StageResult without_idle(StageRunner& run, const StageResult& from, bool keeps_w
   StageResult out = from;
   for (size_t k = 0; k < run.parts().size(); ++k) {
     const Part& p = run.parts()[k];
-    // A goal without loads does not say what carries.
+    // A goal without responses of the loads does not tell which components are loaded.
     if (!p.problem.widths.any() || !asks_state(p.problem.goal) || !run.goes_on()) continue;
     const double begin = cpu_seconds();
     const std::vector<int> removed =

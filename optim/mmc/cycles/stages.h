@@ -6,47 +6,54 @@
 #include "optim/mmc/cycles/body_design.h"
 #include "optim/mmc/cycles/designed_parts.h"
 
-/// The stages of a design: each is a function from a design state to a design state.
+/// The stages of a design: each stage is a function from a design state to a design state.
 namespace flexmorph::mmc {
 
-/// Components that carried nothing.
+/// Number of unloaded components that were removed, and the cost of their removal.
 struct Removal {
-  int components = 0;
-  double seconds = 0;  ///< CPU
+  int components = 0;  ///< Number of removed components.
+  double seconds = 0;  ///< CPU time [s].
 };
 
-/// The designs of bodies after a stage.
+/// The designs of all bodies after a stage.
 struct StageResult {
-  std::vector<Design> designs;            ///< one per body
-  std::vector<Formulation> formulations;  ///< under which they were optimized last
-  optim::Result result;                   ///< of that optimization
-  std::vector<double> changes;            ///< largest change of a variable of each body in it
-  std::vector<Removal> removed;           ///< of each body, so far
+  std::vector<Design> designs;            ///< Designs, one per body.
+  std::vector<Formulation> formulations;  ///< Formulations of the last optimization, one per body.
+  optim::Result result;                   ///< Result of the last optimization.
+  std::vector<double> changes;            ///< Largest change of a variable of each body in it.
+  std::vector<Removal> removed;           ///< Removed components of each body so far.
 };
 
-/// What a stage may spend.
+/// The limits on the cost of a stage.
 struct Share {
-  int iterations = 0;
-  int solves = 0;       ///< state solves of the cycle after which it ends; 0: no limit
-  bool gentle = false;  ///< with small steps first
+  int iterations = 0;   ///< Largest number of iterations.
+  int solves = 0;       ///< Number of state solves of the cycle at which it ends; 0: no limit.
+  bool gentle = false;  ///< True if the stage begins with small steps.
 };
 
-/// Runs the optimizer for the stages of one cycle, shows every iterate and counts.
+/// Runs the optimizer for the stages of one cycle, reports every iterate and counts iterations and
+/// evaluations.
 class StageRunner {
  public:
-  /// @param bodies, settings, observe  live longer
+  /// Creates a runner for one cycle; all references must outlive it.
   StageRunner(std::span<const LoadedBody> bodies, int cycle, const DesignSettings& settings,
               const IterationObserver& observe);
 
+  /// Returns the bodies with the data that all their designs use.
   const std::vector<Part>& parts() const { return parts_; }
+  /// Returns the settings of the design.
   const DesignSettings& settings() const { return settings_; }
-  bool going() const { return going_; }  ///< false: the observer stopped the run
+  /// Returns false if the observer has stopped the run.
+  bool going() const { return going_; }
+  /// Returns the number of iterations of the cycle so far.
   int iterations() const { return iterations_; }
+  /// Returns the number of evaluations in the finished optimizations of the cycle.
   int evaluations() const { return evaluations_; }
+  /// Returns false if the observer or the cancellation callback has stopped the run.
   bool goes_on() const { return going_ && (!settings_.go_on || settings_.go_on()); }
 
-  /// One run of the optimizer from the designs of `from`.
-  /// @return its best designs; `from` where there is nothing to spend
+  /// Optimizes the designs of `from` once.
+  /// @return its best designs; `from` if the run has stopped or its share is used up
   StageResult optimize(const StageResult& from, std::vector<Formulation> formulations,
                        const Share& share);
 
@@ -62,23 +69,26 @@ class StageRunner {
   bool going_ = true;
 };
 
-/// The designs of the problems as they are.
+/// Returns the present designs of the problems as a stage result.
 StageResult first_designs(std::span<const Part> parts);
 
-/// Nominal stiffness at a band of the continuation.
-/// @param band  of the body with most bands; the others keep theirs longer
+/// Optimizes with nominal stiffness at a band of the continuation.
+/// @param band  index of the band for the body with most bands; bodies with fewer bands use each of
+///              them for several indices
 StageResult at_band(StageRunner& run, const StageResult& from, size_t band, const Share& share);
-/// The last band with the stiffness of the eroded design, which closes slits.
+/// Optimizes at the last band with the stiffness of the eroded design, which closes slits.
 StageResult with_erosion(StageRunner& run, const StageResult& from, const Share& share);
-/// Components that carry nothing are removed where widths are wanted: void has no gradient, so
-/// that no later stage would see them.
-/// @param keeps_width  no stage comes that would widen what they leave narrow
+/// Removes unloaded components from the bodies whose widths are limited. Void has no gradient,
+/// therefore later stages would not remove these components.
+/// @param keeps_width  true if no removal may reduce widths, because no later stage would restore
+///                     them, see remove_idle()
 StageResult without_idle(StageRunner& run, const StageResult& from, bool keeps_width);
-/// last_formulation(): widths are limits from the first iteration, and all limits hold of the crisp
-/// design.
+/// Optimizes with last_formulation(): widths are constraints from the first iteration, and all
+/// limits apply to the crisp design.
 StageResult last_stage(StageRunner& run, const StageResult& from, const Share& share);
 
-/// Which of two results is better: a feasible one, or the one with the lower objective.
+/// Tells whether result a is at least as good as result b: a feasible result is better than an
+/// infeasible one; then the objective decides, or the violation if both are infeasible.
 bool is_better(const optim::Result& a, const optim::Result& b, double feasibility);
 
 }  // namespace flexmorph::mmc

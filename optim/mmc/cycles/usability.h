@@ -4,21 +4,23 @@
 
 namespace flexmorph::mmc {
 
-/// Part of a limit that a crisp design may be beyond it.
+/// Relative amount by which a crisp design may exceed a limit.
 inline constexpr double kLimitTolerance = 5e-3;
 
-/// The value of a response of the goal, of a crisp design, in the unit of the row.
+/// Returns the value of a response of the goal for a crisp design, in the unit of the row.
 double crisp_value(const ResponseRow& row, const Goal& goal, const SharpDesign& crisp);
 
-/// Tells whether a limit binds this body alone: what bodies share is no limit of one of them.
+/// Tells whether a limit applies to this body alone; a limit on the mass that bodies have in common
+/// does not.
 bool binds_body(const Limit& limit, const BodyProblem& problem);
 
-/// Part by which the crisp design is beyond the limit that it violates most; 0 where it keeps to
-/// all of them within kLimitTolerance, infinite where no material joins a load to a support.
+/// Returns the largest relative amount by which the crisp design exceeds a limit. It is 0 if the
+/// design meets all limits within kLimitTolerance, and infinite if no material connects a load to a
+/// support.
 double crisp_violation(const BodyProblem& problem, const SharpDesign& crisp);
 
-/// Tells whether a body that is optimized for its compliance is more compliant, crisp, than uniform
-/// material of the same volume under the same loads: such a design is of no use.
+/// Tells whether the crisp design of a body with the compliance as objective is more compliant than
+/// uniform material of the same volume under the same loads. Such a design is useless.
 bool worse_than_uniform(const BodyProblem& problem, const BodyOutcome& outcome);
 
 }  // namespace flexmorph::mmc

@@ -5,12 +5,12 @@
 namespace flexmorph::mmc {
 namespace {
 
-/// Lists of components that are remembered: one that others are compared to, and one of these.
+/// Number of stored lists of components.
 constexpr size_t kKnown = 3;
 
 bool same(const Component& a, const Component& b) { return a.parameters() == b.parameters(); }
 
-/// Those of one list that the other one does not have, and the other way round.
+/// Returns the components that are in only one of both lists.
 std::vector<Component> only_in_one(const std::vector<Component>& a,
                                    const std::vector<Component>& b) {
   std::vector<Component> out;

@@ -8,23 +8,26 @@
 
 namespace flexmorph::mmc {
 
-/// What the outlines of lists of components enclose under the loads of a body. The last lists that
-/// were asked for are remembered: the area fractions of a list that differs by few components cost
-/// what these cover.
+/// The exact union of a list of components, and its properties under the loads of a body. The
+/// results for the last few lists are stored: for a list that differs from a stored one by few
+/// components, only the cells that these components cover are computed again.
 class CrispUnion {
  public:
-  /// @param problem, loads  live longer
+  /// Creates an evaluator; `problem` and `loads` must outlive it.
   CrispUnion(const BodyProblem& problem, ComplianceEvaluator& loads);
 
-  /// Exact union.
+  /// Returns the regions of the exact union.
   const std::vector<Region>& regions(const std::vector<Component>& of);
-  /// Area fractions of cells (n_cells).
+  /// Returns the area fractions of the cells (n_cells).
   const VectorXd& fractions(const std::vector<Component>& of);
+  /// Returns the compliance of the union, see design_compliance() [J].
   double compliance(const std::vector<Component>& of);
+  /// Returns how the material of the union connects loads and supports.
   Connectivity connectivity(const std::vector<Component>& of);
-  /// Smallest widths of the union, without fillets.
+  /// Returns the smallest widths of the union without fillets.
   Features features(const std::vector<Component>& of);
-  /// Energy of full material in every cell by the mean one of the design (n_cells).
+  /// Returns the strain energy of full material in every cell, divided by the mean of the design
+  /// (n_cells).
   VectorXd energy_density(const std::vector<Component>& of);
 
  private:

@@ -8,10 +8,10 @@
 namespace flexmorph::mmc {
 namespace {
 
-/// Strain energy per area of what carries nothing, in parts of the mean one.
+/// Largest strain energy per area of an unloaded component, relative to the mean of the design.
 constexpr double kIdleDensity = 0.2;
 
-/// A list of components without some of them, each with its images.
+/// Returns a list of components without some of them and without their images.
 std::vector<Component> without(const std::vector<Component>& all, const std::vector<bool>& gone) {
   std::vector<Component> out;
   for (size_t k = 0; k < all.size(); ++k)
@@ -27,7 +27,8 @@ std::vector<int> remove_idle(const BodyProblem& problem, ComplianceEvaluator& lo
   const std::vector<Component> all = design.components();
   const size_t own = all.size() / design.n_images();
   const VectorXd density = crisp.energy_density(all), fractions = crisp.fractions(all);
-  std::vector<std::pair<double, size_t>> candidates;  // by the energy of what they cover alone
+  std::vector<std::pair<double, size_t>>
+      candidates;  // energy of the material that they cover alone, index
   for (size_t k = 0; k < own; ++k) {
     std::vector<bool> gone(own, false);
     gone[k] = true;
@@ -64,7 +65,8 @@ std::vector<int> remove_idle(const BodyProblem& problem, ComplianceEvaluator& lo
     merit = now;
     return true;
   };
-  // Many that carry nothing at all go at once, for one analysis; halves of others are tried.
+  // Several components are removed together, which takes one analysis, if the compliance does not
+  // rise. Otherwise the two halves of the set are tried one after the other.
   const std::function<void(size_t, size_t)> remove = [&](size_t from, size_t to) {
     if (from == to || (go_on && !go_on())) return;
     const std::vector<bool> kept = gone;

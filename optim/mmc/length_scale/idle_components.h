@@ -7,13 +7,16 @@
 
 namespace flexmorph::mmc {
 
-/// Removes the components of a crisp design that carry nothing: what a component covers alone has
-/// less than a fifth of the mean strain energy, compliance times volume does not rise without it,
-/// and what held together still does. Components of symmetric designs go with their images.
-/// @param keeps_width  nothing goes whose removal makes material or gaps narrower than asked for
-///                     that were not before: no stage comes that widens them
-/// @param go_on  asked before every trial; false ends the search. Empty: it goes on
-/// @return places of the removed components in the list, in rising order
+/// Removes unloaded components from a crisp design. A component is removed if three conditions
+/// hold: the material that it covers alone has less than a fifth of the mean strain energy per
+/// area, the product of compliance and volume does not rise without it, and no connection is lost.
+/// Components of symmetric designs are removed together with their images.
+/// @param keeps_width  true if no removal may reduce the smallest width of material or of gaps
+///                     below the smaller one of its present and its required value, because no
+///                     later stage would restore it
+/// @param go_on  cancellation callback, called before every trial; false ends the search. An empty
+///               callback lets the search continue
+/// @return indices of the removed components in the list, ascending
 /// @throws Error (numerical) from statics and from unite().
 std::vector<int> remove_idle(const BodyProblem& problem, ComplianceEvaluator& loads, Design& design,
                              bool keeps_width = false, const std::function<bool()>& go_on = {});

@@ -11,25 +11,27 @@
 namespace flexmorph::mmc {
 namespace {
 
-/// Places wider than so many times what is wanted are far from being a limit.
+/// Ratio of a width to the required width from which on a narrow place gives no constraint.
 constexpr double kLook = 1.5;
-/// Places narrower than this part of what is wanted have no direction.
+/// Fraction of the required width below which a narrow place has no gradient.
 constexpr double kNoWidth = 1e-3;
-/// A hundredth of a width is a hundredth of this in g; widths that are aimed at, in parts of those
-/// wanted: what Settings::feasibility = 1e-5 forgives of them is 3e-3.
+/// kScale is the factor of the relative width error in g. kAim is the ratio of the width in the
+/// constraint to the required width. Settings::feasibility = 1e-5 tolerates a relative width error
+/// of 3e-3.
 constexpr double kScale = 0.003, kAim = 1.002;
-/// Outlines whose normals differ by less than this cross nowhere in particular [-], a sine.
+/// Sine of the angle between two normals below which two outlines have no well-defined crossing
+/// [-].
 constexpr double kCrossing = 0.05;
 
-/// An outline that passes through a contact.
+/// An outline through a contact.
 struct Through {
   Vec2 normal{0, 0};    // into the material
-  double distance = 0;  // of the contact from the outline, positive in the material [m]
-  int component = -1;   // -1: fixed
-  std::array<double, Component::kParameters> speed = {};  // of the outline along -normal, by p
+  double distance = 0;  // of the contact from the outline, positive inside [m]
+  int component = -1;   // index; -1: a fixed outline
+  std::array<double, Component::kParameters> speed = {};  // of the outline along -normal
 };
 
-/// Sides that no component moves.
+/// Returns the sides that no component moves.
 std::vector<Segment> fixed_sides(const BodyProblem& problem) {
   return sides_of(fixed_rings(problem));
 }
@@ -45,7 +47,7 @@ class Contacts {
       boxes_.push_back(bounding_box(c, tdf_.min_half_thickness, near_));
   }
 
-  /// Adds s e · (position and speed of the contact at p) to a width.
+  /// Adds s e · (correction and velocity of the contact at p) to a width and its gradient.
   void add(const Vec2& p, const Vec2& e, double s, WidthSlope& out) const {
     for (const Share& share : shares_at(p, e)) {
       const Through& t = share.of;
@@ -57,11 +59,11 @@ class Contacts {
     }
   }
 
-  /// Adds what the contact at p contributes where the disc moves along the material with the
-  /// components, as the last disc of an end does.
+  /// Adds the contribution of the contact at p to the motion of the disc along the material. The
+  /// last disc of an end moves in this way together with the components.
   /// @param along  unit vector along the material
-  /// @param rate   of the width, when all outlines move along it [-]
-  /// @param slide  speed of the disc along it, by the parameters of components (7 N)
+  /// @param rate   derivative of the width by a motion of all outlines along the material [-]
+  /// @param slide  velocity of the disc along the material by the parameters of components (7 N)
   void add_slide(const Vec2& p, const Vec2& e, double s, const Vec2& along, double& rate,
                  VectorXd& slide) const {
     const std::vector<Share> shares = shares_at(p, e);
@@ -80,8 +82,8 @@ class Contacts {
   }
 
  private:
-  /// An outline through a contact and its part of e, e · v = Σ part n · v for all v that the
-  /// outlines allow.
+  /// An outline through a contact, and its coefficient in e · v = Σ part n · v, which holds for all
+  /// velocities v of the contact that the outlines allow.
   struct Share {
     Through of;
     double part = 0;
@@ -96,7 +98,7 @@ class Contacts {
     return {{through[0], both[0]}, {through[1], both[1]}};
   }
 
-  /// One outline, or two that cross: what is fixed first, then those nearest.
+  /// Returns one outline, or two that cross: fixed outlines first, then the nearest ones.
   std::vector<Through> outlines_through(const Vec2& p) const {
     std::vector<Through> found;
     for (size_t c = 0; c < components_.size(); ++c) add_component(static_cast<int>(c), p, found);
@@ -146,9 +148,10 @@ class Contacts {
   std::vector<Box> boxes_;
 };
 
-/// The narrowest places by what is wanted of them, one for each neighbourhood.
-/// @param regions  union of the components, whose parameters move its narrow places
-/// @param part     the union with its fillets; gaps that they fill do not count
+/// Returns the narrowest places relative to the required widths, one for each neighbourhood.
+/// @param regions  union of the components
+/// @param part     union with its fillets; gaps that the fillets fill do not count
+/// @param most     largest number of places
 std::vector<NarrowPlace> narrowest(const BodyProblem& problem, std::span<const Region> regions,
                                    std::span<const Region> part, const Widths& wanted,
                                    size_t most) {
@@ -173,8 +176,8 @@ std::vector<NarrowPlace> narrowest(const BodyProblem& problem, std::span<const R
   return out;
 }
 
-/// Components are thicker than the smallest feature by this factor: their ends are round, and
-/// outlines have a tolerance.
+/// Ratio of the smallest thickness of components to the smallest feature. It exceeds 1 because
+/// their ends are round and outlines have a tolerance.
 constexpr double kAllowance = 1.06;
 
 }  // namespace

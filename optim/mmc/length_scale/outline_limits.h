@@ -5,31 +5,33 @@
 
 namespace flexmorph::mmc {
 
-/// The area of a union of components, and its narrow places as constraints of them:
+/// The area of a union of components, and its minimum length scale as constraints:
 ///
-///   g_k = 0.003 (1 - w_k / w) <= 0      the narrowest places, w_k the width of the k-th
+///   g_k = 0.003 (1 - w_k / w) <= 0      for the narrowest places, w_k the width of the k-th one
 ///
-/// w is 1.002 times the wanted width.
+/// w is 1.002 times the required width.
 ///
 /// w_k is the distance of two contacts of an inscribed disc (narrow_places()). A contact on the
-/// outline of one component moves with it along its normal n, one where two outlines cross moves
-/// with both, and what is fixed (borders, passive regions) stands:
+/// outline of one component moves with this outline along its normal n. A contact at which two
+/// outlines cross moves with both. Fixed outlines (borders, passive regions) do not move:
 ///
 ///   dw = e · (v_a - v_b),   n_i · v = -dφ_i / |∇φ_i|   for every outline i through the contact,
 ///
-/// e from b to a. That is exact at necks, where the width is stationary along the medial axis. The
-/// last disc of an end moves along the end with the components (NarrowPlace::Kind::bar): they carry
-/// it by the mean of their affine motions at the contacts, and what the width changes on that way
-/// is taken off. A Newton step from the sides of polygons to the true outlines is part of w_k.
+/// where e is the unit vector from b to a. This is exact at necks, where the width is stationary
+/// along the medial axis. The last disc of an end (NarrowPlace::Kind::bar) moves along the end
+/// together with the components: its velocity is the mean of their affine motions at the contacts,
+/// and the change of the width by this displacement is subtracted. w_k includes a Newton step from
+/// the sides of the polygons to the true outlines.
 ///
-/// Which places there are changes from design to design: the rows are those of the narrowest ones,
-/// in no lasting order. Places without a width (pinches, blades) are violated, and have no
-/// gradient. (Their neighbours widen them.)
+/// The set of narrow places changes from design to design: the rows belong to the narrowest ones,
+/// in no fixed order. A place of width 0 (regions that touch in a point, sharp tips) violates its
+/// constraint but has no gradient; the places next to it widen it.
 class OutlineLimits final : public ShapeLimits {
  public:
-  /// @param problem  its design does not matter; rings of its domain and of its regions have only
-  /// the sides here that keep to kOutlineTolerance, because every side costs in each iteration
-  /// @param wanted   widths; without any there are no constraints
+  /// Creates the constraints for a problem.
+  /// @param problem  only its domain and regions matter, not its design. Their rings are simplified
+  ///                 here within kOutlineTolerance, because every side costs time in each iteration
+  /// @param wanted   required widths; without any of them there are no constraints
   OutlineLimits(const BodyProblem& problem, const Widths& wanted);
 
   int count() const override { return wanted_.any() ? kPlaces : 0; }
@@ -43,16 +45,16 @@ class OutlineLimits final : public ShapeLimits {
   double domain_area_;
 };
 
-/// Returns the smallest half-thickness [m] of components whose union may be as thick as wanted:
-/// half the feature and an allowance for round ends and the tolerance of outlines.
+/// Returns the smallest half-thickness of components [m] for which their union can reach a required
+/// smallest feature: half the feature, enlarged for round ends and for the tolerance of outlines.
 double half_thickness_for(double min_feature);
 
-/// A width and how it changes with the parameters of components.
+/// A width and its gradient by the parameters of components.
 struct WidthSlope {
-  double width = 0;  ///< of the true outlines [m]
-  VectorXd slope;    ///< (7 N)
+  double width = 0;  ///< Width between the true outlines [m].
+  VectorXd slope;    ///< Gradient of the width by the parameters of N components (7 N).
 };
-/// Of a narrow place of the union of these components.
+/// Computes the width at a narrow place of the union of these components, and its gradient.
 WidthSlope width_slope(const BodyProblem& problem, std::span<const Component> components,
                        const NarrowPlace& place);
 

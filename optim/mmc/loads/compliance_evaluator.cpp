@@ -16,8 +16,8 @@ namespace flexmorph::mmc {
 
 namespace {
 
-/// Supports of a link while it is solved for: any three displacements do for balanced loads, these
-/// are far apart.
+/// Returns the supports of a link in the solver. For balanced loads any three displacements that
+/// prevent rigid motions are suitable; the chosen ones are far apart.
 std::array<fem::HeldUnknown, 3> link_supports(const Grid& g, const std::array<int, 2>& pins) {
   const int along = std::abs(pins[1] / (g.ny + 1) - pins[0] / (g.ny + 1)) * g.dx() >=
                             std::abs(pins[1] % (g.ny + 1) - pins[0] % (g.ny + 1)) * g.dy()
@@ -35,8 +35,8 @@ fem::StaticSolver solver_of(const fem::EslSets& sets, const fem::PlaneSection& s
           edge_stiffness(sets, section)};
 }
 
-/// Free growth of a plate about its root in every load (n x 2 n_nodes), in front of the root; empty
-/// when all loads are cold.
+/// Returns the free thermal expansion of a plate from its root for every load (n x 2 n_nodes) [m],
+/// zero behind the root; empty when no load has a thermal stretch.
 MatrixXd growth_from_root(const fem::EslSets& sets, std::span<const int> roots) {
   const auto is_hot = [](const fem::EslSet& s) { return s.thermal_stretch != 0; };
   if (std::none_of(sets.sets.begin(), sets.sets.end(), is_hot)) return {};
@@ -54,8 +54,9 @@ MatrixXd growth_from_root(const fem::EslSets& sets, std::span<const int> roots) 
 
 struct ComplianceEvaluator::Impl : LoadSolver {
   using LoadSolver::LoadSolver;
-  std::optional<RestrainedExpansion> restrained;  // where supports hold back the growth of a plate
-  MatrixXd free_growth;  // of each load (n x 2 n_nodes) [m]; empty when all are cold
+  std::optional<RestrainedExpansion> restrained;  // present if supports restrain the expansion
+  // Free thermal expansion of each load (n x 2 n_nodes) [m]; empty when no load is thermal.
+  MatrixXd free_growth;
   bool at_rest = false;
   VectorXd energies, products;
   Seconds seconds;
@@ -93,7 +94,7 @@ ComplianceEvaluator::ComplianceEvaluator(const Plate& plate, std::span<const fem
                                          const Vec2& gravity)
     : impl_(std::make_unique<Impl>(
           fem::StaticSolver(plate.grid, plate.section, held, plate.outside), false)) {
-  constexpr double kLeftOut = 1e-10;  // part of the energy that compression may leave out
+  constexpr double kLeftOut = 1e-10;  // fraction of the energy that compression may leave out
   if (loads.empty()) throw Error::input("static loads: there are none");
   Impl& m = *impl_;
   m.at_rest = true;
@@ -123,7 +124,8 @@ ComplianceEvaluator::ComplianceEvaluator(const Plate& plate, std::span<const fem
                "heat alone, and the supports let the plate grow: nothing is strained");
   }
   m.solved_weights = m.weights;
-  if (compress && !m.weight) m.compress(kLeftOut);  // weight changes with the design
+  // The weight changes with the design, so that loads with weight cannot be compressed in advance.
+  if (compress && !m.weight) m.compress(kLeftOut);
 }
 
 ComplianceEvaluator::~ComplianceEvaluator() = default;
@@ -140,7 +142,7 @@ void ComplianceEvaluator::evaluate(const VectorXd& stiffness, const VectorXd& ma
   const double solved = cpu_seconds();
 
   m.solver.cell_energies(m.U, m.solved_weights, m.energies, m.solved_roots);
-  // 2 F . u - u . K u: equal to F . u at the solution, but round-off in u enters squared.
+  // 2 F . u - u . K u equals F . u at the solution, but round-off errors of u enter it squared.
   value.f = 2 * work - stiffness.dot(m.energies) - m.solver.edge_energy(m.U, m.solved_weights);
   value.d_stiffness = -m.energies;
   value.d_mass.setZero(mass.size());

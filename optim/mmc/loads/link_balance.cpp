@@ -8,7 +8,8 @@
 namespace flexmorph::mmc {
 namespace {
 
-/// Shifts and a small turn about the middle of the grid, in sizes of the grid (2 n_nodes x 3).
+/// Returns two translations and a small rotation about the middle of the grid, scaled by the size
+/// of the grid (2 n_nodes x 3).
 MatrixXd rigid_motions(const Grid& g) {
   MatrixXd out = MatrixXd::Zero(2 * static_cast<Eigen::Index>(g.n_nodes()), 3);
   const Vec2 middle(g.x0 + 0.5 * g.width, g.y0 + 0.5 * g.height);
@@ -42,7 +43,7 @@ LinkBalance::LinkBalance(const Grid& grid, const fem::PlaneSection& section,
   together_ = Eigen::Matrix3d(rigid_.transpose() * held_).inverse();
 }
 
-/// -M a (n x 2 n_nodes).
+/// Computes the inertia forces -M a (n x 2 n_nodes).
 void LinkBalance::inertia_forces(const VectorXd& mass, const MatrixXd& acceleration,
                                  MatrixXd& F) const {
   F.setZero(acceleration.rows(), acceleration.cols());
@@ -58,7 +59,7 @@ void LinkBalance::inertia_forces(const VectorXd& mass, const MatrixXd& accelerat
   }
 }
 
-/// H and (Rᵀ H)⁻¹ of a floating link.
+/// Computes H and (Rᵀ H)⁻¹ of a floating link, which depend on the mass of the design.
 void LinkBalance::set_mass(const VectorXd& mass) {
   if (support_ != Support::floating) return;
   MatrixXd pushed;

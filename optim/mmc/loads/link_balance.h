@@ -8,34 +8,39 @@
 
 namespace flexmorph::mmc {
 
-/// What balances the loads of a link between two pins, and which of the displacements that differ
-/// by a rigid motion is meant.
+/// The balance of the loads of a link, which is a body of a mechanism between two pins without a
+/// clamp. The class adds reactions or inertia forces that balance the loads, and selects one of the
+/// displacement fields, which are determined except for a rigid motion.
 ///
-/// With R the rigid motions of the grid (2 n_nodes x 3), loads F₀ = -M a + f become
+/// With the rigid motions R of the grid (2 n_nodes x 3), loads F₀ = -M a + f become
 ///
 ///   F = F₀ - H (Rᵀ H)⁻¹ Rᵀ F₀,   Hᵀ u = 0
 ///
-///   pins      H = unit forces at both displacements of the first pin and across the line of the
-///             pins at the second one: their reactions, which determine themselves
-///   floating  H = M R: rigid accelerations c, F = f - M (a + R c), Rᵀ M R c = Rᵀ (f - M a)
+///   pins      H = unit forces along both displacements of the first pin and perpendicular to the
+///             line of the pins at the second pin: statically determinate reactions
+///   floating  H = M R: inertia forces of rigid accelerations c, F = f - M (a + R c),
+///             Rᵀ M R c = Rᵀ (f - M a)
 ///
-/// In this choice of u, and in no other, u · dF = -u · dM (a + R c), although H may depend on M:
-/// dF has parts along H and along dM R only, and u · H = 0. (c = 0 for `pins`.)
+/// For this choice of u, and for no other one, u · dF = -u · dM (a + R c), although H may depend on
+/// M: dF consists of components along H and of -dM (a + R c), and u · H = 0. (c = 0 for `pins`.)
 ///
-/// Vectors of all loads are matrices (n x 2 n_nodes).
+/// Vectors of all loads are stored as matrices (n x 2 n_nodes).
 ///
 /// Source: optim/README.md, Links between two pins.
 class LinkBalance {
  public:
-  /// @param support  pins or floating
-  /// @throws Error (input) for pins at one place.
+  /// Creates the balance of a link.
+  /// @param pins     nodes of the two pins
+  /// @param support  `pins` or `floating`
+  /// @throws Error (input) when both pins are at one node.
   LinkBalance(const Grid& grid, const fem::PlaneSection& section, const std::array<int, 2>& pins,
               Support support);
 
-  /// F = -M a + f of all displacements, balanced, and a -> a + R c.
-  /// @param mass  factors (n_cells)   @param loads  that follow the design
+  /// Computes the balanced forces F and the accelerations a + R c of all loads (n x 2 n_nodes).
+  /// @param loads  loads that depend on the design
+  /// @param mass   mass scale factors (n_cells)
   void forces(const StaticLoads& loads, const VectorXd& mass, MatrixXd& F, MatrixXd& acceleration);
-  /// Takes off the rigid motion of u that leaves Hᵀ u = 0.
+  /// Subtracts a rigid motion from the displacements u (n x 2 n_nodes), so that Hᵀ u = 0.
   void choose(MatrixXd& u) const;
 
  private:

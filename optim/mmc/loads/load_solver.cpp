@@ -11,7 +11,8 @@ namespace flexmorph::mmc {
 
 namespace {
 
-/// Column of F of every displacement, or -1: of a link all have one.
+/// Returns the column of F of every displacement (2 n_nodes): for a link its own index, otherwise
+/// the unknown of the solver or -1.
 std::vector<int> columns_of(const fem::StaticSolver& solver, bool is_link) {
   std::vector<int> out(solver.rows().begin(), solver.rows().end());
   if (is_link) std::iota(out.begin(), out.end(), 0);
@@ -90,7 +91,8 @@ double LoadSolver::solve_sum(const MatrixXd& of) {
   return of.cwiseProduct(Z).sum();
 }
 
-/// Zeroes what lies inside the hub of each load, and on the root line unless it is kept.
+/// Sets entries inside the hub of each load to zero, and those on the root line unless they are
+/// kept.
 void LoadSolver::keep_outside(MatrixXd& field, std::span<const int> columns,
                               bool keep_root_line) const {
   const Grid& g = solver.grid();
@@ -109,7 +111,9 @@ void LoadSolver::fix_loads(const fem::EslSets& sets, const ComplianceSettings& s
   MatrixXd u;
   if (settings.loads == LoadDefinition::frozen) {
     u = forces(inertia_loads(sets, inertia.rows()), mass0);
-    if (!far_end) {  // what lies inside the hub stays: the solver ignores it, and it keeps the rank
+    // Forces inside the hub are kept: the solver ignores them, and they keep the rank of all loads
+    // low.
+    if (!far_end) {
       loads.fixed = std::move(u);
       return;
     }
@@ -120,7 +124,7 @@ void LoadSolver::fix_loads(const fem::EslSets& sets, const ComplianceSettings& s
     for (Eigen::Index l = 0; l < deformation.rows(); ++l)
       deformation.row(l) = sets.sets[static_cast<std::size_t>(l)].deformation.transpose();
     to_unknowns(deformation, u);
-    // What loads answer for: w -> μ = w - g τ at the design of the motion.
+    // The displacements caused by loads alone, at the design of the motion: μ = w - g τ.
     factorize(stiffness0);
     if (auto edges = restrained_edges(sets, solver, columns, weights)) {
       edges->update(stiffness0);
@@ -148,8 +152,8 @@ void LoadSolver::compress(double tolerance) {
   solver.forward(work);
   const MatrixXd U_r = leading_combinations(work, one_support ? tolerance : tolerance * tolerance);
   const Eigen::Index r = U_r.cols();
-  // Mixing back costs n r per unknown (and as much for the derivative), a substitution n or r
-  // times the bandwidth.
+  // The product with `mix` costs n r operations per unknown (and n r more for the derivative), a
+  // substitution costs n or r times the bandwidth.
   const Eigen::Index bandwidth = 2 * (solver.grid().ny + 2);
   const bool pays = one_support ? r < n : r * bandwidth + 2 * r * n < n * bandwidth;
   if (!pays) return;
@@ -166,15 +170,15 @@ void LoadSolver::compress(double tolerance) {
   weighted_mix = mix.transpose() * weights.asDiagonal();
 }
 
-/// Unknowns of the plate clamped at a column of nodes.
+/// Returns the number of unknowns of the plate when it is clamped at a column of nodes.
 Eigen::Index LoadSolver::rows_before(int column) const {
   const Grid& g = solver.grid();
   return Eigen::Index{2} * (g.ny + 1) * (g.nx - column);
 }
 
-/// Σ w_i |y_i|² of the rows before each clamp; F holds y = L⁻¹ F.
+/// Returns Σ w_i |y_i|² over the unknowns in front of each clamp. The member F contains y = L⁻¹ F.
 double LoadSolver::plain_sum() const {
-  const Eigen::Index rows = rows_before(solver.grid().nx - 1);  // of a column of nodes
+  const Eigen::Index rows = rows_before(solver.grid().nx - 1);  // unknowns of one column of nodes
   VectorXd each = VectorXd::Zero(F.rows());
   for (int i = solver.grid().nx; i > 0 && row_of_column(i) >= 0; --i) {
     const VectorXd here = F.middleCols(row_of_column(i), rows).rowwise().squaredNorm();
@@ -184,7 +188,8 @@ double LoadSolver::plain_sum() const {
   return solved_weights.dot(each);
 }
 
-/// The same of y_i = Σ_k mix_ik y_k: Σ_i w_i mix_iᵀ (Y Yᵀ) mix_i with the rows before clamp i.
+/// Returns Σ_i w_i |y_i|² for y_i = Σ_k mix_ik y_k, as Σ_i w_i mix_iᵀ (Y Yᵀ) mix_i with the
+/// unknowns in front of clamp i.
 double LoadSolver::mixed_sum() const {
   std::vector<Eigen::Index> order(solved_roots.size());
   std::iota(order.begin(), order.end(), Eigen::Index{0});

@@ -11,62 +11,81 @@
 
 namespace flexmorph::mmc {
 
-/// Forces F(b) of load sets on one plate and their displacements, K(b) u = F(b). Loads are solved
-/// one by one, or, where compression pays, by fewer right-hand sides:
+/// Computes the forces F(b) of several loads on one plate and their displacements, K(b) u = F(b).
+/// Loads are solved one by one or, where compression reduces the work, by fewer right-hand sides:
 ///
-///   one support   f = Σ w F . u depends on Σ w F Fᵀ only: the leading combinations `basis` of the
-///                 loads replace them
-///   moving root   the combinations take the forward substitutions, loads = `mix` basis, and every
-///                 load has its displacements
+///   one support   f = Σ w F . u depends on Σ w F Fᵀ only; therefore the loads are replaced by
+///                 their leading combinations `basis`
+///   moving root   forward substitutions are applied to the combinations, loads = `mix` basis, and
+///                 displacements are computed for every load
 struct LoadSolver {
-  fem::StaticSolver solver;
-  InertiaOperator inertia;
-  std::optional<LinkBalance> balance = {};     ///< of a link
-  std::optional<SelfWeight> weight = {};       ///< acts in every load case of a plate at rest
-  StaticLoads loads = {};                      ///< all of them
-  std::optional<StaticLoads> basis = {};       ///< what is solved instead
-  MatrixXd mix = {}, weighted_mix = {};        ///< (n x r), and mixᵀ diag(w) (r x n)
-  VectorXd weights = {}, solved_weights = {};  ///< w of the loads; of those that U is of
-  /// Root column of the loads, and of those that U is of; empty where no clamp moves.
-  std::vector<int> roots = {}, solved_roots = {};
-  VectorXd factored = {};  ///< stiffness scale factors the solver holds
-  int factorizations = 0;
-  MatrixXd F = {}, U = {}, Z = {}, work = {};  ///< reused by every evaluation
-  MatrixXd u_link = {}, a_link = {};  ///< of a link at all nodes (n x 2 n_nodes): u, a + R c
+  fem::StaticSolver solver;  ///< Factorization and solution of the plate.
+  InertiaOperator inertia;   ///< Inertia forces of a design.
 
+  /// Balance of the loads of a link (a body of a mechanism between two pins); otherwise absent.
+  std::optional<LinkBalance> balance = {};
+  /// Weight in every load case of a static plate; absent without gravity.
+  std::optional<SelfWeight> weight = {};
+  StaticLoads loads = {};  ///< All n loads.
+
+  /// Right-hand sides (r) that are solved instead of the loads; absent without compression.
+  std::optional<StaticLoads> basis = {};
+  /// Matrix `mix` (n x r) of the moving root, and mixᵀ diag(w) (r x n).
+  MatrixXd mix = {}, weighted_mix = {};
+  /// Weights w of the loads, and weights of the right-hand sides or loads that U belongs to.
+  VectorXd weights = {}, solved_weights = {};
+  /// Root columns of the loads, and of the right-hand sides or loads that U belongs to; empty where
+  /// no clamp moves.
+  std::vector<int> roots = {}, solved_roots = {};
+  VectorXd factored = {};  ///< Stiffness scale factors of the current factorization (n_cells).
+  int factorizations = 0;  ///< Number of factorizations since construction.
+
+  /// Forces, displacements, weighted displacements and work space that all evaluations use again.
+  MatrixXd F = {}, U = {}, Z = {}, work = {};
+  /// Displacements u [m] and accelerations a + R c [m/s^2] of a link at all nodes (n x 2 n_nodes).
+  MatrixXd u_link = {}, a_link = {};
+
+  /// Creates a solver without loads.
   LoadSolver(fem::StaticSolver of, bool is_link);
 
+  /// Returns the right-hand sides that are solved: the basis, or without compression the loads.
   const StaticLoads& solved() const { return basis ? *basis : loads; }
-  /// Factors K at these stiffness scale factors, unless the solver holds them.
+  /// Factors K at stiffness scale factors (n_cells), unless it is already factored there.
   /// @throws Error (numerical) as StaticSolver::factorize().
   void factorize(const VectorXd& stiffness);
-  /// Makes the loads of the definitions `frozen` and `stiffness`. With the far end held, the nodal
-  /// forces on the root line belong to them: they are what holds the plate there in the motion.
+  /// Computes the fixed loads of the definitions `frozen` and `stiffness`. With support `far_end`
+  /// they include the nodal forces on the root line, because these forces hold the plate there in
+  /// the motion.
+  /// @param stiffness0, mass0  scale factors of the design that the motion was computed with
   void fix_loads(const fem::EslSets& sets, const ComplianceSettings& settings,
                  const VectorXd& stiffness0, const VectorXd& mass0);
-  /// Chooses what is solved by the energies of the uniform full plate, whatever the design: a mode
-  /// that costs nothing there costs nothing in a part of it.
+  /// Selects the right-hand sides that are solved by energies of the uniform full plate,
+  /// independently of the design, because combinations without energy there have none in any
+  /// design.
   ///
-  /// With one support the left-out energy is the error of f and of its gradient, because the
-  /// combinations are orthogonal in energy. With a moving root the parts cut off destroy that
-  /// orthogonality and the error is of first order in the left-out state: the square root of the
-  /// energy must stay below the tolerance.
+  /// With one support the neglected energy is the error of f and of its gradient, because the
+  /// combinations are orthogonal in energy. With a moving root the entries behind each clamp are
+  /// cut off, which destroys the orthogonality, and the error is of first order in the neglected
+  /// state: the square root of the energy must stay below the tolerance.
+  /// @param tolerance  see ComplianceSettings::compression_tolerance
   void compress(double tolerance);
 
-  /// Returns F at these mass scale factors (n x n_unknowns); of a link all forces (n x 2 n_nodes).
+  /// Returns the forces F at mass scale factors (n_cells): (n x n_unknowns), for a link at all
+  /// nodes (n x 2 n_nodes) [N].
   const MatrixXd& forces(const StaticLoads& of, const VectorXd& mass);
-  /// Solves for U. Returns the displacements that forces() does work on, U or u_link.
+  /// Solves for U and returns the displacements on which the result of forces() does work: U, for a
+  /// link u_link [m].
   const MatrixXd& solve(const MatrixXd& of, std::span<const int> root_columns);
-  /// Solves for U of all right-hand sides, and with a clamp Z, Σ w F . u = Σ F . Z.
-  /// Returns Σ w F . u.
+  /// Solves for U of all right-hand sides, with a clamp also for Z with Σ w F . u = Σ F . Z, and
+  /// returns Σ w F . u [J].
   double solve_sum(const MatrixXd& of);
-  /// Returns Σ w F . u of a plate with a clamp by forward substitutions alone.
+  /// Returns Σ w F . u of a plate with a clamp, computed by forward substitutions only [J].
   double forward_sum(const VectorXd& mass);
-  /// Displacements of the unknowns x at all nodes, zero where held (n x 2 n_nodes).
+  /// Copies the values x of the unknowns to all nodes, zero at held displacements (n x 2 n_nodes).
   void to_nodes(const MatrixXd& x, MatrixXd& at_nodes) const;
 
  private:
-  /// First unknown of a column of nodes, or -1.
+  /// Returns the first unknown of a column of nodes, or -1.
   int row_of_column(int i) const { return solver.row(solver.grid().node(i, 0), 0); }
   void to_unknowns(const MatrixXd& at_nodes, MatrixXd& x) const;
   void keep_outside(MatrixXd& field, std::span<const int> columns, bool keep_root_line) const;
@@ -75,7 +94,7 @@ struct LoadSolver {
   double mixed_sum() const;
 };
 
-/// Root column of every load set.
+/// Returns the root column of every load.
 std::vector<int> root_columns_of(const fem::EslSets& loads);
 
 }  // namespace flexmorph::mmc

@@ -43,7 +43,8 @@ RestrainedExpansion::RestrainedExpansion(const fem::StaticSolver& solver, Lines 
   }
 }
 
-/// -K_fc τ_c - κ Bᵀd. Cells behind a line reach only nodes that it holds.
+/// Computes the right-hand sides -K_fc τ_c - κ Bᵀd. Cells behind a clamped line contribute nothing,
+/// because all of their nodes are held.
 void RestrainedExpansion::forces(const VectorXd& stiffness) {
   const Grid& g = solver_->grid();
   const auto K = fem::q4_stiffness(solver_->section(), g.dx(), g.dy());
@@ -60,13 +61,14 @@ void RestrainedExpansion::forces(const VectorXd& stiffness) {
     }
   }
   if (!holds_end()) return;
-  // d is the same everywhere: what neighbours have in common is no load.
+  // d is uniform; therefore the forces of adjacent springs cancel except at both ends of the edge.
   const VectorXd kappa_d = solver_->edge_stiffness() * g.dy() * lines_.end_stretch;
   forces_.col(solver_->row(g.node(g.nx, 0), 1)) += kappa_d;
   forces_.col(solver_->row(g.node(g.nx, g.ny), 1)) -= kappa_d;
 }
 
-/// τ . K_cell τ of full material; nothing behind a line.
+/// Computes the energies τ . K_cell τ of cells of full material, without cells behind a clamped
+/// line.
 void RestrainedExpansion::line_energies() {
   const Grid& g = solver_->grid();
   const fem::Q4Energy energy(solver_->section(), g.dx(), g.dy());
@@ -89,7 +91,7 @@ void RestrainedExpansion::line_energies() {
   }
 }
 
-/// κ |B τ + d|²
+/// Adds the energies κ |B τ + d|² of the springs at the far edge.
 void RestrainedExpansion::add_edge_energies() {
   const Grid& g = solver_->grid();
   const int first = 2 * g.node(g.nx, 0), last = 2 * g.node(g.nx, g.ny);
@@ -166,7 +168,8 @@ double edge_stiffness(const fem::EslSets& sets, const fem::PlaneSection& section
 
 namespace {
 
-/// What a load holds: the root line in `column` (or not), and the far edge by `end` times as much.
+/// The restraint of a load: the root line in `column` if `root` is true, and the far edge with the
+/// stretch `end` relative to the restrained expansion g of the load.
 struct HeldLine {
   int column = 0;
   bool root = false;
@@ -214,7 +217,7 @@ std::optional<RestrainedExpansion> restrained_edges(const fem::EslSets& sets,
 
 namespace {
 
-/// Does the node belong to a cell of the domain?
+/// Returns true if a node belongs to a cell of the domain.
 bool exists(const fem::StaticSolver& solver, int node) {
   const Grid& g = solver.grid();
   const int i = node / (g.ny + 1), j = node % (g.ny + 1);
@@ -228,7 +231,7 @@ bool exists(const fem::StaticSolver& solver, int node) {
 
 VectorXd growth_on_supports(const fem::StaticSolver& solver,
                             std::span<const fem::HeldUnknown> held) {
-  constexpr double kSmall = 1e-12;  // of the size: round-off of the rigid motion taken off
+  constexpr double kSmall = 1e-12;  // round-off of the rigid motion, relative to the plate's size
   const Grid& g = solver.grid();
   MatrixXd rigid = MatrixXd::Zero(2 * static_cast<Eigen::Index>(g.n_nodes()), 3);
   VectorXd growth(rigid.rows());

@@ -10,62 +10,73 @@
 
 namespace flexmorph::mmc {
 
-/// Restrained thermal expansion: what heat does to a plate whose supports do not grow with it,
-/// beside its other loads.
+/// The restrained thermal expansion of a plate whose supports do not expand with it, in addition to
+/// its other loads.
 ///
-/// Elastic displacements w are counted from the plate as it would be had it grown freely, so that
-/// supports that stay as they are prescribe w_c = g τ_c at the held nodes, and K_ff w_f = F_f -
-/// K_fc w_c. Let
+/// Elastic displacements w are measured from the freely expanded plate. Rigid supports therefore
+/// prescribe w_c = g τ_c at the held nodes, and K_ff w_f = F_f - K_fc w_c. Let
 ///
 ///   w = μ + g τ:   K_ff μ_f = F_f, μ_c = 0   and   K_ff τ_f = -K_fc τ_c
 ///
-/// μ is the answer to the loads without heat, τ that to one unit of growth without loads, which
-/// the loads have no part in. Neither does work on the other, μᵀ K τ = μ_fᵀ (K τ)_f = 0, so that
+/// μ is the response to the loads without heat, and τ is the response to one unit of thermal
+/// expansion without loads. Their mutual work is zero, μᵀ K τ = μ_fᵀ (K τ)_f = 0, so that
 ///
 ///   wᵀ K w = F_f . μ_f + g² τᵀ K τ,    d(τᵀ K τ) = τᵀ dK τ
 ///
-/// (τ_f makes τᵀ K τ least: dτ adds nothing). The first term is the compliance without heat,
-/// whatever way it is found; this class adds the second one. Its derivative has the sign that
-/// K has: taking material off a plate that is only hot relieves it. The sum of both derivatives is
-/// dU/db = wᵀ K_b w / 2 - μᵀ K_b w + μ_fᵀ dF_f/db of optim/README.md, Hot plates, U = wᵀ K w / 2.
+/// (dτ does not contribute, because τ_f minimizes τᵀ K τ). The first term is the compliance without
+/// heat, by whatever method it is computed; this class adds the second term. Its derivative by a
+/// stiffness factor is positive: a plate under heat alone is relieved when material is removed. The
+/// sum of both derivatives is dU/db = wᵀ K_b w / 2 - μᵀ K_b w + μ_fᵀ dF_f/db of optim/README.md,
+/// Hot plates, with U = wᵀ K w / 2.
 ///
-/// The far edge may be held too, straight and as wide as it is, wherever it goes: by springs that
-/// do not grow with the plate, of elongations B w (StaticSolver's edge_stiffness κ). Counted like w
-/// those across start too long by d = g_e dy each, K above is everywhere K + κ BᵀB, but
+/// The far edge can be restrained as well: it stays straight and keeps its width, but can move as a
+/// whole. Springs that do not expand with the plate and have the elongations B w act there
+/// (edge_stiffness κ of StaticSolver). Measured like w, each spring across starts with the
+/// elongation d = g_e dy. K above is then replaced by K + κ BᵀB, and
 ///
 ///   (K + κ BᵀB)_ff τ_f = -K_fc τ_c - κ Bᵀd
 ///
-/// with τᵀ K τ + κ |B τ + d|² in place of τᵀ K τ: τ makes this least, too, and its work with μ is
-/// zero as before. See edge_stiffness().
+/// with τᵀ K τ + κ |B τ + d|² instead of τᵀ K τ. τ minimizes this expression, too, and the mutual
+/// work of τ and μ is zero. See edge_stiffness().
 ///
-/// Loads that hold the same lines in the same ratio share τ: however many there are, that is one
+/// Loads whose restrained lines and ratios of restraint are equal share one τ, and therefore one
 /// right-hand side.
 class RestrainedExpansion {
  public:
-  /// The held lines (n of them), and what every load has of them.
+  /// The restrained lines (n), and the line and the expansion of every load.
   struct Lines {
-    MatrixXd held = {};                  ///< τ_c of each line, 0 elsewhere (n x 2 n_nodes) [m]
-    std::vector<int> root_columns = {};  ///< clamp of each line, ascending (n); empty: supports
-    VectorXd end_stretch = {};           ///< d / dy of each line (n); empty: the far edge is free
-    std::vector<int> of_load = {};       ///< line of each load; -1 for loads with g = 0
-    VectorXd growth = {};                ///< g of each load [-]
+    MatrixXd held = {};  ///< τ_c of each line, 0 elsewhere (n x 2 n_nodes) [m].
+
+    /// Clamped column of each line, ascending (n); empty if the plate is held by supports.
+    std::vector<int> root_columns = {};
+    VectorXd end_stretch = {};      ///< Ratio d / dy of each line (n) [-]; empty: free far edge.
+    std::vector<int> of_load = {};  ///< Line of each load (n_loads); -1 for loads with g = 0.
+    VectorXd growth = {};           ///< Restrained expansion g of each load (n_loads) [-].
   };
-  /// @param solver  must live longer   @param weights  w of each load
+  /// Creates the restrained expansion of a plate.
+  /// @param solver   solver of the plate; it must live longer
+  /// @param weights  weights w of the loads (n_loads)
   RestrainedExpansion(const fem::StaticSolver& solver, Lines lines, const VectorXd& weights);
 
-  /// τ and its energies at these stiffness factors (n_cells), which the solver was factored for;
-  /// nothing to do when they are those of the last call.
+  /// Computes τ and its energies, unless the stiffness factors are those of the last call.
+  /// @param stiffness  stiffness scale factors (n_cells) for which the solver is factored
   void update(const VectorXd& stiffness);
 
-  // All of the following speak of the last update().
-  void add_to(ComplianceEvaluator::Value& value) const;  ///< Σ w g² τᵀ K τ and its derivative
+  // All functions below refer to the last update().
+
+  /// Adds Σ w g² τᵀ K τ and its derivative to a weighted sum of compliances.
+  void add_to(ComplianceEvaluator::Value& value) const;
+  /// Adds g² τᵀ K τ and its derivative to the compliance of every load.
   void add_to(ComplianceEvaluator::Each& each) const;
-  void add_to(VectorXd& compliances) const;  ///< (n_loads)
-  /// g τ of one load, node by node (2 n_nodes).
+  /// Adds g² τᵀ K τ to the compliance of every load (n_loads).
+  void add_to(VectorXd& compliances) const;
+  /// Returns the nodal displacements g τ of one load (2 n_nodes) [m].
   VectorXd displacement(int load) const;
 
-  void take_from(MatrixXd& u) const;  ///< u - g τ (n_loads x n_unknowns)
+  /// Subtracts g τ from the displacements u of every load (n_loads x n_unknowns).
+  void take_from(MatrixXd& u) const;
 
+  /// Returns the number of restrained lines n.
   int n_lines() const { return static_cast<int>(lines_.held.rows()); }
 
  private:
@@ -78,39 +89,45 @@ class RestrainedExpansion {
   const fem::StaticSolver* solver_;
   Lines lines_;
   VectorXd line_weights_;
-  std::vector<int> touched_;          // cells with held nodes that move
-  VectorXd stiffness_;                // of the last update
+  std::vector<int> touched_;          // cells with nodes whose τ_c is not zero
+  VectorXd stiffness_;                // stiffness factors of the last update (n_cells)
   VectorXd compliances_;              // τᵀ K τ of each line
   MatrixXd forces_, tau_, energies_;  // (n x n_unknowns), (n x 2 n_nodes), (n x n_cells)
 };
 
-/// κ = 1e3 E c H / dy, which holds the far edge of length H of a plate, nodes dy apart [N/m]; 0
-/// where no load has EslSet::held_end_stretch.
+/// Returns the stiffness κ = 1e3 E c H / dy of the springs that restrain the far edge of a plate,
+/// with the length H of the edge and the distance dy of its nodes [N/m]; 0 where no load has
+/// EslSet::held_end_stretch.
 ///
-/// What the plate has against it is a strip across about as wide as a third of H, so that an edge
-/// of full material gives way by 3e-4 of what is held back, on every grid.
-/// Energies of heat alone come out short of those of a rigid edge by 1e-4, less where the edge is
-/// soft. Round-off of displacements under loads grows with κ: on 400 x 40 cells 2e-7 (two flanges
-/// without a web: 7e-6), which enters compliances squared; a hundred times κ makes that 1e-4
+/// The plate acts against the springs like a strip across it with a width of about H / 3, so that
+/// an edge of full material yields by 3e-4 of the restrained expansion on every grid. Energies of
+/// heat alone are smaller than for a rigid edge by 1e-4, or less where the edge is soft. Round-off
+/// errors of displacements under loads grow with κ: on 400 x 40 cells they are 2e-7 (7e-6 for two
+/// flanges without a web), and compliances contain their squares. With 100 κ they would be 1e-4
 /// (4e-3).
 double edge_stiffness(const fem::EslSets& sets, const fem::PlaneSection& section);
 
-/// Returns the edges that hold back the growth of a hot plate: EslSet::held_stretch = g, τ_c =
-/// -(0, Y) on the root column of each load, and EslSet::held_end_stretch = g_e at the far end.
-/// Nothing where no load has any.
+/// Returns the expansion of a heated plate that is restrained at its edges: EslSet::held_stretch =
+/// g with τ_c = -(0, Y) on the root column of each load, and EslSet::held_end_stretch = g_e at the
+/// far edge. The result is empty where both are zero for all loads.
 std::optional<RestrainedExpansion> restrained_edges(const fem::EslSets& sets,
                                                     const fem::StaticSolver& solver,
                                                     std::span<const int> columns,
                                                     const VectorXd& weights);
 
-/// Returns e + ρ of one unit of growth of a plate at rest (2 n_nodes) [m]: free growth about the
-/// middle of the plate, turned and shifted so that it leaves the held displacements as near to zero
-/// as it can; zero where no cell of the domain is.
+/// Returns e + ρ for one unit of thermal expansion of a static plate (2 n_nodes) [m]: the free
+/// expansion about the middle of the plate plus the rigid motion that minimizes the held
+/// displacements in the least-squares sense. The result is zero at nodes without a cell of the
+/// domain.
 VectorXd growth_on_supports(const fem::StaticSolver& solver,
                             std::span<const fem::HeldUnknown> held);
 
-/// Returns the supports that take off growth_on_supports() at held displacements, times the thermal
-/// stretch of each load; nothing where they let the plate grow.
+/// Returns the expansion of a heated plate that is restrained by its supports, which prescribe
+/// -growth_on_supports() at held displacements times the thermal stretch of each load. The result
+/// is empty where the supports permit the free expansion.
+/// @param growth   growth_on_supports() (2 n_nodes) [m]
+/// @param stretch  thermal stretch of each load (n_loads) [-]
+/// @param weights  weights of the loads (n_loads)
 std::optional<RestrainedExpansion> restrained_supports(const fem::StaticSolver& solver,
                                                        const VectorXd& growth,
                                                        const VectorXd& stretch,

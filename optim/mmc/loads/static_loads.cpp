@@ -15,7 +15,8 @@ namespace {
 
 using Stencil = Eigen::Matrix3d;  // (1 + di, 1 + dj): weight of node (i + di, j + dj)
 
-/// Row of the mass matrix of node (i, j): the cells around it, each with its factor.
+/// Returns the row of the mass matrix for node (i, j): the sum over the adjacent cells with their
+/// mass factors.
 Stencil mass_stencil(const Grid& g, const Eigen::Matrix4d& cell_mass, const VectorXd& mass, int i,
                      int j) {
   Stencil s = Stencil::Zero();
@@ -33,7 +34,7 @@ Stencil mass_stencil(const Grid& g, const Eigen::Matrix4d& cell_mass, const Vect
   return s;
 }
 
-/// f[k] = -Σ s_b a_b[k] over the nine nodes of a stencil.
+/// Computes f[k] = -Σ s_b a_b[k] over the nine nodes of a stencil.
 void apply_stencil(const Stencil& s, const std::array<const double*, 9>& a, Eigen::Index n,
                    double* __restrict f) {
   const double* __restrict a0 = a[0], * __restrict a1 = a[1], * __restrict a2 = a[2], * __restrict a3 = a[3], * __restrict a4 = a[4], * __restrict a5 = a[5], * __restrict a6 = a[6], * __restrict a7 = a[7], * __restrict a8 = a[8];
@@ -56,10 +57,11 @@ StaticLoads inertia_loads(const fem::EslSets& sets, std::span<const int> rows) {
     const fem::EslSet& set = sets.sets[static_cast<std::size_t>(l)];
     loads.acceleration.row(l) = set.acceleration.transpose();
     for (const fem::NodalForce& f : set.forces)
-      if (row(f) >= 0)  // a force on a held node goes straight into the hub
+      if (row(f) >= 0)  // a force on a held node acts on the hub, not on the plate
         loads.slots.insert(loads.slots.end(), {row(f), row(f) + 1});
   }
-  if (*std::min_element(rows.begin(), rows.end()) >= 0)  // of a link
+  // A link has no held displacements: every column of F can carry a force.
+  if (*std::min_element(rows.begin(), rows.end()) >= 0)
     loads.slots.assign(rows.begin(), rows.end());
   std::sort(loads.slots.begin(), loads.slots.end());
   loads.slots.erase(std::unique(loads.slots.begin(), loads.slots.end()), loads.slots.end());
@@ -103,7 +105,8 @@ void InertiaOperator::forces(const StaticLoads& loads, const VectorXd& mass, Mat
     for (int j = 0; j <= g.ny; ++j) {
       const Stencil s = mass_stencil(g, cell_mass_, mass, i, j);
       std::array<const double*, 9> a{};
-      for (int b = 0; b < 9; ++b) {  // column-major, as the stencil; nothing lies beyond the edge
+      // Column-major order like that of the stencil, whose weights are zero beyond the edge.
+      for (int b = 0; b < 9; ++b) {
         const int ni = std::clamp(i + b % 3 - 1, 0, g.nx), nj = std::clamp(j + b / 3 - 1, 0, g.ny);
         a[static_cast<std::size_t>(b)] = &loads.acceleration(0, 2 * g.node(ni, nj));
       }
@@ -115,11 +118,12 @@ void InertiaOperator::forces(const StaticLoads& loads, const VectorXd& mass, Mat
   }
 }
 
-/// Calls use(cell, products of all loads in x, then in y) for every cell with nodes that move.
+/// Calls use(cell, products) for every cell with unknown displacements; the products of all loads
+/// in x are followed by those in y.
 template <class Use>
 void InertiaOperator::each_product(const MatrixXd& z, const MatrixXd& a, Use use) const {
   const Grid& g = grid_;
-  const Eigen::Index n = 2 * z.rows();  // x and y of a node are neighbours
+  const Eigen::Index n = 2 * z.rows();  // x and y of a node lie next to each other
   const fem::Q4MassProduct mass(section_, g.dx(), g.dy());
   held_.setZero(n);
   product_of_load_.resize(n);

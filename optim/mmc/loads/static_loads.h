@@ -9,57 +9,73 @@
 
 namespace flexmorph::mmc {
 
-/// How the equivalent static loads meet a changing design (optim/README.md, Load definitions).
+/// The dependence of equivalent static loads on a changing design (optim/README.md, Load
+/// definitions).
 enum class LoadDefinition { inertia, frozen, stiffness };
-/// Where the plate is held: at its root, or, as a link between two pins, see LinkBalance.
+/// The support of a plate under equivalent static loads: a clamp at the moving root or at the far
+/// end, or, for a link (a body of a mechanism between two pins), the balance of LinkBalance.
 enum class Support { moving_root, far_end, pins, floating };
+/// Returns true if a support is one of links between two pins.
 constexpr bool is_of_link(Support s) { return s == Support::pins || s == Support::floating; }
 
+/// Settings of the compliance under equivalent static loads.
 struct ComplianceSettings {
-  LoadDefinition loads = LoadDefinition::inertia;
-  Support support = Support::moving_root;
-  bool compress = true;  ///< replace the loads by their leading singular vectors where it pays
-  /// Part of the energy that may be left out where all loads share one support; with a moving root,
-  /// where what is left out counts in first order, of its square root.
+  LoadDefinition loads = LoadDefinition::inertia;  ///< Dependence of the loads on the design.
+  Support support = Support::moving_root;          ///< Support of the plate.
+
+  /// True to replace the loads by their leading singular vectors where this reduces the work.
+  bool compress = true;
+  /// Fraction of the energy that compression may neglect where all loads have one support [-]. With
+  /// a moving root it bounds the square root of this fraction, because the error is then of first
+  /// order in the neglected state.
   double compression_tolerance = 1e-10;
 };
 
-/// Several loads of one plate: F(b) = -M(b) a + f, or fixed ones.
+/// Several loads of one plate, which depend on the design by F(b) = -M(b) a + f or are fixed.
 ///
 /// Rows are loads. Columns of F are the unknowns of a solver, or all displacements of a link (x and
-/// y of a node next to each other), so that the values of all loads at one of them are contiguous.
+/// y of a node next to each other), so that the values of all loads at one displacement are
+/// contiguous.
 struct StaticLoads {
-  MatrixXd acceleration;   ///< a (n x 2 n_nodes) [m/s^2]; empty when fixed
-  std::vector<int> slots;  ///< columns of F that carry concentrated forces
-  MatrixXd slot_forces;    ///< f at these (n x n_slots) [N]
-  MatrixXd fixed;          ///< F (n x n_rows) [N]; empty when loads follow the design
+  MatrixXd acceleration;   ///< Accelerations a (n x 2 n_nodes) [m/s^2]; empty for fixed loads.
+  std::vector<int> slots;  ///< Columns of F with concentrated forces (n_slots).
+  MatrixXd slot_forces;    ///< Concentrated forces f (n x n_slots) [N].
+  MatrixXd fixed;  ///< Fixed loads F (n x n_rows) [N]; empty for loads that follow the design.
 
+  /// Returns the number of loads n.
   Eigen::Index size() const { return follows_design() ? acceleration.rows() : fixed.rows(); }
+  /// Returns true if the loads depend on the design.
   bool follows_design() const { return fixed.size() == 0; }
 };
 
-/// a and f of all sets. @param rows  place of every displacement in F (2 n_nodes); -1: it is held
+/// Returns the loads -M(b) a + f of all equivalent static loads of a body.
+/// @param rows  index of every displacement in F (2 n_nodes); -1: it is held
 StaticLoads inertia_loads(const fem::EslSets& sets, std::span<const int> rows);
 
-/// Every part of the loads combined: combination (r x n) times loads.
+/// Returns r linear combinations of n loads.
+/// @param combination  coefficients (r x n)
 StaticLoads combine(const MatrixXd& combination, const StaticLoads& loads);
 
-/// Consistent mass of a design: inertia forces and their derivatives.
+/// The consistent mass matrix of a design, for inertia forces and their derivatives.
 class InertiaOperator {
  public:
-  /// @param rows  place of every displacement in F and z (2 n_nodes), x and y of a node next to
-  /// each
-  ///        other; -1: it is held
+  /// Creates the operator of a plate.
+  /// @param rows  index of every displacement in F and z (2 n_nodes), x and y of a node next to
+  ///        each other; -1: it is held
   InertiaOperator(const Grid& grid, const fem::PlaneSection& section, std::vector<int> rows);
 
+  /// Returns the index of every displacement in F (2 n_nodes); -1: it is held.
   std::span<const int> rows() const { return rows_; }
-  /// F = -M(mass factors (n_cells)) a + f of loads that follow the design (n x n_rows).
+  /// Computes the forces F = -M(mass) a + f of loads that follow the design (n x n_rows) [N].
+  /// @param mass  mass scale factors (n_cells)
   void forces(const StaticLoads& loads, const VectorXd& mass, MatrixXd& F) const;
 
-  /// Σ_l z_l . M_cell a_l of full mass for every cell (n_cells).
-  /// @param z  (n x n_rows), zero at held nodes   @param a  (n x 2 n_nodes)
+  /// Computes Σ_l z_l . M_cell a_l with the mass matrix of a full cell for every cell (n_cells).
+  /// @param z  vectors (n x n_rows)
+  /// @param a  accelerations (n x 2 n_nodes)
   void products(const MatrixXd& z, const MatrixXd& a, VectorXd& product) const;
-  /// z_l . M_cell a_l of full mass for every load and cell (n x n_cells).
+  /// Computes z_l . M_cell a_l with the mass matrix of a full cell for every load and cell
+  /// (n x n_cells).
   void products(const MatrixXd& z, const MatrixXd& a, MatrixXd& product) const;
 
  private:
@@ -75,12 +91,13 @@ class InertiaOperator {
   mutable VectorXd held_, product_of_load_;
 };
 
-/// Orthonormal combinations of few rows that hold all rows: y ≈ U Uᵀ y.
+/// Returns few orthonormal combinations of rows that approximate all rows: y ≈ U Uᵀ y.
 ///
 /// @param y  weighted states L⁻¹ F sqrt(w) (n x n_unknowns), whose squares are energies
-/// @param tolerance  part of Σ y² that may be left out
-/// @returns U (n x r), the leading left singular vectors of y. They come from a QR decomposition,
-///          not from the Gram matrix, whose eigenvalues would be noise below 1e-16 of the energy.
+/// @param tolerance  fraction of Σ y² that may be neglected [-]
+/// @returns U (n x r), the leading left singular vectors of y. They are computed by a QR
+///          decomposition instead of the Gram matrix, whose eigenvalues would be noise below 1e-16
+///          of the energy.
 MatrixXd leading_combinations(const MatrixXd& y, double tolerance);
 
 }  // namespace flexmorph::mmc

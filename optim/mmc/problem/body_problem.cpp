@@ -103,19 +103,19 @@ std::vector<Region> regions_of(const BodyProblem& p, std::span<const Component> 
 
 namespace {
 
-/// Is the point on the polygon?
+/// Returns true if a point lies on a polygon within a distance `small`.
 bool bounds(std::span<const Vec2> polygon, const Vec2& p, double small) {
   for (size_t k = 0; k < polygon.size(); ++k)
     if (distance({polygon[k], polygon[(k + 1) % polygon.size()]}, p) < small) return true;
   return false;
 }
 
-/// What holds and what loads the body.
+/// Returns the supported and loaded cells of the body.
 std::vector<HeldOrLoaded> places_of(const BodyProblem& problem) {
   return problem.places.empty() ? ends_of(problem.grid) : problem.places;
 }
 
-/// Has the cell material of the region? Looked at in 4 x 4 points, its border included.
+/// Returns true if one of 4 x 4 points of the cell, its border included, lies in the region.
 bool touches(const Grid& grid, const Region& region, int cell) {
   constexpr int kPoints = 4;
   const Vec2 size(grid.dx(), grid.dy());
@@ -131,8 +131,9 @@ bool touches(const Grid& grid, const Region& region, int cell) {
 
 namespace {
 
-/// Do passive regions make the place by themselves? Both its contacts are on the outline of one, or
-/// void that is given is on both sides of the material.
+/// Returns true if a narrow location results from passive regions alone: both of its contacts lie
+/// on the outline of one passive region, or on two different borders of the domain or of void
+/// regions.
 bool is_given(const BodyProblem& problem, const NarrowPlace& place) {
   const double small = 1e-6 * problem.grid.dx();
   const auto touches = [&](const std::vector<Vec2>& ring, const Vec2& p) {
@@ -144,7 +145,8 @@ bool is_given(const BodyProblem& problem, const NarrowPlace& place) {
   const auto& regions = place.solid ? problem.solid : problem.empty;
   if (std::any_of(regions.begin(), regions.end(), within)) return true;
   if (!place.solid) return false;
-  // A fillet at the end of a narrow solid region: the region has its width there.
+  // A fillet at the end of a narrow solid region: one contact lies on the region, which determines
+  // the width there.
   constexpr double kOwn = 0.5;
   const auto own = [&](const std::vector<Vec2>& region) {
     if (!contains({region, {}}, place.center)) return false;
@@ -164,7 +166,8 @@ bool is_given(const BodyProblem& problem, const NarrowPlace& place) {
   return a != rings.end() && b != rings.end() && a != b;
 }
 
-/// Gaps to held lines, but those that a passive region leaves.
+/// Returns the gaps between material and the lines that support it, without gaps that end at a
+/// passive region.
 std::vector<NarrowPlace> held_gaps(const BodyProblem& problem, std::span<const Region> regions,
                                    double limit) {
   std::vector<NarrowPlace> out = line_gaps(regions, problem.held, limit);
@@ -217,7 +220,8 @@ Connectivity connectivity_of(const BodyProblem& problem, std::span<const Region>
 
 namespace {
 
-/// Adds what the outline of a part says; false where its widths cannot be computed.
+/// Adds the results that follow from the outline of a part. Returns false where its widths cannot
+/// be computed.
 bool add_outline(const BodyProblem& problem, const FinishedPart& part, SharpDesign& out) {
   try {
     out.widened = part.widened;

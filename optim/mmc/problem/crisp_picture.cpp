@@ -12,12 +12,13 @@
 namespace flexmorph::mmc {
 namespace {
 
-/// Pieces of outlines are so long at most, and so far off at most [cells].
+/// Largest length of the straight pieces of outlines, and their largest distance from the curved
+/// outlines [cells].
 constexpr double kPiece = 0.05, kOff = 1e-4;
 
 using Entries = std::vector<Eigen::Triplet<double>>;
 
-/// Collects the motion of the outline of a union, piece by piece.
+/// Assembles the derivatives of the area fractions by the motion of the outline of a union.
 class OutlineMotion {
  public:
   OutlineMotion(const BodyProblem& problem, std::span<const Component> components)
@@ -29,7 +30,7 @@ class OutlineMotion {
       boxes_.push_back(bounding_box(c, tdf_.min_half_thickness, 0));
   }
 
-  /// Adds what the outline of a component contributes.
+  /// Adds the contribution of the outline of one component.
   void add(int index, Entries& out) const {
     const std::vector<Vec2> ring = outline_within(components_[static_cast<size_t>(index)],
                                                   tdf_.min_half_thickness, kOff * cell_);

@@ -9,29 +9,32 @@ namespace flexmorph::mmc {
 
 struct BodyProblem;
 
-/// What the outlines of components enclose, cell by cell, and how it changes with the components:
-/// the crisp design beside the regularized one of UnionTdf and Ersatz.
+/// The crisp design: area fractions of the material that the outlines of components enclose in each
+/// cell, and their derivatives. UnionTdf and Ersatz describe the regularized design instead.
 class CrispPicture {
  public:
-  /// @param problem  lives longer
+  /// Creates the crisp view of the designs of a body.
+  /// @param problem  must live longer
   explicit CrispPicture(const BodyProblem& problem) : problem_(&problem) {}
 
-  /// Area fractions of material (n_cells), as fractions_of() samples them.
+  /// Returns the area fractions of material (n_cells), sampled by fractions_of().
   VectorXd fractions(std::span<const Component> components) const;
 
-  /// Area fractions of the part that the components stand for (n_cells), see part_fractions().
+  /// Returns the area fractions of the finished part of the components (n_cells), see
+  /// part_fractions().
   VectorXd of_part(std::span<const Component> components) const;
 
-  /// Derivatives of the area fractions by the parameters of the components (n_cells x 7 N),
+  /// Returns the derivatives of the area fractions by the component parameters (n_cells x 7 N),
   ///
   ///   ∂a_c/∂p = 1/A_c ∫ (∂φ/∂p) / |∇φ| ds
   ///
   /// a_c  area fraction of cell c [-], A_c its area [m²]
-  /// φ    TDF of the component whose outline it is, which grows inwards: the integrand is the speed
-  ///      at which the outline moves outwards
+  /// φ    TDF of the component that the outline belongs to. φ increases inwards; therefore the
+  ///      integrand is the speed at which the outline moves outwards
   ///
-  /// over the part of the union's outline in cell c. Sides that borders of the domain, solid or
-  /// void regions make do not move. (Shape derivative of an integral over a domain: Hadamard.)
+  /// where the integral extends over the outline of the union within cell c. Sides on borders of
+  /// the domain and of solid or void regions do not move. (Hadamard's shape derivative of an
+  /// integral over a domain.)
   Eigen::SparseMatrix<double> slopes(std::span<const Component> components) const;
 
  private:

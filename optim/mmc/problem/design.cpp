@@ -11,10 +11,11 @@ namespace flexmorph::mmc {
 namespace {
 
 constexpr int kN = Component::kParameters;
-/// Components are one another's images to this part of their sizes [-].
+/// Relative tolerance for the comparison of components with mirror images, in half-lengths [-].
 constexpr double kSame = 1e-9;
 
-/// parameter' = sign * parameter + shift: an image of a component in a line.
+/// The map of component parameters to those of a mirror image: parameter' = sign * parameter +
+/// shift.
 struct Image {
   std::array<double, kN> sign{1, 1, 1, 1, 1, 1, 1}, shift{};
 
@@ -41,7 +42,7 @@ struct Image {
   }
 };
 
-/// The design itself first.
+/// Returns the maps to all mirror images; the first one is the identity.
 std::vector<Image> images_of(const Symmetry& s) {
   std::vector<Image> out = {Image()};
   if (s.x) out.push_back(Image::in(s.x, {}));
@@ -50,7 +51,7 @@ std::vector<Image> images_of(const Symmetry& s) {
   return out;
 }
 
-/// The same area, whichever end comes first.
+/// Returns true if two components cover equal areas, also when their ends are exchanged.
 bool same(const Component& a, const Component& b) {
   const double small = kSame * a.half_length;
   if ((a.center - b.center).norm() > small || std::abs(a.half_length - b.half_length) > small)
@@ -61,14 +62,14 @@ bool same(const Component& a, const Component& b) {
          std::abs(a.c2 - (turned ? b.c1 : b.c2)) < small && std::abs(a.c3 - b.c3) < small;
 }
 
-/// Is it on the lower, left side, or on the line?
+/// Returns true if a component lies on the lower (left) side of the symmetry lines or on them.
 bool on_own_side(const Component& c, const Symmetry& symmetry) {
   const double small = kSame * c.half_length;
   return !(symmetry.x && c.center.x() > *symmetry.x + small) &&
          !(symmetry.y && c.center.y() > *symmetry.y + small);
 }
 
-/// Components by their place, so that many are compared with a few each.
+/// A set of components that is sorted by location, so that a search compares only few of them.
 class ByPlace {
  public:
   void add(const Component& c) { all_.emplace(key(c), c); }
@@ -80,7 +81,8 @@ class ByPlace {
   }
 
  private:
-  /// Along a line that rows and columns of layouts are no normals of.
+  /// Returns the coordinate along a direction that is not perpendicular to rows or columns of
+  /// layouts, so that components of one row or column have different keys.
   static double key(const Component& c) {
     constexpr double kSlope = 0.6180339887;
     return c.center.x() + kSlope * c.center.y();
@@ -154,7 +156,9 @@ Design::Design(const Grid& domain, const std::vector<Component>& start, const De
   add_images(n, unit);
 }
 
-/// @param unit  parameter per unit of x
+/// Sets up the linear map from the design vector to the parameters of all components.
+/// @param n     number of design variables
+/// @param unit  component parameter per unit of x (n)
 void Design::add_images(Eigen::Index n, const VectorXd& unit) {
   const std::vector<Image> images = images_of(symmetry_);
   const auto rows = n * static_cast<Eigen::Index>(images.size());

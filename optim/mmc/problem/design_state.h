@@ -7,35 +7,45 @@
 
 namespace flexmorph::mmc {
 
-/// m values of a response, with their derivatives by the factors of the cells (m x n_cells) and by
-/// the parameters of the components directly (m x 7 N). Without entries they are zero.
+/// The m values of a response, with their derivatives by the scale factors of the cells (m x
+/// n_cells) and directly by the component parameters (m x 7 N). An empty matrix stands for zeros.
 struct Values : ComplianceEvaluator::Each {
-  MatrixXd d_parameters;
+  MatrixXd d_parameters;  ///< Direct derivatives by the component parameters (m x 7 N).
 };
 
-/// The state of a design under its loads for all responses that ask for it: it is factored once,
-/// and not at all when none asks.
+/// The state of a design under its loads, shared by all responses that need it. K is factored once
+/// per design, and not at all when no response needs the state.
 class DesignState {
  public:
-  /// @param loads  lives longer
+  /// Creates a state that is not solved yet.
+  /// @param loads  must live longer than the state
   explicit DesignState(ComplianceEvaluator& loads) : loads_(loads) {}
 
-  /// Another design: nothing is solved yet.
+  /// Marks the state as unsolved, because the design has changed.
   void begin() { solved_ = false; }
 
-  /// The weighted compliance, or every load's. @param out  d_parameters stays as it is
+  /// Computes the weighted sum of the compliances and its derivatives.
+  /// @param out  receives them; d_parameters stays unchanged
   /// @throws Error (numerical) when the state cannot be solved, or a compliance is not positive.
   void sum(const CellFactors& factors, Values& out);
+  /// Computes the compliance of every load and its derivatives.
+  /// @param out  receives them; d_parameters stays unchanged
+  /// @throws Error (numerical) when the state cannot be solved, or a compliance is not positive.
   void each(const CellFactors& factors, Values& out);
 
-  /// What the first of them saw, of many loads the worst: NaN when nothing was solved.
+  /// Returns the result of the first evaluation after begin(): of each() the largest compliance.
+  /// The compliance is NaN until anything has been solved.
   const ComplianceEvaluator::Value& value() const { return value_; }
 
+  /// Returns the number of loads.
   int n_loads() const { return loads_.n_loads(); }
+  /// Returns the evaluator of the loads.
   ComplianceEvaluator& loads() { return loads_; }
+  /// Returns the evaluator of the loads.
   const ComplianceEvaluator& loads() const { return loads_; }
-  /// CPU seconds since clear_seconds().
+  /// Returns the CPU seconds of all evaluations since clear_seconds().
   ComplianceEvaluator::Seconds seconds() const { return seconds_; }
+  /// Resets the CPU seconds to zero.
   void clear_seconds() { seconds_ = {}; }
 
  private:

@@ -18,10 +18,10 @@ std::vector<Vec2> mirrored(std::vector<Vec2> ring, const Symmetry& line) {
   return ring;
 }
 
-/// Puts vertices that are on a mirror line but for round-off onto it: nothing between them and the
-/// line is left over.
+/// Moves vertices that differ from a mirror line by round-off onto the line, so that no slivers
+/// remain between them and the line.
 void snap_to_mirrors(const BodyProblem& p, Region& region) {
-  constexpr double kRoundOff = 1e-9;  // cells
+  constexpr double kRoundOff = 1e-9;  // [cells]
   const Symmetry& symmetry = p.design.symmetry();
   const double near = kRoundOff * p.grid.dx();
   const auto snap = [&](std::vector<Vec2>& ring) {
@@ -36,7 +36,7 @@ void snap_to_mirrors(const BodyProblem& p, Region& region) {
   for (std::vector<Vec2>& hole : region.holes) snap(hole);
 }
 
-/// The lower, left side of regions and its mirror images.
+/// Returns the union of the lower (left) side of regions and its mirror images.
 std::vector<Region> made_symmetric(const BodyProblem& p, std::span<const Region> regions) {
   const Symmetry& symmetry = p.design.symmetry();
   const Grid& g = p.grid;
@@ -63,8 +63,8 @@ std::vector<Region> made_symmetric(const BodyProblem& p, std::span<const Region>
   return unite(outer, {corners_of(all), {}}, holes);
 }
 
-/// The same, or the regions themselves where rounded vertices at the line make a polygon that
-/// crosses itself: these are symmetric to the tolerance.
+/// Returns made_symmetric(), or the unchanged regions where rounded vertices at the mirror line
+/// lead to a polygon that crosses itself. The unchanged regions are symmetric within the tolerance.
 std::vector<Region> symmetric_where_possible(const BodyProblem& p, std::vector<Region> regions) {
   try {
     return made_symmetric(p, regions);
@@ -74,7 +74,8 @@ std::vector<Region> symmetric_where_possible(const BodyProblem& p, std::vector<R
   }
 }
 
-/// The smoothed regions. What smoothing would make narrower than asked for keeps its shape.
+/// Returns the smoothed regions. Locations that smoothing would make narrower than the minimum
+/// width keep their shape.
 std::vector<Region> smoothed_part(const BodyProblem& p, std::span<const Region> regions,
                                   std::span<const Segment> mirrors, double tolerance) {
   const std::vector<std::vector<Vec2>> fixed = fixed_rings(p);
@@ -86,7 +87,7 @@ std::vector<Region> smoothed_part(const BodyProblem& p, std::span<const Region> 
   return smoothed(regions, fixed, mirrors, kept, p.widths.solid, tolerance);
 }
 
-/// The lines of symmetry across the domain.
+/// Returns the symmetry lines, cut at the borders of the domain.
 std::vector<Segment> mirror_lines(const BodyProblem& p) {
   const Grid& g = p.grid;
   const Symmetry& symmetry = p.design.symmetry();
@@ -96,7 +97,7 @@ std::vector<Segment> mirror_lines(const BodyProblem& p) {
   return out;
 }
 
-/// The union of components and discs with its fillets, which do not fill void regions.
+/// Returns the union of components and discs with fillets. Fillets do not extend into void regions.
 std::vector<Region> filled(const BodyProblem& p, std::span<const Component> components,
                            std::span<const std::vector<Vec2>> discs, double tolerance) {
   std::vector<Region> out =
@@ -112,7 +113,8 @@ std::vector<Region> filled(const BodyProblem& p, std::span<const Component> comp
   return clipped;
 }
 
-/// Where material is narrower than asked for, one place for each neighbourhood, narrowest first.
+/// Returns the violations of the minimum width of material, narrowest first: one for each
+/// neighbourhood of the size of that width.
 std::vector<NarrowPlace> too_narrow(const BodyProblem& p, std::span<const Region> regions) {
   constexpr double kEnough = 0.99;
   std::vector<NarrowPlace> out;
@@ -125,8 +127,8 @@ std::vector<NarrowPlace> too_narrow(const BodyProblem& p, std::span<const Region
   return out;
 }
 
-/// Did the components come to their widths but for a few places that are a little too narrow?
-/// Fillings do not count, which widening is a part of.
+/// Returns true if the components satisfy the minimum width except for a few small violations.
+/// Violations in fillings of gaps and corners do not count, because widening corrects them.
 bool has_nearly_widths(std::span<const NarrowPlace> narrow, std::span<const Region> union_of_all,
                        double wanted) {
   constexpr double kNarrowest = 0.5;
@@ -143,14 +145,14 @@ bool has_nearly_widths(std::span<const NarrowPlace> narrow, std::span<const Regi
   return true;
 }
 
-/// The union with its fillets, and with discs where that is narrow, as fillings beside holes and
-/// across gaps can be.
+/// Returns the union of the components with fillets, and with discs where it is narrower than the
+/// minimum width, which happens for fillings beside holes and across gaps.
 FinishedPart widened(const BodyProblem& p, std::span<const Component> components,
                      double tolerance) {
   constexpr int kRounds = 3;
-  constexpr double kDisc = 1.02;  // smallest widths
+  constexpr double kDisc = 1.02;  // diameter of a disc [minimum widths]
   std::vector<std::vector<Vec2>> discs;
-  std::optional<std::vector<Region>> bare;  // the union
+  std::optional<std::vector<Region>> bare;  // the union without fillets
   FinishedPart out{filled(p, components, {}, tolerance), 0};
   for (int round = 0; round < kRounds; ++round) {
     const std::vector<NarrowPlace> narrow = too_narrow(p, out.regions);
@@ -187,7 +189,7 @@ std::vector<Region> part_of(const BodyProblem& p, std::span<const Component> com
 
 namespace {
 
-/// Is the part more than the union of the components?
+/// Returns true if the finished part differs from the union of the components.
 bool is_finished(const BodyProblem& p) { return p.part || p.fillets.radius > 0; }
 
 double fine(const BodyProblem& p) { return kOutlineTolerance * p.grid.dx(); }

@@ -32,7 +32,8 @@ std::optional<double> allowed_volume(const Goal& goal) {
 }
 
 bool is_held_back(const Goal& goal) {
-  // More material is less compliance and more of everything else.
+  // More material reduces compliances and responses of the motion, and increases all other
+  // responses.
   const bool wants_more = goal.objective->falls_with_material();
   return std::any_of(goal.limits.begin(), goal.limits.end(), [&](const Limit& limit) {
     return wants_more == (limit.row->falls_with_material() == limit.at_least);

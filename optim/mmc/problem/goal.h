@@ -8,68 +8,80 @@
 
 namespace flexmorph::mmc {
 
-/// A bound on a response; of one with a value per load, on each of them.
+/// A bound on a response of a design. For a response with one value per load it bounds every value.
 struct Limit {
-  const ResponseRow* row = nullptr;
-  double value = 0;  ///< in the unit of the row
-  bool at_least = false;
-  /// The volume fraction it stands for, where every piece of material counts alike.
-  std::optional<double> volume;
-  std::string key_path = {};  ///< of the bound in its case file, for messages; empty: there is none
+  const ResponseRow* row = nullptr;  ///< The bounded response.
+  double value = 0;                  ///< The bound, in the unit of the response.
+  bool at_least = false;             ///< True if the bound is a lower bound, not an upper one.
 
+  /// The equivalent volume fraction [-]; absent if the response depends on more than the amount of
+  /// material (ResponseRow::even).
+  std::optional<double> volume;
+  std::string key_path = {};  ///< Path of the bound in its case file, for messages; may be empty.
+
+  /// Creates a bound on a response of a plate.
   Limit(const ResponseRow& response, double bound, bool from_below, const Plate& plate)
       : row(&response), value(bound), at_least(from_below) {
     if (response.even) volume = bound / response.full(plate);
   }
-  /// How far a value of the response is beyond the bound, as a part of it: <= 0 when it is allowed.
+  /// Returns the relative violation of the bound by a value of the response [-]; it is <= 0 when
+  /// the value is allowed.
   double excess(double found) const { return at_least ? 1 - found / value : found / value - 1; }
-  /// Tells whether more material always brings the response closer to the bound, and loads decide
-  /// how close: the full design may miss such a bound.
+  /// Returns true if more material always brings the response closer to the bound. Even the full
+  /// design can violate such a bound, because its value then depends on the loads.
   bool wants_material() const { return !at_least && row->needs_state() && !row->of_motion; }
 };
 
-/// A number of the motion that is minimized besides another one.
+/// A response of the motion that is added to the objective with a weight.
 struct Addend {
-  const ResponseRow* row = nullptr;
-  double weight = 1;  ///< > 0, one per unit of the row
+  const ResponseRow* row = nullptr;  ///< The added response.
+  double weight = 1;                 ///< Weight > 0, in one per unit of the response.
 };
 
-/// What a design is to be good at, and what it must keep to: rows of the table of responses.
+/// The objective and the constraints of a design, as rows of the table of responses.
 struct Goal {
-  const ResponseRow* objective = &kComplianceSum;
-  std::vector<Limit> limits = {};
-  std::vector<Addend> addends = {};  ///< of a number of the motion: added to it
+  const ResponseRow* objective = &kComplianceSum;  ///< The response that is minimized.
+  std::vector<Limit> limits = {};                  ///< Bounds on responses.
+
+  /// Responses that are added to the objective if the objective is a response of the motion.
+  std::vector<Addend> addends = {};
 };
 
-/// The rows of a goal in the order they are evaluated, each once.
+/// Returns the responses of the objective and of the limits in the order of their evaluation, each
+/// once.
 std::vector<const ResponseRow*> rows_of(const Goal& goal);
 
-/// The row whose compliance stands for the design in tables: the first one that needs a state, or
-/// the sum.
+/// Returns the compliance that represents the design in tables: the first response of rows_of()
+/// that needs the state, or kComplianceSum if none does.
 const ResponseRow& compliance_row(const Goal& goal);
 
-/// Rows that tables have no columns for: all but the volume and compliance_row().
+/// Returns the responses of rows_of() that tables have no columns for: all except the volume and
+/// compliance_row().
 std::vector<const ResponseRow*> further_rows(const Goal& goal);
 
-/// The largest volume fraction that the limits leave; nothing when none speaks of it.
+/// Returns the largest volume fraction that the limits allow [-]; nothing when no limit bounds it.
 std::optional<double> allowed_volume(const Goal& goal);
 
-/// Tells whether it asks for responses of the loads.
+/// Returns true if the objective or a limit needs the state under the loads.
 bool asks_state(const Goal& goal);
-/// Does it ask for numbers of the motion?
+/// Returns true if the objective or a limit is a response of the motion.
 bool has_motion(const Goal& goal);
-/// What equivalent static loads make of a goal: for numbers of the motion the compliance stands,
-/// and nothing for limits on them.
+/// Returns the goal of the design problem under equivalent static loads. A compliance replaces an
+/// objective that is a response of the motion (the largest compliance replaces kPeakStrainEnergy);
+/// added responses and limits on responses of the motion are dropped.
 Goal goal_of_loads(Goal goal);
-/// What the motion itself makes of it: the strain energy stands for the compliance, its largest
-/// value for the largest compliance, and nothing for limits on that.
+/// Returns the goal of a design problem on the motion itself. The strain energy in motion replaces
+/// a compliance as the objective (its largest value replaces the largest compliance); limits on
+/// compliances are dropped.
 Goal goal_of_motion(Goal goal);
-/// With one number to minimize: the power mean stands for the largest compliance.
+/// Returns the goal with a single differentiable objective: the power mean of the compliances
+/// replaces the largest compliance.
 Goal smooth(Goal goal);
-/// "strain energy in motion", "weighted sum of ..."
+/// Returns the text that names the objective: "strain energy in motion", "weighted sum of ...".
 std::string objective_words(const Goal& goal);
 
-/// Is there a limit that keeps the objective from being best in a full plate, or an empty one?
+/// Returns true if a limit prevents the full plate (or the empty plate, where the objective rises
+/// with the amount of material) from being the optimum.
 bool is_held_back(const Goal& goal);
 
 }  // namespace flexmorph::mmc

@@ -13,14 +13,14 @@
 namespace flexmorph::mmc {
 
 namespace {
-/// Mass factor of the weakest cell that still counts as a link between two parts. Half density
-/// would be a wall: early designs hang together by less and still carry their loads.
+/// Smallest mass factor of a cell that counts as a connection between two regions [-]. Half density
+/// would be too strict, because early designs are connected by less and still carry their loads.
 constexpr double kWeakestLink = 0.1;
-/// A design without such links that is still less compliant than this many times uniform material
-/// carries its loads all the same: refusing it would leave the optimizer at a wall.
+/// A design without such connections carries its loads nevertheless if its compliance is less than
+/// this multiple of that of uniform material. If it were refused, the optimizer could not proceed.
 constexpr double kMostCompliant = 2;
-/// The bound of an objective with many values: log z per unit of its variable, and how far it may
-/// go.
+/// The variable that bounds an objective with one value per load: log z per unit of the variable,
+/// and the largest distance of the variable from its start.
 constexpr double kLogPerUnit = 10, kReachOfBound = 3;
 }  // namespace
 
@@ -103,7 +103,7 @@ void MmcProblem::look(const VectorXd& x) {
   if (motion_) motion_->state->announce(motion_->body, factors_);
 }
 
-/// Fills what the last design was seen to be: factors, volume, values of all rows.
+/// Computes the scale factors, the volume and the values of all responses at a design.
 void MmcProblem::solve(const VectorXd& x) {
   look(x);
   state_.begin();
@@ -124,8 +124,9 @@ MatrixXd MmcProblem::pull_back_crisp(const MatrixXd& d_stiffness, const MatrixXd
   return by_fraction * *crisp_slopes_;
 }
 
-/// Derivatives by cell factors and by components -> by components, of many values by the variables
-/// of the design.
+/// Converts the derivatives by scale factors and component parameters: for a response with one
+/// value into derivatives by component parameters, for one value per load into those by design
+/// variables.
 void MmcProblem::pull_back(Entry& e) {
   const Values& v = e.values;
   if (e.row->per_load) {
@@ -154,7 +155,7 @@ void MmcProblem::pull_back(Entry& e) {
   if (v.d_parameters.size() > 0) e.slope += v.d_parameters.row(0).transpose();
 }
 
-/// Of the only value of a row, divided by `divisor`, by the variables of the design.
+/// Returns the gradient of a response with one value by the design variables, divided by `divisor`.
 VectorXd MmcProblem::gradient(const Entry& e, double divisor) const {
   VectorXd out = e.slope;
   out /= divisor;
@@ -175,7 +176,7 @@ VectorXd MmcProblem::slope_of(const CellFactors& by_factors) {
   return out;
 }
 
-/// log f_l - bound <= 0 of a row with many values.
+/// Adds the constraints log f_l - bound <= 0 of a response with one value per load.
 void MmcProblem::add_each(const Entry& e, double bound, int first_row, optim::Response& out) const {
   const Eigen::Index n = design_.n_variables(), m = e.values.f.size();
   for (Eigen::Index l = 0; l < m; ++l) out.g[first_row + l] = std::log(e.values.f[l]) - bound;
@@ -250,7 +251,7 @@ optim::Response MmcProblem::evaluate(const VectorXd& x) {
   return out;
 }
 
-/// Values of responses of the loads of the crisp design.
+/// Computes the values of limited responses of the loads for the crisp design.
 void MmcProblem::look_at_limits() {
   DesignState state(state_.loads());
   const CellFactors factors = ersatz_.sharp(limited_->of_part(components_));
@@ -274,7 +275,7 @@ bool MmcProblem::has_curvature() const {
          });
 }
 
-/// Adds values of a row, weighted: those of their logarithms where there are any.
+/// Adds the weighted values of a response, or of their logarithms, to the Lagrangian.
 void MmcProblem::add_row(const Entry& e, const VectorXd& weights, bool logarithm,
                          Lagrangian& out) const {
   const Eigen::Index n = design_.n_variables();
@@ -341,15 +342,16 @@ void MmcProblem::clear_seconds() {
 
 bool MmcProblem::acceptable([[maybe_unused]] const VectorXd& x) {
   assert(x == x_);
-  // connectivity() joins cells of half density or more; a link may be weaker on the way.
+  // connectivity() joins cells of at least half density, but intermediate designs may be connected
+  // by cells of lower density: the mass factors are scaled up accordingly.
   return connectivity(plate_.grid, 0.5 / kWeakestLink * factors_.mass, places_).connected ||
          (std::isfinite(compliance()) && compliance() < kMostCompliant * uniform_compliance());
 }
 
-/// Of uniform material of the allowed volume under the loads, as the paper compares with.
+/// Returns the compliance of uniform material of the allowed volume, which P compares designs with.
 double MmcProblem::uniform_compliance() {
   if (uniform_) return *uniform_;
-  constexpr double kHalf = 0.5;  // where no limit speaks of the volume
+  constexpr double kHalf = 0.5;  // volume fraction where no limit bounds the volume
   const VectorXd even =
       VectorXd::Constant(plate_.grid.n_cells(), allowed_volume(goal_).value_or(kHalf));
   ComplianceEvaluator& loads = state_.loads();

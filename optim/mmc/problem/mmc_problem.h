@@ -18,105 +18,137 @@ namespace flexmorph::mmc {
 
 class CrispPicture;
 
-/// What a design problem is about: `design`, `ersatz`, `loads` and `shape` live longer than the
-/// problem.
+/// The parts that a design problem consists of. `design`, `ersatz`, `loads` and `shape` must live
+/// longer than the problem.
 struct DesignedPlate {
-  const Plate& plate;
-  const Design& design;
-  const Ersatz& ersatz;
-  ComplianceEvaluator& loads;
-  ShapeLimits* shape = nullptr;
-  const MotionSeat* motion = nullptr;  ///< where rows of the goal ask for it
-  /// Makes cells of what the outlines enclose, in place of the regularized design; null: this one.
+  const Plate& plate;            ///< The plate that is designed.
+  const Design& design;          ///< Design variables with their scaling and bounds.
+  const Ersatz& ersatz;          ///< Map from nodal Heaviside values to scale factors of the cells.
+  ComplianceEvaluator& loads;    ///< Evaluator of the compliances under the loads.
+  ShapeLimits* shape = nullptr;  ///< Constraints on the outline; null if there are none.
+
+  /// Body index in the coupled problem, with the motion of the mechanism; null if no response of
+  /// the goal is one of the motion.
+  const MotionSeat* motion = nullptr;
+  /// Crisp geometry whose area fractions replace the regularized design in all responses; null for
+  /// the regularized design.
   const CrispPicture* crisp = nullptr;
-  /// Limits on responses of the loads are on those of this picture of the design; null: on those of
-  /// the regularized one.
+  /// Crisp geometry for which limits on responses of the loads hold; null if they hold for the
+  /// regularized design.
   const CrispPicture* limited = nullptr;
 };
 
-/// The design problem of one plate under given loads, P (34) in the variables of a Design: a row of
-/// the table of responses is minimized, others are limited.
+/// The design problem of one plate under given loads, P (34), in the variables of a Design. One
+/// response is minimized, others are bounded.
 ///
 ///   min log f        or f / f_full     f the objective, f_full its value in the full plate
 ///   s.t.  log g - log g_max <= 0       or g / g_max - 1 <= 0        for every limit
 ///
-/// (`at_least`: the same with the other sign.) Limits that hold of the crisp design have its value
-/// g_c and the slope of the regularized one, g_c/g ∇g: the point where such a problem ends meets
-/// the KKT conditions of the regularized problem whose limit is g_max g/g_c. The slope of g_c
-/// itself would lead to designs whose regularized stiffness profits most from the grid.
+/// Lower bounds (`at_least`) have the opposite sign. A limit that holds for the crisp design uses
+/// the crisp value g_c and the gradient g_c/g ∇g, where g is the regularized response. A solution
+/// of such a problem satisfies the KKT conditions of the regularized problem whose limit is g_max
+/// g/g_c. The gradient of g_c itself would lead to designs whose regularized stiffness profits most
+/// from the grid.
 ///
-///  The logarithm is that of rows whose values span
-/// decades in the first iterations: compliances. A row with a value per load has a constraint for
-/// each of them; as the objective it is bounded by one more variable, log z / 10:
+/// The logarithm is used for responses whose values span decades in the first iterations, which are
+/// compliances. A response with one value per load has one constraint for each load; as the
+/// objective it is bounded by one more variable, log z / 10:
 ///
 ///   min log z        s.t.  ...,  log f_l - log z <= 0
 ///
-/// so that a move limit of 0.05 is a factor of 1.6. One state solve serves values and gradients of
-/// all rows that ask for the state; where none does, none is solved.
+/// so that a move limit of 0.05 corresponds to a factor of 1.6. One state solve provides values and
+/// gradients of all responses that need the state; it is omitted when no response needs it.
 class MmcProblem final : public optim::Problem {
  public:
-  /// @param places  as those of connectivity()
+  /// Creates the problem, and solves the state at the start if the objective has one value per
+  /// load.
+  /// @param tdf     settings of the topology description function
+  /// @param places  supported and loaded locations, see connectivity()
   MmcProblem(const DesignedPlate& plate, const TdfSettings& tdf, Goal goal,
              std::vector<HeldOrLoaded> places = {});
 
   int n_variables() const override { return design_.n_variables() + (bounded() ? 1 : 0); }
-  /// Those of the limits in their order, then those of the bound, then those of the shape.
+  /// Returns the number of constraints. Their order is: the limits of the goal, the bounds of an
+  /// objective with one value per load, the constraints on the outline.
   int n_constraints() const override;
   VectorXd lower() const override;
   VectorXd upper() const override;
-  /// Where the objective is bounded this solves the state: the bound starts at the largest value.
+  /// Returns the initial variables. The variable that bounds an objective with one value per load
+  /// starts at the largest value.
   VectorXd start() const override { return start_; }
   optim::Response evaluate(const VectorXd& x) override;
-  /// Of fixed cold loads and sums over cells, with the TDF `distance`.
+  /// Returns true if all responses are sums over cells or compliances under loads that have second
+  /// derivatives, and the TDF is `distance`; crisp geometry and constraints on the outline have
+  /// none.
   bool has_curvature() const override;
   MatrixXd curvature(const VectorXd& x, double sigma, const VectorXd& lambda) override;
-  /// Tells whether one piece of material, regularized links included, joins all places, or the
-  /// design carries its loads about as well as uniform material of the allowed volume all the same.
+  /// Returns true if material, including regularized cells of low density, connects every load to a
+  /// support, or if the compliance of the design is nevertheless comparable to that of uniform
+  /// material of the allowed volume.
   bool acceptable(const VectorXd& x) override;
-  /// Components are those of x; values and factors are not known until evaluate().
+  /// Sets the components to those of x without an evaluation. Values and scale factors are not
+  /// valid until the next evaluate().
   void recall(const VectorXd& x);
-  /// The factors of a design alone, as far as the motion of the mechanism asks for them.
+  /// Computes the scale factors of the design x without a state solve, and passes them to the
+  /// motion state of the mechanism.
   void look(const VectorXd& x);
-  /// Derivatives of the objective by the parameters of all components, images included (7 N), after
-  /// evaluate().
+  /// Returns the derivatives of the objective by the parameters of all components, mirror images
+  /// included (7 N), after evaluate() of an objective with one value.
   const VectorXd& objective_slopes() const { return entries_.front().slope; }
-  /// Derivatives by the variables of any number that has these by the factors, after look().
+  /// Returns the gradient by the design variables of a function, after look().
+  /// @param by_factors  derivatives of the function by the scale factors of the cells
   VectorXd slope_of(const CellFactors& by_factors);
+  /// Returns the body index in the coupled problem with its motion; null if there is no motion.
   const MotionSeat* motion() const { return motion_; }
 
-  bool is_solved() const { return solved_; }  ///< are values those of x()?
+  /// Returns true if the values of the responses belong to x().
+  bool is_solved() const { return solved_; }
 
+  /// Returns the objective and the limits of the problem.
   const Goal& goal() const { return goal_; }
-  /// First constraint of a limit.
+  /// Returns the index of the first constraint of a limit.
   int row_of(size_t limit) const;
 
-  // What the last evaluate() saw.
+  /// Returns the variables of the last evaluate(), look() or recall().
   const VectorXd& x() const { return x_; }
+  /// Returns the design variables in a vector of all variables.
   VectorXd design_part(const VectorXd& x) const { return x.head(design_.n_variables()); }
-  /// Of compliance_row(), the weighted sum or the largest; NaN where no row asks for the state.
+  /// Returns the compliance of compliance_row() with its derivatives, for one value per load the
+  /// largest one; the compliance is NaN if no response needs the state.
   const ComplianceEvaluator::Value& value() const { return state_.value(); }
+  /// Returns the compliance of the last evaluation [J]: the weighted sum or the largest one.
   double compliance() const { return value().f; }
+  /// Returns the volume fraction of the last design in the domain [-].
   double volume() const { return volume_; }
-  /// Values of a row of the goal (1, or n_loads); nothing for other rows.
+  /// Returns the last values of a response of the goal (1, or n_loads); nothing for other
+  /// responses.
   std::optional<VectorXd> values(const ResponseRow& row) const;
+  /// Returns the components of the last design, mirror images included.
   const std::vector<Component>& components() const { return components_; }
+  /// Returns the scale factors of stiffness and mass of the cells at the last design.
   const CellFactors& factors() const { return factors_; }
+  /// Returns the nodal values φ of the TDF at the last design (n_nodes).
   const VectorXd& phi() const { return tdf_.phi(); }
+  /// Returns the half-width ε of the band of the Heaviside function.
   double band() const { return tdf_.settings().band; }
-  // CPU seconds of all evaluations since clear_seconds().
-  double seconds_tdf() const { return seconds_tdf_; }  ///< TDF and chain rule
+  /// Returns the CPU seconds of TDF and chain rule since clear_seconds().
+  double seconds_tdf() const { return seconds_tdf_; }
+  /// Returns the CPU seconds of state solves since clear_seconds().
   ComplianceEvaluator::Seconds seconds() const { return state_.seconds(); }
+  /// Resets all CPU seconds to zero.
   void clear_seconds();
 
  private:
-  /// A row of the goal at the last design.
+  /// A response of the goal with its result at the last design.
   struct Entry {
     const ResponseRow* row;
     std::unique_ptr<Response> response;
     Values values;
-    VectorXd slope;                 // of its only value by the parameters of components, or
-    MatrixXd slopes;                // of many by the variables of the design (m x n)
-    std::optional<VectorXd> crisp;  // values of the crisp design, where limits are on these
+    // Gradient by the component parameters, for a response with one value (7 N).
+    VectorXd slope;
+    // Gradients by the design variables, for a response with one value per load (m x n).
+    MatrixXd slopes;
+    std::optional<VectorXd> crisp;  // values of the crisp design, where limits hold for it
   };
 
   bool bounded() const { return goal_.objective->per_load; }
@@ -126,15 +158,15 @@ class MmcProblem final : public optim::Problem {
   double uniform_compliance();
   void look_at_limits();
   void pull_back(Entry& entry);
-  /// Derivatives by the factors of the cells of the crisp design (m x n_cells) -> by the parameters
-  /// of components (m x 7 N). An empty d_mass stands for zeros.
+  /// Converts derivatives by the scale factors of the crisp design (m x n_cells) into derivatives
+  /// by the component parameters (m x 7 N). An empty d_mass stands for zeros.
   MatrixXd pull_back_crisp(const MatrixXd& d_stiffness, const MatrixXd& d_mass) const;
-  /// What the rows add to the second derivatives of a Lagrangian.
+  /// Contributions of the responses to the second derivatives of a Lagrangian.
   struct Lagrangian {
-    VectorXd d_stiffness, d_mass;  ///< of the weighted values, by the factors
-    double of_sum = 0;             ///< weight of the summed compliance
-    VectorXd of_each;              ///< of every load's (n_loads), or empty
-    MatrixXd outer;                ///< of logarithms: - w ∇log f ∇log fᵀ (n x n)
+    VectorXd d_stiffness, d_mass;  ///< Derivatives of the weighted values by the scale factors.
+    double of_sum = 0;             ///< Weight of the summed compliance.
+    VectorXd of_each;              ///< Weights of the compliances (n_loads), or empty.
+    MatrixXd outer;                ///< Terms - w ∇log f ∇log fᵀ of logarithms (n x n).
   };
   void add_row(const Entry& entry, const VectorXd& weights, bool logarithm, Lagrangian& out) const;
   VectorXd gradient(const Entry& entry, double divisor) const;
@@ -153,7 +185,7 @@ class MmcProblem final : public optim::Problem {
   std::unique_ptr<const Eigen::SparseMatrix<double>> crisp_slopes_;  // at the last design
   UnionTdf tdf_;
   Goal goal_;
-  std::vector<Entry> entries_;  // the objective first
+  std::vector<Entry> entries_;  // the objective is the first entry
   std::vector<HeldOrLoaded> places_;
   VectorXd start_;
   std::vector<Component> components_;
@@ -163,7 +195,7 @@ class MmcProblem final : public optim::Problem {
   ShapeLimits::Values outline_;
   double volume_ = 0, seconds_tdf_ = 0;
   bool solved_ = false, differentiated_ = false;
-  std::optional<double> uniform_;  // compliance of uniform material, once it was asked for
+  std::optional<double> uniform_;  // compliance of uniform material, computed at first use [J]
 };
 
 }  // namespace flexmorph::mmc

@@ -8,56 +8,66 @@
 
 namespace flexmorph::mmc {
 
-/// A number of the motion of a mechanism: a row of the table, and the designed body it is of.
+/// A response of the motion of a mechanism for one of its designed bodies.
 struct MotionRow {
-  const ResponseRow* row = nullptr;
-  size_t body = 0;    ///< among the designed ones
-  double weight = 1;  ///< of an objective, which is a sum
+  const ResponseRow* row = nullptr;  ///< Row of the table of responses.
+  size_t body = 0;                   ///< Index of the designed body.
+  double weight = 1;                 ///< Weight of the response in the objective, which is a sum.
 
-  /// Is it the same number? (Of rows that are of no body the body does not count.)
+  /// Returns true if both have equal values. The body matters only for responses that belong to one
+  /// body (ResponseRow::of_body).
   bool same_as(const MotionRow& other) const {
     return row == other.row && (body == other.body || !row->of_body);
   }
 };
 
-/// What the goals of all designed bodies minimize, each number once: J is their weighted sum.
+/// Returns the responses that the goals of all designed bodies minimize, each once. The objective J
+/// is their weighted sum.
 std::vector<MotionRow> motion_objectives(std::span<const Goal* const> goals);
 
-/// What design problems ask of the motion of a mechanism.
+/// The interface between design problems and the motion of a mechanism.
 class MotionResponse {
  public:
   virtual ~MotionResponse() = default;
 
+  /// The value of a response and its derivatives.
   struct Value {
-    double f = 0;
-    std::vector<CellFactors> slopes;  ///< df/dstiffness, df/dmass of every designed body (n_cells)
+    double f = 0;  ///< Value, in the unit of the response.
+
+    /// Derivatives df/dstiffness and df/dmass for every designed body (n_cells each).
+    std::vector<CellFactors> slopes;
   };
-  /// One motion and one adjoint for all rows.
-  /// @param factors  of every designed body, those of the design problem: the void of motions is
-  ///                 added to them
+  /// Computes all responses by one motion and one adjoint computation.
+  /// @param factors  scale factors of every designed body from its design problem; the scale
+  ///                 factors of void in motions are added to them
   /// @throws Error (numerical) when the motion fails.
   virtual std::vector<Value> evaluate(std::span<const MotionRow> rows,
                                       std::span<const CellFactors> factors) = 0;
-  /// The same numbers of a sharp picture: a motion alone.
-  /// @param fractions  of material of every designed body (n_cells)
+  /// Computes all responses of a crisp design by one motion, without derivatives.
+  /// @param fractions  area fractions of material of every designed body (n_cells each)
   virtual std::vector<double> sharp(std::span<const MotionRow> rows,
                                     std::span<const VectorXd> fractions) = 0;
-  virtual int motions() const = 0;  ///< so far, gradients included
+  /// Returns the number of motions computed so far, those with gradients included.
+  virtual int motions() const = 0;
 };
 
-/// The motion of a mechanism at the designs of its bodies, moved once for all who ask.
+/// The motion of a mechanism at the current designs of its bodies. It is computed once for all
+/// responses of all bodies.
 class MotionState {
  public:
-  /// @param motion  lives longer   @param goals  of the motion, of every designed body
+  /// Creates the state of a motion that is not computed yet.
+  /// @param motion  must live longer than the state
+  /// @param goals   goals on the motion of every designed body
   MotionState(MotionResponse& motion, std::span<const Goal* const> goals);
 
-  /// The factors of a body.
+  /// Sets the scale factors of a body; the motion is invalidated if they have changed.
   void announce(size_t body, const CellFactors& factors);
-  /// J, or a limit's number, with the derivatives by the factors of that body.
-  /// @param out  d_parameters stays as it is
-  /// @throws Error (numerical) as MotionResponse::evaluate(), or where J is not positive.
+  /// Computes the objective J if `row` is the objective of the body, otherwise a limited response,
+  /// with the derivatives by the scale factors of the body.
+  /// @param out  receives the result; d_parameters stays unchanged
+  /// @throws Error (numerical) as MotionResponse::evaluate(), or where the value is not positive.
   void value(const ResponseRow& row, size_t body, Values& out);
-  /// The derivatives of a limited number of `body` by the factors of another one.
+  /// Returns the derivatives of a limited response of `body` by the scale factors of the body `by`.
   const CellFactors& limit_slopes(const ResponseRow& row, size_t body, size_t by);
 
  private:
@@ -68,17 +78,17 @@ class MotionState {
   void move();
 
   MotionResponse& motion_;
-  std::vector<MotionRow> rows_;  // the objectives, each once, then the limits
+  std::vector<MotionRow> rows_;  // the objectives, each once, then the limited responses
   size_t n_objectives_ = 0;
-  std::vector<const ResponseRow*> objective_of_;  // every body
+  std::vector<const ResponseRow*> objective_of_;  // objective of every body
   std::vector<CellFactors> factors_;
-  std::vector<MotionResponse::Value> values_;  // of rows_; none: not moved yet
+  std::vector<MotionResponse::Value> values_;  // values of rows_; empty: not computed yet
 };
 
-/// Where a body sits in a mechanism.
+/// The body index in the coupled problem of a mechanism, with the motion of the mechanism.
 struct MotionSeat {
-  MotionState* state = nullptr;
-  size_t body = 0;
+  MotionState* state = nullptr;  ///< Motion of the mechanism, shared by all its designed bodies.
+  size_t body = 0;               ///< Index of the designed body.
 };
 
 }  // namespace flexmorph::mmc

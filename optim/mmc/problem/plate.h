@@ -7,15 +7,20 @@
 
 namespace flexmorph::mmc {
 
-/// A plate that is designed: all but its design.
+/// A plate that is to be designed: its design mesh, its material and its domain.
 struct Plate {
-  Grid grid;
-  fem::PlaneSection section;
-  std::vector<signed char> outside;  ///< cells that do not belong to the domain: 1; empty: none
+  Grid grid;                  ///< Grid of the design cells.
+  fem::PlaneSection section;  ///< Thickness and material.
 
+  /// 1 for cells that do not belong to the domain (n_cells); empty if all belong to it.
+  std::vector<signed char> outside;
+
+  /// Returns true if a cell belongs to the domain.
   bool has(int cell) const { return outside.empty() || !outside[static_cast<size_t>(cell)]; }
+  /// Returns the number of cells that belong to the domain.
   int n_domain_cells() const;
-  double full_mass() const;  ///< ρ c A [kg]
+  /// Returns the mass ρ c A of the full domain [kg].
+  double full_mass() const;
 };
 
 }  // namespace flexmorph::mmc

@@ -15,51 +15,66 @@ namespace flexmorph::mmc {
 
 struct MotionSeat;
 
-/// A design as responses see it.
+/// View of a design state at which responses are evaluated.
 struct Seen {
-  const CellFactors& factors;
-  std::span<const Component> components;
-  DesignState& state;                  ///< solved when asked
-  const MotionSeat* motion = nullptr;  ///< moved when asked, where there is a mechanism
+  const CellFactors& factors;             ///< Scale factors of stiffness and mass of the cells.
+  std::span<const Component> components;  ///< Components of the design.
+  DesignState& state;                     ///< State under the loads, solved on demand.
+
+  /// Body index in the coupled problem, with a motion that is computed on demand; null where there
+  /// is no mechanism.
+  const MotionSeat* motion = nullptr;
 };
 
-/// What makes a design good or allowed: its values, and their derivatives by the factors of the
-/// cells and by components. Nothing else is known of a response; a design problem is a list of
-/// them (optim/README.md, Design problem).
+/// A response of a design: its values, and their derivatives by the scale factors of the cells and
+/// by the component parameters. It can be the objective or a constraint of a design problem, which
+/// uses nothing else of it (optim/README.md, Design problem).
 class Response {
  public:
   virtual ~Response() = default;
-  /// @param out  as it was left by the last call
+  /// Computes the values and their derivatives at a design.
+  /// @param out  receives the result; it is the object that the last call has filled
   /// @throws Error (numerical) when the state cannot be solved.
   virtual void evaluate(const Seen& at, Values& out) = 0;
 };
 
-/// A row of the table: what there is to know about a response before it is made.
+/// A row of the table of responses: the properties of a response that are available before it is
+/// created.
 struct ResponseRow {
-  std::string_view name;        ///< as cases say it
-  std::string_view loads = {};  ///< how it puts loads together, as cases say it; empty: it has none
-  std::string_view words;       ///< "moment of inertia"
-  std::string_view unit = {};   ///< of its values; empty: a pure number
-  /// Has it a value per load? A limit is one on each of them; as an objective it asks for one more
-  /// variable, which bounds them all.
+  std::string_view name;  ///< Name in case files.
+
+  /// Word of case files for the way in which the response combines loads; empty if the response
+  /// does not depend on loads.
+  std::string_view loads = {};
+  std::string_view words;      ///< Name in messages, as in "moment of inertia".
+  std::string_view unit = {};  ///< Unit of the values; empty for pure numbers.
+
+  /// True if the response has one value per load. A limit then bounds every value, and an objective
+  /// needs one more variable, which bounds all values.
   bool per_load = false;
-  /// Value when all of the domain is full, and the unit of an objective. Null: there is none, and
-  /// the logarithm is taken, because values span decades.
+  /// Returns the value of the full domain, which is the unit of an objective. Null if there is no
+  /// such value; the problem then uses the logarithm, because values span decades.
   double (*full)(const Plate&) = nullptr;
-  bool even = false;  ///< Does every piece of material count alike, so that a limit is a volume?
-  /// Is it a sum over the mass factors of cells? Second derivatives of others are not known, but
-  /// for those that need a state.
+  /// True if the response depends only on the amount of material. A limit is then one of the
+  /// volume.
+  bool even = false;
+  /// True if the response is a sum over the mass scale factors of the cells. Second derivatives are
+  /// available for such responses and for responses that need the state.
   bool linear = false;
-  /// Is it a number of the motion of the mechanism (motion_response.h)? And of this body of it?
+  /// True if the response is a number of the motion of the mechanism (motion_response.h), and true
+  /// if this number belongs to one body of the mechanism.
   bool of_motion = false, of_body = false;
+  /// Creates the response for a plate.
   std::unique_ptr<Response> (*make)(const Plate&) = nullptr;
 
+  /// Returns true if the response needs the state under the loads.
   bool needs_state() const { return !loads.empty(); }
-  /// Is it less where there is more material?
+  /// Returns true if the value is smaller where there is more material.
   bool falls_with_material() const { return needs_state() || of_motion; }
 };
 
-/// What `make` is of a response that is made of a plate, or of nothing.
+/// Creates a response from a plate, or without arguments if its class has no constructor from a
+/// plate: a function for ResponseRow::make.
 template <class Of>
 std::unique_ptr<Response> make_response([[maybe_unused]] const Plate& plate) {
   if constexpr (std::is_constructible_v<Of, const Plate&>)
@@ -68,16 +83,19 @@ std::unique_ptr<Response> make_response([[maybe_unused]] const Plate& plate) {
     return std::make_unique<Of>();
 }
 
-/// All rows. A new one is one file in optim/mmc/problem/responses/ and its row in table.cpp there.
+/// Returns all rows of the table. A new response is one file in optim/mmc/problem/responses/ and
+/// its row in table.cpp there.
 std::span<const ResponseRow* const> responses();
-/// Adds a row, see Registry::add(); key_of() tells it from others.
+/// Adds a row to the table, see Registry::add(); key_of() distinguishes rows.
+/// @throws Error (input) for a row without make().
 void register_response(const ResponseRow& row);
 
-/// The row of this name. Of rows that put loads together, the one that does it like that.
-/// @return null when there is none
+/// Returns the row with a name. Where several rows combine loads, it is the row that combines them
+/// in the way `loads`.
+/// @returns null when there is none
 const ResponseRow* find_response(std::string_view name, std::string_view loads);
 
-/// What a row is called where each needs a name of its own: "mass", "compliance_worst".
+/// Returns a name that identifies a row in the table: "mass", "compliance_worst".
 std::string key_of(const ResponseRow& row);
 
 }  // namespace flexmorph::mmc

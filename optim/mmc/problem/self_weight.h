@@ -7,8 +7,8 @@
 
 namespace flexmorph::mmc {
 
-/// Weight of a plate at rest, which follows its design. A cell with the mass scale factor m puts
-/// on each of its four nodes
+/// The weight of a static plate as a function of its design. A cell with the mass scale factor m
+/// contributes to each of its four nodes the force
 ///
 ///   f = m ρ c Δx Δy g / 4
 ///
@@ -16,23 +16,27 @@ namespace flexmorph::mmc {
 /// c (1)  thickness            [m]
 /// g (2)  gravity              [m/s^2]
 ///
-/// the consistent nodal forces of a uniform body force on a bilinear rectangle.
+/// which is the consistent nodal force of a uniform body force on a bilinear rectangle.
 class SelfWeight {
  public:
-  /// @param outside  1 for cells outside of the domain (n_cells), which weigh nothing; empty: none
+  /// Creates the weight of the plate of a solver.
+  /// @param gravity  acceleration of gravity [m/s^2]
+  /// @param outside  1 for cells outside of the domain (n_cells), which have no weight; empty: none
   SelfWeight(const fem::StaticSolver& solver, const Vec2& gravity,
              std::span<const signed char> outside);
 
-  /// Adds the weight at these mass scale factors (n_cells) to every row of F (n x n_unknowns) [N].
+  /// Adds the weight to every row of the forces F (n x n_unknowns) [N].
+  /// @param mass  mass scale factors (n_cells)
   void add(const VectorXd& mass, MatrixXd& F) const;
-  /// Returns the work of the weight of every cell of full mass on displacements u (n x n_unknowns),
-  /// per load (n x n_cells) [J].
+  /// Returns the work of the weight of every cell of full mass on the displacements of every load
+  /// (n x n_cells) [J].
+  /// @param u  displacements (n x n_unknowns) [m]
   MatrixXd work(const MatrixXd& u) const;
 
  private:
   Grid grid_;
-  Vec2 force_;             // of a full cell on one of its nodes [N]
-  std::vector<int> rows_;  // of the unknowns of the nodes (2 n_nodes); -1: held
+  Vec2 force_;             // force of a full cell on one of its nodes [N]
+  std::vector<int> rows_;  // indices of the unknowns of the nodes (2 n_nodes); -1: held
   std::vector<signed char> outside_;
 };
 

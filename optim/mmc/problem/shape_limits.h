@@ -6,17 +6,20 @@
 
 namespace flexmorph::mmc {
 
-/// What the outline of a design says without a state: how much it encloses, and constraints g <= 0.
+/// Constraints on the outline of a design, which need no state, and the volume that it encloses.
 class ShapeLimits {
  public:
+  /// The volume and the constraints of one design.
   struct Values {
-    double volume = 0;  ///< of the crisp design, a part of the domain [-]
-    VectorXd g;         ///< (count)
-    MatrixXd dg;        ///< by the parameters of components (count x 7 N)
+    double volume = 0;  ///< Volume fraction of the crisp design in the domain [-].
+    VectorXd g;         ///< Constraints g <= 0 (count).
+    MatrixXd dg;        ///< Derivatives of g by the component parameters (count x 7 N).
   };
 
   virtual ~ShapeLimits() = default;
+  /// Returns the number of constraints.
   virtual int count() const = 0;
+  /// Computes the volume and the constraints of a design.
   /// @throws Error (numerical) where the outlines cannot be united.
   virtual void evaluate(std::span<const Component> components, Values& out) = 0;
 };

@@ -69,7 +69,7 @@ int SharedProblem::row_of(size_t body, int own) const {
   return row + own - (budget_[body] >= 0 && own > budget_[body] ? 1 : 0);
 }
 
-/// Numbers of the motion that are limited for one body depend on the designs of all.
+/// Adds the gradients of limited responses of the motion by the designs of all other bodies.
 void SharedProblem::add_slopes_of_others(optim::Response& out) {
   for (size_t b = 0; b < parts_.size(); ++b) {
     const MmcProblem& part = *parts_[b].problem;
@@ -94,7 +94,7 @@ optim::Response SharedProblem::evaluate(const VectorXd& x) {
   out.g.setZero(n_constraints());
   out.dg.setZero(n_constraints(), n_variables());
   double sum = 0;
-  if (of_motion_)  // which is moved once
+  if (of_motion_)  // the motion is computed once, when the designs of all bodies are set
     for (size_t b = 0; b < parts_.size(); ++b) parts_[b].problem->look(part_of(x, b));
   for (size_t b = 0; b < parts_.size(); ++b) {
     MmcProblem& part = *parts_[b].problem;

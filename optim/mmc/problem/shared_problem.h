@@ -6,51 +6,58 @@
 
 namespace flexmorph::mmc {
 
-/// Designs of several bodies as one problem, with one budget of mass:
+/// The combined design problem of several bodies, which can share one budget of mass:
 ///
 ///   min log Σ_b C_b   s.t.  Σ_b m_b V_b / Σ_b m_b V_max,b - 1 <= 0
 ///
 /// C_b  weighted compliance of body b under its own loads [J]
-/// V_b  its volume fraction, V_max,b what it would be allowed by itself [-]
-/// m_b  its mass when its domain is full, ρ c A [kg]
+/// V_b  volume fraction of body b, V_max,b its upper limit in a separate design problem [-]
+/// m_b  mass of body b when its domain is full, ρ c A [kg]
 ///
-/// and to all other limits of the bodies, each that of its own. The budget is made of the one limit
-/// of each body that is a volume (Limit::volume): of volume or of mass. Bodies may also keep all of
-/// their limits to themselves, and have but the objective in common: the sum of their compliances,
-/// or a number of the motion of the mechanism that they are parts of.
+/// and subject to all other limits of the bodies, each for its own body. The budget replaces the
+/// one limit of each body that is equivalent to a volume (Limit::volume): a limit of volume or of
+/// mass. Bodies may also keep all of their limits. They then have only the objective in common,
+/// which is the sum of their compliances or a response of the motion of their mechanism.
 ///
-/// Limits of that motion depend on the designs of all bodies, the others on those of their own.
+/// Limits on responses of the motion depend on the designs of all bodies; every other limit depends
+/// on the design of one body.
 ///
 /// The variables are those of all bodies, one body after the other, each with its own scales and
-/// bounds. A body sees the others through the two sums only: values and gradients are made of the
-/// bodies' own, df = Σ (C_b / Σ C) df_b and g = Σ s_b g_b with the shares s_b of the budget.
+/// bounds. Except for responses of the motion, the bodies are coupled by the two sums only, so that
+/// values and gradients follow from the subproblems: df = Σ (C_b / Σ C) df_b and g = Σ s_b g_b with
+/// the fractions s_b of the budget.
 class SharedProblem final : public optim::Problem {
  public:
+  /// The subproblem of one body.
   struct Part {
-    MmcProblem* problem = nullptr;  ///< lives longer
-    double full_mass = 0;           ///< m_b [kg]
-    bool shares = true;             ///< the budget
+    MmcProblem* problem = nullptr;  ///< Design problem of the body; it must live longer.
+    double full_mass = 0;           ///< Mass m_b of the body when its domain is full [kg].
+    bool shares = true;             ///< True if the body takes part in the budget of mass.
   };
-  /// @throws Error (input) for no parts, masses that are not positive, other objectives, and, of
-  ///         who shares, not just one limit of volume.
+  /// Creates the combined problem of several bodies.
+  /// @throws Error (input) for no subproblems, for masses that are not positive, for objectives
+  ///         other than the sum of compliances or a response of the motion, and when a body that
+  ///         takes part in the budget does not have exactly one limit equivalent to a volume.
   explicit SharedProblem(std::vector<Part> parts);
 
   int n_variables() const override { return first_.back(); }
-  /// The budget, then the other limits of the bodies, one body after the other.
+  /// Returns the number of constraints: the budget, if bodies share one, then the remaining limits
+  /// of the bodies, one body after the other.
   int n_constraints() const override { return n_constraints_; }
   VectorXd lower() const override;
   VectorXd upper() const override;
   VectorXd start() const override;
-  /// Every part evaluates its own variables once.
+  /// Computes the combined problem by one evaluation of every subproblem.
   optim::Response evaluate(const VectorXd& x) override;
-  /// Only when every body's design is.
+  /// Returns true if the designs of all bodies are acceptable.
   bool acceptable(const VectorXd& x) override;
 
-  /// The variables of one body.
+  /// Returns the variables of one body.
   VectorXd part_of(const VectorXd& x, size_t body) const {
     return x.segment(first_[body], first_[body + 1] - first_[body]);
   }
-  /// The constraint that a constraint of one body has become.
+  /// Returns the index of a constraint of one body in the combined problem.
+  /// @param own  index of the constraint in the subproblem of the body
   int row_of(size_t body, int own) const;
 
  private:
@@ -59,15 +66,16 @@ class SharedProblem final : public optim::Problem {
   VectorXd joined(Of&& of) const;
 
   std::vector<Part> parts_;
-  std::vector<int> first_;   // variables of each body, and the end
-  std::vector<int> budget_;  // its constraint in each body; -1: not of this one
+  std::vector<int> first_;   // first variable of each body, and the end
+  std::vector<int> budget_;  // index of the limit that the budget replaces in each body; -1: none
   int n_constraints_ = 0;
-  bool of_motion_ = false;  // the objective
-  VectorXd shares_;         // s_b of the budget
+  bool of_motion_ = false;  // true if the objective is a response of the motion
+  VectorXd shares_;         // fractions s_b of the budget
 };
 
-/// The limit of a goal that a budget is made of.
-/// @throws Error (input) when there is not just one.
+/// Returns the index of the limit of a goal that a budget of mass replaces.
+/// @throws Error (input) when the goal does not have exactly one upper limit equivalent to a
+/// volume.
 size_t shared_limit(const Goal& goal);
 
 }  // namespace flexmorph::mmc

@@ -5,13 +5,13 @@
 namespace flexmorph::mmc {
 namespace {
 
-/// f = Σ w_l C_l [J], C_l the compliance of load l (ComplianceEvaluator).
+/// The weighted sum f = Σ w_l C_l [J] with the compliances C_l of the loads (ComplianceEvaluator).
 class Sum final : public Response {
  public:
   void evaluate(const Seen& at, Values& out) override { at.state.sum(at.factors, out); }
 };
 
-/// f = (Σ C_l^p / m)^(1/p) [J] of m loads, p = kPeakExponent.
+/// The power mean f = (Σ C_l^p / m)^(1/p) [J] of m loads with p = kPeakExponent.
 class Peak final : public Response {
  public:
   void evaluate(const Seen& at, Values& out) override {
@@ -34,7 +34,7 @@ class Peak final : public Response {
   Values each_;
 };
 
-/// f_l = C_l [J].
+/// The compliances f_l = C_l [J] of all loads.
 class Worst final : public Response {
  public:
   void evaluate(const Seen& at, Values& out) override { at.state.each(at.factors, out); }

@@ -3,15 +3,16 @@
 namespace flexmorph::mmc {
 namespace {
 
-/// Moment of inertia about the root, across the plane.
+/// Returns the contributions of the cells to the moment of inertia J about the root, with an axis
+/// perpendicular to the plane (1 x n_cells).
 ///
 ///   J = Σ b m_cell (|x - x_root|² + (dx² + dy²) / 12)
 ///
 /// b       mass factor of a cell [-]
-/// m_cell  its mass when it is full, ρ c dx dy [kg]
-/// x       its centre; x_root the middle of the left edge of the grid, where a body that turns is
-///         held when it is at its longest [m]
-/// J       [kg m²]: exact where the material of a cell lies evenly in it
+/// m_cell  mass of a full cell, ρ c dx dy [kg]
+/// x       centre of the cell; x_root is the middle of the left edge of the grid, where a rotating
+///         body is held at its greatest length [m]
+/// J       [kg m²]; it is exact where the material of a cell is distributed uniformly in the cell
 MatrixXd by_cell(const Plate& plate) {
   const Grid& g = plate.grid;
   const Vec2 root(g.x0, g.y0 + 0.5 * g.height);

@@ -1,7 +1,7 @@
 #include "optim/mmc/problem/motion_response.h"
 #include "optim/mmc/problem/responses/rows.h"
 
-/// Numbers of the motion of the mechanism, by its exact gradient
+/// Responses of the motion of the mechanism, with exact gradients
 /// (fem/dynamics/gradients/motion_gradient.h).
 namespace flexmorph::mmc {
 namespace {

@@ -3,8 +3,8 @@
 namespace flexmorph::mmc {
 namespace {
 
-/// f = s V, V the mean of the mass factors over the domain: the volume fraction (s = 1), or the
-/// mass (s = ρ c A [kg]).
+/// The response f = s V, where V is the mean of the mass factors over the domain: the volume
+/// fraction (s = 1) or the mass (s = ρ c A [kg]).
 class Volume final : public Response {
  public:
   Volume(const Plate& plate, double scale)
